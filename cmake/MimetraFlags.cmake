@@ -1,0 +1,11 @@
+# Flags of mimetra's own code; never handed to users of the libraries.
+add_library(mimetra_flags INTERFACE)
+target_compile_options(mimetra_flags INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor)
+if(MIMETRA_WARNINGS_AS_ERRORS)
+  target_compile_options(mimetra_flags INTERFACE -Werror)
+endif()
+if(MIMETRA_SANITIZE)
+  add_compile_options(-fsanitize=address,undefined -fno-sanitize-recover=undefined
+                      -fno-omit-frame-pointer)
+  add_link_options(-fsanitize=address,undefined)
+endif()

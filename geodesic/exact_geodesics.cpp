@@ -1,0 +1,141 @@
+#include <algorithm>
+#include <limits>
+#include <vector>
+
+#include <OpenMesh/Core/Mesh/TriMesh_ArrayKernelT.hh>
+
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/Surface_mesh_shortest_path.h>
+#include <CGAL/boost/graph/graph_traits_TriMesh_ArrayKernelT.h>
+
+#include <mimetra/geodesic/exact_geodesics.h>
+#include <mimetra/geodesic/glued_surface.h>
+#include <mimetra/geodesic/surface_components.h>
+
+namespace mimetra::geodesic {
+namespace {
+
+constexpr double kUnreachable = std::numeric_limits<double>::infinity();
+
+struct DoublePoints : OpenMesh::DefaultTraits {
+  using Point = OpenMesh::Vec3d;
+};
+using Mesh = OpenMesh::TriMesh_ArrayKernelT<DoublePoints>;
+using ShortestPath = CGAL::Surface_mesh_shortest_path<CGAL::Surface_mesh_shortest_path_traits<
+    CGAL::Exact_predicates_inexact_constructions_kernel, Mesh>>;
+
+/// Exact distances on one connected component. Vertices are rows of the component.
+class ExactComponent {
+ public:
+  explicit ExactComponent(const SurfaceComponent& component);
+
+  /// Distance from the nearest of `sources` (N). \pre At least one source.
+  Eigen::VectorXd distances(const std::vector<VertexIndex>& sources) const;
+
+ private:
+  Eigen::VectorXd distances_within_sheets(const std::vector<VertexIndex>& sources) const;
+
+  Mesh mesh_;
+  /// Row of each mesh vertex, and the mesh vertices of each row: several where sheets touch.
+  std::vector<VertexIndex> row_of_;
+  std::vector<std::vector<Mesh::VertexHandle>> copies_of_;
+};
+
+ExactComponent::ExactComponent(const SurfaceComponent& component)
+    : copies_of_(component.positions.rows()) {
+  const GluedSurface surface = glued(component.positions.rows(), component.triangles);
+  mesh_ = mesh_of<Mesh>(surface, component.positions);
+  row_of_ = surface.vertex;
+  for (const auto vertex : mesh_.vertices()) copies_of_[row_of_[vertex.idx()]].push_back(vertex);
+}
+
+/// Dijkstra over the vertices where sheets touch: each passes on what it has to all its sheets.
+Eigen::VectorXd ExactComponent::distances(const std::vector<VertexIndex>& sources) const {
+  Eigen::VectorXd best = distances_within_sheets(sources);
+  std::vector<VertexIndex> passages;
+  for (VertexIndex row = 0; row < best.size(); ++row) {
+    if (copies_of_[row].size() > 1) passages.push_back(row);
+  }
+  while (!passages.empty()) {
+    const auto nearest =
+        std::min_element(passages.begin(), passages.end(),
+                         [&best](VertexIndex a, VertexIndex b) { return best[a] < best[b]; });
+    const VertexIndex passage = *nearest;
+    passages.erase(nearest);
+    best =
+        best.cwiseMin((distances_within_sheets({passage}).array() + best[passage]).matrix().eval());
+  }
+  return best;
+}
+
+Eigen::VectorXd ExactComponent::distances_within_sheets(
+    const std::vector<VertexIndex>& sources) const {
+  // CGAL's object holds the query's state, so each query has its own.
+  ShortestPath shortest_path(mesh_);
+  for (const VertexIndex source : sources) {
+    for (const auto copy : copies_of_[source]) shortest_path.add_source_point(copy);
+  }
+  Eigen::VectorXd result =
+      Eigen::VectorXd::Constant(static_cast<Eigen::Index>(copies_of_.size()), kUnreachable);
+  for (const auto vertex : mesh_.vertices()) {
+    const double distance = shortest_path.shortest_distance_to_source_points(vertex).first;
+    double& known = result[row_of_[vertex.idx()]];
+    // CGAL says -1 where no source reaches.
+    if (distance >= 0) known = std::min(known, distance);
+  }
+  return result;
+}
+
+}  // namespace
+
+class ExactGeodesics::Implementation {
+ public:
+  Implementation(const Positions& positions, const Triangles& triangles)
+      : surface_(surface_components(positions, triangles, Degenerate::left_out)) {
+    for (const SurfaceComponent& component : surface_.components) {
+      components_.emplace_back(component);
+    }
+  }
+
+  Eigen::VectorXd distances(std::span<const VertexIndex> sources) const {
+    const auto rows = sources_by_component(surface_, sources);
+    Eigen::VectorXd result = Eigen::VectorXd::Constant(
+        static_cast<Eigen::Index>(surface_.component_of.size()), kUnreachable);
+    for (std::size_t c = 0; c < rows.size(); ++c) {
+      if (rows[c].empty()) continue;
+      result(surface_.components[c].vertices) = components_[c].distances(rows[c]);
+    }
+    return result;
+  }
+
+  const SurfaceComponents& surface() const { return surface_; }
+
+ private:
+  SurfaceComponents surface_;
+  std::vector<ExactComponent> components_;
+};
+
+ExactGeodesics::ExactGeodesics(const Positions& positions, const Triangles& triangles)
+    : implementation_(std::make_unique<Implementation>(positions, triangles)) {}
+
+ExactGeodesics::~ExactGeodesics() = default;
+ExactGeodesics::ExactGeodesics(ExactGeodesics&&) noexcept = default;
+ExactGeodesics& ExactGeodesics::operator=(ExactGeodesics&&) noexcept = default;
+
+Eigen::VectorXd ExactGeodesics::distances(VertexIndex source) const {
+  return distances(std::span(&source, 1));
+}
+
+Eigen::VectorXd ExactGeodesics::distances(std::span<const VertexIndex> sources) const {
+  return implementation_->distances(sources);
+}
+
+int ExactGeodesics::degenerate_triangles() const {
+  return implementation_->surface().degenerate_triangles;
+}
+
+const std::vector<VertexIndex>& ExactGeodesics::vertices_without_face() const {
+  return implementation_->surface().vertices_without_face;
+}
+
+}  // namespace mimetra::geodesic

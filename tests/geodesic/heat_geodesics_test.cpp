@@ -1,0 +1,229 @@
+#include <array>
+#include <limits>
+#include <numeric>
+#include <thread>
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+
+#include <mimetra/geodesic/heat_geodesics.h>
+
+#include "surfaces.h"
+
+namespace mimetra::geodesic {
+namespace {
+
+using test::mean_error;
+using test::relative_error;
+using test::Shape;
+
+HeatGeodesics heat_on(const Shape& shape, const HeatOptions& options = {}) {
+  return {shape.positions, shape.triangles, options};
+}
+
+/// Great-circle distance on the unit sphere.
+Eigen::VectorXd great_circle(const Shape& sphere, VertexIndex from) {
+  return (sphere.positions * sphere.positions.row(from).transpose()).array().max(-1).min(1).acos();
+}
+
+TEST(HeatGeodesics, HalvesItsErrorOnASphereWithEachRefinement) {
+  for (const bool intrinsic : {true, false}) {
+    double previous = 0.15;
+    for (const int levels : {2, 3, 4, 5}) {
+      const Shape sphere = test::sphere(levels);
+      const HeatGeodesics heat = heat_on(sphere, {.intrinsic_delaunay = intrinsic});
+      const double error = mean_error(heat.distances(3), great_circle(sphere, 3));
+      // At best of first order in the edge length, which halves; the smoothing of the source and of
+      // the cut locus, where gradients meet, costs the rest.
+      EXPECT_LT(error, previous * 0.6) << levels << " levels";
+      previous = error;
+    }
+  }
+}
+
+TEST(HeatGeodesics, AreEuclideanOnAFlatGrid) {
+  const Shape grid = test::grid(31, 31);
+  const VertexIndex middle = 15 * 31 + 15;
+  // 15 edges from the middle to the side: an error of about one edge length is 5 % on the mean.
+  EXPECT_LT(mean_error(heat_on(grid).distances(middle), test::euclidean(grid.positions, middle)),
+            0.05);
+}
+
+TEST(HeatGeodesics, AreZeroAtTheSourceAndPositiveElsewhere) {
+  const Shape shape = test::bumpy_sphere(3);
+  const HeatGeodesics heat = heat_on(shape);
+  for (const VertexIndex source : {0, 100, 257}) {
+    Eigen::VectorXd distances = heat.distances(source);
+    EXPECT_EQ(distances[source], 0);
+    distances[source] = 1;
+    EXPECT_GT(distances.minCoeff(), 0);
+  }
+}
+
+TEST(HeatGeodesics, AreNearlySymmetric) {
+  const Shape shape = test::bumpy_sphere(4);
+  const HeatGeodesics heat = heat_on(shape);
+  const Eigen::VectorXd from_a = heat.distances(10);
+  for (const VertexIndex b : {60, 333, 871}) {
+    // Each of the two is within the method's own error, some percent at this resolution.
+    EXPECT_NEAR(heat.distances(b)[10], from_a[b], 0.05 * from_a.maxCoeff());
+  }
+}
+
+TEST(HeatGeodesics, AreTheNearestOfSeveralSources) {
+  const Shape shape = test::bumpy_sphere(4);
+  const HeatGeodesics heat = heat_on(shape);
+  const std::array<VertexIndex, 3> sources = {3, 400, 900};
+  const Eigen::VectorXd distances = heat.distances(sources);
+  Eigen::VectorXd nearest = heat.distances(sources[0]);
+  for (const VertexIndex source : sources) {
+    EXPECT_EQ(distances[source], 0);
+    nearest = nearest.cwiseMin(heat.distances(source));
+  }
+  // The sources' potentials agree only within the method's error.
+  EXPECT_LT(mean_error(distances, nearest), 0.05);
+}
+
+TEST(HeatGeodesics, TakeASourceTwiceAsOnce) {
+  const HeatGeodesics heat = heat_on(test::bumpy_sphere(2));
+  const std::array<VertexIndex, 2> twice = {7, 7};
+  EXPECT_EQ(heat.distances(twice), heat.distances(7));
+}
+
+// The result has conditions of about 1e4 in the heat step and 1e4 in the Poisson system, times
+// 1e-16 for each rounding of the coordinates.
+constexpr double kRounding = 1e-9;
+
+TEST(HeatGeodesics, DoNotChangeUnderRigidMotion) {
+  Shape shape = test::bumpy_sphere(3);
+  const Eigen::VectorXd expected = heat_on(shape).distances(5);
+  const Eigen::Matrix3d rotation =
+      Eigen::AngleAxisd(1.1, Eigen::Vector3d(1, 2, 3).normalized()).toRotationMatrix();
+  shape.positions = (shape.positions * rotation.transpose()).eval();
+  shape.positions.rowwise() += Eigen::RowVector3d(4, -5, 6);
+  EXPECT_LT(relative_error(heat_on(shape).distances(5), expected), kRounding);
+}
+
+TEST(HeatGeodesics, DoNotChangeFarFromTheOrigin) {
+  Shape shape = test::bumpy_sphere(3);
+  const Eigen::VectorXd expected = heat_on(shape).distances(5);
+  shape.positions.rowwise() += Eigen::RowVector3d(1e6, -1e6, 1e6);
+  // Coordinates of 1e6 are known to 1e-10, edges of 0.1 to 1e-9; a hundred for the conditions.
+  EXPECT_LT(relative_error(heat_on(shape).distances(5), expected), 1e-7);
+}
+
+TEST(HeatGeodesics, ScaleWithTheMesh) {
+  const Shape shape = test::bumpy_sphere(3);
+  const Eigen::VectorXd expected = heat_on(shape).distances(5);
+  for (const double scale : {1e-6, 1e6}) {
+    const Shape scaled{shape.positions * scale, shape.triangles};
+    EXPECT_LT(relative_error(heat_on(scaled).distances(5), expected * scale), kRounding);
+  }
+}
+
+TEST(HeatGeodesics, FollowTheOrderOfTheVertices) {
+  const Shape shape = test::bumpy_sphere(3);
+  const int vertices = static_cast<int>(shape.positions.rows());
+  Shape reversed = shape;
+  reversed.positions = shape.positions.colwise().reverse();
+  reversed.triangles = (vertices - 1 - shape.triangles.array()).matrix();
+  EXPECT_LT(relative_error(heat_on(reversed).distances(vertices - 1 - 5).reverse(),
+                           heat_on(shape).distances(5)),
+            kRounding);
+}
+
+TEST(HeatGeodesics, AreInfiniteOnOtherComponents) {
+  const Shape one = test::bumpy_sphere(2);
+  const int vertices = static_cast<int>(one.positions.rows());
+  const HeatGeodesics heat = heat_on(test::both(one, test::octahedron()));
+  const Eigen::VectorXd distances = heat.distances(0);
+  EXPECT_TRUE(distances.head(vertices).allFinite());
+  EXPECT_TRUE((distances.tail(6).array() == std::numeric_limits<double>::infinity()).all());
+  // What is elsewhere does not matter: the diffusion time is the component's own.
+  EXPECT_EQ(distances.head(vertices), heat_on(one).distances(0));
+}
+
+TEST(HeatGeodesics, StartOnEveryComponentThatHasASource) {
+  const Shape one = test::bumpy_sphere(2);
+  const int vertices = static_cast<int>(one.positions.rows());
+  const std::array<VertexIndex, 2> sources = {4, vertices + 2};
+  const Eigen::VectorXd distances = heat_on(test::both(one, one)).distances(sources);
+  EXPECT_EQ(distances.head(vertices), heat_on(one).distances(4));
+  EXPECT_EQ(distances.tail(vertices), heat_on(one).distances(2));
+}
+
+TEST(HeatGeodesics, ReachTheFarEndOfALongStrip) {
+  // Heat falls by about e per edge: after 700 of them it has underflown.
+  const int length = 1200;
+  const Shape strip = test::grid(length, 3);
+  const Eigen::VectorXd distances = heat_on(strip).distances(0);
+  ASSERT_TRUE(distances.allFinite());
+  // CGAL adds 1e-8 per triangle to the Laplacian, whose lowest eigenvalue is (pi / length)^2 =
+  // 7e-6 here: up to 1 %, beside the method's own error, which is an edge or two.
+  EXPECT_NEAR(distances[length - 1], length - 1, 0.02 * length);
+}
+
+TEST(HeatGeodesics, EndWhereManyVerticesLieOnACircle) {
+  // Regular polygons as caps: every triangulation is Delaunay, and rounding decides between them.
+  // On these CGAL's flips alone would not end.
+  for (const int sides : {29, 52, 60, 71, 98}) {
+    Shape prism{Positions(2 * sides, 3), Triangles(4 * sides - 4, 3)};
+    for (int i = 0; i < sides; ++i) {
+      const double angle = 2 * std::numbers::pi * i / sides;
+      prism.positions.row(i) << std::cos(angle), std::sin(angle), 0;
+      prism.positions.row(sides + i) << std::cos(angle), std::sin(angle), 0.1;
+    }
+    int t = 0;
+    for (int i = 0; i < sides; ++i) {
+      const int j = (i + 1) % sides;
+      prism.triangles.row(t++) << i, j, sides + j;
+      prism.triangles.row(t++) << i, sides + j, sides + i;
+    }
+    for (int i = 1; i + 1 < sides; ++i) {
+      prism.triangles.row(t++) << 0, i + 1, i;
+      prism.triangles.row(t++) << sides, sides + i, sides + i + 1;
+    }
+    EXPECT_TRUE(heat_on(prism).distances(0).allFinite()) << sides << " sides";
+  }
+}
+
+TEST(HeatGeodesics, GiveTheSameBytesInEveryThread) {
+  const Shape shape = test::bumpy_sphere(3);
+  const HeatGeodesics heat = heat_on(shape);
+  std::array<std::vector<Eigen::VectorXd>, 2> results;
+  {
+    std::vector<std::jthread> threads;
+    for (auto& result : results) {
+      threads.emplace_back([&] {
+        for (VertexIndex source = 0; source < 20; ++source) {
+          result.push_back(heat.distances(source));
+        }
+      });
+    }
+  }
+  for (VertexIndex source = 0; source < 20; ++source) {
+    EXPECT_EQ(results[0][source], heat.distances(source));
+    EXPECT_EQ(results[1][source], heat.distances(source));
+  }
+}
+
+TEST(HeatGeodesics, MayBeMoved) {
+  const Shape shape = test::bumpy_sphere(2);
+  HeatGeodesics first = heat_on(shape);
+  const Eigen::VectorXd expected = first.distances(1);
+  const HeatGeodesics second = std::move(first);
+  EXPECT_EQ(second.distances(1), expected);
+}
+
+TEST(HeatGeodesics, RefuseSourcesThatDoNotExist) {
+  const HeatGeodesics heat = heat_on(test::octahedron());
+  EXPECT_THROW(heat.distances(-1), std::out_of_range);
+  EXPECT_THROW(heat.distances(6), std::out_of_range);
+  const std::array<VertexIndex, 2> sources = {0, 6};
+  EXPECT_THROW(heat.distances(sources), std::out_of_range);
+  EXPECT_THROW(heat.distances(std::span<const VertexIndex>()), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace mimetra::geodesic
