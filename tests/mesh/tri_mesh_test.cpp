@@ -1,0 +1,120 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <mimetra/mesh/tri_mesh.h>
+
+#include "shapes.h"
+
+namespace mimetra {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::ThrowsMessage;
+
+Connectivity quad_and_triangle() {
+  return Connectivity::from_polygons(5, {{0, 1, 2, 3, 3, 2, 4}, {0, 4, 7}});
+}
+
+TEST(Connectivity, CutsAPolygonIntoAFanAboutItsFirstCorner) {
+  const Connectivity pentagon = Connectivity::from_polygons(5, {{4, 0, 1, 2, 3}, {0, 5}});
+  Triangles fan(3, 3);
+  fan << 4, 0, 1, 4, 1, 2, 4, 2, 3;
+  EXPECT_EQ(pentagon.triangles, fan);
+}
+
+TEST(Connectivity, KnowsThePolygonOfEachTriangle) {
+  EXPECT_THAT(quad_and_triangle().polygon_of_triangle, ElementsAre(0, 0, 1));
+}
+
+TEST(Connectivity, KeepsThePolygonsAsGiven) {
+  const Polygons polygons{{0, 1, 2, 3, 3, 2, 4}, {0, 4, 7}};
+  EXPECT_EQ(quad_and_triangle().polygons, polygons);
+}
+
+TEST(Connectivity, OfTrianglesHasThemAsPolygons) {
+  const auto shape = test::octahedron();
+  const Connectivity connectivity = Connectivity::from_triangles(6, shape.triangles);
+  EXPECT_EQ(connectivity.triangles, shape.triangles);
+  EXPECT_EQ(connectivity.polygons.size(), 8);
+}
+
+TEST(Connectivity, MayHaveVerticesWithoutFaces) {
+  EXPECT_EQ(Connectivity::from_triangles(7, Triangles(0, 3)).vertices, 7);
+}
+
+TEST(Connectivity, NamesTheFirstPolygonWithTooFewCorners) {
+  EXPECT_THAT(
+      [] {
+        Connectivity::from_polygons(3, {{0, 1, 2, 0, 1}, {0, 3, 5}});
+      },
+      ThrowsMessage<std::invalid_argument>(HasSubstr("face 1 has 2 corners, expected at least 3")));
+}
+
+TEST(Connectivity, NamesTheFirstPolygonWithABadIndex) {
+  EXPECT_THAT(
+      [] {
+        Connectivity::from_polygons(3, {{0, 1, 2, 0, 1, 3}, {0, 3, 6}});
+      },
+      ThrowsMessage<std::invalid_argument>(HasSubstr("face 1 uses vertex 3, expected 0 to 2")));
+  EXPECT_THAT(
+      [] {
+        Connectivity::from_polygons(3, {{-1, 1, 2}, {0, 3}});
+      },
+      ThrowsMessage<std::invalid_argument>(HasSubstr("face 0 uses vertex -1")));
+}
+
+TEST(Connectivity, RefusesOffsetsThatDoNotCoverTheCorners) {
+  EXPECT_THAT(
+      [] {
+        Connectivity::from_polygons(4, {{0, 1, 2, 3}, {0, 3}});
+      },
+      ThrowsMessage<std::invalid_argument>(HasSubstr("polygon offsets")));
+  EXPECT_THROW(Connectivity::from_polygons(4, {{0, 1, 2, 3, 0, 1}, {0, 7, 6}}),
+               std::invalid_argument);
+}
+
+TEST(SameFaces, HoldsForRotatedPolygons) {
+  const Connectivity rotated = Connectivity::from_polygons(5, {{2, 3, 0, 1, 2, 4, 3}, {0, 4, 7}});
+  EXPECT_TRUE(same_faces(quad_and_triangle(), rotated));
+}
+
+TEST(SameFaces, FailsForAFlippedPolygon) {
+  const Connectivity flipped = Connectivity::from_polygons(5, {{0, 1, 2, 3, 4, 2, 3}, {0, 4, 7}});
+  EXPECT_FALSE(same_faces(quad_and_triangle(), flipped));
+  EXPECT_EQ(first_different_face(quad_and_triangle(), flipped), 1);
+}
+
+TEST(SameFaces, FailsForASplitPolygon) {
+  const Connectivity split =
+      Connectivity::from_polygons(5, {{0, 1, 2, 0, 2, 3, 3, 2, 4}, {0, 3, 6, 9}});
+  EXPECT_EQ(split.triangles, quad_and_triangle().triangles);
+  EXPECT_EQ(first_different_face(quad_and_triangle(), split), 0);
+}
+
+TEST(SameFaces, FailsForMoreVertices) {
+  Connectivity larger = quad_and_triangle();
+  larger.vertices = 6;
+  EXPECT_FALSE(same_faces(quad_and_triangle(), larger));
+}
+
+TEST(FirstDifferentFace, IsTheFirstOneThatOnlyOneMeshHas) {
+  const Connectivity shorter = Connectivity::from_polygons(5, {{0, 1, 2, 3}, {0, 4}});
+  EXPECT_EQ(first_different_face(quad_and_triangle(), shorter), 1);
+  EXPECT_EQ(first_different_face(quad_and_triangle(), quad_and_triangle()), -1);
+}
+
+TEST(Extent, IsTheLongestSideOfTheBox) {
+  Positions positions(2, 3);
+  positions << 1, 1, 1, 3, 4, 7;
+  EXPECT_EQ(extent(positions), 6);
+  EXPECT_EQ(box_diagonal(positions), 7);
+}
+
+TEST(Extent, OfNothingIsZero) {
+  EXPECT_EQ(extent(Positions(0, 3)), 0);
+  EXPECT_EQ(box_diagonal(Positions(0, 3)), 0);
+}
+
+}  // namespace
+}  // namespace mimetra

@@ -1,0 +1,243 @@
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include <Eigen/LU>
+#include <Eigen/SVD>
+
+#include <mimetra/mesh/alignment.h>
+
+namespace mimetra {
+namespace {
+
+/// The robust scale follows the residual that this share of the vertices stays below: so many are
+/// needed to tell the head's motion from the face's. Where at least so many do not move at all, the
+/// scale shrinks to nothing and the fit locks on to them exactly.
+constexpr double kStableShare = 0.05;
+/// The scale starts at the median residual of the plain fit, where every still vertex counts, and
+/// shrinks by no more than this per iteration: faster, and a wrong patch that the jaw's motion made
+/// look still can win.
+constexpr double kScaleDecay = 0.7;
+/// Slow convergence means that no vertices are still; more iterations would not make them so.
+constexpr int kMaxIterations = 40;
+/// Change of the largest weight at which the motion has settled.
+constexpr double kConvergedWeightChange = 1e-6;
+/// Weight that every vertex keeps. It fixes the rotation about still vertices that lie on a line
+/// and moves the others' result by less than 1e-10 of their displacement.
+constexpr double kLeastWeight = 1e-10;
+/// The scale stops at this share of the box; positions of double precision carry 1e-15 of it.
+constexpr double kLeastScale = 1e-12;
+/// Motion below this share of the box is what kLeastWeight and rounding leave.
+constexpr double kLeastMotion = 1e-9;
+/// Motion within so many standard errors of the fit is noise.
+constexpr double kSignificance = 3;
+
+Eigen::Matrix3d nearest_rotation(const Eigen::Matrix3d& cross_covariance) {
+  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(cross_covariance,
+                                              Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const double sign = (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0 ? -1 : 1;
+  return svd.matrixU() * Eigen::Vector3d(1, 1, sign).asDiagonal() * svd.matrixV().transpose();
+}
+
+/// One weighted set of points, to be carried to many others.
+class RigidFitter {
+ public:
+  RigidFitter(const Eigen::Ref<const Positions>& from, const Eigen::VectorXd& weights)
+      : moments_(from.rows(), 4) {
+    const Eigen::VectorXd shares = weights / weights.sum();
+    center_ = from.transpose() * shares;
+    moments_.leftCols<3>() = shares.asDiagonal() * (from.rowwise() - center_.transpose());
+    moments_.col(3) = shares;
+  }
+
+  RigidTransform carry_to(const Eigen::Ref<const Positions>& to) const {
+    // Centred on its first point, so that translations far beyond the box cost no digits.
+    const Eigen::RowVector3d origin = to.row(0);
+    const Eigen::Matrix<double, 3, 4> moments = (to.rowwise() - origin).transpose() * moments_;
+    RigidTransform transform;
+    transform.rotation = nearest_rotation(moments.leftCols<3>());
+    transform.translation = moments.col(3) + origin.transpose() - transform.rotation * center_;
+    return transform;
+  }
+
+ private:
+  Eigen::Vector3d center_;
+  Eigen::Matrix<double, Eigen::Dynamic, 4> moments_;
+};
+
+std::vector<RigidTransform> fit_frames(const MeshSequence& sequence,
+                                       const Eigen::VectorXd& weights) {
+  const RigidFitter rest(sequence.rest(), weights);
+  std::vector<RigidTransform> motion(sequence.frames());
+  for (int f = 0; f < sequence.frames(); ++f) {
+    // A frame that is the rest pose did not move; rounding would say that it nearly did not.
+    if (sequence.frame(f) != sequence.rest()) motion[f] = rest.carry_to(sequence.frame(f));
+  }
+  return motion;
+}
+
+/// Root mean square over the frames of each vertex's distance from the moved rest pose (N).
+Eigen::VectorXd residuals(const MeshSequence& sequence, const std::vector<RigidTransform>& motion) {
+  Eigen::VectorXd squares = Eigen::VectorXd::Zero(sequence.vertices());
+  const Positions& rest = sequence.rest();
+  for (int f = 0; f < sequence.frames(); ++f) {
+    const PositionsView frame = sequence.frame(f);
+    const Eigen::Matrix3d rotation = motion[f].rotation;
+    const Eigen::Vector3d translation = motion[f].translation;
+    for (Eigen::Index v = 0; v < rest.rows(); ++v) {
+      const Eigen::Vector3d point = rest.row(v);
+      squares[v] +=
+          (rotation.lazyProduct(point) + translation - frame.row(v).transpose()).squaredNorm();
+    }
+  }
+  return (squares / sequence.frames()).cwiseSqrt();
+}
+
+double quantile(Eigen::VectorXd values, double share) {
+  const auto index = static_cast<Eigen::Index>(share * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), values.begin() + index, values.end());
+  return values[index];
+}
+
+/// Geman and McClure's weights: redescending, so that what moves has no say in the end.
+Eigen::VectorXd robust_weights(const Eigen::VectorXd& residuals, double scale) {
+  const auto ratios = (residuals.array() / scale).square();
+  return (1 + ratios).square().inverse().max(kLeastWeight);
+}
+
+/// The motion of the vertices that move least, and how well it is known.
+struct StableFit {
+  std::vector<RigidTransform> motion;
+  Eigen::VectorXd weights;
+  /// Of the last fit (N).
+  Eigen::VectorXd residuals;
+};
+
+/// Iteratively reweighted least squares over all frames at once: one weight per vertex, because a
+/// vertex that is still in one frame only tells little. It uses nothing but residuals, so that a
+/// sequence moved rigidly per frame gives the same weights.
+///
+/// [Geman, McClure. Statistical methods for tomographic image reconstruction. Bull. ISI 52, 1987],
+/// annealed as in [Blake, Zisserman. Visual Reconstruction. MIT Press, 1987]
+StableFit fit_stable(const MeshSequence& sequence, const Progress& progress) {
+  const double least_scale = kLeastScale * box_diagonal(sequence.rest());
+  StableFit fit;
+  fit.weights = Eigen::VectorXd::Ones(sequence.vertices());
+  std::optional<double> scale;
+  for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
+    report_progress(progress, static_cast<double>(iteration) / kMaxIterations);
+    fit.motion = fit_frames(sequence, fit.weights);
+    fit.residuals = residuals(sequence, fit.motion);
+    const double target = std::max(quantile(fit.residuals, kStableShare), least_scale);
+    if (target == 0) break;  // every vertex is in one place
+    const bool settled = scale == least_scale;
+    scale = scale ? std::min(*scale, std::max(target, kScaleDecay * *scale))
+                  : std::max(target, quantile(fit.residuals, 0.5));
+    const Eigen::VectorXd weights = robust_weights(fit.residuals, *scale);
+    const double change = (weights - fit.weights).cwiseAbs().maxCoeff();
+    if (settled || change < kConvergedWeightChange) break;
+    fit.weights = weights;
+  }
+  return fit;
+}
+
+/// Whether the motion can be told from none: its root mean square displacement of the stable
+/// vertices against the standard error of a rigid fit to n points with this residual, whose six
+/// unknowns take sqrt(6 / 3n) of it.
+bool is_significant(const MeshSequence& sequence, const StableFit& fit) {
+  const Eigen::VectorXd shares = fit.weights / fit.weights.sum();
+  double squares = 0;
+  for (const RigidTransform& transform : fit.motion) {
+    squares +=
+        shares.dot((transform.apply(sequence.rest()) - sequence.rest()).rowwise().squaredNorm());
+  }
+  const double found = std::sqrt(squares / sequence.frames());
+  const double residual = std::sqrt(shares.dot(fit.residuals.cwiseAbs2()));
+  const double points = 1 / shares.squaredNorm();
+  return found > std::max(kSignificance * residual * std::sqrt(2 / points),
+                          kLeastMotion * box_diagonal(sequence.rest()));
+}
+
+void check_count(const MeshSequence& sequence, const std::vector<RigidTransform>& motion) {
+  if (static_cast<int>(motion.size()) == sequence.frames()) return;
+  throw MismatchError(std::to_string(motion.size()) + " rigid transforms, expected " +
+                      std::to_string(sequence.frames()) + ", one per frame");
+}
+
+void check_weights(Eigen::Index points, const Eigen::VectorXd& weights) {
+  if (weights.size() != points) {
+    throw std::invalid_argument(std::to_string(weights.size()) + " weights for " +
+                                std::to_string(points) + " points");
+  }
+  if (!(weights.minCoeff() >= 0) || !(weights.sum() > 0)) {
+    throw std::invalid_argument("weights of a rigid fit must be >= 0 and not all 0");
+  }
+}
+
+}  // namespace
+
+Positions RigidTransform::apply(const Eigen::Ref<const Positions>& positions) const {
+  if (is_identity()) return positions;  // bit by bit
+  return (positions * rotation.transpose()).rowwise() + translation.transpose();
+}
+
+RigidTransform RigidTransform::inverse() const {
+  return {rotation.transpose(), -(rotation.transpose() * translation)};
+}
+
+bool RigidTransform::is_identity() const {
+  return rotation == Eigen::Matrix3d::Identity() && translation == Eigen::Vector3d::Zero();
+}
+
+RigidTransform rigid_fit(const Eigen::Ref<const Positions>& from,
+                         const Eigen::Ref<const Positions>& to, const Eigen::VectorXd& weights) {
+  if (from.rows() != to.rows() || from.rows() == 0) {
+    throw std::invalid_argument("rigid fit of " + std::to_string(from.rows()) + " points to " +
+                                std::to_string(to.rows()) + ", expected the same number, not 0");
+  }
+  if (weights.size() == 0) {
+    return RigidFitter(from, Eigen::VectorXd::Ones(from.rows())).carry_to(to);
+  }
+  check_weights(from.rows(), weights);
+  return RigidFitter(from, weights).carry_to(to);
+}
+
+Alignment align(const MeshSequence& sequence, AlignmentVertices vertices,
+                const Progress& progress) {
+  std::vector<RigidTransform> motion(sequence.frames());
+  if (sequence.vertices() == 0) return align(sequence, std::move(motion));
+  if (vertices == AlignmentVertices::all) {
+    motion = fit_frames(sequence, Eigen::VectorXd::Ones(sequence.vertices()));
+  } else if (StableFit fit = fit_stable(sequence, progress); is_significant(sequence, fit)) {
+    motion = std::move(fit.motion);
+  }
+  report_progress(progress, 1);
+  return align(sequence, std::move(motion));
+}
+
+Alignment align(const MeshSequence& sequence, std::vector<RigidTransform> motion) {
+  check_count(sequence, motion);
+  std::vector<RigidTransform> inverse;
+  for (const RigidTransform& transform : motion) inverse.push_back(transform.inverse());
+  return {with_motion(sequence, inverse), std::move(motion)};
+}
+
+MeshSequence with_motion(const MeshSequence& sequence, const std::vector<RigidTransform>& motion) {
+  check_count(sequence, motion);
+  Frames frames = sequence.positions();
+  for (int f = 0; f < sequence.frames(); ++f) {
+    if (motion[f].is_identity()) continue;
+    Eigen::Map<Positions>(frames.row(f).data(), sequence.vertices(), 3) =
+        motion[f].apply(sequence.frame(f));
+  }
+  return sequence.with_frames(std::move(frames));
+}
+
+MeshSequence rigidly_aligned(const MeshSequence& sequence) {
+  return align(sequence).sequence;
+}
+
+}  // namespace mimetra

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <vector>
+
+#include <mimetra/mesh/errors.h>
+#include <mimetra/mesh/mesh_sequence.h>
+
+namespace mimetra {
+
+/// x -> rotation x + translation.
+struct RigidTransform {
+  Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
+  Eigen::Vector3d translation = Eigen::Vector3d::Zero();
+
+  Positions apply(const Eigen::Ref<const Positions>& positions) const;
+  RigidTransform inverse() const;
+  bool is_identity() const;
+};
+
+/// The rigid transform that carries `from` to `to` (both N x 3) with the least sum of weighted
+/// squared distances: U diag(1, 1, det) V^T, never a reflection. `weights` (N, >= 0) or empty for
+/// ones. Throws std::invalid_argument where sizes differ or all weights are 0.
+///
+/// [Umeyama. Least-squares estimation of transformation parameters between two point patterns.
+/// IEEE PAMI 13(4), 1991]
+RigidTransform rigid_fit(const Eigen::Ref<const Positions>& from,
+                         const Eigen::Ref<const Positions>& to,
+                         const Eigen::VectorXd& weights = {});
+
+enum class AlignmentVertices {
+  stable,  ///< robust: the vertices that move least, found together with the motion
+  all      ///< least squares over all vertices (reads a moving jaw as rotation)
+};
+
+/// A sequence without its rigid motion, and that motion.
+struct Alignment {
+  MeshSequence sequence;
+  /// motion[f] carries frame f of `sequence` to frame f of the input (F).
+  std::vector<RigidTransform> motion;
+};
+
+/// Removes from each frame its rigid motion relative to the rest pose, which stays as it is.
+///
+/// `stable` weighs each vertex, over all frames at once, by how little the rigid motion leaves of
+/// it. Where one vertex in twenty or more is still on the head, the motion is exact; a sequence
+/// that was moved rigidly per frame gives the same result, moved as its rest pose was. Where the
+/// motion found is no larger than noise of the still vertices' own size can feign (three standard
+/// errors of the fit), the result is the input itself, bit by bit, and every transform the
+/// identity.
+Alignment align(const MeshSequence& sequence,
+                AlignmentVertices vertices = AlignmentVertices::stable,
+                const Progress& progress = {});
+
+/// Removes the given motion (F). Throws MismatchError where the count differs from the frames.
+Alignment align(const MeshSequence& sequence, std::vector<RigidTransform> motion);
+
+/// Gives the motion (F) back: frame f becomes motion[f].apply(frame f). Throws MismatchError.
+MeshSequence with_motion(const MeshSequence& sequence, const std::vector<RigidTransform>& motion);
+
+/// The sequence of align(sequence).
+MeshSequence rigidly_aligned(const MeshSequence& sequence);
+
+}  // namespace mimetra

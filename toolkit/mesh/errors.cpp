@@ -1,0 +1,24 @@
+#include <mimetra/mesh/errors.h>
+
+namespace mimetra {
+namespace {
+
+std::string with_path(std::string_view path, std::string_view message) {
+  return std::string(path).append(": ").append(message);
+}
+
+}  // namespace
+
+IoError::IoError(std::string_view path, std::string_view message)
+    : std::runtime_error(with_path(path, message)) {}
+
+OutputError::OutputError(std::string_view path, std::string_view message)
+    : std::runtime_error(with_path(path, message)) {}
+
+Cancelled::Cancelled() : std::runtime_error("cancelled") {}
+
+void report_progress(const Progress& progress, double share) {
+  if (progress && !progress(share)) throw Cancelled();
+}
+
+}  // namespace mimetra

@@ -1,0 +1,201 @@
+#include <algorithm>
+#include <array>
+#include <numeric>
+#include <stdexcept>
+#include <string>
+
+#include <Eigen/Geometry>
+
+#include <mimetra/mesh/inspection.h>
+#include <mimetra/mesh/weld.h>
+
+namespace mimetra {
+namespace {
+
+/// Sorted edge lists, not half-edges: every mesh must be counted here, also those that OpenMesh
+/// cannot hold (edges of three triangles, triangles that repeat a vertex).
+struct Edge {
+  VertexIndex low, high;
+  int triangle;
+
+  bool same_place(const Edge& other) const { return low == other.low && high == other.high; }
+  auto operator<=>(const Edge&) const = default;
+};
+
+enum class Collapsed { skipped, kept };
+
+bool repeats_vertex(const Triangles& triangles, Eigen::Index t) {
+  return triangles(t, 0) == triangles(t, 1) || triangles(t, 1) == triangles(t, 2) ||
+         triangles(t, 2) == triangles(t, 0);
+}
+
+std::vector<Edge> sorted_edges(const Triangles& triangles, Collapsed collapsed) {
+  std::vector<Edge> edges;
+  edges.reserve(triangles.size());
+  for (int t = 0; t < triangles.rows(); ++t) {
+    if (collapsed == Collapsed::skipped && repeats_vertex(triangles, t)) continue;
+    for (int corner = 0; corner < 3; ++corner) {
+      const auto [low, high] = std::minmax({triangles(t, corner), triangles(t, (corner + 1) % 3)});
+      if (low != high) edges.push_back({low, high, t});
+    }
+  }
+  std::sort(edges.begin(), edges.end());
+  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+  return edges;
+}
+
+/// Calls `visit(first, last)` for the triangles of each edge.
+template <typename Visit>
+void for_each_edge(const std::vector<Edge>& edges, Visit visit) {
+  for (auto first = edges.begin(); first != edges.end();) {
+    const auto last = std::find_if(first, edges.end(),
+                                   [&](const Edge& edge) { return !edge.same_place(*first); });
+    visit(first, last);
+    first = last;
+  }
+}
+
+struct EdgeCounts {
+  int boundary = 0;
+  int nonmanifold = 0;
+};
+
+EdgeCounts count_edges(const Triangles& triangles) {
+  EdgeCounts counts;
+  // A triangle that repeats a vertex has no inside that could lie on a side of an edge.
+  for_each_edge(sorted_edges(triangles, Collapsed::skipped), [&](auto first, auto last) {
+    if (last - first == 1) ++counts.boundary;
+    if (last - first > 2) ++counts.nonmanifold;
+  });
+  return counts;
+}
+
+void check_indices(int vertices, const Triangles& triangles) {
+  for (int t = 0; t < triangles.rows(); ++t) {
+    for (const VertexIndex vertex : triangles.row(t)) {
+      if (vertex >= 0 && vertex < vertices) continue;
+      throw std::invalid_argument("triangle " + std::to_string(t) + " uses vertex " +
+                                  std::to_string(vertex) + ", expected 0 to " +
+                                  std::to_string(vertices - 1));
+    }
+  }
+}
+
+/// Lowest vertex of the set that holds `vertex`; shortens the way for the next question.
+VertexIndex root(std::vector<VertexIndex>& parent, VertexIndex vertex) {
+  while (parent[vertex] != vertex) {
+    parent[vertex] = parent[parent[vertex]];
+    vertex = parent[vertex];
+  }
+  return vertex;
+}
+
+void join(std::vector<VertexIndex>& parent, VertexIndex a, VertexIndex b) {
+  const auto [low, high] = std::minmax({root(parent, a), root(parent, b)});
+  parent[high] = low;
+}
+
+int components_with_triangle(int vertices, const Triangles& triangles) {
+  const ConnectedComponents components = connected_components(vertices, triangles);
+  std::vector<char> seen(components.count, 0);
+  for (Eigen::Index t = 0; t < triangles.rows(); ++t) {
+    seen[components.of_vertex[triangles(t, 0)]] = 1;
+  }
+  return static_cast<int>(std::count(seen.begin(), seen.end(), 1));
+}
+
+std::vector<int> degenerate_triangles(const Positions& positions, const Triangles& triangles) {
+  std::vector<int> degenerate;
+  for (int t = 0; t < triangles.rows(); ++t) {
+    const double quality =
+        triangle_quality(positions.row(triangles(t, 0)), positions.row(triangles(t, 1)),
+                         positions.row(triangles(t, 2)));
+    if (repeats_vertex(triangles, t) || !(quality >= kDegenerateQuality)) degenerate.push_back(t);
+  }
+  return degenerate;
+}
+
+std::vector<VertexIndex> vertices_without_face(int vertices, const Triangles& triangles) {
+  std::vector<char> used(vertices, 0);
+  for (const VertexIndex vertex : triangles.reshaped()) used[vertex] = 1;
+  std::vector<VertexIndex> unused;
+  for (VertexIndex vertex = 0; vertex < vertices; ++vertex) {
+    if (!used[vertex]) unused.push_back(vertex);
+  }
+  return unused;
+}
+
+}  // namespace
+
+ConnectedComponents connected_components(int vertices, const Triangles& triangles) {
+  check_indices(vertices, triangles);
+  std::vector<VertexIndex> parent(vertices);
+  std::iota(parent.begin(), parent.end(), 0);
+  for (Eigen::Index t = 0; t < triangles.rows(); ++t) {
+    join(parent, triangles(t, 0), triangles(t, 1));
+    join(parent, triangles(t, 0), triangles(t, 2));
+  }
+  ConnectedComponents components;
+  components.of_vertex.resize(vertices);
+  for (VertexIndex vertex = 0; vertex < vertices; ++vertex) {
+    // A root is its set's lowest vertex, so its label is known before anybody else asks for it.
+    const VertexIndex lowest = root(parent, vertex);
+    components.of_vertex[vertex] =
+        lowest == vertex ? components.count++ : components.of_vertex[lowest];
+  }
+  return components;
+}
+
+MeshReport inspect(const Positions& positions, const Connectivity& connectivity) {
+  if (positions.rows() != connectivity.vertices) {
+    throw std::invalid_argument(std::to_string(positions.rows()) + " positions, expected " +
+                                std::to_string(connectivity.vertices) + " as in the connectivity");
+  }
+  const Triangles& triangles = connectivity.triangles;
+  const Weld weld = Weld::exact(positions);
+  const Triangles welded = weld.welded(triangles);
+  const EdgeCounts edges = count_edges(triangles);
+
+  MeshReport report;
+  report.vertices = connectivity.vertices;
+  report.faces = connectivity.polygons.size();
+  report.triangles = static_cast<int>(triangles.rows());
+  report.components = components_with_triangle(report.vertices, triangles);
+  report.components_after_welding = components_with_triangle(report.vertices, welded);
+  report.boundary_edges = edges.boundary;
+  report.boundary_edges_after_welding = count_edges(welded).boundary;
+  report.nonmanifold_edges = edges.nonmanifold;
+  report.degenerate_triangles = degenerate_triangles(positions, triangles);
+  report.vertices_without_face = vertices_without_face(report.vertices, triangles);
+  report.welded_vertices = weld.count;
+  if (positions.rows() > 0) {
+    report.extent = positions.colwise().maxCoeff() - positions.colwise().minCoeff();
+  }
+  return report;
+}
+
+double triangle_quality(const Eigen::Vector3d& a, const Eigen::Vector3d& b,
+                        const Eigen::Vector3d& c) {
+  const double longest =
+      std::max({(b - a).squaredNorm(), (c - b).squaredNorm(), (a - c).squaredNorm()});
+  return longest > 0 ? (b - a).cross(c - a).norm() / longest : 0;
+}
+
+std::vector<std::vector<int>> triangle_neighbors(int vertices, const Triangles& triangles) {
+  check_indices(vertices, triangles);
+  std::vector<std::vector<int>> neighbors(triangles.rows());
+  for_each_edge(sorted_edges(triangles, Collapsed::kept), [&](auto first, auto last) {
+    for (auto a = first; a != last; ++a) {
+      for (auto b = first; b != last; ++b) {
+        if (a != b) neighbors[a->triangle].push_back(b->triangle);
+      }
+    }
+  });
+  for (std::vector<int>& list : neighbors) {
+    std::sort(list.begin(), list.end());
+    list.erase(std::unique(list.begin(), list.end()), list.end());
+  }
+  return neighbors;
+}
+
+}  // namespace mimetra

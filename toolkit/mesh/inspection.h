@@ -1,0 +1,51 @@
+#pragma once
+
+#include <vector>
+
+#include <mimetra/mesh/tri_mesh.h>
+
+namespace mimetra {
+
+/// Connected component of each vertex by shared edges of triangles: labels 0, 1, ... in the order
+/// of each component's lowest vertex. A vertex without triangle is a component of its own.
+struct ConnectedComponents {
+  int count = 0;
+  std::vector<int> of_vertex;
+};
+
+ConnectedComponents connected_components(int vertices, const Triangles& triangles);
+
+/// What a mesh is made of. Indices and counts are those of the mesh as given, before welding.
+struct MeshReport {
+  int vertices = 0;
+  int faces = 0;
+  int triangles = 0;
+  /// Components that hold a triangle.
+  int components = 0;
+  int components_after_welding = 0;
+  int boundary_edges = 0;
+  int boundary_edges_after_welding = 0;
+  /// Edges of more than two triangles.
+  int nonmanifold_edges = 0;
+  /// Triangles that repeat a vertex or are degenerate by `triangle_quality`.
+  std::vector<int> degenerate_triangles;
+  std::vector<VertexIndex> vertices_without_face;
+  /// Vertices that coincide with an earlier one.
+  int welded_vertices = 0;
+  Eigen::Vector3d extent = Eigen::Vector3d::Zero();
+};
+
+MeshReport inspect(const Positions& positions, const Connectivity& connectivity);
+
+/// Scale-free quality 2 A / l_max^2 of a triangle: sqrt(3)/2 for the equilateral one, 0 without
+/// area.
+double triangle_quality(const Eigen::Vector3d& a, const Eigen::Vector3d& b,
+                        const Eigen::Vector3d& c);
+
+/// Triangles of lower quality carry no usable deformation gradient; valid faces go down to 4e-3.
+constexpr double kDegenerateQuality = 1e-6;
+
+/// Neighbours of each triangle across its edges, at most a few each; lists ascend.
+std::vector<std::vector<int>> triangle_neighbors(int vertices, const Triangles& triangles);
+
+}  // namespace mimetra

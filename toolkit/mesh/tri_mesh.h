@@ -1,0 +1,77 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <mimetra/geodesic/types.h>
+
+namespace mimetra {
+
+using geodesic::Positions;
+using geodesic::PositionsView;
+using geodesic::Triangles;
+using geodesic::VertexIndex;
+
+/// Polygons of any size, one after the other: face i has the corners
+/// corners[offsets[i]] .. corners[offsets[i + 1] - 1], 0-based vertex indices.
+struct Polygons {
+  std::vector<int> corners;
+  std::vector<int> offsets = {0};
+
+  int size() const { return static_cast<int>(offsets.size()) - 1; }
+  bool operator==(const Polygons&) const = default;
+};
+
+/// Texture coordinates of a mesh, kept for writing it back.
+struct TextureCoordinates {
+  std::vector<Eigen::Vector2d> coordinates;
+  /// Index into `coordinates` for each polygon corner (as many as Polygons::corners); -1 where
+  /// none.
+  std::vector<int> corners;
+};
+
+/// A line of an OBJ file that speaks of the faces after it: `g lips`, `usemtl skin`, `s 1`.
+struct FaceGroup {
+  int first_face;
+  std::string statement;
+};
+
+/// Which vertices form which faces. The triangles are what mimetra computes on; the polygons are
+/// what the user's file holds and what is written back. Polygon fans keep the polygon's first
+/// corner.
+struct Connectivity {
+  int vertices = 0;
+  Triangles triangles;
+  Polygons polygons;
+  /// Polygon of each triangle (M).
+  std::vector<int> polygon_of_triangle;
+  TextureCoordinates texture;
+  std::vector<FaceGroup> groups;
+
+  /// Triangulates each polygon as a fan. Throws std::invalid_argument that names the first polygon
+  /// with fewer than three corners or with an index outside 0 .. vertices - 1.
+  static Connectivity from_polygons(int vertices, Polygons polygons);
+  /// Each triangle is its own polygon. Throws as from_polygons.
+  static Connectivity from_triangles(int vertices, const Triangles& triangles);
+};
+
+/// True where both have the same vertex count and the same list of polygons up to cyclic rotation
+/// of each; a flipped or differently split polygon is another connectivity.
+bool same_faces(const Connectivity& a, const Connectivity& b);
+
+/// Index of the first polygon in which the two differ (up to cyclic rotation), or -1.
+int first_different_face(const Connectivity& a, const Connectivity& b);
+
+/// One mesh.
+struct TriMesh {
+  Positions positions;
+  Connectivity connectivity;
+};
+
+/// Longest side of the bounding box; 0 for no positions.
+double extent(const Eigen::Ref<const Positions>& positions);
+
+/// Diagonal of the bounding box; 0 for no positions.
+double box_diagonal(const Eigen::Ref<const Positions>& positions);
+
+}  // namespace mimetra
