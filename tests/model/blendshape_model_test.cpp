@@ -1,0 +1,128 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <mimetra/model/blendshape_model.h>
+
+#include "shapes.h"
+
+namespace mimetra {
+namespace {
+
+using testing::HasSubstr;
+using testing::ThrowsMessage;
+
+std::shared_ptr<const Connectivity> octahedron() {
+  return std::make_shared<Connectivity>(test::mesh_of(test::octahedron()).connectivity);
+}
+
+Positions neutral() {
+  return test::octahedron().positions;
+}
+
+/// Two shapes of whole numbers, so that combinations with whole weights are exact.
+ShapeBasis smile_and_frown() {
+  ShapeBasis basis{{"smile", "frown"}, Eigen::MatrixXd(18, 2)};
+  basis.displacements.col(0).setLinSpaced(0, 17);
+  basis.displacements.col(1).setConstant(-2);
+  return basis;
+}
+
+BlendshapeModel model() {
+  return {octahedron(), neutral(), smile_and_frown()};
+}
+
+TEST(ShapeBasis, FindsANameOrMinusOne) {
+  EXPECT_EQ(smile_and_frown().find("frown"), 1);
+  EXPECT_EQ(smile_and_frown().find("Frown"), -1);
+}
+
+TEST(BlendshapeModel, PosesAsNeutralPlusWeightedDisplacements) {
+  const Positions pose = model().pose(Eigen::Vector2d(2, 3));
+  for (int v = 0; v < 6; ++v) {
+    for (int axis = 0; axis < 3; ++axis) {
+      EXPECT_EQ(pose(v, axis), neutral()(v, axis) + 2 * (3 * v + axis) - 3 * 2);
+    }
+  }
+}
+
+TEST(BlendshapeModel, OfZeroWeightsIsTheNeutralExactly) {
+  EXPECT_EQ(model().pose(Eigen::Vector2d::Zero()), neutral());
+}
+
+TEST(BlendshapeModel, AnimatesOnePosePerRow) {
+  const Eigen::MatrixXd weights = Eigen::MatrixXd::Random(5, 2);
+  const MeshSequence sequence = model().animate(weights);
+  ASSERT_EQ(sequence.frames(), 5);
+  for (int f = 0; f < 5; ++f) {
+    // The same sums, perhaps in another order: rounding of numbers up to 20.
+    EXPECT_TRUE(sequence.frame(f).isApprox(model().pose(weights.row(f)), 1e-15));
+  }
+}
+
+TEST(BlendshapeModel, AnimatesFromItsNeutral) {
+  const MeshSequence sequence = model().animate(Eigen::MatrixXd::Ones(2, 2));
+  EXPECT_TRUE(sequence.rest_is_known());
+  EXPECT_EQ(sequence.rest(), neutral());
+}
+
+TEST(BlendshapeModel, AnimatesAtTheGivenTimes) {
+  const Eigen::Vector2d times(0.5, 2);
+  EXPECT_EQ(model().animate(Eigen::MatrixXd::Ones(2, 2), times).times(), times);
+}
+
+TEST(BlendshapeModel, SharesItsConnectivityWithItsAnimation) {
+  const BlendshapeModel face = model();
+  EXPECT_EQ(face.animate(Eigen::MatrixXd::Ones(1, 2)).shared_connectivity(),
+            face.shared_connectivity());
+}
+
+TEST(BlendshapeModel, MayHaveNoExpressions) {
+  const BlendshapeModel face(octahedron(), neutral(), {});
+  EXPECT_EQ(face.expressions().displacements.rows(), 18);
+  EXPECT_EQ(face.pose(Eigen::VectorXd(0)), neutral());
+  EXPECT_EQ(face.animate(Eigen::MatrixXd(3, 0)).frame(2), neutral());
+}
+
+TEST(BlendshapeModel, RefusesAnotherNumberOfWeights) {
+  const auto refusal =
+      ThrowsMessage<std::invalid_argument>(HasSubstr("3 weights for a model of 2 expressions"));
+  EXPECT_THAT([] { model().pose(Eigen::Vector3d::Zero()); }, refusal);
+  EXPECT_THAT([] { model().animate(Eigen::MatrixXd::Zero(4, 3)); }, refusal);
+}
+
+TEST(BlendshapeModel, RefusesANeutralOfAnotherVertexCount) {
+  EXPECT_THAT(
+      [] { BlendshapeModel(octahedron(), Positions::Zero(5, 3), {}); },
+      ThrowsMessage<std::invalid_argument>(HasSubstr("the neutral has 5 vertices, expected 6")));
+}
+
+TEST(BlendshapeModel, RefusesDisplacementsOfAnotherVertexCount) {
+  EXPECT_THAT(
+      [] {
+        BlendshapeModel(octahedron(), neutral(), {{"smile"}, Eigen::MatrixXd::Zero(15, 1)});
+      },
+      ThrowsMessage<std::invalid_argument>(HasSubstr("15 rows, expected 3 x 6")));
+}
+
+TEST(BlendshapeModel, RefusesDisplacementsWithoutNames) {
+  EXPECT_THAT(
+      [] {
+        BlendshapeModel(octahedron(), neutral(), {{"smile"}, Eigen::MatrixXd::Zero(18, 2)});
+      },
+      ThrowsMessage<std::invalid_argument>(HasSubstr("2 displacement fields for 1 shape names")));
+}
+
+TEST(BlendshapeModel, RefusesANameThatOccursTwice) {
+  ShapeBasis basis = smile_and_frown();
+  basis.names[1] = "smile";
+  EXPECT_THAT([&] { BlendshapeModel(octahedron(), neutral(), basis); },
+              ThrowsMessage<std::invalid_argument>(HasSubstr("shape name 'smile' occurs twice")));
+}
+
+TEST(BlendshapeModel, NeedsAConnectivity) {
+  EXPECT_THAT([] { BlendshapeModel(nullptr, neutral(), {}); },
+              ThrowsMessage<std::invalid_argument>(HasSubstr("needs a connectivity")));
+}
+
+}  // namespace
+}  // namespace mimetra

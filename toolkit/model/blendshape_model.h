@@ -1,0 +1,53 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <mimetra/mesh/mesh_sequence.h>
+
+namespace mimetra {
+
+/// Named displacement fields: column j of `displacements` (3N x D) is x0 y0 z0 x1 ... of shape j
+/// minus the neutral.
+struct ShapeBasis {
+  std::vector<std::string> names;
+  Eigen::MatrixXd displacements;
+
+  int size() const { return static_cast<int>(names.size()); }
+  /// Index of a name, or -1.
+  int find(const std::string& name) const;
+  /// Throws std::invalid_argument unless there is one displacement field of `vertices` vertices for
+  /// each name and no name occurs twice. No names and no displacements are sound for any mesh.
+  void check(int vertices) const;
+};
+
+/// A neutral face and its expressions: pose = neutral + sum_j beta_j dV_j (eq. 2).
+class BlendshapeModel {
+ public:
+  BlendshapeModel() = default;
+  /// `neutral` N x 3, `expressions` 3N x D (D may be 0). Throws std::invalid_argument where sizes
+  /// disagree or a name occurs twice.
+  BlendshapeModel(std::shared_ptr<const Connectivity> connectivity, Positions neutral,
+                  ShapeBasis expressions);
+
+  int vertices() const { return static_cast<int>(neutral_.rows()); }
+  const Connectivity& connectivity() const { return *connectivity_; }
+  const std::shared_ptr<const Connectivity>& shared_connectivity() const { return connectivity_; }
+  const Triangles& triangles() const { return connectivity_->triangles; }
+  const Positions& neutral() const { return neutral_; }
+  const ShapeBasis& expressions() const { return expressions_; }
+
+  /// The pose of the weights `beta` (D). Throws std::invalid_argument where the count differs.
+  Positions pose(const Eigen::VectorXd& beta) const;
+  /// One frame per row of `weights` (F x D); the rest pose is the neutral. `times` as in
+  /// MeshSequence. Throws std::invalid_argument where the count differs.
+  MeshSequence animate(const Eigen::MatrixXd& weights, Eigen::VectorXd times = {}) const;
+
+ private:
+  std::shared_ptr<const Connectivity> connectivity_ = std::make_shared<Connectivity>();
+  Positions neutral_;
+  ShapeBasis expressions_;
+};
+
+}  // namespace mimetra
