@@ -1,0 +1,115 @@
+#include <functional>
+#include <limits>
+
+#include <gmock/gmock.h>
+
+#include <mimetra/splocs/decomposition.h>
+
+#include "synthetic.h"
+
+namespace mimetra::test {
+namespace {
+
+using testing::HasSubstr;
+using testing::ThrowsMessage;
+
+/// Decomposes a small sequence with the default options changed by `change`.
+auto with(const std::function<void(DecompositionOptions&)>& change) {
+  return [change] {
+    const MeshSequence sequence = restless_grid(4, 3, 5);
+    DecompositionOptions options = grid_options(sequence, 2);
+    change(options);
+    decompose(sequence, options);
+  };
+}
+
+TEST(DecompositionOptions, RefuseLessThanOneComponent) {
+  EXPECT_THAT(with([](auto& o) { o.count = 0; }),
+              ThrowsMessage<std::invalid_argument>(HasSubstr("count is 0")));
+}
+
+TEST(DecompositionOptions, RefuseMoreComponentsThanCoordinates) {
+  EXPECT_THAT(with([](auto& o) { o.count = 37; }),
+              ThrowsMessage<MismatchError>(
+                  HasSubstr("37 components of a mesh of 12 vertices; at most 36")));
+}
+
+TEST(DecompositionOptions, AcceptAsManyComponentsAsCoordinates) {
+  EXPECT_NO_THROW(with([](auto& o) { o.count = 36; })());
+}
+
+TEST(DecompositionOptions, RefuseLengthsInTheWrongOrder) {
+  EXPECT_THAT(with([](auto& o) { o.d_min = o.d_max = 2; }),
+              ThrowsMessage<std::invalid_argument>(HasSubstr("d_min is 2")));
+  EXPECT_THAT(with([](auto& o) { o.d_min = -1; }),
+              ThrowsMessage<std::invalid_argument>(HasSubstr("d_min is -1")));
+}
+
+TEST(DecompositionOptions, RefuseANegativeSparsity) {
+  EXPECT_THAT(with([](auto& o) { o.sparsity = -1; }),
+              ThrowsMessage<std::invalid_argument>(HasSubstr("sparsity is -1")));
+}
+
+TEST(DecompositionOptions, RefuseARhoOfZero) {
+  EXPECT_THAT(with([](auto& o) { o.rho = 0; }),
+              ThrowsMessage<std::invalid_argument>(HasSubstr("rho is 0")));
+}
+
+TEST(DecompositionOptions, RefuseNoIterations) {
+  EXPECT_THAT(with([](auto& o) { o.iterations = 0; }),
+              ThrowsMessage<std::invalid_argument>(HasSubstr("iterations is 0")));
+  EXPECT_THAT(with([](auto& o) { o.admm_iterations = 0; }),
+              ThrowsMessage<std::invalid_argument>(HasSubstr("admm_iterations is 0")));
+}
+
+TEST(DecompositionOptions, RefuseANegativeTolerance) {
+  EXPECT_THAT(with([](auto& o) { o.tolerance = -1; }),
+              ThrowsMessage<std::invalid_argument>(HasSubstr("tolerance is -1")));
+}
+
+TEST(DecompositionOptions, RefuseDistancesOfAnotherMesh) {
+  EXPECT_THAT(with([](auto& o) {
+                o.distances = [](VertexIndex) { return Eigen::VectorXd(Eigen::VectorXd::Zero(7)); };
+              }),
+              ThrowsMessage<std::invalid_argument>(HasSubstr("7 values for 12 vertices")));
+}
+
+TEST(DecompositionInput, RefusesOneFrame) {
+  const MeshSequence sequence = restless_grid(4, 3, 5).slice(0, 1);
+  EXPECT_THAT([&] { decompose(sequence, grid_options(sequence, 1)); },
+              ThrowsMessage<MismatchError>(HasSubstr("one frame")));
+}
+
+TEST(DecompositionInput, RefusesASequenceThatDoesNotMove) {
+  const Shape shape = grid(4, 3);
+  const MeshSequence still =
+      synthesised(shape, Eigen::MatrixXd::Zero(3, 1), Frames::Zero(1, shape.positions.size()));
+  EXPECT_THAT([&] { decompose(still, grid_options(still, 1)); },
+              ThrowsMessage<MismatchError>(HasSubstr("nothing moves")));
+}
+
+TEST(DecompositionInput, NamesTheFrameWithABadCoordinate) {
+  const MeshSequence sequence = restless_grid(4, 3, 5);
+  Frames frames = sequence.positions();
+  frames(3, 4) = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THAT([&] { decompose(sequence.with_frames(frames), grid_options(sequence, 1)); },
+              ThrowsMessage<std::invalid_argument>(HasSubstr("frame 3 has a coordinate")));
+}
+
+TEST(DecompositionInput, RefusesARestPoseWithABadCoordinate) {
+  const MeshSequence sequence = restless_grid(4, 3, 5);
+  Positions rest = sequence.rest();
+  rest(2, 1) = std::numeric_limits<double>::infinity();
+  EXPECT_THAT([&] { decompose(sequence.with_rest(rest), grid_options(sequence, 1)); },
+              ThrowsMessage<std::invalid_argument>(HasSubstr("rest pose has a coordinate")));
+}
+
+TEST(DecompositionOptions, AreKeptWithoutTheCallersFunctions) {
+  const MeshSequence sequence = restless_grid(4, 3, 5);
+  const Components components = decompose(sequence, grid_options(sequence, 2));
+  EXPECT_EQ(components.options.count, 2);
+  EXPECT_FALSE(components.options.distances);
+}
+
+}  // namespace
+}  // namespace mimetra::test

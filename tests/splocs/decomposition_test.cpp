@@ -1,0 +1,318 @@
+#include <mimetra/splocs/decomposition.h>
+
+#include <algorithm>
+#include <numeric>
+
+#include <gmock/gmock.h>
+
+#include <mimetra/geodesic/support_map.h>
+#include <mimetra/splocs/start.h>
+
+#include "literal_splocs.h"
+#include "synthetic.h"
+
+namespace mimetra::test {
+namespace {
+
+// Products instead of residuals, and ten steps with an inverted instead of a solved system, change
+// the last bits only: |X|^2 is some thousand times the smallest energy here, which leaves 1e-12.
+constexpr double kRounding = 1e-9;
+
+double relative_difference(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
+  return (a - b).norm() / b.norm();
+}
+
+LiteralProblem literal_problem(const MeshSequence& sequence, const DecompositionOptions& options) {
+  const Eigen::Map<const Eigen::RowVectorXd> rest(sequence.rest().data(), sequence.rest().size());
+  Eigen::MatrixXd X = sequence.positions().rowwise() - rest;
+  X /= std::sqrt((X.array() - X.mean()).square().sum() / static_cast<double>(X.size()));
+  return {.X = X,
+          .count = options.count,
+          .sparsity = options.sparsity,
+          .rho = options.rho,
+          .iterations = options.iterations,
+          .admm_iterations = options.admm_iterations,
+          .nonnegative = options.nonnegative,
+          .literal_sign = options.sign_rule == SignRule::literal,
+          .support = [&options](int center) {
+            return geodesic::support_map(options.distances(center), *options.d_min, *options.d_max);
+          }};
+}
+
+/// Both decompositions after every number of iterations up to the options'.
+void expect_literal(const MeshSequence& sequence, DecompositionOptions options) {
+  const LiteralResult literal = literal_decomposition(literal_problem(sequence, options));
+  const int iterations = options.iterations;
+  for (int done = 1; done <= iterations; ++done) {
+    options.iterations = done;
+    const Components components = decompose(sequence, options);
+    const std::size_t last = done - 1;
+    EXPECT_NEAR(components.energies.back() / literal.energy[last], 1, kRounding) << done;
+    EXPECT_LT(relative_difference(components.weights, literal.W[last]), kRounding) << done;
+    EXPECT_LT(relative_difference(components.displacements / components.scale, literal.C[last]),
+              kRounding)
+        << done;
+    for (int k = 0; k < options.count; ++k) {
+      const Eigen::VectorXd support = components.support.row(k);
+      EXPECT_EQ(support[literal.centers[last][k]], 0) << k << " after " << done;
+      EXPECT_EQ(components.centers[k], literal_strongest(literal.C[last].row(k)));
+    }
+  }
+}
+
+TEST(Decomposition, IsTheLiteralAlgorithmWithTheLiteralSignRule) {
+  const MeshSequence sequence = restless_grid();
+  DecompositionOptions options = grid_options(sequence, 6);
+  options.sign_rule = SignRule::literal;
+  expect_literal(sequence, options);
+}
+
+TEST(Decomposition, IsTheLiteralAlgorithmWithTheAmplitudeSignRule) {
+  const MeshSequence sequence = restless_grid();
+  expect_literal(sequence, grid_options(sequence, 6));
+}
+
+TEST(Decomposition, IsTheLiteralAlgorithmWithSignedWeights) {
+  const MeshSequence sequence = restless_grid();
+  DecompositionOptions options = grid_options(sequence, 4);
+  options.nonnegative = false;
+  expect_literal(sequence, options);
+}
+
+TEST(Decomposition, IsTheLiteralAlgorithmWithOtherPenaltiesAndStepCounts) {
+  const MeshSequence sequence = restless_grid();
+  DecompositionOptions options = grid_options(sequence, 5);
+  options.sparsity = 0.7;
+  options.rho = 3;
+  options.iterations = 4;
+  options.admm_iterations = 3;
+  expect_literal(sequence, options);
+}
+
+TEST(Decomposition, IsTheLiteralAlgorithmAcrossBlocksOfVertices) {
+  // 17 x 16 vertices: several blocks of 64 and a partial one.
+  const MeshSequence sequence = restless_grid(17, 16, 12);
+  DecompositionOptions options = grid_options(sequence, 4);
+  options.iterations = 3;
+  expect_literal(sequence, options);
+}
+
+/// Row of `components` that looks most like `bump`, by the cosine between them.
+int most_like(const Components& components, const Eigen::RowVectorXd& field, double* cosine) {
+  const Eigen::VectorXd cosines =
+      (components.displacements * field.transpose()).array() /
+      (components.displacements.rowwise().norm().array() * field.norm());
+  int k = 0;
+  *cosine = cosines.maxCoeff(&k);
+  return k;
+}
+
+TEST(Decomposition, RecoversDisjointBumpsUpToOrderAndScale) {
+  const Bumps bumps;
+  const MeshSequence sequence = bumps.sequence();
+  DecompositionOptions options = grid_options(sequence, 3);
+  // Nothing of a bump of radius 4 is penalised, and nothing of its neighbours is within 6.
+  options.d_min = 4;
+  const Components components = decompose(sequence, options);
+  for (int b = 0; b < 3; ++b) {
+    double cosine = 0;
+    const int k = most_like(components, bumps.C.row(b), &cosine);
+    // Exact in real numbers: what differs is rounding.
+    EXPECT_NEAR(cosine, 1, 1e-12);
+    const double peak = bumps.W.col(b).maxCoeff();
+    EXPECT_LT((components.weights.col(k) - bumps.W.col(b) / peak).norm(), 1e-10);
+    EXPECT_LT((components.displacements.row(k) - peak * bumps.C.row(b)).norm(), 1e-10);
+  }
+}
+
+TEST(Decomposition, PutsCentersAtTheTopsOfDisjointBumps) {
+  const Bumps bumps;
+  const MeshSequence sequence = bumps.sequence();
+  const Components components = decompose(sequence, grid_options(sequence, 3));
+  // Vertices of the grid, 30 a row, at (5, 6), (15, 5) and (24, 6).
+  EXPECT_THAT(components.centers,
+              testing::UnorderedElementsAre(6 * 30 + 5, 5 * 30 + 15, 6 * 30 + 24));
+}
+
+TEST(Decomposition, ComponentsBeyondTheSequencesRankDie) {
+  const Bumps bumps;
+  const MeshSequence sequence = bumps.sequence();
+  DecompositionOptions options = grid_options(sequence, 5);
+  options.d_min = 4;
+  const Components components = decompose(sequence, options);
+  EXPECT_EQ(std::ranges::count(components.centers, -1), 2);
+  for (int k = 0; k < components.count(); ++k) {
+    const bool dead = components.centers[k] < 0;
+    EXPECT_EQ(components.displacements.row(k).isZero(0), dead);
+    EXPECT_EQ(components.weights.col(k).isZero(0), dead);
+  }
+}
+
+TEST(Decomposition, ASparsityThatOutweighsTheMotionKillsWhatLiesOutsideTheSupport) {
+  const MeshSequence sequence = restless_grid();
+  DecompositionOptions options = grid_options(sequence, 4);
+  options.sparsity = 1e6;
+  const Components components = decompose(sequence, options);
+  for (int k = 0; k < components.count(); ++k) {
+    for (int v = 0; v < components.vertices(); ++v) {
+      if (components.support(k, v) == 0) continue;
+      EXPECT_TRUE(components.displacements.row(k).segment(3 * v, 3).isZero(0)) << k << ' ' << v;
+    }
+  }
+}
+
+TEST(Decomposition, HasLessEnergyThanItsStart) {
+  const MeshSequence sequence = restless_grid();
+  const DecompositionOptions options = grid_options(sequence, 6);
+  const LiteralProblem problem = literal_problem(sequence, options);
+  const Start start = greedy_start(problem.X, problem.support, options);
+  double energy = (problem.X - start.weights * start.components).squaredNorm();
+  for (int k = 0; k < options.count; ++k) {
+    const Eigen::RowVectorXd c = start.components.row(k);
+    energy += options.sparsity *
+              problem.support(literal_strongest(c)).dot(vertex_energies(c).cwiseSqrt());
+  }
+  EXPECT_LT(decompose(sequence, options).energies.back(), energy);
+}
+
+TEST(Decomposition, WeightsHaveMaximumOneAndAreNotNegative) {
+  const MeshSequence sequence = restless_grid();
+  const Components components = decompose(sequence, grid_options(sequence, 6));
+  for (int k = 0; k < 6; ++k) EXPECT_EQ(components.weights.col(k).maxCoeff(), 1);
+  EXPECT_GE(components.weights.minCoeff(), 0);
+}
+
+TEST(Decomposition, SignedWeightsHaveMagnitudeOneAtMost) {
+  const MeshSequence sequence = restless_grid();
+  DecompositionOptions options = grid_options(sequence, 6);
+  options.nonnegative = false;
+  const Components components = decompose(sequence, options);
+  for (int k = 0; k < 6; ++k) {
+    EXPECT_EQ(components.weights.col(k).lpNorm<Eigen::Infinity>(), 1);
+  }
+  EXPECT_LT(components.weights.minCoeff(), 0);
+}
+
+TEST(Decomposition, ScalingMeshAndLengthsScalesOnlyTheDisplacements) {
+  const MeshSequence sequence = restless_grid();
+  DecompositionOptions options = grid_options(sequence, 6);
+  const Components components = decompose(sequence, options);
+  const double factor = 37.5;
+  const MeshSequence larger =
+      sequence.with_frames(factor * sequence.positions()).with_rest(factor * sequence.rest());
+  options = grid_options(larger, 6);
+  options.d_min = factor * *options.d_min;
+  options.d_max = factor * *options.d_max;
+  const Components scaled = decompose(larger, options);
+  EXPECT_EQ(scaled.centers, components.centers);
+  EXPECT_NEAR(scaled.energies.back() / components.energies.back(), 1, kRounding);
+  EXPECT_LT(relative_difference(scaled.weights, components.weights), kRounding);
+  EXPECT_LT(relative_difference(scaled.displacements, factor * components.displacements),
+            kRounding);
+}
+
+TEST(Decomposition, FollowsAnotherOrderOfVertices) {
+  const MeshSequence sequence = restless_grid();
+  const int vertices = sequence.vertices();
+  std::vector<int> from(vertices);
+  std::iota(from.begin(), from.end(), 0);
+  std::ranges::shuffle(from, std::mt19937(3));
+  Positions rest(vertices, 3);
+  Frames frames(sequence.frames(), 3 * vertices);
+  for (int v = 0; v < vertices; ++v) {
+    rest.row(v) = sequence.rest().row(from[v]);
+    frames.middleCols(3 * v, 3) = sequence.positions().middleCols(3 * from[v], 3);
+  }
+  const MeshSequence shuffled(Connectivity::from_triangles(vertices, Triangles(0, 3)), frames, {},
+                              rest);
+  const Components a = decompose(sequence, grid_options(sequence, 6));
+  const Components b = decompose(shuffled, grid_options(shuffled, 6));
+  EXPECT_LT(relative_difference(b.weights, a.weights), kRounding);
+  for (int k = 0; k < 6; ++k) EXPECT_EQ(from[b.centers[k]], a.centers[k]);
+}
+
+TEST(Decomposition, StopsWhenTheEnergyChangesByLessThanTheTolerance) {
+  const MeshSequence sequence = restless_grid();
+  DecompositionOptions options = grid_options(sequence, 4);
+  options.iterations = 1000;
+  options.tolerance = 1e-3;
+  const std::vector<double> energies = decompose(sequence, options).energies;
+  ASSERT_LT(energies.size(), 1000u);
+  const auto change = [&energies](std::size_t i) {
+    return std::abs(energies[i - 1] - energies[i]) / energies[i - 1];
+  };
+  EXPECT_LE(change(energies.size() - 1), options.tolerance);
+  for (std::size_t i = 1; i + 1 < energies.size(); ++i) EXPECT_GT(change(i), options.tolerance);
+}
+
+TEST(Decomposition, RunsAllIterationsWithoutATolerance) {
+  const Bumps bumps;
+  const MeshSequence sequence = bumps.sequence();
+  EXPECT_EQ(decompose(sequence, grid_options(sequence, 3)).energies.size(), 10u);
+}
+
+TEST(Decomposition, AsksForDistancesOnlyWhereACenterMoves) {
+  const Bumps bumps;
+  const MeshSequence sequence = bumps.sequence();
+  DecompositionOptions options = grid_options(sequence, 3);
+  int asked = 0;
+  options.distances = [&, straight = options.distances](VertexIndex source) {
+    ++asked;
+    return straight(source);
+  };
+  decompose(sequence, options);
+  // Once in the start and once in the first iteration: the bumps' tops stay where they are.
+  EXPECT_EQ(asked, 6);
+}
+
+TEST(Decomposition, IsTheSameInEveryRun) {
+  const MeshSequence sequence = restless_grid();
+  const DecompositionOptions options = grid_options(sequence, 6);
+  const Components a = decompose(sequence, options), b = decompose(sequence, options);
+  EXPECT_EQ(a.displacements, b.displacements);
+  EXPECT_EQ(a.weights, b.weights);
+}
+
+TEST(Decomposition, LengthsDefaultToSharesOfTheLongestSide) {
+  const Bumps bumps;
+  const MeshSequence sequence = bumps.sequence();
+  DecompositionOptions options = grid_options(sequence, 3);
+  options.d_min.reset();
+  options.d_max.reset();
+  const Components components = decompose(sequence, options);
+  // The grid is 29 long.
+  EXPECT_DOUBLE_EQ(components.d_min, 2.9);
+  EXPECT_DOUBLE_EQ(components.d_max, 20.3);
+}
+
+TEST(Decomposition, ProgressRisesToOne) {
+  const MeshSequence sequence = restless_grid();
+  DecompositionOptions options = grid_options(sequence, 4);
+  std::vector<double> shares;
+  options.progress = [&shares](double share) {
+    shares.push_back(share);
+    return true;
+  };
+  decompose(sequence, options);
+  EXPECT_TRUE(std::ranges::is_sorted(shares));
+  EXPECT_EQ(shares.front(), 0);
+  EXPECT_EQ(shares.back(), 1);
+}
+
+TEST(Decomposition, CanBeCancelledWhereverItReportsProgress) {
+  const MeshSequence sequence = restless_grid();
+  DecompositionOptions options = grid_options(sequence, 2);
+  options.iterations = 2;
+  int reports = 0;
+  options.progress = [&reports](double) { return ++reports > 0; };
+  decompose(sequence, options);
+  const int all = reports;
+  for (int allowed = 0; allowed < all; ++allowed) {
+    reports = 0;
+    options.progress = [&reports, allowed](double) { return reports++ < allowed; };
+    EXPECT_THROW(decompose(sequence, options), Cancelled) << allowed;
+  }
+}
+
+}  // namespace
+}  // namespace mimetra::test

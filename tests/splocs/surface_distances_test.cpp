@@ -1,0 +1,154 @@
+#include <gmock/gmock.h>
+
+#include <limits>
+#include <thread>
+
+#include <mimetra/geodesic/exact_geodesics.h>
+#include <mimetra/splocs/surface_distances.h>
+
+#include "shapes.h"
+
+namespace mimetra {
+namespace {
+
+using test::Shape;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::ThrowsMessage;
+
+/// A grid cut along the column x = `cut`: its vertices appear twice, the copies at the end.
+struct CutGrid {
+  Shape shape;
+  /// Copy of vertex (cut, y).
+  int copy(int y) const { return copies + y; }
+  int copies;
+};
+
+CutGrid cut_grid(int columns, int rows, int cut) {
+  const Shape whole = test::grid(columns, rows);
+  const int vertices = columns * rows;
+  CutGrid result{{Positions(vertices + rows, 3), whole.triangles}, vertices};
+  result.shape.positions.topRows(vertices) = whole.positions;
+  for (int y = 0; y < rows; ++y) {
+    result.shape.positions.row(vertices + y) = whole.positions.row(y * columns + cut);
+  }
+  for (auto triangle : result.shape.triangles.rowwise()) {
+    if (triangle.unaryExpr([&](int v) { return v % columns; }).maxCoeff() <= cut) continue;
+    for (int& v : triangle) {
+      if (v % columns == cut) v = vertices + v / columns;
+    }
+  }
+  return result;
+}
+
+SurfaceDistances welded_distances(const Shape& shape,
+                                  GeodesicMethod method = GeodesicMethod::heat) {
+  return {shape.positions, shape.triangles, Weld::exact(shape.positions), method};
+}
+
+TEST(SurfaceDistances, PassAcrossASeamThatIsWelded) {
+  const CutGrid cut = cut_grid(9, 5, 4);
+  const Shape whole = test::grid(9, 5);
+  for (const auto method :
+       {GeodesicMethod::heat, GeodesicMethod::heat_direct, GeodesicMethod::exact}) {
+    const SurfaceDistances distances = welded_distances(cut.shape, method);
+    const SurfaceDistances expected(whole.positions, whole.triangles, Weld::none(45), method);
+    EXPECT_EQ(distances(2).head(45), expected(2));
+  }
+}
+
+TEST(SurfaceDistances, StopAtASeamThatIsNotWelded) {
+  const CutGrid cut = cut_grid(9, 5, 4);
+  const SurfaceDistances distances(cut.shape.positions, cut.shape.triangles,
+                                   Weld::none(static_cast<int>(cut.shape.positions.rows())));
+  EXPECT_EQ(distances(2)[8], std::numeric_limits<double>::infinity());
+}
+
+TEST(SurfaceDistances, AreEqualForWeldedVertices) {
+  const CutGrid cut = cut_grid(9, 5, 4);
+  const SurfaceDistances distances = welded_distances(cut.shape);
+  const Eigen::VectorXd from_left = distances(2);
+  for (int y = 0; y < 5; ++y) EXPECT_EQ(from_left[cut.copy(y)], from_left[y * 9 + 4]);
+  EXPECT_EQ(distances(cut.copy(1)), distances(1 * 9 + 4));
+  EXPECT_EQ(distances(cut.copy(1))[1 * 9 + 4], 0);
+}
+
+TEST(SurfaceDistances, AreComputedOncePerPlace) {
+  const CutGrid cut = cut_grid(9, 5, 4);
+  const SurfaceDistances distances = welded_distances(cut.shape);
+  const SurfaceDistances copy = distances;
+  EXPECT_EQ(distances.computed(), 0);
+  distances(0);
+  distances(0);
+  distances(cut.copy(2));
+  copy(2 * 9 + 4);
+  EXPECT_EQ(distances.computed(), 2);
+  EXPECT_EQ(copy.computed(), 2);
+}
+
+TEST(SurfaceDistances, AreTheSameFromSeveralThreads) {
+  const Shape shape = test::sphere(2);
+  const SurfaceDistances distances = welded_distances(shape);
+  std::vector<Eigen::VectorXd> results(4);
+  {
+    std::vector<std::jthread> threads;
+    for (auto& result : results) threads.emplace_back([&] { result = distances(7); });
+  }
+  for (const auto& result : results) EXPECT_EQ(result, welded_distances(shape)(7));
+  EXPECT_EQ(distances.computed(), 1);
+}
+
+TEST(SurfaceDistances, OfTheExactMethodAreExact) {
+  const Shape shape = test::sphere(2);
+  EXPECT_EQ(welded_distances(shape, GeodesicMethod::exact)(3),
+            geodesic::ExactGeodesics(shape.positions, shape.triangles).distances(3));
+}
+
+TEST(SurfaceDistances, CountTrianglesThatWeldingCollapses) {
+  Shape shape = test::octahedron();
+  shape.positions.conservativeResize(7, 3);
+  shape.positions.row(6) = shape.positions.row(0);
+  shape.triangles.conservativeResize(9, 3);
+  shape.triangles.row(8) << 0, 6, 2;
+  EXPECT_EQ(welded_distances(shape).degenerate_triangles(), 1);
+  EXPECT_EQ(welded_distances(shape, GeodesicMethod::exact).degenerate_triangles(), 1);
+}
+
+TEST(SurfaceDistances, NameOnlyVerticesWhosePlaceHasNoFace) {
+  CutGrid cut = cut_grid(5, 4, 2);
+  Positions& positions = cut.shape.positions;
+  positions.conservativeResize(positions.rows() + 1, 3);
+  positions.bottomRows(1) << 0, 0, 9;
+  EXPECT_THAT(welded_distances(cut.shape).vertices_without_face(),
+              ElementsAre(positions.rows() - 1));
+}
+
+TEST(SurfaceDistances, NameEveryVertexOfAPlaceWithoutFace) {
+  Shape shape = test::octahedron();
+  shape.positions.conservativeResize(8, 3);
+  shape.positions.bottomRows(2) << 0, 0, 9, 0, 0, 9;
+  EXPECT_THAT(welded_distances(shape).vertices_without_face(), ElementsAre(6, 7));
+}
+
+TEST(SurfaceDistances, RefuseSourcesThatDoNotExist) {
+  const SurfaceDistances distances = welded_distances(test::octahedron());
+  EXPECT_THROW(distances(-1), std::out_of_range);
+  EXPECT_THROW(distances(6), std::out_of_range);
+  EXPECT_EQ(distances.computed(), 0);
+}
+
+TEST(SurfaceDistances, RefuseABadIndexByName) {
+  Shape shape = test::octahedron();
+  shape.triangles(2, 0) = 6;
+  EXPECT_THAT([&] { welded_distances(shape); },
+              ThrowsMessage<std::invalid_argument>(HasSubstr("triangle 2 uses vertex 6")));
+}
+
+TEST(SurfaceDistances, RefuseAWeldOfAnotherMesh) {
+  const Shape shape = test::octahedron();
+  EXPECT_THAT([&] { SurfaceDistances(shape.positions, shape.triangles, Weld::none(5)); },
+              ThrowsMessage<std::invalid_argument>(HasSubstr("a weld of 5 vertices, expected 6")));
+}
+
+}  // namespace
+}  // namespace mimetra

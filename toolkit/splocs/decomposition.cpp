@@ -1,0 +1,168 @@
+#include <mimetra/splocs/decomposition.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include <mimetra/splocs/component_update.h>
+#include <mimetra/splocs/start.h>
+#include <mimetra/splocs/support_maps.h>
+#include <mimetra/splocs/weights.h>
+
+namespace mimetra {
+namespace {
+
+// Defaults of d_min and d_max, in longest sides of the rest pose.
+constexpr double kDefaultMinimum = 0.1;
+constexpr double kDefaultMaximum = 0.7;
+
+// Share of the work that the start takes, distances included: for the caller's progress.
+constexpr double kStartShare = 0.4;
+
+void require(bool condition, const std::string& message) {
+  if (!condition) throw std::invalid_argument(message);
+}
+
+void require_valid(const DecompositionOptions& options) {
+  require(options.count >= 1,
+          "count is " + std::to_string(options.count) + "; at least 1 component");
+  require(options.sparsity >= 0 && std::isfinite(options.sparsity),
+          "sparsity is " + std::to_string(options.sparsity) + "; it must be 0 or more");
+  require(options.rho > 0 && std::isfinite(options.rho),
+          "rho is " + std::to_string(options.rho) + "; it must be above 0");
+  require(options.iterations >= 1,
+          "iterations is " + std::to_string(options.iterations) + "; at least 1");
+  require(options.admm_iterations >= 1,
+          "admm_iterations is " + std::to_string(options.admm_iterations) + "; at least 1");
+  require(options.tolerance >= 0,
+          "tolerance is " + std::to_string(options.tolerance) + "; it must be 0 or more");
+}
+
+void require_valid(double d_min, double d_max) {
+  require(0 <= d_min && d_min < d_max && std::isfinite(d_max),
+          "d_min is " + std::to_string(d_min) + " and d_max " + std::to_string(d_max) +
+              "; 0 <= d_min < d_max is needed");
+}
+
+void require_decomposable(const MeshSequence& sequence, int count) {
+  const int coordinates = 3 * sequence.vertices();
+  if (count > coordinates) {
+    throw MismatchError(std::to_string(count) + " components of a mesh of " +
+                        std::to_string(sequence.vertices()) + " vertices; at most " +
+                        std::to_string(coordinates));
+  }
+  if (sequence.frames() < 2) {
+    throw MismatchError("the sequence has one frame; a decomposition needs at least two");
+  }
+  require(sequence.rest().allFinite(),
+          "the rest pose has a coordinate that is not a finite number");
+  for (int f = 0; f < sequence.frames(); ++f) {
+    require(sequence.positions().row(f).allFinite(),
+            "frame " + std::to_string(f) + " has a coordinate that is not a finite number");
+  }
+}
+
+/// Displacements from the rest pose, X, divided by their standard deviation.
+struct ScaledMotion {
+  Frames X;
+  double scale;
+};
+
+ScaledMotion scaled_motion(const MeshSequence& sequence) {
+  const Eigen::Map<const Eigen::RowVectorXd> rest(sequence.rest().data(), sequence.rest().size());
+  Frames X = sequence.positions().rowwise() - rest;
+  const double scale = std::sqrt((X.array() - X.mean()).square().mean());
+  if (scale == 0) {
+    throw MismatchError("nothing moves: all " + std::to_string(sequence.frames()) +
+                        " frames are the rest pose");
+  }
+  X /= scale;
+  return {std::move(X), scale};
+}
+
+/// ||X - W C||^2 + penalty without the residual. The terms cancel down to the data's own rounding,
+/// 1e-16 of ||X||^2, which an exact fit leaves with either sign.
+double energy(double X_norm2, const Eigen::MatrixXd& W, const ComponentUpdate& components) {
+  const double mixed = W.cwiseProduct(components.P).sum();
+  const double square = (W.transpose() * W).cwiseProduct(components.H).sum();
+  return std::max(0.0, X_norm2 - 2 * mixed + square) + components.penalty;
+}
+
+/// `progress` for a part of the work: its 0 .. 1 becomes first .. last.
+Progress part_of(const Progress& progress, double first, double last) {
+  if (!progress) return {};
+  return
+      [&progress, first, last](double share) { return progress(first + share * (last - first)); };
+}
+
+/// Alternates between weights and components; fills displacements, weights, support and energies.
+void alternate(Components& result, const Frames& X, Start start, SupportMaps support,
+               const Progress& progress) {
+  const DecompositionOptions& options = result.options;
+  const AdmmOptions admm{options.sparsity, options.rho, options.admm_iterations};
+  const double X_norm2 = X.squaredNorm();
+  Eigen::MatrixXd W = std::move(start.weights);
+  ComponentUpdate components = initial_components(X, std::move(start.components));
+  for (int iteration = 0; iteration < options.iterations; ++iteration) {
+    report_progress(progress, static_cast<double>(iteration) / options.iterations);
+    W = updated_weights(std::move(W), components.P, components.H, options.nonnegative);
+    support.follow(components.C);
+    components = updated_components(X, W, support.maps(), std::move(components), admm);
+    result.energies.push_back(energy(X_norm2, W, components));
+    if (iteration == 0 || options.tolerance == 0) continue;
+    const double last = result.energies[iteration - 1];
+    if (std::abs(last - result.energies[iteration]) <= options.tolerance * last) break;
+  }
+  result.displacements = std::move(components.C);
+  result.weights = std::move(W);
+  result.support = support.maps();
+}
+
+/// Finds each component's centre. A component needs both weights and displacements: with one of
+/// them zero it tells nothing, and both are cleared.
+void finish(Components& result) {
+  for (int k = 0; k < result.count(); ++k) {
+    const VertexIndex center = strongest_vertex(vertex_energies(result.displacements.row(k)));
+    const bool alive = center >= 0 && !result.weights.col(k).isZero(0);
+    result.centers.push_back(alive ? center : -1);
+    if (alive) continue;
+    result.weights.col(k).setZero();
+    result.displacements.row(k).setZero();
+  }
+  result.displacements *= result.scale;
+}
+
+}  // namespace
+
+Components decompose(const MeshSequence& sequence, const DecompositionOptions& options) {
+  require_valid(options);
+  require_decomposable(sequence, options.count);
+  Components result;
+  result.rest = sequence.rest();
+  result.triangles = sequence.triangles();
+  result.d_min = options.d_min.value_or(kDefaultMinimum * sequence.extent());
+  result.d_max = options.d_max.value_or(kDefaultMaximum * sequence.extent());
+  require_valid(result.d_min, result.d_max);
+  result.options = options;
+  result.options.distances = nullptr;
+  result.options.progress = nullptr;
+
+  const ScaledMotion motion = scaled_motion(sequence);
+  result.scale = motion.scale;
+  const DistanceFunction distances =
+      options.distances ? options.distances
+                        : SurfaceDistances(result.rest, result.triangles, Weld::exact(result.rest));
+  const SupportFunction support =
+      support_function(distances, sequence.vertices(), result.d_min, result.d_max);
+  Start start = greedy_start(motion.X, support, options, part_of(options.progress, 0, kStartShare));
+  alternate(result, motion.X, std::move(start),
+            SupportMaps(support, options.count, sequence.vertices()),
+            part_of(options.progress, kStartShare, 1));
+  finish(result);
+  report_progress(options.progress, 1);
+  return result;
+}
+
+}  // namespace mimetra

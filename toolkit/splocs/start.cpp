@@ -1,0 +1,131 @@
+#include <mimetra/splocs/start.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Eigenvalues>
+
+#include <mimetra/splocs/weights.h>
+
+namespace mimetra {
+namespace {
+
+// Residual energy, relative to the most moving vertex, that is rounding of the subtractions and
+// nothing else: amplitudes of 1e-12.
+constexpr double kNothingLeft = 1e-24;
+
+// Two signs whose norms differ by less than this share are told apart by time, because rounding
+// would decide between them.
+constexpr double kSameNorm = 1e-9;
+
+/// X - W C at the start: kept as X and the components so far, never as a matrix.
+class Residual {
+ public:
+  Residual(const Frames& X, int count)
+      : X_(X),
+        start_{{}, Frames::Zero(count, X.cols()), Eigen::MatrixXd::Zero(X.rows(), count)},
+        energies_(vertex_energies_over_time(X)),
+        nothing_left_(kNothingLeft * energies_.maxCoeff()) {}
+
+  /// The vertex with the largest residual energy, or -1 where nothing is left.
+  VertexIndex strongest() {
+    for (;;) {
+      const VertexIndex v = strongest_vertex(energies_);
+      if (v < 0 || energies_[v] <= nothing_left_) return -1;
+      // The energies carry the rounding of their updates, relative to what the vertex moved at
+      // first: near the end only the residual itself tells whether it is really the largest.
+      const double energy = at(v).squaredNorm();
+      if (energy >= energies_[v]) return v;
+      energies_[v] = energy;
+    }
+  }
+
+  /// Residual of vertex v (F x 3). The components are subtracted one by one: X - W C in one go
+  /// rounds differently where they cancel, which shows in the weights.
+  Eigen::MatrixX3d at(VertexIndex v) const {
+    Eigen::MatrixX3d residual = X_.middleCols(3 * v, 3);
+    for (int k = 0; k < size(); ++k) {
+      residual -= start_.weights.col(k) * start_.components.row(k).segment(3 * v, 3);
+    }
+    return residual;
+  }
+
+  /// Adds the component that the weights `w` explain best where `support` is below 1.
+  void explain(VertexIndex center, const Eigen::VectorXd& w, const Eigen::VectorXd& support) {
+    const int k = size();
+    const double ww = w.squaredNorm();
+    const Eigen::VectorXd overlap = start_.weights.leftCols(k).transpose() * w;
+    Eigen::RowVectorXd wR = w.transpose() * X_;
+    wR.noalias() -= overlap.transpose() * start_.components.topRows(k);
+    const Eigen::ArrayXd inside = 1 - support.array();
+    energies_.array() -= (2 * inside - inside.square()) * vertex_energies(wR).array() / ww;
+    for (Eigen::Index v = 0; v < inside.size(); ++v) {
+      start_.components.row(k).segment(3 * v, 3) = wR.segment(3 * v, 3) * (inside[v] / ww);
+    }
+    start_.weights.col(k) = w;
+    start_.centers.push_back(center);
+  }
+
+  Start start() && {
+    start_.centers.resize(start_.weights.cols(), -1);
+    return std::move(start_);
+  }
+
+ private:
+  static Eigen::VectorXd vertex_energies_over_time(const Frames& X) {
+    Eigen::VectorXd energies = Eigen::VectorXd::Zero(X.cols() / 3);
+    for (Eigen::Index f = 0; f < X.rows(); ++f) energies += vertex_energies(X.row(f));
+    return energies;
+  }
+
+  int size() const { return static_cast<int>(start_.centers.size()); }
+
+  const Frames& X_;
+  Start start_;
+  Eigen::VectorXd energies_;
+  double nothing_left_;
+};
+
+/// First left singular vector of an F x 3 matrix times its singular value.
+Eigen::VectorXd strongest_motion(const Eigen::MatrixX3d& residual) {
+  const Eigen::Matrix3d gram = residual.transpose() * residual;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> directions(gram);
+  return residual * directions.eigenvectors().col(2);
+}
+
+bool prefers_negative(const Eigen::VectorXd& w) {
+  const double positive = w.cwiseMax(0).norm(), negative = w.cwiseMin(0).norm();
+  if (std::abs(positive - negative) > kSameNorm * std::max(positive, negative)) {
+    return negative > positive;
+  }
+  const double half = w.lpNorm<Eigen::Infinity>() / 2;
+  return *std::find_if(w.begin(), w.end(), [half](double x) { return std::abs(x) > half; }) < 0;
+}
+
+}  // namespace
+
+Eigen::VectorXd oriented_weights(const Eigen::VectorXd& w, SignRule rule, bool nonnegative) {
+  // Signed weights have the same norm either way: the literal rule cannot choose between them.
+  if (rule == SignRule::literal && nonnegative) {
+    const Eigen::VectorXd positive = feasible_weights(w, true);
+    const Eigen::VectorXd negative = feasible_weights(-w, true);
+    return positive.norm() > negative.norm() ? positive : negative;
+  }
+  return feasible_weights(prefers_negative(w) ? Eigen::VectorXd(-w) : w, nonnegative);
+}
+
+Start greedy_start(const Frames& X, const SupportFunction& support,
+                   const DecompositionOptions& options, const Progress& progress) {
+  Residual residual(X, options.count);
+  for (int k = 0; k < options.count; ++k) {
+    report_progress(progress, static_cast<double>(k) / options.count);
+    const VertexIndex center = residual.strongest();
+    if (center < 0) break;
+    const Eigen::VectorXd w = oriented_weights(strongest_motion(residual.at(center)),
+                                               options.sign_rule, options.nonnegative);
+    residual.explain(center, w, support(center));
+  }
+  return std::move(residual).start();
+}
+
+}  // namespace mimetra

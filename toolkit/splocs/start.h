@@ -1,0 +1,28 @@
+#pragma once
+
+#include <vector>
+
+#include <mimetra/splocs/decomposition.h>
+#include <mimetra/splocs/support_maps.h>
+
+namespace mimetra {
+
+/// Where the alternation of the decomposition begins.
+struct Start {
+  std::vector<VertexIndex> centers;  ///< vertex that each component was made for (K); -1: none left
+  Frames components;                 ///< C, K x 3N; zero where none was left
+  Eigen::MatrixXd weights;           ///< W, F x K, feasible; zero where none was left
+};
+
+/// Greedy start, options.count times: the vertex that the earlier components explain least, the
+/// strongest direction of its residual, and what its weights explain around it. X is F x 3N. Calls
+/// `progress` with shares of the start.
+///
+/// [Neumann et al. Sparse Localized Deformation Components. ACM TOG 32(6), 2013], section 4.2
+Start greedy_start(const Frames& X, const SupportFunction& support,
+                   const DecompositionOptions& options, const Progress& progress = {});
+
+/// Feasible weights of a start from `w` (F) or from -w, whichever `rule` prefers.
+Eigen::VectorXd oriented_weights(const Eigen::VectorXd& w, SignRule rule, bool nonnegative);
+
+}  // namespace mimetra

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include <mimetra/splocs/surface_distances.h>
+
+namespace mimetra {
+
+/// Vertex (of N) where the entry of `energies` (N) is largest, the lowest of equals; -1 where no
+/// entry is above zero.
+VertexIndex strongest_vertex(const Eigen::Ref<const Eigen::VectorXd>& energies);
+
+/// Squared length of each vertex's displacement in one component (3N): N.
+Eigen::VectorXd vertex_energies(const Eigen::Ref<const Eigen::RowVectorXd>& component);
+
+/// Support map (N) around a vertex.
+using SupportFunction = std::function<Eigen::VectorXd(VertexIndex)>;
+
+/// Support maps of distances between `d_min` and `d_max` (lengths). The function throws
+/// std::invalid_argument where `distances` gives another count than `vertices`.
+SupportFunction support_function(DistanceFunction distances, int vertices, double d_min,
+                                 double d_max);
+
+/// The support maps of K components, which follow their components' strongest vertices.
+class SupportMaps {
+ public:
+  SupportMaps(SupportFunction support, int components, int vertices);
+
+  /// Moves each map to the strongest vertex of its component, row k of `components` (K x 3N). A
+  /// component that is zero keeps its map.
+  void follow(const Frames& components);
+
+  /// K x N; 1 everywhere in a map that had no component to follow.
+  const Eigen::MatrixXd& maps() const { return maps_; }
+
+ private:
+  SupportFunction support_;
+  std::vector<VertexIndex> centers_;
+  Eigen::MatrixXd maps_;
+};
+
+}  // namespace mimetra
