@@ -1,0 +1,76 @@
+#include <algorithm>
+
+#include <gmock/gmock.h>
+
+#include "moving_grid.h"
+
+namespace mimetra::test {
+namespace {
+
+const Field& named(const std::vector<Field>& fields, const std::string& name) {
+  const auto field = std::ranges::find(fields, name, &Field::name);
+  if (field == fields.end()) throw std::out_of_range(name);
+  return *field;
+}
+
+/// Two discs that overlap; the stronger one is component 1.
+struct Overlapping {
+  Components components = lifted({at(2, 2), at(4, 2)}, {1, 2});
+  Regions regions = find_regions(components, disc_of(components, 1));
+};
+
+TEST(RegionField, HoldsTheStrongestRegionAndMinusOneOutside) {
+  const Overlapping discs;
+  const Field region = named(fields_of(discs.regions), "region");
+  EXPECT_EQ(region.values(at(4, 2)), 0);
+  EXPECT_EQ(region.values(at(2, 2)), 1);
+  EXPECT_EQ(region.values(at(3, 2)), 0);
+  EXPECT_EQ(region.values(at(9, 2)), -1);
+}
+
+TEST(RegionCountField, CountsTheRegionsOfAVertex) {
+  const Overlapping discs;
+  const Field count = named(fields_of(discs.regions), "region_count");
+  EXPECT_EQ(count.values(at(3, 2)), 2);
+  EXPECT_EQ(count.values(at(4, 2)), 1);
+  EXPECT_EQ(count.values(at(9, 2)), 0);
+}
+
+TEST(RoiField, IsTheUnion) {
+  const Overlapping discs;
+  const Field roi = named(fields_of(discs.regions), "roi");
+  for (int v = 0; v < discs.regions.vertices; ++v) {
+    EXPECT_EQ(roi.values(v), discs.regions.inside[v] ? 1 : 0);
+  }
+}
+
+TEST(InLField, IsOneOnTheTrianglesOfL) {
+  const Overlapping discs;
+  const Field in_L = named(fields_of(discs.regions), "in_L");
+  EXPECT_EQ(in_L.location, Field::Location::triangles);
+  EXPECT_EQ(in_L.values.sum(), discs.regions.triangles.size());
+  for (const int t : discs.regions.triangles) EXPECT_EQ(in_L.values(t), 1);
+}
+
+TEST(RegionFields, AreIntegers) {
+  for (const Field& field : fields_of(Overlapping().regions)) EXPECT_TRUE(field.integer);
+}
+
+TEST(ComponentFields, BelongToTheRegionsInTheirOrder) {
+  const Overlapping discs;
+  const std::vector<Field> fields = component_fields(discs.components, discs.regions);
+  // Region 0 is component 1, which lifts its centre by 2.
+  const Field& displacement = named(fields, "component_0");
+  EXPECT_EQ(displacement.values.row(at(4, 2)), Eigen::RowVector3d(0, 0, 2));
+  EXPECT_EQ(displacement.values.cols(), 3);
+  EXPECT_EQ(named(fields, "support_1").values.rows(), discs.regions.vertices);
+}
+
+TEST(ComponentFields, AreNoneForRegionsThatWereRead) {
+  const Overlapping discs;
+  const Regions read = regions_from_vertices(kColumns * kRows, discs.components.triangles, {{3}});
+  EXPECT_TRUE(component_fields(discs.components, read).empty());
+}
+
+}  // namespace
+}  // namespace mimetra::test

@@ -1,0 +1,46 @@
+#include <string>
+
+#include <mimetra/regions/regions.h>
+
+namespace mimetra {
+namespace {
+
+Field integer_field(std::string name, Field::Location location, Eigen::VectorXd values) {
+  return {std::move(name), location, std::move(values), true};
+}
+
+}  // namespace
+
+std::vector<Field> fields_of(const Regions& regions) {
+  Eigen::VectorXd strongest = Eigen::VectorXd::Constant(regions.vertices, -1);
+  Eigen::VectorXd count = Eigen::VectorXd::Zero(regions.vertices);
+  for (std::size_t k = 0; k < regions.regions.size(); ++k) {
+    for (const VertexIndex v : regions.regions[k].vertices) {
+      if (count[v] == 0) strongest[v] = static_cast<double>(k);
+      count[v] += 1;
+    }
+  }
+  Eigen::VectorXd in_L = Eigen::VectorXd::Zero(regions.all_triangles);
+  for (const int t : regions.triangles) in_L[t] = 1;
+  return {integer_field("region", Field::Location::vertices, strongest),
+          integer_field("region_count", Field::Location::vertices, count),
+          integer_field("roi", Field::Location::vertices, count.cwiseMin(1)),
+          integer_field("in_L", Field::Location::triangles, in_L)};
+}
+
+std::vector<Field> component_fields(const Components& components, const Regions& regions) {
+  std::vector<Field> fields;
+  for (std::size_t k = 0; k < regions.regions.size(); ++k) {
+    const int component = regions.regions[k].component;
+    if (component < 0) continue;
+    const std::string number = std::to_string(k);
+    const PositionsView displacements(components.displacements.row(component).data(),
+                                      components.vertices(), 3);
+    fields.push_back({"support_" + number, Field::Location::vertices,
+                      components.support.row(component).transpose()});
+    fields.push_back({"component_" + number, Field::Location::vertices, displacements});
+  }
+  return fields;
+}
+
+}  // namespace mimetra

@@ -1,0 +1,293 @@
+#include <mimetra/regions/regions.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+namespace mimetra {
+namespace {
+
+// Default radius of a disc, in longest sides of the rest pose.
+constexpr double kDefaultRadius = 0.1;
+
+// Share of its component's energy that RegionShape::support holds.
+constexpr double kSupportShare = 0.95;
+
+// Rounding of a sum of shares that is 1 in real numbers, for millions of vertices.
+constexpr double kSumRounding = 1e-9;
+
+void require_valid(const RegionOptions& options) {
+  if (options.radius && !(*options.radius > 0 && std::isfinite(*options.radius))) {
+    throw std::invalid_argument("radius is " + std::to_string(*options.radius) +
+                                "; it must be above 0");
+  }
+  if (options.coverage && !(*options.coverage > 0 && *options.coverage <= 1)) {
+    throw std::invalid_argument("coverage is " + std::to_string(*options.coverage) +
+                                "; it must be in (0, 1]");
+  }
+}
+
+/// Components that move the same vertex most, strongest first, and how far all vertices are from
+/// it.
+struct Site {
+  std::vector<int> components;
+  VertexIndex center;
+  double energy;
+  Eigen::VectorXd distances;
+};
+
+/// "2, 5 and 7"
+std::string listed(const std::vector<int>& numbers) {
+  std::string list;
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    if (i > 0) list += i + 1 < numbers.size() ? ", " : " and ";
+    list += std::to_string(numbers[i]);
+  }
+  return list;
+}
+
+/// Components of which one moves, from the strongest to the weakest.
+std::vector<int> living_components(const Components& components, const Eigen::VectorXd& energies) {
+  std::vector<int> order;
+  for (int k = 0; k < components.count(); ++k) {
+    if (components.centers[k] >= 0) order.push_back(k);
+  }
+  std::ranges::stable_sort(order, [&](int a, int b) { return energies[a] > energies[b]; });
+  return order;
+}
+
+/// One site per centre, the strongest first. A centre at distance zero is the same point of the
+/// surface, across a seam.
+std::vector<Site> sites_of(const Components& components, const DistanceFunction& distances) {
+  const Eigen::VectorXd energies = motion_energy(components);
+  std::vector<Site> sites;
+  for (const int k : living_components(components, energies)) {
+    const VertexIndex center = components.centers[k];
+    const auto same = std::ranges::find_if(sites, [center](const Site& site) {
+      return site.center == center || site.distances[center] == 0;
+    });
+    if (same == sites.end()) {
+      sites.push_back({{k}, center, energies[k], distances(center)});
+    } else {
+      same->components.push_back(k);
+      same->energy += energies[k];
+    }
+  }
+  std::ranges::stable_sort(sites, [](const Site& a, const Site& b) { return a.energy > b.energy; });
+  return sites;
+}
+
+std::vector<std::string> notes_on(const Components& components, const std::vector<Site>& sites) {
+  std::vector<std::string> notes;
+  std::vector<int> dead;
+  for (int k = 0; k < components.count(); ++k) {
+    if (components.centers[k] < 0) dead.push_back(k);
+  }
+  if (!dead.empty()) {
+    notes.push_back((dead.size() > 1 ? "components " : "component ") + listed(dead) +
+                    " died in the decomposition: no region");
+  }
+  std::string merged;
+  for (const Site& site : sites) {
+    if (site.components.size() == 1) continue;
+    merged += (merged.empty() ? "" : "; ") + listed(site.components);
+  }
+  if (!merged.empty()) notes.push_back("components with the same centre share a region: " + merged);
+  return notes;
+}
+
+/// Motion energy of some components on each vertex: sum over k of |w_k|^2 |c_k^(i)|^2 (N).
+Eigen::VectorXd energy_on_vertices(const Components& components, const std::vector<int>& some) {
+  Eigen::VectorXd energy = Eigen::VectorXd::Zero(components.vertices());
+  for (const int k : some) {
+    const PositionsView c(components.displacements.row(k).data(), components.vertices(), 3);
+    energy += components.weights.col(k).squaredNorm() * c.rowwise().squaredNorm();
+  }
+  return energy;
+}
+
+std::vector<VertexIndex> disc(const Site& site, double radius) {
+  std::vector<VertexIndex> vertices;
+  for (VertexIndex v = 0; v < site.distances.size(); ++v) {
+    // A centre on no triangle has no distances, not even to itself.
+    if (site.distances[v] <= radius || v == site.center) vertices.push_back(v);
+  }
+  return vertices;
+}
+
+/// The fewest reachable vertices that carry kSupportShare of what the reachable ones carry.
+std::vector<VertexIndex> energetic_vertices(const Site& site, const Eigen::VectorXd& energy) {
+  std::vector<VertexIndex> order;
+  for (VertexIndex v = 0; v < energy.size(); ++v) {
+    if (energy[v] > 0 && (std::isfinite(site.distances[v]) || v == site.center)) order.push_back(v);
+  }
+  std::ranges::stable_sort(order, [&](int a, int b) { return energy[a] > energy[b]; });
+  double total = 0;
+  for (const VertexIndex v : order) total += energy[v];
+  double held = 0;
+  std::size_t count = 0;
+  while (count < order.size() && held < kSupportShare * total) held += energy[order[count++]];
+  order.resize(count);
+  std::ranges::sort(order);
+  return order;
+}
+
+double farthest(const Site& site, const std::vector<VertexIndex>& vertices) {
+  double radius = 0;
+  for (const VertexIndex v : vertices) {
+    if (v != site.center) radius = std::max(radius, site.distances[v]);
+  }
+  return radius;
+}
+
+/// The vertices of a site's region; its share of the energy is not known here.
+Region region_around(const Site& site, const Components& components, const RegionOptions& options) {
+  Region region;
+  region.component = site.components.front();
+  region.center = site.center;
+  region.energy = site.energy;
+  if (options.shape == RegionShape::support) {
+    region.vertices = energetic_vertices(site, energy_on_vertices(components, site.components));
+    region.radius = farthest(site, region.vertices);
+  } else {
+    region.radius = options.radius.value_or(kDefaultRadius * extent(components.rest));
+    region.vertices = disc(site, region.radius);
+  }
+  return region;
+}
+
+/// Triangles with a vertex that is `inside`, ascending.
+std::vector<int> triangles_touching(const std::vector<bool>& inside, const Triangles& triangles) {
+  std::vector<int> touching;
+  for (int t = 0; t < triangles.rows(); ++t) {
+    if (inside[triangles(t, 0)] || inside[triangles(t, 1)] || inside[triangles(t, 2)]) {
+      touching.push_back(t);
+    }
+  }
+  return touching;
+}
+
+/// Energy on the vertices that are `inside`.
+double energy_inside(const Eigen::VectorXd& vertex_energy, const std::vector<bool>& inside) {
+  double sum = 0;
+  for (Eigen::Index v = 0; v < vertex_energy.size(); ++v) {
+    if (inside[v]) sum += vertex_energy[v];
+  }
+  return sum;
+}
+
+/// Fills what follows from the vertices of the regions: the union, L and the shares.
+void complete(Regions& regions, const Triangles& triangles) {
+  regions.inside.assign(regions.vertices, false);
+  const bool known = regions.vertex_energy.size() > 0;
+  for (Region& region : regions.regions) {
+    for (const VertexIndex v : region.vertices) regions.inside[v] = true;
+    if (known) region.energy_share = regions.vertex_energy(region.vertices).sum();
+  }
+  regions.energy_share = known ? energy_inside(regions.vertex_energy, regions.inside) : 0;
+  regions.triangles = triangles_touching(regions.inside, triangles);
+  regions.all_triangles = static_cast<int>(triangles.rows());
+}
+
+/// How many of the first regions it takes until their union holds the share `coverage`; all, where
+/// they do not.
+std::size_t regions_to_cover(const Regions& regions, double coverage) {
+  std::vector<bool> inside(regions.vertices, false);
+  double held = 0;
+  std::size_t count = 0;
+  while (count < regions.regions.size() && held < coverage - kSumRounding) {
+    for (const VertexIndex v : regions.regions[count++].vertices) {
+      if (!inside[v]) held += regions.vertex_energy[v];
+      inside[v] = true;
+    }
+  }
+  return count;
+}
+
+std::string percent(double share) {
+  return std::to_string(static_cast<int>(std::lround(100 * share))) + " %";
+}
+
+void cover(Regions& regions, double coverage, const Triangles& triangles) {
+  regions.regions.resize(regions_to_cover(regions, coverage));
+  complete(regions, triangles);
+  if (regions.energy_share >= coverage - kSumRounding) return;
+  regions.notes.push_back("all " + std::to_string(regions.regions.size()) + " regions hold " +
+                          percent(regions.energy_share) + " of the motion energy; " +
+                          percent(coverage) + " were asked for");
+}
+
+}  // namespace
+
+int Regions::vertex_count() const {
+  return static_cast<int>(std::ranges::count(inside, true));
+}
+
+Eigen::VectorXd motion_energy(const Components& components) {
+  return components.weights.colwise().squaredNorm().transpose().cwiseProduct(
+      components.displacements.rowwise().squaredNorm());
+}
+
+Regions find_regions(const Components& components, const RegionOptions& options) {
+  require_valid(options);
+  const DistanceFunction distances =
+      options.distances
+          ? options.distances
+          : SurfaceDistances(components.rest, components.triangles, Weld::exact(components.rest));
+  const std::vector<Site> sites = sites_of(components, distances);
+  Regions regions;
+  regions.vertices = components.vertices();
+  regions.notes = notes_on(components, sites);
+  std::vector<int> all(components.count());
+  std::iota(all.begin(), all.end(), 0);
+  regions.vertex_energy = energy_on_vertices(components, all);
+  const double total = regions.vertex_energy.sum();
+  if (total > 0) regions.vertex_energy /= total;
+  for (const Site& site : sites) {
+    regions.regions.push_back(region_around(site, components, options));
+  }
+  complete(regions, components.triangles);
+  if (options.coverage) cover(regions, *options.coverage, components.triangles);
+  return regions;
+}
+
+Regions strongest(const Regions& regions, int count, const Triangles& triangles) {
+  if (count < 1) {
+    throw std::invalid_argument("count is " + std::to_string(count) + "; at least 1 region");
+  }
+  Regions first = regions;
+  if (count < static_cast<int>(first.regions.size())) first.regions.resize(count);
+  complete(first, triangles);
+  return first;
+}
+
+Regions regions_from_vertices(int vertices, const Triangles& triangles,
+                              const std::vector<std::vector<VertexIndex>>& lists) {
+  Regions regions;
+  regions.vertices = vertices;
+  for (std::size_t i = 0; i < lists.size(); ++i) {
+    Region& region = regions.regions.emplace_back();
+    region.vertices = lists[i];
+    for (const VertexIndex v : region.vertices) {
+      if (v >= 0 && v < vertices) continue;
+      throw MismatchError("region " + std::to_string(i) + " holds vertex " + std::to_string(v) +
+                          "; the mesh has vertices 0 to " + std::to_string(vertices - 1));
+    }
+    std::ranges::sort(region.vertices);
+    const auto repeated = std::ranges::unique(region.vertices);
+    region.vertices.erase(repeated.begin(), repeated.end());
+  }
+  complete(regions, triangles);
+  return regions;
+}
+
+std::vector<int> all_triangles(const Triangles& triangles) {
+  std::vector<int> all(triangles.rows());
+  std::iota(all.begin(), all.end(), 0);
+  return all;
+}
+
+}  // namespace mimetra

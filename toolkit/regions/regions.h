@@ -1,0 +1,90 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <mimetra/mesh/fields.h>
+#include <mimetra/splocs/decomposition.h>
+
+namespace mimetra {
+
+/// What a region of interest holds.
+enum class RegionShape {
+  disc,    ///< vertices within a geodesic radius of the component's centre
+  support  ///< fewest vertices that carry 95 % of the component's energy
+};
+
+struct RegionOptions {
+  RegionShape shape = RegionShape::disc;
+  /// Radius of a disc, length; by default 0.1 of the rest pose's longest side.
+  std::optional<double> radius = {};
+  /// Take the strongest components until the union holds this share of the motion energy, (0, 1];
+  /// without it, all components.
+  std::optional<double> coverage = {};
+  /// Distances along the rest pose; by default SurfaceDistances of its exactly welded vertices.
+  DistanceFunction distances = {};
+};
+
+/// A region of interest: where one component moves the face.
+struct Region {
+  int component = -1;  ///< row of Components; -1 for a region that was read
+  VertexIndex center = -1;
+  double radius = 0;  ///< length; for RegionShape::support the distance of its farthest vertex
+  std::vector<VertexIndex> vertices;  ///< ascending
+  double energy = 0;                  ///< motion energy |w_k|^2 |c_k|^2 of its component(s)
+  double energy_share = 0;            ///< share of all motion energy on its vertices
+};
+
+/// Regions in the order of their component's motion energy, and the triangles they take part in.
+struct Regions {
+  int vertices = 0;  ///< N of the mesh
+  std::vector<Region> regions;
+  std::vector<bool> inside;    ///< vertex is in the union (N)
+  std::vector<int> triangles;  ///< L: triangles with a vertex in the union, ascending
+  int all_triangles = 0;       ///< M of the mesh
+  double energy_share = 0;     ///< share of the motion energy that the union holds
+  /// Share of the motion energy on each vertex (N); empty for regions that were read.
+  Eigen::VectorXd vertex_energy;
+  /// What the user should know: components with one centre were merged, the coverage asked for was
+  /// not reached, a component died.
+  std::vector<std::string> notes;
+
+  int vertex_count() const;
+  double vertex_share() const { return vertices ? double(vertex_count()) / vertices : 0; }
+  double triangle_share() const {
+    return all_triangles ? double(triangles.size()) / all_triangles : 0;
+  }
+};
+
+/// Motion energy of each component, |w_k|^2 |c_k|^2 (K).
+Eigen::VectorXd motion_energy(const Components& components);
+
+/// Region k = the vertices within the radius of the centre of component k. Ordered by motion
+/// energy; components with the same centre (also across a welded seam) are merged. A vertex that no
+/// way along the surface reaches is in no region. Throws std::invalid_argument for options out of
+/// range.
+Regions find_regions(const Components& components, const RegionOptions& options = {});
+
+/// The first `count` regions only (all, where there are fewer). Throws std::invalid_argument where
+/// count < 1.
+Regions strongest(const Regions& regions, int count, const Triangles& triangles);
+
+/// One region per entry from vertex lists. Throws MismatchError that names the first vertex
+/// outside 0 .. vertices - 1.
+Regions regions_from_vertices(int vertices, const Triangles& triangles,
+                              const std::vector<std::vector<VertexIndex>>& lists);
+
+/// Every triangle of a mesh: the regions of a full transfer.
+std::vector<int> all_triangles(const Triangles& triangles);
+
+/// Fields `region` (index of the strongest region, -1 outside), `region_count`, `roi` (0/1) on
+/// vertices and `in_L` on triangles.
+std::vector<Field> fields_of(const Regions& regions);
+
+/// `support_k` (support map) and `component_k` (displacement vectors, unit of the mesh) of the
+/// component of each region k of `regions`, numbered as in the field `region`. Regions that were
+/// read have none.
+std::vector<Field> component_fields(const Components& components, const Regions& regions);
+
+}  // namespace mimetra
