@@ -1,0 +1,165 @@
+#include <gtest/gtest.h>
+
+#include <mimetra/transfer/blendshape_transfer.h>
+
+#include "faces.h"
+
+/// What a blendshape transfer does not depend on.
+namespace mimetra {
+namespace {
+
+using test::bent_patch;
+using test::patch;
+using test::Shape;
+
+Eigen::Matrix3d turn() {
+  return Eigen::AngleAxisd(1.1, Eigen::Vector3d(2, -1, 3).normalized()).toRotationMatrix();
+}
+
+/// Every point p of a sequence becomes map p + shift, in the rest pose too.
+MeshSequence mapped(const MeshSequence& sequence, const Eigen::Matrix3d& map,
+                    const Eigen::RowVector3d& shift) {
+  Frames frames(sequence.frames(), 3 * sequence.vertices());
+  for (int f = 0; f < sequence.frames(); ++f) {
+    Eigen::Map<Positions>(frames.row(f).data(), sequence.vertices(), 3) =
+        (sequence.frame(f) * map.transpose()).rowwise() + shift;
+  }
+  const Positions rest = (sequence.rest() * map.transpose()).rowwise() + shift;
+  return {sequence.shared_connectivity(), frames, sequence.times(), rest};
+}
+
+BlendshapeModel mapped(const BlendshapeModel& model, const Eigen::Matrix3d& map,
+                       const Eigen::RowVector3d& shift) {
+  ShapeBasis basis = model.expressions();
+  for (int j = 0; j < basis.size(); ++j) {
+    for (int v = 0; v < model.vertices(); ++v) {
+      basis.displacements.col(j).segment<3>(3 * v) =
+          (map * model.expressions().displacements.col(j).segment<3>(3 * v)).eval();
+    }
+  }
+  const Positions neutral = (model.neutral() * map.transpose()).rowwise() + shift;
+  return {model.shared_connectivity(), neutral, basis};
+}
+
+Eigen::MatrixXd weights_of(const MeshSequence& source, const BlendshapeModel& target) {
+  return BlendshapeTransfer(source.rest(), target, all_triangles(target.triangles()))
+      .weights(source);
+}
+
+class BlendshapeInvariance : public testing::Test {
+ protected:
+  const BlendshapeModel target_ = test::model_on(bent_patch(), 5);
+  const MeshSequence source_ = test::shaken(patch(), 5, 0.2);
+  const Eigen::MatrixXd weights_ = weights_of(source_, target_);
+  const Eigen::Matrix3d identity_ = Eigen::Matrix3d::Identity();
+
+  /// Rounding of positions near 10, in units of edges near 1, times a condition number near 1e2.
+  static constexpr double kRounding = 1e-12;
+
+  void expect_the_same(const MeshSequence& source, const BlendshapeModel& target,
+                       double tolerance = kRounding) const {
+    EXPECT_LT((weights_of(source, target) - weights_).lpNorm<Eigen::Infinity>(), tolerance);
+  }
+};
+
+TEST_F(BlendshapeInvariance, HoldsForTheSourcesScale) {
+  expect_the_same(mapped(source_, 1000 * identity_, {0, 0, 0}), target_);
+}
+
+TEST_F(BlendshapeInvariance, HoldsForTheTargetsScale) {
+  expect_the_same(source_, mapped(target_, 0.001 * identity_, {0, 0, 0}));
+}
+
+TEST_F(BlendshapeInvariance, HoldsForTheScaleOfBoth) {
+  expect_the_same(mapped(source_, 20 * identity_, {0, 0, 0}),
+                  mapped(target_, 20 * identity_, {0, 0, 0}));
+}
+
+TEST_F(BlendshapeInvariance, HoldsForAPlaceFarFromTheOrigin) {
+  // Positions near 1e5 carry rounding of 1e-11.
+  expect_the_same(mapped(source_, identity_, {1e5, -1e5, 0}),
+                  mapped(target_, identity_, {0, 1e5, 1e5}), 1e-8);
+}
+
+TEST_F(BlendshapeInvariance, HoldsForARotationOfBoth) {
+  expect_the_same(mapped(source_, turn(), {1, 2, 3}), mapped(target_, turn(), {-3, 0, 1}));
+}
+
+TEST_F(BlendshapeInvariance, HoldsForTheOtherFramesOfTheSequence) {
+  const MeshSequence one = source_.slice(3, 4).with_rest(source_.rest());
+  EXPECT_LT((weights_of(one, target_) - weights_.row(3)).lpNorm<Eigen::Infinity>(), kRounding);
+}
+
+TEST(BlendshapeTransfer, GivesExactlyZeroWhereAFrameOfAMovingTakeIsTheRestPose) {
+  const BlendshapeModel target = test::model_on(bent_patch(), 5);
+  const MeshSequence take = test::shaken(patch(), 12, 0.3);
+  Frames frames = take.positions();
+  frames.row(7) = Eigen::Map<const Eigen::RowVectorXd>(take.rest().data(), take.rest().size());
+  EXPECT_EQ(weights_of(take.with_frames(frames), target).row(7), Eigen::RowVectorXd::Zero(5));
+}
+
+TEST(BlendshapeTransfer, GivesTheSameBytesAgain) {
+  const BlendshapeModel target = test::model_on(bent_patch(), 5);
+  const MeshSequence take = test::shaken(patch(), 40, 0.3);
+  EXPECT_EQ(weights_of(take, target), weights_of(take, target));
+}
+
+/// A patch whose vertex `tip` of triangle 60 lies `height` above the triangle's first edge.
+MeshSequence needled(const MeshSequence& take, double height) {
+  const auto corners = take.triangles().row(60);
+  const auto flatten = [&](auto positions) {
+    const Eigen::RowVector3d a = positions.row(corners[0]), b = positions.row(corners[1]);
+    const Eigen::RowVector3d tip = positions.row(corners[2]), middle = (a + b) / 2;
+    positions.row(corners[2]) = middle + height * (tip - middle);
+  };
+  Frames frames = take.positions();
+  for (int f = 0; f < take.frames(); ++f) {
+    flatten(Eigen::Map<Positions>(frames.row(f).data(), take.vertices(), 3));
+  }
+  Positions rest = take.rest();
+  flatten(Eigen::Map<Positions>(rest.data(), take.vertices(), 3));
+  return {take.shared_connectivity(), frames, {}, rest};
+}
+
+TEST(BlendshapeTransfer, CountsANeedleInTheSource) {
+  const MeshSequence source = needled(test::shaken(patch(), 1, 0.1), 1e-9);
+  const BlendshapeTransfer transfer(source.rest(), test::model_on(patch(), 5), {59, 60, 61});
+  EXPECT_EQ(transfer.conditions().degenerate_source_triangles, 1);
+}
+
+TEST(BlendshapeTransfer, IsChangedLittleByANeedleInTheSource) {
+  const BlendshapeModel target = test::model_on(patch(), 5);
+  // Noise of 0.1 on the needle's height of 1e-9 would make a gradient of 1e8.
+  const MeshSequence take = target.animate(test::random_weights(6, 5));
+  const MeshSequence needle = needled(take, 1e-9);
+  Frames noisy = needle.positions();
+  noisy.col(3 * take.triangles()(60, 2) + 2).array() += 0.1;
+  const Eigen::MatrixXd found = weights_of(needle.with_frames(noisy), target);
+  // The vertex moved by half an edge in six of 128 triangles, which is worth less than this.
+  EXPECT_LT((found - weights_of(take, target)).lpNorm<Eigen::Infinity>(), 0.25);
+}
+
+TEST(BlendshapeTransfer, TakesTrianglesOfTheRegionOnly) {
+  const BlendshapeModel target = test::model_on(bent_patch(), 5);
+  const MeshSequence take = test::shaken(patch(), 4, 0.3);
+  const BlendshapeTransfer upper(take.rest(), target, [] {
+    std::vector<int> rows(64);
+    for (int t = 0; t < 64; ++t) rows[t] = t;
+    return rows;
+  }());
+  // Row 8 of the grid belongs to none of the first 64 triangles.
+  Frames frames = take.positions();
+  frames.rightCols(3 * 9).array() += 1;
+  EXPECT_EQ(upper.weights(take), upper.weights(take.with_frames(frames)));
+}
+
+TEST(BlendshapeTransfer, CountsDegenerateTargetTriangles) {
+  Shape shape = patch();
+  shape.positions.row(shape.triangles(60, 2)) = shape.positions.row(shape.triangles(60, 0));
+  const BlendshapeModel target = test::model_on(shape, 4);
+  const BlendshapeTransfer transfer(patch().positions, target, {60});
+  EXPECT_EQ(transfer.conditions().degenerate_target_triangles, 1);
+}
+
+}  // namespace
+}  // namespace mimetra

@@ -1,0 +1,152 @@
+#include <gtest/gtest.h>
+
+#include <mimetra/transfer/blendshape_transfer.h>
+#include <mimetra/transfer/box_least_squares.h>
+#include <mimetra/transfer/smooth_weights.h>
+
+#include "faces.h"
+
+namespace mimetra {
+namespace {
+
+/// The same problem as one dense box problem in F D unknowns.
+struct DenseProblem {
+  DenseProblem(const Eigen::MatrixXd& gram, const Eigen::MatrixXd& rows, double mu)
+      : system(Eigen::MatrixXd::Zero(rows.size(), rows.size())),
+        h(rows.reshaped<Eigen::RowMajor>()),
+        lower(Eigen::VectorXd::Zero(rows.size())),
+        upper(Eigen::VectorXd::Ones(rows.size())) {
+    const Eigen::Index frames = rows.rows(), d = rows.cols();
+    for (Eigen::Index f = 0; f < frames; ++f) system.block(f * d, f * d, d, d) = gram;
+    for (Eigen::Index f = 0; f + 2 < frames; ++f) {
+      Eigen::MatrixXd difference = Eigen::MatrixXd::Zero(frames, 1);
+      difference.middleRows<3>(f) << 1, -2, 1;
+      for (Eigen::Index a = f; a < f + 3; ++a) {
+        for (Eigen::Index b = f; b < f + 3; ++b) {
+          system.block(a * d, b * d, d, d).diagonal().array() += mu * difference(a) * difference(b);
+        }
+      }
+    }
+  }
+
+  double violation(const Eigen::MatrixXd& beta) const {
+    return box_optimality_violation(system, h, lower, upper, beta.reshaped<Eigen::RowMajor>());
+  }
+
+  Eigen::MatrixXd system;
+  Eigen::VectorXd h, lower, upper;
+};
+
+struct Clip {
+  Eigen::MatrixXd gram, h;
+  double mean_diagonal() const { return gram.diagonal().mean(); }
+};
+
+/// Right-hand sides of weights that jump from frame to frame and go beyond the box.
+Clip noisy_clip(int frames, int d) {
+  const BlendshapeModel model = test::model_on(test::patch(), d);
+  const BlendshapeTransfer transfer(model.neutral(), model, all_triangles(model.triangles()));
+  const Eigen::MatrixXd weights = (1.6 * test::random_weights(frames, d)).array() - 0.3;
+  return {transfer.gram(), weights * transfer.gram()};
+}
+
+Eigen::MatrixXd smooth(const Clip& clip, double mu) {
+  return smooth_weights(clip.gram, clip.h, mu, Eigen::MatrixXd::Zero(clip.h.rows(), clip.h.cols()));
+}
+
+TEST(SmoothWeights, AreTheSolutionOfTheDenseProblem) {
+  for (const int frames : {3, 4, 5, 15}) {  // odd and even: the last block holds one frame or two
+    const Clip clip = noisy_clip(frames, 4);
+    for (const double factor : {1e-3, 1.0, 1e3}) {
+      const double mu = factor * clip.mean_diagonal();
+      const DenseProblem dense(clip.gram, clip.h, mu);
+      const Eigen::MatrixXd expected =
+          box_least_squares(dense.system, dense.h, dense.lower, dense.upper)
+              .reshaped<Eigen::RowMajor>(frames, 4);
+      // Both are exact to rounding times the condition number, at most 1e6 here.
+      EXPECT_LT((smooth(clip, mu) - expected).cwiseAbs().maxCoeff(), 1e-9)
+          << frames << ' ' << factor;
+    }
+  }
+}
+
+TEST(SmoothWeights, SatisfyTheOptimalityConditionsOnALongClip) {
+  const Clip clip = noisy_clip(100, 12);
+  for (const double factor : {0.04, 1.0, 50.0}) {
+    const double mu = factor * clip.mean_diagonal();
+    EXPECT_LT(DenseProblem(clip.gram, clip.h, mu).violation(smooth(clip, mu)), 1e-9) << factor;
+  }
+}
+
+TEST(SmoothWeights, SatisfyTheOptimalityConditionsOfASingularGramMatrix) {
+  Clip clip = noisy_clip(20, 4);
+  clip.gram = clip.gram.replicate(2, 2).eval();
+  clip.h = clip.h.replicate(1, 2).eval();
+  EXPECT_LT(DenseProblem(clip.gram, clip.h, 1).violation(smooth(clip, 1)), 1e-9);
+}
+
+TEST(SmoothWeights, FlickerLess) {
+  const Clip clip = noisy_clip(60, 5);
+  const auto flicker = [](const Eigen::MatrixXd& w) {
+    return (w.bottomRows(w.rows() - 1) - w.topRows(w.rows() - 1)).norm();
+  };
+  EXPECT_LT(flicker(smooth(clip, 10 * clip.mean_diagonal())), 0.5 * flicker(smooth(clip, 1e-9)));
+}
+
+TEST(SmoothWeights, LeaveAStraightLineAsItIs) {
+  Clip clip = noisy_clip(20, 3);
+  Eigen::MatrixXd line(20, 3);
+  for (int f = 0; f < 20; ++f) line.row(f) << 0.1 + 0.03 * f, 0.9 - 0.04 * f, 0.5;
+  clip.h = line * clip.gram;
+  // The penalty is 0 on straight lines, so they stay the minimum. Rounding x condition number.
+  EXPECT_LT((smooth(clip, 100 * clip.mean_diagonal()) - line).cwiseAbs().maxCoeff(), 1e-9);
+}
+
+TEST(SmoothWeights, AreExactlyZeroWhereNothingPulls) {
+  Clip clip = noisy_clip(8, 3);
+  clip.h.setZero();
+  EXPECT_EQ(smooth(clip, 1), Eigen::MatrixXd::Zero(8, 3));
+}
+
+TEST(SmoothWeights, AreTheSingleFramesWhereThereAreTooFew) {
+  const Clip clip = noisy_clip(2, 3);
+  const Eigen::MatrixXd single = test::random_weights(2, 3);
+  EXPECT_EQ(smooth_weights(clip.gram, clip.h, 1, single), single);
+}
+
+TEST(SmoothnessPenalty, IsTheFourthPowerOfTheTimeConstantInFrames) {
+  Eigen::VectorXd times(5);
+  times << 0, 0.04, 0.08, 0.12, 5;  // one gap does not change the frame rate of the rest
+  EXPECT_DOUBLE_EQ(smoothness_penalty(0.08, times, 3), 16 * 3);
+}
+
+TEST(SmoothnessPenalty, RefusesTimesThatDoNotPass) {
+  EXPECT_THROW(smoothness_penalty(0.1, Eigen::VectorXd::Zero(4), 1), std::invalid_argument);
+}
+
+TEST(BlendshapeTransfer, BendsLessWithSmoothness) {
+  const BlendshapeModel model = test::model_on(test::patch(), 4);
+  const MeshSequence take = model.animate(test::random_weights(30, 4));
+  const auto all = all_triangles(model.triangles());
+  const auto bend = [](const Eigen::MatrixXd& w) {
+    const auto n = w.rows() - 2;
+    return (w.topRows(n) - 2 * w.middleRows(1, n) + w.bottomRows(n)).norm();
+  };
+  EXPECT_LT(
+      bend(BlendshapeTransfer(model.neutral(), model, all, {.smoothness = 0.1}).weights(take)),
+      0.5 * bend(BlendshapeTransfer(model.neutral(), model, all).weights(take)));
+}
+
+TEST(BlendshapeTransfer, KeepsUnseenExpressionsAtZeroWithSmoothness) {
+  const test::Shape shape = test::patch();
+  ShapeBasis basis = test::bumps(shape.positions, 4);
+  basis.displacements.col(2).setZero();
+  const BlendshapeModel model(test::connectivity_of(shape), shape.positions, basis);
+  const BlendshapeTransfer transfer(model.neutral(), model, all_triangles(model.triangles()),
+                                    {.smoothness = 0.1});
+  const Eigen::MatrixXd beta = transfer.weights(model.animate(test::random_weights(12, 4)));
+  EXPECT_EQ(beta.col(2), Eigen::VectorXd::Zero(12));
+}
+
+}  // namespace
+}  // namespace mimetra

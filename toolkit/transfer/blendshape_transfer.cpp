@@ -1,0 +1,251 @@
+#include <mimetra/transfer/blendshape_transfer.h>
+
+#include <algorithm>
+#include <limits>
+#include <stdexcept>
+
+#include <Eigen/Eigenvalues>
+
+#include <mimetra/mesh/inspection.h>
+#include <mimetra/transfer/box_least_squares.h>
+#include <mimetra/transfer/deformation_gradients.h>
+#include <mimetra/transfer/edges.h>
+#include <mimetra/transfer/folded_right_hand_side.h>
+#include <mimetra/transfer/smooth_weights.h>
+
+namespace mimetra {
+
+namespace {
+
+/// A frame's solve starts from the weights of the frame before within a block of so many frames
+/// only: blocks do not depend on each other.
+constexpr int kFramesPerBlock = 32;
+
+/// A column whose motion in L is below 1e-5 of its motion anywhere (squared here) does not move
+/// there: that is what is left of zeros in single precision files.
+constexpr double kUnseenShare = 1e-10;
+
+/// Below this share of a column's energy the regions tell little about it.
+constexpr double kWeaklySeenShare = 0.05;
+
+/// A weight at 0 that would go this far below it if it moved alone wants to be negative, and more
+/// weights than this share, over frames and expressions, are many. On a real capture transferred to
+/// other identities: none with the neutral (1e-4 with noise of 0.1 % of the face), 19 to 38 % with
+/// a frame or the mean in its place.
+constexpr double kWantedStep = -0.02;
+constexpr double kUnneutralShare = 0.05;
+
+/// Rows of A at a time: so many triangles' edges of every expression stay in cache.
+constexpr Eigen::Index kTrianglesPerBlock = 256;
+
+/// A^T A of eq. 11: rows of A are edges of the displacement fields.
+Eigen::MatrixXd gram_matrix(const BlendshapeModel& target, const std::vector<int>& selected) {
+  const Eigen::MatrixXd& basis = target.expressions().displacements;
+  const auto count = static_cast<Eigen::Index>(selected.size());
+  Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(basis.cols(), basis.cols());
+  for (Eigen::Index first = 0; first < count; first += kTrianglesPerBlock) {
+    const Eigen::Index size = std::min(kTrianglesPerBlock, count - first);
+    Eigen::MatrixXd rows(6 * size, basis.cols());
+    for (Eigen::Index i = 0; i < size; ++i) {
+      const auto corners = target.triangles().row(selected[first + i]);
+      const auto at = [&basis](VertexIndex v) { return basis.middleRows<3>(3 * v); };
+      rows.middleRows<3>(6 * i) = at(corners[1]) - at(corners[0]);
+      rows.middleRows<3>(6 * i + 3) = at(corners[2]) - at(corners[0]);
+    }
+    gram.selfadjointView<Eigen::Lower>().rankUpdate(rows.transpose());
+  }
+  return gram.selfadjointView<Eigen::Lower>();
+}
+
+/// Diagonal of the Gram matrix over all triangles: how much each expression moves anywhere.
+Eigen::VectorXd full_diagonal(const BlendshapeModel& target) {
+  const Eigen::MatrixXd& basis = target.expressions().displacements;
+  Eigen::VectorXd diagonal = Eigen::VectorXd::Zero(basis.cols());
+  for (Eigen::Index j = 0; j < basis.cols(); ++j) {
+    const PositionsView field(basis.col(j).data(), target.vertices(), 3);
+    for (int t = 0; t < target.triangles().rows(); ++t) {
+      diagonal[j] += edges_of(field, target.triangles(), t).squaredNorm();
+    }
+  }
+  return diagonal;
+}
+
+int degenerate_triangles(const BlendshapeModel& target, const std::vector<int>& selected) {
+  return static_cast<int>(std::ranges::count_if(selected, [&target](int triangle) {
+    return !has_usable_frame(target.neutral(), target.triangles(), triangle);
+  }));
+}
+
+void check(const Positions& source_rest, const BlendshapeModel& target,
+           const BlendshapeTransferOptions& options) {
+  if (source_rest.rows() != target.vertices()) {
+    throw MismatchError("the source has " + std::to_string(source_rest.rows()) +
+                        " vertices, the target " + std::to_string(target.vertices()) +
+                        "; both need the same connectivity");
+  }
+  const auto check_share = [](const char* name, double value) {
+    if (value >= 0 && value < std::numeric_limits<double>::infinity()) return;
+    throw std::invalid_argument(std::string(name) + ": expected at least 0, found " +
+                                std::to_string(value));
+  };
+  check_share("ridge", options.ridge);
+  check_share("sparsity", options.sparsity);
+  check_share("smoothness", options.smoothness);
+}
+
+}  // namespace
+
+struct BlendshapeTransfer::State {
+  State(const Positions& source_rest, const BlendshapeModel& target, std::vector<int> selected)
+      : gradients(source_rest, target.triangles(), std::move(selected)),
+        gram(gram_matrix(target, gradients.selected())),
+        right_hand_sides(source_rest, target.triangles(), gradients, target),
+        vertices(target.vertices()) {}
+
+  void judge(const BlendshapeModel& target);
+  void set_up(const BlendshapeTransferOptions& given);
+  void check_size(const MeshSequence& performance) const;
+  void smooth(const MeshSequence& performance, const Eigen::MatrixXd& h,
+              Eigen::MatrixXd& beta) const;
+
+  DeformationGradients gradients;
+  Eigen::MatrixXd gram;
+  FoldedRightHandSide right_hand_sides;
+  int vertices;
+  BlendshapeTransferOptions options;
+  BlendshapeConditions conditions;
+  std::vector<Eigen::Index> seen;
+  double mean_diagonal = 0;  // of gram, over the columns that are seen
+  Eigen::MatrixXd system;    // gram and ridge
+  Eigen::VectorXd upper;     // 1, or 0 for columns that are not seen
+};
+
+/// Which expressions L sees, and how well it tells them apart.
+void BlendshapeTransfer::State::judge(const BlendshapeModel& target) {
+  const Eigen::VectorXd full = full_diagonal(target);
+  const std::vector<std::string>& names = target.expressions().names;
+  upper = Eigen::VectorXd::Zero(gram.rows());
+  for (Eigen::Index j = 0; j < gram.rows(); ++j) {
+    if (gram(j, j) <= kUnseenShare * full[j]) {
+      conditions.unseen.push_back(names[j]);
+      continue;
+    }
+    if (gram(j, j) < kWeaklySeenShare * full[j]) conditions.weakly_seen.push_back(names[j]);
+    upper[j] = 1;
+    seen.push_back(j);
+  }
+  if (seen.empty()) {
+    throw MismatchError("none of the target's " + std::to_string(names.size()) +
+                        " expressions moves in the " + std::to_string(gradients.selected().size()) +
+                        " chosen triangles; choose other regions");
+  }
+  const Eigen::MatrixXd part = gram(seen, seen);
+  const Eigen::VectorXd values =
+      Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(part, Eigen::EigenvaluesOnly).eigenvalues();
+  conditions.condition = values[0] > 0 ? values[values.size() - 1] / values[0]
+                                       : std::numeric_limits<double>::infinity();
+  conditions.degenerate_source_triangles = gradients.replaced();
+  conditions.degenerate_target_triangles = degenerate_triangles(target, gradients.selected());
+}
+
+void BlendshapeTransfer::State::set_up(const BlendshapeTransferOptions& given) {
+  options = given;
+  mean_diagonal = gram.diagonal()(seen).mean();
+  system = gram;
+  system.diagonal().array() += options.ridge * mean_diagonal;
+}
+
+void BlendshapeTransfer::State::check_size(const MeshSequence& performance) const {
+  if (performance.vertices() == vertices) return;
+  throw MismatchError("the performance has " + std::to_string(performance.vertices()) +
+                      " vertices, its rest pose " + std::to_string(vertices));
+}
+
+/// Replaces the weights of the single frames by those that are smooth over time.
+void BlendshapeTransfer::State::smooth(const MeshSequence& performance, const Eigen::MatrixXd& h,
+                                       Eigen::MatrixXd& beta) const {
+  const double mu = smoothness_penalty(options.smoothness, performance.times(), mean_diagonal);
+  beta(Eigen::all, seen) =
+      smooth_weights(system(seen, seen), h(Eigen::all, seen), mu, beta(Eigen::all, seen));
+}
+
+BlendshapeTransfer::BlendshapeTransfer(const Positions& source_rest, const BlendshapeModel& target,
+                                       std::vector<int> triangles,
+                                       const BlendshapeTransferOptions& options) {
+  check(source_rest, target, options);
+  state_ = std::make_unique<State>(source_rest, target, std::move(triangles));
+  state_->judge(target);
+  state_->set_up(options);
+}
+
+BlendshapeTransfer::~BlendshapeTransfer() = default;
+BlendshapeTransfer::BlendshapeTransfer(BlendshapeTransfer&&) noexcept = default;
+BlendshapeTransfer& BlendshapeTransfer::operator=(BlendshapeTransfer&&) noexcept = default;
+
+Eigen::MatrixXd BlendshapeTransfer::weights(const MeshSequence& performance,
+                                            const Progress& progress) const {
+  const State& state = *state_;
+  state.check_size(performance);
+  const Eigen::VectorXd lower = Eigen::VectorXd::Zero(state.upper.size());
+  const double penalty = state.options.sparsity * state.mean_diagonal;
+  const int frames = performance.frames();
+  Eigen::MatrixXd beta(frames, lower.size()), h(frames, lower.size());
+  for (int first = 0; first < frames; first += kFramesPerBlock) {
+    const int count = std::min(kFramesPerBlock, frames - first);
+    h.middleRows(first, count) =
+        state.right_hand_sides(performance.positions().middleRows(first, count)).array() - penalty;
+    Eigen::VectorXd current = lower;
+    for (int f = first; f < first + count; ++f) {
+      current = box_least_squares(state.system, h.row(f).transpose(), lower, state.upper, current);
+      beta.row(f) = current.transpose();
+    }
+    report_progress(progress, double(first + count) / frames);
+  }
+  if (state.options.smoothness > 0) state.smooth(performance, h, beta);
+  return beta;
+}
+
+const Eigen::MatrixXd& BlendshapeTransfer::gram() const {
+  return state_->gram;
+}
+
+Eigen::VectorXd BlendshapeTransfer::right_hand_side(
+    const Eigen::Ref<const Positions>& frame) const {
+  if (frame.rows() != state_->vertices) {
+    throw MismatchError("the frame has " + std::to_string(frame.rows()) +
+                        " vertices, the rest pose " + std::to_string(state_->vertices));
+  }
+  const Positions copy = frame;
+  const Eigen::Map<const Frames> row(copy.data(), 1, copy.size());
+  return state_->right_hand_sides(row).transpose();
+}
+
+const BlendshapeConditions& BlendshapeTransfer::conditions() const {
+  return state_->conditions;
+}
+
+bool BlendshapeTransfer::rest_looks_unneutral(const MeshSequence& performance,
+                                              const Eigen::MatrixXd& weights) const {
+  const State& state = *state_;
+  state.check_size(performance);
+  if (weights.rows() != performance.frames() || weights.cols() != state.gram.cols()) {
+    throw MismatchError("the weights are not those of the performance");
+  }
+  const Eigen::VectorXd diagonal = state.gram.diagonal();
+  Eigen::Index below = 0;
+  for (int first = 0; first < performance.frames(); first += kFramesPerBlock) {
+    const int count = std::min(kFramesPerBlock, performance.frames() - first);
+    const auto beta = weights.middleRows(first, count);
+    const Eigen::MatrixXd pull =
+        state.right_hand_sides(performance.positions().middleRows(first, count)) -
+        beta * state.gram;
+    for (const Eigen::Index j : state.seen) {
+      below +=
+          (beta.col(j).array() == 0 && pull.col(j).array() < kWantedStep * diagonal[j]).count();
+    }
+  }
+  const auto all = static_cast<double>(performance.frames() * state.seen.size());
+  return static_cast<double>(below) > kUnneutralShare * all;
+}
+
+}  // namespace mimetra

@@ -1,0 +1,71 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <mimetra/mesh/errors.h>
+#include <mimetra/model/blendshape_model.h>
+
+namespace mimetra {
+
+struct BlendshapeTransferOptions {
+  /// Weight of |beta|^2, as a share of the Gram matrix' mean diagonal over the columns that L sees,
+  /// >= 0.
+  double ridge = 0;
+  /// Weight of 2 |beta|_1, as a share of the same, >= 0.
+  double sparsity = 0;
+  /// Weight of squared second differences of beta over time: time constant in seconds, >= 0. The
+  /// penalty is (smoothness * frame rate)^4 times the same.
+  double smoothness = 0;
+};
+
+/// What the chosen triangles tell about the target's expressions.
+struct BlendshapeConditions {
+  /// Columns with no motion in L: their weight is 0 in every frame.
+  std::vector<std::string> unseen;
+  /// Columns with G_L,jj < 0.05 G_jj.
+  std::vector<std::string> weakly_seen;
+  /// Condition number of G_L over the columns that are seen.
+  double condition = 1;
+  int degenerate_source_triangles = 0;
+  int degenerate_target_triangles = 0;
+};
+
+/// Blendshape weights of a target that follow a source's deformation gradients on triangles L:
+/// minimise over 0 <= beta <= 1 of sum_{i in L} ||Q_i V_i - V~_i(beta)||_F^2 (eq. 10, 11).
+///
+/// The constructor forms the Gram matrix and folds the right-hand side into two constant matrices,
+/// one acting on the source's positions (3N x D), one on the scaled normals (3L x D), so that a
+/// frame costs two products and a solve of D unknowns. Everything is a difference to the rest pose,
+/// which itself gives exactly 0. Queries are const.
+class BlendshapeTransfer {
+ public:
+  /// `source_rest` N x 3 has the target's connectivity; `triangles` are rows of target.triangles().
+  /// Throws MismatchError where the vertex counts differ or the target has no expression that moves
+  /// in `triangles`, std::invalid_argument for a triangle or an option out of range.
+  BlendshapeTransfer(const Positions& source_rest, const BlendshapeModel& target,
+                     std::vector<int> triangles, const BlendshapeTransferOptions& = {});
+  ~BlendshapeTransfer();
+  BlendshapeTransfer(BlendshapeTransfer&&) noexcept;
+  BlendshapeTransfer& operator=(BlendshapeTransfer&&) noexcept;
+
+  /// beta for every frame (F x D), each within [0, 1]. Throws MismatchError, Cancelled.
+  Eigen::MatrixXd weights(const MeshSequence& performance, const Progress& progress = {}) const;
+
+  /// A^T A of eq. 11 over L (D x D).
+  const Eigen::MatrixXd& gram() const;
+  /// A^T b of eq. 11 for one frame of the source (D).
+  Eigen::VectorXd right_hand_side(const Eigen::Ref<const Positions>& frame) const;
+  const BlendshapeConditions& conditions() const;
+
+  /// True where many weights sit at 0 with a multiplier that wants them negative: the source's rest
+  /// pose is likely not neutral. `weights` as returned for `performance`.
+  bool rest_looks_unneutral(const MeshSequence& performance, const Eigen::MatrixXd& weights) const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace mimetra

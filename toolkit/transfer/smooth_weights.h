@@ -1,0 +1,23 @@
+#pragma once
+
+#include <Eigen/Core>
+
+namespace mimetra {
+
+/// Weight mu = (smoothness * frame rate)^4 * mean_diagonal of squared second differences, with the
+/// frame rate of the median time step. `smoothness` and `times` in seconds; `mean_diagonal` is
+/// trace(G) / D. Throws std::invalid_argument where the median time step is not positive.
+double smoothness_penalty(double smoothness, const Eigen::VectorXd& times, double mean_diagonal);
+
+/// Minimises sum_f (beta_f^T G beta_f - 2 h_f^T beta_f) + mu sum_f |second difference of beta|^2
+/// over 0 <= beta <= 1: an interior-point method on the banded system, polished on its active set.
+///
+/// `gram` D x D, `h` F x D; `single` (F x D), the solution without the penalty, is returned where
+/// there are fewer than three frames. Throws std::runtime_error where it does not converge.
+///
+/// [Mehrotra. On the implementation of a primal-dual interior point method. SIAM J. Optimization 2,
+/// 1992]
+Eigen::MatrixXd smooth_weights(const Eigen::MatrixXd& gram, const Eigen::MatrixXd& h, double mu,
+                               const Eigen::MatrixXd& single);
+
+}  // namespace mimetra

@@ -1,0 +1,110 @@
+#include <mimetra/transfer/temporal_system.h>
+
+#include <algorithm>
+#include <stdexcept>
+
+#include <Eigen/Cholesky>
+
+namespace mimetra {
+
+namespace {
+
+using Column = Eigen::Map<Eigen::VectorXd>;
+using ConstColumn = Eigen::Map<const Eigen::VectorXd>;
+
+}  // namespace
+
+TemporalSystem::TemporalSystem(const Eigen::MatrixXd& gram, Eigen::Index frames, double mu)
+    : gram_(gram), frames_(frames), mu_(mu) {}
+
+Eigen::Index TemporalSystem::size(Eigen::Index block) const {
+  return std::min<Eigen::Index>(2, frames_ - first(block));
+}
+
+/// Entry (a, b) of mu D2^T D2: row f of D2 is 1, -2, 1 at frames f, f + 1, f + 2.
+double TemporalSystem::coupling(Eigen::Index a, Eigen::Index b) const {
+  constexpr double kDifference[3] = {1, -2, 1};
+  const Eigen::Index low = std::max<Eigen::Index>({0, a - 2, b - 2});
+  const Eigen::Index high = std::min({a, b, frames_ - 3});
+  double sum = 0;
+  for (Eigen::Index f = low; f <= high; ++f) sum += kDifference[a - f] * kDifference[b - f];
+  return mu_ * sum;
+}
+
+TemporalSystem::Rows TemporalSystem::product(const Rows& x) const {
+  const Eigen::Index n = frames_ - 2;
+  const Rows second = mu_ * (x.topRows(n) - 2 * x.middleRows(1, n) + x.bottomRows(n));
+  Rows result = x * gram_;
+  result.topRows(n) += second;
+  result.middleRows(1, n) -= 2 * second;
+  result.bottomRows(n) += second;
+  return result;
+}
+
+Eigen::MatrixXd TemporalSystem::diagonal_block(Eigen::Index block, const Rows& extra,
+                                               const Rows& free) const {
+  const Eigen::Index d = gram_.rows(), start = first(block), frames = size(block);
+  Eigen::MatrixXd result = Eigen::MatrixXd::Zero(frames * d, frames * d);
+  for (Eigen::Index a = 0; a < frames; ++a) {
+    result.block(a * d, a * d, d, d) = gram_;
+    for (Eigen::Index b = 0; b < frames; ++b) {
+      result.block(a * d, b * d, d, d).diagonal().array() += coupling(start + a, start + b);
+    }
+  }
+  const ConstColumn mask(free.row(start).data(), frames * d);
+  result = mask.asDiagonal() * result * mask.asDiagonal();
+  result.diagonal() += ConstColumn(extra.row(start).data(), frames * d);
+  result.diagonal().array() += 1 - mask.array();
+  return result;
+}
+
+Eigen::MatrixXd TemporalSystem::lower_block(Eigen::Index block, const Rows& free) const {
+  const Eigen::Index d = gram_.rows(), here = first(block), next = first(block + 1);
+  Eigen::MatrixXd result = Eigen::MatrixXd::Zero(size(block + 1) * d, size(block) * d);
+  for (Eigen::Index a = 0; a < size(block + 1); ++a) {
+    for (Eigen::Index b = 0; b < size(block); ++b) {
+      result.block(a * d, b * d, d, d).diagonal() =
+          coupling(next + a, here + b) * free.row(next + a).cwiseProduct(free.row(here + b));
+    }
+  }
+  return result;
+}
+
+void TemporalSystem::factorize(const Rows& extra, const Rows& free) {
+  cholesky_.clear();
+  below_.clear();
+  for (Eigen::Index block = 0; block < blocks(); ++block) {
+    Eigen::MatrixXd schur = diagonal_block(block, extra, free);
+    if (block > 0) {
+      schur.selfadjointView<Eigen::Lower>().rankUpdate(below_.back(), -1);
+    }
+    const Eigen::LLT<Eigen::MatrixXd> factor(schur);
+    if (factor.info() != Eigen::Success) {
+      throw std::runtime_error("temporal smoothing: the system is not positive definite");
+    }
+    cholesky_.push_back(factor.matrixL());
+    if (block + 1 == blocks()) break;
+    below_.push_back(cholesky_.back()
+                         .triangularView<Eigen::Lower>()
+                         .solve(lower_block(block, free).transpose())
+                         .transpose());
+  }
+}
+
+TemporalSystem::Rows TemporalSystem::solve(const Rows& right) const {
+  Rows x = right;
+  const auto part = [&](Eigen::Index block) {
+    return Column(x.row(first(block)).data(), size(block) * x.cols());
+  };
+  for (Eigen::Index block = 0; block < blocks(); ++block) {
+    if (block > 0) part(block) -= below_[block - 1] * part(block - 1);
+    cholesky_[block].triangularView<Eigen::Lower>().solveInPlace(part(block));
+  }
+  for (Eigen::Index block = blocks() - 1; block >= 0; --block) {
+    if (block + 1 < blocks()) part(block) -= below_[block].transpose() * part(block + 1);
+    cholesky_[block].triangularView<Eigen::Lower>().transpose().solveInPlace(part(block));
+  }
+  return x;
+}
+
+}  // namespace mimetra

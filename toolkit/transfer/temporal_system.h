@@ -1,0 +1,44 @@
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Core>
+
+namespace mimetra {
+
+/// The system of temporal smoothing, H = blockdiag(G) + mu D2^T D2 with D2 the second differences
+/// over time, on F x D matrices (one row a frame). It couples frames at most two apart: two frames
+/// taken as one block make it block tridiagonal.
+class TemporalSystem {
+ public:
+  using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+  /// `gram` D x D. \pre frames >= 3
+  TemporalSystem(const Eigen::MatrixXd& gram, Eigen::Index frames, double mu);
+
+  /// H x (F x D).
+  Rows product(const Rows& x) const;
+
+  /// Factors H + diag(extra). Where `free` (F x D of 0 and 1) is 0, the unknown is decoupled from
+  /// the others. Throws std::runtime_error where that is not positive definite.
+  void factorize(const Rows& extra, const Rows& free);
+
+  /// Solves the system factored last, for one right-hand side (F x D).
+  Rows solve(const Rows& right) const;
+
+ private:
+  Eigen::Index first(Eigen::Index block) const { return 2 * block; }
+  Eigen::Index size(Eigen::Index block) const;
+  Eigen::Index blocks() const { return (frames_ + 1) / 2; }
+  double coupling(Eigen::Index a, Eigen::Index b) const;
+  Eigen::MatrixXd diagonal_block(Eigen::Index block, const Rows& extra, const Rows& free) const;
+  Eigen::MatrixXd lower_block(Eigen::Index block, const Rows& free) const;
+
+  Eigen::MatrixXd gram_;
+  Eigen::Index frames_;
+  double mu_;
+  std::vector<Eigen::MatrixXd> cholesky_;  // L_k, lower triangles
+  std::vector<Eigen::MatrixXd> below_;     // W_k = H_(k+1)k L_k^-T
+};
+
+}  // namespace mimetra

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <vector>
+
+#include <mimetra/mesh/mesh_sequence.h>
+
+namespace mimetra {
+
+/// How far a transferred sequence is from the source's deformation.
+struct TransferError {
+  /// DE over all triangles and over L: mean over frames and triangles of ||Q_i V_i - V~_i||_F^2
+  /// (eq. 12), unit of length squared.
+  double de_all = 0;
+  double de_region = 0;
+  Eigen::VectorXd per_frame;     ///< mean over all triangles (F)
+  Eigen::VectorXd per_triangle;  ///< mean over frames (M)
+  /// Largest displacement from the target's rest of a vertex in no triangle of L, over all frames;
+  /// length.
+  double leak = 0;
+  /// Triangles, over all frames, that turned by more than 90 degrees against where the source's
+  /// gradient wants them.
+  int flipped = 0;
+};
+
+/// `result` is the transferred sequence before head motion is given back; its rest pose is the
+/// target's neutral. `source` F frames with its neutral as rest. `selected` = L, rows of the
+/// triangles. Throws MismatchError where sizes differ, std::invalid_argument for a row out of
+/// range. A degenerate source triangle is measured against what stands in for it in the transfer.
+TransferError transfer_error(const MeshSequence& source, const MeshSequence& result,
+                             const std::vector<int>& selected);
+
+/// Mean percentage error 100 (full - k) / full, signed: negative is worse than full (eq. 13). 0
+/// where both are equal, also where both are 0.
+double mean_percentage_error(double full, double k);
+
+}  // namespace mimetra

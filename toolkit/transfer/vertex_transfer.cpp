@@ -1,0 +1,356 @@
+#include <mimetra/transfer/vertex_transfer.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <stdexcept>
+#include <string>
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+#include <Eigen/SparseCore>
+
+#include <mimetra/mesh/inspection.h>
+#include <mimetra/transfer/deformation_gradients.h>
+#include <mimetra/transfer/row_solver.h>
+#include <mimetra/transfer/vertex_unknowns.h>
+
+namespace mimetra {
+
+namespace {
+
+using Triplets = std::vector<Eigen::Triplet<double>>;
+
+/// Frames whose coordinates lie side by side in one block of right-hand sides.
+constexpr int kFramesPerBlock = RowSolver::kWidth / 3;
+
+/// Gradients of the three hat functions of a triangle in its plane, one a column.
+using HatGradients = Eigen::Matrix3d;
+
+HatGradients hat_gradients(const Positions& rest, const Triangles& triangles, int triangle) {
+  const Eigen::Matrix3d inverse = triangle_frame(rest, triangles, triangle).inverse();
+  HatGradients gradients;
+  gradients.col(1) = inverse.row(0).transpose();
+  gradients.col(2) = inverse.row(1).transpose();
+  gradients.col(0) = -gradients.col(1) - gradients.col(2);
+  return gradients;
+}
+
+double area(const Positions& rest, const Triangles& triangles, int triangle) {
+  const Eigen::Matrix3d frame = triangle_frame(rest, triangles, triangle);
+  return frame.col(0).cross(frame.col(1)).norm() / 2;
+}
+
+/// Adds scale * X^T X at the unknowns of X's columns.
+template <int Columns>
+void add_products(const Eigen::Matrix<double, 3, Columns>& x, double scale,
+                  const std::array<int, Columns>& unknowns, Triplets& entries) {
+  const Eigen::Matrix<double, Columns, Columns> products = scale * x.transpose() * x;
+  for (int a = 0; a < Columns; ++a) {
+    for (int b = 0; b < Columns; ++b) {
+      if (unknowns[a] < 0 || unknowns[b] < 0) continue;
+      entries.emplace_back(unknowns[a], unknowns[b], products(a, b));
+    }
+  }
+}
+
+void check_options(const VertexTransferOptions& options, Eigen::Index vertices) {
+  if (!(options.outside_weight > 0 && std::isfinite(options.outside_weight))) {
+    throw std::invalid_argument("outside_weight: expected more than 0, found " +
+                                std::to_string(options.outside_weight));
+  }
+  if (!(options.outside_smoothness >= 0 && std::isfinite(options.outside_smoothness))) {
+    throw std::invalid_argument("outside_smoothness: expected at least 0, found " +
+                                std::to_string(options.outside_smoothness));
+  }
+  if (!options.inside.empty() && options.inside.size() != static_cast<std::size_t>(vertices)) {
+    throw std::invalid_argument("inside: expected one entry for each of " +
+                                std::to_string(vertices) + " vertices, found " +
+                                std::to_string(options.inside.size()));
+  }
+  if (options.anchor == Anchor::vertex &&
+      (options.anchor_vertex < 0 || options.anchor_vertex >= vertices)) {
+    throw std::invalid_argument("anchor vertex " + std::to_string(options.anchor_vertex) +
+                                ": expected 0 to " + std::to_string(vertices - 1));
+  }
+}
+
+void check(const Positions& source_rest, const Positions& target_rest, const Triangles& triangles,
+           const VertexTransferOptions& options) {
+  if (source_rest.rows() != target_rest.rows()) {
+    throw MismatchError("the source has " + std::to_string(source_rest.rows()) +
+                        " vertices, the target " + std::to_string(target_rest.rows()) +
+                        "; both need the same connectivity");
+  }
+  if (triangles.size() > 0 &&
+      (triangles.minCoeff() < 0 || triangles.maxCoeff() >= target_rest.rows())) {
+    throw std::invalid_argument("a triangle uses a vertex outside 0 to " +
+                                std::to_string(target_rest.rows() - 1));
+  }
+  check_options(options, target_rest.rows());
+}
+
+std::vector<bool> mask_of(const std::vector<int>& selected, Eigen::Index triangles) {
+  std::vector<bool> in_l(triangles, false);
+  for (const int triangle : selected) in_l[triangle] = true;
+  return in_l;
+}
+
+}  // namespace
+
+/// Minimising over the fourth vertex leaves, of each ||T_i - Q_i||_F^2, the part in the plane of
+/// the target's triangle: || sum_v p_v g_iv^T - Q_i P_i ||^2 with the gradients g_iv of the hat
+/// functions and P_i the projection on the plane. In displacements d = p - p_rest the normal
+/// equations are
+///   sum_w (sum_i w_i g_iv . g_iw) d_w = sum_i w_i (Q_i - I) g_iv,
+/// one N x N matrix for x, y and z. With Q_i - I = (U~_i - U_i) U_i^-1 a frame needs only the
+/// constant vectors U_i^-1 g_iv. Only differences occur: where the mesh lies does not matter.
+struct VertexTransfer::State {
+  /// What the gradient of one source triangle does to the equations of one target triangle.
+  struct Term {
+    int source;                   // row of source_frames
+    std::array<int, 3> unknowns;  // of the target triangle's corners
+    Eigen::Matrix3d factor;       // w_i U^-1 g_iv, one corner v a column
+  };
+
+  State(const Positions& source, const Positions& target, const Triangles& triangles,
+        const std::vector<int>& selected, const VertexTransferOptions& options);
+
+  void weigh();
+  void fix();
+  Triplets stiffness() const;
+  void add_smoothness(Triplets& entries) const;
+  void factor();
+  void collect_terms(const DeformationGradients& gradients);
+  void add_right_hand_side(const PositionsView& frame, int lane, RowSolver::Rows& right) const;
+  Positions displacement(const RowSolver::Rows& solution, int lane) const;
+  void translate(const PositionsView& frame, Positions& displacement) const;
+  std::array<int, 3> unknowns_of(int triangle) const;
+
+  Positions source_rest, target_rest;
+  Triangles triangles;
+  VertexTransferOptions options;
+  std::vector<bool> in_l;       // of each triangle
+  std::vector<double> weights;  // of each triangle; 0 where it takes no part
+  std::vector<bool> fixed;      // of each vertex
+  VertexUnknowns unknowns;
+  std::optional<RowSolver> solver;
+  std::vector<Term> terms;
+  std::vector<int> sources;  // source triangles that occur
+  std::vector<Eigen::Matrix3d> source_frames;
+  int degenerate_source = 0;
+  int degenerate_target = 0;
+};
+
+VertexTransfer::State::State(const Positions& source, const Positions& target,
+                             const Triangles& faces, const std::vector<int>& selected,
+                             const VertexTransferOptions& given)
+    : source_rest(source), target_rest(target), triangles(faces), options(given) {
+  const DeformationGradients gradients(source_rest, triangles, selected);
+  in_l = mask_of(selected, triangles.rows());
+  degenerate_source = gradients.replaced();
+  weigh();
+  fix();
+  unknowns = number_unknowns(triangles, weights, fixed);
+  if (options.anchor != Anchor::source_motion && unknowns.some_held) {
+    throw std::invalid_argument(
+        "an anchor was given, but fixed vertices hold the mesh in place already; let the vertices "
+        "outside the regions move (Outside::identity) or select all triangles");
+  }
+  factor();
+  collect_terms(gradients);
+}
+
+void VertexTransfer::State::weigh() {
+  const double outside = options.outside == Outside::identity ? options.outside_weight : 0;
+  weights.assign(triangles.rows(), outside);
+  for (int t = 0; t < triangles.rows(); ++t) {
+    if (in_l[t]) weights[t] = 1;
+    if (weights[t] == 0) continue;
+    if (!has_usable_frame(target_rest, triangles, t)) {
+      weights[t] = 0;
+      ++degenerate_target;
+    } else if (options.triangle_weight == TriangleWeight::area) {
+      weights[t] *= area(target_rest, triangles, t);
+    }
+  }
+}
+
+/// Fixes vertices outside, and those that no triangle determines.
+void VertexTransfer::State::fix() {
+  std::vector<bool> movable(target_rest.rows(), true);
+  if (options.outside == Outside::fixed && !options.inside.empty()) {
+    movable = options.inside;
+  } else if (options.outside == Outside::fixed) {
+    for (int t = 0; t < triangles.rows(); ++t) {
+      if (in_l[t]) continue;
+      for (const VertexIndex vertex : triangles.row(t)) movable[vertex] = false;
+    }
+  }
+  fixed.assign(target_rest.rows(), true);
+  for (int t = 0; t < triangles.rows(); ++t) {
+    if (weights[t] == 0) continue;
+    for (const VertexIndex vertex : triangles.row(t)) fixed[vertex] = !movable[vertex];
+  }
+}
+
+std::array<int, 3> VertexTransfer::State::unknowns_of(int triangle) const {
+  const auto corners = triangles.row(triangle);
+  return {unknowns.of_vertex[corners[0]], unknowns.of_vertex[corners[1]],
+          unknowns.of_vertex[corners[2]]};
+}
+
+Triplets VertexTransfer::State::stiffness() const {
+  Triplets entries;
+  for (int t = 0; t < triangles.rows(); ++t) {
+    if (weights[t] == 0) continue;
+    add_products<3>(hat_gradients(target_rest, triangles, t), weights[t], unknowns_of(t), entries);
+  }
+  return entries;
+}
+
+/// Squared differences of displacement gradients across edges with a triangle outside L. They act
+/// on displacements and not on T_i - T_j, because there the fourth vertices of both triangles would
+/// have to drop out together: without them even the rest pose would move.
+void VertexTransfer::State::add_smoothness(Triplets& entries) const {
+  const bool by_area = options.triangle_weight == TriangleWeight::area;
+  const auto neighbors = triangle_neighbors(static_cast<int>(target_rest.rows()), triangles);
+  for (int t = 0; t < triangles.rows(); ++t) {
+    for (const int other : neighbors[t]) {
+      if (other < t || (in_l[t] && in_l[other]) || weights[t] == 0 || weights[other] == 0) continue;
+      Eigen::Matrix<double, 3, 6> difference;
+      difference << hat_gradients(target_rest, triangles, t),
+          -hat_gradients(target_rest, triangles, other);
+      const auto here = unknowns_of(t), there = unknowns_of(other);
+      const double scale =
+          by_area ? (area(target_rest, triangles, t) + area(target_rest, triangles, other)) / 2 : 1;
+      add_products<6>(difference, options.outside_smoothness * scale,
+                      {here[0], here[1], here[2], there[0], there[1], there[2]}, entries);
+    }
+  }
+}
+
+void VertexTransfer::State::factor() {
+  Triplets entries = stiffness();
+  if (options.outside == Outside::identity && options.outside_smoothness > 0) {
+    add_smoothness(entries);
+  }
+  Eigen::SparseMatrix<double> system(unknowns.count, unknowns.count);
+  system.setFromTriplets(entries.begin(), entries.end());
+  solver.emplace(system);
+}
+
+void VertexTransfer::State::collect_terms(const DeformationGradients& gradients) {
+  std::vector<int> slot(triangles.rows(), -1);
+  for (std::size_t s = 0; s < gradients.selected().size(); ++s) {
+    const int triangle = gradients.selected()[s];
+    if (weights[triangle] == 0) continue;
+    const HatGradients hats = hat_gradients(target_rest, triangles, triangle);
+    const std::vector<int>& from = gradients.sources(static_cast<int>(s));
+    for (const int source : from) {
+      if (slot[source] < 0) {
+        slot[source] = static_cast<int>(sources.size());
+        sources.push_back(source);
+        source_frames.push_back(triangle_frame(source_rest, triangles, source));
+      }
+      const double share = weights[triangle] / static_cast<double>(from.size());
+      terms.push_back(
+          {slot[source], unknowns_of(triangle), share * gradients.inverse_frame(source) * hats});
+    }
+  }
+}
+
+void VertexTransfer::State::add_right_hand_side(const PositionsView& frame, int lane,
+                                                RowSolver::Rows& right) const {
+  std::vector<Eigen::Matrix3d> change(sources.size());
+  for (std::size_t i = 0; i < sources.size(); ++i) {
+    change[i] = triangle_frame(frame, triangles, sources[i]) - source_frames[i];
+  }
+  for (const Term& term : terms) {
+    const Eigen::Matrix3d part = change[term.source] * term.factor;
+    for (int c = 0; c < 3; ++c) {
+      if (term.unknowns[c] < 0) continue;
+      right.row(term.unknowns[c]).segment<3>(3 * lane) += part.col(c).transpose();
+    }
+  }
+}
+
+Positions VertexTransfer::State::displacement(const RowSolver::Rows& solution, int lane) const {
+  Positions moved = Positions::Zero(target_rest.rows(), 3);
+  for (Eigen::Index v = 0; v < moved.rows(); ++v) {
+    const int row = unknowns.of_vertex[v];
+    if (row >= 0) moved.row(v) = solution.row(row).segment<3>(3 * lane);
+  }
+  return moved;
+}
+
+/// Moves each floating piece to where its anchor wants it.
+void VertexTransfer::State::translate(const PositionsView& frame, Positions& displacement) const {
+  for (const FloatingPiece& piece : unknowns.floating) {
+    Eigen::RowVector3d shift = Eigen::RowVector3d::Zero();
+    if (options.anchor == Anchor::vertex) {
+      const bool holds_it = std::ranges::binary_search(piece.vertices, options.anchor_vertex);
+      if (holds_it) shift = -displacement.row(options.anchor_vertex);
+    } else {
+      for (const VertexIndex v : piece.vertices) {
+        shift -= displacement.row(v);
+        if (options.anchor == Anchor::source_motion) shift += frame.row(v) - source_rest.row(v);
+      }
+      shift /= static_cast<double>(piece.vertices.size());
+    }
+    for (const VertexIndex v : piece.vertices) displacement.row(v) += shift;
+  }
+}
+
+VertexTransfer::VertexTransfer(const Positions& source_rest, const Positions& target_rest,
+                               const Triangles& triangles, std::vector<int> selected,
+                               const VertexTransferOptions& options) {
+  check(source_rest, target_rest, triangles, options);
+  state_ = std::make_unique<State>(source_rest, target_rest, triangles, selected, options);
+}
+
+VertexTransfer::~VertexTransfer() = default;
+VertexTransfer::VertexTransfer(VertexTransfer&&) noexcept = default;
+VertexTransfer& VertexTransfer::operator=(VertexTransfer&&) noexcept = default;
+
+Frames VertexTransfer::frames(const MeshSequence& performance, const Progress& progress) const {
+  const State& state = *state_;
+  const Eigen::Index vertices = state.target_rest.rows();
+  if (performance.vertices() != vertices) {
+    throw MismatchError("the performance has " + std::to_string(performance.vertices()) +
+                        " vertices, the target " + std::to_string(vertices));
+  }
+  Frames result(performance.frames(), 3 * vertices);
+  for (int first = 0; first < performance.frames(); first += kFramesPerBlock) {
+    const int count = std::min(kFramesPerBlock, performance.frames() - first);
+    RowSolver::Rows right = RowSolver::Rows::Zero(state.unknowns.count, RowSolver::kWidth);
+    for (int lane = 0; lane < count; ++lane) {
+      state.add_right_hand_side(performance.frame(first + lane), lane, right);
+    }
+    const RowSolver::Rows solution = state.solver->solve(right);
+    for (int lane = 0; lane < count; ++lane) {
+      Positions displacement = state.displacement(solution, lane);
+      state.translate(performance.frame(first + lane), displacement);
+      Eigen::Map<Positions> pose(result.row(first + lane).data(), vertices, 3);
+      pose = state.target_rest;
+      for (Eigen::Index v = 0; v < vertices; ++v) {
+        if (!state.fixed[v]) pose.row(v) += displacement.row(v);
+      }
+    }
+    report_progress(progress, double(first + count) / performance.frames());
+  }
+  return result;
+}
+
+int VertexTransfer::degenerate_source_triangles() const {
+  return state_->degenerate_source;
+}
+int VertexTransfer::degenerate_target_triangles() const {
+  return state_->degenerate_target;
+}
+const std::vector<bool>& VertexTransfer::fixed() const {
+  return state_->fixed;
+}
+
+}  // namespace mimetra

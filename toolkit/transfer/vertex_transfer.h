@@ -1,0 +1,80 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include <mimetra/mesh/errors.h>
+#include <mimetra/mesh/mesh_sequence.h>
+
+namespace mimetra {
+
+enum class TriangleWeight {
+  unit,  ///< every triangle counts the same [Sumner, Popovic 2004]
+  area   ///< by the area of the target's triangle
+};
+
+/// What happens to the triangles and vertices outside L.
+enum class Outside {
+  fixed,    ///< vertices outside the regions stay exactly where they are
+  identity  ///< triangles outside L want to keep their shape, weakly
+};
+
+/// What holds a connected piece that nothing else holds in place.
+enum class Anchor {
+  source_motion,  ///< its centroid moves as the same vertices of the source do, not scaled
+  centroid,       ///< its centroid stays
+  vertex          ///< one vertex stays
+};
+
+struct VertexTransferOptions {
+  TriangleWeight triangle_weight = TriangleWeight::unit;
+  Outside outside = Outside::fixed;
+  /// Vertices that Outside::fixed lets move (N): those inside the regions. By default the vertices
+  /// all of whose triangles are in L.
+  std::vector<bool> inside;
+  /// Weight of triangles outside L for Outside::identity, > 0, relative to those inside.
+  double outside_weight = 0.1;
+  /// Weight of squared differences of displacement gradients across edges of triangles outside L,
+  /// >= 0.
+  double outside_smoothness = 0;
+  Anchor anchor = Anchor::source_motion;
+  /// The vertex of Anchor::vertex; other pieces are then held by their lowest vertex.
+  VertexIndex anchor_vertex = -1;
+};
+
+/// Positions of a target that follow a source's deformation gradients on triangles L; the target
+/// has the source's connectivity and needs no expressions.
+///
+/// The fourth-vertex unknowns drop out exactly: what is left is one N x N system of gradient
+/// products, shared by x, y, z and all frames, factored once in the constructor. Translation is
+/// explicit: one pin per connected piece of the weighted triangles that holds no fixed vertex (two
+/// triangles that share one vertex are one piece), and a translation afterwards.
+///
+/// [Sumner, Popovic. Deformation Transfer for Triangle Meshes. ACM TOG 23(3), 2004]
+class VertexTransfer {
+ public:
+  /// `source_rest`, `target_rest` N x 3; `selected` are rows of `triangles` (M x 3). Throws
+  /// MismatchError where vertex counts differ, std::invalid_argument for options out of range, an
+  /// explicit anchor where vertices are fixed, or an index out of range.
+  VertexTransfer(const Positions& source_rest, const Positions& target_rest,
+                 const Triangles& triangles, std::vector<int> selected,
+                 const VertexTransferOptions& = {});
+  ~VertexTransfer();
+  VertexTransfer(VertexTransfer&&) noexcept;
+  VertexTransfer& operator=(VertexTransfer&&) noexcept;
+
+  /// Target poses for every frame, F x 3N. Throws MismatchError, Cancelled, std::runtime_error
+  /// where the system cannot be factored.
+  Frames frames(const MeshSequence& performance, const Progress& progress = {}) const;
+
+  int degenerate_source_triangles() const;
+  int degenerate_target_triangles() const;
+  /// Vertices that stay exactly at the target's rest pose (N).
+  const std::vector<bool>& fixed() const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace mimetra
