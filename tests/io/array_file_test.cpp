@@ -1,0 +1,180 @@
+#include <mimetra/io/array_file.h>
+
+#include <limits>
+
+#include <gmock/gmock.h>
+
+#include <mimetra/io/pending_output.h>
+#include <mimetra/mesh/errors.h>
+#include "npy.h"
+#include "temporary_folder.h"
+
+namespace mimetra {
+namespace {
+
+using test::message_of;
+using test::TemporaryFolder;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+Frames some_frames(int frames, int vertices) {
+  Frames result(frames, 3 * vertices);
+  for (Eigen::Index i = 0; i < result.size(); ++i) {
+    result.data()[i] = std::sin(1 + 0.7 * static_cast<double>(i)) / 3;
+  }
+  return result;
+}
+
+/// An array as NumPy writes it.
+std::string npy(const std::string& type, const std::string& order, const std::string& shape,
+                const std::string& data, char version = 1) {
+  const std::string header =
+      "{'descr': '" + type + "', 'fortran_order': " + order + ", 'shape': " + shape + ", }\n";
+  std::string bytes = "\x93NUMPY";
+  bytes.append({version, '\0'});
+  bytes += static_cast<char>(header.size());
+  bytes.append(version == 1 ? 1 : 3, '\0');
+  return bytes + header + data;
+}
+
+template <typename Number>
+std::string raw(const std::vector<Number>& numbers, bool swapped = false) {
+  std::string bytes;
+  for (const Number& number : numbers) {
+    std::string one(reinterpret_cast<const char*>(&number), sizeof number);
+    if (swapped) std::reverse(one.begin(), one.end());
+    bytes += one;
+  }
+  return bytes;
+}
+
+const std::vector<double> kSix = {1, 2, 3, 4, 5, 6.5};
+
+TEST(ArrayFile, DoublesComeBackBitByBit) {
+  const TemporaryFolder folder;
+  const Frames frames = some_frames(4, 5);
+  write_npy_frames(folder / "a.npy", frames);
+  EXPECT_EQ(read_npy_frames(folder / "a.npy"), frames);
+}
+
+TEST(ArrayFile, SinglePrecisionRoundsToFloat) {
+  const TemporaryFolder folder;
+  const Frames frames = some_frames(4, 5);
+  write_npy_frames(folder / "a.npy", frames, true);
+  EXPECT_EQ(read_npy_frames(folder / "a.npy"), frames.cast<float>().cast<double>());
+}
+
+TEST(ArrayFile, IsWhatAnIndependentReaderReads) {
+  const TemporaryFolder folder;
+  const Frames frames = some_frames(4, 5);
+  write_npy_frames(folder / "a.npy", frames);
+  const test::NpyArray array = test::read_npy(folder / "a.npy");
+  EXPECT_THAT(array.shape, ElementsAre(4, 5, 3));
+  EXPECT_EQ(Eigen::Map<const Frames>(array.values.data(), 4, 15), frames);
+}
+
+TEST(ArrayFile, ValuesStartAtAMultipleOf64Bytes) {
+  const TemporaryFolder folder;
+  write_npy_frames(folder / "a.npy", some_frames(4, 5));
+  EXPECT_EQ((read_file(folder / "a.npy").size() - 4 * 15 * sizeof(double)) % 64, 0);
+}
+
+TEST(ArrayFile, TwoAxesAreOneFrame) {
+  const TemporaryFolder folder;
+  write_bytes(folder / "a.npy", npy("<f8", "False", "(2, 3)", raw(kSix)));
+  const Frames frames = read_npy_frames(folder / "a.npy");
+  EXPECT_EQ(frames.rows(), 1);
+  EXPECT_EQ(frames(0, 5), 6.5);
+}
+
+TEST(ArrayFile, ReadsTheOtherByteOrder) {
+  const TemporaryFolder folder;
+  write_bytes(folder / "a.npy", npy(">f8", "False", "(2, 3)", raw(kSix, true)));
+  EXPECT_EQ(read_npy_frames(folder / "a.npy")(0, 5), 6.5);
+}
+
+TEST(ArrayFile, ReadsFortranOrder) {
+  const TemporaryFolder folder;
+  // a(f, n, c) = 100 f + 10 n + c, first index fastest
+  std::vector<double> values;
+  for (int c = 0; c < 3; ++c) {
+    for (int n = 0; n < 2; ++n) {
+      for (int f = 0; f < 4; ++f) values.push_back(100 * f + 10 * n + c);
+    }
+  }
+  write_bytes(folder / "a.npy", npy("<f8", "True", "(4, 2, 3)", raw(values)));
+  const Frames frames = read_npy_frames(folder / "a.npy");
+  for (int f = 0; f < 4; ++f) {
+    for (int n = 0; n < 2; ++n) {
+      for (int c = 0; c < 3; ++c) EXPECT_EQ(frames(f, 3 * n + c), 100 * f + 10 * n + c);
+    }
+  }
+}
+
+TEST(ArrayFile, ReadsVersionsTwoAndThree) {
+  const TemporaryFolder folder;
+  for (const char version : {2, 3}) {
+    write_bytes(folder / "a.npy", npy("<f8", "False", "(2, 3)", raw(kSix), version));
+    EXPECT_EQ(read_npy_frames(folder / "a.npy")(0, 5), 6.5);
+  }
+}
+
+TEST(ArrayFile, IntegersBecomeDoubles) {
+  const TemporaryFolder folder;
+  write_bytes(folder / "a.npy", npy("<i2", "False", "(3,)", raw<std::int16_t>({1, -2, 300})));
+  EXPECT_THAT(read_npy(folder / "a.npy").values, ElementsAre(1, -2, 300));
+  write_bytes(folder / "a.npy", npy("|u1", "False", "(2, 1)", raw<std::uint8_t>({0, 255})));
+  EXPECT_THAT(read_npy(folder / "a.npy").values, ElementsAre(0, 255));
+  EXPECT_THAT(read_npy(folder / "a.npy").shape, ElementsAre(2, 1));
+}
+
+TEST(ArrayFile, EveryTruncatedPrefixIsAnError) {
+  const TemporaryFolder folder;
+  write_npy_frames(folder / "a.npy", some_frames(2, 3));
+  const std::string bytes = read_file(folder / "a.npy");
+  for (std::size_t size = 0; size < bytes.size(); ++size) {
+    write_bytes(folder / "cut.npy", bytes.substr(0, size));
+    EXPECT_THROW(read_npy_frames(folder / "cut.npy"), IoError) << size;
+  }
+}
+
+TEST(ArrayFile, ShapeBeyondTheFileIsFoundBeforeMemoryIsAskedFor) {
+  const TemporaryFolder folder;
+  write_bytes(folder / "a.npy", npy("<f8", "False", "(4000000000, 4000000000, 3)", raw(kSix)));
+  EXPECT_THAT(message_of<IoError>([&] { read_npy_frames(folder / "a.npy"); }),
+              HasSubstr("a.npy: is truncated: 6 values, expected 4000000000 x 4000000000 x 3"));
+}
+
+TEST(ArrayFile, AnotherShapeIsNamed) {
+  const TemporaryFolder folder;
+  write_bytes(folder / "a.npy", npy("<f8", "False", "(3, 2)", raw(kSix)));
+  EXPECT_THAT(message_of<IoError>([&] { read_npy_frames(folder / "a.npy"); }),
+              HasSubstr("has shape 3 x 2, expected frames x vertices x 3"));
+}
+
+TEST(ArrayFile, OtherValuesAreNamed) {
+  const TemporaryFolder folder;
+  write_bytes(folder / "a.npy", npy("<c8", "False", "(2, 3)", raw(kSix)));
+  EXPECT_THAT(message_of<IoError>([&] { read_npy_frames(folder / "a.npy"); }),
+              HasSubstr("expected float32, float64"));
+  write_bytes(folder / "a.npy", npy("<i8", "False", "(2, 3)", raw(kSix)));
+  EXPECT_THAT(message_of<IoError>([&] { read_npy_frames(folder / "a.npy"); }),
+              HasSubstr("holds integers"));
+}
+
+TEST(ArrayFile, NonFinitePositionIsNamed) {
+  const TemporaryFolder folder;
+  Frames frames = some_frames(3, 4);
+  frames(2, 7) = std::numeric_limits<double>::quiet_NaN();
+  write_npy_frames(folder / "a.npy", frames);
+  EXPECT_THAT(message_of<IoError>([&] { read_npy_frames(folder / "a.npy"); }),
+              HasSubstr("a.npy: frame 2: vertex 2 has no finite position"));
+}
+
+TEST(ArrayFile, FolderThatIsNotThereIsAnOutputError) {
+  const TemporaryFolder folder;
+  EXPECT_THROW(write_npy_frames(folder / "none/a.npy", some_frames(1, 1)), OutputError);
+}
+
+}  // namespace
+}  // namespace mimetra

@@ -1,0 +1,423 @@
+#include <mimetra/io/mesh_file.h>
+
+#include <limits>
+
+#include <gmock/gmock.h>
+
+#include <mimetra/io/pending_output.h>
+#include <mimetra/mesh/errors.h>
+#include "shapes.h"
+#include "shared_data.h"
+#include "temporary_folder.h"
+
+namespace mimetra {
+namespace {
+
+namespace fs = std::filesystem;
+using test::message_of;
+using test::TemporaryFolder;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::StartsWith;
+
+TriMesh read_text(const std::string& extension, const std::string& text) {
+  const TemporaryFolder folder;
+  write_bytes(folder / ("mesh" + extension), text);
+  return read_mesh(folder / ("mesh" + extension));
+}
+
+std::string error_of(const std::string& extension, const std::string& text) {
+  return message_of<IoError>([&] { read_text(extension, text); });
+}
+
+/// A pentagon, a quad and a triangle, at places that no float holds.
+TriMesh mixed_polygons() {
+  const test::Shape shape = test::sphere(0);
+  Positions positions(7, 3);
+  positions << shape.positions / 3, 0.1, 0.2, 0.3;
+  const Polygons polygons{{0, 1, 2, 3, 4, 3, 4, 5, 6, 6, 5, 0}, {0, 5, 9, 12}};
+  return {positions, Connectivity::from_polygons(7, polygons)};
+}
+
+class EveryPolygonFormat : public testing::TestWithParam<std::string> {};
+
+TEST_P(EveryPolygonFormat, DoublesComeBackBitByBit) {
+  const TemporaryFolder folder;
+  const TriMesh mesh = mixed_polygons();
+  write_mesh(folder / ("a" + GetParam()), mesh, {.double_precision = true});
+  const TriMesh read = read_mesh(folder / ("a" + GetParam()));
+  EXPECT_EQ(read.positions, mesh.positions);
+  EXPECT_EQ(read.connectivity.polygons, mesh.connectivity.polygons);
+}
+
+TEST_P(EveryPolygonFormat, FloatsComeBackAsFloats) {
+  const TemporaryFolder folder;
+  const TriMesh mesh = mixed_polygons();
+  write_mesh(folder / ("a" + GetParam()), mesh);
+  const Positions read = read_mesh(folder / ("a" + GetParam())).positions;
+  EXPECT_EQ(read.cast<float>(), mesh.positions.cast<float>());
+}
+
+TEST_P(EveryPolygonFormat, KeepsUnusedVerticesAndRepeatedOnes) {
+  const TemporaryFolder folder;
+  const TriMesh mesh{Positions::Zero(9, 3), Connectivity::from_polygons(9, {{7, 3, 3}, {0, 3}})};
+  write_mesh(folder / ("a" + GetParam()), mesh);
+  const TriMesh read = read_mesh(folder / ("a" + GetParam()));
+  EXPECT_EQ(read.positions.rows(), 9);
+  EXPECT_EQ(read.connectivity.polygons, mesh.connectivity.polygons);
+}
+
+TEST_P(EveryPolygonFormat, NonFinitePositionIsNamed) {
+  const TemporaryFolder folder;
+  TriMesh mesh = mixed_polygons();
+  mesh.positions(2, 1) = std::numeric_limits<double>::infinity();
+  write_mesh(folder / ("a" + GetParam()), mesh);
+  EXPECT_THAT(message_of<IoError>([&] { read_mesh(folder / ("a" + GetParam())); }),
+              testing::ContainsRegex("vertex [23] has no finite position: y is inf"));
+}
+
+TEST_P(EveryPolygonFormat, MeshWithoutFacesIsAnError) {
+  const TemporaryFolder folder;
+  const fs::path path = folder / ("a" + GetParam());
+  write_mesh(path, {Positions::Zero(3, 3), Connectivity::from_polygons(3, {})});
+  EXPECT_EQ(message_of<IoError>([&] { read_mesh(path); }), path.string() + ": has no faces");
+}
+
+TEST_P(EveryPolygonFormat, FurtherFileWithOtherVerticesNamesBoth) {
+  const TemporaryFolder folder;
+  const fs::path path = folder / ("frame_012" + GetParam());
+  write_mesh(path, {Positions::Zero(5, 3), Connectivity::from_polygons(5, {{0, 1, 2}, {0, 3}})});
+  const TriMesh first = mixed_polygons();
+  EXPECT_EQ(
+      message_of<MismatchError>([&] { read_positions(path, first.connectivity, "frame_001.obj"); }),
+      path.string() + ": 5 vertices, expected 7 as in frame_001.obj");
+}
+
+TEST_P(EveryPolygonFormat, FurtherFileWithAFlippedFaceNamesIt) {
+  const TemporaryFolder folder;
+  const fs::path path = folder / ("b" + GetParam());
+  const TriMesh first = mixed_polygons();
+  Polygons flipped = first.connectivity.polygons;
+  std::swap(flipped.corners[9], flipped.corners[10]);
+  write_mesh(path, {first.positions, Connectivity::from_polygons(7, flipped)});
+  EXPECT_THAT(message_of<MismatchError>([&] { read_positions(path, first.connectivity, "a"); }),
+              testing::ContainsRegex("face [23] .*has the vertices .* as in a"));
+}
+
+TEST_P(EveryPolygonFormat, FurtherFileMayStartItsFacesAtAnotherCorner) {
+  const TemporaryFolder folder;
+  const TriMesh first = mixed_polygons();
+  Polygons rotated = first.connectivity.polygons;
+  std::rotate(rotated.corners.begin(), rotated.corners.begin() + 2, rotated.corners.begin() + 5);
+  write_mesh(folder / ("b" + GetParam()),
+             {first.positions, Connectivity::from_polygons(7, rotated)},
+             {.double_precision = true});
+  EXPECT_EQ(read_positions(folder / ("b" + GetParam()), first.connectivity, "a"), first.positions);
+}
+
+INSTANTIATE_TEST_SUITE_P(Formats, EveryPolygonFormat, testing::Values(".obj", ".ply", ".off"),
+                         [](const auto& format) { return format.param.substr(1); });
+
+TEST(Obj, ReadsEveryKindOfCornerAndExtraColumns) {
+  const TriMesh mesh = read_text(".obj",
+                                 "# head\nmtllib a.mtl\n"
+                                 "v 0 0 0 1 0.5 0.5\nv +1 0 0\r\nv 1 1e0 0\nv 0 1 0 # four\n"
+                                 "vt 0 0\nvt 1 0.5 0\nvn 0 0 1\n"
+                                 "f 1 2 3\nf 1/1 2/2 3/1\nf 1//1 2//1 3//1\nf 1/2/1 2/1/1 4/1/1\n"
+                                 "f -4 -3 \\\n -2\\\n -1\n");
+  EXPECT_EQ(mesh.positions.rows(), 4);
+  EXPECT_THAT(mesh.connectivity.polygons.corners,
+              ElementsAre(0, 1, 2, 0, 1, 2, 0, 1, 2, 0, 1, 3, 0, 1, 2, 3));
+  EXPECT_THAT(mesh.connectivity.texture.corners,
+              ElementsAre(-1, -1, -1, 0, 1, 0, -1, -1, -1, 1, 0, 0, -1, -1, -1, -1));
+  EXPECT_EQ(mesh.connectivity.texture.coordinates[1], Eigen::Vector2d(1, 0.5));
+}
+
+TEST(Obj, KeepsTextureCoordinatesAndGroups) {
+  const TemporaryFolder folder;
+  write_bytes(folder / "a.obj",
+              "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0.25 0\nvt 1 0.5\no face\ng lips upper\n"
+              "usemtl skin\nf 1/2 2/1 3/2\ns 1\nf 3 2 1\n");
+  const TriMesh mesh = read_mesh(folder / "a.obj");
+  write_mesh(folder / "b.obj", mesh);
+  EXPECT_EQ(read_file(folder / "b.obj"),
+            "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0.25 0\nvt 1 0.5\no face\ng lips upper\n"
+            "usemtl skin\nf 1/2 2/1 3/2\ns 1\nf 3 2 1\n");
+}
+
+TEST(Obj, FacesMayPointForward) {
+  EXPECT_EQ(read_text(".obj", "f 1 2 3\nv 0 0 0\nv 1 0 0\nv 0 1 0").positions.rows(), 3);
+}
+
+TEST(Obj, ErrorsNameTheLine) {
+  const std::string vertices = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+  EXPECT_THAT(error_of(".obj", vertices + "f 1 2 4\n"),
+              HasSubstr("mesh.obj: face 1 (line 4) uses vertex 4, expected 1 to 3"));
+  EXPECT_THAT(error_of(".obj", vertices + "f 1 2 0\n"), HasSubstr("line 4: index 0"));
+  EXPECT_THAT(error_of(".obj", vertices + "f 1 2 -4\n"), HasSubstr("line 4: index -4"));
+  EXPECT_THAT(error_of(".obj", vertices + "f 1 2\n"),
+              HasSubstr("face 1 (line 4) has 2 corners, expected at least 3"));
+  EXPECT_THAT(error_of(".obj", vertices + "f 1 2 x\n"),
+              HasSubstr("line 4: expected an integer for a vertex, found 'x'"));
+  EXPECT_THAT(error_of(".obj", "v 0 0 0\nv 0 zero 0\n"),
+              HasSubstr("line 2: expected a number for a vertex coordinate, found 'zero'"));
+  EXPECT_THAT(error_of(".obj", vertices + "f 1/1 2/1 3/1\n"),
+              HasSubstr("the face of line 4 uses texture coordinate 1"));
+  EXPECT_THAT(error_of(".obj", "v 0 0 nan\n" + vertices + "f 1 2 3\n"),
+              HasSubstr("vertex 1 has no finite position: z is nan"));
+}
+
+const std::string kPlyHeader =
+    "element vertex 3\nproperty uchar red\nproperty double z\nproperty float y\nproperty short x\n"
+    "element edge 1\nproperty int a\nproperty list uchar short b\n"
+    "element face 1\nproperty list int uchar vertex_index\nproperty float quality\nend_header\n";
+
+template <typename Number>
+void append(std::string& bytes, Number value, bool big_endian) {
+  std::string raw(reinterpret_cast<const char*>(&value), sizeof value);
+  if (big_endian) std::reverse(raw.begin(), raw.end());
+  bytes += raw;
+}
+
+/// kPlyHeader's elements with vertex v at (v, 10 v, 100 v).
+std::string binary_ply(bool big_endian) {
+  std::string bytes = std::string("ply\nformat binary_") + (big_endian ? "big" : "little") +
+                      "_endian 1.0\ncomment by hand\n" + kPlyHeader;
+  for (int v = 0; v < 3; ++v) {
+    append<std::uint8_t>(bytes, 255, big_endian);
+    append<double>(bytes, 100 * v, big_endian);
+    append<float>(bytes, static_cast<float>(10 * v), big_endian);
+    append<std::int16_t>(bytes, static_cast<std::int16_t>(v), big_endian);
+  }
+  append<std::int32_t>(bytes, 7, big_endian);
+  append<std::uint8_t>(bytes, 2, big_endian);
+  append<std::int16_t>(bytes, -1, big_endian);
+  append<std::int16_t>(bytes, -2, big_endian);
+  append<std::int32_t>(bytes, 3, big_endian);
+  for (const std::uint8_t corner : {2, 0, 1}) append<std::uint8_t>(bytes, corner, big_endian);
+  append<float>(bytes, 0.5f, big_endian);
+  return bytes;
+}
+
+void expect_the_ply_triangle(const TriMesh& mesh) {
+  Positions expected(3, 3);
+  expected << 0, 0, 0, 1, 10, 100, 2, 20, 200;
+  EXPECT_EQ(mesh.positions, expected);
+  EXPECT_THAT(mesh.connectivity.polygons.corners, ElementsAre(2, 0, 1));
+}
+
+TEST(Ply, ReadsAnyPropertiesInEitherByteOrder) {
+  expect_the_ply_triangle(read_text(".ply", binary_ply(false)));
+  expect_the_ply_triangle(read_text(".ply", binary_ply(true)));
+}
+
+TEST(Ply, ReadsTextWithEitherLineEnd) {
+  const std::string body = "1 0 0 0\n1 100 10 1\n1 200 20 2\n7 2 -1 -2\n3 2 0 1 0.5\n";
+  std::string text = "ply\nformat ascii 1.0\n" + kPlyHeader + body;
+  expect_the_ply_triangle(read_text(".ply", text));
+  for (std::size_t at = 0; (at = text.find('\n', at)) != std::string::npos; at += 2) {
+    text.insert(at, "\r");
+  }
+  expect_the_ply_triangle(read_text(".ply", text));
+}
+
+TEST(Ply, EveryTruncatedBinaryPrefixIsAnError) {
+  // Also where only a property is missing that nobody needs.
+  for (const bool big_endian : {false, true}) {
+    const std::string bytes = binary_ply(big_endian);
+    for (std::size_t size = 0; size < bytes.size(); ++size) {
+      EXPECT_THROW(read_text(".ply", bytes.substr(0, size)), IoError) << size;
+    }
+  }
+}
+
+TEST(Ply, ElementsAfterTheFacesHaveToBeWholeToo) {
+  const std::string text =
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+      "property float z\nelement face 1\nproperty list uchar int vertex_indices\n"
+      "element edge 2\nproperty int a\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n5\n";
+  EXPECT_EQ(read_text(".ply", text + "6\n").positions.rows(), 3);
+  EXPECT_THAT(error_of(".ply", text), HasSubstr("expected a number for edge, found nothing"));
+}
+
+TEST(Ply, CountsBeyondTheFileAreFoundBeforeMemoryIsAskedFor) {
+  for (const std::string element : {"vertex 3", "edge 1", "face 1"}) {
+    std::string bytes = binary_ply(false);
+    bytes.replace(bytes.find(element), element.size(),
+                  element.substr(0, element.find(' ')) + " 4000000000000");
+    EXPECT_THAT(error_of(".ply", bytes), HasSubstr("4000000000000 expected, but only")) << element;
+  }
+}
+
+TEST(Ply, ListBeyondTheFileIsFoundBeforeMemoryIsAskedFor) {
+  const std::string head =
+      "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\n"
+      "property float y\nproperty float z\nelement face 1\n"
+      "property list int int vertex_indices\nend_header\n0 0 0\n";
+  EXPECT_THAT(error_of(".ply", head + "2000000000 0 0 0\n"), HasSubstr("mesh.ply: face 0: a list"));
+  EXPECT_THAT(error_of(".ply", head + "-1 0 0 0\n"), HasSubstr("mesh.ply: face 0: a list"));
+}
+
+TEST(Ply, ErrorsNameTheElement) {
+  const std::string head =
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\n"
+      "property float y\nproperty float z\nelement face 2\n"
+      "property list uchar int vertex_indices\nend_header\n";
+  const std::string vertices = "0 0 0\n1 0 0\n0 1 0\n";
+  EXPECT_THAT(error_of(".ply", head + vertices + "3 0 1 2\n3 0 1 3\n"),
+              HasSubstr("face 1 uses vertex 3, expected 0 to 2"));
+  EXPECT_THAT(error_of(".ply", head + vertices + "3 0 1 2\n3 0 1 -1\n"), HasSubstr("face 1"));
+  EXPECT_THAT(error_of(".ply", head + vertices + "3 0 1 2\n2 0 1\n"),
+              HasSubstr("face 1 has 2 corners, expected at least 3"));
+  EXPECT_THAT(error_of(".ply", head + "0 0 0\n1 0 x\n0 1 0\n3 0 1 2\n3 0 1 2\n"),
+              HasSubstr("line 11: expected a number for vertex, found 'x'"));
+  EXPECT_THAT(error_of(".ply", "solid"), HasSubstr("this is no PLY file"));
+}
+
+TEST(Ply, PolygonsOfManyCornersComeBack) {
+  const TemporaryFolder folder;
+  Polygons polygon{{}, {0, 300}};
+  for (int corner = 0; corner < 300; ++corner) polygon.corners.push_back(corner);
+  write_mesh(folder / "a.ply",
+             {Positions::Zero(300, 3), Connectivity::from_polygons(300, polygon)});
+  EXPECT_EQ(read_mesh(folder / "a.ply").connectivity.polygons, polygon);
+}
+
+TEST(Off, ReadsCommentsAndColours) {
+  const TriMesh mesh = read_text(".off",
+                                 "COFF # colours\n# counts\n\n4 1 0\n0 0 0 255 0 0 255\n"
+                                 "1 0 0 255 0 0 255\n# half\n1 1 0 0 0 0 255\r\n0 1 0 0 0 0 255\n"
+                                 "4 0 1 2 3 0.5 0.5 0.5\n");
+  EXPECT_EQ(mesh.positions.row(2), Eigen::RowVector3d(1, 1, 0));
+  EXPECT_THAT(mesh.connectivity.polygons.corners, ElementsAre(0, 1, 2, 3));
+}
+
+TEST(Off, ReadsNormalsAndCountsBesideTheKeyword) {
+  EXPECT_EQ(read_text(".off", "NOFF 3 1 3\n0 0 0 0 0 1\n1 0 0 0 0 1\n0 1 0 0 0 1\n3 0 1 2\n")
+                .positions.rows(),
+            3);
+}
+
+TEST(Off, CountsBeyondTheFileAreFoundBeforeMemoryIsAskedFor) {
+  EXPECT_THAT(error_of(".off", "OFF\n2000000000 1 0\n0 0 0\n"),
+              HasSubstr("line 2: the number of vertices is 2000000000, but only"));
+  EXPECT_THAT(error_of(".off", "OFF\n1 2000000000 0\n0 0 0\n"),
+              HasSubstr("the number of faces is 2000000000, but only"));
+}
+
+TEST(Off, EveryPrefixThatLosesAWordIsAnError) {
+  const std::string text = "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2";
+  for (std::size_t size = 0; size < text.size(); ++size) {
+    EXPECT_THROW(read_text(".off", text.substr(0, size)), IoError) << size;
+  }
+}
+
+TEST(Off, ErrorsNameTheLine) {
+  EXPECT_THAT(error_of(".off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n"),
+              HasSubstr("mesh.off: face 0 (line 6) uses vertex 3, expected 0 to 2"));
+  EXPECT_THAT(error_of(".off", "ply\n"), HasSubstr("expected OFF"));
+}
+
+TEST(Stl, WeldsCornersInOrderOfFirstUse) {
+  const TemporaryFolder folder;
+  const test::Shape shape = test::sphere(1);
+  const TriMesh mesh = test::mesh_of(shape);
+  write_mesh(folder / "a.stl", mesh);
+  const TriMesh read = read_mesh(folder / "a.stl");
+  ASSERT_EQ(read.positions.rows(), mesh.positions.rows());
+  int unseen = 0;
+  for (Eigen::Index t = 0; t < shape.triangles.rows(); ++t) {
+    for (int corner = 0; corner < 3; ++corner) {
+      const int vertex = read.connectivity.triangles(t, corner);
+      EXPECT_LE(vertex, unseen);
+      unseen = std::max(unseen, vertex + 1);
+      EXPECT_EQ(read.positions.row(vertex).cast<float>(),
+                mesh.positions.row(shape.triangles(t, corner)).cast<float>());
+    }
+  }
+}
+
+const std::string kAsciiStl =
+    "solid two words\n facet normal 0 0 1\n  outer loop\n   vertex 0 0 0\n   vertex 1 0 0\n"
+    "   vertex 0 1 0\n  endloop\n endfacet\n facet normal 0 0 1\n  outer loop\n   vertex 0 1 0\n"
+    "   vertex 1 0 0\n   vertex 1 1 0\n  endloop\n endfacet\nendsolid two words\n";
+
+TEST(Stl, ReadsText) {
+  const TriMesh mesh = read_text(".stl", kAsciiStl);
+  EXPECT_EQ(mesh.positions.rows(), 4);
+  EXPECT_THAT(mesh.connectivity.polygons.corners, ElementsAre(0, 1, 2, 2, 1, 3));
+}
+
+TEST(Stl, EveryTruncatedPrefixIsAnError) {
+  const std::size_t whole = kAsciiStl.find("endsolid") + std::string("endsolid").size();
+  for (std::size_t size = 0; size < whole; ++size) {
+    EXPECT_THROW(read_text(".stl", kAsciiStl.substr(0, size)), IoError) << size;
+  }
+  const TemporaryFolder folder;
+  write_mesh(folder / "a.stl", test::mesh_of(test::octahedron()));
+  const std::string bytes = read_file(folder / "a.stl");
+  for (std::size_t size = 0; size < bytes.size(); ++size) {
+    EXPECT_THROW(read_text(".stl", bytes.substr(0, size)), IoError) << size;
+  }
+}
+
+TEST(Stl, BinaryFileMayStartWithSolid) {
+  const TemporaryFolder folder;
+  write_mesh(folder / "a.stl", test::mesh_of(test::octahedron()));
+  const std::string bytes = read_file(folder / "a.stl").replace(0, 5, "solid");
+  EXPECT_EQ(read_text(".stl", bytes).positions.rows(), 6);
+}
+
+TEST(Stl, VerticesThatPartOrMeetStayWhatTheyAre) {
+  const TemporaryFolder folder;
+  TriMesh mesh = test::mesh_of(test::octahedron());
+  write_mesh(folder / "a.stl", mesh);
+  const TriMesh first = read_mesh(folder / "a.stl");
+  mesh.positions.row(0) = mesh.positions.row(1);
+  write_mesh(folder / "b.stl", mesh);
+  const Positions second = read_positions(folder / "b.stl", first.connectivity, folder / "a.stl");
+  ASSERT_EQ(second.rows(), 6);
+  const int vertex = first.connectivity.triangles(0, 0);
+  EXPECT_EQ(second.row(vertex), mesh.positions.row(1));
+}
+
+TEST(Stl, FurtherFileWithOtherTrianglesNamesBoth) {
+  const TemporaryFolder folder;
+  write_mesh(folder / "b.stl", test::mesh_of(test::octahedron()));
+  EXPECT_EQ(message_of<MismatchError>([&] {
+              read_positions(folder / "b.stl", test::mesh_of(test::sphere(1)).connectivity, "a");
+            }),
+            (folder / "b.stl").string() + ": 8 triangles, expected 32 as in a");
+}
+
+TEST(MeshFile, ExtensionDecidesInAnyCase) {
+  EXPECT_TRUE(is_mesh_extension(".OBJ"));
+  EXPECT_FALSE(is_mesh_extension(".npy"));
+  EXPECT_FALSE(is_mesh_extension(""));
+  EXPECT_THAT(error_of(".xyz", ""),
+              HasSubstr("'.xyz' is no mesh format; expected .obj, .ply, .off or .stl"));
+}
+
+TEST(MeshFile, WritesAsTheExtensionInTheOptionsSays) {
+  const TemporaryFolder folder;
+  write_mesh(folder / "a.tmp", mixed_polygons(), {.extension = ".off"});
+  EXPECT_THAT(read_file(folder / "a.tmp"), StartsWith("OFF\n"));
+  EXPECT_THROW(write_mesh(folder / "b.tmp", mixed_polygons()), OutputError);
+}
+
+TEST(MeshFile, RealMeshesKeepTheirCounts) {
+  const fs::path facecap = test::shared_path("data/facecap/neutral.obj");
+  const fs::path ict = test::shared_path("data/ict-face/neutral.obj");
+  MIMETRA_SKIP_WITHOUT(facecap);
+  MIMETRA_SKIP_WITHOUT(ict);
+  const TriMesh head = read_mesh(facecap);
+  EXPECT_EQ(head.positions.rows(), 2694);
+  EXPECT_EQ(head.connectivity.triangles.rows(), 5032);
+  const TriMesh face = read_mesh(ict);
+  EXPECT_EQ(face.positions.rows(), 6706);
+  EXPECT_EQ(face.connectivity.polygons.size(), 6560);
+  EXPECT_EQ(face.connectivity.polygons.corners.size(), 4 * 6560);
+}
+
+}  // namespace
+}  // namespace mimetra

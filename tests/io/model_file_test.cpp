@@ -1,0 +1,282 @@
+#include <cstring>
+#include <fstream>
+#include <functional>
+#include <limits>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <mimetra/io/model_file.h>
+#include <mimetra/io/pending_output.h>
+#include <mimetra/mesh/errors.h>
+
+#include "shapes.h"
+#include "shared_data.h"
+#include "temporary_folder.h"
+
+namespace mimetra {
+namespace {
+
+using testing::HasSubstr;
+
+MorphableModel small_model() {
+  const test::Shape shape = test::grid(4, 3);
+  const auto n = shape.positions.size();
+  return MorphableModel(
+      std::make_shared<Connectivity>(Connectivity::from_triangles(12, shape.triangles)),
+      shape.positions, {{"wide", "long"}, Eigen::MatrixXd::Random(n, 2)},
+      {{"smile", "frown", "blink"}, Eigen::MatrixXd::Random(n, 3)});
+}
+
+/// Bytes of the eos pair for `vertices` on a strip of triangles.
+struct EosBytes {
+  std::string shape, expressions;
+};
+
+template <typename Number>
+void put(std::string& bytes, Number number) {
+  bytes.append(reinterpret_cast<const char*>(&number), sizeof number);
+}
+
+void put_matrix(std::string& bytes, const Eigen::MatrixXf& matrix) {
+  put(bytes, std::int32_t(matrix.rows()));
+  put(bytes, std::int32_t(matrix.cols()));
+  for (const float value : matrix.reshaped()) put(bytes, value);
+}
+
+EosBytes eos_bytes(std::uint32_t version = 1) {
+  EosBytes bytes;
+  put(bytes.shape, version);
+  put_matrix(bytes.shape, Eigen::VectorXf::LinSpaced(9, 0, 8));
+  put_matrix(bytes.shape, Eigen::MatrixXf::Constant(9, 2, 0.5f));
+  put_matrix(bytes.shape, Eigen::Vector2f(4, 9));
+  put(bytes.shape, std::uint64_t{1});
+  for (const int index : {0, 1, 2}) put(bytes.shape, std::int32_t{index});
+  put_matrix(bytes.shape, Eigen::MatrixXf(0, 1));
+  put_matrix(bytes.shape, Eigen::MatrixXf(0, 0));
+  put_matrix(bytes.shape, Eigen::MatrixXf::Zero(1, 1));
+  put(bytes.shape, std::uint64_t{0});
+  put(bytes.shape, std::uint64_t{1});
+  put(bytes.shape, 0.5);
+  put(bytes.shape, 0.25);
+  put(bytes.expressions, std::uint64_t{1});
+  put(bytes.expressions, std::uint64_t{5});
+  bytes.expressions += "anger";
+  put_matrix(bytes.expressions, Eigen::VectorXf::Ones(9));
+  return bytes;
+}
+
+class Model : public testing::Test {
+ protected:
+  void write(const std::string& name, const std::string& content) {
+    std::ofstream(folder_ / name, std::ios::binary) << content;
+  }
+  std::string message_of(const std::function<void()>& action) {
+    try {
+      action();
+    } catch (const std::exception& error) {
+      return error.what();
+    }
+    return "";
+  }
+  test::TemporaryFolder folder_;
+};
+
+TEST_F(Model, ComesBackAfterWriting) {
+  const MorphableModel model = small_model();
+  write_model(folder_ / "m", model, {}, false);
+  ASSERT_TRUE(is_model(folder_ / "m"));
+  const MorphableModel found = read_model(folder_ / "m");
+  EXPECT_EQ(found.mean(), model.mean());
+  EXPECT_EQ(found.identities().names, (std::vector<std::string>{"long", "wide"}));
+  EXPECT_EQ(found.expressions().names, (std::vector<std::string>{"blink", "frown", "smile"}));
+  const Eigen::MatrixXd wide = found.identities().displacements.col(1);
+  // Absolute shapes are stored: the neutral's last digits are lost on the way.
+  EXPECT_LT((wide - model.identities().displacements.col(0)).cwiseAbs().maxCoeff(), 1e-15 * 8);
+}
+
+TEST_F(Model, AppearsWithItsPerformanceAndFurtherFiles) {
+  const WeightTrack track{{"smile"}, Eigen::Vector2d(0, 1), Eigen::Vector2d(0, 0.04)};
+  write_model(folder_ / "m", small_model(), track, false, {{"mimetra-run.json", "{}"}});
+  EXPECT_EQ(read_weights(folder_ / "m/performance.csv").weights, track.weights);
+  EXPECT_EQ(read_file(folder_ / "m/mimetra-run.json"), "{}");
+}
+
+TEST_F(Model, IsNotWrittenWhereAShapeNameCannotBeAFile) {
+  for (const char* name : {"", "../up", ".hidden", "a/b"}) {
+    const MorphableModel model(small_model().shared_connectivity(), small_model().mean(), {},
+                               {{name}, Eigen::MatrixXd::Ones(36, 1)});
+    EXPECT_THROW(write_model(folder_ / "m", model, {}, false), OutputError) << name;
+    EXPECT_TRUE(folder_.names().empty()) << name;
+  }
+}
+
+TEST_F(Model, HasItsShapesInNaturalOrder) {
+  write("neutral.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  std::filesystem::create_directory(folder_ / "expressions");
+  for (const char* name : {"pose10", "pose2", "pose1"}) {
+    write("expressions/" + std::string(name) + ".obj", "v 0 0 1\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  }
+  const MorphableModel model = read_model(folder_.path());
+  EXPECT_EQ(model.expressions().names, (std::vector<std::string>{"pose1", "pose2", "pose10"}));
+}
+
+TEST_F(Model, WithTwoShapesOfOneNameIsAnError) {
+  const std::string mesh = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+  write("neutral.obj", mesh);
+  std::filesystem::create_directory(folder_ / "targets");
+  write("targets/smile.obj", mesh);
+  write("targets/smile.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
+  EXPECT_THROW(read_model(folder_.path()), IoError);
+}
+
+TEST_F(Model, IsAFolderWithANeutralAndNeverAFile) {
+  EXPECT_FALSE(is_model(folder_.path()));
+  EXPECT_THROW(read_model(folder_.path()), IoError);
+  EXPECT_THROW(read_model(folder_ / "missing"), IoError);
+  write("neutral.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  EXPECT_TRUE(is_model(folder_.path()));
+  EXPECT_FALSE(is_model(folder_ / "neutral.obj"));
+}
+
+TEST_F(Model, OfAnotherTopologyIsAMismatch) {
+  write("neutral.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nf 1 2 3\nf 2 4 3\n");
+  std::filesystem::create_directory(folder_ / "targets");
+  write("targets/smile.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nf 1 2 4\nf 1 4 3\n");
+  EXPECT_THROW(read_model(folder_.path()), MismatchError);
+}
+
+TEST_F(Model, JsonNamesItsParts) {
+  write_model(folder_ / "m", small_model(), {}, false);
+  std::filesystem::rename(folder_ / "m/expressions", folder_ / "m/poses");
+  write("m/model.json", R"({"neutral": "neutral.ply", "expressions": "poses"})");
+  const MorphableModel found = read_model(folder_ / "m");
+  EXPECT_EQ(found.expressions().size(), 3);
+  EXPECT_EQ(found.identities().size(), 0);
+  write("m/model.json", "{}");
+  EXPECT_THROW(read_model(folder_ / "m"), IoError);
+}
+
+TEST_F(Model, PersonMovesTheNeutralAlongItsIdentities) {
+  const MorphableModel model = small_model();
+  write_model(folder_ / "m", model, {}, false);
+  const ModelSpec spec = ModelSpec::parse((folder_ / "m").string() + "@wide=1.5,long=-1");
+  const BlendshapeModel person = read_person(spec);
+  const Eigen::VectorXd moved =
+      1.5 * model.identities().displacements.col(0) - model.identities().displacements.col(1);
+  const Positions expected = model.mean() + Eigen::Map<const Positions>(moved.data(), 12, 3);
+  EXPECT_LT((person.neutral() - expected).cwiseAbs().maxCoeff(), 1e-14);
+  EXPECT_EQ(spec.name(), "m@wide=1.5,long=-1");
+}
+
+TEST_F(Model, UnknownIdentityIsAMismatchThatSaysWhatThereIs) {
+  write_model(folder_ / "m", small_model(), {}, false);
+  const ModelSpec spec = ModelSpec::parse((folder_ / "m").string() + "@tall=1");
+  EXPECT_THAT(message_of([&] { read_person(spec); }), HasSubstr("no identity 'tall'; there are 2"));
+}
+
+TEST(ModelSpec, RefusesWhatIsNoCoefficient) {
+  for (const char* text : {"m@wide", "m@wide=", "m@=1", "m@wide=1,", "m@wide=x", "m@wide=inf"}) {
+    EXPECT_THROW(ModelSpec::parse(text), std::invalid_argument) << text;
+  }
+}
+
+TEST(ModelSpec, RefusesANameGivenTwice) {
+  EXPECT_THROW(ModelSpec::parse("m@wide=1,wide=2"), std::invalid_argument);
+}
+
+TEST_F(Model, SpecWithAFileOfCoefficientsIsRefusedClearly) {
+  EXPECT_THAT(message_of([] { ModelSpec::parse("m@fit.json"); }),
+              HasSubstr("does not take coefficients from a file"));
+}
+
+TEST_F(Model, FolderWithAnAtSignInItsNameWins) {
+  std::filesystem::create_directory(folder_ / "m@wide=1");
+  const ModelSpec spec = ModelSpec::parse((folder_ / "m@wide=1").string());
+  EXPECT_EQ(spec.path, folder_ / "m@wide=1");
+  EXPECT_TRUE(spec.identity.empty());
+}
+
+TEST_F(Model, IsNamedAfterItsFolderHoweverItIsWritten) {
+  std::filesystem::create_directories(folder_ / "face.v2/expressions");
+  const std::string path = (folder_ / "face.v2").string();
+  for (const char* ending : {"", "/", "//", "/.", "/expressions/.."}) {
+    EXPECT_EQ(ModelSpec::parse(path + ending).name(), "face.v2") << ending;
+  }
+  EXPECT_EQ(ModelSpec::parse(path + "/@wide=2").name(), "face.v2@wide=2");
+}
+
+TEST(ModelSpec, LeavesAnAtSignInAFolderAlone) {
+  EXPECT_EQ(ModelSpec::parse("a@b/model").path, "a@b/model");
+}
+
+TEST_F(Model, EosPairIsScaledByStandardDeviations) {
+  const EosBytes bytes = eos_bytes();
+  write("sfm_shape.bin", bytes.shape);
+  write("expression_blendshapes.bin", bytes.expressions);
+  const MorphableModel model = read_model(folder_.path());
+  EXPECT_EQ(model.vertices(), 3);
+  EXPECT_EQ(model.identities().names, (std::vector<std::string>{"0", "1"}));
+  EXPECT_EQ(model.identities().displacements.col(0), Eigen::VectorXd::Constant(9, 0.5 * 2));
+  EXPECT_EQ(model.identities().displacements.col(1), Eigen::VectorXd::Constant(9, 0.5 * 3));
+  EXPECT_EQ(model.expressions().names, (std::vector<std::string>{"anger"}));
+}
+
+TEST_F(Model, EosPairIsFoundByItsContentToo) {
+  const EosBytes bytes = eos_bytes();
+  write("expression_blendshapes.bin", bytes.expressions);
+  write("another.bin", "not a model at all");
+  EXPECT_FALSE(is_model(folder_.path()));
+  write("my_model.bin", bytes.shape);
+  EXPECT_TRUE(is_model(folder_.path()));
+  EXPECT_EQ(read_model(folder_.path()).identities().size(), 2);
+}
+
+TEST_F(Model, LaterEosVersionIsRefusedByItsNumber) {
+  const EosBytes bytes = eos_bytes(3);
+  write("sfm_shape.bin", bytes.shape);
+  write("expression_blendshapes.bin", bytes.expressions);
+  EXPECT_THAT(message_of([&] { read_model(folder_.path()); }), HasSubstr("version 3"));
+}
+
+TEST_F(Model, EveryTruncatedEosFileIsAnError) {
+  const EosBytes bytes = eos_bytes();
+  for (std::size_t length = 0; length < bytes.shape.size(); ++length) {
+    write("sfm_shape.bin", bytes.shape.substr(0, length));
+    write("expression_blendshapes.bin", bytes.expressions);
+    EXPECT_THROW(read_model(folder_.path()), IoError) << length;
+  }
+  write("sfm_shape.bin", bytes.shape);
+  for (std::size_t length = 0; length < bytes.expressions.size(); ++length) {
+    write("expression_blendshapes.bin", bytes.expressions.substr(0, length));
+    EXPECT_THROW(read_model(folder_.path()), IoError) << length;
+  }
+}
+
+TEST_F(Model, EosCountBeyondTheFileIsAnErrorBeforeAnyMemoryIsTaken) {
+  EosBytes bytes = eos_bytes();
+  const std::int32_t huge = std::numeric_limits<std::int32_t>::max();
+  std::memcpy(bytes.shape.data() + 4, &huge, sizeof huge);
+  write("sfm_shape.bin", bytes.shape);
+  write("expression_blendshapes.bin", bytes.expressions);
+  EXPECT_THAT(message_of([&] { read_model(folder_.path()); }), HasSubstr("ends within the mean"));
+}
+
+TEST(RealModels, HaveTheSizesTheirAuthorsState) {
+  const auto folder = test::shared_path("data");
+  MIMETRA_SKIP_WITHOUT(folder);
+  const MorphableModel surrey = read_model(folder / "sfm");
+  EXPECT_EQ(surrey.vertices(), 3448);
+  EXPECT_EQ(surrey.connectivity().triangles.rows(), 6736);
+  EXPECT_EQ(surrey.identities().size(), 63);
+  EXPECT_EQ(surrey.expressions().size(), 6);
+  EXPECT_EQ(read_model(folder / "facecap").expressions().size(), 52);
+  const MorphableModel ict = read_model(folder / "ict-face");
+  EXPECT_EQ(ict.vertices(), 6706);
+  EXPECT_EQ(ict.connectivity().polygons.size(), 6560);
+  EXPECT_EQ(ict.expressions().size(), 53);
+  EXPECT_EQ(ict.identities().size(), 10);
+}
+
+}  // namespace
+}  // namespace mimetra

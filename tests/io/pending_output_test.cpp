@@ -1,0 +1,128 @@
+#include <mimetra/io/pending_output.h>
+
+#include <gmock/gmock.h>
+
+#include <mimetra/mesh/errors.h>
+#include "temporary_folder.h"
+
+namespace mimetra {
+namespace {
+
+namespace fs = std::filesystem;
+using test::message_of;
+using test::TemporaryFolder;
+using testing::ElementsAre;
+using testing::IsEmpty;
+using testing::StartsWith;
+using Kind = PendingOutput::Kind;
+
+TEST(PendingOutput, FileAppearsOnlyOnCommit) {
+  const TemporaryFolder folder;
+  PendingOutput output(folder / "out.txt", Kind::file, false);
+  write_bytes(output.path(), "whole");
+  EXPECT_FALSE(fs::exists(folder / "out.txt"));
+  output.commit();
+  EXPECT_EQ(read_file(folder / "out.txt"), "whole");
+  EXPECT_THAT(folder.names(), ElementsAre("out.txt"));
+}
+
+TEST(PendingOutput, TemporaryNameIsHiddenAndInTheSameFolder) {
+  const TemporaryFolder folder;
+  const PendingOutput output(folder / "out.txt", Kind::file, false);
+  EXPECT_EQ(output.path().parent_path(), folder.path());
+  EXPECT_THAT(output.path().filename().string(), StartsWith(".out.txt."));
+  EXPECT_EQ(output.path().extension(), ".tmp");
+}
+
+TEST(PendingOutput, RemovesWhatWasNotCommitted) {
+  const TemporaryFolder folder;
+  {
+    PendingOutput output(folder / "out", Kind::folder, false);
+    write_bytes(output.path() / "a", "half");
+  }
+  EXPECT_THAT(folder.names(), IsEmpty());
+}
+
+TEST(PendingOutput, RemovesParentsThatItCreatedForNothing) {
+  const TemporaryFolder folder;
+  { const PendingOutput output(folder / "a/b/out.txt", Kind::file, false); }
+  EXPECT_THAT(folder.names(), IsEmpty());
+}
+
+TEST(PendingOutput, KeepsParentsThatWereThere) {
+  const TemporaryFolder folder;
+  fs::create_directory(folder / "a");
+  { const PendingOutput output(folder / "a/b/out.txt", Kind::file, false); }
+  EXPECT_TRUE(fs::is_directory(folder / "a"));
+  EXPECT_FALSE(fs::exists(folder / "a/b"));
+}
+
+TEST(PendingOutput, TrailingSlashNamesTheSameFolder) {
+  const TemporaryFolder folder;
+  PendingOutput output(folder / "out/", Kind::folder, false);
+  output.commit();
+  EXPECT_THAT(folder.names(), ElementsAre("out"));
+}
+
+TEST(PendingOutput, RefusesAnExistingTarget) {
+  const TemporaryFolder folder;
+  write_bytes(folder / "out.txt", "old");
+  EXPECT_EQ(message_of<OutputError>([&] { PendingOutput(folder / "out.txt", Kind::file, false); }),
+            (folder / "out.txt").string() + ": exists already; use --force to replace it");
+  EXPECT_EQ(read_file(folder / "out.txt"), "old");
+}
+
+TEST(PendingOutput, RefusesATargetThatAppearedMeanwhile) {
+  const TemporaryFolder folder;
+  PendingOutput output(folder / "out.txt", Kind::file, false);
+  write_bytes(folder / "out.txt", "somebody else's");
+  EXPECT_THROW(output.commit(), OutputError);
+  EXPECT_EQ(read_file(folder / "out.txt"), "somebody else's");
+}
+
+TEST(PendingOutput, OverwritingReplacesAFolderAsAWhole) {
+  const TemporaryFolder folder;
+  fs::create_directory(folder / "out");
+  write_bytes(folder / "out/old", "old");
+  PendingOutput output(folder / "out", Kind::folder, true);
+  write_bytes(output.path() / "new", "new");
+  EXPECT_TRUE(fs::exists(folder / "out/old"));
+  output.commit();
+  EXPECT_THAT(folder.names(), ElementsAre("out"));
+  EXPECT_FALSE(fs::exists(folder / "out/old"));
+  EXPECT_TRUE(fs::exists(folder / "out/new"));
+}
+
+TEST(PendingOutput, NeverReplacesAFolderByAFileOrAFileByAFolder) {
+  const TemporaryFolder folder;
+  fs::create_directory(folder / "folder");
+  write_bytes(folder / "file", "");
+  EXPECT_THROW(PendingOutput(folder / "folder", Kind::file, true), OutputError);
+  EXPECT_THROW(PendingOutput(folder / "file", Kind::folder, true), OutputError);
+}
+
+TEST(PendingOutput, SaysWhatCannotBeWritten) {
+  const TemporaryFolder folder;
+  write_bytes(folder / "file", "");
+  EXPECT_THAT(
+      message_of<OutputError>([&] { PendingOutput(folder / "file/out", Kind::file, false); }),
+      StartsWith((folder / "file/out").string() + ": cannot be written"));
+}
+
+TEST(WriteFile, WritesAllBytes) {
+  const TemporaryFolder folder;
+  const std::string content("a\0b\r\n", 5);
+  write_file(folder / "out", content, false);
+  EXPECT_EQ(read_file(folder / "out"), content);
+}
+
+TEST(ReadFile, SaysWhetherAFileIsMissingOrAFolder) {
+  const TemporaryFolder folder;
+  EXPECT_EQ(message_of<IoError>([&] { read_file(folder / "none"); }),
+            (folder / "none").string() + ": no such file");
+  EXPECT_EQ(message_of<IoError>([&] { read_file(folder.path()); }),
+            folder.path().string() + ": is a folder, expected a file");
+}
+
+}  // namespace
+}  // namespace mimetra

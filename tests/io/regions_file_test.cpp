@@ -1,0 +1,107 @@
+#include <fstream>
+#include <limits>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <mimetra/io/regions_file.h>
+#include <mimetra/mesh/errors.h>
+
+#include "shapes.h"
+#include "temporary_folder.h"
+
+namespace mimetra {
+namespace {
+
+class RegionsFile : public testing::Test {
+ protected:
+  Regions read(const std::string& name, const std::string& content) {
+    std::ofstream(folder_ / name) << content;
+    return read_regions(folder_ / name, 20, shape_.triangles);
+  }
+  test::Shape shape_ = test::grid(5, 4);
+  test::TemporaryFolder folder_;
+};
+
+TEST_F(RegionsFile, JsonComesBackAfterWriting) {
+  Regions regions = regions_from_vertices(20, shape_.triangles, {{1, 2, 6}, {13, 14}});
+  regions.regions[0].center = 2;
+  regions.regions[0].radius = 1.25;
+  regions.regions[0].energy = 7.5;
+  regions.regions[1].radius = std::numeric_limits<double>::infinity();
+  regions.regions[1].energy_share = 0.375;
+  regions.energy_share = 0.875;
+  const Regions found = read("r.json", regions_json(regions));
+  ASSERT_EQ(found.regions.size(), 2u);
+  EXPECT_EQ(found.regions[0].vertices, regions.regions[0].vertices);
+  EXPECT_EQ(found.regions[0].center, 2);
+  EXPECT_EQ(found.regions[0].radius, 1.25);
+  EXPECT_EQ(found.regions[0].energy, 7.5);
+  EXPECT_EQ(found.regions[1].radius, std::numeric_limits<double>::infinity());
+  EXPECT_EQ(found.energy_share, 0.875);
+  EXPECT_EQ(found.regions[1].energy_share, 0.375);
+  EXPECT_EQ(found.triangles, regions.triangles);
+  EXPECT_EQ(found.regions[1].center, -1);
+}
+
+TEST_F(RegionsFile, CsvComesBackAfterWriting) {
+  const Regions regions = regions_from_vertices(20, shape_.triangles, {{1, 2, 6}, {13, 14}});
+  const Regions found = read("r.csv", regions_csv(regions));
+  ASSERT_EQ(found.regions.size(), 2u);
+  EXPECT_EQ(found.regions[1].vertices, regions.regions[1].vertices);
+}
+
+TEST_F(RegionsFile, TextIsAListOrAMask) {
+  EXPECT_EQ(read("a.txt", "3\n4\n9\n").regions[0].vertices, (std::vector<int>{3, 4, 9}));
+  std::string mask;
+  for (int v = 0; v < 20; ++v) mask += v == 7 || v == 8 ? "1\n" : "0\n";
+  EXPECT_EQ(read("m.txt", mask).regions[0].vertices, (std::vector<int>{7, 8}));
+}
+
+TEST_F(RegionsFile, VertexOutsideTheMeshIsAMismatchThatNamesIt) {
+  try {
+    read("a.txt", "3\n20\n");
+    FAIL();
+  } catch (const MismatchError& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("20"));
+    EXPECT_THAT(error.what(), testing::HasSubstr("a.txt"));
+  }
+}
+
+TEST_F(RegionsFile, VertexTooLargeForAnIndexIsAMismatch) {
+  // 2^32 + 1 would be vertex 1 where it is cut to 32 bits.
+  EXPECT_THROW(read("a.txt", "4294967297\n"), MismatchError);
+  EXPECT_THROW(read("b.csv", "vertex,region\n4294967297,0\n"), MismatchError);
+  EXPECT_THROW(read("c.json", "[[4294967297]]"), MismatchError);
+  EXPECT_THROW(read("d.json", "[[-1]]"), MismatchError);
+  EXPECT_THROW(read("e.json", R"({"regions": [{"center": 20, "vertices": [1]}]})"), MismatchError);
+}
+
+TEST_F(RegionsFile, OfAnotherMeshIsAMismatch) {
+  EXPECT_THROW(read("mask.txt", "1\n0\n0\n1\n"), MismatchError);
+  const Regions other = regions_from_vertices(12, test::grid(4, 3).triangles, {{1, 2}});
+  EXPECT_THROW(read("r.json", regions_json(other)), MismatchError);
+}
+
+TEST_F(RegionsFile, JsonMayBeListsAndTheyMayStandUnderRegions) {
+  EXPECT_EQ(read("a.json", "[[3, 4], [9]]").regions[1].vertices, (std::vector<int>{9}));
+  EXPECT_EQ(read("b.json", R"({"regions": [[3, 4]]})").regions[0].vertices,
+            (std::vector<int>{3, 4}));
+}
+
+TEST_F(RegionsFile, WhatIsNoRegionSetIsAnError) {
+  EXPECT_THROW(read("f.json", "[[1.5]]"), IoError);
+  EXPECT_THROW(read("g.json", "[3, 4]"), IoError);
+  EXPECT_THROW(read("h.csv", "vertex,region\n1,-1\n"), IoError);
+  EXPECT_THROW(read("i.csv", "vertex,region\n1,0,2\n"), IoError);
+  EXPECT_THROW(read("j.region", "1\n"), IoError);
+  EXPECT_THROW(read("a.json", "{}"), IoError);
+  EXPECT_THROW(read("b.json", "[[1,"), IoError);
+  EXPECT_THROW(read("c.csv", "a,b\n1,2\n"), IoError);
+  EXPECT_THROW(read("d.txt", ""), IoError);
+  EXPECT_THROW(read("e.txt", "one\n"), IoError);
+  EXPECT_THROW(read_regions(folder_ / "missing.json", 20, shape_.triangles), IoError);
+}
+
+}  // namespace
+}  // namespace mimetra

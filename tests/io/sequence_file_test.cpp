@@ -1,0 +1,397 @@
+#include <mimetra/io/sequence_file.h>
+
+#include <gmock/gmock.h>
+
+#include <mimetra/io/array_file.h>
+#include <mimetra/io/mesh_file.h>
+#include <mimetra/io/pending_output.h>
+#include "shapes.h"
+#include "shared_data.h"
+#include "temporary_folder.h"
+
+namespace mimetra {
+namespace {
+
+namespace fs = std::filesystem;
+using test::message_of;
+using test::TemporaryFolder;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+Positions pose(int frame) {
+  return test::octahedron().positions.array() / 3 + 0.1 * frame;
+}
+
+void write_frame(const fs::path& path, int frame) {
+  write_mesh(path, {pose(frame), test::mesh_of(test::octahedron()).connectivity},
+             {.double_precision = true});
+}
+
+MeshSequence octahedra(int frames, std::optional<Positions> rest = {}) {
+  Frames positions(frames, 18);
+  for (int frame = 0; frame < frames; ++frame) {
+    const Positions one = pose(frame);
+    positions.row(frame) = Eigen::Map<const Eigen::RowVectorXd>(one.data(), 18);
+  }
+  return {test::mesh_of(test::octahedron()).connectivity, positions, {}, std::move(rest)};
+}
+
+/// frame_1.obj to frame_12.obj.
+class TwelveFiles : public testing::Test {
+ protected:
+  TwelveFiles() {
+    for (int frame = 1; frame <= 12; ++frame) {
+      write_frame(folder_ / ("frame_" + std::to_string(frame) + ".obj"), frame);
+    }
+  }
+  std::string text() const { return folder_.path().string(); }
+
+  TemporaryFolder folder_;
+};
+
+TEST(NaturalLess, TwoComesBeforeTen) {
+  EXPECT_TRUE(natural_less("frame_2.obj", "frame_10.obj"));
+  EXPECT_FALSE(natural_less("frame_10.obj", "frame_2.obj"));
+  EXPECT_TRUE(natural_less("a9b1", "a10b0"));
+  EXPECT_TRUE(natural_less("a", "a1"));
+  EXPECT_TRUE(natural_less("1", "99999999999999999999999999999"));
+}
+
+TEST(NaturalLess, OrdersEqualNumbersOfDifferentLengthOneWay) {
+  EXPECT_NE(natural_less("f1", "f01"), natural_less("f01", "f1"));
+  EXPECT_FALSE(natural_less("f1", "f1"));
+  EXPECT_TRUE(natural_less("f01a", "f1b"));
+}
+
+TEST_F(TwelveFiles, AreReadFromTheirFolderInNaturalOrder) {
+  const SequenceRead read = read_sequence(text());
+  ASSERT_EQ(read.sequence.frames(), 12);
+  EXPECT_EQ(read.sequence.frame(1), pose(2));
+  EXPECT_EQ(read.sequence.frame(11), pose(12));
+  EXPECT_FALSE(read.sequence.rest_is_known());
+  EXPECT_FALSE(read.model_driven);
+}
+
+TEST_F(TwelveFiles, AreReadFromAGlob) {
+  EXPECT_EQ(read_sequence((folder_ / "frame_*.obj").string()).sequence.frame(11), pose(12));
+  EXPECT_EQ(read_sequence((folder_ / "frame_?.obj").string()).sequence.frames(), 9);
+}
+
+TEST_F(TwelveFiles, AreReadFromAPrintfPattern) {
+  EXPECT_EQ(read_sequence((folder_ / "frame_%d.obj").string()).sequence.frame(1), pose(2));
+  EXPECT_EQ(read_sequence((folder_ / "frame_%02d.obj").string()).sequence.frame(0), pose(10));
+}
+
+TEST_F(TwelveFiles, AreOneFrameEachByName) {
+  const SequenceRead read = read_sequence((folder_ / "frame_3.obj").string());
+  ASSERT_EQ(read.sequence.frames(), 1);
+  EXPECT_EQ(read.sequence.frame(0), pose(3));
+}
+
+TEST_F(TwelveFiles, OtherFilesInTheFolderAreNotFrames) {
+  write_bytes(folder_ / "mimetra-run.json", "{}");
+  write_bytes(folder_ / ".hidden.obj", "");
+  EXPECT_EQ(read_sequence(text()).sequence.frames(), 12);
+}
+
+TEST_F(TwelveFiles, AnotherFormatAmongThemIsAnErrorThatNamesBoth) {
+  write_frame(folder_ / "other.ply", 0);
+  const std::string message = message_of<IoError>([&] { read_sequence(text()); });
+  EXPECT_THAT(message, HasSubstr("frame_1.obj"));
+  EXPECT_THAT(message, HasSubstr("other.ply"));
+}
+
+TEST_F(TwelveFiles, FrameOfAnotherVertexCountIsNamedWithTheFirst) {
+  write_mesh(folder_ / "frame_7.obj", test::mesh_of(test::sphere(1)));
+  EXPECT_EQ(message_of<MismatchError>([&] { read_sequence(text()); }),
+            (folder_ / "frame_7.obj").string() + ": 18 vertices, expected 6 as in " +
+                (folder_ / "frame_1.obj").string());
+}
+
+TEST_F(TwelveFiles, FramesTakeAPartAndKeepItsTimes) {
+  const SequenceRead read = read_sequence(text(), {.frames = "2:9:3", .fps = 10});
+  ASSERT_EQ(read.sequence.frames(), 3);
+  EXPECT_EQ(read.sequence.frame(1), pose(6));
+  EXPECT_EQ(read.sequence.times(), Eigen::Vector3d(0.2, 0.5, 0.8));
+  EXPECT_EQ(read.files.size(), 3);
+}
+
+TEST_F(TwelveFiles, PartsOfARangeMayBeLeftOut) {
+  EXPECT_EQ(read_sequence(text(), {.frames = "10:"}).sequence.frames(), 2);
+  EXPECT_EQ(read_sequence(text(), {.frames = ":5"}).sequence.frames(), 5);
+  EXPECT_EQ(read_sequence(text(), {.frames = "::5"}).sequence.frames(), 3);
+}
+
+TEST_F(TwelveFiles, OnlyTheFramesAskedForAreRead) {
+  write_bytes(folder_ / "frame_12.obj", "broken");
+  EXPECT_EQ(read_sequence(text(), {.frames = "0:11"}).sequence.frames(), 11);
+  EXPECT_THROW(read_sequence(text()), IoError);
+}
+
+TEST_F(TwelveFiles, WhatIsNoRangeIsQuoted) {
+  for (const std::string range :
+       {"", "3", "a:b", "5:5", "6:2", "-1:3", "0:4:0", "0:4:1:1", "1.5:3"}) {
+    EXPECT_THAT(
+        message_of<std::invalid_argument>([&] { read_sequence(text(), {.frames = range}); }),
+        HasSubstr("frames '" + range + "': expected A:B:STEP"));
+  }
+}
+
+TEST_F(TwelveFiles, RangeBeyondTheEndNamesTheCount) {
+  EXPECT_THAT(message_of<MismatchError>([&] { read_sequence(text(), {.frames = "0:13"}); }),
+              HasSubstr("frames '0:13': the sequence has 12 frames"));
+  EXPECT_THROW(read_sequence(text(), {.frames = "12:"}), MismatchError);
+}
+
+TEST_F(TwelveFiles, WeightsCannotDriveThem) {
+  EXPECT_THAT(message_of<MismatchError>([&] { read_sequence(text(), {.weights = "w.csv"}); }),
+              HasSubstr("is no model that the weights of w.csv could drive"));
+}
+
+TEST_F(TwelveFiles, ReadingStopsWhenProgressSaysSo) {
+  int calls = 0;
+  EXPECT_THROW(read_sequence(text(), {.progress = [&](double) { return ++calls < 3; }}), Cancelled);
+  EXPECT_EQ(calls, 3);
+}
+
+TEST_F(TwelveFiles, TimesAreThirtyPerSecondWithoutInformation) {
+  EXPECT_EQ(read_sequence(text()).sequence.times()[3], 3 / 30.0);
+  EXPECT_THROW(read_sequence(text(), {.fps = 0}), std::invalid_argument);
+}
+
+TEST(ReadSequence, SaysWhatIsMissing) {
+  const TemporaryFolder folder;
+  EXPECT_EQ(message_of<IoError>([&] { read_sequence((folder / "none").string()); }),
+            (folder / "none").string() + ": no such file or folder");
+  EXPECT_THAT(message_of<IoError>([&] { read_sequence(folder.path().string()); }),
+              HasSubstr("holds no OBJ, PLY, OFF or STL file"));
+  EXPECT_THAT(message_of<IoError>([&] { read_sequence((folder / "*.obj").string()); }),
+              HasSubstr("matches no OBJ, PLY, OFF or STL file"));
+  EXPECT_THAT(message_of<IoError>([&] { read_sequence((folder / "f_%04d.obj").string()); }),
+              HasSubstr("matches no OBJ, PLY, OFF or STL file"));
+  write_bytes(folder / "a.txt", "");
+  EXPECT_THAT(message_of<IoError>([&] { read_sequence((folder / "a.txt").string()); }),
+              HasSubstr("a.txt: is no sequence; expected a folder"));
+}
+
+TEST(WriteSequence, ArrayComesBackBitByBitWithItsRestPose) {
+  const TemporaryFolder folder;
+  const MeshSequence sequence = octahedra(5, pose(-3));
+  const auto files = write_sequence(sequence, folder / "s.npy");
+  EXPECT_THAT(files,
+              ElementsAre(folder / "s.npy", folder / "s.topology.ply", folder / "s.rest.ply"));
+  const SequenceRead read = read_sequence((folder / "s.npy").string());
+  EXPECT_EQ(read.sequence.positions(), sequence.positions());
+  EXPECT_TRUE(read.sequence.rest_is_known());
+  EXPECT_EQ(read.sequence.rest(), pose(-3));
+  EXPECT_TRUE(same_faces(read.sequence.connectivity(), sequence.connectivity()));
+}
+
+TEST(WriteSequence, FolderComesBackBitByBitInDoublePrecision) {
+  for (const std::string format : {"ply", "obj", "off"}) {
+    const TemporaryFolder folder;
+    const MeshSequence sequence = octahedra(3, pose(-3));
+    write_sequence(sequence, folder / "s", {.format = format, .double_precision = true});
+    const SequenceRead read = read_sequence((folder / "s").string() + "/");
+    EXPECT_EQ(read.sequence.positions(), sequence.positions());
+    EXPECT_EQ(read.sequence.rest(), pose(-3));
+  }
+}
+
+TEST(WriteSequence, FolderHoldsNumberedFramesAndNothingElse) {
+  const TemporaryFolder folder;
+  write_sequence(octahedra(2), folder / "s", {}, {{"mimetra-run.json", "{}"}});
+  std::vector<std::string> names;
+  for (const auto& entry : fs::directory_iterator(folder / "s")) {
+    names.push_back(entry.path().filename().string());
+  }
+  EXPECT_THAT(
+      names, testing::UnorderedElementsAre("frame_0000.ply", "frame_0001.ply", "mimetra-run.json"));
+  EXPECT_THAT(folder.names(), ElementsAre("s"));
+}
+
+TEST(WriteSequence, RestPoseOfAFolderStandsBesideIt) {
+  const TemporaryFolder folder;
+  write_sequence(octahedra(2, pose(4)), folder / "s");
+  EXPECT_THAT(folder.names(), ElementsAre("s", "s.rest.ply"));
+}
+
+TEST(WriteSequence, FramesBeyondFourDigitsAreNumberedWithMore) {
+  const TemporaryFolder folder;
+  const MeshSequence sequence(Connectivity::from_polygons(3, {{0, 1, 2}, {0, 3}}),
+                              Frames::Zero(10001, 9));
+  const auto files = write_sequence(sequence, folder / "s");
+  EXPECT_EQ(files.front().filename(), "frame_00000.ply");
+  EXPECT_EQ(files.back().filename(), "frame_10000.ply");
+}
+
+TEST(WriteSequence, StlFolderComesBackWithTheVerticesOfItsFirstFrame) {
+  const TemporaryFolder folder;
+  write_sequence(octahedra(3, pose(1)), folder / "s", {.format = "stl"});
+  EXPECT_EQ(read_sequence((folder / "s").string(), {.frames = "1:3"}).sequence.vertices(), 6);
+}
+
+TEST(WriteSequence, OverwritingRemovesAStaleRestPose) {
+  for (const std::string name : {"s", "s.npy"}) {
+    const TemporaryFolder folder;
+    write_sequence(octahedra(2, pose(4)), folder / name);
+    write_sequence(octahedra(2), folder / name, {.overwrite = true});
+    EXPECT_FALSE(fs::exists(folder / "s.rest.ply"));
+    EXPECT_FALSE(read_sequence((folder / name).string()).sequence.rest_is_known());
+  }
+}
+
+TEST(WriteSequence, RefusesAnExistingTargetAndAForeignRestPose) {
+  const TemporaryFolder folder;
+  write_bytes(folder / "s.rest.ply", "somebody else's");
+  EXPECT_EQ(message_of<OutputError>([&] { write_sequence(octahedra(2), folder / "s.npy"); }),
+            (folder / "s.rest.ply").string() + ": exists already; use --force to replace it");
+  EXPECT_THAT(folder.names(), ElementsAre("s.rest.ply"));
+  fs::create_directory(folder / "t");
+  EXPECT_THROW(write_sequence(octahedra(2), folder / "t"), OutputError);
+}
+
+TEST(WriteSequence, LeavesNothingWhenCancelled) {
+  const TemporaryFolder folder;
+  EXPECT_THROW(write_sequence(octahedra(5, pose(1)), folder / "a/b/s",
+                              {.progress = [](double share) { return share < 0.5; }}),
+               Cancelled);
+  EXPECT_THAT(folder.names(), IsEmpty());
+  EXPECT_THROW(write_sequence(octahedra(5, pose(1)), folder / "a/b/s.npy",
+                              {.progress = [](double share) { return share < 0.5; }}),
+               Cancelled);
+  EXPECT_THAT(folder.names(), IsEmpty());
+}
+
+TEST(WriteSequence, OneFrameGoesIntoOneFileWithItsExtrasBeside) {
+  const TemporaryFolder folder;
+  write_sequence(octahedra(1), folder / "a.obj", {.double_precision = true},
+                 {{"a.run.json", "{}"}});
+  EXPECT_THAT(folder.names(), ElementsAre("a.obj", "a.run.json"));
+  EXPECT_EQ(read_mesh(folder / "a.obj").positions, pose(0));
+}
+
+TEST(WriteSequence, SeveralFramesDoNotFitIntoOneMeshFile) {
+  const TemporaryFolder folder;
+  EXPECT_THAT(message_of<MismatchError>([&] { write_sequence(octahedra(2), folder / "a.obj"); }),
+              HasSubstr("a.obj: one mesh file cannot hold 2 frames"));
+}
+
+TEST(WriteSequence, UnknownFormatIsNamed) {
+  const TemporaryFolder folder;
+  EXPECT_THAT(message_of<std::invalid_argument>(
+                  [&] { write_sequence(octahedra(2), folder / "a", {.format = "fbx"}); }),
+              HasSubstr("format 'fbx': expected ply, obj, off or stl"));
+}
+
+TEST(ReadArraySequence, WithoutFacesSaysHowToNameThem) {
+  const TemporaryFolder folder;
+  write_npy_frames(folder / "s.npy", octahedra(2).positions());
+  const std::string message =
+      message_of<IoError>([&] { read_sequence((folder / "s.npy").string()); });
+  EXPECT_THAT(message, HasSubstr("s.topology.ply"));
+  EXPECT_THAT(message, HasSubstr("--topology"));
+}
+
+TEST(ReadArraySequence, TakesFacesFromTheTopologyAndAPartOfTheFrames) {
+  const TemporaryFolder folder;
+  write_npy_frames(folder / "s.npy", octahedra(5).positions());
+  write_frame(folder / "faces.off", 0);
+  const SequenceRead read = read_sequence((folder / "s.npy").string(),
+                                          {.topology = folder / "faces.off", .frames = "1:4:2"});
+  ASSERT_EQ(read.sequence.frames(), 2);
+  EXPECT_EQ(read.sequence.frame(1), pose(3));
+  EXPECT_EQ(read.sequence.triangles().rows(), 8);
+}
+
+TEST(ReadArraySequence, OtherVertexCountOfTheTopologyIsNamed) {
+  const TemporaryFolder folder;
+  write_npy_frames(folder / "s.npy", octahedra(2).positions());
+  write_mesh(folder / "faces.off", test::mesh_of(test::sphere(1)));
+  EXPECT_EQ(message_of<MismatchError>([&] {
+              read_sequence((folder / "s.npy").string(), {.topology = folder / "faces.off"});
+            }),
+            (folder / "s.npy").string() + ": 6 vertices, expected 18 as in " +
+                (folder / "faces.off").string());
+}
+
+/// A model of a triangle with two expressions along x and y.
+class SmallModel : public testing::Test {
+ protected:
+  SmallModel() {
+    fs::create_directories(folder_ / "m/expressions");
+    write_bytes(folder_ / "m/neutral.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    write_bytes(folder_ / "m/expressions/jawOpen.obj", "v 0 0 0\nv 2 0 0\nv 0 1 0\nf 1 2 3\n");
+    write_bytes(folder_ / "m/expressions/pout.obj", "v 0 0 0\nv 1 0 0\nv 0 2 0\nf 1 2 3\n");
+  }
+  std::string text() const { return (folder_ / "m").string(); }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(SmallModel, WithoutWeightsIsItsNeutral) {
+  const SequenceRead read = read_sequence(text());
+  EXPECT_TRUE(read.model_driven);
+  EXPECT_TRUE(read.sequence.rest_is_known());
+  ASSERT_EQ(read.sequence.frames(), 1);
+  EXPECT_EQ(read.sequence.frame(0), read_mesh(folder_ / "m/neutral.obj").positions);
+}
+
+TEST_F(SmallModel, IsDrivenByWeightsWithTheirTimes) {
+  write_bytes(folder_ / "w.csv", "time,jawOpen,pout\n0,0,0\n0.5,0.25,0\n1.5,0,1\n");
+  const SequenceRead read = read_sequence(text(), {.weights = folder_ / "w.csv", .frames = "1:"});
+  ASSERT_EQ(read.sequence.frames(), 2);
+  EXPECT_EQ(read.sequence.frame(0)(1, 0), 1.25);
+  EXPECT_EQ(read.sequence.frame(1)(2, 1), 2);
+  EXPECT_EQ(read.sequence.times(), Eigen::Vector2d(0.5, 1.5));
+  EXPECT_TRUE(read.model_driven);
+  EXPECT_THAT(read.notes, IsEmpty());
+}
+
+TEST_F(SmallModel, TimesComeFromFramesPerSecondWhereTheTrackHasNone) {
+  write_bytes(folder_ / "w.csv", "jawOpen,pout\n0,0\n0.25,0\n");
+  const SequenceRead read = read_sequence(text(), {.weights = folder_ / "w.csv", .fps = 4});
+  EXPECT_EQ(read.sequence.times(), Eigen::Vector2d(0, 0.25));
+}
+
+TEST_F(SmallModel, NotesNameWhatWasNotMatched) {
+  std::string header = "jawOpen", row = "1";
+  for (int column = 1; column <= 10; ++column) {
+    header += ",other" + std::to_string(column);
+    row += ",0";
+  }
+  write_bytes(folder_ / "w.csv", header + "\n" + row + "\n");
+  const SequenceRead read = read_sequence(text(), {.weights = folder_ / "w.csv"});
+  ASSERT_EQ(read.notes.size(), 2);
+  EXPECT_THAT(read.notes[0], HasSubstr("columns that drive no expression: other1, other2"));
+  EXPECT_THAT(read.notes[0], HasSubstr("other8, and 2 more"));
+  EXPECT_THAT(read.notes[1], HasSubstr("expressions that no column drives: pout"));
+}
+
+TEST_F(SmallModel, PlainFolderCannotHaveAnIdentity) {
+  write_frame(folder_ / "a.obj", 0);
+  EXPECT_THROW(read_sequence((folder_ / "a.obj").string() + "@id=1"), IoError);
+}
+
+TEST(RealModel, FacecapPerformanceHasItsCounts) {
+  const fs::path folder = test::shared_path("data/facecap");
+  MIMETRA_SKIP_WITHOUT(folder);
+  const SequenceRead read =
+      read_sequence(folder.string(), {.weights = folder / "weights.csv", .frames = "0:335"});
+  EXPECT_EQ(read.sequence.frames(), 335);
+  EXPECT_EQ(read.sequence.vertices(), 2694);
+  EXPECT_EQ(read.sequence.triangles().rows(), 5032);
+}
+
+TEST(RealModel, IdentityMovesTheNeutral) {
+  const fs::path folder = test::shared_path("data/ict-face");
+  MIMETRA_SKIP_WITHOUT(folder);
+  const MeshSequence one = read_sequence(folder.string() + "@identity003=1.5").sequence;
+  EXPECT_EQ(one.vertices(), 6706);
+  EXPECT_EQ(one.connectivity().polygons.size(), 6560);
+  EXPECT_NE(one.rest(), read_mesh(folder / "neutral.obj").positions);
+}
+
+}  // namespace
+}  // namespace mimetra

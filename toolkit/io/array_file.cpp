@@ -1,0 +1,261 @@
+#include <mimetra/io/array_file.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <fstream>
+
+#include <mimetra/io/bytes.h>
+#include <mimetra/io/pending_output.h>
+#include <mimetra/mesh/errors.h>
+
+namespace mimetra {
+namespace {
+
+/// What stands before the values.
+struct NpyHeader {
+  std::endian order = std::endian::little;
+  char kind = 'f';  ///< f, i, u or b
+  std::size_t item_bytes = 8;
+  bool fortran_order = false;
+  std::vector<std::size_t> shape;
+  std::size_t data = 0;  ///< where the values start
+};
+
+/// The text of the header's dictionary. Versions 2 and 3 have a longer length field.
+std::string_view dictionary(const std::string& path, std::string_view bytes, std::size_t& data) {
+  constexpr std::string_view kMagic = "\x93NUMPY";
+  if (bytes.substr(0, kMagic.size()) != kMagic) throw IoError(path, "is no NumPy array");
+  const std::size_t version = bytes.size() > 6 ? static_cast<unsigned char>(bytes[6]) : 0;
+  const std::size_t length_bytes = version == 1 ? 2 : 4;
+  const std::size_t start = 8 + length_bytes;
+  if (bytes.size() < start) throw IoError(path, "is truncated in its header");
+  if (version < 1 || version > 3) {
+    throw IoError(path,
+                  "has NumPy format version " + std::to_string(version) + ", expected 1, 2 or 3");
+  }
+  const std::size_t length = version == 1
+                                 ? number_at<std::uint16_t>(bytes.data() + 8, std::endian::little)
+                                 : number_at<std::uint32_t>(bytes.data() + 8, std::endian::little);
+  if (bytes.size() - start < length) throw IoError(path, "is truncated in its header");
+  data = start + length;
+  return bytes.substr(start, length);
+}
+
+/// What follows `'key':` in a Python dictionary.
+std::string_view value_of(const std::string& path, std::string_view text, const std::string& key) {
+  for (const char quote : {'\'', '"'}) {
+    const std::size_t at = text.find(quote + key + quote);
+    const std::size_t colon = at == std::string_view::npos ? at : text.find(':', at);
+    const std::size_t value =
+        colon == std::string_view::npos ? colon : text.find_first_not_of(" \t\n", colon + 1);
+    if (value != std::string_view::npos) return text.substr(value);
+  }
+  throw IoError(path, "its header has no '" + key + "'");
+}
+
+void parse_type(const std::string& path, std::string_view text, NpyHeader& header) {
+  const std::string_view type =
+      text[0] == '\'' || text[0] == '"' ? text.substr(1, text.find(text[0], 1) - 1) : "";
+  const bool sound = type.size() == 3 && std::string_view("<>=|").find(type[0]) < 4 &&
+                     std::string_view("fiub").find(type[1]) < 4;
+  const std::size_t bytes = sound ? static_cast<std::size_t>(type[2] - '0') : 0;
+  const bool known = (bytes == 4 || bytes == 8) || (bytes == 2 && sound && type[1] != 'f') ||
+                     (bytes == 1 && sound && type[1] != 'f');
+  if (!known || (type[1] == 'b' && bytes != 1)) {
+    throw IoError(path, "has values of type " + std::string(text.substr(0, 20)) +
+                            ", expected float32, float64 or integers");
+  }
+  if (type[0] == '>') header.order = std::endian::big;
+  if (type[0] == '=') header.order = std::endian::native;
+  header.kind = type[1];
+  header.item_bytes = bytes;
+}
+
+void parse_shape(const std::string& path, std::string_view text, NpyHeader& header) {
+  const std::size_t end = text.find(')');
+  if (text[0] != '(' || end == std::string_view::npos) {
+    throw IoError(path, "its header has no shape");
+  }
+  for (std::string_view rest = text.substr(1, end - 1); !rest.empty();) {
+    const std::size_t comma = std::min(rest.find(','), rest.size());
+    const std::string_view field = rest.substr(0, comma);
+    rest.remove_prefix(std::min(comma + 1, rest.size()));
+    const std::size_t first = field.find_first_not_of(' ');
+    if (first == std::string_view::npos) continue;
+    std::size_t size = 0;
+    const auto [last, error] =
+        std::from_chars(field.data() + first, field.data() + field.size(), size);
+    if (error != std::errc() || field.find_first_not_of(' ', last - field.data()) < field.size()) {
+      throw IoError(path, "its shape is " + std::string(text.substr(0, end + 1)));
+    }
+    header.shape.push_back(size);
+  }
+}
+
+std::string shape_text(const std::vector<std::size_t>& shape) {
+  std::string text;
+  for (const std::size_t size : shape) text += (text.empty() ? "" : " x ") + std::to_string(size);
+  return text.empty() ? "a single number" : text;
+}
+
+/// Number of values, which the file holds: found before memory is asked for.
+std::size_t checked_count(const std::string& path, std::string_view bytes,
+                          const NpyHeader& header) {
+  const std::size_t held = (bytes.size() - header.data) / header.item_bytes;
+  std::size_t count = 1;
+  bool overflows = false;
+  for (const std::size_t size : header.shape) {
+    overflows = overflows || (size > 0 && count > held / size);
+    if (!overflows) count *= size;
+    if (size == 0) return 0;
+  }
+  if (overflows || count > held) {
+    throw IoError(path, "is truncated: " + std::to_string(held) + " values, expected " +
+                            shape_text(header.shape));
+  }
+  return count;
+}
+
+NpyHeader read_header(const std::string& path, std::string_view bytes) {
+  NpyHeader header;
+  const std::string_view text = dictionary(path, bytes, header.data);
+  parse_type(path, value_of(path, text, "descr"), header);
+  header.fortran_order = value_of(path, text, "fortran_order").substr(0, 4) == "True";
+  parse_shape(path, value_of(path, text, "shape"), header);
+  return header;
+}
+
+template <typename Stored>
+void decode(std::string_view bytes, const NpyHeader& header, std::vector<double>& values) {
+  const char* at = bytes.data() + header.data;
+  for (double& value : values) {
+    value = static_cast<double>(number_at<Stored>(at, header.order));
+    at += sizeof(Stored);
+  }
+}
+
+std::vector<double> decoded(std::string_view bytes, const NpyHeader& header, std::size_t count) {
+  std::vector<double> values(count);
+  const bool is_signed = header.kind == 'i';
+  if (header.kind == 'f') {
+    header.item_bytes == 4 ? decode<float>(bytes, header, values)
+                           : decode<double>(bytes, header, values);
+  } else if (header.item_bytes == 1) {
+    is_signed ? decode<std::int8_t>(bytes, header, values)
+              : decode<std::uint8_t>(bytes, header, values);
+  } else if (header.item_bytes == 2) {
+    is_signed ? decode<std::int16_t>(bytes, header, values)
+              : decode<std::uint16_t>(bytes, header, values);
+  } else if (header.item_bytes == 4) {
+    is_signed ? decode<std::int32_t>(bytes, header, values)
+              : decode<std::uint32_t>(bytes, header, values);
+  } else {
+    is_signed ? decode<std::int64_t>(bytes, header, values)
+              : decode<std::uint64_t>(bytes, header, values);
+  }
+  return values;
+}
+
+/// Fortran order has the first index fastest; here the last one is.
+std::vector<double> in_c_order(const std::vector<double>& values,
+                               const std::vector<std::size_t>& shape) {
+  std::vector<double> ordered(values.size());
+  std::vector<std::size_t> index(shape.size(), 0);
+  for (const double value : values) {
+    std::size_t place = 0;
+    for (std::size_t axis = 0; axis < shape.size(); ++axis) {
+      place = place * shape[axis] + index[axis];
+    }
+    ordered[place] = value;
+    for (std::size_t axis = 0; axis < shape.size() && ++index[axis] == shape[axis]; ++axis) {
+      index[axis] = 0;
+    }
+  }
+  return ordered;
+}
+
+NumericArray read_array(const std::string& path, std::string_view bytes, const NpyHeader& header) {
+  NumericArray array{header.shape, decoded(bytes, header, checked_count(path, bytes, header))};
+  if (header.fortran_order) array.values = in_c_order(array.values, array.shape);
+  return array;
+}
+
+void check_frames_header(const std::string& path, const NpyHeader& header) {
+  const std::size_t axes = header.shape.size();
+  if ((axes != 2 && axes != 3) || header.shape.back() != 3) {
+    throw IoError(path, "has shape " + shape_text(header.shape) +
+                            ", expected frames x vertices x 3 or vertices x 3");
+  }
+  if (header.kind != 'f') {
+    throw IoError(path, "holds integers, expected positions in float32 or float64");
+  }
+  for (const std::size_t size : header.shape) {
+    if (size == 0) throw IoError(path, "is empty: its shape is " + shape_text(header.shape));
+  }
+}
+
+void check_finite(const std::string& path, const Frames& frames) {
+  for (Eigen::Index frame = 0; frame < frames.rows(); ++frame) {
+    if (frames.row(frame).allFinite()) continue;
+    Eigen::Index column = 0;
+    while (std::isfinite(frames(frame, column))) ++column;
+    throw IoError(path, "frame " + std::to_string(frame) + ": vertex " +
+                            std::to_string(column / 3) + " has no finite position");
+  }
+}
+
+/// Version 1; padded so that the values start at a multiple of 64 bytes, as NumPy does.
+std::string header_bytes(const Frames& frames, bool single_precision) {
+  std::string text = std::string("{'descr': '<f") + (single_precision ? "4" : "8") +
+                     "', 'fortran_order': False, 'shape': (" + std::to_string(frames.rows()) +
+                     ", " + std::to_string(frames.cols() / 3) + ", 3), }";
+  constexpr std::size_t kBefore = 10, kAlignment = 64;
+  text.append((kAlignment - (kBefore + text.size() + 1) % kAlignment) % kAlignment, ' ');
+  text += '\n';
+  std::string bytes = "\x93NUMPY";
+  bytes.append({'\1', '\0'});
+  append_little_endian(bytes, static_cast<std::uint16_t>(text.size()));
+  return bytes + text;
+}
+
+}  // namespace
+
+Frames read_npy_frames(const std::filesystem::path& path) {
+  const std::string bytes = read_file(path);
+  const NpyHeader header = read_header(path.string(), bytes);
+  check_frames_header(path.string(), header);
+  const NumericArray array = read_array(path.string(), bytes, header);
+  const std::size_t rows = array.shape.size() == 3 ? array.shape[0] : 1;
+  Frames frames = Eigen::Map<const Frames>(array.values.data(), static_cast<Eigen::Index>(rows),
+                                           static_cast<Eigen::Index>(array.values.size() / rows));
+  check_finite(path.string(), frames);
+  return frames;
+}
+
+NumericArray read_npy(const std::filesystem::path& path) {
+  const std::string bytes = read_file(path);
+  return read_array(path.string(), bytes, read_header(path.string(), bytes));
+}
+
+void write_npy_frames(const std::filesystem::path& path, const Frames& frames,
+                      bool single_precision) {
+  std::ofstream file(path, std::ios::binary | std::ios::trunc);
+  file << header_bytes(frames, single_precision);
+  std::string row;  // one frame at a time, so that no second copy of them all is held
+  for (Eigen::Index frame = 0; frame < frames.rows(); ++frame) {
+    row.clear();
+    for (const double value : frames.row(frame)) {
+      if (single_precision) {
+        append_little_endian(row, static_cast<float>(value));
+      } else {
+        append_little_endian(row, value);
+      }
+    }
+    file.write(row.data(), static_cast<std::streamsize>(row.size()));
+  }
+  file.close();
+  if (!file) throw OutputError(path.string(), "cannot be written");
+}
+
+}  // namespace mimetra

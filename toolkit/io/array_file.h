@@ -1,0 +1,27 @@
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include <mimetra/mesh/mesh_sequence.h>
+
+namespace mimetra {
+
+/// Reads a NumPy array of shape F x N x 3, or N x 3 (one frame), float32 or float64, either byte
+/// order and either memory order, as F x 3N. Throws IoError.
+Frames read_npy_frames(const std::filesystem::path& path);
+
+/// Reads a NumPy array of any shape as its shape and its values in C order; integers become
+/// doubles. Throws IoError.
+struct NumericArray {
+  std::vector<std::size_t> shape;
+  std::vector<double> values;
+};
+NumericArray read_npy(const std::filesystem::path& path);
+
+/// Writes frames (F x 3N) as F x N x 3, float64, or float32 with `single_precision`. Throws
+/// OutputError. Not atomic: see PendingOutput.
+void write_npy_frames(const std::filesystem::path& path, const Frames& frames,
+                      bool single_precision = false);
+
+}  // namespace mimetra

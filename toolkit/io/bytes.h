@@ -1,0 +1,49 @@
+#pragma once
+
+#include <bit>
+#include <cstdint>
+#include <cstring>
+#include <string>
+#include <string_view>
+#include <type_traits>
+
+/// Numbers in files, in either byte order. Internal to the readers and writers.
+namespace mimetra {
+
+/// An unsigned integer of `bytes` bytes.
+template <std::size_t bytes>
+using UnsignedOf = std::conditional_t<
+    bytes == 1, std::uint8_t,
+    std::conditional_t<bytes == 2, std::uint16_t,
+                       std::conditional_t<bytes == 4, std::uint32_t, std::uint64_t>>>;
+
+template <typename Unsigned>
+Unsigned byte_swapped(Unsigned value) {
+  Unsigned swapped = 0;
+  for (std::size_t byte = 0; byte < sizeof(Unsigned); ++byte) {
+    swapped = static_cast<Unsigned>((static_cast<std::uint64_t>(swapped) << 8) |
+                                    ((value >> (8 * byte)) & 0xff));
+  }
+  return swapped;
+}
+
+/// The number that starts at `at`. \pre sizeof(Number) bytes are there
+template <typename Number>
+Number number_at(const char* at, std::endian order) {
+  UnsignedOf<sizeof(Number)> bits;
+  std::memcpy(&bits, at, sizeof bits);
+  if (order != std::endian::native) bits = byte_swapped(bits);
+  return std::bit_cast<Number>(bits);
+}
+
+/// Appends a number, least significant byte first.
+template <typename Number>
+void append_little_endian(std::string& bytes, Number value) {
+  auto bits = std::bit_cast<UnsignedOf<sizeof(Number)>>(value);
+  if (std::endian::native != std::endian::little) bits = byte_swapped(bits);
+  char raw[sizeof bits];
+  std::memcpy(raw, &bits, sizeof bits);
+  bytes.append(raw, sizeof bits);
+}
+
+}  // namespace mimetra

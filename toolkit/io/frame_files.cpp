@@ -1,0 +1,221 @@
+#include <mimetra/io/frame_files.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <stdexcept>
+#include <utility>
+
+#include <glob.h>
+
+#include <mimetra/io/mesh_file.h>
+#include <mimetra/io/sequence_file.h>
+#include <mimetra/mesh/errors.h>
+
+namespace mimetra {
+namespace fs = std::filesystem;
+namespace {
+
+bool is_digit(char c) {
+  return c >= '0' && c <= '9';
+}
+
+/// `%d`, `%4d` or `%04d` in a file's name.
+struct NumberField {
+  std::size_t begin;
+  std::size_t end;
+  std::size_t width;
+};
+
+std::optional<NumberField> number_field(const std::string& name) {
+  const std::size_t begin = name.find('%');
+  if (begin == std::string::npos) return std::nullopt;
+  std::size_t at = begin + 1;
+  std::size_t width = 0;
+  // No file name has more than 255 characters.
+  for (; at < name.size() && is_digit(name[at]) && width < 256; ++at) {
+    width = 10 * width + static_cast<std::size_t>(name[at] - '0');
+  }
+  if (at >= name.size() || name[at] != 'd') return std::nullopt;
+  return NumberField{begin, at + 1, width};
+}
+
+/// True where printf would write `name` for some number.
+bool matches(const std::string& name, const std::string& pattern, const NumberField& field) {
+  const std::string before = pattern.substr(0, field.begin);
+  const std::string after = pattern.substr(field.end);
+  if (name.size() <= before.size() + after.size() || !name.starts_with(before) ||
+      !name.ends_with(after)) {
+    return false;
+  }
+  const std::string digits = name.substr(before.size(), name.size() - before.size() - after.size());
+  const bool padded = digits.size() > 1 && digits[0] == '0';
+  return std::all_of(digits.begin(), digits.end(), is_digit) && digits.size() >= field.width &&
+         (!padded || digits.size() == field.width);
+}
+
+std::vector<fs::path> files_in(const fs::path& folder) {
+  std::vector<fs::path> files;
+  std::error_code error;
+  for (fs::directory_iterator entry(folder.empty() ? "." : folder, error), end;
+       !error && entry != end; entry.increment(error)) {
+    const bool hidden = entry->path().filename().string().starts_with('.');
+    if (!hidden && entry->is_regular_file()) files.push_back(folder / entry->path().filename());
+  }
+  if (error) throw IoError(folder.string(), "cannot be read: " + error.message());
+  return files;
+}
+
+std::vector<fs::path> files_of_printf(const fs::path& pattern, const NumberField& field) {
+  std::vector<fs::path> files;
+  if (!fs::is_directory(pattern.has_parent_path() ? pattern.parent_path() : ".")) return files;
+  for (const fs::path& file : files_in(pattern.parent_path())) {
+    if (matches(file.filename().string(), pattern.filename().string(), field)) {
+      files.push_back(file);
+    }
+  }
+  return files;
+}
+
+/// Brackets stand for themselves: people have them in names, and do not write character classes.
+std::vector<fs::path> files_of_glob(const std::string& pattern) {
+  std::string escaped;
+  for (const char c : pattern) escaped += c == '[' ? "[[]" : std::string(1, c);
+  std::vector<fs::path> files;
+  glob_t found = {};
+  if (glob(escaped.c_str(), GLOB_NOSORT, nullptr, &found) == 0) {
+    for (std::size_t i = 0; i < found.gl_pathc; ++i) {
+      if (fs::is_regular_file(found.gl_pathv[i])) files.emplace_back(found.gl_pathv[i]);
+    }
+  }
+  globfree(&found);
+  return files;
+}
+
+std::string lower_extension(const fs::path& path) {
+  std::string extension = path.extension().string();
+  for (char& c : extension) c = static_cast<char>(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c);
+  return extension;
+}
+
+/// Only mesh files, of one format, in natural order.
+std::vector<fs::path> sorted_frames(std::vector<fs::path> files, const std::string& name,
+                                    const std::string& where) {
+  std::erase_if(files,
+                [](const fs::path& file) { return !is_mesh_extension(file.extension().string()); });
+  if (files.empty()) throw IoError(name, where + " no OBJ, PLY, OFF or STL file");
+  std::sort(files.begin(), files.end(), [](const fs::path& a, const fs::path& b) {
+    return natural_less(a.string(), b.string());
+  });
+  for (const fs::path& file : files) {
+    if (lower_extension(file) == lower_extension(files[0])) continue;
+    throw IoError(name, where + " files of several formats, " + files[0].filename().string() +
+                            " and " + file.filename().string() +
+                            "; choose one with a pattern such as '*" +
+                            files[0].extension().string() + "'");
+  }
+  return files;
+}
+
+/// The run of digits at `at` without leading zeros; moves `at` behind it.
+std::string_view number_run(const std::string& text, std::size_t& at) {
+  while (at < text.size() && text[at] == '0') ++at;
+  const std::size_t first = at;
+  while (at < text.size() && is_digit(text[at])) ++at;
+  return std::string_view(text).substr(first, at - first);
+}
+
+struct FrameRange {
+  std::optional<int> first;
+  std::optional<int> last;
+  std::optional<int> step;
+};
+
+[[noreturn]] void throw_bad_range(const std::string& text) {
+  throw std::invalid_argument("frames '" + text +
+                              "': expected A:B:STEP with 0 <= A < B and STEP >= 1, such as 0:100, "
+                              "50: or ::2");
+}
+
+FrameRange parsed_range(const std::string& text) {
+  FrameRange range;
+  const std::array<std::optional<int>*, 3> parts = {&range.first, &range.last, &range.step};
+  std::size_t part = 0;
+  for (std::size_t at = 0; at <= text.size(); ++part) {
+    if (part == parts.size()) throw_bad_range(text);
+    const std::size_t colon = std::min(text.find(':', at), text.size());
+    if (colon > at) {
+      int value = 0;
+      const char* end = text.data() + colon;
+      const auto [last, error] = std::from_chars(text.data() + at, end, value);
+      if (error != std::errc() || last != end || value < 0) throw_bad_range(text);
+      *parts[part] = value;
+    }
+    at = colon + 1;
+  }
+  const bool empty = range.last && range.first.value_or(0) >= *range.last;
+  if (part < 2 || empty || range.step.value_or(1) < 1) throw_bad_range(text);
+  return range;
+}
+
+}  // namespace
+
+bool is_frame_pattern(const std::string& text) {
+  return text.find_first_of("*?") != std::string::npos ||
+         number_field(fs::path(text).filename().string()).has_value();
+}
+
+std::vector<fs::path> frames_of_pattern(const std::string& pattern) {
+  const auto field = number_field(fs::path(pattern).filename().string());
+  const bool is_glob = pattern.find_first_of("*?") != std::string::npos;
+  return sorted_frames(
+      is_glob || !field ? files_of_glob(pattern) : files_of_printf(pattern, *field), pattern,
+      "matches");
+}
+
+std::vector<fs::path> frames_of_folder(const fs::path& folder) {
+  return sorted_frames(files_in(folder), folder.string(), "holds");
+}
+
+std::vector<int> selected_frames(const std::optional<std::string>& range, int frames) {
+  const FrameRange asked = range ? parsed_range(*range) : FrameRange{};
+  const int first = asked.first.value_or(0), last = asked.last.value_or(frames);
+  if (last > frames || first >= frames) {
+    throw MismatchError("frames '" + range.value_or("") + "': the sequence has " +
+                        std::to_string(frames) + (frames == 1 ? " frame" : " frames"));
+  }
+  std::vector<int> selected;
+  const int step = asked.step.value_or(1);
+  for (long long frame = first; frame < last; frame += step) {
+    selected.push_back(static_cast<int>(frame));
+  }
+  return selected;
+}
+
+fs::path beside(const fs::path& sequence, const std::string& suffix) {
+  fs::path name = sequence.lexically_normal();
+  if (!name.has_filename()) name = name.parent_path();
+  if (lower_extension(name) == ".npy") name.replace_extension();
+  return name += suffix;
+}
+
+bool natural_less(const std::string& a, const std::string& b) {
+  std::size_t i = 0, j = 0;
+  while (i < a.size() && j < b.size()) {
+    if (is_digit(a[i]) && is_digit(b[j])) {
+      const std::string_view left = number_run(a, i), right = number_run(b, j);
+      if (left.size() != right.size()) return left.size() < right.size();
+      if (left != right) return left < right;
+    } else if (a[i] != b[j]) {
+      return static_cast<unsigned char>(a[i]) < static_cast<unsigned char>(b[j]);
+    } else {
+      ++i;
+      ++j;
+    }
+  }
+  const bool a_ends = i == a.size(), b_ends = j == b.size();
+  // "1" and "01" are equal numbers: any fixed order will do.
+  return a_ends && b_ends ? a < b : a_ends;
+}
+
+}  // namespace mimetra

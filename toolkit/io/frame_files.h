@@ -1,0 +1,28 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+/// Which files and which frames a sequence's name speaks of. Internal to sequence_file.h.
+namespace mimetra {
+
+/// True for text with `*`, `?` or `%04d` that names files only by way of a pattern.
+bool is_frame_pattern(const std::string& text);
+
+/// The mesh files that a glob or printf pattern matches, in natural order. Throws IoError where
+/// there is none or they are of several formats.
+std::vector<std::filesystem::path> frames_of_pattern(const std::string& pattern);
+
+/// The mesh files of a folder, hidden ones left out, in natural order. Throws as frames_of_pattern.
+std::vector<std::filesystem::path> frames_of_folder(const std::filesystem::path& folder);
+
+/// Indices of the frames that `range` ("A:B:STEP") takes of `frames`; all without one. Throws
+/// std::invalid_argument for what is no range, MismatchError for one beyond the last frame.
+std::vector<int> selected_frames(const std::optional<std::string>& range, int frames);
+
+/// `folder/NAME` + suffix for `folder/NAME`, `folder/NAME/` and `folder/NAME.npy`.
+std::filesystem::path beside(const std::filesystem::path& sequence, const std::string& suffix);
+
+}  // namespace mimetra

@@ -1,0 +1,252 @@
+#include <mimetra/io/mesh_file.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <charconv>
+#include <cmath>
+
+#include <mimetra/io/mesh_formats.h>
+#include <mimetra/io/pending_output.h>
+#include <mimetra/mesh/errors.h>
+#include <mimetra/mesh/weld.h>
+
+namespace mimetra {
+namespace fs = std::filesystem;
+namespace {
+
+std::string lower_case(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return text;
+}
+
+std::string extension_of(const fs::path& path) {
+  return lower_case(path.extension().string());
+}
+
+std::string unknown_extension(const std::string& extension) {
+  return (extension.empty() ? "has no extension" : "'" + extension + "' is no mesh format") +
+         std::string("; expected .obj, .ply, .off or .stl");
+}
+
+MeshContent read_content(const fs::path& path) {
+  const std::string extension = extension_of(path);
+  if (!is_mesh_extension(extension)) throw IoError(path.string(), unknown_extension(extension));
+  const std::string bytes = read_file(path);
+  if (extension == ".obj") return read_obj(path.string(), bytes);
+  if (extension == ".ply") return read_ply(path.string(), bytes);
+  return read_off(path.string(), bytes);
+}
+
+Positions positions_of(const std::vector<double>& coordinates) {
+  return Eigen::Map<const Positions>(coordinates.data(),
+                                     static_cast<Eigen::Index>(coordinates.size() / 3), 3);
+}
+
+void check_finite(const std::string& path, const std::vector<double>& coordinates,
+                  const std::string& element, int first_index) {
+  for (std::size_t i = 0; i < coordinates.size(); ++i) {
+    if (std::isfinite(coordinates[i])) continue;
+    throw IoError(path, element + " " +
+                            std::to_string(i / 3 + static_cast<std::size_t>(first_index)) +
+                            " has no finite position: " + "xyz"[i % 3] + " is " +
+                            std::to_string(coordinates[i]));
+  }
+}
+
+std::string face_name(const MeshContent& content, int face) {
+  std::string name = "face " + std::to_string(face + content.first_index);
+  if (!content.face_lines.empty()) {
+    name += " (line " + std::to_string(content.face_lines[face]) + ")";
+  }
+  return name;
+}
+
+void check_faces(const std::string& path, const MeshContent& content) {
+  const Polygons& polygons = content.polygons;
+  const auto vertices = static_cast<int>(content.coordinates.size() / 3);
+  if (polygons.size() == 0) throw IoError(path, "has no faces");
+  for (int face = 0; face < polygons.size(); ++face) {
+    const int first = polygons.offsets[face], last = polygons.offsets[face + 1];
+    if (last - first < 3) {
+      throw IoError(path, face_name(content, face) + " has " + std::to_string(last - first) +
+                              " corners, expected at least 3");
+    }
+    for (int corner = first; corner < last; ++corner) {
+      const int vertex = polygons.corners[corner];
+      if (vertex >= 0 && vertex < vertices) continue;
+      throw IoError(path, face_name(content, face) + " uses vertex " +
+                              std::to_string(vertex + content.first_index) + ", expected " +
+                              std::to_string(content.first_index) + " to " +
+                              std::to_string(vertices - 1 + content.first_index));
+    }
+  }
+}
+
+MeshContent read_checked(const fs::path& path) {
+  MeshContent content = read_content(path);
+  check_finite(path.string(), content.coordinates, "vertex", content.first_index);
+  check_faces(path.string(), content);
+  return content;
+}
+
+std::vector<double> read_checked_corners(const fs::path& path) {
+  std::vector<double> corners = read_stl_corners(path.string(), read_file(path));
+  if (corners.empty()) throw IoError(path.string(), "has no faces");
+  check_finite(path.string(), corners, "corner", 0);
+  return corners;
+}
+
+/// Vertices in the order in which the file first uses their place.
+TriMesh read_stl(const fs::path& path) {
+  const Positions corners = positions_of(read_checked_corners(path));
+  const Weld weld = Weld::exact(corners);
+  std::vector<int> vertex_of(weld.representative.size());
+  Positions positions(corners.rows() - weld.count, 3);
+  int vertices = 0;
+  for (std::size_t corner = 0; corner < vertex_of.size(); ++corner) {
+    const auto first = static_cast<std::size_t>(weld.representative[corner]);
+    if (first == corner) {
+      positions.row(vertices) = corners.row(static_cast<Eigen::Index>(corner));
+      vertex_of[corner] = vertices++;
+    } else {
+      vertex_of[corner] = vertex_of[first];
+    }
+  }
+  const Triangles triangles = Eigen::Map<const Triangles>(
+      vertex_of.data(), static_cast<Eigen::Index>(vertex_of.size() / 3), 3);
+  return {std::move(positions), Connectivity::from_triangles(vertices, triangles)};
+}
+
+[[noreturn]] void throw_mismatch(const fs::path& path, long long found, const std::string& what,
+                                 long long expected, const fs::path& expected_path) {
+  throw MismatchError(path.string() + ": " + std::to_string(found) + " " + what + ", expected " +
+                      std::to_string(expected) + " as in " + expected_path.string());
+}
+
+Positions gathered_corners(const fs::path& path, const Connectivity& expected,
+                           const fs::path& expected_path) {
+  const Positions corners = positions_of(read_checked_corners(path));
+  const Eigen::Index triangles = expected.triangles.rows();
+  if (corners.rows() != 3 * triangles) {
+    throw_mismatch(path, corners.rows() / 3, "triangles", triangles, expected_path);
+  }
+  Positions positions(expected.vertices, 3);
+  std::vector<char> known(static_cast<std::size_t>(expected.vertices), 0);
+  // Backwards, so that a vertex whose corners part has its first corner's place.
+  for (Eigen::Index corner = corners.rows() - 1; corner >= 0; --corner) {
+    const int vertex = expected.triangles(corner / 3, corner % 3);
+    positions.row(vertex) = corners.row(corner);
+    known[static_cast<std::size_t>(vertex)] = 1;
+  }
+  const auto missing = std::find(known.begin(), known.end(), 0);
+  if (missing != known.end()) {
+    throw MismatchError(path.string() + ": vertex " + std::to_string(missing - known.begin()) +
+                        " of " + expected_path.string() + " is in no triangle; STL has no place " +
+                        "for it");
+  }
+  return positions;
+}
+
+std::string corners_of(const Polygons& polygons, int face, int first_index) {
+  std::string text;
+  for (int corner = polygons.offsets[face]; corner < polygons.offsets[face + 1]; ++corner) {
+    text += (text.empty() ? "" : " ") + std::to_string(polygons.corners[corner] + first_index);
+  }
+  return text;
+}
+
+void check_same_faces(const fs::path& path, const MeshContent& content,
+                      const Connectivity& expected, const fs::path& expected_path) {
+  // Equal lists are the rule and need no triangulation.
+  if (content.polygons == expected.polygons) return;
+  if (content.polygons.size() != expected.polygons.size()) {
+    throw_mismatch(path, content.polygons.size(), "faces", expected.polygons.size(), expected_path);
+  }
+  const Connectivity found = Connectivity::from_polygons(expected.vertices, content.polygons);
+  const int face = first_different_face(found, expected);
+  if (face < 0) return;
+  throw MismatchError(path.string() + ": " + face_name(content, face) + " has the vertices " +
+                      corners_of(content.polygons, face, content.first_index) + ", expected " +
+                      corners_of(expected.polygons, face, content.first_index) + " as in " +
+                      expected_path.string());
+}
+
+std::string bytes_of_mesh(const std::string& extension, const PositionsView& positions,
+                          const Connectivity& connectivity, bool double_precision) {
+  if (extension == ".obj") return obj_bytes(positions, connectivity, double_precision);
+  if (extension == ".ply") return ply_bytes(positions, connectivity, double_precision);
+  if (extension == ".off") return off_bytes(positions, connectivity, double_precision);
+  return stl_bytes(positions, connectivity);
+}
+
+template <typename Number>
+void append_shortest(std::string& text, Number value) {
+  std::array<char, 32> digits;  // the longest double has 24 characters, the longest integer 20
+  const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr;
+  text.append(digits.data(), end);
+}
+
+}  // namespace
+
+TriMesh read_mesh(const fs::path& path) {
+  if (extension_of(path) == ".stl") return read_stl(path);
+  MeshContent content = read_checked(path);
+  TriMesh mesh{positions_of(content.coordinates), {}};
+  mesh.connectivity = Connectivity::from_polygons(static_cast<int>(mesh.positions.rows()),
+                                                  std::move(content.polygons));
+  if (!content.texture.coordinates.empty()) mesh.connectivity.texture = std::move(content.texture);
+  mesh.connectivity.groups = std::move(content.groups);
+  return mesh;
+}
+
+Positions read_positions(const fs::path& path, const Connectivity& expected,
+                         const fs::path& expected_path) {
+  if (extension_of(path) == ".stl") return gathered_corners(path, expected, expected_path);
+  const MeshContent content = read_checked(path);
+  const auto vertices = static_cast<long long>(content.coordinates.size() / 3);
+  if (vertices != expected.vertices) {
+    throw_mismatch(path, vertices, "vertices", expected.vertices, expected_path);
+  }
+  check_same_faces(path, content, expected, expected_path);
+  return positions_of(content.coordinates);
+}
+
+void write_mesh(const fs::path& path, const PositionsView& positions,
+                const Connectivity& connectivity, const MeshWriteOptions& options) {
+  const std::string extension =
+      options.extension.empty() ? extension_of(path) : lower_case(options.extension);
+  if (!is_mesh_extension(extension)) {
+    throw OutputError(path.string(), unknown_extension(extension));
+  }
+  if (positions.rows() != connectivity.vertices) {
+    throw std::invalid_argument(std::to_string(positions.rows()) + " positions, expected " +
+                                std::to_string(connectivity.vertices) + " as the faces have");
+  }
+  write_bytes(path, bytes_of_mesh(extension, positions, connectivity, options.double_precision));
+}
+
+void write_mesh(const fs::path& path, const TriMesh& mesh, const MeshWriteOptions& options) {
+  write_mesh(path, PositionsView(mesh.positions.data(), mesh.positions.rows(), 3),
+             mesh.connectivity, options);
+}
+
+bool is_mesh_extension(const std::string& extension) {
+  const std::string known = lower_case(extension);
+  return known == ".obj" || known == ".ply" || known == ".off" || known == ".stl";
+}
+
+void append_number(std::string& text, double value, bool double_precision) {
+  if (double_precision) {
+    append_shortest(text, value);
+  } else {
+    append_shortest(text, static_cast<float>(value));
+  }
+}
+
+void append_integer(std::string& text, long long value) {
+  append_shortest(text, value);
+}
+
+}  // namespace mimetra

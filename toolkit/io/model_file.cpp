@@ -1,0 +1,279 @@
+#include <mimetra/io/model_file.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+#include <nlohmann/json.hpp>
+
+#include <mimetra/io/eos.h>
+#include <mimetra/io/mesh_file.h>
+#include <mimetra/io/pending_output.h>
+#include <mimetra/io/sequence_file.h>
+
+namespace mimetra {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Regular files of a folder in natural order; none where it is not a folder.
+std::vector<fs::path> files_in(const fs::path& folder) {
+  std::vector<fs::path> files;
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(folder, error)) {
+    if (entry.is_regular_file() && !entry.path().filename().string().starts_with('.')) {
+      files.push_back(entry.path());
+    }
+  }
+  std::ranges::sort(files, [](const fs::path& a, const fs::path& b) {
+    return natural_less(a.filename().string(), b.filename().string());
+  });
+  return files;
+}
+
+/// The file of a folder whose name starts with `start` and ends with `end`.
+std::optional<fs::path> file_like(const fs::path& folder, const std::string& start,
+                                  const std::string& end) {
+  for (const fs::path& file : files_in(folder)) {
+    const std::string name = file.filename().string();
+    if (name.starts_with(start) && name.ends_with(end)) return file;
+  }
+  return {};
+}
+
+/// The shape model of an eos pair: by its usual name, else by what it starts with.
+std::optional<fs::path> eos_shape_of(const fs::path& folder) {
+  if (const auto usual = file_like(folder, "sfm_shape", ".bin")) return usual;
+  for (const fs::path& file : files_in(folder)) {
+    if (file.extension() == ".bin" && is_eos_shape(file)) return file;
+  }
+  return {};
+}
+
+std::optional<fs::path> eos_expressions_of(const fs::path& folder) {
+  return file_like(folder, "expression_blendshapes", ".bin");
+}
+
+std::optional<fs::path> neutral_of(const fs::path& folder) {
+  for (const fs::path& file : files_in(folder)) {
+    if (file.stem() == "neutral" && is_mesh_extension(file.extension().string())) return file;
+  }
+  return {};
+}
+
+/// Where the parts of a model are.
+struct Parts {
+  std::optional<fs::path> neutral;
+  std::optional<fs::path> shape;        // eos
+  std::optional<fs::path> expressions;  // a folder, or the blendshapes of eos
+  std::optional<fs::path> identities;
+};
+
+Parts parts_from_json(const fs::path& file) {
+  Parts parts;
+  try {
+    const auto json = nlohmann::json::parse(read_file(file));
+    const auto entry = [&](const char* name) -> std::optional<fs::path> {
+      if (!json.contains(name)) return {};
+      return file.parent_path() / json.at(name).get<std::string>();
+    };
+    parts = {entry("neutral"), entry("shape"), entry("expressions"), entry("identities")};
+  } catch (const nlohmann::json::exception& error) {
+    throw IoError(file.string(), std::string("expected a JSON object of paths: ") + error.what());
+  }
+  if (!parts.neutral && !parts.shape) {
+    throw IoError(file.string(), "names neither 'neutral' nor 'shape'");
+  }
+  return parts;
+}
+
+Parts parts_of(const fs::path& folder) {
+  if (fs::exists(folder / "model.json")) return parts_from_json(folder / "model.json");
+  Parts parts;
+  parts.neutral = neutral_of(folder);
+  if (parts.neutral) {
+    for (const char* name : {"expressions", "targets"}) {
+      if (!parts.expressions && fs::is_directory(folder / name)) parts.expressions = folder / name;
+    }
+    if (fs::is_directory(folder / "identities")) parts.identities = folder / "identities";
+  } else {
+    parts.shape = eos_shape_of(folder);
+    parts.expressions = eos_expressions_of(folder);
+  }
+  return parts;
+}
+
+/// Absolute shapes of a folder, minus the neutral.
+ShapeBasis read_shapes(const fs::path& folder, const TriMesh& neutral,
+                       const fs::path& neutral_path) {
+  ShapeBasis basis;
+  std::vector<Positions> fields;
+  for (const fs::path& file : files_in(folder)) {
+    if (!is_mesh_extension(file.extension().string())) continue;
+    fields.push_back(read_positions(file, neutral.connectivity, neutral_path) - neutral.positions);
+    basis.names.push_back(file.stem().string());
+  }
+  if (fields.empty()) throw IoError(folder.string(), "holds no .obj, .ply, .off or .stl file");
+  basis.displacements.resize(neutral.positions.size(), static_cast<Eigen::Index>(fields.size()));
+  for (std::size_t j = 0; j < fields.size(); ++j) {
+    basis.displacements.col(static_cast<Eigen::Index>(j)) =
+        Eigen::Map<const Eigen::VectorXd>(fields[j].data(), fields[j].size());
+  }
+  return basis;
+}
+
+ShapeBasis shapes_or_none(const std::optional<fs::path>& folder, const TriMesh& neutral,
+                          const fs::path& neutral_path) {
+  if (folder) return read_shapes(*folder, neutral, neutral_path);
+  return {{}, Eigen::MatrixXd(neutral.positions.size(), 0)};
+}
+
+double coefficient_of(const std::string& entry, const std::string& number) {
+  double value = 0;
+  const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), value);
+  if (number.empty() || error != std::errc() || end != number.data() + number.size() ||
+      !std::isfinite(value)) {
+    throw std::invalid_argument("'" + entry + "': expected NAME=NUMBER as in identity003=1.5");
+  }
+  return value;
+}
+
+/// A name becomes a file's name: it must stay in its folder, and be found there again.
+void check_shape_name(const std::string& name) {
+  if (!name.empty() && name.front() != '.' && name.find('/') == std::string::npos) return;
+  throw OutputError(name + ".ply",
+                    "a shape of this name cannot be stored as a file; a name must not "
+                    "be empty, start with '.' or hold '/'");
+}
+
+void write_shapes(const fs::path& folder, const ShapeBasis& basis, const MorphableModel& model) {
+  if (basis.size() == 0) return;
+  std::ranges::for_each(basis.names, check_shape_name);
+  fs::create_directory(folder);
+  for (int j = 0; j < basis.size(); ++j) {
+    const Eigen::VectorXd field = basis.displacements.col(j);
+    const Positions shape =
+        model.mean() + Eigen::Map<const Positions>(field.data(), model.vertices(), 3);
+    write_mesh(folder / (basis.names[static_cast<std::size_t>(j)] + ".ply"),
+               PositionsView(shape.data(), shape.rows(), 3), model.connectivity(),
+               {.double_precision = true});
+  }
+}
+
+}  // namespace
+
+ModelSpec ModelSpec::parse(const std::string& text) {
+  ModelSpec spec;
+  const auto slash = text.find_last_of('/');
+  const auto at = text.find_last_of('@');
+  std::error_code unreadable;
+  if (at == std::string::npos || (slash != std::string::npos && at < slash) ||
+      fs::exists(text, unreadable)) {
+    spec.path = text;
+    return spec;
+  }
+  spec.path = text.substr(0, at);
+  spec.identity_text = text.substr(at + 1);
+  if (spec.identity_text.ends_with(".json")) {
+    throw std::invalid_argument(
+        "'" + text +
+        "': this version does not take coefficients from a file; write them "
+        "as NAME=NUMBER,...");
+  }
+  std::string rest = spec.identity_text + ',';
+  for (auto comma = rest.find(','); comma != std::string::npos; comma = rest.find(',')) {
+    const std::string entry = rest.substr(0, comma);
+    rest.erase(0, comma + 1);
+    const auto equals = entry.find('=');
+    if (equals == std::string::npos || equals == 0) {
+      throw std::invalid_argument("'" + entry + "': expected NAME=NUMBER as in identity003=1.5");
+    }
+    const std::string name = entry.substr(0, equals);
+    const auto is_given = [&](const auto& given) { return given.first == name; };
+    if (std::ranges::any_of(spec.identity, is_given)) {
+      throw std::invalid_argument("'" + text + "': '" + name + "' is given twice");
+    }
+    spec.identity.emplace_back(name, coefficient_of(entry, entry.substr(equals + 1)));
+  }
+  return spec;
+}
+
+std::string ModelSpec::name() const {
+  // "." and "ict-face/" are named after their folder too.
+  fs::path last = fs::absolute(path).lexically_normal();
+  if (!last.has_filename()) last = last.parent_path();
+  std::error_code unreadable;
+  const std::string stem =
+      fs::is_directory(path, unreadable) ? last.filename().string() : last.stem().string();
+  return identity_text.empty() ? stem : stem + '@' + identity_text;
+}
+
+MorphableModel read_model(const fs::path& path) {
+  std::error_code unreadable;
+  if (!fs::exists(path, unreadable)) throw IoError(path.string(), "does not exist");
+  const Parts parts = parts_of(path);
+  if (parts.shape) {
+    if (!parts.expressions) {
+      throw IoError(path.string(), "holds an eos shape model but no expression_blendshapes_*.bin");
+    }
+    return read_eos(*parts.shape, *parts.expressions);
+  }
+  if (!parts.neutral) {
+    throw IoError(path.string(),
+                  "is no model: expected neutral.* with expressions/ or targets/, a model.json, or "
+                  "the eos pair sfm_shape_*.bin and expression_blendshapes_*.bin");
+  }
+  TriMesh neutral = read_mesh(*parts.neutral);
+  ShapeBasis expressions = shapes_or_none(parts.expressions, neutral, *parts.neutral);
+  ShapeBasis identities = shapes_or_none(parts.identities, neutral, *parts.neutral);
+  auto connectivity = std::make_shared<Connectivity>(std::move(neutral.connectivity));
+  try {
+    return MorphableModel(std::move(connectivity), std::move(neutral.positions),
+                          std::move(identities), std::move(expressions));
+  } catch (const std::invalid_argument& error) {
+    // smile.obj beside smile.ply: two shapes of one name.
+    throw IoError(path.string(), error.what());
+  }
+}
+
+BlendshapeModel read_person(const ModelSpec& spec) {
+  const MorphableModel model = read_model(spec.path);
+  Eigen::VectorXd alpha = Eigen::VectorXd::Zero(model.identities().size());
+  for (const auto& [name, coefficient] : spec.identity) {
+    const int index = model.identities().find(name);
+    if (index < 0) {
+      const auto& known = model.identities().names;
+      throw MismatchError(spec.path.string() + ": no identity '" + name + "'; " +
+                          (known.empty()
+                               ? "the model has none"
+                               : "there are " + std::to_string(known.size()) + ", from '" +
+                                     known.front() + "' to '" + known.back() + "'"));
+    }
+    alpha[index] = coefficient;
+  }
+  return model.person(alpha);
+}
+
+bool is_model(const fs::path& path) {
+  std::error_code unreadable;
+  if (!fs::is_directory(path, unreadable)) return false;
+  return fs::exists(path / "model.json", unreadable) || neutral_of(path).has_value() ||
+         (eos_expressions_of(path) && eos_shape_of(path));
+}
+
+void write_model(const fs::path& folder, const MorphableModel& model,
+                 const std::optional<WeightTrack>& performance, bool overwrite,
+                 const std::vector<std::pair<std::string, std::string>>& extra) {
+  PendingOutput pending(folder, PendingOutput::Kind::folder, overwrite);
+  write_mesh(pending.path() / "neutral.ply",
+             PositionsView(model.mean().data(), model.mean().rows(), 3), model.connectivity(),
+             {.double_precision = true});
+  write_shapes(pending.path() / "expressions", model.expressions(), model);
+  write_shapes(pending.path() / "identities", model.identities(), model);
+  if (performance) write_weights(pending.path() / "performance.csv", *performance, false);
+  for (const auto& [name, content] : extra) write_bytes(pending.path() / name, content);
+  pending.commit();
+}
+
+}  // namespace mimetra

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <mimetra/io/weight_track.h>
+#include <mimetra/model/morphable_model.h>
+
+namespace mimetra {
+
+/// A model directory or file, and the identity asked for: `MODEL@identity003=1.5,identity007=-1`.
+struct ModelSpec {
+  std::filesystem::path path;
+  std::vector<std::pair<std::string, double>> identity;
+  /// Everything after '@', as given; for naming outputs.
+  std::string identity_text;
+
+  /// The '@' counts after the last '/', and only where nothing has the whole text as its name.
+  /// Throws std::invalid_argument for what is not NAME=NUMBER after it, and a name given twice.
+  static ModelSpec parse(const std::string& text);
+  /// `ict-face@identity007=2`, without folders; a file without its extension.
+  std::string name() const;
+};
+
+/// Reads a directory with `neutral.*` and `targets/` or `expressions/`, and optionally
+/// `identities/` (absolute shapes, their neutral subtracted on reading; the file's stem is the
+/// name), or a `model.json` that names them (`neutral`, `expressions`, `identities`, or `shape` for
+/// an eos model file with `expressions` its eos blendshape file), or the eos pair `sfm_shape_*.bin`
+/// (or another .bin that starts like one) and `expression_blendshapes_*.bin`. Shapes come in the
+/// natural order of their names. Throws IoError; MismatchError where shapes differ in
+/// topology.
+MorphableModel read_model(const std::filesystem::path& path);
+
+/// The person a spec speaks of. Throws as read_model; MismatchError for an unknown identity name.
+BlendshapeModel read_person(const ModelSpec& spec);
+
+/// True for a directory that looks like something read_model reads; a file is no model.
+bool is_model(const std::filesystem::path& path);
+
+/// Writes a model directory: neutral.ply, expressions/NAME.ply, identities/NAME.ply (absolute
+/// shapes, double precision), and `performance.csv` when there is a track. `extra` are further
+/// files (name, content) that appear in the folder together with them. Atomic. Throws OutputError,
+/// also for a name that cannot be a file's.
+void write_model(const std::filesystem::path& folder, const MorphableModel& model,
+                 const std::optional<WeightTrack>& performance, bool overwrite,
+                 const std::vector<std::pair<std::string, std::string>>& extra = {});
+
+}  // namespace mimetra

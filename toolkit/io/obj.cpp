@@ -1,0 +1,154 @@
+#include <climits>
+
+#include <mimetra/io/mesh_formats.h>
+#include <mimetra/io/text_cursor.h>
+
+namespace mimetra {
+namespace {
+
+/// 0-based index of one that counts from 1, or from the end where it is negative.
+int resolved(const TextCursor& cursor, std::string_view digits, std::size_t so_far,
+             const char* what) {
+  const long long index = cursor.integer(digits, what);
+  if (index == 0) cursor.fail(std::string("index 0 for ") + what + ", expected 1 or more");
+  const long long from_zero = index > 0 ? index - 1 : static_cast<long long>(so_far) + index;
+  if (from_zero < 0 || from_zero > INT_MAX) {
+    cursor.fail("index " + std::to_string(index) + " for " + what + ", found " +
+                std::to_string(so_far) + " of them so far");
+  }
+  return static_cast<int>(from_zero);
+}
+
+class ObjReader {
+ public:
+  ObjReader(const std::string& path, std::string_view bytes)
+      : cursor_(path, bytes, {.comments = true, .continuations = true}) {
+    content_.first_index = 1;
+  }
+
+  MeshContent read() {
+    for (; !cursor_.at_end(); cursor_.next_line()) {
+      const std::string_view keyword = cursor_.word();
+      if (keyword == "v") {
+        read_vertex();
+      } else if (keyword == "vt") {
+        read_texture_coordinates();
+      } else if (keyword == "f") {
+        read_face();
+      } else if (keyword == "g" || keyword == "o" || keyword == "usemtl" || keyword == "s") {
+        read_group(keyword);
+      }
+    }
+    check_texture();
+    return std::move(content_);
+  }
+
+ private:
+  void read_vertex() {
+    for (int axis = 0; axis < 3; ++axis) {
+      content_.coordinates.push_back(cursor_.number(cursor_.word(), "a vertex coordinate"));
+    }
+  }
+
+  void read_texture_coordinates() {
+    const double u = cursor_.number(cursor_.word(), "a texture coordinate");
+    const std::string_view second = cursor_.word();
+    const double v = second.empty() ? 0 : cursor_.number(second, "a texture coordinate");
+    content_.texture.coordinates.emplace_back(u, v);
+  }
+
+  /// Corners are v, v/vt, v//vn or v/vt/vn.
+  void read_face() {
+    content_.face_lines.push_back(cursor_.line());
+    auto& corners = content_.polygons.corners;
+    auto& texture = content_.texture.corners;
+    for (std::string_view corner = cursor_.word(); !corner.empty(); corner = cursor_.word()) {
+      const std::size_t slash = corner.find('/');
+      corners.push_back(
+          resolved(cursor_, corner.substr(0, slash), content_.coordinates.size() / 3, "a vertex"));
+      const std::string_view rest =
+          slash == std::string_view::npos ? std::string_view() : corner.substr(slash + 1);
+      const std::string_view vt = rest.substr(0, rest.find('/'));
+      texture.push_back(vt.empty() ? -1
+                                   : resolved(cursor_, vt, content_.texture.coordinates.size(),
+                                              "a texture coordinate"));
+    }
+    content_.polygons.offsets.push_back(static_cast<int>(corners.size()));
+  }
+
+  void read_group(std::string_view keyword) {
+    std::string statement(keyword);
+    for (std::string_view name = cursor_.word(); !name.empty(); name = cursor_.word()) {
+      statement.append(" ").append(name);
+    }
+    content_.groups.push_back({content_.polygons.size(), std::move(statement)});
+  }
+
+  /// Indices may point forward, so that their upper bound is known only at the end.
+  void check_texture() const {
+    const auto count = static_cast<int>(content_.texture.coordinates.size());
+    std::size_t corner = 0;
+    for (int face = 0; face < content_.polygons.size(); ++face) {
+      for (; static_cast<int>(corner) < content_.polygons.offsets[face + 1]; ++corner) {
+        if (content_.texture.corners[corner] < count) continue;
+        cursor_.fail("the face of line " + std::to_string(content_.face_lines[face]) +
+                     " uses texture coordinate " +
+                     std::to_string(content_.texture.corners[corner] + 1) + ", expected 1 to " +
+                     std::to_string(count));
+      }
+    }
+  }
+
+  TextCursor cursor_;
+  MeshContent content_;
+};
+
+void append_face(std::string& text, const Connectivity& connectivity, int face) {
+  const Polygons& polygons = connectivity.polygons;
+  const bool textured = !connectivity.texture.corners.empty();
+  text += 'f';
+  for (int corner = polygons.offsets[face]; corner < polygons.offsets[face + 1]; ++corner) {
+    text += ' ';
+    append_integer(text, polygons.corners[corner] + 1);
+    if (!textured || connectivity.texture.corners[corner] < 0) continue;
+    text += '/';
+    append_integer(text, connectivity.texture.corners[corner] + 1);
+  }
+  text += '\n';
+}
+
+}  // namespace
+
+MeshContent read_obj(const std::string& path, std::string_view bytes) {
+  return ObjReader(path, bytes).read();
+}
+
+std::string obj_bytes(const PositionsView& positions, const Connectivity& connectivity,
+                      bool double_precision) {
+  std::string text;
+  for (Eigen::Index vertex = 0; vertex < positions.rows(); ++vertex) {
+    text += 'v';
+    for (int axis = 0; axis < 3; ++axis) {
+      text += ' ';
+      append_number(text, positions(vertex, axis), double_precision);
+    }
+    text += '\n';
+  }
+  for (const Eigen::Vector2d& uv : connectivity.texture.coordinates) {
+    text += "vt ";
+    append_number(text, uv.x(), double_precision);
+    text += ' ';
+    append_number(text, uv.y(), double_precision);
+    text += '\n';
+  }
+  auto group = connectivity.groups.begin();
+  for (int face = 0; face <= connectivity.polygons.size(); ++face) {
+    for (; group != connectivity.groups.end() && group->first_face <= face; ++group) {
+      text.append(group->statement).append("\n");
+    }
+    if (face < connectivity.polygons.size()) append_face(text, connectivity, face);
+  }
+  return text;
+}
+
+}  // namespace mimetra

@@ -1,0 +1,91 @@
+#include <climits>
+
+#include <mimetra/io/mesh_formats.h>
+#include <mimetra/io/text_cursor.h>
+
+namespace mimetra {
+namespace {
+
+/// OFF with any of the prefixes that only add columns after a vertex's position: ST (texture), C
+/// (colour), N (normal).
+void read_keyword(TextCursor& cursor) {
+  const std::string_view keyword = cursor.word_anywhere();
+  const bool known =
+      keyword.size() >= 3 && keyword.substr(keyword.size() - 3) == "OFF" &&
+      keyword.substr(0, keyword.size() - 3).find_first_not_of("STCN") == std::string_view::npos;
+  if (!known) cursor.fail("expected OFF, COFF or NOFF, found another keyword");
+}
+
+/// A count that the rest of the file can hold: each element takes at least `bytes_each`.
+int read_count(TextCursor& cursor, const char* what, std::size_t bytes_each) {
+  const long long count = cursor.integer(cursor.word_anywhere(), what);
+  const std::size_t room = cursor.left() / bytes_each + 1;
+  if (count < 0 || count > INT_MAX || static_cast<std::size_t>(count) > room) {
+    cursor.fail(std::string(what) + " is " + std::to_string(count) + ", but only " +
+                std::to_string(cursor.left()) + " bytes follow");
+  }
+  return static_cast<int>(count);
+}
+
+void read_face(TextCursor& cursor, MeshContent& content) {
+  const long long corners = cursor.integer(cursor.word_anywhere(), "a face's corner count");
+  content.face_lines.push_back(cursor.line());
+  for (long long corner = 0; corner < corners; ++corner) {
+    const long long vertex = cursor.integer(cursor.word(), "a face's vertex");
+    // What does not fit an int is out of range in any case.
+    content.polygons.corners.push_back(vertex < 0 || vertex > INT_MAX ? -1
+                                                                      : static_cast<int>(vertex));
+  }
+  content.polygons.offsets.push_back(static_cast<int>(content.polygons.corners.size()));
+}
+
+}  // namespace
+
+MeshContent read_off(const std::string& path, std::string_view bytes) {
+  TextCursor cursor(path, bytes, {.comments = true});
+  read_keyword(cursor);
+  const std::size_t kVertexBytes = 6;  // "0 0 0" and the line's end
+  const std::size_t kFaceBytes = 2;    // "0" and the line's end
+  const int vertices = read_count(cursor, "the number of vertices", kVertexBytes);
+  const int faces = read_count(cursor, "the number of faces", kFaceBytes);
+  cursor.next_line();  // the number of edges, which nobody uses and some leave out
+
+  MeshContent content;
+  content.coordinates.reserve(3 * static_cast<std::size_t>(vertices));
+  for (int vertex = 0; vertex < vertices; ++vertex) {
+    content.coordinates.push_back(cursor.number(cursor.word_anywhere(), "a vertex coordinate"));
+    content.coordinates.push_back(cursor.number(cursor.word(), "a vertex coordinate"));
+    content.coordinates.push_back(cursor.number(cursor.word(), "a vertex coordinate"));
+    cursor.next_line();
+  }
+  for (int face = 0; face < faces; ++face) {
+    read_face(cursor, content);
+    cursor.next_line();
+  }
+  return content;
+}
+
+std::string off_bytes(const PositionsView& positions, const Connectivity& connectivity,
+                      bool double_precision) {
+  const Polygons& polygons = connectivity.polygons;
+  std::string text =
+      "OFF\n" + std::to_string(positions.rows()) + " " + std::to_string(polygons.size()) + " 0\n";
+  for (Eigen::Index vertex = 0; vertex < positions.rows(); ++vertex) {
+    for (int axis = 0; axis < 3; ++axis) {
+      if (axis > 0) text += ' ';
+      append_number(text, positions(vertex, axis), double_precision);
+    }
+    text += '\n';
+  }
+  for (int face = 0; face < polygons.size(); ++face) {
+    append_integer(text, polygons.offsets[face + 1] - polygons.offsets[face]);
+    for (int corner = polygons.offsets[face]; corner < polygons.offsets[face + 1]; ++corner) {
+      text += ' ';
+      append_integer(text, polygons.corners[corner]);
+    }
+    text += '\n';
+  }
+  return text;
+}
+
+}  // namespace mimetra

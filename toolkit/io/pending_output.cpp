@@ -1,0 +1,183 @@
+#include <mimetra/io/pending_output.h>
+
+#include <atomic>
+#include <cerrno>
+#include <fstream>
+#include <system_error>
+
+#include <unistd.h>
+
+#include <mimetra/mesh/errors.h>
+
+namespace mimetra {
+namespace fs = std::filesystem;
+namespace {
+
+/// "out/" and "out" are one target; only the second has a name to build the temporary one from.
+fs::path without_trailing_slash(fs::path path) {
+  path = path.lexically_normal();
+  return path.has_filename() ? path : path.parent_path();
+}
+
+/// Unique among the processes and threads that write here.
+fs::path temporary_beside(const fs::path& target) {
+  static std::atomic<int> counter = 0;
+  return target.parent_path() / ("." + target.filename().string() + "." + std::to_string(getpid()) +
+                                 "-" + std::to_string(counter++) + ".tmp");
+}
+
+std::string cannot_write(const std::error_code& error) {
+  return "cannot be written: " + error.message();
+}
+
+std::error_code last_error() {
+  return {errno, std::generic_category()};
+}
+
+void rename_or_throw(const fs::path& from, const fs::path& to, const fs::path& target) {
+  std::error_code error;
+  fs::rename(from, to, error);
+  if (error) throw OutputError(target.string(), cannot_write(error));
+}
+
+}  // namespace
+
+PendingOutput::PendingOutput(fs::path target, Kind kind, bool overwrite)
+    : target_(without_trailing_slash(std::move(target))),
+      temporary_(temporary_beside(target_)),
+      kind_(kind),
+      overwrite_(overwrite) {
+  check_target();
+  try {
+    create_parents();
+    create_temporary();
+  } catch (...) {
+    discard();
+    throw;
+  }
+}
+
+PendingOutput::~PendingOutput() {
+  if (!committed_) discard();
+}
+
+void PendingOutput::check_target() const {
+  std::error_code error;
+  const fs::file_status status = fs::status(target_, error);
+  if (!target_.has_filename()) {
+    throw OutputError(target_.string(), "cannot be written: it names no file");
+  }
+  if (!fs::exists(status)) return;
+  if (!overwrite_) {
+    throw OutputError(target_.string(), "exists already; use --force to replace it");
+  }
+  if (kind_ == Kind::folder && !fs::is_directory(status)) {
+    throw OutputError(target_.string(), "exists and is no folder; remove it first");
+  }
+  // Renaming onto a device such as /dev/null would replace the device.
+  if (kind_ == Kind::file && !fs::is_regular_file(status)) {
+    throw OutputError(target_.string(), "exists and is no ordinary file; choose another name");
+  }
+}
+
+void PendingOutput::create_parents() {
+  std::vector<fs::path> missing;
+  for (fs::path parent = target_.parent_path(); !parent.empty() && !fs::exists(parent);
+       parent = parent.parent_path()) {
+    missing.insert(missing.begin(), parent);
+  }
+  for (const fs::path& parent : missing) {
+    std::error_code error;
+    if (fs::create_directory(parent, error)) created_parents_.push_back(parent);
+    if (error) throw OutputError(target_.string(), cannot_write(error));
+  }
+}
+
+void PendingOutput::create_temporary() {
+  std::error_code error;
+  if (kind_ == Kind::folder) {
+    fs::create_directory(temporary_, error);
+  } else if (!std::ofstream(temporary_, std::ios::binary)) {
+    error = last_error();
+  }
+  if (error) throw OutputError(target_.string(), cannot_write(error));
+}
+
+void PendingOutput::commit() {
+  std::error_code ignored;
+  const bool exists = fs::exists(target_, ignored);
+  if (exists && !overwrite_) {
+    throw OutputError(target_.string(), "exists already; use --force to replace it");
+  }
+  if (exists && kind_ == Kind::folder) {
+    replace_folder();
+  } else {
+    rename_or_throw(temporary_, target_, target_);
+  }
+  committed_ = true;
+}
+
+/// A folder with content cannot be renamed over: the old one steps aside and comes back if the new
+/// one cannot take its place.
+void PendingOutput::replace_folder() {
+  const fs::path aside = temporary_beside(target_);
+  rename_or_throw(target_, aside, target_);
+  try {
+    rename_or_throw(temporary_, target_, target_);
+  } catch (const OutputError&) {
+    std::error_code ignored;
+    fs::rename(aside, target_, ignored);
+    throw;
+  }
+  std::error_code ignored;
+  fs::remove_all(aside, ignored);
+}
+
+void PendingOutput::discard() {
+  std::error_code ignored;
+  fs::remove_all(temporary_, ignored);
+  // Removing fails, as it should, where somebody else has put something.
+  for (auto parent = created_parents_.rbegin(); parent != created_parents_.rend(); ++parent) {
+    fs::remove(*parent, ignored);
+  }
+}
+
+void write_file(const fs::path& target, std::string_view content, bool overwrite) {
+  PendingOutput output(target, PendingOutput::Kind::file, overwrite);
+  write_bytes(output.path(), content);
+  output.commit();
+}
+
+void write_bytes(const fs::path& path, std::string_view content) {
+  std::ofstream file(path, std::ios::binary | std::ios::trunc);
+  file.write(content.data(), static_cast<std::streamsize>(content.size()));
+  file.close();
+  if (!file) throw OutputError(path.string(), cannot_write(last_error()));
+}
+
+std::string read_file(const fs::path& path) {
+  std::error_code error;
+  const fs::file_status status = fs::status(path, error);
+  if (status.type() == fs::file_type::not_found) {
+    throw IoError(path.string(), "no such file");
+  }
+  if (fs::is_directory(status)) {
+    throw IoError(path.string(), "is a folder, expected a file");
+  }
+  std::ifstream file(path, std::ios::binary);
+  if (!file) throw IoError(path.string(), "cannot be read: " + last_error().message());
+  // A pipe has no size: it is read to its end, whatever the size says.
+  std::string content;
+  if (fs::is_regular_file(status)) content.reserve(fs::file_size(path, error));
+  constexpr std::size_t kBlock = 1 << 20;
+  while (file) {
+    const std::size_t size = content.size();
+    content.resize(size + kBlock);
+    file.read(content.data() + size, kBlock);
+    content.resize(size + static_cast<std::size_t>(file.gcount()));
+  }
+  if (file.bad()) throw IoError(path.string(), "cannot be read: " + last_error().message());
+  return content;
+}
+
+}  // namespace mimetra

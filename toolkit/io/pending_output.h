@@ -1,0 +1,57 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace mimetra {
+
+/// A file or folder that appears under its name only when it is whole.
+///
+/// What is written goes to `path()`, a temporary name in the same folder; `commit()` renames it. A
+/// process that dies before leaves nothing under the name asked for, and a destroyed object that
+/// was not committed removes what it wrote.
+class PendingOutput {
+ public:
+  enum class Kind { file, folder };
+
+  /// Creates missing parent folders, and the temporary file or folder itself. Throws OutputError
+  /// where `target` exists and not `overwrite`, or nothing can be written there.
+  PendingOutput(std::filesystem::path target, Kind kind, bool overwrite);
+  ~PendingOutput();
+  PendingOutput(const PendingOutput&) = delete;
+  PendingOutput& operator=(const PendingOutput&) = delete;
+
+  /// A hidden name without the target's extension: a writer that chooses its format by extension
+  /// has to be told.
+  const std::filesystem::path& path() const { return temporary_; }
+  /// Renames into place. Throws OutputError.
+  void commit();
+
+ private:
+  void check_target() const;
+  void create_parents();
+  void create_temporary();
+  void replace_folder();
+  void discard();
+
+  std::filesystem::path target_;
+  std::filesystem::path temporary_;
+  /// Parents that were missing, outermost first.
+  std::vector<std::filesystem::path> created_parents_;
+  Kind kind_;
+  bool overwrite_;
+  bool committed_ = false;
+};
+
+/// Writes `content` to `target` by way of a PendingOutput. Throws OutputError.
+void write_file(const std::filesystem::path& target, std::string_view content, bool overwrite);
+
+/// Writes `content` to `path` itself, replacing what is there. Not atomic. Throws OutputError.
+void write_bytes(const std::filesystem::path& path, std::string_view content);
+
+/// The bytes of a file. Throws IoError that says whether it is missing, a folder or unreadable.
+std::string read_file(const std::filesystem::path& path);
+
+}  // namespace mimetra

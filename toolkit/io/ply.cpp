@@ -1,0 +1,210 @@
+#include <algorithm>
+#include <array>
+#include <climits>
+#include <cmath>
+#include <utility>
+
+#include <mimetra/io/bytes.h>
+#include <mimetra/io/mesh_formats.h>
+#include <mimetra/io/ply_header.h>
+#include <mimetra/io/text_cursor.h>
+#include <mimetra/mesh/errors.h>
+
+namespace mimetra {
+namespace {
+
+/// The numbers after the header, whatever they are written in.
+class PlyBody {
+ public:
+  PlyBody(const std::string& path, std::string_view bytes, const PlyHeader& header)
+      : path_(path),
+        format_(header.format),
+        data_(bytes.substr(header.bytes)),
+        text_(path, data_, {}, header.lines + 1) {}
+
+  std::size_t left() const { return format_ == PlyFormat::ascii ? text_.left() : data_.size(); }
+
+  /// The least number of bytes that a value takes: in text a digit and a blank.
+  std::size_t least_bytes(PlyType type) const {
+    return format_ == PlyFormat::ascii ? 2 : bytes_of(type);
+  }
+
+  double value(PlyType type) {
+    if (format_ == PlyFormat::ascii) return text_.number(text_.word_anywhere(), kind_);
+    const std::size_t size = bytes_of(type);
+    if (data_.size() < size) fail("the file ends here");
+    const double result = decoded(type, data_.data());
+    data_.remove_prefix(size);
+    return result;
+  }
+
+  /// What is read next, for messages: "face 12". `kind` must outlive the reading.
+  void set_element(std::string_view kind, std::size_t index) {
+    kind_ = kind;
+    index_ = index;
+  }
+
+  [[noreturn]] void fail(const std::string& message) const {
+    throw IoError(path_, std::string(kind_) + " " + std::to_string(index_) + ": " + message);
+  }
+  /// For what is wrong with an element's declaration.
+  [[noreturn]] void fail(const PlyElement& element, const std::string& message) const {
+    throw IoError(path_, "element " + element.name + ": " + message);
+  }
+
+ private:
+  double decoded(PlyType type, const char* at) const {
+    const std::endian order =
+        format_ == PlyFormat::big_endian ? std::endian::big : std::endian::little;
+    switch (type) {
+      case PlyType::int8:
+        return number_at<std::int8_t>(at, order);
+      case PlyType::uint8:
+        return number_at<std::uint8_t>(at, order);
+      case PlyType::int16:
+        return number_at<std::int16_t>(at, order);
+      case PlyType::uint16:
+        return number_at<std::uint16_t>(at, order);
+      case PlyType::int32:
+        return number_at<std::int32_t>(at, order);
+      case PlyType::uint32:
+        return number_at<std::uint32_t>(at, order);
+      case PlyType::float32:
+        return number_at<float>(at, order);
+      case PlyType::float64:
+        return number_at<double>(at, order);
+    }
+    return 0;
+  }
+
+  const std::string& path_;
+  PlyFormat format_;
+  std::string_view data_;
+  TextCursor text_;
+  std::string_view kind_;
+  std::size_t index_ = 0;
+};
+
+/// A header that promises more than the file holds is found before memory is asked for.
+void check_room(const PlyBody& body, const PlyElement& element) {
+  std::size_t each = 0;
+  for (const PlyProperty& property : element.properties) {
+    each += body.least_bytes(property.is_list ? property.count_type : property.type);
+  }
+  // The last number of a text needs no blank after it.
+  if (each > 0 && element.count > (body.left() + 1) / each) {
+    body.fail(element, std::to_string(element.count) + " expected, but only " +
+                           std::to_string(body.left()) + " bytes follow");
+  }
+}
+
+std::size_t list_length(PlyBody& body, const PlyProperty& property) {
+  const double length = body.value(property.count_type);
+  const double room =
+      static_cast<double>(body.left() + 1) / static_cast<double>(body.least_bytes(property.type));
+  // The negation refuses a text's "nan" too.
+  if (!(length >= 0 && length <= room)) {
+    body.fail("a list of " + std::to_string(length) + " numbers, but only " +
+              std::to_string(body.left()) + " bytes follow");
+  }
+  return static_cast<std::size_t>(length);
+}
+
+void skip(PlyBody& body, const PlyProperty& property) {
+  const std::size_t values = property.is_list ? list_length(body, property) : 1;
+  for (std::size_t i = 0; i < values; ++i) body.value(property.type);
+}
+
+void skip_element(PlyBody& body, const PlyElement& element) {
+  if (element.properties.empty()) return;
+  for (std::size_t i = 0; i < element.count; ++i) {
+    body.set_element(element.name, i);
+    for (const PlyProperty& property : element.properties) skip(body, property);
+  }
+}
+
+/// Axis of each property, or -1.
+std::vector<int> axes_of(const PlyBody& body, const PlyElement& element) {
+  std::vector<int> axes;
+  std::array<int, 3> found = {0, 0, 0};
+  for (const PlyProperty& property : element.properties) {
+    const std::size_t axis = std::string_view("xyz").find(property.name);
+    const bool is_axis = property.name.size() == 1 && axis < 3 && !property.is_list;
+    axes.push_back(is_axis ? static_cast<int>(axis) : -1);
+    if (is_axis) ++found[axis];
+  }
+  if (found != std::array<int, 3>{1, 1, 1}) {
+    body.fail(element, "expected the properties x, y and z once each");
+  }
+  return axes;
+}
+
+void read_vertices(PlyBody& body, const PlyElement& element, MeshContent& content) {
+  const std::vector<int> axes = axes_of(body, element);
+  content.coordinates.resize(3 * element.count);
+  for (std::size_t vertex = 0; vertex < element.count; ++vertex) {
+    body.set_element("vertex", vertex);
+    for (std::size_t i = 0; i < axes.size(); ++i) {
+      if (axes[i] < 0) {
+        skip(body, element.properties[i]);
+      } else {
+        content.coordinates[3 * vertex + static_cast<std::size_t>(axes[i])] =
+            body.value(element.properties[i].type);
+      }
+    }
+  }
+}
+
+void read_corners(PlyBody& body, const PlyProperty& property, Polygons& polygons) {
+  const std::size_t corners = list_length(body, property);
+  for (std::size_t i = 0; i < corners; ++i) {
+    const double vertex = body.value(property.type);
+    // What is no int is out of range in any case.
+    const bool fits = vertex >= 0 && vertex <= INT_MAX && vertex == std::floor(vertex);
+    if (!fits) body.fail("vertex index " + std::to_string(vertex) + ", expected 0 or more");
+    polygons.corners.push_back(static_cast<int>(vertex));
+  }
+  polygons.offsets.push_back(static_cast<int>(polygons.corners.size()));
+}
+
+bool lists_vertices(const PlyProperty& property) {
+  return property.is_list && (property.name == "vertex_indices" || property.name == "vertex_index");
+}
+
+void read_faces(PlyBody& body, const PlyElement& element, MeshContent& content) {
+  if (std::count_if(element.properties.begin(), element.properties.end(), lists_vertices) != 1) {
+    body.fail(element, "expected one list named vertex_indices or vertex_index");
+  }
+  for (std::size_t face = 0; face < element.count; ++face) {
+    body.set_element("face", face);
+    for (const PlyProperty& property : element.properties) {
+      if (lists_vertices(property)) {
+        read_corners(body, property, content.polygons);
+      } else {
+        skip(body, property);
+      }
+    }
+  }
+}
+
+}  // namespace
+
+MeshContent read_ply(const std::string& path, std::string_view bytes) {
+  const PlyHeader header = read_ply_header(path, bytes);
+  PlyBody body(path, bytes, header);
+  MeshContent content;
+  bool has_vertices = false, has_faces = false;
+  for (const PlyElement& element : header.elements) {
+    check_room(body, element);
+    if (element.name == "vertex" && !std::exchange(has_vertices, true)) {
+      read_vertices(body, element, content);
+    } else if (element.name == "face" && !std::exchange(has_faces, true)) {
+      read_faces(body, element, content);
+    } else {
+      skip_element(body, element);
+    }
+  }
+  return content;
+}
+
+}  // namespace mimetra

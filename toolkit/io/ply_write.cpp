@@ -1,0 +1,64 @@
+#include <mimetra/io/bytes.h>
+#include <mimetra/io/mesh_formats.h>
+
+namespace mimetra {
+namespace {
+
+/// A byte counts the corners, as every reader expects, unless some polygon has too many.
+bool bytes_suffice(const Polygons& polygons) {
+  for (int face = 0; face < polygons.size(); ++face) {
+    if (polygons.offsets[face + 1] - polygons.offsets[face] > 255) return false;
+  }
+  return true;
+}
+
+std::string header(const PositionsView& positions, const Polygons& polygons,
+                   bool double_precision) {
+  const std::string scalar = double_precision ? "double" : "float";
+  return "ply\nformat binary_little_endian 1.0\nelement vertex " +
+         std::to_string(positions.rows()) + "\nproperty " + scalar + " x\nproperty " + scalar +
+         " y\nproperty " + scalar + " z\nelement face " + std::to_string(polygons.size()) +
+         "\nproperty list " + (bytes_suffice(polygons) ? "uchar" : "uint") +
+         " int vertex_indices\nend_header\n";
+}
+
+template <typename Scalar>
+void append_positions(std::string& bytes, const PositionsView& positions) {
+  for (Eigen::Index vertex = 0; vertex < positions.rows(); ++vertex) {
+    for (int axis = 0; axis < 3; ++axis) {
+      append_little_endian(bytes, static_cast<Scalar>(positions(vertex, axis)));
+    }
+  }
+}
+
+template <typename Count>
+void append_faces(std::string& bytes, const Polygons& polygons) {
+  for (int face = 0; face < polygons.size(); ++face) {
+    const int first = polygons.offsets[face], last = polygons.offsets[face + 1];
+    append_little_endian(bytes, static_cast<Count>(last - first));
+    for (int corner = first; corner < last; ++corner) {
+      append_little_endian(bytes, static_cast<std::int32_t>(polygons.corners[corner]));
+    }
+  }
+}
+
+}  // namespace
+
+std::string ply_bytes(const PositionsView& positions, const Connectivity& connectivity,
+                      bool double_precision) {
+  const Polygons& polygons = connectivity.polygons;
+  std::string bytes = header(positions, polygons, double_precision);
+  if (double_precision) {
+    append_positions<double>(bytes, positions);
+  } else {
+    append_positions<float>(bytes, positions);
+  }
+  if (bytes_suffice(polygons)) {
+    append_faces<std::uint8_t>(bytes, polygons);
+  } else {
+    append_faces<std::uint32_t>(bytes, polygons);
+  }
+  return bytes;
+}
+
+}  // namespace mimetra

@@ -1,0 +1,180 @@
+#include <mimetra/io/regions_file.h>
+
+#include <algorithm>
+#include <limits>
+#include <map>
+
+#include <nlohmann/json.hpp>
+
+#include <mimetra/io/pending_output.h>
+#include <mimetra/io/text_cursor.h>
+
+namespace mimetra {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+using Lists = std::vector<std::vector<VertexIndex>>;
+
+/// A vertex of a mesh of `vertices`. Checked before it is narrowed: 2^32 is not vertex 0.
+VertexIndex vertex_of(const std::string& path, long long number, int vertices) {
+  if (number >= 0 && number < vertices) return static_cast<VertexIndex>(number);
+  throw MismatchError(path + ": vertex " + std::to_string(number) +
+                      "; the mesh has vertices 0 to " + std::to_string(vertices - 1));
+}
+
+std::vector<VertexIndex> vertices_of(const std::string& path, const Json& entry, int vertices) {
+  const Json& list = entry.is_object() ? entry.at("vertices") : entry;
+  if (!list.is_array()) throw IoError(path, "expected a list of vertices, found " + list.dump());
+  std::vector<VertexIndex> result;
+  for (const Json& number : list) {
+    if (!number.is_number_integer()) {
+      throw IoError(path, "expected a vertex index, found " + number.dump());
+    }
+    result.push_back(vertex_of(path, number.get<long long>(), vertices));
+  }
+  return result;
+}
+
+/// JSON has no infinity: the radius of a region that holds unreachable vertices is null.
+double radius_of(const Json& entry) {
+  if (!entry.contains("radius")) return 0;
+  const Json& radius = entry.at("radius");
+  return radius.is_null() ? std::numeric_limits<double>::infinity() : radius.get<double>();
+}
+
+void read_details(const std::string& path, const Json& entry, int vertices, Region& region) {
+  if (!entry.is_object()) return;
+  const auto center = entry.value("center", -1LL);
+  if (center != -1) region.center = vertex_of(path, center, vertices);
+  region.component = entry.value("component", region.component);
+  region.radius = radius_of(entry);
+  region.energy = entry.value("energy", region.energy);
+  region.energy_share = entry.value("energy_share", region.energy_share);
+}
+
+/// Regions of another mesh would fit by chance where their vertices are few.
+void check_mesh(const std::string& path, const Json& json, int vertices) {
+  const auto stated = json.value("mesh_vertices", static_cast<long long>(vertices));
+  if (stated == vertices) return;
+  throw MismatchError(path + ": regions of a mesh of " + std::to_string(stated) +
+                      " vertices, expected " + std::to_string(vertices));
+}
+
+Regions read_json(const std::string& path, const std::string& text, int vertices,
+                  const Triangles& triangles) {
+  try {
+    const Json json = Json::parse(text);
+    if (json.is_object()) check_mesh(path, json, vertices);
+    const Json& entries = json.is_object() ? json.at("regions") : json;
+    if (!entries.is_array()) throw IoError(path, "expected a list of regions");
+    Lists lists;
+    for (const Json& entry : entries) lists.push_back(vertices_of(path, entry, vertices));
+    if (lists.empty()) throw IoError(path, "holds no region");
+    Regions regions = regions_from_vertices(vertices, triangles, lists);
+    for (std::size_t k = 0; k < lists.size(); ++k) {
+      read_details(path, entries[k], vertices, regions.regions[k]);
+    }
+    if (json.is_object()) regions.energy_share = json.value("energy_share", regions.energy_share);
+    return regions;
+  } catch (const Json::exception& error) {
+    throw IoError(path,
+                  std::string("expected {\"regions\": [{\"vertices\": [...]}]}: ") + error.what());
+  }
+}
+
+Lists read_csv(const std::string& path, std::string text, int vertices) {
+  std::ranges::replace(text, ',', ' ');
+  TextCursor cursor(path, text, {.comments = true});
+  if (cursor.word() != "vertex" || cursor.word() != "region" || !cursor.word().empty()) {
+    cursor.fail("expected the columns vertex,region");
+  }
+  std::map<long long, std::vector<VertexIndex>> lists;
+  for (auto word = cursor.word_anywhere(); !word.empty(); word = cursor.word_anywhere()) {
+    const auto vertex = cursor.integer(word, "a vertex");
+    const auto region = cursor.integer(cursor.word(), "a region");
+    if (region < 0) cursor.fail("regions are numbered from 0, found " + std::to_string(region));
+    if (!cursor.word().empty()) cursor.fail("expected two columns, vertex,region");
+    lists[region].push_back(vertex_of(path, vertex, vertices));
+  }
+  if (lists.empty()) throw IoError(path, "holds no region");
+  Lists result;
+  for (auto& [region, list] : lists) result.push_back(std::move(list));
+  return result;
+}
+
+bool is_mask(const std::vector<long long>& numbers) {
+  // A list of vertices holds 0 and 1 once each at most.
+  return numbers.size() > 2 &&
+         std::ranges::all_of(numbers, [](long long value) { return value == 0 || value == 1; });
+}
+
+/// One vertex a line, or a mask of N zeros and ones.
+Lists read_list(const std::string& path, const std::string& text, int vertices) {
+  TextCursor cursor(path, text, {.comments = true});
+  std::vector<long long> numbers;
+  for (auto word = cursor.word_anywhere(); !word.empty(); word = cursor.word_anywhere()) {
+    numbers.push_back(cursor.integer(word, "a vertex"));
+  }
+  if (numbers.empty()) throw IoError(path, "holds no vertex");
+  std::vector<VertexIndex> list;
+  if (!is_mask(numbers)) {
+    for (const long long number : numbers) list.push_back(vertex_of(path, number, vertices));
+    return {list};
+  }
+  if (numbers.size() != static_cast<std::size_t>(vertices)) {
+    throw MismatchError(path + ": a mask of " + std::to_string(numbers.size()) +
+                        " vertices, expected " + std::to_string(vertices));
+  }
+  for (int v = 0; v < vertices; ++v) {
+    if (numbers[static_cast<std::size_t>(v)] == 1) list.push_back(v);
+  }
+  return {list};
+}
+
+}  // namespace
+
+Regions read_regions(const std::filesystem::path& path, int vertices, const Triangles& triangles) {
+  const std::string name = path.string(), extension = path.extension().string();
+  const std::string text = read_file(path);
+  if (extension == ".json") return read_json(name, text, vertices, triangles);
+  if (extension == ".csv")
+    return regions_from_vertices(vertices, triangles, read_csv(name, text, vertices));
+  if (extension == ".txt") {
+    return regions_from_vertices(vertices, triangles, read_list(name, text, vertices));
+  }
+  throw IoError(name, "expected a region set in .json, .csv or .txt");
+}
+
+std::string regions_json(const Regions& regions) {
+  Json list = Json::array();
+  for (const Region& region : regions.regions) {
+    list.push_back({{"component", region.component},
+                    {"center", region.center},
+                    {"radius", region.radius},
+                    {"energy", region.energy},
+                    {"energy_share", region.energy_share},
+                    {"vertices", region.vertices}});
+  }
+  return Json{{"regions", list},
+              {"mesh_vertices", regions.vertices},
+              {"vertices", regions.vertex_count()},
+              {"triangles", regions.triangles},
+              {"vertex_share", regions.vertex_share()},
+              {"triangle_share", regions.triangle_share()},
+              {"energy_share", regions.energy_share}}
+             .dump(1) +
+         '\n';
+}
+
+std::string regions_csv(const Regions& regions) {
+  std::string text = "vertex,region\n";
+  for (std::size_t k = 0; k < regions.regions.size(); ++k) {
+    for (const VertexIndex vertex : regions.regions[k].vertices) {
+      text += std::to_string(vertex) + ',' + std::to_string(k) + '\n';
+    }
+  }
+  return text;
+}
+
+}  // namespace mimetra

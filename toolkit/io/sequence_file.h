@@ -1,0 +1,67 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <mimetra/mesh/errors.h>
+#include <mimetra/mesh/mesh_sequence.h>
+
+namespace mimetra {
+
+/// What a sequence's name does not say.
+struct SequenceSource {
+  /// Blendshape weights that drive a model.
+  std::optional<std::filesystem::path> weights = {};
+  /// Mesh file with the faces of an array.
+  std::optional<std::filesystem::path> topology = {};
+  /// Part `A:B:STEP` of the frames, 0-based, B excluded; each may be left out.
+  std::optional<std::string> frames = {};
+  /// Frames per second where the files say nothing of time, > 0.
+  std::optional<double> fps = {};
+  Progress progress = {};
+};
+
+/// A sequence and what was noticed while reading it.
+struct SequenceRead {
+  MeshSequence sequence;
+  /// True for a model, with or without weights: its rest pose is its neutral.
+  bool model_driven = false;
+  /// Files it came from, in order.
+  std::vector<std::filesystem::path> files;
+  /// Which weight names were not matched, and the like.
+  std::vector<std::string> notes;
+};
+
+/// Reads `text`: a directory, glob or printf pattern of OBJ/PLY/OFF/STL files in natural order (2
+/// before 10), one such file, an .npy array (faces from `topology` or NAME.topology.ply beside it,
+/// rest pose from NAME.rest.ply where it is), or a model with weights; a model without weights is
+/// its neutral. Throws IoError, MismatchError (frames that differ in vertices or faces, naming both
+/// files), std::invalid_argument for a bad frame range, Cancelled.
+SequenceRead read_sequence(const std::string& text, const SequenceSource& source = {});
+
+struct SequenceWriteOptions {
+  /// Format of the frames in a folder: "ply", "obj", "off" or "stl".
+  std::string format = "ply";
+  /// Double precision in mesh files; single precision in arrays.
+  bool double_precision = false;
+  bool single_precision = false;
+  bool overwrite = false;
+  Progress progress = {};
+};
+
+/// Writes `target`: NAME.npy (with NAME.topology.ply, and NAME.rest.ply where the rest pose is
+/// known), one mesh file for a sequence of one frame, or a folder of frame_0000.ply on
+/// (`frame_00000` and so on where four digits do not suffice). Atomic. Returns the files written.
+/// Throws OutputError, MismatchError for several frames into one mesh file. `extra` are further
+/// files (name, content) that appear in the folder, or beside the file, together with it.
+std::vector<std::filesystem::path> write_sequence(
+    const MeshSequence& sequence, const std::filesystem::path& target,
+    const SequenceWriteOptions& = {},
+    const std::vector<std::pair<std::string, std::string>>& extra = {});
+
+/// Orders names as people count: runs of digits by their value, so that 2 comes before 10.
+bool natural_less(const std::string& a, const std::string& b);
+
+}  // namespace mimetra

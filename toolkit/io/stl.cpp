@@ -1,0 +1,116 @@
+#include <Eigen/Geometry>
+
+#include <mimetra/io/bytes.h>
+#include <mimetra/io/mesh_formats.h>
+#include <mimetra/io/text_cursor.h>
+#include <mimetra/mesh/errors.h>
+
+namespace mimetra {
+namespace {
+
+constexpr std::size_t kHeaderBytes = 80;
+constexpr std::size_t kPreambleBytes = kHeaderBytes + 4;  // and the number of triangles
+constexpr std::size_t kTriangleBytes = 50;                // normal, three corners, attribute
+
+std::size_t triangle_count(std::string_view bytes) {
+  return number_at<std::uint32_t>(bytes.data() + kHeaderBytes, std::endian::little);
+}
+
+/// Some binary files start with "solid" too; only their size tells.
+bool is_binary(std::string_view bytes) {
+  if (bytes.substr(0, 5) != "solid") return true;
+  return bytes.size() >= kPreambleBytes &&
+         bytes.size() == kPreambleBytes + kTriangleBytes * triangle_count(bytes);
+}
+
+std::vector<double> read_binary(const std::string& path, std::string_view bytes) {
+  if (bytes.size() < kPreambleBytes) {
+    throw IoError(path, "is no STL file: " + std::to_string(bytes.size()) +
+                            " bytes, expected at least " + std::to_string(kPreambleBytes));
+  }
+  const std::size_t triangles = triangle_count(bytes);
+  if (bytes.size() < kPreambleBytes + kTriangleBytes * triangles) {
+    throw IoError(path, "is truncated: " + std::to_string(bytes.size()) + " bytes, expected " +
+                            std::to_string(kPreambleBytes + kTriangleBytes * triangles) + " for " +
+                            std::to_string(triangles) + " triangles");
+  }
+  std::vector<double> corners;
+  corners.reserve(9 * triangles);
+  for (std::size_t triangle = 0; triangle < triangles; ++triangle) {
+    const char* at = bytes.data() + kPreambleBytes + kTriangleBytes * triangle;
+    for (std::size_t i = 3; i < 12; ++i) {  // the first three numbers are the normal
+      corners.push_back(number_at<float>(at + i * sizeof(float), std::endian::little));
+    }
+  }
+  return corners;
+}
+
+void expect(TextCursor& cursor, std::string_view keyword) {
+  if (cursor.word_anywhere() != keyword) {
+    cursor.fail("expected '" + std::string(keyword) + "', found something else");
+  }
+}
+
+void read_facet(TextCursor& cursor, std::vector<double>& corners) {
+  expect(cursor, "normal");
+  for (int axis = 0; axis < 3; ++axis) {
+    if (cursor.word_anywhere().empty()) cursor.fail("expected a normal, found the file's end");
+  }
+  expect(cursor, "outer");
+  expect(cursor, "loop");
+  for (int corner = 0; corner < 3; ++corner) {
+    expect(cursor, "vertex");
+    for (int axis = 0; axis < 3; ++axis) {
+      corners.push_back(cursor.number(cursor.word_anywhere(), "a vertex coordinate"));
+    }
+  }
+  expect(cursor, "endloop");
+  expect(cursor, "endfacet");
+}
+
+std::vector<double> read_ascii(const std::string& path, std::string_view bytes) {
+  TextCursor cursor(path, bytes, {});
+  std::vector<double> corners;
+  // Several solids may follow each other.
+  while (cursor.word_anywhere() == "solid") {
+    cursor.next_line();  // its name
+    std::string_view keyword = cursor.word_anywhere();
+    for (; keyword == "facet"; keyword = cursor.word_anywhere()) read_facet(cursor, corners);
+    if (keyword != "endsolid") cursor.fail("expected 'facet' or 'endsolid'");
+    cursor.next_line();
+  }
+  if (!cursor.at_end()) cursor.fail("expected 'solid' or the file's end");
+  return corners;
+}
+
+void append_point(std::string& bytes, const Eigen::Vector3d& point) {
+  for (int axis = 0; axis < 3; ++axis) {
+    append_little_endian(bytes, static_cast<float>(point[axis]));
+  }
+}
+
+}  // namespace
+
+std::vector<double> read_stl_corners(const std::string& path, std::string_view bytes) {
+  return is_binary(bytes) ? read_binary(path, bytes) : read_ascii(path, bytes);
+}
+
+std::string stl_bytes(const PositionsView& positions, const Connectivity& connectivity) {
+  const Triangles& triangles = connectivity.triangles;
+  std::string bytes(kHeaderBytes, ' ');
+  bytes.reserve(kPreambleBytes + kTriangleBytes * static_cast<std::size_t>(triangles.rows()));
+  append_little_endian(bytes, static_cast<std::uint32_t>(triangles.rows()));
+  for (Eigen::Index t = 0; t < triangles.rows(); ++t) {
+    const Eigen::Vector3d a = positions.row(triangles(t, 0));
+    const Eigen::Vector3d b = positions.row(triangles(t, 1));
+    const Eigen::Vector3d c = positions.row(triangles(t, 2));
+    append_point(bytes, (b - a).cross(c - a).normalized());  // 0 for a triangle without area
+    append_point(bytes, a);
+    append_point(bytes, b);
+    append_point(bytes, c);
+    bytes.append(2, '\0');
+  }
+  return bytes;
+}
+
+}  // namespace mimetra

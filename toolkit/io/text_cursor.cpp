@@ -1,0 +1,130 @@
+#include <mimetra/io/text_cursor.h>
+
+#include <algorithm>
+#include <cstdlib>
+
+#include <mimetra/mesh/errors.h>
+
+namespace mimetra {
+namespace {
+
+bool is_blank(char c) {
+  return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f';
+}
+
+bool ends_word(char c) {
+  return is_blank(c) || c == '\n';
+}
+
+/// Long words are cut: a binary file taken for text has lines of megabytes.
+std::string quoted(std::string_view word) {
+  constexpr std::size_t kLongest = 40;
+  if (word.empty()) return "nothing";
+  std::string text = "'";
+  for (const char c : word.substr(0, kLongest)) {
+    text += static_cast<unsigned char>(c) < ' ' ? '?' : c;
+  }
+  return text + (word.size() > kLongest ? "...'" : "'");
+}
+
+/// std::from_chars knows no leading plus.
+std::string_view without_plus(std::string_view word) {
+  const bool plus = word.size() > 1 && word[0] == '+' && word[1] != '-';
+  return plus ? word.substr(1) : word;
+}
+
+}  // namespace
+
+TextCursor::TextCursor(const std::string& path, std::string_view text, Syntax syntax,
+                       int first_line)
+    : path_(path),
+      at_(text.data()),
+      end_(text.data() + text.size()),
+      syntax_(syntax),
+      line_(first_line) {}
+
+void TextCursor::skip_blanks() {
+  while (at_ != end_) {
+    if (is_blank(*at_)) {
+      ++at_;
+    } else if (syntax_.continuations && *at_ == '\\') {
+      const char* next = at_ + 1;
+      if (next != end_ && *next == '\r') ++next;
+      if (next == end_ || *next != '\n') return;
+      at_ = next + 1;
+      ++line_;
+    } else {
+      return;
+    }
+  }
+}
+
+std::string_view TextCursor::word() {
+  skip_blanks();
+  if (at_ == end_ || *at_ == '\n' || (syntax_.comments && *at_ == '#')) return {};
+  const char* first = at_;
+  while (at_ != end_ && !ends_word(*at_)) {
+    // "1 2 3\" without a blank before the continuation
+    if (syntax_.continuations && *at_ == '\\' && at_ != first && at_ + 1 != end_ &&
+        ends_word(at_[1])) {
+      break;
+    }
+    ++at_;
+  }
+  return {first, static_cast<std::size_t>(at_ - first)};
+}
+
+std::string_view TextCursor::word_anywhere() {
+  while (true) {
+    const std::string_view found = word();
+    if (!found.empty() || at_ == end_) return found;
+    next_line();
+  }
+}
+
+std::string_view TextCursor::rest_of_line() {
+  skip_blanks();
+  const char* first = at_;
+  next_line();
+  const char* last = at_ != first && at_[-1] == '\n' ? at_ - 1 : at_;
+  while (last != first && is_blank(last[-1])) --last;
+  return {first, static_cast<std::size_t>(last - first)};
+}
+
+void TextCursor::next_line() {
+  at_ = std::find(at_, end_, '\n');
+  if (at_ != end_) {
+    ++at_;
+    ++line_;
+  }
+}
+
+double TextCursor::number(std::string_view word, std::string_view what) const {
+  const std::string_view digits = without_plus(word);
+  double value = 0;
+  const auto [last, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+  if (error == std::errc::invalid_argument || last != digits.data() + digits.size()) {
+    fail("expected a number for " + std::string(what) + ", found " + quoted(word));
+  }
+  // Too small is 0, too large infinite, which whoever asked for the number refuses.
+  if (error == std::errc::result_out_of_range) {
+    return std::strtod(std::string(digits).c_str(), nullptr);
+  }
+  return value;
+}
+
+long long TextCursor::integer(std::string_view word, std::string_view what) const {
+  const std::string_view digits = without_plus(word);
+  long long value = 0;
+  const auto [last, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+  if (error != std::errc() || last != digits.data() + digits.size()) {
+    fail("expected an integer for " + std::string(what) + ", found " + quoted(word));
+  }
+  return value;
+}
+
+void TextCursor::fail(const std::string& message) const {
+  throw IoError(path_, "line " + std::to_string(line_) + ": " + message);
+}
+
+}  // namespace mimetra

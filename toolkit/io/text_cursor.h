@@ -1,0 +1,52 @@
+#pragma once
+
+#include <charconv>
+#include <string>
+#include <string_view>
+
+namespace mimetra {
+
+/// Walks through the text of a file word by word, within a line or across lines, and knows the line
+/// for messages. Lines end in LF or CRLF. Internal to the mesh readers.
+class TextCursor {
+ public:
+  /// What interrupts a line besides its end.
+  struct Syntax {
+    bool comments = false;       ///< a word that starts with '#' hides the rest of the line
+    bool continuations = false;  ///< '\' at the end of a line joins the next one
+  };
+
+  /// Keeps references: both must outlive the cursor. `first_line` is what the text starts with.
+  TextCursor(const std::string& path, std::string_view text, Syntax syntax, int first_line = 1);
+
+  int line() const { return line_; }
+  /// Bytes not yet read.
+  std::size_t left() const { return static_cast<std::size_t>(end_ - at_); }
+  bool at_end() const { return at_ == end_; }
+
+  /// The next word of this line; empty where there is none.
+  std::string_view word();
+  /// The next word of this or a later line; empty at the end of the text.
+  std::string_view word_anywhere();
+  /// What is left of this line, without the blanks around it; moves to the next line.
+  std::string_view rest_of_line();
+  void next_line();
+
+  /// `word` as a number. Throws IoError that says where `what` was expected.
+  double number(std::string_view word, std::string_view what) const;
+  long long integer(std::string_view word, std::string_view what) const;
+
+  /// Throws IoError with path and line.
+  [[noreturn]] void fail(const std::string& message) const;
+
+ private:
+  void skip_blanks();
+
+  const std::string& path_;
+  const char* at_;
+  const char* end_;
+  Syntax syntax_;
+  int line_;
+};
+
+}  // namespace mimetra
