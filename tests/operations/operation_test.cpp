@@ -1,0 +1,160 @@
+#include <set>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <mimetra/operations/listing.h>
+#include <mimetra/operations/operation.h>
+
+#include "shapes.h"
+
+namespace mimetra {
+namespace {
+
+using nlohmann::json;
+using testing::HasSubstr;
+
+OperationTable toolkit() {
+  OperationTable table;
+  add_toolkit(table);
+  return table;
+}
+
+/// A flat grid whose middle rises and falls.
+MeshSequence waving_grid() {
+  const test::Shape shape = test::grid(7, 7);
+  Frames frames(6, shape.positions.size());
+  for (int f = 0; f < 6; ++f) {
+    Positions pose = shape.positions;
+    pose(24, 2) += std::sin(f);
+    pose(10, 2) += std::cos(2.0 * f) - 1;
+    frames.row(f) = Eigen::Map<const Eigen::RowVectorXd>(pose.data(), pose.size());
+  }
+  return MeshSequence(Connectivity::from_triangles(49, shape.triangles), frames, {},
+                      shape.positions);
+}
+
+Invocation invocation_of(const OperationTable& table, const std::string& name) {
+  Invocation invocation;
+  invocation.parameters = Parameters(table.parameters_of(*table.find(name)));
+  return invocation;
+}
+
+TEST(OperationTable, RefusesANameThatIsTaken) {
+  OperationTable table = toolkit();
+  EXPECT_THROW(table.add(*table.find("info")), std::invalid_argument);
+}
+
+TEST(OperationTable, EveryOperationHasTwoExamplesThatStartWithItsName) {
+  const OperationTable table = toolkit();
+  for (const Operation& operation : table.operations()) {
+    EXPECT_EQ(operation.examples.size(), 2u) << operation.name;
+    for (const std::string& example : operation.examples) {
+      EXPECT_TRUE(example.starts_with(operation.name)) << example;
+    }
+  }
+}
+
+TEST(OperationTable, EveryDefaultIsAValueTheParameterAccepts) {
+  const OperationTable table = toolkit();
+  for (const Operation& operation : table.operations()) {
+    for (const Parameter& parameter : table.parameters_of(operation)) {
+      if (std::holds_alternative<std::monostate>(parameter.fallback)) continue;
+      EXPECT_NO_THROW(check_value(parameter, parameter.fallback))
+          << operation.name << ' ' << parameter.name;
+    }
+  }
+}
+
+TEST(OperationTable, NamesTheKnownExtensionsWhereOneIsUnknown) {
+  const OperationTable table = toolkit();
+  try {
+    table.writer(DataKind::components, "out.txt");
+    FAIL();
+  } catch (const UsageError& error) {
+    EXPECT_THAT(error.what(), HasSubstr(".h5"));
+  }
+}
+
+TEST(OperationTable, ListsItselfAsJson) {
+  OperationTable table = toolkit();
+  add_listing(table);
+  const Outcome outcome = table.find("operations")->run(invocation_of(table, "operations"));
+  const json report = json::parse(outcome.report);
+  std::set<std::string> names;
+  for (const json& entry : report.at("operations")) {
+    names.insert(entry.at("name").get<std::string>());
+  }
+  EXPECT_EQ(names.size(), table.operations().size());
+  EXPECT_TRUE(names.contains("transfer"));
+}
+
+TEST(OutputPath, GivesEachOfSeveralTargetsItsOwn) {
+  EXPECT_EQ(output_path("T/", "b", 1), "T/");
+  EXPECT_EQ(output_path("T", "b", 2), "T/b");
+  EXPECT_EQ(output_path("d/T.npy", "b", 2), "d/T-b.npy");
+}
+
+TEST(Operations, RunOnValuesWithoutFiles) {
+  const OperationTable table = toolkit();
+  const MeshSequence source = waving_grid();
+  Invocation invocation = invocation_of(table, "transfer");
+  invocation.parameters.set("k", std::int64_t{2});
+  invocation.inputs["source"].push_back({"source", SequenceRead{source, true, {}, {}}});
+  ShapeBasis none{{}, Eigen::MatrixXd(source.vertices() * 3, 0)};
+  invocation.inputs["target"].push_back(
+      {"target", BlendshapeModel(source.shared_connectivity(), source.rest(), none)});
+  const Outcome outcome = table.find("transfer")->run(invocation);
+  const MeshSequence& result =
+      std::get<SequenceRead>(outcome.outputs.at("out").front().data).sequence;
+  // The same mesh as target: the source's deformation inside the regions is the target's.
+  EXPECT_LT((result.positions() - source.positions()).cwiseAbs().maxCoeff(), 1e-9);
+}
+
+TEST(Operations, RefuseATargetWithOtherFaces) {
+  const OperationTable table = toolkit();
+  const MeshSequence source = waving_grid();
+  Triangles flipped = source.triangles();
+  std::swap(flipped(5, 0), flipped(5, 1));
+  ShapeBasis none{{}, Eigen::MatrixXd(source.vertices() * 3, 0)};
+  Invocation invocation = invocation_of(table, "transfer");
+  invocation.inputs["source"].push_back({"source", SequenceRead{source, true, {}, {}}});
+  invocation.inputs["target"].push_back(
+      {"other", BlendshapeModel(std::make_shared<Connectivity>(
+                                    Connectivity::from_triangles(source.vertices(), flipped)),
+                                source.rest(), none)});
+  try {
+    table.find("transfer")->run(invocation);
+    FAIL();
+  } catch (const MismatchError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("other: face 5"));
+  }
+}
+
+TEST(Operations, EvaluateNeverBeatsTheFullTransferOverAllTriangles) {
+  const OperationTable table = toolkit();
+  const MeshSequence source = waving_grid();
+  Eigen::MatrixXd basis(source.vertices() * 3, 2);
+  basis.setZero();
+  basis(24 * 3 + 2, 0) = 1;
+  basis(10 * 3 + 2, 1) = -2;
+  Invocation invocation = invocation_of(table, "evaluate");
+  invocation.parameters.set("k", std::vector<std::int64_t>{1, 2});
+  invocation.inputs["source"].push_back({"source", SequenceRead{source, true, {}, {}}});
+  invocation.inputs["target"].push_back(
+      {"target", BlendshapeModel(source.shared_connectivity(), source.rest(),
+                                 ShapeBasis{{"up", "down"}, basis})});
+  const json rows = json::parse(table.find("evaluate")->run(invocation).report).at("rows");
+  ASSERT_EQ(rows.size(), 3u);
+  const double full = rows[2].at("de_all");
+  EXPECT_TRUE(rows[2].at("k").is_null());
+  for (const json& row : rows) {
+    EXPECT_GE(row.at("de_all").get<double>(), full * (1 - 1e-12));
+    if (row.at("k").is_null()) continue;
+    EXPECT_LE(row.at("mpe_all").get<double>(), 1e-9);
+  }
+}
+
+}  // namespace
+}  // namespace mimetra

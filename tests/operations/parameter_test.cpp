@@ -1,0 +1,83 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <mimetra/operations/parameter.h>
+
+namespace mimetra {
+namespace {
+
+const Parameter kCount{"k", ParameterKind::integer, std::int64_t{30}, "components", "", 1, 100};
+const Parameter kRadius{"radius", ParameterKind::length, "0.1", "radius"};
+const Parameter kShape{"shape", ParameterKind::choice, "disc", "shape", "", {},
+                       {},      {"disc", "support"}};
+
+std::string message_of(const Parameter& parameter, const std::string& text) {
+  try {
+    parse_value(parameter, text);
+  } catch (const UsageError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(Parameter, ParsesEachKindFromText) {
+  EXPECT_EQ(parse_value(kCount, "10"), ParameterValue(std::int64_t{10}));
+  EXPECT_EQ(parse_value(kShape, "support"), ParameterValue("support"));
+  EXPECT_EQ(parse_value({"x", ParameterKind::number, {}, ""}, "2.5e-1"), ParameterValue(0.25));
+  EXPECT_EQ(parse_value({"x", ParameterKind::flag, false, ""}, "true"), ParameterValue(true));
+  EXPECT_EQ(parse_value({"x", ParameterKind::integer_list, {}, ""}, "10,30,40"),
+            ParameterValue(std::vector<std::int64_t>{10, 30, 40}));
+}
+
+TEST(Parameter, NamesOptionRangeAndWhatWasFound) {
+  EXPECT_EQ(message_of(kCount, "0"), "-k: expected a whole number from 1 to 100, found '0'");
+  EXPECT_EQ(message_of(kCount, "ten"), "-k: expected a whole number from 1 to 100, found 'ten'");
+  EXPECT_EQ(message_of(kShape, "ball"), "--shape: expected one of disc, support, found 'ball'");
+}
+
+TEST(Parameter, RefusesNumbersThatAreNotFinite) {
+  const Parameter parameter{"x", ParameterKind::number, {}, ""};
+  EXPECT_THROW(parse_value(parameter, "inf"), UsageError);
+  EXPECT_THROW(parse_value(parameter, "nan"), UsageError);
+  EXPECT_THROW(parse_value(kRadius, "-0.1"), UsageError);
+  EXPECT_THROW(parse_value(kRadius, "12mm"), UsageError);
+}
+
+TEST(Parameter, RefusesListsWithAnEntryOutOfRange) {
+  const Parameter list{"k", ParameterKind::integer_list, {}, "", "", 1};
+  EXPECT_THROW(parse_value(list, "10,0"), UsageError);
+  EXPECT_THROW(parse_value(list, ""), UsageError);
+  EXPECT_THROW(parse_value(list, "10,x"), UsageError);
+}
+
+TEST(Parameter, TextOfAValueParsesBackToIt) {
+  for (const double number : {0.1, 1e-300, 12345.678, 1.0 / 3}) {
+    const Parameter parameter{"x", ParameterKind::number, {}, ""};
+    EXPECT_EQ(parse_value(parameter, to_text(number)), ParameterValue(number));
+  }
+}
+
+TEST(Parameters, AreTheirDefaultsUntilSet) {
+  Parameters parameters({kCount, kRadius});
+  EXPECT_EQ(parameters.integer("k"), 30);
+  EXPECT_FALSE(parameters.is_set("k"));
+  parameters.set("k", std::int64_t{5});
+  EXPECT_EQ(parameters.integer("k"), 5);
+  EXPECT_TRUE(parameters.is_set("k"));
+}
+
+TEST(Parameters, RefuseUnknownNamesAndWrongTypes) {
+  Parameters parameters({kCount});
+  EXPECT_THROW(parameters.set("count", std::int64_t{5}), UsageError);
+  EXPECT_THROW(parameters.set("k", "five"), UsageError);
+}
+
+TEST(Parameters, LengthsAreSharesOfTheExtentUnlessAbsolute) {
+  Parameters parameters({kRadius});
+  EXPECT_DOUBLE_EQ(parameters.length("radius", 200), 0.1 * 200);
+  parameters.set("radius", "12abs");
+  EXPECT_DOUBLE_EQ(parameters.length("radius", 200), 12);
+}
+
+}  // namespace
+}  // namespace mimetra

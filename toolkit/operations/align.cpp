@@ -1,0 +1,92 @@
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <nlohmann/json.hpp>
+
+#include <mimetra/operations/analysis.h>
+#include <mimetra/operations/report.h>
+#include <mimetra/operations/toolkit_operations.h>
+
+namespace mimetra {
+
+namespace {
+
+double degrees_of(const RigidTransform& transform) {
+  const double cosine = std::clamp((transform.rotation.trace() - 1) / 2, -1.0, 1.0);
+  return std::acos(cosine) * 180 / std::numbers::pi;
+}
+
+Json json_of(const std::vector<RigidTransform>& motion) {
+  Json list = Json::array();
+  for (const RigidTransform& transform : motion) {
+    Json rotation = Json::array();
+    for (int row = 0; row < 3; ++row) {
+      for (int column = 0; column < 3; ++column)
+        rotation.push_back(transform.rotation(row, column));
+    }
+    const Eigen::Vector3d& translation = transform.translation;
+    list.push_back({{"rotation", rotation},
+                    {"translation", {translation[0], translation[1], translation[2]}}});
+  }
+  return list;
+}
+
+Alignment aligned(const Invocation& invocation) {
+  const MeshSequence& sequence = invocation.get<SequenceRead>("sequence").sequence;
+  if (const auto undo = invocation.parameters.optional_text("undo")) {
+    std::vector<RigidTransform> motion = read_motion(*undo);
+    return {with_motion(sequence, motion), std::move(motion)};
+  }
+  const bool stable = invocation.parameters.text("on") == "stable";
+  return align(sequence, stable ? AlignmentVertices::stable : AlignmentVertices::all,
+               invocation.progress);
+}
+
+Outcome run(const Invocation& invocation) {
+  const SequenceRead& read = invocation.get<SequenceRead>("sequence");
+  Alignment alignment = aligned(invocation);
+  double degrees = 0, shift = 0;
+  for (const RigidTransform& transform : alignment.motion) {
+    degrees = std::max(degrees, degrees_of(transform));
+    shift = std::max(shift, transform.translation.norm());
+  }
+  Outcome outcome;
+  outcome.report = Json{{"frames", alignment.sequence.frames()},
+                        {"largest_rotation_degrees", degrees},
+                        {"largest_translation", shift},
+                        {"motion", json_of(alignment.motion)}}
+                       .dump();
+  outcome.summary = "largest rotation " + readable(degrees) + " degrees, largest translation " +
+                    readable(shift) + '\n';
+  SequenceRead result = read;
+  result.sequence = std::move(alignment.sequence);
+  outcome.outputs["out"].push_back({"", std::move(result)});
+  return outcome;
+}
+
+}  // namespace
+
+Operation align_operation() {
+  Operation operation;
+  operation.name = "align";
+  operation.summary = "Take the rigid motion out of each frame; the manifest keeps it";
+  operation.inputs = {{"sequence", DataKind::sequence, "sequence to align"}};
+  operation.outputs = {{"out", DataKind::sequence, ".npy, a mesh file, or a folder of frames"}};
+  operation.parameters = {
+      {"on",
+       ParameterKind::choice,
+       "stable",
+       "fit on the vertices that move least (stable), or on all of them",
+       "",
+       {},
+       {},
+       {"stable", "all"}},
+      {"undo", ParameterKind::file, {}, "manifest of an align run, whose motion is given back"}};
+  operation.examples = {"align takes/ -o still/",
+                        "align still/ --undo still/mimetra-run.json -o back/"};
+  operation.run = run;
+  return operation;
+}
+
+}  // namespace mimetra

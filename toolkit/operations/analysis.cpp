@@ -1,0 +1,290 @@
+#include <mimetra/operations/analysis.h>
+
+#include <algorithm>
+
+#include <nlohmann/json.hpp>
+
+#include <mimetra/io/mesh_file.h>
+#include <mimetra/io/pending_output.h>
+#include <mimetra/operations/report.h>
+
+namespace mimetra {
+
+namespace {
+
+Weld weld_of(const Parameters& parameters, const Positions& positions) {
+  return parameters.text("weld") == "exact" ? Weld::exact(positions)
+                                            : Weld::none(static_cast<int>(positions.rows()));
+}
+
+GeodesicMethod method_of(const Parameters& parameters) {
+  const std::string& name = parameters.text("geodesics");
+  if (name == "heat") return GeodesicMethod::heat;
+  return name == "heat-direct" ? GeodesicMethod::heat_direct : GeodesicMethod::exact;
+}
+
+MeshSequence with_decomposition_rest(const Parameters& parameters, const MeshSequence& sequence) {
+  const std::string& rest = parameters.text("rest");
+  if (rest == "first") return sequence.with_rest(sequence.frame(0));
+  if (rest == "mean") return sequence.with_rest(mean_pose(sequence));
+  return sequence.with_rest(read_rest(rest, sequence));
+}
+
+/// Longest side that any single frame's bounding box has: the reference's unit of length.
+double largest_frame_extent(const MeshSequence& sequence) {
+  double largest = 0;
+  for (int f = 0; f < sequence.frames(); ++f) {
+    largest = std::max(largest, extent(sequence.frame(f)));
+  }
+  return largest;
+}
+
+/// Vertices that were welded at rest and part by more than this share of the longest side are
+/// reported: well above float32 rounding, well below what one sees.
+constexpr double kPartingShare = 1e-4;
+
+void warn_of_parting(const Invocation& invocation, const MeshSequence& sequence) {
+  if (invocation.parameters.text("weld") == "none") return;
+  const auto parting =
+      parting_vertices(sequence, Weld::exact(sequence.rest()), kPartingShare * sequence.extent());
+  if (parting.empty()) return;
+  invocation.warn(std::to_string(parting.size()) +
+                  " vertices coincide at rest and part later (the first is vertex " +
+                  std::to_string(parting.front()) +
+                  "); distances pass from one to the other, use --weld none to keep them apart");
+}
+
+RigidTransform transform_of(const Json& json) {
+  RigidTransform transform;
+  const auto rotation = json.at("rotation").get<std::vector<double>>();
+  const auto translation = json.at("translation").get<std::vector<double>>();
+  if (rotation.size() != 9 || translation.size() != 3) {
+    throw std::invalid_argument("expected 9 numbers of rotation and 3 of translation a frame");
+  }
+  transform.rotation =
+      Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(rotation.data());
+  transform.translation = Eigen::Map<const Eigen::Vector3d>(translation.data());
+  return transform;
+}
+
+}  // namespace
+
+SurfaceDistances distances_on(const Invocation& invocation, const Positions& rest,
+                              const Triangles& triangles) {
+  SurfaceDistances distances(rest, triangles, weld_of(invocation.parameters, rest),
+                             method_of(invocation.parameters));
+  if (distances.degenerate_triangles() > 0) {
+    invocation.warn(std::to_string(distances.degenerate_triangles()) +
+                    " triangles without area were left out of the geodesic distances");
+  }
+  if (!distances.vertices_without_face().empty()) {
+    invocation.warn(std::to_string(distances.vertices_without_face().size()) +
+                    " vertices belong to no triangle with area, the first is vertex " +
+                    std::to_string(distances.vertices_without_face().front()) +
+                    "; they are in no region");
+  }
+  return distances;
+}
+
+std::vector<Parameter> alignment_parameters() {
+  return {{"align",
+           ParameterKind::text,
+           {},
+           "head motion to take out first: stable (fit on what moves least), all, none, or the "
+           "manifest of an align run; default none where the neutral is known, stable otherwise"}};
+}
+
+std::vector<Parameter> geodesic_parameters() {
+  return {
+      {"geodesics",
+       ParameterKind::choice,
+       "heat",
+       "how distances are computed",
+       "",
+       {},
+       {},
+       {"heat", "heat-direct", "exact"}},
+      {"weld",
+       ParameterKind::choice,
+       "exact",
+       "treat vertices at one place as one for distances (UV seams)",
+       "",
+       {},
+       {},
+       {"exact", "none"}},
+  };
+}
+
+std::vector<Parameter> decomposition_parameters(int count) {
+  std::vector<Parameter> parameters = {
+      {"k", ParameterKind::integer, std::int64_t{count}, "number of components", "", 1},
+      {"rest", ParameterKind::text, "first",
+       "rest pose of the decomposition: first, mean, or a mesh file"},
+      {"d-min", ParameterKind::length, "0.1",
+       "geodesic distance up to which sparsity costs nothing"},
+      {"d-max", ParameterKind::length, "0.7", "geodesic distance from which it costs all"},
+      {"sparsity", ParameterKind::number, 2.0, "weight lambda of the sparsity term", "", 0},
+      {"rho", ParameterKind::number, 10.0, "penalty of ADMM", "", 1e-6},
+      {"iterations", ParameterKind::integer, std::int64_t{10}, "outer iterations at most", "", 1},
+      {"admm-iterations", ParameterKind::integer, std::int64_t{10}, "ADMM steps in each", "", 1},
+      {"tolerance", ParameterKind::number, 1e-4,
+       "stop when the energy changes by less than this share; 0 runs all iterations", "", 0, 1},
+      {"signed", ParameterKind::flag, false, "allow negative weights"},
+      {"compat",
+       ParameterKind::choice,
+       "none",
+       "splocs2013: follow the reference implementation to the letter",
+       "",
+       {},
+       {},
+       {"none", "splocs2013"}},
+  };
+  for (const Parameter& parameter : geodesic_parameters()) parameters.push_back(parameter);
+  return parameters;
+}
+
+std::vector<Parameter> region_parameters() {
+  return {
+      {"radius", ParameterKind::length, "0.1", "geodesic radius of a region"},
+      {"region",
+       ParameterKind::choice,
+       "disc",
+       "disc: within the radius; support: vertices with 95 % of the component's energy",
+       "",
+       {},
+       {},
+       {"disc", "support"}},
+      {"coverage",
+       ParameterKind::number,
+       {},
+       "take the strongest regions until they hold this share of the motion energy",
+       "",
+       1e-9,
+       1},
+  };
+}
+
+Positions read_rest(const std::string& text, const MeshSequence& sequence) {
+  Positions rest = read_mesh(text).positions;
+  if (rest.rows() != sequence.vertices()) {
+    throw MismatchError(text + ": " + std::to_string(rest.rows()) + " vertices, expected " +
+                        std::to_string(sequence.vertices()) + " as in the sequence");
+  }
+  return rest;
+}
+
+std::vector<RigidTransform> read_motion(const std::string& path) {
+  try {
+    const Json json = Json::parse(read_file(path));
+    std::vector<RigidTransform> motion;
+    for (const Json& entry : json.at("result").at("motion")) motion.push_back(transform_of(entry));
+    return motion;
+  } catch (const Json::exception&) {
+    throw IoError(path, "expected the manifest of an align run with result.motion");
+  } catch (const std::invalid_argument& error) {
+    throw IoError(path, error.what());
+  }
+}
+
+StillSequence without_motion(const Invocation& invocation, const SequenceRead& read,
+                             const MeshSequence& sequence) {
+  const std::string how = invocation.parameters.optional_text("align").value_or(
+      read.model_driven || read.sequence.rest_is_known() || sequence.frames() == 1 ? "none"
+                                                                                   : "stable");
+  if (how == "none") return {sequence, {}};
+  Alignment alignment = how == "stable" ? align(sequence, AlignmentVertices::stable)
+                        : how == "all"  ? align(sequence, AlignmentVertices::all)
+                                        : align(sequence, read_motion(how));
+  return {std::move(alignment.sequence), std::move(alignment.motion)};
+}
+
+Analysis analyse(const Invocation& invocation, const SequenceRead& read,
+                 const MeshSequence& sequence, int count, const Progress& progress) {
+  const Stopwatch stopwatch;
+  const Parameters& parameters = invocation.parameters;
+  const MeshSequence work = with_decomposition_rest(parameters, sequence);
+  if (count > work.vertices()) {
+    throw MismatchError("-k: " + std::to_string(count) + " components asked for, the mesh has " +
+                        std::to_string(work.vertices()) + " vertices");
+  }
+  warn_of_parting(invocation, work);
+  SurfaceDistances distances = distances_on(invocation, work.rest(), work.triangles());
+  DecompositionOptions options;
+  const bool reference = parameters.text("compat") == "splocs2013";
+  const double unit = reference ? largest_frame_extent(read.sequence) : work.extent();
+  options.count = count;
+  options.d_min = parameters.length("d-min", unit);
+  options.d_max = parameters.length("d-max", unit);
+  options.sparsity = parameters.number("sparsity");
+  options.rho = parameters.number("rho");
+  options.iterations = parameters.integer("iterations");
+  options.admm_iterations = parameters.integer("admm-iterations");
+  options.tolerance = reference ? 0 : parameters.number("tolerance");
+  options.nonnegative = !parameters.flag("signed");
+  options.sign_rule = reference ? SignRule::literal : SignRule::amplitude;
+  options.distances = distances;
+  options.progress = progress;
+  if (*options.d_min >= *options.d_max) {
+    throw UsageError("--d-min: expected less than --d-max, found " + parameters.text("d-min") +
+                     " and " + parameters.text("d-max"));
+  }
+  Components components = decompose(work, options);
+  return {std::move(components), std::move(distances), stopwatch.seconds()};
+}
+
+Analysis analysis_for(const Invocation& invocation, const SequenceRead& read) {
+  const Components* given = invocation.find<Components>("components");
+  if (!given) {
+    const StillSequence still = without_motion(invocation, read, read.sequence);
+    return analyse(invocation, read, still.sequence, invocation.parameters.integer("k"),
+                   invocation.progress);
+  }
+  if (given->vertices() != read.sequence.vertices() ||
+      given->triangles != read.sequence.triangles()) {
+    throw MismatchError(invocation.inputs.at("components").front().name + ": components of " +
+                        std::to_string(given->vertices()) +
+                        " vertices with other triangles than the sequence, which has " +
+                        std::to_string(read.sequence.vertices()) + " vertices");
+  }
+  return {*given, distances_on(invocation, given->rest, given->triangles), 0};
+}
+
+Regions regions_of(const Invocation& invocation, const Analysis& analysis) {
+  const Parameters& parameters = invocation.parameters;
+  RegionOptions options;
+  options.radius = parameters.length("radius", extent(analysis.components.rest));
+  options.shape = parameters.text("region") == "disc" ? RegionShape::disc : RegionShape::support;
+  options.coverage = parameters.optional_number("coverage");
+  options.distances = analysis.distances;
+  Regions regions = find_regions(analysis.components, options);
+  for (const std::string& note : regions.notes) invocation.warn(note);
+  return regions;
+}
+
+Json report_of(const Regions& regions) {
+  Json list = Json::array();
+  for (const Region& region : regions.regions) {
+    list.push_back({{"center", region.center},
+                    {"radius", region.radius},
+                    {"vertices", region.vertices.size()},
+                    {"energy_share", region.energy_share},
+                    {"component", region.component}});
+  }
+  return {{"regions", list},
+          {"vertices", regions.vertex_count()},
+          {"triangles", regions.triangles.size()},
+          {"vertex_share", regions.vertex_share()},
+          {"triangle_share", regions.triangle_share()},
+          {"energy_share", regions.energy_share},
+          {"notes", regions.notes}};
+}
+
+std::string summary_of(const Regions& regions) {
+  return std::to_string(regions.regions.size()) + " regions hold " +
+         std::to_string(regions.vertex_count()) + " vertices (" + percent(regions.vertex_share()) +
+         "), " + std::to_string(regions.triangles.size()) + " triangles (" +
+         percent(regions.triangle_share()) + ") and " + percent(regions.energy_share) +
+         " of the motion energy\n";
+}
+
+}  // namespace mimetra

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <mimetra/mesh/alignment.h>
+#include <mimetra/operations/operation.h>
+#include <mimetra/operations/report.h>
+#include <mimetra/regions/regions.h>
+
+namespace mimetra {
+
+/// Parameters shared by the operations that look for regions; each group is read by the function of
+/// the same name.
+std::vector<Parameter> alignment_parameters();
+std::vector<Parameter> geodesic_parameters();
+std::vector<Parameter> decomposition_parameters(int count);
+std::vector<Parameter> region_parameters();
+
+/// A sequence without its head motion, and that motion (empty where none was looked for).
+struct StillSequence {
+  MeshSequence sequence;
+  std::vector<RigidTransform> motion;
+};
+
+/// Applies --align to what was read.
+StillSequence without_motion(const Invocation& invocation, const SequenceRead& read,
+                             const MeshSequence& sequence);
+
+/// Distances by --geodesics and --weld; warns of triangles and vertices that had to be left out.
+SurfaceDistances distances_on(const Invocation& invocation, const Positions& rest,
+                              const Triangles& triangles);
+
+/// Components of a sequence, and the distances on its decomposition's rest pose.
+struct Analysis {
+  Components components;
+  SurfaceDistances distances;
+  double seconds = 0;
+};
+
+/// Applies -k, --d-min and the like to a sequence. `count` overrides -k.
+Analysis analyse(const Invocation& invocation, const SequenceRead& read,
+                 const MeshSequence& sequence, int count, const Progress& progress);
+
+/// Components given as the input `components`, or those of the sequence without its motion.
+Analysis analysis_for(const Invocation& invocation, const SequenceRead& read);
+
+/// Applies --radius, --region and --coverage.
+Regions regions_of(const Invocation& invocation, const Analysis& analysis);
+
+/// What operations tell of regions: keys regions, vertices, triangles, vertex_share, ...
+Json report_of(const Regions& regions);
+std::string summary_of(const Regions& regions);
+
+/// Positions of `text` (a mesh file), checked against a sequence's vertex count.
+Positions read_rest(const std::string& text, const MeshSequence& sequence);
+
+/// A motion as align's manifest keeps it. Throws IoError.
+std::vector<RigidTransform> read_motion(const std::string& path);
+
+}  // namespace mimetra

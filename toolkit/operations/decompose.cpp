@@ -1,0 +1,65 @@
+#include <algorithm>
+
+#include <nlohmann/json.hpp>
+
+#include <mimetra/operations/analysis.h>
+#include <mimetra/operations/report.h>
+#include <mimetra/operations/toolkit_operations.h>
+
+namespace mimetra {
+
+namespace {
+
+Outcome run(const Invocation& invocation) {
+  const SequenceRead& read = invocation.get<SequenceRead>("sequence");
+  const StillSequence still = without_motion(invocation, read, read.sequence);
+  Analysis analysis = analyse(invocation, read, still.sequence, invocation.parameters.integer("k"),
+                              invocation.progress);
+  const Components& components = analysis.components;
+  const DecompositionError error =
+      decomposition_error(still.sequence.with_rest(components.rest), components);
+  const auto dead = std::ranges::count(components.centers, -1);
+  if (dead > 0) {
+    invocation.warn(std::to_string(dead) + " of " + std::to_string(components.count()) +
+                    " components died: fewer tell the same");
+  }
+  Outcome outcome;
+  outcome.report = Json{{"frames", still.sequence.frames()},
+                        {"vertices", still.sequence.vertices()},
+                        {"components", components.count() - dead},
+                        {"energies", components.energies},
+                        {"e_rms", error.rms},
+                        {"e_rms_relative", error.relative_rms},
+                        {"kg", error.kg},
+                        {"sparsity", error.sparsity},
+                        {"centers", components.centers},
+                        {"seconds", analysis.seconds}}
+                       .dump();
+  outcome.summary = std::to_string(components.count() - dead) + " components, RMS error " +
+                    readable(error.rms) + " (" + readable(100 * error.relative_rms) +
+                    " % of the box diagonal), KG error " + readable(error.kg) + " %, " +
+                    percent(error.sparsity) + " of the displacements are zero, " +
+                    readable(analysis.seconds) + " s\n";
+  outcome.outputs["out"].push_back({"", std::move(analysis.components)});
+  return outcome;
+}
+
+}  // namespace
+
+Operation decompose_operation() {
+  Operation operation;
+  operation.name = "decompose";
+  operation.summary = "Sparse localized deformation components of a sequence";
+  operation.inputs = {{"sequence", DataKind::sequence, "sequence to decompose"}};
+  operation.outputs = {{"out", DataKind::components, ".h5"}};
+  operation.parameters = decomposition_parameters(50);
+  for (const Parameter& parameter : alignment_parameters()) {
+    operation.parameters.push_back(parameter);
+  }
+  operation.examples = {"decompose takes/ -k 30 -o take.h5",
+                        "decompose take.npy -k 50 --compat splocs2013 -o take.h5"};
+  operation.run = run;
+  return operation;
+}
+
+}  // namespace mimetra

@@ -1,0 +1,93 @@
+#include <mimetra/operations/formats.h>
+
+#include <mimetra/io/components_file.h>
+#include <mimetra/io/model_file.h>
+#include <mimetra/io/pending_output.h>
+#include <mimetra/io/regions_file.h>
+#include <mimetra/io/sequence_file.h>
+
+namespace mimetra {
+
+namespace {
+
+using Paths = std::vector<std::filesystem::path>;
+
+std::vector<Parameter> sequence_writing_parameters() {
+  return {{"format",
+           ParameterKind::choice,
+           "ply",
+           "format of frames in a folder",
+           "",
+           {},
+           {},
+           {"ply", "obj", "off", "stl"}},
+          {"double", ParameterKind::flag, false, "double precision in mesh files"},
+          {"single", ParameterKind::flag, false, "single precision in .npy"}};
+}
+
+Paths write_sequence_data(const Data& data, const WriteRequest& request) {
+  SequenceWriteOptions options;
+  options.format = request.parameters.text("format");
+  options.double_precision = request.parameters.flag("double");
+  options.single_precision = request.parameters.flag("single");
+  options.overwrite = request.overwrite;
+  options.progress = request.progress;
+  return write_sequence(std::get<SequenceRead>(data).sequence, request.target, options,
+                        request.extra);
+}
+
+/// Files that appear beside a single output file, written after it.
+Paths with_extra(Paths written, const WriteRequest& request) {
+  for (const auto& [name, content] : request.extra) {
+    const auto path = request.target.parent_path() / name;
+    write_file(path, content, true);
+    written.push_back(path);
+  }
+  return written;
+}
+
+Paths write_text(const std::string& text, const WriteRequest& request) {
+  write_file(request.target, text, request.overwrite);
+  return with_extra({request.target}, request);
+}
+
+Paths write_components_data(const Data& data, const WriteRequest& request) {
+  write_components(request.target, std::get<Components>(data), request.overwrite);
+  return with_extra({request.target}, request);
+}
+
+Paths write_model_data(const Data& data, const WriteRequest& request) {
+  const auto& [model, performance] = std::get<AnimatedModel>(data);
+  write_model(request.target, model, performance, request.overwrite, request.extra);
+  return {request.target};
+}
+
+}  // namespace
+
+void add_formats(OperationTable& table) {
+  table.add(Writer{DataKind::sequence,
+                   {".npy", ".ply", ".obj", ".off", ".stl", ""},
+                   sequence_writing_parameters(),
+                   write_sequence_data});
+  table.add(Writer{DataKind::components, {".h5", ".hdf5"}, {}, write_components_data});
+  table.add(Writer{DataKind::animated_model, {""}, {}, write_model_data});
+  table.add(
+      Writer{DataKind::regions, {".json"}, {}, [](const Data& data, const WriteRequest& request) {
+               return write_text(regions_json(std::get<RegionData>(data).regions), request);
+             }});
+  table.add(
+      Writer{DataKind::regions, {".csv"}, {}, [](const Data& data, const WriteRequest& request) {
+               return write_text(regions_csv(std::get<RegionData>(data).regions), request);
+             }});
+  table.add(
+      Writer{DataKind::table, {".csv"}, {}, [](const Data& data, const WriteRequest& request) {
+               return write_text(std::get<Table>(data).csv(), request);
+             }});
+  table.add(
+      Writer{DataKind::table, {".json"}, {}, [](const Data& data, const WriteRequest& request) {
+               return write_text(std::get<Table>(data).json(), request);
+             }});
+  table.add(RegionReader{{".json", ".csv", ".txt"}, read_regions});
+}
+
+}  // namespace mimetra

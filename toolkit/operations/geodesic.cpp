@@ -1,0 +1,84 @@
+#include <cmath>
+#include <limits>
+
+#include <nlohmann/json.hpp>
+
+#include <mimetra/geodesic/support_map.h>
+#include <mimetra/operations/analysis.h>
+#include <mimetra/operations/report.h>
+#include <mimetra/operations/toolkit_operations.h>
+
+namespace mimetra {
+
+namespace {
+
+/// Distance to the nearest of the sources.
+Eigen::VectorXd nearest(const SurfaceDistances& distances, const std::vector<std::int64_t>& sources,
+                        int vertices) {
+  Eigen::VectorXd result =
+      Eigen::VectorXd::Constant(vertices, std::numeric_limits<double>::infinity());
+  for (const std::int64_t source : sources) {
+    if (source >= vertices) {
+      throw MismatchError("--source: vertex " + std::to_string(source) + ", the mesh has " +
+                          std::to_string(vertices) + " (0-based)");
+    }
+    result = result.cwiseMin(distances(static_cast<VertexIndex>(source)));
+  }
+  return result;
+}
+
+Outcome run(const Invocation& invocation) {
+  const MeshSequence& sequence = invocation.get<SequenceRead>("mesh").sequence;
+  const Parameters& parameters = invocation.parameters;
+  const MeshSequence mesh = sequence.slice(0, 1);
+  const SurfaceDistances distances = distances_on(invocation, mesh.rest(), mesh.triangles());
+  const double unit = mesh.extent();
+  const Eigen::VectorXd distance =
+      nearest(distances, parameters.integers("source"), mesh.vertices());
+  const Eigen::VectorXd support = geodesic::support_map(distance, parameters.length("d-min", unit),
+                                                        parameters.length("d-max", unit));
+  int reached = 0;
+  double farthest = 0;
+  Eigen::VectorXd shown = distance;
+  for (double& value : shown) {
+    if (std::isfinite(value)) {
+      ++reached;
+      farthest = std::max(farthest, value);
+    } else {
+      value = std::numeric_limits<double>::quiet_NaN();  // infinity would spoil the colour range
+    }
+  }
+  Outcome outcome;
+  FieldSequence fields{mesh,
+                       {{"distance", Field::Location::vertices, shown},
+                        {"support", Field::Location::vertices, support}}};
+  outcome.outputs["out"].push_back({"", std::move(fields)});
+  outcome.report =
+      Json{{"vertices", mesh.vertices()}, {"reached", reached}, {"farthest", farthest}}.dump();
+  outcome.summary = std::to_string(reached) + " of " + std::to_string(mesh.vertices()) +
+                    " vertices reached, the farthest at " + readable(farthest) + '\n';
+  return outcome;
+}
+
+}  // namespace
+
+Operation geodesic_operation() {
+  Operation operation;
+  operation.name = "geodesic";
+  operation.summary = "Distances along a mesh from a vertex, and the support map around it";
+  operation.inputs = {{"mesh", DataKind::sequence, "mesh, or the first frame of a sequence"}};
+  operation.outputs = {{"out", DataKind::fields, ".vtp with the fields distance and support"}};
+  operation.parameters = {
+      {"source", ParameterKind::integer_list, std::vector<std::int64_t>{0},
+       "vertices to measure from, 0-based", "", 0},
+      {"d-min", ParameterKind::length, "0.1", "distance up to which the support map is 0"},
+      {"d-max", ParameterKind::length, "0.7", "distance from which the support map is 1"}};
+  for (const Parameter& parameter : geodesic_parameters())
+    operation.parameters.push_back(parameter);
+  operation.examples = {"geodesic neutral.obj --source 1200 -o nose.vtp",
+                        "geodesic neutral.obj --source 1200 --geodesics exact -o exact.vtp"};
+  operation.run = run;
+  return operation;
+}
+
+}  // namespace mimetra

@@ -1,0 +1,69 @@
+#include <sstream>
+
+#include <nlohmann/json.hpp>
+
+#include <mimetra/mesh/inspection.h>
+#include <mimetra/operations/report.h>
+#include <mimetra/operations/toolkit_operations.h>
+
+namespace mimetra {
+
+namespace {
+
+Json report_of(const MeshSequence& sequence, const MeshReport& mesh) {
+  const Eigen::VectorXd& times = sequence.times();
+  return {{"frames", sequence.frames()},
+          {"vertices", mesh.vertices},
+          {"faces", mesh.faces},
+          {"triangles", mesh.triangles},
+          {"components", mesh.components},
+          {"boundary_edges", mesh.boundary_edges},
+          {"nonmanifold_edges", mesh.nonmanifold_edges},
+          {"degenerate_triangles", mesh.degenerate_triangles.size()},
+          {"vertices_without_face", mesh.vertices_without_face.size()},
+          {"welded_vertices", mesh.welded_vertices},
+          {"components_after_welding", mesh.components_after_welding},
+          {"boundary_edges_after_welding", mesh.boundary_edges_after_welding},
+          {"extent", {mesh.extent[0], mesh.extent[1], mesh.extent[2]}},
+          {"motion", motion(sequence)},
+          {"rest_known", sequence.rest_is_known()},
+          {"seconds", times[times.size() - 1] - times[0]}};
+}
+
+std::string summary_of(const MeshSequence& sequence, const MeshReport& mesh) {
+  std::ostringstream text;
+  const Eigen::VectorXd& times = sequence.times();
+  text << "frames      " << sequence.frames() << " (" << readable(times[0]) << " to "
+       << readable(times[times.size() - 1]) << " s)\n"
+       << "vertices    " << mesh.vertices << ", " << mesh.welded_vertices
+       << " of them at the place of another\n"
+       << "faces       " << mesh.faces << " (" << mesh.triangles << " triangles)\n"
+       << "components  " << mesh.components << ", welded " << mesh.components_after_welding << '\n'
+       << "edges       " << mesh.boundary_edges << " boundary, welded "
+       << mesh.boundary_edges_after_welding << "; " << mesh.nonmanifold_edges << " non-manifold\n"
+       << "defects     " << mesh.degenerate_triangles.size() << " degenerate triangles, "
+       << mesh.vertices_without_face.size() << " vertices without face\n"
+       << "extent      " << readable(mesh.extent[0]) << " x " << readable(mesh.extent[1]) << " x "
+       << readable(mesh.extent[2]) << '\n'
+       << "motion      " << readable(motion(sequence)) << " (RMS distance from the rest pose: "
+       << (sequence.rest_is_known() ? "the neutral" : "the first frame") << ")\n";
+  return text.str();
+}
+
+}  // namespace
+
+Operation info_operation() {
+  Operation operation;
+  operation.name = "info";
+  operation.summary = "What a sequence is made of: frames, vertices, faces, components, defects";
+  operation.inputs = {{"sequence", DataKind::sequence, "sequence to look at"}};
+  operation.examples = {"info takes/smile_%04d.obj", "info actor/ --weights take.csv --json"};
+  operation.run = [](const Invocation& invocation) {
+    const MeshSequence& sequence = invocation.get<SequenceRead>("sequence").sequence;
+    const MeshReport mesh = inspect(sequence.rest(), sequence.connectivity());
+    return Outcome{{}, report_of(sequence, mesh).dump(), summary_of(sequence, mesh)};
+  };
+  return operation;
+}
+
+}  // namespace mimetra

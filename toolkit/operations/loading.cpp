@@ -1,0 +1,108 @@
+#include <mimetra/operations/loading.h>
+
+#include <mimetra/io/components_file.h>
+#include <mimetra/io/mesh_file.h>
+#include <mimetra/io/model_file.h>
+
+namespace mimetra {
+
+namespace {
+
+/// Reads one input after the other; sequences come first, because region sets speak of them.
+class Loader {
+ public:
+  Loader(const OperationTable& table, const Parameters& parameters, const Progress& progress,
+         const Log& log)
+      : table_(table), parameters_(parameters), progress_(progress), log_(log) {}
+
+  NamedData load(const Input& input, const std::string& text) {
+    switch (input.kind) {
+      case DataKind::sequence:
+        return {text, sequence(text)};
+      case DataKind::model:
+        return model(text);
+      case DataKind::components:
+        files.push_back(text);
+        return {text, read_components(text)};
+      case DataKind::regions:
+        return {text, regions(text)};
+      default:
+        break;
+    }
+    throw std::invalid_argument("input '" + input.name + "' is of a kind that no file holds");
+  }
+
+  std::vector<std::filesystem::path> files;
+
+ private:
+  SequenceRead sequence(const std::string& text) {
+    SequenceSource source;
+    const auto path = [this](const char* name) {
+      const auto value = parameters_.optional_text(name);
+      return value ? std::optional<std::filesystem::path>(*value) : std::nullopt;
+    };
+    source.weights = path("weights");
+    source.topology = path("topology");
+    source.frames = parameters_.optional_text("frames");
+    source.fps = parameters_.optional_number("fps");
+    source.progress = progress_;
+    SequenceRead read = read_sequence(text, source);
+    for (const std::string& note : read.notes) {
+      if (log_) log_(LogLevel::warning, note);
+    }
+    files.insert(files.end(), read.files.begin(), read.files.end());
+    vertices_ = read.sequence.vertices();
+    triangles_ = read.sequence.triangles();
+    return read;
+  }
+
+  NamedData model(const std::string& text) {
+    const ModelSpec spec = ModelSpec::parse(text);
+    files.push_back(spec.path);
+    if (is_model(spec.path)) return {spec.name(), read_person(spec)};
+    if (!spec.identity.empty()) {
+      throw MismatchError(text + ": '" + spec.path.string() +
+                          "' is one mesh and has no identities");
+    }
+    TriMesh mesh = read_mesh(spec.path);
+    ShapeBasis none{{}, Eigen::MatrixXd(mesh.positions.size(), 0)};
+    return {spec.name(),
+            BlendshapeModel(std::make_shared<Connectivity>(std::move(mesh.connectivity)),
+                            std::move(mesh.positions), std::move(none))};
+  }
+
+  RegionData regions(const std::string& text) {
+    files.push_back(text);
+    return {table_.region_reader(text).read(text, vertices_, triangles_), {}};
+  }
+
+  const OperationTable& table_;
+  const Parameters& parameters_;
+  const Progress& progress_;
+  const Log& log_;
+  int vertices_ = 0;
+  Triangles triangles_;
+};
+
+}  // namespace
+
+LoadedInputs load_inputs(const OperationTable& table, const Operation& operation,
+                         const Parameters& parameters,
+                         const std::map<std::string, std::vector<std::string>>& names,
+                         const Progress& progress, const Log& log) {
+  Loader loader(table, parameters, progress, log);
+  LoadedInputs loaded;
+  for (const bool sequences : {true, false}) {
+    for (const Input& input : operation.inputs) {
+      const auto named = names.find(input.name);
+      if ((input.kind == DataKind::sequence) != sequences || named == names.end()) continue;
+      for (const std::string& text : named->second) {
+        loaded.data[input.name].push_back(loader.load(input, text));
+      }
+    }
+  }
+  loaded.files = std::move(loader.files);
+  return loaded;
+}
+
+}  // namespace mimetra

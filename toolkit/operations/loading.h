@@ -1,0 +1,24 @@
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include <mimetra/operations/operation.h>
+
+namespace mimetra {
+
+/// What files were read, for the manifest.
+struct LoadedInputs {
+  std::map<std::string, std::vector<NamedData>> data;
+  std::vector<std::filesystem::path> files;
+};
+
+/// Reads the inputs of an operation from what the user named (`names`, by name of the input).
+/// Throws what the readers throw.
+LoadedInputs load_inputs(const OperationTable& table, const Operation& operation,
+                         const Parameters& parameters,
+                         const std::map<std::string, std::vector<std::string>>& names,
+                         const Progress& progress, const Log& log);
+
+}  // namespace mimetra

@@ -1,0 +1,260 @@
+#include <mimetra/operations/operation.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <set>
+#include <sstream>
+
+#include <nlohmann/json.hpp>
+
+#include <mimetra/operations/report.h>
+
+namespace mimetra {
+
+namespace {
+
+std::string lower(std::string text) {
+  std::ranges::transform(text, text.begin(), [](unsigned char c) { return std::tolower(c); });
+  return text;
+}
+
+bool has_extension(const std::vector<std::string>& extensions, const std::filesystem::path& path) {
+  return std::ranges::find(extensions, lower(path.extension().string())) != extensions.end();
+}
+
+std::string listed(const std::vector<std::string>& names) {
+  std::string list;
+  for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
+  return list;
+}
+
+/// What `read_sequence` takes besides a name.
+std::vector<Parameter> sequence_parameters() {
+  return {{"weights", ParameterKind::file, {}, "CSV of blendshape weights that drive a model"},
+          {"topology", ParameterKind::file, {}, "mesh with the faces of an .npy array"},
+          {"frames", ParameterKind::text, {}, "part A:B:STEP of the frames, 0-based, B excluded"},
+          {"fps",
+           ParameterKind::number,
+           {},
+           "frame rate of formats without times",
+           "frames per second",
+           1e-3,
+           1e6}};
+}
+
+std::string_view kind_name(DataKind kind) {
+  switch (kind) {
+    case DataKind::sequence:
+      return "sequence";
+    case DataKind::model:
+      return "model";
+    case DataKind::components:
+      return "components";
+    case DataKind::regions:
+      return "regions";
+    case DataKind::fields:
+      return "fields";
+    case DataKind::table:
+      return "table";
+    case DataKind::animated_model:
+      return "model directory";
+  }
+  return "";
+}
+
+std::string_view kind_name(ParameterKind kind) {
+  switch (kind) {
+    case ParameterKind::flag:
+      return "flag";
+    case ParameterKind::integer:
+      return "integer";
+    case ParameterKind::integer_list:
+      return "integer list";
+    case ParameterKind::number:
+      return "number";
+    case ParameterKind::length:
+      return "length";
+    case ParameterKind::choice:
+      return "choice";
+    case ParameterKind::text:
+      return "text";
+    case ParameterKind::file:
+      return "file";
+  }
+  return "";
+}
+
+Json json_of(const ParameterValue& value) {
+  return std::visit(
+      [](const auto& held) -> Json {
+        if constexpr (std::is_same_v<std::decay_t<decltype(held)>, std::monostate>)
+          return nullptr;
+        else
+          return held;
+      },
+      value);
+}
+
+Json json_of(const Parameter& parameter) {
+  Json json = {{"name", parameter.name},
+               {"kind", kind_name(parameter.kind)},
+               {"default", json_of(parameter.fallback)},
+               {"help", parameter.help}};
+  if (!parameter.unit.empty()) json["unit"] = parameter.unit;
+  if (parameter.minimum) json["minimum"] = *parameter.minimum;
+  if (parameter.maximum) json["maximum"] = *parameter.maximum;
+  if (!parameter.choices.empty()) json["choices"] = parameter.choices;
+  return json;
+}
+
+Json json_of(const Input& input) {
+  return {{"name", input.name},
+          {"kind", kind_name(input.kind)},
+          {"optional", input.optional},
+          {"repeated", input.repeated},
+          {"help", input.help}};
+}
+
+Json json_of(const Output& output) {
+  return {{"name", output.name},
+          {"kind", kind_name(output.kind)},
+          {"optional", output.optional},
+          {"help", output.help}};
+}
+
+}  // namespace
+
+std::string Table::csv() const {
+  std::ostringstream text;
+  for (std::size_t column = 0; column < columns.size(); ++column) {
+    text << (column > 0 ? "," : "") << columns[column];
+  }
+  text << '\n';
+  for (const auto& row : rows) {
+    for (std::size_t column = 0; column < row.size(); ++column) {
+      if (column > 0) text << ',';
+      if (row[column]) text << to_text(*row[column]);
+    }
+    text << '\n';
+  }
+  return text.str();
+}
+
+std::string Table::json() const {
+  Json list = Json::array();
+  for (const auto& row : rows) {
+    Json entry;
+    for (std::size_t column = 0; column < columns.size(); ++column) {
+      entry[columns[column]] = row[column] ? Json(*row[column]) : Json(nullptr);
+    }
+    list.push_back(entry);
+  }
+  return Json{{"rows", list}}.dump(2) + '\n';
+}
+
+void Invocation::warn(const std::string& message) const {
+  if (log) log(LogLevel::warning, message);
+}
+
+void Invocation::info(const std::string& message) const {
+  if (log) log(LogLevel::info, message);
+}
+
+std::filesystem::path output_path(const std::filesystem::path& target, const std::string& name,
+                                  std::size_t count) {
+  if (count <= 1) return target;
+  if (!target.has_extension()) return target / name;
+  const std::string file = target.stem().string() + '-' + name + target.extension().string();
+  return target.parent_path() / file;
+}
+
+void OperationTable::add(Operation operation) {
+  if (find(operation.name)) {
+    throw std::invalid_argument("there is an operation '" + operation.name + "' already");
+  }
+  std::set<std::string> names;
+  for (const Parameter& parameter : parameters_of(operation)) {
+    if (!names.insert(parameter.name).second) {
+      throw std::invalid_argument("operation '" + operation.name + "' has two parameters '" +
+                                  parameter.name + "'");
+    }
+  }
+  operations_.push_back(std::move(operation));
+}
+
+void OperationTable::add(Writer writer) {
+  writers_.push_back(std::move(writer));
+}
+
+void OperationTable::add(RegionReader reader) {
+  region_readers_.push_back(std::move(reader));
+}
+
+const Operation* OperationTable::find(const std::string& name) const {
+  const auto found = std::ranges::find(operations_, name, &Operation::name);
+  return found == operations_.end() ? nullptr : &*found;
+}
+
+std::vector<Parameter> OperationTable::parameters_of(const Operation& operation) const {
+  std::vector<Parameter> parameters = operation.parameters;
+  const auto append = [&parameters](const std::vector<Parameter>& more) {
+    for (const Parameter& parameter : more) {
+      if (std::ranges::find(parameters, parameter.name, &Parameter::name) == parameters.end()) {
+        parameters.push_back(parameter);
+      }
+    }
+  };
+  const auto reads_sequence = [](const Input& input) { return input.kind == DataKind::sequence; };
+  if (std::ranges::any_of(operation.inputs, reads_sequence)) append(sequence_parameters());
+  for (const Output& output : operation.outputs) {
+    for (const Writer& writer : writers_) {
+      if (writer.kind == output.kind) append(writer.parameters);
+    }
+  }
+  return parameters;
+}
+
+const Writer& OperationTable::writer(DataKind kind, const std::filesystem::path& target) const {
+  const Writer* folder = nullptr;
+  std::vector<std::string> known;
+  for (const Writer& writer : writers_) {
+    if (writer.kind != kind) continue;
+    if (has_extension(writer.extensions, target)) return writer;
+    for (const std::string& extension : writer.extensions) {
+      if (extension.empty())
+        folder = &writer;
+      else
+        known.push_back(extension);
+    }
+  }
+  if (folder) return *folder;
+  throw UsageError(target.string() + ": " + std::string(kind_name(kind)) + " can be written as " +
+                   listed(known) + ", not as '" + target.extension().string() + "'");
+}
+
+const RegionReader& OperationTable::region_reader(const std::filesystem::path& path) const {
+  std::vector<std::string> known;
+  for (const RegionReader& reader : region_readers_) {
+    if (has_extension(reader.extensions, path)) return reader;
+    known.insert(known.end(), reader.extensions.begin(), reader.extensions.end());
+  }
+  throw UsageError(path.string() + ": regions can be read from " + listed(known));
+}
+
+std::string OperationTable::json() const {
+  Json list = Json::array();
+  for (const Operation& operation : operations_) {
+    Json json = {{"name", operation.name}, {"summary", operation.summary}};
+    for (const Input& input : operation.inputs) json["inputs"].push_back(json_of(input));
+    for (const Output& output : operation.outputs) json["outputs"].push_back(json_of(output));
+    for (const Parameter& parameter : parameters_of(operation)) {
+      json["parameters"].push_back(json_of(parameter));
+    }
+    json["examples"] = operation.examples;
+    list.push_back(json);
+  }
+  return list.dump(2);
+}
+
+}  // namespace mimetra

@@ -1,0 +1,142 @@
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+#include <mimetra/mesh/errors.h>
+#include <mimetra/operations/data.h>
+#include <mimetra/operations/parameter.h>
+
+namespace mimetra {
+
+/// Something an operation works on.
+struct Input {
+  std::string name;  ///< "source"; an optional one is the option --NAME
+  DataKind kind;
+  std::string help;
+  bool optional = false;
+  bool repeated = false;  ///< one or more; only the last positional input
+};
+
+/// Something an operation makes.
+struct Output {
+  std::string name;  ///< "out" is -o, another is --NAME
+  DataKind kind;
+  std::string help;
+  bool optional = false;
+};
+
+enum class LogLevel { info, warning };
+using Log = std::function<void(LogLevel, const std::string&)>;
+
+/// One call of an operation: values, not files.
+struct Invocation {
+  std::map<std::string, std::vector<NamedData>> inputs;
+  Parameters parameters;
+  /// Outputs asked for and the path each is for (empty for a host that takes values); others need
+  /// not be computed.
+  std::map<std::string, std::filesystem::path> wanted;
+  Progress progress;
+  Log log;
+
+  template <typename T>
+  const T& get(const std::string& name) const {
+    return std::get<T>(inputs.at(name).front().data);
+  }
+  template <typename T>
+  const T* find(const std::string& name) const {
+    const auto found = inputs.find(name);
+    return found == inputs.end() || found->second.empty()
+               ? nullptr
+               : &std::get<T>(found->second.front().data);
+  }
+  bool wants(const std::string& output) const { return wanted.contains(output); }
+  void warn(const std::string& message) const;
+  void info(const std::string& message) const;
+};
+
+/// What came of it.
+struct Outcome {
+  /// By name of the output; several values where an input was repeated.
+  std::map<std::string, std::vector<NamedData>> outputs;
+  std::string report;   ///< a JSON object, the result for programs
+  std::string summary;  ///< the same for people, lines of text
+};
+
+/// An operation, declared once: the command, its help, the reference page and every host's dialog
+/// are made of this.
+struct Operation {
+  std::string name;
+  std::string summary;  ///< one line
+  std::vector<Input> inputs;
+  std::vector<Output> outputs;
+  std::vector<Parameter> parameters;
+  std::vector<std::string> examples;  ///< two command lines without the program's name
+  std::function<Outcome(const Invocation&)> run;
+};
+
+/// Where and how a value is written.
+struct WriteRequest {
+  std::filesystem::path target;
+  const Parameters& parameters;
+  bool overwrite = false;
+  Progress progress = {};
+  /// Further files (name, content) that appear together with the output.
+  std::vector<std::pair<std::string, std::string>> extra = {};
+};
+
+/// A way to write one kind of data, chosen by extension; the extension "" stands for a folder.
+struct Writer {
+  DataKind kind;
+  std::vector<std::string> extensions;
+  std::vector<Parameter> parameters;
+  /// Writes atomically; returns the files. Throws OutputError, Cancelled.
+  std::function<std::vector<std::filesystem::path>(const Data&, const WriteRequest&)> write;
+};
+
+/// A way to read a region set for a mesh, chosen by extension.
+struct RegionReader {
+  std::vector<std::string> extensions;
+  std::function<Regions(const std::filesystem::path&, int vertices, const Triangles&)> read;
+};
+
+/// Where one of `count` values of an output goes: the path asked for where there is one value;
+/// otherwise a folder OUT/NAME each, or OUT-NAME.EXT for files.
+std::filesystem::path output_path(const std::filesystem::path& target, const std::string& name,
+                                  std::size_t count);
+
+/// All operations and formats of a program; built by its main function and passed down.
+class OperationTable {
+ public:
+  /// Throws std::invalid_argument for a name that is taken or a parameter declared twice.
+  void add(Operation operation);
+  void add(Writer writer);
+  void add(RegionReader reader);
+
+  const std::vector<Operation>& operations() const { return operations_; }
+  const Operation* find(const std::string& name) const;
+
+  /// The operation's own parameters, those of reading its inputs and of writing its outputs.
+  std::vector<Parameter> parameters_of(const Operation& operation) const;
+  /// The writer of `kind` for a path. Throws UsageError that lists the known extensions.
+  const Writer& writer(DataKind kind, const std::filesystem::path& target) const;
+  /// Throws UsageError that lists the known extensions.
+  const RegionReader& region_reader(const std::filesystem::path& path) const;
+
+  /// The table as a JSON array: name, summary, inputs, outputs, parameters, examples.
+  std::string json() const;
+
+ private:
+  std::vector<Operation> operations_;
+  std::vector<Writer> writers_;
+  std::vector<RegionReader> region_readers_;
+};
+
+/// The operations of the toolkit (info, align, geodesic, decompose, regions, transfer, evaluate,
+/// convert) and the formats of io.
+void add_toolkit(OperationTable& table);
+
+}  // namespace mimetra

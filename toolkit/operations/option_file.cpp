@@ -1,0 +1,27 @@
+#include <mimetra/operations/option_file.h>
+
+#include <nlohmann/json.hpp>
+
+#include <mimetra/io/pending_output.h>
+#include <mimetra/mesh/errors.h>
+#include <mimetra/operations/report.h>
+
+namespace mimetra {
+
+void set_from_file(const std::string& path, Parameters& parameters) {
+  Json options;
+  try {
+    options = Json::parse(read_file(path));
+  } catch (const Json::exception& error) {
+    throw IoError(path, std::string("expected JSON: ") + error.what());
+  }
+  if (!options.is_object()) throw IoError(path, "expected an object of option names and values");
+  for (const auto& [name, value] : options.items()) {
+    const Parameter* parameter = parameters.find(name);
+    if (!parameter) throw UsageError(path + ": there is no option '" + name + "'");
+    const std::string text = value.is_string() ? value.get<std::string>() : value.dump();
+    parameters.set(name, parse_value(*parameter, text));
+  }
+}
+
+}  // namespace mimetra

@@ -1,0 +1,240 @@
+#include <mimetra/operations/parameter.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <sstream>
+
+namespace mimetra {
+
+namespace {
+
+std::string shortest(double number) {
+  char buffer[32];
+  const auto [end, error] = std::to_chars(buffer, buffer + sizeof buffer, number);
+  return error == std::errc() ? std::string(buffer, end) : std::to_string(number);
+}
+
+std::string range_text(const Parameter& parameter) {
+  if (parameter.minimum && parameter.maximum) {
+    return "from " + shortest(*parameter.minimum) + " to " + shortest(*parameter.maximum);
+  }
+  if (parameter.minimum) return "of at least " + shortest(*parameter.minimum);
+  if (parameter.maximum) return "of at most " + shortest(*parameter.maximum);
+  return "";
+}
+
+[[noreturn]] void refuse(const Parameter& parameter, const std::string& expected,
+                         const std::string& found) {
+  throw UsageError(parameter.option() + ": expected " + expected + ", found '" + found + "'");
+}
+
+template <typename Number>
+std::optional<Number> parse_number(std::string_view text) {
+  Number number{};
+  if (!text.empty() && text.front() == '+') text.remove_prefix(1);
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (error != std::errc() || end != text.data() + text.size()) return {};
+  return number;
+}
+
+std::string expected_text(const Parameter& parameter) {
+  const std::string range = range_text(parameter);
+  const std::string suffix = range.empty() ? "" : " " + range;
+  switch (parameter.kind) {
+    case ParameterKind::flag:
+      return "true or false";
+    case ParameterKind::integer:
+      return "a whole number" + suffix;
+    case ParameterKind::integer_list:
+      return "whole numbers" + suffix + ", as in 10,30,40";
+    case ParameterKind::number:
+      return "a number" + suffix;
+    case ParameterKind::length:
+      return "a share of the longest side as in 0.1, or a length as in 12abs";
+    case ParameterKind::choice: {
+      std::string list;
+      for (const std::string& choice : parameter.choices) {
+        list += (list.empty() ? "" : ", ") + choice;
+      }
+      return "one of " + list;
+    }
+    case ParameterKind::text:
+    case ParameterKind::file:
+      return "text";
+  }
+  return "";
+}
+
+std::vector<std::int64_t> parse_list(const Parameter& parameter, const std::string& text) {
+  std::vector<std::int64_t> list;
+  std::istringstream stream(text);
+  for (std::string entry; std::getline(stream, entry, ',');) {
+    const auto number = parse_number<std::int64_t>(entry);
+    if (!number) refuse(parameter, expected_text(parameter), text);
+    list.push_back(*number);
+  }
+  if (list.empty()) refuse(parameter, expected_text(parameter), text);
+  return list;
+}
+
+constexpr std::string_view kAbsolute = "abs";
+
+/// The number in a length and whether it is absolute.
+std::optional<std::pair<double, bool>> parse_length(std::string_view text) {
+  const bool absolute = text.ends_with(kAbsolute);
+  if (absolute) text.remove_suffix(kAbsolute.size());
+  const auto number = parse_number<double>(text);
+  if (!number || !std::isfinite(*number) || *number < 0) return {};
+  return std::pair(*number, absolute);
+}
+
+bool in_range(const Parameter& parameter, double number) {
+  return std::isfinite(number) && (!parameter.minimum || number >= *parameter.minimum) &&
+         (!parameter.maximum || number <= *parameter.maximum);
+}
+
+bool is_sound(const Parameter& parameter, const ParameterValue& value) {
+  switch (parameter.kind) {
+    case ParameterKind::flag:
+      return std::holds_alternative<bool>(value);
+    case ParameterKind::integer: {
+      const auto* number = std::get_if<std::int64_t>(&value);
+      return number && std::abs(*number) <= INT32_MAX &&
+             in_range(parameter, static_cast<double>(*number));
+    }
+    case ParameterKind::integer_list: {
+      const auto* list = std::get_if<std::vector<std::int64_t>>(&value);
+      return list && !list->empty() && std::ranges::all_of(*list, [&](std::int64_t number) {
+               return std::abs(number) <= INT32_MAX &&
+                      in_range(parameter, static_cast<double>(number));
+             });
+    }
+    case ParameterKind::number: {
+      const auto* number = std::get_if<double>(&value);
+      return number && in_range(parameter, *number);
+    }
+    case ParameterKind::length: {
+      const auto* text = std::get_if<std::string>(&value);
+      return text && parse_length(*text);
+    }
+    case ParameterKind::choice: {
+      const auto* text = std::get_if<std::string>(&value);
+      return text && std::ranges::find(parameter.choices, *text) != parameter.choices.end();
+    }
+    case ParameterKind::text:
+    case ParameterKind::file:
+      return std::holds_alternative<std::string>(value);
+  }
+  return false;
+}
+
+}  // namespace
+
+std::string Parameter::option() const {
+  return (name.size() == 1 ? "-" : "--") + name;
+}
+
+ParameterValue parse_value(const Parameter& parameter, const std::string& text) {
+  ParameterValue value = text;
+  switch (parameter.kind) {
+    case ParameterKind::flag:
+      if (text != "true" && text != "false") refuse(parameter, expected_text(parameter), text);
+      value = text == "true";
+      break;
+    case ParameterKind::integer: {
+      const auto number = parse_number<std::int64_t>(text);
+      if (!number) refuse(parameter, expected_text(parameter), text);
+      value = *number;
+      break;
+    }
+    case ParameterKind::integer_list:
+      value = parse_list(parameter, text);
+      break;
+    case ParameterKind::number: {
+      const auto number = parse_number<double>(text);
+      if (!number) refuse(parameter, expected_text(parameter), text);
+      value = *number;
+      break;
+    }
+    default:
+      break;
+  }
+  check_value(parameter, value);
+  return value;
+}
+
+void check_value(const Parameter& parameter, const ParameterValue& value) {
+  if (!is_sound(parameter, value)) refuse(parameter, expected_text(parameter), to_text(value));
+}
+
+std::string to_text(const ParameterValue& value) {
+  struct Visitor {
+    std::string operator()(std::monostate) const { return ""; }
+    std::string operator()(bool flag) const { return flag ? "true" : "false"; }
+    std::string operator()(std::int64_t number) const { return std::to_string(number); }
+    std::string operator()(double number) const { return shortest(number); }
+    std::string operator()(const std::string& text) const { return text; }
+    std::string operator()(const std::vector<std::int64_t>& list) const {
+      std::string text;
+      for (const std::int64_t number : list) {
+        text += (text.empty() ? "" : ",") + std::to_string(number);
+      }
+      return text;
+    }
+  };
+  return std::visit(Visitor{}, value);
+}
+
+Parameters::Parameters(std::vector<Parameter> declared) : declared_(std::move(declared)) {}
+
+const Parameter* Parameters::find(const std::string& name) const {
+  const auto found = std::ranges::find(declared_, name, &Parameter::name);
+  return found == declared_.end() ? nullptr : &*found;
+}
+
+void Parameters::set(const std::string& name, ParameterValue value) {
+  const Parameter* parameter = find(name);
+  if (!parameter) throw UsageError("there is no parameter '" + name + "'");
+  const auto* number = std::get_if<std::int64_t>(&value);
+  if (number && parameter->kind == ParameterKind::number) value = static_cast<double>(*number);
+  check_value(*parameter, value);
+  values_[name] = std::move(value);
+}
+
+const ParameterValue& Parameters::value(const std::string& name) const {
+  const auto found = values_.find(name);
+  if (found != values_.end()) return found->second;
+  const Parameter* parameter = find(name);
+  if (!parameter) throw UsageError("there is no parameter '" + name + "'");
+  return parameter->fallback;
+}
+
+int Parameters::integer(const std::string& name) const {
+  return static_cast<int>(std::get<std::int64_t>(value(name)));
+}
+
+const std::string& Parameters::text(const std::string& name) const {
+  return std::get<std::string>(value(name));
+}
+
+const std::vector<std::int64_t>& Parameters::integers(const std::string& name) const {
+  return std::get<std::vector<std::int64_t>>(value(name));
+}
+
+std::optional<double> Parameters::optional_number(const std::string& name) const {
+  const auto* number = std::get_if<double>(&value(name));
+  return number ? std::optional(*number) : std::nullopt;
+}
+
+std::optional<std::string> Parameters::optional_text(const std::string& name) const {
+  const auto* text = std::get_if<std::string>(&value(name));
+  return text ? std::optional(*text) : std::nullopt;
+}
+
+double Parameters::length(const std::string& name, double extent) const {
+  const auto parsed = parse_length(text(name));
+  return parsed->second ? parsed->first : parsed->first * extent;
+}
+
+}  // namespace mimetra

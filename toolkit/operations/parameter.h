@@ -1,0 +1,87 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace mimetra {
+
+/// The request is wrong whatever the data: an unknown name, a value out of its range.
+class UsageError : public std::invalid_argument {
+ public:
+  using std::invalid_argument::invalid_argument;
+};
+
+/// A parameter's value; monostate where none was given and there is no default.
+using ParameterValue = std::variant<std::monostate, bool, std::int64_t, double, std::string,
+                                    std::vector<std::int64_t>>;
+
+enum class ParameterKind {
+  flag,          ///< bool
+  integer,       ///< std::int64_t
+  integer_list,  ///< std::vector<std::int64_t>, "10,30,40"
+  number,        ///< double
+  length,        ///< std::string: "0.1" of the rest pose's longest side, or "12abs"
+  choice,        ///< std::string, one of `choices`
+  text,          ///< std::string
+  file           ///< std::string, a path
+};
+
+/// One parameter of an operation: what option parser, help, and the dialogs of hosts are made of.
+struct Parameter {
+  std::string name;  ///< "radius" is --radius, "k" is -k
+  ParameterKind kind;
+  ParameterValue fallback;  ///< the default
+  std::string help;         ///< one line
+  std::string unit = "";
+  std::optional<double> minimum = {};
+  std::optional<double> maximum = {};
+  std::vector<std::string> choices = {};
+
+  /// `--radius` or `-k`.
+  std::string option() const;
+};
+
+/// Reads a value as people type it. Throws UsageError that names option, range and what was found.
+ParameterValue parse_value(const Parameter& parameter, const std::string& text);
+
+/// Checks a value's type and range. Throws UsageError.
+void check_value(const Parameter& parameter, const ParameterValue& value);
+
+/// A value as people type it; empty for none.
+std::string to_text(const ParameterValue& value);
+
+/// Values by name, with the defaults of those that were not set.
+class Parameters {
+ public:
+  explicit Parameters(std::vector<Parameter> declared = {});
+
+  /// Throws UsageError for an unknown name, a wrong type or a value out of range.
+  void set(const std::string& name, ParameterValue value);
+
+  const std::vector<Parameter>& declared() const { return declared_; }
+  const Parameter* find(const std::string& name) const;
+  /// True where a value was set, as against the default.
+  bool is_set(const std::string& name) const { return values_.contains(name); }
+  const ParameterValue& value(const std::string& name) const;
+
+  bool flag(const std::string& name) const { return std::get<bool>(value(name)); }
+  int integer(const std::string& name) const;
+  double number(const std::string& name) const { return std::get<double>(value(name)); }
+  const std::string& text(const std::string& name) const;
+  const std::vector<std::int64_t>& integers(const std::string& name) const;
+  std::optional<double> optional_number(const std::string& name) const;
+  std::optional<std::string> optional_text(const std::string& name) const;
+  /// A length in the unit of a mesh whose longest side is `extent`.
+  double length(const std::string& name, double extent) const;
+
+ private:
+  std::vector<Parameter> declared_;
+  std::map<std::string, ParameterValue> values_;
+};
+
+}  // namespace mimetra

@@ -1,0 +1,53 @@
+#include <nlohmann/json.hpp>
+
+#include <mimetra/operations/analysis.h>
+#include <mimetra/operations/report.h>
+#include <mimetra/operations/toolkit_operations.h>
+
+namespace mimetra {
+
+namespace {
+
+Outcome run(const Invocation& invocation) {
+  const SequenceRead& read = invocation.get<SequenceRead>("sequence");
+  const Analysis analysis = analysis_for(invocation, read);
+  const Regions regions = regions_of(invocation, analysis);
+  std::vector<Field> fields = fields_of(regions);
+  if (invocation.parameters.flag("component-fields")) {
+    for (Field& field : component_fields(analysis.components, regions)) {
+      fields.push_back(std::move(field));
+    }
+  }
+  Outcome outcome;
+  Json json = report_of(regions);
+  json["seconds"] = analysis.seconds;
+  outcome.report = json.dump();
+  outcome.summary = summary_of(regions);
+  outcome.outputs["out"].push_back(
+      {"", RegionData{regions, {read.sequence, std::move(fields), true}}});
+  return outcome;
+}
+
+}  // namespace
+
+Operation regions_operation() {
+  Operation operation;
+  operation.name = "regions";
+  operation.summary = "Regions of interest of a sequence, as fields for ParaView";
+  operation.inputs = {
+      {"sequence", DataKind::sequence, "sequence whose moving regions are looked for"},
+      {"components", DataKind::components, "components (.h5) of an earlier decompose", true}};
+  operation.outputs = {{"out", DataKind::regions, ".pvd (a time series), .vtp, .json or .csv"}};
+  operation.parameters = region_parameters();
+  operation.parameters.push_back({"component-fields", ParameterKind::flag, false,
+                                  "also write support_k and component_k of each region"});
+  for (const auto& group : {decomposition_parameters(30), alignment_parameters()}) {
+    for (const Parameter& parameter : group) operation.parameters.push_back(parameter);
+  }
+  operation.examples = {"regions takes/ -k 30 -o rois/take.pvd",
+                        "regions take.npy --coverage 0.8 --radius 12abs -o rois.json"};
+  operation.run = run;
+  return operation;
+}
+
+}  // namespace mimetra

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <mimetra/operations/analysis.h>
+#include <mimetra/transfer/blendshape_transfer.h>
+#include <mimetra/transfer/transfer_error.h>
+
+namespace mimetra {
+
+/// Parameters shared by transfer and evaluate.
+std::vector<Parameter> solving_parameters();
+
+/// A source that is ready: its neutral as rest pose, without head motion.
+struct PreparedSource {
+  MeshSequence sequence;
+  std::vector<RigidTransform> motion;  ///< empty where none was taken out
+};
+
+/// Applies --source-rest and --align.
+PreparedSource prepare_source(const Invocation& invocation);
+
+/// Throws MismatchError unless the target has the source's vertices and faces.
+void check_target(const MeshSequence& source, const NamedData& target);
+
+/// A target's solution on triangles L.
+struct Solution {
+  MeshSequence sequence;    ///< rest pose = the target's neutral, without head motion
+  Eigen::MatrixXd weights;  ///< beta, F x D; empty in vertex space
+  BlendshapeConditions conditions;
+  int degenerate_source_triangles = 0;
+  int degenerate_target_triangles = 0;
+  double seconds = 0;  ///< set-up and all frames
+};
+
+/// What a transfer looks at: triangles L, and the vertices inside the regions (empty for all).
+struct Selection {
+  std::vector<int> triangles;
+  std::vector<bool> inside;
+};
+
+/// Solves in blendshape or vertex space, as --space says and the target allows; warns of what the
+/// user should know.
+Solution solve(const Invocation& invocation, const PreparedSource& source, const NamedData& target,
+               const Selection& selection, const Progress& progress);
+
+}  // namespace mimetra

@@ -1,0 +1,19 @@
+#include <mimetra/operations/toolkit_operations.h>
+
+#include <mimetra/operations/formats.h>
+
+namespace mimetra {
+
+void add_toolkit(OperationTable& table) {
+  add_formats(table);
+  table.add(info_operation());
+  table.add(align_operation());
+  table.add(geodesic_operation());
+  table.add(decompose_operation());
+  table.add(regions_operation());
+  table.add(transfer_operation());
+  table.add(evaluate_operation());
+  table.add(convert_operation());
+}
+
+}  // namespace mimetra

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <mimetra/operations/operation.h>
+
+namespace mimetra {
+
+// One function per operation of the toolkit, each in a file of its own name.
+Operation info_operation();
+Operation align_operation();
+Operation geodesic_operation();
+Operation decompose_operation();
+Operation regions_operation();
+Operation transfer_operation();
+Operation evaluate_operation();
+Operation convert_operation();
+
+}  // namespace mimetra

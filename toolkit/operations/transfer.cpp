@@ -1,0 +1,167 @@
+#include <nlohmann/json.hpp>
+
+#include <mimetra/operations/report.h>
+#include <mimetra/operations/solving.h>
+#include <mimetra/operations/toolkit_operations.h>
+
+namespace mimetra {
+
+namespace {
+
+/// The triangles a transfer uses, and the regions they come from (none for --full).
+struct Choice {
+  Selection selection;
+  std::optional<Regions> regions;
+  double seconds = 0;
+};
+
+Choice choose(const Invocation& invocation, const PreparedSource& source) {
+  if (invocation.parameters.flag("full")) {
+    return {{all_triangles(source.sequence.triangles()), {}}, {}, 0};
+  }
+  if (const RegionData* given = invocation.find<RegionData>("regions")) {
+    return {{given->regions.triangles, given->regions.inside}, given->regions, 0};
+  }
+  const SequenceRead& read = invocation.get<SequenceRead>("source");
+  const Stopwatch stopwatch;
+  const Analysis analysis =
+      invocation.find<Components>("components")
+          ? analysis_for(invocation, read)
+          : analyse(invocation, read, source.sequence, invocation.parameters.integer("k"),
+                    part_of(invocation.progress, 0, 0.4));
+  Regions regions = regions_of(invocation, analysis);
+  Selection selection{regions.triangles, regions.inside};
+  return {std::move(selection), std::move(regions), stopwatch.seconds()};
+}
+
+NamedData weight_table(const NamedData& target, const Solution& solution) {
+  Table table;
+  table.columns = {"time"};
+  const auto& names = std::get<BlendshapeModel>(target.data).expressions().names;
+  table.columns.insert(table.columns.end(), names.begin(), names.end());
+  for (int f = 0; f < solution.weights.rows(); ++f) {
+    table.rows.push_back({solution.sequence.times()[f]});
+    for (const double weight : solution.weights.row(f)) table.rows.back().push_back(weight);
+  }
+  return {target.name, std::move(table)};
+}
+
+Json report_of(const Invocation& invocation, const NamedData& target, const Solution& solution,
+               const TransferError& error) {
+  Json json = {{"name", target.name},          {"output", nullptr},  {"de_all", error.de_all},
+               {"de_region", error.de_region}, {"leak", error.leak}, {"flipped", error.flipped},
+               {"seconds", solution.seconds}};
+  json["degenerate_source_triangles"] = solution.degenerate_source_triangles;
+  json["degenerate_target_triangles"] = solution.degenerate_target_triangles;
+  if (invocation.wants("out")) {
+    json["output"] =
+        output_path(invocation.wanted.at("out"), target.name, invocation.inputs.at("target").size())
+            .string();
+  }
+  if (solution.weights.size() > 0) {
+    json["condition"] = solution.conditions.condition;
+    json["unseen"] = solution.conditions.unseen;
+    json["weakly_seen"] = solution.conditions.weakly_seen;
+  }
+  return json;
+}
+
+std::string summary_of(const NamedData& target, const Solution& solution,
+                       const TransferError& error) {
+  return target.name + ": DE " + readable(error.de_all) + " over all triangles, " +
+         readable(error.de_region) + " over the regions; leak " + readable(error.leak) + ", " +
+         std::to_string(error.flipped) + " flipped triangles; " + readable(solution.seconds) +
+         " s\n";
+}
+
+Outcome run(const Invocation& invocation) {
+  const Stopwatch stopwatch;
+  const PreparedSource source = prepare_source(invocation);
+  const std::vector<NamedData>& targets = invocation.inputs.at("target");
+  for (const NamedData& target : targets) check_target(source.sequence, target);
+  const Choice choice = choose(invocation, source);
+  const bool give_back =
+      !source.motion.empty() && invocation.parameters.text("head-motion") == "keep";
+
+  Outcome outcome;
+  Json reports = Json::array();
+  const double first = choice.regions ? 0.4 : 0.0;
+  for (std::size_t t = 0; t < targets.size(); ++t) {
+    const double count = static_cast<double>(targets.size());
+    const Progress progress =
+        part_of(invocation.progress, first + (1 - first) * static_cast<double>(t) / count,
+                first + (1 - first) * static_cast<double>(t + 1) / count);
+    Solution solution = solve(invocation, source, targets[t], choice.selection, progress);
+    const TransferError error =
+        transfer_error(source.sequence, solution.sequence, choice.selection.triangles);
+    reports.push_back(report_of(invocation, targets[t], solution, error));
+    outcome.summary += summary_of(targets[t], solution, error);
+    if (invocation.wants("weights-out") && solution.weights.size() > 0) {
+      outcome.outputs["weights-out"].push_back(weight_table(targets[t], solution));
+    }
+    MeshSequence result =
+        give_back ? with_motion(solution.sequence, source.motion) : std::move(solution.sequence);
+    outcome.outputs["out"].push_back(
+        {targets[t].name, SequenceRead{std::move(result), false, {}, {}}});
+  }
+  Json report = {{"targets", reports}};
+  if (choice.regions) {
+    Json regions = report_of(*choice.regions);
+    regions["seconds"] = choice.seconds;
+    report["regions"] = regions;
+    outcome.summary = summary_of(*choice.regions) + outcome.summary;
+    if (invocation.wants("regions-out")) {
+      outcome.outputs["regions-out"].push_back(
+          {"", RegionData{*choice.regions,
+                          {invocation.get<SequenceRead>("source").sequence,
+                           fields_of(*choice.regions), true}}});
+    }
+  } else if (invocation.wants("regions-out")) {
+    throw UsageError("--regions-out: there are no regions with --full");
+  }
+  report["seconds"] = stopwatch.seconds();
+  outcome.report = report.dump();
+  return outcome;
+}
+
+}  // namespace
+
+Operation transfer_operation() {
+  Operation operation;
+  operation.name = "transfer";
+  operation.summary = "Transfer a sequence's deformation to other characters, by regions";
+  operation.inputs = {
+      {"source", DataKind::sequence, "sequence whose deformation is transferred"},
+      {"target", DataKind::model, "model (MODEL or MODEL@identity=1.5) or mesh that receives it",
+       false, true},
+      {"components", DataKind::components, "components (.h5) of an earlier decompose", true},
+      {"regions", DataKind::regions, "region set: .json, .csv, .txt, or .vtp with the field roi",
+       true}};
+  operation.outputs = {
+      {"out", DataKind::sequence,
+       "a folder of frames, .npy, or a mesh file; with several targets a folder with one each"},
+      {"regions-out", DataKind::regions, "regions: .pvd (a time series), .vtp, .json or .csv",
+       true},
+      {"weights-out", DataKind::table, "blendshape weights: .csv or .json", true}};
+  operation.parameters = {
+      {"full", ParameterKind::flag, false, "use all triangles instead of regions"},
+      {"head-motion",
+       ParameterKind::choice,
+       "keep",
+       "give the motion that --align took out back to the target, or drop it",
+       "",
+       {},
+       {},
+       {"keep", "drop"}}};
+  for (const auto& group : {region_parameters(), decomposition_parameters(30),
+                            alignment_parameters(), solving_parameters()}) {
+    for (const Parameter& parameter : group) operation.parameters.push_back(parameter);
+  }
+  operation.examples = {
+      "transfer takes/smile_%04d.obj actor/ -k 30 -o actor_smile/ --regions-out rois/smile.pvd",
+      "transfer take.npy actor@identity007=2 double/ --full -o results/"};
+  operation.run = run;
+  return operation;
+}
+
+}  // namespace mimetra
