@@ -1,0 +1,140 @@
+#include <sys/resource.h>
+#include <csignal>
+
+#include <gmock/gmock.h>
+
+#include "vtp_fixture.h"
+
+namespace mimetra::test {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+using ::testing::ThrowsMessage;
+
+using VtpErrors = VtpTest;
+
+/// Files cannot grow beyond a size, as on a full disk.
+class FileSizeLimit {
+ public:
+  explicit FileSizeLimit(rlim_t bytes) {
+    getrlimit(RLIMIT_FSIZE, &before_);
+    const rlimit limit{bytes, before_.rlim_max};
+    setrlimit(RLIMIT_FSIZE, &limit);
+    handler_ = std::signal(SIGXFSZ, SIG_IGN);
+  }
+  ~FileSizeLimit() {
+    setrlimit(RLIMIT_FSIZE, &before_);
+    std::signal(SIGXFSZ, handler_);
+  }
+  FileSizeLimit(const FileSizeLimit&) = delete;
+  FileSizeLimit& operator=(const FileSizeLimit&) = delete;
+
+ private:
+  rlimit before_;
+  void (*handler_)(int);
+};
+
+void write_text(const std::filesystem::path& path, const std::string& text) {
+  std::ofstream(path, std::ios::binary) << text;
+}
+
+TEST_F(VtpErrors, AnExistingSeriesIsRefusedAndStaysAsItIs) {
+  write_text(in_folder("face.pvd"), "mine");
+  EXPECT_THAT([&] { write_vtp_series(quad_and_triangle(), in_folder("face.pvd")); },
+              ThrowsMessage<OutputError>(StartsWith(in_folder("face.pvd").string())));
+  EXPECT_EQ(bytes_of(in_folder("face.pvd")), "mine");
+  EXPECT_FALSE(std::filesystem::exists(in_folder("face_vtp")));
+}
+
+TEST_F(VtpErrors, AnExistingFolderOfFramesIsRefused) {
+  std::filesystem::create_directories(in_folder("face_vtp"));
+  EXPECT_THROW(write_vtp_series(quad_and_triangle(), in_folder("face.pvd")), OutputError);
+  EXPECT_FALSE(std::filesystem::exists(in_folder("face.pvd")));
+}
+
+TEST_F(VtpErrors, AnExistingSeriesIsReplacedWhenAsked) {
+  write_vtp_series(quad_and_triangle(), in_folder("face.pvd"));
+  FieldSequence shorter = quad_and_triangle();
+  shorter.sequence = shorter.sequence.slice(0, 1);
+  write_vtp_series(shorter, in_folder("face.pvd"), {.overwrite = true});
+  EXPECT_TRUE(std::filesystem::exists(in_folder("face_vtp/face_0000.vtp")));
+  EXPECT_FALSE(std::filesystem::exists(in_folder("face_vtp/face_0001.vtp")));
+}
+
+TEST_F(VtpErrors, AFolderThatCannotBeMadeIsAnOutputErrorAndLeavesNothing) {
+  write_text(in_folder("file"), "in the way");
+  EXPECT_THROW(write_vtp_series(quad_and_triangle(), in_folder("file/face.pvd")), OutputError);
+  EXPECT_EQ(bytes_of(in_folder("file")), "in the way");
+}
+
+TEST_F(VtpErrors, AFullDiskIsAnOutputErrorAndLeavesNothing) {
+  FieldSequence fields = quad_and_triangle();
+  {
+    const FileSizeLimit limit(1000);  // the index files fit, a frame of some 3 kB does not
+    EXPECT_THAT([&] { write_vtp_series(fields, in_folder("face.pvd")); },
+                ThrowsMessage<OutputError>(StartsWith(in_folder("face.pvd").string())));
+  }
+  EXPECT_TRUE(folder_is_empty());
+}
+
+TEST_F(VtpErrors, ACancelledSeriesLeavesNothing) {
+  const auto stop_at_half = [](double share) { return share < 0.5; };
+  EXPECT_THROW(
+      write_vtp_series(quad_and_triangle(), in_folder("face.pvd"), {.progress = stop_at_half}),
+      Cancelled);
+  EXPECT_TRUE(folder_is_empty());
+}
+
+TEST_F(VtpErrors, AFieldOfAnotherSizeIsNamed) {
+  FieldSequence fields = quad_and_triangle();
+  fields.fields[0].values = Eigen::VectorXd::Zero(4);
+  EXPECT_THAT([&] { write_vtp_series(fields, in_folder("face.pvd")); },
+              ThrowsMessage<std::invalid_argument>(
+                  AllOf(HasSubstr("'region'"), HasSubstr("4 x 1"), HasSubstr("expected 5"))));
+}
+
+TEST_F(VtpErrors, TwoFieldsOfOneNameAreRefused) {
+  FieldSequence fields = quad_and_triangle();
+  fields.fields[1].name = "region";
+  EXPECT_THAT([&] { write_vtp_series(fields, in_folder("face.pvd")); },
+              ThrowsMessage<std::invalid_argument>(HasSubstr("'region' occurs twice")));
+}
+
+TEST_F(VtpErrors, ATargetOfAnotherKindIsRefused) {
+  EXPECT_THAT([&] { write_vtp_series(quad_and_triangle(), in_folder("face.obj")); },
+              ThrowsMessage<std::invalid_argument>(HasSubstr(".pvd or .vtp")));
+}
+
+TEST_F(VtpErrors, AMissingFileIsAnIoError) {
+  EXPECT_THAT([&] { read_vtp_field(in_folder("none.vtp"), "roi"); },
+              ThrowsMessage<IoError>(StartsWith(in_folder("none.vtp").string())));
+}
+
+TEST_F(VtpErrors, AFolderIsNotAFile) {
+  EXPECT_THAT([&] { read_vtp_field(in_folder(""), "roi"); },
+              ThrowsMessage<IoError>(HasSubstr("is a folder")));
+}
+
+TEST_F(VtpErrors, AMissingFieldIsNamedBesideThoseThatAreThere) {
+  write_vtp_series(quad_and_triangle(), in_folder("face.vtp"));
+  EXPECT_THAT([&] { read_vtp_field(in_folder("face.vtp"), "roi"); },
+              ThrowsMessage<IoError>(AllOf(HasSubstr("'roi'"), HasSubstr("region, direction"))));
+}
+
+TEST_F(VtpErrors, EveryTruncatedPrefixIsAnIoErrorAndPrintsNothing) {
+  write_vtp_series(quad_and_triangle(), in_folder("face.vtp"));
+  const std::string whole = bytes_of(in_folder("face.vtp"));
+  // The closing tags after the data are not needed to read it.
+  const std::size_t end_of_data = whole.rfind("\n  </AppendedData>");
+  ::testing::internal::CaptureStderr();
+  for (std::size_t size = 0; size < end_of_data; size += 7) {
+    write_text(in_folder("cut.vtp"), whole.substr(0, size));
+    EXPECT_THROW(read_vtp_field(in_folder("cut.vtp"), "displacement_length"), IoError) << size;
+  }
+  EXPECT_EQ(::testing::internal::GetCapturedStderr(), "");
+}
+
+}  // namespace
+}  // namespace mimetra::test

@@ -1,0 +1,186 @@
+#include <cmath>
+
+#include <gmock/gmock.h>
+
+#include <vtkCellArray.h>
+#include <vtkCellData.h>
+#include <vtkNew.h>
+#include <vtkPointData.h>
+#include <vtkPolyData.h>
+#include <vtkXMLPolyDataReader.h>
+
+#include "vtp_fixture.h"
+
+namespace mimetra::test {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+class VtpSeries : public VtpTest {
+ protected:
+  /// The frame as VTK reads it.
+  vtkPolyData& read(const std::filesystem::path& path) {
+    reader_->SetFileName(path.c_str());
+    reader_->Update();
+    return *reader_->GetOutput();
+  }
+
+ private:
+  vtkNew<vtkXMLPolyDataReader> reader_;
+};
+
+std::vector<int> corners_of(vtkPolyData& data, vtkIdType cell) {
+  vtkNew<vtkIdList> ids;
+  data.GetPolys()->GetCellAtId(cell, ids);
+  return {ids->begin(), ids->end()};
+}
+
+TEST_F(VtpSeries, KeepsPointsToFloatPrecisionInEveryFrame) {
+  const FieldSequence fields = quad_and_triangle();
+  write_vtp_series(fields, in_folder("face.pvd"));
+  for (int f = 0; f < fields.sequence.frames(); ++f) {
+    vtkPolyData& data = read(in_folder("face_vtp/face_000" + std::to_string(f) + ".vtp"));
+    ASSERT_EQ(data.GetNumberOfPoints(), 5);
+    for (int v = 0; v < 5; ++v) {
+      for (int axis = 0; axis < 3; ++axis) {
+        EXPECT_EQ(data.GetPoint(v)[axis], static_cast<float>(fields.sequence.frame(f)(v, axis)));
+      }
+    }
+  }
+}
+
+TEST_F(VtpSeries, WritesTheUsersPolygonsAndNotTheirTriangles) {
+  write_vtp_series(quad_and_triangle(), in_folder("face.pvd"));
+  vtkPolyData& data = read(in_folder("face_vtp/face_0000.vtp"));
+  ASSERT_EQ(data.GetNumberOfPolys(), 2);
+  EXPECT_THAT(corners_of(data, 0), ElementsAre(0, 1, 2, 3));
+  EXPECT_THAT(corners_of(data, 1), ElementsAre(1, 4, 2));
+}
+
+TEST_F(VtpSeries, StoresIdsInThirtyTwoBitsAndDataAppendedRaw) {
+  write_vtp_series(quad_and_triangle(), in_folder("face.pvd"));
+  const std::string text = bytes_of(in_folder("face_vtp/face_0000.vtp"));
+  EXPECT_THAT(text, HasSubstr("type=\"Int32\" Name=\"connectivity\" format=\"appended\""));
+  EXPECT_THAT(text, HasSubstr("<AppendedData encoding=\"raw\">"));
+  EXPECT_THAT(text, HasSubstr("vtkLZ4DataCompressor"));
+  EXPECT_THAT(text, Not(HasSubstr("Float64")));
+}
+
+TEST_F(VtpSeries, CompressesWithZlibOnDemand) {
+  write_vtp_series(quad_and_triangle(), in_folder("face.pvd"),
+                   {.compression = VtpCompression::zlib});
+  EXPECT_THAT(bytes_of(in_folder("face_vtp/face_0000.vtp")), HasSubstr("vtkZLibDataCompressor"));
+}
+
+TEST_F(VtpSeries, KeepsIntegersThatAFloatCannotHold) {
+  const FieldSequence fields = quad_and_triangle();
+  write_vtp_series(fields, in_folder("face.pvd"));
+  EXPECT_EQ(read_vtp_field(in_folder("face_vtp/face_0002.vtp"), "region"), fields.fields[0].values);
+}
+
+TEST_F(VtpSeries, RepeatsStaticFieldsInEveryFrame) {
+  const FieldSequence fields = quad_and_triangle();
+  write_vtp_series(fields, in_folder("face.pvd"));
+  for (const char* frame :
+       {"face_vtp/face_0000.vtp", "face_vtp/face_0001.vtp", "face_vtp/face_0002.vtp"}) {
+    EXPECT_EQ(read_vtp_field(in_folder(frame), "direction"), fields.fields[1].values);
+  }
+}
+
+TEST_F(VtpSeries, GivesAPolygonTheLargestValueOfItsTriangles) {
+  write_vtp_series(quad_and_triangle(), in_folder("face.pvd"));
+  vtkDataArray* in_l = read(in_folder("face_vtp/face_0000.vtp")).GetCellData()->GetArray("in_L");
+  ASSERT_NE(in_l, nullptr);
+  ASSERT_EQ(in_l->GetNumberOfTuples(), 2);
+  EXPECT_EQ(in_l->GetDataType(), VTK_INT);
+  EXPECT_EQ(in_l->GetTuple1(0), 1);  // triangles 0 and 1 of the quad: 0 and 1
+  EXPECT_EQ(in_l->GetTuple1(1), 0);
+}
+
+TEST_F(VtpSeries, WritesDisplacementFromTheRestPose) {
+  const FieldSequence fields = quad_and_triangle();
+  write_vtp_series(fields, in_folder("face.pvd"));
+  const auto frame = in_folder("face_vtp/face_0001.vtp");
+  // 0.1 along each axis, rounded to float once.
+  EXPECT_LE((read_vtp_field(frame, "displacement").array() - 0.1).abs().maxCoeff(), 1e-8);
+  EXPECT_LE(
+      (read_vtp_field(frame, "displacement_length").array() - std::sqrt(0.03)).abs().maxCoeff(),
+      2e-8);
+  vtkDataArray* array = read(frame).GetPointData()->GetArray("displacement");
+  EXPECT_STREQ(array->GetComponentName(0), "X");
+  EXPECT_STREQ(array->GetComponentName(2), "Z");
+}
+
+TEST_F(VtpSeries, WritesNoDisplacementUnlessAsked) {
+  FieldSequence fields = quad_and_triangle();
+  fields.displacement = false;
+  write_vtp_series(fields, in_folder("face.pvd"));
+  EXPECT_FALSE(read(in_folder("face_vtp/face_0001.vtp")).GetPointData()->HasArray("displacement"));
+}
+
+TEST_F(VtpSeries, ListsEveryFrameWithItsTimeInFullDigits) {
+  write_vtp_series(quad_and_triangle(), in_folder("face.pvd"));
+  const std::string text = bytes_of(in_folder("face.pvd"));
+  EXPECT_THAT(text, HasSubstr("timestep=\"0\" part=\"0\" file=\"face_vtp/face_0000.vtp\""));
+  EXPECT_THAT(text, HasSubstr("timestep=\"0.3333333333333333\" part=\"0\""));
+  EXPECT_THAT(text, HasSubstr("timestep=\"1e-07\" part=\"0\" file=\"face_vtp/face_0002.vtp\""));
+}
+
+TEST_F(VtpSeries, WritesTheSameTimesInTheSeriesFile) {
+  write_vtp_series(quad_and_triangle(), in_folder("face.pvd"));
+  const std::string text = bytes_of(in_folder("face.vtp.series"));
+  EXPECT_THAT(text, HasSubstr("\"file-series-version\": \"1.0\""));
+  EXPECT_THAT(text,
+              HasSubstr("{\"name\": \"face_vtp/face_0001.vtp\", \"time\": 0.3333333333333333}"));
+}
+
+TEST_F(VtpSeries, EscapesANameInItsIndexFiles) {
+  write_vtp_series(quad_and_triangle(), in_folder("a & \"b\".pvd"));
+  EXPECT_THAT(bytes_of(in_folder("a & \"b\".pvd")),
+              HasSubstr("file=\"a &amp; &quot;b&quot;_vtp/a &amp; &quot;b&quot;_0000.vtp\""));
+  EXPECT_THAT(bytes_of(in_folder("a & \"b\".vtp.series")),
+              HasSubstr("\"a & \\\"b\\\"_vtp/a & \\\"b\\\"_0000.vtp\""));
+}
+
+TEST_F(VtpSeries, ReturnsTheFilesItWroteAndNoOthersAppear) {
+  const auto written = write_vtp_series(quad_and_triangle(), in_folder("face.pvd"));
+  EXPECT_THAT(written,
+              ElementsAre(in_folder("face.pvd"), in_folder("face.vtp.series"),
+                          in_folder("face_vtp/face_0000.vtp"), in_folder("face_vtp/face_0001.vtp"),
+                          in_folder("face_vtp/face_0002.vtp")));
+  std::size_t files = 0;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(in_folder(""))) {
+    files += entry.is_regular_file();
+  }
+  EXPECT_EQ(files, written.size());
+}
+
+TEST_F(VtpSeries, WritesTheSameBytesTwice) {
+  const auto first = write_vtp_series(quad_and_triangle(), in_folder("one/face.pvd"));
+  const auto second = write_vtp_series(quad_and_triangle(), in_folder("two/face.pvd"));
+  ASSERT_EQ(first.size(), second.size());
+  for (std::size_t i = 0; i < first.size(); ++i) {
+    EXPECT_EQ(bytes_of(first[i]), bytes_of(second[i])) << first[i];
+  }
+}
+
+TEST_F(VtpSeries, WritesTheFirstFrameIntoASingleVtp) {
+  const FieldSequence fields = quad_and_triangle();
+  const auto written = write_vtp_series(fields, in_folder("face.vtp"));
+  EXPECT_THAT(written, ElementsAre(in_folder("face.vtp")));
+  EXPECT_EQ(read_vtp_field(in_folder("face.vtp"), "region"), fields.fields[0].values);
+}
+
+TEST_F(VtpSeries, ReportsProgressUpToOne) {
+  std::vector<double> shares;
+  write_vtp_series(quad_and_triangle(), in_folder("face.pvd"), {.progress = [&](double share) {
+                     shares.push_back(share);
+                     return true;
+                   }});
+  EXPECT_THAT(shares, ElementsAre(1.0 / 3, 2.0 / 3, 1));
+}
+
+}  // namespace
+}  // namespace mimetra::test

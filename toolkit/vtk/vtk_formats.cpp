@@ -1,0 +1,66 @@
+#include <mimetra/vtk/vtk_formats.h>
+
+#include <mimetra/io/pending_output.h>
+#include <mimetra/vtk/vtp_series.h>
+
+namespace mimetra {
+
+namespace {
+
+std::vector<std::filesystem::path> write(const FieldSequence& fields, const WriteRequest& request) {
+  VtpOptions options;
+  options.compression =
+      request.parameters.text("compress") == "small" ? VtpCompression::zlib : VtpCompression::lz4;
+  options.overwrite = request.overwrite;
+  options.progress = request.progress;
+  auto written = write_vtp_series(fields, request.target, options);
+  for (const auto& [name, content] : request.extra) {
+    const auto path = request.target.parent_path() / name;
+    write_file(path, content, true);
+    written.push_back(path);
+  }
+  return written;
+}
+
+/// One region: the vertices where the field `roi` is not 0.
+Regions read_regions_from_vtp(const std::filesystem::path& path, int vertices,
+                              const Triangles& triangles) {
+  const Eigen::MatrixXd mask = read_vtp_field(path, "roi");
+  if (mask.rows() != vertices) {
+    throw MismatchError(path.string() + ": " + std::to_string(mask.rows()) +
+                        " vertices, expected " + std::to_string(vertices) + " as in the source");
+  }
+  std::vector<VertexIndex> inside;
+  for (int v = 0; v < vertices; ++v) {
+    if (mask(v, 0) != 0) inside.push_back(v);
+  }
+  return regions_from_vertices(vertices, triangles, {inside});
+}
+
+}  // namespace
+
+void add_vtk_formats(OperationTable& table) {
+  const std::vector<Parameter> parameters = {{"compress",
+                                              ParameterKind::choice,
+                                              "fast",
+                                              "compression of .vtp: fast (LZ4) or small (zlib)",
+                                              "",
+                                              {},
+                                              {},
+                                              {"fast", "small"}}};
+  table.add(Writer{DataKind::regions,
+                   {".pvd", ".vtp"},
+                   parameters,
+                   [](const Data& data, const WriteRequest& request) {
+                     return write(std::get<RegionData>(data).fields, request);
+                   }});
+  table.add(Writer{DataKind::fields,
+                   {".vtp", ".pvd"},
+                   parameters,
+                   [](const Data& data, const WriteRequest& request) {
+                     return write(std::get<FieldSequence>(data), request);
+                   }});
+  table.add(RegionReader{{".vtp"}, read_regions_from_vtp});
+}
+
+}  // namespace mimetra

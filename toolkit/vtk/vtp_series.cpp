@@ -1,0 +1,362 @@
+#include <mimetra/vtk/vtp_series.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <set>
+#include <stdexcept>
+#include <system_error>
+#include <utility>
+
+#include <vtkCellArray.h>
+#include <vtkCellData.h>
+#include <vtkErrorCode.h>
+#include <vtkExecutive.h>
+#include <vtkFloatArray.h>
+#include <vtkNew.h>
+#include <vtkPointData.h>
+#include <vtkPoints.h>
+#include <vtkPolyData.h>
+#include <vtkSmartPointer.h>
+#include <vtkTypeInt32Array.h>
+#include <vtkXMLPolyDataReader.h>
+#include <vtkXMLPolyDataWriter.h>
+
+#include <mimetra/io/pending_output.h>
+
+namespace mimetra {
+namespace {
+
+constexpr int kFewestDigits = 4;
+
+/// VTK prints its errors; what goes wrong is thrown instead.
+class SilentVtk {
+ public:
+  SilentVtk() { vtkObject::GlobalWarningDisplayOff(); }
+  ~SilentVtk() { vtkObject::SetGlobalWarningDisplay(before_); }
+  SilentVtk(const SilentVtk&) = delete;
+  SilentVtk& operator=(const SilentVtk&) = delete;
+
+ private:
+  int before_ = vtkObject::GetGlobalWarningDisplay();
+};
+
+void name_components(vtkDataArray& array) {
+  if (array.GetNumberOfComponents() != 3) return;
+  array.SetComponentName(0, "X");
+  array.SetComponentName(1, "Y");
+  array.SetComponentName(2, "Z");
+}
+
+template <typename Array, typename Convert>
+vtkSmartPointer<Array> array_of(const std::string& name, const Eigen::MatrixXd& values,
+                                Convert convert) {
+  const auto array = vtkSmartPointer<Array>::New();
+  array->SetName(name.c_str());
+  array->SetNumberOfComponents(std::max(1, static_cast<int>(values.cols())));
+  array->SetNumberOfTuples(values.rows());
+  auto* out = array->GetPointer(0);
+  for (Eigen::Index row = 0; row < values.rows(); ++row) {
+    for (Eigen::Index column = 0; column < values.cols(); ++column) {
+      *out++ = convert(values(row, column));
+    }
+  }
+  name_components(*array);
+  return array;
+}
+
+vtkSmartPointer<vtkDataArray> float_array(const std::string& name, const Eigen::MatrixXd& values) {
+  return array_of<vtkFloatArray>(name, values, [](double x) { return static_cast<float>(x); });
+}
+
+vtkSmartPointer<vtkDataArray> array_of(const std::string& name, const Eigen::MatrixXd& values,
+                                       bool integer) {
+  if (!integer) return float_array(name, values);
+  return array_of<vtkTypeInt32Array>(
+      name, values, [](double x) { return static_cast<vtkTypeInt32>(std::lround(x)); });
+}
+
+vtkSmartPointer<vtkTypeInt32Array> index_array(const std::vector<int>& indices) {
+  const auto array = vtkSmartPointer<vtkTypeInt32Array>::New();
+  array->SetNumberOfValues(static_cast<vtkIdType>(indices.size()));
+  std::copy(indices.begin(), indices.end(), array->GetPointer(0));
+  return array;
+}
+
+/// Values of the polygons: the largest of their triangles' in each component.
+Eigen::MatrixXd on_polygons(const Eigen::MatrixXd& on_triangles, const Connectivity& connectivity) {
+  Eigen::MatrixXd values = Eigen::MatrixXd::Constant(
+      connectivity.polygons.size(), on_triangles.cols(), -std::numeric_limits<double>::infinity());
+  for (Eigen::Index t = 0; t < on_triangles.rows(); ++t) {
+    const int polygon = connectivity.polygon_of_triangle[static_cast<std::size_t>(t)];
+    values.row(polygon) = values.row(polygon).cwiseMax(on_triangles.row(t));
+  }
+  return values;
+}
+
+std::string place_of(Field::Location location) {
+  return location == Field::Location::vertices ? "vertices" : "triangles";
+}
+
+void check(const FieldSequence& fields) {
+  std::set<std::pair<Field::Location, std::string>> names;
+  if (fields.displacement) {
+    names.insert({Field::Location::vertices, "displacement"});
+    names.insert({Field::Location::vertices, "displacement_length"});
+  }
+  for (const Field& field : fields.fields) {
+    const Eigen::Index expected = field.location == Field::Location::vertices
+                                      ? fields.sequence.vertices()
+                                      : fields.sequence.triangles().rows();
+    if (field.values.rows() != expected || field.values.cols() == 0) {
+      throw std::invalid_argument(
+          "field '" + field.name + "': " + std::to_string(field.values.rows()) + " x " +
+          std::to_string(field.values.cols()) + " values, expected " + std::to_string(expected) +
+          " rows for the mesh's " + place_of(field.location) + " and at least one column");
+    }
+    if (!names.insert({field.location, field.name}).second) {
+      throw std::invalid_argument("field '" + field.name + "' occurs twice on the " +
+                                  place_of(field.location) + "; give each field its own name");
+    }
+  }
+}
+
+/// The mesh as VTK holds it; from frame to frame only its points and displacements change.
+class FrameData {
+ public:
+  explicit FrameData(const FieldSequence& fields) : fields_(fields) {
+    const Connectivity& connectivity = fields.sequence.connectivity();
+    vtkNew<vtkCellArray> cells;
+    cells->SetData(index_array(connectivity.polygons.offsets),
+                   index_array(connectivity.polygons.corners));
+    data_->SetPolys(cells);
+    for (const Field& field : fields.fields) add(field);
+  }
+
+  vtkPolyData& at(int frame) {
+    const PositionsView positions = fields_.sequence.frame(frame);
+    vtkNew<vtkPoints> points;
+    points->SetData(float_array("Points", positions));
+    data_->SetPoints(points);
+    if (fields_.displacement) {
+      const Eigen::MatrixXd displacement = positions - fields_.sequence.rest();
+      data_->GetPointData()->AddArray(float_array("displacement", displacement));
+      data_->GetPointData()->AddArray(
+          float_array("displacement_length", displacement.rowwise().norm()));
+    }
+    return *data_;
+  }
+
+ private:
+  void add(const Field& field) {
+    if (field.location == Field::Location::triangles) {
+      data_->GetCellData()->AddArray(array_of(
+          field.name, on_polygons(field.values, fields_.sequence.connectivity()), field.integer));
+      return;
+    }
+    vtkPointData* on_points = data_->GetPointData();
+    on_points->AddArray(array_of(field.name, field.values, field.integer));
+    // ParaView colours a file it opens by its active scalars.
+    if (!on_points->GetScalars() && field.values.cols() == 1) {
+      on_points->SetActiveScalars(field.name.c_str());
+    }
+  }
+
+  const FieldSequence& fields_;
+  vtkNew<vtkPolyData> data_;
+};
+
+/// What a code of VTK says; below its own codes are those of the operating system.
+std::string reason_of(unsigned long code) {
+  if (code == vtkErrorCode::OutOfDiskSpaceError) return "no space left on the disk";
+  if (code > vtkErrorCode::NoError && code < vtkErrorCode::FirstVTKErrorCode) {
+    return std::system_category().message(static_cast<int>(code));
+  }
+  return "VTK cannot write it (code " + std::to_string(code) + ")";
+}
+
+/// `shown` is the name that the user asked for.
+void write_frame(vtkPolyData& data, const std::filesystem::path& path, VtpCompression compression,
+                 const std::filesystem::path& shown) {
+  vtkNew<vtkXMLPolyDataWriter> writer;
+  writer->SetFileName(path.c_str());
+  writer->SetInputData(&data);
+  writer->SetDataModeToAppended();
+  writer->EncodeAppendedDataOff();
+  writer->SetByteOrderToLittleEndian();
+  if (compression == VtpCompression::lz4) {
+    writer->SetCompressorTypeToLZ4();
+  } else {
+    writer->SetCompressorTypeToZLib();
+  }
+  if (!writer->Write() || writer->GetErrorCode() != vtkErrorCode::NoError) {
+    throw OutputError(shown.string(), reason_of(writer->GetErrorCode()));
+  }
+}
+
+std::string decimal(double value) {
+  char text[32];
+  return {text, std::to_chars(text, text + sizeof text, value).ptr};
+}
+
+std::string escaped_for_xml(const std::string& text) {
+  std::string result;
+  for (const char c : text) {
+    switch (c) {
+      case '&':
+        result += "&amp;";
+        break;
+      case '<':
+        result += "&lt;";
+        break;
+      case '>':
+        result += "&gt;";
+        break;
+      case '"':
+        result += "&quot;";
+        break;
+      default:
+        result += c;
+    }
+  }
+  return result;
+}
+
+std::string escaped_for_json(const std::string& text) {
+  std::string result;
+  for (const char c : text) {
+    if (c == '"' || c == '\\') result += '\\';
+    result += c;
+  }
+  return result;
+}
+
+/// A frame's file, relative to the .pvd, and its time.
+struct FrameEntry {
+  std::string file;
+  double time;
+};
+
+std::string pvd_text(const std::vector<FrameEntry>& entries) {
+  std::string text =
+      "<?xml version=\"1.0\"?>\n"
+      "<VTKFile type=\"Collection\" version=\"1.0\" byte_order=\"LittleEndian\">\n"
+      "  <Collection>\n";
+  for (const FrameEntry& entry : entries) {
+    text += "    <DataSet timestep=\"" + decimal(entry.time) + "\" part=\"0\" file=\"" +
+            escaped_for_xml(entry.file) + "\"/>\n";
+  }
+  return text + "  </Collection>\n</VTKFile>\n";
+}
+
+std::string series_text(const std::vector<FrameEntry>& entries) {
+  std::string text = "{\n  \"file-series-version\": \"1.0\",\n  \"files\": [";
+  const char* separator = "\n";
+  for (const FrameEntry& entry : entries) {
+    text += separator + std::string("    {\"name\": \"") + escaped_for_json(entry.file) +
+            "\", \"time\": " + decimal(entry.time) + "}";
+    separator = ",\n";
+  }
+  return text + "\n  ]\n}\n";
+}
+
+/// The frames of NAME.pvd; not NAME itself, which people use for the meshes of the same sequence.
+std::string frames_folder(const std::string& name) {
+  return name + "_vtp";
+}
+
+std::vector<FrameEntry> entries_of(const MeshSequence& sequence, const std::string& name) {
+  const int last = sequence.frames() - 1;
+  const int digits = std::max(kFewestDigits, static_cast<int>(std::to_string(last).size()));
+  std::vector<FrameEntry> entries;
+  for (int f = 0; f <= last; ++f) {
+    const std::string number = std::to_string(f);
+    const std::string zeros(static_cast<std::size_t>(digits) - number.size(), '0');
+    const std::string file = name + "_" + zeros + number + ".vtp";
+    entries.push_back({frames_folder(name) + "/" + file, sequence.times()[f]});
+  }
+  return entries;
+}
+
+std::filesystem::path write_one(const FieldSequence& fields, const std::filesystem::path& target,
+                                const VtpOptions& options) {
+  PendingOutput output(target, PendingOutput::Kind::file, options.overwrite);
+  write_frame(FrameData(fields).at(0), output.path(), options.compression, target);
+  report_progress(options.progress, 1);
+  output.commit();
+  return target;
+}
+
+std::vector<std::filesystem::path> write_all(const FieldSequence& fields,
+                                             const std::filesystem::path& target,
+                                             const VtpOptions& options) {
+  const std::string name = target.stem().string();
+  const std::filesystem::path beside = target.parent_path();
+  const std::filesystem::path series = beside / (name + ".vtp.series");
+  const std::vector<FrameEntry> entries = entries_of(fields.sequence, name);
+
+  PendingOutput folder(beside / frames_folder(name), PendingOutput::Kind::folder,
+                       options.overwrite);
+  PendingOutput series_file(series, PendingOutput::Kind::file, options.overwrite);
+  PendingOutput pvd_file(target, PendingOutput::Kind::file, options.overwrite);
+  write_file(series_file.path(), series_text(entries), true);
+  write_file(pvd_file.path(), pvd_text(entries), true);
+
+  std::vector<std::filesystem::path> written = {target, series};
+  FrameData data(fields);
+  for (int f = 0; f < fields.sequence.frames(); ++f) {
+    const std::filesystem::path frame = entries[static_cast<std::size_t>(f)].file;
+    write_frame(data.at(f), folder.path() / frame.filename(), options.compression, target);
+    written.push_back(beside / frame);
+    report_progress(options.progress, (f + 1.0) / fields.sequence.frames());
+  }
+  folder.commit();
+  series_file.commit();
+  pvd_file.commit();
+  return written;
+}
+
+}  // namespace
+
+std::vector<std::filesystem::path> write_vtp_series(const FieldSequence& fields,
+                                                    const std::filesystem::path& target,
+                                                    const VtpOptions& options) {
+  check(fields);
+  const SilentVtk silent;
+  if (target.extension() == ".vtp") return {write_one(fields, target, options)};
+  if (target.extension() == ".pvd") return write_all(fields, target, options);
+  throw std::invalid_argument(target.string() + ": expected a name that ends in .pvd or .vtp");
+}
+
+Eigen::MatrixXd read_vtp_field(const std::filesystem::path& path, const std::string& name) {
+  // VTK reads a folder as an empty file and a missing one as an error without a reason.
+  if (!std::filesystem::exists(path)) throw IoError(path.string(), "no such file");
+  if (std::filesystem::is_directory(path)) throw IoError(path.string(), "is a folder");
+  const SilentVtk silent;
+  vtkNew<vtkXMLPolyDataReader> reader;
+  reader->SetFileName(path.c_str());
+  if (!reader->GetExecutive()->Update() || reader->GetErrorCode() != vtkErrorCode::NoError) {
+    throw IoError(path.string(), "not a readable VTP file, or truncated");
+  }
+  vtkPointData* on_points = reader->GetOutput()->GetPointData();
+  vtkDataArray* array = on_points->GetArray(name.c_str());
+  if (!array) {
+    std::string known;
+    for (int i = 0; i < on_points->GetNumberOfArrays(); ++i) {
+      known += (i ? ", " : "") + std::string(on_points->GetArrayName(i));
+    }
+    throw IoError(path.string(), "no field '" + name + "' on the vertices; it has " +
+                                     (known.empty() ? "none" : known));
+  }
+  Eigen::MatrixXd values(array->GetNumberOfTuples(), array->GetNumberOfComponents());
+  for (Eigen::Index row = 0; row < values.rows(); ++row) {
+    for (Eigen::Index column = 0; column < values.cols(); ++column) {
+      values(row, column) = array->GetComponent(row, static_cast<int>(column));
+    }
+  }
+  return values;
+}
+
+}  // namespace mimetra

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <mimetra/mesh/errors.h>
+#include <mimetra/mesh/fields.h>
+
+namespace mimetra {
+
+enum class VtpCompression { lz4, zlib };
+
+struct VtpOptions {
+  VtpCompression compression = VtpCompression::lz4;
+  bool overwrite = false;
+  Progress progress = {};
+};
+
+/// Writes a sequence with its fields for ParaView: `NAME.pvd` and `NAME.vtp.series` beside a folder
+/// `NAME_vtp` of `NAME_0000.vtp` ..., positions float32, appended raw, 32-bit ids, times in
+/// seconds, the user's polygons (triangle fields on the polygon: the largest of its triangles).
+/// Given NAME.vtp, only the first frame, in one file. Atomic: the .pvd appears last. Returns the
+/// files written, the one asked for first. Throws OutputError; std::invalid_argument for a field
+/// whose size is not the mesh's, for two fields of one name, and for a target that is neither .pvd
+/// nor .vtp.
+std::vector<std::filesystem::path> write_vtp_series(const FieldSequence& fields,
+                                                    const std::filesystem::path& target,
+                                                    const VtpOptions& = {});
+
+/// A field on the vertices of a .vtp file (N x c). Throws IoError where the file or field is
+/// missing.
+Eigen::MatrixXd read_vtp_field(const std::filesystem::path& path, const std::string& name);
+
+}  // namespace mimetra
