@@ -1,0 +1,27 @@
+#!/usr/bin/env bash
+# The main job on the built-in sample: regions of one head's performance, and the performance on
+# another head, by all triangles and by regions.  usage: demo.sh MIMETRA OUT
+set -euo pipefail
+mimetra=$1
+out=$2
+rm -rf "$out"
+mkdir -p "$out"
+
+"$mimetra" sample -o "$out/head"
+"$mimetra" convert "$out/head@identity001=1" --weights "$out/head/performance.csv" -o "$out/source"
+"$mimetra" transfer "$out/source" "$out/head@identity002=1" --full -o "$out/full"
+"$mimetra" transfer "$out/source" "$out/head@identity002=1" -k 30 -o "$out/regions" \
+  --regions-out "$out/regions.pvd"
+echo
+echo "Table I of the paper on the sample (MPE in percent, negative is worse than full):"
+"$mimetra" evaluate "$out/source" "$out/head@identity002=1" -k 10,30,40 -o "$out/table.json"
+
+cat <<TEXT
+
+What to open:
+  $out/regions.pvd  in ParaView: press Apply, colour by 'region' or 'roi', press Play
+  $out/source/      the performance of one head, frame_0000.ply on
+  $out/full/        the same on another head, by all triangles
+  $out/regions/     the same by 30 regions
+  $out/table.json   error and time against the number of regions
+TEXT

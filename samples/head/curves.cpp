@@ -1,0 +1,24 @@
+#include <mimetra/samples/curves.h>
+
+namespace mimetra::samples {
+
+double Curve::slope(std::size_t knot) const {
+  if (knot == 0 || knot + 1 == knots_.size()) return 0;
+  const Knot &before = knots_[knot - 1], &after = knots_[knot + 1];
+  return (after.y - before.y) / (after.x - before.x);
+}
+
+double Curve::operator()(double x) const {
+  if (x <= knots_.front().x) return knots_.front().y;
+  if (x >= knots_.back().x) return knots_.back().y;
+  std::size_t i = 0;
+  while (x >= knots_[i + 1].x) ++i;
+  const double h = knots_[i + 1].x - knots_[i].x;
+  const double t = (x - knots_[i].x) / h;
+  const double rise = smooth_step(t);
+  const double rest = 1 - t;
+  return (1 - rise) * knots_[i].y + rise * knots_[i + 1].y + t * rest * rest * h * slope(i) -
+         t * t * rest * h * slope(i + 1);
+}
+
+}  // namespace mimetra::samples

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <utility>
+#include <vector>
+
+#include <Eigen/Core>
+
+namespace mimetra::samples {
+
+// The sample's numbers are the same on every machine: its formulas use only operations that IEEE
+// 754 rounds exactly (+ - * / and the square root), none of the C library's transcendental
+// functions.
+
+/// 0 up to x = 0, 1 from x = 1, with zero slope at both.
+constexpr double smooth_step(double x) {
+  if (x <= 0) return 0;
+  if (x >= 1) return 1;
+  return x * x * (3 - 2 * x);
+}
+
+/// 1 at squared radius 0, exactly 0 from 1, two continuous derivatives.
+constexpr double bump(double squared_radius) {
+  if (squared_radius >= 1) return 0;
+  const double rest = 1 - squared_radius;
+  return rest * rest * rest;
+}
+
+/// `bump` of an ellipsoid's three radii around `center`.
+inline double within(const Eigen::Vector3d& p, const Eigen::Vector3d& center,
+                     const Eigen::Vector3d& radii) {
+  return bump(((p - center).array() / radii.array()).square().sum());
+}
+
+/// A smooth curve through knots, constant beyond the first and the last (cubic Hermite, slopes from
+/// the neighbours).
+class Curve {
+ public:
+  struct Knot {
+    double x;
+    double y;
+  };
+  /// \pre at least two knots, x ascending
+  explicit Curve(std::vector<Knot> knots) : knots_(std::move(knots)) {}
+  double operator()(double x) const;
+
+ private:
+  double slope(std::size_t knot) const;
+
+  std::vector<Knot> knots_;
+};
+
+}  // namespace mimetra::samples

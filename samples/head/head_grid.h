@@ -1,0 +1,45 @@
+#pragma once
+
+#include <vector>
+
+#include <mimetra/mesh/tri_mesh.h>
+
+namespace mimetra::samples {
+
+/// Rows of the skull's surface at which it is cut open, in the parameter `v` of `HeadVertex`.
+constexpr double kEyeRow = 5;
+constexpr double kMouthRow = 7;
+
+/// Where a vertex of the sample lies, in the terms of the formulas that place it.
+struct HeadVertex {
+  enum class Part {
+    skin,     ///< on the surface: `u`, `v`
+    mouth,    ///< behind the lips: ring `ring` (1, 2, ...) behind the skin vertex `source`
+    eyelid,   ///< behind an eyelid, likewise
+    eyeball,  ///< `u` around the line of sight, `v` from the pupil (0) to the back (1)
+  };
+  Part part = Part::skin;
+  /// Around the head: 0 at the middle of the face, 1 and -1 at the ears (1 on the head's own left),
+  /// 2 at the back.
+  double u = 0;
+  /// Down the head: 0 at the crown, kEyeRow, kMouthRow, kNeckRow at the neck's end.
+  double v = 0;
+  /// Above (1) or below (-1) the cut of its row; 0 off the cuts.
+  int rim = 0;
+  VertexIndex source = -1;
+  int ring = 0;
+  /// 1 for the head's left eye, -1 for its right one, 0 for all else.
+  int eye = 0;
+};
+
+/// The sample's vertices and faces: a grid of quadrilaterals around the head, cut open along the
+/// mouth and the eyes, with rims behind the cuts, and two eyeballs. Mirror symmetric in its
+/// vertices.
+struct HeadGrid {
+  std::vector<HeadVertex> vertices;
+  Polygons faces;
+};
+
+HeadGrid head_grid();
+
+}  // namespace mimetra::samples

@@ -1,0 +1,161 @@
+#include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
+
+#include "command.h"
+
+namespace mimetra {
+namespace {
+
+using nlohmann::json;
+using testing::HasSubstr;
+
+class Command : public test::CommandTest {};
+
+TEST_F(Command, HelpListsTheCommandsOnStdout) {
+  const auto result = run("--help");
+  EXPECT_EQ(result.code, 0);
+  EXPECT_THAT(result.out, HasSubstr("transfer"));
+  EXPECT_EQ(result.err, "");
+}
+
+TEST_F(Command, HelpOfACommandEndsInTwoExamples) {
+  const auto result = run("transfer --help");
+  EXPECT_EQ(result.code, 0);
+  const auto examples = result.out.substr(result.out.find("Examples:"));
+  EXPECT_EQ(std::count(examples.begin(), examples.end(), '\n'), 3);
+  EXPECT_THAT(examples, HasSubstr("mimetra transfer "));
+}
+
+TEST_F(Command, InfoCountsWhatTheSequenceHolds) {
+  const auto result = run("info head --weights take.csv --json");
+  ASSERT_EQ(result.code, 0) << result.err;
+  const json info = json::parse(result.out);
+  EXPECT_EQ(info.at("frames"), 12);
+  EXPECT_EQ(info.at("vertices"), 15 * 15);
+  EXPECT_EQ(info.at("triangles"), 2 * 14 * 14);
+  EXPECT_EQ(info.at("components"), 1);
+  EXPECT_EQ(info.at("boundary_edges"), 4 * 14);
+  EXPECT_EQ(info.at("nonmanifold_edges"), 0);
+  EXPECT_EQ(info.at("degenerate_triangles"), 0);
+  EXPECT_EQ(info.at("welded_vertices"), 0);
+  EXPECT_EQ(info.at("extent").size(), 3u);
+  EXPECT_GT(info.at("motion").get<double>(), 0);
+}
+
+TEST_F(Command, FramesTakesAPartOfTheSequence) {
+  const auto result = run("info head --weights take.csv --frames 2:10:4 --json");
+  ASSERT_EQ(result.code, 0) << result.err;
+  EXPECT_EQ(json::parse(result.out).at("frames"), 2);
+}
+
+TEST_F(Command, ConvertToNpyKeepsTopologyAndRestBeside) {
+  ASSERT_EQ(run("convert head --weights take.csv -o take.npy").code, 0);
+  EXPECT_TRUE(listing().contains("take.topology.ply"));
+  EXPECT_TRUE(listing().contains("take.rest.ply"));
+  const json info = json::parse(run("info take.npy --json").out);
+  EXPECT_EQ(info.at("frames"), 12);
+  EXPECT_EQ(info.at("rest_known"), true);
+}
+
+TEST_F(Command, DecomposeWritesComponentsThatRegionsReads) {
+  const auto result = run("decompose head --weights take.csv -k 3 -o c.h5 --json");
+  ASSERT_EQ(result.code, 0) << result.err;
+  const json report = json::parse(result.out);
+  EXPECT_EQ(report.at("frames"), 12);
+  EXPECT_EQ(report.at("components"), 3);
+  EXPECT_FALSE(report.at("energies").empty());
+  const auto regions = run("regions head --weights take.csv --components c.h5 -o r.json --json");
+  ASSERT_EQ(regions.code, 0) << regions.err;
+  const json found = json::parse(regions.out);
+  EXPECT_EQ(found.at("regions").size(), 3u);
+  EXPECT_GT(found.at("vertex_share").get<double>(), 0);
+  EXPECT_LT(found.at("vertex_share").get<double>(), 1);
+}
+
+TEST_F(Command, RegionsWritesATimeSeriesForParaView) {
+  const auto result = run("regions head --weights take.csv -k 3 -o out/r.pvd");
+  ASSERT_EQ(result.code, 0) << result.err;
+  EXPECT_THAT(text_of(folder_ / "out/r.pvd"), HasSubstr("r_vtp/r_0011.vtp"));
+  EXPECT_EQ(listing("out/r_vtp").size(), 12u);
+}
+
+TEST_F(Command, TransferToTheSameHeadGivesTheSourceBack) {
+  const auto result =
+      run("transfer head --weights take.csv head --full -o out.npy --weights-out w.csv --json");
+  ASSERT_EQ(result.code, 0) << result.err;
+  const json report = json::parse(result.out);
+  EXPECT_EQ(report.at("targets").size(), 1u);
+  EXPECT_EQ(report.at("targets")[0].at("output"), "out.npy");
+  EXPECT_LT(report.at("targets")[0].at("de_all").get<double>(), 1e-18);
+  const WeightTrack found = read_weights(folder_ / "w.csv");
+  // Exact up to rounding: the problem is consistent and well-conditioned.
+  EXPECT_LT((found.weights - performance().weights).cwiseAbs().maxCoeff(), 1e-9);
+}
+
+TEST_F(Command, TransferWithSeveralTargetsGivesEachAFolder) {
+  const auto result =
+      run("transfer head --weights take.csv head@wide=1 head@wide=2 -k 3 -o out --json");
+  ASSERT_EQ(result.code, 0) << result.err;
+  EXPECT_THAT(listing("out"), testing::IsSupersetOf({"head@wide=1", "head@wide=2"}));
+  EXPECT_TRUE(listing("out/head@wide=1").contains("frame_0011.ply"));
+}
+
+TEST_F(Command, TransferTakesARegionSetFromAFile) {
+  ASSERT_EQ(run("regions head --weights take.csv -k 2 -o r.json").code, 0);
+  ASSERT_EQ(run("regions head --weights take.csv -k 2 -o r.vtp").code, 0);
+  ASSERT_EQ(run("transfer head --weights take.csv head@wide=1 --regions r.json -o a.npy").code, 0);
+  const auto result = run("transfer head --weights take.csv head@wide=1 --regions r.vtp -o b.npy");
+  ASSERT_EQ(result.code, 0) << result.err;
+  EXPECT_EQ(text_of(folder_ / "a.npy"), text_of(folder_ / "b.npy"));
+}
+
+TEST_F(Command, EvaluatePrintsOneRowPerCountAndTheFullTransfer) {
+  const auto result =
+      run("evaluate head --weights take.csv head@wide=1 -k 1,3 -o table.json --json");
+  ASSERT_EQ(result.code, 0) << result.err;
+  const json rows = json::parse(result.out).at("rows");
+  ASSERT_EQ(rows.size(), 3u);
+  EXPECT_TRUE(rows.back().at("k").is_null());
+  EXPECT_EQ(json::parse(text_of(folder_ / "table.json")).at("rows").size(), 3u);
+}
+
+TEST_F(Command, AlignIsUndoneByItsManifest) {
+  ASSERT_EQ(run("convert head --weights take.csv -o a.npy").code, 0);
+  ASSERT_EQ(run("align a.npy --on all -o b.npy").code, 0);
+  const auto result = run("align b.npy --undo b.run.json -o c.npy");
+  ASSERT_EQ(result.code, 0) << result.err;
+  const MeshSequence before = read_sequence((folder_ / "a.npy").string()).sequence;
+  const MeshSequence after = read_sequence((folder_ / "c.npy").string()).sequence;
+  EXPECT_LT((before.positions() - after.positions()).cwiseAbs().maxCoeff(), 1e-12 * 15);
+}
+
+TEST_F(Command, GeodesicWritesDistanceAndSupport) {
+  const auto result = run("geodesic head --source 112 -o d.vtp --json");
+  ASSERT_EQ(result.code, 0) << result.err;
+  EXPECT_EQ(json::parse(result.out).at("reached"), 15 * 15);
+}
+
+TEST_F(Command, OptionsCanComeFromAFile) {
+  write("config.json", R"({"k": 2, "radius": "3abs"})");
+  const auto result = run("regions head --weights take.csv --config config.json -o r.json --json");
+  ASSERT_EQ(result.code, 0) << result.err;
+  EXPECT_EQ(json::parse(result.out).at("regions").size(), 2u);
+}
+
+TEST_F(Command, OperationsListsEveryCommand) {
+  const json list = json::parse(run("operations --json").out)["operations"];
+  std::set<std::string> names;
+  for (const json& entry : list) names.insert(entry.at("name").get<std::string>());
+  EXPECT_EQ(names,
+            (std::set<std::string>{"info", "align", "geodesic", "decompose", "regions", "transfer",
+                                   "evaluate", "convert", "sample", "operations"}));
+}
+
+TEST_F(Command, SampleIsAModelWithAPerformance) {
+  ASSERT_EQ(run("sample -o sample").code, 0);
+  const json info = json::parse(run("info sample --weights sample/performance.csv --json").out);
+  EXPECT_EQ(info.at("frames"), 120);
+}
+
+}  // namespace
+}  // namespace mimetra

@@ -1,0 +1,85 @@
+#include <gmock/gmock.h>
+
+#include "command.h"
+
+namespace mimetra {
+namespace {
+
+using testing::HasSubstr;
+
+class ExitCode : public test::CommandTest {
+ protected:
+  /// The run fails as documented, says so, prints no result, and leaves the folder as it was.
+  void expect_failure(const std::string& arguments, int code, const std::string& message) {
+    const auto before = listing();
+    const auto result = run(arguments);
+    EXPECT_EQ(result.code, code) << arguments << '\n' << result.err;
+    EXPECT_THAT(result.err, HasSubstr(message)) << arguments;
+    EXPECT_EQ(result.out, "") << arguments;
+    EXPECT_EQ(listing(), before) << arguments;
+  }
+};
+
+TEST_F(ExitCode, Is2ForAnUnknownCommandAndSuggestsTheNearest) {
+  expect_failure("transfr head head -o x", 2, "did you mean 'transfer'?");
+}
+
+TEST_F(ExitCode, Is2ForAnUnknownOptionAndSuggestsTheNearest) {
+  expect_failure("regions head --weights take.csv --radios 0.1 -o r.json", 2,
+                 "did you mean '--radius'?");
+}
+
+TEST_F(ExitCode, Is2ForAValueThatIsWrongWhateverTheData) {
+  expect_failure("decompose head --weights take.csv -k 0 -o c.h5", 2, "-k: expected");
+  expect_failure("decompose head --weights take.csv --d-min 0.8 -o c.h5", 2, "--d-min");
+  expect_failure("decompose head --weights take.csv -o c.txt", 2, ".h5");
+  expect_failure("transfer head --weights take.csv head -o x --region ball", 2, "disc, support");
+  expect_failure("info head --weights take.csv --frames 5:2", 2, "5:2");
+}
+
+TEST_F(ExitCode, Is3ForAnInputThatIsWrongInItself) {
+  expect_failure("info missing.obj", 3, "missing.obj: ");
+  write("bad.obj", "v 0 0 0\nv 1 0 nan\nv 0 1 0\nf 1 2 3\n");
+  expect_failure("info bad.obj", 3, "bad.obj");
+  std::filesystem::create_directory(folder_ / "empty");
+  expect_failure("info empty", 3, "empty");
+  write("config.json", "not json");
+  expect_failure("info head --config config.json", 3, "config.json");
+}
+
+TEST_F(ExitCode, Is4ForInputsThatContradictEachOtherOrTheRequest) {
+  expect_failure("decompose head --weights take.csv -k 226 -o c.h5", 4, "225 vertices");
+  expect_failure("decompose head -k 2 -o c.h5", 4, "frame");
+  write("other.csv", "time,smile\n0,1\n");
+  expect_failure("info head --weights other.csv", 4, "smile");
+  write("small.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  expect_failure("transfer head --weights take.csv small.obj --full -o x", 4,
+                 "3 vertices, expected 225");
+}
+
+TEST_F(ExitCode, Is5ForAnOutputThatExistsUnlessForced) {
+  write("c.h5", "mine");
+  expect_failure("decompose head --weights take.csv -k 2 -o c.h5", 5, "--force");
+  EXPECT_EQ(text_of(folder_ / "c.h5"), "mine");
+  EXPECT_EQ(run("decompose head --weights take.csv -k 2 -o c.h5 --force").code, 0);
+  EXPECT_NE(text_of(folder_ / "c.h5"), "mine");
+}
+
+TEST_F(ExitCode, Is5ForAFolderThatCannotBeWritten) {
+  write("file", "");
+  expect_failure("convert head --weights take.csv -o file/x.npy", 5, "file");
+}
+
+TEST_F(ExitCode, Is130WhenInterruptedAndNothingIsLeft) {
+  const auto before = listing();
+  const std::string line = "cd '" + folder_.string() + "' && timeout --preserve-status -s INT 1 " +
+                           MIMETRA_COMMAND +
+                           " decompose head --weights take.csv -k 100 --iterations 1000000 "
+                           "--tolerance 0 -o c.h5 2> /dev/null";
+  const int status = std::system(line.c_str());
+  EXPECT_EQ(WEXITSTATUS(status), 130);
+  EXPECT_EQ(listing(), before);
+}
+
+}  // namespace
+}  // namespace mimetra

@@ -1,0 +1,150 @@
+#include <limits>
+#include <map>
+#include <set>
+#include <utility>
+
+#include <gmock/gmock.h>
+
+#include "head_fixture.h"
+
+namespace mimetra::test {
+namespace {
+
+// Sound triangles of real faces go down to 4e-3 (kDegenerateQuality is a thousandth of this).
+constexpr double kFewestQuality = 1e-3;
+
+MeshReport report() {
+  return inspect(head().mean(), head().connectivity());
+}
+
+/// Boundary edges as directed by their triangles, from vertex to vertex.
+std::map<int, int> boundary() {
+  std::set<std::pair<int, int>> edges;
+  const Triangles& triangles = head().connectivity().triangles;
+  for (int t = 0; t < triangles.rows(); ++t) {
+    for (int c = 0; c < 3; ++c) edges.insert({triangles(t, c), triangles(t, (c + 1) % 3)});
+  }
+  std::map<int, int> next;
+  for (const auto& [a, b] : edges) {
+    if (!edges.contains({b, a})) next[a] = b;
+  }
+  return next;
+}
+
+/// Lowest height of each boundary loop, ascending.
+std::vector<double> loop_heights() {
+  std::map<int, int> next = boundary();
+  std::vector<double> heights;
+  while (!next.empty()) {
+    double lowest = std::numeric_limits<double>::infinity();
+    for (auto edge = next.begin(); edge != next.end();) {
+      const int to = edge->second;
+      lowest = std::min(lowest, head().mean()(to, 1));
+      next.erase(edge);
+      edge = next.find(to);
+    }
+    heights.push_back(lowest);
+  }
+  std::sort(heights.begin(), heights.end());
+  return heights;
+}
+
+TEST(Head, HasAboutFourThousandVertices) {
+  EXPECT_GE(head().vertices(), 3500);
+  EXPECT_LE(head().vertices(), 4500);
+}
+
+TEST(Head, IsAsLargeAsAHeadInMillimetres) {
+  EXPECT_GE(extent(head().mean()), 200);
+  EXPECT_LE(extent(head().mean()), 300);
+}
+
+TEST(Head, IsASkinAndTwoEyeballs) {
+  EXPECT_EQ(report().components, 3);
+}
+
+TEST(Head, IsAManifoldWithoutLooseVertices) {
+  EXPECT_EQ(report().nonmanifold_edges, 0);
+  EXPECT_TRUE(report().vertices_without_face.empty());
+}
+
+TEST(Head, HasNoVerticesThatCoincide) {
+  EXPECT_EQ(report().welded_vertices, 0);
+}
+
+TEST(Head, TurnsNeighbouringTrianglesTheSameWay) {
+  std::set<std::pair<int, int>> edges;
+  const Triangles& triangles = head().connectivity().triangles;
+  for (int t = 0; t < triangles.rows(); ++t) {
+    for (int c = 0; c < 3; ++c) {
+      EXPECT_TRUE(edges.insert({triangles(t, c), triangles(t, (c + 1) % 3)}).second) << t;
+    }
+  }
+}
+
+TEST(Head, FacesOutwards) {
+  // The foremost vertex is on the nose: the normals around it point forward.
+  Eigen::Index tip;
+  head().mean().col(2).maxCoeff(&tip);
+  const Triangles& triangles = head().connectivity().triangles;
+  for (int t = 0; t < triangles.rows(); ++t) {
+    if ((triangles.row(t).array() != tip).all()) continue;
+    EXPECT_GT(normal(head().mean(), t).z(), 0);
+  }
+}
+
+TEST(Head, IsOpenAtNeckMouthAndEyes) {
+  const std::vector<double> heights = loop_heights();
+  ASSERT_EQ(heights.size(), 4u);
+  EXPECT_LT(heights[0], -130);       // neck
+  EXPECT_NEAR(heights[1], -66, 10);  // mouth
+  EXPECT_NEAR(heights[2], 0, 10);    // eyes
+  EXPECT_EQ(heights[2], heights[3]);
+}
+
+TEST(Head, KeepsQuadrilaterals) {
+  const Connectivity& connectivity = head().connectivity();
+  EXPECT_GT(connectivity.triangles.rows(), 1.9 * connectivity.polygons.size());
+}
+
+TEST(Head, HasNoDegenerateTriangle) {
+  EXPECT_GT(worst_quality(head().mean()), kFewestQuality);
+}
+
+TEST(Head, IsMirrorSymmetric) {
+  EXPECT_THAT(mirror_vertices(), ::testing::Each(::testing::Ge(0)));
+}
+
+TEST(Head, IsTheSameEachTime) {
+  const MorphableModel again = samples::parametric_head();
+  EXPECT_EQ(again.mean(), head().mean());
+  EXPECT_EQ(again.expressions().displacements, head().expressions().displacements);
+  EXPECT_EQ(again.identities().displacements, head().identities().displacements);
+}
+
+TEST(HeadIdentities, HaveNamesByNumber) {
+  EXPECT_THAT(head().identities().names,
+              ::testing::ElementsAre("identity000", "identity001", "identity002", "identity003"));
+}
+
+TEST(HeadIdentities, HaveNoDegenerateNorFlippedTriangle) {
+  for (int i = 0; i < head().identities().size(); ++i) {
+    const Positions person = head().mean() + field(head().identities(), i);
+    EXPECT_GT(worst_quality(person), kFewestQuality) << i;
+    EXPECT_EQ(flipped(head().mean(), person), 0) << i;
+  }
+}
+
+TEST(HeadIdentities, AreClearlyDifferentFromEachOtherAndTheMean) {
+  // Root mean square of the displacement, in mm; a thousandth of the head would not be noticed.
+  const auto rms = [](const Positions& d) { return d.norm() / std::sqrt(double(d.rows())); };
+  for (int i = 0; i < head().identities().size(); ++i) {
+    EXPECT_GT(rms(field(head().identities(), i)), 2) << i;
+    for (int j = 0; j < i; ++j) {
+      EXPECT_GT(rms(field(head().identities(), i) - field(head().identities(), j)), 3) << i << j;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace mimetra::test

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <mimetra/operations/operation.h>
+
+namespace mimetra::cli {
+
+enum class ProgressBar { automatic, always, never };
+
+/// One call of the program, taken apart.
+struct Request {
+  const Operation* operation = nullptr;
+  std::vector<std::string> arguments;  ///< as typed, without the program's name
+  Parameters parameters;
+  std::map<std::string, std::vector<std::string>> inputs;
+  std::map<std::string, std::filesystem::path> outputs;
+  bool json = false;
+  bool quiet = false;
+  bool verbose = false;
+  bool force = false;
+  ProgressBar progress = ProgressBar::automatic;
+};
+
+/// Either a request, or text to print (help, version).
+struct ParsedLine {
+  std::optional<Request> request;
+  std::string text;
+};
+
+/// Parses a command line against the table. Throws UsageError ("did you mean" included), IoError
+/// for a configuration file that cannot be read.
+ParsedLine parse_command_line(const OperationTable& table,
+                              const std::vector<std::string>& arguments);
+
+}  // namespace mimetra::cli

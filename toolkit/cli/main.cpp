@@ -1,0 +1,80 @@
+#include <csignal>
+#include <exception>
+#include <iostream>
+#include <new>
+
+#include <spdlog/sinks/stdout_sinks.h>
+#include <spdlog/spdlog.h>
+
+#include <mimetra/cli/command_line.h>
+#include <mimetra/cli/run_command.h>
+#include <mimetra/operations/listing.h>
+#include <mimetra/samples/sample_operation.h>
+#include <mimetra/vtk/vtk_formats.h>
+
+namespace {
+
+enum ExitCode {
+  kDone = 0,
+  kFailed = 1,
+  kUsage = 2,
+  kBadInput = 3,
+  kMismatch = 4,
+  kOutput = 5,
+  kInterrupted = 130
+};
+
+void log_to_stderr(const mimetra::cli::Request& request) {
+  spdlog::set_level(request.quiet     ? spdlog::level::err
+                    : request.verbose ? spdlog::level::info
+                                      : spdlog::level::warn);
+}
+
+int run(const std::vector<std::string>& arguments) {
+  mimetra::OperationTable table;
+  mimetra::add_toolkit(table);
+  mimetra::add_vtk_formats(table);
+  mimetra::samples::add_sample(table);
+  mimetra::add_listing(table);
+  const mimetra::cli::ParsedLine line = mimetra::cli::parse_command_line(table, arguments);
+  if (!line.request) {
+    std::cout << line.text;
+    return kDone;
+  }
+  log_to_stderr(*line.request);
+  mimetra::cli::run_command(table, *line.request);
+  return kDone;
+}
+
+int fail(int code, const std::exception& error) {
+  spdlog::error(error.what());
+  return code;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  spdlog::set_default_logger(spdlog::stderr_logger_st("mimetra"));
+  spdlog::set_pattern("%n: %l: %v");
+  std::signal(SIGINT, [](int) { mimetra::cli::interrupt(); });
+  try {
+    return run({argv + 1, argv + argc});
+  } catch (const mimetra::UsageError& error) {
+    return fail(kUsage, error);
+  } catch (const mimetra::MismatchError& error) {
+    return fail(kMismatch, error);
+  } catch (const mimetra::IoError& error) {
+    return fail(kBadInput, error);
+  } catch (const mimetra::OutputError& error) {
+    return fail(kOutput, error);
+  } catch (const mimetra::Cancelled& error) {
+    return fail(kInterrupted, error);
+  } catch (const std::invalid_argument& error) {
+    return fail(kUsage, error);
+  } catch (const std::bad_alloc&) {
+    spdlog::error("not enough memory; take fewer frames with --frames");
+    return kFailed;
+  } catch (const std::exception& error) {
+    return fail(kFailed, error);
+  }
+}

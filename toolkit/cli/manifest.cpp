@@ -1,0 +1,79 @@
+#include <mimetra/cli/manifest.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <fstream>
+#include <memory>
+
+#include <xxhash.h>
+#include <nlohmann/json.hpp>
+
+#include <mimetra/operations/report.h>
+
+namespace mimetra::cli {
+
+namespace {
+
+/// XXH3 (64 bits) of a file's bytes, as hexadecimal digits; empty where it cannot be read any more.
+std::string hash_of(const std::filesystem::path& path) {
+  std::ifstream stream(path, std::ios::binary);
+  if (!stream) return "";
+  const std::unique_ptr<XXH3_state_t, decltype(&XXH3_freeState)> state(XXH3_createState(),
+                                                                       XXH3_freeState);
+  XXH3_64bits_reset(state.get());
+  std::vector<char> buffer(1 << 20);
+  while (stream) {
+    stream.read(buffer.data(), static_cast<std::streamsize>(buffer.size()));
+    XXH3_64bits_update(state.get(), buffer.data(), static_cast<std::size_t>(stream.gcount()));
+  }
+  char text[17];
+  std::snprintf(text, sizeof text, "%016llx",
+                static_cast<unsigned long long>(XXH3_64bits_digest(state.get())));
+  return text;
+}
+
+/// Files, and the files below folders, in order of their names.
+std::vector<std::filesystem::path> files_below(const std::vector<std::filesystem::path>& inputs) {
+  std::vector<std::filesystem::path> files;
+  for (const auto& input : inputs) {
+    if (!std::filesystem::is_directory(input)) {
+      files.push_back(input);
+      continue;
+    }
+    const auto start = static_cast<std::ptrdiff_t>(files.size());
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(input)) {
+      if (entry.is_regular_file()) files.push_back(entry.path());
+    }
+    std::sort(files.begin() + start, files.end());
+  }
+  return files;
+}
+
+}  // namespace
+
+std::string manifest(const Request& request, const RunRecord& record) {
+  Json options = Json::object();
+  for (const Parameter& parameter : request.parameters.declared()) {
+    options[parameter.name] = to_text(request.parameters.value(parameter.name));
+  }
+  Json inputs = Json::array();
+  for (const auto& path : files_below(record.inputs)) {
+    inputs.push_back({{"path", path.string()}, {"xxh3", hash_of(path)}});
+  }
+  return Json{{"program", "mimetra"},
+              {"version", MIMETRA_VERSION},
+              {"command", request.operation->name},
+              {"arguments", request.arguments},
+              {"options", options},
+              {"inputs", inputs},
+              {"seconds", {{"read", record.read_seconds}, {"run", record.run_seconds}}},
+              {"result", Json::parse(record.report)}}
+             .dump(2) +
+         '\n';
+}
+
+std::string manifest_name(const std::filesystem::path& output) {
+  return output.has_extension() ? output.stem().string() + ".run.json" : "mimetra-run.json";
+}
+
+}  // namespace mimetra::cli

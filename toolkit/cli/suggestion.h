@@ -1,0 +1,12 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace mimetra::cli {
+
+/// The known word nearest to `word` by edit distance, where it is near enough to be meant; empty
+/// otherwise. Ties go to the earlier word.
+std::string nearest_word(const std::string& word, const std::vector<std::string>& known);
+
+}  // namespace mimetra::cli
