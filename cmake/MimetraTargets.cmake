@@ -26,5 +26,5 @@ function(mimetra_test name)
   target_compile_definitions(
     ${name}_test PRIVATE MIMETRA_SHARED_FOLDER="${PROJECT_SOURCE_DIR}/../shared"
                          MIMETRA_SOURCE_FOLDER="${PROJECT_SOURCE_DIR}")
-  gtest_discover_tests(${name}_test DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 600)
+  gtest_discover_tests(${name}_test NO_PRETTY_VALUES DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 600)
 endfunction()

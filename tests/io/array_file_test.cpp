@@ -145,6 +145,35 @@ TEST(ArrayFile, ShapeBeyondTheFileIsFoundBeforeMemoryIsAskedFor) {
               HasSubstr("a.npy: is truncated: 6 values, expected 4000000000 x 4000000000 x 3"));
 }
 
+TEST(ArrayFile, WhatFollowsTheValuesIsAnErrorThatSaysSo) {
+  const TemporaryFolder folder;
+  write_bytes(folder / "a.npy", npy("<f8", "False", "(2, 3)", raw(kSix) + "xx"));
+  EXPECT_THAT(message_of<IoError>([&] { read_npy_frames(folder / "a.npy"); }),
+              HasSubstr("a.npy: 2 bytes follow the values, expected the end of the file after 2 x "
+                        "3"));
+}
+
+TEST(ArrayFile, DamagedHeaderIsAnErrorThatNamesThePart) {
+  const TemporaryFolder folder;
+  const auto error_of = [&](const std::string& bytes) {
+    write_bytes(folder / "a.npy", bytes);
+    return message_of<IoError>([&] { read_npy_frames(folder / "a.npy"); });
+  };
+  EXPECT_THAT(error_of(npy("<f8", "Maybe", "(2, 3)", raw(kSix))),
+              HasSubstr("its fortran_order is neither True nor False"));
+  EXPECT_THAT(error_of(npy("<f8", "False", "(2, -3)", raw(kSix))), HasSubstr("its shape is"));
+  EXPECT_THAT(error_of(npy("<f8", "False", "(0, 3)", "")), HasSubstr("is empty: its shape is 0 x"));
+  EXPECT_THAT(error_of(npy("<f8", "False", "(2, 3)", raw(kSix), 4)), HasSubstr("format version 4"));
+}
+
+TEST(ArrayFile, ReadsFloatsInFortranOrderOfTheOtherByteOrder) {
+  const TemporaryFolder folder;
+  // a(n, c) = 10 n + c, first index fastest
+  const std::string data = raw<float>({0, 10, 1, 11, 2, 12}, true);
+  write_bytes(folder / "a.npy", npy(">f4", "True", "(2, 3)", data));
+  EXPECT_EQ(read_npy_frames(folder / "a.npy"), (Frames(1, 6) << 0, 1, 2, 10, 11, 12).finished());
+}
+
 TEST(ArrayFile, AnotherShapeIsNamed) {
   const TemporaryFolder folder;
   write_bytes(folder / "a.npy", npy("<f8", "False", "(3, 2)", raw(kSix)));

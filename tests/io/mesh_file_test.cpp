@@ -115,6 +115,15 @@ TEST_P(EveryPolygonFormat, FurtherFileMayStartItsFacesAtAnotherCorner) {
   EXPECT_EQ(read_positions(folder / ("b" + GetParam()), first.connectivity, "a"), first.positions);
 }
 
+TEST_P(EveryPolygonFormat, WhatFollowsTheLastElementIsAnErrorThatSaysSo) {
+  const TemporaryFolder folder;
+  const fs::path path = folder / ("a" + GetParam());
+  write_mesh(path, mixed_polygons());
+  write_bytes(path, read_file(path) + "17 18");
+  EXPECT_THAT(message_of<IoError>([&] { read_mesh(path); }),
+              testing::ContainsRegex("5 bytes follow the last element|expected .*found '17'"));
+}
+
 INSTANTIATE_TEST_SUITE_P(Formats, EveryPolygonFormat, testing::Values(".obj", ".ply", ".off"),
                          [](const auto& format) { return format.param.substr(1); });
 
@@ -143,6 +152,19 @@ TEST(Obj, KeepsTextureCoordinatesAndGroups) {
   EXPECT_EQ(read_file(folder / "b.obj"),
             "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0.25 0\nvt 1 0.5\no face\ng lips upper\n"
             "usemtl skin\nf 1/2 2/1 3/2\ns 1\nf 3 2 1\n");
+}
+
+TEST(Obj, LosesNoVertexToAByteOrderMark) {
+  const TriMesh mesh =
+      read_text(".obj", "\xEF\xBB\xBFv 5 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nf 1 2 3\n");
+  EXPECT_EQ(mesh.positions.rows(), 4);
+  EXPECT_EQ(mesh.positions(0, 0), 5);
+}
+
+TEST(Obj, PassesOverStatementsThatSayNothingOfTheMesh) {
+  EXPECT_EQ(read_text(".obj", "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvp 1\nl 1 2\nf 1 2 3\n")
+                .positions.rows(),
+            3);
 }
 
 TEST(Obj, FacesMayPointForward) {
@@ -274,6 +296,17 @@ TEST(Ply, ErrorsNameTheElement) {
   EXPECT_THAT(error_of(".ply", "solid"), HasSubstr("this is no PLY file"));
 }
 
+TEST(Ply, TextAfterTheLastElementIsNamedWithItsLine) {
+  std::string text =
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\n"
+      "property float y\nproperty float z\nelement face 1\n"
+      "property list uchar int vertex_indices\nend_header\n"
+      "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n\n";
+  EXPECT_EQ(read_text(".ply", text).positions.rows(), 3);
+  EXPECT_THAT(error_of(".ply", text + "3 0 1 2\n"),
+              HasSubstr("line 15: expected the end of the file, found '3'"));
+}
+
 TEST(Ply, PolygonsOfManyCornersComeBack) {
   const TemporaryFolder folder;
   Polygons polygon{{}, {0, 300}};
@@ -315,7 +348,10 @@ TEST(Off, EveryPrefixThatLosesAWordIsAnError) {
 TEST(Off, ErrorsNameTheLine) {
   EXPECT_THAT(error_of(".off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n"),
               HasSubstr("mesh.off: face 0 (line 6) uses vertex 3, expected 0 to 2"));
-  EXPECT_THAT(error_of(".off", "ply\n"), HasSubstr("expected OFF"));
+  EXPECT_THAT(error_of(".off", "ply\n"),
+              HasSubstr("line 1: expected OFF, COFF or NOFF, found 'ply'"));
+  EXPECT_THAT(error_of(".off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n3 0 2 1\n"),
+              HasSubstr("line 7: expected the end of the file, found '3'"));
 }
 
 TEST(Stl, WeldsCornersInOrderOfFirstUse) {
@@ -359,6 +395,26 @@ TEST(Stl, EveryTruncatedPrefixIsAnError) {
   for (std::size_t size = 0; size < bytes.size(); ++size) {
     EXPECT_THROW(read_text(".stl", bytes.substr(0, size)), IoError) << size;
   }
+}
+
+TEST(Stl, WhatFollowsTheLastTriangleIsAnErrorThatSaysSo) {
+  const TemporaryFolder folder;
+  write_mesh(folder / "a.stl", test::mesh_of(test::octahedron()));
+  EXPECT_THAT(error_of(".stl", read_file(folder / "a.stl") + "x"),
+              HasSubstr("is too long: 485 bytes, expected 484 for 8 triangles"));
+  EXPECT_THAT(error_of(".stl", kAsciiStl + "garbage"),
+              HasSubstr("line 17: expected 'solid' or the end of the file, found 'garbage'"));
+}
+
+TEST(Stl, TextErrorsNameTheLine) {
+  EXPECT_THAT(error_of(".stl", "solid\nfacet normal 0 0 1\nouter ring\n"),
+              HasSubstr("line 3: expected 'loop', found 'ring'"));
+  EXPECT_THAT(error_of(".stl", "solid\nfacets\n"),
+              HasSubstr("line 2: expected 'facet' or 'endsolid', found 'facets'"));
+}
+
+TEST(Stl, TextMayHoldSeveralSolids) {
+  EXPECT_EQ(read_text(".stl", kAsciiStl + kAsciiStl).connectivity.triangles.rows(), 4);
 }
 
 TEST(Stl, BinaryFileMayStartWithSolid) {

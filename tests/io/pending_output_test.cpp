@@ -109,11 +109,31 @@ TEST(PendingOutput, SaysWhatCannotBeWritten) {
       StartsWith((folder / "file/out").string() + ": cannot be written"));
 }
 
+TEST(PendingOutput, NameThatNoFolderTakesIsAnOutputError) {
+  const TemporaryFolder folder;
+  const std::string too_long(5000, 'a');
+  for (const fs::path& target : {folder / too_long, folder / (too_long + "/out")}) {
+    EXPECT_THROW(PendingOutput(target, Kind::file, true), OutputError);
+    EXPECT_THROW(PendingOutput(target, Kind::folder, true), OutputError);
+  }
+  EXPECT_THAT(folder.names(), IsEmpty());
+}
+
 TEST(WriteFile, WritesAllBytes) {
   const TemporaryFolder folder;
   const std::string content("a\0b\r\n", 5);
   write_file(folder / "out", content, false);
   EXPECT_EQ(read_file(folder / "out"), content);
+}
+
+TEST(ReadFile, ReadsFilesOfAnySize) {
+  const TemporaryFolder folder;
+  for (const std::size_t size : {0, 1, 65535, 65536, 65537, 1000000}) {
+    std::string content(size, '\0');
+    for (std::size_t i = 0; i < size; ++i) content[i] = static_cast<char>(i % 251);
+    write_bytes(folder / "a", content);
+    EXPECT_TRUE(read_file(folder / "a") == content) << size;
+  }
 }
 
 TEST(ReadFile, SaysWhetherAFileIsMissingOrAFolder) {

@@ -95,6 +95,30 @@ TEST_F(TwelveFiles, OtherFilesInTheFolderAreNotFrames) {
   EXPECT_EQ(read_sequence(text()).sequence.frames(), 12);
 }
 
+TEST_F(TwelveFiles, WhatBelongsToOtherSequencesIsNoFrame) {
+  for (const char* name : {"other.rest.ply", "other.topology.ply"}) write_frame(folder_ / name, 0);
+  EXPECT_EQ(read_sequence(text()).sequence.frames(), 12);
+  EXPECT_EQ(read_sequence((folder_ / "*").string()).sequence.frames(), 12);
+  EXPECT_EQ(read_sequence((folder_ / "*.rest.ply").string()).sequence.frames(), 1);
+}
+
+TEST_F(TwelveFiles, LinksThatLeadNowhereAreNoFrames) {
+  fs::create_symlink("loop.obj", folder_ / "loop.obj");
+  fs::create_symlink("gone", folder_ / "dangling.obj");
+  EXPECT_EQ(read_sequence(text()).sequence.frames(), 12);
+  EXPECT_EQ(read_sequence((folder_ / "*.obj").string()).sequence.frames(), 12);
+  EXPECT_THROW(read_sequence((folder_ / "loop.obj").string()), IoError);
+}
+
+TEST_F(TwelveFiles, FrameWithOtherFacesIsNamedWithTheFirst) {
+  TriMesh flipped = test::mesh_of(test::octahedron());
+  std::swap(flipped.connectivity.polygons.corners[0], flipped.connectivity.polygons.corners[1]);
+  write_mesh(folder_ / "frame_7.obj", flipped);
+  const std::string message = message_of<MismatchError>([&] { read_sequence(text()); });
+  EXPECT_THAT(message, testing::StartsWith((folder_ / "frame_7.obj").string() + ": face 1"));
+  EXPECT_THAT(message, testing::EndsWith("as in " + (folder_ / "frame_1.obj").string()));
+}
+
 TEST_F(TwelveFiles, AnotherFormatAmongThemIsAnErrorThatNamesBoth) {
   write_frame(folder_ / "other.ply", 0);
   const std::string message = message_of<IoError>([&] { read_sequence(text()); });
@@ -170,6 +194,10 @@ TEST(ReadSequence, SaysWhatIsMissing) {
               HasSubstr("matches no OBJ, PLY, OFF or STL file"));
   EXPECT_THAT(message_of<IoError>([&] { read_sequence((folder / "f_%04d.obj").string()); }),
               HasSubstr("matches no OBJ, PLY, OFF or STL file"));
+  const std::string too_long(5000, 'a');
+  EXPECT_THROW(read_sequence((folder / too_long).string()), IoError);
+  EXPECT_THROW(read_sequence((folder / too_long).string() + "@a=1"), IoError);
+  EXPECT_THROW(read_sequence((folder / too_long).string() + "/f_%04d.obj"), IoError);
   write_bytes(folder / "a.txt", "");
   EXPECT_THAT(message_of<IoError>([&] { read_sequence((folder / "a.txt").string()); }),
               HasSubstr("a.txt: is no sequence; expected a folder"));
@@ -186,6 +214,13 @@ TEST(WriteSequence, ArrayComesBackBitByBitWithItsRestPose) {
   EXPECT_TRUE(read.sequence.rest_is_known());
   EXPECT_EQ(read.sequence.rest(), pose(-3));
   EXPECT_TRUE(same_faces(read.sequence.connectivity(), sequence.connectivity()));
+}
+
+TEST(WriteSequence, ArrayMayHaveItsExtensionInCapitals) {
+  const TemporaryFolder folder;
+  write_sequence(octahedra(2, pose(-3)), folder / "s.NPY");
+  EXPECT_THAT(folder.names(), ElementsAre("s.NPY", "s.rest.ply", "s.topology.ply"));
+  EXPECT_EQ(read_sequence((folder / "s.NPY").string()).sequence.rest(), pose(-3));
 }
 
 TEST(WriteSequence, FolderComesBackBitByBitInDoublePrecision) {

@@ -4,6 +4,7 @@
 #include <charconv>
 #include <cmath>
 #include <fstream>
+#include <span>
 
 #include <mimetra/io/bytes.h>
 #include <mimetra/io/pending_output.h>
@@ -99,19 +100,23 @@ std::string shape_text(const std::vector<std::size_t>& shape) {
   return text.empty() ? "a single number" : text;
 }
 
-/// Number of values, which the file holds: found before memory is asked for.
+/// Number of values, which the file holds exactly: found before memory is asked for.
 std::size_t checked_count(const std::string& path, std::string_view bytes,
                           const NpyHeader& header) {
-  const std::size_t held = (bytes.size() - header.data) / header.item_bytes;
-  std::size_t count = 1;
-  bool overflows = false;
+  const std::size_t data_bytes = bytes.size() - header.data;
+  const std::size_t held = data_bytes / header.item_bytes;
+  const bool empty = std::find(header.shape.begin(), header.shape.end(), 0u) != header.shape.end();
+  std::size_t count = empty ? 0 : 1;
   for (const std::size_t size : header.shape) {
-    overflows = overflows || (size > 0 && count > held / size);
-    if (!overflows) count *= size;
-    if (size == 0) return 0;
+    if (!empty && count > held / size) {
+      throw IoError(path, "is truncated: " + std::to_string(held) + " values, expected " +
+                              shape_text(header.shape));
+    }
+    count *= size;
   }
-  if (overflows || count > held) {
-    throw IoError(path, "is truncated: " + std::to_string(held) + " values, expected " +
+  if (data_bytes != count * header.item_bytes) {
+    throw IoError(path, std::to_string(data_bytes - count * header.item_bytes) +
+                            " bytes follow the values, expected the end of the file after " +
                             shape_text(header.shape));
   }
   return count;
@@ -121,13 +126,17 @@ NpyHeader read_header(const std::string& path, std::string_view bytes) {
   NpyHeader header;
   const std::string_view text = dictionary(path, bytes, header.data);
   parse_type(path, value_of(path, text, "descr"), header);
-  header.fortran_order = value_of(path, text, "fortran_order").substr(0, 4) == "True";
+  const std::string_view order = value_of(path, text, "fortran_order");
+  header.fortran_order = order.starts_with("True");
+  if (!header.fortran_order && !order.starts_with("False")) {
+    throw IoError(path, "its fortran_order is neither True nor False");
+  }
   parse_shape(path, value_of(path, text, "shape"), header);
   return header;
 }
 
 template <typename Stored>
-void decode(std::string_view bytes, const NpyHeader& header, std::vector<double>& values) {
+void decode_as(std::string_view bytes, const NpyHeader& header, std::span<double> values) {
   const char* at = bytes.data() + header.data;
   for (double& value : values) {
     value = static_cast<double>(number_at<Stored>(at, header.order));
@@ -135,26 +144,25 @@ void decode(std::string_view bytes, const NpyHeader& header, std::vector<double>
   }
 }
 
-std::vector<double> decoded(std::string_view bytes, const NpyHeader& header, std::size_t count) {
-  std::vector<double> values(count);
+/// The values in the file's order.
+void decode(std::string_view bytes, const NpyHeader& header, std::span<double> values) {
   const bool is_signed = header.kind == 'i';
   if (header.kind == 'f') {
-    header.item_bytes == 4 ? decode<float>(bytes, header, values)
-                           : decode<double>(bytes, header, values);
+    header.item_bytes == 4 ? decode_as<float>(bytes, header, values)
+                           : decode_as<double>(bytes, header, values);
   } else if (header.item_bytes == 1) {
-    is_signed ? decode<std::int8_t>(bytes, header, values)
-              : decode<std::uint8_t>(bytes, header, values);
+    is_signed ? decode_as<std::int8_t>(bytes, header, values)
+              : decode_as<std::uint8_t>(bytes, header, values);
   } else if (header.item_bytes == 2) {
-    is_signed ? decode<std::int16_t>(bytes, header, values)
-              : decode<std::uint16_t>(bytes, header, values);
+    is_signed ? decode_as<std::int16_t>(bytes, header, values)
+              : decode_as<std::uint16_t>(bytes, header, values);
   } else if (header.item_bytes == 4) {
-    is_signed ? decode<std::int32_t>(bytes, header, values)
-              : decode<std::uint32_t>(bytes, header, values);
+    is_signed ? decode_as<std::int32_t>(bytes, header, values)
+              : decode_as<std::uint32_t>(bytes, header, values);
   } else {
-    is_signed ? decode<std::int64_t>(bytes, header, values)
-              : decode<std::uint64_t>(bytes, header, values);
+    is_signed ? decode_as<std::int64_t>(bytes, header, values)
+              : decode_as<std::uint64_t>(bytes, header, values);
   }
-  return values;
 }
 
 /// Fortran order has the first index fastest; here the last one is.
@@ -176,9 +184,23 @@ std::vector<double> in_c_order(const std::vector<double>& values,
 }
 
 NumericArray read_array(const std::string& path, std::string_view bytes, const NpyHeader& header) {
-  NumericArray array{header.shape, decoded(bytes, header, checked_count(path, bytes, header))};
+  NumericArray array{header.shape, std::vector<double>(checked_count(path, bytes, header))};
+  decode(bytes, header, array.values);
   if (header.fortran_order) array.values = in_c_order(array.values, array.shape);
   return array;
+}
+
+/// Straight into the frames where the order is theirs: arrays of captures are large.
+Frames frames_of(const std::string& path, std::string_view bytes, const NpyHeader& header) {
+  const auto rows = static_cast<Eigen::Index>(header.shape.size() == 3 ? header.shape[0] : 1);
+  const auto values = static_cast<Eigen::Index>(checked_count(path, bytes, header));
+  if (header.fortran_order) {
+    const NumericArray array = read_array(path, bytes, header);
+    return Eigen::Map<const Frames>(array.values.data(), rows, values / rows);
+  }
+  Frames frames(rows, values / rows);
+  decode(bytes, header, {frames.data(), static_cast<std::size_t>(values)});
+  return frames;
 }
 
 void check_frames_header(const std::string& path, const NpyHeader& header) {
@@ -225,10 +247,7 @@ Frames read_npy_frames(const std::filesystem::path& path) {
   const std::string bytes = read_file(path);
   const NpyHeader header = read_header(path.string(), bytes);
   check_frames_header(path.string(), header);
-  const NumericArray array = read_array(path.string(), bytes, header);
-  const std::size_t rows = array.shape.size() == 3 ? array.shape[0] : 1;
-  Frames frames = Eigen::Map<const Frames>(array.values.data(), static_cast<Eigen::Index>(rows),
-                                           static_cast<Eigen::Index>(array.values.size() / rows));
+  Frames frames = frames_of(path.string(), bytes, header);
   check_finite(path.string(), frames);
   return frames;
 }

@@ -314,7 +314,8 @@ void write_components(const std::filesystem::path& path, const Components& compo
 }
 
 Components read_components(const std::filesystem::path& path) {
-  if (!std::filesystem::exists(path)) throw IoError(path.string(), "does not exist");
+  std::error_code unreadable;
+  if (!std::filesystem::exists(path, unreadable)) throw IoError(path.string(), "does not exist");
   const QuietErrors quiet;
   const Reader reader(path);
   Components components;

@@ -60,7 +60,10 @@ std::vector<fs::path> files_in(const fs::path& folder) {
   for (fs::directory_iterator entry(folder.empty() ? "." : folder, error), end;
        !error && entry != end; entry.increment(error)) {
     const bool hidden = entry->path().filename().string().starts_with('.');
-    if (!hidden && entry->is_regular_file()) files.push_back(folder / entry->path().filename());
+    std::error_code dangling;  // a link that leads nowhere is no file
+    if (!hidden && entry->is_regular_file(dangling)) {
+      files.push_back(folder / entry->path().filename());
+    }
   }
   if (error) throw IoError(folder.string(), "cannot be read: " + error.message());
   return files;
@@ -68,7 +71,10 @@ std::vector<fs::path> files_in(const fs::path& folder) {
 
 std::vector<fs::path> files_of_printf(const fs::path& pattern, const NumberField& field) {
   std::vector<fs::path> files;
-  if (!fs::is_directory(pattern.has_parent_path() ? pattern.parent_path() : ".")) return files;
+  std::error_code missing;
+  if (!fs::is_directory(pattern.has_parent_path() ? pattern.parent_path() : ".", missing)) {
+    return files;
+  }
   for (const fs::path& file : files_in(pattern.parent_path())) {
     if (matches(file.filename().string(), pattern.filename().string(), field)) {
       files.push_back(file);
@@ -83,9 +89,10 @@ std::vector<fs::path> files_of_glob(const std::string& pattern) {
   for (const char c : pattern) escaped += c == '[' ? "[[]" : std::string(1, c);
   std::vector<fs::path> files;
   glob_t found = {};
-  if (glob(escaped.c_str(), GLOB_NOSORT, nullptr, &found) == 0) {
+  if (glob(escaped.c_str(), GLOB_NOSORT | GLOB_NOESCAPE, nullptr, &found) == 0) {
     for (std::size_t i = 0; i < found.gl_pathc; ++i) {
-      if (fs::is_regular_file(found.gl_pathv[i])) files.emplace_back(found.gl_pathv[i]);
+      std::error_code dangling;
+      if (fs::is_regular_file(found.gl_pathv[i], dangling)) files.emplace_back(found.gl_pathv[i]);
     }
   }
   globfree(&found);
@@ -98,11 +105,20 @@ std::string lower_extension(const fs::path& path) {
   return extension;
 }
 
+/// True for a file that belongs to another sequence, unless `name` asks for such files.
+bool is_companion(const fs::path& file, const std::string& name) {
+  for (const std::string suffix : {kRestSuffix, kTopologySuffix}) {
+    if (file.string().ends_with(suffix) && !name.ends_with(suffix)) return true;
+  }
+  return false;
+}
+
 /// Only mesh files, of one format, in natural order.
 std::vector<fs::path> sorted_frames(std::vector<fs::path> files, const std::string& name,
                                     const std::string& where) {
-  std::erase_if(files,
-                [](const fs::path& file) { return !is_mesh_extension(file.extension().string()); });
+  std::erase_if(files, [&](const fs::path& file) {
+    return !is_mesh_extension(file.extension().string()) || is_companion(file, name);
+  });
   if (files.empty()) throw IoError(name, where + " no OBJ, PLY, OFF or STL file");
   std::sort(files.begin(), files.end(), [](const fs::path& a, const fs::path& b) {
     return natural_less(a.string(), b.string());
@@ -160,6 +176,10 @@ FrameRange parsed_range(const std::string& text) {
 
 }  // namespace
 
+bool is_array(const fs::path& path) {
+  return lower_extension(path) == ".npy";
+}
+
 bool is_frame_pattern(const std::string& text) {
   return text.find_first_of("*?") != std::string::npos ||
          number_field(fs::path(text).filename().string()).has_value();
@@ -195,7 +215,7 @@ std::vector<int> selected_frames(const std::optional<std::string>& range, int fr
 fs::path beside(const fs::path& sequence, const std::string& suffix) {
   fs::path name = sequence.lexically_normal();
   if (!name.has_filename()) name = name.parent_path();
-  if (lower_extension(name) == ".npy") name.replace_extension();
+  if (is_array(name)) name.replace_extension();
   return name += suffix;
 }
 

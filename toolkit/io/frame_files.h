@@ -8,14 +8,23 @@
 /// Which files and which frames a sequence's name speaks of. Internal to sequence_file.h.
 namespace mimetra {
 
+/// What follows a sequence's name in the names of the files beside it that belong to it.
+inline constexpr const char* kRestSuffix = ".rest.ply";
+inline constexpr const char* kTopologySuffix = ".topology.ply";
+
+/// True for NAME.npy in any case.
+bool is_array(const std::filesystem::path& path);
+
 /// True for text with `*`, `?` or `%04d` that names files only by way of a pattern.
 bool is_frame_pattern(const std::string& text);
 
 /// The mesh files that a glob or printf pattern matches, in natural order. Throws IoError where
-/// there is none or they are of several formats.
+/// there is none or they are of several formats. Rest poses and topologies of other sequences are
+/// no frames, unless the pattern asks for them by their suffix.
 std::vector<std::filesystem::path> frames_of_pattern(const std::string& pattern);
 
-/// The mesh files of a folder, hidden ones left out, in natural order. Throws as frames_of_pattern.
+/// The mesh files of a folder, hidden ones and those that belong to other sequences left out, in
+/// natural order. Throws as frames_of_pattern.
 std::vector<std::filesystem::path> frames_of_folder(const std::filesystem::path& folder);
 
 /// Indices of the frames that `range` ("A:B:STEP") takes of `frames`; all without one. Throws

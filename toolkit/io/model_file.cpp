@@ -21,10 +21,11 @@ namespace fs = std::filesystem;
 std::vector<fs::path> files_in(const fs::path& folder) {
   std::vector<fs::path> files;
   std::error_code error;
-  for (const auto& entry : fs::directory_iterator(folder, error)) {
-    if (entry.is_regular_file() && !entry.path().filename().string().starts_with('.')) {
-      files.push_back(entry.path());
-    }
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end;
+       entry.increment(error)) {
+    const bool hidden = entry->path().filename().string().starts_with('.');
+    std::error_code dangling;  // a link that leads nowhere is no file
+    if (!hidden && entry->is_regular_file(dangling)) files.push_back(entry->path());
   }
   std::ranges::sort(files, [](const fs::path& a, const fs::path& b) {
     return natural_less(a.filename().string(), b.filename().string());
@@ -89,14 +90,18 @@ Parts parts_from_json(const fs::path& file) {
 }
 
 Parts parts_of(const fs::path& folder) {
-  if (fs::exists(folder / "model.json")) return parts_from_json(folder / "model.json");
+  std::error_code unreadable;
+  if (fs::exists(folder / "model.json", unreadable)) return parts_from_json(folder / "model.json");
   Parts parts;
   parts.neutral = neutral_of(folder);
   if (parts.neutral) {
     for (const char* name : {"expressions", "targets"}) {
-      if (!parts.expressions && fs::is_directory(folder / name)) parts.expressions = folder / name;
+      if (!parts.expressions && fs::is_directory(folder / name, unreadable)) {
+        parts.expressions = folder / name;
+      }
     }
-    if (fs::is_directory(folder / "identities")) parts.identities = folder / "identities";
+    if (fs::is_directory(folder / "identities", unreadable))
+      parts.identities = folder / "identities";
   } else {
     parts.shape = eos_shape_of(folder);
     parts.expressions = eos_expressions_of(folder);
@@ -150,7 +155,10 @@ void check_shape_name(const std::string& name) {
 void write_shapes(const fs::path& folder, const ShapeBasis& basis, const MorphableModel& model) {
   if (basis.size() == 0) return;
   std::ranges::for_each(basis.names, check_shape_name);
-  fs::create_directory(folder);
+  std::error_code error;
+  if (!fs::create_directory(folder, error)) {
+    throw OutputError(folder.string(), "cannot be written: " + error.message());
+  }
   for (int j = 0; j < basis.size(); ++j) {
     const Eigen::VectorXd field = basis.displacements.col(j);
     const Positions shape =

@@ -22,7 +22,7 @@ int resolved(const TextCursor& cursor, std::string_view digits, std::size_t so_f
 class ObjReader {
  public:
   ObjReader(const std::string& path, std::string_view bytes)
-      : cursor_(path, bytes, {.comments = true, .continuations = true}) {
+      : cursor_(path, without_byte_order_mark(bytes), {.comments = true, .continuations = true}) {
     content_.first_index = 1;
   }
 
@@ -37,6 +37,8 @@ class ObjReader {
         read_face();
       } else if (keyword == "g" || keyword == "o" || keyword == "usemtl" || keyword == "s") {
         read_group(keyword);
+      } else {
+        check_keyword(keyword);
       }
     }
     check_texture();
@@ -44,6 +46,13 @@ class ObjReader {
   }
 
  private:
+  /// Statements that say nothing of a mesh are passed over; what is no statement is not.
+  void check_keyword(std::string_view keyword) const {
+    const char first = keyword.empty() ? 'v' : keyword[0];
+    const bool is_name = (first >= 'a' && first <= 'z') || (first >= 'A' && first <= 'Z');
+    if (!is_name) cursor_.fail_expected("a statement such as v or f", keyword);
+  }
+
   void read_vertex() {
     for (int axis = 0; axis < 3; ++axis) {
       content_.coordinates.push_back(cursor_.number(cursor_.word(), "a vertex coordinate"));

@@ -13,7 +13,7 @@ void read_keyword(TextCursor& cursor) {
   const bool known =
       keyword.size() >= 3 && keyword.substr(keyword.size() - 3) == "OFF" &&
       keyword.substr(0, keyword.size() - 3).find_first_not_of("STCN") == std::string_view::npos;
-  if (!known) cursor.fail("expected OFF, COFF or NOFF, found another keyword");
+  if (!known) cursor.fail_expected("OFF, COFF or NOFF", keyword);
 }
 
 /// A count that the rest of the file can hold: each element takes at least `bytes_each`.
@@ -60,8 +60,9 @@ MeshContent read_off(const std::string& path, std::string_view bytes) {
   }
   for (int face = 0; face < faces; ++face) {
     read_face(cursor, content);
-    cursor.next_line();
+    cursor.next_line();  // a colour may follow
   }
+  cursor.expect_end();
   return content;
 }
 

@@ -1,5 +1,6 @@
 #include <mimetra/io/pending_output.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cerrno>
 #include <fstream>
@@ -82,7 +83,8 @@ void PendingOutput::check_target() const {
 
 void PendingOutput::create_parents() {
   std::vector<fs::path> missing;
-  for (fs::path parent = target_.parent_path(); !parent.empty() && !fs::exists(parent);
+  std::error_code unreadable;
+  for (fs::path parent = target_.parent_path(); !parent.empty() && !fs::exists(parent, unreadable);
        parent = parent.parent_path()) {
     missing.insert(missing.begin(), parent);
   }
@@ -166,14 +168,16 @@ std::string read_file(const fs::path& path) {
   }
   std::ifstream file(path, std::ios::binary);
   if (!file) throw IoError(path.string(), "cannot be read: " + last_error().message());
-  // A pipe has no size: it is read to its end, whatever the size says.
+  // One byte more than the file has, to meet its end at the first reading. A pipe has no size: it
+  // is read to its end, whatever the size says.
+  constexpr std::uintmax_t kPipeBlock = 1 << 16;
+  const std::uintmax_t known = fs::is_regular_file(status) ? fs::file_size(path, error) : 0;
+  const auto block = static_cast<std::size_t>(std::max(error ? 0 : known + 1, kPipeBlock));
   std::string content;
-  if (fs::is_regular_file(status)) content.reserve(fs::file_size(path, error));
-  constexpr std::size_t kBlock = 1 << 20;
   while (file) {
     const std::size_t size = content.size();
-    content.resize(size + kBlock);
-    file.read(content.data() + size, kBlock);
+    content.resize(size + block);
+    file.read(content.data() + size, static_cast<std::streamsize>(block));
     content.resize(size + static_cast<std::size_t>(file.gcount()));
   }
   if (file.bad()) throw IoError(path.string(), "cannot be read: " + last_error().message());

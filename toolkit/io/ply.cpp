@@ -44,6 +44,15 @@ class PlyBody {
     index_ = index;
   }
 
+  void expect_end() {
+    if (format_ == PlyFormat::ascii) {
+      text_.expect_end();
+    } else if (!data_.empty()) {
+      throw IoError(path_, std::to_string(data_.size()) +
+                               " bytes follow the last element, expected the end of the file");
+    }
+  }
+
   [[noreturn]] void fail(const std::string& message) const {
     throw IoError(path_, std::string(kind_) + " " + std::to_string(index_) + ": " + message);
   }
@@ -204,6 +213,7 @@ MeshContent read_ply(const std::string& path, std::string_view bytes) {
       skip_element(body, element);
     }
   }
+  body.expect_end();
   return content;
 }
 

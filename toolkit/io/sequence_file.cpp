@@ -24,14 +24,20 @@ Eigen::VectorXd times_of(const std::vector<int>& frames, const SequenceSource& s
   return times;
 }
 
+/// What cannot even be asked for, such as a name too long, is not there.
+bool is_there(const fs::path& path) {
+  std::error_code unreadable;
+  return fs::exists(path, unreadable);
+}
+
 Eigen::Map<const Eigen::RowVectorXd> as_row(const Positions& positions) {
   return {positions.data(), positions.size()};
 }
 
 std::optional<Positions> rest_beside(const fs::path& sequence, const Connectivity& connectivity,
                                      const fs::path& first, SequenceRead& read) {
-  const fs::path rest = beside(sequence, ".rest.ply");
-  if (!fs::exists(rest)) return std::nullopt;
+  const fs::path rest = beside(sequence, kRestSuffix);
+  if (!is_there(rest)) return std::nullopt;
   read.files.push_back(rest);
   return read_positions(rest, connectivity, first);
 }
@@ -69,8 +75,8 @@ SequenceRead read_frames(const std::vector<fs::path>& files, const fs::path& fol
 
 fs::path topology_of(const fs::path& array, const SequenceSource& source) {
   if (source.topology) return *source.topology;
-  const fs::path topology = beside(array, ".topology.ply");
-  if (!fs::exists(topology)) {
+  const fs::path topology = beside(array, kTopologySuffix);
+  if (!is_there(topology)) {
     throw IoError(array.string(), "says nothing of faces and there is no " + topology.string() +
                                       "; name a mesh file with --topology");
   }
@@ -160,7 +166,7 @@ void check_undriven(const std::string& text, const SequenceSource& source) {
 SequenceRead read_path(const fs::path& path, const SequenceSource& source) {
   if (fs::is_directory(path)) return read_frames(frames_of_folder(path), path, source);
   const std::string extension = path.extension().string();
-  if (extension == ".npy") return read_array(path, source);
+  if (is_array(path)) return read_array(path, source);
   if (is_mesh_extension(extension)) return read_frames({path}, {}, source);
   throw IoError(path.string(),
                 "is no sequence; expected a folder, .obj, .ply, .off, .stl, .npy or a model");
@@ -169,11 +175,11 @@ SequenceRead read_path(const fs::path& path, const SequenceSource& source) {
 }  // namespace
 
 SequenceRead read_sequence(const std::string& text, const SequenceSource& source) {
-  const bool exists = fs::exists(text);
+  const bool exists = is_there(text);
   if (exists && is_model(text)) return read_driven(ModelSpec{text, {}, {}}, source);
   if (!exists && !is_frame_pattern(text) && text.find('@') != std::string::npos) {
     const ModelSpec spec = ModelSpec::parse(text);
-    if (fs::exists(spec.path) && !is_model(spec.path)) {
+    if (is_there(spec.path) && !is_model(spec.path)) {
       throw IoError(spec.path.string(), "is no model, so that nothing can follow '@'");
     }
     return read_driven(spec, source);

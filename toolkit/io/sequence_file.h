@@ -35,10 +35,11 @@ struct SequenceRead {
 };
 
 /// Reads `text`: a directory, glob or printf pattern of OBJ/PLY/OFF/STL files in natural order (2
-/// before 10), one such file, an .npy array (faces from `topology` or NAME.topology.ply beside it,
-/// rest pose from NAME.rest.ply where it is), or a model with weights; a model without weights is
-/// its neutral. Throws IoError, MismatchError (frames that differ in vertices or faces, naming both
-/// files), std::invalid_argument for a bad frame range, Cancelled.
+/// before 10), one such file, an .npy array (faces from `topology` or NAME.topology.ply beside it),
+/// or a model with weights; a model without weights is its neutral. The rest pose of an array or a
+/// directory is NAME.rest.ply where that stands beside it. Throws IoError, MismatchError (frames
+/// that differ in vertices or faces, naming both files), std::invalid_argument for a bad frame
+/// range, Cancelled.
 SequenceRead read_sequence(const std::string& text, const SequenceSource& source = {});
 
 struct SequenceWriteOptions {
@@ -53,9 +54,11 @@ struct SequenceWriteOptions {
 
 /// Writes `target`: NAME.npy (with NAME.topology.ply, and NAME.rest.ply where the rest pose is
 /// known), one mesh file for a sequence of one frame, or a folder of frame_0000.ply on
-/// (`frame_00000` and so on where four digits do not suffice). Atomic. Returns the files written.
-/// Throws OutputError, MismatchError for several frames into one mesh file. `extra` are further
-/// files (name, content) that appear in the folder, or beside the file, together with it.
+/// (`frame_00000` and so on where four digits do not suffice) with NAME.rest.ply beside it where
+/// the rest pose is known (never for STL, which numbers the vertices anew). Atomic. Returns the
+/// files written. Throws OutputError, MismatchError for several frames into one mesh file. `extra`
+/// are further files (name, content) that appear in the folder, or beside the file, together with
+/// it.
 std::vector<std::filesystem::path> write_sequence(
     const MeshSequence& sequence, const std::filesystem::path& target,
     const SequenceWriteOptions& = {},

@@ -34,7 +34,8 @@ class PendingOutputs {
   /// A file of an earlier output that would be taken for a part of this one. Throws OutputError
   /// unless it may be replaced; commit() removes it.
   void add_stale(const fs::path& path) {
-    if (!fs::exists(path)) return;
+    std::error_code unreadable;
+    if (!fs::exists(path, unreadable)) return;
     if (!overwrite_) {
       throw OutputError(path.string(), "exists already; use --force to replace it");
     }
@@ -73,7 +74,7 @@ void add_pose(PendingOutputs& outputs, const fs::path& target, const MeshSequenc
 
 void add_rest(PendingOutputs& outputs, const fs::path& sequence_path, const MeshSequence& sequence,
               bool is_kept, std::vector<fs::path>& files) {
-  const fs::path target = beside(sequence_path, ".rest.ply");
+  const fs::path target = beside(sequence_path, kRestSuffix);
   if (is_kept && sequence.rest_is_known()) {
     add_pose(outputs, target, sequence, files);
   } else {
@@ -127,7 +128,7 @@ std::vector<fs::path> write_array(const MeshSequence& sequence, const fs::path& 
   report_progress(options.progress, 0);
   write_npy_frames(outputs.add(target, PendingOutput::Kind::file), sequence.positions(),
                    options.single_precision);
-  add_pose(outputs, beside(target, ".topology.ply"), sequence, files);
+  add_pose(outputs, beside(target, kTopologySuffix), sequence, files);
   add_rest(outputs, target, sequence, true, files);
   add_extra_beside(outputs, target, extra, files);
   report_progress(options.progress, 1);
@@ -161,9 +162,9 @@ std::vector<fs::path> write_sequence(const MeshSequence& sequence, const fs::pat
     throw std::invalid_argument("format '" + options.format + "': expected ply, obj, off or stl");
   }
   if (sequence.frames() == 0) throw std::invalid_argument("the sequence has no frames");
-  const std::string extension = target.extension().string();
-  if (extension == ".npy") return write_array(sequence, target, options, extra);
-  if (is_mesh_extension(extension)) return write_single(sequence, target, options, extra);
+  if (is_array(target)) return write_array(sequence, target, options, extra);
+  if (is_mesh_extension(target.extension().string()))
+    return write_single(sequence, target, options, extra);
   return write_folder(sequence, target, options, extra);
 }
 

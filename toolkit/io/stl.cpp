@@ -29,10 +29,12 @@ std::vector<double> read_binary(const std::string& path, std::string_view bytes)
                             " bytes, expected at least " + std::to_string(kPreambleBytes));
   }
   const std::size_t triangles = triangle_count(bytes);
-  if (bytes.size() < kPreambleBytes + kTriangleBytes * triangles) {
-    throw IoError(path, "is truncated: " + std::to_string(bytes.size()) + " bytes, expected " +
-                            std::to_string(kPreambleBytes + kTriangleBytes * triangles) + " for " +
-                            std::to_string(triangles) + " triangles");
+  const std::size_t expected = kPreambleBytes + kTriangleBytes * triangles;
+  if (bytes.size() != expected) {
+    throw IoError(path, (bytes.size() < expected ? "is truncated: " : "is too long: ") +
+                            std::to_string(bytes.size()) + " bytes, expected " +
+                            std::to_string(expected) + " for " + std::to_string(triangles) +
+                            " triangles");
   }
   std::vector<double> corners;
   corners.reserve(9 * triangles);
@@ -46,9 +48,8 @@ std::vector<double> read_binary(const std::string& path, std::string_view bytes)
 }
 
 void expect(TextCursor& cursor, std::string_view keyword) {
-  if (cursor.word_anywhere() != keyword) {
-    cursor.fail("expected '" + std::string(keyword) + "', found something else");
-  }
+  const std::string_view found = cursor.word_anywhere();
+  if (found != keyword) cursor.fail_expected("'" + std::string(keyword) + "'", found);
 }
 
 void read_facet(TextCursor& cursor, std::vector<double>& corners) {
@@ -71,15 +72,17 @@ void read_facet(TextCursor& cursor, std::vector<double>& corners) {
 std::vector<double> read_ascii(const std::string& path, std::string_view bytes) {
   TextCursor cursor(path, bytes, {});
   std::vector<double> corners;
+  std::string_view keyword = cursor.word_anywhere();
   // Several solids may follow each other.
-  while (cursor.word_anywhere() == "solid") {
+  while (keyword == "solid") {
     cursor.next_line();  // its name
-    std::string_view keyword = cursor.word_anywhere();
+    keyword = cursor.word_anywhere();
     for (; keyword == "facet"; keyword = cursor.word_anywhere()) read_facet(cursor, corners);
-    if (keyword != "endsolid") cursor.fail("expected 'facet' or 'endsolid'");
+    if (keyword != "endsolid") cursor.fail_expected("'facet' or 'endsolid'", keyword);
     cursor.next_line();
+    keyword = cursor.word_anywhere();
   }
-  if (!cursor.at_end()) cursor.fail("expected 'solid' or the file's end");
+  if (!keyword.empty()) cursor.fail_expected("'solid' or the end of the file", keyword);
   return corners;
 }
 

@@ -35,6 +35,11 @@ std::string_view without_plus(std::string_view word) {
 
 }  // namespace
 
+std::string_view without_byte_order_mark(std::string_view text) {
+  constexpr std::string_view kMark = "\xEF\xBB\xBF";
+  return text.starts_with(kMark) ? text.substr(kMark.size()) : text;
+}
+
 TextCursor::TextCursor(const std::string& path, std::string_view text, Syntax syntax,
                        int first_line)
     : path_(path),
@@ -104,7 +109,7 @@ double TextCursor::number(std::string_view word, std::string_view what) const {
   double value = 0;
   const auto [last, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
   if (error == std::errc::invalid_argument || last != digits.data() + digits.size()) {
-    fail("expected a number for " + std::string(what) + ", found " + quoted(word));
+    fail_expected("a number for " + std::string(what), word);
   }
   // Too small is 0, too large infinite, which whoever asked for the number refuses.
   if (error == std::errc::result_out_of_range) {
@@ -118,9 +123,18 @@ long long TextCursor::integer(std::string_view word, std::string_view what) cons
   long long value = 0;
   const auto [last, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
   if (error != std::errc() || last != digits.data() + digits.size()) {
-    fail("expected an integer for " + std::string(what) + ", found " + quoted(word));
+    fail_expected("an integer for " + std::string(what), word);
   }
   return value;
+}
+
+void TextCursor::expect_end() {
+  const std::string_view found = word_anywhere();
+  if (!found.empty()) fail_expected("the end of the file", found);
+}
+
+void TextCursor::fail_expected(std::string_view expected, std::string_view found) const {
+  fail("expected " + std::string(expected) + ", found " + quoted(found));
 }
 
 void TextCursor::fail(const std::string& message) const {

@@ -6,6 +6,9 @@
 
 namespace mimetra {
 
+/// `text` without the mark that some programs put before UTF-8.
+std::string_view without_byte_order_mark(std::string_view text);
+
 /// Walks through the text of a file word by word, within a line or across lines, and knows the line
 /// for messages. Lines end in LF or CRLF. Internal to the mesh readers.
 class TextCursor {
@@ -36,8 +39,13 @@ class TextCursor {
   double number(std::string_view word, std::string_view what) const;
   long long integer(std::string_view word, std::string_view what) const;
 
+  /// Throws IoError where a word is left.
+  void expect_end();
+
   /// Throws IoError with path and line.
   [[noreturn]] void fail(const std::string& message) const;
+  /// "expected X, found 'word'", or "found nothing" for an empty word.
+  [[noreturn]] void fail_expected(std::string_view expected, std::string_view found) const;
 
  private:
   void skip_blanks();

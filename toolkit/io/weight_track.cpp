@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include <mimetra/io/pending_output.h>
+#include <mimetra/io/text_cursor.h>
 #include <mimetra/mesh/errors.h>
 
 namespace mimetra {
@@ -49,8 +50,7 @@ class WeightReader {
       : path_(path.string()), text_(read_file(path)) {}
 
   WeightTrack read() {
-    std::string_view rest = text_;
-    if (rest.starts_with("\xEF\xBB\xBF")) rest.remove_prefix(3);
+    std::string_view rest = without_byte_order_mark(text_);
     while (!rest.empty()) {
       const auto end = rest.find('\n');
       const std::string_view line = rest.substr(0, end);
