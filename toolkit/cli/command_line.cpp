@@ -122,17 +122,24 @@ Request request_of(const Operation& operation, const std::vector<Parameter>& dec
   for (const Parameter& parameter : declared) {
     if (command.count(parameter.option()) == 0) continue;
     if (parameter.kind == ParameterKind::flag)
-      request.parameters.set(parameter.name, true);
+      request.parameters.set(parameter.name, slots.flags.at(parameter.name));
     else
       request.parameters.set(parameter.name,
                              parse_value(parameter, slots.values.at(parameter.name)));
   }
-  for (const auto& [name, text] : slots.inputs) {
-    if (!text.empty()) request.inputs[name] = {text};
+  const auto given = [&command](const std::string& option, const std::string& text) {
+    if (command.count(option) > 0 && text.empty()) throw UsageError(option + ": is empty");
+    return !text.empty();
+  };
+  for (const Input& input : operation.inputs) {
+    if (input.repeated) continue;
+    const std::string& text = slots.inputs.at(input.name);
+    if (given((input.optional ? "--" : "") + input.name, text)) request.inputs[input.name] = {text};
   }
   for (const auto& [name, texts] : slots.repeated_inputs) request.inputs[name] = texts;
-  for (const auto& [name, text] : slots.outputs) {
-    if (!text.empty()) request.outputs[name] = text;
+  for (const Output& output : operation.outputs) {
+    const std::string& text = slots.outputs.at(output.name);
+    if (given("--" + output.name, text)) request.outputs[output.name] = text;
   }
   request.json = slots.json;
   request.quiet = slots.quiet;

@@ -68,12 +68,12 @@ std::string manifest(const Request& request, const RunRecord& record) {
               {"inputs", inputs},
               {"seconds", {{"read", record.read_seconds}, {"run", record.run_seconds}}},
               {"result", Json::parse(record.report)}}
-             .dump(2) +
+             .dump(2, ' ', false, Json::error_handler_t::replace) +
          '\n';
 }
 
-std::string manifest_name(const std::filesystem::path& output) {
-  return output.has_extension() ? output.stem().string() + ".run.json" : "mimetra-run.json";
+std::string manifest_name(const std::filesystem::path& output, bool is_folder) {
+  return is_folder ? "mimetra-run.json" : output.stem().string() + ".run.json";
 }
 
 }  // namespace mimetra::cli

@@ -22,6 +22,6 @@ std::string manifest(const Request& request, const RunRecord& record);
 
 /// Name of the manifest of an output: NAME.run.json for a file NAME.EXT, mimetra-run.json in a
 /// folder.
-std::string manifest_name(const std::filesystem::path& output);
+std::string manifest_name(const std::filesystem::path& output, bool is_folder);
 
 }  // namespace mimetra::cli

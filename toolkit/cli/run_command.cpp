@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 #include <iostream>
+#include <set>
 
 #include <spdlog/spdlog.h>
 #include <unistd.h>
@@ -61,8 +62,21 @@ void check_outputs(const OperationTable& table, const Request& request) {
     const auto wanted = request.outputs.find(output.name);
     if (wanted == request.outputs.end()) continue;
     table.writer(output.kind, wanted->second);
-    if (!request.force && targets == 1 && std::filesystem::exists(wanted->second)) {
+    const bool one = targets == 1 || output.kind == DataKind::regions;
+    if (!request.force && one && std::filesystem::exists(wanted->second)) {
       throw OutputError(wanted->second.string(), "exists already; use --force to replace it");
+    }
+  }
+}
+
+/// Two targets of one name would write to one place.
+void check_names(const LoadedInputs& loaded) {
+  const auto targets = loaded.data.find("target");
+  if (targets == loaded.data.end()) return;
+  std::set<std::string> names;
+  for (const NamedData& target : targets->second) {
+    if (!names.insert(target.name).second) {
+      throw UsageError("two targets are named '" + target.name + "'; give them apart");
     }
   }
 }
@@ -75,11 +89,12 @@ void write_outputs(const OperationTable& table, const Request& request, const Ou
     if (wanted == request.outputs.end() || made == outcome.outputs.end()) continue;
     for (const NamedData& data : made->second) {
       const auto target = output_path(wanted->second, data.name, made->second.size());
-      const WriteRequest write{target,
-                               request.parameters,
-                               request.force,
-                               [&bar](double share) { return bar.update(share); },
-                               {{manifest_name(target), manifest_text}}};
+      const WriteRequest write{
+          target,
+          request.parameters,
+          request.force,
+          [&bar](double share) { return bar.update(share); },
+          {{manifest_name(target, table.writes_folder(output.kind, target)), manifest_text}}};
       table.writer(output.kind, target).write(data.data, write);
     }
   }
@@ -116,6 +131,7 @@ void run_command(const OperationTable& table, const Request& request) {
   const Stopwatch reading;
   LoadedInputs loaded = load_inputs(table, *request.operation, request.parameters, request.inputs,
                                     part_of(progress, 0, 0.3), log);
+  check_names(loaded);
   record.inputs = std::move(loaded.files);
   record.read_seconds = reading.seconds();
 

@@ -239,7 +239,13 @@ Analysis analysis_for(const Invocation& invocation, const SequenceRead& read) {
     return analyse(invocation, read, still.sequence, invocation.parameters.integer("k"),
                    invocation.progress);
   }
+  if (given->weights.size() == 0) {
+    throw MismatchError(invocation.inputs.at("components").front().name +
+                        ": holds no weights W, without which regions have no motion energy; "
+                        "decompose the sequence again");
+  }
   if (given->vertices() != read.sequence.vertices() ||
+      given->triangles.rows() != read.sequence.triangles().rows() ||
       given->triangles != read.sequence.triangles()) {
     throw MismatchError(invocation.inputs.at("components").front().name + ": components of " +
                         std::to_string(given->vertices()) +

@@ -59,7 +59,10 @@ class Loader {
   NamedData model(const std::string& text) {
     const ModelSpec spec = ModelSpec::parse(text);
     files.push_back(spec.path);
-    if (is_model(spec.path)) return {spec.name(), read_person(spec)};
+    if (!std::filesystem::exists(spec.path)) {
+      throw IoError(spec.path.string(), "no such file or folder");
+    }
+    if (std::filesystem::is_directory(spec.path)) return {spec.name(), read_person(spec)};
     if (!spec.identity.empty()) {
       throw MismatchError(text + ": '" + spec.path.string() +
                           "' is one mesh and has no identities");

@@ -233,6 +233,12 @@ const Writer& OperationTable::writer(DataKind kind, const std::filesystem::path&
                    listed(known) + ", not as '" + target.extension().string() + "'");
 }
 
+bool OperationTable::writes_folder(DataKind kind, const std::filesystem::path& target) const {
+  const std::vector<std::string>& extensions = writer(kind, target).extensions;
+  const bool may = std::ranges::find(extensions, "") != extensions.end();
+  return may && (!target.has_extension() || !has_extension(extensions, target));
+}
+
 const RegionReader& OperationTable::region_reader(const std::filesystem::path& path) const {
   std::vector<std::string> known;
   for (const RegionReader& reader : region_readers_) {

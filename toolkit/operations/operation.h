@@ -123,6 +123,8 @@ class OperationTable {
   std::vector<Parameter> parameters_of(const Operation& operation) const;
   /// The writer of `kind` for a path. Throws UsageError that lists the known extensions.
   const Writer& writer(DataKind kind, const std::filesystem::path& target) const;
+  /// True where that writer makes a folder.
+  bool writes_folder(DataKind kind, const std::filesystem::path& target) const;
   /// Throws UsageError that lists the known extensions.
   const RegionReader& region_reader(const std::filesystem::path& path) const;
 

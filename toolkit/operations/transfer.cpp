@@ -74,11 +74,26 @@ std::string summary_of(const NamedData& target, const Solution& solution,
          " s\n";
 }
 
+/// Refuses outputs that this request cannot make, before anything is computed.
+void check_outputs(const Invocation& invocation) {
+  if (invocation.wants("regions-out") && invocation.parameters.flag("full")) {
+    throw UsageError("--regions-out: there are no regions with --full");
+  }
+  if (!invocation.wants("weights-out")) return;
+  for (const NamedData& target : invocation.inputs.at("target")) {
+    const bool has_expressions = std::get<BlendshapeModel>(target.data).expressions().size() > 0;
+    if (invocation.parameters.text("space") == "vertex" || !has_expressions) {
+      throw UsageError("--weights-out: " + target.name + " is solved for vertices, not weights");
+    }
+  }
+}
+
 Outcome run(const Invocation& invocation) {
   const Stopwatch stopwatch;
   const PreparedSource source = prepare_source(invocation);
   const std::vector<NamedData>& targets = invocation.inputs.at("target");
   for (const NamedData& target : targets) check_target(source.sequence, target);
+  check_outputs(invocation);
   const Choice choice = choose(invocation, source);
   const bool give_back =
       !source.motion.empty() && invocation.parameters.text("head-motion") == "keep";
@@ -99,8 +114,13 @@ Outcome run(const Invocation& invocation) {
     if (invocation.wants("weights-out") && solution.weights.size() > 0) {
       outcome.outputs["weights-out"].push_back(weight_table(targets[t], solution));
     }
-    MeshSequence result =
-        give_back ? with_motion(solution.sequence, source.motion) : std::move(solution.sequence);
+    MeshSequence result = std::move(solution.sequence);
+    if (give_back) {
+      // The neutral has no head motion: kept beside these frames it would promise that they have
+      // none.
+      const MeshSequence moved = with_motion(result, source.motion);
+      result = MeshSequence(moved.shared_connectivity(), moved.positions(), moved.times());
+    }
     outcome.outputs["out"].push_back(
         {targets[t].name, SequenceRead{std::move(result), false, {}, {}}});
   }
@@ -116,8 +136,6 @@ Outcome run(const Invocation& invocation) {
                           {invocation.get<SequenceRead>("source").sequence,
                            fields_of(*choice.regions), true}}});
     }
-  } else if (invocation.wants("regions-out")) {
-    throw UsageError("--regions-out: there are no regions with --full");
   }
   report["seconds"] = stopwatch.seconds();
   outcome.report = report.dump();
