@@ -21,10 +21,7 @@ function(mimetra_test name)
   cmake_parse_arguments(ARG "" "" "SOURCES;USES" ${ARGN})
   add_executable(${name}_test ${ARG_SOURCES})
   target_include_directories(${name}_test PRIVATE ${PROJECT_SOURCE_DIR}/tests)
-  target_link_libraries(${name}_test PRIVATE ${ARG_USES} mimetra_flags GTest::gmock
-                                             GTest::gtest_main)
-  target_compile_definitions(
-    ${name}_test PRIVATE MIMETRA_SHARED_FOLDER="${PROJECT_SOURCE_DIR}/../shared"
-                         MIMETRA_SOURCE_FOLDER="${PROJECT_SOURCE_DIR}")
+  target_link_libraries(${name}_test PRIVATE ${ARG_USES} mimetra_flags mimetra_test_folders
+                                             GTest::gmock GTest::gtest_main)
   gtest_discover_tests(${name}_test NO_PRETTY_VALUES DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 600)
 endfunction()

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "dependency_rules.h"
+#include "test_folders.h"
 
 namespace mimetra {
 namespace {
@@ -35,7 +36,7 @@ bool is_source(const fs::path& file) {
 template <typename Wanted>
 std::vector<fs::path> project_files(Wanted wanted) {
   std::vector<fs::path> files;
-  const fs::path project = MIMETRA_SOURCE_FOLDER;
+  const fs::path project = test::source_folder();
   for (const char* top : {"geodesic", "toolkit", "fitting", "plugins", "samples"}) {
     if (!fs::exists(project / top)) continue;
     for (const fs::path& file : fs::recursive_directory_iterator(project / top)) {
@@ -48,14 +49,14 @@ std::vector<fs::path> project_files(Wanted wanted) {
 
 TEST(Architecture, IsKeptByEveryIncludeOfTheProject) {
   for (const fs::path& file : project_files(is_source)) {
-    EXPECT_THAT(include_errors(file, content(MIMETRA_SOURCE_FOLDER / file)), IsEmpty());
+    EXPECT_THAT(include_errors(file, content(test::source_folder() / file)), IsEmpty());
   }
 }
 
 TEST(Architecture, IsKeptByEveryLibraryOfTheProject) {
   const auto is_list = [](const fs::path& file) { return file.filename() == "CMakeLists.txt"; };
   for (const fs::path& file : project_files(is_list)) {
-    EXPECT_THAT(link_errors(file, content(MIMETRA_SOURCE_FOLDER / file)), IsEmpty());
+    EXPECT_THAT(link_errors(file, content(test::source_folder() / file)), IsEmpty());
   }
 }
 

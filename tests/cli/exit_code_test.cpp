@@ -37,6 +37,22 @@ TEST_F(ExitCode, Is2ForAValueThatIsWrongWhateverTheData) {
   expect_failure("info head --weights take.csv --frames 5:2", 2, "5:2");
 }
 
+TEST_F(ExitCode, Is2ForAnOutputThatTheRequestCannotMake) {
+  const std::string source = "transfer head --weights take.csv ";
+  expect_failure(source + "head --space vertex -o x --weights-out w.csv", 2, "--weights-out");
+  expect_failure(source + "head --full -o x --regions-out r.pvd", 2, "--regions-out");
+  expect_failure(source + "head head -o x", 2, "named 'head'");
+  expect_failure(source + "head -o ''", 2, "is empty");
+  expect_failure(source + "head --weights '' -o x", 2, "is empty");
+}
+
+TEST_F(ExitCode, Is3ForAMissingFileOfAnyOption) {
+  expect_failure("transfer head --weights take.csv nobody -o x", 3, "nobody");
+  expect_failure("transfer head --weights take.csv head --source-rest no.ply -o x", 3, "no.ply");
+  expect_failure("decompose head --weights take.csv --rest no.ply -o c.h5", 3, "no.ply");
+  expect_failure("decompose head --weights take.csv --align no.json -o c.h5", 3, "no.json");
+}
+
 TEST_F(ExitCode, Is3ForAnInputThatIsWrongInItself) {
   expect_failure("info missing.obj", 3, "missing.obj: ");
   write("bad.obj", "v 0 0 0\nv 1 0 nan\nv 0 1 0\nf 1 2 3\n");
@@ -55,6 +71,33 @@ TEST_F(ExitCode, Is4ForInputsThatContradictEachOtherOrTheRequest) {
   write("small.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
   expect_failure("transfer head --weights take.csv small.obj --full -o x", 4,
                  "3 vertices, expected 225");
+}
+
+TEST_F(ExitCode, Is4ForComponentsOfAnotherMesh) {
+  ASSERT_EQ(run("decompose head --weights take.csv -k 2 -o c.h5").code, 0);
+  write("other.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  expect_failure("regions other.obj --components c.h5 -o r.json", 4, "c.h5");
+}
+
+TEST_F(ExitCode, Is4ForRegionsWithoutATriangle) {
+  std::string mask;
+  for (int v = 0; v < 225; ++v) mask += "0\n";
+  write("mask.txt", mask);
+  for (const std::string space : {"vertex", "blendshape"}) {
+    expect_failure(
+        "transfer head --weights take.csv head --regions mask.txt --space " + space + " -o x", 4,
+        "no triangle");
+  }
+}
+
+TEST_F(ExitCode, Is4ForAnAnchorThatTheMeshDoesNotHave) {
+  expect_failure("transfer head --weights take.csv head --space vertex --full --anchor 225 -o x", 4,
+                 "vertex 225");
+}
+
+TEST_F(ExitCode, Is5ForTheOutputOfAnyTargetBeforeComputing) {
+  std::filesystem::create_directories(folder_ / "x/head@wide=1");
+  expect_failure("transfer head --weights take.csv head head@wide=1 -o x", 5, "head@wide=1");
 }
 
 TEST_F(ExitCode, Is5ForAnOutputThatExistsUnlessForced) {

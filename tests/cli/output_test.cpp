@@ -28,6 +28,38 @@ TEST_F(Output, ManifestTellsOptionsInputsAndResult) {
   }
 }
 
+TEST_F(Output, ManifestHashesTheFilesOfOptions) {
+  write("options.json", R"({"k": 2})");
+  ASSERT_EQ(run("convert head -o neutral.ply").code, 0);
+  ASSERT_EQ(run("transfer head --weights take.csv head --source-rest neutral.ply --rest mean "
+                "--config options.json -o out")
+                .code,
+            0);
+  std::vector<std::string> files;
+  for (const json& input : json::parse(text_of(folder_ / "out/mimetra-run.json")).at("inputs")) {
+    files.push_back(input.at("path"));
+    EXPECT_EQ(input.at("xxh3").get<std::string>().size(), 16u);
+  }
+  EXPECT_THAT(files, testing::IsSupersetOf({"take.csv", "neutral.ply", "options.json"}));
+  EXPECT_THAT(files, testing::Not(testing::Contains("mean")));
+  EXPECT_THAT(files, testing::Contains("take.csv").Times(1));
+}
+
+TEST_F(Output, OfATargetWithAFractionalIdentityIsNamedWhole) {
+  ASSERT_EQ(run("transfer head --weights take.csv head@wide=0.5 head@wide=1.5 -k 2 -o out.v2").code,
+            0);
+  EXPECT_EQ(listing("out.v2"), (std::set<std::string>{"head@wide=0.5", "head@wide=1.5"}));
+  EXPECT_TRUE(listing("out.v2/head@wide=0.5").contains("mimetra-run.json"));
+}
+
+TEST_F(Output, WithHeadMotionGivenBackKeepsNoNeutral) {
+  ASSERT_EQ(run("convert head --weights take.csv -o take.npy").code, 0);
+  ASSERT_EQ(run("transfer take.npy head --align all --full -o moved.npy").code, 0);
+  ASSERT_EQ(run("transfer take.npy head --full -o still.npy").code, 0);
+  EXPECT_FALSE(listing().contains("moved.rest.ply"));
+  EXPECT_TRUE(listing().contains("still.rest.ply"));
+}
+
 TEST_F(Output, IsTheSameOnEveryRun) {
   ASSERT_EQ(
       run("transfer head --weights take.csv head@wide=1 -k 3 -o a --regions-out r/a.pvd").code, 0);

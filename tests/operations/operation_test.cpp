@@ -90,10 +90,15 @@ TEST(OperationTable, ListsItselfAsJson) {
   EXPECT_TRUE(names.contains("transfer"));
 }
 
-TEST(OutputPath, GivesEachOfSeveralTargetsItsOwn) {
-  EXPECT_EQ(output_path("T/", "b", 1), "T/");
-  EXPECT_EQ(output_path("T", "b", 2), "T/b");
-  EXPECT_EQ(output_path("d/T.npy", "b", 2), "d/T-b.npy");
+TEST(OutputPaths, GiveEachOfSeveralTargetsItsOwn) {
+  using Paths = std::vector<std::filesystem::path>;
+  const OperationTable table = toolkit();
+  const Output output{"out", DataKind::sequence, "", false, true};
+  EXPECT_EQ(table.output_paths(output, "T/", {"b"}), Paths{"T/"});
+  EXPECT_EQ(table.output_paths(output, "T", {"a", "b"}), (Paths{"T/a", "T/b"}));
+  EXPECT_EQ(table.output_paths(output, "results.v2", {"a", "b@x=0.5"}),
+            (Paths{"results.v2/a", "results.v2/b@x=0.5"}));
+  EXPECT_EQ(table.output_paths(output, "d/T.npy", {"a", "b"}), (Paths{"d/T-a.npy", "d/T-b.npy"}));
 }
 
 TEST(Operations, RunOnValuesWithoutFiles) {

@@ -38,7 +38,7 @@ std::string described(const Parameter& parameter) {
     for (const std::string& choice : parameter.choices) {
       text += (choice == parameter.choices.front() ? "" : ",") + choice;
     }
-    text += "}";
+    text += parameter.kind == ParameterKind::file ? ",FILE}" : "}";
   }
   const std::string fallback = to_text(parameter.fallback);
   if (!fallback.empty() && parameter.kind != ParameterKind::flag)
@@ -141,6 +141,8 @@ Request request_of(const Operation& operation, const std::vector<Parameter>& dec
     const std::string& text = slots.outputs.at(output.name);
     if (given("--" + output.name, text)) request.outputs[output.name] = text;
   }
+  request.files = request.parameters.files();
+  if (!slots.config.empty()) request.files.push_back(slots.config);
   request.json = slots.json;
   request.quiet = slots.quiet;
   request.verbose = slots.verbose;

@@ -1,10 +1,10 @@
 #include <mimetra/cli/run_command.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <cstdio>
 #include <iostream>
-#include <set>
 
 #include <spdlog/spdlog.h>
 #include <unistd.h>
@@ -54,48 +54,70 @@ bool shows_bar(const Request& request) {
   return request.progress == ProgressBar::always || isatty(STDERR_FILENO);
 }
 
-/// Refuses what exists before anything is computed.
+using OutputPaths = std::map<std::string, std::vector<std::filesystem::path>>;
+
+void refuse_existing(const Request& request, const std::filesystem::path& path) {
+  if (request.force || !std::filesystem::exists(path)) return;
+  throw OutputError(path.string(), "exists already; use --force to replace it");
+}
+
+/// Refuses, before anything is read, what cannot be written.
 void check_outputs(const OperationTable& table, const Request& request) {
-  const std::size_t targets =
-      request.inputs.contains("target") ? request.inputs.at("target").size() : 1;
+  const bool several = std::ranges::any_of(
+      request.inputs, [](const auto& input) { return input.second.size() > 1; });
   for (const Output& output : request.operation->outputs) {
-    const auto wanted = request.outputs.find(output.name);
-    if (wanted == request.outputs.end()) continue;
-    table.writer(output.kind, wanted->second);
-    const bool one = targets == 1 || output.kind == DataKind::regions;
-    if (!request.force && one && std::filesystem::exists(wanted->second)) {
-      throw OutputError(wanted->second.string(), "exists already; use --force to replace it");
-    }
+    const auto asked = request.outputs.find(output.name);
+    if (asked == request.outputs.end()) continue;
+    table.writer(output.kind, asked->second);
+    if (!several || !output.repeated) refuse_existing(request, asked->second);
   }
 }
 
-/// Two targets of one name would write to one place.
-void check_names(const LoadedInputs& loaded) {
-  const auto targets = loaded.data.find("target");
-  if (targets == loaded.data.end()) return;
-  std::set<std::string> names;
-  for (const NamedData& target : targets->second) {
-    if (!names.insert(target.name).second) {
-      throw UsageError("two targets are named '" + target.name + "'; give them apart");
-    }
+/// Where the values of the outputs asked for go, given the names of the repeated input.
+OutputPaths output_paths(const OperationTable& table, const Request& request,
+                         const std::vector<std::string>& names) {
+  OutputPaths all;
+  for (const Output& output : request.operation->outputs) {
+    const auto asked = request.outputs.find(output.name);
+    if (asked == request.outputs.end()) continue;
+    all[output.name] = table.output_paths(output, asked->second, names);
+    for (const auto& path : all[output.name]) refuse_existing(request, path);
   }
+  return all;
 }
 
-void write_outputs(const OperationTable& table, const Request& request, const Outcome& outcome,
-                   const std::string& manifest_text, Bar& bar) {
+/// Names of the repeated input. Two of one name would write to one place.
+std::vector<std::string> repeated_names(const Operation& operation, const LoadedInputs& loaded) {
+  std::vector<std::string> names;
+  for (const Input& input : operation.inputs) {
+    const auto values = loaded.data.find(input.name);
+    if (!input.repeated || values == loaded.data.end()) continue;
+    for (const NamedData& value : values->second) {
+      if (std::ranges::find(names, value.name) != names.end()) {
+        throw UsageError("two of " + input.name + " are named '" + value.name +
+                         "'; run them one by one");
+      }
+      names.push_back(value.name);
+    }
+  }
+  return names;
+}
+
+void write_outputs(const OperationTable& table, const Request& request, const OutputPaths& paths,
+                   const Outcome& outcome, const std::string& manifest_text, Bar& bar) {
   for (const Output& output : request.operation->outputs) {
-    const auto wanted = request.outputs.find(output.name);
+    const auto wanted = paths.find(output.name);
     const auto made = outcome.outputs.find(output.name);
-    if (wanted == request.outputs.end() || made == outcome.outputs.end()) continue;
-    for (const NamedData& data : made->second) {
-      const auto target = output_path(wanted->second, data.name, made->second.size());
+    if (wanted == paths.end() || made == outcome.outputs.end()) continue;
+    for (std::size_t i = 0; i < made->second.size(); ++i) {
+      const auto& target = wanted->second.at(i);
       const WriteRequest write{
           target,
           request.parameters,
           request.force,
           [&bar](double share) { return bar.update(share); },
           {{manifest_name(target, table.writes_folder(output.kind, target)), manifest_text}}};
-      table.writer(output.kind, target).write(data.data, write);
+      table.writer(output.kind, target).write(made->second[i].data, write);
     }
   }
 }
@@ -131,14 +153,20 @@ void run_command(const OperationTable& table, const Request& request) {
   const Stopwatch reading;
   LoadedInputs loaded = load_inputs(table, *request.operation, request.parameters, request.inputs,
                                     part_of(progress, 0, 0.3), log);
-  check_names(loaded);
+  const OutputPaths paths =
+      output_paths(table, request, repeated_names(*request.operation, loaded));
   record.inputs = std::move(loaded.files);
+  for (const std::filesystem::path file : request.files) {
+    if (std::ranges::find(record.inputs, file) == record.inputs.end()) {
+      record.inputs.push_back(file);
+    }
+  }
   record.read_seconds = reading.seconds();
 
   Invocation invocation;
   invocation.inputs = std::move(loaded.data);
   invocation.parameters = request.parameters;
-  invocation.wanted = request.outputs;
+  invocation.wanted = paths;
   invocation.progress = part_of(progress, 0.3, 0.8);
   invocation.log = log;
   const Stopwatch running;
@@ -147,7 +175,7 @@ void run_command(const OperationTable& table, const Request& request) {
   record.report = outcome.report;
   const std::string manifest_text =
       request.outputs.empty() ? std::string() : manifest(request, record);
-  write_outputs(table, request, outcome, manifest_text, bar);
+  write_outputs(table, request, paths, outcome, manifest_text, bar);
   bar.clear();
   print_result(request, outcome);
 }

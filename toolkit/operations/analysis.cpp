@@ -88,10 +88,14 @@ SurfaceDistances distances_on(const Invocation& invocation, const Positions& res
 
 std::vector<Parameter> alignment_parameters() {
   return {{"align",
-           ParameterKind::text,
+           ParameterKind::file,
            {},
-           "head motion to take out first: stable (fit on what moves least), all, none, or the "
-           "manifest of an align run; default none where the neutral is known, stable otherwise"}};
+           "head motion to take out first: fitted on what moves least, on all vertices, none, or "
+           "as an align run's manifest tells; default none where the neutral is known, else stable",
+           "",
+           {},
+           {},
+           {"stable", "all", "none"}}};
 }
 
 std::vector<Parameter> geodesic_parameters() {
@@ -118,8 +122,14 @@ std::vector<Parameter> geodesic_parameters() {
 std::vector<Parameter> decomposition_parameters(int count) {
   std::vector<Parameter> parameters = {
       {"k", ParameterKind::integer, std::int64_t{count}, "number of components", "", 1},
-      {"rest", ParameterKind::text, "first",
-       "rest pose of the decomposition: first, mean, or a mesh file"},
+      {"rest",
+       ParameterKind::file,
+       "first",
+       "rest pose of the decomposition: a frame, the mean, or a mesh",
+       "",
+       {},
+       {},
+       {"first", "mean"}},
       {"d-min", ParameterKind::length, "0.1",
        "geodesic distance up to which sparsity costs nothing"},
       {"d-max", ParameterKind::length, "0.7", "geodesic distance from which it costs all"},

@@ -30,7 +30,7 @@ Eigen::VectorXd nearest(const SurfaceDistances& distances, const std::vector<std
 Outcome run(const Invocation& invocation) {
   const MeshSequence& sequence = invocation.get<SequenceRead>("mesh").sequence;
   const Parameters& parameters = invocation.parameters;
-  const MeshSequence mesh = sequence.slice(0, 1);
+  const MeshSequence mesh = sequence.slice(0, 1).with_rest(sequence.frame(0));
   const SurfaceDistances distances = distances_on(invocation, mesh.rest(), mesh.triangles());
   const double unit = mesh.extent();
   const Eigen::VectorXd distance =

@@ -120,6 +120,7 @@ Json json_of(const Output& output) {
   return {{"name", output.name},
           {"kind", kind_name(output.kind)},
           {"optional", output.optional},
+          {"repeated", output.repeated},
           {"help", output.help}};
 }
 
@@ -159,14 +160,6 @@ void Invocation::warn(const std::string& message) const {
 
 void Invocation::info(const std::string& message) const {
   if (log) log(LogLevel::info, message);
-}
-
-std::filesystem::path output_path(const std::filesystem::path& target, const std::string& name,
-                                  std::size_t count) {
-  if (count <= 1) return target;
-  if (!target.has_extension()) return target / name;
-  const std::string file = target.stem().string() + '-' + name + target.extension().string();
-  return target.parent_path() / file;
 }
 
 void OperationTable::add(Operation operation) {
@@ -237,6 +230,19 @@ bool OperationTable::writes_folder(DataKind kind, const std::filesystem::path& t
   const std::vector<std::string>& extensions = writer(kind, target).extensions;
   const bool may = std::ranges::find(extensions, "") != extensions.end();
   return may && (!target.has_extension() || !has_extension(extensions, target));
+}
+
+std::vector<std::filesystem::path> OperationTable::output_paths(
+    const Output& output, const std::filesystem::path& asked,
+    const std::vector<std::string>& names) const {
+  if (!output.repeated || names.size() <= 1) return {asked};
+  const bool is_folder = writes_folder(output.kind, asked);
+  std::vector<std::filesystem::path> paths;
+  for (const std::string& name : names) {
+    const std::string file = asked.stem().string() + '-' + name + asked.extension().string();
+    paths.push_back(is_folder ? asked / name : asked.parent_path() / file);
+  }
+  return paths;
 }
 
 const RegionReader& OperationTable::region_reader(const std::filesystem::path& path) const {

@@ -27,6 +27,7 @@ struct Output {
   DataKind kind;
   std::string help;
   bool optional = false;
+  bool repeated = false;  ///< one value for each of the repeated input
 };
 
 enum class LogLevel { info, warning };
@@ -36,9 +37,9 @@ using Log = std::function<void(LogLevel, const std::string&)>;
 struct Invocation {
   std::map<std::string, std::vector<NamedData>> inputs;
   Parameters parameters;
-  /// Outputs asked for and the path each is for (empty for a host that takes values); others need
-  /// not be computed.
-  std::map<std::string, std::filesystem::path> wanted;
+  /// Outputs asked for and where their values go, in order (no paths for a host that takes values);
+  /// others need not be computed.
+  std::map<std::string, std::vector<std::filesystem::path>> wanted;
   Progress progress;
   Log log;
 
@@ -103,11 +104,6 @@ struct RegionReader {
   std::function<Regions(const std::filesystem::path&, int vertices, const Triangles&)> read;
 };
 
-/// Where one of `count` values of an output goes: the path asked for where there is one value;
-/// otherwise a folder OUT/NAME each, or OUT-NAME.EXT for files.
-std::filesystem::path output_path(const std::filesystem::path& target, const std::string& name,
-                                  std::size_t count);
-
 /// All operations and formats of a program; built by its main function and passed down.
 class OperationTable {
  public:
@@ -125,6 +121,11 @@ class OperationTable {
   const Writer& writer(DataKind kind, const std::filesystem::path& target) const;
   /// True where that writer makes a folder.
   bool writes_folder(DataKind kind, const std::filesystem::path& target) const;
+  /// Where an output's values go, one for each of `names`: the path asked for where there is one
+  /// name; otherwise a folder OUT/NAME each, or OUT-NAME.EXT for files.
+  std::vector<std::filesystem::path> output_paths(const Output& output,
+                                                  const std::filesystem::path& asked,
+                                                  const std::vector<std::string>& names) const;
   /// Throws UsageError that lists the known extensions.
   const RegionReader& region_reader(const std::filesystem::path& path) const;
 

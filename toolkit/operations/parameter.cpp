@@ -210,6 +210,18 @@ const ParameterValue& Parameters::value(const std::string& name) const {
   return parameter->fallback;
 }
 
+std::vector<std::string> Parameters::files() const {
+  std::vector<std::string> paths;
+  for (const auto& [name, value] : values_) {
+    const Parameter& parameter = *find(name);
+    const auto* path = std::get_if<std::string>(&value);
+    if (parameter.kind != ParameterKind::file || !path) continue;
+    const auto& words = parameter.choices;
+    if (std::ranges::find(words, *path) == words.end()) paths.push_back(*path);
+  }
+  return paths;
+}
+
 int Parameters::integer(const std::string& name) const {
   return static_cast<int>(std::get<std::int64_t>(value(name)));
 }

@@ -28,7 +28,7 @@ enum class ParameterKind {
   length,        ///< std::string: "0.1" of the rest pose's longest side, or "12abs"
   choice,        ///< std::string, one of `choices`
   text,          ///< std::string
-  file           ///< std::string, a path
+  file           ///< std::string, a path, or one of `choices`
 };
 
 /// One parameter of an operation: what option parser, help, and the dialogs of hosts are made of.
@@ -67,6 +67,8 @@ class Parameters {
   const Parameter* find(const std::string& name) const;
   /// True where a value was set, as against the default.
   bool is_set(const std::string& name) const { return values_.contains(name); }
+  /// The paths that were set, without the words that stand beside paths.
+  std::vector<std::string> files() const;
   const ParameterValue& value(const std::string& name) const;
 
   bool flag(const std::string& name) const { return std::get<bool>(value(name)); }

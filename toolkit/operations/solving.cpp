@@ -85,7 +85,7 @@ Solution solve_blendshapes(const Invocation& invocation, const PreparedSource& s
   return solution;
 }
 
-VertexTransferOptions vertex_options(const Parameters& parameters) {
+VertexTransferOptions vertex_options(const Parameters& parameters, int vertices) {
   VertexTransferOptions options;
   options.triangle_weight =
       parameters.text("triangle-weight") == "area" ? TriangleWeight::area : TriangleWeight::unit;
@@ -96,9 +96,13 @@ VertexTransferOptions vertex_options(const Parameters& parameters) {
   if (anchor == "centroid") options.anchor = Anchor::centroid;
   if (anchor != "centroid" && anchor != "source") {
     const Parameter vertex{"anchor", ParameterKind::integer, {}, "", "", 0};
+    const auto number = std::get<std::int64_t>(parse_value(vertex, anchor));
+    if (number >= vertices) {
+      throw MismatchError("--anchor: vertex " + anchor + ", the mesh has " +
+                          std::to_string(vertices) + " (0-based)");
+    }
     options.anchor = Anchor::vertex;
-    options.anchor_vertex =
-        static_cast<VertexIndex>(std::get<std::int64_t>(parse_value(vertex, anchor)));
+    options.anchor_vertex = static_cast<VertexIndex>(number);
   }
   return options;
 }
@@ -108,7 +112,7 @@ Solution solve_vertices(const Invocation& invocation, const PreparedSource& sour
                         const Progress& progress) {
   const Stopwatch stopwatch;
   const BlendshapeModel& model = model_of(target);
-  VertexTransferOptions options = vertex_options(invocation.parameters);
+  VertexTransferOptions options = vertex_options(invocation.parameters, model.vertices());
   options.inside = selection.inside;
   const bool all = selection.triangles.size() == static_cast<std::size_t>(model.triangles().rows());
   if (invocation.parameters.is_set("anchor") && options.outside == Outside::fixed && !all) {
@@ -153,10 +157,13 @@ MeshSequence with_source_rest(const Invocation& invocation, const MeshSequence& 
 std::vector<Parameter> solving_parameters() {
   return {
       {"source-rest",
-       ParameterKind::text,
+       ParameterKind::file,
        {},
-       "source's undeformed shape: neutral, first, mean, or a mesh file; default the neutral where "
-       "it is known, else the first frame"},
+       "source's undeformed shape; default the neutral where it is known, else the first frame",
+       "",
+       {},
+       {},
+       {"neutral", "first", "mean"}},
       {"space",
        ParameterKind::choice,
        "auto",

@@ -46,18 +46,12 @@ NamedData weight_table(const NamedData& target, const Solution& solution) {
   return {target.name, std::move(table)};
 }
 
-Json report_of(const Invocation& invocation, const NamedData& target, const Solution& solution,
-               const TransferError& error) {
+Json report_of(const NamedData& target, const Solution& solution, const TransferError& error) {
   Json json = {{"name", target.name},          {"output", nullptr},  {"de_all", error.de_all},
                {"de_region", error.de_region}, {"leak", error.leak}, {"flipped", error.flipped},
                {"seconds", solution.seconds}};
   json["degenerate_source_triangles"] = solution.degenerate_source_triangles;
   json["degenerate_target_triangles"] = solution.degenerate_target_triangles;
-  if (invocation.wants("out")) {
-    json["output"] =
-        output_path(invocation.wanted.at("out"), target.name, invocation.inputs.at("target").size())
-            .string();
-  }
   if (solution.weights.size() > 0) {
     json["condition"] = solution.conditions.condition;
     json["unseen"] = solution.conditions.unseen;
@@ -95,6 +89,9 @@ Outcome run(const Invocation& invocation) {
   for (const NamedData& target : targets) check_target(source.sequence, target);
   check_outputs(invocation);
   const Choice choice = choose(invocation, source);
+  if (choice.selection.triangles.empty()) {
+    throw MismatchError("the regions hold no triangle; choose others, or use --full");
+  }
   const bool give_back =
       !source.motion.empty() && invocation.parameters.text("head-motion") == "keep";
 
@@ -109,7 +106,11 @@ Outcome run(const Invocation& invocation) {
     Solution solution = solve(invocation, source, targets[t], choice.selection, progress);
     const TransferError error =
         transfer_error(source.sequence, solution.sequence, choice.selection.triangles);
-    reports.push_back(report_of(invocation, targets[t], solution, error));
+    reports.push_back(report_of(targets[t], solution, error));
+    const auto paths = invocation.wanted.find("out");
+    if (paths != invocation.wanted.end() && !paths->second.empty()) {
+      reports.back()["output"] = paths->second.at(t).string();
+    }
     outcome.summary += summary_of(targets[t], solution, error);
     if (invocation.wants("weights-out") && solution.weights.size() > 0) {
       outcome.outputs["weights-out"].push_back(weight_table(targets[t], solution));
@@ -157,10 +158,11 @@ Operation transfer_operation() {
        true}};
   operation.outputs = {
       {"out", DataKind::sequence,
-       "a folder of frames, .npy, or a mesh file; with several targets a folder with one each"},
+       "a folder of frames, .npy, or a mesh file; with several targets a folder with one each",
+       false, true},
       {"regions-out", DataKind::regions, "regions: .pvd (a time series), .vtp, .json or .csv",
        true},
-      {"weights-out", DataKind::table, "blendshape weights: .csv or .json", true}};
+      {"weights-out", DataKind::table, "blendshape weights: .csv or .json", true, true}};
   operation.parameters = {
       {"full", ParameterKind::flag, false, "use all triangles instead of regions"},
       {"head-motion",
