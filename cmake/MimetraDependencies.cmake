@@ -14,7 +14,10 @@ file(GLOB paraview_vtk /usr/lib/*/cmake/paraview-*/vtk)
 if(NOT VTK_DIR AND paraview_vtk)
   list(GET paraview_vtk -1 VTK_DIR)
 endif()
-find_package(VTK 9.1 REQUIRED COMPONENTS CommonCore CommonDataModel IOXML)
+find_package(GLEW REQUIRED)
+find_package(OpenGL REQUIRED COMPONENTS EGL)
+find_package(VTK 9.1 REQUIRED COMPONENTS CommonCore CommonDataModel IOImage IOXML IOXMLParser
+                                         RenderingCore RenderingFreeType RenderingOpenGL2)
 
 if(BUILD_TESTING)
   find_package(GTest REQUIRED)

@@ -16,9 +16,15 @@ echo
 echo "Table I of the paper on the sample (MPE in percent, negative is worse than full):"
 "$mimetra" evaluate "$out/source" "$out/head@identity002=1" -k 10,30,40 -o "$out/table.json"
 
+"$mimetra" render "$out/source" "$out/regions.pvd" "$out/full" "$out/regions" "$out/full" \
+  --color none,region,none,none,difference --at 0,17,34,51,68,85,102 --unit mm \
+  --titles "source,its 30 regions,target: all triangles,target: the regions only,distance between the two" \
+  -o "$out/strip.png"
+
 cat <<TEXT
 
 What to open:
+  $out/strip.png    source, regions, and the target both ways, as a film strip
   $out/regions.pvd  in ParaView: press Apply, colour by 'region' or 'roi', press Play
   $out/source/      the performance of one head, frame_0000.ply on
   $out/full/        the same on another head, by all triangles

@@ -36,7 +36,8 @@ TEST_F(Output, ManifestHashesTheFilesOfOptions) {
                 .code,
             0);
   std::vector<std::string> files;
-  for (const json& input : json::parse(text_of(folder_ / "out/mimetra-run.json")).at("inputs")) {
+  const json manifest = json::parse(text_of(folder_ / "out/mimetra-run.json"));
+  for (const json& input : manifest.at("inputs")) {
     files.push_back(input.at("path"));
     EXPECT_EQ(input.at("xxh3").get<std::string>().size(), 16u);
   }
@@ -48,7 +49,8 @@ TEST_F(Output, ManifestHashesTheFilesOfOptions) {
 TEST_F(Output, OfATargetWithAFractionalIdentityIsNamedWhole) {
   ASSERT_EQ(run("transfer head --weights take.csv head@wide=0.5 head@wide=1.5 -k 2 -o out.v2").code,
             0);
-  EXPECT_EQ(listing("out.v2"), (std::set<std::string>{"head@wide=0.5", "head@wide=1.5"}));
+  EXPECT_EQ(listing("out.v2"), (std::set<std::string>{"head@wide=0.5", "head@wide=0.5.rest.ply",
+                                                      "head@wide=1.5", "head@wide=1.5.rest.ply"}));
   EXPECT_TRUE(listing("out.v2/head@wide=0.5").contains("mimetra-run.json"));
 }
 
@@ -71,6 +73,23 @@ TEST_F(Output, IsTheSameOnEveryRun) {
   }
   for (const std::string& name : listing("r/a_vtp")) {
     EXPECT_EQ(text_of(folder_ / "r/a_vtp" / name), text_of(folder_ / "s/a_vtp" / name)) << name;
+  }
+}
+
+TEST_F(Output, IsTheSameForEveryNumberOfThreads) {
+  const std::string transfer = "transfer head --weights take.csv head@wide=1 -k 3 ";
+  for (const std::string threads : {"1", "2", "3"}) {
+    const std::string end = " --threads " + threads;
+    ASSERT_EQ(run("decompose head --weights take.csv -k 3 -o c" + threads + ".h5" + end).code, 0);
+    ASSERT_EQ(run(transfer + "-o b" + threads + ".npy" + end).code, 0);
+    ASSERT_EQ(run(transfer + "--space vertex -o v" + threads + ".npy" + end).code, 0);
+  }
+  for (const std::string name : {"c%.h5", "b%.npy", "v%.npy"}) {
+    const auto bytes = [&](const char* threads) {
+      return text_of(folder_ / std::string(name).replace(1, 1, threads));
+    };
+    EXPECT_EQ(bytes("1"), bytes("2")) << name;
+    EXPECT_EQ(bytes("1"), bytes("3")) << name;
   }
 }
 

@@ -5,6 +5,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include <mimetra/cli/command.h>
 #include <mimetra/cli/suggestion.h>
 #include <mimetra/operations/option_file.h>
 
@@ -12,16 +13,21 @@ namespace mimetra::cli {
 
 namespace {
 
-/// What CLI11 writes into while it parses one command.
+/// What CLI11 writes into while it parses one command, by name of input or option.
 struct Slots {
-  std::map<std::string, std::string> inputs;
-  std::map<std::string, std::vector<std::string>> repeated_inputs;
-  std::map<std::string, std::string> outputs;
+  std::map<std::string, std::vector<std::string>> inputs;
   std::map<std::string, std::string> values;
   std::map<std::string, bool> flags;
-  std::string config;
-  std::string progress = "auto";
-  bool json = false, quiet = false, verbose = false, force = false;
+
+  std::optional<std::string> value(const std::string& name) const {
+    const auto found = values.find(name);
+    if (found == values.end() || found->second.empty()) return {};
+    return found->second;
+  }
+  bool flag(const std::string& name) const {
+    const auto found = flags.find(name);
+    return found != flags.end() && found->second;
+  }
 };
 
 std::string upper(std::string text) {
@@ -29,127 +35,97 @@ std::string upper(std::string text) {
   return text;
 }
 
-/// Help, unit, default and choices in one line.
-std::string described(const Parameter& parameter) {
-  std::string text = parameter.help;
-  if (!parameter.unit.empty()) text += " [" + parameter.unit + "]";
-  if (!parameter.choices.empty()) {
-    text += " {";
-    for (const std::string& choice : parameter.choices) {
-      text += (choice == parameter.choices.front() ? "" : ",") + choice;
-    }
-    text += parameter.kind == ParameterKind::file ? ",FILE}" : "}";
-  }
-  const std::string fallback = to_text(parameter.fallback);
-  if (!fallback.empty() && parameter.kind != ParameterKind::flag)
-    text += " (default " + fallback + ")";
+std::string joined(const std::vector<std::string>& forms) {
+  std::string text;
+  for (const std::string& form : forms) text += (text.empty() ? "" : ",") + form;
   return text;
 }
 
-std::string value_name(ParameterKind kind) {
-  switch (kind) {
-    case ParameterKind::integer:
-      return "N";
-    case ParameterKind::integer_list:
-      return "N,N,...";
-    case ParameterKind::number:
-      return "X";
-    case ParameterKind::length:
-      return "LENGTH";
-    case ParameterKind::file:
-      return "FILE";
-    case ParameterKind::choice:
-      return "CHOICE";
-    default:
-      return "TEXT";
+void declare(CLI::App& app, const Command& command, Slots& slots) {
+  for (const Input& input : command.positionals) {
+    app.add_option(input.name, slots.inputs[input.name], input.help)
+        ->type_name(upper(input.name))
+        ->expected(1, input.repeated ? CLI::detail::expected_max_vector_size : 1)
+        ->required();
+  }
+  for (const CommandOption& option : command.options) {
+    const std::string forms = joined(option.forms);
+    CLI::Option* declared = option.is_flag()
+                                ? app.add_flag(forms, slots.flags[option.name], option.help)
+                                : app.add_option(forms, slots.values[option.name], option.help)
+                                      ->type_name(option.value)
+                                      ->required(option.required);
+    if (option.common) declared->group("Common options");
+  }
+  std::string examples = "Examples:";
+  for (const std::string& example : command.operation->examples) {
+    examples += "\n  mimetra " + example;
+  }
+  app.footer(examples);
+}
+
+/// An empty name is a mistake, mostly of a script whose variable is not set.
+void refuse_empty(const CLI::App& app, const Command& command, const Slots& slots) {
+  for (const auto& [name, texts] : slots.inputs) {
+    if (std::ranges::find(texts, "") != texts.end()) throw UsageError(name + ": is empty");
+  }
+  for (const CommandOption& option : command.options) {
+    if (option.is_flag() || app.count(option.forms.back()) == 0) continue;
+    if (slots.values.at(option.name).empty()) throw UsageError(option.forms.back() + ": is empty");
   }
 }
 
-void add_inputs(CLI::App& command, const Operation& operation, Slots& slots) {
-  for (const Input& input : operation.inputs) {
-    const std::string name = (input.optional ? "--" : "") + input.name;
-    CLI::Option* option =
-        input.repeated ? command.add_option(name, slots.repeated_inputs[input.name], input.help)
-                       : command.add_option(name, slots.inputs[input.name], input.help);
-    option->type_name(input.optional ? "FILE" : upper(input.name))->required(!input.optional);
+Parameters parameters_of(const CLI::App& app, const Command& command, const Slots& slots) {
+  Parameters parameters(command.parameters);
+  if (const auto config = slots.value("config")) set_from_file(*config, parameters);
+  for (const Parameter& parameter : command.parameters) {
+    if (app.count(parameter.option()) == 0) continue;
+    if (parameter.kind == ParameterKind::flag)
+      parameters.set(parameter.name, slots.flag(parameter.name));
+    else
+      parameters.set(parameter.name, parse_value(parameter, slots.values.at(parameter.name)));
   }
+  return parameters;
 }
 
-void add_outputs(CLI::App& command, const Operation& operation, Slots& slots) {
-  for (const Output& output : operation.outputs) {
-    const std::string name = output.name == "out" ? "-o,--out" : "--" + output.name;
-    command.add_option(name, slots.outputs[output.name], output.help)
-        ->type_name(upper(output.name))
-        ->required(!output.optional);
-  }
+ProgressBar progress_bar(const std::string& text) {
+  const Parameter parameter{"progress", ParameterKind::choice,      {}, "", "", {},
+                            {},         {"auto", "always", "never"}};
+  parse_value(parameter, text);
+  return text == "always"  ? ProgressBar::always
+         : text == "never" ? ProgressBar::never
+                           : ProgressBar::automatic;
 }
 
-void add_parameters(CLI::App& command, const std::vector<Parameter>& parameters, Slots& slots) {
-  for (const Parameter& parameter : parameters) {
-    if (parameter.kind == ParameterKind::flag) {
-      command.add_flag(parameter.option(), slots.flags[parameter.name], described(parameter));
-    } else {
-      command.add_option(parameter.option(), slots.values[parameter.name], described(parameter))
-          ->type_name(value_name(parameter.kind));
+int thread_count(const std::string& text) {
+  constexpr double kMost = 1024;
+  const Parameter parameter{"threads", ParameterKind::integer, {}, "", "", 1, kMost};
+  return static_cast<int>(std::get<std::int64_t>(parse_value(parameter, text)));
+}
+
+Request request_of(const CLI::App& app, const Command& command, const Slots& slots) {
+  refuse_empty(app, command, slots);
+  Request request;
+  request.operation = command.operation;
+  request.parameters = parameters_of(app, command, slots);
+  request.inputs = slots.inputs;
+  for (const Input& input : command.operation->inputs) {
+    if (const auto text = slots.value(input.name); input.optional && text) {
+      request.inputs[input.name] = {*text};
     }
   }
-}
-
-void add_common(CLI::App& command, const Operation& operation, Slots& slots) {
-  constexpr const char* kGroup = "Common options";
-  command.add_flag("--json", slots.json, "print the result as JSON")->group(kGroup);
-  command.add_flag("-q,--quiet", slots.quiet, "print errors only")->group(kGroup);
-  command.add_flag("-v,--verbose", slots.verbose, "say more on the way")->group(kGroup);
-  command
-      .add_option("--progress", slots.progress, "progress bar {auto,always,never} (default auto)")
-      ->type_name("CHOICE")
-      ->check(CLI::IsMember({"auto", "always", "never"}))
-      ->group(kGroup);
-  command.add_option("--config", slots.config, "JSON file with values of options")
-      ->type_name("FILE")
-      ->group(kGroup);
-  if (!operation.outputs.empty()) {
-    command.add_flag("--force", slots.force, "replace what exists")->group(kGroup);
-  }
-}
-
-Request request_of(const Operation& operation, const std::vector<Parameter>& declared,
-                   const CLI::App& command, const Slots& slots) {
-  Request request;
-  request.operation = &operation;
-  request.parameters = Parameters(declared);
-  if (!slots.config.empty()) set_from_file(slots.config, request.parameters);
-  for (const Parameter& parameter : declared) {
-    if (command.count(parameter.option()) == 0) continue;
-    if (parameter.kind == ParameterKind::flag)
-      request.parameters.set(parameter.name, slots.flags.at(parameter.name));
-    else
-      request.parameters.set(parameter.name,
-                             parse_value(parameter, slots.values.at(parameter.name)));
-  }
-  const auto given = [&command](const std::string& option, const std::string& text) {
-    if (command.count(option) > 0 && text.empty()) throw UsageError(option + ": is empty");
-    return !text.empty();
-  };
-  for (const Input& input : operation.inputs) {
-    if (input.repeated) continue;
-    const std::string& text = slots.inputs.at(input.name);
-    if (given((input.optional ? "--" : "") + input.name, text)) request.inputs[input.name] = {text};
-  }
-  for (const auto& [name, texts] : slots.repeated_inputs) request.inputs[name] = texts;
-  for (const Output& output : operation.outputs) {
-    const std::string& text = slots.outputs.at(output.name);
-    if (given("--" + output.name, text)) request.outputs[output.name] = text;
+  for (const Output& output : command.operation->outputs) {
+    if (const auto text = slots.value(output.name)) request.outputs[output.name] = *text;
   }
   request.files = request.parameters.files();
-  if (!slots.config.empty()) request.files.push_back(slots.config);
-  request.json = slots.json;
-  request.quiet = slots.quiet;
-  request.verbose = slots.verbose;
-  request.force = slots.force;
-  request.progress = slots.progress == "always"  ? ProgressBar::always
-                     : slots.progress == "never" ? ProgressBar::never
-                                                 : ProgressBar::automatic;
+  if (const auto config = slots.value("config")) request.files.push_back(*config);
+  if (const auto progress = slots.value("progress")) request.progress = progress_bar(*progress);
+  if (const auto threads = slots.value("threads")) request.threads = thread_count(*threads);
+  request.json = slots.flag("json");
+  request.quiet = slots.flag("quiet");
+  request.verbose = slots.flag("verbose");
+  request.force = slots.flag("force");
+  request.dry_run = slots.flag("dry-run");
   return request;
 }
 
@@ -195,17 +171,11 @@ ParsedLine parse_command_line(const OperationTable& table,
   app.require_subcommand(1);
   app.set_version_flag("--version", "mimetra " MIMETRA_VERSION);
   app.footer("`mimetra COMMAND --help` tells a command's options and two examples.");
+  const std::vector<Command> commands = commands_of(table);
   std::list<Slots> all_slots;
-  for (const Operation& operation : table.operations()) {
-    CLI::App* command = app.add_subcommand(operation.name, operation.summary);
-    Slots& slots = all_slots.emplace_back();
-    add_inputs(*command, operation, slots);
-    add_outputs(*command, operation, slots);
-    add_parameters(*command, table.parameters_of(operation), slots);
-    add_common(*command, operation, slots);
-    std::string examples = "Examples:";
-    for (const std::string& example : operation.examples) examples += "\n  mimetra " + example;
-    command->footer(examples);
+  for (const Command& command : commands) {
+    CLI::App* sub = app.add_subcommand(command.operation->name, command.operation->summary);
+    declare(*sub, command, all_slots.emplace_back());
   }
   try {
     app.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));
@@ -217,11 +187,11 @@ ParsedLine parse_command_line(const OperationTable& table,
     throw UsageError(explained(app, arguments, error));
   }
   auto slots = all_slots.begin();
-  for (const Operation& operation : table.operations()) {
-    const CLI::App* command = app.get_subcommand(operation.name);
-    if (command->parsed()) {
+  for (const Command& command : commands) {
+    const CLI::App* sub = app.get_subcommand(command.operation->name);
+    if (sub->parsed()) {
       ParsedLine line;
-      line.request = request_of(operation, table.parameters_of(operation), *command, *slots);
+      line.request = request_of(*sub, command, *slots);
       line.request->arguments = arguments;
       return line;
     }

@@ -23,6 +23,8 @@ struct Request {
   bool quiet = false;
   bool verbose = false;
   bool force = false;
+  bool dry_run = false;
+  int threads = 0;  ///< 0 for all there are
   ProgressBar progress = ProgressBar::automatic;
 };
 

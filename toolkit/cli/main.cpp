@@ -7,6 +7,8 @@
 #include <spdlog/spdlog.h>
 
 #include <mimetra/cli/command_line.h>
+#include <mimetra/cli/completion.h>
+#include <mimetra/cli/manual.h>
 #include <mimetra/cli/run_command.h>
 #include <mimetra/operations/listing.h>
 #include <mimetra/samples/sample_operation.h>
@@ -33,9 +35,11 @@ void log_to_stderr(const mimetra::cli::Request& request) {
 int run(const std::vector<std::string>& arguments) {
   mimetra::OperationTable table;
   mimetra::add_toolkit(table);
-  mimetra::add_vtk_formats(table);
+  mimetra::add_vtk(table);
   mimetra::samples::add_sample(table);
   mimetra::add_listing(table);
+  mimetra::cli::add_completion(table);
+  mimetra::cli::add_manual(table);
   const mimetra::cli::ParsedLine line = mimetra::cli::parse_command_line(table, arguments);
   if (!line.request) {
     std::cout << line.text;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 #include <iostream>
+#include <set>
 
 #include <spdlog/spdlog.h>
 #include <unistd.h>
@@ -81,24 +82,25 @@ OutputPaths output_paths(const OperationTable& table, const Request& request,
     const auto asked = request.outputs.find(output.name);
     if (asked == request.outputs.end()) continue;
     all[output.name] = table.output_paths(output, asked->second, names);
-    for (const auto& path : all[output.name]) refuse_existing(request, path);
+    std::set<std::filesystem::path> places;
+    for (const auto& path : all[output.name]) {
+      refuse_existing(request, path);
+      if (!places.insert(path).second) {
+        throw UsageError(path.string() +
+                         ": two inputs of this name would be written there; run them one by one");
+      }
+    }
   }
   return all;
 }
 
-/// Names of the repeated input. Two of one name would write to one place.
+/// Names of the repeated input.
 std::vector<std::string> repeated_names(const Operation& operation, const LoadedInputs& loaded) {
   std::vector<std::string> names;
   for (const Input& input : operation.inputs) {
     const auto values = loaded.data.find(input.name);
     if (!input.repeated || values == loaded.data.end()) continue;
-    for (const NamedData& value : values->second) {
-      if (std::ranges::find(names, value.name) != names.end()) {
-        throw UsageError("two of " + input.name + " are named '" + value.name +
-                         "'; run them one by one");
-      }
-      names.push_back(value.name);
-    }
+    for (const NamedData& value : values->second) names.push_back(value.name);
   }
   return names;
 }
@@ -169,6 +171,7 @@ void run_command(const OperationTable& table, const Request& request) {
   invocation.wanted = paths;
   invocation.progress = part_of(progress, 0.3, 0.8);
   invocation.log = log;
+  invocation.threads = request.threads;
   const Stopwatch running;
   const Outcome outcome = request.operation->run(invocation);
   record.run_seconds = running.seconds();

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <variant>
@@ -15,7 +16,16 @@
 namespace mimetra {
 
 /// What goes into operations and comes out of them.
-enum class DataKind { sequence, model, components, regions, fields, table, animated_model };
+enum class DataKind {
+  sequence,
+  model,
+  components,
+  regions,
+  fields,
+  table,
+  animated_model,
+  picture
+};
 
 /// Regions and the sequence they are shown on (empty for regions that were read).
 struct RegionData {
@@ -39,9 +49,16 @@ struct AnimatedModel {
   WeightTrack performance;
 };
 
+/// A picture: rows from above to below, each `width` pixels of red, green and blue.
+struct Image {
+  int width = 0;
+  int height = 0;
+  std::vector<std::uint8_t> pixels;
+};
+
 /// One value of the kind at the same place in DataKind.
 using Data = std::variant<SequenceRead, BlendshapeModel, Components, RegionData, FieldSequence,
-                          Table, AnimatedModel>;
+                          Table, AnimatedModel, Image>;
 
 /// A value and what it is called in messages and output names.
 struct NamedData {

@@ -8,9 +8,9 @@
 
 namespace mimetra {
 
-namespace {
-
 using Paths = std::vector<std::filesystem::path>;
+
+namespace {
 
 std::vector<Parameter> sequence_writing_parameters() {
   return {{"format",
@@ -36,16 +36,6 @@ Paths write_sequence_data(const Data& data, const WriteRequest& request) {
                         request.extra);
 }
 
-/// Files that appear beside a single output file, written after it.
-Paths with_extra(Paths written, const WriteRequest& request) {
-  for (const auto& [name, content] : request.extra) {
-    const auto path = request.target.parent_path() / name;
-    write_file(path, content, true);
-    written.push_back(path);
-  }
-  return written;
-}
-
 Paths write_text(const std::string& text, const WriteRequest& request) {
   write_file(request.target, text, request.overwrite);
   return with_extra({request.target}, request);
@@ -63,6 +53,15 @@ Paths write_model_data(const Data& data, const WriteRequest& request) {
 }
 
 }  // namespace
+
+Paths with_extra(Paths written, const WriteRequest& request) {
+  for (const auto& [name, content] : request.extra) {
+    const auto path = request.target.parent_path() / name;
+    write_file(path, content, true);
+    written.push_back(path);
+  }
+  return written;
+}
 
 void add_formats(OperationTable& table) {
   table.add(Writer{DataKind::sequence,

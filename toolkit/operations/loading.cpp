@@ -1,6 +1,7 @@
 #include <mimetra/operations/loading.h>
 
 #include <mimetra/io/components_file.h>
+#include <mimetra/io/frame_files.h>
 #include <mimetra/io/mesh_file.h>
 #include <mimetra/io/model_file.h>
 
@@ -26,6 +27,8 @@ class Loader {
         return {text, read_components(text)};
       case DataKind::regions:
         return {text, regions(text)};
+      case DataKind::fields:
+        return {text, fields(text)};
       default:
         break;
     }
@@ -35,7 +38,23 @@ class Loader {
   std::vector<std::filesystem::path> files;
 
  private:
+  /// A sequence in a format that also holds fields; none where another reader is needed.
+  std::optional<FieldSequence> with_fields(const std::string& text) {
+    const FieldReader* reader = table_.field_reader(text);
+    if (!reader) return {};
+    const auto frames = parameters_.optional_text("frames");
+    const auto selected = [&frames](int count) { return selected_frames(frames, count); };
+    files.push_back(text);
+    return reader->read(text, selected, progress_);
+  }
+
+  FieldSequence fields(const std::string& text) {
+    if (auto read = with_fields(text)) return std::move(*read);
+    return {sequence(text).sequence, {}};
+  }
+
   SequenceRead sequence(const std::string& text) {
+    if (auto read = with_fields(text)) return kept({std::move(read->sequence), false, {}, {}});
     SequenceSource source;
     const auto path = [this](const char* name) {
       const auto value = parameters_.optional_text(name);
@@ -51,6 +70,10 @@ class Loader {
       if (log_) log_(LogLevel::warning, note);
     }
     files.insert(files.end(), read.files.begin(), read.files.end());
+    return kept(std::move(read));
+  }
+
+  SequenceRead kept(SequenceRead read) {
     vertices_ = read.sequence.vertices();
     triangles_ = read.sequence.triangles();
     return read;

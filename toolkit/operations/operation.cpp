@@ -59,6 +59,8 @@ std::string_view kind_name(DataKind kind) {
       return "table";
     case DataKind::animated_model:
       return "model directory";
+    case DataKind::picture:
+      return "picture";
   }
   return "";
 }
@@ -184,6 +186,10 @@ void OperationTable::add(RegionReader reader) {
   region_readers_.push_back(std::move(reader));
 }
 
+void OperationTable::add(FieldReader reader) {
+  field_readers_.push_back(std::move(reader));
+}
+
 const Operation* OperationTable::find(const std::string& name) const {
   const auto found = std::ranges::find(operations_, name, &Operation::name);
   return found == operations_.end() ? nullptr : &*found;
@@ -198,7 +204,9 @@ std::vector<Parameter> OperationTable::parameters_of(const Operation& operation)
       }
     }
   };
-  const auto reads_sequence = [](const Input& input) { return input.kind == DataKind::sequence; };
+  const auto reads_sequence = [](const Input& input) {
+    return input.kind == DataKind::sequence || input.kind == DataKind::fields;
+  };
   if (std::ranges::any_of(operation.inputs, reads_sequence)) append(sequence_parameters());
   for (const Output& output : operation.outputs) {
     for (const Writer& writer : writers_) {
@@ -252,6 +260,13 @@ const RegionReader& OperationTable::region_reader(const std::filesystem::path& p
     known.insert(known.end(), reader.extensions.begin(), reader.extensions.end());
   }
   throw UsageError(path.string() + ": regions can be read from " + listed(known));
+}
+
+const FieldReader* OperationTable::field_reader(const std::filesystem::path& path) const {
+  const auto found = std::ranges::find_if(field_readers_, [&path](const FieldReader& reader) {
+    return has_extension(reader.extensions, path);
+  });
+  return found == field_readers_.end() ? nullptr : &*found;
 }
 
 std::string OperationTable::json() const {

@@ -42,6 +42,7 @@ struct Invocation {
   std::map<std::string, std::vector<std::filesystem::path>> wanted;
   Progress progress;
   Log log;
+  int threads = 0;  ///< 0 for all there are; results do not depend on it
 
   template <typename T>
   const T& get(const std::string& name) const {
@@ -104,6 +105,16 @@ struct RegionReader {
   std::function<Regions(const std::filesystem::path&, int vertices, const Triangles&)> read;
 };
 
+/// A way to read a sequence with its fields, chosen by extension.
+struct FieldReader {
+  std::vector<std::string> extensions;
+  /// Reads the frames that `selected` chooses from their number.
+  std::function<FieldSequence(const std::filesystem::path&,
+                              const std::function<std::vector<int>(int count)>& selected,
+                              const Progress&)>
+      read;
+};
+
 /// All operations and formats of a program; built by its main function and passed down.
 class OperationTable {
  public:
@@ -111,6 +122,7 @@ class OperationTable {
   void add(Operation operation);
   void add(Writer writer);
   void add(RegionReader reader);
+  void add(FieldReader reader);
 
   const std::vector<Operation>& operations() const { return operations_; }
   const Operation* find(const std::string& name) const;
@@ -128,6 +140,8 @@ class OperationTable {
                                                   const std::vector<std::string>& names) const;
   /// Throws UsageError that lists the known extensions.
   const RegionReader& region_reader(const std::filesystem::path& path) const;
+  /// Null where no reader has the extension: then it is a sequence that io reads.
+  const FieldReader* field_reader(const std::filesystem::path& path) const;
 
   /// The table as a JSON array: name, summary, inputs, outputs, parameters, examples.
   std::string json() const;
@@ -136,6 +150,7 @@ class OperationTable {
   std::vector<Operation> operations_;
   std::vector<Writer> writers_;
   std::vector<RegionReader> region_readers_;
+  std::vector<FieldReader> field_readers_;
 };
 
 /// The operations of the toolkit (info, align, geodesic, decompose, regions, transfer, evaluate,

@@ -7,6 +7,7 @@ namespace mimetra {
 void add_toolkit(OperationTable& table) {
   add_formats(table);
   table.add(info_operation());
+  table.add(check_operation());
   table.add(align_operation());
   table.add(geodesic_operation());
   table.add(decompose_operation());

@@ -6,6 +6,7 @@ namespace mimetra {
 
 // One function per operation of the toolkit, each in a file of its own name.
 Operation info_operation();
+Operation check_operation();
 Operation align_operation();
 Operation geodesic_operation();
 Operation decompose_operation();

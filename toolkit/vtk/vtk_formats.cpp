@@ -1,6 +1,9 @@
 #include <mimetra/vtk/vtk_formats.h>
 
 #include <mimetra/io/pending_output.h>
+#include <mimetra/operations/formats.h>
+#include <mimetra/vtk/picture.h>
+#include <mimetra/vtk/render_operation.h>
 #include <mimetra/vtk/vtp_series.h>
 
 namespace mimetra {
@@ -13,13 +16,12 @@ std::vector<std::filesystem::path> write(const FieldSequence& fields, const Writ
       request.parameters.text("compress") == "small" ? VtpCompression::zlib : VtpCompression::lz4;
   options.overwrite = request.overwrite;
   options.progress = request.progress;
-  auto written = write_vtp_series(fields, request.target, options);
-  for (const auto& [name, content] : request.extra) {
-    const auto path = request.target.parent_path() / name;
-    write_file(path, content, true);
-    written.push_back(path);
-  }
-  return written;
+  return with_extra(write_vtp_series(fields, request.target, options), request);
+}
+
+std::vector<std::filesystem::path> write_picture(const Data& data, const WriteRequest& request) {
+  write_file(request.target, png_of(std::get<Image>(data)), request.overwrite);
+  return with_extra({request.target}, request);
 }
 
 /// One region: the vertices where the field `roi` is not 0.
@@ -39,7 +41,7 @@ Regions read_regions_from_vtp(const std::filesystem::path& path, int vertices,
 
 }  // namespace
 
-void add_vtk_formats(OperationTable& table) {
+void add_vtk(OperationTable& table) {
   const std::vector<Parameter> parameters = {{"compress",
                                               ParameterKind::choice,
                                               "fast",
@@ -61,6 +63,9 @@ void add_vtk_formats(OperationTable& table) {
                      return write(std::get<FieldSequence>(data), request);
                    }});
   table.add(RegionReader{{".vtp"}, read_regions_from_vtp});
+  table.add(FieldReader{{".pvd", ".vtp", ".series"}, read_vtp_series});
+  table.add(Writer{DataKind::picture, {".png"}, {}, write_picture});
+  table.add(render_operation());
 }
 
 }  // namespace mimetra

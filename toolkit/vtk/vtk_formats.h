@@ -4,7 +4,8 @@
 
 namespace mimetra {
 
-/// Adds what VTK reads and writes: .pvd and .vtp of regions and fields, region sets from .vtp.
-void add_vtk_formats(OperationTable& table);
+/// Adds what VTK reads, writes and draws: .pvd and .vtp of regions and fields, region sets from
+/// .vtp, .png, and the operation `render`.
+void add_vtk(OperationTable& table);
 
 }  // namespace mimetra

@@ -13,7 +13,6 @@
 #include <vtkCellArray.h>
 #include <vtkCellData.h>
 #include <vtkErrorCode.h>
-#include <vtkExecutive.h>
 #include <vtkFloatArray.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
@@ -21,27 +20,15 @@
 #include <vtkPolyData.h>
 #include <vtkSmartPointer.h>
 #include <vtkTypeInt32Array.h>
-#include <vtkXMLPolyDataReader.h>
 #include <vtkXMLPolyDataWriter.h>
 
 #include <mimetra/io/pending_output.h>
+#include <mimetra/vtk/silent_vtk.h>
 
 namespace mimetra {
 namespace {
 
 constexpr int kFewestDigits = 4;
-
-/// VTK prints its errors; what goes wrong is thrown instead.
-class SilentVtk {
- public:
-  SilentVtk() { vtkObject::GlobalWarningDisplayOff(); }
-  ~SilentVtk() { vtkObject::SetGlobalWarningDisplay(before_); }
-  SilentVtk(const SilentVtk&) = delete;
-  SilentVtk& operator=(const SilentVtk&) = delete;
-
- private:
-  int before_ = vtkObject::GetGlobalWarningDisplay();
-};
 
 void name_components(vtkDataArray& array) {
   if (array.GetNumberOfComponents() != 3) return;
@@ -328,35 +315,6 @@ std::vector<std::filesystem::path> write_vtp_series(const FieldSequence& fields,
   if (target.extension() == ".vtp") return {write_one(fields, target, options)};
   if (target.extension() == ".pvd") return write_all(fields, target, options);
   throw std::invalid_argument(target.string() + ": expected a name that ends in .pvd or .vtp");
-}
-
-Eigen::MatrixXd read_vtp_field(const std::filesystem::path& path, const std::string& name) {
-  // VTK reads a folder as an empty file and a missing one as an error without a reason.
-  if (!std::filesystem::exists(path)) throw IoError(path.string(), "no such file");
-  if (std::filesystem::is_directory(path)) throw IoError(path.string(), "is a folder");
-  const SilentVtk silent;
-  vtkNew<vtkXMLPolyDataReader> reader;
-  reader->SetFileName(path.c_str());
-  if (!reader->GetExecutive()->Update() || reader->GetErrorCode() != vtkErrorCode::NoError) {
-    throw IoError(path.string(), "not a readable VTP file, or truncated");
-  }
-  vtkPointData* on_points = reader->GetOutput()->GetPointData();
-  vtkDataArray* array = on_points->GetArray(name.c_str());
-  if (!array) {
-    std::string known;
-    for (int i = 0; i < on_points->GetNumberOfArrays(); ++i) {
-      known += (i ? ", " : "") + std::string(on_points->GetArrayName(i));
-    }
-    throw IoError(path.string(), "no field '" + name + "' on the vertices; it has " +
-                                     (known.empty() ? "none" : known));
-  }
-  Eigen::MatrixXd values(array->GetNumberOfTuples(), array->GetNumberOfComponents());
-  for (Eigen::Index row = 0; row < values.rows(); ++row) {
-    for (Eigen::Index column = 0; column < values.cols(); ++column) {
-      values(row, column) = array->GetComponent(row, static_cast<int>(column));
-    }
-  }
-  return values;
 }
 
 }  // namespace mimetra

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -27,6 +28,14 @@ struct VtpOptions {
 std::vector<std::filesystem::path> write_vtp_series(const FieldSequence& fields,
                                                     const std::filesystem::path& target,
                                                     const VtpOptions& = {});
+
+/// Reads a series as write_vtp_series writes it, and ParaView too: NAME.pvd, NAME.vtp.series, or
+/// one NAME.vtp. `selected` chooses frames, 0-based, from their number. Fields are those of the
+/// first chosen frame; `displacement` tells the rest pose, and is no field. Throws IoError that
+/// names the file, MismatchError where a frame has other vertices or faces.
+FieldSequence read_vtp_series(const std::filesystem::path& path,
+                              const std::function<std::vector<int>(int count)>& selected,
+                              const Progress& = {});
 
 /// A field on the vertices of a .vtp file (N x c). Throws IoError where the file or field is
 /// missing.

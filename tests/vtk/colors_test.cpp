@@ -1,0 +1,70 @@
+#include <cmath>
+#include <limits>
+
+#include <gtest/gtest.h>
+
+#include <mimetra/vtk/colors.h>
+
+#include "shapes.h"
+
+namespace mimetra {
+namespace {
+
+/// Relative luminance of an sRGB colour (IEC 61966-2-1).
+double luminance(const Color& color) {
+  const auto linear = [](double byte) {
+    const double s = byte / 255;
+    return s <= 0.04045 ? s / 12.92 : std::pow((s + 0.055) / 1.055, 2.4);
+  };
+  return 0.2126 * linear(color.red) + 0.7152 * linear(color.green) + 0.0722 * linear(color.blue);
+}
+
+TEST(EvenColor, OnlyGetsDarker) {
+  for (int i = 0; i < 100; ++i) {
+    EXPECT_GT(luminance(even_color(i / 100.0)), luminance(even_color((i + 1) / 100.0))) << i;
+  }
+}
+
+/// CIE lightness L* is another measure of evenness than the one the colours are made with.
+TEST(EvenColor, FallsAboutEquallyFastInLightness) {
+  const auto lightness = [](double share) {
+    return 116 * std::cbrt(luminance(even_color(share))) - 16;
+  };
+  const double mean = (lightness(0) - lightness(1)) / 10;
+  for (int i = 0; i < 10; ++i) {
+    const double step = lightness(i / 10.0) - lightness((i + 1) / 10.0);
+    EXPECT_GT(step, 0.5 * mean) << i;
+    EXPECT_LT(step, 1.7 * mean) << i;
+  }
+}
+
+TEST(EvenColor, TakesTheEndsOutsideItsRange) {
+  EXPECT_EQ(even_color(-1), even_color(0));
+  EXPECT_EQ(even_color(std::numeric_limits<double>::infinity()), even_color(1));
+  EXPECT_EQ(even_color(std::nan("")), kNoValue);
+}
+
+TEST(CategoryColors, DifferWhereCategoriesTouch) {
+  const test::Shape shape = test::grid(20, 20);
+  std::vector<int> categories;
+  for (int v = 0; v < 400; ++v) categories.push_back(v / 20 / 4 * 5 + v % 20 / 4);
+  const std::vector<Color> colors = category_colors(categories, shape.triangles);
+  for (Eigen::Index t = 0; t < shape.triangles.rows(); ++t) {
+    for (int i = 0; i < 3; ++i) {
+      const auto a = static_cast<std::size_t>(shape.triangles(t, i));
+      const auto b = static_cast<std::size_t>(shape.triangles(t, (i + 1) % 3));
+      EXPECT_EQ(categories[a] == categories[b], colors[a] == colors[b]) << a << ' ' << b;
+    }
+  }
+}
+
+TEST(CategoryColors, LeaveWhatHasNoCategoryAsItIs) {
+  const std::vector<Color> colors =
+      category_colors({-1, 2000000000, 2000000000}, test::grid(2, 2).triangles.topRows(0));
+  EXPECT_EQ(colors[0], kClay);
+  EXPECT_NE(colors[1], kClay);
+  EXPECT_EQ(colors[1], colors[2]);
+}
+
+}  // namespace
+}  // namespace mimetra

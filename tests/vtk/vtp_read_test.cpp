@@ -1,0 +1,90 @@
+#include <numeric>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "temporary_folder.h"
+#include "vtp_fixture.h"
+
+namespace mimetra::test {
+namespace {
+
+using ::testing::HasSubstr;
+
+std::vector<int> all(int count) {
+  std::vector<int> frames(static_cast<std::size_t>(count));
+  std::iota(frames.begin(), frames.end(), 0);
+  return frames;
+}
+
+class VtpRead : public VtpTest {
+ protected:
+  void write_text(const std::string& name, const std::string& text) const {
+    std::ofstream(in_folder(name)) << text;
+  }
+};
+
+/// Written in single precision.
+constexpr double kRounding = 1e-6;
+
+TEST_F(VtpRead, GivesBackWhatWasWritten) {
+  const FieldSequence written = quad_and_triangle();
+  write_vtp_series(written, in_folder("face.pvd"));
+  for (const char* name : {"face.pvd", "face.vtp.series"}) {
+    const FieldSequence read = read_vtp_series(in_folder(name), all);
+    EXPECT_TRUE(same_faces(read.sequence.connectivity(), written.sequence.connectivity()));
+    EXPECT_TRUE(read.sequence.positions().isApprox(written.sequence.positions(), kRounding));
+    EXPECT_TRUE(read.sequence.times() == written.sequence.times());
+    ASSERT_TRUE(read.sequence.rest_is_known());
+    EXPECT_TRUE(read.sequence.rest().isApprox(written.sequence.rest(), kRounding));
+    ASSERT_EQ(read.fields.size(), 3u);
+    for (std::size_t i = 0; i < 3; ++i) {
+      EXPECT_EQ(read.fields[i].name, written.fields[i].name);
+      EXPECT_EQ(read.fields[i].integer, written.fields[i].integer);
+    }
+    EXPECT_TRUE(read.fields[0].values == written.fields[0].values);
+    // A polygon's value is the largest of its triangles', on all of them.
+    EXPECT_TRUE(read.fields[2].values == Eigen::Vector3d(1, 1, 0));
+  }
+}
+
+TEST_F(VtpRead, TakesThePartThatIsAskedFor) {
+  const FieldSequence written = quad_and_triangle();
+  write_vtp_series(written, in_folder("face.pvd"));
+  const auto last = [](int count) { return std::vector<int>{count - 1}; };
+  const MeshSequence read = read_vtp_series(in_folder("face.pvd"), last).sequence;
+  ASSERT_EQ(read.frames(), 1);
+  EXPECT_TRUE(read.frame(0).isApprox(written.sequence.frame(2), kRounding));
+  EXPECT_EQ(read.times()[0], written.sequence.times()[2]);
+}
+
+TEST_F(VtpRead, NamesTheFileThatIsWrong) {
+  write_text("no.pvd", "nothing");
+  write_text("none.pvd", "<VTKFile type=\"Collection\"><Collection/></VTKFile>");
+  write_text(
+      "lost.pvd",
+      "<VTKFile><Collection><DataSet timestep=\"0\" file=\"x.vtp\"/></Collection></VTKFile>");
+  write_text("bad.series", "{}");
+  const auto message = [this](const std::string& name) {
+    return message_of<IoError>([&] { read_vtp_series(in_folder(name), all); });
+  };
+  EXPECT_THAT(message("no.pvd"), HasSubstr("no.pvd: expected a VTKFile with a Collection"));
+  EXPECT_THAT(message("none.pvd"), HasSubstr("none.pvd: names no frame"));
+  EXPECT_THAT(message("lost.pvd"), HasSubstr("x.vtp: no such file"));
+  EXPECT_THAT(message("bad.series"), HasSubstr("bad.series: expected JSON"));
+}
+
+TEST_F(VtpRead, RefusesAFrameWithOtherFaces) {
+  write_vtp_series(quad_and_triangle(), in_folder("face.pvd"));
+  FieldSequence other = quad_and_triangle();
+  Frames frame = other.sequence.positions().topRows(1);
+  other.sequence = MeshSequence(Connectivity::from_polygons(5, {{0, 1, 2}, {0, 3}}), frame);
+  other.fields.clear();
+  write_vtp_series(other, in_folder("face_vtp/face_0001.vtp"), {.overwrite = true});
+  const auto message =
+      message_of<MismatchError>([this] { read_vtp_series(in_folder("face.pvd"), all); });
+  EXPECT_THAT(message, HasSubstr("face_0001.vtp: other vertices or faces"));
+}
+
+}  // namespace
+}  // namespace mimetra::test

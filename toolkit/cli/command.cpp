@@ -1,0 +1,115 @@
+#include <mimetra/cli/command.h>
+
+#include <algorithm>
+#include <cctype>
+
+namespace mimetra::cli {
+
+namespace {
+
+std::string upper(std::string text) {
+  std::ranges::transform(text, text.begin(), [](unsigned char c) { return std::toupper(c); });
+  return text;
+}
+
+/// Help, unit, choices and default in one line.
+std::string described(const Parameter& parameter) {
+  std::string text = parameter.help;
+  if (!parameter.unit.empty()) text += " [" + parameter.unit + "]";
+  if (!parameter.choices.empty()) {
+    text += " {";
+    for (const std::string& choice : parameter.choices) {
+      text += (choice == parameter.choices.front() ? "" : ",") + choice;
+    }
+    text += parameter.kind == ParameterKind::file ? ",FILE}" : "}";
+  }
+  const std::string fallback = to_text(parameter.fallback);
+  if (!fallback.empty() && parameter.kind != ParameterKind::flag)
+    text += " (default " + fallback + ")";
+  return text;
+}
+
+std::string value_name(ParameterKind kind) {
+  switch (kind) {
+    case ParameterKind::flag:
+      return "";
+    case ParameterKind::integer:
+      return "N";
+    case ParameterKind::integer_list:
+      return "N,N,...";
+    case ParameterKind::number:
+      return "X";
+    case ParameterKind::length:
+      return "LENGTH";
+    case ParameterKind::file:
+      return "FILE";
+    case ParameterKind::choice:
+      return "CHOICE";
+    case ParameterKind::text:
+      return "TEXT";
+  }
+  return "";
+}
+
+CommandOption option_of(const Input& input) {
+  return {input.name, {"--" + input.name}, "FILE", input.help, {}, true};
+}
+
+CommandOption option_of(const Output& output) {
+  CommandOption option{output.name, {"--" + output.name}, upper(output.name), output.help, {},
+                       true};
+  if (output.name == "out") option.forms.insert(option.forms.begin(), "-o");
+  option.required = !output.optional;
+  return option;
+}
+
+CommandOption option_of(const Parameter& parameter) {
+  return {parameter.name,       {parameter.option()}, value_name(parameter.kind),
+          described(parameter), parameter.choices,    parameter.kind == ParameterKind::file};
+}
+
+std::vector<CommandOption> common_options(const Operation& operation) {
+  std::vector<CommandOption> options = {
+      {"json", {"--json"}, "", "print the result as JSON"},
+      {"quiet", {"-q", "--quiet"}, "", "print errors only"},
+      {"verbose", {"-v", "--verbose"}, "", "say more on the way"},
+      {"progress",
+       {"--progress"},
+       "CHOICE",
+       "progress bar {auto,always,never} (default auto)",
+       {"auto", "always", "never"}},
+      {"threads", {"--threads"}, "N", "threads to compute with (default all)"},
+      {"config", {"--config"}, "FILE", "JSON file with values of options", {}, true}};
+  if (!operation.outputs.empty()) {
+    options.push_back({"force", {"--force"}, "", "replace what exists"});
+    options.push_back({"dry-run", {"--dry-run"}, "", "tell the plan and the memory, and stop"});
+  }
+  for (CommandOption& option : options) option.common = true;
+  return options;
+}
+
+}  // namespace
+
+std::vector<Command> commands_of(const OperationTable& table) {
+  std::vector<Command> commands;
+  for (const Operation& operation : table.operations()) {
+    Command command{&operation, table.parameters_of(operation), {}, {}};
+    for (const Output& output : operation.outputs) command.options.push_back(option_of(output));
+    for (const Input& input : operation.inputs) {
+      if (input.optional)
+        command.options.push_back(option_of(input));
+      else
+        command.positionals.push_back(input);
+    }
+    for (const Parameter& parameter : command.parameters) {
+      command.options.push_back(option_of(parameter));
+    }
+    for (CommandOption& option : common_options(operation)) {
+      command.options.push_back(std::move(option));
+    }
+    commands.push_back(std::move(command));
+  }
+  return commands;
+}
+
+}  // namespace mimetra::cli

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <mimetra/operations/operation.h>
+
+namespace mimetra::cli {
+
+/// An option as it is typed, whatever it is for.
+struct CommandOption {
+  std::string name;                ///< "radius"
+  std::vector<std::string> forms;  ///< "--radius"; "-o" and "--out"
+  std::string value;               ///< "LENGTH"; empty for a flag
+  std::string help;                ///< with unit, choices and default
+  std::vector<std::string> choices = {};
+  bool takes_file = false;
+  bool required = false;
+  bool common = false;  ///< every command has it
+
+  bool is_flag() const { return value.empty(); }
+};
+
+/// What a command takes, in the order of its help: what parser, completion and manual are made of.
+struct Command {
+  const Operation* operation;
+  std::vector<Parameter> parameters;
+  std::vector<Input> positionals;
+  std::vector<CommandOption> options;
+};
+
+/// Every operation of a table as a command.
+std::vector<Command> commands_of(const OperationTable& table);
+
+}  // namespace mimetra::cli

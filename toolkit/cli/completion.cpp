@@ -1,0 +1,191 @@
+#include <mimetra/cli/completion.h>
+
+#include <nlohmann/json.hpp>
+
+#include <mimetra/operations/report.h>
+
+namespace mimetra::cli {
+
+namespace {
+
+std::string joined(const std::vector<std::string>& words, const std::string& between) {
+  std::string text;
+  for (const std::string& word : words) text += (text.empty() ? "" : between) + word;
+  return text;
+}
+
+/// `text` in single quotes; a quote inside leaves them for a moment.
+std::string in_quotes(const std::string& text, const std::string& inner_quote = "'\\''") {
+  std::string result = "'";
+  for (const char c : text) {
+    if (c == '\'')
+      result += inner_quote;
+    else
+      result += c;
+  }
+  return result + "'";
+}
+
+std::string all_forms(const Command& command) {
+  std::vector<std::string> forms;
+  for (const CommandOption& option : command.options) {
+    forms.insert(forms.end(), option.forms.begin(), option.forms.end());
+  }
+  forms.push_back("--help");
+  return joined(forms, " ");
+}
+
+/// For _arguments: '(-o --out)'{-o,--out}'[help]:value:_files'.
+std::string zsh_argument(const CommandOption& option) {
+  std::string help;
+  for (const char c : option.help) {
+    if (c == '[' || c == ']' || c == ':') help += '\\';
+    help += c;
+  }
+  std::string line;
+  if (option.forms.size() > 1) {
+    line = in_quotes("(" + joined(option.forms, " ") + ")") + "{" + joined(option.forms, ",") + "}";
+  } else {
+    line = option.forms.front();
+  }
+  std::string rest = "[" + help + "]";
+  if (!option.is_flag()) {
+    rest += ":" + option.value + ":";
+    if (option.takes_file) {
+      rest += "_files";
+    } else if (!option.choices.empty()) {
+      rest += "(" + joined(option.choices, " ") + ")";
+    }
+  }
+  return line + in_quotes(rest);
+}
+
+Operation completion_operation(const OperationTable& table) {
+  Operation operation;
+  operation.name = "completion";
+  operation.summary = "Print a script that completes this command in a shell";
+  operation.parameters = {
+      {"shell", ParameterKind::choice, "bash", "shell", "", {}, {}, {"bash", "zsh", "fish"}}};
+  operation.examples = {"completion --shell bash > /etc/bash_completion.d/mimetra",
+                        "completion --shell fish > ~/.config/fish/completions/mimetra.fish"};
+  operation.run = [&table](const Invocation& invocation) {
+    const std::vector<Command> commands = commands_of(table);
+    const std::string& shell = invocation.parameters.text("shell");
+    const std::string script = shell == "bash"  ? bash_completion(commands)
+                               : shell == "zsh" ? zsh_completion(commands)
+                                                : fish_completion(commands);
+    return Outcome{{}, Json{{"script", script}}.dump(), script};
+  };
+  return operation;
+}
+
+}  // namespace
+
+std::string bash_completion(const std::vector<Command>& commands) {
+  std::vector<std::string> names;
+  std::string options, values;
+  for (const Command& command : commands) {
+    const std::string& name = command.operation->name;
+    names.push_back(name);
+    options += "    " + name + ") words='" + all_forms(command) + "' ;;\n";
+    for (const CommandOption& option : command.options) {
+      if (option.is_flag()) continue;
+      for (const std::string& form : option.forms) {
+        // The space is escaped because patterns of `case` are words.
+        values += "    " + name + "\\ " + form + ") words='" + joined(option.choices, " ") +
+                  "'; files=" + (option.takes_file ? "yes" : "no") + " ;;\n";
+      }
+    }
+  }
+  return "# Completion of mimetra for bash.\n"
+         "_mimetra() {\n"
+         "  local current=${COMP_WORDS[COMP_CWORD]} previous=${COMP_WORDS[COMP_CWORD-1]}\n"
+         "  local words='' files=no\n"
+         "  COMPREPLY=()\n"
+         "  if [ \"$COMP_CWORD\" -eq 1 ]; then\n"
+         "    COMPREPLY=($(compgen -W '" +
+         joined(names, " ") +
+         " --help --version' -- \"$current\"))\n"
+         "    return\n"
+         "  fi\n"
+         "  case \"${COMP_WORDS[1]} $previous\" in\n" +
+         values +
+         "    *) files=any ;;\n"
+         "  esac\n"
+         "  if [ $files = any ]; then\n"
+         "    case \"$current\" in -*)\n"
+         "    files=no\n"
+         "    case \"${COMP_WORDS[1]}\" in\n" +
+         options +
+         "    esac ;;\n"
+         "    esac\n"
+         "  fi\n"
+         "  COMPREPLY=($(compgen -W \"$words\" -- \"$current\"))\n"
+         "  if [ $files != no ]; then\n"
+         "    COMPREPLY+=($(compgen -f -- \"$current\"))\n"
+         "    compopt -o filenames 2>/dev/null\n"
+         "  fi\n"
+         "}\n"
+         "complete -F _mimetra mimetra\n";
+}
+
+std::string zsh_completion(const std::vector<Command>& commands) {
+  std::string list, cases;
+  for (const Command& command : commands) {
+    const std::string& name = command.operation->name;
+    list += "    " + in_quotes(name + ":" + command.operation->summary) + "\n";
+    cases += "    " + name + ")\n      _arguments \\\n";
+    for (const CommandOption& option : command.options) {
+      cases += "        " + zsh_argument(option) + " \\\n";
+    }
+    cases += "        --help'[show help]'";
+    if (!command.positionals.empty()) cases += " \\\n        '*:input:_files'";
+    cases += " ;;\n";
+  }
+  return "#compdef mimetra\n"
+         "# Completion of mimetra for zsh.\n"
+         "_mimetra() {\n"
+         "  local -a commands=(\n" +
+         list +
+         "  )\n"
+         "  if (( CURRENT == 2 )); then\n"
+         "    _describe 'command' commands\n"
+         "    return\n"
+         "  fi\n"
+         "  local command=$words[2]\n"
+         "  shift words; (( CURRENT-- ))\n"
+         "  case $command in\n" +
+         cases +
+         "  esac\n"
+         "}\n"
+         "_mimetra \"$@\"\n";
+}
+
+std::string fish_completion(const std::vector<Command>& commands) {
+  const std::string kQuote = "\\'";
+  std::string text = "# Completion of mimetra for fish.\n";
+  for (const Command& command : commands) {
+    text += "complete -c mimetra -f -n __fish_use_subcommand -a " + command.operation->name +
+            " -d " + in_quotes(command.operation->summary, kQuote) + "\n";
+  }
+  for (const Command& command : commands) {
+    const std::string start =
+        "complete -c mimetra -n '__fish_seen_subcommand_from " + command.operation->name + "'";
+    for (const CommandOption& option : command.options) {
+      text += start;
+      for (const std::string& form : option.forms) {
+        text += form.starts_with("--") ? " -l " + form.substr(2) : " -s " + form.substr(1);
+      }
+      if (!option.is_flag()) text += option.takes_file ? " -r -F" : " -x";
+      if (!option.choices.empty()) text += " -a " + in_quotes(joined(option.choices, " "), kQuote);
+      text += " -d " + in_quotes(option.help, kQuote) + "\n";
+    }
+  }
+  return text;
+}
+
+void add_completion(OperationTable& table) {
+  table.add(completion_operation(table));
+}
+
+}  // namespace mimetra::cli

@@ -1,0 +1,177 @@
+#include <mimetra/cli/manual.h>
+
+#include <nlohmann/json.hpp>
+
+#include <mimetra/operations/report.h>
+
+namespace mimetra::cli {
+
+namespace {
+
+struct ExitCodeLine {
+  const char* code;
+  const char* meaning;
+};
+
+constexpr ExitCodeLine kExitCodes[] = {
+    {"0", "done"},
+    {"1", "the computation failed"},
+    {"2", "usage: an unknown option, or a value that is wrong whatever the data"},
+    {"3", "an input is wrong in itself: missing, unreadable, truncated, not finite, without faces"},
+    {"4", "inputs contradict each other or the request"},
+    {"5", "an output cannot be written, or exists and --force was not given"},
+    {"130", "interrupted; nothing was written"}};
+
+/// Text as roff shows it: a hyphen is a minus sign, a leading dot is no request.
+std::string roff(const std::string& text) {
+  std::string result = text.starts_with('.') || text.starts_with('\'') ? "\\&" : "";
+  for (const char c : text) {
+    if (c == '-' || c == '\\') result += '\\';
+    result += c == '\\' ? 'e' : c;
+  }
+  return result;
+}
+
+/// Text in a cell of a Markdown table.
+std::string cell(const std::string& text) {
+  std::string result;
+  for (const char c : text) {
+    if (c == '|' || c == '<' || c == '*' || c == '_') result += '\\';
+    result += c;
+  }
+  return result;
+}
+
+std::string upper(std::string text) {
+  for (char& c : text) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+  return text;
+}
+
+/// `mimetra transfer [OPTIONS] -o OUT SOURCE TARGET...`
+std::string synopsis(const Command& command) {
+  std::string text = "mimetra " + command.operation->name + " [OPTIONS]";
+  for (const CommandOption& option : command.options) {
+    if (option.required) text += " " + option.forms.front() + " " + option.value;
+  }
+  for (const Input& input : command.positionals) {
+    text += " " + upper(input.name) + (input.repeated ? "..." : "");
+  }
+  return text;
+}
+
+std::string forms_of(const CommandOption& option) {
+  std::string text;
+  for (const std::string& form : option.forms) text += (text.empty() ? "" : ", ") + form;
+  return option.is_flag() ? text : text + " " + option.value;
+}
+
+std::string command_section(const Command& command) {
+  std::string text =
+      ".SS " + roff(synopsis(command)) + "\n" + roff(command.operation->summary) + ".\n";
+  for (const Input& input : command.positionals) {
+    text += ".TP\n.I " + roff(upper(input.name)) + "\n" + roff(input.help) + "\n";
+  }
+  for (const CommandOption& option : command.options) {
+    if (option.common) continue;
+    text += ".TP\n.B " + roff(forms_of(option)) + "\n" + roff(option.help) + "\n";
+  }
+  for (const std::string& example : command.operation->examples) {
+    text += ".PP\n.nf\n  mimetra " + roff(example) + "\n.fi\n";
+  }
+  return text;
+}
+
+/// Options of every command, from one that has outputs.
+std::vector<CommandOption> common_options(const std::vector<Command>& commands) {
+  std::vector<CommandOption> common;
+  for (const Command& command : commands) {
+    std::vector<CommandOption> own;
+    for (const CommandOption& option : command.options) {
+      if (option.common) own.push_back(option);
+    }
+    if (own.size() > common.size()) common = std::move(own);
+  }
+  return common;
+}
+
+Operation manual_operation(const OperationTable& table) {
+  Operation operation;
+  operation.name = "manual";
+  operation.summary = "Print the manual of all commands";
+  operation.parameters = {{"format",
+                           ParameterKind::choice,
+                           "man",
+                           "man: for the program man; markdown: the reference page",
+                           "",
+                           {},
+                           {},
+                           {"man", "markdown"}}};
+  operation.examples = {"manual > /usr/local/share/man/man1/mimetra.1",
+                        "manual --format markdown > reference.md"};
+  operation.run = [&table](const Invocation& invocation) {
+    const std::vector<Command> commands = commands_of(table);
+    const std::string page = invocation.parameters.text("format") == "man"
+                                 ? man_page(commands)
+                                 : reference_page(commands);
+    return Outcome{{}, Json{{"page", page}}.dump(), page};
+  };
+  return operation;
+}
+
+}  // namespace
+
+std::string man_page(const std::vector<Command>& commands) {
+  std::string text =
+      ".TH MIMETRA 1 \"\" \"mimetra " MIMETRA_VERSION
+      "\" \"User Commands\"\n"
+      ".SH NAME\nmimetra \\- region\\-based deformation transfer for mesh sequences\n"
+      ".SH SYNOPSIS\n.B mimetra\n.I COMMAND\n[\\fIOPTIONS\\fR] [\\fIINPUTS\\fR]\n"
+      ".SH COMMANDS\n";
+  for (const Command& command : commands) text += command_section(command);
+  text += ".SH COMMON OPTIONS\n";
+  for (const CommandOption& option : common_options(commands)) {
+    text += ".TP\n.B " + roff(forms_of(option)) + "\n" + roff(option.help) + "\n";
+  }
+  text += ".SH EXIT STATUS\n";
+  for (const ExitCodeLine& line : kExitCodes) {
+    text += std::string(".TP\n.B ") + line.code + "\n" + roff(line.meaning) + "\n";
+  }
+  return text;
+}
+
+std::string reference_page(const std::vector<Command>& commands) {
+  std::string text =
+      "# Commands\n\nMade by `mimetra manual --format markdown` from the table of operations.\n";
+  const auto table_of = [](const std::vector<CommandOption>& options, bool common) {
+    std::string rows;
+    for (const CommandOption& option : options) {
+      if (option.common != common) continue;
+      rows += "| `" + forms_of(option) + "` | " + cell(option.help) + " |\n";
+    }
+    return rows.empty() ? rows : "\n| option | |\n| --- | --- |\n" + rows;
+  };
+  for (const Command& command : commands) {
+    text += "\n## " + command.operation->name + "\n\n" + command.operation->summary + ".\n\n```\n" +
+            synopsis(command) + "\n```\n";
+    for (const Input& input : command.positionals) {
+      text += "\n`" + upper(input.name) + "`: " + input.help + "\n";
+    }
+    text += table_of(command.options, false) + "\n```\n";
+    for (const std::string& example : command.operation->examples) {
+      text += "mimetra " + example + "\n";
+    }
+    text += "```\n";
+  }
+  text += "\n## Common options\n" + table_of(common_options(commands), true);
+  text += "\n## Exit codes\n\n| code | |\n| --- | --- |\n";
+  for (const ExitCodeLine& line : kExitCodes) {
+    text += std::string("| ") + line.code + " | " + line.meaning + " |\n";
+  }
+  return text;
+}
+
+void add_manual(OperationTable& table) {
+  table.add(manual_operation(table));
+}
+
+}  // namespace mimetra::cli

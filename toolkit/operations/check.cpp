@@ -1,0 +1,74 @@
+#include <nlohmann/json.hpp>
+
+#include <mimetra/mesh/inspection.h>
+#include <mimetra/mesh/weld.h>
+#include <mimetra/operations/report.h>
+#include <mimetra/operations/toolkit_operations.h>
+
+namespace mimetra {
+
+namespace {
+
+/// "3 degenerate triangles, the first is 17".
+std::string counted(std::size_t count, const std::string& what, int first) {
+  return std::to_string(count) + " " + what + ", the first is " + std::to_string(first);
+}
+
+/// What is legal but often a mistake.
+std::vector<std::string> warnings_of(const MeshSequence& sequence) {
+  const MeshReport mesh = inspect(sequence.rest(), sequence.connectivity());
+  std::vector<std::string> warnings;
+  if (!mesh.degenerate_triangles.empty()) {
+    warnings.push_back(counted(mesh.degenerate_triangles.size(),
+                               "triangles without area (left out of distances and gradients)",
+                               mesh.degenerate_triangles.front()));
+  }
+  if (mesh.nonmanifold_edges > 0) {
+    warnings.push_back(std::to_string(mesh.nonmanifold_edges) +
+                       " edges of more than two triangles");
+  }
+  if (!mesh.vertices_without_face.empty()) {
+    warnings.push_back(counted(mesh.vertices_without_face.size(),
+                               "vertices without a face (in no region)",
+                               mesh.vertices_without_face.front()));
+  }
+  if (sequence.frames() > 1 && motion(sequence.with_rest(sequence.frame(0))) == 0) {
+    warnings.push_back("nothing moves: all " + std::to_string(sequence.frames()) +
+                       " frames are equal");
+  }
+  return warnings;
+}
+
+Outcome run(const Invocation& invocation) {
+  const NamedData& input = invocation.inputs.at("sequence").front();
+  const MeshSequence& sequence = std::get<SequenceRead>(input.data).sequence;
+  const std::vector<std::string> warnings = warnings_of(sequence);
+  if (!warnings.empty() && invocation.parameters.flag("strict")) {
+    throw MismatchError(input.name + ": " + warnings.front() +
+                        (warnings.size() > 1
+                             ? "; and " + std::to_string(warnings.size() - 1) + " more warnings"
+                             : ""));
+  }
+  for (const std::string& warning : warnings) invocation.warn(input.name + ": " + warning);
+  return {{},
+          Json{{"usable", true}, {"warnings", warnings}}.dump(),
+          input.name + ": usable, " + std::to_string(sequence.frames()) + " frames of " +
+              std::to_string(sequence.vertices()) + " vertices" +
+              (warnings.empty() ? "\n" : ", " + std::to_string(warnings.size()) + " warnings\n")};
+}
+
+}  // namespace
+
+Operation check_operation() {
+  Operation operation;
+  operation.name = "check";
+  operation.summary = "Tell whether a sequence can be used, and what is odd about it";
+  operation.inputs = {{"sequence", DataKind::sequence, "sequence to check"}};
+  operation.parameters = {
+      {"strict", ParameterKind::flag, false, "fail where there is a warning (exit code 4)"}};
+  operation.examples = {"check takes/smile_%04d.obj", "check take.npy --strict"};
+  operation.run = run;
+  return operation;
+}
+
+}  // namespace mimetra

@@ -1,0 +1,14 @@
+#pragma once
+
+#include <mimetra/vtk/picture.h>
+#include <mimetra/vtk/sheet_layout.h>
+
+class vtkRenderer;
+
+namespace mimetra {
+
+/// Adds what is written on a sheet to a renderer over the whole picture: titles of rows and
+/// columns, colour bars and the scale bar.
+void annotate(vtkRenderer& renderer, const Sheet& sheet, const SheetLayout& layout);
+
+}  // namespace mimetra

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <mimetra/mesh/tri_mesh.h>
+
+namespace mimetra {
+
+/// An sRGB colour.
+struct Color {
+  std::uint8_t red = 0;
+  std::uint8_t green = 0;
+  std::uint8_t blue = 0;
+  bool operator==(const Color&) const = default;
+};
+
+/// What a mesh without values looks like.
+constexpr Color kClay = {205, 190, 178};
+/// What a value that is not a number looks like.
+constexpr Color kNoValue = {150, 150, 150};
+
+/// Colour of a share of a range, from light (0) over orange and purple to dark (1). Equal steps
+/// look equally far apart, and lightness only falls, so that it reads without colour vision and in
+/// print. Shares outside [0, 1] take the nearest end; NaN is kNoValue.
+///
+/// Even in Oklab: [Ottosson. A perceptual color space for image processing. 2020]
+Color even_color(double share);
+
+/// A colour for each vertex's category (N), none where it is negative (kClay). Categories that
+/// touch along an edge get different colours unless one touches more than six earlier ones; the
+/// colours are told apart by people with any kind of colour vision.
+///
+/// [Okabe, Ito. Color universal design. 2008]
+std::vector<Color> category_colors(const std::vector<int>& categories, const Triangles& triangles);
+
+}  // namespace mimetra

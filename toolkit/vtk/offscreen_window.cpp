@@ -1,0 +1,118 @@
+#include <mimetra/vtk/offscreen_window.h>
+
+#include <cstdlib>
+#include <stdexcept>
+
+#include <EGL/egl.h>
+#include <EGL/eglext.h>
+#include <vtkGenericOpenGLRenderWindow.h>
+#include <vtkRenderWindow.h>
+#include <vtkSmartPointer.h>
+
+#include <mimetra/vtk/silent_vtk.h>
+
+namespace mimetra {
+
+namespace {
+
+/// An OpenGL context without a surface, current in this thread.
+class EglContext {
+ public:
+  /// Null where EGL has none to offer.
+  static std::unique_ptr<EglContext> create() {
+    auto context = std::unique_ptr<EglContext>(new EglContext);
+    return context->start() ? std::move(context) : nullptr;
+  }
+
+  ~EglContext() {
+    if (display_ == EGL_NO_DISPLAY) return;
+    eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+    if (context_ != EGL_NO_CONTEXT) eglDestroyContext(display_, context_);
+    eglTerminate(display_);
+  }
+
+ private:
+  EglContext() = default;
+
+  bool start() {
+    const auto display_of = reinterpret_cast<PFNEGLGETPLATFORMDISPLAYEXTPROC>(
+        eglGetProcAddress("eglGetPlatformDisplayEXT"));
+    if (!display_of) return false;
+    display_ = display_of(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr);
+    if (display_ == EGL_NO_DISPLAY || !eglInitialize(display_, nullptr, nullptr)) return false;
+    if (!eglBindAPI(EGL_OPENGL_API)) return false;
+    constexpr EGLint kConfig[] = {EGL_SURFACE_TYPE, EGL_PBUFFER_BIT, EGL_RENDERABLE_TYPE,
+                                  EGL_OPENGL_BIT, EGL_NONE};
+    EGLConfig config = nullptr;
+    EGLint count = 0;
+    if (!eglChooseConfig(display_, kConfig, &config, 1, &count) || count == 0) return false;
+    // VTK needs OpenGL 3.2.
+    constexpr EGLint kVersion[] = {EGL_CONTEXT_MAJOR_VERSION,
+                                   3,
+                                   EGL_CONTEXT_MINOR_VERSION,
+                                   2,
+                                   EGL_CONTEXT_OPENGL_PROFILE_MASK,
+                                   EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
+                                   EGL_NONE};
+    context_ = eglCreateContext(display_, config, EGL_NO_CONTEXT, kVersion);
+    return context_ != EGL_NO_CONTEXT &&
+           eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, context_);
+  }
+
+  EGLDisplay display_ = EGL_NO_DISPLAY;
+  EGLContext context_ = EGL_NO_CONTEXT;
+};
+
+vtkSmartPointer<vtkRenderWindow> window_on_current_context() {
+  const auto window = vtkSmartPointer<vtkGenericOpenGLRenderWindow>::New();
+  window->SetMapped(true);
+  window->SetIsCurrent(true);
+  window->SetIsDirect(1);
+  window->SetSupportsOpenGL(1);
+  window->SetReadyForRendering(true);
+  // VTK's loader complains that there is no GLX, after it has found every function it needs.
+  const SilentVtk silent;
+  window->InitializeFromCurrentContext();
+  return window;
+}
+
+/// Smooth edges; what Mesa's software renderer offers at most.
+constexpr int kSamples = 4;
+
+}  // namespace
+
+struct OffscreenWindow::State {
+  // The window needs the context until it is gone.
+  std::unique_ptr<EglContext> context;
+  vtkSmartPointer<vtkRenderWindow> window;
+
+  ~State() {
+    if (window) window->Finalize();
+    window = nullptr;
+  }
+};
+
+OffscreenWindow::OffscreenWindow(int width, int height) : state_(std::make_unique<State>()) {
+  state_->context = EglContext::create();
+  if (state_->context) {
+    state_->window = window_on_current_context();
+  } else if (std::getenv("DISPLAY")) {
+    state_->window = vtkSmartPointer<vtkRenderWindow>::New();
+  } else {
+    throw std::runtime_error(
+        "pictures need OpenGL: neither EGL (packages libegl1, libgl1-mesa-dri) nor a display was "
+        "found; install them or run under xvfb-run");
+  }
+  state_->window->SetShowWindow(false);
+  state_->window->SetUseOffScreenBuffers(true);
+  state_->window->SetMultiSamples(kSamples);
+  state_->window->SetSize(width, height);
+}
+
+OffscreenWindow::~OffscreenWindow() = default;
+
+vtkRenderWindow& OffscreenWindow::window() const {
+  return *state_->window;
+}
+
+}  // namespace mimetra

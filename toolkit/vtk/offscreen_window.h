@@ -1,0 +1,27 @@
+#pragma once
+
+#include <memory>
+
+class vtkRenderWindow;
+
+namespace mimetra {
+
+/// A window of VTK that nobody sees and that needs no display: it draws with OpenGL on an EGL
+/// context without a surface (Mesa does so on any processor). Where EGL offers none, it is a hidden
+/// window of the display that $DISPLAY names.
+class OffscreenWindow {
+ public:
+  /// Throws std::runtime_error where there is neither.
+  OffscreenWindow(int width, int height);
+  ~OffscreenWindow();
+  OffscreenWindow(const OffscreenWindow&) = delete;
+  OffscreenWindow& operator=(const OffscreenWindow&) = delete;
+
+  vtkRenderWindow& window() const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace mimetra

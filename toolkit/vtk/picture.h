@@ -1,0 +1,58 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <mimetra/mesh/tri_mesh.h>
+#include <mimetra/operations/data.h>
+#include <mimetra/vtk/colors.h>
+
+namespace mimetra {
+
+/// What the colours of a row mean: even_color over [minimum, maximum].
+struct ColorBar {
+  double minimum = 0;
+  double maximum = 1;
+  std::string unit;  ///< written after the maximum
+};
+
+/// One mesh in a sheet.
+struct Tile {
+  Positions positions;        ///< N x 3
+  std::vector<Color> colors;  ///< per vertex (N), or none for kClay
+  double turn = 0;            ///< degrees about the upright axis, besides the sheet's
+};
+
+struct TileRow {
+  std::string title;
+  std::shared_ptr<const Connectivity> connectivity;
+  std::vector<Tile> tiles;
+  std::optional<ColorBar> bar;
+};
+
+/// Meshes in rows and columns, all at one scale and seen from one side without perspective, so that
+/// one scale bar holds for all of them.
+struct Sheet {
+  std::vector<TileRow> rows;
+  std::vector<std::string> column_titles;
+  double yaw = 0;         ///< degrees; 0 looks at what faces +z (-y where z is up)
+  double pitch = 0;       ///< degrees; positive looks from above
+  bool z_up = false;      ///< else y
+  int tile_height = 320;  ///< pixels
+  std::string unit;       ///< of positions, written at the scale bar
+};
+
+/// Largest width and height of a picture.
+constexpr int kLargestPicture = 16384;
+
+/// Draws a sheet. Light comes from the upper left, so that wrinkles show; vertices at one place are
+/// shaded as one. Throws std::invalid_argument for a sheet without tiles or larger than
+/// kLargestPicture, std::runtime_error where there is no OpenGL.
+Image draw(const Sheet& sheet);
+
+/// The picture as the bytes of a PNG file.
+std::string png_of(const Image& image);
+
+}  // namespace mimetra
