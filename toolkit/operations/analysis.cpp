@@ -233,6 +233,7 @@ Analysis analyse(const Invocation& invocation, const SequenceRead& read,
   options.nonnegative = !parameters.flag("signed");
   options.sign_rule = reference ? SignRule::literal : SignRule::amplitude;
   options.distances = distances;
+  options.threads = invocation.threads;
   options.progress = progress;
   if (*options.d_min >= *options.d_max) {
     throw UsageError("--d-min: expected less than --d-max, found " + parameters.text("d-min") +

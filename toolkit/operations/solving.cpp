@@ -67,7 +67,8 @@ Solution solve_blendshapes(const Invocation& invocation, const PreparedSource& s
   const BlendshapeTransfer transfer(source.sequence.rest(), model, selection.triangles,
                                     {.ridge = parameters.number("ridge"),
                                      .sparsity = parameters.number("l1"),
-                                     .smoothness = parameters.number("smoothness")});
+                                     .smoothness = parameters.number("smoothness"),
+                                     .threads = invocation.threads});
   Solution solution;
   solution.weights = transfer.weights(source.sequence, progress);
   solution.sequence = model.animate(solution.weights, source.sequence.times());
@@ -114,6 +115,7 @@ Solution solve_vertices(const Invocation& invocation, const PreparedSource& sour
   const BlendshapeModel& model = model_of(target);
   VertexTransferOptions options = vertex_options(invocation.parameters, model.vertices());
   options.inside = selection.inside;
+  options.threads = invocation.threads;
   const bool all = selection.triangles.size() == static_cast<std::size_t>(model.triangles().rows());
   if (invocation.parameters.is_set("anchor") && options.outside == Outside::fixed && !all) {
     throw UsageError(

@@ -3,8 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <utility>
+#include <vector>
 
 #include <Eigen/Cholesky>
+
+#include <mimetra/mesh/parallel.h>
 
 namespace mimetra {
 namespace {
@@ -13,6 +16,8 @@ namespace {
 // frames, and its products are still wide enough to be fast. Fixed, so that sums round the same
 // everywhere.
 constexpr Eigen::Index kBlockVertices = 64;
+// Blocks that one thread takes together, with sums of their own.
+constexpr Eigen::Index kRangeVertices = 8 * kBlockVertices;
 
 /// The constant part of an ADMM step: C = (W^T W + rho I)^-1 (W^T X + rho (Z - U)).
 struct StepMatrices {
@@ -60,37 +65,27 @@ double penalty(const Frames& C, const Eigen::Ref<const Eigen::MatrixXd>& support
   return sum;
 }
 
-void add_products(ComponentUpdate& update, const Eigen::Ref<const Frames>& X, const Frames& C) {
-  update.P.noalias() += X * C.transpose();
-  update.H.noalias() += C * C.transpose();
-}
+/// What a range of vertices adds to a ComponentUpdate's sums.
+struct Sums {
+  Eigen::MatrixXd P, H;
+  double penalty = 0;
 
-void reset_products(ComponentUpdate& update, Eigen::Index frames) {
-  const Eigen::Index K = update.C.rows();
-  update.P = Eigen::MatrixXd::Zero(frames, K);
-  update.H = Eigen::MatrixXd::Zero(K, K);
-  update.penalty = 0;
-}
+  Sums(Eigen::Index frames, Eigen::Index K)
+      : P(Eigen::MatrixXd::Zero(frames, K)), H(Eigen::MatrixXd::Zero(K, K)) {}
 
-}  // namespace
+  void add(const Eigen::Ref<const Frames>& X, const Frames& C) {
+    P.noalias() += X * C.transpose();
+    H.noalias() += C * C.transpose();
+  }
+};
 
-ComponentUpdate initial_components(const Frames& X, Frames components) {
-  ComponentUpdate initial;
-  initial.C = std::move(components);
-  initial.U = Frames::Zero(initial.C.rows(), initial.C.cols());
-  reset_products(initial, X.rows());
-  add_products(initial, X, initial.C);
-  return initial;
-}
-
-ComponentUpdate updated_components(const Frames& X, const Eigen::MatrixXd& W,
-                                   const Eigen::MatrixXd& support, ComponentUpdate last,
-                                   const AdmmOptions& options) {
-  const StepMatrices step = step_matrices(W, options.rho);
-  ComponentUpdate update = std::move(last);
-  reset_products(update, X.rows());
-  for (Eigen::Index first = 0; first < support.cols(); first += kBlockVertices) {
-    const Eigen::Index count = std::min(kBlockVertices, support.cols() - first);
+/// All ADMM steps on the vertices first .. last - 1 of `update`, which writes to no others.
+Sums update_range(ComponentUpdate& update, const Frames& X, const Eigen::MatrixXd& support,
+                  const StepMatrices& step, const AdmmOptions& options, Eigen::Index begin,
+                  Eigen::Index end) {
+  Sums sums(X.rows(), update.C.rows());
+  for (Eigen::Index first = begin; first < end; first += kBlockVertices) {
+    const Eigen::Index count = std::min(kBlockVertices, end - first);
     const auto X_block = X.middleCols(3 * first, 3 * count);
     const auto support_block = support.middleCols(first, count);
     const Eigen::MatrixXd thresholds = options.sparsity / options.rho * support_block;
@@ -107,8 +102,44 @@ ComponentUpdate updated_components(const Frames& X, const Eigen::MatrixXd& W,
     // C = Z in the end: only Z has exact zeros.
     update.C.middleCols(3 * first, 3 * count) = splitting.Z;
     update.U.middleCols(3 * first, 3 * count) = splitting.U;
-    add_products(update, X_block, splitting.Z);
-    update.penalty += options.sparsity * penalty(splitting.Z, support_block);
+    sums.add(X_block, splitting.Z);
+    sums.penalty += options.sparsity * penalty(splitting.Z, support_block);
+  }
+  return sums;
+}
+
+}  // namespace
+
+ComponentUpdate initial_components(const Frames& X, Frames components) {
+  ComponentUpdate initial;
+  initial.C = std::move(components);
+  initial.U = Frames::Zero(initial.C.rows(), initial.C.cols());
+  initial.P = X * initial.C.transpose();
+  initial.H = initial.C * initial.C.transpose();
+  return initial;
+}
+
+ComponentUpdate updated_components(const Frames& X, const Eigen::MatrixXd& W,
+                                   const Eigen::MatrixXd& support, ComponentUpdate last,
+                                   const AdmmOptions& options) {
+  const StepMatrices step = step_matrices(W, options.rho);
+  ComponentUpdate update = std::move(last);
+  const Eigen::Index vertices = support.cols();
+  const auto ranges = static_cast<int>((vertices + kRangeVertices - 1) / kRangeVertices);
+  std::vector<Sums> sums(static_cast<std::size_t>(ranges), Sums(0, 0));
+  parallel_for(ranges, options.threads, [&](int range) {
+    const Eigen::Index begin = range * kRangeVertices;
+    const Eigen::Index end = std::min(begin + kRangeVertices, vertices);
+    sums[static_cast<std::size_t>(range)] =
+        update_range(update, X, support, step, options, begin, end);
+  });
+  update.P = Eigen::MatrixXd::Zero(X.rows(), update.C.rows());
+  update.H = Eigen::MatrixXd::Zero(update.C.rows(), update.C.rows());
+  update.penalty = 0;
+  for (const Sums& part : sums) {
+    update.P += part.P;
+    update.H += part.H;
+    update.penalty += part.penalty;
   }
   return update;
 }

@@ -8,6 +8,7 @@ struct AdmmOptions {
   double sparsity;  ///< lambda
   double rho;
   int steps;
+  int threads = 0;  ///< 0 for all there are; the result does not depend on it
 };
 
 /// Components after an update, with all that the next weights and the energy need of them.

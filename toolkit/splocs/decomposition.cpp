@@ -101,7 +101,7 @@ Progress part_of(const Progress& progress, double first, double last) {
 void alternate(Components& result, const Frames& X, Start start, SupportMaps support,
                const Progress& progress) {
   const DecompositionOptions& options = result.options;
-  const AdmmOptions admm{options.sparsity, options.rho, options.admm_iterations};
+  const AdmmOptions admm{options.sparsity, options.rho, options.admm_iterations, options.threads};
   const double X_norm2 = X.squaredNorm();
   Eigen::MatrixXd W = std::move(start.weights);
   ComponentUpdate components = initial_components(X, std::move(start.components));

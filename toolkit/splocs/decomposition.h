@@ -36,6 +36,8 @@ struct DecompositionOptions {
   SignRule sign_rule = SignRule::amplitude;
   /// Distances along the rest pose; by default SurfaceDistances of its exactly welded vertices.
   DistanceFunction distances = {};
+  /// 0 for all there are; the result does not depend on it.
+  int threads = 0;
   Progress progress = {};
 };
 

@@ -7,6 +7,7 @@
 #include <Eigen/Eigenvalues>
 
 #include <mimetra/mesh/inspection.h>
+#include <mimetra/mesh/parallel.h>
 #include <mimetra/transfer/box_least_squares.h>
 #include <mimetra/transfer/deformation_gradients.h>
 #include <mimetra/transfer/edges.h>
@@ -190,7 +191,8 @@ Eigen::MatrixXd BlendshapeTransfer::weights(const MeshSequence& performance,
   const double penalty = state.options.sparsity * state.mean_diagonal;
   const int frames = performance.frames();
   Eigen::MatrixXd beta(frames, lower.size()), h(frames, lower.size());
-  for (int first = 0; first < frames; first += kFramesPerBlock) {
+  const auto solve_block = [&](int block) {
+    const int first = block * kFramesPerBlock;
     const int count = std::min(kFramesPerBlock, frames - first);
     h.middleRows(first, count) =
         state.right_hand_sides(performance.positions().middleRows(first, count)).array() - penalty;
@@ -199,8 +201,9 @@ Eigen::MatrixXd BlendshapeTransfer::weights(const MeshSequence& performance,
       current = box_least_squares(state.system, h.row(f).transpose(), lower, state.upper, current);
       beta.row(f) = current.transpose();
     }
-    report_progress(progress, double(first + count) / frames);
-  }
+  };
+  const int blocks = (frames + kFramesPerBlock - 1) / kFramesPerBlock;
+  parallel_for(blocks, state.options.threads, solve_block, progress);
   if (state.options.smoothness > 0) state.smooth(performance, h, beta);
   return beta;
 }

@@ -18,6 +18,8 @@ struct BlendshapeTransferOptions {
   /// Weight of squared second differences of beta over time: time constant in seconds, >= 0. The
   /// penalty is (smoothness * frame rate)^4 times the same.
   double smoothness = 0;
+  /// 0 for all there are; the result does not depend on it.
+  int threads = 0;
 };
 
 /// What the chosen triangles tell about the target's expressions.

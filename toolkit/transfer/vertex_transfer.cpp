@@ -12,6 +12,7 @@
 #include <Eigen/SparseCore>
 
 #include <mimetra/mesh/inspection.h>
+#include <mimetra/mesh/parallel.h>
 #include <mimetra/transfer/deformation_gradients.h>
 #include <mimetra/transfer/row_solver.h>
 #include <mimetra/transfer/vertex_unknowns.h>
@@ -322,7 +323,8 @@ Frames VertexTransfer::frames(const MeshSequence& performance, const Progress& p
                         " vertices, the target " + std::to_string(vertices));
   }
   Frames result(performance.frames(), 3 * vertices);
-  for (int first = 0; first < performance.frames(); first += kFramesPerBlock) {
+  const auto solve_block = [&](int block) {
+    const int first = block * kFramesPerBlock;
     const int count = std::min(kFramesPerBlock, performance.frames() - first);
     RowSolver::Rows right = RowSolver::Rows::Zero(state.unknowns.count, RowSolver::kWidth);
     for (int lane = 0; lane < count; ++lane) {
@@ -338,8 +340,9 @@ Frames VertexTransfer::frames(const MeshSequence& performance, const Progress& p
         if (!state.fixed[v]) pose.row(v) += displacement.row(v);
       }
     }
-    report_progress(progress, double(first + count) / performance.frames());
-  }
+  };
+  const int blocks = (performance.frames() + kFramesPerBlock - 1) / kFramesPerBlock;
+  parallel_for(blocks, state.options.threads, solve_block, progress);
   return result;
 }
 

@@ -40,6 +40,8 @@ struct VertexTransferOptions {
   Anchor anchor = Anchor::source_motion;
   /// The vertex of Anchor::vertex; other pieces are then held by their lowest vertex.
   VertexIndex anchor_vertex = -1;
+  /// 0 for all there are; the result does not depend on it.
+  int threads = 0;
 };
 
 /// Positions of a target that follow a source's deformation gradients on triangles L; the target

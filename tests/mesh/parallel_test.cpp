@@ -1,0 +1,61 @@
+#include <atomic>
+#include <set>
+#include <stdexcept>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include <mimetra/mesh/parallel.h>
+
+namespace mimetra {
+namespace {
+
+TEST(ParallelFor, CallsEachIndexOnce) {
+  for (const int threads : {0, 1, 2, 7}) {
+    std::vector<std::atomic<int>> calls(100);
+    parallel_for(100, threads, [&calls](int i) { ++calls[static_cast<std::size_t>(i)]; });
+    for (const auto& count : calls) EXPECT_EQ(count, 1);
+  }
+}
+
+TEST(ParallelFor, OfNothingCallsNothing) {
+  parallel_for(0, 2, [](int) { FAIL(); });
+}
+
+TEST(ParallelFor, ThrowsWhatTheLowestIndexThrew) {
+  for (const int threads : {1, 4}) {
+    try {
+      parallel_for(8, threads, [](int i) { throw std::runtime_error(std::to_string(i)); });
+      FAIL();
+    } catch (const std::runtime_error& error) {
+      EXPECT_STREQ(error.what(), "0");
+    }
+  }
+}
+
+TEST(ParallelFor, ReportsProgressFromTheCallingThreadOnly) {
+  const auto caller = std::this_thread::get_id();
+  double last = 0;
+  parallel_for(
+      50, 3, [](int) {},
+      [&](double share) {
+        EXPECT_EQ(std::this_thread::get_id(), caller);
+        EXPECT_GT(share, last);
+        last = share;
+        return true;
+      });
+  EXPECT_LE(last, 1);
+}
+
+TEST(ParallelFor, StopsWhenTheCallerCancels) {
+  std::atomic<int> calls = 0;
+  EXPECT_THROW(parallel_for(
+                   1000000, 1, [&calls](int) { ++calls; }, [](double) { return false; }),
+               Cancelled);
+  EXPECT_EQ(calls, 1);
+}
+
+}  // namespace
+}  // namespace mimetra

@@ -1,0 +1,72 @@
+#include <mimetra/mesh/parallel.h>
+
+#include <algorithm>
+#include <atomic>
+#include <exception>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+namespace mimetra {
+
+namespace {
+
+/// What the threads of one loop share.
+class Loop {
+ public:
+  Loop(int count, const std::function<void(int)>& work) : count_(count), work_(work) {}
+
+  /// Takes one index after the other; `after` is told how many are done.
+  void run(const std::function<void(int)>& after) {
+    // An index that was taken is worked on: none below the one that fails is left out.
+    while (!stopped_) {
+      const int i = next_++;
+      if (i >= count_) return;
+      try {
+        work_(i);
+        after(++done_);
+      } catch (...) {
+        stop(i);
+      }
+    }
+  }
+
+  void rethrow() const {
+    if (error_) std::rethrow_exception(error_);
+  }
+
+ private:
+  void stop(int index) {
+    const std::lock_guard lock(mutex_);
+    stopped_ = true;
+    if (error_ && index > failed_) return;
+    failed_ = index;
+    error_ = std::current_exception();
+  }
+
+  int count_;
+  const std::function<void(int)>& work_;
+  std::atomic<int> next_ = 0;
+  std::atomic<int> done_ = 0;
+  std::atomic<bool> stopped_ = false;
+  std::mutex mutex_;
+  std::exception_ptr error_;
+  int failed_ = 0;
+};
+
+}  // namespace
+
+void parallel_for(int count, int threads, const std::function<void(int)>& work,
+                  const Progress& progress) {
+  const int machine = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  const int used = std::min(threads > 0 ? threads : machine, count);
+  Loop loop(count, work);
+  {
+    std::vector<std::jthread> others;
+    for (int t = 1; t < used; ++t) others.emplace_back([&loop] { loop.run([](int) {}); });
+    loop.run([&progress, count](int done) { report_progress(progress, double(done) / count); });
+  }
+  loop.rethrow();
+}
+
+}  // namespace mimetra
