@@ -4,6 +4,7 @@
 #include <utility>
 
 #include <mimetra/samples/curves.h>
+#include <mimetra/samples/head_shape.h>
 
 namespace mimetra::samples {
 namespace {
@@ -17,6 +18,14 @@ double within_both(const Vector& p, const Vector& center, const Vector& radii) {
 
 double nose(const Vector& p) {
   return within(p, {0, -34, 98}, {24, 30, 36});
+}
+
+/// Grows the eyes around their middles, eyeballs and lids alike.
+Vector larger_eyes(const Vector& p, double growth) {
+  constexpr double kReach = 38, kSkin = 0.8;
+  const Vector center(p.x() < 0 ? -kLeftEye.x() : kLeftEye.x(), kLeftEye.y(), kLeftEye.z());
+  const double beside = (p - center).squaredNorm() / (kReach * kReach);
+  return growth * smooth_step((1 - beside) / kSkin) * (p - center);
 }
 
 Vector wide(const Vector& p) {
@@ -41,19 +50,23 @@ Vector rugged(const Vector& p) {
   const double jaw = within_both(p, {55, -75, 20}, {40, 36, 60});
   const double tip = nose(p);
   const double neck = smooth_step((-60 - p.y()) / 60);
-  return {p.x() * (0.35 * tip + 0.16 * jaw + 0.12 * neck), -5 * tip - 3 * brows - 4 * chin,
-          10 * tip + 6 * bridge + 7 * brows + 7 * chin + 4 * neck};
+  return {p.x() * (0.30 * tip + 0.10 * jaw + 0.12 * neck), -3 * tip - 2 * brows - 4 * chin,
+          7 * tip + 6 * bridge + 5 * brows + 6 * chin + 4 * neck};
 }
 
 Vector child(const Vector& p) {
   constexpr double kSmaller = -0.10;
   const double lower = smooth_step(-p.y() / 90);
   const double face = smooth_step((p.z() + 20) / 60);
-  const double cheeks = within_both(p, {42, -52, 60}, {36, 34, 60});
+  const double cheeks = within_both(p, {42, -50, 58}, {46, 42, 70});
   const double forehead = within(p, {0, 48, 75}, {60, 40, 60});
   const double brows = within_both(p, {25, 21, 80}, {38, 18, 50});
-  return kSmaller * p + Vector(p.x() * (-0.04 * lower + 0.08 * cheeks), 14 * lower * face,
-                               -9 * nose(p) + 5 * cheeks + 5 * forehead - 4 * brows);
+  const double neck = smooth_step((-85 - p.y()) / 45);
+  const double above_neck = smooth_step((p.y() + 150) / 45);
+  return kSmaller * p + larger_eyes(p, 0.14) +
+         Vector(p.x() * (-0.08 * lower - 0.10 * neck + 0.08 * cheeks),
+                14 * lower * face * above_neck,
+                -9 * nose(p) + 4 * cheeks + 5 * forehead - 4 * brows);
 }
 
 }  // namespace
