@@ -10,6 +10,7 @@ namespace mimetra::samples {
 namespace {
 
 using Vector = Eigen::Vector3d;
+using Person = Vector (*)(const Vector&);
 
 /// The same on both sides of the face.
 double within_both(const Vector& p, const Vector& center, const Vector& radii) {
@@ -18,14 +19,6 @@ double within_both(const Vector& p, const Vector& center, const Vector& radii) {
 
 double nose(const Vector& p) {
   return within(p, {0, -34, 98}, {24, 30, 36});
-}
-
-/// Grows the eyes around their middles, eyeballs and lids alike.
-Vector larger_eyes(const Vector& p, double growth) {
-  constexpr double kReach = 38, kSkin = 0.8;
-  const Vector center(p.x() < 0 ? -kLeftEye.x() : kLeftEye.x(), kLeftEye.y(), kLeftEye.z());
-  const double beside = (p - center).squaredNorm() / (kReach * kReach);
-  return growth * smooth_step((1 - beside) / kSkin) * (p - center);
 }
 
 Vector wide(const Vector& p) {
@@ -63,23 +56,34 @@ Vector child(const Vector& p) {
   const double brows = within_both(p, {25, 21, 80}, {38, 18, 50});
   const double neck = smooth_step((-85 - p.y()) / 45);
   const double above_neck = smooth_step((p.y() + 150) / 45);
-  return kSmaller * p + larger_eyes(p, 0.14) +
-         Vector(p.x() * (-0.08 * lower - 0.10 * neck + 0.08 * cheeks),
-                14 * lower * face * above_neck,
-                -9 * nose(p) + 4 * cheeks + 5 * forehead - 4 * brows);
+  return kSmaller * p + Vector(p.x() * (-0.08 * lower - 0.10 * neck + 0.08 * cheeks),
+                               14 * lower * face * above_neck,
+                               -9 * nose(p) + 4 * cheeks + 5 * forehead - 1.5 * brows);
+}
+
+/// The person with eyes that are those of all others, moved as a whole: eyeballs stay spheres, lids
+/// stay on them, and a blink closes them.
+Vector with_sound_eyes(Person person, const Vector& p) {
+  constexpr double kReach = 30,
+                   kSkin = 0.74;  // whole to 15 mm, not at all in the middle of the face
+  const Vector center(p.x() < 0 ? -kLeftEye.x() : kLeftEye.x(), kLeftEye.y(), kLeftEye.z());
+  const double beside = (p - center).squaredNorm() / (kReach * kReach);
+  const double whole = smooth_step((1 - beside) / kSkin);
+  return (1 - whole) * person(p) + whole * person(center);
 }
 
 }  // namespace
 
 ShapeBasis head_identities(const Positions& mean) {
-  const std::pair<const char*, Vector (*)(const Vector&)> people[] = {{"identity000", wide},
-                                                                      {"identity001", narrow},
-                                                                      {"identity002", rugged},
-                                                                      {"identity003", child}};
+  const std::pair<const char*, Person> people[] = {{"identity000", wide},
+                                                   {"identity001", narrow},
+                                                   {"identity002", rugged},
+                                                   {"identity003", child}};
   ShapeBasis basis{{}, Eigen::MatrixXd(mean.size(), static_cast<Eigen::Index>(std::size(people)))};
   for (const auto& [name, person] : people) {
     for (Eigen::Index i = 0; i < mean.rows(); ++i) {
-      basis.displacements.col(basis.size()).segment<3>(3 * i) = person(mean.row(i));
+      basis.displacements.col(basis.size()).segment<3>(3 * i) =
+          with_sound_eyes(person, mean.row(i));
     }
     basis.names.emplace_back(name);
   }

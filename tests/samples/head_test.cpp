@@ -161,6 +161,45 @@ TEST(HeadIdentities, HaveNoDegenerateNorFlippedTriangle) {
   }
 }
 
+TEST(HeadIdentities, AreMirrorSymmetric) {
+  const std::vector<int> mirror = mirror_vertices();
+  for (int i = 0; i < head().identities().size(); ++i) {
+    const Positions moved = field(head().identities(), i);
+    for (int v = 0; v < head().vertices(); ++v) {
+      EXPECT_EQ(moved.row(mirror[static_cast<std::size_t>(v)]),
+                moved.row(v).cwiseProduct(Eigen::RowVector3d(-1, 1, 1)))
+          << i << ", " << v;
+    }
+  }
+}
+
+TEST(HeadIdentities, MoveEachEyeballAsAWhole) {
+  for (int i = 0; i < head().identities().size(); ++i) {
+    const Positions moved = field(head().identities(), i);
+    std::map<int, int> first;
+    for (int v = 0; v < head().vertices(); ++v) {
+      const samples::HeadVertex& vertex = grid().vertices[static_cast<std::size_t>(v)];
+      if (vertex.part != samples::HeadVertex::Part::eyeball) continue;
+      EXPECT_EQ(moved.row(v), moved.row(first.emplace(vertex.eye, v).first->second)) << i;
+    }
+    EXPECT_EQ(first.size(), 2u);
+  }
+}
+
+TEST(HeadIdentities, HaveEyesThatABlinkCloses) {
+  const Positions blink = field("eyeBlink_L");
+  for (int i = 0; i < head().identities().size(); ++i) {
+    const Positions person = head().mean() + field(head().identities(), i);
+    const std::vector<double> open = gaps(person, eye_edges(1));
+    const double widest = *std::max_element(open.begin(), open.end());
+    const Positions shut = person + blink;
+    for (const auto& [above, below] : eye_edges(1)) {
+      EXPECT_GT(shut(above, 1), shut(below, 1)) << i;
+      EXPECT_LT((shut.row(above) - shut.row(below)).norm(), 0.05 * widest) << i;
+    }
+  }
+}
+
 TEST(HeadIdentities, AreClearlyDifferentFromEachOtherAndTheMean) {
   // Root mean square of the displacement, in mm; a thousandth of the head would not be noticed.
   const auto rms = [](const Positions& d) { return d.norm() / std::sqrt(double(d.rows())); };
