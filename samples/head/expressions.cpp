@@ -2,10 +2,12 @@
 
 #include <cmath>
 #include <functional>
+#include <span>
 #include <utility>
 
 #include <mimetra/samples/curves.h>
 #include <mimetra/samples/head_shape.h>
+#include <mimetra/samples/strokes.h>
 
 namespace mimetra::samples {
 namespace {
@@ -24,31 +26,40 @@ Motion mirrored(const Motion& motion) {
   };
 }
 
-Vector smile(const HeadVertex&, const Vector& p) {
-  const double corner = within(p, {28, -64, 68}, {33, 27, 42});
-  const double cheek = within(p, {43, -36, 66}, {26, 26, 40});
-  return corner * Vector(8, 8.5, -5) + cheek * Vector(1, 3, 4);
-}
-
-Vector cheek_puff(const HeadVertex&, const Vector& p) {
-  const double left = within(p, {44, -62, 52}, {27, 26, 42});
-  const double right = within(p, {-44, -62, 52}, {27, 26, 42});
-  return left * Vector(9, 0, 9) + right * Vector(-9, 0, 9);
-}
+// Middle, radii, push.
+const Stroke kSmileLeft[] = {
+    {{31, -65, 68}, {30, 26, 46}, {7, 8, -4}},     // corner of the mouth, up and out
+    {{12, -60, 84}, {22, 14, 40}, {1.5, 1.5, 0}},  // upper lip
+    {{41, -34, 68}, {26, 24, 44}, {1.5, 4, 4.5}},  // cheek, up and round
+    {{30, -47, 74}, {9, 16, 40}, {1, 0, -1.2}},    // fold from nose to mouth
+};
+const Stroke kCheekPuff[] = {
+    {{44, -56, 52}, {34, 35, 56}, {7.5, 0, 6}},  // cheeks
+    {{0, -66, 86}, {34, 16, 40}, {0, 0, 2}},     // lips
+};
+const Stroke kBrowInnerUp[] = {
+    {{12, 26, 84}, {26, 26, 40}, {0, 6, 0.5}},  // inner ends of the brows
+    {{38, 25, 74}, {24, 22, 46}, {0, 4, 0}},    // the rest follows
+};
+const Stroke kBrowDownLeft[] = {
+    {{24, 23, 80}, {30, 21, 44}, {-2.5, -6, 1}},
+    {{7, 20, 86}, {8, 16, 40}, {0, -1, 1.5}},  // bulge between the brows
+};
 
 Vector pucker(const HeadVertex&, const Vector& p) {
   const double lips = within(p, {0, kMouthHeight, 78}, {42, 27, 45});
   return lips * Vector(-0.42 * p.x(), 0.25 * (p.y() - kMouthHeight), 9);
 }
 
-Vector brow_inner_up(const HeadVertex&, const Vector& p) {
-  const double left = within(p, {12, 26, 84}, {26, 26, 40});
-  const double right = within(p, {-12, 26, 84}, {26, 26, 40});
-  return (left + right) * Vector(0, 6.5, 0.5);
+Motion sculpting(std::span<const Stroke> strokes) {
+  return
+      [strokes](const HeadVertex&, const Vector& p) -> Vector { return sculpted(p, strokes) - p; };
 }
 
-Vector brow_down(const HeadVertex&, const Vector& p) {
-  return within(p, {25, 22, 80}, {26, 20, 40}) * Vector(-3, -6, 1);
+Motion sculpting_both_sides(std::span<const Stroke> strokes) {
+  return [strokes](const HeadVertex&, const Vector& p) -> Vector {
+    return sculpted_on_both_sides(p, strokes) - p;
+  };
 }
 
 /// Share of the jaw's rotation that the skin takes at a place: all of it at the lower lip and the
@@ -77,16 +88,34 @@ Vector jaw_open(const HeadVertex& vertex, const Vector& p) {
   return jaw_share(vertex, p) * turned;
 }
 
+/// How a vertex of the pocket behind the skin vertex `lip` at `p` moves: as the lips in front, as
+/// the lower lip at the back. The roof of the open mouth falls to its floor and lies in the dark.
+Vector mouth_motion(const HeadVertex& vertex, const HeadVertex& lip, const Vector& p,
+                    const Motion& motion) {
+  const double depth = vertex.ring / double(kMouthRings);
+  HeadVertex below = lip;
+  if (below.rim > 0) below.rim = -1;
+  return (1 - depth) * motion(lip, p) + depth * motion(below, p);
+}
+
 /// Displacements (3N) of the skin by `motion`; what lies behind lips and lids moves with them.
 Eigen::VectorXd field_of(const HeadGrid& grid, const Positions& mean, const Motion& motion) {
   Positions field = Positions::Zero(mean.rows(), 3);
   for (Eigen::Index i = 0; i < field.rows(); ++i) {
     const HeadVertex& vertex = grid.vertices[static_cast<std::size_t>(i)];
-    if (vertex.part == HeadVertex::Part::eyeball) continue;
-    if (vertex.source >= 0) {
-      field.row(i) = field.row(vertex.source);
-    } else {
-      field.row(i) = motion(vertex, mean.row(i));
+    switch (vertex.part) {
+      case HeadVertex::Part::skin:
+        field.row(i) = motion(vertex, mean.row(i));
+        break;
+      case HeadVertex::Part::eyelid:
+        field.row(i) = field.row(vertex.source);
+        break;
+      case HeadVertex::Part::mouth:
+        field.row(i) = mouth_motion(vertex, grid.vertices[static_cast<std::size_t>(vertex.source)],
+                                    mean.row(vertex.source), motion);
+        break;
+      case HeadVertex::Part::eyeball:
+        break;
     }
   }
   return Eigen::Map<const Eigen::VectorXd>(field.data(), field.size());
@@ -95,30 +124,29 @@ Eigen::VectorXd field_of(const HeadGrid& grid, const Positions& mean, const Moti
 /// Displacements (3N) of other eyelids.
 Eigen::VectorXd lid_field(const HeadGrid& grid, const Positions& mean, const Eyelids& left,
                           const Eyelids& right) {
-  const Positions shape = head_positions(grid, left, right);
-  return field_of(grid, Positions(shape - mean),
-                  [](const HeadVertex&, const Vector& moved) { return moved; });
+  const Positions field = head_positions(grid, left, right) - mean;
+  return Eigen::Map<const Eigen::VectorXd>(field.data(), field.size());
 }
 
 }  // namespace
 
 ShapeBasis head_expressions(const HeadGrid& grid) {
   const Positions mean = head_positions(grid);
-  const Eyelids open, shut{-3.0, -3.4}, wide{8.8, -5.0};
+  const Eyelids open, shut{0.2, 0.2}, wide{12.8, 2.2};
   const auto moved = [&](const Motion& motion) { return field_of(grid, mean, motion); };
   const std::pair<const char*, Eigen::VectorXd> fields[] = {
       {"eyeBlink_L", lid_field(grid, mean, shut, open)},
       {"eyeBlink_R", lid_field(grid, mean, open, shut)},
       {"eyeWide_L", lid_field(grid, mean, wide, open)},
       {"eyeWide_R", lid_field(grid, mean, open, wide)},
-      {"browInnerUp", moved(brow_inner_up)},
-      {"browDown_L", moved(brow_down)},
-      {"browDown_R", moved(mirrored(brow_down))},
+      {"browInnerUp", moved(sculpting_both_sides(kBrowInnerUp))},
+      {"browDown_L", moved(sculpting(kBrowDownLeft))},
+      {"browDown_R", moved(mirrored(sculpting(kBrowDownLeft)))},
       {"jawOpen", moved(jaw_open)},
       {"mouthPucker", moved(pucker)},
-      {"mouthSmile_L", moved(smile)},
-      {"mouthSmile_R", moved(mirrored(smile))},
-      {"cheekPuff", moved(cheek_puff)},
+      {"mouthSmile_L", moved(sculpting(kSmileLeft))},
+      {"mouthSmile_R", moved(mirrored(sculpting(kSmileLeft)))},
+      {"cheekPuff", moved(sculpting_both_sides(kCheekPuff))},
   };
   ShapeBasis basis{{}, Eigen::MatrixXd(mean.size(), static_cast<Eigen::Index>(std::size(fields)))};
   for (const auto& [name, field] : fields) {

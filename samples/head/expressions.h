@@ -10,7 +10,7 @@ namespace mimetra::samples {
 ShapeBasis head_expressions(const HeadGrid& grid);
 
 /// 4 clearly different people as displacements from the mean head: a wide face, a long and narrow
-/// one, one with a large nose and strong brows, a child.
+/// one, one with a strong jaw, brows and nose, a child.
 ShapeBasis head_identities(const Positions& mean);
 
 }  // namespace mimetra::samples

@@ -5,8 +5,9 @@
 
 namespace mimetra::samples {
 
-/// The built-in sample: a head made by formulas, with eyes, nose and lips, 12 expressions named as
-/// ARKit names them and 4 identities. The same numbers on every machine.
+/// The built-in sample: a head made by formulas, with eyes that close, a mouth
+/// that opens, nose and ears, 12 expressions named as ARKit names them and 4 identities. The same
+/// numbers on every machine.
 MorphableModel parametric_head();
 
 /// A performance of 120 frames at 30 per second for its expressions: it talks, blinks, smiles and

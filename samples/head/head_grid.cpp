@@ -10,34 +10,37 @@ namespace {
 
 // Columns from the middle of the face to the ear, as sines of the angle around the head: even where
 // the face moves, the corners of mouth and eyes on a column each.
-constexpr std::array kColumnSines = {0.0,   0.046, 0.092, 0.138, 0.184, 0.23,  0.272, 0.314,
-                                     0.356, 0.398, 0.44,  0.482, 0.524, 0.566, 0.608, 0.67,
-                                     0.73,  0.79,  0.85,  0.90,  0.945, 0.98};
+constexpr std::array kColumnSines = {0.0,   0.046, 0.092, 0.138, 0.184, 0.23,  0.272,
+                                     0.314, 0.356, 0.398, 0.44,  0.482, 0.524, 0.566,
+                                     0.608, 0.67,  0.735, 0.80,  0.865, 0.925, 0.975};
+// From the front of the ear over the ear to the back of the head, as `u`.
+constexpr std::array kBackColumns = {1.0, 1.06, 1.11, 1.16, 1.21, 1.27, 1.42, 1.60, 1.80, 2.0};
 constexpr int kEarColumn = static_cast<int>(kColumnSines.size());
-constexpr int kBackColumn = kEarColumn + 8;
-constexpr int kColumns = 2 * kBackColumn;
+constexpr int kBackColumn = kEarColumn + static_cast<int>(kBackColumns.size()) - 1;
 constexpr int kMouthCorner = 9;
 constexpr int kInnerEyeCorner = 5;
 constexpr int kOuterEyeCorner = 14;
 
-// Rows, close together at the eyes and the lips.
-constexpr std::array kRows = {0.35, 0.70, 1.05, 1.4,   1.75, 2.1,   2.45, 2.8,  3.1,  3.4,  3.65,
-                              3.88, 4.08, 4.26, 4.42,  4.56, 4.68,  4.79, 4.90, 5.0,  5.08, 5.16,
-                              5.24, 5.33, 5.43, 5.53,  5.63, 5.73,  5.82, 5.91, 6.0,  6.11, 6.24,
-                              6.38, 6.51, 6.63, 6.74,  6.84, 6.92,  7.0,  7.05, 7.11, 7.18, 7.26,
-                              7.35, 7.46, 7.58, 7.7,   7.84, 8.0,   8.2,  8.45, 8.7,  8.95, 9.25,
-                              9.6,  9.95, 10.3, 10.65, 11.0, 11.35, 11.7, 12.0};
+// Rows, close together at the brows, the eyes, the tip of the nose and the lips.
+constexpr std::array kRows = {
+    0.25, 0.6,  1.0,  1.4,  1.85, 2.3,  2.75, 3.15, 3.5,  3.8,        // forehead
+    4.05, 4.18, 4.29, 4.39, 4.49, 4.59, 4.69, 4.78, 4.87, 4.94, 5.0,  // brows, upper lid
+    5.06, 5.12, 5.19, 5.27, 5.36, 5.46, 5.56,                         // lower lid
+    5.65, 5.73, 5.80, 5.87, 5.93, 5.99, 6.05, 6.12, 6.2,  6.3,        // nose
+    6.42, 6.54, 6.65, 6.75, 6.84, 6.92, 7.0,                          // upper lip
+    7.06, 7.12, 7.19, 7.27, 7.36, 7.46, 7.57, 7.70, 7.84,             // lower lip
+    8.0,  8.2,  8.45, 8.7,  9.0,  9.4,  9.9,  10.5, 11.2, 12.0};      // chin, neck
 
-constexpr int kMouthRings = 3;
 constexpr int kEyelidRings = 2;
 constexpr int kEyeballColumns = 12;
-constexpr std::array kEyeballRows = {0.08, 0.16, 0.24, 0.32, 0.42, 0.56, 0.72, 0.88};
+// Pit of the pupil, dish of the iris, ball.
+constexpr std::array kEyeballRows = {0.06, 0.10, 0.185, 0.205, 0.28, 0.37, 0.48, 0.60, 0.76, 0.89};
 
 /// Column in -kBackColumn + 1 .. kBackColumn to the parameter u.
 double around(int column) {
   const int side = column < 0 ? -1 : 1;
   const int c = side * column;
-  if (c >= kEarColumn) return side * (1 + (c - kEarColumn) / double(kBackColumn - kEarColumn));
+  if (c >= kEarColumn) return side * kBackColumns[static_cast<std::size_t>(c - kEarColumn)];
   const double s = kColumnSines[static_cast<std::size_t>(c)];
   return side * s / (1 + std::sqrt(1 - s * s));  // tangent of half the angle
 }
@@ -48,7 +51,7 @@ class Builder {
     add_skin_vertices();
     add_skin_faces();
     const int eye_row = row_at(kEyeRow), mouth_row = row_at(kMouthRow);
-    add_rim(mouth_row, -kMouthCorner, kMouthCorner, HeadVertex::Part::mouth, kMouthRings, 0);
+    close(add_rim(mouth_row, -kMouthCorner, kMouthCorner, HeadVertex::Part::mouth, kMouthRings, 0));
     for (const int eye : {-1, 1}) {
       const int from = eye < 0 ? -kOuterEyeCorner : kInnerEyeCorner;
       const int to = eye < 0 ? -kInnerEyeCorner : kOuterEyeCorner;
@@ -108,8 +111,10 @@ class Builder {
     }
   }
 
-  /// Rings behind the cut of `row` from column `from` to `to`.
-  void add_rim(int row, int from, int to, HeadVertex::Part part, int rings, int eye) {
+  /// Rings behind the cut of `row` from column `from` to `to`; the last one, above and below by
+  /// column.
+  std::vector<VertexIndex> add_rim(int row, int from, int to, HeadVertex::Part part, int rings,
+                                   int eye) {
     std::vector<VertexIndex> sources;
     for (int column = from; column < to; ++column) sources.push_back(above_[{row, column}]);
     for (int column = to; column > from; --column) sources.push_back(below_[{row, column}]);
@@ -130,6 +135,20 @@ class Builder {
       }
       front = back;
     }
+    return front;
+  }
+
+  /// Closes the ring that add_rim ended with, from its upper to its lower half.
+  void close(const std::vector<VertexIndex>& ring) {
+    const std::size_t half = ring.size() / 2;
+    const auto below = [&](std::size_t column) {
+      return ring[(ring.size() - column) % ring.size()];
+    };
+    add_face({ring[0], below(1), ring[1]});
+    for (std::size_t c = 1; c + 1 < half; ++c) {
+      add_face({ring[c], below(c), below(c + 1), ring[c + 1]});
+    }
+    add_face({ring[half - 1], below(half - 1), ring[half]});
   }
 
   void add_eyeball(int eye) {

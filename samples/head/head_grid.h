@@ -9,6 +9,8 @@ namespace mimetra::samples {
 /// Rows of the skull's surface at which it is cut open, in the parameter `v` of `HeadVertex`.
 constexpr double kEyeRow = 5;
 constexpr double kMouthRow = 7;
+/// Rings behind the lips; the last one closes the pocket.
+constexpr int kMouthRings = 4;
 
 /// Where a vertex of the sample lies, in the terms of the formulas that place it.
 struct HeadVertex {
@@ -33,8 +35,8 @@ struct HeadVertex {
 };
 
 /// The sample's vertices and faces: a grid of quadrilaterals around the head, cut open along the
-/// mouth and the eyes, with rims behind the cuts, and two eyeballs. Mirror symmetric in its
-/// vertices.
+/// mouth and the eyes, with a pocket behind the lips, rims behind the lids, and two eyeballs.
+/// Mirror symmetric in its vertices.
 struct HeadGrid {
   std::vector<HeadVertex> vertices;
   Polygons faces;

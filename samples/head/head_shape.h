@@ -4,10 +4,11 @@
 
 namespace mimetra::samples {
 
-/// Height of the edge of each eyelid above the eye's middle, in mm, halfway between the corners.
+/// How far the edge of each eyelid is from the line on which they meet, in mm, halfway between the
+/// corners of the eye.
 struct Eyelids {
-  double upper = 6.2;
-  double lower = -4.2;
+  double upper = 9.8;
+  double lower = 1.2;
 };
 
 /// Rest positions of the grid's vertices with the given eyelids.

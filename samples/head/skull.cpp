@@ -15,8 +15,8 @@ struct Section {
 // From the first section below the crown to the neck's end; they rise towards the back from the
 // cheeks down, as a jaw does.
 constexpr std::array<Section, 12> kSections = {{
-    {109, 24, 36, 109, -11, 106, -48},     // 1
-    {93, 54, 57, 92, -12, 88, -80},        //
+    {107, 26, 38, 106, -11, 103, -50},     // 1
+    {91, 55, 57, 89, -12, 85, -81},        //
     {67, 75, 70, 65, -13, 56, -97},        //
     {34, 84, 75, 33, -12, 20, -101},       // 4: brows
     {0, 80, 72, 0, -10, -14, -97},         // kEyeRow
@@ -25,15 +25,15 @@ constexpr std::array<Section, 12> kSections = {{
     {-98, 76, 56, -68, -10, -66, -70},     // 8: chin
     {-112, 62, 50, -78, -14, -76, -67},    //
     {-115, 36, 47, -88, -18, -88, -65},    // 10: below the jaw
-    {-122, 14, 47, -104, -24, -106, -64},  //
-    {-150, 8, 52, -140, -26, -145, -68},   // kNeckRow
+    {-124, 14, 48, -108, -24, -110, -65},  //
+    {-150, 8, 54, -149, -26, -148, -70},   // kNeckRow
 }};
 
 double Section::*const kQuantities[] = {&Section::front_y, &Section::front_z, &Section::side_x,
                                         &Section::side_y,  &Section::side_z,  &Section::back_y,
                                         &Section::back_z};
 
-constexpr double kCrownY = 116;
+constexpr double kCrownY = 113.5;
 constexpr double kCrownZ = -12;
 
 /// Section 0 is the crown itself, -1 the first one seen from behind: the surface is round there.

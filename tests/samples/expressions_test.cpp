@@ -1,7 +1,5 @@
 #include <gmock/gmock.h>
 
-#include <mimetra/samples/head_grid.h>
-
 #include "head_fixture.h"
 
 namespace mimetra::test {
@@ -94,28 +92,123 @@ TEST(HeadExpressions, CalledLeftMoveTheHeadsOwnLeft) {
 }
 
 TEST(HeadExpressions, JawOpenPartsTheLips) {
-  const Positions& mean = head().mean();
-  const Positions open = mean + field("jawOpen");
-  double lower_lip = -1e9, upper_lip = 1e9;
-  for (int v = 0; v < mean.rows(); ++v) {
-    if (mean(v, 0) != 0 || std::abs(mean(v, 1) + 66) > 12 || mean(v, 2) < 80) continue;
-    const bool moves = open(v, 1) < mean(v, 1) - 5;
-    if (moves) lower_lip = std::max(lower_lip, open(v, 1));
-    if (!moves) upper_lip = std::min(upper_lip, open(v, 1));
-  }
-  EXPECT_GT(upper_lip - lower_lip, 15);
+  const Edges lips = mouth_edges();
+  const std::vector<double> open = gaps(head().mean() + field("jawOpen"), lips);
+  EXPECT_GT(open[open.size() / 2], 18);
+  EXPECT_LT(open.front(), open[open.size() / 2] / 2);  // the corners hold the lips together
 }
 
+TEST(HeadExpressions, JawOpenLowersTheChinAndLeavesTheUpperLip) {
+  const Positions moved = field("jawOpen");
+  const auto [upper, lower] = mouth_edges()[mouth_edges().size() / 2];
+  EXPECT_LT(moved(lower, 1), -18);
+  EXPECT_TRUE(moved.row(upper).isZero(0));
+}
+
+TEST(HeadExpressions, JawOpenHasARoofOfTheMouthThatFallsBackwards) {
+  // It faces down, away from light that comes from above or from the viewer.
+  const Positions open = head().mean() + field("jawOpen");
+  std::map<int, double> height;
+  for (int v = 0; v < open.rows(); ++v) {
+    const samples::HeadVertex& vertex = grid().vertices[static_cast<std::size_t>(v)];
+    if (vertex.part == samples::HeadVertex::Part::mouth && vertex.u == 0 && vertex.rim > 0) {
+      height[vertex.ring] = open(v, 1);
+    }
+  }
+  ASSERT_EQ(height.size(), static_cast<std::size_t>(samples::kMouthRings));
+  for (int ring = 2; ring <= samples::kMouthRings; ++ring) {
+    EXPECT_LT(height[ring], height[ring - 1] - 3) << ring;
+  }
+}
+
+TEST(HeadExpressions, BlinkClosesTheEyeToAFewHundredthsOfItsOpening) {
+  for (const auto& [name, eye] :
+       {std::pair<std::string, int>{"eyeBlink_L", 1}, {"eyeBlink_R", -1}}) {
+    const std::vector<double> open = gaps(head().mean(), eye_edges(eye));
+    const double widest = *std::max_element(open.begin(), open.end());
+    for (const double gap : gaps(head().mean() + field(name), eye_edges(eye))) {
+      EXPECT_LT(gap, 0.05 * widest) << name;
+    }
+  }
+}
+
+TEST(HeadExpressions, BlinkNeverCrossesTheLids) {
+  for (const double weight : {0.25, 0.5, 0.75, 1.0}) {
+    const Positions pose = head().mean() + weight * field("eyeBlink_L");
+    for (const auto& [above, below] : eye_edges(1)) EXPECT_GT(pose(above, 1), pose(below, 1));
+  }
+}
+
+TEST(HeadExpressions, BlinkIsDoneMostlyByTheUpperLid) {
+  const Positions moved = field("eyeBlink_L");
+  for (const auto& [above, below] : eye_edges(1)) {
+    EXPECT_GT(moved.row(above).norm(), 4 * moved.row(below).norm());
+  }
+}
+
+TEST(HeadExpressions, EyeWideOpensTheEyeFurther) {
+  const std::vector<double> open = gaps(head().mean(), eye_edges(-1));
+  const std::vector<double> wide = gaps(head().mean() + field("eyeWide_R"), eye_edges(-1));
+  for (std::size_t i = 0; i < open.size(); ++i) EXPECT_GT(wide[i], 1.2 * open[i]);
+}
+
+TEST(HeadExpressions, SmilePullsTheCornerOfTheMouthUpAndOutAndTheCheekForward) {
+  const Positions moved = field("mouthSmile_L");
+  const int corner = mouth_edges().back().first;
+  EXPECT_GT(moved(corner, 0), 4);
+  EXPECT_GT(moved(corner, 1), 4);
+  Eigen::Index cheek;
+  moved.col(2).maxCoeff(&cheek);
+  EXPECT_GT(moved(cheek, 2), 3);
+  EXPECT_GT(moved(cheek, 1), 2);
+  EXPECT_NEAR(head().mean()(cheek, 1), -30, 15);
+}
+
+TEST(HeadExpressions, BrowsMoveAsTheirNamesSay) {
+  EXPECT_GT(field("browInnerUp").col(1).maxCoeff(), 5);
+  EXPECT_GE(field("browInnerUp").col(1).minCoeff(), 0);
+  EXPECT_LT(field("browDown_L").col(1).minCoeff(), -5);
+  EXPECT_LE(field("browDown_L").col(1).maxCoeff(), 0);
+}
+
+/// Height and side of all that an expression may move, mm.
+struct Reach {
+  const char* name;
+  double lowest, highest, rightmost, leftmost;
+};
+
+class HeadExpressionReach : public ::testing::TestWithParam<Reach> {};
+
+TEST_P(HeadExpressionReach, EndsExactlyWhereItsMusclesDo) {
+  const Reach& reach = GetParam();
+  const Positions moved = field(reach.name);
+  for (int v = 0; v < head().vertices(); ++v) {
+    const double x = head().mean()(v, 0), y = head().mean()(v, 1);
+    const bool inside =
+        y >= reach.lowest && y <= reach.highest && x >= reach.rightmost && x <= reach.leftmost;
+    EXPECT_TRUE(inside || moved.row(v).isZero(0)) << v << " at " << x << ", " << y;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Each, HeadExpressionReach,
+    ::testing::Values(Reach{"eyeBlink_L", -20, 22, 15, 47}, Reach{"eyeWide_R", -20, 22, -47, -15},
+                      Reach{"browInnerUp", 0, 55, -65, 65}, Reach{"browDown_L", 0, 50, -8, 60},
+                      Reach{"jawOpen", -150, -25, -80, 80}, Reach{"mouthPucker", -95, -38, -45, 45},
+                      Reach{"mouthSmile_L", -95, -8, -12, 70},
+                      Reach{"cheekPuff", -95, -20, -82, 82}),
+    [](const auto& parameter) { return std::string(parameter.param.name); });
+
 TEST(HeadExpressions, BlinkNeverEntersTheEyeball) {
-  const Eigen::RowVector3d center(31, -0.5, 60.5);
-  const samples::HeadGrid grid = samples::head_grid();
+  constexpr double kEyeballRadius = 13;
   const Positions blink = field("eyeBlink_L");
   for (const double weight : {0.0, 0.25, 0.5, 0.75, 1.0}) {
     const Positions pose = head().mean() + weight * blink;
     for (int v = 0; v < pose.rows(); ++v) {
-      if (grid.vertices[static_cast<std::size_t>(v)].part != samples::HeadVertex::Part::skin)
+      if (grid().vertices[static_cast<std::size_t>(v)].part != samples::HeadVertex::Part::skin)
         continue;
-      EXPECT_GE((pose.row(v) - center).norm(), 13) << v << " at " << weight;
+      EXPECT_GE((pose.row(v) - samples::kLeftEye.transpose()).norm(), kEyeballRadius)
+          << v << " at " << weight;
     }
   }
 }

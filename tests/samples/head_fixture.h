@@ -4,12 +4,15 @@
 #include <map>
 #include <string>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Geometry>
 
 #include <mimetra/mesh/inspection.h>
 #include <mimetra/samples/head.h>
+#include <mimetra/samples/head_grid.h>
+#include <mimetra/samples/head_shape.h>
 
 namespace mimetra::test {
 
@@ -17,6 +20,49 @@ namespace mimetra::test {
 inline const MorphableModel& head() {
   static const MorphableModel model = samples::parametric_head();
   return model;
+}
+
+/// Where the head's vertices, in the same order, lie in the terms of its formulas.
+inline const samples::HeadGrid& grid() {
+  static const samples::HeadGrid result = samples::head_grid();
+  return result;
+}
+
+/// The vertices above and below a cut in the skin, column by column.
+using Edges = std::vector<std::pair<int, int>>;
+
+/// The cut in row `row`, from column `from` to `to` in the parameter u.
+inline Edges edges(double row, double from, double to) {
+  std::map<double, std::pair<int, int>> by_column;
+  for (int v = 0; v < head().vertices(); ++v) {
+    const samples::HeadVertex& vertex = grid().vertices[static_cast<std::size_t>(v)];
+    const bool skin = vertex.part == samples::HeadVertex::Part::skin;
+    if (!skin || vertex.rim == 0 || vertex.v != row) continue;
+    if (vertex.u < from || vertex.u > to) continue;
+    auto& [above, below] = by_column[vertex.u];
+    (vertex.rim > 0 ? above : below) = v;
+  }
+  Edges result;
+  for (const auto& [u, pair] : by_column) result.push_back(pair);
+  return result;
+}
+
+inline Edges mouth_edges() {
+  return edges(samples::kMouthRow, -1, 1);
+}
+
+/// `eye` 1 for the head's left one, -1 for its right one.
+inline Edges eye_edges(int eye) {
+  return eye > 0 ? edges(samples::kEyeRow, 0, 1) : edges(samples::kEyeRow, -1, 0);
+}
+
+/// Distance between the two sides of a cut at each of its columns.
+inline std::vector<double> gaps(const Positions& positions, const Edges& cut) {
+  std::vector<double> result;
+  for (const auto& [above, below] : cut) {
+    result.push_back((positions.row(above) - positions.row(below)).norm());
+  }
+  return result;
 }
 
 inline Eigen::Vector3d corner(const Positions& positions, int triangle, int corner) {

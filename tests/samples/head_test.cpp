@@ -93,13 +93,39 @@ TEST(Head, FacesOutwards) {
   }
 }
 
-TEST(Head, IsOpenAtNeckMouthAndEyes) {
+TEST(Head, IsOpenAtNeckAndEyesAndClosedBehindTheMouth) {
   const std::vector<double> heights = loop_heights();
-  ASSERT_EQ(heights.size(), 4u);
-  EXPECT_LT(heights[0], -130);       // neck
-  EXPECT_NEAR(heights[1], -66, 10);  // mouth
-  EXPECT_NEAR(heights[2], 0, 10);    // eyes
-  EXPECT_EQ(heights[2], heights[3]);
+  ASSERT_EQ(heights.size(), 3u);
+  EXPECT_LT(heights[0], -130);     // neck
+  EXPECT_NEAR(heights[1], 0, 10);  // eyes
+  EXPECT_EQ(heights[1], heights[2]);
+}
+
+TEST(Head, HasLipsThatTouchAndEyesThatAreOpen) {
+  for (const double gap : gaps(head().mean(), mouth_edges())) EXPECT_LT(gap, 0.5);
+  const std::vector<double> lids = gaps(head().mean(), eye_edges(1));
+  EXPECT_GT(*std::max_element(lids.begin(), lids.end()), 8);
+}
+
+TEST(Head, LooksOutOfEyesThatFillTheirOpening) {
+  // Whatever lies behind the edge of a lid ends inside the eyeball, so no gap shows beside it.
+  constexpr double kEyeballRadius = 13;
+  const samples::HeadGrid& vertices = grid();
+  for (int v = 0; v < head().vertices(); ++v) {
+    const samples::HeadVertex& vertex = vertices.vertices[static_cast<std::size_t>(v)];
+    if (vertex.part != samples::HeadVertex::Part::eyelid || vertex.ring != 2) continue;
+    Eigen::RowVector3d center = samples::kLeftEye.transpose();
+    center.x() *= vertex.eye;
+    EXPECT_LT((head().mean().row(v) - center).norm(), kEyeballRadius) << v;
+  }
+}
+
+TEST(Head, HasANoseThatStandsOutAndEyesThatLieBack) {
+  Eigen::Index tip;
+  const double nose = head().mean().col(2).maxCoeff(&tip);
+  EXPECT_NEAR(head().mean()(tip, 0), 0, 3);
+  const double pupil = samples::kLeftEye.z() + 13;
+  EXPECT_GT(nose - pupil, 20);
 }
 
 TEST(Head, KeepsQuadrilaterals) {
@@ -132,6 +158,45 @@ TEST(HeadIdentities, HaveNoDegenerateNorFlippedTriangle) {
     const Positions person = head().mean() + field(head().identities(), i);
     EXPECT_GT(worst_quality(person), kFewestQuality) << i;
     EXPECT_EQ(flipped(head().mean(), person), 0) << i;
+  }
+}
+
+TEST(HeadIdentities, AreMirrorSymmetric) {
+  const std::vector<int> mirror = mirror_vertices();
+  for (int i = 0; i < head().identities().size(); ++i) {
+    const Positions moved = field(head().identities(), i);
+    for (int v = 0; v < head().vertices(); ++v) {
+      EXPECT_EQ(moved.row(mirror[static_cast<std::size_t>(v)]),
+                moved.row(v).cwiseProduct(Eigen::RowVector3d(-1, 1, 1)))
+          << i << ", " << v;
+    }
+  }
+}
+
+TEST(HeadIdentities, MoveEachEyeballAsAWhole) {
+  for (int i = 0; i < head().identities().size(); ++i) {
+    const Positions moved = field(head().identities(), i);
+    std::map<int, int> first;
+    for (int v = 0; v < head().vertices(); ++v) {
+      const samples::HeadVertex& vertex = grid().vertices[static_cast<std::size_t>(v)];
+      if (vertex.part != samples::HeadVertex::Part::eyeball) continue;
+      EXPECT_EQ(moved.row(v), moved.row(first.emplace(vertex.eye, v).first->second)) << i;
+    }
+    EXPECT_EQ(first.size(), 2u);
+  }
+}
+
+TEST(HeadIdentities, HaveEyesThatABlinkCloses) {
+  const Positions blink = field("eyeBlink_L");
+  for (int i = 0; i < head().identities().size(); ++i) {
+    const Positions person = head().mean() + field(head().identities(), i);
+    const std::vector<double> open = gaps(person, eye_edges(1));
+    const double widest = *std::max_element(open.begin(), open.end());
+    const Positions shut = person + blink;
+    for (const auto& [above, below] : eye_edges(1)) {
+      EXPECT_GT(shut(above, 1), shut(below, 1)) << i;
+      EXPECT_LT((shut.row(above) - shut.row(below)).norm(), 0.05 * widest) << i;
+    }
   }
 }
 
