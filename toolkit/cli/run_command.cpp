@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include <mimetra/cli/manifest.h>
+#include <mimetra/io/pending_output.h>
 #include <mimetra/operations/loading.h>
 #include <mimetra/operations/report.h>
 
@@ -56,9 +57,12 @@ bool shows_bar(const Request& request) {
 
 using OutputPaths = std::map<std::string, std::vector<std::filesystem::path>>;
 
-void refuse_existing(const Request& request, const std::filesystem::path& path) {
-  if (request.force || !std::filesystem::exists(path)) return;
-  throw OutputError(path.string(), "exists already; use --force to replace it");
+/// Makes and removes what the writer would begin with, so that nobody computes for nothing.
+void refuse_unwritable(const OperationTable& table, const Request& request, const Output& output,
+                       const std::filesystem::path& path) {
+  const bool is_folder = table.writes_folder(output.kind, path);
+  PendingOutput(path, is_folder ? PendingOutput::Kind::folder : PendingOutput::Kind::file,
+                request.force);
 }
 
 /// Refuses, before anything is read, what cannot be written.
@@ -69,7 +73,7 @@ void check_outputs(const OperationTable& table, const Request& request) {
     const auto asked = request.outputs.find(output.name);
     if (asked == request.outputs.end()) continue;
     table.writer(output.kind, asked->second);
-    if (!several || !output.repeated) refuse_existing(request, asked->second);
+    if (!several || !output.repeated) refuse_unwritable(table, request, output, asked->second);
   }
 }
 
@@ -81,7 +85,7 @@ OutputPaths output_paths(const OperationTable& table, const Request& request,
     const auto asked = request.outputs.find(output.name);
     if (asked == request.outputs.end()) continue;
     all[output.name] = table.output_paths(output, asked->second, names);
-    for (const auto& path : all[output.name]) refuse_existing(request, path);
+    for (const auto& path : all[output.name]) refuse_unwritable(table, request, output, path);
   }
   return all;
 }

@@ -1,6 +1,8 @@
 #include <mimetra/vtk/vtk_formats.h>
 
-#include <mimetra/io/pending_output.h>
+#include <cmath>
+
+#include <mimetra/operations/formats.h>
 #include <mimetra/vtk/vtp_series.h>
 
 namespace mimetra {
@@ -13,13 +15,8 @@ std::vector<std::filesystem::path> write(const FieldSequence& fields, const Writ
       request.parameters.text("compress") == "small" ? VtpCompression::zlib : VtpCompression::lz4;
   options.overwrite = request.overwrite;
   options.progress = request.progress;
-  auto written = write_vtp_series(fields, request.target, options);
-  for (const auto& [name, content] : request.extra) {
-    const auto path = request.target.parent_path() / name;
-    write_file(path, content, true);
-    written.push_back(path);
-  }
-  return written;
+  return write_with_extra(request,
+                          [&] { return write_vtp_series(fields, request.target, options); });
 }
 
 /// One region: the vertices where the field `roi` is not 0.
@@ -32,6 +29,10 @@ Regions read_regions_from_vtp(const std::filesystem::path& path, int vertices,
   }
   std::vector<VertexIndex> inside;
   for (int v = 0; v < vertices; ++v) {
+    if (!std::isfinite(mask(v, 0))) {
+      throw IoError(path.string(), "the field 'roi' of vertex " + std::to_string(v) + " is " +
+                                       std::to_string(mask(v, 0)) + ", expected 0 or 1");
+    }
     if (mask(v, 0) != 0) inside.push_back(v);
   }
   return regions_from_vertices(vertices, triangles, {inside});
