@@ -46,6 +46,7 @@ void declare(CLI::App& app, const Command& command, Slots& slots) {
     app.add_option(input.name, slots.inputs[input.name], input.help)
         ->type_name(upper(input.name))
         ->expected(1, input.repeated ? CLI::detail::expected_max_vector_size : 1)
+        ->allow_extra_args(input.repeated)
         ->required();
   }
   for (const CommandOption& option : command.options) {

@@ -42,7 +42,9 @@ int run(const std::vector<std::string>& arguments) {
   mimetra::cli::add_manual(table);
   const mimetra::cli::ParsedLine line = mimetra::cli::parse_command_line(table, arguments);
   if (!line.request) {
-    std::cout << line.text;
+    if (!(std::cout << line.text << std::flush)) {
+      throw mimetra::OutputError("standard output", "cannot be written");
+    }
     return kDone;
   }
   log_to_stderr(*line.request);

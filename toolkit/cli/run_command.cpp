@@ -57,11 +57,6 @@ bool shows_bar(const Request& request) {
 
 using OutputPaths = std::map<std::string, std::vector<std::filesystem::path>>;
 
-void refuse_existing(const Request& request, const std::filesystem::path& path) {
-  if (request.force || !std::filesystem::exists(path)) return;
-  throw OutputError(path.string(), "exists already; use --force to replace it");
-}
-
 /// Refuses, before anything is read, what cannot be written.
 void check_outputs(const OperationTable& table, const Request& request) {
   const bool several = std::ranges::any_of(
@@ -70,7 +65,9 @@ void check_outputs(const OperationTable& table, const Request& request) {
     const auto asked = request.outputs.find(output.name);
     if (asked == request.outputs.end()) continue;
     table.writer(output.kind, asked->second);
-    if (!several || !output.repeated) refuse_existing(request, asked->second);
+    if (!several || !output.repeated) {
+      table.refuse_unwritable(output, asked->second, request.force);
+    }
   }
 }
 
@@ -84,7 +81,7 @@ OutputPaths output_paths(const OperationTable& table, const Request& request,
     all[output.name] = table.output_paths(output, asked->second, names);
     std::set<std::filesystem::path> places;
     for (const auto& path : all[output.name]) {
-      refuse_existing(request, path);
+      table.refuse_unwritable(output, path, request.force);
       if (!places.insert(path).second) {
         throw UsageError(path.string() +
                          ": two inputs of this name would be written there; run them one by one");

@@ -1,10 +1,12 @@
 #include <mimetra/io/array_file.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <charconv>
 #include <cmath>
 #include <fstream>
 #include <span>
+#include <system_error>
 
 #include <mimetra/io/bytes.h>
 #include <mimetra/io/pending_output.h>
@@ -274,7 +276,10 @@ void write_npy_frames(const std::filesystem::path& path, const Frames& frames,
     file.write(row.data(), static_cast<std::streamsize>(row.size()));
   }
   file.close();
-  if (!file) throw OutputError(path.string(), "cannot be written");
+  if (!file) {
+    const std::error_code error(errno, std::generic_category());
+    throw OutputError(committed_name(path).string(), "cannot be written: " + error.message());
+  }
 }
 
 }  // namespace mimetra

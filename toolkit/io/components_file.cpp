@@ -68,7 +68,8 @@ class Writer {
  public:
   Writer(const std::filesystem::path& path, const std::filesystem::path& target)
       : target_(target.string()),
-        file_(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose),
+        access_(in_memory(), H5Pclose),
+        file_(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access_), H5Fclose),
         creation_(H5Pcreate(H5P_DATASET_CREATE), H5Pclose) {
     check(file_.is_open());
     // Without time stamps the same components are the same bytes.
@@ -97,15 +98,32 @@ class Writer {
     check(attribute.is_open() && H5Awrite(attribute, H5T_NATIVE_DOUBLE, &value) >= 0);
   }
 
-  /// Reports what fails when buffers reach the disk.
-  void flush() { check(H5Fflush(file_, H5F_SCOPE_GLOBAL) >= 0); }
+  /// The bytes of the whole file.
+  std::string bytes() {
+    check(H5Fflush(file_, H5F_SCOPE_GLOBAL) >= 0);
+    const ssize_t size = H5Fget_file_image(file_, nullptr, 0);
+    check(size > 0);
+    std::string image(static_cast<std::size_t>(size), '\0');
+    check(H5Fget_file_image(file_, image.data(), image.size()) == size);
+    return image;
+  }
 
  private:
+  /// HDF5 cannot close a file that a full disk has cut short, and crashes when the program ends: it
+  /// never writes to the disk itself.
+  static hid_t in_memory() {
+    constexpr std::size_t kGrowth = 1 << 20;
+    const hid_t access = H5Pcreate(H5P_FILE_ACCESS);
+    H5Pset_fapl_core(access, kGrowth, false);
+    return access;
+  }
+
   void check(bool done) const {
-    if (!done) throw OutputError(target_, "cannot be written; is the disk full?");
+    if (!done) throw OutputError(target_, "cannot be written: HDF5 fails; is there memory left?");
   }
 
   std::string target_;
+  Handle access_;
   Handle file_;
   Handle creation_;
 };
@@ -235,6 +253,17 @@ std::vector<VertexIndex> strongest_vertices(const Frames& displacements) {
   return centers;
 }
 
+void check_triangles(const Reader& reader, const Components& components) {
+  const auto vertices = static_cast<int>(components.rest.rows());
+  for (Eigen::Index t = 0; t < components.triangles.rows(); ++t) {
+    for (const int vertex : components.triangles.row(t)) {
+      if (vertex >= 0 && vertex < vertices) continue;
+      reader.fail("triangle " + std::to_string(t) + " uses vertex " + std::to_string(vertex) +
+                  ", expected 0 to " + std::to_string(vertices - 1));
+    }
+  }
+}
+
 void read_components_of(const Reader& reader, Components& components) {
   int count = 0;
   while (reader.has(component_name(count))) ++count;
@@ -308,14 +337,18 @@ void write_components(const std::filesystem::path& path, const Components& compo
     if (!components.centers.empty()) writer.write("centers", column_of(components.centers));
     if (!components.energies.empty()) writer.write("energies", column_of(components.energies));
     write_options(writer, components);
-    writer.flush();
+    write_bytes(pending.path(), writer.bytes());
   }
   pending.commit();
 }
 
 Components read_components(const std::filesystem::path& path) {
   std::error_code unreadable;
-  if (!std::filesystem::exists(path, unreadable)) throw IoError(path.string(), "does not exist");
+  const auto status = std::filesystem::status(path, unreadable);
+  if (!std::filesystem::exists(status)) throw IoError(path.string(), "no such file");
+  if (std::filesystem::is_directory(status)) {
+    throw IoError(path.string(), "is a folder, expected a file of components");
+  }
   const QuietErrors quiet;
   const Reader reader(path);
   Components components;
@@ -325,10 +358,7 @@ Components read_components(const std::filesystem::path& path) {
   if (rest.rows() == 0) reader.fail("'default' holds no vertex");
   components.rest = rest;
   components.triangles = triangles;
-  if (triangles.size() > 0 &&
-      (triangles.minCoeff() < 0 || triangles.maxCoeff() >= static_cast<int>(rest.rows()))) {
-    reader.fail("'tris' holds a vertex outside 0 .. " + std::to_string(rest.rows() - 1));
-  }
+  check_triangles(reader, components);
   read_components_of(reader, components);
   read_optional_parts(reader, components);
   read_options(reader, components);

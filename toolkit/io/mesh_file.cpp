@@ -125,6 +125,21 @@ TriMesh read_stl(const fs::path& path) {
                       std::to_string(expected) + " as in " + expected_path.string());
 }
 
+/// STL names no vertices: triangles that are flipped or in another order show only in shared
+/// vertices whose corners are at several places. Lips and seams that touch in the first frame part
+/// too, but never most of a mesh.
+void check_parting(const fs::path& path, const std::vector<int>& corners_at,
+                   const std::vector<char>& parts, const fs::path& expected_path) {
+  const auto shared =
+      std::count_if(corners_at.begin(), corners_at.end(), [](int corners) { return corners > 1; });
+  const auto parting = std::count(parts.begin(), parts.end(), 1);
+  if (parting == 0 || 2 * parting < shared) return;
+  throw MismatchError(path.string() + ": " + std::to_string(parting) + " of " +
+                      std::to_string(shared) +
+                      " shared vertices are at several places, so its triangles are not those of " +
+                      expected_path.string() + "; write all frames with one order of triangles");
+}
+
 Positions gathered_corners(const fs::path& path, const Connectivity& expected,
                            const fs::path& expected_path) {
   const Positions corners = positions_of(read_checked_corners(path));
@@ -133,16 +148,19 @@ Positions gathered_corners(const fs::path& path, const Connectivity& expected,
     throw_mismatch(path, corners.rows() / 3, "triangles", triangles, expected_path);
   }
   Positions positions(expected.vertices, 3);
-  std::vector<char> known(static_cast<std::size_t>(expected.vertices), 0);
-  // Backwards, so that a vertex whose corners part has its first corner's place.
-  for (Eigen::Index corner = corners.rows() - 1; corner >= 0; --corner) {
+  std::vector<int> corners_at(static_cast<std::size_t>(expected.vertices), 0);
+  std::vector<char> parts(static_cast<std::size_t>(expected.vertices), 0);
+  // A vertex whose corners part has its first corner's place.
+  for (Eigen::Index corner = 0; corner < corners.rows(); ++corner) {
     const int vertex = expected.triangles(corner / 3, corner % 3);
-    positions.row(vertex) = corners.row(corner);
-    known[static_cast<std::size_t>(vertex)] = 1;
+    const auto index = static_cast<std::size_t>(vertex);
+    if (corners_at[index]++ == 0) positions.row(vertex) = corners.row(corner);
+    if (positions.row(vertex) != corners.row(corner)) parts[index] = 1;
   }
-  const auto missing = std::find(known.begin(), known.end(), 0);
-  if (missing != known.end()) {
-    throw MismatchError(path.string() + ": vertex " + std::to_string(missing - known.begin()) +
+  check_parting(path, corners_at, parts, expected_path);
+  const auto missing = std::find(corners_at.begin(), corners_at.end(), 0);
+  if (missing != corners_at.end()) {
+    throw MismatchError(path.string() + ": vertex " + std::to_string(missing - corners_at.begin()) +
                         " of " + expected_path.string() + " is in no triangle; STL has no place " +
                         "for it");
   }

@@ -75,6 +75,7 @@ Parts parts_from_json(const fs::path& file) {
   Parts parts;
   try {
     const auto json = nlohmann::json::parse(read_file(file));
+    if (!json.is_object()) throw IoError(file.string(), "expected a JSON object of paths");
     const auto entry = [&](const char* name) -> std::optional<fs::path> {
       if (!json.contains(name)) return {};
       return file.parent_path() / json.at(name).get<std::string>();

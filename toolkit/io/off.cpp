@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <climits>
 
 #include <mimetra/io/mesh_formats.h>
@@ -33,8 +34,8 @@ void read_face(TextCursor& cursor, MeshContent& content) {
   for (long long corner = 0; corner < corners; ++corner) {
     const long long vertex = cursor.integer(cursor.word(), "a face's vertex");
     // What does not fit an int is out of range in any case.
-    content.polygons.corners.push_back(vertex < 0 || vertex > INT_MAX ? -1
-                                                                      : static_cast<int>(vertex));
+    content.polygons.corners.push_back(
+        static_cast<int>(std::clamp<long long>(vertex, INT_MIN, INT_MAX)));
   }
   content.polygons.offsets.push_back(static_cast<int>(content.polygons.corners.size()));
 }
@@ -42,7 +43,7 @@ void read_face(TextCursor& cursor, MeshContent& content) {
 }  // namespace
 
 MeshContent read_off(const std::string& path, std::string_view bytes) {
-  TextCursor cursor(path, bytes, {.comments = true});
+  TextCursor cursor(path, without_byte_order_mark(bytes), {.comments = true});
   read_keyword(cursor);
   const std::size_t kVertexBytes = 6;  // "0 0 0" and the line's end
   const std::size_t kFaceBytes = 2;    // "0" and the line's end

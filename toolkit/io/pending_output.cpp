@@ -20,11 +20,24 @@ fs::path without_trailing_slash(fs::path path) {
   return path.has_filename() ? path : path.parent_path();
 }
 
+constexpr const char* kExistsAlready = "exists already; use --force to replace it";
+constexpr std::string_view kTemporary = ".tmp";
+
 /// Unique among the processes and threads that write here.
 fs::path temporary_beside(const fs::path& target) {
   static std::atomic<int> counter = 0;
   return target.parent_path() / ("." + target.filename().string() + "." + std::to_string(getpid()) +
-                                 "-" + std::to_string(counter++) + ".tmp");
+                                 "-" + std::to_string(counter++) + std::string(kTemporary));
+}
+
+/// NAME of .NAME.123-4.tmp, of which NAME may again be such a name.
+std::string without_temporary(std::string name) {
+  while (name.starts_with('.') && name.ends_with(kTemporary)) {
+    const std::size_t number = name.rfind('.', name.size() - kTemporary.size() - 1);
+    if (number == 0 || number == std::string::npos) break;
+    name = name.substr(1, number - 1);
+  }
+  return name;
 }
 
 std::string cannot_write(const std::error_code& error) {
@@ -69,9 +82,7 @@ void PendingOutput::check_target() const {
     throw OutputError(target_.string(), "cannot be written: it names no file");
   }
   if (!fs::exists(status)) return;
-  if (!overwrite_) {
-    throw OutputError(target_.string(), "exists already; use --force to replace it");
-  }
+  if (!overwrite_) throw OutputError(target_.string(), kExistsAlready);
   if (kind_ == Kind::folder && !fs::is_directory(status)) {
     throw OutputError(target_.string(), "exists and is no folder; remove it first");
   }
@@ -108,9 +119,7 @@ void PendingOutput::create_temporary() {
 void PendingOutput::commit() {
   std::error_code ignored;
   const bool exists = fs::exists(target_, ignored);
-  if (exists && !overwrite_) {
-    throw OutputError(target_.string(), "exists already; use --force to replace it");
-  }
+  if (exists && !overwrite_) throw OutputError(target_.string(), kExistsAlready);
   if (exists && kind_ == Kind::folder) {
     replace_folder();
   } else {
@@ -144,6 +153,47 @@ void PendingOutput::discard() {
   }
 }
 
+PendingOutputs::PendingOutputs(bool overwrite) : overwrite_(overwrite) {}
+
+/// The first one made the parent folders and can remove them only when the others are gone.
+PendingOutputs::~PendingOutputs() {
+  while (!outputs_.empty()) outputs_.pop_back();
+}
+
+const fs::path& PendingOutputs::add(const fs::path& target, PendingOutput::Kind kind,
+                                    Existing existing) {
+  const bool overwrite = overwrite_ || existing != Existing::nothing;
+  outputs_.push_back(std::make_unique<PendingOutput>(target, kind, overwrite));
+  if (!overwrite_ && existing == Existing::same) must_be_same_.push_back(outputs_.back().get());
+  return outputs_.back()->path();
+}
+
+void PendingOutputs::add_stale(const fs::path& path) {
+  std::error_code unreadable;
+  if (!fs::exists(path, unreadable)) return;
+  if (!overwrite_) throw OutputError(path.string(), kExistsAlready);
+  stale_.push_back(path);
+}
+
+void PendingOutputs::commit() {
+  check_same();
+  for (const fs::path& path : stale_) {
+    std::error_code error;
+    fs::remove(path, error);
+    if (error) throw OutputError(path.string(), "cannot be removed: " + error.message());
+  }
+  for (auto output = outputs_.rbegin(); output != outputs_.rend(); ++output) (*output)->commit();
+}
+
+void PendingOutputs::check_same() const {
+  for (const PendingOutput* output : must_be_same_) {
+    std::error_code unreadable;
+    if (!fs::exists(output->target(), unreadable)) continue;
+    if (read_file(output->target()) == read_file(output->path())) continue;
+    throw OutputError(output->target().string(), kExistsAlready);
+  }
+}
+
 void write_file(const fs::path& target, std::string_view content, bool overwrite) {
   PendingOutput output(target, PendingOutput::Kind::file, overwrite);
   write_bytes(output.path(), content);
@@ -154,7 +204,13 @@ void write_bytes(const fs::path& path, std::string_view content) {
   std::ofstream file(path, std::ios::binary | std::ios::trunc);
   file.write(content.data(), static_cast<std::streamsize>(content.size()));
   file.close();
-  if (!file) throw OutputError(path.string(), cannot_write(last_error()));
+  if (!file) throw OutputError(committed_name(path).string(), cannot_write(last_error()));
+}
+
+fs::path committed_name(const fs::path& path) {
+  fs::path name;
+  for (const fs::path& part : path) name /= without_temporary(part.string());
+  return name;
 }
 
 std::string read_file(const fs::path& path) {

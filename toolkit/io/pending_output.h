@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -26,6 +27,7 @@ class PendingOutput {
   /// A hidden name without the target's extension: a writer that chooses its format by extension
   /// has to be told.
   const std::filesystem::path& path() const { return temporary_; }
+  const std::filesystem::path& target() const { return target_; }
   /// Renames into place. Throws OutputError.
   void commit();
 
@@ -45,11 +47,48 @@ class PendingOutput {
   bool committed_ = false;
 };
 
+/// Several outputs that appear one right after the other when all of them are whole.
+class PendingOutputs {
+ public:
+  /// What may stand already under an output's name where nothing may be overwritten.
+  enum class Existing { nothing, same, anything };
+
+  explicit PendingOutputs(bool overwrite);
+  PendingOutputs(const PendingOutputs&) = delete;
+  PendingOutputs& operator=(const PendingOutputs&) = delete;
+  ~PendingOutputs();
+
+  /// The temporary path to write to. Throws OutputError as PendingOutput does. `same` is for a file
+  /// that goes with the main output: a killed run may have left one of the same content.
+  const std::filesystem::path& add(const std::filesystem::path& target, PendingOutput::Kind kind,
+                                   Existing existing = Existing::nothing);
+
+  /// A file of an earlier output that would be taken for a part of this one. Throws OutputError
+  /// unless it may be replaced; commit() removes it.
+  void add_stale(const std::filesystem::path& path);
+
+  /// What was added first comes last: whoever sees it sees all that belongs to it. Throws
+  /// OutputError.
+  void commit();
+
+ private:
+  void check_same() const;
+
+  bool overwrite_;
+  std::vector<std::unique_ptr<PendingOutput>> outputs_;
+  std::vector<const PendingOutput*> must_be_same_;
+  std::vector<std::filesystem::path> stale_;
+};
+
 /// Writes `content` to `target` by way of a PendingOutput. Throws OutputError.
 void write_file(const std::filesystem::path& target, std::string_view content, bool overwrite);
 
 /// Writes `content` to `path` itself, replacing what is there. Not atomic. Throws OutputError.
 void write_bytes(const std::filesystem::path& path, std::string_view content);
+
+/// What `path` is called once it is committed: without the temporary names of PendingOutput, which
+/// nobody asked for. Messages tell this name.
+std::filesystem::path committed_name(const std::filesystem::path& path);
 
 /// The bytes of a file. Throws IoError that says whether it is missing, a folder or unreadable.
 std::string read_file(const std::filesystem::path& path);

@@ -71,7 +71,7 @@ PlyProperty read_property(TextCursor& cursor, const std::string& element) {
 }  // namespace
 
 PlyHeader read_ply_header(const std::string& path, std::string_view bytes) {
-  TextCursor cursor(path, bytes, {});
+  TextCursor cursor(path, without_byte_order_mark(bytes), {});
   if (cursor.word() != "ply")
     cursor.fail("expected 'ply', found another word: this is no PLY file");
   PlyHeader header;

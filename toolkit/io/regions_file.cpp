@@ -85,7 +85,7 @@ Regions read_json(const std::string& path, const std::string& text, int vertices
 
 Lists read_csv(const std::string& path, std::string text, int vertices) {
   std::ranges::replace(text, ',', ' ');
-  TextCursor cursor(path, text, {.comments = true});
+  TextCursor cursor(path, without_byte_order_mark(text), {.comments = true});
   if (cursor.word() != "vertex" || cursor.word() != "region" || !cursor.word().empty()) {
     cursor.fail("expected the columns vertex,region");
   }
@@ -111,7 +111,7 @@ bool is_mask(const std::vector<long long>& numbers) {
 
 /// One vertex a line, or a mask of N zeros and ones.
 Lists read_list(const std::string& path, const std::string& text, int vertices) {
-  TextCursor cursor(path, text, {.comments = true});
+  TextCursor cursor(path, without_byte_order_mark(text), {.comments = true});
   std::vector<long long> numbers;
   for (auto word = cursor.word_anywhere(); !word.empty(); word = cursor.word_anywhere()) {
     numbers.push_back(cursor.integer(word, "a vertex"));

@@ -133,6 +133,15 @@ MeshSequence neutral_of(const BlendshapeModel& person, const SequenceSource& sou
                       times_of(selected, source), person.neutral());
 }
 
+Eigen::MatrixXd weights_of(const fs::path& path, const WeightTrack& track,
+                           const std::vector<std::string>& expressions) {
+  try {
+    return weights_for(track, expressions);
+  } catch (const MismatchError& error) {
+    throw MismatchError(path.string() + ": " + error.what());
+  }
+}
+
 SequenceRead read_driven(const ModelSpec& spec, const SequenceSource& source) {
   SequenceRead read;
   read.model_driven = true;
@@ -148,7 +157,8 @@ SequenceRead read_driven(const ModelSpec& spec, const SequenceSource& source) {
       selected_frames(source.frames, static_cast<int>(track.weights.rows()));
   const std::vector<std::string>& expressions = person.expressions().names;
   read.notes = match_notes(*source.weights, spec.path, match_weights(track, expressions));
-  const Eigen::MatrixXd weights = weights_for(track, expressions)(selected, Eigen::all);
+  const Eigen::MatrixXd weights =
+      weights_of(*source.weights, track, expressions)(selected, Eigen::all);
   const bool timed = track.times.size() > 0;
   read.sequence = person.animate(
       weights, timed ? Eigen::VectorXd(track.times(selected)) : times_of(selected, source));

@@ -45,7 +45,8 @@ SequenceRead read_sequence(const std::string& text, const SequenceSource& source
 struct SequenceWriteOptions {
   /// Format of the frames in a folder: "ply", "obj", "off" or "stl".
   std::string format = "ply";
-  /// Double precision in mesh files; single precision in arrays.
+  /// Double precision in mesh files, which those far from the origin have in any case; single
+  /// precision in arrays.
   bool double_precision = false;
   bool single_precision = false;
   bool overwrite = false;

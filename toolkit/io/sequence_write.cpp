@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <memory>
 #include <stdexcept>
 
 #include <mimetra/io/array_file.h>
@@ -14,52 +13,6 @@ namespace {
 
 using ExtraFiles = std::vector<std::pair<std::string, std::string>>;
 
-/// Several outputs that appear one right after the other when all of them are whole.
-class PendingOutputs {
- public:
-  explicit PendingOutputs(bool overwrite) : overwrite_(overwrite) {}
-  PendingOutputs(const PendingOutputs&) = delete;
-  PendingOutputs& operator=(const PendingOutputs&) = delete;
-  /// The first one made the parent folders and can remove them only when the others are gone.
-  ~PendingOutputs() {
-    while (!outputs_.empty()) outputs_.pop_back();
-  }
-
-  /// The temporary path to write to.
-  const fs::path& add(const fs::path& target, PendingOutput::Kind kind) {
-    outputs_.push_back(std::make_unique<PendingOutput>(target, kind, overwrite_));
-    return outputs_.back()->path();
-  }
-
-  /// A file of an earlier output that would be taken for a part of this one. Throws OutputError
-  /// unless it may be replaced; commit() removes it.
-  void add_stale(const fs::path& path) {
-    std::error_code unreadable;
-    if (!fs::exists(path, unreadable)) return;
-    if (!overwrite_) {
-      throw OutputError(path.string(), "exists already; use --force to replace it");
-    }
-    stale_.push_back(path);
-  }
-
-  /// What was added first comes last: whoever sees it sees all that belongs to it.
-  void commit() {
-    for (const fs::path& path : stale_) {
-      std::error_code error;
-      fs::remove(path, error);
-      if (error) throw OutputError(path.string(), "cannot be removed: " + error.message());
-    }
-    for (auto output = outputs_.rbegin(); output != outputs_.rend(); ++output) {
-      (*output)->commit();
-    }
-  }
-
- private:
-  bool overwrite_;
-  std::vector<std::unique_ptr<PendingOutput>> outputs_;
-  std::vector<fs::path> stale_;
-};
-
 PositionsView view_of(const Positions& positions) {
   return {positions.data(), positions.rows(), 3};
 }
@@ -67,8 +20,9 @@ PositionsView view_of(const Positions& positions) {
 /// A file that only mimetra reads: it holds what the program held.
 void add_pose(PendingOutputs& outputs, const fs::path& target, const MeshSequence& sequence,
               std::vector<fs::path>& files) {
-  write_mesh(outputs.add(target, PendingOutput::Kind::file), view_of(sequence.rest()),
-             sequence.connectivity(), {.double_precision = true, .extension = ".ply"});
+  write_mesh(outputs.add(target, PendingOutput::Kind::file, PendingOutputs::Existing::same),
+             view_of(sequence.rest()), sequence.connectivity(),
+             {.double_precision = true, .extension = ".ply"});
   files.push_back(target);
 }
 
@@ -86,9 +40,17 @@ void add_extra_beside(PendingOutputs& outputs, const fs::path& target, const Ext
                       std::vector<fs::path>& files) {
   for (const auto& [name, content] : extra) {
     const fs::path path = target.parent_path() / name;
-    write_bytes(outputs.add(path, PendingOutput::Kind::file), content);
+    write_bytes(outputs.add(path, PendingOutput::Kind::file, PendingOutputs::Existing::anything),
+                content);
     files.push_back(path);
   }
+}
+
+/// Far from the origin single precision would round the motion away.
+bool needs_double(const MeshSequence& sequence) {
+  constexpr double kRounding = 6e-8;     // of float32, relative
+  constexpr double kMostRounded = 1e-5;  // of the longest side: well below what one sees
+  return kRounding * sequence.positions().cwiseAbs().maxCoeff() > kMostRounded * sequence.extent();
 }
 
 std::string frame_name(int frame, int frames, const std::string& format) {
@@ -102,12 +64,13 @@ std::vector<fs::path> write_folder(const MeshSequence& sequence, const fs::path&
                                    const SequenceWriteOptions& options, const ExtraFiles& extra) {
   PendingOutputs outputs(options.overwrite);
   const fs::path folder = outputs.add(target, PendingOutput::Kind::folder);
+  const bool double_precision = options.double_precision || needs_double(sequence);
   std::vector<fs::path> files;
   for (int frame = 0; frame < sequence.frames(); ++frame) {
     report_progress(options.progress, static_cast<double>(frame) / sequence.frames());
     const std::string name = frame_name(frame, sequence.frames(), options.format);
     write_mesh(folder / name, sequence.frame(frame), sequence.connectivity(),
-               {.double_precision = options.double_precision});
+               {.double_precision = double_precision});
     files.push_back(target / name);
   }
   for (const auto& [name, content] : extra) {
@@ -145,9 +108,10 @@ std::vector<fs::path> write_single(const MeshSequence& sequence, const fs::path&
   }
   PendingOutputs outputs(options.overwrite);
   std::vector<fs::path> files = {target};
-  write_mesh(
-      outputs.add(target, PendingOutput::Kind::file), sequence.frame(0), sequence.connectivity(),
-      {.double_precision = options.double_precision, .extension = target.extension().string()});
+  write_mesh(outputs.add(target, PendingOutput::Kind::file), sequence.frame(0),
+             sequence.connectivity(),
+             {.double_precision = options.double_precision || needs_double(sequence),
+              .extension = target.extension().string()});
   add_extra_beside(outputs, target, extra, files);
   report_progress(options.progress, 1);
   outputs.commit();

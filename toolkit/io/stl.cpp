@@ -18,7 +18,7 @@ std::size_t triangle_count(std::string_view bytes) {
 
 /// Some binary files start with "solid" too; only their size tells.
 bool is_binary(std::string_view bytes) {
-  if (bytes.substr(0, 5) != "solid") return true;
+  if (!without_byte_order_mark(bytes).starts_with("solid")) return true;
   return bytes.size() >= kPreambleBytes &&
          bytes.size() == kPreambleBytes + kTriangleBytes * triangle_count(bytes);
 }
@@ -95,7 +95,8 @@ void append_point(std::string& bytes, const Eigen::Vector3d& point) {
 }  // namespace
 
 std::vector<double> read_stl_corners(const std::string& path, std::string_view bytes) {
-  return is_binary(bytes) ? read_binary(path, bytes) : read_ascii(path, bytes);
+  return is_binary(bytes) ? read_binary(path, bytes)
+                          : read_ascii(path, without_byte_order_mark(bytes));
 }
 
 std::string stl_bytes(const PositionsView& positions, const Connectivity& connectivity) {

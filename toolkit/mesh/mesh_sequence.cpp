@@ -43,23 +43,29 @@ MeshSequence::MeshSequence(Connectivity connectivity, Frames frames, Eigen::Vect
 
 MeshSequence::MeshSequence(std::shared_ptr<const Connectivity> connectivity, Frames frames,
                            Eigen::VectorXd times, std::optional<Positions> rest)
+    : MeshSequence(std::move(connectivity), std::make_shared<const Frames>(std::move(frames)),
+                   std::move(times), std::move(rest)) {}
+
+MeshSequence::MeshSequence(std::shared_ptr<const Connectivity> connectivity,
+                           std::shared_ptr<const Frames> frames, Eigen::VectorXd times,
+                           std::optional<Positions> rest)
     : connectivity_(std::move(connectivity)),
       frames_(std::move(frames)),
       times_(std::move(times)),
       rest_is_known_(rest.has_value()) {
   if (!connectivity_) throw std::invalid_argument("a sequence needs a connectivity");
-  check_frames(frames_, connectivity_->vertices);
-  if (times_.size() == 0) times_ = default_times(frames_.rows());
-  if (times_.size() != frames_.rows()) {
+  check_frames(*frames_, connectivity_->vertices);
+  if (times_.size() == 0) times_ = default_times(frames_->rows());
+  if (times_.size() != frames_->rows()) {
     throw std::invalid_argument(std::to_string(times_.size()) + " times for " +
-                                std::to_string(frames_.rows()) + " frames");
+                                std::to_string(frames_->rows()) + " frames");
   }
   rest_ = rest ? *std::move(rest) : Positions(frame(0));
   check_rest(rest_, vertices());
 }
 
 PositionsView MeshSequence::frame(int f) const {
-  return {frames_.data() + f * frames_.cols(), vertices(), 3};
+  return {frames_->data() + f * frames_->cols(), vertices(), 3};
 }
 
 MeshSequence MeshSequence::slice(int first, int last, int step) const {
@@ -72,7 +78,7 @@ MeshSequence MeshSequence::slice(int first, int last, int step) const {
   const auto chosen = Eigen::seq(first, last - 1, step);
   std::optional<Positions> rest;
   if (rest_is_known_) rest = rest_;
-  return {connectivity_, frames_(chosen, Eigen::all), times_(chosen), std::move(rest)};
+  return {connectivity_, Frames((*frames_)(chosen, Eigen::all)), times_(chosen), std::move(rest)};
 }
 
 MeshSequence MeshSequence::with_rest(Positions rest) const {
@@ -81,13 +87,13 @@ MeshSequence MeshSequence::with_rest(Positions rest) const {
 
 MeshSequence MeshSequence::with_frames(Frames frames) const {
   check_frames(frames, vertices());
-  if (frames.rows() != frames_.rows()) {
+  if (frames.rows() != frames_->rows()) {
     throw std::invalid_argument(std::to_string(frames.rows()) + " frames, expected " +
-                                std::to_string(frames_.rows()) + " as in the sequence");
+                                std::to_string(frames_->rows()) + " as in the sequence");
   }
   MeshSequence result;
   result.connectivity_ = connectivity_;
-  result.frames_ = std::move(frames);
+  result.frames_ = std::make_shared<const Frames>(std::move(frames));
   result.times_ = times_;
   result.rest_ = rest_;
   result.rest_is_known_ = rest_is_known_;

@@ -15,8 +15,8 @@ constexpr double kDefaultFramesPerSecond = 30;
 
 /// One mesh that moves: one connectivity, F poses, their times, and the rest pose.
 ///
-/// All poses are one block of memory. The rest pose need not be a frame; where nobody knows it, it
-/// is the first frame and `rest_is_known()` says false.
+/// All poses are one block of memory, which copies share. The rest pose need not be a frame; where
+/// nobody knows it, it is the first frame and `rest_is_known()` says false.
 class MeshSequence {
  public:
   MeshSequence() = default;
@@ -28,8 +28,8 @@ class MeshSequence {
   MeshSequence(std::shared_ptr<const Connectivity> connectivity, Frames frames,
                Eigen::VectorXd times = {}, std::optional<Positions> rest = {});
 
-  int frames() const { return static_cast<int>(frames_.rows()); }
-  int vertices() const { return static_cast<int>(frames_.cols() / 3); }
+  int frames() const { return static_cast<int>(frames_->rows()); }
+  int vertices() const { return static_cast<int>(frames_->cols() / 3); }
   const Connectivity& connectivity() const { return *connectivity_; }
   const std::shared_ptr<const Connectivity>& shared_connectivity() const { return connectivity_; }
   const Triangles& triangles() const { return connectivity_->triangles; }
@@ -37,7 +37,7 @@ class MeshSequence {
   /// Positions of frame f (N x 3), a view into this sequence. \pre 0 <= f < frames()
   PositionsView frame(int f) const;
   /// All frames, F x 3N.
-  const Frames& positions() const { return frames_; }
+  const Frames& positions() const { return *frames_; }
   /// Seconds (F).
   const Eigen::VectorXd& times() const { return times_; }
 
@@ -55,8 +55,12 @@ class MeshSequence {
   MeshSequence with_frames(Frames frames) const;
 
  private:
+  MeshSequence(std::shared_ptr<const Connectivity> connectivity,
+               std::shared_ptr<const Frames> frames, Eigen::VectorXd times,
+               std::optional<Positions> rest);
+
   std::shared_ptr<const Connectivity> connectivity_ = std::make_shared<Connectivity>();
-  Frames frames_;
+  std::shared_ptr<const Frames> frames_ = std::make_shared<Frames>();
   Eigen::VectorXd times_;
   Positions rest_;
   bool rest_is_known_ = false;

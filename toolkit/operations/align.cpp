@@ -35,7 +35,7 @@ Json json_of(const std::vector<RigidTransform>& motion) {
 Alignment aligned(const Invocation& invocation) {
   const MeshSequence& sequence = invocation.get<SequenceRead>("sequence").sequence;
   if (const auto undo = invocation.parameters.optional_text("undo")) {
-    std::vector<RigidTransform> motion = read_motion(*undo);
+    std::vector<RigidTransform> motion = read_motion(*undo, sequence.frames());
     return {with_motion(sequence, motion), std::move(motion)};
   }
   const bool stable = invocation.parameters.text("on") == "stable";

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include <Eigen/LU>
 #include <nlohmann/json.hpp>
 
 #include <mimetra/io/mesh_file.h>
@@ -54,6 +55,9 @@ void warn_of_parting(const Invocation& invocation, const MeshSequence& sequence)
                   "); distances pass from one to the other, use --weld none to keep them apart");
 }
 
+/// Manifests keep all digits; a rotation that was typed or rounded by another tool passes too.
+constexpr double kRotationTolerance = 1e-4;
+
 RigidTransform transform_of(const Json& json) {
   RigidTransform transform;
   const auto rotation = json.at("rotation").get<std::vector<double>>();
@@ -64,6 +68,10 @@ RigidTransform transform_of(const Json& json) {
   transform.rotation =
       Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(rotation.data());
   transform.translation = Eigen::Map<const Eigen::Vector3d>(translation.data());
+  const Eigen::Matrix3d& R = transform.rotation;
+  if (!(R * R.transpose()).isIdentity(kRotationTolerance) || R.determinant() < 0) {
+    throw std::invalid_argument("its rotation is no rotation matrix (row by row)");
+  }
   return transform;
 }
 
@@ -153,9 +161,12 @@ std::vector<Parameter> decomposition_parameters(int count) {
   return parameters;
 }
 
+/// A region of no size holds nothing but its centre, and no triangle is sure to be in it.
+constexpr double kLeastRadius = 1e-9;
+
 std::vector<Parameter> region_parameters() {
   return {
-      {"radius", ParameterKind::length, "0.1", "geodesic radius of a region"},
+      {"radius", ParameterKind::length, "0.1", "geodesic radius of a region", "", kLeastRadius},
       {"region",
        ParameterKind::choice,
        "disc",
@@ -183,17 +194,29 @@ Positions read_rest(const std::string& text, const MeshSequence& sequence) {
   return rest;
 }
 
-std::vector<RigidTransform> read_motion(const std::string& path) {
+std::vector<RigidTransform> read_motion(const std::string& path, int frames) {
+  std::vector<RigidTransform> motion;
   try {
     const Json json = Json::parse(read_file(path));
-    std::vector<RigidTransform> motion;
     for (const Json& entry : json.at("result").at("motion")) motion.push_back(transform_of(entry));
-    return motion;
   } catch (const Json::exception&) {
     throw IoError(path, "expected the manifest of an align run with result.motion");
   } catch (const std::invalid_argument& error) {
-    throw IoError(path, error.what());
+    throw IoError(path, "motion of frame " + std::to_string(motion.size()) + ": " + error.what());
   }
+  if (static_cast<int>(motion.size()) != frames) {
+    throw MismatchError(path + ": " + std::to_string(motion.size()) +
+                        " rigid transforms, expected " + std::to_string(frames) +
+                        ", one per frame of the sequence");
+  }
+  return motion;
+}
+
+SupportRange support_range(const Parameters& parameters, double unit) {
+  const SupportRange range = {parameters.length("d-min", unit), parameters.length("d-max", unit)};
+  if (range.d_min < range.d_max) return range;
+  throw UsageError("--d-min: expected less than --d-max, found " + parameters.text("d-min") +
+                   " and " + parameters.text("d-max"));
 }
 
 StillSequence without_motion(const Invocation& invocation, const SequenceRead& read,
@@ -204,7 +227,7 @@ StillSequence without_motion(const Invocation& invocation, const SequenceRead& r
   if (how == "none") return {sequence, {}};
   Alignment alignment = how == "stable" ? align(sequence, AlignmentVertices::stable)
                         : how == "all"  ? align(sequence, AlignmentVertices::all)
-                                        : align(sequence, read_motion(how));
+                                        : align(sequence, read_motion(how, sequence.frames()));
   return {std::move(alignment.sequence), std::move(alignment.motion)};
 }
 
@@ -223,8 +246,9 @@ Analysis analyse(const Invocation& invocation, const SequenceRead& read,
   const bool reference = parameters.text("compat") == "splocs2013";
   const double unit = reference ? largest_frame_extent(read.sequence) : work.extent();
   options.count = count;
-  options.d_min = parameters.length("d-min", unit);
-  options.d_max = parameters.length("d-max", unit);
+  const SupportRange range = support_range(parameters, unit);
+  options.d_min = range.d_min;
+  options.d_max = range.d_max;
   options.sparsity = parameters.number("sparsity");
   options.rho = parameters.number("rho");
   options.iterations = parameters.integer("iterations");
@@ -235,10 +259,6 @@ Analysis analyse(const Invocation& invocation, const SequenceRead& read,
   options.distances = distances;
   options.threads = invocation.threads;
   options.progress = progress;
-  if (*options.d_min >= *options.d_max) {
-    throw UsageError("--d-min: expected less than --d-max, found " + parameters.text("d-min") +
-                     " and " + parameters.text("d-max"));
-  }
   Components components = decompose(work, options);
   return {std::move(components), std::move(distances), stopwatch.seconds()};
 }
@@ -262,6 +282,10 @@ Analysis analysis_for(const Invocation& invocation, const SequenceRead& read) {
                         std::to_string(given->vertices()) +
                         " vertices with other triangles than the sequence, which has " +
                         std::to_string(read.sequence.vertices()) + " vertices");
+  }
+  if (std::ranges::all_of(given->centers, [](VertexIndex center) { return center < 0; })) {
+    throw MismatchError(invocation.inputs.at("components").front().name +
+                        ": no component moves a vertex, so that there is no region");
   }
   return {*given, distances_on(invocation, given->rest, given->triangles), 0};
 }

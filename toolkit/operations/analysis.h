@@ -55,7 +55,16 @@ std::string summary_of(const Regions& regions);
 /// Positions of `text` (a mesh file), checked against a sequence's vertex count.
 Positions read_rest(const std::string& text, const MeshSequence& sequence);
 
-/// A motion as align's manifest keeps it. Throws IoError.
-std::vector<RigidTransform> read_motion(const std::string& path);
+/// A motion of `frames` frames as align's manifest keeps it. Throws IoError, MismatchError.
+std::vector<RigidTransform> read_motion(const std::string& path, int frames);
+
+/// Geodesic distances between which a support map rises, in the file's unit.
+struct SupportRange {
+  double d_min;
+  double d_max;
+};
+
+/// Applies --d-min and --d-max to a mesh whose longest side is `unit`. Throws UsageError.
+SupportRange support_range(const Parameters& parameters, double unit);
 
 }  // namespace mimetra

@@ -37,13 +37,17 @@ Paths write_sequence_data(const Data& data, const WriteRequest& request) {
 }
 
 Paths write_text(const std::string& text, const WriteRequest& request) {
-  write_file(request.target, text, request.overwrite);
-  return with_extra({request.target}, request);
+  return write_with_extra(request, [&]() -> Paths {
+    write_file(request.target, text, request.overwrite);
+    return {request.target};
+  });
 }
 
 Paths write_components_data(const Data& data, const WriteRequest& request) {
-  write_components(request.target, std::get<Components>(data), request.overwrite);
-  return with_extra({request.target}, request);
+  return write_with_extra(request, [&]() -> Paths {
+    write_components(request.target, std::get<Components>(data), request.overwrite);
+    return {request.target};
+  });
 }
 
 Paths write_model_data(const Data& data, const WriteRequest& request) {
@@ -54,12 +58,17 @@ Paths write_model_data(const Data& data, const WriteRequest& request) {
 
 }  // namespace
 
-Paths with_extra(Paths written, const WriteRequest& request) {
+Paths write_with_extra(const WriteRequest& request, const std::function<Paths()>& write) {
+  // The parents that the request's target needs are made first and go last where it fails.
+  PendingOutputs extra(true);
+  Paths beside;
   for (const auto& [name, content] : request.extra) {
-    const auto path = request.target.parent_path() / name;
-    write_file(path, content, true);
-    written.push_back(path);
+    beside.push_back(request.target.parent_path() / name);
+    write_bytes(extra.add(beside.back(), PendingOutput::Kind::file), content);
   }
+  Paths written = write();
+  extra.commit();
+  written.insert(written.end(), beside.begin(), beside.end());
   return written;
 }
 

@@ -1,14 +1,20 @@
 #pragma once
 
+#include <filesystem>
+#include <functional>
+#include <vector>
+
 #include <mimetra/operations/operation.h>
 
 namespace mimetra {
 
-/// Writes the further files of a request beside its output file; returns `written` with them.
-std::vector<std::filesystem::path> with_extra(std::vector<std::filesystem::path> written,
-                                              const WriteRequest& request);
-
 /// Adds the writers and region readers of io.
 void add_formats(OperationTable& table);
+
+/// Calls `write`, which makes the request's target and returns its files, and lets the request's
+/// further files appear beside it right after; where either fails, nothing appears. Returns all
+/// files. Throws OutputError.
+std::vector<std::filesystem::path> write_with_extra(
+    const WriteRequest& request, const std::function<std::vector<std::filesystem::path>()>& write);
 
 }  // namespace mimetra

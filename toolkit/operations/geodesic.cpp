@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -22,6 +23,11 @@ Eigen::VectorXd nearest(const SurfaceDistances& distances, const std::vector<std
       throw MismatchError("--source: vertex " + std::to_string(source) + ", the mesh has " +
                           std::to_string(vertices) + " (0-based)");
     }
+    const auto& faceless = distances.vertices_without_face();
+    if (std::ranges::find(faceless, source) != faceless.end()) {
+      throw MismatchError("--source: vertex " + std::to_string(source) +
+                          " belongs to no triangle with area; choose another");
+    }
     result = result.cwiseMin(distances(static_cast<VertexIndex>(source)));
   }
   return result;
@@ -31,12 +37,11 @@ Outcome run(const Invocation& invocation) {
   const MeshSequence& sequence = invocation.get<SequenceRead>("mesh").sequence;
   const Parameters& parameters = invocation.parameters;
   const MeshSequence mesh = sequence.slice(0, 1).with_rest(sequence.frame(0));
+  const SupportRange range = support_range(parameters, mesh.extent());
   const SurfaceDistances distances = distances_on(invocation, mesh.rest(), mesh.triangles());
-  const double unit = mesh.extent();
   const Eigen::VectorXd distance =
       nearest(distances, parameters.integers("source"), mesh.vertices());
-  const Eigen::VectorXd support = geodesic::support_map(distance, parameters.length("d-min", unit),
-                                                        parameters.length("d-max", unit));
+  const Eigen::VectorXd support = geodesic::support_map(distance, range.d_min, range.d_max);
   int reached = 0;
   double farthest = 0;
   Eigen::VectorXd shown = distance;

@@ -99,7 +99,11 @@ class Loader {
 
   RegionData regions(const std::string& text) {
     files.push_back(text);
-    return {table_.region_reader(text).read(text, vertices_, triangles_), {}};
+    RegionData data{table_.region_reader(text).read(text, vertices_, triangles_), {}};
+    if (data.regions.triangles.empty()) {
+      throw MismatchError(text + ": its regions hold no triangle of the mesh; choose others");
+    }
+    return data;
   }
 
   const OperationTable& table_;

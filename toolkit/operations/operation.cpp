@@ -8,6 +8,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include <mimetra/io/pending_output.h>
 #include <mimetra/operations/report.h>
 
 namespace mimetra {
@@ -238,6 +239,13 @@ bool OperationTable::writes_folder(DataKind kind, const std::filesystem::path& t
   const std::vector<std::string>& extensions = writer(kind, target).extensions;
   const bool may = std::ranges::find(extensions, "") != extensions.end();
   return may && (!target.has_extension() || !has_extension(extensions, target));
+}
+
+void OperationTable::refuse_unwritable(const Output& output, const std::filesystem::path& target,
+                                       bool overwrite) const {
+  const bool is_folder = writes_folder(output.kind, target);
+  PendingOutput(target, is_folder ? PendingOutput::Kind::folder : PendingOutput::Kind::file,
+                overwrite);
 }
 
 std::vector<std::filesystem::path> OperationTable::output_paths(

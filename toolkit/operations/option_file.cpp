@@ -18,10 +18,17 @@ void set_from_file(const std::string& path, Parameters& parameters) {
   if (!options.is_object()) throw IoError(path, "expected an object of option names and values");
   for (const auto& [name, value] : options.items()) {
     const Parameter* parameter = parameters.find(name);
-    if (!parameter) throw UsageError(path + ": there is no option '" + name + "'");
+    if (!parameter) {
+      throw UsageError(path + ": there is no option '" + name +
+                       "'; `mimetra operations` lists them");
+    }
     std::string text = value.is_string() ? value.get<std::string>() : value.dump();
     if (value.is_array()) text = text.substr(1, text.size() - 2);  // [10,30] as people type it
-    parameters.set(name, parse_value(*parameter, text));
+    try {
+      parameters.set(name, parse_value(*parameter, text));
+    } catch (const UsageError& error) {
+      throw UsageError(path + ": " + error.what());
+    }
   }
 }
 

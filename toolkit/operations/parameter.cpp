@@ -51,7 +51,8 @@ std::string expected_text(const Parameter& parameter) {
     case ParameterKind::number:
       return "a number" + suffix;
     case ParameterKind::length:
-      return "a share of the longest side as in 0.1, or a length as in 12abs";
+      return "a share of the longest side as in 0.1, or a length as in 12abs" +
+             (range.empty() ? range : ", " + range);
     case ParameterKind::choice: {
       std::string list;
       for (const std::string& choice : parameter.choices) {
@@ -116,7 +117,8 @@ bool is_sound(const Parameter& parameter, const ParameterValue& value) {
     }
     case ParameterKind::length: {
       const auto* text = std::get_if<std::string>(&value);
-      return text && parse_length(*text);
+      const auto length = text ? parse_length(*text) : std::nullopt;
+      return length && in_range(parameter, length->first);
     }
     case ParameterKind::choice: {
       const auto* text = std::get_if<std::string>(&value);

@@ -1,5 +1,7 @@
 #include <mimetra/vtk/vtk_formats.h>
 
+#include <cmath>
+
 #include <mimetra/io/pending_output.h>
 #include <mimetra/operations/formats.h>
 #include <mimetra/vtk/picture.h>
@@ -16,12 +18,15 @@ std::vector<std::filesystem::path> write(const FieldSequence& fields, const Writ
       request.parameters.text("compress") == "small" ? VtpCompression::zlib : VtpCompression::lz4;
   options.overwrite = request.overwrite;
   options.progress = request.progress;
-  return with_extra(write_vtp_series(fields, request.target, options), request);
+  return write_with_extra(request,
+                          [&] { return write_vtp_series(fields, request.target, options); });
 }
 
 std::vector<std::filesystem::path> write_picture(const Data& data, const WriteRequest& request) {
-  write_file(request.target, png_of(std::get<Image>(data)), request.overwrite);
-  return with_extra({request.target}, request);
+  return write_with_extra(request, [&] {
+    write_file(request.target, png_of(std::get<Image>(data)), request.overwrite);
+    return std::vector{request.target};
+  });
 }
 
 /// One region: the vertices where the field `roi` is not 0.
@@ -34,6 +39,10 @@ Regions read_regions_from_vtp(const std::filesystem::path& path, int vertices,
   }
   std::vector<VertexIndex> inside;
   for (int v = 0; v < vertices; ++v) {
+    if (!std::isfinite(mask(v, 0))) {
+      throw IoError(path.string(), "the field 'roi' of vertex " + std::to_string(v) + " is " +
+                                       std::to_string(mask(v, 0)) + ", expected 0 or 1");
+    }
     if (mask(v, 0) != 0) inside.push_back(v);
   }
   return regions_from_vertices(vertices, triangles, {inside});

@@ -161,7 +161,7 @@ std::string reason_of(unsigned long code) {
   if (code > vtkErrorCode::NoError && code < vtkErrorCode::FirstVTKErrorCode) {
     return std::system_category().message(static_cast<int>(code));
   }
-  return "VTK cannot write it (code " + std::to_string(code) + ")";
+  return "VTK fails (code " + std::to_string(code) + ")";
 }
 
 /// `shown` is the name that the user asked for.
@@ -179,7 +179,7 @@ void write_frame(vtkPolyData& data, const std::filesystem::path& path, VtpCompre
     writer->SetCompressorTypeToZLib();
   }
   if (!writer->Write() || writer->GetErrorCode() != vtkErrorCode::NoError) {
-    throw OutputError(shown.string(), reason_of(writer->GetErrorCode()));
+    throw OutputError(shown.string(), "cannot be written: " + reason_of(writer->GetErrorCode()));
   }
 }
 
