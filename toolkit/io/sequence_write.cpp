@@ -92,7 +92,7 @@ void add_extra_beside(PendingOutputs& outputs, const fs::path& target, const Ext
 }
 
 std::string frame_name(int frame, int frames, const std::string& format) {
-  const std::size_t kLeastDigits = 4;
+  constexpr std::size_t kLeastDigits = 4;
   const std::size_t digits = std::max(kLeastDigits, std::to_string(frames - 1).size());
   const std::string number = std::to_string(frame);
   return "frame_" + std::string(digits - number.size(), '0') + number + "." + format;
