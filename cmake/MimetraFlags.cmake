@@ -9,7 +9,8 @@ if(MIMETRA_WARNINGS_AS_ERRORS)
   target_compile_options(mimetra_flags INTERFACE -Werror)
 endif()
 if(MIMETRA_SANITIZE)
-  add_compile_options(-fsanitize=address,undefined -fno-sanitize-recover=undefined
-                      -fno-omit-frame-pointer)
+  set(MIMETRA_SANITIZER_FLAGS -fsanitize=address,undefined -fno-sanitize-recover=undefined
+                              -fno-omit-frame-pointer)
+  add_compile_options(${MIMETRA_SANITIZER_FLAGS})
   add_link_options(-fsanitize=address,undefined)
 endif()

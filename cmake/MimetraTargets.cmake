@@ -1,19 +1,41 @@
 # One library per folder; `#include <mimetra/FOLDER/header.h>` means the same in the source tree and
-# in an installation.
+# in an installation, where each library is a component of the package.
 
+include(GNUInstallDirs)
 set(MIMETRA_INCLUDE_ROOT ${PROJECT_BINARY_DIR}/include)
+set(MIMETRA_PACKAGE_FOLDER ${CMAKE_INSTALL_LIBDIR}/cmake/mimetra)
 
-# mimetra_library(NAME SOURCES ... [USES libraries seen in headers] [PRIVATE libraries of .cpp files])
+# mimetra_library(NAME
+#   SOURCES ...
+#   HEADERS those that are installed
+#   [USES libraries seen in headers]
+#   [PRIVATE libraries of .cpp files]
+#   [PACKAGES what users must find to link it, each a mimetra_package()])
 function(mimetra_library name)
-  cmake_parse_arguments(ARG "" "" "SOURCES;USES;PRIVATE" ${ARGN})
+  cmake_parse_arguments(ARG "" "" "SOURCES;HEADERS;USES;PRIVATE;PACKAGES" ${ARGN})
   add_library(mimetra_${name} STATIC ${ARG_SOURCES})
   add_library(mimetra::${name} ALIAS mimetra_${name})
   set_target_properties(mimetra_${name} PROPERTIES EXPORT_NAME ${name})
+  target_compile_features(mimetra_${name} PUBLIC cxx_std_20)
   target_include_directories(mimetra_${name} PUBLIC $<BUILD_INTERFACE:${MIMETRA_INCLUDE_ROOT}>
                                                     $<INSTALL_INTERFACE:include>)
-  target_link_libraries(mimetra_${name} PUBLIC ${ARG_USES} PRIVATE ${ARG_PRIVATE} mimetra_flags)
+  target_link_libraries(
+    mimetra_${name}
+    PUBLIC ${ARG_USES}
+    PRIVATE ${ARG_PRIVATE} $<BUILD_INTERFACE:mimetra_flags>)
   file(MAKE_DIRECTORY ${MIMETRA_INCLUDE_ROOT}/mimetra)
   file(CREATE_LINK ${CMAKE_CURRENT_SOURCE_DIR} ${MIMETRA_INCLUDE_ROOT}/mimetra/${name} SYMBOLIC)
+
+  install(TARGETS mimetra_${name} EXPORT mimetra_${name})
+  install(FILES ${ARG_HEADERS} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/mimetra/${name})
+  install(EXPORT mimetra_${name} FILE mimetra_${name}.cmake NAMESPACE mimetra::
+          DESTINATION ${MIMETRA_PACKAGE_FOLDER})
+  set(uses ${ARG_USES})
+  list(FILTER uses INCLUDE REGEX "^mimetra::")
+  list(TRANSFORM uses REPLACE "^mimetra::" "")
+  set_property(GLOBAL APPEND PROPERTY MIMETRA_COMPONENTS ${name})
+  set_property(GLOBAL PROPERTY MIMETRA_${name}_USES ${uses})
+  set_property(GLOBAL PROPERTY MIMETRA_${name}_PACKAGES ${ARG_PACKAGES})
 endfunction()
 
 # mimetra_test(NAME SOURCES ... USES ...): one GoogleTest program, one ctest entry per test.

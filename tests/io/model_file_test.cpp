@@ -169,6 +169,13 @@ TEST_F(Model, PersonMovesTheNeutralAlongItsIdentities) {
   EXPECT_EQ(spec.name(), "m@wide=1.5,long=-1");
 }
 
+TEST_F(Model, BlendshapesAreThePersonThatTheTextSpeaksOf) {
+  write_model(folder_ / "m", small_model(), {}, false);
+  const std::string text = (folder_ / "m").string() + "@long=0.5";
+  EXPECT_EQ(read_blendshapes(text).neutral(), read_person(ModelSpec::parse(text)).neutral());
+  EXPECT_EQ(read_blendshapes((folder_ / "m").string()).neutral(), read_model(folder_ / "m").mean());
+}
+
 TEST_F(Model, UnknownIdentityIsAMismatchThatSaysWhatThereIs) {
   write_model(folder_ / "m", small_model(), {}, false);
   const ModelSpec spec = ModelSpec::parse((folder_ / "m").string() + "@tall=1");

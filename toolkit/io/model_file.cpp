@@ -264,6 +264,10 @@ BlendshapeModel read_person(const ModelSpec& spec) {
   return model.person(alpha);
 }
 
+BlendshapeModel read_blendshapes(const std::string& text) {
+  return read_person(ModelSpec::parse(text));
+}
+
 bool is_model(const fs::path& path) {
   std::error_code unreadable;
   if (!fs::is_directory(path, unreadable)) return false;

@@ -37,6 +37,10 @@ MorphableModel read_model(const std::filesystem::path& path);
 /// The person a spec speaks of. Throws as read_model; MismatchError for an unknown identity name.
 BlendshapeModel read_person(const ModelSpec& spec);
 
+/// The person that `text` speaks of: a model, or `MODEL@identity003=1.5`. Throws as
+/// ModelSpec::parse and read_person.
+BlendshapeModel read_blendshapes(const std::string& text);
+
 /// True for a directory that looks like something read_model reads; a file is no model.
 bool is_model(const std::filesystem::path& path);
 

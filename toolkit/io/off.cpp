@@ -45,8 +45,8 @@ void read_face(TextCursor& cursor, MeshContent& content) {
 MeshContent read_off(const std::string& path, std::string_view bytes) {
   TextCursor cursor(path, without_byte_order_mark(bytes), {.comments = true});
   read_keyword(cursor);
-  const std::size_t kVertexBytes = 6;  // "0 0 0" and the line's end
-  const std::size_t kFaceBytes = 2;    // "0" and the line's end
+  constexpr std::size_t kVertexBytes = 6;  // "0 0 0" and the line's end
+  constexpr std::size_t kFaceBytes = 2;    // "0" and the line's end
   const int vertices = read_count(cursor, "the number of vertices", kVertexBytes);
   const int faces = read_count(cursor, "the number of faces", kFaceBytes);
   cursor.next_line();  // the number of edges, which nobody uses and some leave out

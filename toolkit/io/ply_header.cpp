@@ -10,7 +10,7 @@ namespace mimetra {
 namespace {
 
 PlyType type_named(const TextCursor& cursor, std::string_view name) {
-  static const std::array<std::pair<std::string_view, PlyType>, 16> kTypes = {{
+  static constexpr std::array<std::pair<std::string_view, PlyType>, 16> kTypes = {{
       {"char", PlyType::int8},
       {"int8", PlyType::int8},
       {"uchar", PlyType::uint8},

@@ -29,9 +29,9 @@ struct SequenceRead {
   /// True for a model, with or without weights: its rest pose is its neutral.
   bool model_driven = false;
   /// Files it came from, in order.
-  std::vector<std::filesystem::path> files;
+  std::vector<std::filesystem::path> files = {};
   /// Which weight names were not matched, and the like.
-  std::vector<std::string> notes;
+  std::vector<std::string> notes = {};
 };
 
 /// Reads `text`: a directory, glob or printf pattern of OBJ/PLY/OFF/STL files in natural order (2

@@ -54,7 +54,7 @@ bool needs_double(const MeshSequence& sequence) {
 }
 
 std::string frame_name(int frame, int frames, const std::string& format) {
-  const std::size_t kLeastDigits = 4;
+  constexpr std::size_t kLeastDigits = 4;
   const std::size_t digits = std::max(kLeastDigits, std::to_string(frames - 1).size());
   const std::string number = std::to_string(frame);
   return "frame_" + std::string(digits - number.size(), '0') + number + "." + format;

@@ -277,8 +277,8 @@ Regions regions_from_vertices(int vertices, const Triangles& triangles,
                           "; the mesh has vertices 0 to " + std::to_string(vertices - 1));
     }
     std::ranges::sort(region.vertices);
-    const auto repeated = std::ranges::unique(region.vertices);
-    region.vertices.erase(repeated.begin(), repeated.end());
+    const auto unique_end = std::unique(region.vertices.begin(), region.vertices.end());
+    region.vertices.erase(unique_end, region.vertices.end());
   }
   complete(regions, triangles);
   return regions;

@@ -1,0 +1,46 @@
+// The operations of the command from a program of one's own: values in, values out, with progress,
+// and cancelled at will.
+
+#include <iostream>
+
+#include <mimetra/operations/operation.h>
+#include <mimetra/samples/head.h>
+using namespace mimetra;
+
+int main() {
+  OperationTable table;
+  add_toolkit(table);
+  const Operation& decompose = *table.find("decompose");
+
+  const WeightTrack track = samples::parametric_performance();
+  const BlendshapeModel head = samples::parametric_head().person();
+  SequenceRead take{.sequence = head.animate(track.weights, track.times).slice(0, 120, 4),
+                    .model_driven = true};
+
+  Invocation call;
+  call.inputs["sequence"] = {{"take", take}};
+  call.parameters = Parameters(table.parameters_of(decompose));
+  call.parameters.set("k", 10);
+  int reports = 0;
+  call.progress = [&reports](double share) {
+    std::cerr << '\r' << int(100 * share) << " %";
+    ++reports;
+    return true;
+  };
+  const Outcome outcome = decompose.run(call);
+  std::cerr << '\n';
+  const auto& components = std::get<Components>(outcome.outputs.at("out").front().data);
+  std::cout << outcome.summary;
+
+  // A progress function that returns false ends the work.
+  call.progress = [](double share) { return share < 0.5; };
+  bool cancelled = false;
+  try {
+    decompose.run(call);
+  } catch (const Cancelled&) {
+    cancelled = true;
+  }
+  std::cout << reports << " reports of progress; cancelled half-way: " << std::boolalpha
+            << cancelled << '\n';
+  return components.count() == 10 && reports > 1 && cancelled ? 0 : 1;
+}
