@@ -11,7 +11,6 @@
 #include <nlohmann/json.hpp>
 
 #include <mimetra/cli/manifest.h>
-#include <mimetra/io/pending_output.h>
 #include <mimetra/operations/loading.h>
 #include <mimetra/operations/report.h>
 
@@ -57,14 +56,6 @@ bool shows_bar(const Request& request) {
 
 using OutputPaths = std::map<std::string, std::vector<std::filesystem::path>>;
 
-/// Makes and removes what the writer would begin with, so that nobody computes for nothing.
-void refuse_unwritable(const OperationTable& table, const Request& request, const Output& output,
-                       const std::filesystem::path& path) {
-  const bool is_folder = table.writes_folder(output.kind, path);
-  PendingOutput(path, is_folder ? PendingOutput::Kind::folder : PendingOutput::Kind::file,
-                request.force);
-}
-
 /// Refuses, before anything is read, what cannot be written.
 void check_outputs(const OperationTable& table, const Request& request) {
   const bool several = std::ranges::any_of(
@@ -73,7 +64,8 @@ void check_outputs(const OperationTable& table, const Request& request) {
     const auto asked = request.outputs.find(output.name);
     if (asked == request.outputs.end()) continue;
     table.writer(output.kind, asked->second);
-    if (!several || !output.repeated) refuse_unwritable(table, request, output, asked->second);
+    if (!several || !output.repeated)
+      table.check_writable(output.kind, asked->second, request.force);
   }
 }
 
@@ -85,7 +77,8 @@ OutputPaths output_paths(const OperationTable& table, const Request& request,
     const auto asked = request.outputs.find(output.name);
     if (asked == request.outputs.end()) continue;
     all[output.name] = table.output_paths(output, asked->second, names);
-    for (const auto& path : all[output.name]) refuse_unwritable(table, request, output, path);
+    for (const auto& path : all[output.name])
+      table.check_writable(output.kind, path, request.force);
   }
   return all;
 }

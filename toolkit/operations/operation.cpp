@@ -8,6 +8,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include <mimetra/io/pending_output.h>
 #include <mimetra/operations/report.h>
 
 namespace mimetra {
@@ -230,6 +231,12 @@ bool OperationTable::writes_folder(DataKind kind, const std::filesystem::path& t
   const std::vector<std::string>& extensions = writer(kind, target).extensions;
   const bool may = std::ranges::find(extensions, "") != extensions.end();
   return may && (!target.has_extension() || !has_extension(extensions, target));
+}
+
+void OperationTable::check_writable(DataKind kind, const std::filesystem::path& target,
+                                    bool overwrite) const {
+  using Kind = PendingOutput::Kind;
+  PendingOutput(target, writes_folder(kind, target) ? Kind::folder : Kind::file, overwrite);
 }
 
 std::vector<std::filesystem::path> OperationTable::output_paths(

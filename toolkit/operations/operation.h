@@ -121,6 +121,9 @@ class OperationTable {
   const Writer& writer(DataKind kind, const std::filesystem::path& target) const;
   /// True where that writer makes a folder.
   bool writes_folder(DataKind kind, const std::filesystem::path& target) const;
+  /// Makes and removes what that writer would begin with, so that nobody computes for nothing.
+  /// Throws OutputError where it cannot be written, or exists and not `overwrite`.
+  void check_writable(DataKind kind, const std::filesystem::path& target, bool overwrite) const;
   /// Where an output's values go, one for each of `names`: the path asked for where there is one
   /// name; otherwise a folder OUT/NAME each, or OUT-NAME.EXT for files.
   std::vector<std::filesystem::path> output_paths(const Output& output,
