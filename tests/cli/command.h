@@ -40,11 +40,11 @@ class CommandTest : public testing::Test {
   }
   void TearDown() override { std::filesystem::remove_all(folder_); }
 
-  /// Runs `mimetra ARGUMENTS` in the test's folder.
-  CommandResult run(const std::string& arguments) const {
+  /// Runs `PREFIX mimetra ARGUMENTS` in the test's folder; both are the shell's words.
+  CommandResult run(const std::string& arguments, const std::string& prefix = "") const {
     const auto out = folder_ / ".out", err = folder_ / ".err";
-    const std::string line = "cd '" + folder_.string() + "' && " + MIMETRA_COMMAND + " " +
-                             arguments + " > .out 2> .err < /dev/null";
+    const std::string line = "cd '" + folder_.string() + "' && { " + prefix + ' ' +
+                             MIMETRA_COMMAND + ' ' + arguments + "; } > .out 2> .err < /dev/null";
     const int status = std::system(line.c_str());
     const CommandResult result{WIFEXITED(status) ? WEXITSTATUS(status) : -1, text_of(out),
                                text_of(err)};

@@ -65,9 +65,8 @@ void check_outputs(const OperationTable& table, const Request& request) {
     const auto asked = request.outputs.find(output.name);
     if (asked == request.outputs.end()) continue;
     table.writer(output.kind, asked->second);
-    if (!several || !output.repeated) {
-      table.refuse_unwritable(output, asked->second, request.force);
-    }
+    if (!several || !output.repeated)
+      table.check_writable(output.kind, asked->second, request.force);
   }
 }
 
@@ -81,7 +80,7 @@ OutputPaths output_paths(const OperationTable& table, const Request& request,
     all[output.name] = table.output_paths(output, asked->second, names);
     std::set<std::filesystem::path> places;
     for (const auto& path : all[output.name]) {
-      table.refuse_unwritable(output, path, request.force);
+      table.check_writable(output.kind, path, request.force);
       if (!places.insert(path).second) {
         throw UsageError(path.string() +
                          ": two inputs of this name would be written there; run them one by one");

@@ -241,11 +241,10 @@ bool OperationTable::writes_folder(DataKind kind, const std::filesystem::path& t
   return may && (!target.has_extension() || !has_extension(extensions, target));
 }
 
-void OperationTable::refuse_unwritable(const Output& output, const std::filesystem::path& target,
-                                       bool overwrite) const {
-  const bool is_folder = writes_folder(output.kind, target);
-  PendingOutput(target, is_folder ? PendingOutput::Kind::folder : PendingOutput::Kind::file,
-                overwrite);
+void OperationTable::check_writable(DataKind kind, const std::filesystem::path& target,
+                                    bool overwrite) const {
+  using Kind = PendingOutput::Kind;
+  PendingOutput(target, writes_folder(kind, target) ? Kind::folder : Kind::file, overwrite);
 }
 
 std::vector<std::filesystem::path> OperationTable::output_paths(

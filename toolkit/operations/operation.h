@@ -133,10 +133,9 @@ class OperationTable {
   const Writer& writer(DataKind kind, const std::filesystem::path& target) const;
   /// True where that writer makes a folder.
   bool writes_folder(DataKind kind, const std::filesystem::path& target) const;
-  /// Throws OutputError where an output cannot be written, or exists and not `overwrite`: what its
-  /// writer would begin with is made and removed, so that nobody computes for nothing.
-  void refuse_unwritable(const Output& output, const std::filesystem::path& target,
-                         bool overwrite) const;
+  /// Makes and removes what that writer would begin with, so that nobody computes for nothing.
+  /// Throws OutputError where it cannot be written, or exists and not `overwrite`.
+  void check_writable(DataKind kind, const std::filesystem::path& target, bool overwrite) const;
   /// Where an output's values go, one for each of `names`: the path asked for where there is one
   /// name; otherwise a folder OUT/NAME each, or OUT-NAME.EXT for files.
   std::vector<std::filesystem::path> output_paths(const Output& output,

@@ -1,0 +1,134 @@
+#include <map>
+
+#include "bad_input.h"
+
+/// Requests that are wrong whatever the data, and outputs that cannot be written.
+namespace mimetra::test {
+
+namespace {
+
+const std::string kSequence = "head --weights take.csv";
+
+/// Every operation with every kind of file that it can make; `arguments` ends in the output.
+struct Making {
+  std::string subject;
+  std::string arguments;
+  std::string output;
+};
+
+const std::vector<Making>& makings() {
+  static const std::vector<Making> kMakings = {
+      {"align_npy", "align " + kSequence + " -o ", "b.npy"},
+      {"geodesic_vtp", "geodesic head -o ", "d.vtp"},
+      {"decompose_h5", "decompose " + kSequence + " -k 2 -o ", "c.h5"},
+      {"regions_pvd", "regions " + kSequence + " -k 2 -o ", "r.pvd"},
+      {"regions_json", "regions " + kSequence + " -k 2 -o ", "r.json"},
+      {"regions_csv", "regions " + kSequence + " -k 2 -o ", "r.csv"},
+      {"transfer_folder", "transfer " + kSequence + " head -k 2 -o ", "x"},
+      {"evaluate_csv", "evaluate " + kSequence + " head -k 2 -o ", "t.csv"},
+      {"convert_folder", "convert " + kSequence + " -o ", "x"},
+      {"convert_npy", "convert " + kSequence + " -o ", "x.npy"},
+      {"convert_ply", "convert head -o ", "x.ply"},
+      {"convert_obj", "convert head -o ", "x.obj"},
+      {"convert_off", "convert head -o ", "x.off"},
+      {"convert_stl", "convert head -o ", "x.stl"},
+      {"sample_folder", "sample -o ", "s"},
+  };
+  return kMakings;
+}
+
+void read_only_folder(const fs::path& folder) {
+  fs::create_directory(folder / "locked");
+  fs::permissions(folder / "locked", fs::perms::owner_write, fs::perm_options::remove);
+}
+
+/// The administrator may write anywhere; without this right that ends.
+std::string without_override() {
+  return getuid() == 0 ? "setpriv --bounding-set=-dac_override" : "";
+}
+
+void add_making(std::vector<BadInput>& all, const Making& making) {
+  const auto add = [&](const std::string& kind, const std::string& output,
+                       std::function<void(const fs::path&)> make, std::vector<std::string> says,
+                       const std::string& prefix) {
+    all.push_back({kind, making.subject, std::move(make), making.arguments + output, 5,
+                   std::move(says), prefix});
+  };
+  const std::string& name = making.output;
+  add("unwritable_folder", "locked/" + name, read_only_folder,
+      {"locked/" + name, "cannot be written", "Permission denied"}, without_override());
+  add("file_instead_of_a_folder", "take.csv/" + name, {}, {"take.csv/" + name, "cannot be written"},
+      "");
+  add("existing_output", name, file(name, "mine"), {name, "exists already", "--force"}, "");
+  // In blocks of 512 bytes; without the signal, writing fails as on a full disk.
+  add("full_disk", name, {}, {fs::path(name).stem().string(), "cannot be written"},
+      "trap '' XFSZ; ulimit -f 1;");
+}
+
+}  // namespace
+
+std::vector<BadInput> output_cases() {
+  std::vector<BadInput> all;
+  for (const Making& making : makings()) add_making(all, making);
+  const auto full = [&all](const std::string& subject, const std::string& arguments,
+                           const std::string& name, int blocks) {
+    all.push_back({"full_disk_later",
+                   subject,
+                   {},
+                   arguments,
+                   5,
+                   {name, "cannot be written"},
+                   "trap '' XFSZ; ulimit -f " + std::to_string(blocks) + ";"});
+  };
+  full("convert_npy", "convert " + kSequence + " -o x.npy", "x.npy", 20);
+  full("decompose_h5", "decompose " + kSequence + " -k 2 -o c.h5", "c.h5", 20);
+  full("regions_pvd", "regions " + kSequence + " -k 2 -o r.pvd", "r.pvd", 6);
+  all.push_back({"full_disk",
+                 "stdout",
+                 {},
+                 "info head --json > /dev/full",
+                 5,
+                 {"standard output", "cannot be written"}});
+  all.push_back(
+      {"full_disk", "help", {}, "--help > /dev/full", 5, {"standard output", "cannot be written"}});
+  return all;
+}
+
+std::vector<BadInput> request_cases() {
+  std::vector<BadInput> all;
+  const auto add = [&all](const std::string& kind, const std::string& subject,
+                          const std::string& arguments, std::vector<std::string> says) {
+    all.push_back({kind, subject, {}, arguments, 2, std::move(says)});
+  };
+  add("unknown_command", "command", "decompse head", {"'decompse'", "did you mean 'decompose'?"});
+  add("far_from_any_command", "command", "frobnicate", {"'frobnicate'", "--help"});
+  add("no_command", "command", "", {"expected a command"});
+  const std::map<std::string, std::pair<std::string, std::string>> misspelt = {
+      {"info", {"head --jsno", "--json"}},
+      {"align", {"head -o b.npy --undoo x", "--undo"}},
+      {"geodesic", {"head -o d.vtp --sorce 3", "--source"}},
+      {"decompose", {"head -o c.h5 --sparsty 3", "--sparsity"}},
+      {"regions", {"head -o r.json --covrage 1", "--coverage"}},
+      {"transfer", {"head head -o x --ful", "--full"}},
+      {"evaluate", {"head head --iteration 3", "--iterations"}},
+      {"convert", {"head -o x --fromat obj", "--format"}},
+      {"sample", {"-o s --froce", "--force"}},
+  };
+  for (const auto& [operation, line] : misspelt) {
+    add("unknown_option", operation, operation + ' ' + line.first,
+        {"did you mean '" + line.second + "'?"});
+    add("missing_input", operation, operation, {operation + ":", "required"});
+  }
+  add("missing_output", "convert", "convert head", {"convert:", "--out", "required"});
+  add("input_too_many", "convert", "convert head head -o x", {"convert:", "head"});
+  add("empty_name", "info", "info ''", {"empty"});
+  add("no_number", "transfer", "transfer head head --ridge nan -o x", {"--ridge", "'nan'"});
+  add("infinity", "regions", "regions head --radius inf -o r.json", {"--radius", "'inf'"});
+  add("zero_radius", "regions", "regions " + kSequence + " --radius 0 -o r.json",
+      {"--radius", "0"});
+  add("unknown_choice", "convert", "convert head -o x --format fbx", {"--format", "ply, obj"});
+  add("unknown_extension", "decompose", "decompose head -o c.txt", {"c.txt", ".h5"});
+  return all;
+}
+
+}  // namespace mimetra::test
