@@ -93,6 +93,18 @@ TEST_F(Output, IsTheSameForEveryNumberOfThreads) {
   }
 }
 
+TEST_F(Output, IsOnlyPlannedByADryRun) {
+  const auto before = listing();
+  const auto result =
+      run("transfer head --weights take.csv head@wide=1 -k 2 -o out --dry-run --json");
+  ASSERT_EQ(result.code, 0) << result.err;
+  EXPECT_EQ(listing(), before);
+  const json plan = json::parse(result.out);
+  EXPECT_EQ(plan.at("inputs")[0].at("size"), "12 frames of 225 vertices");
+  EXPECT_EQ(plan.at("outputs")[0].at("path"), "out");
+  EXPECT_GT(plan.at("memory_bytes").get<double>(), 1e6);
+}
+
 TEST_F(Output, QuietPrintsNothing) {
   const auto result = run("convert head --weights take.csv -o take.npy -q");
   EXPECT_EQ(result.code, 0);

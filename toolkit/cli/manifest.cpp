@@ -67,6 +67,7 @@ std::string manifest(const Request& request, const RunRecord& record) {
               {"options", options},
               {"inputs", inputs},
               {"seconds", {{"read", record.read_seconds}, {"run", record.run_seconds}}},
+              {"peak_memory_bytes", record.peak_memory},
               {"result", Json::parse(record.report)}}
              .dump(2, ' ', false, Json::error_handler_t::replace) +
          '\n';

@@ -13,7 +13,8 @@ struct RunRecord {
   std::vector<std::filesystem::path> inputs;
   double read_seconds = 0;
   double run_seconds = 0;
-  std::string report;  ///< the operation's JSON
+  double peak_memory = 0;  ///< bytes
+  std::string report;      ///< the operation's JSON
 };
 
 /// The manifest of a run: versions, arguments, the value of every option, inputs with their hashes,

@@ -11,6 +11,7 @@
 #include <unistd.h>
 #include <nlohmann/json.hpp>
 
+#include <mimetra/cli/dry_run.h>
 #include <mimetra/cli/manifest.h>
 #include <mimetra/operations/loading.h>
 #include <mimetra/operations/report.h>
@@ -168,10 +169,16 @@ void run_command(const OperationTable& table, const Request& request) {
   invocation.progress = part_of(progress, 0.3, 0.8);
   invocation.log = log;
   invocation.threads = request.threads;
+  if (request.dry_run) {
+    bar.clear();
+    print_result(request, planned(*request.operation, invocation));
+    return;
+  }
   const Stopwatch running;
   const Outcome outcome = request.operation->run(invocation);
   record.run_seconds = running.seconds();
   record.report = outcome.report;
+  record.peak_memory = MemoryUse::of_this_process().peak;
   const std::string manifest_text =
       request.outputs.empty() ? std::string() : manifest(request, record);
   write_outputs(table, request, paths, outcome, manifest_text, bar);

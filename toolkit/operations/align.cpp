@@ -86,6 +86,10 @@ Operation align_operation() {
   operation.examples = {"align takes/ -o still/",
                         "align still/ --undo still/mimetra-run.json -o back/"};
   operation.run = run;
+  operation.memory = [](const Invocation& invocation) {
+    const MeshSequence& sequence = invocation.get<SequenceRead>("sequence").sequence;
+    return static_cast<double>(sequence.positions().size() * sizeof(double));
+  };
   return operation;
 }
 

@@ -219,11 +219,15 @@ SupportRange support_range(const Parameters& parameters, double unit) {
                    " and " + parameters.text("d-max"));
 }
 
+std::string alignment_of(const Invocation& invocation, const SequenceRead& read) {
+  const bool still =
+      read.model_driven || read.sequence.rest_is_known() || read.sequence.frames() == 1;
+  return invocation.parameters.optional_text("align").value_or(still ? "none" : "stable");
+}
+
 StillSequence without_motion(const Invocation& invocation, const SequenceRead& read,
                              const MeshSequence& sequence) {
-  const std::string how = invocation.parameters.optional_text("align").value_or(
-      read.model_driven || read.sequence.rest_is_known() || sequence.frames() == 1 ? "none"
-                                                                                   : "stable");
+  const std::string how = alignment_of(invocation, read);
   if (how == "none") return {sequence, {}};
   Alignment alignment = how == "stable" ? align(sequence, AlignmentVertices::stable)
                         : how == "all"  ? align(sequence, AlignmentVertices::all)

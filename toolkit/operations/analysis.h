@@ -23,6 +23,9 @@ struct StillSequence {
   std::vector<RigidTransform> motion;
 };
 
+/// What --align says, or its default: none where the neutral is known.
+std::string alignment_of(const Invocation& invocation, const SequenceRead& read);
+
 /// Applies --align to what was read.
 StillSequence without_motion(const Invocation& invocation, const SequenceRead& read,
                              const MeshSequence& sequence);

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include <mimetra/operations/analysis.h>
+#include <mimetra/operations/memory.h>
 #include <mimetra/operations/report.h>
 #include <mimetra/operations/toolkit_operations.h>
 
@@ -59,6 +60,10 @@ Operation decompose_operation() {
   operation.examples = {"decompose takes/ -k 30 -o take.h5",
                         "decompose take.npy -k 50 --compat splocs2013 -o take.h5"};
   operation.run = run;
+  operation.memory = [](const Invocation& invocation) {
+    return analysis_bytes(invocation, invocation.get<SequenceRead>("sequence"),
+                          invocation.parameters.integer("k"));
+  };
   return operation;
 }
 

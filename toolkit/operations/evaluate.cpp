@@ -1,8 +1,10 @@
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 
 #include <nlohmann/json.hpp>
 
+#include <mimetra/operations/memory.h>
 #include <mimetra/operations/report.h>
 #include <mimetra/operations/solving.h>
 #include <mimetra/operations/toolkit_operations.h>
@@ -145,6 +147,17 @@ Outcome run(const Invocation& invocation) {
   return outcome;
 }
 
+/// One decomposition after the other, each followed by a transfer.
+double memory(const Invocation& invocation) {
+  const SequenceRead& source = invocation.get<SequenceRead>("source");
+  const auto& counts = invocation.parameters.integers("k");
+  const double analysis =
+      analysis_bytes(invocation, source, static_cast<int>(*std::ranges::max_element(counts)));
+  const auto& target = std::get<BlendshapeModel>(invocation.inputs.at("target").front().data);
+  return std::max(analysis,
+                  alignment_bytes(invocation, source) + solution_bytes(invocation, source, target));
+}
+
 }  // namespace
 
 Operation evaluate_operation() {
@@ -169,6 +182,7 @@ Operation evaluate_operation() {
   operation.examples = {"evaluate take.npy actor/ -k 10,30,40",
                         "evaluate takes/ actor@identity007=2 -k 10,20,30,40,50 -o table.csv"};
   operation.run = run;
+  operation.memory = memory;
   return operation;
 }
 

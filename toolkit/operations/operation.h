@@ -78,6 +78,8 @@ struct Operation {
   std::vector<Parameter> parameters;
   std::vector<std::string> examples;  ///< two command lines without the program's name
   std::function<Outcome(const Invocation&)> run;
+  /// Bytes that it takes at its peak besides what it is given; none where that is little.
+  std::function<double(const Invocation&)> memory = {};
 };
 
 /// Where and how a value is written.

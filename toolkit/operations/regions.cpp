@@ -1,6 +1,7 @@
 #include <nlohmann/json.hpp>
 
 #include <mimetra/operations/analysis.h>
+#include <mimetra/operations/memory.h>
 #include <mimetra/operations/report.h>
 #include <mimetra/operations/toolkit_operations.h>
 
@@ -47,6 +48,10 @@ Operation regions_operation() {
   operation.examples = {"regions takes/ -k 30 -o rois/take.pvd",
                         "regions take.npy --coverage 0.8 --radius 12abs -o rois.json"};
   operation.run = run;
+  operation.memory = [](const Invocation& invocation) {
+    return analysis_bytes(invocation, invocation.get<SequenceRead>("sequence"),
+                          invocation.parameters.integer("k"));
+  };
   return operation;
 }
 

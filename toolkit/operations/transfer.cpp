@@ -1,5 +1,8 @@
+#include <algorithm>
+
 #include <nlohmann/json.hpp>
 
+#include <mimetra/operations/memory.h>
 #include <mimetra/operations/report.h>
 #include <mimetra/operations/solving.h>
 #include <mimetra/operations/toolkit_operations.h>
@@ -143,6 +146,21 @@ Outcome run(const Invocation& invocation) {
   return outcome;
 }
 
+/// Decomposition, then one target after the other, whose results are kept.
+double memory(const Invocation& invocation) {
+  const SequenceRead& source = invocation.get<SequenceRead>("source");
+  const bool looks_for_regions =
+      !invocation.parameters.flag("full") && !invocation.find<RegionData>("regions");
+  const double analysis =
+      looks_for_regions ? analysis_bytes(invocation, source, invocation.parameters.integer("k"))
+                        : 0;
+  double solutions = alignment_bytes(invocation, source);
+  for (const NamedData& target : invocation.inputs.at("target")) {
+    solutions += solution_bytes(invocation, source, std::get<BlendshapeModel>(target.data));
+  }
+  return std::max(analysis, solutions);
+}
+
 }  // namespace
 
 Operation transfer_operation() {
@@ -181,6 +199,7 @@ Operation transfer_operation() {
       "transfer takes/smile_%04d.obj actor/ -k 30 -o actor_smile/ --regions-out rois/smile.pvd",
       "transfer take.npy actor@identity007=2 double/ --full -o results/"};
   operation.run = run;
+  operation.memory = memory;
   return operation;
 }
 

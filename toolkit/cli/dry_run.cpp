@@ -1,0 +1,89 @@
+#include <mimetra/cli/dry_run.h>
+
+#include <algorithm>
+#include <fstream>
+#include <sstream>
+
+#include <nlohmann/json.hpp>
+
+#include <mimetra/operations/report.h>
+
+namespace mimetra::cli {
+
+namespace {
+
+/// "300 frames of 6706 vertices", or what else a value is made of.
+std::string size_of(const Data& data) {
+  const auto frames = [](const MeshSequence& sequence) {
+    return std::to_string(sequence.frames()) + " frames of " + std::to_string(sequence.vertices()) +
+           " vertices";
+  };
+  if (const auto* read = std::get_if<SequenceRead>(&data)) return frames(read->sequence);
+  if (const auto* fields = std::get_if<FieldSequence>(&data)) return frames(fields->sequence);
+  if (const auto* model = std::get_if<BlendshapeModel>(&data)) {
+    return std::to_string(model->vertices()) + " vertices, " +
+           std::to_string(model->expressions().size()) + " expressions";
+  }
+  if (const auto* components = std::get_if<Components>(&data)) {
+    return std::to_string(components->count()) + " components";
+  }
+  if (const auto* regions = std::get_if<RegionData>(&data)) {
+    return std::to_string(regions->regions.regions.size()) + " regions";
+  }
+  return "";
+}
+
+std::string megabytes(double bytes) {
+  return std::to_string(static_cast<long>(bytes / 1e6 + 0.5)) + " MB";
+}
+
+}  // namespace
+
+MemoryUse MemoryUse::of_this_process() {
+  MemoryUse use;
+  std::ifstream status("/proc/self/status");
+  for (std::string line; std::getline(status, line);) {
+    std::istringstream words(line);
+    std::string name;
+    double kilobytes = 0;
+    words >> name >> kilobytes;
+    if (name == "VmRSS:") use.now = 1024 * kilobytes;
+    if (name == "VmHWM:") use.peak = 1024 * kilobytes;
+  }
+  return use;
+}
+
+Outcome planned(const Operation& operation, const Invocation& invocation) {
+  Json inputs = Json::array(), outputs = Json::array();
+  std::ostringstream text;
+  text << operation.name << '\n';
+  for (const Input& input : operation.inputs) {
+    const auto given = invocation.inputs.find(input.name);
+    if (given == invocation.inputs.end()) continue;
+    for (const NamedData& value : given->second) {
+      inputs.push_back(
+          {{"input", input.name}, {"name", value.name}, {"size", size_of(value.data)}});
+      text << "  reads   " << value.name << ": " << size_of(value.data) << '\n';
+    }
+  }
+  for (const auto& [name, paths] : invocation.wanted) {
+    for (const auto& path : paths) {
+      outputs.push_back({{"output", name}, {"path", path.string()}});
+      text << "  writes  " << path.string() << '\n';
+    }
+  }
+  const MemoryUse use = MemoryUse::of_this_process();
+  const double computing = operation.memory ? operation.memory(invocation) : 0;
+  const double peak = std::max(use.peak, use.now + computing);
+  text << "  memory  " << megabytes(peak) << ", of which " << megabytes(use.now)
+       << " hold program and inputs\n";
+  return {{},
+          Json{{"operation", operation.name},
+               {"inputs", inputs},
+               {"outputs", outputs},
+               {"memory_bytes", peak}}
+              .dump(),
+          text.str()};
+}
+
+}  // namespace mimetra::cli
