@@ -18,7 +18,7 @@ echo "Table I of the paper on the sample (MPE in percent, negative is worse than
 
 "$mimetra" render "$out/source" "$out/regions.pvd" "$out/full" "$out/regions" "$out/full" \
   --color none,region,none,none,difference --at 0,17,34,51,68,85,102 --unit mm \
-  --titles "source,its 30 regions,target: all triangles,target: the regions only,distance between the two" \
+  --titles "source,regions of the source that move,target by all triangles,target by these regions only,distance between the two" \
   -o "$out/strip.png"
 
 cat <<TEXT
