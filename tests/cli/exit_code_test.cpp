@@ -41,7 +41,9 @@ TEST_F(ExitCode, Is2ForAnOutputThatTheRequestCannotMake) {
   const std::string source = "transfer head --weights take.csv ";
   expect_failure(source + "head --space vertex -o x --weights-out w.csv", 2, "--weights-out");
   expect_failure(source + "head --full -o x --regions-out r.pvd", 2, "--regions-out");
-  expect_failure(source + "head head -o x", 2, "x/head: two inputs");
+  expect_failure(source + "head head -o x", 2, "x/head: two outputs");
+  expect_failure(source + "head -k 2 -o x --regions-out r.json --weights-out r.json", 2,
+                 "r.json: two outputs");
   expect_failure(source + "head -o ''", 2, "is empty");
   expect_failure("transfer '' head -o x", 2, "is empty");
 }

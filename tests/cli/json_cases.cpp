@@ -57,7 +57,8 @@ std::vector<BadInput> json_cases() {
   add_config("empty", "", 3, {"expected JSON"});
   add_config("truncated", "{\"k\": 3", 3, {"expected JSON"});
   add_config("other_type", "[1]", 3, {"expected an object"});
-  add_config("unknown_option", "{\"radios\": 1}", 2, {"no option 'radios'", "mimetra operations"});
+  add_config("unknown_option", "{\"radios\": 1}", 2,
+             {"'radios' is no parameter", "mimetra operations"});
   add_config("wrong_value", "{\"k\": \"many\"}", 2, {"-k", "'many'"});
   add_config("out_of_range", "{\"k\": 0}", 2, {"-k", "at least 1"});
   add_config("null_value", "{\"k\": null}", 2, {"-k", "null"});

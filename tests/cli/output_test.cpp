@@ -105,6 +105,16 @@ TEST_F(Output, IsOnlyPlannedByADryRun) {
   EXPECT_GT(plan.at("memory_bytes").get<double>(), 1e6);
 }
 
+TEST_F(Output, LeavesTheManifestOfAnotherOutputAlone) {
+  ASSERT_EQ(run("convert head --weights take.csv -o take.npy").code, 0);
+  const std::string first = text_of(folder_ / "take.run.json");
+  ASSERT_EQ(run("render take.npy --size 32 -o take.png").code, 0);
+  EXPECT_EQ(text_of(folder_ / "take.run.json"), first);
+  EXPECT_EQ(json::parse(text_of(folder_ / "take.png.run.json")).at("command"), "render");
+  ASSERT_EQ(run("convert head --weights take.csv -o take.npy --force").code, 0);
+  EXPECT_NE(text_of(folder_ / "take.run.json"), first);
+}
+
 TEST_F(Output, QuietPrintsNothing) {
   const auto result = run("convert head --weights take.csv -o take.npy -q");
   EXPECT_EQ(result.code, 0);

@@ -7,11 +7,6 @@ namespace mimetra::cli {
 
 namespace {
 
-std::string upper(std::string text) {
-  std::ranges::transform(text, text.begin(), [](unsigned char c) { return std::toupper(c); });
-  return text;
-}
-
 /// Help, unit, choices and default in one line.
 std::string described(const Parameter& parameter) {
   std::string text = parameter.help;
@@ -89,6 +84,11 @@ std::vector<CommandOption> common_options(const Operation& operation) {
 }
 
 }  // namespace
+
+std::string upper(std::string text) {
+  std::ranges::transform(text, text.begin(), [](unsigned char c) { return std::toupper(c); });
+  return text;
+}
 
 std::vector<Command> commands_of(const OperationTable& table) {
   std::vector<Command> commands;

@@ -29,6 +29,9 @@ struct Command {
   std::vector<CommandOption> options;
 };
 
+/// What stands for a value in help texts: the name in capitals.
+std::string upper(std::string text);
+
 /// Every operation of a table as a command.
 std::vector<Command> commands_of(const OperationTable& table);
 

@@ -30,11 +30,6 @@ struct Slots {
   }
 };
 
-std::string upper(std::string text) {
-  std::ranges::transform(text, text.begin(), [](unsigned char c) { return std::toupper(c); });
-  return text;
-}
-
 std::string joined(const std::vector<std::string>& forms) {
   std::string text;
   for (const std::string& form : forms) text += (text.empty() ? "" : ",") + form;

@@ -51,7 +51,10 @@ std::string zsh_argument(const CommandOption& option) {
   std::string rest = "[" + help + "]";
   if (!option.is_flag()) {
     rest += ":" + option.value + ":";
-    if (option.takes_file) {
+    if (option.takes_file && !option.choices.empty()) {
+      rest +=
+          "{_alternative \"word:word:(" + joined(option.choices, " ") + ")\" \"file:file:_files\"}";
+    } else if (option.takes_file) {
       rest += "_files";
     } else if (!option.choices.empty()) {
       rest += "(" + joined(option.choices, " ") + ")";
@@ -120,7 +123,8 @@ std::string bash_completion(const std::vector<Command>& commands) {
          "    esac ;;\n"
          "    esac\n"
          "  fi\n"
-         "  COMPREPLY=($(compgen -W \"$words\" -- \"$current\"))\n"
+         "  local IFS=$'\\n'\n"
+         "  COMPREPLY=($(compgen -W \"${words// /$IFS}\" -- \"$current\"))\n"
          "  if [ $files != no ]; then\n"
          "    COMPREPLY+=($(compgen -f -- \"$current\"))\n"
          "    compopt -o filenames 2>/dev/null\n"

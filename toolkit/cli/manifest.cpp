@@ -49,6 +49,17 @@ std::vector<std::filesystem::path> files_below(const std::vector<std::filesystem
   return files;
 }
 
+/// True for the manifest of a run that wrote an output of this name into the same folder.
+bool tells_of(const std::filesystem::path& manifest, const std::filesystem::path& output) {
+  std::ifstream stream(manifest);
+  const Json json = Json::parse(stream, nullptr, false);
+  if (!json.is_object() || !json.contains("outputs") || !json["outputs"].is_array()) return false;
+  return std::ranges::any_of(json["outputs"], [&output](const Json& path) {
+    return path.is_string() &&
+           std::filesystem::path(path.get<std::string>()).filename() == output.filename();
+  });
+}
+
 }  // namespace
 
 std::string manifest(const Request& request, const RunRecord& record) {
@@ -60,12 +71,15 @@ std::string manifest(const Request& request, const RunRecord& record) {
   for (const auto& path : files_below(record.inputs)) {
     inputs.push_back({{"path", path.string()}, {"xxh3", hash_of(path)}});
   }
+  Json outputs = Json::array();
+  for (const auto& path : record.outputs) outputs.push_back(path.string());
   return Json{{"program", "mimetra"},
               {"version", MIMETRA_VERSION},
               {"command", request.operation->name},
               {"arguments", request.arguments},
               {"options", options},
               {"inputs", inputs},
+              {"outputs", outputs},
               {"seconds", {{"read", record.read_seconds}, {"run", record.run_seconds}}},
               {"peak_memory_bytes", record.peak_memory},
               {"result", Json::parse(record.report)}}
@@ -74,7 +88,11 @@ std::string manifest(const Request& request, const RunRecord& record) {
 }
 
 std::string manifest_name(const std::filesystem::path& output, bool is_folder) {
-  return is_folder ? "mimetra-run.json" : output.stem().string() + ".run.json";
+  if (is_folder) return "mimetra-run.json";
+  const std::string name = output.stem().string() + ".run.json";
+  const auto path = output.parent_path() / name;
+  const bool is_free = !std::filesystem::exists(path) || tells_of(path, output);
+  return is_free ? name : output.filename().string() + ".run.json";
 }
 
 }  // namespace mimetra::cli

@@ -11,6 +11,7 @@ namespace mimetra::cli {
 /// What happened before the outputs are written.
 struct RunRecord {
   std::vector<std::filesystem::path> inputs;
+  std::vector<std::filesystem::path> outputs;
   double read_seconds = 0;
   double run_seconds = 0;
   double peak_memory = 0;  ///< bytes
@@ -21,8 +22,8 @@ struct RunRecord {
 /// timings, and the result, as JSON.
 std::string manifest(const Request& request, const RunRecord& record);
 
-/// Name of the manifest of an output: NAME.run.json for a file NAME.EXT, mimetra-run.json in a
-/// folder.
+/// Name of the manifest of an output: mimetra-run.json in a folder; NAME.run.json for a file
+/// NAME.EXT, or NAME.EXT.run.json where the former is there and tells of another output.
 std::string manifest_name(const std::filesystem::path& output, bool is_folder);
 
 }  // namespace mimetra::cli

@@ -42,11 +42,6 @@ std::string cell(const std::string& text) {
   return result;
 }
 
-std::string upper(std::string text) {
-  for (char& c : text) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
-  return text;
-}
-
 /// `mimetra transfer [OPTIONS] -o OUT SOURCE TARGET...`
 std::string synopsis(const Command& command) {
   std::string text = "mimetra " + command.operation->name + " [OPTIONS]";

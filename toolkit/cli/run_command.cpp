@@ -56,6 +56,10 @@ bool shows_bar(const Request& request) {
   return request.progress == ProgressBar::always || isatty(STDERR_FILENO);
 }
 
+// Reading, running and writing as shares of the progress bar.
+constexpr double kRunningFrom = 0.3;
+constexpr double kWritingFrom = 0.8;
+
 using OutputPaths = std::map<std::string, std::vector<std::filesystem::path>>;
 
 /// Refuses, before anything is read, what cannot be written.
@@ -75,16 +79,17 @@ void check_outputs(const OperationTable& table, const Request& request) {
 OutputPaths output_paths(const OperationTable& table, const Request& request,
                          const std::vector<std::string>& names) {
   OutputPaths all;
+  std::set<std::filesystem::path> places;
   for (const Output& output : request.operation->outputs) {
     const auto asked = request.outputs.find(output.name);
     if (asked == request.outputs.end()) continue;
     all[output.name] = table.output_paths(output, asked->second, names);
-    std::set<std::filesystem::path> places;
     for (const auto& path : all[output.name]) {
       table.check_writable(output.kind, path, request.force);
       if (!places.insert(path).second) {
         throw UsageError(path.string() +
-                         ": two inputs of this name would be written there; run them one by one");
+                         ": two outputs would be written there; give each a name of its own, and "
+                         "run inputs of one name one by one");
       }
     }
   }
@@ -104,17 +109,24 @@ std::vector<std::string> repeated_names(const Operation& operation, const Loaded
 
 void write_outputs(const OperationTable& table, const Request& request, const OutputPaths& paths,
                    const Outcome& outcome, const std::string& manifest_text, Bar& bar) {
+  std::size_t count = 0, written = 0;
+  for (const auto& [name, targets] : paths) count += targets.size();
+  // Once one output stands, the others follow: an interrupted run leaves all of them or none.
+  const Progress progress = [&](double share) {
+    const double done = (static_cast<double>(written) + share) / static_cast<double>(count);
+    return bar.update(kWritingFrom + (1 - kWritingFrom) * done) || written > 0;
+  };
   for (const Output& output : request.operation->outputs) {
     const auto wanted = paths.find(output.name);
     const auto made = outcome.outputs.find(output.name);
     if (wanted == paths.end() || made == outcome.outputs.end()) continue;
-    for (std::size_t i = 0; i < made->second.size(); ++i) {
+    for (std::size_t i = 0; i < made->second.size(); ++i, ++written) {
       const auto& target = wanted->second.at(i);
       const WriteRequest write{
           target,
           request.parameters,
           request.force,
-          [&bar](double share) { return bar.update(share); },
+          progress,
           {{manifest_name(target, table.writes_folder(output.kind, target)), manifest_text}}};
       table.writer(output.kind, target).write(made->second[i].data, write);
     }
@@ -151,7 +163,7 @@ void run_command(const OperationTable& table, const Request& request) {
   RunRecord record;
   const Stopwatch reading;
   LoadedInputs loaded = load_inputs(table, *request.operation, request.parameters, request.inputs,
-                                    part_of(progress, 0, 0.3), log);
+                                    part_of(progress, 0, kRunningFrom), log);
   const OutputPaths paths =
       output_paths(table, request, repeated_names(*request.operation, loaded));
   record.inputs = std::move(loaded.files);
@@ -166,7 +178,7 @@ void run_command(const OperationTable& table, const Request& request) {
   invocation.inputs = std::move(loaded.data);
   invocation.parameters = request.parameters;
   invocation.wanted = paths;
-  invocation.progress = part_of(progress, 0.3, 0.8);
+  invocation.progress = part_of(progress, kRunningFrom, kWritingFrom);
   invocation.log = log;
   invocation.threads = request.threads;
   if (request.dry_run) {
@@ -177,6 +189,9 @@ void run_command(const OperationTable& table, const Request& request) {
   const Stopwatch running;
   const Outcome outcome = request.operation->run(invocation);
   record.run_seconds = running.seconds();
+  for (const auto& [name, targets] : paths) {
+    record.outputs.insert(record.outputs.end(), targets.begin(), targets.end());
+  }
   record.report = outcome.report;
   record.peak_memory = MemoryUse::of_this_process().peak;
   const std::string manifest_text =

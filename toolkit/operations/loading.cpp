@@ -1,5 +1,7 @@
 #include <mimetra/operations/loading.h>
 
+#include <algorithm>
+
 #include <mimetra/io/components_file.h>
 #include <mimetra/io/frame_files.h>
 #include <mimetra/io/mesh_file.h>
@@ -44,8 +46,9 @@ class Loader {
     if (!reader) return {};
     const auto frames = parameters_.optional_text("frames");
     const auto selected = [&frames](int count) { return selected_frames(frames, count); };
-    files.push_back(text);
-    return reader->read(text, selected, progress_);
+    FieldSequence read = reader->read(text, selected, progress_);
+    for (const auto& file : reader->files(text)) files.push_back(file);
+    return read;
   }
 
   FieldSequence fields(const std::string& text) {
@@ -132,6 +135,15 @@ LoadedInputs load_inputs(const OperationTable& table, const Operation& operation
     }
   }
   loaded.files = std::move(loader.files);
+  for (const char* name : {"weights", "topology"}) {
+    const auto path = parameters.find(name) ? parameters.optional_text(name) : std::nullopt;
+    if (!path ||
+        std::ranges::find(loaded.files, std::filesystem::path(*path)) != loaded.files.end())
+      continue;
+    throw MismatchError("--" + std::string(name) + " " + *path + ": no input is " +
+                        (name == std::string("weights") ? "a model that it could drive"
+                                                        : "an array that needs its faces"));
+  }
   return loaded;
 }
 

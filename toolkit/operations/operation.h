@@ -115,6 +115,8 @@ struct FieldReader {
                               const std::function<std::vector<int>(int count)>& selected,
                               const Progress&)>
       read;
+  /// The files that belong to a path.
+  std::function<std::vector<std::filesystem::path>(const std::filesystem::path&)> files;
 };
 
 /// All operations and formats of a program; built by its main function and passed down.
@@ -158,8 +160,8 @@ class OperationTable {
   std::vector<FieldReader> field_readers_;
 };
 
-/// The operations of the toolkit (info, align, geodesic, decompose, regions, transfer, evaluate,
-/// convert) and the formats of io.
+/// The operations of the toolkit (info, check, align, geodesic, decompose, regions, transfer,
+/// evaluate, convert) and the formats of io.
 void add_toolkit(OperationTable& table);
 
 }  // namespace mimetra

@@ -19,8 +19,9 @@ void set_from_file(const std::string& path, Parameters& parameters) {
   for (const auto& [name, value] : options.items()) {
     const Parameter* parameter = parameters.find(name);
     if (!parameter) {
-      throw UsageError(path + ": there is no option '" + name +
-                       "'; `mimetra operations` lists them");
+      throw UsageError(path + ": '" + name +
+                       "' is no parameter of the operation; `mimetra operations` lists them, all "
+                       "else is said on the command line");
     }
     std::string text = value.is_string() ? value.get<std::string>() : value.dump();
     if (value.is_array()) text = text.substr(1, text.size() - 2);  // [10,30] as people type it

@@ -1,5 +1,7 @@
 #include <mimetra/vtk/annotation.h>
 
+#include <algorithm>
+
 #include <vtkActor2D.h>
 #include <vtkCellArray.h>
 #include <vtkCellData.h>
@@ -76,6 +78,14 @@ std::string with_unit(double value, const std::string& unit) {
   return readable(value, 2) + (unit.empty() ? "" : " " + unit);
 }
 
+/// `text` without what does not fit into `pixels`.
+std::string fitted(const std::string& text, int pixels, int letter_height) {
+  constexpr double kLetterWidth = 0.52;  // of its height, on average
+  const auto letters =
+      static_cast<std::size_t>(std::max(1.0, pixels / (kLetterWidth * letter_height)));
+  return text.size() <= letters ? text : text.substr(0, letters - 1) + "...";
+}
+
 void write_bar(const Pen& pen, const ColorBar& bar, const Box& row_end, int text) {
   constexpr int kSteps = 64;
   std::vector<Color> colors;
@@ -109,7 +119,8 @@ void annotate(vtkRenderer& renderer, const Sheet& sheet, const SheetLayout& layo
   }
   for (std::size_t row = 0; row < sheet.rows.size(); ++row) {
     const Box first = layout.tile(row, 0);
-    pen.write(sheet.rows[row].title, first.left, first.top - layout.text / 2);
+    pen.write(fitted(sheet.rows[row].title, layout.width - 2 * layout.margin, layout.text),
+              first.left, first.top - layout.text / 2);
     if (!sheet.rows[row].bar) continue;
     write_bar(pen, *sheet.rows[row].bar, layout.tile(row, sheet.rows[row].tiles.size()),
               layout.text);

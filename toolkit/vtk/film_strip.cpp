@@ -109,10 +109,10 @@ Eigen::VectorXd vertex_values(const Field& field, const MeshSequence& sequence) 
   return field.location == Field::Location::vertices ? values : on_vertices(values, sequence);
 }
 
-/// Whole numbers of which the negative ones mean "none" are names of categories.
+/// Whole numbers that are names: regions, and those of which the negative ones mean "none".
 bool is_category(const Field& field) {
   return field.integer && field.values.cols() == 1 && field.values.size() > 0 &&
-         field.values.minCoeff() < 0;
+         (field.name == "region" || field.values.minCoeff() < 0);
 }
 
 /// The colours of one row.

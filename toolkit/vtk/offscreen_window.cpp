@@ -1,6 +1,5 @@
 #include <mimetra/vtk/offscreen_window.h>
 
-#include <cstdlib>
 #include <stdexcept>
 
 #include <EGL/egl.h>
@@ -15,7 +14,8 @@ namespace mimetra {
 
 namespace {
 
-/// An OpenGL context without a surface, current in this thread.
+/// An OpenGL context without a surface, current in this thread. The display belongs to the process
+/// and stays open: drivers do not give back all they took when it is closed.
 class EglContext {
  public:
   /// Null where EGL has none to offer.
@@ -28,18 +28,25 @@ class EglContext {
     if (display_ == EGL_NO_DISPLAY) return;
     eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
     if (context_ != EGL_NO_CONTEXT) eglDestroyContext(display_, context_);
-    eglTerminate(display_);
   }
 
  private:
   EglContext() = default;
 
-  bool start() {
+  /// Mesa draws without a device; other drivers offer their default display.
+  bool open_display() {
     const auto display_of = reinterpret_cast<PFNEGLGETPLATFORMDISPLAYEXTPROC>(
         eglGetProcAddress("eglGetPlatformDisplayEXT"));
-    if (!display_of) return false;
-    display_ = display_of(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr);
-    if (display_ == EGL_NO_DISPLAY || !eglInitialize(display_, nullptr, nullptr)) return false;
+    if (display_of) {
+      display_ = display_of(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr);
+    }
+    if (display_ != EGL_NO_DISPLAY && eglInitialize(display_, nullptr, nullptr)) return true;
+    display_ = eglGetDisplay(EGL_DEFAULT_DISPLAY);
+    return display_ != EGL_NO_DISPLAY && eglInitialize(display_, nullptr, nullptr);
+  }
+
+  bool start() {
+    if (!open_display()) return false;
     if (!eglBindAPI(EGL_OPENGL_API)) return false;
     constexpr EGLint kConfig[] = {EGL_SURFACE_TYPE, EGL_PBUFFER_BIT, EGL_RENDERABLE_TYPE,
                                   EGL_OPENGL_BIT, EGL_NONE};
@@ -94,15 +101,11 @@ struct OffscreenWindow::State {
 
 OffscreenWindow::OffscreenWindow(int width, int height) : state_(std::make_unique<State>()) {
   state_->context = EglContext::create();
-  if (state_->context) {
-    state_->window = window_on_current_context();
-  } else if (std::getenv("DISPLAY")) {
-    state_->window = vtkSmartPointer<vtkRenderWindow>::New();
-  } else {
+  if (!state_->context) {
     throw std::runtime_error(
-        "pictures need OpenGL: neither EGL (packages libegl1, libgl1-mesa-dri) nor a display was "
-        "found; install them or run under xvfb-run");
+        "pictures need OpenGL 3.2 by EGL, and there is none; install libegl1 and libgl1-mesa-dri");
   }
+  state_->window = window_on_current_context();
   state_->window->SetShowWindow(false);
   state_->window->SetUseOffScreenBuffers(true);
   state_->window->SetMultiSamples(kSamples);

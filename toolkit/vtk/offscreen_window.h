@@ -7,11 +7,10 @@ class vtkRenderWindow;
 namespace mimetra {
 
 /// A window of VTK that nobody sees and that needs no display: it draws with OpenGL on an EGL
-/// context without a surface (Mesa does so on any processor). Where EGL offers none, it is a hidden
-/// window of the display that $DISPLAY names.
+/// context without a surface (Mesa does so on any processor).
 class OffscreenWindow {
  public:
-  /// Throws std::runtime_error where there is neither.
+  /// Throws std::runtime_error where EGL offers none.
   OffscreenWindow(int width, int height);
   ~OffscreenWindow();
   OffscreenWindow(const OffscreenWindow&) = delete;

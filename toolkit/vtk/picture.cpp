@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <numbers>
 #include <stdexcept>
 
 #include <Eigen/Geometry>
@@ -159,6 +158,10 @@ Image image_of(vtkRenderWindow& window, int width, int height) {
   window.GetPixelData(0, 0, width - 1, height - 1, 0, pixels);
   Image image{width, height, {}};
   const std::size_t row = 3 * static_cast<std::size_t>(width);
+  if (pixels->GetNumberOfValues() < static_cast<vtkIdType>(row) * height) {
+    throw std::runtime_error("OpenGL could not draw " + std::to_string(width) + " x " +
+                             std::to_string(height) + " pixels; take a smaller size");
+  }
   image.pixels.resize(row * static_cast<std::size_t>(height));
   for (int y = 0; y < height; ++y) {  // OpenGL counts rows from below
     std::memcpy(image.pixels.data() + row * static_cast<std::size_t>(y),
@@ -169,7 +172,7 @@ Image image_of(vtkRenderWindow& window, int width, int height) {
 
 }  // namespace
 
-Image draw(const Sheet& sheet) {
+Image draw(const Sheet& sheet, const Progress& progress) {
   const SheetLayout layout = SheetLayout::of(sheet);
   if (layout.width > kLargestPicture || layout.height > kLargestPicture) {
     throw std::invalid_argument("a picture of " + std::to_string(layout.width) + " x " +
@@ -187,13 +190,24 @@ Image draw(const Sheet& sheet) {
     for (std::size_t column = 0; column < sheet.rows[row].tiles.size(); ++column) {
       add_tile(window, sheet, layout, row, column, weld);
     }
+    // What follows this loop takes as long as all of it.
+    report_progress(progress,
+                    0.5 * static_cast<double>(row + 1) / static_cast<double>(sheet.rows.size()));
   }
   const auto overlay = empty_renderer({0, 0, layout.width, layout.height}, layout);
   overlay->SetLayer(1);
   annotate(*overlay, sheet, layout);
   window.AddRenderer(overlay);
   window.Render();
+  report_progress(progress, 1);
   return image_of(window, layout.width, layout.height);
+}
+
+double drawing_bytes(const Sheet& sheet) {
+  // Colour and depth in each of four samples a pixel, once resolved, once read, once as PNG.
+  constexpr double kBytesPerPixel = 64;
+  const SheetLayout layout = SheetLayout::of(sheet);
+  return kBytesPerPixel * layout.width * layout.height;
 }
 
 std::string png_of(const Image& image) {

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include <mimetra/mesh/errors.h>
 #include <mimetra/mesh/tri_mesh.h>
 #include <mimetra/operations/data.h>
 #include <mimetra/vtk/colors.h>
@@ -49,8 +50,12 @@ constexpr int kLargestPicture = 16384;
 
 /// Draws a sheet. Light comes from the upper left, so that wrinkles show; vertices at one place are
 /// shaded as one. Throws std::invalid_argument for a sheet without tiles or larger than
-/// kLargestPicture, std::runtime_error where there is no OpenGL.
-Image draw(const Sheet& sheet);
+/// kLargestPicture, std::runtime_error where there is no OpenGL or it has not enough memory,
+/// Cancelled.
+Image draw(const Sheet& sheet, const Progress& progress = {});
+
+/// Bytes that draw() takes at its peak.
+double drawing_bytes(const Sheet& sheet);
 
 /// The picture as the bytes of a PNG file.
 std::string png_of(const Image& image);

@@ -15,6 +15,7 @@ std::vector<std::string> split(const std::string& text) {
   std::vector<std::string> parts;
   std::istringstream stream(text);
   for (std::string part; std::getline(stream, part, ',');) parts.push_back(part);
+  if (text.ends_with(',')) parts.emplace_back();
   return parts;
 }
 
@@ -48,14 +49,17 @@ StripOptions options_of(const Invocation& invocation) {
   return options;
 }
 
-Outcome run(const Invocation& invocation) {
+Sheet sheet_of(const Invocation& invocation) {
   std::vector<FieldSequence> sequences;
   for (const NamedData& input : invocation.inputs.at("input")) {
     sequences.push_back(std::get<FieldSequence>(input.data));
   }
-  const Sheet sheet = film_strip(sequences, options_of(invocation));
-  report_progress(invocation.progress, 0.1);
-  Image image = draw(sheet);
+  return film_strip(sequences, options_of(invocation));
+}
+
+Outcome run(const Invocation& invocation) {
+  const Sheet sheet = sheet_of(invocation);
+  Image image = draw(sheet, invocation.progress);
   Outcome outcome;
   Json bars = Json::array();
   for (const TileRow& row : sheet.rows) {
@@ -132,6 +136,9 @@ Operation render_operation() {
       "render take.npy regions.pvd actor_smile/ --color none,region,none -o strip.png",
       "render actor/ --layout turntable --columns 6 --unit mm -o actor.png"};
   operation.run = run;
+  operation.memory = [](const Invocation& invocation) {
+    return drawing_bytes(sheet_of(invocation));
+  };
   return operation;
 }
 

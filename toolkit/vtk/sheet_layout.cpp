@@ -70,7 +70,9 @@ SheetLayout SheetLayout::of(const Sheet& sheet) {
   }
   if (sheet.rows.empty()) throw std::invalid_argument("a sheet has no row");
   layout.reach = reach_of(sheet, layout.centers);
-  if (!(layout.reach > 0)) throw std::invalid_argument("a mesh without extent cannot be drawn");
+  if (!(layout.reach > 0)) {
+    throw MismatchError("all vertices are at one place, so that there is nothing to draw");
+  }
   const Eigen::Vector2d half = kSpaceAround * half_extent(sheet, layout.centers);
   const double aspect = std::clamp(half[0] / half[1], 0.5, 2.0);
   layout.half_height = std::max(half[1], half[0] / aspect);

@@ -37,7 +37,8 @@ struct SheetLayout {
   double reach = 0;        ///< no vertex is farther than this from its row's centre
   std::vector<Eigen::RowVector3d> centers;  ///< middle of each row's first tile
 
-  /// Throws std::invalid_argument where there is no tile or nothing has an extent.
+  /// Throws std::invalid_argument where there is no tile, MismatchError where nothing has an
+  /// extent.
   static SheetLayout of(const Sheet& sheet);
 
   Box tile(std::size_t row, std::size_t column) const;

@@ -72,7 +72,7 @@ void add_vtk(OperationTable& table) {
                      return write(std::get<FieldSequence>(data), request);
                    }});
   table.add(RegionReader{{".vtp"}, read_regions_from_vtp});
-  table.add(FieldReader{{".pvd", ".vtp", ".series"}, read_vtp_series});
+  table.add(FieldReader{{".pvd", ".vtp", ".series"}, read_vtp_series, vtp_series_files});
   table.add(Writer{DataKind::picture, {".png"}, {}, write_picture});
   table.add(render_operation());
 }

@@ -1,5 +1,5 @@
 #include <algorithm>
-#include <cmath>
+#include <cctype>
 
 #include <vtkCellArray.h>
 #include <vtkCellData.h>
@@ -74,7 +74,8 @@ std::vector<FrameEntry> entries_of_pvd(const fs::path& path) {
 std::vector<FrameEntry> entries_of_series(const fs::path& path) {
   std::vector<FrameEntry> entries;
   try {
-    for (const auto& entry : nlohmann::json::parse(read_file(path)).at("files")) {
+    const auto series = nlohmann::json::parse(read_file(path));
+    for (const auto& entry : series.at("files")) {
       entries.push_back({path.parent_path() / entry.at("name").get<std::string>(),
                          entry.at("time").get<double>()});
     }
@@ -85,15 +86,19 @@ std::vector<FrameEntry> entries_of_series(const fs::path& path) {
 }
 
 std::vector<FrameEntry> entries_of(const fs::path& path) {
-  std::vector<FrameEntry> entries = path.extension() == ".vtp"   ? std::vector{FrameEntry{path, 0}}
-                                    : path.extension() == ".pvd" ? entries_of_pvd(path)
-                                                                 : entries_of_series(path);
+  std::string extension = path.extension().string();
+  std::ranges::transform(extension, extension.begin(),
+                         [](unsigned char c) { return std::tolower(c); });
+  std::vector<FrameEntry> entries = extension == ".vtp"   ? std::vector{FrameEntry{path, 0}}
+                                    : extension == ".pvd" ? entries_of_pvd(path)
+                                                          : entries_of_series(path);
   if (entries.empty()) throw IoError(path.string(), "names no frame");
   return entries;
 }
 
 Positions positions_of(vtkPolyData& data, const fs::path& file) {
-  if (data.GetNumberOfPoints() == 0) throw IoError(file.string(), "has no points");
+  if (data.GetNumberOfPoints() == 0)
+    throw IoError(file.string(), "has no points, or its counts do not fit");
   const Positions positions = values_of(*data.GetPoints()->GetData());
   for (Eigen::Index v = 0; v < positions.rows(); ++v) {
     if (!positions.row(v).allFinite()) {
@@ -120,12 +125,15 @@ Connectivity connectivity_of(vtkPolyData& data, const fs::path& file) {
   }
 }
 
-/// Values of each polygon on its triangles.
-Eigen::MatrixXd on_triangles(const Eigen::MatrixXd& on_polygons, const Connectivity& connectivity) {
-  return on_polygons(connectivity.polygon_of_triangle, Eigen::all);
+/// Values of each polygon on its triangles. VTK counts vertices and lines before polygons.
+Eigen::MatrixXd on_triangles(const Eigen::MatrixXd& on_cells, Eigen::Index before,
+                             const Connectivity& connectivity) {
+  return on_cells.middleRows(before, connectivity.polygons.size())(connectivity.polygon_of_triangle,
+                                                                   Eigen::all);
 }
 
 constexpr const char* kDisplacement = "displacement";
+constexpr const char* kDisplacementLength = "displacement_length";
 
 std::vector<Field> fields_of(vtkPolyData& data, const Connectivity& connectivity) {
   std::vector<Field> fields;
@@ -134,15 +142,16 @@ std::vector<Field> fields_of(vtkPolyData& data, const Connectivity& connectivity
       vtkDataArray* array = vtkDataArray::SafeDownCast(arrays.GetAbstractArray(i));
       if (!array || !array->GetName()) continue;
       const std::string name = array->GetName();
-      if (name.starts_with(kDisplacement)) continue;
+      if (name == kDisplacement || name == kDisplacementLength) continue;
       const bool integer = array->GetDataType() != VTK_FLOAT && array->GetDataType() != VTK_DOUBLE;
       fields.push_back({name, location, placed(values_of(*array)), integer});
     }
   };
   add(*data.GetPointData(), Field::Location::vertices,
       [](Eigen::MatrixXd values) { return values; });
+  const Eigen::Index before = data.GetNumberOfVerts() + data.GetNumberOfLines();
   add(*data.GetCellData(), Field::Location::triangles,
-      [&connectivity](Eigen::MatrixXd values) { return on_triangles(values, connectivity); });
+      [&](Eigen::MatrixXd values) { return on_triangles(values, before, connectivity); });
   return fields;
 }
 
@@ -182,6 +191,14 @@ FieldSequence read_vtp_series(const fs::path& path,
   result.sequence =
       MeshSequence(std::move(connectivity), std::move(frames), std::move(times), std::move(rest));
   return result;
+}
+
+std::vector<fs::path> vtp_series_files(const fs::path& path) {
+  std::vector<fs::path> files = {path};
+  for (const FrameEntry& entry : entries_of(path)) {
+    if (entry.file != path) files.push_back(entry.file);
+  }
+  return files;
 }
 
 Eigen::MatrixXd read_vtp_field(const fs::path& path, const std::string& name) {

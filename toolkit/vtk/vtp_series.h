@@ -37,6 +37,9 @@ FieldSequence read_vtp_series(const std::filesystem::path& path,
                               const std::function<std::vector<int>(int count)>& selected,
                               const Progress& = {});
 
+/// The files that read_vtp_series reads for a path: itself, and the frames it names.
+std::vector<std::filesystem::path> vtp_series_files(const std::filesystem::path& path);
+
 /// A field on the vertices of a .vtp file (N x c). Throws IoError where the file or field is
 /// missing.
 Eigen::MatrixXd read_vtp_field(const std::filesystem::path& path, const std::string& name);

@@ -1,0 +1,80 @@
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include <mimetra/regions/regions.h>
+#include <mimetra/transfer/blendshape_transfer.h>
+#include <mimetra/transfer/vertex_transfer.h>
+
+#include "shapes.h"
+
+namespace mimetra {
+namespace {
+
+/// Several blocks of vertices and of frames, so that threads have something to share.
+class Threads : public testing::Test {
+ protected:
+  static constexpr int kSide = 36, kFrames = 100;
+
+  Threads() {
+    const test::Shape shape = test::grid(kSide, kSide);
+    const auto n = static_cast<int>(shape.positions.rows());
+    auto connectivity =
+        std::make_shared<Connectivity>(Connectivity::from_triangles(n, shape.triangles));
+    Eigen::MatrixXd bumps = Eigen::MatrixXd::Zero(3 * n, 4);
+    for (int v = 0; v < n; ++v) {
+      for (int j = 0; j < 4; ++j) {
+        const double x = shape.positions(v, 0) - 9 * (1 + 2 * (j % 2));
+        const double y = shape.positions(v, 1) - 9 * (1 + 2 * (j / 2));
+        bumps(3 * v + 2, j) = std::exp(-(x * x + y * y) / 20);
+        bumps(3 * v, j) = 0.1 * std::sin(0.3 * v + j) * bumps(3 * v + 2, j);
+      }
+    }
+    model_ = BlendshapeModel(connectivity, shape.positions, {{"a", "b", "c", "d"}, bumps});
+    Eigen::MatrixXd weights(kFrames, 4);
+    for (int f = 0; f < kFrames; ++f) {
+      for (int j = 0; j < 4; ++j) weights(f, j) = std::pow(std::sin(0.1 * f * (j + 1)), 2);
+    }
+    sequence_ = model_.animate(weights, Eigen::VectorXd::LinSpaced(kFrames, 0, 4));
+  }
+
+  BlendshapeModel model_;
+  MeshSequence sequence_;
+};
+
+TEST_F(Threads, DoNotChangeADecomposition) {
+  const DistanceFunction distances = [this](VertexIndex source) {
+    return Eigen::VectorXd(
+        (sequence_.rest().rowwise() - sequence_.rest().row(source)).rowwise().norm());
+  };
+  const auto components = [&](int threads) {
+    return decompose(sequence_,
+                     {.count = 4, .iterations = 3, .distances = distances, .threads = threads});
+  };
+  const Components one = components(1);
+  for (const int threads : {2, 5}) {
+    const Components several = components(threads);
+    EXPECT_TRUE(several.displacements == one.displacements) << threads;
+    EXPECT_TRUE(several.weights == one.weights) << threads;
+    EXPECT_EQ(several.energies, one.energies) << threads;
+  }
+}
+
+TEST_F(Threads, DoNotChangeATransfer) {
+  const std::vector<int> all = all_triangles(sequence_.triangles());
+  const auto weights = [&](int threads) {
+    return BlendshapeTransfer(sequence_.rest(), model_, all, {.threads = threads})
+        .weights(sequence_);
+  };
+  const auto frames = [&](int threads) {
+    VertexTransferOptions options;
+    options.threads = threads;
+    return VertexTransfer(sequence_.rest(), model_.neutral(), sequence_.triangles(), all, options)
+        .frames(sequence_);
+  };
+  EXPECT_TRUE(weights(1) == weights(3));
+  EXPECT_TRUE(frames(1) == frames(3));
+}
+
+}  // namespace
+}  // namespace mimetra
