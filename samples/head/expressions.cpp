@@ -135,17 +135,17 @@ ShapeBasis head_expressions(const HeadGrid& grid) {
   const Eyelids open, shut{0.2, 0.2}, wide{12.8, 2.2};
   const auto moved = [&](const Motion& motion) { return field_of(grid, mean, motion); };
   const std::pair<const char*, Eigen::VectorXd> fields[] = {
-      {"eyeBlink_L", lid_field(grid, mean, shut, open)},
-      {"eyeBlink_R", lid_field(grid, mean, open, shut)},
-      {"eyeWide_L", lid_field(grid, mean, wide, open)},
-      {"eyeWide_R", lid_field(grid, mean, open, wide)},
+      {"eyeBlinkLeft", lid_field(grid, mean, shut, open)},
+      {"eyeBlinkRight", lid_field(grid, mean, open, shut)},
+      {"eyeWideLeft", lid_field(grid, mean, wide, open)},
+      {"eyeWideRight", lid_field(grid, mean, open, wide)},
       {"browInnerUp", moved(sculpting_both_sides(kBrowInnerUp))},
-      {"browDown_L", moved(sculpting(kBrowDownLeft))},
-      {"browDown_R", moved(mirrored(sculpting(kBrowDownLeft)))},
+      {"browDownLeft", moved(sculpting(kBrowDownLeft))},
+      {"browDownRight", moved(mirrored(sculpting(kBrowDownLeft)))},
       {"jawOpen", moved(jaw_open)},
       {"mouthPucker", moved(pucker)},
-      {"mouthSmile_L", moved(sculpting(kSmileLeft))},
-      {"mouthSmile_R", moved(mirrored(sculpting(kSmileLeft)))},
+      {"mouthSmileLeft", moved(sculpting(kSmileLeft))},
+      {"mouthSmileRight", moved(mirrored(sculpting(kSmileLeft)))},
       {"cheekPuff", moved(sculpting_both_sides(kCheekPuff))},
   };
   ShapeBasis basis{{}, Eigen::MatrixXd(mean.size(), static_cast<Eigen::Index>(std::size(fields)))};

@@ -5,8 +5,8 @@
 
 namespace mimetra::samples {
 
-/// 12 expressions of the head, named as ARKit names them (`_L` is the head's own left). Each moves
-/// a part of the face and leaves all else exactly where it is.
+/// 12 expressions of the head, named as ARKit names them (`Left` is the head's own left). Each
+/// moves a part of the face and leaves all else exactly where it is.
 ShapeBasis head_expressions(const HeadGrid& grid);
 
 /// 4 clearly different people as displacements from the mean head: a wide face, a long and narrow

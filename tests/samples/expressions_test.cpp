@@ -74,7 +74,7 @@ Positions mirrored(const std::string& name) {
 
 TEST(HeadExpressions, OfLeftAndRightAreMirrorImages) {
   for (const std::string name : {"eyeBlink", "eyeWide", "browDown", "mouthSmile"}) {
-    EXPECT_EQ(mirrored(name + "_L"), field(name + "_R")) << name;
+    EXPECT_EQ(mirrored(name + "Left"), field(name + "Right")) << name;
   }
 }
 
@@ -85,7 +85,7 @@ TEST(HeadExpressions, OfBothSidesAreSymmetric) {
 }
 
 TEST(HeadExpressions, CalledLeftMoveTheHeadsOwnLeft) {
-  const Positions smile = field("mouthSmile_L");
+  const Positions smile = field("mouthSmileLeft");
   Eigen::Index most;
   smile.rowwise().norm().maxCoeff(&most);
   EXPECT_GT(head().mean()(most, 0), 10);
@@ -123,7 +123,7 @@ TEST(HeadExpressions, JawOpenHasARoofOfTheMouthThatFallsBackwards) {
 
 TEST(HeadExpressions, BlinkClosesTheEyeToAFewHundredthsOfItsOpening) {
   for (const auto& [name, eye] :
-       {std::pair<std::string, int>{"eyeBlink_L", 1}, {"eyeBlink_R", -1}}) {
+       {std::pair<std::string, int>{"eyeBlinkLeft", 1}, {"eyeBlinkRight", -1}}) {
     const std::vector<double> open = gaps(head().mean(), eye_edges(eye));
     const double widest = *std::max_element(open.begin(), open.end());
     for (const double gap : gaps(head().mean() + field(name), eye_edges(eye))) {
@@ -134,13 +134,13 @@ TEST(HeadExpressions, BlinkClosesTheEyeToAFewHundredthsOfItsOpening) {
 
 TEST(HeadExpressions, BlinkNeverCrossesTheLids) {
   for (const double weight : {0.25, 0.5, 0.75, 1.0}) {
-    const Positions pose = head().mean() + weight * field("eyeBlink_L");
+    const Positions pose = head().mean() + weight * field("eyeBlinkLeft");
     for (const auto& [above, below] : eye_edges(1)) EXPECT_GT(pose(above, 1), pose(below, 1));
   }
 }
 
 TEST(HeadExpressions, BlinkIsDoneMostlyByTheUpperLid) {
-  const Positions moved = field("eyeBlink_L");
+  const Positions moved = field("eyeBlinkLeft");
   for (const auto& [above, below] : eye_edges(1)) {
     EXPECT_GT(moved.row(above).norm(), 4 * moved.row(below).norm());
   }
@@ -148,12 +148,12 @@ TEST(HeadExpressions, BlinkIsDoneMostlyByTheUpperLid) {
 
 TEST(HeadExpressions, EyeWideOpensTheEyeFurther) {
   const std::vector<double> open = gaps(head().mean(), eye_edges(-1));
-  const std::vector<double> wide = gaps(head().mean() + field("eyeWide_R"), eye_edges(-1));
+  const std::vector<double> wide = gaps(head().mean() + field("eyeWideRight"), eye_edges(-1));
   for (std::size_t i = 0; i < open.size(); ++i) EXPECT_GT(wide[i], 1.2 * open[i]);
 }
 
 TEST(HeadExpressions, SmilePullsTheCornerOfTheMouthUpAndOutAndTheCheekForward) {
-  const Positions moved = field("mouthSmile_L");
+  const Positions moved = field("mouthSmileLeft");
   const int corner = mouth_edges().back().first;
   EXPECT_GT(moved(corner, 0), 4);
   EXPECT_GT(moved(corner, 1), 4);
@@ -167,8 +167,8 @@ TEST(HeadExpressions, SmilePullsTheCornerOfTheMouthUpAndOutAndTheCheekForward) {
 TEST(HeadExpressions, BrowsMoveAsTheirNamesSay) {
   EXPECT_GT(field("browInnerUp").col(1).maxCoeff(), 5);
   EXPECT_GE(field("browInnerUp").col(1).minCoeff(), 0);
-  EXPECT_LT(field("browDown_L").col(1).minCoeff(), -5);
-  EXPECT_LE(field("browDown_L").col(1).maxCoeff(), 0);
+  EXPECT_LT(field("browDownLeft").col(1).minCoeff(), -5);
+  EXPECT_LE(field("browDownLeft").col(1).maxCoeff(), 0);
 }
 
 /// Height and side of all that an expression may move, mm.
@@ -190,18 +190,20 @@ TEST_P(HeadExpressionReach, EndsExactlyWhereItsMusclesDo) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Each, HeadExpressionReach,
-    ::testing::Values(Reach{"eyeBlink_L", -20, 22, 15, 47}, Reach{"eyeWide_R", -20, 22, -47, -15},
-                      Reach{"browInnerUp", 0, 55, -65, 65}, Reach{"browDown_L", 0, 50, -8, 60},
-                      Reach{"jawOpen", -150, -25, -80, 80}, Reach{"mouthPucker", -95, -38, -45, 45},
-                      Reach{"mouthSmile_L", -95, -8, -12, 70},
-                      Reach{"cheekPuff", -95, -20, -82, 82}),
-    [](const auto& parameter) { return std::string(parameter.param.name); });
+INSTANTIATE_TEST_SUITE_P(Each, HeadExpressionReach,
+                         ::testing::Values(Reach{"eyeBlinkLeft", -20, 22, 15, 47},
+                                           Reach{"eyeWideRight", -20, 22, -47, -15},
+                                           Reach{"browInnerUp", 0, 55, -65, 65},
+                                           Reach{"browDownLeft", 0, 50, -8, 60},
+                                           Reach{"jawOpen", -150, -25, -80, 80},
+                                           Reach{"mouthPucker", -95, -38, -45, 45},
+                                           Reach{"mouthSmileLeft", -95, -8, -12, 70},
+                                           Reach{"cheekPuff", -95, -20, -82, 82}),
+                         [](const auto& parameter) { return std::string(parameter.param.name); });
 
 TEST(HeadExpressions, BlinkNeverEntersTheEyeball) {
   constexpr double kEyeballRadius = 13;
-  const Positions blink = field("eyeBlink_L");
+  const Positions blink = field("eyeBlinkLeft");
   for (const double weight : {0.0, 0.25, 0.5, 0.75, 1.0}) {
     const Positions pose = head().mean() + weight * blink;
     for (int v = 0; v < pose.rows(); ++v) {

@@ -187,7 +187,7 @@ TEST(HeadIdentities, MoveEachEyeballAsAWhole) {
 }
 
 TEST(HeadIdentities, HaveEyesThatABlinkCloses) {
-  const Positions blink = field("eyeBlink_L");
+  const Positions blink = field("eyeBlinkLeft");
   for (int i = 0; i < head().identities().size(); ++i) {
     const Positions person = head().mean() + field(head().identities(), i);
     const std::vector<double> open = gaps(person, eye_edges(1));
