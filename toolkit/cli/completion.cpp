@@ -166,11 +166,11 @@ std::string zsh_completion(const std::vector<Command>& commands) {
 }
 
 std::string fish_completion(const std::vector<Command>& commands) {
-  const std::string kQuote = "\\'";
+  const std::string fish_quote = "\\'";
   std::string text = "# Completion of mimetra for fish.\n";
   for (const Command& command : commands) {
     text += "complete -c mimetra -f -n __fish_use_subcommand -a " + command.operation->name +
-            " -d " + in_quotes(command.operation->summary, kQuote) + "\n";
+            " -d " + in_quotes(command.operation->summary, fish_quote) + "\n";
   }
   for (const Command& command : commands) {
     const std::string start =
@@ -181,8 +181,9 @@ std::string fish_completion(const std::vector<Command>& commands) {
         text += form.starts_with("--") ? " -l " + form.substr(2) : " -s " + form.substr(1);
       }
       if (!option.is_flag()) text += option.takes_file ? " -r -F" : " -x";
-      if (!option.choices.empty()) text += " -a " + in_quotes(joined(option.choices, " "), kQuote);
-      text += " -d " + in_quotes(option.help, kQuote) + "\n";
+      if (!option.choices.empty())
+        text += " -a " + in_quotes(joined(option.choices, " "), fish_quote);
+      text += " -d " + in_quotes(option.help, fish_quote) + "\n";
     }
   }
   return text;

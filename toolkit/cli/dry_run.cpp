@@ -1,6 +1,7 @@
 #include <mimetra/cli/dry_run.h>
 
 #include <algorithm>
+#include <cmath>
 #include <fstream>
 #include <sstream>
 
@@ -34,7 +35,7 @@ std::string size_of(const Data& data) {
 }
 
 std::string megabytes(double bytes) {
-  return std::to_string(static_cast<long>(bytes / 1e6 + 0.5)) + " MB";
+  return std::to_string(std::lround(bytes / 1e6)) + " MB";
 }
 
 }  // namespace

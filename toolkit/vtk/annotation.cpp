@@ -1,6 +1,7 @@
 #include <mimetra/vtk/annotation.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include <vtkActor2D.h>
 #include <vtkCellArray.h>
@@ -89,6 +90,7 @@ std::string fitted(const std::string& text, int pixels, int letter_height) {
 void write_bar(const Pen& pen, const ColorBar& bar, const Box& row_end, int text) {
   constexpr int kSteps = 64;
   std::vector<Color> colors;
+  colors.reserve(kSteps);
   for (int i = 0; i < kSteps; ++i) colors.push_back(even_color((i + 0.5) / kSteps));
   const Box box{row_end.left + text, row_end.top + row_end.height / 8, text,
                 3 * row_end.height / 4};
@@ -101,7 +103,7 @@ void write_bar(const Pen& pen, const ColorBar& bar, const Box& row_end, int text
 /// A third of a tile at most, below the last row.
 void write_scale_bar(const Pen& pen, const Sheet& sheet, const SheetLayout& layout) {
   const double length = round_length(layout.tile_width / 3.0 / layout.pixels_per_unit());
-  const int pixels = static_cast<int>(length * layout.pixels_per_unit() + 0.5);
+  const int pixels = static_cast<int>(std::lround(length * layout.pixels_per_unit()));
   const int baseline = layout.height - layout.text / 2;
   const Box box{layout.margin, baseline - layout.text / 2, pixels, std::max(2, layout.text / 5)};
   pen.stack(box, {{26, 26, 26}});

@@ -81,6 +81,7 @@ std::vector<int> ranks_of(const std::vector<int>& categories) {
   int next = 0;
   for (auto& [category, place] : rank) place = next++;
   std::vector<int> ranks;
+  ranks.reserve(categories.size());
   for (const int category : categories) ranks.push_back(category < 0 ? -1 : rank[category]);
   return ranks;
 }
@@ -131,6 +132,7 @@ std::vector<Color> category_colors(const std::vector<int>& categories, const Tri
     chosen[rank] = best;
   }
   std::vector<Color> colors;
+  colors.reserve(ranks.size());
   for (const int rank : ranks) colors.push_back(rank < 0 ? kClay : kPalette[chosen[rank]]);
   return colors;
 }

@@ -71,6 +71,7 @@ std::vector<int> shown_frames(int frames, const StripOptions& options) {
   if (!options.frames.empty()) return options.frames;
   const int columns = std::min(options.columns, frames);
   std::vector<int> shown;
+  shown.reserve(static_cast<std::size_t>(columns));
   for (int column = 0; column < columns; ++column) {
     shown.push_back(columns == 1 ? 0 : column * (frames - 1) / (columns - 1));
   }

@@ -148,10 +148,10 @@ std::vector<Field> fields_of(vtkPolyData& data, const Connectivity& connectivity
     }
   };
   add(*data.GetPointData(), Field::Location::vertices,
-      [](Eigen::MatrixXd values) { return values; });
+      [](const Eigen::MatrixXd& values) { return values; });
   const Eigen::Index before = data.GetNumberOfVerts() + data.GetNumberOfLines();
   add(*data.GetCellData(), Field::Location::triangles,
-      [&](Eigen::MatrixXd values) { return on_triangles(values, before, connectivity); });
+      [&](const Eigen::MatrixXd& values) { return on_triangles(values, before, connectivity); });
   return fields;
 }
 
