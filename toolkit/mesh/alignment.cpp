@@ -221,6 +221,7 @@ Alignment align(const MeshSequence& sequence, AlignmentVertices vertices,
 Alignment align(const MeshSequence& sequence, std::vector<RigidTransform> motion) {
   check_count(sequence, motion);
   std::vector<RigidTransform> inverse;
+  inverse.reserve(motion.size());
   for (const RigidTransform& transform : motion) inverse.push_back(transform.inverse());
   return {with_motion(sequence, inverse), std::move(motion)};
 }
