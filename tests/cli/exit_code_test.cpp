@@ -92,6 +92,12 @@ TEST_F(ExitCode, Is4ForRegionsWithoutATriangle) {
   }
 }
 
+TEST_F(ExitCode, Is4ForAFileThatNoInputNeeds) {
+  ASSERT_EQ(run("regions head --weights take.csv -k 2 -o r.pvd").code, 0);
+  expect_failure("info r.pvd --weights take.csv", 4, "no input is a model");
+  expect_failure("info r.pvd --topology head/neutral.ply", 4, "no input is an array");
+}
+
 TEST_F(ExitCode, Is4ForAnAnchorThatTheMeshDoesNotHave) {
   expect_failure("transfer head --weights take.csv head --space vertex --full --anchor 225 -o x", 4,
                  "vertex 225");

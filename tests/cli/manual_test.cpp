@@ -107,6 +107,15 @@ TEST_F(Render, WritesAPngOfTheSizeItSays) {
   EXPECT_TRUE(listing().contains("s.run.json"));
 }
 
+TEST_F(Render, SaysWhatToInstallWhereThereIsNoOpenGl) {
+  ASSERT_EQ(setenv("__EGL_VENDOR_LIBRARY_DIRS", "/nonexistent", 1), 0);
+  const auto result = run("render head --size 32 -o s.png");
+  unsetenv("__EGL_VENDOR_LIBRARY_DIRS");
+  EXPECT_EQ(result.code, 1);
+  EXPECT_THAT(result.err, HasSubstr("install libegl1"));
+  EXPECT_FALSE(listing().contains("s.png"));
+}
+
 TEST_F(Render, NamesTheFieldsThereAre) {
   ASSERT_EQ(run("regions head --weights take.csv -k 2 -o r.vtp").code, 0);
   const auto result = run("render r.vtp --color reigon -o s.png");

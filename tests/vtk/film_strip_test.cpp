@@ -64,6 +64,14 @@ TEST(FilmStrip, ShowsCategoriesWithoutABarAndNumbersWithOne) {
   EXPECT_EQ(row.tiles[0].colors[4], even_color(0));
 }
 
+TEST(FilmStrip, ShowsRegionsThatCoverTheWholeMeshAsCategories) {
+  FieldSequence fields = rising(1);
+  fields.fields[0].values << 0, 0, 1, 1, 2;
+  const TileRow row = film_strip({fields}, {.colors = {"region"}}).rows[0];
+  EXPECT_FALSE(row.bar);
+  EXPECT_NE(row.tiles[0].colors[0], row.tiles[0].colors[2]);
+}
+
 TEST(FilmStrip, TurnsATurntableOnceAround) {
   const Sheet sheet =
       film_strip({rising(3)}, {.layout = StripLayout::turntable, .columns = 4, .frames = {2}});

@@ -48,6 +48,13 @@ TEST_F(VtpRead, GivesBackWhatWasWritten) {
   }
 }
 
+TEST_F(VtpRead, KnowsExtensionsInCapitals) {
+  write_vtp_series(quad_and_triangle(), in_folder("face.pvd"));
+  std::filesystem::rename(in_folder("face.pvd"), in_folder("face.PVD"));
+  EXPECT_EQ(read_vtp_series(in_folder("face.PVD"), all).sequence.frames(), 3);
+  EXPECT_EQ(vtp_series_files(in_folder("face.PVD")).size(), 4u);
+}
+
 TEST_F(VtpRead, TakesThePartThatIsAskedFor) {
   const FieldSequence written = quad_and_triangle();
   write_vtp_series(written, in_folder("face.pvd"));

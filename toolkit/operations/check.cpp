@@ -1,7 +1,6 @@
 #include <nlohmann/json.hpp>
 
 #include <mimetra/mesh/inspection.h>
-#include <mimetra/mesh/weld.h>
 #include <mimetra/operations/report.h>
 #include <mimetra/operations/toolkit_operations.h>
 
