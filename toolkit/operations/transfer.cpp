@@ -23,6 +23,10 @@ Choice choose(const Invocation& invocation, const PreparedSource& source) {
     return {{all_triangles(source.sequence.triangles()), {}}, {}, 0};
   }
   if (const RegionData* given = invocation.find<RegionData>("regions")) {
+    if (given->regions.triangles.empty()) {
+      throw MismatchError(invocation.inputs.at("regions").front().name +
+                          ": its regions hold no triangle of the mesh; choose others");
+    }
     return {{given->regions.triangles, given->regions.inside}, given->regions, 0};
   }
   const SequenceRead& read = invocation.get<SequenceRead>("source");
@@ -92,9 +96,6 @@ Outcome run(const Invocation& invocation) {
   for (const NamedData& target : targets) check_target(source.sequence, target);
   check_outputs(invocation);
   const Choice choice = choose(invocation, source);
-  if (choice.selection.triangles.empty()) {
-    throw MismatchError("the regions hold no triangle; choose others, or use --full");
-  }
   const bool give_back =
       !source.motion.empty() && invocation.parameters.text("head-motion") == "keep";
 

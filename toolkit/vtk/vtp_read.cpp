@@ -132,9 +132,6 @@ Eigen::MatrixXd on_triangles(const Eigen::MatrixXd& on_cells, Eigen::Index befor
                                                                    Eigen::all);
 }
 
-constexpr const char* kDisplacement = "displacement";
-constexpr const char* kDisplacementLength = "displacement_length";
-
 std::vector<Field> fields_of(vtkPolyData& data, const Connectivity& connectivity) {
   std::vector<Field> fields;
   const auto add = [&fields](vtkFieldData& arrays, Field::Location location, auto placed) {

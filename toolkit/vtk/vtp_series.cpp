@@ -90,8 +90,8 @@ std::string place_of(Field::Location location) {
 void check(const FieldSequence& fields) {
   std::set<std::pair<Field::Location, std::string>> names;
   if (fields.displacement) {
-    names.insert({Field::Location::vertices, "displacement"});
-    names.insert({Field::Location::vertices, "displacement_length"});
+    names.insert({Field::Location::vertices, kDisplacement});
+    names.insert({Field::Location::vertices, kDisplacementLength});
   }
   for (const Field& field : fields.fields) {
     const Eigen::Index expected = field.location == Field::Location::vertices
@@ -129,9 +129,9 @@ class FrameData {
     data_->SetPoints(points);
     if (fields_.displacement) {
       const Eigen::MatrixXd displacement = positions - fields_.sequence.rest();
-      data_->GetPointData()->AddArray(float_array("displacement", displacement));
+      data_->GetPointData()->AddArray(float_array(kDisplacement, displacement));
       data_->GetPointData()->AddArray(
-          float_array("displacement_length", displacement.rowwise().norm()));
+          float_array(kDisplacementLength, displacement.rowwise().norm()));
     }
     return *data_;
   }
