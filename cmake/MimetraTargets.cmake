@@ -17,6 +17,8 @@ function(mimetra_library name)
   add_library(mimetra::${name} ALIAS mimetra_${name})
   set_target_properties(mimetra_${name} PROPERTIES EXPORT_NAME ${name})
   target_compile_features(mimetra_${name} PUBLIC cxx_std_20)
+  # What one library allocates another frees: Eigen must align alike, whatever -march each has.
+  target_compile_definitions(mimetra_${name} PUBLIC EIGEN_MAX_ALIGN_BYTES=16)
   target_include_directories(mimetra_${name} PUBLIC $<BUILD_INTERFACE:${MIMETRA_INCLUDE_ROOT}>
                                                     $<INSTALL_INTERFACE:include>)
   target_link_libraries(
