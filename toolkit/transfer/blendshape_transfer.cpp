@@ -11,7 +11,7 @@
 #include <mimetra/transfer/box_least_squares.h>
 #include <mimetra/transfer/deformation_gradients.h>
 #include <mimetra/transfer/edges.h>
-#include <mimetra/transfer/folded_right_hand_side.h>
+#include <mimetra/transfer/right_hand_side.h>
 #include <mimetra/transfer/smooth_weights.h>
 
 namespace mimetra {
@@ -20,7 +20,7 @@ namespace {
 
 /// A frame's solve starts from the weights of the frame before within a block of so many frames
 /// only: blocks do not depend on each other.
-constexpr int kFramesPerBlock = 32;
+constexpr int kFramesPerBlock = RightHandSide::kLanes;
 
 /// A column whose motion in L is below 1e-5 of its motion anywhere (squared here) does not move
 /// there: that is what is left of zeros in single precision files.
@@ -100,7 +100,7 @@ struct BlendshapeTransfer::State {
   State(const Positions& source_rest, const BlendshapeModel& target, std::vector<int> selected)
       : gradients(source_rest, target.triangles(), std::move(selected)),
         gram(gram_matrix(target, gradients.selected())),
-        right_hand_sides(source_rest, target.triangles(), gradients, target),
+        right_hand_side(source_rest, gradients, target),
         vertices(target.vertices()) {}
 
   void judge(const BlendshapeModel& target);
@@ -111,7 +111,7 @@ struct BlendshapeTransfer::State {
 
   DeformationGradients gradients;
   Eigen::MatrixXd gram;
-  FoldedRightHandSide right_hand_sides;
+  RightHandSide right_hand_side;
   int vertices;
   BlendshapeTransferOptions options;
   BlendshapeConditions conditions;
@@ -195,7 +195,7 @@ Eigen::MatrixXd BlendshapeTransfer::weights(const MeshSequence& performance,
     const int first = block * kFramesPerBlock;
     const int count = std::min(kFramesPerBlock, frames - first);
     h.middleRows(first, count) =
-        state.right_hand_sides(performance.positions().middleRows(first, count)).array() - penalty;
+        state.right_hand_side(performance.positions().middleRows(first, count)).array() - penalty;
     Eigen::VectorXd current = lower;
     for (int f = first; f < first + count; ++f) {
       current = box_least_squares(state.system, h.row(f).transpose(), lower, state.upper, current);
@@ -220,7 +220,7 @@ Eigen::VectorXd BlendshapeTransfer::right_hand_side(
   }
   const Positions copy = frame;
   const Eigen::Map<const Frames> row(copy.data(), 1, copy.size());
-  return state_->right_hand_sides(row).transpose();
+  return state_->right_hand_side(row).transpose();
 }
 
 const BlendshapeConditions& BlendshapeTransfer::conditions() const {
@@ -240,8 +240,7 @@ bool BlendshapeTransfer::rest_looks_unneutral(const MeshSequence& performance,
     const int count = std::min(kFramesPerBlock, performance.frames() - first);
     const auto beta = weights.middleRows(first, count);
     const Eigen::MatrixXd pull =
-        state.right_hand_sides(performance.positions().middleRows(first, count)) -
-        beta * state.gram;
+        state.right_hand_side(performance.positions().middleRows(first, count)) - beta * state.gram;
     for (const Eigen::Index j : state.seen) {
       below +=
           (beta.col(j).array() == 0 && pull.col(j).array() < kWantedStep * diagonal[j]).count();

@@ -1,6 +1,7 @@
 #pragma once
 
-#include <Eigen/SparseCholesky>
+#include <vector>
+
 #include <Eigen/SparseCore>
 
 namespace mimetra {
@@ -17,11 +18,21 @@ class RowSolver {
   /// Throws std::runtime_error where `system` is not positive definite.
   explicit RowSolver(const Eigen::SparseMatrix<double>& system);
 
+  /// Row of `solve` where unknown i of the system stands: its place in the elimination.
+  const std::vector<int>& order() const { return order_; }
+
+  /// The solution for `right`, both in the order of elimination.
   /// \pre right.rows() is the system's size
-  Rows solve(const Rows& right) const;
+  Rows solve(Rows right) const;
 
  private:
-  Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor_;
+  void keep_factor(const Eigen::SparseMatrix<double>& l);
+
+  std::vector<int> order_;
+  // L of P A P^T = L D L^T without its diagonal of ones, by columns: those of column j are entries
+  // starts_[j] to starts_[j + 1] - 1.
+  std::vector<int> starts_ = {0}, rows_;
+  std::vector<double> values_;
   Eigen::VectorXd inverse_pivots_;
 };
 
