@@ -1,13 +1,16 @@
 #include <mimetra/transfer/blendshape_transfer.h>
 
 #include <algorithm>
+#include <functional>
 #include <limits>
+#include <span>
 #include <stdexcept>
 
 #include <Eigen/Eigenvalues>
 
 #include <mimetra/mesh/inspection.h>
 #include <mimetra/mesh/parallel.h>
+#include <mimetra/regions/regions.h>
 #include <mimetra/transfer/box_least_squares.h>
 #include <mimetra/transfer/deformation_gradients.h>
 #include <mimetra/transfer/edges.h>
@@ -37,37 +40,49 @@ constexpr double kWantedStep = -0.02;
 constexpr double kUnneutralShare = 0.05;
 
 /// Rows of A at a time: so many triangles' edges of every expression stay in cache.
-constexpr Eigen::Index kTrianglesPerBlock = 256;
+constexpr std::size_t kTrianglesPerBlock = 256;
 
-/// A^T A of eq. 11: rows of A are edges of the displacement fields.
-Eigen::MatrixXd gram_matrix(const BlendshapeModel& target, const std::vector<int>& selected) {
+/// Rows of A in eq. 11: edges of the displacement fields, six a triangle.
+Eigen::MatrixXd edge_rows(const BlendshapeModel& target, std::span<const int> triangles) {
   const Eigen::MatrixXd& basis = target.expressions().displacements;
-  const auto count = static_cast<Eigen::Index>(selected.size());
-  Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(basis.cols(), basis.cols());
-  for (Eigen::Index first = 0; first < count; first += kTrianglesPerBlock) {
-    const Eigen::Index size = std::min(kTrianglesPerBlock, count - first);
-    Eigen::MatrixXd rows(6 * size, basis.cols());
-    for (Eigen::Index i = 0; i < size; ++i) {
-      const auto corners = target.triangles().row(selected[first + i]);
-      const auto at = [&basis](VertexIndex v) { return basis.middleRows<3>(3 * v); };
-      rows.middleRows<3>(6 * i) = at(corners[1]) - at(corners[0]);
-      rows.middleRows<3>(6 * i + 3) = at(corners[2]) - at(corners[0]);
+  Eigen::MatrixXd rows(6 * triangles.size(), basis.cols());
+  for (Eigen::Index j = 0; j < basis.cols(); ++j) {
+    const PositionsView field(basis.col(j).data(), target.vertices(), 3);
+    Eigen::Map<Eigen::Matrix<double, 6, Eigen::Dynamic>> column(rows.col(j).data(), 6,
+                                                                Eigen::Index(triangles.size()));
+    for (std::size_t i = 0; i < triangles.size(); ++i) {
+      column.col(Eigen::Index(i)) = edges_of(field, target.triangles(), triangles[i]).reshaped();
     }
-    gram.selfadjointView<Eigen::Lower>().rankUpdate(rows.transpose());
   }
+  return rows;
+}
+
+/// Calls `work` with the rows of A of some triangles after the other.
+void for_edge_rows(const BlendshapeModel& target, const std::vector<int>& triangles,
+                   const std::function<void(const Eigen::MatrixXd&)>& work) {
+  for (std::size_t first = 0; first < triangles.size(); first += kTrianglesPerBlock) {
+    const std::size_t size = std::min(kTrianglesPerBlock, triangles.size() - first);
+    work(edge_rows(target, std::span(triangles).subspan(first, size)));
+  }
+}
+
+/// A^T A of eq. 11.
+Eigen::MatrixXd gram_matrix(const BlendshapeModel& target, const std::vector<int>& selected) {
+  const Eigen::Index d = target.expressions().size();
+  Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(d, d);
+  for_edge_rows(target, selected, [&gram](const Eigen::MatrixXd& rows) {
+    gram.selfadjointView<Eigen::Lower>().rankUpdate(rows.transpose());
+  });
   return gram.selfadjointView<Eigen::Lower>();
 }
 
 /// Diagonal of the Gram matrix over all triangles: how much each expression moves anywhere.
 Eigen::VectorXd full_diagonal(const BlendshapeModel& target) {
-  const Eigen::MatrixXd& basis = target.expressions().displacements;
-  Eigen::VectorXd diagonal = Eigen::VectorXd::Zero(basis.cols());
-  for (Eigen::Index j = 0; j < basis.cols(); ++j) {
-    const PositionsView field(basis.col(j).data(), target.vertices(), 3);
-    for (int t = 0; t < target.triangles().rows(); ++t) {
-      diagonal[j] += edges_of(field, target.triangles(), t).squaredNorm();
-    }
-  }
+  Eigen::VectorXd diagonal = Eigen::VectorXd::Zero(target.expressions().size());
+  for_edge_rows(target, all_triangles(target.triangles()),
+                [&diagonal](const Eigen::MatrixXd& rows) {
+                  diagonal += rows.colwise().squaredNorm().transpose();
+                });
   return diagonal;
 }
 
