@@ -11,10 +11,10 @@
 #include <Eigen/LU>
 #include <Eigen/SparseCore>
 
+#include <mimetra/geodesic/sparse_factor.h>
 #include <mimetra/mesh/inspection.h>
 #include <mimetra/mesh/parallel.h>
 #include <mimetra/transfer/deformation_gradients.h>
-#include <mimetra/transfer/row_solver.h>
 #include <mimetra/transfer/vertex_pull.h>
 #include <mimetra/transfer/vertex_unknowns.h>
 
@@ -28,7 +28,6 @@ using Triplets = std::vector<Eigen::Triplet<double>>;
 constexpr int kLanes = VertexPull::kLanes;
 using Rows = VertexPull::Rows;
 using Row = Eigen::RowVector<double, VertexPull::kWidth>;
-static_assert(RowSolver::kWidth == VertexPull::kWidth);
 
 /// Gradients of the three hat functions of a triangle in its plane, one a column.
 using HatGradients = Eigen::Matrix3d;
@@ -58,6 +57,16 @@ void add_products(const Eigen::Matrix<double, 3, Columns>& x, double scale,
       entries.emplace_back(unknowns[a], unknowns[b], products(a, b));
     }
   }
+}
+
+geodesic::SparseFactor factor_of(const Eigen::SparseMatrix<double>& system) {
+  if (system.rows() == 0) return {};
+  const geodesic::SparseFactor::Factorization factorization(system);
+  if (factorization.info() != Eigen::Success || !(factorization.vectorD().minCoeff() > 0)) {
+    throw std::runtime_error(
+        "the target's triangles do not determine its vertices; look for nearly degenerate ones");
+  }
+  return geodesic::SparseFactor(factorization);
 }
 
 void check_options(const VertexTransferOptions& options, Eigen::Index vertices) {
@@ -134,7 +143,7 @@ struct VertexTransfer::State {
   std::vector<double> weights;  // of each triangle; 0 where it takes no part
   std::vector<bool> fixed;      // of each vertex
   VertexUnknowns unknowns;      // numbered as they are eliminated
-  std::optional<RowSolver> solver;
+  geodesic::SparseFactor solver;
   std::optional<VertexPull> pull;
   int degenerate_source = 0;
   int degenerate_target = 0;
@@ -235,9 +244,9 @@ void VertexTransfer::State::factor() {
   }
   Eigen::SparseMatrix<double> system(unknowns.count, unknowns.count);
   system.setFromTriplets(entries.begin(), entries.end());
-  solver.emplace(system);
+  solver = factor_of(system);
   for (int& unknown : unknowns.of_vertex) {
-    if (unknown >= 0) unknown = solver->order()[unknown];
+    if (unknown >= 0) unknown = solver.order()[unknown];
   }
 }
 
@@ -285,7 +294,7 @@ Row VertexTransfer::State::motion_of(const FloatingPiece& piece,
 /// Up to kLanes target poses.
 void VertexTransfer::State::solve(const Eigen::Ref<const Frames>& frames,
                                   Eigen::Ref<Frames> poses) const {
-  Rows displacement = solver->solve((*pull)(frames));
+  Rows displacement = solver.solve<VertexPull::kWidth>((*pull)(frames));
   const auto move = [&poses](VertexIndex vertex, const auto& by) {
     for (Eigen::Index lane = 0; lane < poses.rows(); ++lane) {
       for (int c = 0; c < 3; ++c) poses(lane, 3 * vertex + c) += by[c * kLanes + lane];
