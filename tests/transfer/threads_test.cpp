@@ -43,10 +43,10 @@ class Threads : public testing::Test {
 };
 
 TEST_F(Threads, DoNotChangeADecomposition) {
-  const DistanceFunction distances = [this](VertexIndex source) {
+  const DistanceFunction distances = one_by_one([this](VertexIndex source) {
     return Eigen::VectorXd(
         (sequence_.rest().rowwise() - sequence_.rest().row(source)).rowwise().norm());
-  };
+  });
   const auto components = [&](int threads) {
     return decompose(sequence_,
                      {.count = 4, .iterations = 3, .distances = distances, .threads = threads});
