@@ -2,6 +2,7 @@
 // Times kernels and whole commands; writes OUT/bench.json and OUT/growth.png, and a table to
 // stdout.
 
+#include <algorithm>
 #include <cstdio>
 #include <exception>
 #include <filesystem>
@@ -107,6 +108,9 @@ class Run {
   }
 
   Results finish() && {
+    std::ranges::stable_sort(results_.rows, {}, [order = groups()](const Row& row) {
+      return std::ranges::find(order, row.group) - order.begin();
+    });
     results_.at_end = measured_limits(settings().machine, settings().quick);
     for (const auto& [own, other] :
          {std::pair(kGeodesicAll, kGeodesicCgal), std::pair(kNumpyPair, kNumpy)}) {
@@ -120,6 +124,15 @@ class Run {
  private:
   const Settings& settings() const { return results_.settings; }
   int components() const { return settings().quick ? 10 : kComponents; }
+
+  /// Groups in the order in which they first appear.
+  std::vector<std::string> groups() const {
+    std::vector<std::string> groups;
+    for (const Row& row : results_.rows) {
+      if (std::ranges::find(groups, row.group) == groups.end()) groups.push_back(row.group);
+    }
+    return groups;
+  }
 
   static void append(std::vector<Row>& rows, std::vector<Row> more) {
     for (Row& row : more) rows.push_back(std::move(row));

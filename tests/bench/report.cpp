@@ -49,6 +49,16 @@ std::string line_of(const Row& row, const Limits& limits) {
                    rate_text(row).c_str());
 }
 
+/// Others' work lengthens times, and hides a part of what the machine can do.
+std::string load_line(const Machine& machine) {
+  constexpr double kQuiet = 0.3;
+  if (machine.load < kQuiet) return "";
+  return formatted(
+      "the machine was busy (load %.1f before the run): neither times nor multiples "
+      "are its own; run again when it is quiet\n",
+      machine.load);
+}
+
 std::string machine_lines(const Results& results) {
   const Machine& machine = results.settings.machine;
   const auto rates = [](const char* when, const Limits& limits) {
@@ -58,7 +68,7 @@ std::string machine_lines(const Results& results) {
   return formatted("%s, %d threads, %.0f MB of last-level cache\n", machine.processor.c_str(),
                    machine.threads, machine.cache_bytes / (1 << 20)) +
          rates("limits at the start", results.at_start) +
-         rates("limits at the end", results.at_end);
+         rates("limits at the end", results.at_end) + load_line(machine);
 }
 
 Json json_of(const Limits& limits) {
@@ -109,8 +119,8 @@ std::vector<Comparison> compared(const std::vector<Row>& rows, const std::string
 std::string table_of(const Results& results) {
   std::string text = machine_lines(results);
   text +=
-      "floor: the larger of arithmetic / product rate and bytes / read rate, by the better "
-      "limits\n";
+      "floor: the larger of arithmetic / product rate and bytes / read rate, of all "
+      "threads, by the better limits\n";
   std::string group;
   for (const Row& row : results.rows) {
     if (row.group != group) {
@@ -148,7 +158,8 @@ std::string json_of(const Results& results) {
   return Json{{"machine",
                {{"processor", machine.processor},
                 {"threads", machine.threads},
-                {"cache_bytes", machine.cache_bytes}}},
+                {"cache_bytes", machine.cache_bytes},
+                {"load_before", machine.load}}},
               {"quick", results.settings.quick},
               {"limits_at_start", json_of(results.at_start)},
               {"limits_at_end", json_of(results.at_end)},

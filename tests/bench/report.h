@@ -23,7 +23,7 @@ struct Results {
   std::vector<Comparison> comparisons;
   std::vector<std::string> notes;
 
-  /// What floors are computed by: whoever else used the machine only made it slower.
+  /// What floors are computed by.
   Limits limits() const { return best_of(at_start, at_end); }
 };
 
