@@ -36,8 +36,8 @@ void write_distances(const std::set<VertexIndex>& sources, const DistanceFunctio
   Frames table = Frames::Zero(count, 3 * vertices), ids = Frames::Zero(count, 3);
   Eigen::Index row = 0;
   for (const VertexIndex source : sources) {
-    const Eigen::VectorXd values = distances(source);
-    for (int v = 0; v < vertices; ++v) table(row, 3 * v) = values[v];
+    const Eigen::MatrixXd values = distances({&source, 1});
+    for (int v = 0; v < vertices; ++v) table(row, 3 * v) = values(v, 0);
     ids(row++, 0) = source;
   }
   write_npy_frames(scratch / "distances.npy", table);
@@ -61,9 +61,10 @@ NumpyComparison compared_with_numpy(const std::string& name, const MeshSequence&
   std::set<VertexIndex> sources;
   DecompositionOptions recording = options;
   recording.threads = 1;
-  recording.distances = [&sources, distances = options.distances](VertexIndex source) {
-    sources.insert(source);
-    return distances(source);
+  recording.distances = [&sources,
+                         distances = options.distances](std::span<const VertexIndex> asked) {
+    sources.insert(asked.begin(), asked.end());
+    return distances(asked);
   };
   const Components components = decompose(sequence, recording);
   write_distances(sources, options.distances, sequence.vertices(), scratch);

@@ -1,8 +1,7 @@
 #include "splocs_bench.h"
 
-#include <cmath>
-
 #include <mimetra/splocs/component_update.h>
+#include <mimetra/splocs/motion.h>
 #include <mimetra/splocs/start.h>
 #include <mimetra/splocs/support_maps.h>
 #include <mimetra/splocs/weights.h>
@@ -37,29 +36,22 @@ Work admm_work(double frames, double vertices, double count) {
           motion_bytes(frames, vertices)};
 }
 
-Frames scaled_motion(const MeshSequence& sequence) {
-  const Eigen::Map<const Eigen::RowVectorXd> rest(sequence.rest().data(), sequence.rest().size());
-  Frames X = sequence.positions().rowwise() - rest;
-  X /= std::sqrt((X.array() - X.mean()).square().mean());
-  return X;
-}
-
 /// What the kernels of one iteration work on.
 struct Kernels {
-  Frames X;
+  VertexBlocks<double> X;
   DecompositionOptions options;
   SupportFunction support;
   Start start;
-  ComponentUpdate products;
-  Eigen::MatrixXd maps;
+  ComponentUpdate<double> products;
+  Frames maps;
 
   Kernels(const MeshSequence& sequence, int count)
-      : X(scaled_motion(sequence)),
+      : X(scaled_motion(sequence, 0).X),
         options(prepared_options(sequence, count)),
         support(support_function(options.distances, sequence.vertices(), 0.1 * sequence.extent(),
                                  0.7 * sequence.extent())),
         start(greedy_start(X, support, options)),
-        products(initial_components(X, start.components)) {
+        products(initial_components(X, start.components, 0)) {
     SupportMaps followed(support, count, sequence.vertices());
     followed.follow(products.C);
     maps = followed.maps();
@@ -107,7 +99,8 @@ std::vector<Row> splocs_kernel_rows(const std::string& name, const MeshSequence&
   const Size size{name, sequence.frames(), sequence.vertices(), "K", count};
   // As in the loop of the decomposition, each step takes what the one before gave.
   Eigen::MatrixXd W = kernels.start.weights;
-  ComponentUpdate components = kernels.products;
+  const UpdateWeights weights{W, W.transpose() * W};
+  ComponentUpdate<double> components = kernels.products;
   const AdmmOptions admm{kernels.options.sparsity, kernels.options.rho, kAdmmSteps};
   return measured(
       {{{kGroup, kStart, size, start_work(frames, vertices, count, settings.machine)},
@@ -116,8 +109,8 @@ std::vector<Row> splocs_kernel_rows(const std::string& name, const MeshSequence&
         [&] { W = updated_weights(std::move(W), kernels.products.P, kernels.products.H, true); }},
        {{kGroup, kAdmm, size, admm_work(frames, vertices, count)},
         [&] {
-          components = updated_components(kernels.X, kernels.start.weights, kernels.maps,
-                                          std::move(components), admm);
+          components =
+              updated_components(kernels.X, weights, kernels.maps, std::move(components), admm);
         }}},
       settings.quick);
 }

@@ -1,5 +1,6 @@
 #include "transfer_bench.h"
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 
@@ -7,8 +8,7 @@
 #include <mimetra/transfer/blendshape_transfer.h>
 #include <mimetra/transfer/box_least_squares.h>
 #include <mimetra/transfer/deformation_gradients.h>
-#include <mimetra/transfer/folded_right_hand_side.h>
-#include <mimetra/transfer/row_solver.h>
+#include <mimetra/transfer/right_hand_side.h>
 #include <mimetra/transfer/vertex_transfer.h>
 
 #include "sparse_factor.h"
@@ -22,7 +22,7 @@ constexpr const char* kGroup = "transfer";
 struct Counts {
   double frames, vertices, triangles, expressions;
 
-  double folded() const { return 3 * (vertices + triangles) * expressions; }
+  double basis() const { return 3 * vertices * expressions; }
 };
 
 Counts counts_of(const Subject& subject, const std::vector<int>& triangles) {
@@ -35,15 +35,17 @@ Counts counts_of(const Subject& subject, const std::vector<int>& triangles) {
           static_cast<double>(subject.target.expressions().size())};
 }
 
-/// A^T A by its lower half; the basis is read and the folded matrices are written.
+/// A^T A by its lower half; the basis is read and copied.
 Work setup_work(const Counts& n) {
-  const double basis = 3 * n.vertices * n.expressions;
-  return {6 * n.triangles * n.expressions * n.expressions, 8 * (basis + n.folded())};
+  return {6 * n.triangles * n.expressions * n.expressions, 8 * 2 * n.basis()};
 }
 
-/// Two products with the folded matrices a frame.
-Work folded_work(const Counts& n) {
-  return {2 * n.frames * n.folded(), 8 * (n.frames * 3 * n.vertices + n.folded())};
+/// For each triangle its normal and what two vectors take of its frame, at three corners; then a
+/// product with the basis.
+Work right_hand_side_work(const Counts& n) {
+  constexpr double kPerTriangle = 6 + 9 + 5 + 6 * 5 + 9;
+  return {n.frames * (kPerTriangle * n.triangles + 2 * n.basis()),
+          8 * (n.frames * 3 * n.vertices + n.basis())};
 }
 
 /// One product with the Gram matrix a frame, which is what checking the solution takes.
@@ -61,9 +63,17 @@ std::vector<Row> half_rows(const Subject& subject, const std::vector<int>& trian
   const Counts counts = counts_of(subject, triangles);
   const MeshSequence& performance = subject.performance;
   const DeformationGradients gradients(performance.rest(), subject.target.triangles(), triangles);
-  const FoldedRightHandSide folded(performance.rest(), subject.target.triangles(), gradients,
-                                   subject.target);
-  const Eigen::MatrixXd h = folded(performance.positions());
+  const RightHandSide right_hand_side(performance.rest(), gradients, subject.target);
+  const auto all_right_hand_sides = [&] {
+    Eigen::MatrixXd h(performance.frames(), subject.target.expressions().size());
+    for (int first = 0; first < h.rows(); first += RightHandSide::kLanes) {
+      const auto count = std::min<Eigen::Index>(RightHandSide::kLanes, h.rows() - first);
+      h.middleRows(first, count) =
+          right_hand_side(performance.positions().middleRows(first, count));
+    }
+    return h;
+  };
+  const Eigen::MatrixXd h = all_right_hand_sides();
   const Eigen::MatrixXd gram =
       BlendshapeTransfer(performance.rest(), subject.target, triangles).gram();
   const Eigen::VectorXd lower = Eigen::VectorXd::Zero(gram.rows());
@@ -75,10 +85,11 @@ std::vector<Row> half_rows(const Subject& subject, const std::vector<int>& trian
     }
   };
   const Rate each{"frame", counts.frames};
-  return measured({{{kGroup, "folded right-hand side, one thread", size, folded_work(counts), each},
-                    [&] { folded(performance.positions()); }},
-                   {{kGroup, "box solve, one thread", size, box_work(counts), each}, solve_all}},
-                  settings.quick);
+  return measured(
+      {{{kGroup, "right-hand sides, one thread", size, right_hand_side_work(counts), each},
+        [&] { all_right_hand_sides(); }},
+       {{kGroup, "box solve, one thread", size, box_work(counts), each}, solve_all}},
+      settings.quick);
 }
 
 }  // namespace
@@ -100,7 +111,7 @@ std::vector<Row> blendshape_rows(const Subject& subject, double share, bool with
        {{kGroup,
          kBlendshapeWeights + of_all,
          size,
-         both(folded_work(counts), box_work(counts)),
+         both(right_hand_side_work(counts), box_work(counts)),
          {"frame", counts.frames}},
         [&] { transfer.weights(performance); }}},
       settings.quick);
@@ -116,7 +127,7 @@ std::vector<Row> vertex_rows(const Subject& subject, const Settings& settings) {
   const std::vector<int> triangles = all_triangles(faces);
   const SparseFactor factor = sparse_factor(performance.vertices(), faces);
   const double frames = performance.frames(), coordinates = 3.0 * performance.vertices();
-  const double sweeps = std::ceil(3 * frames / RowSolver::kWidth);
+  const double sweeps = std::ceil(3 * frames / VertexPull::kWidth);
   const Work setup{factor.factor_flops, factor.bytes()};
   const Work sweep{3 * frames * factor.solve_flops(),
                    passes(factor.bytes(), sweeps, settings.machine) + 16 * frames * coordinates};

@@ -80,7 +80,7 @@ TEST(GreedyStart, StopsWhereNothingIsLeft) {
   const Start start =
       greedy_start(VertexBlocks<double>(bumps.W * bumps.C), around_one_bump(bumps), options);
   EXPECT_THAT(std::vector(start.centers.begin() + 3, start.centers.end()), testing::Each(-1));
-  EXPECT_TRUE(start.components.bottomRows(2).isZero(0));
+  EXPECT_TRUE(start.components.frames().bottomRows(2).isZero(0));
   EXPECT_TRUE(start.weights.rightCols(2).isZero(0));
 }
 

@@ -1,6 +1,11 @@
 #include <mimetra/splocs/time_basis.h>
 
+#include <cmath>
+
 #include <gtest/gtest.h>
+
+#include <Eigen/QR>
+#include <Eigen/SVD>
 
 #include "synthetic.h"
 
