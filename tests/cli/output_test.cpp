@@ -83,8 +83,11 @@ TEST_F(Output, IsTheSameForEveryNumberOfThreads) {
     ASSERT_EQ(run("decompose head --weights take.csv -k 3 -o c" + threads + ".h5" + end).code, 0);
     ASSERT_EQ(run(transfer + "-o b" + threads + ".npy" + end).code, 0);
     ASSERT_EQ(run(transfer + "--space vertex -o v" + threads + ".npy" + end).code, 0);
+    ASSERT_EQ(run("convert b" + threads + ".npy --format obj -o f" + threads + end).code, 0);
+    ASSERT_EQ(run("convert f" + threads + " -o g" + threads + ".npy" + end).code, 0);
   }
-  for (const std::string name : {"c%.h5", "b%.npy", "v%.npy"}) {
+  for (const std::string name :
+       {"c%.h5", "b%.npy", "v%.npy", "f%/frame_0000.obj", "f%/frame_0011.obj", "g%.npy"}) {
     const auto bytes = [&](const char* threads) {
       return text_of(folder_ / std::string(name).replace(1, 1, threads));
     };

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 
 #include <gmock/gmock.h>
@@ -35,6 +36,15 @@ std::vector<int> corners_of(vtkPolyData& data, vtkIdType cell) {
   vtkNew<vtkIdList> ids;
   data.GetPolys()->GetCellAtId(cell, ids);
   return {ids->begin(), ids->end()};
+}
+
+/// More frames than there are threads, each with positions of its own.
+MeshSequence twenty_frames_of(const MeshSequence& sequence) {
+  Frames frames(20, sequence.positions().cols());
+  for (Eigen::Index f = 0; f < frames.rows(); ++f) {
+    frames.row(f) = sequence.positions().row(0) * (1 + 0.1 * static_cast<double>(f));
+  }
+  return {sequence.shared_connectivity(), frames, {}, sequence.rest()};
 }
 
 TEST_F(VtpSeries, KeepsPointsToFloatPrecisionInEveryFrame) {
@@ -179,7 +189,22 @@ TEST_F(VtpSeries, ReportsProgressUpToOne) {
                      shares.push_back(share);
                      return true;
                    }});
-  EXPECT_THAT(shares, ElementsAre(1.0 / 3, 2.0 / 3, 1));
+  EXPECT_TRUE(std::is_sorted(shares.begin(), shares.end()));
+  EXPECT_EQ(shares.back(), 1);
+}
+
+TEST_F(VtpSeries, WritesTheSameBytesForEveryNumberOfThreads) {
+  FieldSequence fields = quad_and_triangle();
+  fields.sequence = twenty_frames_of(fields.sequence);
+  const auto one = write_vtp_series(fields, in_folder("one/face.pvd"), {.threads = 1});
+  for (const int threads : {2, 3}) {
+    const auto other = write_vtp_series(fields, in_folder(std::to_string(threads) + "/face.pvd"),
+                                        {.threads = threads});
+    ASSERT_EQ(other.size(), one.size());
+    for (std::size_t i = 0; i < one.size(); ++i) {
+      EXPECT_EQ(bytes_of(other[i]), bytes_of(one[i])) << other[i];
+    }
+  }
 }
 
 }  // namespace

@@ -127,7 +127,8 @@ void write_outputs(const OperationTable& table, const Request& request, const Ou
           request.parameters,
           request.force,
           progress,
-          {{manifest_name(target, table.writes_folder(output.kind, target)), manifest_text}}};
+          {{manifest_name(target, table.writes_folder(output.kind, target)), manifest_text}},
+          request.threads};
       table.writer(output.kind, target).write(made->second[i].data, write);
     }
   }
@@ -163,7 +164,7 @@ void run_command(const OperationTable& table, const Request& request) {
   RunRecord record;
   const Stopwatch reading;
   LoadedInputs loaded = load_inputs(table, *request.operation, request.parameters, request.inputs,
-                                    part_of(progress, 0, kRunningFrom), log);
+                                    part_of(progress, 0, kRunningFrom), log, request.threads);
   const OutputPaths paths =
       output_paths(table, request, repeated_names(*request.operation, loaded));
   record.inputs = std::move(loaded.files);

@@ -1,19 +1,22 @@
 #include <mimetra/io/array_file.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <charconv>
 #include <cmath>
-#include <fstream>
+#include <functional>
+#include <optional>
 #include <span>
-#include <system_error>
 
+#include <mimetra/io/binary_file.h>
 #include <mimetra/io/bytes.h>
 #include <mimetra/io/pending_output.h>
 #include <mimetra/mesh/errors.h>
+#include <mimetra/mesh/parallel.h>
 
 namespace mimetra {
 namespace {
+
+constexpr std::size_t kVersionAt = 6;
 
 /// What stands before the values.
 struct NpyHeader {
@@ -29,7 +32,8 @@ struct NpyHeader {
 std::string_view dictionary(const std::string& path, std::string_view bytes, std::size_t& data) {
   constexpr std::string_view kMagic = "\x93NUMPY";
   if (bytes.substr(0, kMagic.size()) != kMagic) throw IoError(path, "is no NumPy array");
-  const std::size_t version = bytes.size() > 6 ? static_cast<unsigned char>(bytes[6]) : 0;
+  const std::size_t version =
+      bytes.size() > kVersionAt ? static_cast<unsigned char>(bytes[kVersionAt]) : 0;
   const std::size_t length_bytes = version == 1 ? 2 : 4;
   const std::size_t start = 8 + length_bytes;
   if (bytes.size() < start) throw IoError(path, "is truncated in its header");
@@ -103,9 +107,9 @@ std::string shape_text(const std::vector<std::size_t>& shape) {
 }
 
 /// Number of values, which the file holds exactly: found before memory is asked for.
-std::size_t checked_count(const std::string& path, std::string_view bytes,
+std::size_t checked_count(const std::string& path, std::size_t file_bytes,
                           const NpyHeader& header) {
-  const std::size_t data_bytes = bytes.size() - header.data;
+  const std::size_t data_bytes = file_bytes - header.data;
   const std::size_t held = data_bytes / header.item_bytes;
   const bool empty = std::find(header.shape.begin(), header.shape.end(), 0u) != header.shape.end();
   std::size_t count = empty ? 0 : 1;
@@ -138,16 +142,22 @@ NpyHeader read_header(const std::string& path, std::string_view bytes) {
 }
 
 template <typename Stored>
-void decode_as(std::string_view bytes, const NpyHeader& header, std::span<double> values) {
-  const char* at = bytes.data() + header.data;
-  for (double& value : values) {
-    value = static_cast<double>(number_at<Stored>(at, header.order));
-    at += sizeof(Stored);
+void decode_as(const char* stored, const NpyHeader& header, std::span<double> values) {
+  const auto decode_in = [stored, values](auto order) {
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      values[i] = static_cast<double>(number_at<Stored>(stored + i * sizeof(Stored), order()));
+    }
+  };
+  // With an order that is known when the loop is compiled, it runs at the speed of memory.
+  if (header.order == std::endian::native) {
+    decode_in([] { return std::endian::native; });
+  } else {
+    decode_in([&header] { return header.order; });
   }
 }
 
 /// The values in the file's order.
-void decode(std::string_view bytes, const NpyHeader& header, std::span<double> values) {
+void decode(const char* bytes, const NpyHeader& header, std::span<double> values) {
   const bool is_signed = header.kind == 'i';
   if (header.kind == 'f') {
     header.item_bytes == 4 ? decode_as<float>(bytes, header, values)
@@ -186,23 +196,10 @@ std::vector<double> in_c_order(const std::vector<double>& values,
 }
 
 NumericArray read_array(const std::string& path, std::string_view bytes, const NpyHeader& header) {
-  NumericArray array{header.shape, std::vector<double>(checked_count(path, bytes, header))};
-  decode(bytes, header, array.values);
+  NumericArray array{header.shape, std::vector<double>(checked_count(path, bytes.size(), header))};
+  decode(bytes.data() + header.data, header, array.values);
   if (header.fortran_order) array.values = in_c_order(array.values, array.shape);
   return array;
-}
-
-/// Straight into the frames where the order is theirs: arrays of captures are large.
-Frames frames_of(const std::string& path, std::string_view bytes, const NpyHeader& header) {
-  const auto rows = static_cast<Eigen::Index>(header.shape.size() == 3 ? header.shape[0] : 1);
-  const auto values = static_cast<Eigen::Index>(checked_count(path, bytes, header));
-  if (header.fortran_order) {
-    const NumericArray array = read_array(path, bytes, header);
-    return Eigen::Map<const Frames>(array.values.data(), rows, values / rows);
-  }
-  Frames frames(rows, values / rows);
-  decode(bytes, header, {frames.data(), static_cast<std::size_t>(values)});
-  return frames;
 }
 
 void check_frames_header(const std::string& path, const NpyHeader& header) {
@@ -219,14 +216,84 @@ void check_frames_header(const std::string& path, const NpyHeader& header) {
   }
 }
 
-void check_finite(const std::string& path, const Frames& frames) {
-  for (Eigen::Index frame = 0; frame < frames.rows(); ++frame) {
-    if (frames.row(frame).allFinite()) continue;
-    Eigen::Index column = 0;
-    while (std::isfinite(frames(frame, column))) ++column;
-    throw IoError(path, "frame " + std::to_string(frame) + ": vertex " +
-                            std::to_string(column / 3) + " has no finite position");
+Frames frames_of(const NumericArray& array) {
+  const auto rows = static_cast<Eigen::Index>(array.shape.size() == 3 ? array.shape[0] : 1);
+  return Eigen::Map<const Frames>(array.values.data(), rows,
+                                  static_cast<Eigen::Index>(array.values.size()) / rows);
+}
+
+/// True where no exponent is that of infinity and of what is no number.
+bool all_finite(std::span<const double> values) {
+  constexpr std::uint64_t kSign = std::uint64_t{1} << 63, kOne = std::uint64_t{1} << 52;
+  std::uint64_t carried = 0;  // adding one to the largest exponent carries into the sign
+  for (const double value : values)
+    carried |= (std::bit_cast<std::uint64_t>(value) & ~kSign) + kOne;
+  return (carried & kSign) == 0;
+}
+
+/// `first`: index of the first of `values` among all frames' coordinates, `columns` each.
+void check_finite(const std::string& path, std::span<const double> values, std::size_t first,
+                  std::size_t columns) {
+  if (all_finite(values)) return;
+  while (std::isfinite(values[0])) {
+    values = values.subspan(1);
+    ++first;
   }
+  throw IoError(path, "frame " + std::to_string(first / columns) + ": vertex " +
+                          std::to_string(first % columns / 3) + " has no finite position");
+}
+
+std::span<double> coordinates_of(Frames& frames) {
+  return {frames.data(), static_cast<std::size_t>(frames.size())};
+}
+
+/// Calls `work(first, count)` for pieces of `values` values that fit a processor's cache.
+void for_each_piece(std::size_t values, int threads,
+                    const std::function<void(std::size_t, std::size_t)>& work) {
+  constexpr std::size_t kPiece = 1 << 15;
+  const auto pieces = static_cast<int>((values + kPiece - 1) / kPiece);
+  parallel_for(pieces, threads, [&](int piece) {
+    const std::size_t first = kPiece * static_cast<std::size_t>(piece);
+    work(first, std::min(kPiece, values - first));
+  });
+}
+
+/// What an array starts with; all of its header in version 1.
+std::string beginning_of(const InputFile& file) {
+  constexpr std::size_t kMost = 1 << 17;
+  std::string bytes(std::min(file.size(), kMost), '\0');
+  file.read(0, bytes.data(), bytes.size());
+  return bytes;
+}
+
+/// Straight into the frames: captures are large. None where the order is another one,
+/// or the header may be of any length.
+std::optional<Frames> read_in_place(const std::filesystem::path& path, int threads) {
+  if (!InputFile::has_size(path)) return std::nullopt;
+  const InputFile file(path);
+  const std::string beginning = beginning_of(file);
+  if (beginning.size() > kVersionAt && beginning[kVersionAt] != 1) return std::nullopt;
+  const NpyHeader header = read_header(path.string(), beginning);
+  check_frames_header(path.string(), header);
+  const std::size_t count = checked_count(path.string(), file.size(), header);
+  if (header.fortran_order) return std::nullopt;
+  const std::size_t rows = header.shape.size() == 3 ? header.shape[0] : 1;
+  const std::size_t columns = count / rows;
+  Frames frames(static_cast<Eigen::Index>(rows), static_cast<Eigen::Index>(columns));
+  const bool as_stored = header.item_bytes == 8 && header.order == std::endian::native;
+  for_each_piece(count, threads, [&](std::size_t first, std::size_t values) {
+    const std::span<double> piece = coordinates_of(frames).subspan(first, values);
+    const std::size_t offset = header.data + first * header.item_bytes;
+    if (as_stored) {
+      file.read(offset, reinterpret_cast<char*>(piece.data()), piece.size_bytes());
+    } else {
+      std::vector<char> stored(values * header.item_bytes);
+      file.read(offset, stored.data(), stored.size());
+      decode(stored.data(), header, piece);
+    }
+    check_finite(path.string(), piece, first, columns);
+  });
+  return frames;
 }
 
 /// Version 1; padded so that the values start at a multiple of 64 bytes, as NumPy does.
@@ -243,14 +310,24 @@ std::string header_bytes(const Frames& frames, bool single_precision) {
   return bytes + text;
 }
 
+template <typename Stored>
+std::string encoded(std::span<const double> values) {
+  std::string bytes(values.size() * sizeof(Stored), '\0');
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    put_little_endian(bytes.data() + i * sizeof(Stored), static_cast<Stored>(values[i]));
+  }
+  return bytes;
+}
+
 }  // namespace
 
-Frames read_npy_frames(const std::filesystem::path& path) {
+Frames read_npy_frames(const std::filesystem::path& path, int threads) {
+  if (std::optional<Frames> frames = read_in_place(path, threads)) return *std::move(frames);
   const std::string bytes = read_file(path);
   const NpyHeader header = read_header(path.string(), bytes);
   check_frames_header(path.string(), header);
-  Frames frames = frames_of(path.string(), bytes, header);
-  check_finite(path.string(), frames);
+  Frames frames = frames_of(read_array(path.string(), bytes, header));
+  check_finite(path.string(), coordinates_of(frames), 0, static_cast<std::size_t>(frames.cols()));
   return frames;
 }
 
@@ -260,26 +337,23 @@ NumericArray read_npy(const std::filesystem::path& path) {
 }
 
 void write_npy_frames(const std::filesystem::path& path, const Frames& frames,
-                      bool single_precision) {
-  std::ofstream file(path, std::ios::binary | std::ios::trunc);
-  file << header_bytes(frames, single_precision);
-  std::string row;  // one frame at a time, so that no second copy of them all is held
-  for (Eigen::Index frame = 0; frame < frames.rows(); ++frame) {
-    row.clear();
-    for (const double value : frames.row(frame)) {
-      if (single_precision) {
-        append_little_endian(row, static_cast<float>(value));
-      } else {
-        append_little_endian(row, value);
-      }
+                      bool single_precision, int threads) {
+  const std::string header = header_bytes(frames, single_precision);
+  OutputFile file(path);
+  file.write({header});
+  const auto count = static_cast<std::size_t>(frames.size());
+  const bool as_stored = !single_precision && std::endian::native == std::endian::little;
+  const std::size_t item_bytes = single_precision ? sizeof(float) : sizeof(double);
+  for_each_piece(count, threads, [&](std::size_t first, std::size_t values) {
+    const std::span<const double> piece(frames.data() + first, values);
+    const std::size_t offset = header.size() + first * item_bytes;
+    if (as_stored) {
+      file.write_at(offset, {reinterpret_cast<const char*>(piece.data()), piece.size_bytes()});
+    } else {
+      file.write_at(offset, single_precision ? encoded<float>(piece) : encoded<double>(piece));
     }
-    file.write(row.data(), static_cast<std::streamsize>(row.size()));
-  }
+  });
   file.close();
-  if (!file) {
-    const std::error_code error(errno, std::generic_category());
-    throw OutputError(committed_name(path).string(), "cannot be written: " + error.message());
-  }
 }
 
 }  // namespace mimetra

@@ -8,8 +8,9 @@
 namespace mimetra {
 
 /// Reads a NumPy array of shape F x N x 3, or N x 3 (one frame), float32 or float64, either byte
-/// order and either memory order, as F x 3N. Throws IoError.
-Frames read_npy_frames(const std::filesystem::path& path);
+/// order and either memory order, as F x 3N, by `threads` threads (0 for all there are). Throws
+/// IoError.
+Frames read_npy_frames(const std::filesystem::path& path, int threads = 0);
 
 /// Reads a NumPy array of any shape as its shape and its values in C order; integers become
 /// doubles. Throws IoError.
@@ -19,9 +20,9 @@ struct NumericArray {
 };
 NumericArray read_npy(const std::filesystem::path& path);
 
-/// Writes frames (F x 3N) as F x N x 3, float64, or float32 with `single_precision`. Throws
-/// OutputError. Not atomic: see PendingOutput.
+/// Writes frames (F x 3N) as F x N x 3, float64, or float32 with `single_precision`, by `threads`
+/// threads (0 for all there are). Throws OutputError. Not atomic: see PendingOutput.
 void write_npy_frames(const std::filesystem::path& path, const Frames& frames,
-                      bool single_precision = false);
+                      bool single_precision = false, int threads = 0);
 
 }  // namespace mimetra

@@ -36,14 +36,20 @@ Number number_at(const char* at, std::endian order) {
   return std::bit_cast<Number>(bits);
 }
 
+/// Puts a number, least significant byte first. \pre there is room for sizeof(Number) bytes
+template <typename Number>
+void put_little_endian(char* at, Number value) {
+  auto bits = std::bit_cast<UnsignedOf<sizeof(Number)>>(value);
+  if (std::endian::native != std::endian::little) bits = byte_swapped(bits);
+  std::memcpy(at, &bits, sizeof bits);
+}
+
 /// Appends a number, least significant byte first.
 template <typename Number>
 void append_little_endian(std::string& bytes, Number value) {
-  auto bits = std::bit_cast<UnsignedOf<sizeof(Number)>>(value);
-  if (std::endian::native != std::endian::little) bits = byte_swapped(bits);
-  char raw[sizeof bits];
-  std::memcpy(raw, &bits, sizeof bits);
-  bytes.append(raw, sizeof bits);
+  char raw[sizeof value];
+  put_little_endian(raw, value);
+  bytes.append(raw, sizeof raw);
 }
 
 }  // namespace mimetra

@@ -1,12 +1,11 @@
 #include <mimetra/io/mesh_file.h>
 
 #include <algorithm>
-#include <array>
-#include <cctype>
-#include <charconv>
 #include <cmath>
+#include <stdexcept>
 
 #include <mimetra/io/mesh_formats.h>
+#include <mimetra/io/mesh_layout.h>
 #include <mimetra/io/pending_output.h>
 #include <mimetra/mesh/errors.h>
 #include <mimetra/mesh/weld.h>
@@ -15,25 +14,20 @@ namespace mimetra {
 namespace fs = std::filesystem;
 namespace {
 
-std::string lower_case(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return text;
-}
-
 std::string extension_of(const fs::path& path) {
   return lower_case(path.extension().string());
 }
 
-std::string unknown_extension(const std::string& extension) {
-  return (extension.empty() ? "has no extension" : "'" + extension + "' is no mesh format") +
-         std::string("; expected .obj, .ply, .off or .stl");
+std::string read_bytes(const fs::path& path) {
+  const std::string extension = extension_of(path);
+  if (!is_mesh_extension(extension)) {
+    throw IoError(path.string(), unknown_mesh_extension(extension));
+  }
+  return read_file(path);
 }
 
-MeshContent read_content(const fs::path& path) {
+MeshContent read_content(const fs::path& path, std::string_view bytes) {
   const std::string extension = extension_of(path);
-  if (!is_mesh_extension(extension)) throw IoError(path.string(), unknown_extension(extension));
-  const std::string bytes = read_file(path);
   if (extension == ".obj") return read_obj(path.string(), bytes);
   if (extension == ".ply") return read_ply(path.string(), bytes);
   return read_off(path.string(), bytes);
@@ -84,23 +78,23 @@ void check_faces(const std::string& path, const MeshContent& content) {
   }
 }
 
-MeshContent read_checked(const fs::path& path) {
-  MeshContent content = read_content(path);
+MeshContent read_checked(const fs::path& path, std::string_view bytes) {
+  MeshContent content = read_content(path, bytes);
   check_finite(path.string(), content.coordinates, "vertex", content.first_index);
   check_faces(path.string(), content);
   return content;
 }
 
-std::vector<double> read_checked_corners(const fs::path& path) {
-  std::vector<double> corners = read_stl_corners(path.string(), read_file(path));
+std::vector<double> read_checked_corners(const fs::path& path, std::string_view bytes) {
+  std::vector<double> corners = read_stl_corners(path.string(), bytes);
   if (corners.empty()) throw IoError(path.string(), "has no faces");
   check_finite(path.string(), corners, "corner", 0);
   return corners;
 }
 
 /// Vertices in the order in which the file first uses their place.
-TriMesh read_stl(const fs::path& path) {
-  const Positions corners = positions_of(read_checked_corners(path));
+TriMesh read_stl(const fs::path& path, std::string_view bytes) {
+  const Positions corners = positions_of(read_checked_corners(path, bytes));
   const Weld weld = Weld::exact(corners);
   std::vector<int> vertex_of(weld.representative.size());
   Positions positions(corners.rows() - weld.count, 3);
@@ -140,9 +134,9 @@ void check_parting(const fs::path& path, const std::vector<int>& corners_at,
                       expected_path.string() + "; write all frames with one order of triangles");
 }
 
-Positions gathered_corners(const fs::path& path, const Connectivity& expected,
-                           const fs::path& expected_path) {
-  const Positions corners = positions_of(read_checked_corners(path));
+Positions gathered_corners(const fs::path& path, std::string_view bytes,
+                           const Connectivity& expected, const fs::path& expected_path) {
+  const Positions corners = positions_of(read_checked_corners(path, bytes));
   const Eigen::Index triangles = expected.triangles.rows();
   if (corners.rows() != 3 * triangles) {
     throw_mismatch(path, corners.rows() / 3, "triangles", triangles, expected_path);
@@ -191,26 +185,9 @@ void check_same_faces(const fs::path& path, const MeshContent& content,
                       expected_path.string());
 }
 
-std::string bytes_of_mesh(const std::string& extension, const PositionsView& positions,
-                          const Connectivity& connectivity, bool double_precision) {
-  if (extension == ".obj") return obj_bytes(positions, connectivity, double_precision);
-  if (extension == ".ply") return ply_bytes(positions, connectivity, double_precision);
-  if (extension == ".off") return off_bytes(positions, connectivity, double_precision);
-  return stl_bytes(positions, connectivity);
-}
-
-template <typename Number>
-void append_shortest(std::string& text, Number value) {
-  std::array<char, 32> digits;  // the longest double has 24 characters, the longest integer 20
-  const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr;
-  text.append(digits.data(), end);
-}
-
-}  // namespace
-
-TriMesh read_mesh(const fs::path& path) {
-  if (extension_of(path) == ".stl") return read_stl(path);
-  MeshContent content = read_checked(path);
+TriMesh read_mesh(const fs::path& path, std::string_view bytes) {
+  if (extension_of(path) == ".stl") return read_stl(path, bytes);
+  MeshContent content = read_checked(path, bytes);
   TriMesh mesh{positions_of(content.coordinates), {}};
   mesh.connectivity = Connectivity::from_polygons(static_cast<int>(mesh.positions.rows()),
                                                   std::move(content.polygons));
@@ -219,10 +196,10 @@ TriMesh read_mesh(const fs::path& path) {
   return mesh;
 }
 
-Positions read_positions(const fs::path& path, const Connectivity& expected,
+Positions read_positions(const fs::path& path, std::string_view bytes, const Connectivity& expected,
                          const fs::path& expected_path) {
-  if (extension_of(path) == ".stl") return gathered_corners(path, expected, expected_path);
-  const MeshContent content = read_checked(path);
+  if (extension_of(path) == ".stl") return gathered_corners(path, bytes, expected, expected_path);
+  const MeshContent content = read_checked(path, bytes);
   const auto vertices = static_cast<long long>(content.coordinates.size() / 3);
   if (vertices != expected.vertices) {
     throw_mismatch(path, vertices, "vertices", expected.vertices, expected_path);
@@ -231,40 +208,52 @@ Positions read_positions(const fs::path& path, const Connectivity& expected,
   return positions_of(content.coordinates);
 }
 
-void write_mesh(const fs::path& path, const PositionsView& positions,
-                const Connectivity& connectivity, const MeshWriteOptions& options) {
-  const std::string extension =
-      options.extension.empty() ? extension_of(path) : lower_case(options.extension);
-  if (!is_mesh_extension(extension)) {
-    throw OutputError(path.string(), unknown_extension(extension));
+/// None for STL, whose vertices are found anew in every file.
+std::unique_ptr<const MeshLayout> layout_of(const std::string& extension, std::string bytes,
+                                            const TriMesh& mesh) {
+  if (extension == ".obj") return obj_layout(std::move(bytes));
+  if (extension == ".ply") return ply_layout(bytes);
+  if (extension == ".off") {
+    return off_layout(std::move(bytes), static_cast<std::size_t>(mesh.positions.rows()));
   }
-  if (positions.rows() != connectivity.vertices) {
-    throw std::invalid_argument(std::to_string(positions.rows()) + " positions, expected " +
-                                std::to_string(connectivity.vertices) + " as the faces have");
+  return nullptr;
+}
+
+}  // namespace
+
+TriMesh read_mesh(const fs::path& path) {
+  return read_mesh(path, read_bytes(path));
+}
+
+Positions read_positions(const fs::path& path, const Connectivity& expected,
+                         const fs::path& expected_path) {
+  return read_positions(path, read_bytes(path), expected, expected_path);
+}
+
+MeshFileReader::MeshFileReader(fs::path first) : first_(std::move(first)) {
+  std::string bytes = read_bytes(first_);
+  mesh_ = read_mesh(first_, bytes);
+  layout_ = layout_of(extension_of(first_), std::move(bytes), mesh_);
+}
+
+MeshFileReader::~MeshFileReader() = default;
+
+void MeshFileReader::read(const fs::path& path, std::span<double> coordinates) const {
+  if (coordinates.size() != static_cast<std::size_t>(mesh_.positions.size())) {
+    throw std::invalid_argument(std::to_string(coordinates.size()) + " coordinates, expected " +
+                                std::to_string(mesh_.positions.size()));
   }
-  write_bytes(path, bytes_of_mesh(extension, positions, connectivity, options.double_precision));
+  const std::string bytes = read_bytes(path);
+  const bool same_format = extension_of(path) == extension_of(first_);
+  if (layout_ && same_format && layout_->read(bytes, coordinates)) return;
+  const Positions positions = read_positions(path, bytes, mesh_.connectivity, first_);
+  std::copy_n(positions.data(), positions.size(), coordinates.begin());
 }
 
-void write_mesh(const fs::path& path, const TriMesh& mesh, const MeshWriteOptions& options) {
-  write_mesh(path, PositionsView(mesh.positions.data(), mesh.positions.rows(), 3),
-             mesh.connectivity, options);
-}
-
-bool is_mesh_extension(const std::string& extension) {
-  const std::string known = lower_case(extension);
-  return known == ".obj" || known == ".ply" || known == ".off" || known == ".stl";
-}
-
-void append_number(std::string& text, double value, bool double_precision) {
-  if (double_precision) {
-    append_shortest(text, value);
-  } else {
-    append_shortest(text, static_cast<float>(value));
-  }
-}
-
-void append_integer(std::string& text, long long value) {
-  append_shortest(text, value);
+Positions MeshFileReader::read(const fs::path& path) const {
+  Positions positions(mesh_.positions.rows(), 3);
+  read(path, {positions.data(), static_cast<std::size_t>(positions.size())});
+  return positions;
 }
 
 }  // namespace mimetra

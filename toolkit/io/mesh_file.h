@@ -1,11 +1,16 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
+#include <span>
 #include <string>
 
 #include <mimetra/mesh/tri_mesh.h>
 
 namespace mimetra {
+
+class MeshLayout;
+struct MeshFrame;
 
 /// Reads one mesh by its extension: .obj, .ply (ascii, binary little and big endian), .off, .stl
 /// (ascii and binary; corners at one place become one vertex, in order of first use). Vertices and
@@ -18,6 +23,31 @@ TriMesh read_mesh(const std::filesystem::path& path);
 /// differs; `expected_path` is the file that the message compares with.
 Positions read_positions(const std::filesystem::path& path, const Connectivity& expected,
                          const std::filesystem::path& expected_path);
+
+/// Reads the files of one mesh: the first one whole, of a further one only what is new in it.
+///
+/// Of a further file the positions are parsed and what stands around them is compared with the
+/// first file, byte by byte; where that differs, the file is read as by read_positions(). Positions
+/// and errors are the same either way. Queries may run from several threads.
+class MeshFileReader {
+ public:
+  /// Throws as read_mesh.
+  explicit MeshFileReader(std::filesystem::path first);
+  ~MeshFileReader();
+
+  const std::filesystem::path& first() const { return first_; }
+  const TriMesh& mesh() const { return mesh_; }
+  /// The positions of a further file (N x 3). Throws as read_positions.
+  Positions read(const std::filesystem::path& path) const;
+  /// The same into x y z of each vertex, such as a row of Frames; undefined where it throws. \pre
+  /// 3N coordinates
+  void read(const std::filesystem::path& path, std::span<double> coordinates) const;
+
+ private:
+  std::filesystem::path first_;
+  TriMesh mesh_;
+  std::unique_ptr<const MeshLayout> layout_;
+};
 
 struct MeshWriteOptions {
   /// Coordinates in double precision: binary doubles in PLY, the shortest digits that read back
@@ -35,6 +65,25 @@ void write_mesh(const std::filesystem::path& path, const PositionsView& position
                 const Connectivity& connectivity, const MeshWriteOptions& = {});
 void write_mesh(const std::filesystem::path& path, const TriMesh& mesh,
                 const MeshWriteOptions& = {});
+
+/// Writes poses of one mesh, each to a file of its own. What the files have in common is made once.
+/// Files may be written from several threads.
+class MeshFileWriter {
+ public:
+  /// `extension` as in MeshWriteOptions; throws std::invalid_argument for one that is no mesh
+  /// format.
+  MeshFileWriter(const Connectivity& connectivity, const std::string& extension,
+                 bool double_precision = false);
+  ~MeshFileWriter();
+
+  /// Writes what write_mesh() writes. Throws OutputError; std::invalid_argument unless `positions`
+  /// are as many as the connectivity's vertices.
+  void write(const std::filesystem::path& path, const PositionsView& positions) const;
+
+ private:
+  int vertices_;
+  std::unique_ptr<const MeshFrame> frame_;
+};
 
 /// True for an extension (".obj") that read_mesh knows, in any case.
 bool is_mesh_extension(const std::string& extension);

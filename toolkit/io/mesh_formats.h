@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -29,17 +30,34 @@ MeshContent read_off(const std::string& path, std::string_view bytes);
 /// The corners of all triangles, one after the other, not welded (x y z each).
 std::vector<double> read_stl_corners(const std::string& path, std::string_view bytes);
 
-/// The bytes of a file. Coordinates are floats unless `double_precision`.
-std::string obj_bytes(const PositionsView& positions, const Connectivity& connectivity,
-                      bool double_precision);
-std::string ply_bytes(const PositionsView& positions, const Connectivity& connectivity,
-                      bool double_precision);
-std::string off_bytes(const PositionsView& positions, const Connectivity& connectivity,
-                      bool double_precision);
-std::string stl_bytes(const PositionsView& positions, const Connectivity& connectivity);
+/// The bytes of all files of one mesh, in a format and a precision.
+struct MeshFrame {
+  std::string before;  ///< what stands before the positions
+  std::string after;   ///< what stands behind them
+  /// What stands between for some positions. Safe to call from several threads.
+  std::function<std::string(const PositionsView&)> positions;
+};
 
-/// Appends the shortest digits that read back equal, as float or as double.
+/// Coordinates are floats unless `double_precision`. No reference to the connectivity is kept.
+MeshFrame obj_frame(const Connectivity& connectivity, bool double_precision);
+MeshFrame ply_frame(const Connectivity& connectivity, bool double_precision);
+MeshFrame off_frame(const Connectivity& connectivity, bool double_precision);
+MeshFrame stl_frame(const Connectivity& connectivity);
+
+/// Characters that the shortest digits of a number take at most: a double has 24, an integer 20.
+inline constexpr std::size_t kMostDigits = 32;
+
+/// Puts the shortest digits that read back equal, as float or as double, to where `text` has room
+/// for kMostDigits; returns where they end.
+char* put_number(char* text, double value, bool double_precision);
 void append_number(std::string& text, double value, bool double_precision);
 void append_integer(std::string& text, long long value);
+/// A line "x y z" for each vertex, with `before` in front of it.
+std::string position_lines(std::string_view before, const PositionsView& positions,
+                           bool double_precision);
+
+std::string lower_case(std::string text);
+/// What is wrong with an extension in lower case that is_mesh_extension() refuses.
+std::string unknown_mesh_extension(const std::string& extension);
 
 }  // namespace mimetra

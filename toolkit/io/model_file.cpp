@@ -10,6 +10,7 @@
 #include <mimetra/io/mesh_file.h>
 #include <mimetra/io/pending_output.h>
 #include <mimetra/io/sequence_file.h>
+#include <mimetra/mesh/parallel.h>
 
 namespace mimetra {
 
@@ -111,28 +112,30 @@ Parts parts_of(const fs::path& folder) {
 }
 
 /// Absolute shapes of a folder, minus the neutral.
-ShapeBasis read_shapes(const fs::path& folder, const TriMesh& neutral,
-                       const fs::path& neutral_path) {
+ShapeBasis read_shapes(const fs::path& folder, const MeshFileReader& neutral, int threads) {
   ShapeBasis basis;
-  std::vector<Positions> fields;
+  std::vector<fs::path> files;
   for (const fs::path& file : files_in(folder)) {
     if (!is_mesh_extension(file.extension().string())) continue;
-    fields.push_back(read_positions(file, neutral.connectivity, neutral_path) - neutral.positions);
+    files.push_back(file);
     basis.names.push_back(file.stem().string());
   }
-  if (fields.empty()) throw IoError(folder.string(), "holds no .obj, .ply, .off or .stl file");
-  basis.displacements.resize(neutral.positions.size(), static_cast<Eigen::Index>(fields.size()));
-  for (std::size_t j = 0; j < fields.size(); ++j) {
-    basis.displacements.col(static_cast<Eigen::Index>(j)) =
-        Eigen::Map<const Eigen::VectorXd>(fields[j].data(), fields[j].size());
-  }
+  if (files.empty()) throw IoError(folder.string(), "holds no .obj, .ply, .off or .stl file");
+  const Positions& mean = neutral.mesh().positions;
+  basis.displacements.resize(mean.size(), static_cast<Eigen::Index>(files.size()));
+  parallel_for(static_cast<int>(files.size()), threads, [&](int j) {
+    auto shape = basis.displacements.col(j);
+    neutral.read(files[static_cast<std::size_t>(j)],
+                 {shape.data(), static_cast<std::size_t>(shape.size())});
+    shape -= Eigen::Map<const Eigen::VectorXd>(mean.data(), mean.size());
+  });
   return basis;
 }
 
-ShapeBasis shapes_or_none(const std::optional<fs::path>& folder, const TriMesh& neutral,
-                          const fs::path& neutral_path) {
-  if (folder) return read_shapes(*folder, neutral, neutral_path);
-  return {{}, Eigen::MatrixXd(neutral.positions.size(), 0)};
+ShapeBasis shapes_or_none(const std::optional<fs::path>& folder, const MeshFileReader& neutral,
+                          int threads) {
+  if (folder) return read_shapes(*folder, neutral, threads);
+  return {{}, Eigen::MatrixXd(neutral.mesh().positions.size(), 0)};
 }
 
 double coefficient_of(const std::string& entry, const std::string& number) {
@@ -160,13 +163,13 @@ void write_shapes(const fs::path& folder, const ShapeBasis& basis, const Morphab
   if (!fs::create_directory(folder, error)) {
     throw OutputError(folder.string(), "cannot be written: " + error.message());
   }
+  const MeshFileWriter writer(model.connectivity(), ".ply", true);
   for (int j = 0; j < basis.size(); ++j) {
     const Eigen::VectorXd field = basis.displacements.col(j);
     const Positions shape =
         model.mean() + Eigen::Map<const Positions>(field.data(), model.vertices(), 3);
-    write_mesh(folder / (basis.names[static_cast<std::size_t>(j)] + ".ply"),
-               PositionsView(shape.data(), shape.rows(), 3), model.connectivity(),
-               {.double_precision = true});
+    writer.write(folder / (basis.names[static_cast<std::size_t>(j)] + ".ply"),
+                 PositionsView(shape.data(), shape.rows(), 3));
   }
 }
 
@@ -218,7 +221,7 @@ std::string ModelSpec::name() const {
   return identity_text.empty() ? stem : stem + '@' + identity_text;
 }
 
-MorphableModel read_model(const fs::path& path) {
+MorphableModel read_model(const fs::path& path, int threads) {
   std::error_code unreadable;
   if (!fs::exists(path, unreadable)) throw IoError(path.string(), "does not exist");
   const Parts parts = parts_of(path);
@@ -233,21 +236,21 @@ MorphableModel read_model(const fs::path& path) {
                   "is no model: expected neutral.* with expressions/ or targets/, a model.json, or "
                   "the eos pair sfm_shape_*.bin and expression_blendshapes_*.bin");
   }
-  TriMesh neutral = read_mesh(*parts.neutral);
-  ShapeBasis expressions = shapes_or_none(parts.expressions, neutral, *parts.neutral);
-  ShapeBasis identities = shapes_or_none(parts.identities, neutral, *parts.neutral);
-  auto connectivity = std::make_shared<Connectivity>(std::move(neutral.connectivity));
+  const MeshFileReader neutral(*parts.neutral);
+  ShapeBasis expressions = shapes_or_none(parts.expressions, neutral, threads);
+  ShapeBasis identities = shapes_or_none(parts.identities, neutral, threads);
+  auto connectivity = std::make_shared<Connectivity>(neutral.mesh().connectivity);
   try {
-    return MorphableModel(std::move(connectivity), std::move(neutral.positions),
-                          std::move(identities), std::move(expressions));
+    return MorphableModel(std::move(connectivity), neutral.mesh().positions, std::move(identities),
+                          std::move(expressions));
   } catch (const std::invalid_argument& error) {
     // smile.obj beside smile.ply: two shapes of one name.
     throw IoError(path.string(), error.what());
   }
 }
 
-BlendshapeModel read_person(const ModelSpec& spec) {
-  const MorphableModel model = read_model(spec.path);
+BlendshapeModel read_person(const ModelSpec& spec, int threads) {
+  const MorphableModel model = read_model(spec.path, threads);
   Eigen::VectorXd alpha = Eigen::VectorXd::Zero(model.identities().size());
   for (const auto& [name, coefficient] : spec.identity) {
     const int index = model.identities().find(name);

@@ -31,11 +31,11 @@ struct ModelSpec {
 /// an eos model file with `expressions` its eos blendshape file), or the eos pair `sfm_shape_*.bin`
 /// (or another .bin that starts like one) and `expression_blendshapes_*.bin`. Shapes come in the
 /// natural order of their names. Throws IoError; MismatchError where shapes differ in
-/// topology.
-MorphableModel read_model(const std::filesystem::path& path);
+/// topology. `threads`: 0 for all there are.
+MorphableModel read_model(const std::filesystem::path& path, int threads = 0);
 
 /// The person a spec speaks of. Throws as read_model; MismatchError for an unknown identity name.
-BlendshapeModel read_person(const ModelSpec& spec);
+BlendshapeModel read_person(const ModelSpec& spec, int threads = 0);
 
 /// The person that `text` speaks of: a model, or `MODEL@identity003=1.5`. Throws as
 /// ModelSpec::parse and read_person.

@@ -132,32 +132,25 @@ MeshContent read_obj(const std::string& path, std::string_view bytes) {
   return ObjReader(path, bytes).read();
 }
 
-std::string obj_bytes(const PositionsView& positions, const Connectivity& connectivity,
-                      bool double_precision) {
-  std::string text;
-  for (Eigen::Index vertex = 0; vertex < positions.rows(); ++vertex) {
-    text += 'v';
-    for (int axis = 0; axis < 3; ++axis) {
-      text += ' ';
-      append_number(text, positions(vertex, axis), double_precision);
-    }
-    text += '\n';
-  }
+MeshFrame obj_frame(const Connectivity& connectivity, bool double_precision) {
+  std::string after;
   for (const Eigen::Vector2d& uv : connectivity.texture.coordinates) {
-    text += "vt ";
-    append_number(text, uv.x(), double_precision);
-    text += ' ';
-    append_number(text, uv.y(), double_precision);
-    text += '\n';
+    after += "vt ";
+    append_number(after, uv.x(), double_precision);
+    after += ' ';
+    append_number(after, uv.y(), double_precision);
+    after += '\n';
   }
   auto group = connectivity.groups.begin();
   for (int face = 0; face <= connectivity.polygons.size(); ++face) {
     for (; group != connectivity.groups.end() && group->first_face <= face; ++group) {
-      text.append(group->statement).append("\n");
+      after.append(group->statement).append("\n");
     }
-    if (face < connectivity.polygons.size()) append_face(text, connectivity, face);
+    if (face < connectivity.polygons.size()) append_face(after, connectivity, face);
   }
-  return text;
+  return {{}, std::move(after), [double_precision](const PositionsView& positions) {
+            return position_lines("v ", positions, double_precision);
+          }};
 }
 
 }  // namespace mimetra

@@ -67,27 +67,22 @@ MeshContent read_off(const std::string& path, std::string_view bytes) {
   return content;
 }
 
-std::string off_bytes(const PositionsView& positions, const Connectivity& connectivity,
-                      bool double_precision) {
+MeshFrame off_frame(const Connectivity& connectivity, bool double_precision) {
   const Polygons& polygons = connectivity.polygons;
-  std::string text =
-      "OFF\n" + std::to_string(positions.rows()) + " " + std::to_string(polygons.size()) + " 0\n";
-  for (Eigen::Index vertex = 0; vertex < positions.rows(); ++vertex) {
-    for (int axis = 0; axis < 3; ++axis) {
-      if (axis > 0) text += ' ';
-      append_number(text, positions(vertex, axis), double_precision);
-    }
-    text += '\n';
-  }
+  std::string after;
   for (int face = 0; face < polygons.size(); ++face) {
-    append_integer(text, polygons.offsets[face + 1] - polygons.offsets[face]);
+    append_integer(after, polygons.offsets[face + 1] - polygons.offsets[face]);
     for (int corner = polygons.offsets[face]; corner < polygons.offsets[face + 1]; ++corner) {
-      text += ' ';
-      append_integer(text, polygons.corners[corner]);
+      after += ' ';
+      append_integer(after, polygons.corners[corner]);
     }
-    text += '\n';
+    after += '\n';
   }
-  return text;
+  return {"OFF\n" + std::to_string(connectivity.vertices) + " " + std::to_string(polygons.size()) +
+              " 0\n",
+          std::move(after), [double_precision](const PositionsView& positions) {
+            return position_lines("", positions, double_precision);
+          }};
 }
 
 }  // namespace mimetra

@@ -8,6 +8,7 @@
 
 #include <unistd.h>
 
+#include <mimetra/io/binary_file.h>
 #include <mimetra/mesh/errors.h>
 
 namespace mimetra {
@@ -201,10 +202,9 @@ void write_file(const fs::path& target, std::string_view content, bool overwrite
 }
 
 void write_bytes(const fs::path& path, std::string_view content) {
-  std::ofstream file(path, std::ios::binary | std::ios::trunc);
-  file.write(content.data(), static_cast<std::streamsize>(content.size()));
+  OutputFile file(path);
+  file.write({content});
   file.close();
-  if (!file) throw OutputError(committed_name(path).string(), cannot_write(last_error()));
 }
 
 fs::path committed_name(const fs::path& path) {

@@ -12,23 +12,24 @@ bool bytes_suffice(const Polygons& polygons) {
   return true;
 }
 
-std::string header(const PositionsView& positions, const Polygons& polygons,
-                   bool double_precision) {
+std::string header(int vertices, const Polygons& polygons, bool double_precision) {
   const std::string scalar = double_precision ? "double" : "float";
-  return "ply\nformat binary_little_endian 1.0\nelement vertex " +
-         std::to_string(positions.rows()) + "\nproperty " + scalar + " x\nproperty " + scalar +
-         " y\nproperty " + scalar + " z\nelement face " + std::to_string(polygons.size()) +
-         "\nproperty list " + (bytes_suffice(polygons) ? "uchar" : "uint") +
-         " int vertex_indices\nend_header\n";
+  return "ply\nformat binary_little_endian 1.0\nelement vertex " + std::to_string(vertices) +
+         "\nproperty " + scalar + " x\nproperty " + scalar + " y\nproperty " + scalar +
+         " z\nelement face " + std::to_string(polygons.size()) + "\nproperty list " +
+         (bytes_suffice(polygons) ? "uchar" : "uint") + " int vertex_indices\nend_header\n";
 }
 
 template <typename Scalar>
-void append_positions(std::string& bytes, const PositionsView& positions) {
+std::string position_bytes(const PositionsView& positions) {
+  std::string bytes(sizeof(Scalar) * static_cast<std::size_t>(positions.size()), '\0');
+  char* at = bytes.data();
   for (Eigen::Index vertex = 0; vertex < positions.rows(); ++vertex) {
-    for (int axis = 0; axis < 3; ++axis) {
-      append_little_endian(bytes, static_cast<Scalar>(positions(vertex, axis)));
+    for (int axis = 0; axis < 3; ++axis, at += sizeof(Scalar)) {
+      put_little_endian(at, static_cast<Scalar>(positions(vertex, axis)));
     }
   }
+  return bytes;
 }
 
 template <typename Count>
@@ -44,21 +45,16 @@ void append_faces(std::string& bytes, const Polygons& polygons) {
 
 }  // namespace
 
-std::string ply_bytes(const PositionsView& positions, const Connectivity& connectivity,
-                      bool double_precision) {
+MeshFrame ply_frame(const Connectivity& connectivity, bool double_precision) {
   const Polygons& polygons = connectivity.polygons;
-  std::string bytes = header(positions, polygons, double_precision);
-  if (double_precision) {
-    append_positions<double>(bytes, positions);
-  } else {
-    append_positions<float>(bytes, positions);
-  }
+  std::string after;
   if (bytes_suffice(polygons)) {
-    append_faces<std::uint8_t>(bytes, polygons);
+    append_faces<std::uint8_t>(after, polygons);
   } else {
-    append_faces<std::uint32_t>(bytes, polygons);
+    append_faces<std::uint32_t>(after, polygons);
   }
-  return bytes;
+  return {header(connectivity.vertices, polygons, double_precision), std::move(after),
+          double_precision ? position_bytes<double> : position_bytes<float>};
 }
 
 }  // namespace mimetra

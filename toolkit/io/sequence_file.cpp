@@ -6,6 +6,7 @@
 #include <mimetra/io/frame_files.h>
 #include <mimetra/io/mesh_file.h>
 #include <mimetra/io/model_file.h>
+#include <mimetra/mesh/parallel.h>
 
 namespace mimetra {
 namespace fs = std::filesystem;
@@ -34,17 +35,35 @@ Eigen::Map<const Eigen::RowVectorXd> as_row(const Positions& positions) {
   return {positions.data(), positions.size()};
 }
 
-std::optional<Positions> rest_beside(const fs::path& sequence, const Connectivity& connectivity,
-                                     const fs::path& first, SequenceRead& read) {
+std::optional<Positions> rest_beside(const fs::path& sequence, const MeshFileReader& reader,
+                                     SequenceRead& read) {
   const fs::path rest = beside(sequence, kRestSuffix);
   if (!is_there(rest)) return std::nullopt;
   read.files.push_back(rest);
-  return read_positions(rest, connectivity, first);
+  return reader.read(rest);
 }
 
 bool is_stl(const fs::path& path) {
   const std::string extension = path.extension().string();
   return extension.size() == 4 && (extension[1] == 's' || extension[1] == 'S');
+}
+
+/// The positions of all files, one row each.
+Frames read_poses(const MeshFileReader& reader, const std::vector<fs::path>& files,
+                  const SequenceSource& source) {
+  const Positions& first = reader.mesh().positions;
+  Frames frames(static_cast<Eigen::Index>(files.size()), first.size());
+  const auto read_pose = [&](int frame) {
+    const fs::path& file = files[static_cast<std::size_t>(frame)];
+    if (file == reader.first()) {
+      frames.row(frame) = as_row(first);
+    } else {
+      reader.read(file, {frames.row(frame).data(), static_cast<std::size_t>(frames.cols())});
+    }
+  };
+  parallel_for(static_cast<int>(files.size()), source.threads, read_pose, source.progress);
+  report_progress(source.progress, 1);
+  return frames;
 }
 
 /// `folder` is where a rest pose may lie beside; empty for patterns and single files.
@@ -58,18 +77,12 @@ SequenceRead read_frames(const std::vector<fs::path>& files, const fs::path& fol
   const Eigen::VectorXd times = times_of(selected, source);
   // Which corners of an STL file are one vertex is what its first frame says, asked for or not.
   const fs::path first = is_stl(files[0]) ? files[0] : read.files[0];
-  const TriMesh mesh = read_mesh(first);
-  Frames frames(static_cast<Eigen::Index>(selected.size()), mesh.positions.size());
-  for (Eigen::Index frame = 0; frame < frames.rows(); ++frame) {
-    const fs::path& file = read.files[static_cast<std::size_t>(frame)];
-    frames.row(frame) =
-        as_row(file == first ? mesh.positions : read_positions(file, mesh.connectivity, first));
-    report_progress(source.progress,
-                    static_cast<double>(frame + 1) / static_cast<double>(frames.rows()));
-  }
+  const MeshFileReader reader(first);
+  Frames frames = read_poses(reader, read.files, source);
   std::optional<Positions> rest;
-  if (!folder.empty()) rest = rest_beside(folder, mesh.connectivity, first, read);
-  read.sequence = MeshSequence(mesh.connectivity, std::move(frames), times, std::move(rest));
+  if (!folder.empty()) rest = rest_beside(folder, reader, read);
+  read.sequence =
+      MeshSequence(reader.mesh().connectivity, std::move(frames), times, std::move(rest));
   return read;
 }
 
@@ -84,10 +97,11 @@ fs::path topology_of(const fs::path& array, const SequenceSource& source) {
 }
 
 SequenceRead read_array(const fs::path& path, const SequenceSource& source) {
-  Frames all = read_npy_frames(path);
+  Frames all = read_npy_frames(path, source.threads);
   const std::vector<int> selected = selected_frames(source.frames, static_cast<int>(all.rows()));
   const fs::path topology = topology_of(path, source);
-  TriMesh mesh = read_mesh(topology);
+  const MeshFileReader reader(topology);
+  const TriMesh& mesh = reader.mesh();
   if (all.cols() != mesh.positions.size()) {
     throw MismatchError(path.string() + ": " + std::to_string(all.cols() / 3) +
                         " vertices, expected " + std::to_string(mesh.positions.rows()) + " as in " +
@@ -95,10 +109,10 @@ SequenceRead read_array(const fs::path& path, const SequenceSource& source) {
   }
   SequenceRead read;
   read.files = {path, topology};
-  std::optional<Positions> rest = rest_beside(path, mesh.connectivity, topology, read);
+  std::optional<Positions> rest = rest_beside(path, reader, read);
   Frames frames = source.frames ? Frames(all(selected, Eigen::all)) : std::move(all);
-  read.sequence = MeshSequence(std::move(mesh.connectivity), std::move(frames),
-                               times_of(selected, source), std::move(rest));
+  read.sequence = MeshSequence(mesh.connectivity, std::move(frames), times_of(selected, source),
+                               std::move(rest));
   report_progress(source.progress, 1);
   return read;
 }
@@ -146,7 +160,7 @@ SequenceRead read_driven(const ModelSpec& spec, const SequenceSource& source) {
   SequenceRead read;
   read.model_driven = true;
   read.files = {spec.path};
-  const BlendshapeModel person = read_person(spec);
+  const BlendshapeModel person = read_person(spec, source.threads);
   if (!source.weights) {
     read.sequence = neutral_of(person, source);
     return read;

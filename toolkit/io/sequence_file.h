@@ -20,6 +20,8 @@ struct SequenceSource {
   std::optional<std::string> frames = {};
   /// Frames per second where the files say nothing of time, > 0.
   std::optional<double> fps = {};
+  /// 0 for all there are; what is read does not depend on it.
+  int threads = 0;
   Progress progress = {};
 };
 
@@ -50,6 +52,8 @@ struct SequenceWriteOptions {
   bool double_precision = false;
   bool single_precision = false;
   bool overwrite = false;
+  /// 0 for all there are; what is written does not depend on it.
+  int threads = 0;
   Progress progress = {};
 };
 

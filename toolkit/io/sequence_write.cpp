@@ -6,6 +6,7 @@
 #include <mimetra/io/mesh_file.h>
 #include <mimetra/io/pending_output.h>
 #include <mimetra/io/sequence_file.h>
+#include <mimetra/mesh/parallel.h>
 
 namespace mimetra {
 namespace fs = std::filesystem;
@@ -67,12 +68,14 @@ std::vector<fs::path> write_folder(const MeshSequence& sequence, const fs::path&
   const bool double_precision = options.double_precision || needs_double(sequence);
   std::vector<fs::path> files;
   for (int frame = 0; frame < sequence.frames(); ++frame) {
-    report_progress(options.progress, static_cast<double>(frame) / sequence.frames());
-    const std::string name = frame_name(frame, sequence.frames(), options.format);
-    write_mesh(folder / name, sequence.frame(frame), sequence.connectivity(),
-               {.double_precision = double_precision});
-    files.push_back(target / name);
+    files.push_back(target / frame_name(frame, sequence.frames(), options.format));
   }
+  report_progress(options.progress, 0);
+  const MeshFileWriter writer(sequence.connectivity(), "." + options.format, double_precision);
+  const auto write_pose = [&](int frame) {
+    writer.write(folder / files[static_cast<std::size_t>(frame)].filename(), sequence.frame(frame));
+  };
+  parallel_for(sequence.frames(), options.threads, write_pose, options.progress);
   for (const auto& [name, content] : extra) {
     write_bytes(folder / name, content);
     files.push_back(target / name);
@@ -90,7 +93,7 @@ std::vector<fs::path> write_array(const MeshSequence& sequence, const fs::path& 
   std::vector<fs::path> files = {target};
   report_progress(options.progress, 0);
   write_npy_frames(outputs.add(target, PendingOutput::Kind::file), sequence.positions(),
-                   options.single_precision);
+                   options.single_precision, options.threads);
   add_pose(outputs, beside(target, kTopologySuffix), sequence, files);
   add_rest(outputs, target, sequence, true, files);
   add_extra_beside(outputs, target, extra, files);

@@ -92,18 +92,9 @@ void append_point(std::string& bytes, const Eigen::Vector3d& point) {
   }
 }
 
-}  // namespace
-
-std::vector<double> read_stl_corners(const std::string& path, std::string_view bytes) {
-  return is_binary(bytes) ? read_binary(path, bytes)
-                          : read_ascii(path, without_byte_order_mark(bytes));
-}
-
-std::string stl_bytes(const PositionsView& positions, const Connectivity& connectivity) {
-  const Triangles& triangles = connectivity.triangles;
-  std::string bytes(kHeaderBytes, ' ');
-  bytes.reserve(kPreambleBytes + kTriangleBytes * static_cast<std::size_t>(triangles.rows()));
-  append_little_endian(bytes, static_cast<std::uint32_t>(triangles.rows()));
+std::string triangle_bytes(const PositionsView& positions, const Triangles& triangles) {
+  std::string bytes;
+  bytes.reserve(kTriangleBytes * static_cast<std::size_t>(triangles.rows()));
   for (Eigen::Index t = 0; t < triangles.rows(); ++t) {
     const Eigen::Vector3d a = positions.row(triangles(t, 0));
     const Eigen::Vector3d b = positions.row(triangles(t, 1));
@@ -115,6 +106,22 @@ std::string stl_bytes(const PositionsView& positions, const Connectivity& connec
     bytes.append(2, '\0');
   }
   return bytes;
+}
+
+}  // namespace
+
+std::vector<double> read_stl_corners(const std::string& path, std::string_view bytes) {
+  return is_binary(bytes) ? read_binary(path, bytes)
+                          : read_ascii(path, without_byte_order_mark(bytes));
+}
+
+MeshFrame stl_frame(const Connectivity& connectivity) {
+  std::string before(kHeaderBytes, ' ');
+  append_little_endian(before, static_cast<std::uint32_t>(connectivity.triangles.rows()));
+  return {
+      std::move(before), {}, [triangles = connectivity.triangles](const PositionsView& positions) {
+        return triangle_bytes(positions, triangles);
+      }};
 }
 
 }  // namespace mimetra

@@ -8,14 +8,6 @@
 namespace mimetra {
 namespace {
 
-bool is_blank(char c) {
-  return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f';
-}
-
-bool ends_word(char c) {
-  return is_blank(c) || c == '\n';
-}
-
 /// Long words are cut: a binary file taken for text has lines of megabytes.
 std::string quoted(std::string_view word) {
   constexpr std::size_t kLongest = 40;

@@ -6,6 +6,15 @@
 
 namespace mimetra {
 
+/// What parts words on a line.
+inline bool is_blank(char c) {
+  return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f';
+}
+
+inline bool ends_word(char c) {
+  return is_blank(c) || c == '\n';
+}
+
 /// `text` without the mark that some programs put before UTF-8.
 std::string_view without_byte_order_mark(std::string_view text);
 

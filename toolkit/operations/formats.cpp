@@ -31,6 +31,7 @@ Paths write_sequence_data(const Data& data, const WriteRequest& request) {
   options.double_precision = request.parameters.flag("double");
   options.single_precision = request.parameters.flag("single");
   options.overwrite = request.overwrite;
+  options.threads = request.threads;
   options.progress = request.progress;
   return write_sequence(std::get<SequenceRead>(data).sequence, request.target, options,
                         request.extra);

@@ -15,8 +15,8 @@ namespace {
 class Loader {
  public:
   Loader(const OperationTable& table, const Parameters& parameters, const Progress& progress,
-         const Log& log)
-      : table_(table), parameters_(parameters), progress_(progress), log_(log) {}
+         const Log& log, int threads)
+      : table_(table), parameters_(parameters), progress_(progress), log_(log), threads_(threads) {}
 
   NamedData load(const Input& input, const std::string& text) {
     switch (input.kind) {
@@ -67,6 +67,7 @@ class Loader {
     source.topology = path("topology");
     source.frames = parameters_.optional_text("frames");
     source.fps = parameters_.optional_number("fps");
+    source.threads = threads_;
     source.progress = progress_;
     SequenceRead read = read_sequence(text, source);
     for (const std::string& note : read.notes) {
@@ -88,7 +89,7 @@ class Loader {
     if (!std::filesystem::exists(spec.path)) {
       throw IoError(spec.path.string(), "no such file or folder");
     }
-    if (std::filesystem::is_directory(spec.path)) return {spec.name(), read_person(spec)};
+    if (std::filesystem::is_directory(spec.path)) return {spec.name(), read_person(spec, threads_)};
     if (!spec.identity.empty()) {
       throw MismatchError(text + ": '" + spec.path.string() +
                           "' is one mesh and has no identities");
@@ -109,6 +110,7 @@ class Loader {
   const Parameters& parameters_;
   const Progress& progress_;
   const Log& log_;
+  int threads_;
   int vertices_ = 0;
   Triangles triangles_;
 };
@@ -118,8 +120,8 @@ class Loader {
 LoadedInputs load_inputs(const OperationTable& table, const Operation& operation,
                          const Parameters& parameters,
                          const std::map<std::string, std::vector<std::string>>& names,
-                         const Progress& progress, const Log& log) {
-  Loader loader(table, parameters, progress, log);
+                         const Progress& progress, const Log& log, int threads) {
+  Loader loader(table, parameters, progress, log, threads);
   LoadedInputs loaded;
   for (const bool sequences : {true, false}) {
     for (const Input& input : operation.inputs) {

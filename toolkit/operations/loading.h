@@ -15,10 +15,10 @@ struct LoadedInputs {
 };
 
 /// Reads the inputs of an operation from what the user named (`names`, by name of the input).
-/// Throws what the readers throw.
+/// `threads`: 0 for all there are. Throws what the readers throw.
 LoadedInputs load_inputs(const OperationTable& table, const Operation& operation,
                          const Parameters& parameters,
                          const std::map<std::string, std::vector<std::string>>& names,
-                         const Progress& progress, const Log& log);
+                         const Progress& progress, const Log& log, int threads = 0);
 
 }  // namespace mimetra

@@ -90,6 +90,7 @@ struct WriteRequest {
   Progress progress = {};
   /// Further files (name, content) that appear together with the output.
   std::vector<std::pair<std::string, std::string>> extra = {};
+  int threads = 0;  ///< 0 for all there are; what is written does not depend on it
 };
 
 /// A way to write one kind of data, chosen by extension; the extension "" stands for a folder.

@@ -17,6 +17,7 @@ std::vector<std::filesystem::path> write(const FieldSequence& fields, const Writ
   options.compression =
       request.parameters.text("compress") == "small" ? VtpCompression::zlib : VtpCompression::lz4;
   options.overwrite = request.overwrite;
+  options.threads = request.threads;
   options.progress = request.progress;
   return write_with_extra(request,
                           [&] { return write_vtp_series(fields, request.target, options); });

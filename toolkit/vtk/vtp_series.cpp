@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <mutex>
 #include <set>
 #include <stdexcept>
 #include <system_error>
@@ -23,6 +24,7 @@
 #include <vtkXMLPolyDataWriter.h>
 
 #include <mimetra/io/pending_output.h>
+#include <mimetra/mesh/parallel.h>
 #include <mimetra/vtk/silent_vtk.h>
 
 namespace mimetra {
@@ -164,11 +166,8 @@ std::string reason_of(unsigned long code) {
   return "VTK fails (code " + std::to_string(code) + ")";
 }
 
-/// `shown` is the name that the user asked for.
-void write_frame(vtkPolyData& data, const std::filesystem::path& path, VtpCompression compression,
-                 const std::filesystem::path& shown) {
-  vtkNew<vtkXMLPolyDataWriter> writer;
-  writer->SetFileName(path.c_str());
+vtkSmartPointer<vtkXMLPolyDataWriter> writer_of(vtkPolyData& data, VtpCompression compression) {
+  const auto writer = vtkSmartPointer<vtkXMLPolyDataWriter>::New();
   writer->SetInputData(&data);
   writer->SetDataModeToAppended();
   writer->EncodeAppendedDataOff();
@@ -178,10 +177,55 @@ void write_frame(vtkPolyData& data, const std::filesystem::path& path, VtpCompre
   } else {
     writer->SetCompressorTypeToZLib();
   }
+  return writer;
+}
+
+/// `shown` is the name that the user asked for.
+void write_frame(vtkPolyData& data, const std::filesystem::path& path, VtpCompression compression,
+                 const std::filesystem::path& shown) {
+  const auto writer = writer_of(data, compression);
+  writer->SetFileName(path.c_str());
   if (!writer->Write() || writer->GetErrorCode() != vtkErrorCode::NoError) {
     throw OutputError(shown.string(), "cannot be written: " + reason_of(writer->GetErrorCode()));
   }
 }
+
+/// Meshes for several threads: VTK's arrays remember what was computed for a file, so that each
+/// thread needs its own.
+class FrameDataPool {
+ public:
+  FrameDataPool(const FieldSequence& fields, VtpCompression compression)
+      : fields_(fields), compression_(compression) {}
+
+  std::unique_ptr<FrameData> take() {
+    {
+      const std::lock_guard lock(mutex_);
+      if (!free_.empty()) {
+        std::unique_ptr<FrameData> data = std::move(free_.back());
+        free_.pop_back();
+        return data;
+      }
+    }
+    auto data = std::make_unique<FrameData>(fields_);
+    // What the arrays remember shows in the next file: every frame but the first is written by a
+    // mesh that wrote the first one, whichever thread writes it.
+    const auto first = writer_of(data->at(0), compression_);
+    first->WriteToOutputStringOn();
+    first->Write();
+    return data;
+  }
+
+  void give_back(std::unique_ptr<FrameData> data) {
+    const std::lock_guard lock(mutex_);
+    free_.push_back(std::move(data));
+  }
+
+ private:
+  const FieldSequence& fields_;
+  VtpCompression compression_;
+  std::mutex mutex_;
+  std::vector<std::unique_ptr<FrameData>> free_;
+};
 
 std::string decimal(double value) {
   char text[32];
@@ -292,13 +336,22 @@ std::vector<std::filesystem::path> write_all(const FieldSequence& fields,
   write_file(pvd_file.path(), pvd_text(entries), true);
 
   std::vector<std::filesystem::path> written = {target, series};
-  FrameData data(fields);
-  for (int f = 0; f < fields.sequence.frames(); ++f) {
+  for (const FrameEntry& entry : entries) written.push_back(beside / entry.file);
+  const auto write = [&](FrameData& data, int f) {
     const std::filesystem::path frame = entries[static_cast<std::size_t>(f)].file;
     write_frame(data.at(f), folder.path() / frame.filename(), options.compression, target);
-    written.push_back(beside / frame);
-    report_progress(options.progress, (f + 1.0) / fields.sequence.frames());
-  }
+  };
+  FrameDataPool pool(fields, options.compression);
+  auto first = std::make_unique<FrameData>(fields);
+  write(*first, 0);
+  pool.give_back(std::move(first));
+  const auto write_further = [&](int f) {
+    std::unique_ptr<FrameData> data = pool.take();
+    write(*data, f + 1);
+    pool.give_back(std::move(data));
+  };
+  parallel_for(fields.sequence.frames() - 1, options.threads, write_further, options.progress);
+  report_progress(options.progress, 1);
   folder.commit();
   series_file.commit();
   pvd_file.commit();

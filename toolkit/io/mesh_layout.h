@@ -1,0 +1,30 @@
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+
+/// Where positions stand in the files of one mesh. Internal to mesh_file.h.
+namespace mimetra {
+
+/// What the files of one mesh have in common, learnt from the first of them.
+class MeshLayout {
+ public:
+  virtual ~MeshLayout() = default;
+
+  /// Reads x y z of each vertex of a further file into `coordinates`. Bytes around the positions
+  /// are compared with the first file's. False, with anything in `coordinates`, where they differ
+  /// in what faces depend on, where a position is malformed or not finite, or where the file is
+  /// written in a way that only the format's whole reader knows.
+  virtual bool read(std::string_view bytes, std::span<double> coordinates) const = 0;
+};
+
+/// From the bytes of a first file that the format's reader accepts. Null where the file is written
+/// in a way that only that reader knows.
+std::unique_ptr<const MeshLayout> obj_layout(std::string first);
+std::unique_ptr<const MeshLayout> ply_layout(const std::string& first);
+/// `vertices`: how many the reader found.
+std::unique_ptr<const MeshLayout> off_layout(std::string first, std::size_t vertices);
+
+}  // namespace mimetra

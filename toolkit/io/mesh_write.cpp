@@ -1,0 +1,117 @@
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <charconv>
+#include <stdexcept>
+
+#include <mimetra/io/binary_file.h>
+#include <mimetra/io/mesh_file.h>
+#include <mimetra/io/mesh_formats.h>
+#include <mimetra/mesh/errors.h>
+
+namespace mimetra {
+namespace fs = std::filesystem;
+namespace {
+
+MeshFrame frame_of(const std::string& extension, const Connectivity& connectivity,
+                   bool double_precision) {
+  if (extension == ".obj") return obj_frame(connectivity, double_precision);
+  if (extension == ".ply") return ply_frame(connectivity, double_precision);
+  if (extension == ".off") return off_frame(connectivity, double_precision);
+  return stl_frame(connectivity);
+}
+
+/// The shortest digits that read back equal, to where `text` has room for them.
+template <typename Number>
+char* put_shortest(char* text, Number value) {
+  return std::to_chars(text, text + kMostDigits, value).ptr;
+}
+
+}  // namespace
+
+MeshFileWriter::MeshFileWriter(const Connectivity& connectivity, const std::string& extension,
+                               bool double_precision)
+    : vertices_(connectivity.vertices) {
+  const std::string format = lower_case(extension);
+  if (!is_mesh_extension(format)) {
+    throw std::invalid_argument(unknown_mesh_extension(format));
+  }
+  frame_ = std::make_unique<const MeshFrame>(frame_of(format, connectivity, double_precision));
+}
+
+MeshFileWriter::~MeshFileWriter() = default;
+
+void MeshFileWriter::write(const fs::path& path, const PositionsView& positions) const {
+  if (positions.rows() != vertices_) {
+    throw std::invalid_argument(std::to_string(positions.rows()) + " positions, expected " +
+                                std::to_string(vertices_) + " as the faces have");
+  }
+  const std::string between = frame_->positions(positions);
+  OutputFile file(path);
+  file.write({frame_->before, between, frame_->after});
+  file.close();
+}
+
+void write_mesh(const fs::path& path, const PositionsView& positions,
+                const Connectivity& connectivity, const MeshWriteOptions& options) {
+  const std::string extension =
+      lower_case(options.extension.empty() ? path.extension().string() : options.extension);
+  if (!is_mesh_extension(extension)) {
+    throw OutputError(path.string(), unknown_mesh_extension(extension));
+  }
+  MeshFileWriter(connectivity, extension, options.double_precision).write(path, positions);
+}
+
+void write_mesh(const fs::path& path, const TriMesh& mesh, const MeshWriteOptions& options) {
+  write_mesh(path, PositionsView(mesh.positions.data(), mesh.positions.rows(), 3),
+             mesh.connectivity, options);
+}
+
+bool is_mesh_extension(const std::string& extension) {
+  const std::string known = lower_case(extension);
+  return known == ".obj" || known == ".ply" || known == ".off" || known == ".stl";
+}
+
+std::string lower_case(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return text;
+}
+
+std::string unknown_mesh_extension(const std::string& extension) {
+  return (extension.empty() ? "has no extension" : "'" + extension + "' is no mesh format") +
+         std::string("; expected .obj, .ply, .off or .stl");
+}
+
+char* put_number(char* text, double value, bool double_precision) {
+  return double_precision ? put_shortest(text, value)
+                          : put_shortest(text, static_cast<float>(value));
+}
+
+void append_number(std::string& text, double value, bool double_precision) {
+  std::array<char, kMostDigits> digits;
+  text.append(digits.data(), put_number(digits.data(), value, double_precision));
+}
+
+void append_integer(std::string& text, long long value) {
+  std::array<char, kMostDigits> digits;
+  text.append(digits.data(), put_shortest(digits.data(), value));
+}
+
+std::string position_lines(std::string_view before, const PositionsView& positions,
+                           bool double_precision) {
+  const std::size_t longest = before.size() + 3 * (kMostDigits + 1);
+  std::string text(longest * static_cast<std::size_t>(positions.rows()), ' ');
+  char* at = text.data();
+  for (Eigen::Index vertex = 0; vertex < positions.rows(); ++vertex) {
+    at = std::copy(before.begin(), before.end(), at);
+    for (int axis = 0; axis < 3; ++axis) {
+      at = put_number(at, positions(vertex, axis), double_precision);
+      *at++ = axis < 2 ? ' ' : '\n';
+    }
+  }
+  text.resize(static_cast<std::size_t>(at - text.data()));
+  return text;
+}
+
+}  // namespace mimetra

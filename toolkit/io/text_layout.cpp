@@ -1,0 +1,197 @@
+#include <charconv>
+#include <cmath>
+#include <cstring>
+#include <utility>
+#include <vector>
+
+#include <mimetra/io/mesh_layout.h>
+#include <mimetra/io/text_cursor.h>
+
+namespace mimetra {
+namespace {
+
+bool is_letter(char c) {
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
+}
+
+const char* skipped_blanks(const char* at, const char* end) {
+  while (at != end && is_blank(*at)) ++at;
+  return at;
+}
+
+/// Behind the end of the line.
+const char* next_line(const char* at, const char* end) {
+  const void* found =
+      at == end ? nullptr : std::memchr(at, '\n', static_cast<std::size_t>(end - at));
+  return found ? static_cast<const char*>(found) + 1 : end;
+}
+
+/// True where '\\' may join a line with the next one, which is left to the whole reader.
+bool may_continue(std::string_view text) {
+  for (auto at = text.find('\\'); at != text.npos; at = text.find('\\', at + 1)) {
+    if (at + 1 == text.size() || ends_word(text[at + 1])) return true;
+  }
+  return false;
+}
+
+bool may_continue(const char* at, const char* end) {
+  return may_continue({at, static_cast<std::size_t>(end - at)});
+}
+
+/// Reads "x y z" and passes over what else is on the line, such as colours. Returns where the next
+/// line starts; null for anything unusual.
+const char* read_position(const char* at, const char* end, double* position) {
+  for (int axis = 0; axis < 3; ++axis) {
+    at = skipped_blanks(at, end);
+    const auto [last, error] = std::from_chars(at, end, position[axis]);
+    if (error != std::errc() || !std::isfinite(position[axis])) return nullptr;
+    if (last != end && !ends_word(*last)) return nullptr;
+    at = last;
+  }
+  if (at != end && *at == '\n') return at + 1;
+  const char* next = next_line(at, end);
+  return may_continue(at, next) ? nullptr : next;
+}
+
+/// What a line of an OBJ file means for its positions and faces.
+enum class Line { vertex, counted, passed_over, unknown };
+
+Line kind_of(const char* at, const char* end) {
+  at = skipped_blanks(at, end);
+  if (at == end || *at == '\n' || *at == '#') return Line::passed_over;
+  const char* last = at;
+  while (last != end && !ends_word(*last)) ++last;
+  const std::string_view keyword(at, static_cast<std::size_t>(last - at));
+  if (keyword == "v") return Line::vertex;
+  if (keyword == "f" || keyword == "vt") return Line::counted;
+  // Groups, materials and normals may change from frame to frame.
+  return is_letter(*at) ? Line::passed_over : Line::unknown;
+}
+
+/// Lines of f and vt, in runs; between them stand vertices, and what faces do not depend on.
+class ObjLayout : public MeshLayout {
+ public:
+  explicit ObjLayout(std::string first) : first_(std::move(first)) {
+    const std::string_view text = without_byte_order_mark(first_);
+    const char *at = text.data(), *end = at + text.size();
+    std::size_t vertices = 0;
+    bool in_run = false;
+    while (at != end) {
+      const Line kind = kind_of(at, end);
+      const char* next = next_line(at, end);
+      if (kind == Line::vertex) ++vertices;
+      if (kind == Line::counted) {
+        if (!in_run) runs_.push_back({vertices, {at, 0}});
+        std::string_view& run = runs_.back().text;
+        run = {run.data(), static_cast<std::size_t>(next - run.data())};
+      }
+      in_run = kind == Line::counted;
+      at = next;
+    }
+  }
+
+  bool read(std::string_view bytes, std::span<double> coordinates) const override {
+    const std::string_view text = without_byte_order_mark(bytes);
+    const char *at = text.data(), *end = at + text.size();
+    const std::size_t vertices = coordinates.size() / 3;
+    std::size_t vertex = 0;
+    auto run = runs_.begin();
+    while (at && at != end) {
+      if (*at == 'v' && at + 1 != end && is_blank(at[1]) && vertex < vertices) {
+        at = read_position(at + 1, end, &coordinates[3 * vertex++]);
+        continue;
+      }
+      switch (kind_of(at, end)) {
+        case Line::counted:
+          if (run == runs_.end() || run->vertices_before != vertex) return false;
+          at = behind(run++->text, at, end);
+          break;
+        case Line::passed_over:
+          at = behind_passed_over(at, end);
+          break;
+        default:
+          return false;
+      }
+    }
+    return at && vertex == vertices && run == runs_.end();
+  }
+
+ private:
+  struct Run {
+    std::size_t vertices_before;  ///< what negative indices count from
+    std::string_view text;
+  };
+
+  static const char* behind(std::string_view run, const char* at, const char* end) {
+    const auto left = static_cast<std::size_t>(end - at);
+    if (left < run.size() || std::memcmp(at, run.data(), run.size()) != 0) return nullptr;
+    // A run without the end of its last line could go on.
+    return run.back() == '\n' || left == run.size() ? at + run.size() : nullptr;
+  }
+
+  static const char* behind_passed_over(const char* at, const char* end) {
+    const char* next = next_line(at, end);
+    return may_continue(at, next) ? nullptr : next;
+  }
+
+  const std::string first_;
+  std::vector<Run> runs_;
+};
+
+/// What stands before and after the lines of the vertices.
+class OffLayout : public MeshLayout {
+ public:
+  /// `start`: where the lines of the vertices start.
+  OffLayout(std::string first, std::size_t start) : first_(std::move(first)), start_(start) {}
+
+  /// Finds where the vertices end. False where some are not on lines of their own.
+  bool learn(std::span<double> coordinates) {
+    const char* end = first_.data() + first_.size();
+    const char* behind = read_lines(first_.data() + start_, end, coordinates);
+    if (behind) after_ = {behind, static_cast<std::size_t>(end - behind)};
+    return behind != nullptr;
+  }
+
+  bool read(std::string_view bytes, std::span<double> coordinates) const override {
+    if (bytes.size() < start_ || std::memcmp(bytes.data(), first_.data(), start_) != 0) {
+      return false;
+    }
+    const char* end = bytes.data() + bytes.size();
+    const char* behind = read_lines(bytes.data() + start_, end, coordinates);
+    return behind && std::string_view(behind, static_cast<std::size_t>(end - behind)) == after_;
+  }
+
+ private:
+  static const char* read_lines(const char* at, const char* end, std::span<double> coordinates) {
+    for (std::size_t i = 0; at && i < coordinates.size(); i += 3) {
+      at = read_position(at, end, &coordinates[i]);
+    }
+    return at;
+  }
+
+  const std::string first_;
+  std::size_t start_;
+  std::string_view after_;
+};
+
+}  // namespace
+
+std::unique_ptr<const MeshLayout> obj_layout(std::string first) {
+  if (may_continue(first)) return nullptr;
+  return std::make_unique<ObjLayout>(std::move(first));
+}
+
+std::unique_ptr<const MeshLayout> off_layout(std::string first, std::size_t vertices) {
+  // The keyword and the three counts, which comments may interrupt, and the end of their line.
+  const std::string unnamed;
+  TextCursor cursor(unnamed, without_byte_order_mark(first), {.comments = true});
+  for (int word = 0; word < 3; ++word) cursor.word_anywhere();
+  cursor.next_line();
+  const std::size_t start = first.size() - cursor.left();
+  auto layout = std::make_unique<OffLayout>(std::move(first), start);
+  std::vector<double> coordinates(3 * vertices);
+  if (!layout->learn(coordinates)) return nullptr;
+  return layout;
+}
+
+}  // namespace mimetra
