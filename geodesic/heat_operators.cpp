@@ -3,6 +3,7 @@
 // CGAL's own point map for OpenMesh rounds what is written through it to float.
 #define CGAL_USE_OM_POINTS
 
+#include <algorithm>
 #include <array>
 #include <random>
 #include <stdexcept>
@@ -112,7 +113,10 @@ struct CapturingAlgebra {
   class Matrix {
    public:
     Matrix() = default;
-    Matrix(Eigen::Index rows, Eigen::Index columns) : matrix_(rows, columns) {}
+    Matrix(Eigen::Index rows, Eigen::Index columns) : matrix_(rows, columns) {
+      // CGAL adds twelve entries for each triangle, of which a surface has two for each vertex.
+      entries_.reserve(static_cast<std::size_t>(24 * rows));
+    }
 
     void add_coef(Eigen::Index row, Eigen::Index column, double value) {
       entries_.emplace_back(row, column, value);
@@ -182,9 +186,20 @@ OpenMesh::Vec3d corner_position(const IntrinsicMesh& mesh, Mesh::HalfedgeHandle 
   return get(mesh.vertex_point_map(), target(halfedge, mesh));
 }
 
+/// `matrix` on the rows of its unknowns. Unknowns with the same row are one, which joins the sheets
+/// of a surface that is no manifold.
+Eigen::SparseMatrix<double> joined(const Eigen::SparseMatrix<double>& matrix,
+                                   const std::vector<VertexIndex>& row_of, Eigen::Index rows) {
+  const bool joins_nothing = rows == matrix.rows() && std::ranges::is_sorted(row_of);
+  if (joins_nothing) return matrix;
+  Eigen::SparseMatrix<double> join(rows, matrix.rows());
+  join.reserve(Eigen::VectorXi::Ones(join.cols()));
+  for (Eigen::Index v = 0; v < join.cols(); ++v) join.insert(row_of[v], v) = 1;
+  return join * matrix * join.transpose();
+}
+
 /// Matrices and triangles of `triangulation`, a model of FaceListGraph, on `row_of` (N) its
-/// vertices. Vertices with the same row are one unknown, which joins the sheets of a surface that
-/// is no manifold.
+/// vertices.
 template <typename Triangulation>
 HeatOperators operators_on(const Triangulation& triangulation,
                            const std::vector<VertexIndex>& row_of, Eigen::Index rows) {
@@ -194,12 +209,9 @@ HeatOperators operators_on(const Triangulation& triangulation,
       Triangulation, CGAL::Heat_method_3::Direct, PointMap, CapturingAlgebra, OpenMeshGeometry>
       heat_method(triangulation, get(CGAL::vertex_point, triangulation));
 
-  Eigen::SparseMatrix<double> join(rows, static_cast<Eigen::Index>(row_of.size()));
-  join.reserve(Eigen::VectorXi::Ones(join.cols()));
-  for (Eigen::Index v = 0; v < join.cols(); ++v) join.insert(row_of[v], v) = 1;
   HeatOperators operators;
-  operators.heat = join * captured.matrices().at(0) * join.transpose();
-  operators.laplacian = join * captured.matrices().at(1) * join.transpose();
+  operators.heat = joined(captured.matrices().at(0), row_of, rows);
+  operators.laplacian = joined(captured.matrices().at(1), row_of, rows);
 
   const Mesh& mesh = halfedge_mesh(triangulation);
   operators.triangles.resize(static_cast<Eigen::Index>(mesh.n_faces()), 3);

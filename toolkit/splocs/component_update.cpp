@@ -38,23 +38,69 @@ auto lengths(const Row& row, Eigen::Index n) {
       .sqrt();
 }
 
-/// Z = prox(V), each vertex's vector shortened by its threshold (K x n), and U = V - Z.
-template <typename Block>
-void shrink(const Block& V, const Block& thresholds, Block& Z, Block& U) {
-  using Scalar = typename Block::Scalar;
-  // Longer than this, or nothing of it is kept; it keeps 0 / 0 away.
-  constexpr Scalar kShortest = std::numeric_limits<Scalar>::min();
-  const Eigen::Index n = thresholds.cols();
-  Eigen::Array<Scalar, 1, Eigen::Dynamic> kept(n);
-  for (Eigen::Index k = 0; k < V.rows(); ++k) {
-    const auto v = V.row(k).array();
-    kept = (1 - thresholds.row(k).array() / lengths(v, n).max(kShortest)).max(Scalar(0));
-    for (const Eigen::Index axis : {Eigen::Index(0), n, 2 * n}) {
-      Z.row(k).segment(axis, n).array() = kept * v.segment(axis, n);
+/// All ADMM steps on one block of components and their dual variable, in its cache.
+template <typename Scalar>
+class BlockAdmm {
+ public:
+  using Block = typename VertexBlocks<Scalar>::Block;
+
+  /// `X` R x 3n, `thresholds` K x n.
+  BlockAdmm(const Block& X, const StepMatrices<Scalar>& step, const Block& thresholds)
+      : step_(step), thresholds_(thresholds), of_data_(step.of_data * X) {}
+
+  /// Moves components `C` and dual variable `U` (K x 3n) by so many steps.
+  void run(int steps, Block& C, Block& U) {
+    difference_ = C - U;
+    V_ = of_data_ + U;
+    for (int s = 0; s < steps; ++s) {
+      V_.noalias() += step_.of_splitting * difference_;
+      for (Eigen::Index k = 0; k < V_.rows(); ++k) {
+        if (s + 1 < steps) {
+          prepare_next(k);
+        } else {
+          finish(k, C, U);
+        }
+      }
     }
   }
-  U = V - Z;
-}
+
+ private:
+  using Row = Eigen::Array<Scalar, 1, Eigen::Dynamic>;
+
+  /// Share of each vertex's vector that its threshold leaves.
+  void shrink(Eigen::Index k) {
+    // Longer than this, or nothing of it is kept; it keeps 0 / 0 away.
+    constexpr Scalar kShortest = std::numeric_limits<Scalar>::min();
+    const auto v = V_.row(k).array();
+    kept_ = (1 - thresholds_.row(k).array() / lengths(v, vertices()).max(kShortest)).max(Scalar(0));
+  }
+
+  /// Of Z = kept V and U = V - Z only what the next step needs: Z - U, and the data and U.
+  void prepare_next(Eigen::Index k) {
+    shrink(k);
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto part = [&](Block& block) {
+        return block.row(k).segment(axis * vertices(), vertices()).array();
+      };
+      part(difference_) = (2 * kept_ - 1) * part(V_);
+      part(V_) = part(of_data_) + (1 - kept_) * part(V_);
+    }
+  }
+
+  /// The components are Z in the end: only Z has exact zeros.
+  void finish(Eigen::Index k, Block& C, Block& U) {
+    shrink(k);
+    C.row(k).array() = kept_.replicate(1, 3) * V_.row(k).array();
+    U.row(k) = V_.row(k) - C.row(k);
+  }
+
+  Eigen::Index vertices() const { return thresholds_.cols(); }
+
+  const StepMatrices<Scalar>& step_;
+  const Block& thresholds_;
+  Block of_data_, difference_, V_;
+  Row kept_;
+};
 
 /// What a block adds to a ComponentUpdate's sums.
 template <typename Scalar>
@@ -85,21 +131,6 @@ void sum_over_blocks(ComponentUpdate<Scalar>& update, const VertexBlocks<Scalar>
   }
 }
 
-/// All ADMM steps on one block of components `C` and their dual variable `U` (K x 3n).
-template <typename Scalar, typename Block>
-void run_admm(const Block& X, const StepMatrices<Scalar>& step, const Block& thresholds, int steps,
-              Block& C, Block& U) {
-  const Block of_data = step.of_data * X;
-  Block difference, V;
-  for (int s = 0; s < steps; ++s) {
-    difference = C - U;
-    V = of_data + U;
-    V.noalias() += step.of_splitting * difference;
-    // The components are Z in the end: only Z has exact zeros.
-    shrink(V, thresholds, C, U);
-  }
-}
-
 }  // namespace
 
 template <typename Scalar>
@@ -126,9 +157,9 @@ ComponentUpdate<Scalar> updated_components(const VertexBlocks<Scalar>& X, const 
     const Eigen::Index n = X.size(b);
     const Block Lambda =
         (options.sparsity * support.middleCols(X.first(b), n)).template cast<Scalar>();
+    const Block thresholds = Lambda / Scalar(options.rho);
     Block& C = update.C[b];
-    run_admm<Scalar, Block>(X[b], step, Lambda / Scalar(options.rho), options.steps, C,
-                            update.U[b]);
+    BlockAdmm<Scalar>(X[b], step, thresholds).run(options.steps, C, update.U[b]);
     Sums<Scalar> sums = products(X[b], C);
     for (Eigen::Index k = 0; k < C.rows(); ++k) {
       sums.penalty += (Lambda.row(k).array() * lengths(C.row(k).array(), n)).sum();
