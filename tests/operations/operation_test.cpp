@@ -46,6 +46,17 @@ TEST(OperationTable, RefusesANameThatIsTaken) {
   EXPECT_THROW(table.add(*table.find("info")), std::invalid_argument);
 }
 
+TEST(OperationTable, RefusesAParameterThatMeansTwoThings) {
+  OperationTable table = toolkit();
+  Writer writer;
+  writer.kind = DataKind::components;
+  writer.extensions = {".x"};
+  writer.parameters = {{"rho", ParameterKind::text, {}, "another rho"}};
+  table.add(writer);
+  EXPECT_THAT([&] { table.parameters_of(*table.find("decompose")); },
+              testing::ThrowsMessage<std::invalid_argument>(HasSubstr("'rho' means two things")));
+}
+
 TEST(OperationTable, EveryOperationHasTwoExamplesThatStartWithItsName) {
   const OperationTable table = toolkit();
   for (const Operation& operation : table.operations()) {

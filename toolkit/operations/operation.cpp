@@ -198,10 +198,14 @@ const Operation* OperationTable::find(const std::string& name) const {
 
 std::vector<Parameter> OperationTable::parameters_of(const Operation& operation) const {
   std::vector<Parameter> parameters = operation.parameters;
-  const auto append = [&parameters](const std::vector<Parameter>& more) {
+  const auto append = [&](const std::vector<Parameter>& more) {
     for (const Parameter& parameter : more) {
-      if (std::ranges::find(parameters, parameter.name, &Parameter::name) == parameters.end()) {
+      const auto same = std::ranges::find(parameters, parameter.name, &Parameter::name);
+      if (same == parameters.end()) {
         parameters.push_back(parameter);
+      } else if (same->kind != parameter.kind) {
+        throw std::invalid_argument("operation '" + operation.name + "': parameter '" +
+                                    parameter.name + "' means two things");
       }
     }
   };

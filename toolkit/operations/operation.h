@@ -132,7 +132,8 @@ class OperationTable {
   const std::vector<Operation>& operations() const { return operations_; }
   const Operation* find(const std::string& name) const;
 
-  /// The operation's own parameters, those of reading its inputs and of writing its outputs.
+  /// The operation's own parameters, those of reading its inputs and of writing its outputs. Throws
+  /// std::invalid_argument where two of them share a name but not a kind.
   std::vector<Parameter> parameters_of(const Operation& operation) const;
   /// The writer of `kind` for a path. Throws UsageError that lists the known extensions.
   const Writer& writer(DataKind kind, const std::filesystem::path& target) const;
