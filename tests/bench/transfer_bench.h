@@ -7,7 +7,7 @@
 
 namespace mimetra::bench {
 
-constexpr const char* kBlendshapeSetup = "eq. 10 Gram matrix and folding";
+constexpr const char* kBlendshapeSetup = "eq. 10 set-up: Gram matrix";
 constexpr const char* kBlendshapeWeights = "eq. 10 transfer";
 constexpr const char* kVertexSetup = "vertex space set-up: factor";
 constexpr const char* kVertexFrames = "vertex space transfer";

@@ -108,6 +108,17 @@ TEST_F(Output, IsOnlyPlannedByADryRun) {
   EXPECT_GT(plan.at("memory_bytes").get<double>(), 1e6);
 }
 
+TEST_F(Output, IsFollowedByWhatTheRunHasCost) {
+  const auto result = run("convert head --weights take.csv -o take.npy");
+  ASSERT_EQ(result.code, 0) << result.err;
+  EXPECT_THAT(result.out,
+              testing::ContainsRegex(
+                  "read in [0-9.e-]+ s, computed in [0-9.e-]+ s, written in [0-9.e-]+ s, "
+                  "at most [0-9]+ MB of memory\n$"));
+  // Nothing was written, so that nothing is said of it.
+  EXPECT_THAT(run("info take.npy").out, testing::Not(testing::HasSubstr("of memory")));
+}
+
 TEST_F(Output, LeavesTheManifestOfAnotherOutputAlone) {
   ASSERT_EQ(run("convert head --weights take.csv -o take.npy").code, 0);
   const std::string first = text_of(folder_ / "take.run.json");

@@ -34,11 +34,11 @@ std::string size_of(const Data& data) {
   return "";
 }
 
+}  // namespace
+
 std::string megabytes(double bytes) {
   return std::to_string(std::lround(bytes / 1e6)) + " MB";
 }
-
-}  // namespace
 
 MemoryUse MemoryUse::of_this_process() {
   MemoryUse use;

@@ -15,6 +15,9 @@ struct MemoryUse {
   static MemoryUse of_this_process();
 };
 
+/// As people read it: "238 MB".
+std::string megabytes(double bytes);
+
 /// What a run would do with its inputs once they are read: the outcome of --dry-run.
 Outcome planned(const Operation& operation, const Invocation& invocation);
 

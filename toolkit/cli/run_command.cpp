@@ -143,6 +143,13 @@ void print_result(const Request& request, const Outcome& outcome) {
   if (!std::cout.flush()) throw OutputError("standard output", "cannot be written");
 }
 
+/// What a run that wrote something has cost.
+std::string cost(const RunRecord& record, double write_seconds) {
+  return "read in " + readable(record.read_seconds) + " s, computed in " +
+         readable(record.run_seconds) + " s, written in " + readable(write_seconds) +
+         " s, at most " + megabytes(MemoryUse::of_this_process().peak) + " of memory\n";
+}
+
 }  // namespace
 
 void interrupt() {
@@ -188,7 +195,7 @@ void run_command(const OperationTable& table, const Request& request) {
     return;
   }
   const Stopwatch running;
-  const Outcome outcome = request.operation->run(invocation);
+  Outcome outcome = request.operation->run(invocation);
   record.run_seconds = running.seconds();
   for (const auto& [name, targets] : paths) {
     record.outputs.insert(record.outputs.end(), targets.begin(), targets.end());
@@ -197,8 +204,10 @@ void run_command(const OperationTable& table, const Request& request) {
   record.peak_memory = MemoryUse::of_this_process().peak;
   const std::string manifest_text =
       request.outputs.empty() ? std::string() : manifest(request, record);
+  const Stopwatch writing;
   write_outputs(table, request, paths, outcome, manifest_text, bar);
   bar.clear();
+  if (!paths.empty()) outcome.summary += cost(record, writing.seconds());
   print_result(request, outcome);
 }
 

@@ -151,7 +151,7 @@ std::vector<Parameter> decomposition_parameters(int count) {
       {"precision",
        ParameterKind::choice,
        "double",
-       "of the iterations; single is off by some 1e-4 of a component",
+       "of the iterations; single moves components by about 1e-6 of themselves",
        "",
        {},
        {},
