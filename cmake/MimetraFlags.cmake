@@ -7,16 +7,20 @@ target_compile_options(
   mimetra_flags INTERFACE $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict -Wno-maybe-uninitialized>)
 
 # Products of matrices are two and a half times faster with AVX2 and FMA.
-include(CheckCXXSourceRuns)
-check_cxx_source_runs(
-  "int main() { return __builtin_cpu_supports(\"avx2\") && __builtin_cpu_supports(\"fma\") ? 0 : 1; }"
-  MIMETRA_CPU_HAS_AVX2)
 set(MIMETRA_INSTRUCTIONS "" CACHE STRING
     "What the compiler may use (-march); by default AVX2 and FMA where this machine has them")
 if(MIMETRA_INSTRUCTIONS)
   target_compile_options(mimetra_flags INTERFACE -march=${MIMETRA_INSTRUCTIONS})
-elseif(MIMETRA_CPU_HAS_AVX2)
-  target_compile_options(mimetra_flags INTERFACE -march=x86-64-v3)
+elseif(NOT CMAKE_CROSSCOMPILING)
+  include(CheckCXXSourceRuns)
+  # All that -march=x86-64-v3 stands for.
+  set(features avx2 fma bmi bmi2 popcnt)
+  list(TRANSFORM features REPLACE "(.+)" "__builtin_cpu_supports(\"\\1\")")
+  list(JOIN features " && " features)
+  check_cxx_source_runs("int main() { return ${features} ? 0 : 1; }" MIMETRA_CPU_HAS_AVX2)
+  if(MIMETRA_CPU_HAS_AVX2)
+    target_compile_options(mimetra_flags INTERFACE -march=x86-64-v3)
+  endif()
 endif()
 
 if(MIMETRA_WARNINGS_AS_ERRORS)

@@ -140,10 +140,11 @@ void HeatComponent::add_divergence(const Lanes& heat, const Lane& faintest, Open
   const Lane rise2 = (corner(2) - corner(0)) / warmest.max(kTiny);
   const Lane x = rise1 * flat.gradient1.x() + rise2 * flat.gradient2.x();
   const Lane y = rise1 * flat.gradient1.y() + rise2 * flat.gradient2.y();
+  const Lane length = (x.square() + y.square()).sqrt().max(kTiny);
   const Lane seen = open.waiting * (warmest > faintest).cast<double>();
-  const Lane scale = -flat.area * seen / (x.square() + y.square()).sqrt().max(kTiny);
-  const Lane flow1 = scale * (x * flat.gradient1.x() + y * flat.gradient1.y());
-  const Lane flow2 = scale * (x * flat.gradient2.x() + y * flat.gradient2.y());
+  const Lane share1 = (x * flat.gradient1.x() + y * flat.gradient1.y()) / length;
+  const Lane share2 = (x * flat.gradient2.x() + y * flat.gradient2.y()) / length;
+  const Lane flow1 = -flat.area * seen * share1, flow2 = -flat.area * seen * share2;
   result.row(corners[0]).array() -= flow1 + flow2;
   result.row(corners[1]).array() += flow1;
   result.row(corners[2]).array() += flow2;

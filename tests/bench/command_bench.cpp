@@ -18,14 +18,6 @@ namespace fs = std::filesystem;
 
 constexpr const char* kGroup = "whole commands";
 
-double bytes_below(const fs::path& path) {
-  double bytes = 0;
-  for (const auto& entry : fs::recursive_directory_iterator(path)) {
-    if (entry.is_regular_file()) bytes += static_cast<double>(entry.file_size());
-  }
-  return bytes;
-}
-
 int repetitions(const Settings& settings) {
   return settings.quick ? 1 : kRepetitions;
 }

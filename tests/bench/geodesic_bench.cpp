@@ -8,7 +8,7 @@
 #include <mimetra/mesh/parallel.h>
 
 #include "cgal_geodesics.h"
-#include "sparse_factor.h"
+#include "factor_size.h"
 
 namespace mimetra::bench {
 namespace {
@@ -39,17 +39,13 @@ std::vector<Eigen::MatrixXd> own_distances(const HeatGeodesics& geodesics,
 }
 
 /// Two systems are factored.
-Work setup_work(const SparseFactor& factor) {
+Work setup_work(const FactorSize& factor) {
   return {2 * factor.factor_flops, 2 * factor.bytes()};
 }
 
 /// Two systems are solved for each source; sources may share a pass over the factors.
-Work query_work(const SparseFactor& factor, double vertices, double sources) {
+Work query_work(const FactorSize& factor, double vertices, double sources) {
   return {2 * sources * factor.solve_flops(), 2 * factor.bytes() + sources * vertices * 8};
-}
-
-Work both(const Work& a, const Work& b) {
-  return {a.flops + b.flops, a.bytes + b.bytes};
 }
 
 /// Both are the same method: what is compared must agree.
@@ -73,7 +69,7 @@ std::vector<Row> geodesic_rows(const Subject& subject, int source_count, bool wi
   const Positions& rest = subject.performance.rest();
   const Triangles& triangles = subject.performance.triangles();
   const int vertices = subject.performance.vertices();
-  const SparseFactor factor = sparse_factor(vertices, triangles);
+  const FactorSize factor = factor_size(vertices, triangles);
   const std::vector<int> sources = spread_sources(vertices, source_count);
   const HeatGeodesics geodesics(rest, triangles);
   const Size size{subject.name, 0, vertices},

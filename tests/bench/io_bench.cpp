@@ -10,14 +10,6 @@ namespace fs = std::filesystem;
 
 constexpr const char* kGroup = "files";
 
-double bytes_below(const fs::path& folder) {
-  double bytes = 0;
-  for (const auto& entry : fs::directory_iterator(folder)) {
-    bytes += static_cast<double>(entry.file_size());
-  }
-  return bytes;
-}
-
 SequenceWriteOptions in_format(const std::string& format) {
   SequenceWriteOptions options;
   options.format = format;

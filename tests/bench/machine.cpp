@@ -43,8 +43,9 @@ double product_rate(int threads, int rounds) {
 }
 
 double read_rate(const Machine& machine, int rounds) {
-  constexpr double kFarLarger = 16;
-  const auto size = static_cast<Eigen::Index>(kFarLarger * machine.cache_bytes / sizeof(double));
+  constexpr double kFarLarger = 16, kMost = 1 << 30;
+  const double bytes = std::min(kFarLarger * machine.cache_bytes, kMost);
+  const auto size = static_cast<Eigen::Index>(bytes / sizeof(double));
   const Eigen::VectorXd block = Eigen::VectorXd::Ones(size);
   const Eigen::Index part = size / machine.threads;
   std::vector<double> sums(static_cast<std::size_t>(machine.threads)), rates;
@@ -95,6 +96,10 @@ Limits measured_limits(const Machine& machine, bool quick) {
 
 Limits best_of(const Limits& a, const Limits& b) {
   return {std::max(a.flops, b.flops), std::max(a.bytes, b.bytes)};
+}
+
+Work both(const Work& a, const Work& b) {
+  return {a.flops + b.flops, a.bytes + b.bytes};
 }
 
 double floor_seconds(const Work& work, const Limits& limits) {

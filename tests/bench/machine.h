@@ -31,6 +31,9 @@ struct Work {
   double bytes = 0;  ///< from or to memory
 };
 
+/// One after the other.
+Work both(const Work& a, const Work& b);
+
 /// Least time that the limits allow, seconds.
 double floor_seconds(const Work& work, const Limits& limits);
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <map>
+#include <stdexcept>
 
 #include <benchmark/benchmark.h>
 
@@ -42,7 +43,16 @@ std::string Size::text() const {
   return text;
 }
 
+double bytes_below(const std::filesystem::path& folder) {
+  double bytes = 0;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
+    if (entry.is_regular_file()) bytes += static_cast<double>(entry.file_size());
+  }
+  return bytes;
+}
+
 double Row::median() const {
+  if (seconds.empty()) throw std::runtime_error(name_of(*this) + ": was not measured");
   std::vector<double> sorted = seconds;
   std::ranges::sort(sorted);
   const std::size_t half = sorted.size() / 2;

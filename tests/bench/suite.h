@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <functional>
 #include <string>
 #include <vector>
@@ -48,6 +49,9 @@ struct Case {
 
 /// Times kernels with Google Benchmark, in the order given.
 std::vector<Row> measured(const std::vector<Case>& cases, bool quick);
+
+/// Size of all files below a folder.
+double bytes_below(const std::filesystem::path& folder);
 
 /// Runs of what is too long for Google Benchmark to repeat on its own.
 constexpr int kRepetitions = 5;

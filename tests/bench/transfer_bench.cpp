@@ -11,7 +11,7 @@
 #include <mimetra/transfer/right_hand_side.h>
 #include <mimetra/transfer/vertex_transfer.h>
 
-#include "sparse_factor.h"
+#include "factor_size.h"
 
 namespace mimetra::bench {
 namespace {
@@ -51,10 +51,6 @@ Work right_hand_side_work(const Counts& n) {
 /// One product with the Gram matrix a frame, which is what checking the solution takes.
 Work box_work(const Counts& n) {
   return {2 * n.frames * n.expressions * n.expressions, 8 * n.frames * 2 * n.expressions};
-}
-
-Work both(const Work& a, const Work& b) {
-  return {a.flops + b.flops, a.bytes + b.bytes};
 }
 
 /// The two halves of a frame of eq. 10: the right-hand side, and the solve in the box.
@@ -125,7 +121,7 @@ std::vector<Row> vertex_rows(const Subject& subject, const Settings& settings) {
   const MeshSequence& performance = subject.performance;
   const Triangles& faces = performance.triangles();
   const std::vector<int> triangles = all_triangles(faces);
-  const SparseFactor factor = sparse_factor(performance.vertices(), faces);
+  const FactorSize factor = factor_size(performance.vertices(), faces);
   const double frames = performance.frames(), coordinates = 3.0 * performance.vertices();
   const double sweeps = std::ceil(3 * frames / VertexPull::kWidth);
   const Work setup{factor.factor_flops, factor.bytes()};

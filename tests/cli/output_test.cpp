@@ -111,12 +111,12 @@ TEST_F(Output, IsOnlyPlannedByADryRun) {
 TEST_F(Output, IsFollowedByWhatTheRunHasCost) {
   const auto result = run("convert head --weights take.csv -o take.npy");
   ASSERT_EQ(result.code, 0) << result.err;
-  EXPECT_THAT(result.out,
+  EXPECT_THAT(result.err,
               testing::ContainsRegex(
                   "read in [0-9.e-]+ s, computed in [0-9.e-]+ s, written in [0-9.e-]+ s, "
                   "at most [0-9]+ MB of memory\n$"));
   // Nothing was written, so that nothing is said of it.
-  EXPECT_THAT(run("info take.npy").out, testing::Not(testing::HasSubstr("of memory")));
+  EXPECT_THAT(run("info take.npy").err, testing::Not(testing::HasSubstr("of memory")));
 }
 
 TEST_F(Output, LeavesTheManifestOfAnotherOutputAlone) {

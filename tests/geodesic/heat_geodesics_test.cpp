@@ -168,6 +168,16 @@ TEST(HeatGeodesics, FromEachOfManyAreThoseOfOneQueryEach) {
   }
 }
 
+TEST(HeatGeodesics, AreZeroWhereEveryVertexIsASource) {
+  // The heat is constant: it has no direction, on triangles of any size.
+  for (const double size : {1e-3, 1.0, 1e3}) {
+    const Shape octahedron = test::octahedron();
+    const HeatGeodesics heat(size * octahedron.positions, octahedron.triangles);
+    const std::array<VertexIndex, 6> all = {0, 1, 2, 3, 4, 5};
+    EXPECT_TRUE(heat.distances(all).isZero(0)) << size;
+  }
+}
+
 TEST(HeatGeodesics, ReachTheFarEndOfALongStrip) {
   // Heat falls by about e per edge: after 700 of them it has underflown.
   const int length = 1200;

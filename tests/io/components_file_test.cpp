@@ -35,7 +35,7 @@ Components small_components() {
   components.options.count = 3;
   components.options.sparsity = 1.5;
   components.options.single_precision = true;
-  components.options.compression = 1e-3;
+  components.options.basis_tolerance = 1e-3;
   components.options.sign_rule = SignRule::literal;
   return components;
 }
@@ -57,7 +57,7 @@ TEST(ComponentsFile, ComesBackEqualAfterWriting) {
   EXPECT_EQ(found.options.sparsity, 1.5);
   EXPECT_EQ(found.options.sign_rule, SignRule::literal);
   EXPECT_TRUE(found.options.single_precision);
-  EXPECT_EQ(found.options.compression, 1e-3);
+  EXPECT_EQ(found.options.basis_tolerance, 1e-3);
 }
 
 TEST(ComponentsFile, IsTheSameBytesEveryTime) {

@@ -68,10 +68,11 @@ TEST(DecompositionOptions, RefuseANegativeTolerance) {
 }
 
 TEST(DecompositionOptions, RefuseACompressionThatRoundingHides) {
-  EXPECT_THAT(with([](auto& o) { o.compression = 1e-9; }),
+  EXPECT_THAT(with([](auto& o) { o.basis_tolerance = 1e-9; }),
               ThrowsMessage<std::invalid_argument>(HasSubstr("from 1e-6")));
-  EXPECT_THAT(with([](auto& o) { o.compression = 1; }),
-              ThrowsMessage<std::invalid_argument>(HasSubstr("compression is 1")));
+  EXPECT_THAT(with([](auto& o) { o.basis_tolerance = 1; }),
+              ThrowsMessage<std::invalid_argument>(
+                  HasSubstr("basis_tolerance must be 0, or from 1e-6 to below 1")));
 }
 
 TEST(DecompositionOptions, RefuseDistancesOfAnotherMesh) {

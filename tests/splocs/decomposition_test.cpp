@@ -284,7 +284,7 @@ TEST(Decomposition, InABasisOfTimeIsTheSameForMotionOfLowRank) {
   const MeshSequence sequence = long_performance();
   DecompositionOptions options = grid_options(sequence, 3);
   const Components on_frames = decompose(sequence, options);
-  options.compression = 1e-6;
+  options.basis_tolerance = 1e-6;
   // The basis loses nothing but rounding, which the tolerance of 1e-6 lets pass.
   EXPECT_LT(largest_difference(decompose(sequence, options), on_frames), 1e-5);
 }
@@ -298,7 +298,7 @@ TEST(Decomposition, InSinglePrecisionIsTheSameToItsRounding) {
   // 6e-8 in each of 100 ADMM steps and some ten thousand sums.
   EXPECT_LT(largest_difference(in_single, in_double), 1e-4);
   EXPECT_NE(in_single.displacements, in_double.displacements);
-  options.compression = 1e-6;
+  options.basis_tolerance = 1e-6;
   EXPECT_LT(largest_difference(decompose(sequence, options), in_double), 1e-4);
 }
 

@@ -54,6 +54,17 @@ TEST(TimeBasis, HasNoMorePosesThanNeeded) {
   }
 }
 
+TEST(TimeBasis, IsFoundUpToHalfAsManyPosesAsFrames) {
+  for (const int rank : {33, kFrames / 2}) {
+    const Frames X = Frames::Random(kFrames, rank) * Frames::Random(rank, 600);
+    const auto basis = time_basis(VertexBlocks<double>(X), X.squaredNorm(), 1e-6, 1);
+    ASSERT_TRUE(basis) << rank;
+    EXPECT_LE(lost_share(X, *basis), 1e-6);
+  }
+  const Frames short_one = Frames::Random(10, 3) * Frames::Random(3, 600);
+  EXPECT_TRUE(time_basis(VertexBlocks<double>(short_one), short_one.squaredNorm(), 1e-6, 1));
+}
+
 TEST(TimeBasis, IsNoneWhereEveryFrameIsNew) {
   const Frames X = Frames::Random(kFrames, 600);
   EXPECT_FALSE(time_basis(VertexBlocks<double>(X), X.squaredNorm(), 0.01, 1));

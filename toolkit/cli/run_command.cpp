@@ -195,7 +195,7 @@ void run_command(const OperationTable& table, const Request& request) {
     return;
   }
   const Stopwatch running;
-  Outcome outcome = request.operation->run(invocation);
+  const Outcome outcome = request.operation->run(invocation);
   record.run_seconds = running.seconds();
   for (const auto& [name, targets] : paths) {
     record.outputs.insert(record.outputs.end(), targets.begin(), targets.end());
@@ -207,7 +207,7 @@ void run_command(const OperationTable& table, const Request& request) {
   const Stopwatch writing;
   write_outputs(table, request, paths, outcome, manifest_text, bar);
   bar.clear();
-  if (!paths.empty()) outcome.summary += cost(record, writing.seconds());
+  if (!paths.empty() && !request.quiet) std::cerr << cost(record, writing.seconds());
   print_result(request, outcome);
 }
 

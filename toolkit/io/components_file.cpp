@@ -223,7 +223,7 @@ void write_options(Writer& writer, const Components& components) {
   writer.attribute("tolerance", options.tolerance);
   writer.attribute("nonnegative", options.nonnegative);
   writer.attribute("single_precision", options.single_precision);
-  writer.attribute("compression", options.compression);
+  writer.attribute("basis_tolerance", options.basis_tolerance);
   writer.attribute("literal_sign_rule", options.sign_rule == SignRule::literal);
 }
 
@@ -240,7 +240,7 @@ void read_options(const Reader& reader, Components& components) {
   options.tolerance = reader.attribute("tolerance", options.tolerance);
   options.nonnegative = reader.attribute("nonnegative", options.nonnegative) != 0;
   options.single_precision = reader.attribute("single_precision", options.single_precision) != 0;
-  options.compression = reader.attribute("compression", options.compression);
+  options.basis_tolerance = reader.attribute("basis_tolerance", options.basis_tolerance);
   options.sign_rule =
       reader.attribute("literal_sign_rule", 0) != 0 ? SignRule::literal : SignRule::amplitude;
 }

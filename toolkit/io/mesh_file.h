@@ -26,8 +26,8 @@ Positions read_positions(const std::filesystem::path& path, const Connectivity& 
 
 /// Reads the files of one mesh: the first one whole, of a further one only what is new in it.
 ///
-/// Of a further file the positions are parsed and what stands around them is compared with the
-/// first file, byte by byte; where that differs, the file is read as by read_positions(). Positions
+/// Of a further file the positions are parsed and what faces depend on is compared with the first
+/// file, byte by byte; where that differs, the file is read as by read_positions(). Positions
 /// and errors are the same either way. Queries may run from several threads.
 class MeshFileReader {
  public:

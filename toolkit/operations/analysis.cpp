@@ -157,9 +157,8 @@ std::vector<Parameter> decomposition_parameters(int count) {
        {},
        {"double", "single"}},
       {"basis-tolerance", ParameterKind::number, 0.0,
-       "iterate on as few poses over time as leave out at most this share of the motion; 0 "
-       "iterates "
-       "on all frames",
+       "iterate on as few poses over time as leave out this share of the motion, 1e-6 or more; 0 "
+       "on all",
        "", 0, 0.5},
       {"compat",
        ParameterKind::choice,
@@ -274,7 +273,7 @@ Analysis analyse(const Invocation& invocation, const SequenceRead& read,
   options.nonnegative = !parameters.flag("signed");
   options.sign_rule = reference ? SignRule::literal : SignRule::amplitude;
   options.single_precision = parameters.text("precision") == "single";
-  options.compression = parameters.number("basis-tolerance");
+  options.basis_tolerance = parameters.number("basis-tolerance");
   options.distances = distances;
   options.threads = invocation.threads;
   options.progress = progress;

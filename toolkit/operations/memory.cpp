@@ -1,5 +1,7 @@
 #include <mimetra/operations/memory.h>
 
+#include <thread>
+
 #include <mimetra/operations/analysis.h>
 
 namespace mimetra {
@@ -11,6 +13,10 @@ constexpr double kNumber = sizeof(double);
 /// The factors of a mesh's sparse systems and its adjacency: measured on faces of 3 to 7 thousand
 /// vertices, where fill-in grows little.
 constexpr double kFactorsPerVertex = 2000;
+
+/// A transfer's constant vectors, and for each thread three rows of sixteen frames a vertex.
+constexpr double kPullPerTriangle = 72;
+constexpr double kLanesPerVertex = 3 * 3 * 16 * kNumber;
 
 /// Components have so many different centres on their way that their distances are kept.
 constexpr double kCentersPerComponent = 4;
@@ -42,9 +48,11 @@ double solution_bytes(const Invocation& invocation, const SequenceRead& read,
   const double vertices = target.vertices(),
                triangles = static_cast<double>(target.triangles().rows());
   const bool by_vertices = invocation.parameters.text("space") == "vertex" || expressions == 0;
-  const double set_up = by_vertices ? kFactorsPerVertex * vertices
-                                    : kNumber * expressions * 3 * (vertices + triangles);
-  return result + set_up;
+  const double set_up =
+      by_vertices ? kFactorsPerVertex * vertices : kNumber * expressions * 3 * vertices;
+  const double threads =
+      invocation.threads > 0 ? invocation.threads : std::thread::hardware_concurrency();
+  return result + set_up + kPullPerTriangle * triangles + threads * kLanesPerVertex * vertices;
 }
 
 }  // namespace mimetra

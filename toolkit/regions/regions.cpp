@@ -240,7 +240,8 @@ Regions find_regions(const Components& components, const RegionOptions& options)
   const DistanceFunction distances =
       options.distances
           ? options.distances
-          : SurfaceDistances(components.rest, components.triangles, Weld::exact(components.rest));
+          : SurfaceDistances(components.rest, components.triangles, Weld::exact(components.rest),
+                             GeodesicMethod::heat, options.threads);
   const std::vector<Site> sites = sites_of(components, distances);
   Regions regions;
   regions.vertices = components.vertices();

@@ -24,6 +24,8 @@ struct RegionOptions {
   std::optional<double> coverage = {};
   /// Distances along the rest pose; by default SurfaceDistances of its exactly welded vertices.
   DistanceFunction distances = {};
+  /// For those default distances; 0 for all there are. The result does not depend on it.
+  int threads = 0;
 };
 
 /// A region of interest: where one component moves the face.

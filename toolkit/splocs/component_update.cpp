@@ -6,7 +6,7 @@
 
 #include <Eigen/Cholesky>
 
-#include <mimetra/mesh/parallel.h>
+#include <mimetra/splocs/block_sums.h>
 
 namespace mimetra {
 namespace {
@@ -102,24 +102,28 @@ class BlockAdmm {
   Row kept_;
 };
 
-/// What a block adds to a ComponentUpdate's sums.
+/// What blocks add to a ComponentUpdate's sums.
 template <typename Scalar>
 struct Sums {
   Matrix<Scalar> P, H;
   double penalty = 0;
+
+  template <typename Block>
+  void add(const Block& X, const Block& C) {
+    if (P.size() == 0) {
+      P.setZero(X.rows(), C.rows());
+      H.setZero(C.rows(), C.rows());
+    }
+    P.noalias() += X * C.transpose();
+    H.noalias() += C * C.transpose();
+  }
 };
 
-template <typename Block>
-Sums<typename Block::Scalar> products(const Block& X, const Block& C) {
-  return {X * C.transpose(), C * C.transpose()};
-}
-
-/// Calls `work` for all blocks and adds up what it returns, in their order.
+/// Calls `work` for all blocks, and adds up what they give to the sums.
 template <typename Scalar>
 void sum_over_blocks(ComponentUpdate<Scalar>& update, const VertexBlocks<Scalar>& X, int threads,
-                     const std::function<Sums<Scalar>(int)>& work) {
-  std::vector<Sums<Scalar>> parts(X.count());
-  parallel_for(X.count(), threads, [&](int b) { parts[b] = work(b); });
+                     const std::function<void(int, Sums<Scalar>&)>& work) {
+  const auto parts = sums_over_runs<Sums<Scalar>>(X.count(), threads, work);
   const Eigen::Index K = update.C.rows();
   update.P = Eigen::MatrixXd::Zero(X.rows(), K);
   update.H = Eigen::MatrixXd::Zero(K, K);
@@ -139,9 +143,9 @@ ComponentUpdate<Scalar> initial_components(const VertexBlocks<Scalar>& X,
   ComponentUpdate<Scalar> initial;
   initial.C = std::move(components);
   initial.U = VertexBlocks<Scalar>(initial.C.rows(), initial.C.vertices());
-  sum_over_blocks<Scalar>(initial, X, threads, [&](int b) {
+  sum_over_blocks<Scalar>(initial, X, threads, [&](int b, Sums<Scalar>& sums) {
     initial.U[b] = initial.U.zero_block(b);
-    return products(X[b], initial.C[b]);
+    sums.add(X[b], initial.C[b]);
   });
   return initial;
 }
@@ -153,18 +157,17 @@ ComponentUpdate<Scalar> updated_components(const VertexBlocks<Scalar>& X, const 
   using Block = typename VertexBlocks<Scalar>::Block;
   const StepMatrices<Scalar> step(W, options.rho);
   ComponentUpdate<Scalar> update = std::move(last);
-  sum_over_blocks<Scalar>(update, X, options.threads, [&](int b) {
+  sum_over_blocks<Scalar>(update, X, options.threads, [&](int b, Sums<Scalar>& sums) {
     const Eigen::Index n = X.size(b);
     const Block Lambda =
         (options.sparsity * support.middleCols(X.first(b), n)).template cast<Scalar>();
     const Block thresholds = Lambda / Scalar(options.rho);
     Block& C = update.C[b];
     BlockAdmm<Scalar>(X[b], step, thresholds).run(options.steps, C, update.U[b]);
-    Sums<Scalar> sums = products(X[b], C);
+    sums.add(X[b], C);
     for (Eigen::Index k = 0; k < C.rows(); ++k) {
       sums.penalty += (Lambda.row(k).array() * lengths(C.row(k).array(), n)).sum();
     }
-    return sums;
   });
   return update;
 }

@@ -40,10 +40,9 @@ void require_valid(const DecompositionOptions& options) {
           "admm_iterations is " + std::to_string(options.admm_iterations) + "; at least 1");
   require(options.tolerance >= 0,
           "tolerance is " + std::to_string(options.tolerance) + "; it must be 0 or more");
-  require(options.compression == 0 ||
-              (options.compression >= kLeastCompression && options.compression < 1),
-          "compression is " + std::to_string(options.compression) +
-              "; it must be 0, or from 1e-6 to below 1");
+  require(options.basis_tolerance == 0 ||
+              (options.basis_tolerance >= kLeastBasisTolerance && options.basis_tolerance < 1),
+          "basis_tolerance must be 0, or from 1e-6 to below 1");
 }
 
 void require_valid(double d_min, double d_max) {
@@ -118,17 +117,19 @@ void alternate(Components& result, double X_norm2, const VertexBlocks<Scalar>& X
 }
 
 /// The motion in the precision and the basis that the options want, from the start on.
-void iterate(Components& result, const Motion& motion, Start start, SupportMaps support,
+void iterate(Components& result, Motion motion, Start start, SupportMaps support,
              const Progress& progress) {
   const DecompositionOptions& options = result.options;
-  const std::optional<TimeBasis> basis =
-      options.compression > 0
-          ? time_basis(motion.X, motion.norm2, options.compression, options.threads)
-          : std::nullopt;
-  const VertexBlocks<double>& X = basis ? basis->B : motion.X;
+  std::optional<TimeBasis> basis;
+  if (options.basis_tolerance > 0) {
+    basis = time_basis(motion.X, motion.norm2, options.basis_tolerance, options.threads);
+  }
+  // What is not needed any more is released: it is the largest array there is.
+  VertexBlocks<double> X = std::move(motion.X);
+  if (basis) X = std::move(basis->B);
   if (options.single_precision) {
-    alternate(result, motion.norm2, X.cast<float>(), basis, std::move(start), std::move(support),
-              progress);
+    alternate(result, motion.norm2, std::move(X).cast<float>(), basis, std::move(start),
+              std::move(support), progress);
   } else {
     alternate(result, motion.norm2, X, basis, std::move(start), std::move(support), progress);
   }
@@ -163,7 +164,7 @@ Components decompose(const MeshSequence& sequence, const DecompositionOptions& o
   result.options.distances = nullptr;
   result.options.progress = nullptr;
 
-  const Motion motion = scaled_motion(sequence, options.threads);
+  Motion motion = scaled_motion(sequence, options.threads);
   result.scale = motion.scale;
   const DistanceFunction distances =
       options.distances ? options.distances
@@ -172,7 +173,7 @@ Components decompose(const MeshSequence& sequence, const DecompositionOptions& o
   const SupportFunction support =
       support_function(distances, sequence.vertices(), result.d_min, result.d_max);
   Start start = greedy_start(motion.X, support, options, part_of(options.progress, 0, kStartShare));
-  iterate(result, motion, std::move(start),
+  iterate(result, std::move(motion), std::move(start),
           SupportMaps(support, options.count, sequence.vertices()),
           part_of(options.progress, kStartShare, 1));
   finish(result);

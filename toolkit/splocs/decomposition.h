@@ -35,8 +35,8 @@ struct DecompositionOptions {
   bool nonnegative = true;
   SignRule sign_rule = SignRule::amplitude;
   /// Iterate on the motion's coordinates in as few poses over time as keep its Frobenius norm up to
-  /// this share, at least kLeastCompression; 0 iterates on all frames. The start always does.
-  double compression = 0;
+  /// this share, at least 1e-6; 0 iterates on all frames. The start always does.
+  double basis_tolerance = 0;
   /// Iterate in single precision. The start is in double precision in any case.
   bool single_precision = false;
   /// Distances along the rest pose; by default SurfaceDistances of its exactly welded vertices.

@@ -68,8 +68,12 @@ Motion scaled_motion(const MeshSequence& sequence, int threads) {
     throw MismatchError("nothing moves: all " + std::to_string(sequence.frames()) +
                         " frames are the rest pose");
   }
-  return {scaled_blocks(sequence, scale, threads), scale,
-          (squares + all * mean * mean) / scale / scale};
+  const double norm2 = (squares + all * mean * mean) / scale / scale;
+  if (!std::isfinite(norm2)) {
+    throw std::invalid_argument(
+        "the frames are so far from the rest pose that their energy is not a finite number");
+  }
+  return {scaled_blocks(sequence, scale, threads), scale, norm2};
 }
 
 }  // namespace mimetra

@@ -1,12 +1,13 @@
 #include <mimetra/splocs/time_basis.h>
 
+#include <algorithm>
 #include <random>
 #include <utility>
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/QR>
 
-#include <mimetra/mesh/parallel.h>
+#include <mimetra/splocs/block_sums.h>
 
 namespace mimetra {
 namespace {
@@ -22,9 +23,11 @@ Eigen::MatrixXd random_signs(Eigen::Index rows, Eigen::Index columns, int seed) 
 
 /// `poses` random mixtures of the vertices' motions, orthonormalised (F x poses).
 Eigen::MatrixXd sketched_basis(const VertexBlocks<double>& X, Eigen::Index poses, int threads) {
-  std::vector<Eigen::MatrixXd> parts(X.count());
-  parallel_for(X.count(), threads,
-               [&](int b) { parts[b] = X[b] * random_signs(X[b].cols(), poses, b); });
+  const auto parts =
+      sums_over_runs<Eigen::MatrixXd>(X.count(), threads, [&](int b, Eigen::MatrixXd& part) {
+        if (part.size() == 0) part.setZero(X.rows(), poses);
+        part.noalias() += X[b] * random_signs(X[b].cols(), poses, b);
+      });
   Eigen::MatrixXd sketch = Eigen::MatrixXd::Zero(X.rows(), poses);
   for (const Eigen::MatrixXd& part : parts) sketch += part;
   const Eigen::HouseholderQR<Eigen::MatrixXd> qr(sketch);
@@ -42,7 +45,9 @@ VertexBlocks<double> coordinates(const Eigen::MatrixXd& Q, const VertexBlocks<do
 
 std::optional<TimeBasis> time_basis(const VertexBlocks<double>& X, double norm2, double tolerance,
                                     int threads) {
-  for (Eigen::Index poses = kFirstSketch; 2 * poses <= X.rows(); poses *= 2) {
+  const Eigen::Index most = X.rows() / 2;
+  for (Eigen::Index poses = std::min(kFirstSketch, most), tried = 0; poses > tried;
+       tried = poses, poses = std::min(2 * poses, most)) {
     const Eigen::MatrixXd sketch = sketched_basis(X, poses, threads);
     const VertexBlocks<double> B = coordinates(sketch, X, threads);
     Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(poses, poses);

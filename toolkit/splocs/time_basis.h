@@ -13,11 +13,11 @@ struct TimeBasis {
 };
 
 /// Smallest tolerance that the sums, which cancel, can tell from zero.
-constexpr double kLeastCompression = 1e-6;
+constexpr double kLeastBasisTolerance = 1e-6;
 
 /// A basis with ||X - Q B||_F <= tolerance ||X||_F, found by random projections with a fixed seed;
 /// nothing where it would need more than half as many poses as X has frames. `norm2` is ||X||_F^2.
-/// \pre tolerance >= kLeastCompression
+/// \pre tolerance >= kLeastBasisTolerance
 ///
 /// [Halko, Martinsson, Tropp. Finding Structure with Randomness. SIAM Review 53(2), 2011]
 std::optional<TimeBasis> time_basis(const VertexBlocks<double>& X, double norm2, double tolerance,

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <algorithm>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
 #include <mimetra/mesh/mesh_sequence.h>
@@ -74,10 +76,18 @@ class VertexBlocks {
     return frames;
   }
 
+  /// In another precision; each block is released once it is taken over.
   template <typename Other>
-  VertexBlocks<Other> cast() const {
+  VertexBlocks<Other> cast() && {
     VertexBlocks<Other> result(rows_, vertices_);
-    for (int b = 0; b < count(); ++b) result[b] = blocks_[b].template cast<Other>();
+    for (int b = 0; b < count(); ++b) {
+      if constexpr (std::is_same_v<Other, Scalar>) {
+        result[b] = std::move(blocks_[b]);
+      } else {
+        result[b] = blocks_[b].template cast<Other>();
+        blocks_[b].resize(0, 0);
+      }
+    }
     return result;
   }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <functional>
 #include <limits>
+#include <numeric>
 #include <span>
 #include <stdexcept>
 
@@ -250,19 +251,22 @@ bool BlendshapeTransfer::rest_looks_unneutral(const MeshSequence& performance,
     throw MismatchError("the weights are not those of the performance");
   }
   const Eigen::VectorXd diagonal = state.gram.diagonal();
-  Eigen::Index below = 0;
-  for (int first = 0; first < performance.frames(); first += kFramesPerBlock) {
+  const int blocks = (performance.frames() + kFramesPerBlock - 1) / kFramesPerBlock;
+  std::vector<Eigen::Index> below(blocks, 0);
+  parallel_for(blocks, state.options.threads, [&](int block) {
+    const int first = block * kFramesPerBlock;
     const int count = std::min(kFramesPerBlock, performance.frames() - first);
     const auto beta = weights.middleRows(first, count);
     const Eigen::MatrixXd pull =
         state.right_hand_side(performance.positions().middleRows(first, count)) - beta * state.gram;
     for (const Eigen::Index j : state.seen) {
-      below +=
+      below[block] +=
           (beta.col(j).array() == 0 && pull.col(j).array() < kWantedStep * diagonal[j]).count();
     }
-  }
+  });
   const auto all = static_cast<double>(performance.frames() * state.seen.size());
-  return static_cast<double>(below) > kUnneutralShare * all;
+  const auto wanted = std::accumulate(below.begin(), below.end(), Eigen::Index{0});
+  return static_cast<double>(wanted) > kUnneutralShare * all;
 }
 
 }  // namespace mimetra

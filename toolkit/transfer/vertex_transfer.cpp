@@ -129,7 +129,7 @@ struct VertexTransfer::State {
   Triplets stiffness() const;
   void add_smoothness(Triplets& entries) const;
   void factor();
-  void fold(const DeformationGradients& gradients);
+  void prepare_pull(const DeformationGradients& gradients);
   Row shift_of(const FloatingPiece& piece, const Eigen::Ref<const Frames>& frames,
                const Rows& displacement) const;
   Row motion_of(const FloatingPiece& piece, const Eigen::Ref<const Frames>& frames) const;
@@ -165,7 +165,7 @@ VertexTransfer::State::State(const Positions& source, const Positions& target,
         "outside the regions move (Outside::identity) or select all triangles");
   }
   factor();
-  fold(gradients);
+  prepare_pull(gradients);
 }
 
 void VertexTransfer::State::weigh() {
@@ -250,7 +250,7 @@ void VertexTransfer::State::factor() {
   }
 }
 
-void VertexTransfer::State::fold(const DeformationGradients& gradients) {
+void VertexTransfer::State::prepare_pull(const DeformationGradients& gradients) {
   std::vector<Edges> vectors(gradients.selected().size(), Edges::Zero());
   for (std::size_t s = 0; s < vectors.size(); ++s) {
     const int triangle = gradients.selected()[s];

@@ -1,4 +1,4 @@
-#include "sparse_factor.h"
+#include "factor_size.h"
 
 #include <vector>
 
@@ -6,7 +6,7 @@
 
 namespace mimetra::bench {
 
-SparseFactor sparse_factor(int vertices, const Triangles& triangles) {
+FactorSize factor_size(int vertices, const Triangles& triangles) {
   std::vector<Eigen::Triplet<double>> entries;
   for (int v = 0; v < vertices; ++v) entries.emplace_back(v, v, 1);
   for (Eigen::Index t = 0; t < triangles.rows(); ++t) {
@@ -22,7 +22,7 @@ SparseFactor sparse_factor(int vertices, const Triangles& triangles) {
   matrix.setFromTriplets(entries.begin(), entries.end());
   const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver(matrix);
   const auto& below = solver.matrixL().nestedExpression();
-  SparseFactor factor;
+  FactorSize factor;
   factor.entries = vertices + static_cast<double>(below.nonZeros());
   for (int column = 0; column < vertices; ++column) {
     const double height = below.outerIndexPtr()[column + 1] - below.outerIndexPtr()[column];

@@ -6,7 +6,7 @@ namespace mimetra::bench {
 
 /// The Cholesky factor of a matrix with an entry for each vertex and edge of a mesh, in the order
 /// that Eigen's approximate minimum degree finds.
-struct SparseFactor {
+struct FactorSize {
   double entries = 0;       ///< below the diagonal, and on it
   double factor_flops = 0;  ///< of computing it
 
@@ -16,6 +16,6 @@ struct SparseFactor {
   double bytes() const { return 12 * entries; }
 };
 
-SparseFactor sparse_factor(int vertices, const Triangles& triangles);
+FactorSize factor_size(int vertices, const Triangles& triangles);
 
 }  // namespace mimetra::bench
