@@ -13,7 +13,7 @@ if(MIMETRA_INSTRUCTIONS)
   target_compile_options(mimetra_flags INTERFACE -march=${MIMETRA_INSTRUCTIONS})
 elseif(NOT CMAKE_CROSSCOMPILING)
   include(CheckCXXSourceRuns)
-  # All that -march=x86-64-v3 stands for.
+  # What -march=x86-64-v3 stands for, as far as all compilers can ask for it.
   set(features avx2 fma bmi bmi2 popcnt)
   list(TRANSFORM features REPLACE "(.+)" "__builtin_cpu_supports(\"\\1\")")
   list(JOIN features " && " features)
