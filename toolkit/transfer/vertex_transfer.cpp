@@ -62,11 +62,12 @@ void add_products(const Eigen::Matrix<double, 3, Columns>& x, double scale,
 geodesic::SparseFactor factor_of(const Eigen::SparseMatrix<double>& system) {
   if (system.rows() == 0) return {};
   const geodesic::SparseFactor::Factorization factorization(system);
-  if (factorization.info() != Eigen::Success || !(factorization.vectorD().minCoeff() > 0)) {
-    throw std::runtime_error(
-        "the target's triangles do not determine its vertices; look for nearly degenerate ones");
+  if (factorization.info() == Eigen::Success) {
+    geodesic::SparseFactor factor(factorization);
+    if (factor.pivots().minCoeff() > 0) return factor;
   }
-  return geodesic::SparseFactor(factorization);
+  throw std::runtime_error(
+      "the target's triangles do not determine its vertices; look for nearly degenerate ones");
 }
 
 void check_options(const VertexTransferOptions& options, Eigen::Index vertices) {
