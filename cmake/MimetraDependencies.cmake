@@ -23,8 +23,8 @@ if(NOT VTK_DIR AND paraview_vtk)
 endif()
 mimetra_package(GLEW)
 mimetra_package(OpenGL COMPONENTS EGL)
-set(vtk_components CommonCore CommonDataModel IOImage IOXML IOXMLParser RenderingCore
-                   RenderingFreeType RenderingOpenGL2)
+set(vtk_components ChartsCore CommonCore CommonDataModel IOImage IOXML IOXMLParser RenderingContext2D
+                   RenderingContextOpenGL2 RenderingCore RenderingFreeType RenderingOpenGL2)
 find_package(VTK 9.1 REQUIRED COMPONENTS ${vtk_components})
 # Objects compiled against one VTK break with another one's libraries.
 set(MIMETRA_FIND_VTK VTK ${VTK_VERSION} EXACT COMPONENTS ${vtk_components} HINTS ${VTK_DIR})

@@ -6,10 +6,9 @@
 #include <string>
 #include <utility>
 
-#include <Eigen/SparseCholesky>
-
 #include <mimetra/geodesic/heat_geodesics.h>
 #include <mimetra/geodesic/heat_operators.h>
+#include <mimetra/geodesic/sparse_factor.h>
 
 namespace mimetra::geodesic {
 namespace {
@@ -20,106 +19,135 @@ constexpr double kUnreachable = std::numeric_limits<double>::infinity();
 /// underflows at 1e-308, whatever the scale of the mesh.
 constexpr double kFaintest = 1e-250;
 
-using Factorization = Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>;
+constexpr int kLanes = HeatGeodesics::kGroup;
+using Lane = Eigen::Array<double, 1, kLanes>;
+/// One unknown a row; so many queries side by side.
+using Lanes = Eigen::Matrix<double, Eigen::Dynamic, kLanes, Eigen::RowMajor>;
+/// Rows of the component where the query of each lane starts.
+using LaneSources = std::array<std::span<const VertexIndex>, kLanes>;
 
-/// The heat method on one connected component. Vertices are rows of the component.
+/// The potential is the distance up to a constant, which the sources agree on only roughly; the
+/// nearest of their potentials, `zeros` (ascending), keeps every source at 0 and all else above.
+double distance_to_nearest(const std::vector<double>& zeros, double potential) {
+  const auto above = std::lower_bound(zeros.begin(), zeros.end(), potential);
+  if (above == zeros.begin()) return *above - potential;
+  if (above == zeros.end()) return potential - zeros.back();
+  return std::min(*above - potential, potential - *std::prev(above));
+}
+
+/// The heat method on one connected component. Vertices are rows of the component; inside, rows are
+/// in the order of elimination.
 class HeatComponent {
  public:
   explicit HeatComponent(const HeatOperators& operators);
 
-  /// Distance from the nearest of `sources` (N). \pre At least one source.
-  Eigen::VectorXd distances(std::span<const VertexIndex> sources) const;
+  /// Distance from the nearest of the sources of each lane (N x kLanes). \pre Each has a source.
+  Lanes distances(const LaneSources& sources) const;
 
  private:
-  using Directions = std::vector<Eigen::Vector2d>;
+  /// A triangle where the heat of some lanes has not been seen yet (1; 0 where it has).
+  struct Open {
+    int triangle;
+    Lane waiting;
+  };
 
-  Directions directions_of_heat(std::span<const VertexIndex> sources) const;
-  Eigen::VectorXd divergence(const Directions& directions) const;
-  std::array<double, 3> heat_of_corners(const Eigen::VectorXd& heat, Eigen::Index t) const;
+  Lanes potentials(Lanes reached) const;
+  void add_divergence(const Lanes& heat, const Lane& faintest, Open& open, Lanes& result) const;
 
-  Triangles triangles_;
+  std::vector<int> place_;  // in the order of elimination
+  Triangles triangles_;     // of places
   std::vector<FlatTriangle> flat_;
-  Factorization heat_, poisson_;
+  SparseFactor heat_, poisson_;
 };
 
 HeatComponent::HeatComponent(const HeatOperators& operators)
-    : triangles_(operators.triangles),
-      flat_(operators.flat),
-      heat_(operators.heat),
-      poisson_(operators.laplacian) {
-  if (heat_.info() != Eigen::Success || poisson_.info() != Eigen::Success) {
+    : triangles_(operators.triangles), flat_(operators.flat) {
+  // Both matrices have one pattern: a mass is on the diagonal only.
+  SparseFactor::Factorization factorization;
+  factorization.analyzePattern(operators.heat);
+  try {
+    factorization.factorize(operators.heat);
+    heat_ = SparseFactor(factorization);
+    factorization.factorize(operators.laplacian);
+    poisson_ = SparseFactor(factorization);
+  } catch (const std::runtime_error&) {
     throw std::runtime_error("the Laplacian is not positive; look for degenerate triangles");
   }
+  place_ = heat_.order();
+  for (int& corner : triangles_.reshaped()) corner = place_[corner];
 }
 
-Eigen::VectorXd HeatComponent::distances(std::span<const VertexIndex> sources) const {
-  const Eigen::VectorXd potential = poisson_.solve(divergence(directions_of_heat(sources)));
-  std::vector<double> zeros;
-  for (const VertexIndex source : sources) zeros.push_back(potential[source]);
-  std::sort(zeros.begin(), zeros.end());
-  // The potential is the distance up to a constant, which the sources agree on only roughly; the
-  // nearest one keeps every source at 0 and everything else above.
-  return potential.unaryExpr([&zeros](double value) {
-    const auto above = std::lower_bound(zeros.begin(), zeros.end(), value);
-    if (above == zeros.begin()) return *above - value;
-    if (above == zeros.end()) return value - zeros.back();
-    return std::min(*above - value, value - *std::prev(above));
-  });
+Lanes HeatComponent::distances(const LaneSources& sources) const {
+  Lanes reached = Lanes::Zero(static_cast<Eigen::Index>(place_.size()), kLanes);
+  for (int lane = 0; lane < kLanes; ++lane) {
+    for (const VertexIndex source : sources[lane]) reached(place_[source], lane) = 1;
+  }
+  const Lanes potential = potentials(std::move(reached));
+  Lanes result(potential.rows(), kLanes);
+  for (int lane = 0; lane < kLanes; ++lane) {
+    std::vector<double> zeros;
+    for (const VertexIndex source : sources[lane]) {
+      zeros.push_back(potential(place_[source], lane));
+    }
+    std::sort(zeros.begin(), zeros.end());
+    for (std::size_t v = 0; v < place_.size(); ++v) {
+      result(v, lane) = distance_to_nearest(zeros, potential(place_[v], lane));
+    }
+  }
+  return result;
 }
 
-/// Unit vector against the heat's gradient in each triangle; zero where the heat is constant.
+/// Potentials whose gradients are closest to unit vectors against the heat's.
 ///
 /// Where the heat has faded the next round starts from all vertices it has reached: their border
 /// is a level set of the heat, that is a circle around the sources, so the direction is the same.
-HeatComponent::Directions HeatComponent::directions_of_heat(
-    std::span<const VertexIndex> sources) const {
-  Directions directions(flat_.size(), Eigen::Vector2d::Zero());
-  Eigen::VectorXd reached = Eigen::VectorXd::Zero(heat_.rows());
-  for (const VertexIndex source : sources) reached[source] = 1;
-  std::vector<Eigen::Index> open(flat_.size());
-  for (std::size_t t = 0; t < open.size(); ++t) open[t] = static_cast<Eigen::Index>(t);
+Lanes HeatComponent::potentials(Lanes reached) const {
+  Lanes divergence = Lanes::Zero(reached.rows(), kLanes);
+  std::vector<Open> open(flat_.size());
+  for (std::size_t t = 0; t < open.size(); ++t) open[t] = {static_cast<int>(t), Lane::Ones()};
 
-  while (!open.empty()) {
-    const Eigen::VectorXd heat = heat_.solve(reached).cwiseAbs();
-    const double faintest = kFaintest * heat.maxCoeff();
-    const std::size_t before = open.size();
-    std::erase_if(open, [&](Eigen::Index t) {
-      std::array<double, 3> corners = heat_of_corners(heat, t);
-      const double warmest = *std::max_element(corners.begin(), corners.end());
-      if (!(warmest > faintest)) return false;
-      // Relative heat, because squares of very faint heat vanish.
-      for (double& corner : corners) corner /= warmest;
-      const FlatTriangle& flat = flat_[t];
-      const Eigen::Vector2d gradient =
-          (corners[1] - corners[0]) * flat.gradient1 + (corners[2] - corners[0]) * flat.gradient2;
-      const double length = gradient.norm();
-      if (length > 0) directions[t] = -gradient / length;
-      return true;
-    });
-    if (open.size() == before) throw std::runtime_error("heat does not spread over the mesh");
-    reached = (heat.array() > faintest || reached.array() > 0).cast<double>();
+  for (double waiting = 0; !open.empty();) {
+    const Lanes heat = heat_.solve<kLanes>(reached).cwiseAbs();
+    const Lane faintest = kFaintest * heat.colwise().maxCoeff().array();
+    const double before = waiting;
+    waiting = 0;
+    for (Open& triangle : open) {
+      add_divergence(heat, faintest, triangle, divergence);
+      waiting += triangle.waiting.sum();
+    }
+    if (waiting == 0) break;
+    if (waiting == before) throw std::runtime_error("heat does not spread over the mesh");
+    std::erase_if(open, [](const Open& triangle) { return (triangle.waiting == 0).all(); });
+    reached =
+        ((heat.array() > faintest.replicate(heat.rows(), 1)) || reached.array() > 0).cast<double>();
   }
-  return directions;
+  return poisson_.solve<kLanes>(std::move(divergence));
 }
 
-std::array<double, 3> HeatComponent::heat_of_corners(const Eigen::VectorXd& heat,
-                                                     Eigen::Index t) const {
-  return {heat[triangles_(t, 0)], heat[triangles_(t, 1)], heat[triangles_(t, 2)]};
-}
-
-/// Integral of each vertex's hat gradient times the directions: the right-hand side L phi = b for
-/// the potential whose gradient is closest to them.
-Eigen::VectorXd HeatComponent::divergence(const Directions& directions) const {
-  Eigen::VectorXd result = Eigen::VectorXd::Zero(heat_.rows());
-  for (std::size_t t = 0; t < flat_.size(); ++t) {
-    const double flow1 = flat_[t].area * flat_[t].gradient1.dot(directions[t]);
-    const double flow2 = flat_[t].area * flat_[t].gradient2.dot(directions[t]);
-    const auto triangle = triangles_.row(static_cast<Eigen::Index>(t));
-    result[triangle[0]] -= flow1 + flow2;
-    result[triangle[1]] += flow1;
-    result[triangle[2]] += flow2;
-  }
-  return result;
+/// Adds the integral of each corner's hat gradient times the unit vector against the heat's
+/// gradient, in the lanes that wait for it and where there is heat: the right-hand side of the
+/// Poisson system. The vector is zero where the heat is constant.
+void HeatComponent::add_divergence(const Lanes& heat, const Lane& faintest, Open& open,
+                                   Lanes& result) const {
+  // Smaller than any length or heat that counts; it keeps 0 / 0 away.
+  constexpr double kTiny = std::numeric_limits<double>::min();
+  const FlatTriangle& flat = flat_[open.triangle];
+  const int* corners = triangles_.row(open.triangle).data();
+  const auto corner = [&](int c) { return heat.row(corners[c]).array(); };
+  const Lane warmest = corner(0).max(corner(1)).max(corner(2));
+  // Relative heat, because squares of very faint heat vanish.
+  const Lane rise1 = (corner(1) - corner(0)) / warmest.max(kTiny);
+  const Lane rise2 = (corner(2) - corner(0)) / warmest.max(kTiny);
+  const Lane x = rise1 * flat.gradient1.x() + rise2 * flat.gradient2.x();
+  const Lane y = rise1 * flat.gradient1.y() + rise2 * flat.gradient2.y();
+  const Lane seen = open.waiting * (warmest > faintest).cast<double>();
+  const Lane scale = -flat.area * seen / (x.square() + y.square()).sqrt().max(kTiny);
+  const Lane flow1 = scale * (x * flat.gradient1.x() + y * flat.gradient1.y());
+  const Lane flow2 = scale * (x * flat.gradient2.x() + y * flat.gradient2.y());
+  result.row(corners[0]).array() -= flow1 + flow2;
+  result.row(corners[1]).array() += flow1;
+  result.row(corners[2]).array() += flow2;
+  open.waiting -= seen;
 }
 
 }  // namespace
@@ -144,13 +172,14 @@ class HeatGeodesics::Implementation {
     }
   }
 
-  Eigen::VectorXd distances(std::span<const VertexIndex> sources) const {
-    const auto rows = sources_by_component(surface_, sources);
-    Eigen::VectorXd result = Eigen::VectorXd::Constant(
-        static_cast<Eigen::Index>(surface_.component_of.size()), kUnreachable);
-    for (std::size_t c = 0; c < rows.size(); ++c) {
-      if (rows[c].empty()) continue;
-      result(surface_.components[c].vertices) = methods_[c]->distances(rows[c]);
+  /// Distances from the nearest of the sources of each lane, N x lanes.
+  Eigen::MatrixXd distances(const std::vector<std::span<const VertexIndex>>& lanes) const {
+    Eigen::MatrixXd result =
+        Eigen::MatrixXd::Constant(static_cast<Eigen::Index>(surface_.component_of.size()),
+                                  static_cast<Eigen::Index>(lanes.size()), kUnreachable);
+    for (std::size_t first = 0; first < lanes.size(); first += kLanes) {
+      const std::size_t count = std::min<std::size_t>(kLanes, lanes.size() - first);
+      solve(std::span(lanes).subspan(first, count), result.middleCols(first, count));
     }
     return result;
   }
@@ -158,6 +187,27 @@ class HeatGeodesics::Implementation {
   const SurfaceComponents& surface() const { return surface_; }
 
  private:
+  /// Up to kLanes queries, on each component those that have sources there.
+  void solve(std::span<const std::span<const VertexIndex>> lanes,
+             Eigen::Ref<Eigen::MatrixXd> result) const {
+    std::vector<std::vector<std::vector<VertexIndex>>> rows;  // of each lane and component
+    for (const auto& sources : lanes) rows.push_back(sources_by_component(surface_, sources));
+    for (std::size_t c = 0; c < methods_.size(); ++c) {
+      std::vector<Eigen::Index> here;
+      LaneSources sources;
+      for (std::size_t lane = 0; lane < lanes.size(); ++lane) {
+        if (rows[lane][c].empty()) continue;
+        sources[here.size()] = rows[lane][c];
+        here.push_back(static_cast<Eigen::Index>(lane));
+      }
+      if (here.empty()) continue;
+      // Lanes that nobody needs repeat the last one.
+      std::fill(sources.begin() + here.size(), sources.end(), sources[here.size() - 1]);
+      result(surface_.components[c].vertices, here) =
+          methods_[c]->distances(sources).leftCols(here.size());
+    }
+  }
+
   SurfaceComponents surface_;
   std::vector<std::unique_ptr<HeatComponent>> methods_;
 };
@@ -175,7 +225,13 @@ Eigen::VectorXd HeatGeodesics::distances(VertexIndex source) const {
 }
 
 Eigen::VectorXd HeatGeodesics::distances(std::span<const VertexIndex> sources) const {
-  return implementation_->distances(sources);
+  return implementation_->distances({sources});
+}
+
+Eigen::MatrixXd HeatGeodesics::distances_from_each(std::span<const VertexIndex> sources) const {
+  std::vector<std::span<const VertexIndex>> lanes;
+  for (const VertexIndex& source : sources) lanes.emplace_back(&source, 1);
+  return implementation_->distances(lanes);
 }
 
 int HeatGeodesics::degenerate_triangles() const {

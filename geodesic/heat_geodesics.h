@@ -42,6 +42,11 @@ class HeatGeodesics {
   /// std::invalid_argument when there is no source.
   Eigen::VectorXd distances(std::span<const VertexIndex> sources) const;
 
+  /// Distance from each of `sources` (S) to every vertex, N x S; the columns are those that one
+  /// query a source would give. kGroup of them cost little more than one. Throws std::out_of_range.
+  Eigen::MatrixXd distances_from_each(std::span<const VertexIndex> sources) const;
+  static constexpr int kGroup = 8;
+
   /// Number of triangles left out because they have no area or repeat a vertex.
   int degenerate_triangles() const;
 

@@ -171,7 +171,7 @@ const std::vector<FolderRule>& folder_rules() {
         {"toolkit/model", {"mesh"}, {}},
         {"toolkit/splocs", {"mesh", "geodesic"}, {"OpenMesh", "OpenBLAS"}},
         {"toolkit/regions", {"splocs", "mesh", "geodesic"}, {"OpenMesh"}},
-        {"toolkit/transfer", {"model", "regions", "mesh"}, {"OpenMesh", "CHOLMOD"}},
+        {"toolkit/transfer", {"model", "regions", "mesh", "geodesic"}, {"OpenMesh", "CHOLMOD"}},
         {"toolkit/io",
          {"mesh", "model", "splocs", "regions"},
          {"OpenMesh", "HDF5", "JSON", "zlib", "tinygltf"}},

@@ -153,6 +153,21 @@ TEST(HeatGeodesics, StartOnEveryComponentThatHasASource) {
   EXPECT_EQ(distances.tail(vertices), heat_on(one).distances(2));
 }
 
+TEST(HeatGeodesics, FromEachOfManyAreThoseOfOneQueryEach) {
+  // More sources than one group holds, on two components; on the strip the heat fades.
+  const int length = 800;
+  const HeatGeodesics heat = heat_on(test::both(test::grid(length, 2), test::bumpy_sphere(2)));
+  std::vector<VertexIndex> sources = {0, 0, length / 2};
+  for (VertexIndex source = 0; source < HeatGeodesics::kGroup; ++source) {
+    sources.push_back(2 * length + 5 * source);
+    sources.push_back(7 * source);
+  }
+  const Eigen::MatrixXd together = heat.distances_from_each(sources);
+  for (std::size_t i = 0; i < sources.size(); ++i) {
+    EXPECT_EQ(together.col(i), heat.distances(sources[i])) << sources[i];
+  }
+}
+
 TEST(HeatGeodesics, ReachTheFarEndOfALongStrip) {
   // Heat falls by about e per edge: after 700 of them it has underflown.
   const int length = 1200;

@@ -34,6 +34,8 @@ Components small_components() {
   components.d_max = 2.1;
   components.options.count = 3;
   components.options.sparsity = 1.5;
+  components.options.single_precision = true;
+  components.options.compression = 1e-3;
   components.options.sign_rule = SignRule::literal;
   return components;
 }
@@ -54,6 +56,8 @@ TEST(ComponentsFile, ComesBackEqualAfterWriting) {
   EXPECT_EQ(found.d_max, written.d_max);
   EXPECT_EQ(found.options.sparsity, 1.5);
   EXPECT_EQ(found.options.sign_rule, SignRule::literal);
+  EXPECT_TRUE(found.options.single_precision);
+  EXPECT_EQ(found.options.compression, 1e-3);
 }
 
 TEST(ComponentsFile, IsTheSameBytesEveryTime) {

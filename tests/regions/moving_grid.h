@@ -12,8 +12,10 @@ namespace mimetra::test {
 constexpr int kColumns = 12;
 constexpr int kRows = 5;
 
+using DistanceFrom = std::function<Eigen::VectorXd(VertexIndex)>;
+
 /// Straight distances on the grid.
-inline DistanceFunction straight_distances(const Positions& rest) {
+inline DistanceFrom straight_distances(const Positions& rest) {
   return [rest](VertexIndex source) {
     return Eigen::VectorXd((rest.rowwise() - rest.row(source)).rowwise().norm());
   };
@@ -53,7 +55,7 @@ inline VertexIndex at(int x, int y) {
 inline RegionOptions disc_of(const Components& components, double radius) {
   RegionOptions options;
   options.radius = radius;
-  options.distances = straight_distances(components.rest);
+  options.distances = one_by_one(straight_distances(components.rest));
   return options;
 }
 

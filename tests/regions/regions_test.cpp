@@ -120,12 +120,13 @@ TEST(Regions, OfTwoCentersOnOneSeamAreMerged) {
   const Components components = lifted({at(2, 2), at(3, 2)}, {2, 1});
   RegionOptions options = disc_of(components, 1);
   // As a seam does: the two vertices are one point of the surface.
-  options.distances = [straight = options.distances](VertexIndex source) {
-    Eigen::VectorXd distances = straight(at(2, 2));
-    if (source != at(2, 2) && source != at(3, 2)) distances = straight(source);
-    distances[at(3, 2)] = distances[at(2, 2)];
-    return distances;
-  };
+  options.distances =
+      one_by_one([straight = straight_distances(components.rest)](VertexIndex source) {
+        Eigen::VectorXd distances = straight(at(2, 2));
+        if (source != at(2, 2) && source != at(3, 2)) distances = straight(source);
+        distances[at(3, 2)] = distances[at(2, 2)];
+        return distances;
+      });
   const Regions regions = find_regions(components, options);
   ASSERT_EQ(regions.regions.size(), 1u);
   EXPECT_THAT(regions.regions[0].vertices, testing::Contains(at(3, 2)));
@@ -153,11 +154,12 @@ TEST(Regions, NeverHoldVerticesOutOfReach) {
   for (const RegionShape shape : {RegionShape::disc, RegionShape::support}) {
     RegionOptions options = disc_of(components, 1e300);
     options.shape = shape;
-    options.distances = [straight = options.distances](VertexIndex source) {
-      Eigen::VectorXd distances = straight(source);
-      distances[at(3, 2)] = std::numeric_limits<double>::infinity();
-      return distances;
-    };
+    options.distances =
+        one_by_one([straight = straight_distances(components.rest)](VertexIndex source) {
+          Eigen::VectorXd distances = straight(source);
+          distances[at(3, 2)] = std::numeric_limits<double>::infinity();
+          return distances;
+        });
     const Regions regions = find_regions(components, options);
     EXPECT_FALSE(regions.inside[at(3, 2)]);
     EXPECT_TRUE(regions.inside[at(1, 2)]);
@@ -167,8 +169,9 @@ TEST(Regions, NeverHoldVerticesOutOfReach) {
 TEST(Regions, HoldTheirCenterWhereItReachesNothing) {
   const Components components = lifted({at(2, 2)}, {1});
   RegionOptions options = disc_of(components, 1);
-  options.distances = [](VertexIndex) -> Eigen::VectorXd {
-    return Eigen::VectorXd::Constant(kColumns * kRows, std::numeric_limits<double>::infinity());
+  options.distances = [](std::span<const VertexIndex> sources) {
+    return Eigen::MatrixXd::Constant(kColumns * kRows, static_cast<Eigen::Index>(sources.size()),
+                                     std::numeric_limits<double>::infinity());
   };
   EXPECT_THAT(find_regions(components, options).regions[0].vertices, ElementsAre(at(2, 2)));
 }

@@ -66,8 +66,8 @@ TEST(DecompositionError, RefusesAnotherFrameCount) {
 
 TEST(EnergyRadius, HoldsAllOfABumpWithinItsRadius) {
   const Bumps bumps;
-  const Eigen::VectorXd radius =
-      energy_radius(true_components(bumps), straight_distances(bumps.shape.positions), 1);
+  const Eigen::VectorXd radius = energy_radius(
+      true_components(bumps), one_by_one(straight_distances(bumps.shape.positions)), 1);
   // The farthest grid point strictly inside a circle of radius 4 is (2, 3) or (3, 2) away.
   EXPECT_TRUE(radius.isApproxToConstant(std::hypot(2, 3)));
 }
@@ -76,7 +76,7 @@ TEST(EnergyRadius, IsTheSmallestThatHoldsTheShare) {
   const Bumps bumps;
   const auto distances = straight_distances(bumps.shape.positions);
   const Components components = true_components(bumps);
-  const double radius = energy_radius(components, distances, 0.95)[0];
+  const double radius = energy_radius(components, one_by_one(distances), 0.95)[0];
   const Eigen::VectorXd from_center = distances(components.centers[0]);
   double within = 0, closer = 0;
   for (int v = 0; v < 360; ++v) {
@@ -93,19 +93,19 @@ TEST(EnergyRadius, IsZeroWhereTheComponentDied) {
   Components components = true_components(bumps);
   components.centers[1] = -1;
   const Eigen::VectorXd radius =
-      energy_radius(components, straight_distances(bumps.shape.positions));
+      energy_radius(components, one_by_one(straight_distances(bumps.shape.positions)));
   EXPECT_EQ(radius[1], 0);
   EXPECT_GT(radius[0], 0);
 }
 
 TEST(EnergyRadius, IsInfiniteWhereTheShareIsOutOfReach) {
   const Bumps bumps;
-  const DistanceFunction nowhere = [](VertexIndex source) {
+  const DistanceFunction nowhere = one_by_one([](VertexIndex source) {
     Eigen::VectorXd distances =
         Eigen::VectorXd::Constant(360, std::numeric_limits<double>::infinity());
     distances[source] = 0;
     return distances;
-  };
+  });
   EXPECT_EQ(energy_radius(true_components(bumps), nowhere)[0],
             std::numeric_limits<double>::infinity());
 }
@@ -115,7 +115,8 @@ TEST(EnergyRadius, RefusesSharesOutsideZeroToOne) {
   for (const double share : {0.0, 1.5}) {
     EXPECT_THAT(
         [&] {
-          energy_radius(true_components(bumps), straight_distances(bumps.shape.positions), share);
+          energy_radius(true_components(bumps),
+                        one_by_one(straight_distances(bumps.shape.positions)), share);
         },
         ThrowsMessage<std::invalid_argument>(HasSubstr("share is")));
   }

@@ -67,11 +67,18 @@ TEST(DecompositionOptions, RefuseANegativeTolerance) {
               ThrowsMessage<std::invalid_argument>(HasSubstr("tolerance is -1")));
 }
 
+TEST(DecompositionOptions, RefuseACompressionThatRoundingHides) {
+  EXPECT_THAT(with([](auto& o) { o.compression = 1e-9; }),
+              ThrowsMessage<std::invalid_argument>(HasSubstr("from 1e-6")));
+  EXPECT_THAT(with([](auto& o) { o.compression = 1; }),
+              ThrowsMessage<std::invalid_argument>(HasSubstr("compression is 1")));
+}
+
 TEST(DecompositionOptions, RefuseDistancesOfAnotherMesh) {
   EXPECT_THAT(with([](auto& o) {
-                o.distances = [](VertexIndex) { return Eigen::VectorXd(Eigen::VectorXd::Zero(7)); };
+                o.distances = [](std::span<const VertexIndex>) { return Eigen::MatrixXd(7, 1); };
               }),
-              ThrowsMessage<std::invalid_argument>(HasSubstr("7 values for 12 vertices")));
+              ThrowsMessage<std::invalid_argument>(HasSubstr("of 12 vertices: 7 x 1 values")));
 }
 
 TEST(DecompositionInput, RefusesOneFrame) {

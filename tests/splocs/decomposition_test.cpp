@@ -35,7 +35,8 @@ LiteralProblem literal_problem(const MeshSequence& sequence, const Decomposition
           .nonnegative = options.nonnegative,
           .literal_sign = options.sign_rule == SignRule::literal,
           .support = [&options](int center) {
-            return geodesic::support_map(options.distances(center), *options.d_min, *options.d_max);
+            return geodesic::support_map(options.distances({&center, 1}), *options.d_min,
+                                         *options.d_max);
           }};
 }
 
@@ -165,10 +166,12 @@ TEST(Decomposition, HasLessEnergyThanItsStart) {
   const MeshSequence sequence = restless_grid();
   const DecompositionOptions options = grid_options(sequence, 6);
   const LiteralProblem problem = literal_problem(sequence, options);
-  const Start start = greedy_start(problem.X, problem.support, options);
-  double energy = (problem.X - start.weights * start.components).squaredNorm();
+  const Start start =
+      greedy_start(VertexBlocks<double>(problem.X), one_by_one(problem.support), options);
+  const Frames C = start.components.frames();
+  double energy = (problem.X - start.weights * C).squaredNorm();
   for (int k = 0; k < options.count; ++k) {
-    const Eigen::RowVectorXd c = start.components.row(k);
+    const Eigen::RowVectorXd c = C.row(k);
     energy += options.sparsity *
               problem.support(literal_strongest(c)).dot(vertex_energies(c).cwiseSqrt());
   }
@@ -256,13 +259,47 @@ TEST(Decomposition, AsksForDistancesOnlyWhereACenterMoves) {
   const MeshSequence sequence = bumps.sequence();
   DecompositionOptions options = grid_options(sequence, 3);
   int asked = 0;
-  options.distances = [&, straight = options.distances](VertexIndex source) {
-    ++asked;
-    return straight(source);
-  };
+  options.distances =
+      one_by_one([&, straight = straight_distances(sequence.rest())](VertexIndex source) {
+        ++asked;
+        return straight(source);
+      });
   decompose(sequence, options);
   // Once in the start and once in the first iteration: the bumps' tops stay where they are.
   EXPECT_EQ(asked, 6);
+}
+
+/// Three bumps over 72 frames: motion of rank 3.
+MeshSequence long_performance() {
+  const Bumps bumps;
+  return synthesised(bumps.shape, bumps.W.replicate(3, 1), bumps.C);
+}
+
+double largest_difference(const Components& a, const Components& b) {
+  return (a.displacements - b.displacements).lpNorm<Eigen::Infinity>() /
+         b.displacements.lpNorm<Eigen::Infinity>();
+}
+
+TEST(Decomposition, InABasisOfTimeIsTheSameForMotionOfLowRank) {
+  const MeshSequence sequence = long_performance();
+  DecompositionOptions options = grid_options(sequence, 3);
+  const Components on_frames = decompose(sequence, options);
+  options.compression = 1e-6;
+  // The basis loses nothing but rounding, which the tolerance of 1e-6 lets pass.
+  EXPECT_LT(largest_difference(decompose(sequence, options), on_frames), 1e-5);
+}
+
+TEST(Decomposition, InSinglePrecisionIsTheSameToItsRounding) {
+  const MeshSequence sequence = long_performance();
+  DecompositionOptions options = grid_options(sequence, 3);
+  const Components in_double = decompose(sequence, options);
+  options.single_precision = true;
+  const Components in_single = decompose(sequence, options);
+  // 6e-8 in each of 100 ADMM steps and some ten thousand sums.
+  EXPECT_LT(largest_difference(in_single, in_double), 1e-4);
+  EXPECT_NE(in_single.displacements, in_double.displacements);
+  options.compression = 1e-6;
+  EXPECT_LT(largest_difference(decompose(sequence, options), in_double), 1e-4);
 }
 
 TEST(Decomposition, IsTheSameInEveryRun) {

@@ -42,7 +42,7 @@ TEST(SignRule, AmplitudeTellsEqualSignsApartByTime) {
 
 /// Support maps of radius 5: each holds a whole bump, and nothing of the next one.
 SupportFunction around_one_bump(const Bumps& bumps) {
-  return support_function(straight_distances(bumps.shape.positions),
+  return support_function(one_by_one(straight_distances(bumps.shape.positions)),
                           static_cast<int>(bumps.shape.positions.rows()), 5, 5.5);
 }
 
@@ -51,8 +51,8 @@ TEST(GreedyStart, ExplainsDisjointBumpsCompletely) {
   DecompositionOptions options;
   options.count = 3;
   const Frames X = bumps.W * bumps.C;
-  const Start start = greedy_start(X, around_one_bump(bumps), options);
-  EXPECT_LT((X - start.weights * start.components).norm(), 1e-13 * X.norm());
+  const Start start = greedy_start(VertexBlocks<double>(X), around_one_bump(bumps), options);
+  EXPECT_LT((X - start.weights * start.components.frames()).norm(), 1e-13 * X.norm());
 }
 
 TEST(GreedyStart, TakesTheStrongestVertexOfWhatIsLeft) {
@@ -60,15 +60,16 @@ TEST(GreedyStart, TakesTheStrongestVertexOfWhatIsLeft) {
   DecompositionOptions options;
   options.count = 8;
   const SupportFunction support =
-      support_function(straight_distances(sequence.rest()), sequence.vertices(), 1, 6);
+      support_function(one_by_one(straight_distances(sequence.rest())), sequence.vertices(), 1, 6);
   const Eigen::Map<const Eigen::RowVectorXd> rest(sequence.rest().data(), sequence.rest().size());
   Frames residual = sequence.positions().rowwise() - rest;
-  const Start start = greedy_start(residual, support, options);
+  const Start start = greedy_start(VertexBlocks<double>(residual), support, options);
+  const Frames C = start.components.frames();
   for (int k = 0; k < options.count; ++k) {
     Eigen::VectorXd energies = Eigen::VectorXd::Zero(sequence.vertices());
     for (const auto& frame : residual.rowwise()) energies += vertex_energies(frame);
     EXPECT_EQ(start.centers[k], strongest_vertex(energies));
-    residual -= start.weights.col(k) * start.components.row(k);
+    residual -= start.weights.col(k) * C.row(k);
   }
 }
 
@@ -76,9 +77,10 @@ TEST(GreedyStart, StopsWhereNothingIsLeft) {
   const Bumps bumps;
   DecompositionOptions options;
   options.count = 5;
-  const Start start = greedy_start(bumps.W * bumps.C, around_one_bump(bumps), options);
+  const Start start =
+      greedy_start(VertexBlocks<double>(bumps.W * bumps.C), around_one_bump(bumps), options);
   EXPECT_THAT(std::vector(start.centers.begin() + 3, start.centers.end()), testing::Each(-1));
-  EXPECT_TRUE(start.components.bottomRows(2).isZero(0));
+  EXPECT_TRUE(start.components.frames().bottomRows(2).isZero(0));
   EXPECT_TRUE(start.weights.rightCols(2).isZero(0));
 }
 

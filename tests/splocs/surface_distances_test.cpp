@@ -86,6 +86,31 @@ TEST(SurfaceDistances, AreComputedOncePerPlace) {
   EXPECT_EQ(copy.computed(), 2);
 }
 
+TEST(SurfaceDistances, FromEachOfSeveralAreThoseFromOneAfterTheOther) {
+  const Shape shape = test::grid(9, 7);
+  const std::vector<VertexIndex> sources = {3, 9, 3, 40, 1, 2, 5, 7, 11, 13, 17, 19};
+  for (const auto method : {GeodesicMethod::heat, GeodesicMethod::exact}) {
+    const SurfaceDistances together = welded_distances(shape, method);
+    const SurfaceDistances alone = welded_distances(shape, method);
+    const Eigen::MatrixXd distances = together(sources);
+    EXPECT_EQ(together.computed(), 11);
+    for (std::size_t i = 0; i < sources.size(); ++i) {
+      EXPECT_EQ(distances.col(i), alone(sources[i])) << sources[i];
+    }
+  }
+}
+
+TEST(OneByOne, AsksInTheOrderGiven) {
+  std::vector<VertexIndex> asked;
+  const DistanceFunction distances = one_by_one([&asked](VertexIndex source) {
+    asked.push_back(source);
+    return Eigen::VectorXd(Eigen::VectorXd::Constant(2, source));
+  });
+  const std::vector<VertexIndex> sources = {5, 1, 5};
+  EXPECT_EQ(distances(sources), (Eigen::MatrixXd(2, 3) << 5, 1, 5, 5, 1, 5).finished());
+  EXPECT_EQ(asked, sources);
+}
+
 TEST(SurfaceDistances, AreTheSameFromSeveralThreads) {
   const Shape shape = test::sphere(2);
   const SurfaceDistances distances = welded_distances(shape);

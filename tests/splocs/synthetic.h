@@ -11,8 +11,10 @@
 /// surface.
 namespace mimetra::test {
 
+using DistanceFrom = std::function<Eigen::VectorXd(VertexIndex)>;
+
 /// Straight distances between the rest positions of a flat grid.
-inline DistanceFunction straight_distances(const Positions& rest) {
+inline DistanceFrom straight_distances(const Positions& rest) {
   return [rest](VertexIndex source) {
     return Eigen::VectorXd((rest.rowwise() - rest.row(source)).rowwise().norm());
   };
@@ -91,7 +93,7 @@ inline DecompositionOptions grid_options(const MeshSequence& sequence, int count
   options.d_min = 1;
   options.d_max = 6;
   options.tolerance = 0;
-  options.distances = straight_distances(sequence.rest());
+  options.distances = one_by_one(straight_distances(sequence.rest()));
   return options;
 }
 

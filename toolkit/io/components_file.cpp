@@ -222,6 +222,8 @@ void write_options(Writer& writer, const Components& components) {
   writer.attribute("admm_iterations", options.admm_iterations);
   writer.attribute("tolerance", options.tolerance);
   writer.attribute("nonnegative", options.nonnegative);
+  writer.attribute("single_precision", options.single_precision);
+  writer.attribute("compression", options.compression);
   writer.attribute("literal_sign_rule", options.sign_rule == SignRule::literal);
 }
 
@@ -237,6 +239,8 @@ void read_options(const Reader& reader, Components& components) {
   options.admm_iterations = reader.whole_attribute("admm_iterations", options.admm_iterations);
   options.tolerance = reader.attribute("tolerance", options.tolerance);
   options.nonnegative = reader.attribute("nonnegative", options.nonnegative) != 0;
+  options.single_precision = reader.attribute("single_precision", options.single_precision) != 0;
+  options.compression = reader.attribute("compression", options.compression);
   options.sign_rule =
       reader.attribute("literal_sign_rule", 0) != 0 ? SignRule::literal : SignRule::amplitude;
 }

@@ -80,7 +80,7 @@ RigidTransform transform_of(const Json& json) {
 SurfaceDistances distances_on(const Invocation& invocation, const Positions& rest,
                               const Triangles& triangles) {
   SurfaceDistances distances(rest, triangles, weld_of(invocation.parameters, rest),
-                             method_of(invocation.parameters));
+                             method_of(invocation.parameters), invocation.threads);
   if (distances.degenerate_triangles() > 0) {
     invocation.warn(std::to_string(distances.degenerate_triangles()) +
                     " triangles without area were left out of the geodesic distances");
@@ -148,6 +148,18 @@ std::vector<Parameter> decomposition_parameters(int count) {
       {"tolerance", ParameterKind::number, 1e-4,
        "stop when the energy changes by less than this share; 0 runs all iterations", "", 0, 1},
       {"signed", ParameterKind::flag, false, "allow negative weights"},
+      {"precision",
+       ParameterKind::choice,
+       "double",
+       "of the iterations; single is off by some 1e-4 of a component",
+       "",
+       {},
+       {},
+       {"double", "single"}},
+      {"compress", ParameterKind::number, 0.0,
+       "iterate on as few poses over time as leave out at most this share of the motion; 0 iterates "
+       "on all frames",
+       "", 0, 0.5},
       {"compat",
        ParameterKind::choice,
        "none",
@@ -260,6 +272,8 @@ Analysis analyse(const Invocation& invocation, const SequenceRead& read,
   options.tolerance = reference ? 0 : parameters.number("tolerance");
   options.nonnegative = !parameters.flag("signed");
   options.sign_rule = reference ? SignRule::literal : SignRule::amplitude;
+  options.single_precision = parameters.text("precision") == "single";
+  options.compression = parameters.number("compress");
   options.distances = distances;
   options.threads = invocation.threads;
   options.progress = progress;

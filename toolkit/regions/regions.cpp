@@ -63,14 +63,18 @@ std::vector<int> living_components(const Components& components, const Eigen::Ve
 /// surface, across a seam.
 std::vector<Site> sites_of(const Components& components, const DistanceFunction& distances) {
   const Eigen::VectorXd energies = motion_energy(components);
+  const std::vector<int> living = living_components(components, energies);
+  std::vector<VertexIndex> centers;
+  for (const int k : living) centers.push_back(components.centers[k]);
+  const Eigen::MatrixXd from_centers = distances(centers);
   std::vector<Site> sites;
-  for (const int k : living_components(components, energies)) {
-    const VertexIndex center = components.centers[k];
-    const auto same = std::ranges::find_if(sites, [center](const Site& site) {
+  for (std::size_t i = 0; i < living.size(); ++i) {
+    const int k = living[i];
+    const auto same = std::ranges::find_if(sites, [center = centers[i]](const Site& site) {
       return site.center == center || site.distances[center] == 0;
     });
     if (same == sites.end()) {
-      sites.push_back({{k}, center, energies[k], distances(center)});
+      sites.push_back({{k}, centers[i], energies[k], from_centers.col(static_cast<int>(i))});
     } else {
       same->components.push_back(k);
       same->energy += energies[k];

@@ -1,9 +1,8 @@
 #include <mimetra/splocs/component_update.h>
 
-#include <algorithm>
-#include <cmath>
+#include <functional>
+#include <limits>
 #include <utility>
-#include <vector>
 
 #include <Eigen/Cholesky>
 
@@ -12,136 +11,142 @@
 namespace mimetra {
 namespace {
 
-// Vertices in a block: its columns of X, C, Z and U fit into a core's cache for a few hundred
-// frames, and its products are still wide enough to be fast. Fixed, so that sums round the same
-// everywhere.
-constexpr Eigen::Index kBlockVertices = 64;
-// Blocks that one thread takes together, with sums of their own.
-constexpr Eigen::Index kRangeVertices = 8 * kBlockVertices;
+template <typename Scalar>
+using Matrix = Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic>;
 
 /// The constant part of an ADMM step: C = (W^T W + rho I)^-1 (W^T X + rho (Z - U)).
+template <typename Scalar>
 struct StepMatrices {
-  Eigen::MatrixXd of_data;       ///< (W^T W + rho I)^-1 W^T, K x F
-  Eigen::MatrixXd of_splitting;  ///< rho (W^T W + rho I)^-1, K x K
-};
+  Matrix<Scalar> of_data;       ///< (W^T W + rho I)^-1 W^T, K x R
+  Matrix<Scalar> of_splitting;  ///< rho (W^T W + rho I)^-1, K x K
 
-StepMatrices step_matrices(const Eigen::MatrixXd& W, double rho) {
-  const Eigen::Index K = W.cols();
-  Eigen::MatrixXd system = W.transpose() * W;
-  system.diagonal().array() += rho;
-  // Safe to invert: every eigenvalue is at least rho, and W has entries of at most 1.
-  const Eigen::LLT<Eigen::MatrixXd> factor(system);
-  return {factor.solve(W.transpose()), rho * factor.solve(Eigen::MatrixXd::Identity(K, K))};
-}
-
-/// The two variables that ADMM adds, on one block of vertices (K x 3n).
-struct Splitting {
-  Frames Z, U;
-
-  /// Z = prox(V), each vertex's vector shortened by its threshold (K x n), and U = V - Z.
-  void shrink(const Frames& V, const Eigen::Ref<const Eigen::MatrixXd>& thresholds) {
-    for (Eigen::Index k = 0; k < V.rows(); ++k) {
-      for (Eigen::Index i = 0; i < thresholds.cols(); ++i) {
-        const auto v = V.row(k).segment<3>(3 * i);
-        const double threshold = thresholds(k, i), length2 = v.squaredNorm();
-        double kept = 1;
-        if (threshold > 0) {
-          kept = length2 > threshold * threshold ? 1 - threshold / std::sqrt(length2) : 0;
-        }
-        Z.row(k).segment<3>(3 * i) = kept * v;
-        U.row(k).segment<3>(3 * i) = v - kept * v;
-      }
-    }
+  StepMatrices(const UpdateWeights& W, double rho) {
+    Eigen::MatrixXd system = W.gram;
+    system.diagonal().array() += rho;
+    // Safe to invert: every eigenvalue is at least rho, and W has entries of at most 1.
+    const Eigen::LLT<Eigen::MatrixXd> factor(system);
+    const auto K = system.rows();
+    of_data = factor.solve(W.rows.transpose()).template cast<Scalar>();
+    of_splitting = (rho * factor.solve(Eigen::MatrixXd::Identity(K, K))).template cast<Scalar>();
   }
 };
 
-double penalty(const Frames& C, const Eigen::Ref<const Eigen::MatrixXd>& support) {
-  double sum = 0;
-  for (Eigen::Index k = 0; k < C.rows(); ++k) {
-    for (Eigen::Index i = 0; i < support.cols(); ++i) {
-      sum += support(k, i) * C.row(k).segment<3>(3 * i).norm();
-    }
-  }
-  return sum;
+/// Lengths of a row's n displacement vectors.
+template <typename Row>
+auto lengths(const Row& row, Eigen::Index n) {
+  return (row.segment(0, n).square() + row.segment(n, n).square() + row.segment(2 * n, n).square())
+      .sqrt();
 }
 
-/// What a range of vertices adds to a ComponentUpdate's sums.
+/// Z = prox(V), each vertex's vector shortened by its threshold (K x n), and U = V - Z.
+template <typename Block>
+void shrink(const Block& V, const Block& thresholds, Block& Z, Block& U) {
+  using Scalar = typename Block::Scalar;
+  // Longer than this, or nothing of it is kept; it keeps 0 / 0 away.
+  constexpr Scalar kShortest = std::numeric_limits<Scalar>::min();
+  const Eigen::Index n = thresholds.cols();
+  Eigen::Array<Scalar, 1, Eigen::Dynamic> kept(n);
+  for (Eigen::Index k = 0; k < V.rows(); ++k) {
+    const auto v = V.row(k).array();
+    kept = (1 - thresholds.row(k).array() / lengths(v, n).max(kShortest)).max(Scalar(0));
+    for (const Eigen::Index axis : {Eigen::Index(0), n, 2 * n}) {
+      Z.row(k).segment(axis, n).array() = kept * v.segment(axis, n);
+    }
+  }
+  U = V - Z;
+}
+
+/// What a block adds to a ComponentUpdate's sums.
+template <typename Scalar>
 struct Sums {
-  Eigen::MatrixXd P, H;
+  Matrix<Scalar> P, H;
   double penalty = 0;
-
-  Sums(Eigen::Index frames, Eigen::Index K)
-      : P(Eigen::MatrixXd::Zero(frames, K)), H(Eigen::MatrixXd::Zero(K, K)) {}
-
-  void add(const Eigen::Ref<const Frames>& X, const Frames& C) {
-    P.noalias() += X * C.transpose();
-    H.noalias() += C * C.transpose();
-  }
 };
 
-/// All ADMM steps on the vertices first .. last - 1 of `update`, which writes to no others.
-Sums update_range(ComponentUpdate& update, const Frames& X, const Eigen::MatrixXd& support,
-                  const StepMatrices& step, const AdmmOptions& options, Eigen::Index begin,
-                  Eigen::Index end) {
-  Sums sums(X.rows(), update.C.rows());
-  for (Eigen::Index first = begin; first < end; first += kBlockVertices) {
-    const Eigen::Index count = std::min(kBlockVertices, end - first);
-    const auto X_block = X.middleCols(3 * first, 3 * count);
-    const auto support_block = support.middleCols(first, count);
-    const Eigen::MatrixXd thresholds = options.sparsity / options.rho * support_block;
-    const Frames of_data = step.of_data * X_block;
-    Splitting splitting{update.C.middleCols(3 * first, 3 * count),
-                        update.U.middleCols(3 * first, 3 * count)};
-    Frames difference, V;
-    for (int s = 0; s < options.steps; ++s) {
-      difference = splitting.Z - splitting.U;
-      V = of_data + splitting.U;
-      V.noalias() += step.of_splitting * difference;
-      splitting.shrink(V, thresholds);
-    }
-    // C = Z in the end: only Z has exact zeros.
-    update.C.middleCols(3 * first, 3 * count) = splitting.Z;
-    update.U.middleCols(3 * first, 3 * count) = splitting.U;
-    sums.add(X_block, splitting.Z);
-    sums.penalty += options.sparsity * penalty(splitting.Z, support_block);
+template <typename Block>
+Sums<typename Block::Scalar> products(const Block& X, const Block& C) {
+  return {X * C.transpose(), C * C.transpose()};
+}
+
+/// Calls `work` for all blocks and adds up what it returns, in their order.
+template <typename Scalar>
+void sum_over_blocks(ComponentUpdate<Scalar>& update, const VertexBlocks<Scalar>& X, int threads,
+                     const std::function<Sums<Scalar>(int)>& work) {
+  std::vector<Sums<Scalar>> parts(X.count());
+  parallel_for(X.count(), threads, [&](int b) { parts[b] = work(b); });
+  const Eigen::Index K = update.C.rows();
+  update.P = Eigen::MatrixXd::Zero(X.rows(), K);
+  update.H = Eigen::MatrixXd::Zero(K, K);
+  update.penalty = 0;
+  for (const Sums<Scalar>& part : parts) {
+    update.P += part.P.template cast<double>();
+    update.H += part.H.template cast<double>();
+    update.penalty += part.penalty;
   }
-  return sums;
+}
+
+/// All ADMM steps on one block of components `C` and their dual variable `U` (K x 3n).
+template <typename Scalar, typename Block>
+void run_admm(const Block& X, const StepMatrices<Scalar>& step, const Block& thresholds, int steps,
+              Block& C, Block& U) {
+  const Block of_data = step.of_data * X;
+  Block difference, V;
+  for (int s = 0; s < steps; ++s) {
+    difference = C - U;
+    V = of_data + U;
+    V.noalias() += step.of_splitting * difference;
+    // The components are Z in the end: only Z has exact zeros.
+    shrink(V, thresholds, C, U);
+  }
 }
 
 }  // namespace
 
-ComponentUpdate initial_components(const Frames& X, Frames components) {
-  ComponentUpdate initial;
+template <typename Scalar>
+ComponentUpdate<Scalar> initial_components(const VertexBlocks<Scalar>& X,
+                                           VertexBlocks<Scalar> components, int threads) {
+  ComponentUpdate<Scalar> initial;
   initial.C = std::move(components);
-  initial.U = Frames::Zero(initial.C.rows(), initial.C.cols());
-  initial.P = X * initial.C.transpose();
-  initial.H = initial.C * initial.C.transpose();
+  initial.U = VertexBlocks<Scalar>(initial.C.rows(), initial.C.vertices());
+  sum_over_blocks<Scalar>(initial, X, threads, [&](int b) {
+    initial.U[b] = initial.U.zero_block(b);
+    return products(X[b], initial.C[b]);
+  });
   return initial;
 }
 
-ComponentUpdate updated_components(const Frames& X, const Eigen::MatrixXd& W,
-                                   const Eigen::MatrixXd& support, ComponentUpdate last,
-                                   const AdmmOptions& options) {
-  const StepMatrices step = step_matrices(W, options.rho);
-  ComponentUpdate update = std::move(last);
-  const Eigen::Index vertices = support.cols();
-  const auto ranges = static_cast<int>((vertices + kRangeVertices - 1) / kRangeVertices);
-  std::vector<Sums> sums(static_cast<std::size_t>(ranges), Sums(0, 0));
-  parallel_for(ranges, options.threads, [&](int range) {
-    const Eigen::Index begin = range * kRangeVertices;
-    const Eigen::Index end = std::min(begin + kRangeVertices, vertices);
-    sums[static_cast<std::size_t>(range)] =
-        update_range(update, X, support, step, options, begin, end);
+template <typename Scalar>
+ComponentUpdate<Scalar> updated_components(const VertexBlocks<Scalar>& X, const UpdateWeights& W,
+                                           const Frames& support, ComponentUpdate<Scalar> last,
+                                           const AdmmOptions& options) {
+  using Block = typename VertexBlocks<Scalar>::Block;
+  const StepMatrices<Scalar> step(W, options.rho);
+  ComponentUpdate<Scalar> update = std::move(last);
+  sum_over_blocks<Scalar>(update, X, options.threads, [&](int b) {
+    const Eigen::Index n = X.size(b);
+    const Block Lambda =
+        (options.sparsity * support.middleCols(X.first(b), n)).template cast<Scalar>();
+    Block& C = update.C[b];
+    run_admm<Scalar, Block>(X[b], step, Lambda / Scalar(options.rho), options.steps, C,
+                            update.U[b]);
+    Sums<Scalar> sums = products(X[b], C);
+    for (Eigen::Index k = 0; k < C.rows(); ++k) {
+      sums.penalty += (Lambda.row(k).array() * lengths(C.row(k).array(), n)).sum();
+    }
+    return sums;
   });
-  update.P = Eigen::MatrixXd::Zero(X.rows(), update.C.rows());
-  update.H = Eigen::MatrixXd::Zero(update.C.rows(), update.C.rows());
-  update.penalty = 0;
-  for (const Sums& part : sums) {
-    update.P += part.P;
-    update.H += part.H;
-    update.penalty += part.penalty;
-  }
   return update;
 }
+
+template ComponentUpdate<double> initial_components(const VertexBlocks<double>&,
+                                                    VertexBlocks<double>, int);
+template ComponentUpdate<float> initial_components(const VertexBlocks<float>&, VertexBlocks<float>,
+                                                   int);
+template ComponentUpdate<double> updated_components(const VertexBlocks<double>&,
+                                                    const UpdateWeights&, const Frames&,
+                                                    ComponentUpdate<double>, const AdmmOptions&);
+template ComponentUpdate<float> updated_components(const VertexBlocks<float>&, const UpdateWeights&,
+                                                   const Frames&, ComponentUpdate<float>,
+                                                   const AdmmOptions&);
 
 }  // namespace mimetra

@@ -7,8 +7,10 @@
 #include <utility>
 
 #include <mimetra/splocs/component_update.h>
+#include <mimetra/splocs/motion.h>
 #include <mimetra/splocs/start.h>
 #include <mimetra/splocs/support_maps.h>
+#include <mimetra/splocs/time_basis.h>
 #include <mimetra/splocs/weights.h>
 
 namespace mimetra {
@@ -38,6 +40,10 @@ void require_valid(const DecompositionOptions& options) {
           "admm_iterations is " + std::to_string(options.admm_iterations) + "; at least 1");
   require(options.tolerance >= 0,
           "tolerance is " + std::to_string(options.tolerance) + "; it must be 0 or more");
+  require(options.compression == 0 ||
+              (options.compression >= kLeastCompression && options.compression < 1),
+          "compression is " + std::to_string(options.compression) +
+              "; it must be 0, or from 1e-6 to below 1");
 }
 
 void require_valid(double d_min, double d_max) {
@@ -58,36 +64,16 @@ void require_decomposable(const MeshSequence& sequence, int count) {
   }
   require(sequence.rest().allFinite(),
           "the rest pose has a coordinate that is not a finite number");
-  for (int f = 0; f < sequence.frames(); ++f) {
-    require(sequence.positions().row(f).allFinite(),
-            "frame " + std::to_string(f) + " has a coordinate that is not a finite number");
-  }
 }
 
-/// Displacements from the rest pose, X, divided by their standard deviation.
-struct ScaledMotion {
-  Frames X;
-  double scale;
-};
-
-ScaledMotion scaled_motion(const MeshSequence& sequence) {
-  const Eigen::Map<const Eigen::RowVectorXd> rest(sequence.rest().data(), sequence.rest().size());
-  Frames X = sequence.positions().rowwise() - rest;
-  const double scale = std::sqrt((X.array() - X.mean()).square().mean());
-  if (scale == 0) {
-    throw MismatchError("nothing moves: all " + std::to_string(sequence.frames()) +
-                        " frames are the rest pose");
-  }
-  X /= scale;
-  return {std::move(X), scale};
-}
-
-/// ||X - W C||^2 + penalty without the residual. The terms cancel down to the data's own rounding,
-/// 1e-16 of ||X||^2, which an exact fit leaves with either sign.
-double energy(double X_norm2, const Eigen::MatrixXd& W, const ComponentUpdate& components) {
-  const double mixed = W.cwiseProduct(components.P).sum();
-  const double square = (W.transpose() * W).cwiseProduct(components.H).sum();
-  return std::max(0.0, X_norm2 - 2 * mixed + square) + components.penalty;
+/// ||X - W C||^2 + penalty without the residual, from P = X C^T (F x K), H = C C^T and W^T W. The
+/// terms cancel down to the data's own rounding, 1e-16 of ||X||^2, which an exact fit leaves with
+/// either sign.
+double energy(double X_norm2, const Eigen::MatrixXd& W, const Eigen::MatrixXd& gram,
+              const Eigen::MatrixXd& P, const Eigen::MatrixXd& H, double penalty) {
+  const double mixed = W.cwiseProduct(P).sum();
+  const double square = gram.cwiseProduct(H).sum();
+  return std::max(0.0, X_norm2 - 2 * mixed + square) + penalty;
 }
 
 /// `progress` for a part of the work: its 0 .. 1 becomes first .. last.
@@ -98,26 +84,54 @@ Progress part_of(const Progress& progress, double first, double last) {
 }
 
 /// Alternates between weights and components; fills displacements, weights, support and energies.
-void alternate(Components& result, const Frames& X, Start start, SupportMaps support,
+/// `X` are the motion's frames, or their coordinates in `basis` where there is one.
+template <typename Scalar>
+void alternate(Components& result, double X_norm2, const VertexBlocks<Scalar>& X,
+               const std::optional<TimeBasis>& basis, Start start, SupportMaps support,
                const Progress& progress) {
   const DecompositionOptions& options = result.options;
   const AdmmOptions admm{options.sparsity, options.rho, options.admm_iterations, options.threads};
-  const double X_norm2 = X.squaredNorm();
+  const auto over_frames = [&basis](const Eigen::MatrixXd& P) -> Eigen::MatrixXd {
+    return basis ? Eigen::MatrixXd(basis->Q * P) : P;
+  };
   Eigen::MatrixXd W = std::move(start.weights);
-  ComponentUpdate components = initial_components(X, std::move(start.components));
+  ComponentUpdate<Scalar> components =
+      initial_components(X, std::move(start.components).template cast<Scalar>(), options.threads);
+  Eigen::MatrixXd P = over_frames(components.P);
   for (int iteration = 0; iteration < options.iterations; ++iteration) {
     report_progress(progress, static_cast<double>(iteration) / options.iterations);
-    W = updated_weights(std::move(W), components.P, components.H, options.nonnegative);
+    W = updated_weights(std::move(W), P, components.H, options.nonnegative);
+    const UpdateWeights weights{basis ? Eigen::MatrixXd(basis->Q.transpose() * W) : W,
+                                W.transpose() * W};
     support.follow(components.C);
-    components = updated_components(X, W, support.maps(), std::move(components), admm);
-    result.energies.push_back(energy(X_norm2, W, components));
+    components = updated_components(X, weights, support.maps(), std::move(components), admm);
+    P = over_frames(components.P);
+    result.energies.push_back(
+        energy(X_norm2, W, weights.gram, P, components.H, components.penalty));
     if (iteration == 0 || options.tolerance == 0) continue;
     const double last = result.energies[iteration - 1];
     if (std::abs(last - result.energies[iteration]) <= options.tolerance * last) break;
   }
-  result.displacements = std::move(components.C);
+  result.displacements = components.C.frames();
   result.weights = std::move(W);
   result.support = support.maps();
+}
+
+/// The motion in the precision and the basis that the options want, from the start on.
+void iterate(Components& result, const Motion& motion, Start start, SupportMaps support,
+             const Progress& progress) {
+  const DecompositionOptions& options = result.options;
+  const std::optional<TimeBasis> basis =
+      options.compression > 0
+          ? time_basis(motion.X, motion.norm2, options.compression, options.threads)
+          : std::nullopt;
+  const VertexBlocks<double>& X = basis ? basis->B : motion.X;
+  if (options.single_precision) {
+    alternate(result, motion.norm2, X.cast<float>(), basis, std::move(start), std::move(support),
+              progress);
+  } else {
+    alternate(result, motion.norm2, X, basis, std::move(start), std::move(support), progress);
+  }
 }
 
 /// Finds each component's centre. A component needs both weights and displacements: with one of
@@ -149,17 +163,18 @@ Components decompose(const MeshSequence& sequence, const DecompositionOptions& o
   result.options.distances = nullptr;
   result.options.progress = nullptr;
 
-  const ScaledMotion motion = scaled_motion(sequence);
+  const Motion motion = scaled_motion(sequence, options.threads);
   result.scale = motion.scale;
   const DistanceFunction distances =
       options.distances ? options.distances
-                        : SurfaceDistances(result.rest, result.triangles, Weld::exact(result.rest));
+                        : SurfaceDistances(result.rest, result.triangles, Weld::exact(result.rest),
+                                           GeodesicMethod::heat, options.threads);
   const SupportFunction support =
       support_function(distances, sequence.vertices(), result.d_min, result.d_max);
   Start start = greedy_start(motion.X, support, options, part_of(options.progress, 0, kStartShare));
-  alternate(result, motion.X, std::move(start),
-            SupportMaps(support, options.count, sequence.vertices()),
-            part_of(options.progress, kStartShare, 1));
+  iterate(result, motion, std::move(start),
+          SupportMaps(support, options.count, sequence.vertices()),
+          part_of(options.progress, kStartShare, 1));
   finish(result);
   report_progress(options.progress, 1);
   return result;

@@ -34,6 +34,11 @@ struct DecompositionOptions {
   /// Keep weights >= 0; otherwise they are signed, with max |w| = 1.
   bool nonnegative = true;
   SignRule sign_rule = SignRule::amplitude;
+  /// Iterate on the motion's coordinates in as few poses over time as keep its Frobenius norm up to
+  /// this share, at least kLeastCompression; 0 iterates on all frames. The start always does.
+  double compression = 0;
+  /// Iterate in single precision. The start is in double precision in any case.
+  bool single_precision = false;
   /// Distances along the rest pose; by default SurfaceDistances of its exactly welded vertices.
   DistanceFunction distances = {};
   /// 0 for all there are; the result does not depend on it.

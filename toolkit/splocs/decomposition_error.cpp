@@ -85,12 +85,19 @@ Eigen::VectorXd energy_radius(const Components& components, const DistanceFuncti
   if (!(share > 0 && share <= 1)) {
     throw std::invalid_argument("share is " + std::to_string(share) + "; it must be in (0, 1]");
   }
-  Eigen::VectorXd radius = Eigen::VectorXd::Zero(components.count());
+  std::vector<int> alive;
+  std::vector<VertexIndex> centers;
   for (int k = 0; k < components.count(); ++k) {
-    const VertexIndex center = components.centers[k];
-    if (center < 0) continue;
-    radius[k] =
-        radius_holding(share, vertex_energies(components.displacements.row(k)), distances(center));
+    if (components.centers[k] < 0) continue;
+    alive.push_back(k);
+    centers.push_back(components.centers[k]);
+  }
+  const Eigen::MatrixXd from_centers = distances(centers);
+  Eigen::VectorXd radius = Eigen::VectorXd::Zero(components.count());
+  for (std::size_t i = 0; i < alive.size(); ++i) {
+    radius[alive[i]] =
+        radius_holding(share, vertex_energies(components.displacements.row(alive[i])),
+                       from_centers.col(static_cast<Eigen::Index>(i)));
   }
   return radius;
 }

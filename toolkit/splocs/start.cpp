@@ -5,6 +5,7 @@
 
 #include <Eigen/Eigenvalues>
 
+#include <mimetra/mesh/parallel.h>
 #include <mimetra/splocs/weights.h>
 
 namespace mimetra {
@@ -18,14 +19,27 @@ constexpr double kNothingLeft = 1e-24;
 // would decide between them.
 constexpr double kSameNorm = 1e-9;
 
+/// Sums over x, y and z of the columns of a block (3n): one a vertex (n).
+Eigen::VectorXd sums_over_axes(const Eigen::RowVectorXd& columns) {
+  return columns.reshaped(columns.size() / 3, 3).rowwise().sum();
+}
+
 /// X - W C at the start: kept as X and the components so far, never as a matrix.
 class Residual {
  public:
-  Residual(const Frames& X, int count)
+  Residual(const VertexBlocks<double>& X, int count, int threads)
       : X_(X),
-        start_{{}, Frames::Zero(count, X.cols()), Eigen::MatrixXd::Zero(X.rows(), count)},
-        energies_(vertex_energies_over_time(X)),
-        nothing_left_(kNothingLeft * energies_.maxCoeff()) {}
+        start_{{}, {count, X.vertices()}, Eigen::MatrixXd::Zero(X.rows(), count)},
+        energies_(X.vertices()),
+        threads_(threads) {
+    parallel_for(X.count(), threads, [this](int b) {
+      start_.components[b] = start_.components.zero_block(b);
+      Eigen::RowVectorXd squares = Eigen::RowVectorXd::Zero(X_[b].cols());
+      for (const auto& frame : X_[b].rowwise()) squares += frame.cwiseAbs2();
+      energies_.segment(X_.first(b), X_.size(b)) = sums_over_axes(squares);
+    });
+    nothing_left_ = kNothingLeft * energies_.maxCoeff();
+  }
 
   /// The vertex with the largest residual energy, or -1 where nothing is left.
   VertexIndex strongest() {
@@ -43,10 +57,9 @@ class Residual {
   /// Residual of vertex v (F x 3). The components are subtracted one by one: X - W C in one go
   /// rounds differently where they cancel, which shows in the weights.
   Eigen::MatrixX3d at(VertexIndex v) const {
-    Eigen::MatrixX3d residual = X_.middleCols(3 * v, 3);
-    for (int k = 0; k < size(); ++k) {
-      residual -= start_.weights.col(k) * start_.components.row(k).segment(3 * v, 3);
-    }
+    Eigen::MatrixX3d residual = X_.vertex(v);
+    const Eigen::MatrixX3d components = start_.components.vertex(v);
+    for (int k = 0; k < size(); ++k) residual -= start_.weights.col(k) * components.row(k);
     return residual;
   }
 
@@ -55,13 +68,15 @@ class Residual {
     const int k = size();
     const double ww = w.squaredNorm();
     const Eigen::VectorXd overlap = start_.weights.leftCols(k).transpose() * w;
-    Eigen::RowVectorXd wR = w.transpose() * X_;
-    wR.noalias() -= overlap.transpose() * start_.components.topRows(k);
-    const Eigen::ArrayXd inside = 1 - support.array();
-    energies_.array() -= (2 * inside - inside.square()) * vertex_energies(wR).array() / ww;
-    for (Eigen::Index v = 0; v < inside.size(); ++v) {
-      start_.components.row(k).segment(3 * v, 3) = wR.segment(3 * v, 3) * (inside[v] / ww);
-    }
+    parallel_for(X_.count(), threads_, [&](int b) {
+      VertexBlocks<double>::Block& C = start_.components[b];
+      Eigen::RowVectorXd wR = w.transpose() * X_[b];
+      wR.noalias() -= overlap.transpose() * C.topRows(k);
+      const Eigen::ArrayXd share = 1 - support.segment(X_.first(b), X_.size(b)).array();
+      energies_.segment(X_.first(b), X_.size(b)).array() -=
+          (2 * share - share.square()) * sums_over_axes(wR.array().square()).array() / ww;
+      C.row(k) = wR.array() * share.transpose().replicate(1, 3) / ww;
+    });
     start_.weights.col(k) = w;
     start_.centers.push_back(center);
   }
@@ -72,18 +87,13 @@ class Residual {
   }
 
  private:
-  static Eigen::VectorXd vertex_energies_over_time(const Frames& X) {
-    Eigen::VectorXd energies = Eigen::VectorXd::Zero(X.cols() / 3);
-    for (Eigen::Index f = 0; f < X.rows(); ++f) energies += vertex_energies(X.row(f));
-    return energies;
-  }
-
   int size() const { return static_cast<int>(start_.centers.size()); }
 
-  const Frames& X_;
+  const VertexBlocks<double>& X_;
   Start start_;
   Eigen::VectorXd energies_;
-  double nothing_left_;
+  int threads_;
+  double nothing_left_ = 0;
 };
 
 /// First left singular vector of an F x 3 matrix times its singular value.
@@ -114,16 +124,16 @@ Eigen::VectorXd oriented_weights(const Eigen::VectorXd& w, SignRule rule, bool n
   return feasible_weights(prefers_negative(w) ? Eigen::VectorXd(-w) : w, nonnegative);
 }
 
-Start greedy_start(const Frames& X, const SupportFunction& support,
+Start greedy_start(const VertexBlocks<double>& X, const SupportFunction& support,
                    const DecompositionOptions& options, const Progress& progress) {
-  Residual residual(X, options.count);
+  Residual residual(X, options.count, options.threads);
   for (int k = 0; k < options.count; ++k) {
     report_progress(progress, static_cast<double>(k) / options.count);
     const VertexIndex center = residual.strongest();
     if (center < 0) break;
     const Eigen::VectorXd w = oriented_weights(strongest_motion(residual.at(center)),
                                                options.sign_rule, options.nonnegative);
-    residual.explain(center, w, support(center));
+    residual.explain(center, w, support({&center, 1}).col(0));
   }
   return std::move(residual).start();
 }

@@ -10,7 +10,7 @@ namespace mimetra {
 /// Where the alternation of the decomposition begins.
 struct Start {
   std::vector<VertexIndex> centers;  ///< vertex that each component was made for (K); -1: none left
-  Frames components;                 ///< C, K x 3N; zero where none was left
+  VertexBlocks<double> components;   ///< C, K x 3N; zero where none was left
   Eigen::MatrixXd weights;           ///< W, F x K, feasible; zero where none was left
 };
 
@@ -19,7 +19,7 @@ struct Start {
 /// `progress` with shares of the start.
 ///
 /// [Neumann et al. Sparse Localized Deformation Components. ACM TOG 32(6), 2013], section 4.2
-Start greedy_start(const Frames& X, const SupportFunction& support,
+Start greedy_start(const VertexBlocks<double>& X, const SupportFunction& support,
                    const DecompositionOptions& options, const Progress& progress = {});
 
 /// Feasible weights of a start from `w` (F) or from -w, whichever `rule` prefers.

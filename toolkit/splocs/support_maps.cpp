@@ -26,29 +26,47 @@ Eigen::VectorXd vertex_energies(const Eigen::Ref<const Eigen::RowVectorXd>& comp
 
 SupportFunction support_function(DistanceFunction distances, int vertices, double d_min,
                                  double d_max) {
-  return [distances = std::move(distances), vertices, d_min, d_max](VertexIndex center) {
-    const Eigen::VectorXd from_center = distances(center);
-    if (from_center.size() != vertices) {
-      throw std::invalid_argument("distances from vertex " + std::to_string(center) + ": " +
-                                  std::to_string(from_center.size()) + " values for " +
-                                  std::to_string(vertices) + " vertices");
+  return [distances = std::move(distances), vertices, d_min,
+          d_max](std::span<const VertexIndex> centers) {
+    Eigen::MatrixXd maps = distances(centers);
+    if (maps.rows() != vertices || maps.cols() != static_cast<Eigen::Index>(centers.size())) {
+      throw std::invalid_argument(
+          "distances from " + std::to_string(centers.size()) + " of " + std::to_string(vertices) +
+          " vertices: " + std::to_string(maps.rows()) + " x " + std::to_string(maps.cols()) +
+          " values, expected one row a vertex and one column a source");
     }
-    return geodesic::support_map(from_center, d_min, d_max);
+    for (auto map : maps.colwise()) map = geodesic::support_map(map, d_min, d_max);
+    return maps;
   };
 }
 
 SupportMaps::SupportMaps(SupportFunction support, int components, int vertices)
     : support_(std::move(support)),
       centers_(components, -1),
-      maps_(Eigen::MatrixXd::Ones(components, vertices)) {}
+      maps_(Frames::Ones(components, vertices)) {}
 
-void SupportMaps::follow(const Frames& components) {
+template <typename Scalar>
+void SupportMaps::follow(const VertexBlocks<Scalar>& components) {
+  Eigen::VectorXd energies(components.vertices());
+  std::vector<Eigen::Index> moved;
+  std::vector<VertexIndex> moved_to;
   for (Eigen::Index k = 0; k < components.rows(); ++k) {
-    const VertexIndex center = strongest_vertex(vertex_energies(components.row(k)));
+    for (int b = 0; b < components.count(); ++b) {
+      energies.segment(components.first(b), components.size(b)) =
+          components.by_vertex(components[b], k).rowwise().squaredNorm().template cast<double>();
+    }
+    const VertexIndex center = strongest_vertex(energies);
     if (center < 0 || center == centers_[k]) continue;
     centers_[k] = center;
-    maps_.row(k) = support_(center);
+    moved.push_back(k);
+    moved_to.push_back(center);
   }
+  if (moved.empty()) return;
+  const Eigen::MatrixXd maps = support_(moved_to);
+  for (std::size_t i = 0; i < moved.size(); ++i) maps_.row(moved[i]) = maps.col(i);
 }
+
+template void SupportMaps::follow(const VertexBlocks<double>&);
+template void SupportMaps::follow(const VertexBlocks<float>&);
 
 }  // namespace mimetra

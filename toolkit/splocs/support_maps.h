@@ -1,9 +1,11 @@
 #pragma once
 
 #include <functional>
+#include <span>
 #include <vector>
 
 #include <mimetra/splocs/surface_distances.h>
+#include <mimetra/splocs/vertex_blocks.h>
 
 namespace mimetra {
 
@@ -14,8 +16,8 @@ VertexIndex strongest_vertex(const Eigen::Ref<const Eigen::VectorXd>& energies);
 /// Squared length of each vertex's displacement in one component (3N): N.
 Eigen::VectorXd vertex_energies(const Eigen::Ref<const Eigen::RowVectorXd>& component);
 
-/// Support map (N) around a vertex.
-using SupportFunction = std::function<Eigen::VectorXd(VertexIndex)>;
+/// Support maps around some vertices (S), N x S.
+using SupportFunction = std::function<Eigen::MatrixXd(std::span<const VertexIndex>)>;
 
 /// Support maps of distances between `d_min` and `d_max` (lengths). The function throws
 /// std::invalid_argument where `distances` gives another count than `vertices`.
@@ -29,15 +31,16 @@ class SupportMaps {
 
   /// Moves each map to the strongest vertex of its component, row k of `components` (K x 3N). A
   /// component that is zero keeps its map.
-  void follow(const Frames& components);
+  template <typename Scalar>
+  void follow(const VertexBlocks<Scalar>& components);
 
   /// K x N; 1 everywhere in a map that had no component to follow.
-  const Eigen::MatrixXd& maps() const { return maps_; }
+  const Frames& maps() const { return maps_; }
 
  private:
   SupportFunction support_;
   std::vector<VertexIndex> centers_;
-  Eigen::MatrixXd maps_;
+  Frames maps_;
 };
 
 }  // namespace mimetra

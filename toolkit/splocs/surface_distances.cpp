@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <future>
 #include <map>
 #include <mutex>
 #include <stdexcept>
@@ -7,6 +6,7 @@
 #include <vector>
 
 #include <mimetra/geodesic/exact_geodesics.h>
+#include <mimetra/mesh/parallel.h>
 #include <mimetra/splocs/surface_distances.h>
 
 namespace mimetra {
@@ -15,23 +15,23 @@ namespace {
 /// A method with its mesh.
 struct Geodesics {
   DistanceFunction distances;
+  /// Sources that are best asked for together.
+  int group = 1;
   int degenerate_triangles = 0;
   std::vector<VertexIndex> vertices_without_face;
 };
 
-template <typename Method>
-Geodesics geodesics_of(std::shared_ptr<const Method> method) {
-  return {[method](VertexIndex source) { return method->distances(source); },
-          method->degenerate_triangles(), method->vertices_without_face()};
-}
-
 Geodesics prepared(const Positions& positions, const Triangles& triangles, GeodesicMethod method) {
   if (method == GeodesicMethod::exact) {
-    return geodesics_of(std::make_shared<const geodesic::ExactGeodesics>(positions, triangles));
+    const auto exact = std::make_shared<const geodesic::ExactGeodesics>(positions, triangles);
+    return {one_by_one([exact](VertexIndex source) { return exact->distances(source); }), 1,
+            exact->degenerate_triangles(), exact->vertices_without_face()};
   }
   const geodesic::HeatOptions options{.intrinsic_delaunay = method == GeodesicMethod::heat};
-  return geodesics_of(
-      std::make_shared<const geodesic::HeatGeodesics>(positions, triangles, options));
+  const auto heat = std::make_shared<const geodesic::HeatGeodesics>(positions, triangles, options);
+  return {
+      [heat](std::span<const VertexIndex> sources) { return heat->distances_from_each(sources); },
+      geodesic::HeatGeodesics::kGroup, heat->degenerate_triangles(), heat->vertices_without_face()};
 }
 
 void check_size(const Positions& positions, const Weld& weld) {
@@ -49,26 +49,60 @@ Triangles welded(const Triangles& triangles, const Weld& weld) {
   });
 }
 
-/// Every vertex takes the distance of the one that stands for it.
-Eigen::VectorXd spread(const Eigen::VectorXd& distances, const Weld& weld) {
-  return distances(weld.representative);
-}
-
 }  // namespace
 
+DistanceFunction one_by_one(std::function<Eigen::VectorXd(VertexIndex)> distances) {
+  return [distances = std::move(distances)](std::span<const VertexIndex> sources) {
+    Eigen::MatrixXd result;
+    for (std::size_t i = 0; i < sources.size(); ++i) {
+      const Eigen::VectorXd column = distances(sources[i]);
+      if (i == 0) result.resize(column.size(), static_cast<Eigen::Index>(sources.size()));
+      result.col(static_cast<Eigen::Index>(i)) = column;
+    }
+    return result;
+  };
+}
+
 struct SurfaceDistances::State {
+  VertexIndex representative(VertexIndex source) const;
+  void compute(const std::vector<VertexIndex>& sources);
+
   Weld weld;
   Geodesics geodesics;
+  int threads;
   std::mutex mutex;
-  /// By representative. A future, so that who asks for what another thread computes waits for it.
-  std::map<VertexIndex, std::shared_future<Eigen::VectorXd>> known;
+  std::map<VertexIndex, Eigen::VectorXd> known;  // by representative
 };
 
+VertexIndex SurfaceDistances::State::representative(VertexIndex source) const {
+  const auto vertices = static_cast<VertexIndex>(weld.representative.size());
+  if (source < 0 || source >= vertices) {
+    throw std::out_of_range("source vertex " + std::to_string(source) + ", expected 0 to " +
+                            std::to_string(vertices - 1));
+  }
+  return weld.representative[source];
+}
+
+/// Distances from representatives that are not known yet.
+void SurfaceDistances::State::compute(const std::vector<VertexIndex>& sources) {
+  const int group = geodesics.group;
+  const auto count = static_cast<int>(sources.size());
+  std::vector<Eigen::MatrixXd> found((count + group - 1) / group);
+  parallel_for(static_cast<int>(found.size()), threads, [&](int i) {
+    const int first = i * group;
+    const auto part = std::span(sources).subspan(first, std::min(group, count - first));
+    // Every vertex takes the distance of the one that stands for it.
+    found[i] = geodesics.distances(part)(weld.representative, Eigen::all);
+  });
+  for (int i = 0; i < count; ++i) known[sources[i]] = found[i / group].col(i % group);
+}
+
 SurfaceDistances::SurfaceDistances(const Positions& positions, const Triangles& triangles,
-                                   const Weld& weld, GeodesicMethod method)
+                                   const Weld& weld, GeodesicMethod method, int threads)
     : state_(std::make_shared<State>()) {
   check_size(positions, weld);
   state_->weld = weld;
+  state_->threads = threads;
   state_->geodesics = prepared(positions, welded(triangles, weld), method);
   // The others of a welded group lose their triangles to the one that stands for them.
   auto& faceless = state_->geodesics.vertices_without_face;
@@ -77,27 +111,27 @@ SurfaceDistances::SurfaceDistances(const Positions& positions, const Triangles& 
   });
 }
 
+Eigen::MatrixXd SurfaceDistances::operator()(std::span<const VertexIndex> sources) const {
+  std::vector<VertexIndex> places;
+  for (const VertexIndex source : sources) places.push_back(state_->representative(source));
+  const std::lock_guard lock(state_->mutex);
+  std::vector<VertexIndex> missing;
+  for (const VertexIndex place : places) {
+    if (!state_->known.contains(place)) missing.push_back(place);
+  }
+  std::ranges::sort(missing);
+  missing.erase(std::ranges::unique(missing).begin(), missing.end());
+  state_->compute(missing);
+  Eigen::MatrixXd result(static_cast<Eigen::Index>(state_->weld.representative.size()),
+                         static_cast<Eigen::Index>(sources.size()));
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    result.col(static_cast<Eigen::Index>(i)) = state_->known.at(places[i]);
+  }
+  return result;
+}
+
 Eigen::VectorXd SurfaceDistances::operator()(VertexIndex source) const {
-  const auto& representative = state_->weld.representative;
-  if (source < 0 || source >= static_cast<VertexIndex>(representative.size())) {
-    throw std::out_of_range("source vertex " + std::to_string(source) + ", expected 0 to " +
-                            std::to_string(static_cast<int>(representative.size()) - 1));
-  }
-  std::packaged_task<Eigen::VectorXd()> computation;
-  std::shared_future<Eigen::VectorXd> result;
-  {
-    const std::lock_guard lock(state_->mutex);
-    auto& known = state_->known[representative[source]];
-    if (!known.valid()) {
-      computation = std::packaged_task<Eigen::VectorXd()>([this, &representative, source] {
-        return spread(state_->geodesics.distances(representative[source]), state_->weld);
-      });
-      known = computation.get_future().share();
-    }
-    result = known;
-  }
-  if (computation.valid()) computation();
-  return result.get();
+  return (*this)(std::span(&source, 1));
 }
 
 int SurfaceDistances::computed() const {

@@ -2,15 +2,19 @@
 
 #include <functional>
 #include <memory>
+#include <span>
 
 #include <mimetra/geodesic/heat_geodesics.h>
 #include <mimetra/mesh/weld.h>
 
 namespace mimetra {
 
-/// Distances from a vertex to all vertices (N), +infinity where there is no way. What the
-/// decomposition and the regions ask for.
-using DistanceFunction = std::function<Eigen::VectorXd(VertexIndex)>;
+/// Distances from each of some vertices (S) to all vertices, N x S, +infinity where there is no
+/// way. What the decomposition and the regions ask for.
+using DistanceFunction = std::function<Eigen::MatrixXd(std::span<const VertexIndex>)>;
+
+/// Asks `distances` (N) for one vertex after the other, from the calling thread.
+DistanceFunction one_by_one(std::function<Eigen::VectorXd(VertexIndex)> distances);
 
 enum class GeodesicMethod { heat, heat_direct, exact };
 
@@ -18,11 +22,15 @@ enum class GeodesicMethod { heat, heat_direct, exact };
 /// seams. Each vertex is computed once and kept; copies share what they know.
 class SurfaceDistances {
  public:
-  /// Keeps no reference to the mesh. Throws std::invalid_argument as HeatGeodesics does.
+  /// Keeps no reference to the mesh; `threads` 0 for all there are. Throws std::invalid_argument as
+  /// HeatGeodesics does.
   SurfaceDistances(const Positions& positions, const Triangles& triangles, const Weld& weld,
-                   GeodesicMethod method = GeodesicMethod::heat);
+                   GeodesicMethod method = GeodesicMethod::heat, int threads = 0);
 
-  /// Distances from `source` (N). Safe to call from several threads. Throws std::out_of_range.
+  /// Distances from each of `sources` (N x S). What is not known yet is computed for several of
+  /// them at once. Safe to call from several threads. Throws std::out_of_range.
+  Eigen::MatrixXd operator()(std::span<const VertexIndex> sources) const;
+  /// Distances from `source` (N).
   Eigen::VectorXd operator()(VertexIndex source) const;
 
   /// Vertices asked for so far, each computed once.

@@ -1,7 +1,9 @@
 #include <mimetra/transfer/blendshape_transfer.h>
 
 #include <algorithm>
+#include <functional>
 #include <limits>
+#include <span>
 #include <stdexcept>
 
 #include <Eigen/Eigenvalues>
@@ -10,9 +12,10 @@
 #include <mimetra/mesh/parallel.h>
 #include <mimetra/model/box_least_squares.h>
 #include <mimetra/model/smooth_weights.h>
+#include <mimetra/regions/regions.h>
 #include <mimetra/transfer/deformation_gradients.h>
 #include <mimetra/transfer/edges.h>
-#include <mimetra/transfer/folded_right_hand_side.h>
+#include <mimetra/transfer/right_hand_side.h>
 
 namespace mimetra {
 
@@ -20,7 +23,7 @@ namespace {
 
 /// A frame's solve starts from the weights of the frame before within a block of so many frames
 /// only: blocks do not depend on each other.
-constexpr int kFramesPerBlock = 32;
+constexpr int kFramesPerBlock = RightHandSide::kLanes;
 
 /// A column whose motion in L is below 1e-5 of its motion anywhere (squared here) does not move
 /// there: that is what is left of zeros in single precision files.
@@ -37,37 +40,49 @@ constexpr double kWantedStep = -0.02;
 constexpr double kUnneutralShare = 0.05;
 
 /// Rows of A at a time: so many triangles' edges of every expression stay in cache.
-constexpr Eigen::Index kTrianglesPerBlock = 256;
+constexpr std::size_t kTrianglesPerBlock = 256;
 
-/// A^T A of eq. 11: rows of A are edges of the displacement fields.
-Eigen::MatrixXd gram_matrix(const BlendshapeModel& target, const std::vector<int>& selected) {
+/// Rows of A in eq. 11: edges of the displacement fields, six a triangle.
+Eigen::MatrixXd edge_rows(const BlendshapeModel& target, std::span<const int> triangles) {
   const Eigen::MatrixXd& basis = target.expressions().displacements;
-  const auto count = static_cast<Eigen::Index>(selected.size());
-  Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(basis.cols(), basis.cols());
-  for (Eigen::Index first = 0; first < count; first += kTrianglesPerBlock) {
-    const Eigen::Index size = std::min(kTrianglesPerBlock, count - first);
-    Eigen::MatrixXd rows(6 * size, basis.cols());
-    for (Eigen::Index i = 0; i < size; ++i) {
-      const auto corners = target.triangles().row(selected[first + i]);
-      const auto at = [&basis](VertexIndex v) { return basis.middleRows<3>(3 * v); };
-      rows.middleRows<3>(6 * i) = at(corners[1]) - at(corners[0]);
-      rows.middleRows<3>(6 * i + 3) = at(corners[2]) - at(corners[0]);
+  Eigen::MatrixXd rows(6 * triangles.size(), basis.cols());
+  for (Eigen::Index j = 0; j < basis.cols(); ++j) {
+    const PositionsView field(basis.col(j).data(), target.vertices(), 3);
+    Eigen::Map<Eigen::Matrix<double, 6, Eigen::Dynamic>> column(rows.col(j).data(), 6,
+                                                                Eigen::Index(triangles.size()));
+    for (std::size_t i = 0; i < triangles.size(); ++i) {
+      column.col(Eigen::Index(i)) = edges_of(field, target.triangles(), triangles[i]).reshaped();
     }
-    gram.selfadjointView<Eigen::Lower>().rankUpdate(rows.transpose());
   }
+  return rows;
+}
+
+/// Calls `work` with the rows of A of some triangles after the other.
+void for_edge_rows(const BlendshapeModel& target, const std::vector<int>& triangles,
+                   const std::function<void(const Eigen::MatrixXd&)>& work) {
+  for (std::size_t first = 0; first < triangles.size(); first += kTrianglesPerBlock) {
+    const std::size_t size = std::min(kTrianglesPerBlock, triangles.size() - first);
+    work(edge_rows(target, std::span(triangles).subspan(first, size)));
+  }
+}
+
+/// A^T A of eq. 11.
+Eigen::MatrixXd gram_matrix(const BlendshapeModel& target, const std::vector<int>& selected) {
+  const Eigen::Index d = target.expressions().size();
+  Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(d, d);
+  for_edge_rows(target, selected, [&gram](const Eigen::MatrixXd& rows) {
+    gram.selfadjointView<Eigen::Lower>().rankUpdate(rows.transpose());
+  });
   return gram.selfadjointView<Eigen::Lower>();
 }
 
 /// Diagonal of the Gram matrix over all triangles: how much each expression moves anywhere.
 Eigen::VectorXd full_diagonal(const BlendshapeModel& target) {
-  const Eigen::MatrixXd& basis = target.expressions().displacements;
-  Eigen::VectorXd diagonal = Eigen::VectorXd::Zero(basis.cols());
-  for (Eigen::Index j = 0; j < basis.cols(); ++j) {
-    const PositionsView field(basis.col(j).data(), target.vertices(), 3);
-    for (int t = 0; t < target.triangles().rows(); ++t) {
-      diagonal[j] += edges_of(field, target.triangles(), t).squaredNorm();
-    }
-  }
+  Eigen::VectorXd diagonal = Eigen::VectorXd::Zero(target.expressions().size());
+  for_edge_rows(target, all_triangles(target.triangles()),
+                [&diagonal](const Eigen::MatrixXd& rows) {
+                  diagonal += rows.colwise().squaredNorm().transpose();
+                });
   return diagonal;
 }
 
@@ -100,7 +115,7 @@ struct BlendshapeTransfer::State {
   State(const Positions& source_rest, const BlendshapeModel& target, std::vector<int> selected)
       : gradients(source_rest, target.triangles(), std::move(selected)),
         gram(gram_matrix(target, gradients.selected())),
-        right_hand_sides(source_rest, target.triangles(), gradients, target),
+        right_hand_side(source_rest, gradients, target),
         vertices(target.vertices()) {}
 
   void judge(const BlendshapeModel& target);
@@ -111,7 +126,7 @@ struct BlendshapeTransfer::State {
 
   DeformationGradients gradients;
   Eigen::MatrixXd gram;
-  FoldedRightHandSide right_hand_sides;
+  RightHandSide right_hand_side;
   int vertices;
   BlendshapeTransferOptions options;
   BlendshapeConditions conditions;
@@ -196,7 +211,7 @@ Eigen::MatrixXd BlendshapeTransfer::weights(const MeshSequence& performance,
     const int first = block * kFramesPerBlock;
     const int count = std::min(kFramesPerBlock, frames - first);
     h.middleRows(first, count) =
-        state.right_hand_sides(performance.positions().middleRows(first, count)).array() - penalty;
+        state.right_hand_side(performance.positions().middleRows(first, count)).array() - penalty;
     Eigen::VectorXd current = lower;
     for (int f = first; f < first + count; ++f) {
       current = box_least_squares(state.system, h.row(f).transpose(), lower, state.upper, current);
@@ -221,7 +236,7 @@ Eigen::VectorXd BlendshapeTransfer::right_hand_side(
   }
   const Positions copy = frame;
   const Eigen::Map<const Frames> row(copy.data(), 1, copy.size());
-  return state_->right_hand_sides(row).transpose();
+  return state_->right_hand_side(row).transpose();
 }
 
 const BlendshapeConditions& BlendshapeTransfer::conditions() const {
@@ -241,8 +256,7 @@ bool BlendshapeTransfer::rest_looks_unneutral(const MeshSequence& performance,
     const int count = std::min(kFramesPerBlock, performance.frames() - first);
     const auto beta = weights.middleRows(first, count);
     const Eigen::MatrixXd pull =
-        state.right_hand_sides(performance.positions().middleRows(first, count)) -
-        beta * state.gram;
+        state.right_hand_side(performance.positions().middleRows(first, count)) - beta * state.gram;
     for (const Eigen::Index j : state.seen) {
       below +=
           (beta.col(j).array() == 0 && pull.col(j).array() < kWantedStep * diagonal[j]).count();

@@ -37,10 +37,10 @@ struct BlendshapeConditions {
 /// Blendshape weights of a target that follow a source's deformation gradients on triangles L:
 /// minimise over 0 <= beta <= 1 of sum_{i in L} ||Q_i V_i - V~_i(beta)||_F^2 (eq. 10, 11).
 ///
-/// The constructor forms the Gram matrix and folds the right-hand side into two constant matrices,
-/// one acting on the source's positions (3N x D), one on the scaled normals (3L x D), so that a
-/// frame costs two products and a solve of D unknowns. Everything is a difference to the rest pose,
-/// which itself gives exactly 0. Queries are const.
+/// The constructor forms the Gram matrix. A frame costs one pass over the triangles of L, which
+/// gathers their gradients at the vertices, one product with the displacement fields there, and a
+/// solve of D unknowns. Everything is a difference to the rest pose, which itself gives exactly 0.
+/// Queries are const.
 class BlendshapeTransfer {
  public:
   /// `source_rest` N x 3 has the target's connectivity; `triangles` are rows of target.triangles().

@@ -11,10 +11,11 @@
 #include <Eigen/LU>
 #include <Eigen/SparseCore>
 
+#include <mimetra/geodesic/sparse_factor.h>
 #include <mimetra/mesh/inspection.h>
 #include <mimetra/mesh/parallel.h>
 #include <mimetra/transfer/deformation_gradients.h>
-#include <mimetra/transfer/row_solver.h>
+#include <mimetra/transfer/vertex_pull.h>
 #include <mimetra/transfer/vertex_unknowns.h>
 
 namespace mimetra {
@@ -23,8 +24,10 @@ namespace {
 
 using Triplets = std::vector<Eigen::Triplet<double>>;
 
-/// Frames whose coordinates lie side by side in one block of right-hand sides.
-constexpr int kFramesPerBlock = RowSolver::kWidth / 3;
+/// x, y and z of so many frames lie side by side in one block of right-hand sides.
+constexpr int kLanes = VertexPull::kLanes;
+using Rows = VertexPull::Rows;
+using Row = Eigen::RowVector<double, VertexPull::kWidth>;
 
 /// Gradients of the three hat functions of a triangle in its plane, one a column.
 using HatGradients = Eigen::Matrix3d;
@@ -54,6 +57,16 @@ void add_products(const Eigen::Matrix<double, 3, Columns>& x, double scale,
       entries.emplace_back(unknowns[a], unknowns[b], products(a, b));
     }
   }
+}
+
+geodesic::SparseFactor factor_of(const Eigen::SparseMatrix<double>& system) {
+  if (system.rows() == 0) return {};
+  const geodesic::SparseFactor::Factorization factorization(system);
+  if (factorization.info() != Eigen::Success || !(factorization.vectorD().minCoeff() > 0)) {
+    throw std::runtime_error(
+        "the target's triangles do not determine its vertices; look for nearly degenerate ones");
+  }
+  return geodesic::SparseFactor(factorization);
 }
 
 void check_options(const VertexTransferOptions& options, Eigen::Index vertices) {
@@ -108,13 +121,6 @@ std::vector<bool> mask_of(const std::vector<int>& selected, Eigen::Index triangl
 /// one N x N matrix for x, y and z. With Q_i - I = (U~_i - U_i) U_i^-1 a frame needs only the
 /// constant vectors U_i^-1 g_iv. Only differences occur: where the mesh lies does not matter.
 struct VertexTransfer::State {
-  /// What the gradient of one source triangle does to the equations of one target triangle.
-  struct Term {
-    int source;                   // row of source_frames
-    std::array<int, 3> unknowns;  // of the target triangle's corners
-    Eigen::Matrix3d factor;       // w_i U^-1 g_iv, one corner v a column
-  };
-
   State(const Positions& source, const Positions& target, const Triangles& triangles,
         const std::vector<int>& selected, const VertexTransferOptions& options);
 
@@ -123,10 +129,11 @@ struct VertexTransfer::State {
   Triplets stiffness() const;
   void add_smoothness(Triplets& entries) const;
   void factor();
-  void collect_terms(const DeformationGradients& gradients);
-  void add_right_hand_side(const PositionsView& frame, int lane, RowSolver::Rows& right) const;
-  Positions displacement(const RowSolver::Rows& solution, int lane) const;
-  void translate(const PositionsView& frame, Positions& displacement) const;
+  void fold(const DeformationGradients& gradients);
+  Row shift_of(const FloatingPiece& piece, const Eigen::Ref<const Frames>& frames,
+               const Rows& displacement) const;
+  Row motion_of(const FloatingPiece& piece, const Eigen::Ref<const Frames>& frames) const;
+  void solve(const Eigen::Ref<const Frames>& frames, Eigen::Ref<Frames> poses) const;
   std::array<int, 3> unknowns_of(int triangle) const;
 
   Positions source_rest, target_rest;
@@ -135,11 +142,9 @@ struct VertexTransfer::State {
   std::vector<bool> in_l;       // of each triangle
   std::vector<double> weights;  // of each triangle; 0 where it takes no part
   std::vector<bool> fixed;      // of each vertex
-  VertexUnknowns unknowns;
-  std::optional<RowSolver> solver;
-  std::vector<Term> terms;
-  std::vector<int> sources;  // source triangles that occur
-  std::vector<Eigen::Matrix3d> source_frames;
+  VertexUnknowns unknowns;      // numbered as they are eliminated
+  geodesic::SparseFactor solver;
+  std::optional<VertexPull> pull;
   int degenerate_source = 0;
   int degenerate_target = 0;
 };
@@ -160,7 +165,7 @@ VertexTransfer::State::State(const Positions& source, const Positions& target,
         "outside the regions move (Outside::identity) or select all triangles");
   }
   factor();
-  collect_terms(gradients);
+  fold(gradients);
 }
 
 void VertexTransfer::State::weigh() {
@@ -239,68 +244,72 @@ void VertexTransfer::State::factor() {
   }
   Eigen::SparseMatrix<double> system(unknowns.count, unknowns.count);
   system.setFromTriplets(entries.begin(), entries.end());
-  solver.emplace(system);
+  solver = factor_of(system);
+  for (int& unknown : unknowns.of_vertex) {
+    if (unknown >= 0) unknown = solver.order()[unknown];
+  }
 }
 
-void VertexTransfer::State::collect_terms(const DeformationGradients& gradients) {
-  std::vector<int> slot(triangles.rows(), -1);
-  for (std::size_t s = 0; s < gradients.selected().size(); ++s) {
+void VertexTransfer::State::fold(const DeformationGradients& gradients) {
+  std::vector<Edges> vectors(gradients.selected().size(), Edges::Zero());
+  for (std::size_t s = 0; s < vectors.size(); ++s) {
     const int triangle = gradients.selected()[s];
     if (weights[triangle] == 0) continue;
-    const HatGradients hats = hat_gradients(target_rest, triangles, triangle);
-    const std::vector<int>& from = gradients.sources(static_cast<int>(s));
-    for (const int source : from) {
-      if (slot[source] < 0) {
-        slot[source] = static_cast<int>(sources.size());
-        sources.push_back(source);
-        source_frames.push_back(triangle_frame(source_rest, triangles, source));
-      }
-      const double share = weights[triangle] / static_cast<double>(from.size());
-      terms.push_back(
-          {slot[source], unknowns_of(triangle), share * gradients.inverse_frame(source) * hats});
+    vectors[s] = weights[triangle] * hat_gradients(target_rest, triangles, triangle).rightCols<2>();
+  }
+  pull.emplace(source_rest, triangles, gradients, vectors, unknowns.of_vertex);
+}
+
+/// Where its anchor wants a floating piece whose pin stayed in place.
+Row VertexTransfer::State::shift_of(const FloatingPiece& piece,
+                                    const Eigen::Ref<const Frames>& frames,
+                                    const Rows& displacement) const {
+  Row shift = Row::Zero();
+  if (options.anchor == Anchor::vertex) {
+    const bool holds_it = std::ranges::binary_search(piece.vertices, options.anchor_vertex);
+    const int row = unknowns.of_vertex[options.anchor_vertex];
+    if (holds_it && row >= 0) shift = -displacement.row(row);
+    return shift;
+  }
+  for (const VertexIndex v : piece.vertices) {
+    if (unknowns.of_vertex[v] >= 0) shift -= displacement.row(unknowns.of_vertex[v]);
+  }
+  if (options.anchor == Anchor::source_motion) shift += motion_of(piece, frames);
+  return shift / static_cast<double>(piece.vertices.size());
+}
+
+/// Sum of the source's displacements over a piece.
+Row VertexTransfer::State::motion_of(const FloatingPiece& piece,
+                                     const Eigen::Ref<const Frames>& frames) const {
+  Row motion = Row::Zero();
+  for (Eigen::Index lane = 0; lane < frames.rows(); ++lane) {
+    const PositionsView frame(frames.row(lane).data(), source_rest.rows(), 3);
+    Eigen::RowVector3d sum = Eigen::RowVector3d::Zero();
+    for (const VertexIndex v : piece.vertices) sum += frame.row(v) - source_rest.row(v);
+    for (int c = 0; c < 3; ++c) motion[c * kLanes + lane] = sum[c];
+  }
+  return motion;
+}
+
+/// Up to kLanes target poses.
+void VertexTransfer::State::solve(const Eigen::Ref<const Frames>& frames,
+                                  Eigen::Ref<Frames> poses) const {
+  Rows displacement = solver.solve<VertexPull::kWidth>((*pull)(frames));
+  const auto move = [&poses](VertexIndex vertex, const auto& by) {
+    for (Eigen::Index lane = 0; lane < poses.rows(); ++lane) {
+      for (int c = 0; c < 3; ++c) poses(lane, 3 * vertex + c) += by[c * kLanes + lane];
     }
-  }
-}
-
-void VertexTransfer::State::add_right_hand_side(const PositionsView& frame, int lane,
-                                                RowSolver::Rows& right) const {
-  std::vector<Eigen::Matrix3d> change(sources.size());
-  for (std::size_t i = 0; i < sources.size(); ++i) {
-    change[i] = triangle_frame(frame, triangles, sources[i]) - source_frames[i];
-  }
-  for (const Term& term : terms) {
-    const Eigen::Matrix3d part = change[term.source] * term.factor;
-    for (int c = 0; c < 3; ++c) {
-      if (term.unknowns[c] < 0) continue;
-      right.row(term.unknowns[c]).segment<3>(3 * lane) += part.col(c).transpose();
-    }
-  }
-}
-
-Positions VertexTransfer::State::displacement(const RowSolver::Rows& solution, int lane) const {
-  Positions moved = Positions::Zero(target_rest.rows(), 3);
-  for (Eigen::Index v = 0; v < moved.rows(); ++v) {
-    const int row = unknowns.of_vertex[v];
-    if (row >= 0) moved.row(v) = solution.row(row).segment<3>(3 * lane);
-  }
-  return moved;
-}
-
-/// Moves each floating piece to where its anchor wants it.
-void VertexTransfer::State::translate(const PositionsView& frame, Positions& displacement) const {
+  };
+  poses.rowwise() = target_rest.reshaped<Eigen::RowMajor>().transpose();
   for (const FloatingPiece& piece : unknowns.floating) {
-    Eigen::RowVector3d shift = Eigen::RowVector3d::Zero();
-    if (options.anchor == Anchor::vertex) {
-      const bool holds_it = std::ranges::binary_search(piece.vertices, options.anchor_vertex);
-      if (holds_it) shift = -displacement.row(options.anchor_vertex);
-    } else {
-      for (const VertexIndex v : piece.vertices) {
-        shift -= displacement.row(v);
-        if (options.anchor == Anchor::source_motion) shift += frame.row(v) - source_rest.row(v);
-      }
-      shift /= static_cast<double>(piece.vertices.size());
+    const Row shift = shift_of(piece, frames, displacement);
+    move(piece.vertices.front(), shift);
+    for (const VertexIndex v : piece.vertices) {
+      if (unknowns.of_vertex[v] >= 0) displacement.row(unknowns.of_vertex[v]) += shift;
     }
-    for (const VertexIndex v : piece.vertices) displacement.row(v) += shift;
+  }
+  for (VertexIndex v = 0; v < target_rest.rows(); ++v) {
+    if (unknowns.of_vertex[v] >= 0) move(v, displacement.row(unknowns.of_vertex[v]));
   }
 }
 
@@ -324,24 +333,11 @@ Frames VertexTransfer::frames(const MeshSequence& performance, const Progress& p
   }
   Frames result(performance.frames(), 3 * vertices);
   const auto solve_block = [&](int block) {
-    const int first = block * kFramesPerBlock;
-    const int count = std::min(kFramesPerBlock, performance.frames() - first);
-    RowSolver::Rows right = RowSolver::Rows::Zero(state.unknowns.count, RowSolver::kWidth);
-    for (int lane = 0; lane < count; ++lane) {
-      state.add_right_hand_side(performance.frame(first + lane), lane, right);
-    }
-    const RowSolver::Rows solution = state.solver->solve(right);
-    for (int lane = 0; lane < count; ++lane) {
-      Positions displacement = state.displacement(solution, lane);
-      state.translate(performance.frame(first + lane), displacement);
-      Eigen::Map<Positions> pose(result.row(first + lane).data(), vertices, 3);
-      pose = state.target_rest;
-      for (Eigen::Index v = 0; v < vertices; ++v) {
-        if (!state.fixed[v]) pose.row(v) += displacement.row(v);
-      }
-    }
+    const int first = block * kLanes;
+    const int count = std::min(kLanes, performance.frames() - first);
+    state.solve(performance.positions().middleRows(first, count), result.middleRows(first, count));
   };
-  const int blocks = (performance.frames() + kFramesPerBlock - 1) / kFramesPerBlock;
+  const int blocks = (performance.frames() + kLanes - 1) / kLanes;
   parallel_for(blocks, state.options.threads, solve_block, progress);
   return result;
 }

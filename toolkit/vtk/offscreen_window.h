@@ -2,6 +2,8 @@
 
 #include <memory>
 
+#include <mimetra/operations/data.h>
+
 class vtkRenderWindow;
 
 namespace mimetra {
@@ -17,6 +19,8 @@ class OffscreenWindow {
   OffscreenWindow& operator=(const OffscreenWindow&) = delete;
 
   vtkRenderWindow& window() const;
+  /// Draws what the window holds. Throws std::runtime_error where OpenGL has not enough memory.
+  Image image() const;
 
  private:
   struct State;

@@ -153,23 +153,6 @@ void add_tile(vtkRenderWindow& window, const Sheet& sheet, const SheetLayout& la
   window.AddRenderer(renderer);
 }
 
-Image image_of(vtkRenderWindow& window, int width, int height) {
-  vtkNew<vtkUnsignedCharArray> pixels;
-  window.GetPixelData(0, 0, width - 1, height - 1, 0, pixels);
-  Image image{width, height, {}};
-  const std::size_t row = 3 * static_cast<std::size_t>(width);
-  if (pixels->GetNumberOfValues() < static_cast<vtkIdType>(row) * height) {
-    throw std::runtime_error("OpenGL could not draw " + std::to_string(width) + " x " +
-                             std::to_string(height) + " pixels; take a smaller size");
-  }
-  image.pixels.resize(row * static_cast<std::size_t>(height));
-  for (int y = 0; y < height; ++y) {  // OpenGL counts rows from below
-    std::memcpy(image.pixels.data() + row * static_cast<std::size_t>(y),
-                pixels->GetPointer(static_cast<vtkIdType>(row) * (height - 1 - y)), row);
-  }
-  return image;
-}
-
 }  // namespace
 
 Image draw(const Sheet& sheet, const Progress& progress) {
@@ -198,9 +181,9 @@ Image draw(const Sheet& sheet, const Progress& progress) {
   overlay->SetLayer(1);
   annotate(*overlay, sheet, layout);
   window.AddRenderer(overlay);
-  window.Render();
+  Image image = offscreen.image();
   report_progress(progress, 1);
-  return image_of(window, layout.width, layout.height);
+  return image;
 }
 
 double drawing_bytes(const Sheet& sheet) {

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "subjects.h"
+#include "suite.h"
+
+namespace mimetra::bench {
+
+/// `mimetra transfer` from .npy to PLY with regions as PVD: the whole, and where its time goes by
+/// its manifest.
+std::vector<Row> transfer_command_rows(const Subject& subject, int count,
+                                       const std::filesystem::path& mimetra,
+                                       const std::filesystem::path& scratch,
+                                       const Settings& settings);
+
+/// `mimetra decompose` from .npy, all iterations.
+Row decompose_command_row(const Subject& subject, int count, const std::filesystem::path& mimetra,
+                          const std::filesystem::path& scratch, const Settings& settings);
+
+}  // namespace mimetra::bench

@@ -1,0 +1,58 @@
+#include "io_bench.h"
+
+#include <mimetra/io/array_file.h>
+#include <mimetra/io/sequence_file.h>
+
+namespace mimetra::bench {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kGroup = "files";
+
+double bytes_below(const fs::path& folder) {
+  double bytes = 0;
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    bytes += static_cast<double>(entry.file_size());
+  }
+  return bytes;
+}
+
+SequenceWriteOptions in_format(const std::string& format) {
+  SequenceWriteOptions options;
+  options.format = format;
+  options.overwrite = true;
+  return options;
+}
+
+}  // namespace
+
+std::vector<Row> io_rows(const Subject& subject, const fs::path& scratch,
+                         const Settings& settings) {
+  const MeshSequence& performance = subject.performance;
+  const Size size{subject.name, performance.frames(), performance.vertices()};
+  const double in_memory = 8.0 * static_cast<double>(performance.positions().size());
+  std::vector<Case> cases;
+  const auto add = [&](const std::string& what, double file_bytes, auto run) {
+    // The files are read or written once, the positions the other way.
+    cases.push_back(
+        {{kGroup, what, size, {0, file_bytes + in_memory}, {"", 0, file_bytes}}, std::move(run)});
+  };
+  for (const std::string format : {"obj", "ply"}) {
+    const fs::path folder = scratch / format;
+    write_sequence(performance, folder, in_format(format));
+    const double bytes = bytes_below(folder);
+    add("read " + format + " files", bytes, [folder] { read_sequence(folder); });
+    add("write " + format + " files", bytes,
+        [folder, format, &performance] { write_sequence(performance, folder, in_format(format)); });
+  }
+  const fs::path array = scratch / "array.npy";
+  write_npy_frames(array, performance.positions());
+  const auto array_bytes = static_cast<double>(fs::file_size(array));
+  add("read npy", array_bytes, [array] { read_npy_frames(array); });
+  add("write npy", array_bytes,
+      [array, &performance] { write_npy_frames(array, performance.positions()); });
+  return measured(cases, settings.quick);
+}
+
+}  // namespace mimetra::bench

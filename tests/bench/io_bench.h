@@ -1,0 +1,15 @@
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "subjects.h"
+#include "suite.h"
+
+namespace mimetra::bench {
+
+/// The performance written and read as OBJ and PLY files and as one array, in `scratch`.
+std::vector<Row> io_rows(const Subject& subject, const std::filesystem::path& scratch,
+                         const Settings& settings);
+
+}  // namespace mimetra::bench

@@ -1,0 +1,231 @@
+// usage: mimetra_bench OUT [--quick]
+// Times kernels and whole commands; writes OUT/bench.json and OUT/growth.png, and a table to
+// stdout.
+
+#include <algorithm>
+#include <cstdio>
+#include <exception>
+#include <filesystem>
+#include <fstream>
+#include <stdexcept>
+
+#include <mimetra/vtk/picture.h>
+
+#include "command_bench.h"
+#include "geodesic_bench.h"
+#include "growth.h"
+#include "io_bench.h"
+#include "numpy_bench.h"
+#include "report.h"
+#include "splocs_bench.h"
+#include "subjects.h"
+#include "transfer_bench.h"
+
+namespace mimetra::bench {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kFrames = 100;
+constexpr int kSources = 40;
+constexpr int kComponents = 30;
+
+/// A folder for what commands read and write, gone at the end.
+class Scratch {
+ public:
+  explicit Scratch(fs::path path) : path_(std::move(path)) {
+    fs::remove_all(path_);
+    fs::create_directories(path_);
+  }
+  ~Scratch() {
+    std::error_code ignored;
+    fs::remove_all(path_, ignored);
+  }
+  Scratch(const Scratch&) = delete;
+  Scratch& operator=(const Scratch&) = delete;
+
+  const fs::path& path() const { return path_; }
+
+ private:
+  fs::path path_;
+};
+
+/// One run of the whole suite.
+class Run {
+ public:
+  Run(fs::path out, bool quick)
+      : out_(std::move(out)),
+        scratch_(out_ / "scratch"),
+        mimetra_(fs::read_symlink("/proc/self/exe").parent_path() / "mimetra") {
+    results_.settings = {quick, this_machine()};
+    results_.at_start = measured_limits(results_.settings.machine, quick);
+  }
+
+  /// The machine's own numbers, on real faces where they are, or on the built-in head.
+  void measure_faces() {
+    const auto small = settings().quick ? std::nullopt : surrey();
+    const auto large = settings().quick ? std::nullopt : ict(1000);
+    if (!settings().quick && (!small || !large)) {
+      results_.notes.emplace_back("no shared data beside the project: the built-in head instead");
+    }
+    const Subject first = small ? *small : head(0, settings().quick ? 30 : kFrames);
+    measure_kernels(first, small.has_value());
+    if (large) measure_kernels(first_frames(*large, kFrames), true);
+    add(decomposition_row(first.name, first.performance, components(), settings()));
+    add(splocs_kernel_rows(first.name, first.performance, components(), settings()));
+    compare_with_numpy(first);
+    if (large) measure_long_job(*large);
+    const Subject told = large ? first_frames(*large, 300) : first;
+    add(io_rows(told, scratch_.path(), settings()));
+    add(transfer_command_rows(told, components(), mimetra_, scratch_.path(), settings()));
+  }
+
+  /// How times grow on the built-in head; these rows stand in the growth part only.
+  void measure_growth() {
+    const bool quick = settings().quick;
+    std::vector<Row> by_vertices, by_frames, by_count;
+    for (const int splits : {0, 1, 2}) {
+      const Subject subject = head(splits, quick ? 10 : 40);
+      append(by_vertices, geodesic_rows(subject, quick ? 2 : 8, false, settings()));
+      append(by_vertices, splocs_rows(subject, quick ? 5 : 10));
+      append(by_vertices, transfer_rows(subject));
+      append(by_vertices, vertex_rows(subject, settings()));
+    }
+    for (const int frames : quick ? std::vector{20, 40} : std::vector{50, 100, 200, 400}) {
+      const Subject subject = head(0, frames);
+      append(by_frames, splocs_rows(subject, quick ? 5 : 10));
+      append(by_frames, transfer_rows(subject));
+      append(by_frames, vertex_rows(subject, settings()));
+    }
+    const Subject subject = head(0, quick ? 20 : kFrames);
+    for (const int count : quick ? std::vector{5, 10} : std::vector{10, 20, 40, 80}) {
+      append(by_count, splocs_rows(subject, count));
+      append(by_count, splocs_kernel_rows(subject.name, subject.performance, count, settings()));
+    }
+    draw_growth({growths(without_sum(by_vertices), "vertices", &Size::vertices),
+                 growths(without_setup(by_frames), "frames", &Size::frames),
+                 growths(by_count, "K", &Size::count)});
+  }
+
+  Results finish() && {
+    std::ranges::stable_sort(results_.rows, {}, [order = groups()](const Row& row) {
+      return std::ranges::find(order, row.group) - order.begin();
+    });
+    results_.at_end = measured_limits(settings().machine, settings().quick);
+    for (const auto& [own, other] :
+         {std::pair(kGeodesicAll, kGeodesicCgal), std::pair(kNumpyPair, kNumpy)}) {
+      for (Comparison& found : compared(results_.rows, own, other)) {
+        results_.comparisons.push_back(std::move(found));
+      }
+    }
+    return std::move(results_);
+  }
+
+ private:
+  const Settings& settings() const { return results_.settings; }
+  int components() const { return settings().quick ? 10 : kComponents; }
+
+  /// Groups in the order in which they first appear.
+  std::vector<std::string> groups() const {
+    std::vector<std::string> groups;
+    for (const Row& row : results_.rows) {
+      if (std::ranges::find(groups, row.group) == groups.end()) groups.push_back(row.group);
+    }
+    return groups;
+  }
+
+  static void append(std::vector<Row>& rows, std::vector<Row> more) {
+    for (Row& row : more) rows.push_back(std::move(row));
+  }
+  void add(std::vector<Row> rows) { append(results_.rows, std::move(rows)); }
+  void add(Row row) { results_.rows.push_back(std::move(row)); }
+
+  std::vector<Row> splocs_rows(const Subject& subject, int count) {
+    return {decomposition_row(subject.name, subject.performance, count, settings())};
+  }
+  std::vector<Row> transfer_rows(const Subject& subject) {
+    return blendshape_rows(subject, 1, false, settings());
+  }
+
+  /// CGAL's own query serves the models of one component.
+  void measure_kernels(const Subject& subject, bool with_cgal) {
+    add(geodesic_rows(subject, kSources, with_cgal, settings()));
+    add(blendshape_rows(subject, 1, true, settings()));
+    add(blendshape_rows(subject, 0.2, false, settings()));
+    add(vertex_rows(subject, settings()));
+  }
+
+  /// A thousand frames: what memory and bandwidth make of the decomposition.
+  void measure_long_job(const Subject& subject) {
+    constexpr int kManyComponents = 40;
+    add(decomposition_row(subject.name, subject.performance, kManyComponents, settings()));
+    add(splocs_kernel_rows(subject.name, subject.performance, kManyComponents, settings()));
+    add(decompose_command_row(subject, kManyComponents, mimetra_, scratch_.path(), settings()));
+  }
+
+  void compare_with_numpy(const Subject& subject) {
+    NumpyComparison comparison = compared_with_numpy(subject.name, subject.performance,
+                                                     components(), scratch_.path(), settings());
+    add(std::move(comparison.rows));
+    results_.notes.push_back(comparison.note);
+  }
+
+  /// Set-up and query are shown.
+  static std::vector<Row> without_sum(std::vector<Row> rows) {
+    std::erase_if(rows, [](const Row& row) { return row.what == kGeodesicAll; });
+    return rows;
+  }
+
+  /// Set-up sees no frames.
+  static std::vector<Row> without_setup(std::vector<Row> rows) {
+    std::erase_if(rows, [](const Row& row) {
+      return row.what == kBlendshapeSetup || row.what == kVertexSetup;
+    });
+    return rows;
+  }
+
+  void draw_growth(const std::vector<std::vector<Growth>>& parts) {
+    std::vector<Chart> charts;
+    for (const auto& part : parts) {
+      charts.push_back(chart_of(part, "time against " + part.front().against));
+      results_.growths.insert(results_.growths.end(), part.begin(), part.end());
+    }
+    std::ofstream file(out_ / "growth.png", std::ios::binary);
+    file << png_of(draw(charts, {.width = 640, .height = 720}));
+    if (!file.flush()) throw std::runtime_error((out_ / "growth.png").string() + ": not written");
+  }
+
+  fs::path out_;
+  Scratch scratch_;
+  fs::path mimetra_;
+  Results results_;
+};
+
+void run(const fs::path& out, bool quick) {
+  Run suite(out, quick);
+  suite.measure_faces();
+  suite.measure_growth();
+  const Results results = std::move(suite).finish();
+  std::ofstream file(out / "bench.json", std::ios::binary);
+  file << json_of(results);
+  if (!file.flush()) throw std::runtime_error((out / "bench.json").string() + ": not written");
+  std::printf("%s\nwritten: %s, %s\n", table_of(results).c_str(), (out / "bench.json").c_str(),
+              (out / "growth.png").c_str());
+}
+
+}  // namespace
+}  // namespace mimetra::bench
+
+int main(int argc, char** argv) {
+  const bool quick = argc == 3 && std::string(argv[2]) == "--quick";
+  if (argc < 2 || (argc > 2 && !quick)) {
+    std::fprintf(stderr, "usage: mimetra_bench OUT [--quick]\n");
+    return 2;
+  }
+  try {
+    mimetra::bench::run(std::filesystem::absolute(argv[1]), quick);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "mimetra_bench: %s\n", error.what());
+    return 1;
+  }
+}

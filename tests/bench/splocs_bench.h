@@ -1,0 +1,32 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include <mimetra/splocs/decomposition.h>
+
+#include "subjects.h"
+#include "suite.h"
+
+namespace mimetra::bench {
+
+constexpr const char* kDecomposition = "decomposition without geodesics";
+constexpr const char* kStart = "decomposition start";
+constexpr const char* kWeightStep = "weight step";
+constexpr const char* kAdmm = "ADMM, 10 steps";
+
+/// The decomposition that is timed: K components, all 10 iterations, distances known in advance.
+/// Distances are computed here, by a first run.
+DecompositionOptions prepared_options(const MeshSequence& sequence, int count);
+
+/// Products of the start, 10 iterations of 10 ADMM steps, and what keeps them going.
+Work decomposition_work(double frames, double vertices, double count, const Machine& machine);
+
+Row decomposition_row(const std::string& name, const MeshSequence& sequence, int count,
+                      const Settings& settings);
+
+/// Start, weight step and ADMM on their own.
+std::vector<Row> splocs_kernel_rows(const std::string& name, const MeshSequence& sequence,
+                                    int count, const Settings& settings);
+
+}  // namespace mimetra::bench

@@ -1,0 +1,137 @@
+#include "subjects.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <map>
+#include <numeric>
+#include <utility>
+
+#include <mimetra/io/model_file.h>
+#include <mimetra/io/weight_track.h>
+#include <mimetra/samples/head.h>
+
+#include "test_folders.h"
+
+namespace mimetra::bench {
+namespace {
+
+/// Every triangle split in four at the middles of its edges; old vertices come first.
+struct Refinement {
+  /// Ends of the edge that each vertex halves; an old vertex twice.
+  std::vector<std::pair<int, int>> ends;
+  Triangles triangles;
+
+  Refinement(int vertices, const Triangles& coarse) : triangles(4 * coarse.rows(), 3) {
+    for (int v = 0; v < vertices; ++v) ends.emplace_back(v, v);
+    std::map<std::pair<int, int>, int> middles;
+    const auto middle = [&](int a, int b) {
+      const std::pair<int, int> edge = std::minmax(a, b);
+      const auto [entry, added] = middles.try_emplace(edge, static_cast<int>(ends.size()));
+      if (added) ends.push_back(edge);
+      return entry->second;
+    };
+    for (Eigen::Index t = 0; t < coarse.rows(); ++t) {
+      const int a = coarse(t, 0), b = coarse(t, 1), c = coarse(t, 2);
+      const int ab = middle(a, b), bc = middle(b, c), ca = middle(c, a);
+      triangles.row(4 * t) << a, ab, ca;
+      triangles.row(4 * t + 1) << ab, b, bc;
+      triangles.row(4 * t + 2) << ca, bc, c;
+      triangles.row(4 * t + 3) << ab, bc, ca;
+    }
+  }
+
+  /// x y z of every vertex one below the other, a column for each field.
+  Eigen::MatrixXd refined(const Eigen::MatrixXd& fields) const {
+    Eigen::MatrixXd fine(3 * static_cast<Eigen::Index>(ends.size()), fields.cols());
+    for (std::size_t v = 0; v < ends.size(); ++v) {
+      fine.middleRows<3>(3 * static_cast<Eigen::Index>(v)) =
+          (fields.middleRows<3>(3 * ends[v].first) + fields.middleRows<3>(3 * ends[v].second)) / 2;
+    }
+    return fine;
+  }
+};
+
+BlendshapeModel refined(const BlendshapeModel& model) {
+  const Refinement refinement(model.vertices(), model.triangles());
+  const Eigen::Map<const Eigen::VectorXd> neutral(model.neutral().data(), model.neutral().size());
+  const Eigen::MatrixXd fine = refinement.refined(neutral);
+  const int vertices = static_cast<int>(refinement.ends.size());
+  return {std::make_shared<const Connectivity>(
+              Connectivity::from_triangles(vertices, refinement.triangles)),
+          PositionsView(fine.data(), vertices, 3),
+          {model.expressions().names, refinement.refined(model.expressions().displacements)}};
+}
+
+/// Rows in between by straight lines.
+Eigen::MatrixXd resampled(const Eigen::MatrixXd& rows, int count) {
+  Eigen::MatrixXd result(count, rows.cols());
+  for (int f = 0; f < count; ++f) {
+    const double place = static_cast<double>(f) * static_cast<double>(rows.rows() - 1) / count;
+    const auto before = static_cast<Eigen::Index>(place);
+    const double share = place - static_cast<double>(before);
+    result.row(f) = (1 - share) * rows.row(before) + share * rows.row(before + 1);
+  }
+  return result;
+}
+
+std::optional<Subject> captured(const std::string& name, const std::string& model,
+                                const std::string& source, const std::string& target,
+                                const std::string& track, int frames) {
+  const auto folder = test::shared_path("data") / model;
+  const auto weights = test::shared_path("data/captures") / track;
+  if (!std::filesystem::exists(folder) || !std::filesystem::exists(weights)) return {};
+  const BlendshapeModel actor = read_blendshapes(folder.string() + source);
+  const Eigen::MatrixXd beta = weights_for(read_weights(weights), actor.expressions().names);
+  return Subject{name, actor.animate(beta.topRows(frames)),
+                 read_blendshapes(folder.string() + target), folder.string() + target};
+}
+
+}  // namespace
+
+Subject head(int splits, int frames) {
+  const MorphableModel model = samples::parametric_head();
+  BlendshapeModel source = model.person(Eigen::Vector4d(0, 1, 0, 0));
+  BlendshapeModel target = model.person(Eigen::Vector4d(0, 0, 1, 0));
+  for (int split = 0; split < splits; ++split) {
+    source = refined(source);
+    target = refined(target);
+  }
+  const Eigen::MatrixXd beta =
+      weights_for(samples::parametric_performance(), source.expressions().names);
+  return {"head", source.animate(resampled(beta, frames)), std::move(target)};
+}
+
+std::optional<Subject> surrey() {
+  return captured("Surrey", "sfm", "@0=1,1=-1", "@0=-1,2=1.5", "six-expressions-25fps-100.csv",
+                  100);
+}
+
+std::optional<Subject> ict(int frames) {
+  return captured("ICT", "ict-face", "@identity003=1.5", "@identity007=2", "talking-60fps-1200.csv",
+                  frames);
+}
+
+Subject first_frames(const Subject& subject, int frames) {
+  return {subject.name, subject.performance.slice(0, frames), subject.target, subject.target_text};
+}
+
+std::vector<int> triangles_around_motion(const Subject& subject, double share) {
+  const Eigen::MatrixXd& fields = subject.target.expressions().displacements;
+  Eigen::VectorXd motion(subject.target.vertices());
+  for (Eigen::Index v = 0; v < motion.size(); ++v) {
+    motion[v] = fields.middleRows<3>(3 * v).squaredNorm();
+  }
+  Eigen::Index center = 0;
+  motion.maxCoeff(&center);
+  const Positions& neutral = subject.target.neutral();
+  const Eigen::VectorXd distances = (neutral.rowwise() - neutral.row(center)).rowwise().norm();
+  const Triangles& triangles = subject.target.triangles();
+  std::vector<int> order(static_cast<std::size_t>(triangles.rows()));
+  std::iota(order.begin(), order.end(), 0);
+  std::ranges::stable_sort(order, {}, [&](int t) { return distances[triangles(t, 0)]; });
+  order.resize(static_cast<std::size_t>(share * static_cast<double>(order.size())));
+  std::ranges::sort(order);
+  return order;
+}
+
+}  // namespace mimetra::bench

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <mimetra/model/blendshape_model.h>
+
+namespace mimetra::bench {
+
+/// A performance of one person, and another person's expressions.
+struct Subject {
+  std::string name;
+  MeshSequence performance;
+  BlendshapeModel target;
+  /// How the command is told the target; empty where it is in no file.
+  std::string target_text = {};
+};
+
+/// The built-in head, its triangles split in four `splits` times, with its performance slowed down
+/// or sped up to `frames` frames.
+Subject head(int splits, int frames);
+
+/// The models beside the project, where they are.
+std::optional<Subject> surrey();         ///< 100 frames x 3448, 6 expressions
+std::optional<Subject> ict(int frames);  ///< x 6706, 53 expressions; at most 1200 frames
+
+/// The first frames.
+Subject first_frames(const Subject& subject, int frames);
+
+/// This share of the target's triangles, around the vertex that its expressions move most.
+std::vector<int> triangles_around_motion(const Subject& subject, double share);
+
+}  // namespace mimetra::bench

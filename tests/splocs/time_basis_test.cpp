@@ -1,0 +1,72 @@
+#include <mimetra/splocs/time_basis.h>
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include <Eigen/QR>
+#include <Eigen/SVD>
+
+#include "synthetic.h"
+
+namespace mimetra::test {
+namespace {
+
+constexpr int kFrames = 90;
+
+/// `rank` poses, each a tenth of the one before, in 90 frames of 200 vertices.
+Frames fading_motion(int rank) {
+  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(Eigen::MatrixXd::Random(kFrames, rank));
+  const Eigen::MatrixXd courses = qr.householderQ() * Eigen::MatrixXd::Identity(kFrames, rank);
+  const Eigen::VectorXd sizes =
+      Eigen::VectorXd::NullaryExpr(rank, [](Eigen::Index k) { return std::pow(0.1, k); });
+  Frames poses = Frames::Random(rank, 600);
+  poses.rowwise().normalize();
+  return courses * sizes.asDiagonal() * poses;
+}
+
+double lost_share(const Frames& X, const TimeBasis& basis) {
+  return (X - basis.Q * basis.B.frames()).norm() / X.norm();
+}
+
+TEST(TimeBasis, LosesNoMoreThanTheTolerance) {
+  const Frames X = fading_motion(8);
+  for (const double tolerance : {1e-6, 1e-4, 0.03, 0.5}) {
+    const auto basis = time_basis(VertexBlocks<double>(X), X.squaredNorm(), tolerance, 2);
+    ASSERT_TRUE(basis);
+    EXPECT_LE(lost_share(X, *basis), tolerance);
+    EXPECT_TRUE((basis->Q.transpose() * basis->Q).isIdentity(1e-12));
+  }
+}
+
+TEST(TimeBasis, HasNoMorePosesThanNeeded) {
+  const Frames X = fading_motion(8);
+  // The best basis is that of the singular vectors.
+  const Eigen::VectorXd values = Eigen::JacobiSVD<Eigen::MatrixXd>(X).singularValues();
+  for (const double tolerance : {1e-4, 0.03, 0.5}) {
+    Eigen::Index needed = 8;
+    while (needed > 1 && values.segment(needed - 1, 9 - needed).norm() <= tolerance * X.norm()) {
+      --needed;
+    }
+    const auto basis = time_basis(VertexBlocks<double>(X), X.squaredNorm(), tolerance, 1);
+    ASSERT_TRUE(basis);
+    EXPECT_EQ(basis->Q.cols(), needed) << tolerance;
+  }
+}
+
+TEST(TimeBasis, IsNoneWhereEveryFrameIsNew) {
+  const Frames X = Frames::Random(kFrames, 600);
+  EXPECT_FALSE(time_basis(VertexBlocks<double>(X), X.squaredNorm(), 0.01, 1));
+}
+
+TEST(TimeBasis, DoesNotDependOnThreads) {
+  const Frames X = fading_motion(8);
+  const auto one = time_basis(VertexBlocks<double>(X), X.squaredNorm(), 1e-4, 1);
+  const auto three = time_basis(VertexBlocks<double>(X), X.squaredNorm(), 1e-4, 3);
+  ASSERT_TRUE(one && three);
+  EXPECT_EQ(one->Q, three->Q);
+  EXPECT_EQ(one->B.frames(), three->B.frames());
+}
+
+}  // namespace
+}  // namespace mimetra::test

@@ -1,0 +1,58 @@
+#include <mimetra/splocs/vertex_blocks.h>
+
+#include <gtest/gtest.h>
+
+#include <mimetra/splocs/motion.h>
+
+#include "synthetic.h"
+
+namespace mimetra::test {
+namespace {
+
+/// Two whole blocks and a rest.
+constexpr Eigen::Index kMany = 2 * VertexBlocks<double>::kVertices + 5;
+
+TEST(VertexBlocks, ComeTogetherAsTheyWere) {
+  for (const Eigen::Index vertices : {Eigen::Index(1), VertexBlocks<double>::kVertices, kMany}) {
+    const Frames rows = Frames::Random(4, 3 * vertices);
+    EXPECT_EQ(VertexBlocks<double>(rows).frames(), rows);
+  }
+}
+
+TEST(VertexBlocks, HoldEveryVertexInEveryRow) {
+  const Frames rows = Frames::Random(3, 3 * kMany);
+  const VertexBlocks<double> blocks(rows);
+  for (VertexIndex v = 0; v < kMany; ++v) {
+    EXPECT_EQ(blocks.vertex(v), rows.middleCols(3 * v, 3)) << v;
+  }
+}
+
+TEST(VertexBlocks, RoundToSinglePrecision) {
+  const Frames rows = Frames::Random(3, 3 * kMany);
+  const Frames rounded = rows.cast<float>().cast<double>();
+  EXPECT_EQ(VertexBlocks<float>(rows).frames(), rounded);
+  EXPECT_EQ(VertexBlocks<double>(rows).cast<float>().frames(), rounded);
+}
+
+TEST(ScaledMotion, IsTheDisplacementOverItsStandardDeviation) {
+  const MeshSequence sequence = restless_grid(30, 20, 6);
+  const Eigen::Map<const Eigen::RowVectorXd> rest(sequence.rest().data(), sequence.rest().size());
+  // Far from the rest pose, so that the mean is not small beside what moves.
+  const Frames frames = sequence.positions().array() + 1000;
+  const Frames X = frames.rowwise() - rest;
+  const double deviation = std::sqrt((X.array() - X.mean()).square().mean());
+  const Motion motion = scaled_motion(sequence.with_frames(frames), 2);
+  // Rounding of a mean of 1000 and of coordinates that lost three digits to it.
+  EXPECT_NEAR(motion.scale / deviation, 1, 1e-12);
+  EXPECT_LT((motion.X.frames() - X / deviation).norm(), 1e-12 * X.norm() / deviation);
+  EXPECT_NEAR(motion.norm2 * deviation * deviation / X.squaredNorm(), 1, 1e-12);
+}
+
+TEST(ScaledMotion, RefusesMotionWhoseEnergyIsNoNumber) {
+  const MeshSequence sequence = restless_grid(4, 3, 5);
+  EXPECT_THROW(scaled_motion(sequence.with_frames(sequence.positions() * 1e200), 1),
+               std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace mimetra::test

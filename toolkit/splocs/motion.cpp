@@ -1,0 +1,75 @@
+#include <mimetra/splocs/motion.h>
+
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+#include <mimetra/mesh/parallel.h>
+
+namespace mimetra {
+namespace {
+
+/// Mean of one frame's displacement coordinates, and the sum of squared differences from it.
+struct FrameSpread {
+  double mean = 0;
+  double squares = 0;
+};
+
+std::vector<FrameSpread> spreads(const MeshSequence& sequence, int threads) {
+  const Eigen::Map<const Eigen::RowVectorXd> rest(sequence.rest().data(), sequence.rest().size());
+  std::vector<FrameSpread> spreads(sequence.frames());
+  parallel_for(sequence.frames(), threads, [&](int f) {
+    const Eigen::RowVectorXd displacement = sequence.positions().row(f) - rest;
+    const double mean = displacement.mean();
+    spreads[f] = {mean, (displacement.array() - mean).square().sum()};
+  });
+  return spreads;
+}
+
+void require_finite(const MeshSequence& sequence, const std::vector<FrameSpread>& spreads) {
+  for (int f = 0; f < sequence.frames(); ++f) {
+    if (std::isfinite(spreads[f].squares)) continue;
+    const bool overflow = sequence.positions().row(f).allFinite();
+    throw std::invalid_argument(
+        "frame " + std::to_string(f) +
+        (overflow ? " is so far from the rest pose that its energy is not a finite number"
+                  : " has a coordinate that is not a finite number"));
+  }
+}
+
+VertexBlocks<double> scaled_blocks(const MeshSequence& sequence, double scale, int threads) {
+  VertexBlocks<double> X(sequence.frames(), sequence.vertices());
+  parallel_for(X.count(), threads, [&](int b) {
+    X[b].resize(X.rows(), 3 * X.size(b));
+    const auto rest = sequence.rest().middleRows(X.first(b), X.size(b));
+    for (int f = 0; f < sequence.frames(); ++f) {
+      VertexBlocks<double>::by_vertex(X[b], f) =
+          (sequence.frame(f).middleRows(X.first(b), X.size(b)) - rest) / scale;
+    }
+  });
+  return X;
+}
+
+}  // namespace
+
+Motion scaled_motion(const MeshSequence& sequence, int threads) {
+  const std::vector<FrameSpread> of_frames = spreads(sequence, threads);
+  require_finite(sequence, of_frames);
+  const auto coordinates = static_cast<double>(sequence.rest().size());
+  const auto all = coordinates * sequence.frames();
+  double mean = 0;
+  for (const FrameSpread& spread : of_frames) mean += spread.mean / sequence.frames();
+  double squares = 0;
+  for (const FrameSpread& spread : of_frames) {
+    squares += spread.squares + coordinates * (spread.mean - mean) * (spread.mean - mean);
+  }
+  const double scale = std::sqrt(squares / all);
+  if (scale == 0) {
+    throw MismatchError("nothing moves: all " + std::to_string(sequence.frames()) +
+                        " frames are the rest pose");
+  }
+  return {scaled_blocks(sequence, scale, threads), scale,
+          (squares + all * mean * mean) / scale / scale};
+}
+
+}  // namespace mimetra

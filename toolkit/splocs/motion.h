@@ -1,0 +1,18 @@
+#pragma once
+
+#include <mimetra/splocs/vertex_blocks.h>
+
+namespace mimetra {
+
+/// A sequence's displacements from its rest pose, divided by their standard deviation.
+struct Motion {
+  VertexBlocks<double> X;  ///< F x 3N
+  double scale = 1;        ///< the standard deviation, in units of the mesh
+  double norm2 = 0;        ///< ||X||_F^2
+};
+
+/// Throws MismatchError where nothing moves, std::invalid_argument that names the first frame with
+/// a coordinate that is not finite.
+Motion scaled_motion(const MeshSequence& sequence, int threads);
+
+}  // namespace mimetra

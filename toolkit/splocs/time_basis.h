@@ -1,0 +1,26 @@
+#pragma once
+
+#include <optional>
+
+#include <mimetra/splocs/vertex_blocks.h>
+
+namespace mimetra {
+
+/// Motion in a basis of few poses: X ~ Q B. Products with X need only B then.
+struct TimeBasis {
+  Eigen::MatrixXd Q;       ///< F x R, orthonormal columns
+  VertexBlocks<double> B;  ///< Q^T X, R x 3N
+};
+
+/// Smallest tolerance that the sums, which cancel, can tell from zero.
+constexpr double kLeastCompression = 1e-6;
+
+/// A basis with ||X - Q B||_F <= tolerance ||X||_F, found by random projections with a fixed seed;
+/// nothing where it would need more than half as many poses as X has frames. `norm2` is ||X||_F^2.
+/// \pre tolerance >= kLeastCompression
+///
+/// [Halko, Martinsson, Tropp. Finding Structure with Randomness. SIAM Review 53(2), 2011]
+std::optional<TimeBasis> time_basis(const VertexBlocks<double>& X, double norm2, double tolerance,
+                                    int threads);
+
+}  // namespace mimetra

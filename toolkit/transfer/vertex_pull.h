@@ -1,0 +1,55 @@
+#pragma once
+
+#include <vector>
+
+#include <mimetra/transfer/deformation_gradients.h>
+#include <mimetra/transfer/edges.h>
+
+namespace mimetra {
+
+/// What a source's deformation gradients ask of the target's vertices: at each vertex v the sum of
+/// (Q_i - I) x_iv over the selected triangles i around it, with constant vectors x_iv.
+///
+/// Since Q_i = U~_i U_i^-1, a triangle needs its frame U~_i and the constant vectors U_i^-1 x_iv
+/// only. They act on x, y and z alike. The rest pose, to which the same is done once, is taken
+/// off: it gives exactly 0.
+class VertexPull {
+ public:
+  /// So many frames at a time, side by side: one instruction serves several of them. x, y and z of
+  /// sixteen fill twelve registers of AVX2, which leaves four to compute with.
+  static constexpr int kLanes = 16;
+  static constexpr int kWidth = 3 * kLanes;
+  /// A row holds x of each frame, then y, then z.
+  using Rows = Eigen::Matrix<double, Eigen::Dynamic, kWidth, Eigen::RowMajor>;
+
+  /// `rest` N x 3, of the source; `gradients` are those of `triangles` (M x 3) at `rest`. `vectors`
+  /// holds, for each selected triangle a b c, x_ib and x_ic; x_ia = -x_ib - x_ic. `row_of_vertex`
+  /// (N) says where a vertex' sum goes; -1 for nowhere.
+  VertexPull(const Positions& rest, const Triangles& triangles,
+             const DeformationGradients& gradients, const std::vector<Edges>& vectors,
+             std::vector<int> row_of_vertex);
+
+  /// One row for each number in row_of_vertex; lanes beyond the last frame repeat it.
+  /// \pre 1 <= frames.rows() <= kLanes, frames.cols() == 3N
+  Rows operator()(const Eigen::Ref<const Frames>& frames) const;
+
+ private:
+  /// What one source triangle does to the corners of one target triangle.
+  struct Term {
+    Eigen::Vector3i source, target;  // corners, as slots
+    Edges factor;                    // U^-1 x_ib, U^-1 x_ic
+  };
+
+  int slot_of(VertexIndex vertex);
+  Rows gather(const Eigen::Ref<const Frames>& frames) const;
+  Rows sums(const Rows& positions) const;
+
+  std::vector<int> row_of_vertex_;
+  int rows_ = 0;
+  std::vector<VertexIndex> vertices_;  // those that terms use
+  std::vector<int> slot_of_vertex_;    // -1 where no term uses it
+  std::vector<Term> terms_;
+  Positions at_rest_;  // sums of the rest pose
+};
+
+}  // namespace mimetra
