@@ -94,12 +94,12 @@ fs::path find_landmark_mapping(const fs::path& model) {
   }
   if (found.size() == 1) return found.front();
   std::ranges::sort(found);
-  throw IoError(folder.string(), found.empty()
-                                     ? "holds no landmark mapping; expected ibug_to_*.txt or "
-                                       "landmarks68.txt, or name a mapping"
-                                     : "holds several landmark mappings, such as " +
-                                           found[0].filename().string() + " and " +
-                                           found[1].filename().string() + "; name one");
+  throw IoError(folder.string(),
+                found.empty()
+                    ? "holds no landmark mapping; expected ibug_to_*.txt or "
+                      "landmarks68.txt, or name a mapping with --mapping"
+                    : "holds several landmark mappings, such as " + found[0].filename().string() +
+                          " and " + found[1].filename().string() + "; name one with --mapping");
 }
 
 MappedLandmarks map_landmarks(const LandmarkTrack& track, const LandmarkMapping& mapping) {
