@@ -4,9 +4,9 @@
 #include <cmath>
 #include <set>
 
+#include <mimetra/model/box_least_squares.h>
 #include <mimetra/regions/regions.h>
 #include <mimetra/transfer/blendshape_transfer.h>
-#include <mimetra/transfer/box_least_squares.h>
 #include <mimetra/transfer/deformation_gradients.h>
 #include <mimetra/transfer/right_hand_side.h>
 #include <mimetra/transfer/vertex_transfer.h>

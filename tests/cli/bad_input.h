@@ -33,6 +33,7 @@ std::vector<BadInput> model_cases();
 std::vector<BadInput> weight_cases();
 std::vector<BadInput> eos_cases();
 std::vector<BadInput> component_cases();
+std::vector<BadInput> fit_cases();
 std::vector<BadInput> region_cases();
 std::vector<BadInput> json_cases();
 std::vector<BadInput> motion_cases();

@@ -192,11 +192,6 @@ TEST(ModelSpec, RefusesANameGivenTwice) {
   EXPECT_THROW(ModelSpec::parse("m@wide=1,wide=2"), std::invalid_argument);
 }
 
-TEST_F(Model, SpecWithAFileOfCoefficientsIsRefusedClearly) {
-  EXPECT_THAT(message_of([] { ModelSpec::parse("m@fit.json"); }),
-              HasSubstr("does not take coefficients from a file"));
-}
-
 TEST_F(Model, FolderWithAnAtSignInItsNameWins) {
   std::filesystem::create_directory(folder_ / "m@wide=1");
   const ModelSpec spec = ModelSpec::parse((folder_ / "m@wide=1").string());
@@ -237,6 +232,15 @@ TEST_F(Model, EosPairIsFoundByItsContentToo) {
   write("my_model.bin", bytes.shape);
   EXPECT_TRUE(is_model(folder_.path()));
   EXPECT_EQ(read_model(folder_.path()).identities().size(), 2);
+}
+
+TEST_F(Model, EosPairIsNamedByItsShapeModelToo) {
+  const EosBytes bytes = eos_bytes();
+  write("expression_blendshapes.bin", bytes.expressions);
+  write("shape.bin", bytes.shape);
+  EXPECT_TRUE(is_model(folder_ / "shape.bin"));
+  EXPECT_FALSE(is_model(folder_ / "expression_blendshapes.bin"));
+  EXPECT_EQ(read_model(folder_ / "shape.bin").identities().size(), 2);
 }
 
 TEST_F(Model, LaterEosVersionIsRefusedByItsNumber) {

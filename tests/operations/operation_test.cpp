@@ -112,6 +112,24 @@ TEST(OutputPaths, GiveEachOfSeveralTargetsItsOwn) {
   EXPECT_EQ(table.output_paths(output, "d/T.npy", {"a", "b"}), (Paths{"d/T-a.npy", "d/T-b.npy"}));
 }
 
+TEST(OutputPaths, PutACompanionBesideTheMainOutput) {
+  const OperationTable table = toolkit();
+  Operation operation;
+  operation.outputs = {{"out", DataKind::sequence, ""},
+                       {"fit-out", DataKind::fit, "", true, false, ".fit.json"}};
+  const auto path = [&](const char* out) {
+    return table.companion_path(operation, operation.outputs.back(), out);
+  };
+  EXPECT_EQ(path("take"), "take.fit.json");
+  EXPECT_EQ(path("d/take.v2/"), "d/take.v2.fit.json");
+  EXPECT_EQ(path("d/take.npy"), "d/take.fit.json");
+  EXPECT_EQ(path("./one.obj"), "one.fit.json");
+}
+
+TEST(OperationTable, KnowsNoLandmarksWithoutTheModuleThatReadsThem) {
+  EXPECT_THROW(toolkit().landmark_reader(), std::logic_error);
+}
+
 TEST(Operations, RunOnValuesWithoutFiles) {
   const OperationTable table = toolkit();
   const MeshSequence source = waving_grid();

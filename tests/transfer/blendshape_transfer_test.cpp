@@ -6,8 +6,8 @@
 #include <Eigen/LU>
 #include <Eigen/SVD>
 
+#include <mimetra/model/box_least_squares.h>
 #include <mimetra/transfer/blendshape_transfer.h>
-#include <mimetra/transfer/box_least_squares.h>
 #include <mimetra/transfer/deformation_gradients.h>
 
 #include "faces.h"

@@ -1,8 +1,8 @@
 #include <gtest/gtest.h>
 
+#include <mimetra/model/box_least_squares.h>
+#include <mimetra/model/smooth_weights.h>
 #include <mimetra/transfer/blendshape_transfer.h>
-#include <mimetra/transfer/box_least_squares.h>
-#include <mimetra/transfer/smooth_weights.h>
 
 #include "faces.h"
 
@@ -12,12 +12,16 @@ namespace {
 /// The same problem as one dense box problem in F D unknowns.
 struct DenseProblem {
   DenseProblem(const Eigen::MatrixXd& gram, const Eigen::MatrixXd& rows, double mu)
+      : DenseProblem(std::vector<Eigen::MatrixXd>(rows.rows(), gram), rows, mu) {}
+  DenseProblem(const std::vector<Eigen::MatrixXd>& grams, const Eigen::MatrixXd& rows, double mu)
       : system(Eigen::MatrixXd::Zero(rows.size(), rows.size())),
         h(rows.reshaped<Eigen::RowMajor>()),
         lower(Eigen::VectorXd::Zero(rows.size())),
         upper(Eigen::VectorXd::Ones(rows.size())) {
     const Eigen::Index frames = rows.rows(), d = rows.cols();
-    for (Eigen::Index f = 0; f < frames; ++f) system.block(f * d, f * d, d, d) = gram;
+    for (Eigen::Index f = 0; f < frames; ++f) {
+      system.block(f * d, f * d, d, d) = grams[f];
+    }
     for (Eigen::Index f = 0; f + 2 < frames; ++f) {
       Eigen::MatrixXd difference = Eigen::MatrixXd::Zero(frames, 1);
       difference.middleRows<3>(f) << 1, -2, 1;
@@ -51,7 +55,8 @@ Clip noisy_clip(int frames, int d) {
 }
 
 Eigen::MatrixXd smooth(const Clip& clip, double mu) {
-  return smooth_weights(clip.gram, clip.h, mu, Eigen::MatrixXd::Zero(clip.h.rows(), clip.h.cols()));
+  return smooth_weights({clip.gram}, clip.h, mu,
+                        Eigen::MatrixXd::Zero(clip.h.rows(), clip.h.cols()));
 }
 
 TEST(SmoothWeights, AreTheSolutionOfTheDenseProblem) {
@@ -68,6 +73,20 @@ TEST(SmoothWeights, AreTheSolutionOfTheDenseProblem) {
           << frames << ' ' << factor;
     }
   }
+}
+
+TEST(SmoothWeights, TakeAGramMatrixForEachFrame) {
+  const Clip clip = noisy_clip(7, 4);
+  std::vector<Eigen::MatrixXd> grams;
+  for (int f = 0; f < 7; ++f) grams.push_back((0.5 + 0.3 * f) * noisy_clip(3 + f, 4).gram);
+  const double mu = clip.mean_diagonal();
+  const Eigen::MatrixXd beta = smooth_weights(grams, clip.h, mu, Eigen::MatrixXd::Zero(7, 4));
+  EXPECT_LT(DenseProblem(grams, clip.h, mu).violation(beta), 1e-9);
+}
+
+TEST(SmoothWeights, RefuseAnotherNumberOfGramMatrices) {
+  const Clip clip = noisy_clip(5, 4);
+  EXPECT_THROW(smooth_weights({clip.gram, clip.gram}, clip.h, 1, clip.h), std::invalid_argument);
 }
 
 TEST(SmoothWeights, SatisfyTheOptimalityConditionsOnALongClip) {
@@ -111,7 +130,7 @@ TEST(SmoothWeights, AreExactlyZeroWhereNothingPulls) {
 TEST(SmoothWeights, AreTheSingleFramesWhereThereAreTooFew) {
   const Clip clip = noisy_clip(2, 3);
   const Eigen::MatrixXd single = test::random_weights(2, 3);
-  EXPECT_EQ(smooth_weights(clip.gram, clip.h, 1, single), single);
+  EXPECT_EQ(smooth_weights({clip.gram}, clip.h, 1, single), single);
 }
 
 TEST(SmoothnessPenalty, IsTheFourthPowerOfTheTimeConstantInFrames) {

@@ -47,7 +47,8 @@ std::string value_name(ParameterKind kind) {
 }
 
 CommandOption option_of(const Input& input) {
-  return {input.name, {"--" + input.name}, "FILE", input.help, {}, true};
+  const std::string value = input.optional ? "FILE" : upper(input.name);
+  return {input.name, {"--" + input.name}, value, input.help, {}, true, !input.optional};
 }
 
 CommandOption option_of(const Output& output) {
@@ -96,7 +97,7 @@ std::vector<Command> commands_of(const OperationTable& table) {
     Command command{&operation, table.parameters_of(operation), {}, {}};
     for (const Output& output : operation.outputs) command.options.push_back(option_of(output));
     for (const Input& input : operation.inputs) {
-      if (input.optional)
+      if (input.optional || input.named)
         command.options.push_back(option_of(input));
       else
         command.positionals.push_back(input);

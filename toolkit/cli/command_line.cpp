@@ -106,7 +106,8 @@ Request request_of(const CLI::App& app, const Command& command, const Slots& slo
   request.parameters = parameters_of(app, command, slots);
   request.inputs = slots.inputs;
   for (const Input& input : command.operation->inputs) {
-    if (const auto text = slots.value(input.name); input.optional && text) {
+    const bool is_option = input.optional || input.named;
+    if (const auto text = slots.value(input.name); is_option && text) {
       request.inputs[input.name] = {*text};
     }
   }

@@ -31,6 +31,15 @@ std::string size_of(const Data& data) {
   if (const auto* regions = std::get_if<RegionData>(&data)) {
     return std::to_string(regions->regions.regions.size()) + " regions";
   }
+  if (const auto* read = std::get_if<LandmarksRead>(&data)) {
+    return std::to_string(read->track.frames()) + " frames of " +
+           std::to_string(read->track.landmarks()) + " landmarks";
+  }
+  if (const auto* read = std::get_if<ModelRead>(&data)) {
+    return std::to_string(read->model.vertices()) + " vertices, " +
+           std::to_string(read->model.identities().size()) + " identities, " +
+           std::to_string(read->model.expressions().size()) + " expressions";
+  }
   return "";
 }
 

@@ -10,6 +10,7 @@
 #include <mimetra/cli/completion.h>
 #include <mimetra/cli/manual.h>
 #include <mimetra/cli/run_command.h>
+#include <mimetra/fitting/fit_operation.h>
 #include <mimetra/operations/listing.h>
 #include <mimetra/samples/sample_operation.h>
 #include <mimetra/vtk/vtk_formats.h>
@@ -36,6 +37,7 @@ int run(const std::vector<std::string>& arguments) {
   mimetra::OperationTable table;
   mimetra::add_toolkit(table);
   mimetra::add_vtk(table);
+  mimetra::add_fitting(table);
   mimetra::samples::add_sample(table);
   mimetra::add_listing(table);
   mimetra::cli::add_completion(table);

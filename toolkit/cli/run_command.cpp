@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 #include <iostream>
+#include <optional>
 #include <set>
 
 #include <spdlog/spdlog.h>
@@ -62,16 +63,27 @@ constexpr double kWritingFrom = 0.8;
 
 using OutputPaths = std::map<std::string, std::vector<std::filesystem::path>>;
 
+/// Where an output was asked for, or goes because it accompanies another; none for one that is not
+/// made.
+std::optional<std::filesystem::path> path_of(const OperationTable& table, const Request& request,
+                                             const Output& output) {
+  if (const auto asked = request.outputs.find(output.name); asked != request.outputs.end()) {
+    return asked->second;
+  }
+  const auto main = request.outputs.find("out");
+  if (output.companion.empty() || main == request.outputs.end()) return {};
+  return table.companion_path(*request.operation, output, main->second);
+}
+
 /// Refuses, before anything is read, what cannot be written.
 void check_outputs(const OperationTable& table, const Request& request) {
   const bool several = std::ranges::any_of(
       request.inputs, [](const auto& input) { return input.second.size() > 1; });
   for (const Output& output : request.operation->outputs) {
-    const auto asked = request.outputs.find(output.name);
-    if (asked == request.outputs.end()) continue;
-    table.writer(output.kind, asked->second);
-    if (!several || !output.repeated)
-      table.check_writable(output.kind, asked->second, request.force);
+    const auto path = path_of(table, request, output);
+    if (!path) continue;
+    table.writer(output.kind, *path);
+    if (!several || !output.repeated) table.check_writable(output.kind, *path, request.force);
   }
 }
 
@@ -81,9 +93,9 @@ OutputPaths output_paths(const OperationTable& table, const Request& request,
   OutputPaths all;
   std::set<std::filesystem::path> places;
   for (const Output& output : request.operation->outputs) {
-    const auto asked = request.outputs.find(output.name);
-    if (asked == request.outputs.end()) continue;
-    all[output.name] = table.output_paths(output, asked->second, names);
+    const auto asked = path_of(table, request, output);
+    if (!asked) continue;
+    all[output.name] = table.output_paths(output, *asked, names);
     for (const auto& path : all[output.name]) {
       table.check_writable(output.kind, path, request.force);
       if (!places.insert(path).second) {
@@ -122,13 +134,13 @@ void write_outputs(const OperationTable& table, const Request& request, const Ou
     if (wanted == paths.end() || made == outcome.outputs.end()) continue;
     for (std::size_t i = 0; i < made->second.size(); ++i, ++written) {
       const auto& target = wanted->second.at(i);
-      const WriteRequest write{
-          target,
-          request.parameters,
-          request.force,
-          progress,
-          {{manifest_name(target, table.writes_folder(output.kind, target)), manifest_text}},
-          request.threads};
+      WriteRequest write{target, request.parameters, request.force, progress};
+      write.threads = request.threads;
+      // What accompanies another output is told of in that one's manifest.
+      if (request.outputs.contains(output.name)) {
+        write.extra = {
+            {manifest_name(target, table.writes_folder(output.kind, target)), manifest_text}};
+      }
       table.writer(output.kind, target).write(made->second[i].data, write);
     }
   }

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include <mimetra/io/eos.h>
+#include <mimetra/io/fit_file.h>
 #include <mimetra/io/mesh_file.h>
 #include <mimetra/io/pending_output.h>
 #include <mimetra/io/sequence_file.h>
@@ -93,6 +94,10 @@ Parts parts_from_json(const fs::path& file) {
 
 Parts parts_of(const fs::path& folder) {
   std::error_code unreadable;
+  if (folder.extension() == ".bin" && fs::is_regular_file(folder, unreadable)) {
+    const fs::path parent = folder.parent_path();
+    return {{}, folder, eos_expressions_of(parent.empty() ? "." : parent), {}};
+  }
   if (fs::exists(folder / "model.json", unreadable)) return parts_from_json(folder / "model.json");
   Parts parts;
   parts.neutral = neutral_of(folder);
@@ -148,6 +153,40 @@ double coefficient_of(const std::string& entry, const std::string& number) {
   return value;
 }
 
+/// `at` is the last '@'; the file's folders may hold others.
+ModelSpec with_fit(const std::string& text, std::size_t at) {
+  std::error_code unreadable;
+  for (auto here = text.find('@'); here < at; here = text.find('@', here + 1)) {
+    if (fs::exists(text.substr(0, here), unreadable)) at = here;
+  }
+  const std::string file = text.substr(at + 1);
+  return {text.substr(0, at), {}, file, file};
+}
+
+/// "63 identities, from '0' to '62'".
+std::string counted(const std::vector<std::string>& names) {
+  if (names.empty()) return "no identities";
+  return std::to_string(names.size()) + " identities, from '" + names.front() + "' to '" +
+         names.back() + "'";
+}
+
+/// Coefficients in the model's order.
+Eigen::VectorXd fitted_identity(const ShapeBasis& identities, const ModelSpec& spec) {
+  const FittedCoefficients fit = read_fit(*spec.fit);
+  const Eigen::VectorXd alpha = fit.identity();
+  Eigen::VectorXd result(identities.size());
+  bool is_same_model = alpha.size() == result.size();
+  for (Eigen::Index i = 0; is_same_model && i < alpha.size(); ++i) {
+    const int index = identities.find(fit.identities[static_cast<std::size_t>(i)]);
+    is_same_model = index >= 0;
+    if (is_same_model) result[index] = alpha[i];
+  }
+  if (is_same_model) return result;
+  throw MismatchError(spec.fit->string() + ": has " + counted(fit.identities) + ", but " +
+                      spec.path.string() + " has " + counted(identities.names) +
+                      "; it was fitted with another model");
+}
+
 /// A name becomes a file's name: it must stay in its folder, and be found there again.
 void check_shape_name(const std::string& name) {
   if (!name.empty() && name.front() != '.' && name.find('/') == std::string::npos) return;
@@ -180,6 +219,9 @@ ModelSpec ModelSpec::parse(const std::string& text) {
   const auto slash = text.find_last_of('/');
   const auto at = text.find_last_of('@');
   std::error_code unreadable;
+  if (at != std::string::npos && text.ends_with(".json") && !fs::exists(text, unreadable)) {
+    return with_fit(text, at);
+  }
   if (at == std::string::npos || (slash != std::string::npos && at < slash) ||
       fs::exists(text, unreadable)) {
     spec.path = text;
@@ -187,12 +229,6 @@ ModelSpec ModelSpec::parse(const std::string& text) {
   }
   spec.path = text.substr(0, at);
   spec.identity_text = text.substr(at + 1);
-  if (spec.identity_text.ends_with(".json")) {
-    throw std::invalid_argument(
-        "'" + text +
-        "': this version does not take coefficients from a file; write them "
-        "as NAME=NUMBER,...");
-  }
   std::string rest = spec.identity_text + ',';
   for (auto comma = rest.find(','); comma != std::string::npos; comma = rest.find(',')) {
     const std::string entry = rest.substr(0, comma);
@@ -218,7 +254,10 @@ std::string ModelSpec::name() const {
   std::error_code unreadable;
   const std::string stem =
       fs::is_directory(path, unreadable) ? last.filename().string() : last.stem().string();
-  return identity_text.empty() ? stem : stem + '@' + identity_text;
+  if (!fit) return identity_text.empty() ? stem : stem + '@' + identity_text;
+  fs::path fitted = fit->stem();
+  if (fitted.extension() == ".fit") fitted = fitted.stem();
+  return stem + '@' + fitted.string();
 }
 
 MorphableModel read_model(const fs::path& path, int threads) {
@@ -251,6 +290,7 @@ MorphableModel read_model(const fs::path& path, int threads) {
 
 BlendshapeModel read_person(const ModelSpec& spec, int threads) {
   const MorphableModel model = read_model(spec.path, threads);
+  if (spec.fit) return model.person(fitted_identity(model.identities(), spec));
   Eigen::VectorXd alpha = Eigen::VectorXd::Zero(model.identities().size());
   for (const auto& [name, coefficient] : spec.identity) {
     const int index = model.identities().find(name);
@@ -273,7 +313,7 @@ BlendshapeModel read_blendshapes(const std::string& text) {
 
 bool is_model(const fs::path& path) {
   std::error_code unreadable;
-  if (!fs::is_directory(path, unreadable)) return false;
+  if (!fs::is_directory(path, unreadable)) return path.extension() == ".bin" && is_eos_shape(path);
   return fs::exists(path / "model.json", unreadable) || neutral_of(path).has_value() ||
          (eos_expressions_of(path) && eos_shape_of(path));
 }

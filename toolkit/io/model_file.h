@@ -11,17 +11,22 @@
 
 namespace mimetra {
 
-/// A model directory or file, and the identity asked for: `MODEL@identity003=1.5,identity007=-1`.
+/// A model directory or file, and the identity asked for: `MODEL@identity003=1.5,identity007=-1`,
+/// or `MODEL@NAME.fit.json` with fitted coefficients.
 struct ModelSpec {
   std::filesystem::path path;
   std::vector<std::pair<std::string, double>> identity;
   /// Everything after '@', as given; for naming outputs.
   std::string identity_text;
+  /// Coefficients that were fitted.
+  std::optional<std::filesystem::path> fit = {};
 
-  /// The '@' counts after the last '/', and only where nothing has the whole text as its name.
+  /// The '@' counts after the last '/' (where a .json follows: the first one that follows something
+  /// that exists), and only where nothing has the whole text as its name.
   /// Throws std::invalid_argument for what is not NAME=NUMBER after it, and a name given twice.
   static ModelSpec parse(const std::string& text);
-  /// `ict-face@identity007=2`, without folders; a file without its extension.
+  /// `ict-face@identity007=2`, without folders; a file without its extension; `sfm@target` for
+  /// `sfm@out/target.fit.json`.
   std::string name() const;
 };
 
@@ -29,19 +34,21 @@ struct ModelSpec {
 /// `identities/` (absolute shapes, their neutral subtracted on reading; the file's stem is the
 /// name), or a `model.json` that names them (`neutral`, `expressions`, `identities`, or `shape` for
 /// an eos model file with `expressions` its eos blendshape file), or the eos pair `sfm_shape_*.bin`
-/// (or another .bin that starts like one) and `expression_blendshapes_*.bin`. Shapes come in the
-/// natural order of their names. Throws IoError; MismatchError where shapes differ in
-/// topology. `threads`: 0 for all there are.
+/// (or another .bin that starts like one) and `expression_blendshapes_*.bin`. `path` may also be
+/// the shape model of such a pair. Shapes come in the natural order of their names. Throws IoError;
+/// MismatchError where shapes differ in topology. `threads`: 0 for all there are.
 MorphableModel read_model(const std::filesystem::path& path, int threads = 0);
 
-/// The person a spec speaks of. Throws as read_model; MismatchError for an unknown identity name.
+/// The person a spec speaks of. Throws as read_model and read_fit; MismatchError for an unknown
+/// identity name, and for a fit of another model.
 BlendshapeModel read_person(const ModelSpec& spec, int threads = 0);
 
 /// The person that `text` speaks of: a model, or `MODEL@identity003=1.5`. Throws as
 /// ModelSpec::parse and read_person.
 BlendshapeModel read_blendshapes(const std::string& text);
 
-/// True for a directory that looks like something read_model reads; a file is no model.
+/// True for a directory that looks like something read_model reads, and for an eos shape model;
+/// another file is no model.
 bool is_model(const std::filesystem::path& path);
 
 /// Writes a model directory: neutral.ply, expressions/NAME.ply, identities/NAME.ply (absolute

@@ -3,6 +3,7 @@
 #include <stdexcept>
 
 #include <mimetra/io/array_file.h>
+#include <mimetra/io/fit_file.h>
 #include <mimetra/io/frame_files.h>
 #include <mimetra/io/mesh_file.h>
 #include <mimetra/io/model_file.h>
@@ -161,18 +162,19 @@ SequenceRead read_driven(const ModelSpec& spec, const SequenceSource& source) {
   read.model_driven = true;
   read.files = {spec.path};
   const BlendshapeModel person = read_person(spec, source.threads);
-  if (!source.weights) {
+  if (spec.fit) read.files.push_back(*spec.fit);
+  if (!source.weights && !spec.fit) {
     read.sequence = neutral_of(person, source);
     return read;
   }
-  read.files.push_back(*source.weights);
-  const WeightTrack track = read_weights(*source.weights);
+  if (source.weights) read.files.push_back(*source.weights);
+  const fs::path& driver = read.files.back();
+  const WeightTrack track = source.weights ? read_weights(driver) : read_fit(driver).performance();
   const std::vector<int> selected =
       selected_frames(source.frames, static_cast<int>(track.weights.rows()));
   const std::vector<std::string>& expressions = person.expressions().names;
-  read.notes = match_notes(*source.weights, spec.path, match_weights(track, expressions));
-  const Eigen::MatrixXd weights =
-      weights_of(*source.weights, track, expressions)(selected, Eigen::all);
+  read.notes = match_notes(driver, spec.path, match_weights(track, expressions));
+  const Eigen::MatrixXd weights = weights_of(driver, track, expressions)(selected, Eigen::all);
   const bool timed = track.times.size() > 0;
   read.sequence = person.animate(
       weights, timed ? Eigen::VectorXd(track.times(selected)) : times_of(selected, source));

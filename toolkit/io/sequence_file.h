@@ -38,7 +38,8 @@ struct SequenceRead {
 
 /// Reads `text`: a directory, glob or printf pattern of OBJ/PLY/OFF/STL files in natural order (2
 /// before 10), one such file, an .npy array (faces from `topology` or NAME.topology.ply beside it),
-/// or a model with weights; a model without weights is its neutral. The rest pose of an array or a
+/// or a model with weights; a model without weights is its neutral, and MODEL@NAME.fit.json the
+/// performance that was fitted. The rest pose of an array or a
 /// directory is NAME.rest.ply where that stands beside it. Throws IoError, MismatchError (frames
 /// that differ in vertices or faces, naming both files), std::invalid_argument for a bad frame
 /// range, Cancelled.

@@ -32,6 +32,20 @@ std::string_view without_byte_order_mark(std::string_view text) {
   return text.starts_with(kMark) ? text.substr(kMark.size()) : text;
 }
 
+std::vector<std::string_view> comma_separated(std::string_view line) {
+  const auto is_wrapping = [](char c) { return c == ' ' || c == '\t' || c == '"' || c == '\r'; };
+  std::vector<std::string_view> fields;
+  for (;;) {
+    const auto comma = line.find(',');
+    std::string_view field = line.substr(0, comma);
+    while (!field.empty() && is_wrapping(field.front())) field.remove_prefix(1);
+    while (!field.empty() && is_wrapping(field.back())) field.remove_suffix(1);
+    fields.push_back(field);
+    if (comma == std::string_view::npos) return fields;
+    line.remove_prefix(comma + 1);
+  }
+}
+
 TextCursor::TextCursor(const std::string& path, std::string_view text, Syntax syntax,
                        int first_line)
     : path_(path),

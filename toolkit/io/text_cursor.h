@@ -3,6 +3,7 @@
 #include <charconv>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace mimetra {
 
@@ -18,8 +19,11 @@ inline bool ends_word(char c) {
 /// `text` without the mark that some programs put before UTF-8.
 std::string_view without_byte_order_mark(std::string_view text);
 
+/// The fields of a line of CSV, without the blanks and quotation marks around them.
+std::vector<std::string_view> comma_separated(std::string_view line);
+
 /// Walks through the text of a file word by word, within a line or across lines, and knows the line
-/// for messages. Lines end in LF or CRLF. Internal to the mesh readers.
+/// for messages. Lines end in LF or CRLF. For readers.
 class TextCursor {
  public:
   /// What interrupts a line besides its end.

@@ -17,21 +17,6 @@ namespace {
 
 using Row = std::vector<std::string_view>;
 
-/// Splits at commas and takes blanks and quotation marks off.
-Row fields_of(std::string_view line) {
-  Row fields;
-  for (;;) {
-    const auto comma = line.find(',');
-    std::string_view field = line.substr(0, comma);
-    const auto is_wrapping = [](char c) { return c == ' ' || c == '\t' || c == '"' || c == '\r'; };
-    while (!field.empty() && is_wrapping(field.front())) field.remove_prefix(1);
-    while (!field.empty() && is_wrapping(field.back())) field.remove_suffix(1);
-    fields.push_back(field);
-    if (comma == std::string_view::npos) return fields;
-    line.remove_prefix(comma + 1);
-  }
-}
-
 std::string lower(std::string_view text) {
   std::string result(text);
   std::ranges::transform(result, result.begin(), [](unsigned char c) { return std::tolower(c); });
@@ -73,7 +58,7 @@ class WeightReader {
   }
 
   void read_header(std::string_view line) {
-    header_ = fields_of(line);
+    header_ = comma_separated(line);
     if (header_.size() == 1 && line.find(';') != std::string_view::npos) {
       fail("names are separated by ';', expected ','");
     }
@@ -104,7 +89,7 @@ class WeightReader {
   }
 
   void read_row(std::string_view line) {
-    const Row row = fields_of(line);
+    const Row row = comma_separated(line);
     if (row.size() != header_.size()) {
       fail(std::to_string(row.size()) + (row.size() == 1 ? " field" : " fields") + ", expected " +
            std::to_string(header_.size()) + " as in the first line" +

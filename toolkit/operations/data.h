@@ -6,9 +6,11 @@
 #include <variant>
 #include <vector>
 
+#include <mimetra/io/fit_file.h>
 #include <mimetra/io/sequence_file.h>
 #include <mimetra/io/weight_track.h>
 #include <mimetra/mesh/fields.h>
+#include <mimetra/model/landmark_track.h>
 #include <mimetra/model/morphable_model.h>
 #include <mimetra/regions/regions.h>
 #include <mimetra/splocs/decomposition.h>
@@ -24,7 +26,10 @@ enum class DataKind {
   fields,
   table,
   animated_model,
-  picture
+  picture,
+  landmarks,
+  morphable_model,
+  fit
 };
 
 /// Regions and the sequence they are shown on (empty for regions that were read).
@@ -56,9 +61,23 @@ struct Image {
   std::vector<std::uint8_t> pixels;
 };
 
+/// Landmarks, and what was noticed while reading them.
+struct LandmarksRead {
+  LandmarkTrack track;  ///< with times
+  std::vector<std::filesystem::path> files = {};
+  std::vector<std::string> notes = {};
+};
+
+/// A morphable model and where it came from.
+struct ModelRead {
+  MorphableModel model;
+  std::filesystem::path path;  ///< empty for one that was made
+};
+
 /// One value of the kind at the same place in DataKind.
-using Data = std::variant<SequenceRead, BlendshapeModel, Components, RegionData, FieldSequence,
-                          Table, AnimatedModel, Image>;
+using Data =
+    std::variant<SequenceRead, BlendshapeModel, Components, RegionData, FieldSequence, Table,
+                 AnimatedModel, Image, LandmarksRead, ModelRead, FittedCoefficients>;
 
 /// A value and what it is called in messages and output names.
 struct NamedData {

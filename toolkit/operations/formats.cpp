@@ -96,6 +96,9 @@ void add_formats(OperationTable& table) {
       Writer{DataKind::table, {".json"}, {}, [](const Data& data, const WriteRequest& request) {
                return write_text(std::get<Table>(data).json(), request);
              }});
+  table.add(Writer{DataKind::fit, {".json"}, {}, [](const Data& data, const WriteRequest& request) {
+                     return write_text(fit_json(std::get<FittedCoefficients>(data)), request);
+                   }});
   table.add(RegionReader{{".json", ".csv", ".txt"}, read_regions});
 }
 

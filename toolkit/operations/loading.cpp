@@ -31,6 +31,11 @@ class Loader {
         return {text, regions(text)};
       case DataKind::fields:
         return {text, fields(text)};
+      case DataKind::landmarks:
+        return {text, landmarks(text)};
+      case DataKind::morphable_model:
+        files.push_back(text);
+        return {text, ModelRead{read_model(text, threads_), text}};
       default:
         break;
     }
@@ -58,23 +63,37 @@ class Loader {
 
   SequenceRead sequence(const std::string& text) {
     if (auto read = with_fields(text)) return kept({std::move(read->sequence), false, {}, {}});
-    SequenceSource source;
+    SequenceSource source = frames_asked_for();
     const auto path = [this](const char* name) {
       const auto value = parameters_.optional_text(name);
       return value ? std::optional<std::filesystem::path>(*value) : std::nullopt;
     };
     source.weights = path("weights");
     source.topology = path("topology");
+    return kept(noted(read_sequence(text, source)));
+  }
+
+  LandmarksRead landmarks(const std::string& text) {
+    return noted(table_.landmark_reader()(text, frames_asked_for()));
+  }
+
+  SequenceSource frames_asked_for() const {
+    SequenceSource source;
     source.frames = parameters_.optional_text("frames");
     source.fps = parameters_.optional_number("fps");
     source.threads = threads_;
     source.progress = progress_;
-    SequenceRead read = read_sequence(text, source);
+    return source;
+  }
+
+  /// Tells the notes of what was read, and keeps its files for the manifest.
+  template <typename Read>
+  Read noted(Read read) {
     for (const std::string& note : read.notes) {
       if (log_) log_(LogLevel::warning, note);
     }
     files.insert(files.end(), read.files.begin(), read.files.end());
-    return kept(std::move(read));
+    return read;
   }
 
   SequenceRead kept(SequenceRead read) {
@@ -89,8 +108,11 @@ class Loader {
     if (!std::filesystem::exists(spec.path)) {
       throw IoError(spec.path.string(), "no such file or folder");
     }
-    if (std::filesystem::is_directory(spec.path)) return {spec.name(), read_person(spec, threads_)};
-    if (!spec.identity.empty()) {
+    if (spec.fit) files.push_back(*spec.fit);
+    if (std::filesystem::is_directory(spec.path) || is_model(spec.path)) {
+      return {spec.name(), read_person(spec, threads_)};
+    }
+    if (!spec.identity_text.empty()) {
       throw MismatchError(text + ": '" + spec.path.string() +
                           "' is one mesh and has no identities");
     }

@@ -33,8 +33,12 @@ std::string listed(const std::vector<std::string>& names) {
 /// What `read_sequence` takes besides a name.
 std::vector<Parameter> sequence_parameters() {
   return {{"weights", ParameterKind::file, {}, "CSV of blendshape weights that drive a model"},
-          {"topology", ParameterKind::file, {}, "mesh with the faces of an .npy array"},
-          {"frames", ParameterKind::text, {}, "part A:B:STEP of the frames, 0-based, B excluded"},
+          {"topology", ParameterKind::file, {}, "mesh with the faces of an .npy array"}};
+}
+
+/// What everything with frames takes.
+std::vector<Parameter> frame_parameters() {
+  return {{"frames", ParameterKind::text, {}, "part A:B:STEP of the frames, 0-based, B excluded"},
           {"fps",
            ParameterKind::number,
            {},
@@ -62,6 +66,12 @@ std::string_view kind_name(DataKind kind) {
       return "model directory";
     case DataKind::picture:
       return "picture";
+    case DataKind::landmarks:
+      return "landmarks";
+    case DataKind::morphable_model:
+      return "morphable model";
+    case DataKind::fit:
+      return "fitted coefficients";
   }
   return "";
 }
@@ -112,11 +122,9 @@ Json json_of(const Parameter& parameter) {
 }
 
 Json json_of(const Input& input) {
-  return {{"name", input.name},
-          {"kind", kind_name(input.kind)},
-          {"optional", input.optional},
-          {"repeated", input.repeated},
-          {"help", input.help}};
+  return {{"name", input.name},         {"kind", kind_name(input.kind)},
+          {"optional", input.optional}, {"repeated", input.repeated},
+          {"named", input.named},       {"help", input.help}};
 }
 
 Json json_of(const Output& output) {
@@ -196,6 +204,10 @@ const Operation* OperationTable::find(const std::string& name) const {
   return found == operations_.end() ? nullptr : &*found;
 }
 
+void OperationTable::add(LandmarkReader reader) {
+  landmark_reader_ = std::move(reader);
+}
+
 std::vector<Parameter> OperationTable::parameters_of(const Operation& operation) const {
   std::vector<Parameter> parameters = operation.parameters;
   const auto append = [&](const std::vector<Parameter>& more) {
@@ -212,7 +224,14 @@ std::vector<Parameter> OperationTable::parameters_of(const Operation& operation)
   const auto reads_sequence = [](const Input& input) {
     return input.kind == DataKind::sequence || input.kind == DataKind::fields;
   };
-  if (std::ranges::any_of(operation.inputs, reads_sequence)) append(sequence_parameters());
+  if (std::ranges::any_of(operation.inputs, reads_sequence)) {
+    append(sequence_parameters());
+    append(frame_parameters());
+  }
+  if (std::ranges::find(operation.inputs, DataKind::landmarks, &Input::kind) !=
+      operation.inputs.end()) {
+    append(frame_parameters());
+  }
   for (const Output& output : operation.outputs) {
     for (const Writer& writer : writers_) {
       if (writer.kind == output.kind) append(writer.parameters);
@@ -264,6 +283,16 @@ std::vector<std::filesystem::path> OperationTable::output_paths(
   return paths;
 }
 
+std::filesystem::path OperationTable::companion_path(const Operation& operation,
+                                                     const Output& companion,
+                                                     const std::filesystem::path& out) const {
+  const Output& main = *std::ranges::find(operation.outputs, "out", &Output::name);
+  std::filesystem::path name = out.lexically_normal();
+  if (!name.has_filename()) name = name.parent_path();
+  if (!writes_folder(main.kind, out)) name.replace_extension();
+  return name += companion.companion;
+}
+
 const RegionReader& OperationTable::region_reader(const std::filesystem::path& path) const {
   std::vector<std::string> known;
   for (const RegionReader& reader : region_readers_) {
@@ -278,6 +307,11 @@ const FieldReader* OperationTable::field_reader(const std::filesystem::path& pat
     return has_extension(reader.extensions, path);
   });
   return found == field_readers_.end() ? nullptr : &*found;
+}
+
+const LandmarkReader& OperationTable::landmark_reader() const {
+  if (!landmark_reader_) throw std::logic_error("no module that reads landmarks was added");
+  return landmark_reader_;
 }
 
 std::string OperationTable::json() const {

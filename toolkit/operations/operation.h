@@ -14,11 +14,12 @@ namespace mimetra {
 
 /// Something an operation works on.
 struct Input {
-  std::string name;  ///< "source"; an optional one is the option --NAME
+  std::string name;  ///< "source"; an optional or named one is the option --NAME
   DataKind kind;
   std::string help;
   bool optional = false;
   bool repeated = false;  ///< one or more; only the last positional input
+  bool named = false;     ///< an option although it is needed
 };
 
 /// Something an operation makes.
@@ -28,6 +29,9 @@ struct Output {
   std::string help;
   bool optional = false;
   bool repeated = false;  ///< one value for each of the repeated input
+  /// ".fit.json": it is written to NAME.fit.json beside the output `out` where no other path is
+  /// asked for.
+  std::string companion = {};
 };
 
 enum class LogLevel { info, warning };
@@ -120,6 +124,10 @@ struct FieldReader {
   std::function<std::vector<std::filesystem::path>(const std::filesystem::path&)> files;
 };
 
+/// The way to read landmarks; `source` says which frames, and the times of those that have none.
+using LandmarkReader =
+    std::function<LandmarksRead(const std::string& text, const SequenceSource& source)>;
+
 /// All operations and formats of a program; built by its main function and passed down.
 class OperationTable {
  public:
@@ -128,6 +136,7 @@ class OperationTable {
   void add(Writer writer);
   void add(RegionReader reader);
   void add(FieldReader reader);
+  void add(LandmarkReader reader);
 
   const std::vector<Operation>& operations() const { return operations_; }
   const Operation* find(const std::string& name) const;
@@ -147,10 +156,15 @@ class OperationTable {
   std::vector<std::filesystem::path> output_paths(const Output& output,
                                                   const std::filesystem::path& asked,
                                                   const std::vector<std::string>& names) const;
+  /// Where a companion goes, given the path of the output `out`.
+  std::filesystem::path companion_path(const Operation& operation, const Output& companion,
+                                       const std::filesystem::path& out) const;
   /// Throws UsageError that lists the known extensions.
   const RegionReader& region_reader(const std::filesystem::path& path) const;
   /// Null where no reader has the extension: then it is a sequence that io reads.
   const FieldReader* field_reader(const std::filesystem::path& path) const;
+  /// Throws std::logic_error where no module has added one.
+  const LandmarkReader& landmark_reader() const;
 
   /// The table as a JSON array: name, summary, inputs, outputs, parameters, examples.
   std::string json() const;
@@ -160,6 +174,7 @@ class OperationTable {
   std::vector<Writer> writers_;
   std::vector<RegionReader> region_readers_;
   std::vector<FieldReader> field_readers_;
+  LandmarkReader landmark_reader_;
 };
 
 /// The operations of the toolkit (info, check, align, geodesic, decompose, regions, transfer,

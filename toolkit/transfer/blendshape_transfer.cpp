@@ -11,12 +11,12 @@
 
 #include <mimetra/mesh/inspection.h>
 #include <mimetra/mesh/parallel.h>
+#include <mimetra/model/box_least_squares.h>
+#include <mimetra/model/smooth_weights.h>
 #include <mimetra/regions/regions.h>
-#include <mimetra/transfer/box_least_squares.h>
 #include <mimetra/transfer/deformation_gradients.h>
 #include <mimetra/transfer/edges.h>
 #include <mimetra/transfer/right_hand_side.h>
-#include <mimetra/transfer/smooth_weights.h>
 
 namespace mimetra {
 
@@ -182,8 +182,9 @@ void BlendshapeTransfer::State::check_size(const MeshSequence& performance) cons
 void BlendshapeTransfer::State::smooth(const MeshSequence& performance, const Eigen::MatrixXd& h,
                                        Eigen::MatrixXd& beta) const {
   const double mu = smoothness_penalty(options.smoothness, performance.times(), mean_diagonal);
+  const Eigen::MatrixXd seen_gram = system(seen, seen);
   beta(Eigen::all, seen) =
-      smooth_weights(system(seen, seen), h(Eigen::all, seen), mu, beta(Eigen::all, seen));
+      smooth_weights({seen_gram}, h(Eigen::all, seen), mu, beta(Eigen::all, seen));
 }
 
 BlendshapeTransfer::BlendshapeTransfer(const Positions& source_rest, const BlendshapeModel& target,

@@ -1,4 +1,4 @@
-#include <mimetra/transfer/smooth_weights.h>
+#include <mimetra/model/smooth_weights.h>
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include <mimetra/transfer/temporal_system.h>
+#include <mimetra/model/temporal_system.h>
 
 namespace mimetra {
 
@@ -149,14 +149,21 @@ double smoothness_penalty(double smoothness, const Eigen::VectorXd& times, doubl
   return std::pow(smoothness / *middle, 4) * mean_diagonal;
 }
 
-Eigen::MatrixXd smooth_weights(const Eigen::MatrixXd& gram, const Eigen::MatrixXd& h, double mu,
-                               const Eigen::MatrixXd& single) {
+Eigen::MatrixXd smooth_weights(const std::vector<Eigen::MatrixXd>& grams, const Eigen::MatrixXd& h,
+                               double mu, const Eigen::MatrixXd& single) {
+  if (grams.size() != 1 && static_cast<Eigen::Index>(grams.size()) != h.rows()) {
+    throw std::invalid_argument("smoothness: " + std::to_string(grams.size()) +
+                                " Gram matrices, expected 1 or " + std::to_string(h.rows()) +
+                                ", one for each frame");
+  }
   if (h.rows() < 3) return single;
   // Nothing pulls upwards: the interior-point method would have no scale to work with.
   if (h.maxCoeff() <= 0) return Eigen::MatrixXd::Zero(h.rows(), h.cols());
   const Rows right = h;
-  const double lift = kLift * gram.diagonal().mean();
-  TemporalSystem system(gram, h.rows(), mu);
+  double mean = 0;
+  for (const Eigen::MatrixXd& gram : grams) mean += gram.diagonal().mean() / double(grams.size());
+  const double lift = kLift * mean;
+  TemporalSystem system(grams, h.rows(), mu);
   InteriorPoint method(system, right, lift);
   method.solve();
   return polished(system, right, method.sides(), method.solution().matrix(), lift);

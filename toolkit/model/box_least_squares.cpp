@@ -1,4 +1,4 @@
-#include <mimetra/transfer/box_least_squares.h>
+#include <mimetra/model/box_least_squares.h>
 
 #include <algorithm>
 #include <limits>

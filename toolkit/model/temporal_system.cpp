@@ -1,7 +1,8 @@
-#include <mimetra/transfer/temporal_system.h>
+#include <mimetra/model/temporal_system.h>
 
 #include <algorithm>
 #include <stdexcept>
+#include <utility>
 
 #include <Eigen/Cholesky>
 
@@ -14,8 +15,12 @@ using ConstColumn = Eigen::Map<const Eigen::VectorXd>;
 
 }  // namespace
 
-TemporalSystem::TemporalSystem(const Eigen::MatrixXd& gram, Eigen::Index frames, double mu)
-    : gram_(gram), frames_(frames), mu_(mu) {}
+TemporalSystem::TemporalSystem(std::vector<Eigen::MatrixXd> grams, Eigen::Index frames, double mu)
+    : grams_(std::move(grams)), frames_(frames), mu_(mu) {}
+
+const Eigen::MatrixXd& TemporalSystem::gram(Eigen::Index frame) const {
+  return grams_[grams_.size() == 1 ? 0 : frame];
+}
 
 Eigen::Index TemporalSystem::size(Eigen::Index block) const {
   return std::min<Eigen::Index>(2, frames_ - first(block));
@@ -34,7 +39,12 @@ double TemporalSystem::coupling(Eigen::Index a, Eigen::Index b) const {
 TemporalSystem::Rows TemporalSystem::product(const Rows& x) const {
   const Eigen::Index n = frames_ - 2;
   const Rows second = mu_ * (x.topRows(n) - 2 * x.middleRows(1, n) + x.bottomRows(n));
-  Rows result = x * gram_;
+  Rows result(x.rows(), x.cols());
+  if (grams_.size() == 1) {
+    result.noalias() = x * grams_.front();
+  } else {
+    for (Eigen::Index f = 0; f < frames_; ++f) result.row(f) = x.row(f) * grams_[f];
+  }
   result.topRows(n) += second;
   result.middleRows(1, n) -= 2 * second;
   result.bottomRows(n) += second;
@@ -43,10 +53,10 @@ TemporalSystem::Rows TemporalSystem::product(const Rows& x) const {
 
 Eigen::MatrixXd TemporalSystem::diagonal_block(Eigen::Index block, const Rows& extra,
                                                const Rows& free) const {
-  const Eigen::Index d = gram_.rows(), start = first(block), frames = size(block);
+  const Eigen::Index d = grams_.front().rows(), start = first(block), frames = size(block);
   Eigen::MatrixXd result = Eigen::MatrixXd::Zero(frames * d, frames * d);
   for (Eigen::Index a = 0; a < frames; ++a) {
-    result.block(a * d, a * d, d, d) = gram_;
+    result.block(a * d, a * d, d, d) = gram(start + a);
     for (Eigen::Index b = 0; b < frames; ++b) {
       result.block(a * d, b * d, d, d).diagonal().array() += coupling(start + a, start + b);
     }
@@ -59,7 +69,7 @@ Eigen::MatrixXd TemporalSystem::diagonal_block(Eigen::Index block, const Rows& e
 }
 
 Eigen::MatrixXd TemporalSystem::lower_block(Eigen::Index block, const Rows& free) const {
-  const Eigen::Index d = gram_.rows(), here = first(block), next = first(block + 1);
+  const Eigen::Index d = grams_.front().rows(), here = first(block), next = first(block + 1);
   Eigen::MatrixXd result = Eigen::MatrixXd::Zero(size(block + 1) * d, size(block) * d);
   for (Eigen::Index a = 0; a < size(block + 1); ++a) {
     for (Eigen::Index b = 0; b < size(block); ++b) {

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 #include <Eigen/QR>
 
-#include <mimetra/transfer/box_least_squares.h>
+#include <mimetra/model/box_least_squares.h>
 
 namespace mimetra {
 namespace {

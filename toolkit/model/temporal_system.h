@@ -6,15 +6,15 @@
 
 namespace mimetra {
 
-/// The system of temporal smoothing, H = blockdiag(G) + mu D2^T D2 with D2 the second differences
+/// The system of temporal smoothing, H = blockdiag(G_f) + mu D2^T D2 with D2 the second differences
 /// over time, on F x D matrices (one row a frame). It couples frames at most two apart: two frames
 /// taken as one block make it block tridiagonal.
 class TemporalSystem {
  public:
   using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-  /// `gram` D x D. \pre frames >= 3
-  TemporalSystem(const Eigen::MatrixXd& gram, Eigen::Index frames, double mu);
+  /// `grams`: D x D, one for all frames or one for each. \pre frames >= 3
+  TemporalSystem(std::vector<Eigen::MatrixXd> grams, Eigen::Index frames, double mu);
 
   /// H x (F x D).
   Rows product(const Rows& x) const;
@@ -30,11 +30,12 @@ class TemporalSystem {
   Eigen::Index first(Eigen::Index block) const { return 2 * block; }
   Eigen::Index size(Eigen::Index block) const;
   Eigen::Index blocks() const { return (frames_ + 1) / 2; }
+  const Eigen::MatrixXd& gram(Eigen::Index frame) const;
   double coupling(Eigen::Index a, Eigen::Index b) const;
   Eigen::MatrixXd diagonal_block(Eigen::Index block, const Rows& extra, const Rows& free) const;
   Eigen::MatrixXd lower_block(Eigen::Index block, const Rows& free) const;
 
-  Eigen::MatrixXd gram_;
+  std::vector<Eigen::MatrixXd> grams_;
   Eigen::Index frames_;
   double mu_;
   std::vector<Eigen::MatrixXd> cholesky_;  // L_k, lower triangles

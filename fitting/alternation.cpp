@@ -1,0 +1,160 @@
+#include <limits>
+#include <utility>
+
+#include <Eigen/Cholesky>
+
+#include <mimetra/fitting/fitted_frame.h>
+#include <mimetra/model/box_least_squares.h>
+#include <mimetra/model/smooth_weights.h>
+
+namespace mimetra {
+
+namespace {
+
+/// Normal equations of a coefficient vector, with half the energy's gradient.
+struct NormalEquations {
+  Eigen::VectorXd packed_gram;
+  Eigen::VectorXd h;
+};
+
+Eigen::Matrix3d weighted_axes(const FittedFrame& frame) {
+  const auto C = frame.camera().leftCols<3>();
+  return frame.weight() * C.transpose() * C;
+}
+
+NormalEquations identity_equations(const FittedFrame& frame) {
+  const BasisRows& basis = frame.rows().identities;
+  return {basis.packed_gram(weighted_axes(frame)),
+          frame.weight() * basis.transposed_product(frame.camera().leftCols<3>(),
+                                                    frame.residual_without_identity())};
+}
+
+/// alpha of eq. 4.
+Eigen::VectorXd identity(const NormalEquations& equations) {
+  Eigen::MatrixXd system = lower_triangle(equations.packed_gram, equations.h.size());
+  system.diagonal().array() += 1;
+  const Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>> factor(system);
+  return factor.solve(equations.h);
+}
+
+class Alternation {
+ public:
+  /// Smooth over time where there are `times`.
+  Alternation(std::vector<FittedFrame> frames, const FitOptions& options,
+              const Eigen::VectorXd& times = {})
+      : frames_(std::move(frames)),
+        options_(options),
+        times_(times),
+        smooth_(times.size() > 0),
+        one_identity_(options.shape == FitOptions::Shape::clip) {}
+
+  FittedClip run() {
+    FittedClip result;
+    // The smoothness term has no weight yet, so that there is no energy to compare the first with.
+    double before = smooth_ ? std::numeric_limits<double>::infinity()
+                            : energy(frames_, one_identity_, *options_.ridge);
+    while (result.iterations < options_.iterations) {
+      estimate_cameras();
+      update_identities();
+      estimate_cameras();
+      update_expressions();
+      ++result.iterations;
+      const double now = energy(frames_, one_identity_, *options_.ridge) + bending();
+      result.energies.push_back(now);
+      if (has_converged(before, now, options_.tolerance)) break;
+      before = now;
+    }
+    result.frames = std::move(frames_);
+    return result;
+  }
+
+ private:
+  void estimate_cameras() {
+    for (FittedFrame& frame : frames_) frame.estimate_camera();
+  }
+
+  void update_identities() {
+    if (!one_identity_) {
+      for (FittedFrame& frame : frames_) frame.set_alpha(identity(identity_equations(frame)));
+      return;
+    }
+    NormalEquations sum = identity_equations(frames_.front());
+    for (std::size_t f = 1; f < frames_.size(); ++f) {
+      const NormalEquations equations = identity_equations(frames_[f]);
+      sum.packed_gram += equations.packed_gram;
+      sum.h += equations.h;
+    }
+    const Eigen::VectorXd alpha = identity(sum);
+    for (FittedFrame& frame : frames_) frame.set_alpha(alpha);
+  }
+
+  /// beta of eq. 5.
+  void update_expressions() {
+    const Eigen::Index size = frames_.front().beta().size();
+    if (size == 0) return;
+    const Eigen::VectorXd lower = Eigen::VectorXd::Zero(size);
+    const Eigen::VectorXd upper = Eigen::VectorXd::Constant(size, options_.max_expression);
+    std::vector<Eigen::MatrixXd> grams;
+    Eigen::MatrixXd h(frames_.size(), size);
+    for (std::size_t f = 0; f < frames_.size(); ++f) {
+      FittedFrame& frame = frames_[f];
+      const BasisRows& basis = frame.rows().expressions;
+      Eigen::MatrixXd gram = lower_triangle(basis.packed_gram(weighted_axes(frame)), size);
+      gram.triangularView<Eigen::StrictlyUpper>() = gram.transpose();
+      gram.diagonal().array() += *options_.ridge;
+      h.row(f) = frame.weight() * basis.transposed_product(frame.camera().leftCols<3>(),
+                                                           frame.residual_without_expression());
+      frame.set_beta(box_least_squares(gram, h.row(f), lower, upper, frame.beta()));
+      if (smooth_) grams.push_back(std::move(gram));
+    }
+    if (smooth_) smooth_expressions(grams, h);
+  }
+
+  void smooth_expressions(const std::vector<Eigen::MatrixXd>& grams, const Eigen::MatrixXd& h) {
+    if (!penalty_) {
+      double mean = 0;
+      for (const Eigen::MatrixXd& gram : grams) mean += gram.diagonal().mean();
+      // Kept from here on, or the energy would change its meaning between iterations.
+      penalty_ = smoothness_penalty(options_.smoothness, times_, mean / double(grams.size()));
+    }
+    const Eigen::MatrixXd smooth = smooth_weights(grams, h, *penalty_, expressions());
+    for (std::size_t f = 0; f < frames_.size(); ++f) {
+      frames_[f].set_beta(smooth.row(static_cast<Eigen::Index>(f)));
+    }
+  }
+
+  Eigen::MatrixXd expressions() const {
+    Eigen::MatrixXd beta(frames_.size(), frames_.front().beta().size());
+    for (std::size_t f = 0; f < frames_.size(); ++f) beta.row(f) = frames_[f].beta();
+    return beta;
+  }
+
+  /// The smoothness term of the energy.
+  double bending() const {
+    if (!penalty_ || frames_.size() < 3) return 0;
+    const Eigen::MatrixXd beta = expressions();
+    const Eigen::Index n = beta.rows() - 2;
+    return *penalty_ *
+           (beta.topRows(n) - 2 * beta.middleRows(1, n) + beta.bottomRows(n)).squaredNorm();
+  }
+
+  std::vector<FittedFrame> frames_;
+  const FitOptions& options_;
+  Eigen::VectorXd times_;
+  bool smooth_;
+  bool one_identity_;
+  std::optional<double> penalty_;
+};
+
+}  // namespace
+
+FittedClip fit_alternating(std::vector<FittedFrame> frames, const FitOptions& options) {
+  return Alternation(std::move(frames), options).run();
+}
+
+FittedClip fit_smoothly(std::vector<FittedFrame> frames, const FitOptions& options,
+                        const Eigen::VectorXd& times) {
+  return Alternation(std::move(frames), options, times).run();
+}
+
+}  // namespace mimetra

@@ -1,0 +1,260 @@
+#include <mimetra/fitting/fit_operation.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <nlohmann/json.hpp>
+
+#include <mimetra/fitting/landmark_fitter.h>
+#include <mimetra/fitting/landmark_input.h>
+#include <mimetra/fitting/landmark_mapping.h>
+#include <mimetra/operations/report.h>
+
+namespace mimetra {
+
+namespace {
+
+std::vector<Parameter> fit_parameters() {
+  return {{"mapping",
+           ParameterKind::file,
+           {},
+           "vertex of each landmark (default: ibug_to_*.txt or landmarks68.txt in the model's "
+           "folder)"},
+          {"solver",
+           ParameterKind::choice,
+           "joint",
+           "joint: camera, shape and expressions together; alternating: in turn, as in the paper",
+           "",
+           {},
+           {},
+           {"joint", "alternating"}},
+          {"shape",
+           ParameterKind::choice,
+           "clip",
+           "one identity for the clip, or one in every frame",
+           "",
+           {},
+           {},
+           {"clip", "frame"}},
+          {"iterations", ParameterKind::integer, std::int64_t{5}, "iterations at most", "", 1, 1e6},
+          {"tolerance", ParameterKind::number, 1e-4,
+           "it ends where an iteration lowers the energy by a smaller share", "", 0, 1},
+          {"sigma",
+           ParameterKind::number,
+           {},
+           "noise of the landmarks (default: 0.017485 of the face's RMS radius)",
+           "pixels",
+           1e-9,
+           1e9},
+          {"ridge",
+           ParameterKind::number,
+           {},
+           "weight of squared expressions (default: 0.1 with more than ten of them, else 0)",
+           "",
+           0,
+           1e9},
+          {"smoothness", ParameterKind::number, 0.0, "time constant of smooth expressions",
+           "seconds", 0, 1e6},
+          {"min-confidence", ParameterKind::number, 0.1,
+           "frames of which the detector was less sure are taken as not seen", "", 0, 1}};
+}
+
+FitOptions options_of(const Parameters& parameters) {
+  FitOptions options;
+  options.solver = parameters.text("solver") == "joint" ? FitOptions::Solver::joint
+                                                        : FitOptions::Solver::alternating;
+  options.shape =
+      parameters.text("shape") == "clip" ? FitOptions::Shape::clip : FitOptions::Shape::frame;
+  options.iterations = parameters.integer("iterations");
+  options.tolerance = parameters.number("tolerance");
+  options.sigma = parameters.optional_number("sigma");
+  options.ridge = parameters.optional_number("ridge");
+  options.smoothness = parameters.number("smoothness");
+  return options;
+}
+
+LandmarkMapping mapping_of(const Invocation& invocation, const ModelRead& read) {
+  if (const auto file = invocation.parameters.optional_text("mapping")) {
+    return read_landmark_mapping(*file);
+  }
+  if (read.path.empty()) throw UsageError("--mapping: is needed for a model without a folder");
+  return read_landmark_mapping(find_landmark_mapping(read.path));
+}
+
+/// The frames that the detector was sure of; NaN in the others.
+Frames trusted_points(const Invocation& invocation, const LandmarkTrack& track,
+                      const Frames& mapped) {
+  Frames points = mapped;
+  const double least = invocation.parameters.number("min-confidence");
+  int doubtful = 0;
+  for (Eigen::Index f = 0; f < track.confidence.size(); ++f) {
+    if (track.confidence[f] >= least || points.row(f).array().isNaN().all()) continue;
+    points.row(f).setConstant(std::numeric_limits<double>::quiet_NaN());
+    ++doubtful;
+  }
+  if (doubtful > 0) {
+    invocation.warn(invocation.inputs.at("landmarks").front().name + ": " +
+                    std::to_string(doubtful) + " of " + std::to_string(track.frames()) +
+                    " frames have a confidence below " + readable(least) +
+                    " and are taken as not seen");
+  }
+  return points;
+}
+
+FittedCoefficients coefficients_of(const MorphableModel& model, const Eigen::VectorXd& times,
+                                   const std::vector<FrameFit>& frames) {
+  const auto count = static_cast<Eigen::Index>(frames.size());
+  FittedCoefficients fit;
+  fit.identities = model.identities().names;
+  fit.expressions = model.expressions().names;
+  fit.times = times;
+  fit.alpha.resize(count, model.identities().size());
+  fit.beta.resize(count, model.expressions().size());
+  fit.rms.resize(count);
+  fit.landmarks.resize(count);
+  fit.iterations.resize(count);
+  for (Eigen::Index f = 0; f < count; ++f) {
+    const FrameFit& frame = frames[static_cast<std::size_t>(f)];
+    fit.alpha.row(f) = frame.alpha;
+    fit.beta.row(f) = frame.beta;
+    fit.cameras.push_back(frame.camera);
+    fit.rms[f] = frame.rms;
+    fit.landmarks[f] = frame.landmarks;
+    fit.iterations[f] = frame.iterations;
+  }
+  return fit;
+}
+
+/// The fitted face without its camera; its rest pose is the person's neutral.
+MeshSequence sequence_of(const MorphableModel& model, const FittedCoefficients& fit,
+                         FitOptions::Shape shape) {
+  const BlendshapeModel person = model.person(fit.identity());
+  MeshSequence sequence = person.animate(fit.beta, fit.times);
+  if (shape == FitOptions::Shape::clip) return sequence;
+  Frames frames = sequence.positions();
+  const Eigen::MatrixXd rest_of_identity = fit.alpha.rowwise() - fit.identity().transpose();
+  frames.noalias() += rest_of_identity * model.identities().displacements.transpose();
+  return sequence.with_frames(std::move(frames));
+}
+
+/// "0, 5, 17 and 12 more".
+std::string listed(const std::vector<int>& frames) {
+  constexpr std::size_t kShown = 8;
+  std::string text;
+  for (std::size_t i = 0; i < std::min(frames.size(), kShown); ++i) {
+    text += (i == 0 ? "" : ", ") + std::to_string(frames[i]);
+  }
+  if (frames.size() > kShown) text += " and " + std::to_string(frames.size() - kShown) + " more";
+  return text;
+}
+
+struct FitSummary {
+  double rms = 0;  ///< over all landmarks of all frames, pixels
+  int worst = 0;   ///< frame of the largest RMS
+  int iterations = 0;
+  std::vector<int> unseen;
+};
+
+FitSummary summary_of(const FittedCoefficients& fit) {
+  FitSummary summary;
+  double squares = 0, count = 0, largest = -1;
+  for (int f = 0; f < fit.frames(); ++f) {
+    if (fit.landmarks[f] == 0) {
+      summary.unseen.push_back(f);
+      continue;
+    }
+    squares += fit.rms[f] * fit.rms[f] * fit.landmarks[f];
+    count += fit.landmarks[f];
+    if (fit.rms[f] > largest) summary.worst = f;
+    largest = std::max(largest, fit.rms[f]);
+    summary.iterations = std::max(summary.iterations, fit.iterations[f]);
+  }
+  summary.rms = std::sqrt(squares / count);
+  return summary;
+}
+
+std::vector<FrameFit> fitted(const Invocation& invocation, const MorphableModel& model,
+                             const MappedLandmarks& mapped, const Frames& points,
+                             const FitOptions& options) {
+  const std::string& name = invocation.inputs.at("landmarks").front().name;
+  try {
+    return LandmarkFitter(model, mapped.vertices)
+        .fit(points, options, invocation.get<LandmarksRead>("landmarks").track.times);
+  } catch (const MismatchError& error) {
+    throw MismatchError(name + ": " + error.what());
+  }
+}
+
+Outcome run(const Invocation& invocation) {
+  const LandmarkTrack& track = invocation.get<LandmarksRead>("landmarks").track;
+  const ModelRead& read = invocation.get<ModelRead>("model");
+  const FitOptions options = options_of(invocation.parameters);
+  const MappedLandmarks mapped = map_landmarks(track, mapping_of(invocation, read));
+  report_progress(invocation.progress, 0);
+  const FittedCoefficients fit =
+      coefficients_of(read.model, track.times,
+                      fitted(invocation, read.model, mapped,
+                             trusted_points(invocation, track, mapped.points), options));
+  report_progress(invocation.progress, 0.5);
+
+  const FitSummary summary = summary_of(fit);
+  if (!summary.unseen.empty()) {
+    invocation.warn(invocation.inputs.at("landmarks").front().name +
+                    ": frames without landmarks, " +
+                    "which keep the face of the frame before: " + listed(summary.unseen));
+  }
+  Outcome outcome;
+  Json report = {{"rms_px", summary.rms},
+                 {"vertices", read.model.vertices()},
+                 {"mapped_landmarks", mapped.vertices.size()},
+                 {"unseen_frames", summary.unseen}};
+  report.update(Json::parse(fit_json(fit)));
+  outcome.report = report.dump();
+  outcome.summary =
+      std::to_string(fit.frames()) + " frames, " + std::to_string(mapped.vertices.size()) + " of " +
+      std::to_string(track.landmarks()) + " landmarks mapped: RMS " + readable(summary.rms) +
+      " px (worst " + readable(fit.rms[summary.worst]) + " in frame " +
+      std::to_string(summary.worst) + "), " + std::to_string(summary.iterations) + " iterations\n";
+  outcome.outputs["out"].push_back(
+      {"", SequenceRead{sequence_of(read.model, fit, options.shape), true, {}, {}}});
+  outcome.outputs["fit-out"].push_back({"", fit});
+  return outcome;
+}
+
+/// The sequence, and the person whose expressions are copied.
+double memory(const Invocation& invocation) {
+  const double frames = invocation.get<LandmarksRead>("landmarks").track.frames();
+  const MorphableModel& model = invocation.get<ModelRead>("model").model;
+  const double coordinates = 3.0 * model.vertices();
+  const bool each_frame = invocation.parameters.text("shape") == "frame";
+  return sizeof(double) * coordinates *
+         ((each_frame ? 2 : 1) * frames + 2 * model.expressions().size());
+}
+
+}  // namespace
+
+void add_fitting(OperationTable& table) {
+  Operation operation;
+  operation.name = "fit";
+  operation.summary = "Fit a morphable face model to 2D landmarks: a sequence in correspondence";
+  operation.inputs = {{"landmarks", DataKind::landmarks,
+                       ".csv or .json track, .pts file, or folder or pattern of .pts files"},
+                      {"model", DataKind::morphable_model,
+                       "model folder with identities and expressions, or eos shape model (.bin)",
+                       false, false, true}};
+  operation.outputs = {{"out", DataKind::sequence, "a folder of frames, .npy, or a mesh file"},
+                       {"fit-out", DataKind::fit,
+                        "coefficients and cameras, .json (default: NAME.fit.json beside OUT), for "
+                        "MODEL@NAME.fit.json",
+                        true, false, ".fit.json"}};
+  operation.parameters = fit_parameters();
+  operation.examples = {"fit face.pts --model sfm/ -o face.obj",
+                        "fit track.csv --model sfm/ --smoothness 0.1 -o take/"};
+  operation.run = run;
+  operation.memory = memory;
+  table.add(LandmarkReader(read_landmark_input));
+  table.add(std::move(operation));
+}
+
+}  // namespace mimetra

@@ -1,0 +1,10 @@
+#pragma once
+
+#include <mimetra/operations/operation.h>
+
+namespace mimetra {
+
+/// The operation `fit`, and the reader of landmarks that it needs.
+void add_fitting(OperationTable& table);
+
+}  // namespace mimetra

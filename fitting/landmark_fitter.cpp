@@ -1,0 +1,210 @@
+#include <mimetra/fitting/landmark_fitter.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <limits>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include <mimetra/fitting/fitted_frame.h>
+#include <mimetra/io/sequence_file.h>
+
+namespace mimetra {
+
+namespace {
+
+/// sqrt(3) px for the face of the size it was found on.
+constexpr double kRelativeSigma = 0.017485;
+
+/// More expressions than this are not told apart by landmarks alone.
+constexpr int kManyExpressions = 10;
+/// Standard deviation 2.2 of beta: it moves what landmarks see by little.
+constexpr double kSmallRidge = 0.1;
+
+std::string frame_name(Eigen::Index frame) {
+  return "frame " + std::to_string(frame) + ": ";
+}
+
+void check(const FitOptions& options) {
+  const auto fail = [](const char* message) { throw std::invalid_argument(message); };
+  if (options.iterations < 1) fail("iterations must be at least 1");
+  if (!(options.tolerance >= 0)) fail("tolerance must not be negative");
+  if (options.sigma && !(*options.sigma > 0 && std::isfinite(*options.sigma))) {
+    fail("sigma must be a positive number of pixels");
+  }
+  if (!(options.max_expression > 0)) fail("max_expression must be positive");
+  if (options.ridge && !(*options.ridge >= 0 && std::isfinite(*options.ridge))) {
+    fail("ridge must be finite and not negative");
+  }
+  if (!(options.smoothness >= 0)) fail("smoothness must not be negative");
+  if (options.smoothness > 0 && options.max_expression != 1) {
+    fail("smoothness needs expressions of at most 1");
+  }
+}
+
+/// A landmark is seen where both of its coordinates are finite.
+std::vector<Eigen::Index> seen_landmarks(const Frames& points, Eigen::Index frame) {
+  std::vector<Eigen::Index> seen;
+  for (Eigen::Index i = 0; i < points.cols() / 2; ++i) {
+    if (points.row(frame).segment<2>(2 * i).allFinite()) seen.push_back(i);
+  }
+  return seen;
+}
+
+std::vector<FrameFit> results_of(const FittedClip& clip) {
+  std::vector<FrameFit> fits;
+  for (const FittedFrame& frame : clip.frames) {
+    FrameFit& fit = fits.emplace_back();
+    fit.camera = frame.camera();
+    fit.alpha = frame.alpha();
+    fit.beta = frame.beta();
+    fit.landmarks = static_cast<int>(frame.image().rows());
+    fit.rms = std::sqrt(frame.residual().squaredNorm() / fit.landmarks);
+    fit.sigma = frame.sigma();
+    fit.iterations = clip.iterations;
+    fit.energies = clip.energies;
+  }
+  return fits;
+}
+
+FittedClip solved(std::vector<FittedFrame> frames, const FitOptions& options) {
+  return options.solver == FitOptions::Solver::joint ? fit_jointly(std::move(frames), options)
+                                                     : fit_alternating(std::move(frames), options);
+}
+
+/// One clip of all frames, or one of each frame, which starts from the one before.
+std::vector<FittedClip> solved_by_shape(std::vector<FittedFrame> frames,
+                                        const FitOptions& options) {
+  std::vector<FittedClip> clips;
+  if (options.shape == FitOptions::Shape::clip) {
+    clips.push_back(solved(std::move(frames), options));
+    return clips;
+  }
+  for (FittedFrame& frame : frames) {
+    if (!clips.empty()) {
+      const FittedFrame& before = clips.back().frames.front();
+      frame.set_alpha(before.alpha());
+      frame.set_beta(before.beta());
+      frame.estimate_camera();
+    }
+    clips.push_back(solved({std::move(frame)}, options));
+  }
+  return clips;
+}
+
+/// Fits of frames that are seen. `times` (F) for smoothness only.
+std::vector<FrameFit> fits_of(std::vector<FittedFrame> frames, const FitOptions& options,
+                              const Eigen::VectorXd& times) {
+  std::vector<FrameFit> fits;
+  std::vector<FittedFrame> rough;
+  for (FittedClip& clip : solved_by_shape(std::move(frames), options)) {
+    if (options.smoothness > 0) {
+      std::ranges::move(clip.frames, std::back_inserter(rough));
+    } else {
+      std::ranges::move(results_of(clip), std::back_inserter(fits));
+    }
+  }
+  return options.smoothness > 0 ? results_of(fit_smoothly(std::move(rough), options, times)) : fits;
+}
+
+/// A frame without landmarks, after or before one with some.
+FrameFit unseen_like(const FrameFit& neighbour) {
+  FrameFit fit;
+  fit.camera = neighbour.camera;
+  fit.alpha = neighbour.alpha;
+  fit.beta = neighbour.beta;
+  fit.rms = std::numeric_limits<double>::quiet_NaN();
+  return fit;
+}
+
+}  // namespace
+
+struct LandmarkFitter::State {
+  std::shared_ptr<const LandmarkRows> rows;
+
+  FittedFrame frame(const Frames& points, Eigen::Index index, const std::vector<Eigen::Index>& seen,
+                    const FitOptions& options) const;
+  FitOptions checked(const Frames& points, const FitOptions& options,
+                     const Eigen::VectorXd& times) const;
+};
+
+/// The options with the default ridge filled in.
+FitOptions LandmarkFitter::State::checked(const Frames& points, const FitOptions& options,
+                                          const Eigen::VectorXd& times) const {
+  check(options);
+  const Eigen::Index landmarks = rows->mean.rows();
+  if (points.cols() != 2 * landmarks) {
+    throw std::invalid_argument("the points have " + std::to_string(points.cols()) +
+                                " columns, expected x and y of " + std::to_string(landmarks) +
+                                " landmarks");
+  }
+  if (options.smoothness > 0 && times.size() != points.rows()) {
+    throw std::invalid_argument("smoothness: " + std::to_string(times.size()) + " times for " +
+                                std::to_string(points.rows()) + " frames");
+  }
+  FitOptions result = options;
+  const bool many = rows->expressions.size() > kManyExpressions;
+  if (!result.ridge) result.ridge = many ? kSmallRidge : 0;
+  return result;
+}
+
+FittedFrame LandmarkFitter::State::frame(const Frames& points, Eigen::Index index,
+                                         const std::vector<Eigen::Index>& seen,
+                                         const FitOptions& options) const {
+  ImagePoints image(seen.size(), 2);
+  for (std::size_t i = 0; i < seen.size(); ++i) {
+    image.row(static_cast<Eigen::Index>(i)) = points.row(index).segment<2>(2 * seen[i]);
+  }
+  const bool all = image.rows() == rows->mean.rows();
+  const double sigma = options.sigma ? *options.sigma : kRelativeSigma * rms_radius(image);
+  if (!(sigma > 0)) throw MismatchError(frame_name(index) + "all landmarks are at one place");
+  try {
+    return {all ? rows : std::make_shared<const LandmarkRows>(*rows, seen), std::move(image),
+            sigma};
+  } catch (const MismatchError& error) {
+    throw MismatchError(frame_name(index) + error.what());
+  }
+}
+
+LandmarkFitter::LandmarkFitter(const MorphableModel& model, std::vector<int> vertices) {
+  for (const int vertex : vertices) {
+    if (vertex >= 0 && vertex < model.vertices()) continue;
+    throw MismatchError(
+        "a landmark is at vertex " + std::to_string(vertex) + ", but the model has vertices 0 to " +
+        std::to_string(model.vertices() - 1) + "; is the mapping for another model?");
+  }
+  state_ = std::make_unique<State>(State{std::make_shared<const LandmarkRows>(model, vertices)});
+}
+
+LandmarkFitter::~LandmarkFitter() = default;
+LandmarkFitter::LandmarkFitter(LandmarkFitter&&) noexcept = default;
+LandmarkFitter& LandmarkFitter::operator=(LandmarkFitter&&) noexcept = default;
+
+std::vector<FrameFit> LandmarkFitter::fit(const Frames& points, const FitOptions& given,
+                                          const Eigen::VectorXd& times) const {
+  const FitOptions options = state_->checked(points, given, times);
+  std::vector<Eigen::Index> indices;
+  std::vector<FittedFrame> frames;
+  for (Eigen::Index f = 0; f < points.rows(); ++f) {
+    const std::vector<Eigen::Index> seen = seen_landmarks(points, f);
+    if (seen.empty()) continue;
+    indices.push_back(f);
+    frames.push_back(state_->frame(points, f, seen, options));
+  }
+  if (frames.empty()) throw MismatchError("no frame has landmarks");
+  Eigen::VectorXd seen_times;
+  if (options.smoothness > 0) seen_times = times(indices);
+  const std::vector<FrameFit> fits = fits_of(std::move(frames), options, seen_times);
+
+  std::vector<FrameFit> all;
+  std::size_t next = 0;
+  for (Eigen::Index f = 0; f < points.rows(); ++f) {
+    const bool seen = next < indices.size() && indices[next] == f;
+    all.push_back(seen ? fits[next++] : unseen_like(fits[next == 0 ? 0 : next - 1]));
+  }
+  return all;
+}
+
+}  // namespace mimetra

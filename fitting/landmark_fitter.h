@@ -1,0 +1,87 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include <mimetra/fitting/affine_camera.h>
+#include <mimetra/model/morphable_model.h>
+
+namespace mimetra {
+
+struct FitOptions {
+  /// `alternating`: camera, alpha, camera, beta, in turn, as in the paper. `joint`: Gauss-Newton
+  /// steps of all of them together, two or three of which reach what hundreds of iterations do.
+  enum class Solver { alternating, joint };
+  /// `clip`: one alpha for all frames; `frame`: an alpha in every frame, which starts from the
+  /// frame before.
+  enum class Shape { clip, frame };
+
+  Solver solver = Solver::joint;
+  Shape shape = Shape::clip;
+  /// Iterations at most, >= 1; in every frame where each has its shape.
+  int iterations = 5;
+  /// It ends where the energy falls by less than this share of it in one iteration, >= 0.
+  double tolerance = 1e-4;
+  /// Noise of the landmarks in pixels, > 0. By default 0.017485 x the RMS distance of the used
+  /// landmarks from their centroid, in each frame, so that the image's scale changes nothing.
+  std::optional<double> sigma = std::nullopt;
+  /// Upper bound of each beta, > 0; infinity leaves only beta >= 0.
+  double max_expression = 1;
+  /// Weight of |beta|^2 beside |alpha|^2, >= 0. By default 0, or 0.1 with more than ten
+  /// expressions.
+  std::optional<double> ridge = std::nullopt;
+  /// Weight of squared second differences of beta over time: time constant in seconds, >= 0. The
+  /// alternation finds it, from where the solver ends without it. Needs max_expression = 1.
+  double smoothness = 0;
+};
+
+/// What was fitted to one frame.
+struct FrameFit {
+  AffineCamera camera = AffineCamera::Zero();
+  Eigen::VectorXd alpha;  ///< one per identity
+  Eigen::VectorXd beta;   ///< one per expression, within the bounds
+  /// Root of the mean squared distance between landmarks and their projections, in pixels; NaN
+  /// where none was seen.
+  double rms = 0;
+  /// Noise that was assumed, in pixels.
+  double sigma = 0;
+  /// Landmarks seen. Where it is 0, camera and coefficients are those of the nearest earlier frame
+  /// with some, or of the first one.
+  int landmarks = 0;
+  int iterations = 0;
+  /// After each iteration: sum over frames of |residual|^2 / (2 sigma^2) + ridge |beta|^2, plus
+  /// |alpha|^2 (eq. 4) and the smoothness term; over the clip where frames are solved together, of
+  /// this frame otherwise. It never rises.
+  std::vector<double> energies;
+};
+
+/// Fits a morphable model to the 2D landmarks of a clip: minimises over affine cameras, alpha and
+/// 0 <= beta <= 1 the reprojection error with a prior on alpha (eq. 4, 5).
+///
+/// The constructor takes the landmarks' rows from the model and folds their products, so that
+/// solving for alpha costs no product over landmarks. Queries are const.
+///
+/// [Do, Ma, Cao, An. Region-based deformation transfer], section III-A
+class LandmarkFitter {
+ public:
+  /// `vertices`: the model's vertex of each landmark (n). Throws MismatchError for a vertex that
+  /// the model does not have.
+  LandmarkFitter(const MorphableModel& model, std::vector<int> vertices);
+  ~LandmarkFitter();
+  LandmarkFitter(LandmarkFitter&&) noexcept;
+  LandmarkFitter& operator=(LandmarkFitter&&) noexcept;
+
+  /// `points` F x 2n: x0 y0 x1 y1 ... in pixels, y down, 0-based; NaN for landmarks not seen.
+  /// `times` in seconds (F), needed for smoothness only. Throws std::invalid_argument where sizes
+  /// disagree or an option is out of range; MismatchError where no frame has landmarks, or those of
+  /// a frame are fewer than four or coplanar.
+  std::vector<FrameFit> fit(const Frames& points, const FitOptions& = {},
+                            const Eigen::VectorXd& times = {}) const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace mimetra

@@ -1,0 +1,15 @@
+#pragma once
+
+#include <mimetra/fitting/landmark_track.h>
+
+/// One reader for each format. Internal to landmark_track.h.
+namespace mimetra {
+
+LandmarkTrack read_pts(const std::filesystem::path& path);
+LandmarkTrack read_landmark_csv(const std::filesystem::path& path);
+LandmarkTrack read_landmark_json(const std::filesystem::path& path);
+
+/// "1", "2", ...: iBUG counts its landmarks so.
+std::vector<std::string> numbered_names(std::size_t count);
+
+}  // namespace mimetra

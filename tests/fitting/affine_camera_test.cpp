@@ -1,0 +1,77 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <mimetra/mesh/errors.h>
+
+#include "literal_fit.h"
+#include "synthetic_clip.h"
+#include "temporary_folder.h"
+
+namespace mimetra {
+namespace {
+
+using testing::HasSubstr;
+
+struct View {
+  AffineCamera camera;
+  ModelPoints points;
+  ImagePoints image;
+};
+
+/// Points of different extent in x, y and z, far from the origin.
+View random_view(unsigned seed, int count, double noise) {
+  std::mt19937 random(seed);
+  View view;
+  view.camera = test::random_camera(random);
+  view.points = test::normal_matrix(count, 3, random) * Eigen::Vector3d(60, 80, 5).asDiagonal();
+  view.points.rowwise() += Eigen::RowVector3d(10, -500, 70);
+  view.image = project(view.camera, view.points) + noise * test::normal_matrix(count, 2, random);
+  return view;
+}
+
+// The closed form squares the condition number, 16 here; entries of the camera are up to 1e3 px.
+constexpr double kRounding = 1e-8;
+
+TEST(AffineCamera, IsRecoveredFromFourPoints) {
+  const View view = random_view(1, 4, 0);
+  EXPECT_LT((estimate_affine_camera(view.points, view.image) - view.camera).norm(), kRounding);
+}
+
+TEST(AffineCamera, IsTheGoldStandardAlgorithms) {
+  for (unsigned seed = 0; seed < 20; ++seed) {
+    const View view = random_view(seed, 30, 2);
+    EXPECT_LT((estimate_affine_camera(view.points, view.image) -
+               test::literal_camera(view.points, view.image))
+                  .norm(),
+              kRounding);
+  }
+}
+
+TEST(AffineCamera, IsRefusedFromThreePoints) {
+  const View view = random_view(2, 3, 0);
+  EXPECT_THAT(
+      test::message_of<MismatchError>([&] { estimate_affine_camera(view.points, view.image); }),
+      HasSubstr("3 landmarks, an affine camera needs at least 4"));
+}
+
+TEST(AffineCamera, IsRefusedFromCoplanarPoints) {
+  View view = random_view(3, 20, 0);
+  view.points.col(2) = 0.3 * view.points.col(0) - 0.2 * view.points.col(1);
+  EXPECT_THAT(
+      test::message_of<MismatchError>([&] { estimate_affine_camera(view.points, view.image); }),
+      HasSubstr("the 20 landmarks are coplanar"));
+}
+
+TEST(AffineCamera, IsFoundDownToAThousandthOfDepth) {
+  // Uncorrelated axes, so that the singular values are the extents.
+  ModelPoints points(6, 3);
+  points << 1, 0, 0, -1, 0, 0, 0, 1, 0, 0, -1, 0, 0, 0, 1, 0, 0, -1;
+  const ImagePoints image = points.leftCols<2>();
+  points.col(2) *= 1.1e-3;
+  EXPECT_NO_THROW(estimate_affine_camera(points, image));
+  points.col(2) *= 0.9 / 1.1;
+  EXPECT_THROW(estimate_affine_camera(points, image), MismatchError);
+}
+
+}  // namespace
+}  // namespace mimetra

@@ -1,0 +1,67 @@
+#include <algorithm>
+
+#include <gtest/gtest.h>
+
+#include "synthetic_clip.h"
+
+namespace mimetra {
+namespace {
+
+using Shape = FitOptions::Shape;
+using Solver = FitOptions::Solver;
+
+TEST(JointFit, ReachesNoMoreThanTheEnergyOfTheAlternation) {
+  for (unsigned seed = 0; seed < 100; ++seed) {
+    const test::SyntheticClip clip = test::synthetic_clip(seed, {.frames = 1 + int(seed % 4)});
+    for (const Shape shape : {Shape::clip, Shape::frame}) {
+      const auto last = [&](Solver solver) {
+        double sum = 0;
+        for (const FrameFit& fit :
+             test::fit(clip, {.solver = solver, .shape = shape, .tolerance = 0})) {
+          sum += fit.energies.back();
+        }
+        return sum;
+      };
+      EXPECT_LE(last(Solver::joint), last(Solver::alternating) * (1 + 1e-9)) << seed;
+    }
+  }
+}
+
+TEST(JointFit, NeverRaisesTheEnergy) {
+  for (unsigned seed = 0; seed < 200; ++seed) {
+    const test::SyntheticClip clip =
+        test::synthetic_clip(seed, {.frames = 1 + int(seed % 3), .noise = 10});
+    const auto fits = test::fit(clip, {.solver = Solver::joint, .iterations = 8, .tolerance = 0});
+    const auto& energies = fits.front().energies;
+    EXPECT_TRUE(std::is_sorted(energies.rbegin(), energies.rend())) << seed;
+  }
+}
+
+TEST(JointFit, EndsWhereTheAlternationHasNothingToGain) {
+  for (unsigned seed = 0; seed < 10; ++seed) {
+    const test::SyntheticClip clip = test::synthetic_clip(seed, {.frames = 3});
+    const auto joint = test::fit(clip, {.solver = Solver::joint, .iterations = 60, .tolerance = 0});
+    const auto slow =
+        test::fit(clip, {.solver = Solver::alternating, .iterations = 3000, .tolerance = 0});
+    // Both end at the same minimum. The energy is flat there: its error is the square of theirs.
+    EXPECT_NEAR(joint.front().energies.back(), slow.front().energies.back(),
+                1e-9 * slow.front().energies.back());
+    EXPECT_LT((joint.front().alpha - slow.front().alpha).norm(), 1e-4);
+    for (std::size_t f = 0; f < joint.size(); ++f) {
+      EXPECT_LT((joint[f].beta - slow[f].beta).norm(), 1e-4);
+    }
+  }
+}
+
+TEST(JointFit, IsWithinAPercentOfTheMinimumAfterThreeSteps) {
+  const test::SyntheticClip clip = test::synthetic_clip(3, {.landmarks = 50, .identities = 40});
+  const auto energy = [&](int iterations) {
+    return test::fit(clip, {.solver = Solver::joint, .iterations = iterations, .tolerance = 0})
+        .front()
+        .energies.back();
+  };
+  EXPECT_LT(energy(3), 1.01 * energy(50));
+}
+
+}  // namespace
+}  // namespace mimetra
