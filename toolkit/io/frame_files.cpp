@@ -113,6 +113,18 @@ bool is_companion(const fs::path& file, const std::string& name) {
   return false;
 }
 
+void sort_naturally(std::vector<fs::path>& files) {
+  std::sort(files.begin(), files.end(), [](const fs::path& a, const fs::path& b) {
+    return natural_less(a.string(), b.string());
+  });
+}
+
+std::vector<fs::path> files_of_pattern(const std::string& pattern) {
+  const auto field = number_field(fs::path(pattern).filename().string());
+  const bool is_glob = pattern.find_first_of("*?") != std::string::npos;
+  return is_glob || !field ? files_of_glob(pattern) : files_of_printf(pattern, *field);
+}
+
 /// Only mesh files, of one format, in natural order.
 std::vector<fs::path> sorted_frames(std::vector<fs::path> files, const std::string& name,
                                     const std::string& where) {
@@ -120,9 +132,7 @@ std::vector<fs::path> sorted_frames(std::vector<fs::path> files, const std::stri
     return !is_mesh_extension(file.extension().string()) || is_companion(file, name);
   });
   if (files.empty()) throw IoError(name, where + " no OBJ, PLY, OFF or STL file");
-  std::sort(files.begin(), files.end(), [](const fs::path& a, const fs::path& b) {
-    return natural_less(a.string(), b.string());
-  });
+  sort_naturally(files);
   for (const fs::path& file : files) {
     if (lower_extension(file) == lower_extension(files[0])) continue;
     throw IoError(name, where + " files of several formats, " + files[0].filename().string() +
@@ -185,12 +195,16 @@ bool is_frame_pattern(const std::string& text) {
          number_field(fs::path(text).filename().string()).has_value();
 }
 
+std::vector<fs::path> files_named(const std::string& text) {
+  std::error_code unreadable;
+  std::vector<fs::path> files =
+      fs::is_directory(text, unreadable) ? files_in(text) : files_of_pattern(text);
+  sort_naturally(files);
+  return files;
+}
+
 std::vector<fs::path> frames_of_pattern(const std::string& pattern) {
-  const auto field = number_field(fs::path(pattern).filename().string());
-  const bool is_glob = pattern.find_first_of("*?") != std::string::npos;
-  return sorted_frames(
-      is_glob || !field ? files_of_glob(pattern) : files_of_printf(pattern, *field), pattern,
-      "matches");
+  return sorted_frames(files_of_pattern(pattern), pattern, "matches");
 }
 
 std::vector<fs::path> frames_of_folder(const fs::path& folder) {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-/// Which files and which frames a sequence's name speaks of. Internal to sequence_file.h.
+/// Which files and which frames a sequence's name speaks of.
 namespace mimetra {
 
 /// What follows a sequence's name in the names of the files beside it that belong to it.
@@ -17,6 +17,10 @@ bool is_array(const std::filesystem::path& path);
 
 /// True for text with `*`, `?` or `%04d` that names files only by way of a pattern.
 bool is_frame_pattern(const std::string& text);
+
+/// The files of a folder, hidden ones left out, or those that a glob or printf pattern matches, in
+/// natural order; maybe none. Throws IoError for a folder that cannot be read.
+std::vector<std::filesystem::path> files_named(const std::string& text);
 
 /// The mesh files that a glob or printf pattern matches, in natural order. Throws IoError where
 /// there is none or they are of several formats. Rest poses and topologies of other sequences are
