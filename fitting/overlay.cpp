@@ -83,7 +83,7 @@ bool shows_front(const ImagePoints& points, const Triangles& triangles, Eigen::I
   return ab.x() * ac.y() - ab.y() * ac.x() < 0;
 }
 
-/// Pixels that an edge covers. Edges share pixels, each of which is mixed only once.
+/// Pixels that an edge covers. Each is mixed only once, so that a face shows through dense edges.
 std::vector<bool> edge_pixels(const Image& image, const Triangles& triangles,
                               const ImagePoints& points) {
   std::vector<bool> covered(image.pixels.size());
@@ -105,7 +105,7 @@ void mix_in(Image& image, const std::vector<bool>& covered, const Colour& colour
   for (std::size_t i = 0; i < covered.size(); ++i) {
     if (!covered[i]) continue;
     for (std::size_t c = 0; c < 3; ++c) {
-      image.pixels[i][c] = static_cast<std::uint8_t>((image.pixels[i][c] + colour[c]) / 2);
+      image.pixels[i][c] = static_cast<std::uint8_t>((2 * image.pixels[i][c] + colour[c]) / 3);
     }
   }
 }
@@ -132,6 +132,28 @@ int marker_size(const ImagePoints& vertices) {
   return extent < kFarAway ? std::max(1, static_cast<int>(extent / 300)) : 1;
 }
 
+struct Box {
+  int left;
+  int top;
+  int width;
+  int height;
+};
+
+/// Of the points, and a tenth more on each side.
+Box box_around(const ImagePoints& points) {
+  if (points.rows() == 0 || !points.allFinite()) {
+    throw std::invalid_argument("the mesh has no finite vertices to look at");
+  }
+  const Eigen::RowVector2d low = points.colwise().minCoeff(), high = points.colwise().maxCoeff();
+  const Eigen::RowVector2d margin = (high - low) / 10;
+  const auto pixel = [](double value) {
+    return static_cast<int>(std::lround(std::clamp(value, -kFarAway, kFarAway)));
+  };
+  const int left = pixel(low.x() - margin.x()), top = pixel(low.y() - margin.y());
+  return {left, top, pixel(high.x() + margin.x()) - left + 1,
+          pixel(high.y() + margin.y()) - top + 1};
+}
+
 }  // namespace
 
 Image draw_fit(const Image& image, const Triangles& triangles, const FittedView& view) {
@@ -155,19 +177,21 @@ Image draw_fit(const Image& image, const Triangles& triangles, const FittedView&
   return drawn;
 }
 
-Image cropped_to(const Image& image, const ImagePoints& vertices) {
-  if (vertices.rows() == 0 || !vertices.allFinite()) {
-    throw std::invalid_argument("there is no finite point to crop to");
-  }
-  const Eigen::RowVector2d low = vertices.colwise().minCoeff();
-  const Eigen::RowVector2d high = vertices.colwise().maxCoeff();
-  const Eigen::RowVector2d margin = (high - low) / 10;
-  const auto pixel = [](double value) {
-    return static_cast<int>(std::lround(std::clamp(value, -kFarAway, kFarAway)));
+Image draw_close_up(const Image& image, const Triangles& triangles, const FittedView& view,
+                    int height) {
+  const Box box = box_around(view.vertices);
+  const Image part = cropped(image, box.left, box.top, box.width, box.height);
+  const Image scaled = scaled_to_height(part, height);
+  const Eigen::RowVector2d corner(std::max(box.left, 0), std::max(box.top, 0));
+  const Eigen::Array2d scale(double(scaled.width) / part.width,
+                             double(scaled.height) / part.height);
+  // Pixels are squares around their middles: the image's corner is at -0.5.
+  const auto moved = [&](const ImagePoints& points) -> ImagePoints {
+    return (((points.rowwise() - corner).array() + 0.5).rowwise() * scale.transpose() - 0.5)
+        .matrix();
   };
-  const int left = pixel(low.x() - margin.x()), top = pixel(low.y() - margin.y());
-  return cropped(image, left, top, pixel(high.x() + margin.x()) - left + 1,
-                 pixel(high.y() + margin.y()) - top + 1);
+  return draw_fit(scaled, triangles,
+                  {moved(view.vertices), moved(view.landmarks), view.landmark_vertices});
 }
 
 }  // namespace mimetra

@@ -18,15 +18,17 @@ struct FittedView {
   std::vector<int> landmark_vertices;
 };
 
-/// Draws over the image the edges of triangles whose front is seen (cyan, half transparent), the
-/// landmarks that were found (yellow squares) and the model's own (magenta crosses), with a red
+/// Draws over the image the edges of triangles whose front is seen (cyan, a third of each pixel),
+/// the landmarks that were found (yellow squares) and the model's own (magenta crosses), with a red
 /// line between the two. What is outside the image is left out. `triangles` are counter-clockwise
 /// where their front is seen. Throws std::invalid_argument where sizes disagree or a vertex is out
 /// of range.
 Image draw_fit(const Image& image, const Triangles& triangles, const FittedView& view);
 
-/// The part of an image around what was drawn: the box of the vertices, a tenth larger on each
-/// side. Throws std::invalid_argument where none of it is inside the image.
-Image cropped_to(const Image& image, const ImagePoints& vertices);
+/// The same for the part of the image around the mesh, its box and a tenth more on each side, at
+/// another height (>= 1): lines stay thin in a larger picture, and a strip shows faces of one size.
+/// Throws std::invalid_argument also where none of the mesh is inside the image.
+Image draw_close_up(const Image& image, const Triangles& triangles, const FittedView& view,
+                    int height);
 
 }  // namespace mimetra

@@ -12,8 +12,8 @@ namespace mimetra {
 namespace {
 
 constexpr Colour kGrey = {100, 100, 100};
-/// Half grey, half cyan.
-constexpr Colour kEdge = {50, 177, 177};
+/// Two thirds of grey, one of cyan.
+constexpr Colour kEdge = {66, 151, 151};
 constexpr Colour kYellow = {255, 230, 0};
 constexpr Colour kMagenta = {255, 0, 255};
 constexpr Colour kRed = {255, 0, 0};
@@ -113,14 +113,29 @@ TEST(Overlay, RefusesAnotherNumberOfLandmarks) {
             "2 vertices for 1 landmarks");
 }
 
-TEST(Overlay, IsCroppedToTheMeshAndATenthMore) {
-  ImagePoints vertices(2, 2);
-  vertices << 20, 30, 40, 70;
-  const Image part = cropped_to(Image(100, 100, kGrey), vertices);
-  EXPECT_EQ(part.width, 20 + 2 * 2 + 1);
-  EXPECT_EQ(part.height, 40 + 2 * 4 + 1);
-  vertices.array() += 1e300;
-  EXPECT_THROW(cropped_to(Image(100, 100, kGrey), vertices), std::invalid_argument);
+TEST(Overlay, OfACloseUpHasTheMeshWhereItWas) {
+  FittedView view;
+  view.vertices.resize(4, 2);
+  view.vertices << 20, 30, 20, 70, 60, 70, 60, 30;
+  view.landmarks.resize(1, 2);
+  view.landmarks << 40, 40;
+  // A tenth of 40 on each side: 49 columns and rows from 16, 26 on, each twice.
+  const Image drawn = draw_close_up(Image(100, 100, kGrey), triangles(), view, 98);
+  EXPECT_EQ(drawn.width, 98);
+  EXPECT_EQ(drawn.height, 98);
+  EXPECT_EQ(drawn.at(2 * (20 - 16) + 1, 50), kEdge);
+  EXPECT_EQ(drawn.at(2 * (40 - 16) + 1, 2 * (40 - 26) + 1), kYellow);
+  EXPECT_EQ(drawn.at(2, 50), kGrey);
+}
+
+TEST(Overlay, OfACloseUpEndsWithTheImage) {
+  FittedView view = square();
+  const Image drawn = draw_close_up(grey(), triangles(), view, 11);
+  EXPECT_EQ(drawn.width, 11);  // 1 .. 9 and a pixel more on each side
+  view.vertices.array() += 5;
+  EXPECT_EQ(draw_close_up(grey(), triangles(), view, 7).width, 7);  // 5 .. 11
+  view.vertices.array() += 1e300;
+  EXPECT_THROW(draw_close_up(grey(), triangles(), view, 7), std::invalid_argument);
 }
 
 }  // namespace
