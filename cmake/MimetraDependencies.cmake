@@ -14,6 +14,7 @@ find_package(fmt REQUIRED)
 find_package(spdlog REQUIRED)
 find_package(CLI11 REQUIRED)
 mimetra_package(HDF5 COMPONENTS C)
+include(MimetraDlib)
 
 # VTK 9.1 or later: ParaView's own where it is installed, because that one serves the toolkit, the
 # plugin and the tests alike; otherwise the system's.

@@ -6,6 +6,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include <mimetra/fitting/fit_pictures.h>
+#include <mimetra/fitting/image_codec.h>
 #include <mimetra/fitting/landmark_fitter.h>
 #include <mimetra/fitting/landmark_input.h>
 #include <mimetra/fitting/landmark_mapping.h>
@@ -55,9 +57,7 @@ std::vector<Parameter> fit_parameters() {
            0,
            1e9},
           {"smoothness", ParameterKind::number, 0.0, "time constant of smooth expressions",
-           "seconds", 0, 1e6},
-          {"min-confidence", ParameterKind::number, 0.1,
-           "frames of which the detector was less sure are taken as not seen", "", 0, 1}};
+           "seconds", 0, 1e6}};
 }
 
 FitOptions options_of(const Parameters& parameters) {
@@ -80,26 +80,6 @@ LandmarkMapping mapping_of(const Invocation& invocation, const ModelRead& read) 
   }
   if (read.path.empty()) throw UsageError("--mapping: is needed for a model without a folder");
   return read_landmark_mapping(find_landmark_mapping(read.path));
-}
-
-/// The frames that the detector was sure of; NaN in the others.
-Frames trusted_points(const Invocation& invocation, const LandmarkTrack& track,
-                      const Frames& mapped) {
-  Frames points = mapped;
-  const double least = invocation.parameters.number("min-confidence");
-  int doubtful = 0;
-  for (Eigen::Index f = 0; f < track.confidence.size(); ++f) {
-    if (track.confidence[f] >= least || points.row(f).array().isNaN().all()) continue;
-    points.row(f).setConstant(std::numeric_limits<double>::quiet_NaN());
-    ++doubtful;
-  }
-  if (doubtful > 0) {
-    invocation.warn(invocation.inputs.at("landmarks").front().name + ": " +
-                    std::to_string(doubtful) + " of " + std::to_string(track.frames()) +
-                    " frames have a confidence below " + readable(least) +
-                    " and are taken as not seen");
-  }
-  return points;
 }
 
 FittedCoefficients coefficients_of(const MorphableModel& model, const Eigen::VectorXd& times,
@@ -175,27 +155,48 @@ FitSummary summary_of(const FittedCoefficients& fit) {
 }
 
 std::vector<FrameFit> fitted(const Invocation& invocation, const MorphableModel& model,
-                             const MappedLandmarks& mapped, const Frames& points,
-                             const FitOptions& options) {
+                             const MappedLandmarks& mapped, const FitOptions& options) {
   const std::string& name = invocation.inputs.at("landmarks").front().name;
   try {
     return LandmarkFitter(model, mapped.vertices)
-        .fit(points, options, invocation.get<LandmarksRead>("landmarks").track.times);
+        .fit(mapped.points, options, invocation.get<LandmarksRead>("landmarks").track.times);
   } catch (const MismatchError& error) {
     throw MismatchError(name + ": " + error.what());
   }
 }
 
+/// Before anything is computed: pictures need what they are drawn on.
+void check_images(const Invocation& invocation, const LandmarksRead& landmarks) {
+  for (const char* output : {"overlay", "strip"}) {
+    if (!invocation.wants(output)) continue;
+    if (landmarks.images.empty()) {
+      throw UsageError("--" + std::string(output) + ": " +
+                       invocation.inputs.at("landmarks").front().name +
+                       " has no images; name them by --images");
+    }
+    require_dlib(landmarks.images.front().string());
+  }
+}
+
+std::vector<int> seen_frames(const FittedCoefficients& fit) {
+  std::vector<int> frames;
+  for (int f = 0; f < fit.frames(); ++f) {
+    if (fit.landmarks[f] > 0) frames.push_back(f);
+  }
+  return frames;
+}
+
 Outcome run(const Invocation& invocation) {
-  const LandmarkTrack& track = invocation.get<LandmarksRead>("landmarks").track;
+  const LandmarksRead& landmarks = invocation.get<LandmarksRead>("landmarks");
+  const LandmarkTrack& track = landmarks.track;
   const ModelRead& read = invocation.get<ModelRead>("model");
+  check_images(invocation, landmarks);
   const FitOptions options = options_of(invocation.parameters);
   const MappedLandmarks mapped = map_landmarks(track, mapping_of(invocation, read));
   report_progress(invocation.progress, 0);
-  const FittedCoefficients fit =
-      coefficients_of(read.model, track.times,
-                      fitted(invocation, read.model, mapped,
-                             trusted_points(invocation, track, mapped.points), options));
+  FittedCoefficients fit =
+      coefficients_of(read.model, track.times, fitted(invocation, read.model, mapped, options));
+  fit.notes = landmarks.frame_notes;
   report_progress(invocation.progress, 0.5);
 
   const FitSummary summary = summary_of(fit);
@@ -204,6 +205,7 @@ Outcome run(const Invocation& invocation) {
                     ": frames without landmarks, " +
                     "which keep the face of the frame before: " + listed(summary.unseen));
   }
+  const MeshSequence sequence = sequence_of(read.model, fit, options.shape);
   Outcome outcome;
   Json report = {{"rms_px", summary.rms},
                  {"vertices", read.model.vertices()},
@@ -216,10 +218,44 @@ Outcome run(const Invocation& invocation) {
       std::to_string(track.landmarks()) + " landmarks mapped: RMS " + readable(summary.rms) +
       " px (worst " + readable(fit.rms[summary.worst]) + " in frame " +
       std::to_string(summary.worst) + "), " + std::to_string(summary.iterations) + " iterations\n";
-  outcome.outputs["out"].push_back(
-      {"", SequenceRead{sequence_of(read.model, fit, options.shape), true, {}, {}}});
+  outcome.outputs["out"].push_back({"", SequenceRead{sequence, true, {}, {}}});
   outcome.outputs["fit-out"].push_back({"", fit});
+  if (invocation.wants("overlay") || invocation.wants("strip")) {
+    const FitPictures pictures(landmarks.images, sequence, fit.cameras, mapped);
+    if (invocation.wants("overlay")) {
+      outcome.outputs["overlay"].push_back(
+          {"", Pictures{fit.frames(), [pictures](int f) { return pictures.overlay(f); }}});
+    }
+    if (invocation.wants("strip")) {
+      outcome.outputs["strip"].push_back({"", pictures.strip(seen_frames(fit))});
+    }
+  }
   return outcome;
+}
+
+LandmarkReader landmark_reader() {
+  LandmarkReader reader;
+  reader.parameters = {
+      {"images",
+       ParameterKind::text,
+       {},
+       "images that landmarks from files belong to, for --overlay and --strip: a file, folder or "
+       "pattern (default: of the same name beside .pts files)"},
+      {"face-model",
+       ParameterKind::file,
+       {},
+       "dlib's predictor of 68 landmarks (default: that of the package libdlib-data)"},
+      {"min-confidence", ParameterKind::number, FaceOptions{}.min_confidence,
+       "frames of which the detector was less sure are taken as not seen", "", 0, 1}};
+  reader.read = [](const std::string& text, const SequenceSource& source,
+                   const Parameters& parameters) {
+    LandmarkInputOptions options;
+    options.images = parameters.optional_text("images");
+    options.faces.min_confidence = parameters.number("min-confidence");
+    if (const auto model = parameters.optional_text("face-model")) options.faces.model = *model;
+    return read_landmark_input(text, source, options);
+  };
+  return reader;
 }
 
 /// The sequence, and the person whose expressions are copied.
@@ -239,7 +275,8 @@ void add_fitting(OperationTable& table) {
   operation.name = "fit";
   operation.summary = "Fit a morphable face model to 2D landmarks: a sequence in correspondence";
   operation.inputs = {{"landmarks", DataKind::landmarks,
-                       ".csv or .json track, .pts file, or folder or pattern of .pts files"},
+                       "images of a face, .pts files (one of them, a folder, a pattern), or a .csv "
+                       "or .json track"},
                       {"model", DataKind::morphable_model,
                        "model folder with identities and expressions, or eos shape model (.bin)",
                        false, false, true}};
@@ -247,13 +284,17 @@ void add_fitting(OperationTable& table) {
                        {"fit-out", DataKind::fit,
                         "coefficients and cameras, .json (default: NAME.fit.json beside OUT), for "
                         "MODEL@NAME.fit.json",
-                        true, false, ".fit.json"}};
+                        true, false, ".fit.json"},
+                       {"overlay", DataKind::pictures,
+                        "folder of the images with mesh and landmarks drawn over them", true},
+                       {"strip", DataKind::picture,
+                        "five of them in a row, near enough to judge the fit, .png", true}};
   operation.parameters = fit_parameters();
-  operation.examples = {"fit face.pts --model sfm/ -o face.obj",
+  operation.examples = {"fit face.png --model sfm/ -o face.obj --strip face_fit.png",
                         "fit track.csv --model sfm/ --smoothness 0.1 -o take/"};
   operation.run = run;
   operation.memory = memory;
-  table.add(LandmarkReader(read_landmark_input));
+  table.add(landmark_reader());
   table.add(std::move(operation));
 }
 

@@ -1,11 +1,11 @@
 #include <mimetra/fitting/landmark_input.h>
 
 #include <algorithm>
-#include <array>
-#include <cctype>
 #include <functional>
 #include <iterator>
+#include <limits>
 
+#include <mimetra/fitting/image.h>
 #include <mimetra/fitting/landmark_track.h>
 #include <mimetra/io/frame_files.h>
 #include <mimetra/mesh/errors.h>
@@ -17,23 +17,70 @@ namespace {
 namespace fs = std::filesystem;
 using Paths = std::vector<fs::path>;
 
-std::string lower_extension(const fs::path& path) {
-  std::string extension = path.extension().string();
-  std::ranges::transform(extension, extension.begin(),
-                         [](unsigned char c) { return std::tolower(c); });
-  return extension;
-}
-
 bool is_points(const fs::path& path) {
-  return lower_extension(path) == ".pts";
+  const std::string extension = path.extension().string();
+  return extension == ".pts" || extension == ".PTS";
 }
 
-bool is_image(const fs::path& path) {
-  constexpr std::array kExtensions = {".png", ".jpg", ".jpeg"};
-  return std::ranges::find(kExtensions, lower_extension(path)) != kExtensions.end();
+/// The landmarks of a whole clip before any frame is chosen: files of a frame each, or a track.
+struct Input {
+  Paths frames;  ///< .pts files or images
+  fs::path track;
+};
+
+Input input_of(const std::string& text) {
+  std::error_code unreadable;
+  const bool is_folder = fs::is_directory(text, unreadable);
+  if (!is_folder && (fs::exists(text, unreadable) || !is_frame_pattern(text))) {
+    if (!fs::exists(text, unreadable)) throw IoError(text, "no such file or folder");
+    if (is_image(text) || is_points(text)) return {{text}, {}};
+    return {{}, text};
+  }
+  Paths files = files_named(text), images;
+  std::ranges::copy_if(files, std::back_inserter(images), is_image);
+  std::erase_if(files, std::not_fn(is_points));
+  if (files.empty() && images.empty()) {
+    throw IoError(text,
+                  std::string(is_folder ? "holds" : "matches") + " no .pts file and no image");
+  }
+  return {files.empty() ? images : files, {}};
 }
 
-/// The rows of a track that were asked for.
+/// The image of the same name beside a file; empty where there is none.
+fs::path image_beside(const fs::path& file) {
+  std::error_code unreadable;
+  for (const char* extension : {".png", ".jpg", ".jpeg", ".PNG", ".JPG", ".JPEG"}) {
+    const fs::path image = fs::path(file).replace_extension(extension);
+    if (fs::exists(image, unreadable)) return image;
+  }
+  return {};
+}
+
+/// The image of each frame of the whole clip, or none.
+Paths images_of(const std::string& text, const Paths& frames, int count,
+                const LandmarkInputOptions& options) {
+  Paths images;
+  if (options.images) {
+    images = image_files(*options.images);
+    if (static_cast<int>(images.size()) != count) {
+      throw MismatchError(*options.images + ": " + std::to_string(images.size()) +
+                          " images, expected one for each of the " + std::to_string(count) +
+                          " frames of " + text);
+    }
+  } else {
+    std::ranges::transform(frames, std::back_inserter(images), image_beside);
+    if (std::ranges::any_of(images, &fs::path::empty)) images.clear();
+  }
+  return images;
+}
+
+Paths part_of(const Paths& all, const std::vector<int>& frames) {
+  Paths part;
+  if (all.empty()) return part;
+  for (const int frame : frames) part.push_back(all[static_cast<std::size_t>(frame)]);
+  return part;
+}
+
 LandmarkTrack part_of(LandmarkTrack track, const std::vector<int>& frames) {
   track.points = Frames(track.points(frames, Eigen::all));
   if (track.times.size() > 0) track.times = Eigen::VectorXd(track.times(frames));
@@ -52,7 +99,7 @@ void set_times(LandmarkTrack& track, const std::vector<int>& frames, const Seque
 }
 
 /// One frame from each file.
-LandmarkTrack read_frames(const Paths& files, const Progress& progress) {
+LandmarkTrack read_points(const Paths& files, const Progress& progress) {
   LandmarkTrack all;
   for (std::size_t i = 0; i < files.size(); ++i) {
     LandmarkTrack one = read_landmarks(files[i]);
@@ -70,47 +117,60 @@ LandmarkTrack read_frames(const Paths& files, const Progress& progress) {
   return all;
 }
 
-LandmarksRead read_points(Paths files, const SequenceSource& source) {
-  const std::vector<int> selected = selected_frames(source.frames, static_cast<int>(files.size()));
+/// Frames of which the detector was not sure become NaN.
+void drop_doubtful(LandmarksRead& read, const std::string& text, double min_confidence) {
+  const LandmarkTrack& track = read.track;
+  int doubtful = 0;
+  read.frame_notes.resize(static_cast<std::size_t>(track.frames()));
+  for (Eigen::Index f = 0; f < track.confidence.size(); ++f) {
+    if (track.confidence[f] >= min_confidence) continue;
+    read.track.points.row(f).setConstant(std::numeric_limits<double>::quiet_NaN());
+    read.frame_notes[static_cast<std::size_t>(f)] =
+        low_confidence_note(track.confidence[f], min_confidence);
+    ++doubtful;
+  }
+  if (doubtful > 0) {
+    read.notes.push_back(text + ": " + std::to_string(doubtful) + " of " +
+                         std::to_string(track.frames()) +
+                         " frames have too low a confidence and are taken as not seen");
+  }
+}
+
+LandmarksRead find_in_images(Paths images, const SequenceSource& source, FaceOptions options) {
+  options.threads = source.threads;
+  FaceTrack faces = track_face(images, options, source.progress);
   LandmarksRead read;
-  for (const int frame : selected) read.files.push_back(files[static_cast<std::size_t>(frame)]);
-  read.track = read_frames(read.files, source.progress);
-  set_times(read.track, selected, source);
+  read.track = std::move(faces.landmarks);
+  read.files = images;
+  read.images = std::move(images);
+  read.notes = std::move(faces.notes);
+  for (FaceFrame& frame : faces.frames) read.frame_notes.push_back(std::move(frame.note));
   return read;
-}
-
-LandmarksRead read_track(const fs::path& file, const SequenceSource& source) {
-  LandmarkTrack whole = read_landmarks(file);
-  const std::vector<int> selected = selected_frames(source.frames, whole.frames());
-  LandmarksRead read{part_of(std::move(whole), selected), {file}, {}};
-  set_times(read.track, selected, source);
-  report_progress(source.progress, 1);
-  return read;
-}
-
-/// Where images become landmarks.
-LandmarksRead read_images(const Paths& images) {
-  throw IoError(images.front().string(),
-                "is an image, and this mimetra was built without a detector of landmarks; it needs "
-                "dlib (packages libdlib-dev, libdlib-data); or give landmarks as .pts, .csv or "
-                ".json");
 }
 
 }  // namespace
 
-LandmarksRead read_landmark_input(const std::string& text, const SequenceSource& source) {
-  std::error_code unreadable;
-  const bool is_folder = fs::is_directory(text, unreadable);
-  if (!is_folder && (fs::exists(text, unreadable) || !is_frame_pattern(text))) {
-    if (!fs::exists(text, unreadable)) throw IoError(text, "no such file or folder");
-    return is_image(text) ? read_images({text}) : read_track(text, source);
+LandmarksRead read_landmark_input(const std::string& text, const SequenceSource& source,
+                                  const LandmarkInputOptions& options) {
+  const Input input = input_of(text);
+  LandmarkTrack whole;
+  if (input.frames.empty()) whole = read_landmarks(input.track);
+  const int count = input.frames.empty() ? whole.frames() : static_cast<int>(input.frames.size());
+  const std::vector<int> selected = selected_frames(source.frames, count);
+  const Paths files = part_of(input.frames, selected);
+  LandmarksRead read;
+  if (!files.empty() && is_image(files.front())) {
+    read = find_in_images(files, source, options.faces);
+  } else {
+    read.track =
+        files.empty() ? part_of(std::move(whole), selected) : read_points(files, source.progress);
+    read.files = files.empty() ? Paths{input.track} : files;
+    read.images = part_of(images_of(text, input.frames, count, options), selected);
+    drop_doubtful(read, text, options.faces.min_confidence);
   }
-  Paths files = files_named(text), images;
-  std::ranges::copy_if(files, std::back_inserter(images), is_image);
-  std::erase_if(files, std::not_fn(is_points));
-  if (!files.empty()) return read_points(std::move(files), source);
-  if (!images.empty()) return read_images(images);
-  throw IoError(text, std::string(is_folder ? "holds" : "matches") + " no .pts file and no image");
+  set_times(read.track, selected, source);
+  report_progress(source.progress, 1);
+  return read;
 }
 
 }  // namespace mimetra

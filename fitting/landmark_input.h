@@ -1,15 +1,27 @@
 #pragma once
 
+#include <optional>
 #include <string>
 
+#include <mimetra/fitting/face_images.h>
 #include <mimetra/operations/data.h>
 
 namespace mimetra {
 
-/// Reads the landmarks of a clip: one .pts, .csv or .json file, or a folder or pattern of .pts
-/// files, one frame each in natural order; with times, the frames that `source.frames` takes.
-/// Throws IoError, also for images where nothing finds landmarks in them; MismatchError for files
-/// that differ in their number of landmarks, and as selected_frames.
-LandmarksRead read_landmark_input(const std::string& text, const SequenceSource& source = {});
+struct LandmarkInputOptions {
+  /// For images. Frames of less confidence are taken as not seen, also those of a track.
+  FaceOptions faces = {};
+  /// The images that the landmarks of a track or of .pts files belong to, one for each frame: a
+  /// file, folder or pattern. By default those of the same name beside .pts files, or none.
+  std::optional<std::string> images = {};
+};
+
+/// Reads the landmarks of a clip: one .pts, .csv or .json file, a folder or pattern of .pts files,
+/// or an image, a folder or pattern of images in which faces are found; one frame a file in natural
+/// order. With times, the frames that `source.frames` takes. Throws IoError, also as track_face;
+/// MismatchError for files that differ in their number of landmarks, another number of images, and
+/// as selected_frames; Cancelled.
+LandmarksRead read_landmark_input(const std::string& text, const SequenceSource& source = {},
+                                  const LandmarkInputOptions& = {});
 
 }  // namespace mimetra

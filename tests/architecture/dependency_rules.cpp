@@ -177,7 +177,7 @@ const std::vector<FolderRule>& folder_rules() {
          {"OpenMesh", "HDF5", "JSON", "zlib", "tinygltf"}},
         {"toolkit/operations", above_operations, {"JSON"}},
         {"toolkit/vtk", up_to_operations, {"VTK", "EGL", "JSON"}},
-        {"fitting", {"model", "io", "operations"}, {"dlib", "JSON"}},
+        {"fitting", {"mesh", "model", "io", "operations"}, {"dlib", "JSON"}},
         {"samples", all, {}, true},
         {"toolkit/cli",
          {"operations", "vtk", "fitting", "samples"},

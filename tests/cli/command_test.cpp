@@ -146,9 +146,10 @@ TEST_F(Command, OperationsListsEveryCommand) {
   const json list = json::parse(run("operations --json").out)["operations"];
   std::set<std::string> names;
   for (const json& entry : list) names.insert(entry.at("name").get<std::string>());
-  EXPECT_EQ(names, (std::set<std::string>{"info", "check", "align", "geodesic", "decompose",
-                                          "regions", "transfer", "evaluate", "convert", "render",
-                                          "sample", "operations", "completion", "manual"}));
+  EXPECT_EQ(names,
+            (std::set<std::string>{"info", "check", "align", "geodesic", "decompose", "regions",
+                                   "transfer", "evaluate", "convert", "fit", "render", "sample",
+                                   "operations", "completion", "manual"}));
 }
 
 TEST_F(Command, SampleIsAModelWithAPerformance) {

@@ -221,10 +221,12 @@ void add_requests(std::vector<BadInput>& all) {
   add("missing_model", "t.csv --model no -o o", 3, {"no: does not exist"});
   add("no_model", "t.csv --model t.csv -o o", 3, {"t.csv: is no model"});
   add("several_frames_into_a_mesh", "t.csv --model head -o o.obj", 4, {"2 frames"});
-  add("image", "a.png --model head -o o", 3, {"a.png", "dlib", "libdlib-dev", "libdlib-data"},
-      {{"a.png", "\x89PNG"}});
-  add("folder_of_images", "i --model head -o o", 3, {"i/2.jpg", "libdlib-dev", "libdlib-data"},
-      {{"i/10.jpg", ""}, {"i/2.jpg", ""}});
+  add("overlay_without_images", "t.csv --model head -o o --overlay v", 2,
+      {"--overlay: t.csv has no images", "--images"});
+  add("images_that_are_missing", "t.csv --model head -o o --strip v.png --images i/*.png", 3,
+      {"i/*.png: matches no PNG or JPEG file"});
+  add("too_few_images", "t.csv --model head -o o --strip v.png --images a.png", 4,
+      {"a.png: 1 images, expected one for each of the 2 frames of t.csv"}, {{"a.png", ""}});
   add("existing_coefficients", "t.csv --model head -o o", 5, {"o.fit.json", "exists"},
       {{"o.fit.json", "{}"}});
   add("existing_coefficients_forced", "t.csv --model head -o o --force", 0, {"2 frames"},

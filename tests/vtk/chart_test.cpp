@@ -34,9 +34,8 @@ std::vector<double> red_heights(const Image& image) {
     double sum = 0;
     int count = 0;
     for (int y = 0; y < image.height * 9 / 10; ++y) {
-      const std::uint8_t* pixel =
-          &image.pixels[3 * (static_cast<std::size_t>(y) * image.width + x)];
-      if (pixel[0] < 200 || pixel[1] > 60 || pixel[2] > 60) continue;
+      const Color& pixel = image.at(x, y);
+      if (pixel.red < 200 || pixel.green > 60 || pixel.blue > 60) continue;
       sum += y;
       ++count;
     }
@@ -107,8 +106,7 @@ TEST(Chart, IsTheSameEveryTimeOnWhite) {
   const std::vector<Chart> row = {chart_of({1, 10}, {1, 100}, ChartScale::logarithmic)};
   const Image image = draw(row);
   EXPECT_EQ(image.pixels, draw(row).pixels);
-  EXPECT_EQ(std::vector(image.pixels.begin(), image.pixels.begin() + 3),
-            std::vector<std::uint8_t>(3, 255));
+  EXPECT_EQ(image.at(0, 0), (Color{255, 255, 255}));
 }
 
 std::string refusal(const std::vector<Chart>& row, const ChartSize& size = {}) {

@@ -25,12 +25,6 @@ Sheet square_sheet(double scale = 1, double shift = 0) {
   return sheet;
 }
 
-Color pixel(const Image& image, int x, int y) {
-  const auto at = 3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) +
-                       static_cast<std::size_t>(x));
-  return {image.pixels[at], image.pixels[at + 1], image.pixels[at + 2]};
-}
-
 bool is_red(const Color& color) {
   return color.red > 80 && color.green < color.red / 2 && color.blue < color.red / 2;
 }
@@ -39,7 +33,7 @@ bool is_red(const Color& color) {
 int red_pixels(const Image& image) {
   int count = 0;
   for (int y = 0; y < image.height; ++y) {
-    for (int x = 0; x < image.width; ++x) count += is_red(pixel(image, x, y));
+    for (int x = 0; x < image.width; ++x) count += is_red(image.at(x, y));
   }
   return count;
 }
@@ -51,8 +45,8 @@ TEST(Picture, ShowsAMeshInItsColourAndScaleOnWhite) {
   ASSERT_EQ(image.width, layout.width);
   ASSERT_EQ(image.height, layout.height);
   const Box tile = layout.tile(0, 0);
-  EXPECT_TRUE(is_red(pixel(image, tile.left + tile.width / 2, tile.top + tile.height / 2)));
-  EXPECT_EQ(pixel(image, 0, 0), (Color{255, 255, 255}));
+  EXPECT_TRUE(is_red(image.at(tile.left + tile.width / 2, tile.top + tile.height / 2)));
+  EXPECT_EQ(image.at(0, 0), (Color{255, 255, 255}));
   // Two units wide and high; a pixel's width of doubt along the border.
   const double side = 2 * layout.pixels_per_unit();
   EXPECT_NEAR(red_pixels(image), side * side, 4 * side);
@@ -80,7 +74,7 @@ TEST(Picture, HasAScaleBarOfTheLengthItSays) {
   for (int y = layout.height - 2 * layout.text; y < layout.height; ++y) {
     int run = 0;
     for (int x = 0; x < layout.width; ++x) {
-      run = pixel(image, x, y).red < 60 ? run + 1 : 0;
+      run = image.at(x, y).red < 60 ? run + 1 : 0;
       longest = std::max(longest, run);
     }
   }
@@ -95,7 +89,7 @@ TEST(Picture, OfNothingIsRefused) {
 }
 
 TEST(Picture, IsWrittenAsPng) {
-  const std::string bytes = png_of({2, 1, {255, 0, 0, 0, 255, 0}});
+  const std::string bytes = png_of(Image(2, 1, {255, 0, 0}));
   EXPECT_EQ(bytes.substr(0, 8), "\x89PNG\r\n\x1a\n");
   EXPECT_EQ(bytes.substr(16, 8), std::string("\0\0\0\2\0\0\0\1", 8));
 }

@@ -151,13 +151,17 @@ std::string fit_json(const FittedCoefficients& fit) {
   Json frames = Json::array();
   for (int f = 0; f < fit.frames(); ++f) {
     const auto& camera = fit.cameras[static_cast<std::size_t>(f)];
-    frames.push_back({{"time", fit.times[f]},
-                      {"rms_px", std::isnan(fit.rms[f]) ? Json(nullptr) : Json(fit.rms[f])},
-                      {"landmarks", fit.landmarks[f]},
-                      {"iterations", fit.iterations[f]},
-                      {"alpha", numbers_of(fit.alpha.row(f))},
-                      {"beta", numbers_of(fit.beta.row(f))},
-                      {"camera", {numbers_of(camera.row(0)), numbers_of(camera.row(1))}}});
+    Json frame = {{"time", fit.times[f]},
+                  {"rms_px", std::isnan(fit.rms[f]) ? Json(nullptr) : Json(fit.rms[f])},
+                  {"landmarks", fit.landmarks[f]},
+                  {"iterations", fit.iterations[f]},
+                  {"alpha", numbers_of(fit.alpha.row(f))},
+                  {"beta", numbers_of(fit.beta.row(f))},
+                  {"camera", {numbers_of(camera.row(0)), numbers_of(camera.row(1))}}};
+    if (f < static_cast<int>(fit.notes.size()) && !fit.notes[static_cast<std::size_t>(f)].empty()) {
+      frame["note"] = fit.notes[static_cast<std::size_t>(f)];
+    }
+    frames.push_back(std::move(frame));
   }
   return Json{{"identities", fit.identities}, {"expressions", fit.expressions}, {"frames", frames}}
              .dump(1) +

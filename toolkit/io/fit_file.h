@@ -22,6 +22,8 @@ struct FittedCoefficients {
   Eigen::VectorXd rms;         ///< reprojection error in pixels (F); NaN where nothing was seen
   Eigen::VectorXi landmarks;   ///< those seen (F)
   Eigen::VectorXi iterations;  ///< of the solver (F)
+  /// What was noticed in each frame (F, "" for nothing), or none.
+  std::vector<std::string> notes = {};
 
   int frames() const { return static_cast<int>(alpha.rows()); }
   /// The one alpha of all frames; the mean over the frames that were seen where they differ.
@@ -31,7 +33,8 @@ struct FittedCoefficients {
 };
 
 /// The text of a fit.json: {"identities": [names], "expressions": [names], "frames": [{"time",
-/// "rms_px" (null: nothing was seen), "landmarks", "iterations", "alpha", "beta", "camera":
+/// "rms_px" (null: nothing was seen), "note" (where there is one), "landmarks", "iterations",
+/// "alpha", "beta", "camera":
 /// [[4 numbers], [4]]}]}, with the shortest digits that read back equal.
 std::string fit_json(const FittedCoefficients& fit);
 

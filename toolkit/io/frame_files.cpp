@@ -252,4 +252,11 @@ bool natural_less(const std::string& a, const std::string& b) {
   return a_ends && b_ends ? a < b : a_ends;
 }
 
+std::string frame_name(int frame, int frames, const std::string& extension) {
+  constexpr std::size_t kLeastDigits = 4;
+  const std::size_t digits = std::max(kLeastDigits, std::to_string(frames - 1).size());
+  const std::string number = std::to_string(frame);
+  return "frame_" + std::string(digits - number.size(), '0') + number + extension;
+}
+
 }  // namespace mimetra

@@ -35,6 +35,9 @@ std::vector<std::filesystem::path> frames_of_folder(const std::filesystem::path&
 /// std::invalid_argument for what is no range, MismatchError for one beyond the last frame.
 std::vector<int> selected_frames(const std::optional<std::string>& range, int frames);
 
+/// "frame_0007.ply" for frame 7 of up to 10000, more digits where four do not suffice.
+std::string frame_name(int frame, int frames, const std::string& extension);
+
 /// `folder/NAME` + suffix for `folder/NAME`, `folder/NAME/` and `folder/NAME.npy`.
 std::filesystem::path beside(const std::filesystem::path& sequence, const std::string& suffix);
 

@@ -54,13 +54,6 @@ bool needs_double(const MeshSequence& sequence) {
   return kRounding * sequence.positions().cwiseAbs().maxCoeff() > kMostRounded * sequence.extent();
 }
 
-std::string frame_name(int frame, int frames, const std::string& format) {
-  constexpr std::size_t kLeastDigits = 4;
-  const std::size_t digits = std::max(kLeastDigits, std::to_string(frames - 1).size());
-  const std::string number = std::to_string(frame);
-  return "frame_" + std::string(digits - number.size(), '0') + number + "." + format;
-}
-
 std::vector<fs::path> write_folder(const MeshSequence& sequence, const fs::path& target,
                                    const SequenceWriteOptions& options, const ExtraFiles& extra) {
   PendingOutputs outputs(options.overwrite);
@@ -68,7 +61,7 @@ std::vector<fs::path> write_folder(const MeshSequence& sequence, const fs::path&
   const bool double_precision = options.double_precision || needs_double(sequence);
   std::vector<fs::path> files;
   for (int frame = 0; frame < sequence.frames(); ++frame) {
-    files.push_back(target / frame_name(frame, sequence.frames(), options.format));
+    files.push_back(target / frame_name(frame, sequence.frames(), "." + options.format));
   }
   report_progress(options.progress, 0);
   const MeshFileWriter writer(sequence.connectivity(), "." + options.format, double_precision);

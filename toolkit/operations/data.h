@@ -1,6 +1,7 @@
 #pragma once
 
-#include <cstdint>
+#include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <variant>
@@ -12,6 +13,7 @@
 #include <mimetra/mesh/fields.h>
 #include <mimetra/model/landmark_track.h>
 #include <mimetra/model/morphable_model.h>
+#include <mimetra/operations/image.h>
 #include <mimetra/regions/regions.h>
 #include <mimetra/splocs/decomposition.h>
 
@@ -29,7 +31,8 @@ enum class DataKind {
   picture,
   landmarks,
   morphable_model,
-  fit
+  fit,
+  pictures
 };
 
 /// Regions and the sequence they are shown on (empty for regions that were read).
@@ -54,16 +57,18 @@ struct AnimatedModel {
   WeightTrack performance;
 };
 
-/// A picture: rows from above to below, each `width` pixels of red, green and blue.
-struct Image {
-  int width = 0;
-  int height = 0;
-  std::vector<std::uint8_t> pixels;
+/// Pictures over time, each drawn when it is written.
+struct Pictures {
+  int count = 0;
+  std::function<Image(int)> draw;  ///< may be called from several threads
 };
 
 /// Landmarks, and what was noticed while reading them.
 struct LandmarksRead {
-  LandmarkTrack track;  ///< with times
+  LandmarkTrack track;                             ///< with times
+  std::vector<std::filesystem::path> images = {};  ///< that each frame shows (F), or none
+  /// What was noticed in each frame (F, "" for nothing), or none.
+  std::vector<std::string> frame_notes = {};
   std::vector<std::filesystem::path> files = {};
   std::vector<std::string> notes = {};
 };
@@ -77,7 +82,7 @@ struct ModelRead {
 /// One value of the kind at the same place in DataKind.
 using Data =
     std::variant<SequenceRead, BlendshapeModel, Components, RegionData, FieldSequence, Table,
-                 AnimatedModel, Image, LandmarksRead, ModelRead, FittedCoefficients>;
+                 AnimatedModel, Image, LandmarksRead, ModelRead, FittedCoefficients, Pictures>;
 
 /// A value and what it is called in messages and output names.
 struct NamedData {

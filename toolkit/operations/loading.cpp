@@ -74,7 +74,7 @@ class Loader {
   }
 
   LandmarksRead landmarks(const std::string& text) {
-    return noted(table_.landmark_reader()(text, frames_asked_for()));
+    return noted(table_.landmark_reader().read(text, frames_asked_for(), parameters_));
   }
 
   SequenceSource frames_asked_for() const {

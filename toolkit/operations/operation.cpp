@@ -72,6 +72,8 @@ std::string_view kind_name(DataKind kind) {
       return "morphable model";
     case DataKind::fit:
       return "fitted coefficients";
+    case DataKind::pictures:
+      return "pictures";
   }
   return "";
 }
@@ -231,6 +233,7 @@ std::vector<Parameter> OperationTable::parameters_of(const Operation& operation)
   if (std::ranges::find(operation.inputs, DataKind::landmarks, &Input::kind) !=
       operation.inputs.end()) {
     append(frame_parameters());
+    if (landmark_reader_) append(landmark_reader_->parameters);
   }
   for (const Output& output : operation.outputs) {
     for (const Writer& writer : writers_) {
@@ -311,7 +314,7 @@ const FieldReader* OperationTable::field_reader(const std::filesystem::path& pat
 
 const LandmarkReader& OperationTable::landmark_reader() const {
   if (!landmark_reader_) throw std::logic_error("no module that reads landmarks was added");
-  return landmark_reader_;
+  return *landmark_reader_;
 }
 
 std::string OperationTable::json() const {

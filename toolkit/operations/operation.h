@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <functional>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -124,9 +125,14 @@ struct FieldReader {
   std::function<std::vector<std::filesystem::path>(const std::filesystem::path&)> files;
 };
 
-/// The way to read landmarks; `source` says which frames, and the times of those that have none.
-using LandmarkReader =
-    std::function<LandmarksRead(const std::string& text, const SequenceSource& source)>;
+/// The way to read landmarks.
+struct LandmarkReader {
+  std::vector<Parameter> parameters;
+  /// `source` says which frames, and the times of those that have none.
+  std::function<LandmarksRead(const std::string& text, const SequenceSource& source,
+                              const Parameters&)>
+      read;
+};
 
 /// All operations and formats of a program; built by its main function and passed down.
 class OperationTable {
@@ -174,7 +180,7 @@ class OperationTable {
   std::vector<Writer> writers_;
   std::vector<RegionReader> region_readers_;
   std::vector<FieldReader> field_readers_;
-  LandmarkReader landmark_reader_;
+  std::optional<LandmarkReader> landmark_reader_;
 };
 
 /// The operations of the toolkit (info, check, align, geodesic, decompose, regions, transfer,

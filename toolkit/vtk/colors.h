@@ -1,19 +1,11 @@
 #pragma once
 
-#include <cstdint>
 #include <vector>
 
 #include <mimetra/mesh/tri_mesh.h>
+#include <mimetra/operations/image.h>
 
 namespace mimetra {
-
-/// An sRGB colour.
-struct Color {
-  std::uint8_t red = 0;
-  std::uint8_t green = 0;
-  std::uint8_t blue = 0;
-  bool operator==(const Color&) const = default;
-};
 
 /// What a mesh without values looks like.
 constexpr Color kClay = {205, 190, 178};

@@ -128,16 +128,16 @@ Image OffscreenWindow::image() const {
   const int width = window.GetSize()[0], height = window.GetSize()[1];
   vtkNew<vtkUnsignedCharArray> pixels;
   window.GetPixelData(0, 0, width - 1, height - 1, 0, pixels);
-  Image image{width, height, {}};
+  Image image(width, height);
+  static_assert(sizeof(Color) == 3);
   const std::size_t row = 3 * static_cast<std::size_t>(width);
   if (pixels->GetNumberOfValues() < static_cast<vtkIdType>(row) * height) {
     throw std::runtime_error("OpenGL could not draw " + std::to_string(width) + " x " +
                              std::to_string(height) + " pixels; take a smaller size");
   }
-  image.pixels.resize(row * static_cast<std::size_t>(height));
   for (int y = 0; y < height; ++y) {  // OpenGL counts rows from below
-    std::memcpy(image.pixels.data() + row * static_cast<std::size_t>(y),
-                pixels->GetPointer(static_cast<vtkIdType>(row) * (height - 1 - y)), row);
+    std::memcpy(&image.at(0, y), pixels->GetPointer(static_cast<vtkIdType>(row) * (height - 1 - y)),
+                row);
   }
   return image;
 }

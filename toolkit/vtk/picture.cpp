@@ -197,10 +197,9 @@ std::string png_of(const Image& image) {
   vtkNew<vtkImageData> data;
   data->SetDimensions(image.width, image.height, 1);
   data->AllocateScalars(VTK_UNSIGNED_CHAR, 3);
-  const std::size_t row = 3 * static_cast<std::size_t>(image.width);
+  const std::size_t row = sizeof(Color) * static_cast<std::size_t>(image.width);
   for (int y = 0; y < image.height; ++y) {  // VTK counts rows from below
-    std::memcpy(data->GetScalarPointer(0, image.height - 1 - y, 0),
-                image.pixels.data() + row * static_cast<std::size_t>(y), row);
+    std::memcpy(data->GetScalarPointer(0, image.height - 1 - y, 0), &image.at(0, y), row);
   }
   vtkNew<vtkPNGWriter> writer;
   writer->SetInputData(data);

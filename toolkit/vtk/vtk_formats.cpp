@@ -2,7 +2,9 @@
 
 #include <cmath>
 
+#include <mimetra/io/frame_files.h>
 #include <mimetra/io/pending_output.h>
+#include <mimetra/mesh/parallel.h>
 #include <mimetra/operations/formats.h>
 #include <mimetra/vtk/picture.h>
 #include <mimetra/vtk/render_operation.h>
@@ -28,6 +30,21 @@ std::vector<std::filesystem::path> write_picture(const Data& data, const WriteRe
     write_file(request.target, png_of(std::get<Image>(data)), request.overwrite);
     return std::vector{request.target};
   });
+}
+
+std::vector<std::filesystem::path> write_pictures(const Data& data, const WriteRequest& request) {
+  const auto& pictures = std::get<Pictures>(data);
+  PendingOutput folder(request.target, PendingOutput::Kind::folder, request.overwrite);
+  const auto name = [&](int i) { return frame_name(i, pictures.count, ".png"); };
+  const auto write_one = [&](int i) {
+    write_bytes(folder.path() / name(i), png_of(pictures.draw(i)));
+  };
+  parallel_for(pictures.count, request.threads, write_one, request.progress);
+  for (const auto& [extra, content] : request.extra) write_bytes(folder.path() / extra, content);
+  folder.commit();
+  std::vector<std::filesystem::path> files;
+  for (int i = 0; i < pictures.count; ++i) files.push_back(request.target / name(i));
+  return files;
 }
 
 /// One region: the vertices where the field `roi` is not 0.
@@ -75,6 +92,7 @@ void add_vtk(OperationTable& table) {
   table.add(RegionReader{{".vtp"}, read_regions_from_vtp});
   table.add(FieldReader{{".pvd", ".vtp", ".series"}, read_vtp_series, vtp_series_files});
   table.add(Writer{DataKind::picture, {".png"}, {}, write_picture});
+  table.add(Writer{DataKind::pictures, {""}, {}, write_pictures});
   table.add(render_operation());
 }
 

@@ -1,0 +1,145 @@
+#include <mimetra/fitting/face_images.h>
+
+#include <algorithm>
+#include <iterator>
+#include <limits>
+#include <optional>
+#include <sstream>
+#include <stdexcept>
+
+#include <mimetra/fitting/image_codec.h>
+#include <mimetra/fitting/landmark_formats.h>
+#include <mimetra/mesh/parallel.h>
+
+namespace mimetra {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr Eigen::Index kLandmarks = 68;
+constexpr const char* kTerms =
+    "the 68-point model was trained on photographs for non-commercial use only (iBUG 300-W)";
+
+Eigen::Vector2d middle(const Face& face) {
+  return {face.left + face.width / 2, face.top + face.height / 2};
+}
+
+/// How much better a face is than another: by its size, or by its distance from the last one.
+double merit(const Face& face, const std::optional<Face>& last) {
+  return last ? -(middle(face) - middle(*last)).squaredNorm() : face.width * face.height;
+}
+
+FaceFrame frame_of(const FacesInImage& image, const std::vector<Face>& confident,
+                   const Face* chosen, double min_confidence) {
+  FaceFrame frame;
+  frame.file = image.file;
+  frame.faces = static_cast<int>(confident.size());
+  if (chosen) {
+    frame.outcome = FaceFrame::Outcome::found;
+    frame.confidence = chosen->confidence;
+    if (frame.faces > 1) frame.note = "one of " + std::to_string(frame.faces) + " faces";
+  } else if (image.faces.empty()) {
+    frame.note = "no face found";
+  } else {
+    frame.outcome = FaceFrame::Outcome::low_confidence;
+    frame.confidence = std::ranges::max_element(image.faces, {}, &Face::confidence)->confidence;
+    frame.note = low_confidence_note(frame.confidence, min_confidence);
+  }
+  return frame;
+}
+
+/// "3 of 120 images WHAT, the first is NAME", or nothing where none is counted.
+template <typename Counted>
+void add_note(std::vector<std::string>& notes, const std::vector<FaceFrame>& frames,
+              const std::string& what, Counted is_counted) {
+  const auto first = std::ranges::find_if(frames, is_counted);
+  if (first == frames.end()) return;
+  notes.push_back(std::to_string(std::ranges::count_if(frames, is_counted)) + " of " +
+                  std::to_string(frames.size()) + " images " + what + ", the first is " +
+                  first->file.filename().string());
+}
+
+std::vector<std::string> notes_on(const std::vector<FaceFrame>& frames) {
+  using Outcome = FaceFrame::Outcome;
+  std::vector<std::string> notes;
+  add_note(notes, frames, "show no face that was found",
+           [](const FaceFrame& frame) { return frame.outcome == Outcome::no_face; });
+  add_note(notes, frames, "show only faces of too low confidence",
+           [](const FaceFrame& frame) { return frame.outcome == Outcome::low_confidence; });
+  add_note(notes, frames,
+           "show several faces (the largest is taken, then the nearest to the last one)",
+           [](const FaceFrame& frame) { return frame.faces > 1; });
+  return notes;
+}
+
+/// Throws IoError where no frame shows a face.
+void check_some_face(const FaceTrack& track) {
+  const auto is_found = [](const FaceFrame& frame) {
+    return frame.outcome == FaceFrame::Outcome::found;
+  };
+  if (std::ranges::any_of(track.frames, is_found)) return;
+  const std::size_t others = track.frames.size() - 1;
+  throw IoError(
+      track.frames.front().file.string(),
+      "shows no face that the detector is sure of" +
+          (others == 0 ? std::string() : ", nor does any of the other " + std::to_string(others)) +
+          "; a face must look towards the camera and be at least 80 pixels wide");
+}
+
+}  // namespace
+
+FaceTrack follow_face(const std::vector<FacesInImage>& frames, double min_confidence) {
+  if (!(min_confidence >= 0 && min_confidence <= 1)) {
+    throw std::invalid_argument("min_confidence must be in [0, 1]");
+  }
+  const auto count = static_cast<Eigen::Index>(frames.size());
+  FaceTrack track;
+  track.landmarks.names = numbered_names(kLandmarks);
+  track.landmarks.points.setConstant(count, 2 * kLandmarks,
+                                     std::numeric_limits<double>::quiet_NaN());
+  track.landmarks.confidence.setZero(count);
+  std::optional<Face> last;
+  for (Eigen::Index f = 0; f < count; ++f) {
+    const FacesInImage& image = frames[static_cast<std::size_t>(f)];
+    std::vector<Face> confident;
+    std::ranges::copy_if(image.faces, std::back_inserter(confident),
+                         [&](const Face& face) { return face.confidence >= min_confidence; });
+    const auto chosen = std::ranges::max_element(
+        confident, {}, [&](const Face& face) { return merit(face, last); });
+    const bool found = chosen != confident.end();
+    track.frames.push_back(frame_of(image, confident, found ? &*chosen : nullptr, min_confidence));
+    if (!found) continue;
+    track.landmarks.points.row(f) = chosen->landmarks.reshaped<Eigen::RowMajor>().transpose();
+    track.landmarks.confidence[f] = chosen->confidence;
+    last = *chosen;
+  }
+  track.notes = notes_on(track.frames);
+  return track;
+}
+
+std::string low_confidence_note(double confidence, double min_confidence) {
+  std::ostringstream text;
+  text.precision(2);
+  text << "confidence " << confidence << " is below " << min_confidence;
+  return text.str();
+}
+
+FaceTrack track_face(const std::vector<fs::path>& images, const FaceOptions& options,
+                     const Progress& progress) {
+  if (images.empty()) throw std::invalid_argument("there are no images");
+  require_dlib(images.front().string());
+  const FaceFinder finder(options.model);
+  std::vector<FacesInImage> frames(images.size());
+  const auto look_at = [&](int i) {
+    const auto at = static_cast<std::size_t>(i);
+    frames[at] = {images[at], finder.faces(read_image(images[at]))};
+  };
+  parallel_for(static_cast<int>(images.size()), options.threads, look_at, progress);
+  FaceTrack track = follow_face(frames, options.min_confidence);
+  check_some_face(track);
+  if (options.model == FaceOptions{}.model) track.notes.insert(track.notes.begin(), kTerms);
+  return track;
+}
+
+}  // namespace mimetra

@@ -1,0 +1,96 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <mimetra/fitting/affine_camera.h>
+#include <mimetra/fitting/image.h>
+#include <mimetra/fitting/landmark_track.h>
+#include <mimetra/mesh/errors.h>
+
+namespace mimetra {
+
+/// A face that was found in an image.
+struct Face {
+  /// Its box in pixels.
+  double left = 0, top = 0, width = 0, height = 0;
+  /// In [0, 1): s / (1 + s) for the detector's score s, how far the face is above its threshold.
+  double confidence = 0;
+  /// iBUG's 68 landmarks (68 x 2), in whole pixels.
+  ImagePoints landmarks;
+};
+
+struct FaceOptions {
+  /// 68-point shape predictor; the one of Debian's libdlib-data by default.
+  std::filesystem::path model = "/usr/share/dlib/shape_predictor_68_face_landmarks.dat";
+  /// Faces of less confidence are taken for none, in [0, 1].
+  double min_confidence = 0.1;
+  int threads = 0;  ///< 0 for all there are; what is found does not depend on it
+};
+
+/// Finds faces and their landmarks by dlib's frontal face detector and a 68-point shape predictor.
+///
+/// The constructor reads the model; queries are const.
+///
+/// [Kazemi, Sullivan. One Millisecond Face Alignment with an Ensemble of Regression Trees. CVPR
+/// 2014]
+class FaceFinder {
+ public:
+  /// Throws IoError that says what is missing and which package has it: the model, or dlib where
+  /// mimetra was built without it; and for a file that is no such model.
+  explicit FaceFinder(const std::filesystem::path& model = FaceOptions{}.model);
+  ~FaceFinder();
+  FaceFinder(FaceFinder&&) noexcept;
+  FaceFinder& operator=(FaceFinder&&) noexcept;
+
+  /// All faces that look towards the camera and are at least 80 pixels wide, best confidence first.
+  std::vector<Face> faces(const Image& image) const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+/// The faces of one frame.
+struct FacesInImage {
+  std::filesystem::path file;
+  std::vector<Face> faces;
+};
+
+/// What became of one frame.
+struct FaceFrame {
+  enum class Outcome { found, no_face, low_confidence };
+
+  std::filesystem::path file;
+  Outcome outcome = Outcome::no_face;
+  int faces = 0;          ///< those of enough confidence, among which one was chosen
+  double confidence = 0;  ///< of the chosen face; else of the best that was found; 0 where none was
+  std::string note;       ///< what is not as it should be, or nothing
+};
+
+/// The landmarks of one person over a sequence of images.
+struct FaceTrack {
+  /// Frames without a face are NaN and have confidence 0. No times.
+  LandmarkTrack landmarks;
+  std::vector<FaceFrame> frames;
+  /// What a user should know: the model's terms, and how many frames lack a face or show several.
+  std::vector<std::string> notes;
+};
+
+/// Chooses one face in each frame: the largest, and once there is one, that whose middle is nearest
+/// to the last chosen one's. Equal ones: the first. Throws std::invalid_argument where
+/// min_confidence is outside [0, 1].
+FaceTrack follow_face(const std::vector<FacesInImage>& frames,
+                      double min_confidence = FaceOptions{}.min_confidence);
+
+/// What is said of a frame that is not trusted: "confidence 0.05 is below 0.1".
+std::string low_confidence_note(double confidence, double min_confidence);
+
+/// Finds the faces of all images, and follows one. Throws as FaceFinder, read_image and
+/// follow_face; IoError where no image shows a face; Cancelled.
+FaceTrack track_face(const std::vector<std::filesystem::path>& images, const FaceOptions& = {},
+                     const Progress& = {});
+
+}  // namespace mimetra

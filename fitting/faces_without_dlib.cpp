@@ -1,0 +1,36 @@
+#include <mimetra/fitting/face_images.h>
+#include <mimetra/fitting/image_codec.h>
+
+/// What a build without dlib says where images are asked for.
+namespace mimetra {
+
+namespace {
+
+constexpr const char* kMissing =
+    "images need dlib, without which mimetra was built; install the packages libdlib-dev and "
+    "libdlib-data and build again, or give landmarks as .pts, CSV or JSON";
+
+}  // namespace
+
+struct FaceFinder::State {};
+
+FaceFinder::FaceFinder(const std::filesystem::path& model) {
+  throw IoError(model.string(), kMissing);
+}
+FaceFinder::~FaceFinder() = default;
+FaceFinder::FaceFinder(FaceFinder&&) noexcept = default;
+FaceFinder& FaceFinder::operator=(FaceFinder&&) noexcept = default;
+
+std::vector<Face> FaceFinder::faces(const Image&) const {
+  return {};
+}
+
+void require_dlib(const std::string& name) {
+  throw IoError(name, kMissing);
+}
+
+Image decoded_image(const std::string& name, const std::string&, const ImageHeader&) {
+  throw IoError(name, kMissing);
+}
+
+}  // namespace mimetra

@@ -1,0 +1,42 @@
+#include <mimetra/fitting/fit_pictures.h>
+
+#include <algorithm>
+
+namespace mimetra {
+
+FitPictures::FitPictures(std::vector<std::filesystem::path> images, MeshSequence sequence,
+                         std::vector<AffineCamera> cameras, MappedLandmarks mapped) {
+  Triangles triangles = sequence.triangles();
+  clip_ =
+      std::make_shared<const Clip>(Clip{std::move(images), std::move(sequence), std::move(cameras),
+                                        std::move(mapped), std::move(triangles)});
+}
+
+Image FitPictures::image(int frame) const {
+  return read_image(clip_->images[static_cast<std::size_t>(frame)]);
+}
+
+FittedView FitPictures::view(int frame) const {
+  const MappedLandmarks& mapped = clip_->mapped;
+  const Eigen::RowVectorXd points = mapped.points.row(frame);
+  return {project(clip_->cameras[static_cast<std::size_t>(frame)], clip_->sequence.frame(frame)),
+          points.reshaped<Eigen::RowMajor>(points.size() / 2, 2), mapped.vertices};
+}
+
+Image FitPictures::overlay(int frame) const {
+  return draw_fit(image(frame), clip_->triangles, view(frame));
+}
+
+Image FitPictures::strip(const std::vector<int>& frames) const {
+  constexpr std::size_t kMost = 5;
+  constexpr int kHeight = 400;
+  const std::size_t count = std::min(kMost, frames.size());
+  std::vector<Image> parts;
+  for (std::size_t i = 0; i < count; ++i) {
+    const int frame = frames[count == 1 ? 0 : i * (frames.size() - 1) / (count - 1)];
+    parts.push_back(draw_close_up(image(frame), clip_->triangles, view(frame), kHeight));
+  }
+  return mimetra::strip(parts, kHeight);
+}
+
+}  // namespace mimetra

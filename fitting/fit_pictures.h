@@ -1,0 +1,44 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <vector>
+
+#include <mimetra/fitting/affine_camera.h>
+#include <mimetra/fitting/image.h>
+#include <mimetra/fitting/landmark_mapping.h>
+#include <mimetra/fitting/overlay.h>
+#include <mimetra/mesh/mesh_sequence.h>
+
+/// What the operation `fit` draws. Internal to fit_operation.h.
+namespace mimetra {
+
+/// The images of a clip with what was fitted to them; copies share their data.
+class FitPictures {
+ public:
+  /// \pre one image and one camera for each frame of `sequence` and `mapped`
+  FitPictures(std::vector<std::filesystem::path> images, MeshSequence sequence,
+              std::vector<AffineCamera> cameras, MappedLandmarks mapped);
+
+  /// A frame's whole image. Throws as read_image.
+  Image overlay(int frame) const;
+  /// The faces of up to five of `frames`, evenly spread, side by side. Throws as read_image and
+  /// draw_close_up.
+  Image strip(const std::vector<int>& frames) const;
+
+ private:
+  struct Clip {
+    std::vector<std::filesystem::path> images;
+    MeshSequence sequence;
+    std::vector<AffineCamera> cameras;
+    MappedLandmarks mapped;
+    Triangles triangles;
+  };
+
+  Image image(int frame) const;
+  FittedView view(int frame) const;
+
+  std::shared_ptr<const Clip> clip_;
+};
+
+}  // namespace mimetra

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include <mimetra/fitting/image.h>
+
+/// Bytes of image files to pixels, where dlib is there. Internal to image.h.
+namespace mimetra {
+
+/// What an image file says about itself.
+struct ImageHeader {
+  bool is_png = false;  ///< JPEG otherwise
+  unsigned width = 0;
+  unsigned height = 0;
+};
+
+/// Reads the header, and follows the file's parts to the end. Throws IoError where the type is
+/// neither PNG nor JPEG, the file is truncated, or it holds more than can be handled. `name` is for
+/// messages.
+ImageHeader checked_image_header(const std::string& name, const std::string& bytes);
+
+/// Throws IoError that says which packages are missing, where mimetra was built without dlib.
+void require_dlib(const std::string& name);
+
+/// `bytes` are whole. Throws IoError.
+Image decoded_image(const std::string& name, const std::string& bytes, const ImageHeader& header);
+
+}  // namespace mimetra

@@ -1,0 +1,130 @@
+#include <cstddef>
+#include <string_view>
+
+#include <mimetra/fitting/image_codec.h>
+#include <mimetra/io/sequence_file.h>
+
+namespace mimetra {
+
+namespace {
+
+constexpr std::string_view kPngStart = "\x89PNG\r\n\x1a\n";
+constexpr std::string_view kJpegStart = "\xff\xd8";
+
+/// 800 MB of pixels: more comes from a damaged header.
+constexpr std::uint64_t kMostPixels = std::uint64_t{1} << 28;
+
+/// Big-endian numbers of a file, checked against its end.
+class ByteReader {
+ public:
+  ByteReader(const std::string& name, std::string_view bytes) : name_(name), bytes_(bytes) {}
+
+  std::size_t left() const { return bytes_.size() - at_; }
+  void skip(std::uint64_t count) {
+    if (count > left()) fail_truncated();
+    at_ += static_cast<std::size_t>(count);
+  }
+  std::uint32_t number(int size) {
+    std::uint32_t value = 0;
+    for (int i = 0; i < size; ++i) value = value << 8 | byte();
+    return value;
+  }
+  std::uint8_t byte() {
+    if (left() == 0) fail_truncated();
+    return static_cast<std::uint8_t>(bytes_[at_++]);
+  }
+  std::string_view text(std::size_t size) {
+    const std::size_t begin = at_;
+    skip(size);
+    return bytes_.substr(begin, size);
+  }
+  [[noreturn]] void fail_truncated() const {
+    throw IoError(name_, "the image is truncated after " + std::to_string(bytes_.size()) +
+                             " bytes; copy or export it again");
+  }
+
+ private:
+  const std::string& name_;
+  std::string_view bytes_;
+  std::size_t at_ = 0;
+};
+
+/// A list of chunks: length, type, content, checksum. The decoder checks the content.
+ImageHeader png_header(const std::string& name, ByteReader bytes) {
+  bytes.skip(kPngStart.size() + 8);  // and the length and type of the first chunk, the header
+  ImageHeader header{.is_png = true, .width = bytes.number(4), .height = bytes.number(4)};
+  const int bits = bytes.byte();
+  if (bits > 8) {
+    throw IoError(name, "has " + std::to_string(bits) +
+                            " bits a channel, expected 8; convert it, as with 'ffmpeg -i IN "
+                            "-pix_fmt rgb24 OUT.png'");
+  }
+  bytes.skip(4 + 4);  // the rest of the header's content, and its checksum
+  while (true) {
+    const std::uint32_t length = bytes.number(4);
+    const bool last = bytes.text(4) == "IEND";
+    bytes.skip(std::uint64_t{length} + 4);
+    if (last) return header;
+  }
+}
+
+bool is_restart(std::uint8_t marker) {
+  return marker >= 0xd0 && marker <= 0xd7;
+}
+
+/// True for a segment that begins with the image's size.
+bool is_frame_header(std::uint8_t marker) {
+  return marker >= 0xc0 && marker <= 0xcf && marker != 0xc4 && marker != 0xc8 && marker != 0xcc;
+}
+
+/// The next marker; what lies before it are compressed pixels, in which 0xff 0x00 is a pixel's
+/// byte.
+std::uint8_t next_marker(ByteReader& bytes) {
+  while (true) {
+    while (bytes.byte() != 0xff) continue;
+    std::uint8_t marker = 0xff;
+    while (marker == 0xff) marker = bytes.byte();
+    if (marker != 0 && !is_restart(marker)) return marker;
+  }
+}
+
+/// The decoder fills what is missing with grey: the end has to be looked for.
+ImageHeader jpeg_header(ByteReader bytes) {
+  constexpr std::uint8_t kEnd = 0xd9;
+  ImageHeader header;
+  bytes.skip(kJpegStart.size());
+  while (true) {
+    const std::uint8_t marker = next_marker(bytes);
+    if (marker == kEnd) return header;
+    const std::uint32_t length = bytes.number(2);
+    if (length < 2) bytes.fail_truncated();
+    ByteReader content = bytes;
+    bytes.skip(length - 2);
+    if (is_frame_header(marker)) {
+      content.skip(1);  // bits a channel
+      header.height = content.number(2);
+      header.width = content.number(2);
+    }
+  }
+}
+
+}  // namespace
+
+ImageHeader checked_image_header(const std::string& name, const std::string& bytes) {
+  const std::string_view view = bytes;
+  const bool is_png = view.starts_with(kPngStart);
+  if (!is_png && !view.starts_with(kJpegStart)) {
+    throw IoError(name, "is no image that can be read; expected PNG or JPEG");
+  }
+  const ByteReader reader(name, view);
+  const ImageHeader header = is_png ? png_header(name, reader) : jpeg_header(reader);
+  const std::uint64_t pixels = std::uint64_t{header.width} * header.height;
+  if (pixels == 0 || pixels > kMostPixels) {
+    throw IoError(name, "says it has " + std::to_string(header.width) + " x " +
+                            std::to_string(header.height) + " pixels, expected 1 to " +
+                            std::to_string(kMostPixels) + " in all");
+  }
+  return header;
+}
+
+}  // namespace mimetra
