@@ -10,7 +10,7 @@ namespace mimetra::samples {
 namespace {
 
 Outcome run(const Invocation&) {
-  AnimatedModel sample{parametric_head(), parametric_performance()};
+  AnimatedModel sample{parametric_head(), parametric_performance(), head_landmarks()};
   const MorphableModel& model = sample.model;
   Outcome outcome;
   outcome.report = Json{{"vertices", model.vertices()},

@@ -12,6 +12,7 @@
 #include <mimetra/vtk/picture.h>
 
 #include "command_bench.h"
+#include "fitting_bench.h"
 #include "geodesic_bench.h"
 #include "growth.h"
 #include "io_bench.h"
@@ -76,6 +77,7 @@ class Run {
     compare_with_numpy(first);
     if (large) measure_long_job(*large);
     const Subject told = large ? first_frames(*large, 300) : first;
+    add(fitting_rows(settings()));
     add(io_rows(told, scratch_.path(), settings()));
     add(transfer_command_rows(told, components(), mimetra_, scratch_.path(), settings()));
   }

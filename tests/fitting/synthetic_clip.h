@@ -72,7 +72,7 @@ inline SyntheticClip synthetic_clip(unsigned seed, const ClipShape& shape = {}) 
   clip.model = random_model(n + 3, shape.identities, shape.expressions, random);
   for (int i = 0; i < n; ++i) clip.vertices.push_back(n + 2 - i);
   clip.alpha = shape.identity_size * normal_matrix(shape.identities, 1, random);
-  std::uniform_real_distribution<double> weight(-0.1, 1.1);
+  std::uniform_real_distribution<double> weight(-0.125, 1.125);
   clip.beta =
       Eigen::MatrixXd::NullaryExpr(shape.frames, shape.expressions, [&] { return weight(random); })
           .cwiseMax(0)

@@ -55,6 +55,8 @@ struct Table {
 struct AnimatedModel {
   MorphableModel model;
   WeightTrack performance;
+  /// The model's vertex of each of iBUG's landmarks that it has.
+  std::vector<std::pair<int, VertexIndex>> landmarks = {};
 };
 
 /// Pictures over time, each drawn when it is written.

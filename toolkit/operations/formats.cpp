@@ -51,9 +51,20 @@ Paths write_components_data(const Data& data, const WriteRequest& request) {
   });
 }
 
+/// As `fit` reads it.
+std::string mapping_text(const std::vector<std::pair<int, VertexIndex>>& landmarks) {
+  std::string text = "# landmark of iBUG = vertex, 0-based\n[landmark_mappings]\n";
+  for (const auto& [landmark, vertex] : landmarks) {
+    text += std::to_string(landmark) + " = " + std::to_string(vertex) + '\n';
+  }
+  return text;
+}
+
 Paths write_model_data(const Data& data, const WriteRequest& request) {
-  const auto& [model, performance] = std::get<AnimatedModel>(data);
-  write_model(request.target, model, performance, request.overwrite, request.extra);
+  const auto& [model, performance, landmarks] = std::get<AnimatedModel>(data);
+  auto extra = request.extra;
+  if (!landmarks.empty()) extra.emplace_back("landmarks68.txt", mapping_text(landmarks));
+  write_model(request.target, model, performance, request.overwrite, extra);
   return {request.target};
 }
 

@@ -1,3 +1,4 @@
+// usage: fit [IMAGE]
 // The operation `fit` of a module that was built against an installed mimetra: landmarks of a known
 // face in a table of the installed operations.
 
@@ -47,10 +48,18 @@ LandmarkTrack landmarks_of(const MorphableModel& model) {
 
 }  // namespace
 
-int main(int, char** argv) {
+int main(int argc, char** argv) {
   OperationTable table;
   add_toolkit(table);
   add_fitting(table);
+  if (argc > 1) {
+    try {
+      table.landmark_reader().read(argv[1], {}, Parameters(table.landmark_reader().parameters));
+    } catch (const IoError& error) {
+      std::cerr << error.what() << '\n';
+      return 3;
+    }
+  }
   const Operation& fit = *table.find("fit");
 
   const MorphableModel model = spiral();

@@ -1,0 +1,82 @@
+#include <fstream>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <mimetra/fitting/landmark_input.h>
+
+#include "temporary_folder.h"
+
+namespace mimetra {
+namespace {
+
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+class LandmarkInput : public testing::Test {
+ protected:
+  void write(const std::string& name, const std::string& content) {
+    std::ofstream(folder_ / name) << content;
+  }
+  void write_points(const std::string& name, double x) {
+    write(name, "version: 1\nn_points: 1\n{\n" + std::to_string(x) + " 2\n}\n");
+  }
+  std::vector<std::string> images(const LandmarksRead& read) {
+    std::vector<std::string> names;
+    for (const auto& image : read.images) names.push_back(image.filename().string());
+    return names;
+  }
+  LandmarksRead read(const std::string& name, const SequenceSource& source = {},
+                     const LandmarkInputOptions& options = {}) {
+    return read_landmark_input((folder_ / name).string(), source, options);
+  }
+  std::string path(const std::string& name) { return (folder_ / name).string(); }
+  test::TemporaryFolder folder_;
+};
+
+TEST_F(LandmarkInput, OfLittleConfidenceIsTakenAsNotSeen) {
+  write("t.csv", "confidence,x0,y0\n0.9,1,2\n0.05,3,4\n0.1,5,6\n");
+  const LandmarksRead read = this->read("t.csv");
+  EXPECT_EQ(read.track.points(0, 0), 1);
+  EXPECT_TRUE(read.track.points.row(1).array().isNaN().all());
+  EXPECT_EQ(read.track.points(2, 0), 5);
+  EXPECT_THAT(read.frame_notes, ElementsAre("", "confidence 0.05 is below 0.1", ""));
+  EXPECT_THAT(read.notes, ElementsAre(AllOf(HasSubstr("t.csv: 1 of 3 frames"),
+                                            HasSubstr("taken as not seen"))));
+  EXPECT_THAT(this->read("t.csv", {}, {.faces = {.min_confidence = 0}}).notes, IsEmpty());
+}
+
+TEST_F(LandmarkInput, HasTheImagesBesidePoints) {
+  for (const char* name : {"10", "9"}) {
+    write_points(std::string(name) + ".pts", 1);
+    write(std::string(name) + ".jpg", "");
+  }
+  EXPECT_THAT(images(read("*.pts")), ElementsAre("9.jpg", "10.jpg"));
+  EXPECT_THAT(images(read("", {.frames = "1:"})), ElementsAre("10.jpg"));
+  EXPECT_THAT(images(read("9.pts")), ElementsAre("9.jpg"));
+  std::filesystem::remove(folder_ / "9.jpg");
+  EXPECT_THAT(images(read("*.pts")), IsEmpty());
+}
+
+TEST_F(LandmarkInput, TakesTheImagesThatAreNamedForTheWholeClip) {
+  write("t.csv", "x0,y0\n1,2\n3,4\n5,6\n");
+  for (const char* name : {"1.png", "2.png", "3.png"}) write(name, "");
+  LandmarkInputOptions options{.images = path("*.png")};
+  EXPECT_THAT(images(read("t.csv", {}, options)), ElementsAre("1.png", "2.png", "3.png"));
+  EXPECT_THAT(images(read("t.csv", {.frames = "::2"}, options)), ElementsAre("1.png", "3.png"));
+  options.images = path("1.png");
+  EXPECT_THAT(test::message_of<MismatchError>([&] { read("t.csv", {}, options); }),
+              HasSubstr("1.png: 1 images, expected one for each of the 3 frames"));
+}
+
+TEST_F(LandmarkInput, KeepsTheTimeOfTheWholeClip) {
+  write("t.csv", "x0,y0\n1,2\n3,4\n5,6\n");
+  const LandmarksRead read = this->read("t.csv", {.frames = "1::1", .fps = 10});
+  EXPECT_THAT(std::vector(read.track.times.begin(), read.track.times.end()),
+              ElementsAre(testing::DoubleEq(0.1), testing::DoubleEq(0.2)));
+}
+
+}  // namespace
+}  // namespace mimetra
