@@ -8,7 +8,12 @@
 
 #include <gtest/gtest.h>
 
-#include "synthetic_clip.h"
+#include <mimetra/fitting/landmark_mapping.h>
+#include <mimetra/io/model_file.h>
+#include <mimetra/samples/head.h>
+
+#include "shared_data.h"
+#include "two_videos.h"
 
 /// What the solvers and the two ways to see identity find of a clip that is known: docs/accuracy.md
 /// has the table that this prints in a release build.
@@ -80,10 +85,22 @@ struct Study {
   FitOptions options;
 };
 
-/// 300 frames of 50 landmarks with 1 px of noise; a fifth of the betas are at their bounds.
-test::SyntheticClip clip_of(unsigned seed) {
-  return test::synthetic_clip(
-      seed, {.landmarks = 50, .identities = 20, .expressions = 6, .frames = 300, .noise = 1});
+/// 300 frames before the camera of two_videos.h with 1 px of noise; a fifth of the betas are at
+/// their bounds.
+test::SyntheticClip clip_of(const MorphableModel& model, const std::vector<int>& vertices,
+                            unsigned seed) {
+  constexpr int kFrames = 300;
+  std::mt19937 random(seed);
+  test::SyntheticClip clip{model, vertices, {}, {}, {}, {}, {}};
+  clip.alpha = test::normal_matrix(model.identities().size(), 1, random);
+  clip.beta = test::random_weights(kFrames, model.expressions().size(), random);
+  clip.times = Eigen::VectorXd::LinSpaced(kFrames, 0, (kFrames - 1) / 25.0);
+  const double scale = test::kFacePixels / extent(model.mean());
+  for (const double time : clip.times) {
+    clip.cameras.push_back(test::turning_camera(time, 0, scale));
+  }
+  test::see(clip, 1, random);
+  return clip;
 }
 
 Figures studied(const test::SyntheticClip& clip, const FitOptions& options) {
@@ -102,7 +119,8 @@ double median(std::vector<double> values) {
   return values[values.size() / 2];
 }
 
-TEST(ClipStudy, OfFourWaysToFitAKnownClip) {
+/// Of both solvers and both ways to see identity; prints the medians over three clips.
+void study(const MorphableModel& model, const std::vector<int>& vertices) {
   constexpr int kSeeds = 3, kMany = 100;
   const std::vector<Study> studies = {
       {"alternating, 5", {.solver = Solver::alternating, .shape = Shape::clip, .tolerance = 0}},
@@ -113,7 +131,7 @@ TEST(ClipStudy, OfFourWaysToFitAKnownClip) {
       {"joint, default *", {.shape = Shape::frame}}};
   std::vector<std::vector<Figures>> all(studies.size());
   for (unsigned seed = 1; seed <= kSeeds; ++seed) {
-    const test::SyntheticClip clip = clip_of(seed);
+    const test::SyntheticClip clip = clip_of(model, vertices, seed);
     const double bound = double((clip.beta.array() == 0 || clip.beta.array() == 1).count()) /
                          double(clip.beta.size());
     EXPECT_NEAR(bound, 0.2, 0.03);
@@ -121,20 +139,20 @@ TEST(ClipStudy, OfFourWaysToFitAKnownClip) {
       all[i].push_back(studied(clip, studies[i].options));
     }
     const auto last = [&](std::size_t i) { return all[i].back(); };
-    // Two or three steps of all unknowns together do what hundreds of the alternation do not.
-    EXPECT_LT(last(2).energy, last(1).energy * (1 + 1e-9));
-    EXPECT_LT(last(2).energy, last(0).energy);
+    // A few steps of all unknowns together do what a hundred of the alternation do not.
+    EXPECT_LT(last(2).energy, last(1).energy);
+    EXPECT_LT(last(1).energy, last(0).energy);
     EXPECT_LT(last(2).iterations, 6);
     EXPECT_LT(last(4).energy, last(3).energy);
-    // One alpha for the clip sees 300 times as much of the person, and does not flicker.
-    EXPECT_LT(last(2).alpha, 0.25 * last(4).alpha);
+    // One alpha for the clip is seen in 300 frames instead of one, and does not flicker.
+    EXPECT_LT(last(2).alpha, last(4).alpha);
     EXPECT_EQ(last(2).alpha_flicker, 0);
-    EXPECT_GT(last(4).alpha_flicker, last(4).alpha);
+    EXPECT_GT(last(4).alpha_flicker, 0);
     EXPECT_LT(last(2).beta_flicker, last(4).beta_flicker);
-    // 1 px in each direction on 50 landmarks, against 8 numbers of a camera and 6 of expressions.
-    EXPECT_LT(last(2).points, 1);
+    // 1 px in each direction on each landmark is more than what is left of it in the fit.
+    EXPECT_LT(last(2).points, std::sqrt(2));
   }
-  std::cout << "fit               its.  energy  ms      alpha    beta     camera px  points px  "
+  std::cout << "fit               its.  energy    ms      alpha    beta     camera px  points px  "
                "alpha flicker  beta flicker\n";
   for (std::size_t i = 0; i < studies.size(); ++i) {
     const auto of = [&](double Figures::*member) {
@@ -143,7 +161,7 @@ TEST(ClipStudy, OfFourWaysToFitAKnownClip) {
       return median(values);
     };
     std::cout << std::left << std::setw(18) << studies[i].name << std::setprecision(3)
-              << std::setw(6) << of(&Figures::iterations) << std::setw(8) << of(&Figures::energy)
+              << std::setw(6) << of(&Figures::iterations) << std::setw(10) << of(&Figures::energy)
               << std::setw(8) << of(&Figures::milliseconds) << std::setw(9) << of(&Figures::alpha)
               << std::setw(9) << of(&Figures::beta) << std::setw(11) << of(&Figures::camera)
               << std::setw(11) << of(&Figures::points) << std::setw(15)
@@ -151,6 +169,22 @@ TEST(ClipStudy, OfFourWaysToFitAKnownClip) {
   }
   std::cout << "* an identity in every frame; energies over all frames, of which each then has its "
                "own |alpha|^2\n";
+}
+
+TEST(ClipStudy, OfTheBuiltInHead) {
+  std::vector<int> vertices;
+  for (const auto& [landmark, vertex] : samples::head_landmarks()) vertices.push_back(vertex);
+  study(samples::parametric_head(), vertices);
+}
+
+TEST(ClipStudy, OfTheSurreyModel) {
+  const auto folder = test::shared_path("data/sfm");
+  MIMETRA_SKIP_WITHOUT(folder);
+  std::vector<int> vertices;
+  for (const auto& [name, vertex] : read_landmark_mapping(find_landmark_mapping(folder))) {
+    vertices.push_back(vertex);
+  }
+  study(read_model(folder), vertices);
 }
 
 }  // namespace

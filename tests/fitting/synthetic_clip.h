@@ -65,6 +65,26 @@ inline MorphableModel random_model(int vertices, int identities, int expressions
           std::move(shapes), std::move(motions)};
 }
 
+/// F x D in [0, 1], a fifth of them at the bounds.
+inline Eigen::MatrixXd random_weights(int frames, Eigen::Index expressions, std::mt19937& random) {
+  std::uniform_real_distribution<double> weight(-0.125, 1.125);
+  return Eigen::MatrixXd::NullaryExpr(frames, expressions, [&] { return weight(random); })
+      .cwiseMax(0)
+      .cwiseMin(1);
+}
+
+/// Sets the landmarks that the cameras see, with noise.
+inline void see(SyntheticClip& clip, double noise, std::mt19937& random) {
+  const auto n = static_cast<Eigen::Index>(clip.vertices.size());
+  clip.points.resize(clip.beta.rows(), 2 * n);
+  const BlendshapeModel person = clip.model.person(clip.alpha);
+  for (Eigen::Index f = 0; f < clip.beta.rows(); ++f) {
+    const ModelPoints points = person.pose(clip.beta.row(f))(clip.vertices, Eigen::all);
+    clip.points.row(f) = as_row(project(clip.cameras[static_cast<std::size_t>(f)], points) +
+                                noise * normal_matrix(n, 2, random));
+  }
+}
+
 inline SyntheticClip synthetic_clip(unsigned seed, const ClipShape& shape = {}) {
   std::mt19937 random(seed);
   SyntheticClip clip;
@@ -72,20 +92,10 @@ inline SyntheticClip synthetic_clip(unsigned seed, const ClipShape& shape = {}) 
   clip.model = random_model(n + 3, shape.identities, shape.expressions, random);
   for (int i = 0; i < n; ++i) clip.vertices.push_back(n + 2 - i);
   clip.alpha = shape.identity_size * normal_matrix(shape.identities, 1, random);
-  std::uniform_real_distribution<double> weight(-0.125, 1.125);
-  clip.beta =
-      Eigen::MatrixXd::NullaryExpr(shape.frames, shape.expressions, [&] { return weight(random); })
-          .cwiseMax(0)
-          .cwiseMin(1);
-  clip.points.resize(shape.frames, 2 * Eigen::Index(n));
+  clip.beta = random_weights(shape.frames, shape.expressions, random);
   clip.times = Eigen::VectorXd::LinSpaced(shape.frames, 0, (shape.frames - 1) / 25.0);
-  const BlendshapeModel person = clip.model.person(clip.alpha);
-  for (int f = 0; f < shape.frames; ++f) {
-    clip.cameras.push_back(random_camera(random));
-    const ModelPoints seen = person.pose(clip.beta.row(f))(clip.vertices, Eigen::all);
-    clip.points.row(f) =
-        as_row(project(clip.cameras.back(), seen) + shape.noise * normal_matrix(n, 2, random));
-  }
+  for (int f = 0; f < shape.frames; ++f) clip.cameras.push_back(random_camera(random));
+  see(clip, shape.noise, random);
   return clip;
 }
 
