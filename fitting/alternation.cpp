@@ -5,6 +5,7 @@
 
 #include <mimetra/fitting/fitted_frame.h>
 #include <mimetra/model/box_least_squares.h>
+#include <mimetra/model/second_differences.h>
 #include <mimetra/model/smooth_weights.h>
 
 namespace mimetra {
@@ -48,7 +49,7 @@ class Alternation {
         smooth_(times.size() > 0),
         one_identity_(options.shape == FitOptions::Shape::clip) {}
 
-  FittedClip run() {
+  FittedClip run(const Progress& progress) {
     FittedClip result;
     // The smoothness term has no weight yet, so that there is no energy to compare the first with.
     double before = smooth_ ? std::numeric_limits<double>::infinity()
@@ -62,6 +63,7 @@ class Alternation {
       const double now = energy(frames_, one_identity_, *options_.ridge) + bending();
       result.energies.push_back(now);
       if (has_converged(before, now, options_.tolerance)) break;
+      report_progress(progress, double(result.iterations) / options_.iterations);
       before = now;
     }
     result.frames = std::move(frames_);
@@ -117,7 +119,7 @@ class Alternation {
       // Kept from here on, or the energy would change its meaning between iterations.
       penalty_ = smoothness_penalty(options_.smoothness, times_, mean / double(grams.size()));
     }
-    const Eigen::MatrixXd smooth = smooth_weights(grams, h, *penalty_, expressions());
+    const Eigen::MatrixXd smooth = smooth_weights(grams, h, times_, *penalty_, expressions());
     for (std::size_t f = 0; f < frames_.size(); ++f) {
       frames_[f].set_beta(smooth.row(static_cast<Eigen::Index>(f)));
     }
@@ -132,10 +134,7 @@ class Alternation {
   /// The smoothness term of the energy.
   double bending() const {
     if (!penalty_ || frames_.size() < 3) return 0;
-    const Eigen::MatrixXd beta = expressions();
-    const Eigen::Index n = beta.rows() - 2;
-    return *penalty_ *
-           (beta.topRows(n) - 2 * beta.middleRows(1, n) + beta.bottomRows(n)).squaredNorm();
+    return *penalty_ * differences_of(second_differences(times_), expressions()).squaredNorm();
   }
 
   std::vector<FittedFrame> frames_;
@@ -148,13 +147,14 @@ class Alternation {
 
 }  // namespace
 
-FittedClip fit_alternating(std::vector<FittedFrame> frames, const FitOptions& options) {
-  return Alternation(std::move(frames), options).run();
+FittedClip fit_alternating(std::vector<FittedFrame> frames, const FitOptions& options,
+                           const Progress& progress) {
+  return Alternation(std::move(frames), options).run(progress);
 }
 
 FittedClip fit_smoothly(std::vector<FittedFrame> frames, const FitOptions& options,
-                        const Eigen::VectorXd& times) {
-  return Alternation(std::move(frames), options, times).run();
+                        const Eigen::VectorXd& times, const Progress& progress) {
+  return Alternation(std::move(frames), options, times).run(progress);
 }
 
 }  // namespace mimetra

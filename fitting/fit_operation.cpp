@@ -7,7 +7,6 @@
 #include <nlohmann/json.hpp>
 
 #include <mimetra/fitting/fit_pictures.h>
-#include <mimetra/fitting/image_codec.h>
 #include <mimetra/fitting/landmark_fitter.h>
 #include <mimetra/fitting/landmark_input.h>
 #include <mimetra/fitting/landmark_mapping.h>
@@ -154,18 +153,28 @@ FitSummary summary_of(const FittedCoefficients& fit) {
   return summary;
 }
 
-std::vector<FrameFit> fitted(const Invocation& invocation, const MorphableModel& model,
-                             const MappedLandmarks& mapped, const FitOptions& options) {
-  const std::string& name = invocation.inputs.at("landmarks").front().name;
+/// Calls what may find that the landmarks contradict the model, and names them then.
+template <typename Call>
+auto naming_landmarks(const Invocation& invocation, Call call) {
   try {
-    return LandmarkFitter(model, mapped.vertices)
-        .fit(mapped.points, options, invocation.get<LandmarksRead>("landmarks").track.times);
+    return call();
   } catch (const MismatchError& error) {
-    throw MismatchError(name + ": " + error.what());
+    throw MismatchError(invocation.inputs.at("landmarks").front().name + ": " + error.what());
   }
 }
 
-/// Before anything is computed: pictures need what they are drawn on.
+std::vector<FrameFit> fitted(const Invocation& invocation, const MorphableModel& model,
+                             const MappedLandmarks& mapped, const FitOptions& options) {
+  const Progress progress = [&](double share) {
+    return !invocation.progress || invocation.progress(0.5 * share);
+  };
+  const Eigen::VectorXd& times = invocation.get<LandmarksRead>("landmarks").track.times;
+  return naming_landmarks(invocation, [&] {
+    return LandmarkFitter(model, mapped.vertices).fit(mapped.points, options, times, progress);
+  });
+}
+
+/// Before anything is computed: pictures need what they are drawn on, and that it is sound.
 void check_images(const Invocation& invocation, const LandmarksRead& landmarks) {
   for (const char* output : {"overlay", "strip"}) {
     if (!invocation.wants(output)) continue;
@@ -174,7 +183,7 @@ void check_images(const Invocation& invocation, const LandmarksRead& landmarks) 
                        invocation.inputs.at("landmarks").front().name +
                        " has no images; name them by --images");
     }
-    require_dlib(landmarks.images.front().string());
+    for (const auto& image : landmarks.images) check_image(image);
   }
 }
 
@@ -192,7 +201,9 @@ Outcome run(const Invocation& invocation) {
   const ModelRead& read = invocation.get<ModelRead>("model");
   check_images(invocation, landmarks);
   const FitOptions options = options_of(invocation.parameters);
-  const MappedLandmarks mapped = map_landmarks(track, mapping_of(invocation, read));
+  const LandmarkMapping mapping = mapping_of(invocation, read);
+  const MappedLandmarks mapped =
+      naming_landmarks(invocation, [&] { return map_landmarks(track, mapping); });
   report_progress(invocation.progress, 0);
   FittedCoefficients fit =
       coefficients_of(read.model, track.times, fitted(invocation, read.model, mapped, options));
@@ -202,8 +213,9 @@ Outcome run(const Invocation& invocation) {
   const FitSummary summary = summary_of(fit);
   if (!summary.unseen.empty()) {
     invocation.warn(invocation.inputs.at("landmarks").front().name +
-                    ": frames without landmarks, " +
-                    "which keep the face of the frame before: " + listed(summary.unseen));
+                    ": frames of the result without landmarks, whose face lies between those of "
+                    "their neighbours: " +
+                    listed(summary.unseen));
   }
   const MeshSequence sequence = sequence_of(read.model, fit, options.shape);
   Outcome outcome;
@@ -258,14 +270,17 @@ LandmarkReader landmark_reader() {
   return reader;
 }
 
-/// The sequence, and the person whose expressions are copied.
+/// The sequence, and the person whose expressions are copied; with one identity for all frames also
+/// the joint solver's system of each.
 double memory(const Invocation& invocation) {
   const double frames = invocation.get<LandmarksRead>("landmarks").track.frames();
   const MorphableModel& model = invocation.get<ModelRead>("model").model;
   const double coordinates = 3.0 * model.vertices();
+  const double unknowns = 8.0 + model.identities().size() + model.expressions().size();
   const bool each_frame = invocation.parameters.text("shape") == "frame";
-  return sizeof(double) * coordinates *
-         ((each_frame ? 2 : 1) * frames + 2 * model.expressions().size());
+  return sizeof(double) *
+         (coordinates * ((each_frame ? 2 : 1) * frames + 2 * model.expressions().size()) +
+          (each_frame ? 0 : frames * unknowns * unknowns));
 }
 
 }  // namespace

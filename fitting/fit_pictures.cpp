@@ -1,6 +1,9 @@
 #include <mimetra/fitting/fit_pictures.h>
 
 #include <algorithm>
+#include <stdexcept>
+
+#include <mimetra/mesh/errors.h>
 
 namespace mimetra {
 
@@ -34,7 +37,12 @@ Image FitPictures::strip(const std::vector<int>& frames) const {
   std::vector<Image> parts;
   for (std::size_t i = 0; i < count; ++i) {
     const int frame = frames[count == 1 ? 0 : i * (frames.size() - 1) / (count - 1)];
-    parts.push_back(draw_close_up(image(frame), clip_->triangles, view(frame), kHeight));
+    try {
+      parts.push_back(draw_close_up(image(frame), clip_->triangles, view(frame), kHeight));
+    } catch (const std::invalid_argument&) {
+      throw MismatchError(clip_->images[static_cast<std::size_t>(frame)].string() +
+                          ": the fitted face is outside the image; do the landmarks belong to it?");
+    }
   }
   return mimetra::strip(parts, kHeight);
 }

@@ -22,8 +22,8 @@ class FitPictures {
 
   /// A frame's whole image. Throws as read_image.
   Image overlay(int frame) const;
-  /// The faces of up to five of `frames`, evenly spread, side by side. Throws as read_image and
-  /// draw_close_up.
+  /// The faces of up to five of `frames`, evenly spread, side by side. Throws as read_image;
+  /// MismatchError for a face outside its image.
   Image strip(const std::vector<int>& frames) const;
 
  private:

@@ -57,14 +57,16 @@ double energy(const std::vector<FittedFrame>& frames, bool one_identity, double 
 bool has_converged(double before, double after, double tolerance);
 
 /// The paper's alternation, from where the frames are. `options.ridge` is set.
-FittedClip fit_alternating(std::vector<FittedFrame> frames, const FitOptions& options);
+FittedClip fit_alternating(std::vector<FittedFrame> frames, const FitOptions& options,
+                           const Progress& progress);
 
 /// The alternation with options.smoothness; `times` belong to the frames.
 FittedClip fit_smoothly(std::vector<FittedFrame> frames, const FitOptions& options,
-                        const Eigen::VectorXd& times);
+                        const Eigen::VectorXd& times, const Progress& progress);
 
 /// Gauss-Newton on cameras, the one alpha of the frames, and beta within its box. `options.ridge`
 /// is set.
-FittedClip fit_jointly(std::vector<FittedFrame> frames, const FitOptions& options);
+FittedClip fit_jointly(std::vector<FittedFrame> frames, const FitOptions& options,
+                       const Progress& progress);
 
 }  // namespace mimetra

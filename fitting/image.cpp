@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cmath>
 #include <functional>
 #include <stdexcept>
@@ -64,10 +63,7 @@ void paste(const Image& source, int left, Image& target) {
 
 bool is_image(const std::filesystem::path& path) {
   constexpr std::array kExtensions = {".png", ".jpg", ".jpeg"};
-  std::string extension = path.extension().string();
-  std::ranges::transform(extension, extension.begin(),
-                         [](unsigned char c) { return std::tolower(c); });
-  return std::ranges::find(kExtensions, extension) != kExtensions.end();
+  return std::ranges::find(kExtensions, lower_extension(path)) != kExtensions.end();
 }
 
 std::vector<std::filesystem::path> image_files(const std::string& text) {
@@ -81,6 +77,11 @@ std::vector<std::filesystem::path> image_files(const std::string& text) {
     throw IoError(text, std::string(is_folder ? "holds" : "matches") + " no PNG or JPEG file");
   }
   return files;
+}
+
+void check_image(const std::filesystem::path& path) {
+  require_dlib(path.string());
+  checked_image_header(path.string(), read_file(path));
 }
 
 Image read_image(const std::filesystem::path& path) {

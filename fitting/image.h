@@ -19,6 +19,9 @@ std::vector<std::filesystem::path> image_files(const std::string& text);
 /// that is truncated, damaged or of another type, and where mimetra was built without dlib.
 Image read_image(const std::filesystem::path& path);
 
+/// Throws as read_image for a file that is no such image or was cut; its pixels are not decoded.
+void check_image(const std::filesystem::path& path);
+
 /// The part of columns left .. left + width - 1 and rows top .. top + height - 1 that is inside the
 /// image. Throws std::invalid_argument where nothing is.
 Image cropped(const Image& image, int left, int top, int width, int height);

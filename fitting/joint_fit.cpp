@@ -178,7 +178,8 @@ std::vector<FittedFrame> moved(std::vector<FittedFrame> frames, const BoxedStep:
 
 }  // namespace
 
-FittedClip fit_jointly(std::vector<FittedFrame> frames, const FitOptions& options) {
+FittedClip fit_jointly(std::vector<FittedFrame> frames, const FitOptions& options,
+                       const Progress& progress) {
   constexpr int kHalvings = 10;
   FittedClip result{std::move(frames), 0, {}};
   double before = energy(result.frames, true, *options.ridge);
@@ -196,6 +197,7 @@ FittedClip fit_jointly(std::vector<FittedFrame> frames, const FitOptions& option
     ++result.iterations;
     result.energies.push_back(now);
     if (has_converged(before, now, options.tolerance) || now == before) break;
+    report_progress(progress, double(result.iterations) / options.iterations);
     before = now;
   }
   return result;

@@ -67,6 +67,8 @@ class CsvReader {
         add_column(y, *row, column);
       } else if (name == "time" || name == "timestamp") {
         time_ = column;
+      } else if (name == "frame") {
+        frame_ = column;
       } else if (name == "confidence") {
         confidence_ = column;
       } else if (name == "success") {
@@ -131,8 +133,23 @@ class CsvReader {
       }
       times_.push_back(time);
     }
-    if (confidence_) confidences_.push_back(number(row, *confidence_));
+    if (frame_ && !time_) check_frame(number(row, *frame_));
+    if (confidence_) {
+      const double confidence = number(row, *confidence_);
+      if (!(confidence >= 0 && confidence <= 1)) fail("the confidence is outside [0, 1]");
+      confidences_.push_back(confidence);
+    }
     ++frames_;
+  }
+
+  /// Without times, rows are taken for consecutive frames.
+  void check_frame(double frame) {
+    if (last_frame_ && frame != *last_frame_ + 1) {
+      fail("frame " + std::to_string(std::lround(frame)) + " follows " +
+           std::to_string(std::lround(*last_frame_)) +
+           "; expected consecutive frames, or a column 'time'");
+    }
+    last_frame_ = frame;
   }
 
   LandmarkTrack track() const {
@@ -153,7 +170,8 @@ class CsvReader {
   Fields header_;
   /// Columns of x0, y0, x1, y1, ...
   std::vector<std::size_t> columns_;
-  std::optional<std::size_t> time_, confidence_, success_;
+  std::optional<std::size_t> frame_, time_, confidence_, success_;
+  std::optional<double> last_frame_;
   std::vector<double> points_, times_, confidences_;
   Eigen::Index frames_ = 0;
 };

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <map>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -69,55 +70,83 @@ std::vector<FrameFit> results_of(const FittedClip& clip) {
   return fits;
 }
 
-FittedClip solved(std::vector<FittedFrame> frames, const FitOptions& options) {
-  return options.solver == FitOptions::Solver::joint ? fit_jointly(std::move(frames), options)
-                                                     : fit_alternating(std::move(frames), options);
+FittedClip solved(std::vector<FittedFrame> frames, const FitOptions& options,
+                  const Progress& progress) {
+  return options.solver == FitOptions::Solver::joint
+             ? fit_jointly(std::move(frames), options, progress)
+             : fit_alternating(std::move(frames), options, progress);
 }
 
 /// One clip of all frames, or one of each frame, which starts from the one before.
-std::vector<FittedClip> solved_by_shape(std::vector<FittedFrame> frames,
-                                        const FitOptions& options) {
+std::vector<FittedClip> solved_by_shape(std::vector<FittedFrame> frames, const FitOptions& options,
+                                        const Progress& progress) {
   std::vector<FittedClip> clips;
   if (options.shape == FitOptions::Shape::clip) {
-    clips.push_back(solved(std::move(frames), options));
+    clips.push_back(solved(std::move(frames), options, progress));
     return clips;
   }
   for (FittedFrame& frame : frames) {
+    report_progress(progress, double(clips.size()) / double(frames.size()));
     if (!clips.empty()) {
       const FittedFrame& before = clips.back().frames.front();
       frame.set_alpha(before.alpha());
       frame.set_beta(before.beta());
       frame.estimate_camera();
     }
-    clips.push_back(solved({std::move(frame)}, options));
+    clips.push_back(solved({std::move(frame)}, options, {}));
   }
   return clips;
 }
 
-/// Fits of frames that are seen. `times` (F) for smoothness only.
+/// Fits of frames that are seen, at their `times`.
 std::vector<FrameFit> fits_of(std::vector<FittedFrame> frames, const FitOptions& options,
-                              const Eigen::VectorXd& times) {
+                              const Eigen::VectorXd& times, const Progress& progress) {
   std::vector<FrameFit> fits;
   std::vector<FittedFrame> rough;
-  for (FittedClip& clip : solved_by_shape(std::move(frames), options)) {
+  for (FittedClip& clip : solved_by_shape(std::move(frames), options, progress)) {
     if (options.smoothness > 0) {
       std::ranges::move(clip.frames, std::back_inserter(rough));
     } else {
       std::ranges::move(results_of(clip), std::back_inserter(fits));
     }
   }
-  return options.smoothness > 0 ? results_of(fit_smoothly(std::move(rough), options, times)) : fits;
+  return options.smoothness > 0
+             ? results_of(fit_smoothly(std::move(rough), options, times, progress))
+             : fits;
 }
 
-/// A frame without landmarks, after or before one with some.
-FrameFit unseen_like(const FrameFit& neighbour) {
+/// A frame without landmarks at a share of the way between two with some. What is equal in both
+/// stays so.
+FrameFit unseen_between(const FrameFit& before, const FrameFit& after, double share) {
   FrameFit fit;
-  fit.camera = neighbour.camera;
-  fit.alpha = neighbour.alpha;
-  fit.beta = neighbour.beta;
+  fit.camera = before.camera + share * (after.camera - before.camera);
+  fit.alpha = before.alpha + share * (after.alpha - before.alpha);
+  fit.beta = before.beta + share * (after.beta - before.beta);
   fit.rms = std::numeric_limits<double>::quiet_NaN();
   return fit;
 }
+
+/// The fits of all frames, given those of the `seen` ones.
+std::vector<FrameFit> with_unseen(const std::vector<FrameFit>& fits,
+                                  const std::vector<Eigen::Index>& seen,
+                                  const Eigen::VectorXd& times) {
+  std::vector<FrameFit> all;
+  std::size_t next = 0;
+  for (Eigen::Index f = 0; f < times.size(); ++f) {
+    if (next < seen.size() && seen[next] == f) {
+      all.push_back(fits[next++]);
+      continue;
+    }
+    const std::size_t before = next == 0 ? 0 : next - 1, after = std::min(next, seen.size() - 1);
+    const double from = times[seen[before]], length = times[seen[after]] - from;
+    const double share = length > 0 ? (times[f] - from) / length : 0;
+    all.push_back(unseen_between(fits[before], fits[after], share));
+  }
+  return all;
+}
+
+/// The rows of those landmarks that are seen: mostly the same ones in many frames.
+using RowsOfSeen = std::map<std::vector<Eigen::Index>, std::shared_ptr<const LandmarkRows>>;
 
 }  // namespace
 
@@ -125,7 +154,7 @@ struct LandmarkFitter::State {
   std::shared_ptr<const LandmarkRows> rows;
 
   FittedFrame frame(const Frames& points, Eigen::Index index, const std::vector<Eigen::Index>& seen,
-                    const FitOptions& options) const;
+                    const FitOptions& options, RowsOfSeen& rows_of_seen) const;
   FitOptions checked(const Frames& points, const FitOptions& options,
                      const Eigen::VectorXd& times) const;
 };
@@ -140,8 +169,8 @@ FitOptions LandmarkFitter::State::checked(const Frames& points, const FitOptions
                                 " columns, expected x and y of " + std::to_string(landmarks) +
                                 " landmarks");
   }
-  if (options.smoothness > 0 && times.size() != points.rows()) {
-    throw std::invalid_argument("smoothness: " + std::to_string(times.size()) + " times for " +
+  if (times.size() != points.rows() && (times.size() > 0 || options.smoothness > 0)) {
+    throw std::invalid_argument(std::to_string(times.size()) + " times for " +
                                 std::to_string(points.rows()) + " frames");
   }
   FitOptions result = options;
@@ -152,7 +181,8 @@ FitOptions LandmarkFitter::State::checked(const Frames& points, const FitOptions
 
 FittedFrame LandmarkFitter::State::frame(const Frames& points, Eigen::Index index,
                                          const std::vector<Eigen::Index>& seen,
-                                         const FitOptions& options) const {
+                                         const FitOptions& options,
+                                         RowsOfSeen& rows_of_seen) const {
   ImagePoints image(seen.size(), 2);
   for (std::size_t i = 0; i < seen.size(); ++i) {
     image.row(static_cast<Eigen::Index>(i)) = points.row(index).segment<2>(2 * seen[i]);
@@ -160,9 +190,10 @@ FittedFrame LandmarkFitter::State::frame(const Frames& points, Eigen::Index inde
   const bool all = image.rows() == rows->mean.rows();
   const double sigma = options.sigma ? *options.sigma : kRelativeSigma * rms_radius(image);
   if (!(sigma > 0)) throw MismatchError(frame_name(index) + "all landmarks are at one place");
+  std::shared_ptr<const LandmarkRows>& known = rows_of_seen[seen];
+  if (!known) known = all ? rows : std::make_shared<const LandmarkRows>(*rows, seen);
   try {
-    return {all ? rows : std::make_shared<const LandmarkRows>(*rows, seen), std::move(image),
-            sigma};
+    return {known, std::move(image), sigma};
   } catch (const MismatchError& error) {
     throw MismatchError(frame_name(index) + error.what());
   }
@@ -183,28 +214,25 @@ LandmarkFitter::LandmarkFitter(LandmarkFitter&&) noexcept = default;
 LandmarkFitter& LandmarkFitter::operator=(LandmarkFitter&&) noexcept = default;
 
 std::vector<FrameFit> LandmarkFitter::fit(const Frames& points, const FitOptions& given,
-                                          const Eigen::VectorXd& times) const {
-  const FitOptions options = state_->checked(points, given, times);
+                                          const Eigen::VectorXd& given_times,
+                                          const Progress& progress) const {
+  const FitOptions options = state_->checked(points, given, given_times);
+  const Eigen::Index count = points.rows();
+  const Eigen::VectorXd times = given_times.size() > 0
+                                    ? given_times
+                                    : Eigen::VectorXd::LinSpaced(count, 0, double(count - 1));
   std::vector<Eigen::Index> indices;
   std::vector<FittedFrame> frames;
-  for (Eigen::Index f = 0; f < points.rows(); ++f) {
+  RowsOfSeen rows_of_seen;
+  for (Eigen::Index f = 0; f < count; ++f) {
     const std::vector<Eigen::Index> seen = seen_landmarks(points, f);
     if (seen.empty()) continue;
     indices.push_back(f);
-    frames.push_back(state_->frame(points, f, seen, options));
+    frames.push_back(state_->frame(points, f, seen, options, rows_of_seen));
   }
   if (frames.empty()) throw MismatchError("no frame has landmarks");
-  Eigen::VectorXd seen_times;
-  if (options.smoothness > 0) seen_times = times(indices);
-  const std::vector<FrameFit> fits = fits_of(std::move(frames), options, seen_times);
-
-  std::vector<FrameFit> all;
-  std::size_t next = 0;
-  for (Eigen::Index f = 0; f < points.rows(); ++f) {
-    const bool seen = next < indices.size() && indices[next] == f;
-    all.push_back(seen ? fits[next++] : unseen_like(fits[next == 0 ? 0 : next - 1]));
-  }
-  return all;
+  const std::vector<FrameFit> fits = fits_of(std::move(frames), options, times(indices), progress);
+  return with_unseen(fits, indices, times);
 }
 
 }  // namespace mimetra

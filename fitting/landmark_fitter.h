@@ -5,6 +5,7 @@
 #include <vector>
 
 #include <mimetra/fitting/affine_camera.h>
+#include <mimetra/mesh/errors.h>
 #include <mimetra/model/morphable_model.h>
 
 namespace mimetra {
@@ -46,8 +47,8 @@ struct FrameFit {
   double rms = 0;
   /// Noise that was assumed, in pixels.
   double sigma = 0;
-  /// Landmarks seen. Where it is 0, camera and coefficients are those of the nearest earlier frame
-  /// with some, or of the first one.
+  /// Landmarks seen. Where it is 0, camera and coefficients are interpolated in time between the
+  /// nearest frames with some, or those of the one there is.
   int landmarks = 0;
   int iterations = 0;
   /// After each iteration: sum over frames of |residual|^2 / (2 sigma^2) + ridge |beta|^2, plus
@@ -59,8 +60,8 @@ struct FrameFit {
 /// Fits a morphable model to the 2D landmarks of a clip: minimises over affine cameras, alpha and
 /// 0 <= beta <= 1 the reprojection error with a prior on alpha (eq. 4, 5).
 ///
-/// The constructor takes the landmarks' rows from the model and folds their products, so that
-/// solving for alpha costs no product over landmarks. Queries are const.
+/// The constructor takes the landmarks' rows from the model and folds their products, so that no
+/// camera costs a normal matrix over landmarks. Queries are const.
 ///
 /// [Do, Ma, Cao, An. Region-based deformation transfer], section III-A
 class LandmarkFitter {
@@ -73,11 +74,11 @@ class LandmarkFitter {
   LandmarkFitter& operator=(LandmarkFitter&&) noexcept;
 
   /// `points` F x 2n: x0 y0 x1 y1 ... in pixels, y down, 0-based; NaN for landmarks not seen.
-  /// `times` in seconds (F), needed for smoothness only. Throws std::invalid_argument where sizes
-  /// disagree or an option is out of range; MismatchError where no frame has landmarks, or those of
-  /// a frame are fewer than four or coplanar.
+  /// `times` in seconds (F), ascending; frames are evenly spaced without. Throws
+  /// std::invalid_argument where sizes disagree or an option is out of range; MismatchError where
+  /// no frame has landmarks, or those of a frame are fewer than four or coplanar; Cancelled.
   std::vector<FrameFit> fit(const Frames& points, const FitOptions& = {},
-                            const Eigen::VectorXd& times = {}) const;
+                            const Eigen::VectorXd& times = {}, const Progress& = {}) const;
 
  private:
   struct State;

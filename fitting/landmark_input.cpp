@@ -18,14 +18,14 @@ namespace fs = std::filesystem;
 using Paths = std::vector<fs::path>;
 
 bool is_points(const fs::path& path) {
-  const std::string extension = path.extension().string();
-  return extension == ".pts" || extension == ".PTS";
+  return lower_extension(path) == ".pts";
 }
 
 /// The landmarks of a whole clip before any frame is chosen: files of a frame each, or a track.
 struct Input {
   Paths frames;  ///< .pts files or images
   fs::path track;
+  Paths others;  ///< images beside the .pts files
 };
 
 Input input_of(const std::string& text) {
@@ -33,8 +33,8 @@ Input input_of(const std::string& text) {
   const bool is_folder = fs::is_directory(text, unreadable);
   if (!is_folder && (fs::exists(text, unreadable) || !is_frame_pattern(text))) {
     if (!fs::exists(text, unreadable)) throw IoError(text, "no such file or folder");
-    if (is_image(text) || is_points(text)) return {{text}, {}};
-    return {{}, text};
+    if (is_image(text) || is_points(text)) return {{text}, {}, {}};
+    return {{}, text, {}};
   }
   Paths files = files_named(text), images;
   std::ranges::copy_if(files, std::back_inserter(images), is_image);
@@ -43,17 +43,41 @@ Input input_of(const std::string& text) {
     throw IoError(text,
                   std::string(is_folder ? "holds" : "matches") + " no .pts file and no image");
   }
-  return {files.empty() ? images : files, {}};
+  if (files.empty()) return {images, {}, {}};
+  return {files, {}, images};
 }
 
 /// The image of the same name beside a file; empty where there is none.
 fs::path image_beside(const fs::path& file) {
+  const fs::path folder = file.has_parent_path() ? file.parent_path() : ".";
   std::error_code unreadable;
-  for (const char* extension : {".png", ".jpg", ".jpeg", ".PNG", ".JPG", ".JPEG"}) {
-    const fs::path image = fs::path(file).replace_extension(extension);
-    if (fs::exists(image, unreadable)) return image;
+  for (const fs::path& other : fs::directory_iterator(folder, unreadable)) {
+    if (other.stem() == file.stem() && is_image(other))
+      return file.parent_path() / other.filename();
   }
   return {};
+}
+
+/// Says that images were passed over because .pts files stand among them.
+void note_others(LandmarksRead& read, const std::string& text, const Input& input) {
+  const auto has_points = [&](const fs::path& image) {
+    return std::ranges::find(input.frames, image.stem(), &fs::path::stem) != input.frames.end();
+  };
+  const auto passed = std::ranges::count_if(input.others, std::not_fn(has_points));
+  if (passed == 0) return;
+  read.notes.push_back(text + ": " + std::to_string(passed) +
+                       " images without a .pts file are not read, because there are .pts files; "
+                       "name the images by a pattern to find faces in them");
+}
+
+/// Options that change nothing are mistakes.
+void check_needed(const std::string& text, bool images, const LandmarkInputOptions& options) {
+  if (images && options.images) {
+    throw MismatchError("--images: " + text + " are images themselves");
+  }
+  if (!images && options.faces.model != FaceOptions{}.model) {
+    throw MismatchError("--face-model: " + text + " are landmarks already");
+  }
 }
 
 /// The image of each frame of the whole clip, or none.
@@ -159,14 +183,18 @@ LandmarksRead read_landmark_input(const std::string& text, const SequenceSource&
   const std::vector<int> selected = selected_frames(source.frames, count);
   const Paths files = part_of(input.frames, selected);
   LandmarksRead read;
-  if (!files.empty() && is_image(files.front())) {
+  const bool from_images = !files.empty() && is_image(files.front());
+  check_needed(text, from_images, options);
+  if (from_images) {
     read = find_in_images(files, source, options.faces);
   } else {
     read.track =
         files.empty() ? part_of(std::move(whole), selected) : read_points(files, source.progress);
     read.files = files.empty() ? Paths{input.track} : files;
     read.images = part_of(images_of(text, input.frames, count, options), selected);
+    read.files.insert(read.files.end(), read.images.begin(), read.images.end());
     drop_doubtful(read, text, options.faces.min_confidence);
+    note_others(read, text, input);
   }
   set_times(read.track, selected, source);
   report_progress(source.progress, 1);

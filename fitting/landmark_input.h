@@ -19,7 +19,8 @@ struct LandmarkInputOptions {
 /// Reads the landmarks of a clip: one .pts, .csv or .json file, a folder or pattern of .pts files,
 /// or an image, a folder or pattern of images in which faces are found; one frame a file in natural
 /// order. With times, the frames that `source.frames` takes. Throws IoError, also as track_face;
-/// MismatchError for files that differ in their number of landmarks, another number of images, and
+/// MismatchError for files that differ in their number of landmarks, another number of images, an
+/// option that changes nothing, and
 /// as selected_frames; Cancelled.
 LandmarksRead read_landmark_input(const std::string& text, const SequenceSource& source = {},
                                   const LandmarkInputOptions& = {});

@@ -72,7 +72,9 @@ class JsonReader {
       times_.push_back(time);
     }
     if (frame.contains("confidence")) {
-      confidences_.push_back(number(frame["confidence"], place + "/confidence"));
+      const double confidence = number(frame["confidence"], place + "/confidence");
+      if (!(confidence >= 0 && confidence <= 1)) fail(place + "/confidence", "is outside [0, 1]");
+      confidences_.push_back(confidence);
     }
     ++frames_;
   }

@@ -4,6 +4,7 @@
 #include <limits>
 #include <set>
 
+#include <mimetra/fitting/landmark_formats.h>
 #include <mimetra/io/pending_output.h>
 #include <mimetra/io/sequence_file.h>
 #include <mimetra/io/text_cursor.h>
@@ -65,6 +66,13 @@ LandmarkMapping read_list(TextCursor& text) {
   return mapping;
 }
 
+/// Numbered landmarks are those of a scheme, which has as many as its largest number.
+void check_scheme(const std::string& name, const LandmarkTrack& track) {
+  if (track.names != numbered_names(track.names.size())) return;
+  throw MismatchError("the mapping has a landmark '" + name + "', but there are only 1 to " +
+                      std::to_string(track.landmarks()) + "; is it for another set of landmarks?");
+}
+
 }  // namespace
 
 LandmarkMapping read_landmark_mapping(const fs::path& path) {
@@ -94,7 +102,7 @@ fs::path find_landmark_mapping(const fs::path& model) {
   }
   if (found.size() == 1) return found.front();
   std::ranges::sort(found);
-  throw IoError(folder.string(),
+  throw IoError(folder.empty() ? "." : folder.string(),
                 found.empty()
                     ? "holds no landmark mapping; expected ibug_to_*.txt or "
                       "landmarks68.txt, or name a mapping with --mapping"
@@ -107,7 +115,10 @@ MappedLandmarks map_landmarks(const LandmarkTrack& track, const LandmarkMapping&
   MappedLandmarks mapped;
   for (const auto& [name, index] : mapping) {
     const auto found = std::ranges::find(track.names, name);
-    if (found == track.names.end()) continue;
+    if (found == track.names.end()) {
+      check_scheme(name, track);
+      continue;
+    }
     const auto landmark = found - track.names.begin();
     columns.insert(columns.end(), {2 * landmark, 2 * landmark + 1});
     mapped.vertices.push_back(index);

@@ -27,7 +27,8 @@ struct MappedLandmarks {
   Frames points;              ///< F x 2n, as LandmarkTrack::points
 };
 
-/// Takes them in the mapping's order. Throws MismatchError where there is none.
+/// Takes them in the mapping's order. Throws MismatchError where there is none, and where landmarks
+/// are numbered and the mapping has larger numbers.
 MappedLandmarks map_landmarks(const LandmarkTrack& track, const LandmarkMapping& mapping);
 
 }  // namespace mimetra

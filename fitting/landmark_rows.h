@@ -5,8 +5,8 @@
 #include <mimetra/fitting/affine_camera.h>
 #include <mimetra/model/morphable_model.h>
 
-/// The few rows of a model that landmarks need, folded so that a camera costs no product over
-/// landmarks. Internal to landmark_fitter.h.
+/// The few rows of a model that landmarks need, folded so that no camera costs a normal matrix
+/// over landmarks. Internal to landmark_fitter.h.
 namespace mimetra {
 
 /// Displacements of n landmarks by the columns of a basis, and their products in pairs of axes.

@@ -1,13 +1,12 @@
 #include <mimetra/fitting/landmark_track.h>
 
-#include <algorithm>
-#include <cctype>
 #include <cmath>
 
 #include <mimetra/fitting/landmark_formats.h>
+#include <mimetra/io/frame_files.h>
 #include <mimetra/io/pending_output.h>
-#include <mimetra/io/sequence_file.h>
 #include <mimetra/io/text_cursor.h>
+#include <mimetra/mesh/errors.h>
 
 namespace mimetra {
 
@@ -46,9 +45,7 @@ LandmarkTrack read_pts(const std::filesystem::path& path) {
 }
 
 LandmarkTrack read_landmarks(const std::filesystem::path& path) {
-  std::string extension = path.extension().string();
-  std::ranges::transform(extension, extension.begin(),
-                         [](unsigned char c) { return std::tolower(c); });
+  const std::string extension = lower_extension(path);
   if (extension == ".pts") return read_pts(path);
   if (extension == ".csv") return read_landmark_csv(path);
   if (extension == ".json") return read_landmark_json(path);

@@ -137,6 +137,9 @@ int marker_size(const ImagePoints& vertices) {
   return extent < kFarAway ? std::max(1, static_cast<int>(extent / 300)) : 1;
 }
 
+/// Smaller parts, in pixels, show nothing, and would grow beyond all bounds where they are flat.
+constexpr int kLeastPart = 4;
+
 struct Box {
   int left;
   int top;
@@ -186,6 +189,9 @@ Image draw_close_up(const Image& image, const Triangles& triangles, const Fitted
                     int height) {
   const Box box = box_around(view.vertices);
   const Image part = cropped(image, box.left, box.top, box.width, box.height);
+  if (part.width < kLeastPart || part.height < kLeastPart) {
+    throw std::invalid_argument("hardly anything of the mesh is inside the image");
+  }
   const Image scaled = scaled_to_height(part, height);
   const Eigen::RowVector2d corner(std::max(box.left, 0), std::max(box.top, 0));
   const Eigen::Array2d scale(double(scaled.width) / part.width,

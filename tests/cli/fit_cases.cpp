@@ -70,9 +70,10 @@ constexpr const char* kTrack = "fit t.csv --model head -o o.npy --json";
 
 void add_tracks(std::vector<BadInput>& all) {
   const auto add = [&all](const std::string& kind, const std::string& text, int code,
-                          std::vector<std::string> says) {
+                          std::vector<std::string> says,
+                          const std::string& mapping = sound_mapping()) {
     if (code != 0) says.push_back("t.csv");
-    all.push_back({kind, "landmarks_csv", mapped({{"t.csv", text}}), kTrack, code, says});
+    all.push_back({kind, "landmarks_csv", mapped({{"t.csv", text}}, mapping), kTrack, code, says});
   };
   all.push_back({"missing", "landmarks_csv", mapped({}), kTrack, 3, {"t.csv", "no such file"}});
   add("whole", sound_track(), 0, {"\"rms_px\""});
@@ -85,12 +86,18 @@ void add_tracks(std::vector<BadInput>& all) {
   add("infinity", header(1) + "1,inf\n", 3, {"line 2", "'y0'", "finite"});
   add("times_fall", header(10, "time") + row(10, "1") + row(10, "0.5"), 3, {"line 3", "ascend"});
   add("windows_lines_and_bom", "\xEF\xBB\xBF" + header(10) + row(10) + "\r\n", 0, {"\"alpha\""});
-  add("too_few", header(3) + row(3), 4, {"frame 0", "at least 4"});
-  add("all_at_one_place", header(4) + "1,1,1,1,1,1,1,1\n", 4, {"frame 0", "at one place"});
-  add("nothing_seen", header(2) + ",,,\n", 4, {"no frame has landmarks"});
+  add("too_few", header(3) + row(3), 4, {"frame 0", "at least 4"}, "0\n7\n14\n");
+  add("all_at_one_place", header(4) + "1,1,1,1,1,1,1,1\n", 4, {"frame 0", "at one place"},
+      "0\n7\n14\n48\n");
+  add("nothing_seen", header(2) + ",,,\n", 4, {"no frame has landmarks"}, "0\n7\n");
+  add("fewer_than_the_mapping", header(9) + row(9), 4,
+      {"landmark '10'", "only 1 to 9", "another set of landmarks"});
+  add("frames_that_jump", header(10, "frame") + row(10, "0") + row(10, "5"), 3,
+      {"line 3", "frame 5 follows 0", "a column 'time'"});
+  add("confidence_in_percent", header(10, "confidence") + row(10, "95"), 3,
+      {"line 2", "outside [0, 1]"});
   add("nothing_trusted", header(10, "confidence") + row(10, "0.01"), 4, {"no frame has landmarks"});
-  add("one_frame_unseen", sound_track() + std::string(19, ',') + "\n", 0,
-      {"\"rms_px\": null", "frames without landmarks", ": 2"});
+  add("one_frame_unseen", sound_track() + std::string(19, ',') + "\n", 0, {"\"rms_px\": null"});
 }
 
 void add_points(std::vector<BadInput>& all) {
@@ -163,7 +170,7 @@ void add_mappings(std::vector<BadInput>& all) {
   add("empty", "", 3, {"m.txt", "maps no landmark"});
   add("text_for_a_number", "1\nnose\n", 3, {"m.txt", "line 2", "nose"});
   add("negative_index", "1\n-2\n", 3, {"m.txt", "line 2", "-2"});
-  add("index_out_of_range", "225\n" + sound_mapping(), 4, {"vertex 225", "0 to 224"});
+  add("index_out_of_range", "225\n" + sound_mapping().substr(2), 4, {"vertex 225", "0 to 224"});
   add("coplanar", "0\n14\n105\n119\n210\n224\n30\n44\n60\n", 4, {"frame 0", "coplanar"});
 }
 

@@ -46,6 +46,16 @@ class ImageFit : public test::CommandTest {
     ASSERT_EQ(result.code, 0) << result.err;
     std::filesystem::remove(folder_ / ("images/" + name.substr(0, 1) + ".run.json"));
   }
+
+  /// 68 landmarks that are no face, but not coplanar either.
+  void write_points(const std::string& name, int right = 0) {
+    std::string points = "version: 1\nn_points: 68\n{\n";
+    for (int i = 0; i < 68; ++i) {
+      points +=
+          std::to_string(right + 100 + 7 * (i % 9)) + " " + std::to_string(90 + 4 * (i / 2)) + "\n";
+    }
+    write("images/" + name, points + "}\n");
+  }
 };
 
 TEST_F(ImageFit, TellsOfEveryFrameWhatWasFound) {
@@ -82,11 +92,8 @@ TEST_F(ImageFit, DrawsWhatItFittedOverTheImages) {
 }
 
 TEST_F(ImageFit, DrawsOverTheImagesBesidePoints) {
-  std::string points = "version: 1\nn_points: 68\n{\n";
-  for (int i = 0; i < 68; ++i) {
-    points += std::to_string(100 + 7 * (i % 9)) + " " + std::to_string(90 + 4 * (i / 2)) + "\n";
-  }
-  for (const char* name : {"1.pts", "3.pts"}) write("images/" + std::string(name), points + "}\n");
+  write_points("1.pts");
+  write_points("3.pts");
   auto result = run("fit images --model face -o take --overlay over");
   ASSERT_EQ(result.code, 0) << result.err;
   EXPECT_THAT(result.err, Not(HasSubstr("non-commercial")));
@@ -100,6 +107,41 @@ TEST_F(ImageFit, DrawsOverTheImagesBesidePoints) {
   EXPECT_FALSE(listing().contains("take2"));
   EXPECT_EQ(run("fit images --model face -o take2 --overlay over2 --images 'images/?.png'").code,
             0);
+}
+
+TEST_F(ImageFit, LeavesNothingWhereAnImageBesidePointsIsDamaged) {
+  write_points("1.pts");
+  write("images/1.png", text_of(folder_ / "images/1.png").substr(0, 3000));
+  const auto before = listing();
+  const auto result = run("fit images/1.pts --model face -o take --overlay over");
+  EXPECT_EQ(result.code, 3);
+  EXPECT_THAT(result.err, HasSubstr("images/1.png: "));
+  EXPECT_EQ(listing(), before);
+}
+
+TEST_F(ImageFit, SaysThatImagesWithoutPointsArePassedOver) {
+  write_points("3.pts");
+  const auto result = run("fit images --model face -o take --strip s.png");
+  ASSERT_EQ(result.code, 0) << result.err;
+  EXPECT_THAT(result.err, HasSubstr("images: 2 images without a .pts file are not read"));
+}
+
+TEST_F(ImageFit, RefusesOptionsThatChangeNothing) {
+  auto result = run("fit images --images images --model face -o take");
+  EXPECT_EQ(result.code, 4);
+  EXPECT_THAT(result.err, HasSubstr("--images: images are images themselves"));
+  write_points("3.pts");
+  result = run("fit images/3.pts --face-model none.dat --model face -o take");
+  EXPECT_EQ(result.code, 4);
+  EXPECT_THAT(result.err, HasSubstr("--face-model: images/3.pts are landmarks already"));
+}
+
+TEST_F(ImageFit, NamesTheImageThatDoesNotShowTheFace) {
+  write_points("1.pts", 5000);
+  const auto result = run("fit images/1.pts --model face -o take --strip s.png");
+  EXPECT_EQ(result.code, 4);
+  EXPECT_THAT(result.err, HasSubstr("images/1.png: the fitted face is outside the image"));
+  EXPECT_FALSE(listing().contains("take"));
 }
 
 TEST_F(ImageFit, TakesAPartOfTheImages) {

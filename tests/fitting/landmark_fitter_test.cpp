@@ -144,19 +144,51 @@ TEST(LandmarkFitter, FitsWhatIsSeenOfAFrame) {
   EXPECT_EQ(fit.camera, expected.camera);
 }
 
-TEST(LandmarkFitter, HoldsTheFitWhereNothingIsSeen) {
+TEST(LandmarkFitter, TakesTheWayBetweenNeighboursWhereNothingIsSeen) {
   for (const Shape shape : {Shape::clip, Shape::frame}) {
-    test::SyntheticClip clip = test::synthetic_clip(12, {.frames = 4});
-    clip.points.row(0).setConstant(kNan);
-    clip.points.row(2).setConstant(kNan);
+    test::SyntheticClip clip = test::synthetic_clip(12, {.frames = 5});
+    for (const int unseen : {0, 2, 4}) clip.points.row(unseen).setConstant(kNan);
+    clip.times[2] = clip.times[1] + 0.25 * (clip.times[3] - clip.times[1]);
     const auto fits = test::fit(clip, {.shape = shape});
     EXPECT_EQ(fits[0].beta, fits[1].beta);
-    EXPECT_EQ(fits[2].beta, fits[1].beta);
-    EXPECT_EQ(fits[2].camera, fits[1].camera);
-    EXPECT_NE(fits[3].beta, fits[1].beta);
+    EXPECT_EQ(fits[4].beta, fits[3].beta);
+    EXPECT_LT((fits[2].beta - 0.75 * fits[1].beta - 0.25 * fits[3].beta).norm(), 1e-12);
+    EXPECT_LT((fits[2].alpha - 0.75 * fits[1].alpha - 0.25 * fits[3].alpha).norm(), 1e-12);
+    EXPECT_LT((fits[2].camera - 0.75 * fits[1].camera - 0.25 * fits[3].camera).norm(), 1e-9);
+    if (shape == Shape::clip) {
+      EXPECT_EQ(fits[2].alpha, fits[1].alpha);
+    }
     EXPECT_EQ(fits[2].landmarks, 0);
     EXPECT_TRUE(std::isnan(fits[2].rms));
     EXPECT_EQ(fits[3].landmarks, 20);
+  }
+}
+
+TEST(LandmarkFitter, SmoothsAcrossAGapAsLongAsItIs) {
+  // Still, then a second of nothing, then another face: no reason to bend on either side.
+  constexpr int kBefore = 20, kAfter = 20;
+  test::SyntheticClip clip = test::synthetic_clip(14, {.frames = kBefore + kAfter});
+  for (int f = 0; f < clip.beta.rows(); ++f) clip.beta.row(f).setConstant(f < kBefore ? 0.2 : 0.8);
+  std::mt19937 random(1);
+  test::see(clip, 0.1, random);
+  clip.times.tail(kAfter).array() += 1;
+  const auto smooth = test::fit(clip, {.smoothness = 0.1});
+  for (int f = 0; f < clip.beta.rows(); ++f) {
+    EXPECT_LT((smooth[static_cast<std::size_t>(f)].beta - clip.beta.row(f).transpose())
+                  .cwiseAbs()
+                  .maxCoeff(),
+              0.1)
+        << f;
+  }
+}
+
+TEST(LandmarkFitter, CanBeCancelled) {
+  const test::SyntheticClip clip = test::synthetic_clip(15, {.frames = 3});
+  const LandmarkFitter fitter(clip.model, clip.vertices);
+  for (const Shape shape : {Shape::clip, Shape::frame}) {
+    EXPECT_THROW(fitter.fit(clip.points, {.shape = shape, .tolerance = 0}, clip.times,
+                            [](double) { return false; }),
+                 Cancelled);
   }
 }
 
@@ -237,7 +269,7 @@ TEST(LandmarkFitter, RefusesSmoothnessWithoutTimes) {
   const LandmarkFitter fitter(clip.model, clip.vertices);
   EXPECT_THAT(
       test::message_of<std::invalid_argument>([&] { fitter.fit(clip.points, {.smoothness = 1}); }),
-      HasSubstr("smoothness: 0 times for 1 frames"));
+      HasSubstr("0 times for 1 frames"));
 }
 
 }  // namespace

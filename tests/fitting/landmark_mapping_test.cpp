@@ -67,8 +67,9 @@ TEST_F(Mapping, IsFoundInTheFolderOfAModel) {
 }
 
 TEST_F(Mapping, TakesItsLandmarksFromATrack) {
-  const LandmarkTrack track{{"1", "2", "3"}, Eigen::RowVector<double, 6>(1, 2, 3, 4, 5, 6), {}, {}};
-  const MappedLandmarks mapped = map_landmarks(track, {{"3", 30}, {"7", 70}, {"1", 10}});
+  const LandmarkTrack track{
+      {"eye", "nose", "chin"}, Eigen::RowVector<double, 6>(1, 2, 3, 4, 5, 6), {}, {}};
+  const MappedLandmarks mapped = map_landmarks(track, {{"chin", 30}, {"ear", 70}, {"eye", 10}});
   EXPECT_THAT(mapped.vertices, ElementsAre(30, 10));
   EXPECT_EQ(mapped.points, Eigen::RowVector4d(5, 6, 1, 2));
 }
@@ -80,6 +81,14 @@ TEST_F(Mapping, RefusesATrackOfOtherLandmarks) {
               }),
               HasSubstr("none of the 1 landmarks is in the mapping; the first is 'chin', the "
                         "mapping's first '9'"));
+}
+
+TEST_F(Mapping, RefusesATrackOfFewerNumberedLandmarks) {
+  const LandmarkTrack track{{"1", "2", "3"}, Eigen::RowVector<double, 6>(1, 2, 3, 4, 5, 6), {}, {}};
+  EXPECT_THAT(test::message_of<MismatchError>([&] {
+                map_landmarks(track, {{"3", 30}, {"68", 70}});
+              }),
+              HasSubstr("the mapping has a landmark '68', but there are only 1 to 3"));
 }
 
 TEST_F(Mapping, OfTheSharedModelsIsRead) {

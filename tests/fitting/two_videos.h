@@ -7,6 +7,8 @@
 
 #include <Eigen/Geometry>
 
+#include <mimetra/samples/head.h>
+
 #include "fitting/synthetic_clip.h"
 
 namespace mimetra::test {
@@ -74,35 +76,11 @@ inline TwoVideos two_videos(const MorphableModel& model, std::vector<int> vertic
   return videos;
 }
 
-/// Where a detector might put landmarks on a model without any: the vertices that expressions move
-/// most, and then those farthest from all so far among those that move.
-inline std::vector<int> spread_landmarks(const MorphableModel& model, int count) {
-  const Eigen::MatrixXd& fields = model.expressions().displacements;
-  Eigen::VectorXd motion = Eigen::VectorXd::Zero(model.vertices());
-  std::vector<int> chosen;
-  for (Eigen::Index j = 0; j < fields.cols(); ++j) {
-    const Eigen::VectorXd field = fields.col(j);
-    const Eigen::VectorXd lengths =
-        Eigen::Map<const Positions>(field.data(), model.vertices(), 3).rowwise().norm();
-    motion = motion.cwiseMax(lengths / lengths.maxCoeff());
-    Eigen::Index strongest = 0;
-    lengths.maxCoeff(&strongest);
-    if (std::ranges::find(chosen, strongest) == chosen.end()) {
-      chosen.push_back(static_cast<int>(strongest));
-    }
-  }
-  constexpr double kMoves = 0.05;  // of what the expression moves most
-  Eigen::VectorXd gaps = Eigen::VectorXd::Constant(model.vertices(), 1e9);
-  for (std::size_t i = 0; i < chosen.size() || std::ssize(chosen) < count; ++i) {
-    if (i == chosen.size()) {
-      Eigen::Index farthest = 0;
-      (motion.array() > kMoves).select(gaps, -1).maxCoeff(&farthest);
-      chosen.push_back(static_cast<int>(farthest));
-    }
-    const Eigen::RowVector3d here = model.mean().row(chosen[i]);
-    gaps = gaps.cwiseMin((model.mean().rowwise() - here).rowwise().norm());
-  }
-  return chosen;
+/// The built-in head's vertices of iBUG's landmarks.
+inline std::vector<int> vertices_of_landmarks() {
+  std::vector<int> vertices;
+  for (const auto& [landmark, vertex] : samples::head_landmarks()) vertices.push_back(vertex);
+  return vertices;
 }
 
 /// Distances of vertices in all frames: of the faces, and of their displacements from rest.

@@ -9,11 +9,18 @@
 namespace mimetra {
 namespace {
 
+/// Times whose median step is 1.
+Eigen::VectorXd even(Eigen::Index frames) {
+  return Eigen::VectorXd::LinSpaced(frames, 0, double(frames - 1));
+}
+
 /// The same problem as one dense box problem in F D unknowns.
 struct DenseProblem {
   DenseProblem(const Eigen::MatrixXd& gram, const Eigen::MatrixXd& rows, double mu)
-      : DenseProblem(std::vector<Eigen::MatrixXd>(rows.rows(), gram), rows, mu) {}
-  DenseProblem(const std::vector<Eigen::MatrixXd>& grams, const Eigen::MatrixXd& rows, double mu)
+      : DenseProblem(std::vector<Eigen::MatrixXd>(rows.rows(), gram), rows, even(rows.rows()), mu) {
+  }
+  DenseProblem(const std::vector<Eigen::MatrixXd>& grams, const Eigen::MatrixXd& rows,
+               const Eigen::VectorXd& times, double mu)
       : system(Eigen::MatrixXd::Zero(rows.size(), rows.size())),
         h(rows.reshaped<Eigen::RowMajor>()),
         lower(Eigen::VectorXd::Zero(rows.size())),
@@ -24,7 +31,11 @@ struct DenseProblem {
     }
     for (Eigen::Index f = 0; f + 2 < frames; ++f) {
       Eigen::MatrixXd difference = Eigen::MatrixXd::Zero(frames, 1);
-      difference.middleRows<3>(f) << 1, -2, 1;
+      const double before = times[f + 1] - times[f], after = times[f + 2] - times[f + 1];
+      // x'' of the parabola through three points, times the root of the time it stands for.
+      difference.middleRows<3>(f) << 2 / (before * (before + after)), -2 / (before * after),
+          2 / (after * (before + after));
+      difference *= std::sqrt((before + after) / 2);
       for (Eigen::Index a = f; a < f + 3; ++a) {
         for (Eigen::Index b = f; b < f + 3; ++b) {
           system.block(a * d, b * d, d, d).diagonal().array() += mu * difference(a) * difference(b);
@@ -55,7 +66,7 @@ Clip noisy_clip(int frames, int d) {
 }
 
 Eigen::MatrixXd smooth(const Clip& clip, double mu) {
-  return smooth_weights({clip.gram}, clip.h, mu,
+  return smooth_weights({clip.gram}, clip.h, even(clip.h.rows()), mu,
                         Eigen::MatrixXd::Zero(clip.h.rows(), clip.h.cols()));
 }
 
@@ -80,13 +91,37 @@ TEST(SmoothWeights, TakeAGramMatrixForEachFrame) {
   std::vector<Eigen::MatrixXd> grams;
   for (int f = 0; f < 7; ++f) grams.push_back((0.5 + 0.3 * f) * noisy_clip(3 + f, 4).gram);
   const double mu = clip.mean_diagonal();
-  const Eigen::MatrixXd beta = smooth_weights(grams, clip.h, mu, Eigen::MatrixXd::Zero(7, 4));
-  EXPECT_LT(DenseProblem(grams, clip.h, mu).violation(beta), 1e-9);
+  const Eigen::MatrixXd beta =
+      smooth_weights(grams, clip.h, even(7), mu, Eigen::MatrixXd::Zero(7, 4));
+  EXPECT_LT(DenseProblem(grams, clip.h, even(7), mu).violation(beta), 1e-9);
+}
+
+TEST(SmoothWeights, TakeGapsAsLongAsTheyAre) {
+  const Clip clip = noisy_clip(8, 4);
+  Eigen::VectorXd times(8);
+  times << 0, 1, 2, 3, 23, 24, 24.5, 26;
+  const double mu = clip.mean_diagonal();
+  const Eigen::MatrixXd beta =
+      smooth_weights({clip.gram}, clip.h, times, mu, Eigen::MatrixXd::Zero(8, 4));
+  const std::vector<Eigen::MatrixXd> grams(8, clip.gram);
+  EXPECT_LT(DenseProblem(grams, clip.h, times, mu).violation(beta), 1e-9);
+  EXPECT_GT(DenseProblem(grams, clip.h, even(8), mu).violation(beta), 1e-3);
+}
+
+TEST(SmoothWeights, KnowNothingOfTheUnitOfTime) {
+  const Clip clip = noisy_clip(6, 4);
+  Eigen::VectorXd times(6);
+  times << 0, 1, 2, 5, 6, 7;
+  const auto smooth_at = [&](const Eigen::VectorXd& when) {
+    return smooth_weights({clip.gram}, clip.h, when, clip.mean_diagonal(), clip.h);
+  };
+  EXPECT_LT((smooth_at(times) - smooth_at(times / 30)).cwiseAbs().maxCoeff(), 1e-9);
 }
 
 TEST(SmoothWeights, RefuseAnotherNumberOfGramMatrices) {
   const Clip clip = noisy_clip(5, 4);
-  EXPECT_THROW(smooth_weights({clip.gram, clip.gram}, clip.h, 1, clip.h), std::invalid_argument);
+  EXPECT_THROW(smooth_weights({clip.gram, clip.gram}, clip.h, even(5), 1, clip.h),
+               std::invalid_argument);
 }
 
 TEST(SmoothWeights, SatisfyTheOptimalityConditionsOnALongClip) {
@@ -130,7 +165,7 @@ TEST(SmoothWeights, AreExactlyZeroWhereNothingPulls) {
 TEST(SmoothWeights, AreTheSingleFramesWhereThereAreTooFew) {
   const Clip clip = noisy_clip(2, 3);
   const Eigen::MatrixXd single = test::random_weights(2, 3);
-  EXPECT_EQ(smooth_weights({clip.gram}, clip.h, 1, single), single);
+  EXPECT_EQ(smooth_weights({clip.gram}, clip.h, even(clip.h.rows()), 1, single), single);
 }
 
 TEST(SmoothnessPenalty, IsTheFourthPowerOfTheTimeConstantInFrames) {

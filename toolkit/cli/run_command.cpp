@@ -128,7 +128,11 @@ void write_outputs(const OperationTable& table, const Request& request, const Ou
     const double done = (static_cast<double>(written) + share) / static_cast<double>(count);
     return bar.update(kWritingFrom + (1 - kWritingFrom) * done) || written > 0;
   };
-  for (const Output& output : request.operation->outputs) {
+  // What is drawn while it is written comes first: nothing stands yet where that fails or ends.
+  std::vector<Output> outputs = request.operation->outputs;
+  std::ranges::stable_partition(
+      outputs, [](const Output& output) { return output.kind == DataKind::pictures; });
+  for (const Output& output : outputs) {
     const auto wanted = paths.find(output.name);
     const auto made = outcome.outputs.find(output.name);
     if (wanted == paths.end() || made == outcome.outputs.end()) continue;

@@ -99,12 +99,6 @@ std::vector<fs::path> files_of_glob(const std::string& pattern) {
   return files;
 }
 
-std::string lower_extension(const fs::path& path) {
-  std::string extension = path.extension().string();
-  for (char& c : extension) c = static_cast<char>(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c);
-  return extension;
-}
-
 /// True for a file that belongs to another sequence, unless `name` asks for such files.
 bool is_companion(const fs::path& file, const std::string& name) {
   for (const std::string suffix : {kRestSuffix, kTopologySuffix}) {
@@ -185,6 +179,12 @@ FrameRange parsed_range(const std::string& text) {
 }
 
 }  // namespace
+
+std::string lower_extension(const fs::path& path) {
+  std::string extension = path.extension().string();
+  for (char& c : extension) c = static_cast<char>(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c);
+  return extension;
+}
 
 bool is_array(const fs::path& path) {
   return lower_extension(path) == ".npy";

@@ -12,6 +12,9 @@ namespace mimetra {
 inline constexpr const char* kRestSuffix = ".rest.ply";
 inline constexpr const char* kTopologySuffix = ".topology.ply";
 
+/// ".ply" for NAME.PLY.
+std::string lower_extension(const std::filesystem::path& path);
+
 /// True for NAME.npy in any case.
 bool is_array(const std::filesystem::path& path);
 

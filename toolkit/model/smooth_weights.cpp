@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include <mimetra/model/second_differences.h>
 #include <mimetra/model/temporal_system.h>
 
 namespace mimetra {
@@ -138,23 +139,20 @@ Rows polished(TemporalSystem& system, const Rows& h, Array sides, const Rows& ne
 
 double smoothness_penalty(double smoothness, const Eigen::VectorXd& times, double mean_diagonal) {
   if (times.size() < 2) return 0;
-  std::vector<double> steps;
-  for (Eigen::Index f = 1; f < times.size(); ++f) steps.push_back(times[f] - times[f - 1]);
-  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-  std::ranges::nth_element(steps, middle);
-  if (!(*middle > 0)) {
-    throw std::invalid_argument("smoothness: the median time step is " + std::to_string(*middle) +
-                                " s, expected a positive one");
-  }
-  return std::pow(smoothness / *middle, 4) * mean_diagonal;
+  return std::pow(smoothness / median_step(times), 4) * mean_diagonal;
 }
 
 Eigen::MatrixXd smooth_weights(const std::vector<Eigen::MatrixXd>& grams, const Eigen::MatrixXd& h,
-                               double mu, const Eigen::MatrixXd& single) {
+                               const Eigen::VectorXd& times, double mu,
+                               const Eigen::MatrixXd& single) {
   if (grams.size() != 1 && static_cast<Eigen::Index>(grams.size()) != h.rows()) {
     throw std::invalid_argument("smoothness: " + std::to_string(grams.size()) +
                                 " Gram matrices, expected 1 or " + std::to_string(h.rows()) +
                                 ", one for each frame");
+  }
+  if (times.size() != h.rows()) {
+    throw std::invalid_argument("smoothness: " + std::to_string(times.size()) + " times for " +
+                                std::to_string(h.rows()) + " frames");
   }
   if (h.rows() < 3) return single;
   // Nothing pulls upwards: the interior-point method would have no scale to work with.
@@ -163,7 +161,7 @@ Eigen::MatrixXd smooth_weights(const std::vector<Eigen::MatrixXd>& grams, const 
   double mean = 0;
   for (const Eigen::MatrixXd& gram : grams) mean += gram.diagonal().mean() / double(grams.size());
   const double lift = kLift * mean;
-  TemporalSystem system(grams, h.rows(), mu);
+  TemporalSystem system(grams, second_differences(times), mu);
   InteriorPoint method(system, right, lift);
   method.solve();
   return polished(system, right, method.sides(), method.solution().matrix(), lift);

@@ -11,17 +11,19 @@ namespace mimetra {
 /// trace(G) / D. Throws std::invalid_argument where the median time step is not positive.
 double smoothness_penalty(double smoothness, const Eigen::VectorXd& times, double mean_diagonal);
 
-/// Minimises sum_f (beta_f^T G_f beta_f - 2 h_f^T beta_f) + mu sum_f |second difference of beta|^2
+/// Minimises sum_f (beta_f^T G_f beta_f - 2 h_f^T beta_f) + mu |D2 beta|^2 with the second
+/// differences D2
 /// over 0 <= beta <= 1: an interior-point method on the banded system, polished on its active set.
 ///
-/// `grams`: D x D, one for all frames or one for each; `h` F x D; `single` (F x D), the solution
-/// without the penalty, is returned where there are fewer than three frames. Throws
-/// std::invalid_argument where the number of Gram matrices is neither 1 nor F, std::runtime_error
-/// where it does not converge.
+/// `grams`: D x D, one for all frames or one for each; `h` F x D; `times` F, ascending; `single` (F
+/// x D), the solution without the penalty, is returned where there are fewer than three frames.
+/// Throws std::invalid_argument where the number of Gram matrices is neither 1 nor F,
+/// std::runtime_error where it does not converge.
 ///
 /// [Mehrotra. On the implementation of a primal-dual interior point method. SIAM J. Optimization 2,
 /// 1992]
 Eigen::MatrixXd smooth_weights(const std::vector<Eigen::MatrixXd>& grams, const Eigen::MatrixXd& h,
-                               double mu, const Eigen::MatrixXd& single);
+                               const Eigen::VectorXd& times, double mu,
+                               const Eigen::MatrixXd& single);
 
 }  // namespace mimetra

@@ -15,8 +15,12 @@ using ConstColumn = Eigen::Map<const Eigen::VectorXd>;
 
 }  // namespace
 
-TemporalSystem::TemporalSystem(std::vector<Eigen::MatrixXd> grams, Eigen::Index frames, double mu)
-    : grams_(std::move(grams)), frames_(frames), mu_(mu) {}
+TemporalSystem::TemporalSystem(std::vector<Eigen::MatrixXd> grams, SecondDifferences differences,
+                               double mu)
+    : grams_(std::move(grams)),
+      differences_(std::move(differences)),
+      frames_(differences_.rows() + 2),
+      mu_(mu) {}
 
 const Eigen::MatrixXd& TemporalSystem::gram(Eigen::Index frame) const {
   return grams_[grams_.size() == 1 ? 0 : frame];
@@ -26,28 +30,27 @@ Eigen::Index TemporalSystem::size(Eigen::Index block) const {
   return std::min<Eigen::Index>(2, frames_ - first(block));
 }
 
-/// Entry (a, b) of mu D2^T D2: row f of D2 is 1, -2, 1 at frames f, f + 1, f + 2.
+/// Entry (a, b) of mu D2^T D2: row f of D2 has three entries, at frames f, f + 1 and f + 2.
 double TemporalSystem::coupling(Eigen::Index a, Eigen::Index b) const {
-  constexpr double kDifference[3] = {1, -2, 1};
   const Eigen::Index low = std::max<Eigen::Index>({0, a - 2, b - 2});
   const Eigen::Index high = std::min({a, b, frames_ - 3});
   double sum = 0;
-  for (Eigen::Index f = low; f <= high; ++f) sum += kDifference[a - f] * kDifference[b - f];
+  for (Eigen::Index f = low; f <= high; ++f) {
+    sum += differences_(f, a - f) * differences_(f, b - f);
+  }
   return mu_ * sum;
 }
 
 TemporalSystem::Rows TemporalSystem::product(const Rows& x) const {
-  const Eigen::Index n = frames_ - 2;
-  const Rows second = mu_ * (x.topRows(n) - 2 * x.middleRows(1, n) + x.bottomRows(n));
   Rows result(x.rows(), x.cols());
   if (grams_.size() == 1) {
     result.noalias() = x * grams_.front();
   } else {
     for (Eigen::Index f = 0; f < frames_; ++f) result.row(f) = x.row(f) * grams_[f];
   }
-  result.topRows(n) += second;
-  result.middleRows(1, n) -= 2 * second;
-  result.bottomRows(n) += second;
+  const Eigen::Index n = differences_.rows();
+  const Rows second = mu_ * differences_of(differences_, x);
+  for (int i = 0; i < 3; ++i) result.middleRows(i, n) += differences_.col(i).asDiagonal() * second;
   return result;
 }
 

@@ -4,6 +4,8 @@
 
 #include <Eigen/Core>
 
+#include <mimetra/model/second_differences.h>
+
 namespace mimetra {
 
 /// The system of temporal smoothing, H = blockdiag(G_f) + mu D2^T D2 with D2 the second differences
@@ -13,8 +15,8 @@ class TemporalSystem {
  public:
   using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-  /// `grams`: D x D, one for all frames or one for each. \pre frames >= 3
-  TemporalSystem(std::vector<Eigen::MatrixXd> grams, Eigen::Index frames, double mu);
+  /// `grams`: D x D, one for all frames or one for each; `differences` F - 2 rows. \pre F >= 3
+  TemporalSystem(std::vector<Eigen::MatrixXd> grams, SecondDifferences differences, double mu);
 
   /// H x (F x D).
   Rows product(const Rows& x) const;
@@ -36,6 +38,7 @@ class TemporalSystem {
   Eigen::MatrixXd lower_block(Eigen::Index block, const Rows& free) const;
 
   std::vector<Eigen::MatrixXd> grams_;
+  SecondDifferences differences_;
   Eigen::Index frames_;
   double mu_;
   std::vector<Eigen::MatrixXd> cholesky_;  // L_k, lower triangles

@@ -183,8 +183,8 @@ void BlendshapeTransfer::State::smooth(const MeshSequence& performance, const Ei
                                        Eigen::MatrixXd& beta) const {
   const double mu = smoothness_penalty(options.smoothness, performance.times(), mean_diagonal);
   const Eigen::MatrixXd seen_gram = system(seen, seen);
-  beta(Eigen::all, seen) =
-      smooth_weights({seen_gram}, h(Eigen::all, seen), mu, beta(Eigen::all, seen));
+  beta(Eigen::all, seen) = smooth_weights({seen_gram}, h(Eigen::all, seen), performance.times(), mu,
+                                          beta(Eigen::all, seen));
 }
 
 BlendshapeTransfer::BlendshapeTransfer(const Positions& source_rest, const BlendshapeModel& target,
