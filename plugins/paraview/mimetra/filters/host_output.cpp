@@ -1,0 +1,46 @@
+#include "host_output.h"
+
+#include <limits>
+
+#include <vtkCellData.h>
+#include <vtkDoubleArray.h>
+#include <vtkNew.h>
+#include <vtkPointData.h>
+#include <vtkPolyData.h>
+#include <vtkTable.h>
+
+#include <mimetra/vtk/poly_data.h>
+
+using namespace mimetra;
+
+namespace {
+
+void remove_normals(vtkDataSetAttributes& attributes) {
+  vtkDataArray* normals = attributes.GetNormals();
+  if (normals && normals->GetName()) attributes.RemoveArray(normals->GetName());
+}
+
+}  // namespace
+
+void show_shape(vtkPolyData& output, vtkPolyData& input, const Positions& shape,
+                const std::optional<Positions>& rest) {
+  output.ShallowCopy(&input);
+  remove_normals(*output.GetPointData());
+  remove_normals(*output.GetCellData());
+  output.GetPointData()->RemoveArray(kDisplacement);
+  output.GetPointData()->RemoveArray(kDisplacementLength);
+  set_positions(output, shape, Precision::double_precision);
+  set_rest(output, rest);
+  if (rest) add_displacement(output, shape, *rest);
+}
+
+void fill(vtkTable& output, const Table& table) {
+  for (std::size_t column = 0; column < table.columns.size(); ++column) {
+    vtkNew<vtkDoubleArray> values;
+    values->SetName(table.columns[column].c_str());
+    for (const auto& row : table.rows) {
+      values->InsertNextValue(row[column].value_or(std::numeric_limits<double>::quiet_NaN()));
+    }
+    output.AddColumn(values);
+  }
+}

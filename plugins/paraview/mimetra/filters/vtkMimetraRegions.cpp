@@ -1,0 +1,45 @@
+#include "vtkMimetraRegions.h"
+
+#include <vtkObjectFactory.h>
+#include <vtkPolyData.h>
+
+#include <mimetra/operations/operation.h>
+#include <mimetra/vtk/poly_data.h>
+
+using namespace mimetra;
+
+vtkStandardNewMacro(vtkMimetraRegions);
+
+namespace {
+
+/// 1 on the vertices of one region. Throws UsageError where there is no such region.
+Field mask_of(const Regions& regions, int index) {
+  const int count = static_cast<int>(regions.regions.size());
+  if (index >= count) {
+    throw UsageError("Displayed Region: expected at most " + std::to_string(count - 1) +
+                     ", the last region, found " + std::to_string(index));
+  }
+  Field mask{"displayed_region", Field::Location::vertices, Eigen::VectorXd::Zero(regions.vertices),
+             true};
+  for (const VertexIndex vertex : regions.regions[static_cast<std::size_t>(index)].vertices) {
+    mask.values(vertex, 0) = 1;
+  }
+  return mask;
+}
+
+}  // namespace
+
+vtkMimetraRegions::vtkMimetraRegions() : vtkMimetraFilter("regions", "sequence") {}
+
+void vtkMimetraRegions::show(const Outcome& outcome, vtkPolyData& input, int frame,
+                             vtkInformationVector* outputs) {
+  vtkPolyData* output = vtkPolyData::GetData(outputs);
+  output->ShallowCopy(&input);
+  const auto& [regions, shown] = std::get<RegionData>(outcome.outputs.at("out").front().data);
+  const MeshSequence& sequence = shown.sequence;
+  for (const Field& field : shown.fields) add_field(*output, field, sequence.connectivity());
+  add_displacement(*output, sequence.frame(frame), sequence.rest());
+  if (DisplayedRegion >= 0) {
+    add_field(*output, mask_of(regions, DisplayedRegion), sequence.connectivity());
+  }
+}

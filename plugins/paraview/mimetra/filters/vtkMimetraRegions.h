@@ -1,0 +1,22 @@
+#pragma once
+
+#include "vtkMimetraFilter.h"
+
+/// Regions of interest as fields on the input.
+class MIMETRAFILTERS_EXPORT vtkMimetraRegions : public vtkMimetraFilter {
+ public:
+  vtkTypeMacro(vtkMimetraRegions, vtkMimetraFilter);
+  static vtkMimetraRegions* New();
+
+  /// The region whose vertices are 1 in the point data `displayed_region`; -1 for none.
+  vtkSetMacro(DisplayedRegion, int);
+  vtkGetMacro(DisplayedRegion, int);
+
+ protected:
+  vtkMimetraRegions();
+  void show(const mimetra::Outcome& outcome, vtkPolyData& input, int frame,
+            vtkInformationVector* outputs) override;
+
+ private:
+  int DisplayedRegion = -1;
+};

@@ -1,0 +1,95 @@
+#include "vtkMimetraTransfer.h"
+
+#include <vtkInformation.h>
+#include <vtkInformationVector.h>
+#include <vtkObjectFactory.h>
+#include <vtkPolyData.h>
+#include <vtkStreamingDemandDrivenPipeline.h>
+#include <vtkTable.h>
+
+#include <mimetra/operations/operation.h>
+#include <mimetra/vtk/poly_data.h>
+
+#include "host_output.h"
+#include "operation_call.h"
+#include "time_steps.h"
+
+using namespace mimetra;
+
+vtkStandardNewMacro(vtkMimetraTransfer);
+
+vtkMimetraTransfer::vtkMimetraTransfer() : vtkMimetraFilter("transfer", "source") {
+  SetNumberOfInputPorts(2);
+  SetNumberOfOutputPorts(2);
+}
+
+int vtkMimetraTransfer::FillInputPortInformation(int port, vtkInformation* info) {
+  if (port == 1) info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1);
+  return Superclass::FillInputPortInformation(port, info);
+}
+
+int vtkMimetraTransfer::FillOutputPortInformation(int port, vtkInformation* info) {
+  info->Set(vtkDataObject::DATA_TYPE_NAME(), port == 0 ? "vtkPolyData" : "vtkTable");
+  return 1;
+}
+
+int vtkMimetraTransfer::RequestUpdateExtent(vtkInformation* request, vtkInformationVector** inputs,
+                                            vtkInformationVector* outputs) {
+  using Pipeline = vtkStreamingDemandDrivenPipeline;
+  if (vtkInformation* target = inputs[1]->GetInformationObject(0)) {
+    // A target is one mesh: of a series, the first.
+    if (target->Has(Pipeline::TIME_STEPS())) {
+      target->Set(Pipeline::UPDATE_TIME_STEP(), target->Get(Pipeline::TIME_STEPS())[0]);
+    } else {
+      target->Remove(Pipeline::UPDATE_TIME_STEP());
+    }
+  }
+  return Superclass::RequestUpdateExtent(request, inputs, outputs);
+}
+
+void vtkMimetraTransfer::give_further_inputs(vtkInformationVector** inputs) {
+  const vtkMTimeType changed = input_changed_at(1);
+  if (changed == 0) {
+    target_ = nullptr;
+    call().take_back("target");
+  } else if (changed != given_at_) {
+    target_ = &mesh_of(vtkDataObject::GetData(inputs[1]));
+    Positions positions = positions_of(*target_, "the target");
+    auto connectivity = std::make_shared<Connectivity>(connectivity_of(*target_, "the target"));
+    ShapeBasis none{{}, Eigen::MatrixXd(positions.size(), 0)};
+    call().give("target", {"the target", BlendshapeModel(std::move(connectivity),
+                                                         std::move(positions), std::move(none))});
+  }
+  given_at_ = changed;
+}
+
+std::vector<std::string> vtkMimetraTransfer::wanted_outputs(const Invocation& invocation) {
+  const auto targets = invocation.inputs.find("target");
+  if (targets == invocation.inputs.end() || targets->second.size() > 1) {
+    throw UsageError("expected one target: a mesh at the port Target, or a model as Target File");
+  }
+  const auto& model = std::get<BlendshapeModel>(targets->second.front().data);
+  std::vector<std::string> wanted;
+  if (!invocation.parameters.flag("full")) wanted.push_back("regions-out");
+  if (invocation.parameters.text("space") != "vertex" && model.expressions().size() > 0) {
+    wanted.push_back("weights-out");
+  }
+  return wanted;
+}
+
+void vtkMimetraTransfer::show(const Outcome& outcome, vtkPolyData& input, int frame,
+                              vtkInformationVector* outputs) {
+  const auto& result = std::get<SequenceRead>(outcome.outputs.at("out").front().data).sequence;
+  vtkPolyData* output = vtkPolyData::GetData(outputs, 0);
+  const auto rest = result.rest_is_known() ? std::optional(result.rest()) : std::nullopt;
+  show_shape(*output, target_ ? *target_ : input, result.frame(frame), rest);
+  const auto regions = outcome.outputs.find("regions-out");
+  if (regions != outcome.outputs.end()) {
+    const auto& fields = std::get<RegionData>(regions->second.front().data).fields.fields;
+    for (const Field& field : fields) add_field(*output, field, result.connectivity());
+  }
+  const auto weights = outcome.outputs.find("weights-out");
+  if (weights != outcome.outputs.end()) {
+    fill(*vtkTable::GetData(outputs, 1), std::get<Table>(weights->second.front().data));
+  }
+}
