@@ -8,7 +8,7 @@ import tempfile
 import unittest
 
 import numpy as np
-from paraview import servermanager, simple
+from paraview import simple
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkOutputWindow, vtkStringOutputWindow
 
@@ -58,11 +58,11 @@ class Sample:
 
 def at(proxy, time=None, port=0):
     """The data of a source or filter at a time."""
-    if time is None:
-        proxy.UpdatePipeline()
-    else:
-        proxy.UpdatePipeline(time)
-    return servermanager.Fetch(servermanager.OutputPort(proxy, port))
+    proxy.UpdatePipeline(*([] if time is None else [time]))
+    data = proxy.GetClientSideObject().GetOutputDataObject(port)
+    kept = data.NewInstance()
+    kept.ShallowCopy(data)
+    return kept
 
 
 def points(mesh):

@@ -205,9 +205,7 @@ void add_field(vtkPolyData& data, const Field& field, const Connectivity& connec
   }
 }
 
-void add_displacement(vtkPolyData& data, const Eigen::Ref<const Positions>& positions,
-                      const Positions& rest) {
-  const Eigen::MatrixXd displacement = positions - rest;
+void add_displacement(vtkPolyData& data, const Eigen::MatrixXd& displacement) {
   data.GetPointData()->AddArray(float_array(kDisplacement, displacement));
   data.GetPointData()->AddArray(
       float_array(kDisplacementLength, displacement.rowwise().norm().eval()));

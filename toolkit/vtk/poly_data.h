@@ -37,11 +37,10 @@ void set_positions(vtkPolyData& data, const Eigen::Ref<const Positions>& positio
 /// largest of its triangles', and are 0 on cells of other kinds.
 void add_field(vtkPolyData& data, const Field& field, const Connectivity& connectivity);
 
-/// Point data of FieldSequence::displacement: a vector, and its length.
+/// Point data of FieldSequence::displacement: the vector from the rest pose, and its length.
 constexpr const char* kDisplacement = "displacement";
 constexpr const char* kDisplacementLength = "displacement_length";
-void add_displacement(vtkPolyData& data, const Eigen::Ref<const Positions>& positions,
-                      const Positions& rest);
+void add_displacement(vtkPolyData& data, const Eigen::MatrixXd& displacement);
 
 /// Field data (N x 3, double) that carry the rest pose along a pipeline.
 constexpr const char* kRestPose = "mimetra_rest";

@@ -64,7 +64,7 @@ class FrameData {
   vtkPolyData& at(int frame) {
     const PositionsView positions = fields_.sequence.frame(frame);
     set_positions(*data_, positions, Precision::single_precision);
-    if (fields_.displacement) add_displacement(*data_, positions, fields_.sequence.rest());
+    if (fields_.displacement) add_displacement(*data_, positions - fields_.sequence.rest());
     return *data_;
   }
 

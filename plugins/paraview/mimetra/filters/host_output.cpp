@@ -22,16 +22,14 @@ void remove_normals(vtkDataSetAttributes& attributes) {
 
 }  // namespace
 
-void show_shape(vtkPolyData& output, vtkPolyData& input, const Positions& shape,
-                const std::optional<Positions>& rest) {
+void show_shape(vtkPolyData& output, vtkPolyData& input, const Positions& shape) {
   output.ShallowCopy(&input);
   remove_normals(*output.GetPointData());
   remove_normals(*output.GetCellData());
   output.GetPointData()->RemoveArray(kDisplacement);
   output.GetPointData()->RemoveArray(kDisplacementLength);
+  set_rest(output, {});
   set_positions(output, shape, Precision::double_precision);
-  set_rest(output, rest);
-  if (rest) add_displacement(output, shape, *rest);
 }
 
 void fill(vtkTable& output, const Table& table) {

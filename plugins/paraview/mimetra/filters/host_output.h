@@ -1,17 +1,13 @@
 #pragma once
 
-#include <optional>
-
 #include <mimetra/operations/data.h>
 
 class vtkPolyData;
 class vtkTable;
 
-/// Makes `output` what `input` is, in another shape: what the input tells of its own shape
-/// (normals, displacement, rest pose) gives way to what is true of the new one. `rest` where it is
-/// known.
-void show_shape(vtkPolyData& output, vtkPolyData& input, const mimetra::Positions& shape,
-                const std::optional<mimetra::Positions>& rest);
+/// Makes `output` what `input` is, in another shape: what the input tells of its own shape (normals,
+/// displacement, rest pose) is left out.
+void show_shape(vtkPolyData& output, vtkPolyData& input, const mimetra::Positions& shape);
 
 /// One column of numbers for each of the table's; an empty cell is NaN.
 void fill(vtkTable& output, const mimetra::Table& table);

@@ -135,13 +135,13 @@ Invocation OperationCall::invocation(const Progress& progress, const Log& log) c
 
 const Outcome& OperationCall::run(Invocation invocation, const std::vector<std::string>& wanted) {
   for (const std::string& output : wanted) invocation.wanted[output] = {};
-  const bool may_keep = has_input(kComponents) && !invocation.inputs.contains(kComponents);
-  if (may_keep) invocation.wanted[kComponentsOut] = {};
+  const bool has_components = invocation.inputs.contains(kComponents);
+  if (has_components) invocation.wanted.erase(kComponentsOut);
   Outcome outcome = operation_.run(invocation);
-  for (const auto& [name, values] : outcome.outputs) {
+  for (auto& [name, values] : outcome.outputs) {
     if (!std::holds_alternative<Components>(values.front().data)) continue;
     ++decompositions_;
-    if (may_keep) components_ = values.front();
+    if (name == kComponentsOut) components_ = std::move(values.front());
   }
   return outcome_.emplace(std::move(outcome));
 }

@@ -33,7 +33,8 @@ class OperationCall {
   /// True while what was computed still holds.
   bool is_done() const { return outcome_.has_value(); }
   const mimetra::Outcome& outcome() const { return *outcome_; }
-  /// Runs the operation for the outputs `wanted`. Throws what it throws.
+  /// Runs the operation for the outputs `wanted` besides those that it always makes. What it makes
+  /// as "components-out" is its input `components` from then on. Throws what it throws.
   const mimetra::Outcome& run(mimetra::Invocation invocation,
                               const std::vector<std::string>& wanted);
 

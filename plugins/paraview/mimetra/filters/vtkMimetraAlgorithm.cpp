@@ -29,7 +29,7 @@ std::vector<std::string> vtkMimetraAlgorithm::wanted_outputs(const Invocation&) 
   return {};
 }
 
-const Outcome& vtkMimetraAlgorithm::outcome() {
+const Outcome& vtkMimetraAlgorithm::outcome(double begin) {
   if (call_->is_done()) return call_->outcome();
   const Log log = [this](LogLevel level, const std::string& message) {
     if (level == LogLevel::warning) {
@@ -38,8 +38,10 @@ const Outcome& vtkMimetraAlgorithm::outcome() {
       vtkDebugMacro(<< message);
     }
   };
-  Invocation invocation =
-      call_->invocation([this](double share) { return show_progress(share); }, log);
+  const mimetra::Progress progress = [this, begin](double share) {
+    return show_progress(begin + (1 - begin) * share);
+  };
+  Invocation invocation = call_->invocation(progress, log);
   const std::vector<std::string> wanted = wanted_outputs(invocation);
   return call_->run(std::move(invocation), wanted);
 }
@@ -61,4 +63,9 @@ vtkMimetraAlgorithm::Attempt vtkMimetraAlgorithm::attempt(const std::function<vo
 bool vtkMimetraAlgorithm::show_progress(double share) {
   UpdateProgress(share);
   return GetAbortExecute() == 0;
+}
+
+void vtkMimetraAlgorithm::begin_execution() {
+  // Not by its setter, which would make this algorithm and all after it execute again.
+  AbortExecute = 0;
 }

@@ -36,13 +36,16 @@ class MIMETRAFILTERS_EXPORT vtkMimetraAlgorithm : public vtkPolyDataAlgorithm {
   OperationCall& call() { return *call_; }
   /// Outputs besides those that the operation always makes.
   virtual std::vector<std::string> wanted_outputs(const mimetra::Invocation& invocation);
-  /// The operation's outcome, kept while it holds. Throws what the operation throws.
-  const mimetra::Outcome& outcome();
+  /// The operation's outcome, kept while it holds; its progress is shown from `begin` on. Throws
+  /// what the operation throws.
+  const mimetra::Outcome& outcome(double begin = 0);
   enum class Attempt { done, aborted, failed };
   /// Calls `work`; what it throws is shown as an error, save an abort.
   Attempt attempt(const std::function<void()>& work);
   /// Shows progress; false to stop.
   bool show_progress(double share);
+  /// Forgets an abort of an earlier execution.
+  void begin_execution();
 
  private:
   vtkMimetraAlgorithm(const vtkMimetraAlgorithm&) = delete;

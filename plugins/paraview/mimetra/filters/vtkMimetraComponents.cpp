@@ -38,8 +38,9 @@ void vtkMimetraComponents::show(const Outcome& outcome, vtkPolyData& input, int,
   for (int k = 0; k < components.count(); ++k) {
     vtkNew<vtkPolyData> block;
     const PositionsView moved(components.displacements.row(k).data(), components.vertices(), 3);
-    const Positions shape = components.rest + moved;
-    show_shape(*block, input, shape, components.rest);
+    show_shape(*block, input, components.rest + moved);
+    set_rest(*block, components.rest);
+    add_displacement(*block, moved);
     const Field support{"support", Field::Location::vertices,
                         components.support.row(k).transpose()};
     add_field(*block, support, faces);

@@ -28,6 +28,9 @@ std::vector<double> times_of(vtkInformation& info) {
   return {times, times + info.Length(Pipeline::TIME_STEPS())};
 }
 
+/// Share of the progress in which time steps are read.
+constexpr double kReading = 0.3;
+
 }  // namespace
 
 vtkMimetraFilter::vtkMimetraFilter(const char* operation, const char* input, Takes takes)
@@ -76,6 +79,7 @@ int vtkMimetraFilter::RequestUpdateExtent(vtkInformation* request, vtkInformatio
 
 int vtkMimetraFilter::RequestData(vtkInformation* request, vtkInformationVector** inputs,
                                   vtkInformationVector* outputs) {
+  if (!request->Has(Pipeline::CONTINUE_EXECUTING())) begin_execution();
   vtkDataObject* data = vtkDataObject::GetData(inputs[0]);
   if (takes_ == Takes::shown_time_step) {
     steps_->begin({});
@@ -93,7 +97,7 @@ int vtkMimetraFilter::RequestData(vtkInformation* request, vtkInformationVector*
 bool vtkMimetraFilter::take(vtkDataObject* data) {
   const Attempt attempted = attempt([&] {
     steps_->add(data);
-    if (!show_progress(steps_->share())) throw Cancelled();
+    if (!show_progress(kReading * steps_->share())) throw Cancelled();
   });
   if (attempted == Attempt::aborted) steps_->begin(steps_->times());
   if (attempted == Attempt::failed) collecting_ = false;
@@ -115,7 +119,7 @@ void vtkMimetraFilter::compute_and_show(vtkDataObject* data, vtkInformationVecto
     const bool has_time = data->GetInformation()->Has(vtkDataObject::DATA_TIME_STEP());
     const double time =
         has_time ? data->GetInformation()->Get(vtkDataObject::DATA_TIME_STEP()) : asked_time_;
-    show(outcome(), mesh_of(data), steps_->nearest(time), outputs);
+    show(outcome(kReading), mesh_of(data), steps_->nearest(time), outputs);
   });
   failed_at_ = attempted == Attempt::failed ? now : 0;
 }

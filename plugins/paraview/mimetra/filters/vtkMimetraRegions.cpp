@@ -31,6 +31,10 @@ Field mask_of(const Regions& regions, int index) {
 
 vtkMimetraRegions::vtkMimetraRegions() : vtkMimetraFilter("regions", "sequence") {}
 
+std::vector<std::string> vtkMimetraRegions::wanted_outputs(const Invocation&) {
+  return {"components-out"};
+}
+
 void vtkMimetraRegions::show(const Outcome& outcome, vtkPolyData& input, int frame,
                              vtkInformationVector* outputs) {
   vtkPolyData* output = vtkPolyData::GetData(outputs);
@@ -38,7 +42,7 @@ void vtkMimetraRegions::show(const Outcome& outcome, vtkPolyData& input, int fra
   const auto& [regions, shown] = std::get<RegionData>(outcome.outputs.at("out").front().data);
   const MeshSequence& sequence = shown.sequence;
   for (const Field& field : shown.fields) add_field(*output, field, sequence.connectivity());
-  add_displacement(*output, sequence.frame(frame), sequence.rest());
+  add_displacement(*output, sequence.frame(frame) - sequence.rest());
   if (DisplayedRegion >= 0) {
     add_field(*output, mask_of(regions, DisplayedRegion), sequence.connectivity());
   }

@@ -14,6 +14,7 @@ class MIMETRAFILTERS_EXPORT vtkMimetraRegions : public vtkMimetraFilter {
 
  protected:
   vtkMimetraRegions();
+  std::vector<std::string> wanted_outputs(const mimetra::Invocation& invocation) override;
   void show(const mimetra::Outcome& outcome, vtkPolyData& input, int frame,
             vtkInformationVector* outputs) override;
 

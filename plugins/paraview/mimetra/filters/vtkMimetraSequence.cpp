@@ -42,6 +42,7 @@ void vtkMimetraSequence::read() {
 
 int vtkMimetraSequence::RequestInformation(vtkInformation*, vtkInformationVector**,
                                            vtkInformationVector* outputs) {
+  begin_execution();
   if (read_at_ != GetMTime()) attempt([this] { read(); });
   read_at_ = GetMTime();
   vtkInformation* out = outputs->GetInformationObject(0);

@@ -70,7 +70,9 @@ std::vector<std::string> vtkMimetraTransfer::wanted_outputs(const Invocation& in
   }
   const auto& model = std::get<BlendshapeModel>(targets->second.front().data);
   std::vector<std::string> wanted;
-  if (!invocation.parameters.flag("full")) wanted.push_back("regions-out");
+  const bool full = invocation.parameters.flag("full");
+  if (!full) wanted.push_back("regions-out");
+  if (!full && !invocation.inputs.contains("regions")) wanted.push_back("components-out");
   if (invocation.parameters.text("space") != "vertex" && model.expressions().size() > 0) {
     wanted.push_back("weights-out");
   }
@@ -81,8 +83,11 @@ void vtkMimetraTransfer::show(const Outcome& outcome, vtkPolyData& input, int fr
                               vtkInformationVector* outputs) {
   const auto& result = std::get<SequenceRead>(outcome.outputs.at("out").front().data).sequence;
   vtkPolyData* output = vtkPolyData::GetData(outputs, 0);
-  const auto rest = result.rest_is_known() ? std::optional(result.rest()) : std::nullopt;
-  show_shape(*output, target_ ? *target_ : input, result.frame(frame), rest);
+  show_shape(*output, target_ ? *target_ : input, result.frame(frame));
+  if (result.rest_is_known()) {
+    set_rest(*output, result.rest());
+    add_displacement(*output, result.frame(frame) - result.rest());
+  }
   const auto regions = outcome.outputs.find("regions-out");
   if (regions != outcome.outputs.end()) {
     const auto& fields = std::get<RegionData>(regions->second.front().data).fields.fields;
