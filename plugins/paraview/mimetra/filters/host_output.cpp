@@ -32,6 +32,23 @@ void show_shape(vtkPolyData& output, vtkPolyData& input, const Positions& shape)
   set_positions(output, shape, Precision::double_precision);
 }
 
+void make_fields(vtkPolyData& holder, vtkPolyData& mesh, const std::vector<Field>& fields,
+                 const Connectivity& connectivity) {
+  holder.Initialize();
+  holder.CopyStructure(&mesh);
+  for (const Field& field : fields) add_field(holder, field, connectivity);
+}
+
+void share_fields(vtkPolyData& holder, vtkPolyData& output) {
+  const auto share = [](vtkDataSetAttributes& from, vtkDataSetAttributes& to) {
+    for (int i = 0; i < from.GetNumberOfArrays(); ++i) to.AddArray(from.GetAbstractArray(i));
+    // ParaView colours what it shows first by the active scalars.
+    if (!to.GetScalars() && from.GetScalars()) to.SetActiveScalars(from.GetScalars()->GetName());
+  };
+  share(*holder.GetPointData(), *output.GetPointData());
+  share(*holder.GetCellData(), *output.GetCellData());
+}
+
 void fill(vtkTable& output, const Table& table) {
   for (std::size_t column = 0; column < table.columns.size(); ++column) {
     vtkNew<vtkDoubleArray> values;

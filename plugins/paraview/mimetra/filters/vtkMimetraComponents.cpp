@@ -25,6 +25,10 @@ int vtkMimetraComponents::FillOutputPortInformation(int port, vtkInformation* in
   return 1;
 }
 
+bool vtkMimetraComponents::moves(int) const {
+  return false;
+}
+
 std::vector<std::string> vtkMimetraComponents::wanted_outputs(const Invocation&) {
   return {"weights-out"};
 }

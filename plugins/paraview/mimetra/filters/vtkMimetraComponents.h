@@ -11,6 +11,7 @@ class MIMETRAFILTERS_EXPORT vtkMimetraComponents : public vtkMimetraFilter {
  protected:
   vtkMimetraComponents();
   int FillOutputPortInformation(int port, vtkInformation* info) override;
+  bool moves(int port) const override;
   std::vector<std::string> wanted_outputs(const mimetra::Invocation& invocation) override;
   void show(const mimetra::Outcome& outcome, vtkPolyData& input, int frame,
             vtkInformationVector* outputs) override;

@@ -49,8 +49,8 @@ int vtkMimetraFilter::FillInputPortInformation(int, vtkInformation* info) {
 
 int vtkMimetraFilter::RequestInformation(vtkInformation*, vtkInformationVector** inputs,
                                          vtkInformationVector* outputs) {
-  // What is a table over time does not change with it.
-  for (int port = 1; port < GetNumberOfOutputPorts(); ++port) {
+  for (int port = 0; port < outputs->GetNumberOfInformationObjects(); ++port) {
+    if (moves(port)) continue;
     outputs->GetInformationObject(port)->Remove(Pipeline::TIME_STEPS());
     outputs->GetInformationObject(port)->Remove(Pipeline::TIME_RANGE());
   }
@@ -70,8 +70,9 @@ int vtkMimetraFilter::RequestUpdateExtent(vtkInformation* request, vtkInformatio
   if (times.empty()) return 1;
   const int port = std::max(0, request->Get(vtkExecutive::FROM_OUTPUT_PORT()));
   vtkInformation* out = outputs->GetInformationObject(port);
-  asked_time_ = out->Has(Pipeline::UPDATE_TIME_STEP()) ? out->Get(Pipeline::UPDATE_TIME_STEP())
-                                                       : times.front();
+  // What stands still is made of the first time step, whatever is shown beside it.
+  const bool moves = out->Has(Pipeline::TIME_STEPS()) && out->Has(Pipeline::UPDATE_TIME_STEP());
+  asked_time_ = moves ? out->Get(Pipeline::UPDATE_TIME_STEP()) : times.front();
   const auto next = collecting_ ? steps_->next_time() : std::nullopt;
   in->Set(Pipeline::UPDATE_TIME_STEP(), next.value_or(asked_time_));
   return 1;
@@ -119,7 +120,11 @@ void vtkMimetraFilter::compute_and_show(vtkDataObject* data, vtkInformationVecto
     const bool has_time = data->GetInformation()->Has(vtkDataObject::DATA_TIME_STEP());
     const double time =
         has_time ? data->GetInformation()->Get(vtkDataObject::DATA_TIME_STEP()) : asked_time_;
-    show(outcome(kReading), mesh_of(data), steps_->nearest(time), outputs);
+    const Outcome& computed = outcome(kReading);
+    vtkPolyData& mesh = mesh_of(data);
+    if (prepared_at_ != now) prepare(computed, mesh);
+    prepared_at_ = now;
+    show(computed, mesh, steps_->nearest(time), outputs);
   });
   failed_at_ = attempted == Attempt::failed ? now : 0;
 }
@@ -129,3 +134,9 @@ vtkMTimeType vtkMimetraFilter::input_changed_at(int port) {
 }
 
 void vtkMimetraFilter::give_further_inputs(vtkInformationVector**) {}
+
+bool vtkMimetraFilter::moves(int port) const {
+  return port == 0;
+}
+
+void vtkMimetraFilter::prepare(const Outcome&, vtkPolyData&) {}

@@ -28,10 +28,14 @@ class MIMETRAFILTERS_EXPORT vtkMimetraFilter : public vtkMimetraAlgorithm {
   int RequestData(vtkInformation* request, vtkInformationVector** inputs,
                   vtkInformationVector* outputs) override;
 
+  /// True where an output has time steps; a table over time has none.
+  virtual bool moves(int port) const;
   /// When what comes in at a port last became other data; 0 for nothing.
   vtkMTimeType input_changed_at(int port);
   /// Gives the operation what comes in at other ports.
   virtual void give_further_inputs(vtkInformationVector** inputs);
+  /// Makes what stays the same over time; called before the first show() after any change.
+  virtual void prepare(const mimetra::Outcome& outcome, vtkPolyData& input);
   /// Writes the outputs; `input` is the mesh at the time of the sequence's frame `frame`.
   virtual void show(const mimetra::Outcome& outcome, vtkPolyData& input, int frame,
                     vtkInformationVector* outputs) = 0;
@@ -49,5 +53,6 @@ class MIMETRAFILTERS_EXPORT vtkMimetraFilter : public vtkMimetraAlgorithm {
   bool has_sequence_ = false;
   vtkMTimeType collected_at_ = 0;
   vtkMTimeType failed_at_ = 0;
+  vtkMTimeType prepared_at_ = 0;
   double asked_time_ = 0;
 };

@@ -1,10 +1,11 @@
 #include "vtkMimetraRegions.h"
 
 #include <vtkObjectFactory.h>
-#include <vtkPolyData.h>
 
 #include <mimetra/operations/operation.h>
 #include <mimetra/vtk/poly_data.h>
+
+#include "host_output.h"
 
 using namespace mimetra;
 
@@ -35,15 +36,18 @@ std::vector<std::string> vtkMimetraRegions::wanted_outputs(const Invocation&) {
   return {"components-out"};
 }
 
+void vtkMimetraRegions::prepare(const Outcome& outcome, vtkPolyData& input) {
+  const auto& [regions, shown] = std::get<RegionData>(outcome.outputs.at("out").front().data);
+  std::vector<Field> fields = shown.fields;
+  if (DisplayedRegion >= 0) fields.push_back(mask_of(regions, DisplayedRegion));
+  make_fields(*fields_, input, fields, shown.sequence.connectivity());
+}
+
 void vtkMimetraRegions::show(const Outcome& outcome, vtkPolyData& input, int frame,
                              vtkInformationVector* outputs) {
+  const auto& shown = std::get<RegionData>(outcome.outputs.at("out").front().data).fields;
   vtkPolyData* output = vtkPolyData::GetData(outputs);
   output->ShallowCopy(&input);
-  const auto& [regions, shown] = std::get<RegionData>(outcome.outputs.at("out").front().data);
-  const MeshSequence& sequence = shown.sequence;
-  for (const Field& field : shown.fields) add_field(*output, field, sequence.connectivity());
-  add_displacement(*output, sequence.frame(frame) - sequence.rest());
-  if (DisplayedRegion >= 0) {
-    add_field(*output, mask_of(regions, DisplayedRegion), sequence.connectivity());
-  }
+  share_fields(*fields_, *output);
+  add_displacement(*output, shown.sequence.frame(frame) - shown.sequence.rest());
 }

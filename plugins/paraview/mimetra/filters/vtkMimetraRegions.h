@@ -1,5 +1,8 @@
 #pragma once
 
+#include <vtkNew.h>
+#include <vtkPolyData.h>
+
 #include "vtkMimetraFilter.h"
 
 /// Regions of interest as fields on the input.
@@ -15,9 +18,11 @@ class MIMETRAFILTERS_EXPORT vtkMimetraRegions : public vtkMimetraFilter {
  protected:
   vtkMimetraRegions();
   std::vector<std::string> wanted_outputs(const mimetra::Invocation& invocation) override;
+  void prepare(const mimetra::Outcome& outcome, vtkPolyData& input) override;
   void show(const mimetra::Outcome& outcome, vtkPolyData& input, int frame,
             vtkInformationVector* outputs) override;
 
  private:
+  vtkNew<vtkPolyData> fields_;
   int DisplayedRegion = -1;
 };

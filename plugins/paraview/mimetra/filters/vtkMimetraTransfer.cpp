@@ -3,7 +3,6 @@
 #include <vtkInformation.h>
 #include <vtkInformationVector.h>
 #include <vtkObjectFactory.h>
-#include <vtkPolyData.h>
 #include <vtkStreamingDemandDrivenPipeline.h>
 #include <vtkTable.h>
 
@@ -79,6 +78,14 @@ std::vector<std::string> vtkMimetraTransfer::wanted_outputs(const Invocation& in
   return wanted;
 }
 
+void vtkMimetraTransfer::prepare(const Outcome& outcome, vtkPolyData& input) {
+  fields_->Initialize();
+  const auto regions = outcome.outputs.find("regions-out");
+  if (regions == outcome.outputs.end()) return;
+  const FieldSequence& shown = std::get<RegionData>(regions->second.front().data).fields;
+  make_fields(*fields_, target_ ? *target_ : input, shown.fields, shown.sequence.connectivity());
+}
+
 void vtkMimetraTransfer::show(const Outcome& outcome, vtkPolyData& input, int frame,
                               vtkInformationVector* outputs) {
   const auto& result = std::get<SequenceRead>(outcome.outputs.at("out").front().data).sequence;
@@ -88,11 +95,7 @@ void vtkMimetraTransfer::show(const Outcome& outcome, vtkPolyData& input, int fr
     set_rest(*output, result.rest());
     add_displacement(*output, result.frame(frame) - result.rest());
   }
-  const auto regions = outcome.outputs.find("regions-out");
-  if (regions != outcome.outputs.end()) {
-    const auto& fields = std::get<RegionData>(regions->second.front().data).fields.fields;
-    for (const Field& field : fields) add_field(*output, field, result.connectivity());
-  }
+  share_fields(*fields_, *output);
   const auto weights = outcome.outputs.find("weights-out");
   if (weights != outcome.outputs.end()) {
     fill(*vtkTable::GetData(outputs, 1), std::get<Table>(weights->second.front().data));

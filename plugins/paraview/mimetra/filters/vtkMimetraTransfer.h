@@ -1,5 +1,7 @@
 #pragma once
 
+#include <vtkNew.h>
+#include <vtkPolyData.h>
 #include <vtkSmartPointer.h>
 
 #include "vtkMimetraFilter.h"
@@ -18,10 +20,12 @@ class MIMETRAFILTERS_EXPORT vtkMimetraTransfer : public vtkMimetraFilter {
                           vtkInformationVector* outputs) override;
   std::vector<std::string> wanted_outputs(const mimetra::Invocation& invocation) override;
   void give_further_inputs(vtkInformationVector** inputs) override;
+  void prepare(const mimetra::Outcome& outcome, vtkPolyData& input) override;
   void show(const mimetra::Outcome& outcome, vtkPolyData& input, int frame,
             vtkInformationVector* outputs) override;
 
  private:
   vtkSmartPointer<vtkPolyData> target_;
+  vtkNew<vtkPolyData> fields_;
   vtkMTimeType given_at_ = 0;
 };
