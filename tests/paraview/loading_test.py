@@ -56,6 +56,17 @@ class Plugin(HostTest):
             self.assertEqual([domain.GetString(i) for i in range(domain.GetNumberOfStrings())],
                              parameter["choices"])
 
+    def test_comes_back_from_a_state_file(self):
+        simple.RegionsofInterest(Input=simple.Sphere(), K=7, Radius="12abs", Signed=1)
+        with tempfile.TemporaryDirectory() as folder:
+            state = os.path.join(folder, "state.pvsm")
+            servermanager.SaveState(state)
+            simple.ResetSession()
+            servermanager.LoadState(state)
+        [proxy] = [source for (name, _), source in simple.GetSources().items()
+                   if name.startswith("RegionsofInterest")]
+        self.assertEqual((proxy.K, proxy.Radius, proxy.Signed), (7, "12abs", 1))
+
     def test_shows_few_parameters_at_once(self):
         proxy = simple.RegionsofInterest(Input=simple.Sphere()).SMProxy
         shown = {name for name in ["k", "radius", "coverage", "rho", "iterations", "components"]

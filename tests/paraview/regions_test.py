@@ -45,6 +45,21 @@ class RegionsOfInterest(HostTest):
             for given, kept in zip(polygons(at(series, time)), polygons(at(found, time))):
                 self.assert_same(kept, given)
 
+    def test_takes_a_series_of_mesh_files(self):
+        folder = self.sample / "frames"
+        mimetra("convert", self.sample.take, "-o", folder)
+        # The mesh files alone, as other tools write them, tell of no rest pose.
+        (self.sample / "frames.rest.ply").unlink()
+        pvd = self.sample / "frames.pvd"
+        mimetra("regions", folder, "-k", 12, "-o", pvd)
+        series = simple.PLYReader(FileNames=sorted(map(str, folder.glob("*.ply"))))
+        found = self.filter_of(series)
+        expected = simple.PVDReader(FileName=str(pvd))
+        for step in range(12):
+            self.assert_command_fields(at(found, step), at(expected, step / 30))
+            self.assert_same(points(at(found, step)), points(at(expected, step / 30)))
+        self.assertEqual(decompositions(found), 1)
+
     def test_decomposes_once_however_the_time_and_the_shown_regions_change(self):
         series = simple.PVDReader(FileName=str(self.pvd))
         series.UpdatePipelineInformation()

@@ -109,7 +109,9 @@ Holder holder_of(const Parameter& parameter) {
     case ParameterKind::choice:
       return {"StringVectorProperty", "SetText", choice_domain(parameter.choices)};
     case ParameterKind::file:
-      return {"StringVectorProperty", "SetText", "<FileListDomain name=\"files\"/>"};
+      // What is typed may be a word, a pattern, or a model with an identity.
+      return {"StringVectorProperty", "SetText",
+              "<FileListDomain name=\"files\"/><Hints><AcceptAnyFile/></Hints>"};
     default:
       return {"StringVectorProperty", "SetText", ""};
   }
