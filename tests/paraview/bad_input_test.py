@@ -109,6 +109,15 @@ class BadInput(HostTest):
         self.assert_refused(series, "time 1: point 7 is not finite", SERIES_FILTERS)
         self.assert_refused(series, "the mesh: point 7 is not finite", ["GeodesicDistance"], 1)
 
+    def test_one_time_step_does_not_spoil_the_others_of_geodesic_distance(self):
+        meshes = self.moving()
+        meshes[1] = mesh_of(*grid(1))
+        filter = simple.GeodesicDistance(Input=self.series_of("spoilt", meshes))
+        with Messages() as messages:
+            counts = [at(filter, time).GetNumberOfPoints() for time in [0, 1, 2, 0]]
+        self.assertEqual(counts, [36, 0, 36, 36])
+        self.assertEqual(messages.text.count("ERR"), 1, messages.text)
+
     def test_a_polygon_of_two_corners(self):
         self.assert_refused(self.source_of(mesh_of(grid()[0], [[0, 1, 6], [0, 1]])),
                             "the mesh: face 1 has 2 corners, expected at least 3")

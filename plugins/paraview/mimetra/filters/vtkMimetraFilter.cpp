@@ -71,8 +71,8 @@ int vtkMimetraFilter::RequestUpdateExtent(vtkInformation* request, vtkInformatio
   const int port = std::max(0, request->Get(vtkExecutive::FROM_OUTPUT_PORT()));
   vtkInformation* out = outputs->GetInformationObject(port);
   // What stands still is made of the first time step, whatever is shown beside it.
-  const bool moves = out->Has(Pipeline::TIME_STEPS()) && out->Has(Pipeline::UPDATE_TIME_STEP());
-  asked_time_ = moves ? out->Get(Pipeline::UPDATE_TIME_STEP()) : times.front();
+  const bool is_asked = out->Has(Pipeline::TIME_STEPS()) && out->Has(Pipeline::UPDATE_TIME_STEP());
+  asked_time_ = is_asked ? out->Get(Pipeline::UPDATE_TIME_STEP()) : times.front();
   const auto next = collecting_ ? steps_->next_time() : std::nullopt;
   in->Set(Pipeline::UPDATE_TIME_STEP(), next.value_or(asked_time_));
   return 1;
@@ -85,6 +85,7 @@ int vtkMimetraFilter::RequestData(vtkInformation* request, vtkInformationVector*
   if (takes_ == Takes::shown_time_step) {
     steps_->begin({});
     collecting_ = true;
+    has_sequence_ = false;
   }
   if (collecting_ && !take(data)) {
     request->Set(Pipeline::CONTINUE_EXECUTING(), 1);
