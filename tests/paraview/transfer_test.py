@@ -122,14 +122,23 @@ class RegionTransfer(HostTest):
         self.assertEqual(decompositions(filter), 1)
         self.assertEqual(decompositions(regions), 1)
 
-    def test_refuses_no_target_and_two(self):
-        for inputs in [{}, {"TargetFile": self.model,
-                            "Target": simple.mimetraSequence(FileName=str(self.target))}]:
-            with Messages() as messages:
-                shown = at(simple.RegionTransfer(Input=self.source(), **inputs), 0)
-            self.assertEqual(shown.GetNumberOfPoints(), 0)
-            self.assertIn("expected one target: a mesh at the port Target, or a model as Target "
-                          "File", messages.text)
+    def test_takes_the_file_where_there_is_a_mesh_at_the_port_too(self):
+        out = self.sample / "file.npy"
+        mimetra("transfer", self.sample.take, self.model, "--full", "-o", out)
+        filter = simple.RegionTransfer(Input=self.source(), Full=1,
+                                       Target=simple.mimetraSequence(FileName=str(self.target)))
+        still = points(at(filter, 1))
+        filter.TargetFile = self.model
+        self.assert_frames(filter, np.load(out))
+        filter.TargetFile = ""
+        self.assert_same(points(at(filter, 1)), still)
+
+    def test_says_that_there_is_no_target(self):
+        with Messages() as messages:
+            shown = at(simple.RegionTransfer(Input=self.source()), 0)
+        self.assertEqual(shown.GetNumberOfPoints(), 0)
+        self.assertIn("expected a target: a mesh at the port Target, or a model as Target File",
+                      messages.text)
 
 
 if __name__ == "__main__":

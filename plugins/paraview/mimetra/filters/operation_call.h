@@ -2,7 +2,6 @@
 
 #include <map>
 #include <optional>
-#include <set>
 #include <string>
 #include <vector>
 
@@ -16,11 +15,11 @@ class OperationCall {
   explicit OperationCall(const std::string& name);
   explicit OperationCall(mimetra::Operation operation);
 
-  const mimetra::Operation& operation() const { return operation_; }
-
   /// Sets a parameter, or the path of an input; no text is the default, or no input. Values are
   /// checked when the operation runs. True where something changed.
   bool set(const std::string& name, const mimetra::ParameterValue& value);
+  /// True where it has another value than its default, or a path.
+  bool is_set(const std::string& name) const { return values_.contains(name); }
 
   /// Gives an input its value. True where it is another one than before.
   bool give(const std::string& input, mimetra::NamedData data);

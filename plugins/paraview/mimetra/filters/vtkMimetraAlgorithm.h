@@ -12,7 +12,6 @@
 class OperationCall;
 namespace mimetra {
 struct Invocation;
-struct Operation;
 struct Outcome;
 }  // namespace mimetra
 

@@ -47,7 +47,8 @@ int vtkMimetraTransfer::RequestUpdateExtent(vtkInformation* request, vtkInformat
 }
 
 void vtkMimetraTransfer::give_further_inputs(vtkInformationVector** inputs) {
-  const vtkMTimeType changed = input_changed_at(1);
+  // ParaView asks for a mesh at the port even where the target is a file.
+  const vtkMTimeType changed = call().is_set("target") ? 0 : input_changed_at(1);
   if (changed == 0) {
     target_ = nullptr;
     call().take_back("target");
@@ -63,11 +64,10 @@ void vtkMimetraTransfer::give_further_inputs(vtkInformationVector** inputs) {
 }
 
 std::vector<std::string> vtkMimetraTransfer::wanted_outputs(const Invocation& invocation) {
-  const auto targets = invocation.inputs.find("target");
-  if (targets == invocation.inputs.end() || targets->second.size() > 1) {
-    throw UsageError("expected one target: a mesh at the port Target, or a model as Target File");
+  if (!invocation.inputs.contains("target")) {
+    throw UsageError("expected a target: a mesh at the port Target, or a model as Target File");
   }
-  const auto& model = std::get<BlendshapeModel>(targets->second.front().data);
+  const auto& model = invocation.get<BlendshapeModel>("target");
   std::vector<std::string> wanted;
   const bool full = invocation.parameters.flag("full");
   if (!full) wanted.push_back("regions-out");
