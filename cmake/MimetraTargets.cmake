@@ -15,7 +15,13 @@ function(mimetra_library name)
   cmake_parse_arguments(ARG "" "" "SOURCES;HEADERS;USES;PRIVATE;PACKAGES" ${ARGN})
   add_library(mimetra_${name} STATIC ${ARG_SOURCES})
   add_library(mimetra::${name} ALIAS mimetra_${name})
-  set_target_properties(mimetra_${name} PROPERTIES EXPORT_NAME ${name})
+  # Plugins are shared libraries that hold these, and show their hosts nothing of them.
+  set_target_properties(
+    mimetra_${name}
+    PROPERTIES EXPORT_NAME ${name}
+               POSITION_INDEPENDENT_CODE ON
+               CXX_VISIBILITY_PRESET hidden
+               VISIBILITY_INLINES_HIDDEN ON)
   target_compile_features(mimetra_${name} PUBLIC cxx_std_20)
   # What one library allocates another frees: Eigen must align alike, whatever -march each has.
   target_compile_definitions(mimetra_${name} PUBLIC EIGEN_MAX_ALIGN_BYTES=16)

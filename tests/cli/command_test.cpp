@@ -72,6 +72,14 @@ TEST_F(Command, DecomposeWritesComponentsThatRegionsReads) {
   EXPECT_LT(found.at("vertex_share").get<double>(), 1);
 }
 
+TEST_F(Command, TransferLeavesItsComponentsForALaterRun) {
+  const std::string transfer = "transfer head --weights take.csv head@wide=1 -k 3 ";
+  ASSERT_EQ(run(transfer + "-o a.npy --components-out c.h5").code, 0);
+  const auto result = run(transfer + "-o b.npy --components c.h5");
+  ASSERT_EQ(result.code, 0) << result.err;
+  EXPECT_EQ(text_of(folder_ / "a.npy"), text_of(folder_ / "b.npy"));
+}
+
 TEST_F(Command, RegionsWritesATimeSeriesForParaView) {
   const auto result = run("regions head --weights take.csv -k 3 -o out/r.pvd");
   ASSERT_EQ(result.code, 0) << result.err;

@@ -41,6 +41,7 @@ TEST_F(ExitCode, Is2ForAnOutputThatTheRequestCannotMake) {
   const std::string source = "transfer head --weights take.csv ";
   expect_failure(source + "head --space vertex -o x --weights-out w.csv", 2, "--weights-out");
   expect_failure(source + "head --full -o x --regions-out r.pvd", 2, "--regions-out");
+  expect_failure(source + "head --full -o x --components-out c.h5", 2, "--components-out");
   expect_failure(source + "head head -o x", 2, "x/head: two outputs");
   expect_failure(source + "head -k 2 -o x --regions-out r.json --weights-out r.json", 2,
                  "r.json: two outputs");

@@ -1,3 +1,4 @@
+#include <fstream>
 #include <set>
 
 #include <gmock/gmock.h>
@@ -5,9 +6,11 @@
 #include <nlohmann/json.hpp>
 
 #include <mimetra/operations/listing.h>
+#include <mimetra/operations/loading.h>
 #include <mimetra/operations/operation.h>
 
 #include "shapes.h"
+#include "temporary_folder.h"
 
 namespace mimetra {
 namespace {
@@ -130,20 +133,84 @@ TEST(OperationTable, KnowsNoLandmarksWithoutTheModuleThatReadsThem) {
   EXPECT_THROW(toolkit().landmark_reader(), std::logic_error);
 }
 
-TEST(Operations, RunOnValuesWithoutFiles) {
-  const OperationTable table = toolkit();
+/// The waving grid onto itself, by two regions.
+Invocation transfer_of_the_grid(const OperationTable& table) {
   const MeshSequence source = waving_grid();
   Invocation invocation = invocation_of(table, "transfer");
   invocation.parameters.set("k", std::int64_t{2});
-  invocation.inputs["source"].push_back({"source", SequenceRead{source, true, {}, {}}});
+  invocation.inputs["source"] = {{"source", SequenceRead{source, true, {}, {}}}};
   ShapeBasis none{{}, Eigen::MatrixXd(source.vertices() * 3, 0)};
-  invocation.inputs["target"].push_back(
-      {"target", BlendshapeModel(source.shared_connectivity(), source.rest(), none)});
-  const Outcome outcome = table.find("transfer")->run(invocation);
+  invocation.inputs["target"] = {
+      {"target", BlendshapeModel(source.shared_connectivity(), source.rest(), none)}};
+  return invocation;
+}
+
+TEST(Operations, RunOnValuesWithoutFiles) {
+  const OperationTable table = toolkit();
+  const MeshSequence source = waving_grid();
+  const Outcome outcome = table.find("transfer")->run(transfer_of_the_grid(table));
   const MeshSequence& result =
       std::get<SequenceRead>(outcome.outputs.at("out").front().data).sequence;
   // The same mesh as target: the source's deformation inside the regions is the target's.
   EXPECT_LT((result.positions() - source.positions()).cwiseAbs().maxCoeff(), 1e-9);
+}
+
+TEST(Operations, StartFromTheComponentsOfAnEarlierRunAndGiveTheSame) {
+  const OperationTable table = toolkit();
+  Invocation transfer = transfer_of_the_grid(table);
+  Invocation regions = invocation_of(table, "regions");
+  regions.parameters.set("k", std::int64_t{2});
+  regions.inputs["sequence"] = transfer.inputs["source"];
+  for (auto& [name, invocation] :
+       {std::pair("transfer", transfer), std::pair("regions", regions)}) {
+    Invocation call = invocation;
+    call.wanted["components-out"] = {};
+    Outcome first = table.find(name)->run(call);
+    call.inputs["components"] = first.outputs.at("components-out");
+    const Outcome again = table.find(name)->run(call);
+    const auto positions = [](const Outcome& outcome) {
+      const Data& data = outcome.outputs.at("out").front().data;
+      const auto* read = std::get_if<SequenceRead>(&data);
+      return read ? read->sequence.positions()
+                  : Frames(std::get<RegionData>(data).fields.fields.front().values.transpose());
+    };
+    EXPECT_TRUE(positions(again) == positions(first)) << name;
+  }
+}
+
+TEST(Operations, ReadARegionSetForASequenceThatTheCallerHas) {
+  const OperationTable table = toolkit();
+  const test::TemporaryFolder folder;
+  std::ofstream(folder / "list.txt") << "24\n25\n";
+  const Invocation call = transfer_of_the_grid(table);
+  const LoadedInputs loaded =
+      load_inputs(table, *table.find("transfer"), call.parameters,
+                  {{"regions", {(folder / "list.txt").string()}}}, {}, {}, 0, call.inputs);
+  EXPECT_EQ(loaded.data.at("source").front().name, "source");
+  const auto& regions = std::get<RegionData>(loaded.data.at("regions").front().data).regions;
+  EXPECT_EQ(regions.vertices, 49);
+  EXPECT_EQ(regions.vertex_count(), 2);
+}
+
+TEST(Operations, DecomposeTellsTheWeightsOverTime) {
+  const OperationTable table = toolkit();
+  Invocation invocation = invocation_of(table, "decompose");
+  invocation.parameters.set("k", std::int64_t{2});
+  const MeshSequence sequence = waving_grid();
+  invocation.inputs["sequence"] = {{"take", SequenceRead{sequence, true, {}, {}}}};
+  EXPECT_FALSE(table.find("decompose")->run(invocation).outputs.contains("weights-out"));
+  invocation.wanted["weights-out"] = {};
+  const Outcome outcome = table.find("decompose")->run(invocation);
+  const auto& components = std::get<Components>(outcome.outputs.at("out").front().data);
+  const auto& weights = std::get<Table>(outcome.outputs.at("weights-out").front().data);
+  EXPECT_THAT(weights.columns, testing::ElementsAre("time", "component_0", "component_1"));
+  ASSERT_EQ(weights.rows.size(), 6u);
+  for (int f = 0; f < 6; ++f) {
+    const auto& row = weights.rows[static_cast<std::size_t>(f)];
+    EXPECT_EQ(row[0], sequence.times()[f]);
+    EXPECT_EQ(row[1], components.weights(f, 0));
+    EXPECT_EQ(row[2], components.weights(f, 1));
+  }
 }
 
 TEST(Operations, RefuseATargetWithOtherFaces) {

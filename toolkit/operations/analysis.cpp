@@ -281,6 +281,11 @@ Analysis analyse(const Invocation& invocation, const SequenceRead& read,
   return {std::move(components), std::move(distances), stopwatch.seconds()};
 }
 
+Output components_output() {
+  return {"components-out", DataKind::components,
+          "the components (.h5), for later runs with --components", true};
+}
+
 Analysis analysis_for(const Invocation& invocation, const SequenceRead& read) {
   const Components* given = invocation.find<Components>("components");
   if (!given) {

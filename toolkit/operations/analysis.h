@@ -45,6 +45,9 @@ struct Analysis {
 Analysis analyse(const Invocation& invocation, const SequenceRead& read,
                  const MeshSequence& sequence, int count, const Progress& progress);
 
+/// The output `components-out` of operations that decompose on the way to something else.
+Output components_output();
+
 /// Components given as the input `components`, or those of the sequence without its motion.
 Analysis analysis_for(const Invocation& invocation, const SequenceRead& read);
 

@@ -11,6 +11,20 @@ namespace mimetra {
 
 namespace {
 
+/// Each component's weight over time.
+Table weight_table(const Components& components, const Eigen::VectorXd& times) {
+  Table table;
+  table.columns = {"time"};
+  for (int k = 0; k < components.count(); ++k) {
+    table.columns.push_back("component_" + std::to_string(k));
+  }
+  for (int f = 0; f < components.weights.rows(); ++f) {
+    table.rows.push_back({times[f]});
+    for (const double weight : components.weights.row(f)) table.rows.back().push_back(weight);
+  }
+  return table;
+}
+
 Outcome run(const Invocation& invocation) {
   const SequenceRead& read = invocation.get<SequenceRead>("sequence");
   const StillSequence still = without_motion(invocation, read, read.sequence);
@@ -41,6 +55,10 @@ Outcome run(const Invocation& invocation) {
                     " % of the box diagonal), KG error " + readable(error.kg) + " %, " +
                     percent(error.sparsity) + " of the displacements are zero, " +
                     readable(analysis.seconds) + " s\n";
+  if (invocation.wants("weights-out")) {
+    outcome.outputs["weights-out"].push_back(
+        {"", weight_table(components, still.sequence.times())});
+  }
   outcome.outputs["out"].push_back({"", std::move(analysis.components)});
   return outcome;
 }
@@ -52,7 +70,8 @@ Operation decompose_operation() {
   operation.name = "decompose";
   operation.summary = "Sparse localized deformation components of a sequence";
   operation.inputs = {{"sequence", DataKind::sequence, "sequence to decompose"}};
-  operation.outputs = {{"out", DataKind::components, ".h5"}};
+  operation.outputs = {{"out", DataKind::components, ".h5"},
+                       {"weights-out", DataKind::table, "weights over time: .csv or .json", true}};
   operation.parameters = decomposition_parameters(50);
   for (const Parameter& parameter : alignment_parameters()) {
     operation.parameters.push_back(parameter);

@@ -42,6 +42,11 @@ class Loader {
     throw std::invalid_argument("input '" + input.name + "' is of a kind that no file holds");
   }
 
+  /// Region sets that are read speak of a given sequence too.
+  void know(const Data& given) {
+    if (const auto* read = std::get_if<SequenceRead>(&given)) know(read->sequence);
+  }
+
   std::vector<std::filesystem::path> files;
 
  private:
@@ -96,9 +101,13 @@ class Loader {
     return read;
   }
 
+  void know(const MeshSequence& sequence) {
+    vertices_ = sequence.vertices();
+    triangles_ = sequence.triangles();
+  }
+
   SequenceRead kept(SequenceRead read) {
-    vertices_ = read.sequence.vertices();
-    triangles_ = read.sequence.triangles();
+    know(read.sequence);
     return read;
   }
 
@@ -142,9 +151,13 @@ class Loader {
 LoadedInputs load_inputs(const OperationTable& table, const Operation& operation,
                          const Parameters& parameters,
                          const std::map<std::string, std::vector<std::string>>& names,
-                         const Progress& progress, const Log& log, int threads) {
+                         const Progress& progress, const Log& log, int threads,
+                         std::map<std::string, std::vector<NamedData>> given) {
   Loader loader(table, parameters, progress, log, threads);
-  LoadedInputs loaded;
+  LoadedInputs loaded{std::move(given), {}};
+  for (const auto& [name, values] : loaded.data) {
+    for (const NamedData& value : values) loader.know(value.data);
+  }
   for (const bool sequences : {true, false}) {
     for (const Input& input : operation.inputs) {
       const auto named = names.find(input.name);

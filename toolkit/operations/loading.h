@@ -14,11 +14,13 @@ struct LoadedInputs {
   std::vector<std::filesystem::path> files;
 };
 
-/// Reads the inputs of an operation from what the user named (`names`, by name of the input).
-/// `threads`: 0 for all there are. Throws what the readers throw.
+/// Reads the inputs of an operation from what the user named (`names`, by name of the input),
+/// beside those that a host has already (`given`). `threads`: 0 for all there are. Throws what the
+/// readers throw.
 LoadedInputs load_inputs(const OperationTable& table, const Operation& operation,
                          const Parameters& parameters,
                          const std::map<std::string, std::vector<std::string>>& names,
-                         const Progress& progress, const Log& log, int threads = 0);
+                         const Progress& progress, const Log& log, int threads = 0,
+                         std::map<std::string, std::vector<NamedData>> given = {});
 
 }  // namespace mimetra

@@ -26,6 +26,9 @@ Outcome run(const Invocation& invocation) {
   outcome.summary = summary_of(regions);
   outcome.outputs["out"].push_back(
       {"", RegionData{regions, {read.sequence, std::move(fields), true}}});
+  if (invocation.wants("components-out")) {
+    outcome.outputs["components-out"].push_back({"", analysis.components});
+  }
   return outcome;
 }
 
@@ -38,7 +41,8 @@ Operation regions_operation() {
   operation.inputs = {
       {"sequence", DataKind::sequence, "sequence whose moving regions are looked for"},
       {"components", DataKind::components, "components (.h5) of an earlier decompose", true}};
-  operation.outputs = {{"out", DataKind::regions, ".pvd (a time series), .vtp, .json or .csv"}};
+  operation.outputs = {{"out", DataKind::regions, ".pvd (a time series), .vtp, .json or .csv"},
+                       components_output()};
   operation.parameters = region_parameters();
   operation.parameters.push_back({"component-fields", ParameterKind::flag, false,
                                   "also write support_k and component_k of each region"});

@@ -11,34 +11,37 @@ namespace mimetra {
 
 namespace {
 
-/// The triangles a transfer uses, and the regions they come from (none for --full).
+/// The triangles a transfer uses, the regions they come from (none for --full), and the components
+/// these come from (none for a region set).
 struct Choice {
   Selection selection;
   std::optional<Regions> regions;
+  std::optional<Components> components = {};
   double seconds = 0;
 };
 
 Choice choose(const Invocation& invocation, const PreparedSource& source) {
   if (invocation.parameters.flag("full")) {
-    return {{all_triangles(source.sequence.triangles()), {}}, {}, 0};
+    return {{all_triangles(source.sequence.triangles()), {}}, {}};
   }
   if (const RegionData* given = invocation.find<RegionData>("regions")) {
     if (given->regions.triangles.empty()) {
       throw MismatchError(invocation.inputs.at("regions").front().name +
                           ": its regions hold no triangle of the mesh; choose others");
     }
-    return {{given->regions.triangles, given->regions.inside}, given->regions, 0};
+    return {{given->regions.triangles, given->regions.inside}, given->regions};
   }
   const SequenceRead& read = invocation.get<SequenceRead>("source");
   const Stopwatch stopwatch;
-  const Analysis analysis =
+  Analysis analysis =
       invocation.find<Components>("components")
           ? analysis_for(invocation, read)
           : analyse(invocation, read, source.sequence, invocation.parameters.integer("k"),
                     part_of(invocation.progress, 0, 0.4));
   Regions regions = regions_of(invocation, analysis);
   Selection selection{regions.triangles, regions.inside};
-  return {std::move(selection), std::move(regions), stopwatch.seconds()};
+  return {std::move(selection), std::move(regions), std::move(analysis.components),
+          stopwatch.seconds()};
 }
 
 NamedData weight_table(const NamedData& target, const Solution& solution) {
@@ -80,6 +83,11 @@ void check_outputs(const Invocation& invocation) {
   if (invocation.wants("regions-out") && invocation.parameters.flag("full")) {
     throw UsageError("--regions-out: there are no regions with --full");
   }
+  const bool decomposes =
+      !invocation.parameters.flag("full") && !invocation.find<RegionData>("regions");
+  if (invocation.wants("components-out") && !decomposes) {
+    throw UsageError("--components-out: there are no components with --full or --regions");
+  }
   if (!invocation.wants("weights-out")) return;
   for (const NamedData& target : invocation.inputs.at("target")) {
     const bool has_expressions = std::get<BlendshapeModel>(target.data).expressions().size() > 0;
@@ -95,7 +103,7 @@ Outcome run(const Invocation& invocation) {
   const std::vector<NamedData>& targets = invocation.inputs.at("target");
   for (const NamedData& target : targets) check_target(source.sequence, target);
   check_outputs(invocation);
-  const Choice choice = choose(invocation, source);
+  Choice choice = choose(invocation, source);
   const bool give_back =
       !source.motion.empty() && invocation.parameters.text("head-motion") == "keep";
 
@@ -128,6 +136,9 @@ Outcome run(const Invocation& invocation) {
     }
     outcome.outputs["out"].push_back(
         {targets[t].name, SequenceRead{std::move(result), false, {}, {}}});
+  }
+  if (invocation.wants("components-out")) {
+    outcome.outputs["components-out"].push_back({"", std::move(*choice.components)});
   }
   Json report = {{"targets", reports}};
   if (choice.regions) {
@@ -181,6 +192,7 @@ Operation transfer_operation() {
        false, true},
       {"regions-out", DataKind::regions, "regions: .pvd (a time series), .vtp, .json or .csv",
        true},
+      components_output(),
       {"weights-out", DataKind::table, "blendshape weights: .csv or .json", true, true}};
   operation.parameters = {
       {"full", ParameterKind::flag, false, "use all triangles instead of regions"},

@@ -1,8 +1,6 @@
 #include <algorithm>
 #include <cctype>
 
-#include <vtkCellArray.h>
-#include <vtkCellData.h>
 #include <vtkErrorCode.h>
 #include <vtkExecutive.h>
 #include <vtkNew.h>
@@ -15,6 +13,7 @@
 #include <nlohmann/json.hpp>
 
 #include <mimetra/io/pending_output.h>
+#include <mimetra/vtk/poly_data.h>
 #include <mimetra/vtk/silent_vtk.h>
 #include <mimetra/vtk/vtp_series.h>
 
@@ -34,17 +33,10 @@ vtkSmartPointer<vtkPolyData> read_poly_data(const fs::path& path) {
   if (!reader->GetExecutive()->Update() || reader->GetErrorCode() != vtkErrorCode::NoError) {
     throw IoError(path.string(), "not a readable VTP file, or truncated");
   }
-  return reader->GetOutput();
-}
-
-Eigen::MatrixXd values_of(vtkDataArray& array) {
-  Eigen::MatrixXd values(array.GetNumberOfTuples(), array.GetNumberOfComponents());
-  for (Eigen::Index row = 0; row < values.rows(); ++row) {
-    for (Eigen::Index column = 0; column < values.cols(); ++column) {
-      values(row, column) = array.GetComponent(row, static_cast<int>(column));
-    }
+  if (reader->GetOutput()->GetNumberOfPoints() == 0) {
+    throw IoError(path.string(), "has no points, or its counts do not fit");
   }
-  return values;
+  return reader->GetOutput();
 }
 
 struct FrameEntry {
@@ -96,62 +88,6 @@ std::vector<FrameEntry> entries_of(const fs::path& path) {
   return entries;
 }
 
-Positions positions_of(vtkPolyData& data, const fs::path& file) {
-  if (data.GetNumberOfPoints() == 0)
-    throw IoError(file.string(), "has no points, or its counts do not fit");
-  const Positions positions = values_of(*data.GetPoints()->GetData());
-  for (Eigen::Index v = 0; v < positions.rows(); ++v) {
-    if (!positions.row(v).allFinite()) {
-      throw IoError(file.string(), "point " + std::to_string(v) + " is not finite");
-    }
-  }
-  return positions;
-}
-
-Connectivity connectivity_of(vtkPolyData& data, const fs::path& file) {
-  Polygons polygons;
-  vtkNew<vtkIdList> corners;
-  for (vtkIdType cell = 0; cell < data.GetNumberOfPolys(); ++cell) {
-    data.GetPolys()->GetCellAtId(cell, corners);
-    for (const vtkIdType corner : *corners) polygons.corners.push_back(static_cast<int>(corner));
-    polygons.offsets.push_back(static_cast<int>(polygons.corners.size()));
-  }
-  if (polygons.size() == 0) throw IoError(file.string(), "has no faces");
-  try {
-    return Connectivity::from_polygons(static_cast<int>(data.GetNumberOfPoints()),
-                                       std::move(polygons));
-  } catch (const std::invalid_argument& error) {
-    throw IoError(file.string(), error.what());
-  }
-}
-
-/// Values of each polygon on its triangles. VTK counts vertices and lines before polygons.
-Eigen::MatrixXd on_triangles(const Eigen::MatrixXd& on_cells, Eigen::Index before,
-                             const Connectivity& connectivity) {
-  return on_cells.middleRows(before, connectivity.polygons.size())(connectivity.polygon_of_triangle,
-                                                                   Eigen::all);
-}
-
-std::vector<Field> fields_of(vtkPolyData& data, const Connectivity& connectivity) {
-  std::vector<Field> fields;
-  const auto add = [&fields](vtkFieldData& arrays, Field::Location location, auto placed) {
-    for (int i = 0; i < arrays.GetNumberOfArrays(); ++i) {
-      vtkDataArray* array = vtkDataArray::SafeDownCast(arrays.GetAbstractArray(i));
-      if (!array || !array->GetName()) continue;
-      const std::string name = array->GetName();
-      if (name == kDisplacement || name == kDisplacementLength) continue;
-      const bool integer = array->GetDataType() != VTK_FLOAT && array->GetDataType() != VTK_DOUBLE;
-      fields.push_back({name, location, placed(values_of(*array)), integer});
-    }
-  };
-  add(*data.GetPointData(), Field::Location::vertices,
-      [](const Eigen::MatrixXd& values) { return values; });
-  const Eigen::Index before = data.GetNumberOfVerts() + data.GetNumberOfLines();
-  add(*data.GetCellData(), Field::Location::triangles,
-      [&](const Eigen::MatrixXd& values) { return on_triangles(values, before, connectivity); });
-  return fields;
-}
-
 }  // namespace
 
 FieldSequence read_vtp_series(const fs::path& path,
@@ -168,15 +104,13 @@ FieldSequence read_vtp_series(const fs::path& path,
   for (Eigen::Index f = 0; f < times.size(); ++f) {
     const FrameEntry& entry = all[static_cast<std::size_t>(chosen[static_cast<std::size_t>(f)])];
     const auto data = read_poly_data(entry.file);
-    const Positions positions = positions_of(*data, entry.file);
-    Connectivity own = connectivity_of(*data, entry.file);
+    const Positions positions = positions_of(*data, entry.file.string());
+    Connectivity own = connectivity_of(*data, entry.file.string());
     if (f == 0) {
       connectivity = std::move(own);
       frames.resize(times.size(), positions.size());
       result.fields = fields_of(*data, connectivity);
-      if (vtkDataArray* moved = data->GetPointData()->GetArray(kDisplacement)) {
-        if (moved->GetNumberOfComponents() == 3) rest = positions - values_of(*moved);
-      }
+      rest = rest_of(*data, positions);
     } else if (!same_faces(own, connectivity)) {
       throw MismatchError(entry.file.string() + ": other vertices or faces than " +
                           first.file.string());
@@ -200,8 +134,8 @@ std::vector<fs::path> vtp_series_files(const fs::path& path) {
 
 Eigen::MatrixXd read_vtp_field(const fs::path& path, const std::string& name) {
   const auto data = read_poly_data(path);
+  if (const auto values = point_values(*data, name)) return *values;
   vtkPointData* on_points = data->GetPointData();
-  if (vtkDataArray* array = on_points->GetArray(name.c_str())) return values_of(*array);
   std::string known;
   for (int i = 0; i < on_points->GetNumberOfArrays(); ++i) {
     known += (i ? ", " : "") + std::string(on_points->GetArrayName(i));

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <charconv>
-#include <cmath>
-#include <limits>
 #include <memory>
 #include <mutex>
 #include <set>
@@ -11,79 +9,21 @@
 #include <system_error>
 #include <utility>
 
-#include <vtkCellArray.h>
-#include <vtkCellData.h>
 #include <vtkErrorCode.h>
-#include <vtkFloatArray.h>
 #include <vtkNew.h>
-#include <vtkPointData.h>
-#include <vtkPoints.h>
 #include <vtkPolyData.h>
 #include <vtkSmartPointer.h>
-#include <vtkTypeInt32Array.h>
 #include <vtkXMLPolyDataWriter.h>
 
 #include <mimetra/io/pending_output.h>
 #include <mimetra/mesh/parallel.h>
+#include <mimetra/vtk/poly_data.h>
 #include <mimetra/vtk/silent_vtk.h>
 
 namespace mimetra {
 namespace {
 
 constexpr int kFewestDigits = 4;
-
-void name_components(vtkDataArray& array) {
-  if (array.GetNumberOfComponents() != 3) return;
-  array.SetComponentName(0, "X");
-  array.SetComponentName(1, "Y");
-  array.SetComponentName(2, "Z");
-}
-
-template <typename Array, typename Convert>
-vtkSmartPointer<Array> array_of(const std::string& name, const Eigen::MatrixXd& values,
-                                Convert convert) {
-  const auto array = vtkSmartPointer<Array>::New();
-  array->SetName(name.c_str());
-  array->SetNumberOfComponents(std::max(1, static_cast<int>(values.cols())));
-  array->SetNumberOfTuples(values.rows());
-  auto* out = array->GetPointer(0);
-  for (Eigen::Index row = 0; row < values.rows(); ++row) {
-    for (Eigen::Index column = 0; column < values.cols(); ++column) {
-      *out++ = convert(values(row, column));
-    }
-  }
-  name_components(*array);
-  return array;
-}
-
-vtkSmartPointer<vtkDataArray> float_array(const std::string& name, const Eigen::MatrixXd& values) {
-  return array_of<vtkFloatArray>(name, values, [](double x) { return static_cast<float>(x); });
-}
-
-vtkSmartPointer<vtkDataArray> array_of(const std::string& name, const Eigen::MatrixXd& values,
-                                       bool integer) {
-  if (!integer) return float_array(name, values);
-  return array_of<vtkTypeInt32Array>(
-      name, values, [](double x) { return static_cast<vtkTypeInt32>(std::lround(x)); });
-}
-
-vtkSmartPointer<vtkTypeInt32Array> index_array(const std::vector<int>& indices) {
-  const auto array = vtkSmartPointer<vtkTypeInt32Array>::New();
-  array->SetNumberOfValues(static_cast<vtkIdType>(indices.size()));
-  std::copy(indices.begin(), indices.end(), array->GetPointer(0));
-  return array;
-}
-
-/// Values of the polygons: the largest of their triangles' in each component.
-Eigen::MatrixXd on_polygons(const Eigen::MatrixXd& on_triangles, const Connectivity& connectivity) {
-  Eigen::MatrixXd values = Eigen::MatrixXd::Constant(
-      connectivity.polygons.size(), on_triangles.cols(), -std::numeric_limits<double>::infinity());
-  for (Eigen::Index t = 0; t < on_triangles.rows(); ++t) {
-    const int polygon = connectivity.polygon_of_triangle[static_cast<std::size_t>(t)];
-    values.row(polygon) = values.row(polygon).cwiseMax(on_triangles.row(t));
-  }
-  return values;
-}
 
 std::string place_of(Field::Location location) {
   return location == Field::Location::vertices ? "vertices" : "triangles";
@@ -117,42 +57,18 @@ class FrameData {
  public:
   explicit FrameData(const FieldSequence& fields) : fields_(fields) {
     const Connectivity& connectivity = fields.sequence.connectivity();
-    vtkNew<vtkCellArray> cells;
-    cells->SetData(index_array(connectivity.polygons.offsets),
-                   index_array(connectivity.polygons.corners));
-    data_->SetPolys(cells);
-    for (const Field& field : fields.fields) add(field);
+    set_polygons(*data_, connectivity);
+    for (const Field& field : fields.fields) add_field(*data_, field, connectivity);
   }
 
   vtkPolyData& at(int frame) {
     const PositionsView positions = fields_.sequence.frame(frame);
-    vtkNew<vtkPoints> points;
-    points->SetData(float_array("Points", positions));
-    data_->SetPoints(points);
-    if (fields_.displacement) {
-      const Eigen::MatrixXd displacement = positions - fields_.sequence.rest();
-      data_->GetPointData()->AddArray(float_array(kDisplacement, displacement));
-      data_->GetPointData()->AddArray(
-          float_array(kDisplacementLength, displacement.rowwise().norm()));
-    }
+    set_positions(*data_, positions, Precision::single_precision);
+    if (fields_.displacement) add_displacement(*data_, positions - fields_.sequence.rest());
     return *data_;
   }
 
  private:
-  void add(const Field& field) {
-    if (field.location == Field::Location::triangles) {
-      data_->GetCellData()->AddArray(array_of(
-          field.name, on_polygons(field.values, fields_.sequence.connectivity()), field.integer));
-      return;
-    }
-    vtkPointData* on_points = data_->GetPointData();
-    on_points->AddArray(array_of(field.name, field.values, field.integer));
-    // ParaView colours a file it opens by its active scalars.
-    if (!on_points->GetScalars() && field.values.cols() == 1) {
-      on_points->SetActiveScalars(field.name.c_str());
-    }
-  }
-
   const FieldSequence& fields_;
   vtkNew<vtkPolyData> data_;
 };

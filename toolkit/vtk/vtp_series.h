@@ -20,10 +20,6 @@ struct VtpOptions {
   Progress progress = {};
 };
 
-/// Fields of each frame that FieldSequence::displacement stands for: a vector, and its length.
-constexpr const char* kDisplacement = "displacement";
-constexpr const char* kDisplacementLength = "displacement_length";
-
 /// Writes a sequence with its fields for ParaView: `NAME.pvd` and `NAME.vtp.series` beside a folder
 /// `NAME_vtp` of `NAME_0000.vtp` ..., positions float32, appended raw, 32-bit ids, times in
 /// seconds, the user's polygons (triangle fields on the polygon: the largest of its triangles).

@@ -1,0 +1,61 @@
+#include "host_output.h"
+
+#include <limits>
+
+#include <vtkCellData.h>
+#include <vtkDoubleArray.h>
+#include <vtkNew.h>
+#include <vtkPointData.h>
+#include <vtkPolyData.h>
+#include <vtkTable.h>
+
+#include <mimetra/vtk/poly_data.h>
+
+using namespace mimetra;
+
+namespace {
+
+void remove_normals(vtkDataSetAttributes& attributes) {
+  vtkDataArray* normals = attributes.GetNormals();
+  if (normals && normals->GetName()) attributes.RemoveArray(normals->GetName());
+}
+
+}  // namespace
+
+void show_shape(vtkPolyData& output, vtkPolyData& input, const Positions& shape) {
+  output.ShallowCopy(&input);
+  remove_normals(*output.GetPointData());
+  remove_normals(*output.GetCellData());
+  output.GetPointData()->RemoveArray(kDisplacement);
+  output.GetPointData()->RemoveArray(kDisplacementLength);
+  set_rest(output, {});
+  set_positions(output, shape, Precision::double_precision);
+}
+
+void make_fields(vtkPolyData& holder, vtkPolyData& mesh, const std::vector<Field>& fields,
+                 const Connectivity& connectivity) {
+  holder.Initialize();
+  holder.CopyStructure(&mesh);
+  for (const Field& field : fields) add_field(holder, field, connectivity);
+}
+
+void share_fields(vtkPolyData& holder, vtkPolyData& output) {
+  const auto share = [](vtkDataSetAttributes& from, vtkDataSetAttributes& to) {
+    for (int i = 0; i < from.GetNumberOfArrays(); ++i) to.AddArray(from.GetAbstractArray(i));
+    // ParaView colours what it shows first by the active scalars.
+    if (!to.GetScalars() && from.GetScalars()) to.SetActiveScalars(from.GetScalars()->GetName());
+  };
+  share(*holder.GetPointData(), *output.GetPointData());
+  share(*holder.GetCellData(), *output.GetCellData());
+}
+
+void fill(vtkTable& output, const Table& table) {
+  for (std::size_t column = 0; column < table.columns.size(); ++column) {
+    vtkNew<vtkDoubleArray> values;
+    values->SetName(table.columns[column].c_str());
+    for (const auto& row : table.rows) {
+      values->InsertNextValue(row[column].value_or(std::numeric_limits<double>::quiet_NaN()));
+    }
+    output.AddColumn(values);
+  }
+}

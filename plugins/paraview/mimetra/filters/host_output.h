@@ -1,0 +1,18 @@
+#pragma once
+
+#include <mimetra/operations/data.h>
+
+class vtkPolyData;
+class vtkTable;
+
+/// Makes `output` what `input` is, in another shape: what the input tells of its own shape
+/// (normals, displacement, rest pose) is left out.
+void show_shape(vtkPolyData& output, vtkPolyData& input, const mimetra::Positions& shape);
+
+/// Makes `holder` hold fields of `mesh`, as arrays that all time steps share.
+void make_fields(vtkPolyData& holder, vtkPolyData& mesh, const std::vector<mimetra::Field>& fields,
+                 const mimetra::Connectivity& connectivity);
+void share_fields(vtkPolyData& holder, vtkPolyData& output);
+
+/// One column of numbers for each of the table's; an empty cell is NaN.
+void fill(vtkTable& output, const mimetra::Table& table);

@@ -1,0 +1,147 @@
+#include "operation_call.h"
+
+#include <algorithm>
+
+#include <mimetra/operations/loading.h>
+#include <mimetra/vtk/vtp_formats.h>
+
+using namespace mimetra;
+
+namespace {
+
+OperationTable table_of_host() {
+  OperationTable table;
+  add_toolkit(table);
+  add_vtp(table);
+  return table;
+}
+
+/// Hosts hand over whole numbers, numbers and text; a flag is 0 or 1, all other kinds are typed.
+ParameterValue value_of(const Parameter& parameter, const ParameterValue& shown) {
+  const auto* text = std::get_if<std::string>(&shown);
+  if (text) return parse_value(parameter, *text);
+  const auto* number = std::get_if<std::int64_t>(&shown);
+  if (number && parameter.kind == ParameterKind::flag) return *number != 0;
+  return shown;
+}
+
+bool same_sequence(const MeshSequence& a, const MeshSequence& b) {
+  return a.frames() == b.frames() && a.vertices() == b.vertices() &&
+         a.rest_is_known() == b.rest_is_known() && a.times() == b.times() && a.rest() == b.rest() &&
+         a.connectivity().polygons == b.connectivity().polygons && a.positions() == b.positions();
+}
+
+bool same_model(const BlendshapeModel& a, const BlendshapeModel& b) {
+  return a.vertices() == b.vertices() && a.expressions().size() == 0 &&
+         b.expressions().size() == 0 && a.neutral() == b.neutral() &&
+         a.connectivity().polygons == b.connectivity().polygons;
+}
+
+bool same_data(const Data& a, const Data& b) {
+  if (a.index() != b.index()) return false;
+  if (const auto* read = std::get_if<SequenceRead>(&a)) {
+    return same_sequence(read->sequence, std::get<SequenceRead>(b).sequence);
+  }
+  const auto* model = std::get_if<BlendshapeModel>(&a);
+  return model && same_model(*model, std::get<BlendshapeModel>(b));
+}
+
+constexpr const char* kComponents = "components";
+constexpr const char* kComponentsOut = "components-out";
+
+}  // namespace
+
+OperationCall::OperationCall(const std::string& name)
+    : table_(table_of_host()), operation_(*table_.find(name)) {}
+
+OperationCall::OperationCall(Operation operation)
+    : table_(table_of_host()), operation_(std::move(operation)) {}
+
+bool OperationCall::has_input(const std::string& name) const {
+  return std::ranges::find(operation_.inputs, name, &Input::name) != operation_.inputs.end();
+}
+
+bool OperationCall::is_of_decomposition(const std::string& name) const {
+  const auto& own = table_.find("decompose")->parameters;
+  return name == "source-rest" || std::ranges::find(own, name, &Parameter::name) != own.end();
+}
+
+bool OperationCall::is_default(const std::string& name, const ParameterValue& value) const {
+  const auto declared = table_.parameters_of(operation_);
+  const auto parameter = std::ranges::find(declared, name, &Parameter::name);
+  if (parameter == declared.end()) return to_text(value).empty();
+  const auto* number = std::get_if<std::int64_t>(&value);
+  if (number && parameter->kind == ParameterKind::flag) {
+    return parameter->fallback == ParameterValue(*number != 0);
+  }
+  return to_text(value) == to_text(parameter->fallback);
+}
+
+bool OperationCall::set(const std::string& name, const ParameterValue& value) {
+  const auto old = values_.find(name);
+  const bool restores = to_text(value).empty() || is_default(name, value);
+  if (restores ? old == values_.end() : old != values_.end() && old->second == value) return false;
+  if (restores) {
+    values_.erase(name);
+  } else {
+    values_[name] = value;
+  }
+  outcome_.reset();
+  if (is_of_decomposition(name)) components_.reset();
+  return true;
+}
+
+bool OperationCall::give(const std::string& input, NamedData data) {
+  const auto old = given_.find(input);
+  if (old != given_.end() && same_data(old->second.data, data.data)) return false;
+  if (std::holds_alternative<SequenceRead>(data.data)) components_.reset();
+  given_[input] = std::move(data);
+  outcome_.reset();
+  return true;
+}
+
+void OperationCall::take_back(const std::string& input) {
+  if (given_.erase(input) > 0) outcome_.reset();
+}
+
+Parameters OperationCall::parameters() const {
+  Parameters parameters(table_.parameters_of(operation_));
+  for (const auto& [name, value] : values_) {
+    if (has_input(name)) continue;
+    const Parameter* declared = parameters.find(name);
+    parameters.set(name, declared ? value_of(*declared, value) : value);
+  }
+  return parameters;
+}
+
+Invocation OperationCall::invocation(const Progress& progress, const Log& log) const {
+  Invocation invocation;
+  invocation.parameters = parameters();
+  std::map<std::string, std::vector<NamedData>> given;
+  for (const auto& [name, data] : given_) given[name] = {data};
+  std::map<std::string, std::vector<std::string>> paths;
+  for (const auto& [name, value] : values_) {
+    if (has_input(name)) paths[name] = {to_text(value)};
+  }
+  invocation.inputs =
+      load_inputs(table_, operation_, invocation.parameters, paths, progress, log, 0, given).data;
+  if (components_ && !invocation.inputs.contains(kComponents)) {
+    invocation.inputs[kComponents] = {*components_};
+  }
+  invocation.progress = progress;
+  invocation.log = log;
+  return invocation;
+}
+
+const Outcome& OperationCall::run(Invocation invocation, const std::vector<std::string>& wanted) {
+  for (const std::string& output : wanted) invocation.wanted[output] = {};
+  const bool has_components = invocation.inputs.contains(kComponents);
+  if (has_components) invocation.wanted.erase(kComponentsOut);
+  Outcome outcome = operation_.run(invocation);
+  for (auto& [name, values] : outcome.outputs) {
+    if (!std::holds_alternative<Components>(values.front().data)) continue;
+    ++decompositions_;
+    if (name == kComponentsOut) components_ = std::move(values.front());
+  }
+  return outcome_.emplace(std::move(outcome));
+}

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <mimetra/operations/operation.h>
+
+/// An operation as a host calls it again and again: what it computed is kept until something that
+/// it depends on changes, and a decomposition until the sequence or its own parameters do.
+class OperationCall {
+ public:
+  /// One of the toolkit's operations.
+  explicit OperationCall(const std::string& name);
+  explicit OperationCall(mimetra::Operation operation);
+
+  /// Sets a parameter, or the path of an input; no text is the default, or no input. Values are
+  /// checked when the operation runs. True where something changed.
+  bool set(const std::string& name, const mimetra::ParameterValue& value);
+  /// True where it has another value than its default, or a path.
+  bool is_set(const std::string& name) const { return values_.contains(name); }
+
+  /// Gives an input its value. True where it is another one than before.
+  bool give(const std::string& input, mimetra::NamedData data);
+  /// Takes it back.
+  void take_back(const std::string& input);
+
+  /// The inputs given, and those read from files. Throws what the readers throw.
+  mimetra::Invocation invocation(const mimetra::Progress& progress, const mimetra::Log& log) const;
+
+  /// True while what was computed still holds.
+  bool is_done() const { return outcome_.has_value(); }
+  const mimetra::Outcome& outcome() const { return *outcome_; }
+  /// Runs the operation for the outputs `wanted` besides those that it always makes. What it makes
+  /// as "components-out" is its input `components` from then on. Throws what it throws.
+  const mimetra::Outcome& run(mimetra::Invocation invocation,
+                              const std::vector<std::string>& wanted);
+
+  /// How often components were computed.
+  int decompositions() const { return decompositions_; }
+
+ private:
+  mimetra::Parameters parameters() const;
+  bool has_input(const std::string& name) const;
+  bool is_default(const std::string& name, const mimetra::ParameterValue& value) const;
+  bool is_of_decomposition(const std::string& name) const;
+
+  mimetra::OperationTable table_;
+  mimetra::Operation operation_;
+  std::map<std::string, mimetra::ParameterValue> values_;
+  std::map<std::string, mimetra::NamedData> given_;
+  std::optional<mimetra::Outcome> outcome_;
+  std::optional<mimetra::NamedData> components_;
+  int decompositions_ = 0;
+};

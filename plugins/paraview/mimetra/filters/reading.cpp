@@ -1,0 +1,19 @@
+#include "reading.h"
+
+using namespace mimetra;
+
+Operation reading_operation() {
+  Operation operation;
+  operation.name = "read";
+  operation.summary = "Mesh sequence or model of any format that mimetra reads";
+  operation.inputs = {{"FileName", DataKind::fields,
+                       "a mesh, .npy array, .pvd, or model; typed, also a folder of meshes, a "
+                       "pattern as in smile_%04d.obj, or MODEL@identity=1.5"}};
+  operation.outputs = {{"out", DataKind::fields, "the sequence"}};
+  operation.run = [](const Invocation& invocation) {
+    Outcome outcome;
+    outcome.outputs["out"] = invocation.inputs.at("FileName");
+    return outcome;
+  };
+  return operation;
+}

@@ -1,0 +1,65 @@
+#include "time_steps.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <vtkPolyData.h>
+
+#include <mimetra/operations/parameter.h>
+#include <mimetra/vtk/poly_data.h>
+
+using namespace mimetra;
+
+vtkPolyData& mesh_of(vtkDataObject* data) {
+  vtkPolyData* mesh = vtkPolyData::SafeDownCast(data);
+  if (mesh) return *mesh;
+  throw std::invalid_argument("expected a surface of polygons (vtkPolyData), found " +
+                              std::string(data ? data->GetClassName() : "nothing") +
+                              "; apply Extract Surface or Merge Blocks first");
+}
+
+void TimeSteps::begin(std::vector<double> times) {
+  *this = TimeSteps();
+  times_ = std::move(times);
+}
+
+std::optional<double> TimeSteps::next_time() const {
+  return times_.empty() ? std::nullopt : std::optional(times_[next_]);
+}
+
+std::string TimeSteps::name() const {
+  return times_.empty() ? "the mesh" : "time " + to_text(times_[next_]);
+}
+
+void TimeSteps::add(vtkDataObject* data) {
+  vtkPolyData& mesh = mesh_of(data);
+  const Positions positions = positions_of(mesh, name());
+  Connectivity connectivity = connectivity_of(mesh, name());
+  if (next_ == 0) {
+    frames_.resize(static_cast<Eigen::Index>(count()), positions.size());
+    rest_ = rest_of(mesh, positions);
+    connectivity_ = std::move(connectivity);
+  } else if (connectivity.vertices != connectivity_.vertices) {
+    throw MismatchError(name() + ": " + std::to_string(connectivity.vertices) +
+                        " vertices, expected " + std::to_string(connectivity_.vertices) +
+                        " as at time " + to_text(times_.front()));
+  } else if (const int face = first_different_face(connectivity, connectivity_); face >= 0) {
+    throw MismatchError(name() + ": face " + std::to_string(face) + " is not that of time " +
+                        to_text(times_.front()) + "; all time steps need the same faces");
+  }
+  frames_.row(static_cast<Eigen::Index>(next_)) =
+      Eigen::Map<const Eigen::RowVectorXd>(positions.data(), positions.size());
+  ++next_;
+}
+
+MeshSequence TimeSteps::sequence() {
+  const Eigen::VectorXd times =
+      Eigen::Map<const Eigen::VectorXd>(times_.data(), static_cast<Eigen::Index>(times_.size()));
+  return {std::move(connectivity_), std::move(frames_), times, std::move(rest_)};
+}
+
+int TimeSteps::nearest(double time) const {
+  const auto distance = [time](double step) { return std::abs(step - time); };
+  const auto found = std::ranges::min_element(times_, {}, distance);
+  return found == times_.end() ? 0 : static_cast<int>(found - times_.begin());
+}

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <mimetra/operations/data.h>
+
+class vtkDataObject;
+class vtkPolyData;
+
+/// The mesh of a data object. Throws std::invalid_argument where it is none.
+vtkPolyData& mesh_of(vtkDataObject* data);
+
+/// The time steps of an input, collected one after the other.
+class TimeSteps {
+ public:
+  /// Begins anew; no times for a mesh that stands still.
+  void begin(std::vector<double> times);
+
+  bool complete() const { return next_ == count(); }
+  double share() const { return static_cast<double>(next_) / static_cast<double>(count()); }
+  const std::vector<double>& times() const { return times_; }
+  /// The time to ask for next; none for a mesh that stands still.
+  std::optional<double> next_time() const;
+  /// Throws IoError, MismatchError and std::invalid_argument that name the time.
+  void add(vtkDataObject* data);
+  /// What was collected, which is then forgotten.
+  mimetra::MeshSequence sequence();
+
+  /// The step nearest to a time.
+  int nearest(double time) const;
+
+ private:
+  std::size_t count() const { return times_.empty() ? 1 : times_.size(); }
+  std::string name() const;
+
+  std::vector<double> times_;
+  std::size_t next_ = 0;
+  mimetra::Connectivity connectivity_;
+  mimetra::Frames frames_;
+  std::optional<mimetra::Positions> rest_;
+};

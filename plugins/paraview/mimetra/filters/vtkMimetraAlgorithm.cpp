@@ -1,0 +1,71 @@
+#include "vtkMimetraAlgorithm.h"
+
+#include "operation_call.h"
+
+using namespace mimetra;
+
+vtkMimetraAlgorithm::vtkMimetraAlgorithm(std::unique_ptr<OperationCall> call)
+    : call_(std::move(call)) {}
+
+vtkMimetraAlgorithm::~vtkMimetraAlgorithm() = default;
+
+void vtkMimetraAlgorithm::SetInteger(const char* name, int value) {
+  if (call_->set(name, std::int64_t{value})) Modified();
+}
+
+void vtkMimetraAlgorithm::SetNumber(const char* name, double value) {
+  if (call_->set(name, value)) Modified();
+}
+
+void vtkMimetraAlgorithm::SetText(const char* name, const char* value) {
+  if (call_->set(name, std::string(value ? value : ""))) Modified();
+}
+
+int vtkMimetraAlgorithm::GetDecompositions() {
+  return call_->decompositions();
+}
+
+std::vector<std::string> vtkMimetraAlgorithm::wanted_outputs(const Invocation&) {
+  return {};
+}
+
+const Outcome& vtkMimetraAlgorithm::outcome(double begin) {
+  if (call_->is_done()) return call_->outcome();
+  const Log log = [this](LogLevel level, const std::string& message) {
+    if (level == LogLevel::warning) {
+      vtkWarningMacro(<< message);
+    } else {
+      vtkDebugMacro(<< message);
+    }
+  };
+  const mimetra::Progress progress = [this, begin](double share) {
+    return show_progress(begin + (1 - begin) * share);
+  };
+  Invocation invocation = call_->invocation(progress, log);
+  const std::vector<std::string> wanted = wanted_outputs(invocation);
+  return call_->run(std::move(invocation), wanted);
+}
+
+vtkMimetraAlgorithm::Attempt vtkMimetraAlgorithm::attempt(const std::function<void()>& work) {
+  try {
+    work();
+    return Attempt::done;
+  } catch (const Cancelled&) {
+    return Attempt::aborted;
+  } catch (const std::bad_alloc&) {
+    vtkErrorMacro(<< "not enough memory; take fewer time steps");
+  } catch (const std::exception& error) {
+    vtkErrorMacro(<< error.what());
+  }
+  return Attempt::failed;
+}
+
+bool vtkMimetraAlgorithm::show_progress(double share) {
+  UpdateProgress(share);
+  return GetAbortExecute() == 0;
+}
+
+void vtkMimetraAlgorithm::begin_execution() {
+  // Not by its setter, which would make this algorithm and all after it execute again.
+  AbortExecute = 0;
+}

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <vtkPolyDataAlgorithm.h>
+
+#include "MimetraFiltersModule.h"
+
+class OperationCall;
+namespace mimetra {
+struct Invocation;
+struct Outcome;
+}  // namespace mimetra
+
+/// What the sources and filters share: an operation's parameters, progress, abort and errors.
+class MIMETRAFILTERS_EXPORT vtkMimetraAlgorithm : public vtkPolyDataAlgorithm {
+ public:
+  vtkTypeMacro(vtkMimetraAlgorithm, vtkPolyDataAlgorithm);
+
+  /// A parameter of the operation by name, or the path of an input; no text for its default.
+  void SetInteger(const char* name, int value);
+  void SetNumber(const char* name, double value);
+  void SetText(const char* name, const char* value);
+
+  /// How often components were computed.
+  int GetDecompositions();
+
+ protected:
+  explicit vtkMimetraAlgorithm(std::unique_ptr<OperationCall> call);
+  ~vtkMimetraAlgorithm() override;
+
+  OperationCall& call() { return *call_; }
+  /// Outputs besides those that the operation always makes.
+  virtual std::vector<std::string> wanted_outputs(const mimetra::Invocation& invocation);
+  /// The operation's outcome, kept while it holds; its progress is shown from `begin` on. Throws
+  /// what the operation throws.
+  const mimetra::Outcome& outcome(double begin = 0);
+  enum class Attempt { done, aborted, failed };
+  /// Calls `work`; what it throws is shown as an error, save an abort.
+  Attempt attempt(const std::function<void()>& work);
+  /// Shows progress; false to stop.
+  bool show_progress(double share);
+  /// Forgets an abort of an earlier execution.
+  void begin_execution();
+
+ private:
+  vtkMimetraAlgorithm(const vtkMimetraAlgorithm&) = delete;
+  void operator=(const vtkMimetraAlgorithm&) = delete;
+
+  std::unique_ptr<OperationCall> call_;
+};

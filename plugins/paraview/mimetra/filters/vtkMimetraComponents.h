@@ -1,0 +1,18 @@
+#pragma once
+
+#include "vtkMimetraFilter.h"
+
+/// Sparse components, each a block that shows it at weight 1, and their weights over time.
+class MIMETRAFILTERS_EXPORT vtkMimetraComponents : public vtkMimetraFilter {
+ public:
+  vtkTypeMacro(vtkMimetraComponents, vtkMimetraFilter);
+  static vtkMimetraComponents* New();
+
+ protected:
+  vtkMimetraComponents();
+  int FillOutputPortInformation(int port, vtkInformation* info) override;
+  bool moves(int port) const override;
+  std::vector<std::string> wanted_outputs(const mimetra::Invocation& invocation) override;
+  void show(const mimetra::Outcome& outcome, vtkPolyData& input, int frame,
+            vtkInformationVector* outputs) override;
+};

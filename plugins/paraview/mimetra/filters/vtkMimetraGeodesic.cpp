@@ -1,0 +1,23 @@
+#include "vtkMimetraGeodesic.h"
+
+#include <vtkObjectFactory.h>
+#include <vtkPolyData.h>
+
+#include <mimetra/operations/operation.h>
+#include <mimetra/vtk/poly_data.h>
+
+using namespace mimetra;
+
+vtkStandardNewMacro(vtkMimetraGeodesic);
+
+vtkMimetraGeodesic::vtkMimetraGeodesic()
+    : vtkMimetraFilter("geodesic", "mesh", Takes::shown_time_step) {}
+
+void vtkMimetraGeodesic::show(const Outcome& outcome, vtkPolyData& input, int,
+                              vtkInformationVector* outputs) {
+  vtkPolyData* output = vtkPolyData::GetData(outputs);
+  output->ShallowCopy(&input);
+  const auto& [sequence, fields, displacement] =
+      std::get<FieldSequence>(outcome.outputs.at("out").front().data);
+  for (const Field& field : fields) add_field(*output, field, sequence.connectivity());
+}

@@ -1,0 +1,53 @@
+#include "vtkMimetraRegions.h"
+
+#include <vtkObjectFactory.h>
+
+#include <mimetra/operations/operation.h>
+#include <mimetra/vtk/poly_data.h>
+
+#include "host_output.h"
+
+using namespace mimetra;
+
+vtkStandardNewMacro(vtkMimetraRegions);
+
+namespace {
+
+/// 1 on the vertices of one region. Throws UsageError where there is no such region.
+Field mask_of(const Regions& regions, int index) {
+  const int count = static_cast<int>(regions.regions.size());
+  if (index >= count) {
+    throw UsageError("Displayed Region: expected at most " + std::to_string(count - 1) +
+                     ", the last region, found " + std::to_string(index));
+  }
+  Field mask{"displayed_region", Field::Location::vertices, Eigen::VectorXd::Zero(regions.vertices),
+             true};
+  for (const VertexIndex vertex : regions.regions[static_cast<std::size_t>(index)].vertices) {
+    mask.values(vertex, 0) = 1;
+  }
+  return mask;
+}
+
+}  // namespace
+
+vtkMimetraRegions::vtkMimetraRegions() : vtkMimetraFilter("regions", "sequence") {}
+
+std::vector<std::string> vtkMimetraRegions::wanted_outputs(const Invocation&) {
+  return {"components-out"};
+}
+
+void vtkMimetraRegions::prepare(const Outcome& outcome, vtkPolyData& input) {
+  const auto& [regions, shown] = std::get<RegionData>(outcome.outputs.at("out").front().data);
+  std::vector<Field> fields = shown.fields;
+  if (DisplayedRegion >= 0) fields.push_back(mask_of(regions, DisplayedRegion));
+  make_fields(*fields_, input, fields, shown.sequence.connectivity());
+}
+
+void vtkMimetraRegions::show(const Outcome& outcome, vtkPolyData& input, int frame,
+                             vtkInformationVector* outputs) {
+  const auto& shown = std::get<RegionData>(outcome.outputs.at("out").front().data).fields;
+  vtkPolyData* output = vtkPolyData::GetData(outputs);
+  output->ShallowCopy(&input);
+  share_fields(*fields_, *output);
+  add_displacement(*output, shown.sequence.frame(frame) - shown.sequence.rest());
+}

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <vtkNew.h>
+#include <vtkPolyData.h>
+
+#include "vtkMimetraFilter.h"
+
+/// Regions of interest as fields on the input.
+class MIMETRAFILTERS_EXPORT vtkMimetraRegions : public vtkMimetraFilter {
+ public:
+  vtkTypeMacro(vtkMimetraRegions, vtkMimetraFilter);
+  static vtkMimetraRegions* New();
+
+  /// The region whose vertices are 1 in the point data `displayed_region`; -1 for none.
+  vtkSetMacro(DisplayedRegion, int);
+  vtkGetMacro(DisplayedRegion, int);
+
+ protected:
+  vtkMimetraRegions();
+  std::vector<std::string> wanted_outputs(const mimetra::Invocation& invocation) override;
+  void prepare(const mimetra::Outcome& outcome, vtkPolyData& input) override;
+  void show(const mimetra::Outcome& outcome, vtkPolyData& input, int frame,
+            vtkInformationVector* outputs) override;
+
+ private:
+  vtkNew<vtkPolyData> fields_;
+  int DisplayedRegion = -1;
+};

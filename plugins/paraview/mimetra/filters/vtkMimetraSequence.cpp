@@ -1,0 +1,77 @@
+#include "vtkMimetraSequence.h"
+
+#include <algorithm>
+
+#include <vtkInformation.h>
+#include <vtkInformationVector.h>
+#include <vtkObjectFactory.h>
+#include <vtkPolyData.h>
+#include <vtkStreamingDemandDrivenPipeline.h>
+
+#include <mimetra/operations/operation.h>
+#include <mimetra/vtk/poly_data.h>
+
+#include "operation_call.h"
+#include "reading.h"
+
+using namespace mimetra;
+using Pipeline = vtkStreamingDemandDrivenPipeline;
+
+vtkStandardNewMacro(vtkMimetraSequence);
+
+namespace {
+
+const FieldSequence& sequence_of(const Outcome& outcome) {
+  return std::get<FieldSequence>(outcome.outputs.at("out").front().data);
+}
+
+}  // namespace
+
+vtkMimetraSequence::vtkMimetraSequence()
+    : vtkMimetraAlgorithm(std::make_unique<OperationCall>(reading_operation())) {
+  SetNumberOfInputPorts(0);
+}
+
+void vtkMimetraSequence::read() {
+  const auto& [sequence, fields, displacement] = sequence_of(outcome());
+  mesh_->Initialize();
+  set_polygons(*mesh_, sequence.connectivity());
+  for (const Field& field : fields) add_field(*mesh_, field, sequence.connectivity());
+  set_rest(*mesh_, sequence.rest_is_known() ? std::optional(sequence.rest()) : std::nullopt);
+}
+
+int vtkMimetraSequence::RequestInformation(vtkInformation*, vtkInformationVector**,
+                                           vtkInformationVector* outputs) {
+  begin_execution();
+  if (read_at_ != GetMTime()) attempt([this] { read(); });
+  read_at_ = GetMTime();
+  vtkInformation* out = outputs->GetInformationObject(0);
+  if (!call().is_done() || sequence_of(call().outcome()).sequence.frames() == 1) {
+    out->Remove(Pipeline::TIME_STEPS());
+    out->Remove(Pipeline::TIME_RANGE());
+    return 1;
+  }
+  const Eigen::VectorXd& times = sequence_of(call().outcome()).sequence.times();
+  const int count = static_cast<int>(times.size());
+  const double range[] = {times[0], times[count - 1]};
+  out->Set(Pipeline::TIME_STEPS(), times.data(), count);
+  out->Set(Pipeline::TIME_RANGE(), range, 2);
+  return 1;
+}
+
+int vtkMimetraSequence::RequestData(vtkInformation*, vtkInformationVector**,
+                                    vtkInformationVector* outputs) {
+  if (!call().is_done()) return 1;
+  const MeshSequence& sequence = sequence_of(call().outcome()).sequence;
+  const Eigen::VectorXd& times = sequence.times();
+  vtkInformation* out = outputs->GetInformationObject(0);
+  Eigen::Index frame = 0;
+  if (out->Has(Pipeline::UPDATE_TIME_STEP())) {
+    (times.array() - out->Get(Pipeline::UPDATE_TIME_STEP())).abs().minCoeff(&frame);
+  }
+  vtkPolyData* output = vtkPolyData::GetData(outputs);
+  output->ShallowCopy(mesh_);
+  set_positions(*output, sequence.frame(static_cast<int>(frame)), Precision::double_precision);
+  output->GetInformation()->Set(vtkDataObject::DATA_TIME_STEP(), times[frame]);
+  return 1;
+}

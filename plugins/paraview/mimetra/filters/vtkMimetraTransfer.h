@@ -1,0 +1,31 @@
+#pragma once
+
+#include <vtkNew.h>
+#include <vtkPolyData.h>
+#include <vtkSmartPointer.h>
+
+#include "vtkMimetraFilter.h"
+
+/// The deformation of what comes in at port 0 on a target: a mesh at port 1, or a model's file.
+class MIMETRAFILTERS_EXPORT vtkMimetraTransfer : public vtkMimetraFilter {
+ public:
+  vtkTypeMacro(vtkMimetraTransfer, vtkMimetraFilter);
+  static vtkMimetraTransfer* New();
+
+ protected:
+  vtkMimetraTransfer();
+  int FillInputPortInformation(int port, vtkInformation* info) override;
+  int FillOutputPortInformation(int port, vtkInformation* info) override;
+  int RequestUpdateExtent(vtkInformation* request, vtkInformationVector** inputs,
+                          vtkInformationVector* outputs) override;
+  std::vector<std::string> wanted_outputs(const mimetra::Invocation& invocation) override;
+  void give_further_inputs(vtkInformationVector** inputs) override;
+  void prepare(const mimetra::Outcome& outcome, vtkPolyData& input) override;
+  void show(const mimetra::Outcome& outcome, vtkPolyData& input, int frame,
+            vtkInformationVector* outputs) override;
+
+ private:
+  vtkSmartPointer<vtkPolyData> target_;
+  vtkNew<vtkPolyData> fields_;
+  vtkMTimeType given_at_ = 0;
+};

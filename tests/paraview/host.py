@@ -1,0 +1,110 @@
+"""What the tests of the ParaView plugin share: the command's results, and ParaView's."""
+
+import json
+import os
+import pathlib
+import subprocess
+import tempfile
+import unittest
+
+import numpy as np
+from paraview import simple
+from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+from vtkmodules.vtkCommonCore import vtkOutputWindow, vtkStringOutputWindow
+
+FRAMES = "0:120:10"
+
+
+def mimetra(*arguments):
+    """Runs the command; what it prints on standard output."""
+    done = subprocess.run([os.environ["MIMETRA"], *map(str, arguments)], check=True,
+                          capture_output=True, text=True)
+    return done.stdout
+
+
+class Messages:
+    """What ParaView shows in its output window, as long as the block lasts."""
+
+    def __enter__(self):
+        self.before = vtkOutputWindow.GetInstance()
+        self.window = vtkStringOutputWindow()
+        vtkOutputWindow.SetInstance(self.window)
+        return self
+
+    def __exit__(self, *_):
+        vtkOutputWindow.SetInstance(self.before)
+
+    @property
+    def text(self):
+        return self.window.GetOutput()
+
+
+class Sample:
+    """The built-in sample in a folder of its own, made once for all tests of a file."""
+
+    def __init__(self):
+        self.folder = tempfile.TemporaryDirectory(prefix="mimetra_paraview_")
+        self.path = pathlib.Path(self.folder.name)
+        self.head = self.path / "head"
+        mimetra("sample", "-o", self.head)
+        self.take = self.path / "take.npy"
+        self.weights = self.head / "performance.csv"
+        mimetra("convert", f"{self.head}@identity001=1", "--weights", self.weights, "--frames",
+                FRAMES, "-o", self.take)
+
+    def __truediv__(self, name):
+        return self.path / name
+
+
+def at(proxy, time=None, port=0):
+    """The data of a source or filter at a time."""
+    proxy.UpdatePipeline(*([] if time is None else [time]))
+    data = proxy.GetClientSideObject().GetOutputDataObject(port)
+    kept = data.NewInstance()
+    kept.ShallowCopy(data)
+    return kept
+
+
+def points(mesh):
+    return vtk_to_numpy(mesh.GetPoints().GetData())
+
+
+def point_array(mesh, name):
+    return vtk_to_numpy(mesh.GetPointData().GetArray(name))
+
+
+def cell_array(mesh, name):
+    return vtk_to_numpy(mesh.GetCellData().GetArray(name))
+
+
+def polygons(mesh):
+    return (vtk_to_numpy(mesh.GetPolys().GetOffsetsArray()),
+            vtk_to_numpy(mesh.GetPolys().GetConnectivityArray()))
+
+
+def column(table, name):
+    return vtk_to_numpy(table.GetColumnByName(name))
+
+
+def decompositions(proxy):
+    proxy.UpdatePropertyInformation()
+    return proxy.GetProperty("Decompositions").GetElement(0)
+
+
+class HostTest(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.sample = Sample()
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.sample.folder.cleanup()
+
+    def tearDown(self):
+        simple.ResetSession()
+
+    def assert_same(self, found, expected, what=""):
+        """Equal bit for bit: NaN too, and of one type."""
+        self.assertEqual(found.dtype, expected.dtype, what)
+        self.assertEqual(found.shape, expected.shape, what)
+        self.assertEqual(found.tobytes(), expected.tobytes(), what)

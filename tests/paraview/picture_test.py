@@ -1,0 +1,42 @@
+"""What the user sees of the regions; needs a display."""
+
+import unittest
+
+from vtkmodules.vtkIOImage import vtkPNGReader
+
+from host import *
+
+
+class Picture(HostTest):
+    def picture(self, view, name, time):
+        path = str(self.sample / f"{name}.png")
+        simple.GetAnimationScene().AnimationTime = time
+        simple.SaveScreenshot(path, view, ImageResolution=[640, 480])
+        reader = vtkPNGReader()
+        reader.SetFileName(path)
+        reader.Update()
+        pixels = vtk_to_numpy(reader.GetOutput().GetPointData().GetScalars())
+        return pixels.reshape(480, 640, -1)[:, :, :3].astype(int)
+
+    def test_shows_regions_in_their_colours_over_time(self):
+        source = simple.mimetraSequence(FileName=str(self.sample.take))
+        filter = simple.RegionsofInterest(Input=source, K=6)
+        view = simple.CreateView("RenderView")
+        display = simple.Show(filter, view)
+        simple.ColorBy(display, ("POINTS", "region"))
+        display.RescaleTransferFunctionToDataRange()
+        simple.GetAnimationScene().UpdateAnimationUsingDataTimeSteps()
+        simple.ResetCamera(view)
+        first = self.picture(view, "first", 0)
+        is_head = np.abs(first - first[0, 0]).sum(axis=2) > 30
+        self.assertTrue(0.05 < is_head.mean() < 0.95, is_head.mean())
+        # Regions and the rest of the head differ in hue: red beside blue.
+        reddish = is_head & (first[:, :, 0] > first[:, :, 2] + 30)
+        bluish = is_head & (first[:, :, 2] > first[:, :, 0] + 30)
+        self.assertGreater(min(reddish.mean(), bluish.mean()), 0.001)
+        later = self.picture(view, "later", 1)
+        self.assertTrue((first != later).any())
+
+
+if __name__ == "__main__":
+    unittest.main()

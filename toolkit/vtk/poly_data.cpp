@@ -1,0 +1,219 @@
+#include <mimetra/vtk/poly_data.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <vtkCellArray.h>
+#include <vtkCellData.h>
+#include <vtkDoubleArray.h>
+#include <vtkFieldData.h>
+#include <vtkFloatArray.h>
+#include <vtkIdList.h>
+#include <vtkNew.h>
+#include <vtkPointData.h>
+#include <vtkPoints.h>
+#include <vtkPolyData.h>
+#include <vtkSmartPointer.h>
+#include <vtkTypeInt32Array.h>
+
+#include <mimetra/mesh/errors.h>
+
+namespace mimetra {
+
+namespace {
+
+Eigen::MatrixXd values_of(vtkDataArray& array) {
+  Eigen::MatrixXd values(array.GetNumberOfTuples(), array.GetNumberOfComponents());
+  for (Eigen::Index row = 0; row < values.rows(); ++row) {
+    for (Eigen::Index column = 0; column < values.cols(); ++column) {
+      values(row, column) = array.GetComponent(row, static_cast<int>(column));
+    }
+  }
+  return values;
+}
+
+void name_components(vtkDataArray& array) {
+  if (array.GetNumberOfComponents() != 3) return;
+  array.SetComponentName(0, "X");
+  array.SetComponentName(1, "Y");
+  array.SetComponentName(2, "Z");
+}
+
+template <typename Array, typename Values, typename Convert>
+vtkSmartPointer<Array> array_of(const std::string& name, const Values& values, Convert convert) {
+  const auto array = vtkSmartPointer<Array>::New();
+  array->SetName(name.c_str());
+  array->SetNumberOfComponents(std::max(1, static_cast<int>(values.cols())));
+  array->SetNumberOfTuples(values.rows());
+  auto* out = array->GetPointer(0);
+  for (Eigen::Index row = 0; row < values.rows(); ++row) {
+    for (Eigen::Index column = 0; column < values.cols(); ++column) {
+      *out++ = convert(values(row, column));
+    }
+  }
+  name_components(*array);
+  return array;
+}
+
+template <typename Values>
+vtkSmartPointer<vtkDataArray> float_array(const std::string& name, const Values& values) {
+  return array_of<vtkFloatArray>(name, values, [](double x) { return static_cast<float>(x); });
+}
+
+template <typename Values>
+vtkSmartPointer<vtkDataArray> double_array(const std::string& name, const Values& values) {
+  return array_of<vtkDoubleArray>(name, values, [](double x) { return x; });
+}
+
+vtkSmartPointer<vtkDataArray> array_of(const std::string& name, const Eigen::MatrixXd& values,
+                                       bool integer) {
+  if (!integer) return float_array(name, values);
+  return array_of<vtkTypeInt32Array>(
+      name, values, [](double x) { return static_cast<vtkTypeInt32>(std::lround(x)); });
+}
+
+vtkSmartPointer<vtkTypeInt32Array> index_array(const std::vector<int>& indices) {
+  const auto array = vtkSmartPointer<vtkTypeInt32Array>::New();
+  array->SetNumberOfValues(static_cast<vtkIdType>(indices.size()));
+  std::copy(indices.begin(), indices.end(), array->GetPointer(0));
+  return array;
+}
+
+/// VTK counts vertices and lines before polygons.
+Eigen::Index cells_before_polygons(vtkPolyData& data) {
+  return data.GetNumberOfVerts() + data.GetNumberOfLines();
+}
+
+/// Values of the polygons: the largest of their triangles' in each component.
+Eigen::MatrixXd on_polygons(const Eigen::MatrixXd& on_triangles, const Connectivity& connectivity) {
+  Eigen::MatrixXd values = Eigen::MatrixXd::Constant(
+      connectivity.polygons.size(), on_triangles.cols(), -std::numeric_limits<double>::infinity());
+  for (Eigen::Index t = 0; t < on_triangles.rows(); ++t) {
+    const int polygon = connectivity.polygon_of_triangle[static_cast<std::size_t>(t)];
+    values.row(polygon) = values.row(polygon).cwiseMax(on_triangles.row(t));
+  }
+  return values;
+}
+
+/// Values of the polygons on all cells.
+Eigen::MatrixXd on_cells(vtkPolyData& data, const Eigen::MatrixXd& on_polygons) {
+  Eigen::MatrixXd values = Eigen::MatrixXd::Zero(data.GetNumberOfCells(), on_polygons.cols());
+  values.middleRows(cells_before_polygons(data), on_polygons.rows()) = on_polygons;
+  return values;
+}
+
+/// Values of each polygon on its triangles.
+Eigen::MatrixXd on_triangles(vtkPolyData& data, const Eigen::MatrixXd& on_cells,
+                             const Connectivity& connectivity) {
+  return on_cells.middleRows(cells_before_polygons(data), connectivity.polygons.size())(
+      connectivity.polygon_of_triangle, Eigen::all);
+}
+
+}  // namespace
+
+Positions positions_of(vtkPolyData& data, const std::string& name) {
+  if (data.GetNumberOfPoints() == 0) throw IoError(name, "has no points");
+  const Positions positions = values_of(*data.GetPoints()->GetData());
+  for (Eigen::Index v = 0; v < positions.rows(); ++v) {
+    if (!positions.row(v).allFinite()) {
+      throw IoError(name, "point " + std::to_string(v) + " is not finite");
+    }
+  }
+  return positions;
+}
+
+Connectivity connectivity_of(vtkPolyData& data, const std::string& name) {
+  Polygons polygons;
+  vtkNew<vtkIdList> corners;
+  for (vtkIdType cell = 0; cell < data.GetNumberOfPolys(); ++cell) {
+    data.GetPolys()->GetCellAtId(cell, corners);
+    for (const vtkIdType corner : *corners) polygons.corners.push_back(static_cast<int>(corner));
+    polygons.offsets.push_back(static_cast<int>(polygons.corners.size()));
+  }
+  if (polygons.size() == 0) throw IoError(name, "has no faces");
+  try {
+    return Connectivity::from_polygons(static_cast<int>(data.GetNumberOfPoints()),
+                                       std::move(polygons));
+  } catch (const std::invalid_argument& error) {
+    throw IoError(name, error.what());
+  }
+}
+
+std::optional<Positions> rest_of(vtkPolyData& data, const Positions& positions) {
+  const auto of_this_mesh = [&positions](vtkDataArray* array) {
+    return array && array->GetNumberOfComponents() == 3 &&
+           array->GetNumberOfTuples() == positions.rows();
+  };
+  vtkDataArray* rest = data.GetFieldData()->GetArray(kRestPose);
+  if (of_this_mesh(rest)) return values_of(*rest);
+  vtkDataArray* moved = data.GetPointData()->GetArray(kDisplacement);
+  if (of_this_mesh(moved)) return positions - values_of(*moved);
+  return {};
+}
+
+std::vector<Field> fields_of(vtkPolyData& data, const Connectivity& connectivity) {
+  std::vector<Field> fields;
+  const auto add = [&fields](vtkFieldData& arrays, Field::Location location, auto placed) {
+    for (int i = 0; i < arrays.GetNumberOfArrays(); ++i) {
+      vtkDataArray* array = vtkDataArray::SafeDownCast(arrays.GetAbstractArray(i));
+      if (!array || !array->GetName()) continue;
+      const std::string name = array->GetName();
+      if (name == kDisplacement || name == kDisplacementLength) continue;
+      const bool integer = array->GetDataType() != VTK_FLOAT && array->GetDataType() != VTK_DOUBLE;
+      fields.push_back({name, location, placed(values_of(*array)), integer});
+    }
+  };
+  add(*data.GetPointData(), Field::Location::vertices,
+      [](const Eigen::MatrixXd& values) { return values; });
+  add(*data.GetCellData(), Field::Location::triangles,
+      [&](const Eigen::MatrixXd& values) { return on_triangles(data, values, connectivity); });
+  return fields;
+}
+
+std::optional<Eigen::MatrixXd> point_values(vtkPolyData& data, const std::string& name) {
+  vtkDataArray* array = data.GetPointData()->GetArray(name.c_str());
+  return array ? std::optional(values_of(*array)) : std::nullopt;
+}
+
+void set_polygons(vtkPolyData& data, const Connectivity& connectivity) {
+  vtkNew<vtkCellArray> cells;
+  cells->SetData(index_array(connectivity.polygons.offsets),
+                 index_array(connectivity.polygons.corners));
+  data.SetPolys(cells);
+}
+
+void set_positions(vtkPolyData& data, const Eigen::Ref<const Positions>& positions,
+                   Precision precision) {
+  vtkNew<vtkPoints> points;
+  points->SetData(precision == Precision::single_precision ? float_array("Points", positions)
+                                                           : double_array("Points", positions));
+  data.SetPoints(points);
+}
+
+void add_field(vtkPolyData& data, const Field& field, const Connectivity& connectivity) {
+  if (field.location == Field::Location::triangles) {
+    const Eigen::MatrixXd values = on_cells(data, on_polygons(field.values, connectivity));
+    data.GetCellData()->AddArray(array_of(field.name, values, field.integer));
+    return;
+  }
+  vtkPointData* on_points = data.GetPointData();
+  on_points->AddArray(array_of(field.name, field.values, field.integer));
+  // ParaView colours what it shows first by the active scalars.
+  if (!on_points->GetScalars() && field.values.cols() == 1) {
+    on_points->SetActiveScalars(field.name.c_str());
+  }
+}
+
+void add_displacement(vtkPolyData& data, const Eigen::MatrixXd& displacement) {
+  data.GetPointData()->AddArray(float_array(kDisplacement, displacement));
+  data.GetPointData()->AddArray(
+      float_array(kDisplacementLength, displacement.rowwise().norm().eval()));
+}
+
+void set_rest(vtkPolyData& data, const std::optional<Positions>& rest) {
+  data.GetFieldData()->RemoveArray(kRestPose);
+  if (rest) data.GetFieldData()->AddArray(double_array(kRestPose, *rest));
+}
+
+}  // namespace mimetra

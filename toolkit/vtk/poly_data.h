@@ -1,0 +1,49 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <mimetra/mesh/fields.h>
+
+class vtkPolyData;
+
+namespace mimetra {
+
+// Meshes as VTK holds them. Errors start with `name`: a file, or what else the data came from.
+
+/// Positions (N x 3). Throws IoError where there are none, or one is not finite.
+Positions positions_of(vtkPolyData& data, const std::string& name);
+
+/// The polygons; vertices, lines and strips are left out. Throws IoError where there are none.
+Connectivity connectivity_of(vtkPolyData& data, const std::string& name);
+
+/// The rest pose that data at `positions` tell of: the field data kRestPose, or the positions
+/// without the point data kDisplacement.
+std::optional<Positions> rest_of(vtkPolyData& data, const Positions& positions);
+
+/// All numeric point data, and cell data of the polygons, save displacements.
+std::vector<Field> fields_of(vtkPolyData& data, const Connectivity& connectivity);
+
+/// A point array (N x c), or nothing.
+std::optional<Eigen::MatrixXd> point_values(vtkPolyData& data, const std::string& name);
+
+void set_polygons(vtkPolyData& data, const Connectivity& connectivity);
+
+enum class Precision { single_precision, double_precision };
+void set_positions(vtkPolyData& data, const Eigen::Ref<const Positions>& positions, Precision);
+
+/// Adds or replaces a field: float, or 32-bit integers. Triangle fields go on the polygon, the
+/// largest of its triangles', and are 0 on cells of other kinds.
+void add_field(vtkPolyData& data, const Field& field, const Connectivity& connectivity);
+
+/// Point data of FieldSequence::displacement: the vector from the rest pose, and its length.
+constexpr const char* kDisplacement = "displacement";
+constexpr const char* kDisplacementLength = "displacement_length";
+void add_displacement(vtkPolyData& data, const Eigen::MatrixXd& displacement);
+
+/// Field data (N x 3, double) that carry the rest pose along a pipeline.
+constexpr const char* kRestPose = "mimetra_rest";
+void set_rest(vtkPolyData& data, const std::optional<Positions>& rest);
+
+}  // namespace mimetra
