@@ -124,6 +124,8 @@ std::vector<BadInput> request_cases() {
   add("empty_name", "info", "info ''", {"empty"});
   add("no_number", "transfer", "transfer head head --ridge nan -o x", {"--ridge", "'nan'"});
   add("infinity", "regions", "regions head --radius inf -o r.json", {"--radius", "'inf'"});
+  add("view_of_no_series", "regions", "regions " + kSequence + " -k 2 -o r.json --paraview v.py",
+      {"--paraview", "-o NAME.pvd"});
   add("zero_radius", "regions", "regions " + kSequence + " --radius 0 -o r.json",
       {"--radius", "0"});
   add("unknown_choice", "convert", "convert head -o x --format fbx", {"--format", "ply, obj"});

@@ -32,13 +32,20 @@ enum class DataKind {
   landmarks,
   morphable_model,
   fit,
-  pictures
+  pictures,
+  view
 };
 
 /// Regions and the sequence they are shown on (empty for regions that were read).
 struct RegionData {
   Regions regions;
   FieldSequence fields;
+};
+
+/// How regions that were written are shown.
+struct RegionView {
+  RegionData regions;
+  std::filesystem::path series;  ///< where they are: .pvd or .vtp
 };
 
 /// Rows of numbers under column names; an empty cell is nothing that can be measured.
@@ -82,9 +89,9 @@ struct ModelRead {
 };
 
 /// One value of the kind at the same place in DataKind.
-using Data =
-    std::variant<SequenceRead, BlendshapeModel, Components, RegionData, FieldSequence, Table,
-                 AnimatedModel, Image, LandmarksRead, ModelRead, FittedCoefficients, Pictures>;
+using Data = std::variant<SequenceRead, BlendshapeModel, Components, RegionData, FieldSequence,
+                          Table, AnimatedModel, Image, LandmarksRead, ModelRead, FittedCoefficients,
+                          Pictures, RegionView>;
 
 /// A value and what it is called in messages and output names.
 struct NamedData {

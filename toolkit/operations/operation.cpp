@@ -74,6 +74,8 @@ std::string_view kind_name(DataKind kind) {
       return "fitted coefficients";
     case DataKind::pictures:
       return "pictures";
+    case DataKind::view:
+      return "ParaView script";
   }
   return "";
 }

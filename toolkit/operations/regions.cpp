@@ -9,7 +9,20 @@ namespace mimetra {
 
 namespace {
 
+/// What the script for ParaView opens: the main output.
+std::filesystem::path series_of(const Invocation& invocation) {
+  const auto out = invocation.wanted.find("out");
+  if (out != invocation.wanted.end() && !out->second.empty()) {
+    const std::filesystem::path& path = out->second.front();
+    if (path.extension() == ".pvd" || path.extension() == ".vtp") {
+      return std::filesystem::absolute(path).lexically_normal();
+    }
+  }
+  throw UsageError("--paraview: needs regions that ParaView opens, with -o NAME.pvd or NAME.vtp");
+}
+
 Outcome run(const Invocation& invocation) {
+  if (invocation.wants("paraview")) series_of(invocation);
   const SequenceRead& read = invocation.get<SequenceRead>("sequence");
   const Analysis analysis = analysis_for(invocation, read);
   const Regions regions = regions_of(invocation, analysis);
@@ -24,8 +37,11 @@ Outcome run(const Invocation& invocation) {
   json["seconds"] = analysis.seconds;
   outcome.report = json.dump();
   outcome.summary = summary_of(regions);
-  outcome.outputs["out"].push_back(
-      {"", RegionData{regions, {read.sequence, std::move(fields), true}}});
+  const RegionData shown{regions, {read.sequence, std::move(fields), true}};
+  if (invocation.wants("paraview")) {
+    outcome.outputs["paraview"].push_back({"", RegionView{shown, series_of(invocation)}});
+  }
+  outcome.outputs["out"].push_back({"", shown});
   if (invocation.wants("components-out")) {
     outcome.outputs["components-out"].push_back({"", analysis.components});
   }
@@ -42,14 +58,16 @@ Operation regions_operation() {
       {"sequence", DataKind::sequence, "sequence whose moving regions are looked for"},
       {"components", DataKind::components, "components (.h5) of an earlier decompose", true}};
   operation.outputs = {{"out", DataKind::regions, ".pvd (a time series), .vtp, .json or .csv"},
-                       components_output()};
+                       components_output(),
+                       {"paraview", DataKind::view,
+                        "script (.py) that shows them: paraview --script=VIEW.py", true}};
   operation.parameters = region_parameters();
   operation.parameters.push_back({"component-fields", ParameterKind::flag, false,
                                   "also write support_k and component_k of each region"});
   for (const auto& group : {decomposition_parameters(30), alignment_parameters()}) {
     for (const Parameter& parameter : group) operation.parameters.push_back(parameter);
   }
-  operation.examples = {"regions takes/ -k 30 -o rois/take.pvd",
+  operation.examples = {"regions takes/ -k 30 -o rois/take.pvd --paraview view.py",
                         "regions take.npy --coverage 0.8 --radius 12abs -o rois.json"};
   operation.run = run;
   operation.memory = [](const Invocation& invocation) {

@@ -4,6 +4,7 @@
 #include <mimetra/io/pending_output.h>
 #include <mimetra/mesh/parallel.h>
 #include <mimetra/operations/formats.h>
+#include <mimetra/vtk/paraview_view.h>
 #include <mimetra/vtk/picture.h>
 #include <mimetra/vtk/render_operation.h>
 #include <mimetra/vtk/vtp_formats.h>
@@ -34,12 +35,20 @@ std::vector<std::filesystem::path> write_pictures(const Data& data, const WriteR
   return files;
 }
 
+std::vector<std::filesystem::path> write_view(const Data& data, const WriteRequest& request) {
+  return write_with_extra(request, [&] {
+    write_file(request.target, paraview_view(std::get<RegionView>(data)), request.overwrite);
+    return std::vector{request.target};
+  });
+}
+
 }  // namespace
 
 void add_vtk(OperationTable& table) {
   add_vtp(table);
   table.add(Writer{DataKind::picture, {".png"}, {}, write_picture});
   table.add(Writer{DataKind::pictures, {""}, {}, write_pictures});
+  table.add(Writer{DataKind::view, {".py"}, {}, write_view});
   table.add(render_operation());
 }
 

@@ -1,0 +1,127 @@
+#include <mimetra/vtk/paraview_view.h>
+
+#include <algorithm>
+#include <map>
+#include <sstream>
+
+#include <nlohmann/json.hpp>
+
+#include <mimetra/vtk/colors.h>
+
+namespace mimetra {
+
+namespace {
+
+/// The colour of each region, by its number; -1 is what none covers.
+std::map<int, Color> colors_of(const RegionView& view) {
+  const std::vector<Field>& fields = view.regions.fields.fields;
+  const Field& region = *std::ranges::find(fields, "region", &Field::name);
+  std::vector<int> labels;
+  for (const double value : region.values.reshaped()) labels.push_back(static_cast<int>(value));
+  const std::vector<Color> colors =
+      category_colors(labels, view.regions.fields.sequence.triangles());
+  std::map<int, Color> by_region = {{-1, kClay}};
+  for (std::size_t v = 0; v < labels.size(); ++v) by_region.emplace(labels[v], colors[v]);
+  return by_region;
+}
+
+/// A string of Python: JSON's escapes are Python's.
+std::string quoted(const std::string& text) {
+  return nlohmann::json(text).dump(-1, ' ', true, nlohmann::json::error_handler_t::replace);
+}
+
+std::string list_of(const Eigen::RowVector3d& point) {
+  std::ostringstream text;
+  text.precision(9);
+  text << '[' << point.x() << ", " << point.y() << ", " << point.z() << ']';
+  return text.str();
+}
+
+/// `name = value` lines that say which colour and name each value has.
+std::string categories(const std::map<int, Color>& colors) {
+  std::ostringstream names, values;
+  values.precision(3);
+  for (const auto& [region, color] : colors) {
+    const char* separator = region == colors.begin()->first ? "" : ", ";
+    names << separator << '"' << region << "\", \""
+          << (region < 0 ? "none" : std::to_string(region)) << '"';
+    values << separator << color.red / 255.0 << ", " << color.green / 255.0 << ", "
+           << color.blue / 255.0;
+  }
+  return "colors.Annotations = [" + names.str() + "]\ncolors.IndexedColors = [" + values.str() +
+         "]\n";
+}
+
+/// Orthographic, a little from the side and from above; the face looks along +z.
+std::string camera(const Positions& rest) {
+  const Eigen::RowVector3d low = rest.colwise().minCoeff(), high = rest.colwise().maxCoeff();
+  const Eigen::RowVector3d middle = (low + high) / 2;
+  const double size = (high - low).norm();
+  const Eigen::RowVector3d from = middle + 2 * size * Eigen::RowVector3d(0.26, 0.09, 0.96);
+  std::ostringstream text;
+  text << "view.CameraParallelProjection = 1\nview.CameraFocalPoint = " << list_of(middle)
+       << "\nview.CameraPosition = " << list_of(from) << "\nview.CameraViewUp = [0, 1, 0]\n"
+       << "view.CameraParallelScale = " << 0.6 * (high - low).head<2>().maxCoeff() << '\n';
+  return text.str();
+}
+
+constexpr const char* kHead = R"(# Regions of a sequence in ParaView:    paraview --script=VIEW.py
+# or in a picture, without a window:    pvpython VIEW.py PICTURE.png
+import sys
+
+from paraview.simple import *
+
+)";
+
+constexpr const char* kColoring = R"(
+view = GetActiveViewOrCreate("RenderView")
+view.UseColorPaletteForBackground = 0
+view.Background = [1, 1, 1]
+view.OrientationAxesVisibility = 0
+display = Show(reader, view)
+ColorBy(display, ("POINTS", "region"))
+colors = GetColorTransferFunction("region")
+colors.InterpretValuesAsCategories = 1
+colors.AnnotationsInitialized = 1
+)";
+
+constexpr const char* kLegend = R"(
+display.SetScalarBarVisibility(view, True)
+legend = GetScalarBar(colors, view)
+legend.Title = "region"
+legend.ComponentTitle = ""
+legend.TitleColor = legend.LabelColor = [0, 0, 0]
+legend.WindowLocation = "Any Location"
+legend.Position = [0.9, 0.03]
+legend.ScalarBarLength = 0.9
+legend.TitleFontSize = legend.LabelFontSize = 10
+
+time = AnnotateTimeFilter(reader)
+time.Format = "{time:.2f} s"
+clock = Show(time, view)
+clock.Color = [0, 0, 0]
+clock.FontSize = 12
+clock.WindowLocation = "Lower Left Corner"
+GetAnimationScene().UpdateAnimationUsingDataTimeSteps()
+SetActiveSource(reader)
+
+Render(view)
+)";
+
+constexpr const char* kEnd = R"(Render(view)
+
+if len(sys.argv) == 2 and sys.argv[1].endswith(".png"):
+    view.ViewSize = [1280, 800]
+    SaveScreenshot(sys.argv[1], view, ImageResolution=view.ViewSize)
+)";
+
+}  // namespace
+
+std::string paraview_view(const RegionView& view) {
+  const std::string name = view.series.stem().string();
+  return kHead + ("reader = OpenDataFile(" + quoted(view.series.string()) + ")\n") +
+         "RenameSource(" + quoted(name) + ", reader)\n" + kColoring + categories(colors_of(view)) +
+         kLegend + camera(view.regions.fields.sequence.rest()) + kEnd;
+}
+
+}  // namespace mimetra

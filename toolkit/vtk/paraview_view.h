@@ -1,0 +1,14 @@
+#pragma once
+
+#include <string>
+
+#include <mimetra/operations/data.h>
+
+namespace mimetra {
+
+/// A script that shows the regions of a written series in ParaView (`paraview --script=VIEW.py`):
+/// each in a colour of its own with a legend, the time, and the face from the front. Under pvpython
+/// it draws the picture that is named behind it.
+std::string paraview_view(const RegionView& view);
+
+}  // namespace mimetra
