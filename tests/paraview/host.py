@@ -101,7 +101,8 @@ class HostTest(unittest.TestCase):
         cls.sample.folder.cleanup()
 
     def tearDown(self):
-        simple.ResetSession()
+        for source in reversed(list(simple.GetSources().values())):
+            simple.Delete(source)
 
     def assert_same(self, found, expected, what=""):
         """Equal bit for bit: NaN too, and of one type."""
