@@ -50,9 +50,8 @@ class SparseComponents(HostTest):
         with open(self.csv, newline="") as file:
             rows = list(csv.DictReader(file))
         self.assertEqual(list(rows[0]), ["time"] + names)
-        self.assertEqual([table.GetColumnName(i) for i in range(7)], list(rows[0]))
-        for name in rows[0]:
-            self.assert_same(column(table, name), np.array([float(row[name]) for row in rows]))
+        self.assertEqual([table.GetColumnName(i) for i in range(7)], ["Time"] + names)
+        self.assert_table(table, rows)
 
     def test_decomposes_once_for_both_outputs_and_all_times(self):
         filter = self.filter()

@@ -101,7 +101,15 @@ class HostTest(unittest.TestCase):
         cls.sample.folder.cleanup()
 
     def tearDown(self):
-        simple.ResetSession()
+        for source in reversed(list(simple.GetSources().values())):
+            simple.Delete(source)
+
+    def assert_table(self, table, rows):
+        """The rows of a CSV file, whose times are what charts know as Time."""
+        self.assertEqual(table.GetNumberOfColumns(), len(rows[0]))
+        for name in rows[0]:
+            self.assert_same(column(table, "Time" if name == "time" else name),
+                             np.array([float(row[name]) for row in rows]), name)
 
     def assert_same(self, found, expected, what=""):
         """Equal bit for bit: NaN too, and of one type."""

@@ -10,7 +10,7 @@ from host import *
 class Picture(HostTest):
     def picture(self, view, name, time):
         path = str(self.sample / f"{name}.png")
-        simple.GetAnimationScene().AnimationTime = time
+        view.ViewTime = time
         simple.SaveScreenshot(path, view, ImageResolution=[640, 480])
         reader = vtkPNGReader()
         reader.SetFileName(path)
@@ -25,7 +25,6 @@ class Picture(HostTest):
         display = simple.Show(filter, view)
         simple.ColorBy(display, ("POINTS", "region"))
         display.RescaleTransferFunctionToDataRange()
-        simple.GetAnimationScene().UpdateAnimationUsingDataTimeSteps()
         simple.ResetCamera(view)
         first = self.picture(view, "first", 0)
         is_head = np.abs(first - first[0, 0]).sum(axis=2) > 30
@@ -34,8 +33,9 @@ class Picture(HostTest):
         reddish = is_head & (first[:, :, 0] > first[:, :, 2] + 30)
         bluish = is_head & (first[:, :, 2] > first[:, :, 0] + 30)
         self.assertGreater(min(reddish.mean(), bluish.mean()), 0.001)
-        later = self.picture(view, "later", 1)
+        later = self.picture(view, "later", source.TimestepValues[5])
         self.assertTrue((first != later).any())
+        simple.Delete(view)
 
 
 if __name__ == "__main__":

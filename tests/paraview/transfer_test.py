@@ -44,8 +44,8 @@ class RegionTransfer(HostTest):
         table = at(filter, port=1)
         with open(weights, newline="") as file:
             rows = list(csv.DictReader(file))
-        for name in rows[0]:
-            self.assert_same(column(table, name), np.array([float(row[name]) for row in rows]))
+        self.assertGreater(len(rows[0]), 12)
+        self.assert_table(table, rows)
 
     def test_solves_for_vertices_as_the_command_does(self):
         expected, _ = self.transferred("vertices", self.target)

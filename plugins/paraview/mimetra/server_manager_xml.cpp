@@ -28,7 +28,7 @@ struct Proxy {
   std::vector<Parameter> parameters;
   std::string class_name;
   std::string label;
-  std::vector<std::string> first;  ///< parameters that are shown at once, not among the advanced
+  std::vector<std::string> first;  ///< parameters that are shown at once, in this order
   std::vector<Port> ports;
   std::string further;  ///< XML of properties that are no parameters, of further outputs
   std::string hints;
@@ -163,6 +163,19 @@ std::string path_xml(const Input& input, bool has_port, bool advanced) {
                      label_of(input.name) + (has_port ? " File" : ""), advanced);
 }
 
+/// The property of a parameter, or of an input that may be a file; nothing for one that may not.
+std::string property_named(const Proxy& proxy, const std::string& name, bool advanced) {
+  const auto& inputs = proxy.operation.inputs;
+  const auto input = std::ranges::find(inputs, name, &Input::name);
+  if (input == inputs.end()) {
+    const auto parameter = std::ranges::find(proxy.parameters, name, &Parameter::name);
+    return property_of(*parameter, label_of(name), advanced);
+  }
+  const auto port = std::ranges::find(proxy.ports, name, &Port::input);
+  const bool has_port = port != proxy.ports.end();
+  return has_port && !port->optional ? "" : path_xml(*input, has_port, advanced);
+}
+
 std::string proxy_xml(const Proxy& proxy) {
   const Operation& operation = proxy.operation;
   std::string xml = "    <SourceProxy" + attribute("class", proxy.class_name) +
@@ -170,29 +183,18 @@ std::string proxy_xml(const Proxy& proxy) {
                     attribute("label", proxy.label) + ">\n      <Documentation" +
                     attribute("short_help", operation.summary) + ">" + escaped(operation.summary) +
                     ".</Documentation>\n";
-  const auto port_of = [&proxy](const Input& input) {
-    return std::ranges::find(proxy.ports, input.name, &Port::input);
-  };
   for (const Input& input : operation.inputs) {
-    const auto port = port_of(input);
+    const auto port = std::ranges::find(proxy.ports, input.name, &Port::input);
     if (port == proxy.ports.end()) continue;
     xml += port_xml(*port, static_cast<int>(port - proxy.ports.begin()), input.help);
   }
-  for (const bool advanced : {false, true}) {
-    const auto belongs_here = [&](const std::string& name) {
-      return (std::ranges::find(proxy.first, name) == proxy.first.end()) == advanced;
-    };
-    for (const Input& input : operation.inputs) {
-      const auto port = port_of(input);
-      const bool has_port = port != proxy.ports.end();
-      if (has_port && !port->optional) continue;
-      if (belongs_here(input.name)) xml += path_xml(input, has_port, advanced);
-    }
-    for (const Parameter& parameter : proxy.parameters) {
-      if (!belongs_here(parameter.name)) continue;
-      xml += property_of(parameter, label_of(parameter.name), advanced);
-    }
-  }
+  for (const std::string& name : proxy.first) xml += property_named(proxy, name, false);
+  const auto add_advanced = [&](const std::string& name) {
+    const bool is_first = std::ranges::find(proxy.first, name) != proxy.first.end();
+    if (!is_first) xml += property_named(proxy, name, true);
+  };
+  for (const Input& input : operation.inputs) add_advanced(input.name);
+  for (const Parameter& parameter : proxy.parameters) add_advanced(parameter.name);
   return xml + proxy.further + "      <Hints>" + proxy.hints + "</Hints>\n    </SourceProxy>\n";
 }
 

@@ -15,6 +15,9 @@ using namespace mimetra;
 
 namespace {
 
+/// What ParaView's charts put on the x axis, and leave out of the curves.
+constexpr const char* kTime = "Time";
+
 void remove_normals(vtkDataSetAttributes& attributes) {
   vtkDataArray* normals = attributes.GetNormals();
   if (normals && normals->GetName()) attributes.RemoveArray(normals->GetName());
@@ -52,7 +55,8 @@ void share_fields(vtkPolyData& holder, vtkPolyData& output) {
 void fill(vtkTable& output, const Table& table) {
   for (std::size_t column = 0; column < table.columns.size(); ++column) {
     vtkNew<vtkDoubleArray> values;
-    values->SetName(table.columns[column].c_str());
+    const std::string& name = table.columns[column];
+    values->SetName(name == "time" ? kTime : name.c_str());
     for (const auto& row : table.rows) {
       values->InsertNextValue(row[column].value_or(std::numeric_limits<double>::quiet_NaN()));
     }

@@ -14,5 +14,5 @@ void make_fields(vtkPolyData& holder, vtkPolyData& mesh, const std::vector<mimet
                  const mimetra::Connectivity& connectivity);
 void share_fields(vtkPolyData& holder, vtkPolyData& output);
 
-/// One column of numbers for each of the table's; an empty cell is NaN.
+/// One column of numbers for each of the table's, "time" as "Time"; an empty cell is NaN.
 void fill(vtkTable& output, const mimetra::Table& table);
