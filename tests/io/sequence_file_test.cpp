@@ -175,7 +175,9 @@ TEST_F(TwelveFiles, WeightsCannotDriveThem) {
 
 TEST_F(TwelveFiles, ReadingStopsWhenProgressSaysSo) {
   int calls = 0;
-  EXPECT_THROW(read_sequence(text(), {.progress = [&](double) { return ++calls < 3; }}), Cancelled);
+  EXPECT_THROW(
+      read_sequence(text(), {.threads = 1, .progress = [&](double) { return ++calls < 3; }}),
+      Cancelled);
   EXPECT_EQ(calls, 3);
 }
 

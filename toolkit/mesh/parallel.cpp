@@ -61,12 +61,18 @@ void parallel_for(int count, int threads, const std::function<void(int)>& work,
   const int machine = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
   const int used = std::min(threads > 0 ? threads : machine, count);
   Loop loop(count, work);
+  int reported = 0;
   {
     std::vector<std::jthread> others;
     for (int t = 1; t < used; ++t) others.emplace_back([&loop] { loop.run([](int) {}); });
-    loop.run([&progress, count](int done) { report_progress(progress, double(done) / count); });
+    loop.run([&](int done) {
+      reported = done;
+      report_progress(progress, double(done) / count);
+    });
   }
   loop.rethrow();
+  // Others may have done the last ones, or all of them.
+  if (reported < count) report_progress(progress, 1);
 }
 
 }  // namespace mimetra
