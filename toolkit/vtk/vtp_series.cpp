@@ -17,6 +17,7 @@
 
 #include <mimetra/io/pending_output.h>
 #include <mimetra/mesh/parallel.h>
+#include <mimetra/operations/xml_text.h>
 #include <mimetra/vtk/poly_data.h>
 #include <mimetra/vtk/silent_vtk.h>
 
@@ -146,29 +147,6 @@ class FrameDataPool {
 std::string decimal(double value) {
   char text[32];
   return {text, std::to_chars(text, text + sizeof text, value).ptr};
-}
-
-std::string escaped_for_xml(const std::string& text) {
-  std::string result;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        result += "&amp;";
-        break;
-      case '<':
-        result += "&lt;";
-        break;
-      case '>':
-        result += "&gt;";
-        break;
-      case '"':
-        result += "&quot;";
-        break;
-      default:
-        result += c;
-    }
-  }
-  return result;
 }
 
 std::string escaped_for_json(const std::string& text) {

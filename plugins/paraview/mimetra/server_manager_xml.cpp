@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <mimetra/operations/operation.h>
+#include <mimetra/operations/xml_text.h>
 
 #include "filters/reading.h"
 
@@ -34,29 +35,6 @@ struct Proxy {
   std::string hints;
 };
 
-std::string escaped(const std::string& text) {
-  std::string result;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        result += "&amp;";
-        break;
-      case '<':
-        result += "&lt;";
-        break;
-      case '>':
-        result += "&gt;";
-        break;
-      case '"':
-        result += "&quot;";
-        break;
-      default:
-        result += c;
-    }
-  }
-  return result;
-}
-
 /// "admm-iterations" is "Admm Iterations".
 std::string label_of(const std::string& name) {
   std::string label = name;
@@ -70,7 +48,7 @@ std::string label_of(const std::string& name) {
 }
 
 std::string attribute(const std::string& name, const std::string& value) {
-  return ' ' + name + "=\"" + escaped(value) + '"';
+  return ' ' + name + "=\"" + escaped_for_xml(value) + '"';
 }
 
 std::string range_domain(const std::string& element, const Parameter& parameter) {
@@ -140,7 +118,7 @@ std::string property_of(const Parameter& parameter, const std::string& label, bo
          attribute("initial_string", parameter.name) + " number_of_elements=\"1\"" +
          attribute("default_values", fallback) +
          attribute("panel_visibility", advanced ? "advanced" : "default") + ">\n        " +
-         holder.domain + "\n        <Documentation>" + escaped(help_of(parameter)) +
+         holder.domain + "\n        <Documentation>" + escaped_for_xml(help_of(parameter)) +
          "</Documentation>\n      </" + holder.element + ">\n";
 }
 
@@ -154,7 +132,7 @@ std::string port_xml(const Port& port, int index, const std::string& help) {
          "        <DataTypeDomain name=\"input_type\"><DataType value=\"vtkPolyData\"/>"
          "</DataTypeDomain>\n" +
          (port.optional ? "        <Hints><Optional/></Hints>\n" : "") + "        <Documentation>" +
-         escaped(help) + "</Documentation>\n      </InputProperty>\n";
+         escaped_for_xml(help) + "</Documentation>\n      </InputProperty>\n";
 }
 
 /// An input that is a file; where it may come through a port instead, its label says so.
@@ -181,8 +159,8 @@ std::string proxy_xml(const Proxy& proxy) {
   std::string xml = "    <SourceProxy" + attribute("class", proxy.class_name) +
                     attribute("name", proxy.class_name.substr(std::string("vtk").size())) +
                     attribute("label", proxy.label) + ">\n      <Documentation" +
-                    attribute("short_help", operation.summary) + ">" + escaped(operation.summary) +
-                    ".</Documentation>\n";
+                    attribute("short_help", operation.summary) + ">" +
+                    escaped_for_xml(operation.summary) + ".</Documentation>\n";
   for (const Input& input : operation.inputs) {
     const auto port = std::ranges::find(proxy.ports, input.name, &Port::input);
     if (port == proxy.ports.end()) continue;

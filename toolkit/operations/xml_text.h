@@ -1,0 +1,10 @@
+#pragma once
+
+#include <string>
+
+namespace mimetra {
+
+/// `text` as XML holds it between tags and in attributes.
+std::string escaped_for_xml(const std::string& text);
+
+}  // namespace mimetra
