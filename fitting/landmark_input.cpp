@@ -47,15 +47,17 @@ Input input_of(const std::string& text) {
   return {files, {}, images};
 }
 
-/// The image of the same name beside a file; empty where there is none.
+/// The image of the same name beside a file, of several the first; empty where there is none.
 fs::path image_beside(const fs::path& file) {
   const fs::path folder = file.has_parent_path() ? file.parent_path() : ".";
+  fs::path found;
   std::error_code unreadable;
   for (const fs::path& other : fs::directory_iterator(folder, unreadable)) {
-    if (other.stem() == file.stem() && is_image(other))
-      return file.parent_path() / other.filename();
+    if (other.stem() != file.stem() || !is_image(other)) continue;
+    const fs::path image = file.parent_path() / other.filename();
+    if (found.empty() || image < found) found = image;
   }
-  return {};
+  return found;
 }
 
 /// Says that images were passed over because .pts files stand among them.

@@ -56,6 +56,10 @@ TEST_F(LandmarkInput, HasTheImagesBesidePoints) {
   EXPECT_THAT(images(read("*.pts")), ElementsAre("9.jpg", "10.jpg"));
   EXPECT_THAT(images(read("", {.frames = "1:"})), ElementsAre("10.jpg"));
   EXPECT_THAT(images(read("9.pts")), ElementsAre("9.jpg"));
+  write("9.JPEG", "");
+  write("9.png", "");
+  EXPECT_THAT(images(read("9.pts")), ElementsAre("9.JPEG"));
+  for (const char* other : {"9.JPEG", "9.png"}) std::filesystem::remove(folder_ / other);
   std::filesystem::remove(folder_ / "9.jpg");
   EXPECT_THAT(images(read("*.pts")), IsEmpty());
 }
