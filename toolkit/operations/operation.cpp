@@ -74,6 +74,10 @@ std::string_view kind_name(DataKind kind) {
       return "fitted coefficients";
     case DataKind::pictures:
       return "pictures";
+    case DataKind::run:
+      return "run";
+    case DataKind::page:
+      return "page";
   }
   return "";
 }
