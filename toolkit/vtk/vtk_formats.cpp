@@ -8,6 +8,7 @@
 #include <mimetra/operations/formats.h>
 #include <mimetra/vtk/picture.h>
 #include <mimetra/vtk/render_operation.h>
+#include <mimetra/vtk/report_operation.h>
 #include <mimetra/vtk/vtp_series.h>
 
 namespace mimetra {
@@ -45,6 +46,13 @@ std::vector<std::filesystem::path> write_pictures(const Data& data, const WriteR
   std::vector<std::filesystem::path> files;
   for (int i = 0; i < pictures.count; ++i) files.push_back(request.target / name(i));
   return files;
+}
+
+std::vector<std::filesystem::path> write_page(const Data& data, const WriteRequest& request) {
+  return write_with_extra(request, [&] {
+    write_file(request.target, std::get<Page>(data).html, request.overwrite);
+    return std::vector{request.target};
+  });
 }
 
 /// One region: the vertices where the field `roi` is not 0.
@@ -93,7 +101,9 @@ void add_vtk(OperationTable& table) {
   table.add(FieldReader{{".pvd", ".vtp", ".series"}, read_vtp_series, vtp_series_files});
   table.add(Writer{DataKind::picture, {".png"}, {}, write_picture});
   table.add(Writer{DataKind::pictures, {""}, {}, write_pictures});
+  table.add(Writer{DataKind::page, {".html"}, {}, write_page});
   table.add(render_operation());
+  table.add(report_operation());
 }
 
 }  // namespace mimetra
