@@ -93,8 +93,8 @@ SheetLayout SheetLayout::of(const Sheet& sheet) {
       std::ranges::any_of(sheet.rows, [](const TileRow& row) { return row.bar.has_value(); });
   layout.width = 2 * layout.margin + static_cast<int>(columns) * layout.tile_width +
                  (has_bar ? 8 * layout.text : 0);
-  const Box below = layout.tile(sheet.rows.size(), 0);
-  layout.height = below.top + 2 * layout.text;
+  const Box last = layout.tile(sheet.rows.size() - 1, 0);
+  layout.height = last.top + last.height + 2 * layout.text;
   return layout;
 }
 
