@@ -258,7 +258,7 @@ std::string gallery_section(const ReportStudy& study, const ReportView& view,
       which +
           " at weight 1, the strongest first: the darker, the nearer to its largest displacement, "
           "which is written beside its number.",
-      figure(drawn(sheet, {8, 175, 15}, {3, 220, 19}, progress), "Gallery of components") +
+      figure(drawn(sheet, {8, 210, 16}, {3, 220, 19}, progress), "Gallery of components") +
           charts(weight_charts(study)));
 }
 
