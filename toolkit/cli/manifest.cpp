@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include <mimetra/operations/report.h>
+#include <mimetra/operations/run_file.h>
 
 namespace mimetra::cli {
 
@@ -49,17 +50,6 @@ std::vector<std::filesystem::path> files_below(const std::vector<std::filesystem
   return files;
 }
 
-/// True for the manifest of a run that wrote an output of this name into the same folder.
-bool tells_of(const std::filesystem::path& manifest, const std::filesystem::path& output) {
-  std::ifstream stream(manifest);
-  const Json json = Json::parse(stream, nullptr, false);
-  if (!json.is_object() || !json.contains("outputs") || !json["outputs"].is_array()) return false;
-  return std::ranges::any_of(json["outputs"], [&output](const Json& path) {
-    return path.is_string() &&
-           std::filesystem::path(path.get<std::string>()).filename() == output.filename();
-  });
-}
-
 }  // namespace
 
 std::string manifest(const Request& request, const RunRecord& record) {
@@ -77,6 +67,7 @@ std::string manifest(const Request& request, const RunRecord& record) {
               {"version", MIMETRA_VERSION},
               {"command", request.operation->name},
               {"arguments", request.arguments},
+              {"named_inputs", request.inputs},
               {"options", options},
               {"inputs", inputs},
               {"outputs", outputs},

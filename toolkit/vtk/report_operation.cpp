@@ -1,0 +1,123 @@
+#include <mimetra/vtk/report_operation.h>
+
+#include <algorithm>
+
+#include <nlohmann/json.hpp>
+
+#include <mimetra/operations/memory.h>
+#include <mimetra/operations/report.h>
+#include <mimetra/vtk/report_page.h>
+#include <mimetra/vtk/viewer_script.h>
+
+namespace mimetra {
+
+namespace {
+
+ReportView view_of(const Parameters& parameters) {
+  ReportView view;
+  view.yaw = parameters.number("yaw");
+  view.pitch = parameters.number("pitch");
+  view.z_up = parameters.text("up") == "z";
+  view.unit = parameters.optional_text("unit").value_or("");
+  return view;
+}
+
+void add_pictures(Outcome& outcome, const Invocation& invocation, const ReportStudy& study,
+                  const ReportView& view) {
+  constexpr int kGalleryColumns = 6;
+  const auto add = [&](const char* output, bool is_there, const auto& picture) {
+    if (!invocation.wants(output)) return;
+    if (!is_there) throw MismatchError(std::string("--") + output + ": the run has nothing for it");
+    outcome.outputs[output].push_back({"", picture()});
+  };
+  add("gallery", study.components.has_value(),
+      [&] { return draw(component_gallery(study, view, kGalleryColumns)); });
+  const std::vector<Chart> weights = weight_charts(study);
+  add("weights-plot", !weights.empty(), [&] { return draw(weights); });
+  add("table-plot", study.transfer.has_value(),
+      [&] { return draw(table_charts(*study.transfer, view.unit)); });
+}
+
+Outcome run(const Invocation& invocation) {
+  const ReportView view = view_of(invocation.parameters);
+  const ReportStudy found =
+      study(invocation.inputs.at("run").front(), invocation.parameters.integers("k"),
+            part_of(invocation.progress, 0, 0.6), invocation.log);
+  const std::string_view viewer = viewer_script();
+  ReportPage page = report_page(found, view, viewer, part_of(invocation.progress, 0.6, 1));
+  if (page.viewer_frames == 0) {
+    invocation.warn(viewer.empty()
+                        ? "the report has no 3D viewer: this mimetra was built without npm"
+                        : "the report has no 3D viewer: the mesh is too large for it");
+  }
+  Outcome outcome;
+  add_pictures(outcome, invocation, found, view);
+  Json report = {{"bytes", page.html.size()},
+                 {"frames", found.sequence.frames()},
+                 {"viewer_frames", page.viewer_frames}};
+  if (found.transfer) report.update(Json::parse(table_of(found.transfer->rows).json()));
+  outcome.report = report.dump();
+  outcome.summary = readable(static_cast<double>(page.html.size()) / 1e6, 3) + " MB, " +
+                    std::to_string(page.viewer_frames) + " of " +
+                    std::to_string(found.sequence.frames()) + " frames in the 3D viewer\n";
+  outcome.outputs["out"].push_back({"", Page{std::move(page.html)}});
+  return outcome;
+}
+
+/// Pictures, and what OpenGL takes on a processor: measured, and much the same for all meshes.
+constexpr double kDrawingBytes = 2.5e8;
+
+/// The decompositions, one after the other, and what is kept: the source, both transfers, and the
+/// poses of the viewer.
+double memory(const Invocation& invocation) {
+  const Invocation& call = *invocation.get<RunRead>("run").invocation;
+  const auto source = std::ranges::find_if(call.inputs, [](const auto& input) {
+    return std::holds_alternative<SequenceRead>(input.second.front().data);
+  });
+  if (source == call.inputs.end() || !call.parameters.find("radius")) return 0;
+  const auto& read = std::get<SequenceRead>(source->second.front().data);
+  const auto& counts = invocation.parameters.integers("k");
+  const double analysis =
+      analysis_bytes(call, read, static_cast<int>(*std::ranges::max_element(counts)));
+  const auto targets = call.inputs.find("target");
+  if (targets == call.inputs.end()) return kDrawingBytes + analysis;
+  const auto& target = std::get<BlendshapeModel>(targets->second.front().data);
+  return kDrawingBytes + analysis + 3 * solution_bytes(call, read, target);
+}
+
+}  // namespace
+
+Operation report_operation() {
+  Operation operation;
+  operation.name = "report";
+  operation.summary = "Show a run as one page for a browser: 3D player, pictures, Table I";
+  operation.inputs = {{"run", DataKind::run,
+                       "what transfer, evaluate or regions wrote, or a folder with such runs"}};
+  operation.outputs = {
+      {"out", DataKind::page, "the page, below 10 MB and complete in itself: .html"},
+      {"gallery", DataKind::picture, "each component at weight 1, .png", true},
+      {"weights-plot", DataKind::picture, "weights over time, .png", true},
+      {"table-plot", DataKind::picture, "error and time against the share of triangles, .png",
+       true}};
+  operation.parameters = {
+      {"k", ParameterKind::integer_list, std::vector<std::int64_t>{10, 30, 40},
+       "numbers of components in the table, besides the run's own", "", 1},
+      {"yaw", ParameterKind::number, 15.0, "seen from the side", "degrees", -360, 360},
+      {"pitch", ParameterKind::number, 5.0, "seen from above", "degrees", -90, 90},
+      {"up",
+       ParameterKind::choice,
+       "y",
+       "axis that points up; the face looks along +z, or -y where z is up",
+       "",
+       {},
+       {},
+       {"y", "z"}},
+      {"unit", ParameterKind::text, {}, "name of the meshes' unit of length"}};
+  operation.examples = {"report actor_smile/ -o smile.html",
+                        "report rois/take.pvd --unit mm -o take.html --gallery components.png"};
+  operation.run = run;
+  operation.memory = memory;
+  return operation;
+}
+
+}  // namespace mimetra
