@@ -25,7 +25,7 @@ TEST_F(ReportCommand, ShowsWhatATransferWrote) {
   transfer("out");
   const auto result = run("report out -k 3 --json -o page.html");
   ASSERT_EQ(result.code, 0) << result.err;
-  EXPECT_THAT(result.err, Not(HasSubstr("have changed")));
+  EXPECT_THAT(result.err, Not(HasSubstr("has changed")));
   EXPECT_THAT(text_of(folder_ / "page.html"), HasSubstr("<h1>head → head@wide=0.5</h1>"));
   EXPECT_TRUE(listing().contains("page.run.json"));
   // The row of the run itself is what the run measured.
@@ -53,6 +53,36 @@ TEST_F(ReportCommand, TakesTheOneRunByRegionsOfAFolder) {
   EXPECT_THAT(text_of(folder_ / "page.html"), HasSubstr("--regions-out all/part.json"));
 }
 
+TEST_F(ReportCommand, PassesOverManifestsOfSomethingElse) {
+  transfer("all/part");
+  write("all/train.run.json", "{\"loss\": 1}");
+  write("all/old.run.json", "not JSON");
+  std::filesystem::create_symlink("nowhere", folder_ / "all/lost.run.json");
+  const auto result = run("report all -k 2 -o page.html");
+  EXPECT_EQ(result.code, 0) << result.err;
+}
+
+TEST_F(ReportCommand, NamesAnInputThatHasChanged) {
+  ASSERT_EQ(run("regions head --weights take.csv -k 2 -o rois.pvd").code, 0);
+  std::string weights = text_of(folder_ / "take.csv");
+  weights.insert(weights.find_last_of("0123456789"), "0");
+  write("take.csv", weights);
+  const auto result = run("report rois.pvd -o page.html");
+  ASSERT_EQ(result.code, 0) << result.err;
+  EXPECT_THAT(result.err, HasSubstr("take.csv: has changed since rois.run.json was written"));
+  EXPECT_THAT(text_of(folder_ / "page.html"), HasSubstr("<li>take.csv</li>"));
+}
+
+TEST_F(ReportCommand, RefusesAManifestThatLacksAnInput) {
+  transfer("out");
+  json manifest = json::parse(text_of(folder_ / "out/mimetra-run.json"));
+  manifest["named_inputs"]["target"] = json::array();
+  write("broken.run.json", manifest.dump());
+  const auto result = run("report broken.run.json -o page.html");
+  EXPECT_EQ(result.code, 3);
+  EXPECT_THAT(result.err, HasSubstr("broken.run.json: names no target of the run"));
+}
+
 TEST_F(ReportCommand, AsksWhichOfSeveralRuns) {
   transfer("all/two", "-k 2");
   transfer("all/three", "-k 3");
@@ -65,6 +95,8 @@ TEST_F(ReportCommand, AsksWhichOfSeveralRuns) {
 TEST_F(ReportCommand, ShowsTheTargetThatIsNamed) {
   ASSERT_EQ(run("transfer head head@wide=0.5 head@wide=1 --weights take.csv -k 2 -o out").code, 0);
   ASSERT_EQ(run("report out/head@wide=1 -k 2 -o page.html").code, 0);
+  EXPECT_THAT(text_of(folder_ / "page.html"), HasSubstr("<h1>head → head@wide=1</h1>"));
+  ASSERT_EQ(run("report out/head@wide=1/mimetra-run.json -k 2 --force -o page.html").code, 0);
   EXPECT_THAT(text_of(folder_ / "page.html"), HasSubstr("<h1>head → head@wide=1</h1>"));
 }
 
@@ -105,9 +137,13 @@ TEST_F(ReportCommand, NamesAnInputThatIsGone) {
 
 TEST_F(ReportCommand, RefusesFullTransfersAndOtherRuns) {
   transfer("full", "--full");
-  EXPECT_EQ(run("report full -o page.html").code, 4);
+  const auto full = run("report full -o page.html --dry-run");
+  EXPECT_EQ(full.code, 4);
+  EXPECT_THAT(full.err, HasSubstr("full/mimetra-run.json: was made with --full"));
   ASSERT_EQ(run("convert head --weights take.csv -o copy").code, 0);
-  EXPECT_EQ(run("report copy -o page.html").code, 4);
+  const auto copy = run("report copy -o page.html");
+  EXPECT_EQ(copy.code, 4);
+  EXPECT_THAT(copy.err, HasSubstr("a run of convert; expected one of transfer, evaluate"));
   EXPECT_EQ(run("report full -o page.png").code, 2);
 }
 

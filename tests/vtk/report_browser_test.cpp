@@ -160,6 +160,20 @@ TEST_F(OpenReport, TurnsAndGoesBack) {
   EXPECT_THAT(browser.complaints(), IsEmpty());
 }
 
+TEST_F(OpenReport, TakesNoCommandsByKeys) {
+  Browser& browser = open(1280, 800, false);
+  const auto press = [&browser](const std::string& key) {
+    browser.value(
+        "document.querySelector('#stage canvas').dispatchEvent(new KeyboardEvent("
+        "'keypress', {key: '" +
+        key + "', bubbles: true}))");
+  };
+  const Image before = stage();
+  for (const char* key : {"w", "v", "r"}) press(key);
+  // Wireframe alone would change half of it.
+  EXPECT_LT(changed_share(before, stage()), 0.1);
+}
+
 TEST_F(OpenReport, FitsAPhone) {
   Browser& browser = open(390, 844, true);
   EXPECT_EQ(browser.value("document.documentElement.scrollWidth"), 390);

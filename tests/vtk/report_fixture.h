@@ -14,7 +14,7 @@
 namespace mimetra::test {
 
 /// A patch with three bumps: an actor, and a performance of it.
-inline BlendshapeModel bumpy_patch(double stretch) {
+inline BlendshapeModel bumpy_patch(double stretch, double size = 1) {
   constexpr int kSide = 15;
   Shape shape = grid(kSide, kSide);
   shape.positions.col(0) *= stretch;
@@ -30,7 +30,7 @@ inline BlendshapeModel bumpy_patch(double stretch) {
   }
   return BlendshapeModel(
       std::make_shared<Connectivity>(Connectivity::from_triangles(n, shape.triangles)),
-      shape.positions, {{"left", "right", "top"}, bumps});
+      size * shape.positions, {{"left", "right", "top"}, size * bumps});
 }
 
 inline MeshSequence bumpy_take() {
@@ -54,9 +54,9 @@ inline OperationTable full_table() {
 }
 
 /// A run of `operation`, as it is read from its manifest, with its source or sequence, and its
-/// target called `target`.
+/// target called `target`, of `size` times the source's size.
 inline RunRead run_of(const std::string& operation, const std::string& target,
-                      const std::map<std::string, ParameterValue>& parameters) {
+                      const std::map<std::string, ParameterValue>& parameters, double size = 1) {
   const OperationTable table = full_table();
   Invocation call;
   call.parameters = Parameters(table.parameters_of(*table.find(operation)));
@@ -66,14 +66,13 @@ inline RunRead run_of(const std::string& operation, const std::string& target,
     if (input.kind == DataKind::sequence) {
       call.inputs[input.name] = {{"takes/bumps", SequenceRead{bumpy_take(), true, {}, {}}}};
     } else {
-      call.inputs[input.name] = {{target, bumpy_patch(1.2)}};
+      call.inputs[input.name] = {{target, bumpy_patch(1.2, size)}};
     }
   }
   RunRead run;
   run.record.manifest = "run/mimetra-run.json";
   run.record.operation = operation;
   run.record.arguments = {operation, "takes/bumps", target};
-  run.record.result = "{}";
   run.invocation = std::make_shared<const Invocation>(std::move(call));
   return run;
 }

@@ -11,6 +11,13 @@ double mean_over(const Eigen::VectorXd& per_triangle, const std::vector<int>& se
   return sum / static_cast<double>(selected.size());
 }
 
+/// MPE; none where the full transfer of a mesh of this size is exact up to rounding.
+std::optional<double> percentage_error(double full, double k, double size) {
+  constexpr double kRounding = 1e-12;
+  if (full <= kRounding * size * kRounding * size) return {};
+  return mean_percentage_error(full, k);
+}
+
 }  // namespace
 
 Table table_of(const std::vector<EvaluationRow>& rows) {
@@ -55,9 +62,10 @@ EvaluatedTransfer Evaluation::by(const Regions& regions, const Progress& progres
   row.triangle_share = regions.triangle_share();
   row.de_all = error.de_all;
   row.de_region = error.de_region;
-  row.mpe_all = mean_percentage_error(full_.de_all, error.de_all);
+  const double size = result.solution.sequence.extent();
+  row.mpe_all = percentage_error(full_.de_all, error.de_all, size);
   row.mpe_region =
-      mean_percentage_error(mean_over(full_.per_triangle, regions.triangles), error.de_region);
+      percentage_error(mean_over(full_.per_triangle, regions.triangles), error.de_region, size);
   row.transfer_seconds = result.solution.seconds;
   return result;
 }

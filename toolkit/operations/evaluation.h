@@ -16,7 +16,7 @@ struct EvaluationRow {
   double triangle_share = 1;
   double de_all = 0;
   double de_region = 0;
-  std::optional<double> mpe_all;  ///< percent; none for the full transfer
+  std::optional<double> mpe_all;  ///< percent; none for the full transfer, or where it is exact
   std::optional<double> mpe_region;
   std::optional<double> decompose_seconds;
   double transfer_seconds = 0;

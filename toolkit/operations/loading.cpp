@@ -157,6 +157,10 @@ class Loader {
     }
     LoadedInputs loaded = load_inputs(table_, *operation, invocation.parameters, read.record.inputs,
                                       progress_, log_, threads_);
+    for (const Input& input : operation->inputs) {
+      if (input.optional || loaded.data.contains(input.name)) continue;
+      throw IoError(read.record.manifest.string(), "names no " + input.name + " of the run");
+    }
     files.push_back(read.record.manifest);
     files.insert(files.end(), loaded.files.begin(), loaded.files.end());
     invocation.inputs = std::move(loaded.data);

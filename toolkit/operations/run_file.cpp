@@ -1,12 +1,14 @@
 #include <mimetra/operations/run_file.h>
 
 #include <algorithm>
+#include <array>
 #include <fstream>
 
 #include <nlohmann/json.hpp>
 
 #include <mimetra/io/pending_output.h>
 #include <mimetra/mesh/errors.h>
+#include <mimetra/operations/file_hash.h>
 #include <mimetra/operations/report.h>
 
 namespace mimetra {
@@ -17,6 +19,8 @@ namespace fs = std::filesystem;
 
 constexpr const char* kFolderManifest = "mimetra-run.json";
 constexpr const char* kFileManifest = ".run.json";
+/// What looks for regions; of several runs in a folder the first kind counts.
+constexpr std::array<std::string_view, 3> kOperations = {"transfer", "evaluate", "regions"};
 
 RunRecord parse(const fs::path& manifest) {
   RunRecord run;
@@ -31,8 +35,11 @@ RunRecord parse(const fs::path& manifest) {
     json.at("named_inputs").get_to(run.inputs);
     json.at("options").get_to(run.options);
     json.at("arguments").get_to(run.arguments);
-    for (const Json& file : json.at("inputs")) run.files.push_back(file.at("path").get<fs::path>());
-    run.result = json.at("result").dump();
+    for (const Json& file : json.at("inputs")) {
+      run.files.push_back(file.at("path").get<fs::path>());
+      const std::string hash = file_hash(run.files.back());
+      if (!hash.empty() && hash != file.at("xxh3")) run.changed.push_back(run.files.back());
+    }
   } catch (const Json::exception&) {
     throw IoError(manifest.string(), "expected the manifest of a run of mimetra");
   }
@@ -52,9 +59,10 @@ fs::path manifest_beside(const fs::path& file) {
 std::vector<fs::path> manifests_in(const fs::path& folder) {
   std::vector<fs::path> manifests;
   for (const auto& entry : fs::directory_iterator(folder)) {
+    std::error_code unreadable;
     if (entry.path().filename().string().ends_with(kFileManifest)) {
       manifests.push_back(entry.path());
-    } else if (fs::exists(entry.path() / kFolderManifest)) {
+    } else if (fs::exists(entry.path() / kFolderManifest, unreadable)) {
       manifests.push_back(entry.path() / kFolderManifest);
     }
   }
@@ -62,21 +70,42 @@ std::vector<fs::path> manifests_in(const fs::path& folder) {
   return manifests;
 }
 
-bool looked_for_regions(const RunRecord& run) {
+void check_looked_for_regions(const RunRecord& run) {
+  if (std::ranges::find(kOperations, run.operation) == kOperations.end()) {
+    throw MismatchError(run.manifest.string() + ": a run of " + run.operation +
+                        "; expected one of transfer, evaluate or regions");
+  }
   const auto full = run.options.find("full");
-  return run.options.contains("radius") && (full == run.options.end() || full->second != "true");
+  if (full != run.options.end() && full->second == "true") {
+    throw MismatchError(run.manifest.string() +
+                        ": was made with --full, without regions; name a run by regions");
+  }
+}
+
+/// None for what is no manifest of a run that looked for regions.
+std::optional<RunRecord> parse_if_suitable(const fs::path& manifest) {
+  try {
+    RunRecord run = parse(manifest);
+    check_looked_for_regions(run);
+    return run;
+  } catch (const IoError&) {
+    return {};
+  } catch (const MismatchError&) {
+    return {};
+  }
 }
 
 /// The run in a folder of several outputs that stands for all of it.
 RunRecord main_run(const fs::path& folder) {
   std::vector<RunRecord> runs;
   for (const fs::path& manifest : manifests_in(folder)) {
-    RunRecord run = parse(manifest);
+    std::optional<RunRecord> run = parse_if_suitable(manifest);
+    if (!run) continue;
     // Every output of a run has the same manifest.
-    const bool is_new = std::ranges::find(runs, run.arguments, &RunRecord::arguments) == runs.end();
-    if (is_new && looked_for_regions(run)) runs.push_back(std::move(run));
+    const auto same = std::ranges::find(runs, run->arguments, &RunRecord::arguments);
+    if (same == runs.end()) runs.push_back(std::move(*run));
   }
-  for (const char* operation : {"transfer", "evaluate", "regions"}) {
+  for (const std::string_view operation : kOperations) {
     const auto is_of = [operation](const RunRecord& run) { return run.operation == operation; };
     const auto count = std::ranges::count_if(runs, is_of);
     if (count == 1) return *std::ranges::find_if(runs, is_of);
@@ -86,7 +115,7 @@ RunRecord main_run(const fs::path& folder) {
       if (is_of(run)) list += (list.empty() ? "" : ", ") + run.manifest.string();
     }
     throw MismatchError(folder.string() + ": holds " + std::to_string(count) + " runs of " +
-                        operation + "; name one: " + list);
+                        std::string(operation) + "; name one: " + list);
   }
   throw IoError(
       folder.string(),
@@ -112,6 +141,7 @@ RunRecord run_of(const fs::path& path) {
 
 RunRecord read_run(const fs::path& path) {
   RunRecord run = run_of(path);
+  check_looked_for_regions(run);
   for (const fs::path& file : run.files) {
     if (fs::exists(file)) continue;
     throw IoError(file.string(), "no such file; " + run.manifest.string() +

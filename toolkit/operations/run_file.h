@@ -15,15 +15,15 @@ struct RunRecord {
   std::map<std::string, std::vector<std::string>> inputs;
   std::map<std::string, std::string> options;  ///< text by name; "" for one that has no value
   std::vector<std::filesystem::path> files;    ///< that it read
+  std::vector<std::filesystem::path> changed;  ///< those of them with another content now
   std::vector<std::string> arguments;          ///< as typed
-  std::string result;                          ///< the operation's report, a JSON object
 };
 
-/// The run that wrote `path`: a folder, a file with its manifest beside it, or the manifest itself.
-/// A folder without a manifest stands for the one run of transfer in it (or else of evaluate, or
-/// else of regions) that looked for regions. Throws IoError for what no run has written, and for a
-/// file that the run read and that is no longer there; MismatchError that lists the runs where
-/// there are several.
+/// The run of transfer, evaluate or regions that looked for regions and wrote `path`: a folder, a
+/// file with NAME.run.json beside it, or the manifest itself. A folder without a manifest stands
+/// for the one such run of transfer in it, or else of evaluate, or else of regions. Throws IoError
+/// for what no run has written, and for a file that the run read and that is no longer there;
+/// MismatchError for other runs, and where a folder holds several, which it lists.
 RunRecord read_run(const std::filesystem::path& path);
 
 /// True for the manifest of a run that wrote an output of this file name.

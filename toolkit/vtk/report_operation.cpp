@@ -22,23 +22,45 @@ ReportView view_of(const Parameters& parameters) {
   return view;
 }
 
+/// Pictures that a run cannot give are refused before anything is computed.
+void check_pictures(const Invocation& invocation) {
+  const RunRead& run = invocation.get<RunRead>("run");
+  const std::string manifest = run.record.manifest.string();
+  if (invocation.wants("gallery") && run.invocation->find<RegionData>("regions")) {
+    throw MismatchError("--gallery: " + manifest +
+                        " is a run by given regions, which have no components");
+  }
+  if (invocation.wants("table-plot") && !run.invocation->inputs.contains("target")) {
+    throw MismatchError("--table-plot: " + manifest + " is a run of " + run.record.operation +
+                        ", without a transfer");
+  }
+}
+
 void add_pictures(Outcome& outcome, const Invocation& invocation, const ReportStudy& study,
                   const ReportView& view) {
   constexpr int kGalleryColumns = 6;
-  const auto add = [&](const char* output, bool is_there, const auto& picture) {
-    if (!invocation.wants(output)) return;
-    if (!is_there) throw MismatchError(std::string("--") + output + ": the run has nothing for it");
-    outcome.outputs[output].push_back({"", picture()});
+  const auto add = [&](const char* output, const auto& picture) {
+    if (invocation.wants(output)) outcome.outputs[output].push_back({"", picture()});
   };
-  add("gallery", study.components.has_value(),
-      [&] { return draw(component_gallery(study, view, kGalleryColumns)); });
-  const std::vector<Chart> weights = weight_charts(study);
-  add("weights-plot", !weights.empty(), [&] { return draw(weights); });
-  add("table-plot", study.transfer.has_value(),
-      [&] { return draw(table_charts(*study.transfer, view.unit)); });
+  add("gallery", [&] {
+    const Components& components = *study.components;
+    const auto all = static_cast<std::size_t>(components.count());
+    return draw(component_gallery(components, strongest_components(components, all), view,
+                                  kGalleryColumns));
+  });
+  add("weights-plot", [&] {
+    const std::vector<Chart> weights = weight_charts(study);
+    if (weights.empty()) {
+      throw MismatchError("--weights-plot: " + study.run.manifest.string() +
+                          " is a run by given regions in vertex space, which has no weights");
+    }
+    return draw(weights);
+  });
+  add("table-plot", [&] { return draw(table_charts(*study.transfer, view.unit)); });
 }
 
 Outcome run(const Invocation& invocation) {
+  check_pictures(invocation);
   const ReportView view = view_of(invocation.parameters);
   const ReportStudy found =
       study(invocation.inputs.at("run").front(), invocation.parameters.integers("k"),
@@ -64,25 +86,28 @@ Outcome run(const Invocation& invocation) {
   return outcome;
 }
 
-/// Pictures, and what OpenGL takes on a processor: measured, and much the same for all meshes.
-constexpr double kDrawingBytes = 2.5e8;
+/// What drawing takes, measured: OpenGL on a processor, and each vertex of each tile of a sheet.
+double drawing_bytes(int vertices, std::int64_t components) {
+  constexpr double kOpenGl = 2.5e8;
+  constexpr double kVertex = 500;
+  constexpr std::int64_t kStripTiles = 35;
+  const std::int64_t tiles =
+      std::max(kStripTiles, std::min<std::int64_t>(components, kMostInGallery));
+  return kOpenGl + kVertex * vertices * static_cast<double>(tiles);
+}
 
 /// The decompositions, one after the other, and what is kept: the source, both transfers, and the
 /// poses of the viewer.
 double memory(const Invocation& invocation) {
   const Invocation& call = *invocation.get<RunRead>("run").invocation;
-  const auto source = std::ranges::find_if(call.inputs, [](const auto& input) {
-    return std::holds_alternative<SequenceRead>(input.second.front().data);
-  });
-  if (source == call.inputs.end() || !call.parameters.find("radius")) return 0;
-  const auto& read = std::get<SequenceRead>(source->second.front().data);
+  const auto& read = call.get<SequenceRead>(call.inputs.contains("source") ? "source" : "sequence");
   const auto& counts = invocation.parameters.integers("k");
-  const double analysis =
-      analysis_bytes(call, read, static_cast<int>(*std::ranges::max_element(counts)));
-  const auto targets = call.inputs.find("target");
-  if (targets == call.inputs.end()) return kDrawingBytes + analysis;
-  const auto& target = std::get<BlendshapeModel>(targets->second.front().data);
-  return kDrawingBytes + analysis + 3 * solution_bytes(call, read, target);
+  const std::int64_t most =
+      std::max<std::int64_t>(main_count(call.parameters), *std::ranges::max_element(counts));
+  const double analysis = drawing_bytes(read.sequence.vertices(), most) +
+                          analysis_bytes(call, read, static_cast<int>(most));
+  if (!call.inputs.contains("target")) return analysis;
+  return analysis + 3 * solution_bytes(call, read, call.get<BlendshapeModel>("target"));
 }
 
 }  // namespace

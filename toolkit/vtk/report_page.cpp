@@ -1,6 +1,7 @@
 #include <mimetra/vtk/report_page.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 
 #include <vtkBase64Utilities.h>
@@ -12,39 +13,43 @@ namespace mimetra {
 
 namespace {
 
-/// The strongest components that a page shows.
-constexpr std::size_t kMostInGallery = 60;
+/// A picture as a page holds it.
+struct PagePicture {
+  std::string address;  ///< with its content
+  int width;
+  int height;
+};
 
 /// A picture for windows, and one with fewer columns for phones.
 struct PicturePair {
-  Image wide;
-  Image narrow;
+  PagePicture wide;
+  PagePicture narrow;
 };
 
-std::string data_address(const Image& image) {
+PagePicture page_picture(const Image& image) {
   const std::string png = png_of(image);
   std::string text(4 * ((png.size() + 2) / 3), '=');
   text.resize(vtkBase64Utilities::Encode(reinterpret_cast<const unsigned char*>(png.data()),
                                          png.size(),
                                          reinterpret_cast<unsigned char*>(text.data())));
-  return "data:image/png;base64," + text;
+  return {"data:image/png;base64," + text, image.width, image.height};
 }
 
-std::string size_of(const Image& image) {
-  return " width=\"" + std::to_string(image.width) + "\" height=\"" + std::to_string(image.height) +
-         '"';
+std::string size_of(const PagePicture& picture) {
+  return " width=\"" + std::to_string(picture.width) + "\" height=\"" +
+         std::to_string(picture.height) + '"';
 }
 
-std::string figure(const Image& image, const std::string& says) {
-  return "<figure><img src=\"" + data_address(image) + '"' + size_of(image) + " alt=\"" +
+std::string figure(const PagePicture& picture, const std::string& says) {
+  return "<figure><img src=\"" + picture.address + '"' + size_of(picture) + " alt=\"" +
          html_escaped(says) + "\"></figure>\n";
 }
 
 std::string figure(const PicturePair& pictures, const std::string& says) {
   return "<figure class=\"strip\"><picture><source media=\"(max-width: 700px)\" srcset=\"" +
-         data_address(pictures.narrow) + '"' + size_of(pictures.narrow) + "><img src=\"" +
-         data_address(pictures.wide) + '"' + size_of(pictures.wide) + " alt=\"" +
-         html_escaped(says) + "\"></picture></figure>\n";
+         pictures.narrow.address + '"' + size_of(pictures.narrow) + "><img src=\"" +
+         pictures.wide.address + '"' + size_of(pictures.wide) + " alt=\"" + html_escaped(says) +
+         "\"></picture></figure>\n";
 }
 
 std::string section(const std::string& title, const std::string& text, const std::string& content) {
@@ -65,6 +70,18 @@ std::string signed_percent(double value) {
   char text[32];
   std::snprintf(text, sizeof text, "%+.2f", value);
   return text;
+}
+
+/// For a POSIX shell.
+std::string shell_quoted(const std::string& argument) {
+  const bool is_plain = std::ranges::all_of(argument, [](unsigned char letter) {
+    return std::isalnum(letter) || letter >= 0x80 ||
+           std::string_view("_@%+=:,./-").find(static_cast<char>(letter)) != std::string::npos;
+  });
+  if (is_plain && !argument.empty()) return argument;
+  std::string quoted = "'";
+  for (const char letter : argument) quoted += letter == '\'' ? "'\\''" : std::string(1, letter);
+  return quoted + '\'';
 }
 
 class PageText {
@@ -91,10 +108,21 @@ class PageText {
     }
     if (study_.transfer) {
       const EvaluationRow& row = study_.transfer->rows[study_.transfer->main_row];
-      add("MPE against full", signed_percent(row.mpe_all.value_or(0)) + " %");
+      if (row.mpe_all) add("MPE against full", signed_percent(*row.mpe_all) + " %");
       add("transfer", readable(row.transfer_seconds, 2) + " s");
     }
     return "<dl class=\"facts\">\n" + list + "</dl>\n";
+  }
+
+  /// What is not as in the files.
+  std::string remarks() const {
+    std::string text;
+    if (study_.moved_head) text += "Shown without the head's motion. ";
+    if (study_.transfer && study_.transfer->shown_scale != 1) {
+      text += "The target is shown " + readable(study_.transfer->shown_scale, 3) +
+              " times its size: its unit of length seems to be another.";
+    }
+    return text.empty() ? "" : "<p class=\"soft\">" + text + "</p>\n";
   }
 
   std::string player() const {
@@ -152,28 +180,39 @@ class PageText {
     std::string rows;
     for (std::size_t i = 0; i < study_.regions.regions.size(); ++i) {
       const Region& region = study_.regions.regions[i];
-      rows += "<tr>" + cell(std::to_string(i + 1)) +
+      rows += "<tr>" + cell(std::to_string(i)) +
+              cell(region.component >= 0 ? std::to_string(region.component) : "") +
               cell(region.center >= 0 ? std::to_string(region.center) : "") +
               cell(readable(region.radius, 3)) + cell(std::to_string(region.vertices.size())) +
               cell(percent(region.energy_share)) + "</tr>\n";
     }
     return "<details>\n<summary>All regions</summary>\n<table>\n<thead><tr><th>region</th>"
-           "<th>centre vertex</th><th>radius</th><th>vertices</th><th>motion energy</th></tr>"
+           "<th>component</th><th>centre vertex</th><th>radius</th><th>vertices</th><th>motion "
+           "energy</th></tr>"
            "</thead>\n<tbody>\n" +
            rows + "</tbody>\n</table>\n</details>\n";
   }
 
   std::string run() const {
     std::string line = "mimetra";
-    for (const std::string& argument : study_.run.arguments) line += ' ' + argument;
-    std::string notes;
-    for (const std::string& note : study_.notes) notes += "<li>" + html_escaped(note) + "</li>\n";
+    for (const std::string& argument : study_.run.arguments) line += ' ' + shell_quoted(argument);
+    std::vector<std::string> changed;
+    for (const auto& file : study_.run.changed) changed.push_back(file.string());
     return "<section>\n<h2>The run</h2>\n<pre>" + html_escaped(line) + "</pre>\n" +
-           (notes.empty() ? "" : "<p>What it warned of:</p>\n<ul>\n" + notes + "</ul>\n") +
-           region_table() + "</section>\n";
+           list("What it warned of:", study_.notes) +
+           list("Changed since; this page shows what they give now:", changed) + region_table() +
+           "</section>\n";
   }
 
  private:
+  /// Nothing for no items.
+  static std::string list(const std::string& title, const std::vector<std::string>& items) {
+    if (items.empty()) return "";
+    std::string lines;
+    for (const std::string& item : items) lines += "<li>" + html_escaped(item) + "</li>\n";
+    return "<p>" + title + "</p>\n<ul>\n" + lines + "</ul>\n";
+  }
+
   std::string scale() const {
     std::string stops;
     for (int i = 0; i <= 8; ++i) {
@@ -210,7 +249,7 @@ std::string charts(const std::vector<Chart>& list) {
   constexpr ChartSize kSize{900, 700, 26};
   std::string figures;
   for (const Chart& chart : list) {
-    figures += figure(draw(std::vector<Chart>{chart}, kSize), chart.title);
+    figures += figure(page_picture(draw(std::vector<Chart>{chart}, kSize)), chart.title);
   }
   return "<div class=\"charts\">\n" + figures + "</div>\n";
 }
@@ -220,46 +259,63 @@ struct SheetSize {
   int columns;
   int tile_height;
   int letters;
+
+  /// With `share` of its pixels, and a little less.
+  SheetSize shrunk(double share) const {
+    const double factor = 0.95 * std::sqrt(share);
+    return {columns, std::max(kSmallestTile, static_cast<int>(tile_height * factor)),
+            std::max(kSmallestLetters, static_cast<int>(letters * factor))};
+  }
+
+  static constexpr int kSmallestTile = 32;
+  static constexpr int kSmallestLetters = 9;
 };
 
+/// Smaller where the pictures of a mesh with much detail would take more than `bytes`.
 template <typename SheetOf>
-PicturePair drawn(const SheetOf& sheet_of, const SheetSize& wide, const SheetSize& narrow,
+PicturePair drawn(const SheetOf& sheet_of, SheetSize wide, SheetSize narrow, std::size_t bytes,
                   const Progress& progress) {
   const auto draw_one = [&](const SheetSize& size, const Progress& part) {
     Sheet sheet = sheet_of(size.columns);
     sheet.tile_height = size.tile_height;
     sheet.letters = size.letters;
-    return draw(sheet, part);
+    return page_picture(draw(sheet, part));
   };
-  return {draw_one(wide, part_of(progress, 0, 0.6)), draw_one(narrow, part_of(progress, 0.6, 1))};
+  for (double from = 0;; from += (1 - from) / 2) {
+    const Progress part = part_of(progress, from, from + (1 - from) / 2);
+    PicturePair pair{draw_one(wide, part_of(part, 0, 0.6)),
+                     draw_one(narrow, part_of(part, 0.6, 1))};
+    const double share = static_cast<double>(bytes) /
+                         static_cast<double>(pair.wide.address.size() + pair.narrow.address.size());
+    if (share >= 1 || wide.tile_height == SheetSize::kSmallestTile) return pair;
+    wide = wide.shrunk(share);
+    narrow = narrow.shrunk(share);
+  }
 }
 
-std::string strip_section(const ReportStudy& study, const ReportView& view,
+std::string strip_section(const ReportStudy& study, const ReportView& view, std::size_t bytes,
                           const Progress& progress) {
   const auto sheet = [&](int columns) { return report_strip(study, view, columns); };
   return section("Over time", "Frames at even distances, all at one scale.",
-                 figure(drawn(sheet, {7, 230, 15}, {3, 220, 20}, progress),
+                 figure(drawn(sheet, {7, 230, 15}, {3, 220, 20}, bytes, progress),
                         "Film strip of the source, its regions and what became of it"));
 }
 
-std::string gallery_section(const ReportStudy& study, const ReportView& view,
+std::string gallery_section(const Components& components, const ReportView& view, std::size_t bytes,
                             const Progress& progress) {
-  ReportStudy shown = study;
-  std::vector<Region>& regions = shown.regions.regions;
-  const std::size_t all = regions.size();
-  regions.resize(std::min(all, kMostInGallery));
-  const auto sheet = [&](int columns) { return component_gallery(shown, view, columns); };
-  const std::string which = all > kMostInGallery
-                                ? "The " + std::to_string(kMostInGallery) + " strongest of " +
-                                      std::to_string(all) + " components"
-                                : "Each component";
+  const std::vector<int> shown = strongest_components(components, kMostInGallery);
+  const auto sheet = [&](int columns) {
+    return component_gallery(components, shown, view, columns);
+  };
+  const bool has_all = static_cast<int>(shown.size()) == components.count();
   return section(
       "Components",
-      which +
-          " at weight 1, the strongest first: the darker, the nearer to its largest displacement, "
-          "which is written beside its number.",
-      figure(drawn(sheet, {8, 210, 16}, {3, 220, 19}, progress), "Gallery of components") +
-          charts(weight_charts(study)));
+      (has_all ? "Each component"
+               : "The " + std::to_string(shown.size()) + " strongest of " +
+                     std::to_string(components.count()) + " components") +
+          " at weight 1, the strongest first: its number, and its largest displacement, "
+          "where it is darkest.",
+      figure(drawn(sheet, {8, 210, 16}, {3, 220, 19}, bytes, progress), "Gallery of components"));
 }
 
 }  // namespace
@@ -291,7 +347,7 @@ std::string html_escaped(const std::string& text) {
 }
 
 ReportPage report_page(const ReportStudy& study, const ReportView& view, std::string_view viewer,
-                       const Progress& progress) {
+                       const Progress& progress, std::size_t largest) {
   const PageText page(study, view);
   const std::string head =
       "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
@@ -300,17 +356,25 @@ ReportPage report_page(const ReportStudy& study, const ReportView& view, std::st
       "img-src data:; style-src 'unsafe-inline'; script-src 'unsafe-inline'\">\n"
       "<link rel=\"icon\" href=\"data:,\">\n<title>" +
       page.title() + "</title>\n<style>" + kReportStyle +
-      "</style>\n</head>\n<body>\n<header>\n<h1>" + page.title() + "</h1>\n" +
-      (study.moved_head ? "<p class=\"soft\">Shown without the head's motion.</p>\n" : "") +
+      "</style>\n</head>\n<body>\n<header>\n<h1>" + page.title() + "</h1>\n" + page.remarks() +
       page.facts() + "</header>\n";
-  std::string rest = strip_section(study, view, part_of(progress, 0, 0.4));
+  // Strip and gallery leave something for the player.
+  const std::size_t each = largest * 3 / 10;
+  std::string rest = strip_section(study, view, each, part_of(progress, 0, 0.4));
   if (study.transfer) {
     rest += section("Error and time",
-                    "The paper's Table I. DE: mean squared error of the deformation gradients over "
-                    "all triangles. MPE: against the transfer by all triangles; negative is worse.",
+                    "The paper's Table I. DE: mean squared distance of the target's triangles from "
+                    "what the source's deformation makes of them (eq. 12). MPE: against the "
+                    "transfer by all triangles; negative is worse.",
                     page.table() + charts(table_charts(*study.transfer, view.unit)));
   }
-  if (study.components) rest += gallery_section(study, view, part_of(progress, 0.4, 0.8));
+  if (study.components) {
+    rest += gallery_section(*study.components, view, each, part_of(progress, 0.4, 0.8));
+  }
+  const std::vector<Chart> weights = weight_charts(study);
+  if (!weights.empty()) {
+    rest += section("Weights", "The strongest ones over time.", charts(weights));
+  }
   rest += page.run() + "</body>\n</html>\n";
 
   const std::string player = "<section>\n" + page.player();
@@ -324,8 +388,8 @@ ReportPage report_page(const ReportStudy& study, const ReportView& view, std::st
   if (viewer.empty()) {
     none += "this mimetra was built without npm.</p>\n</section>\n";
   } else {
-    if (used + kTags < kLargestReport) {
-      scene = packed(scene_of(study, view), kLargestReport - used - kTags);
+    if (used + kTags < largest) {
+      scene = packed(scene_of(study, view), largest - used - kTags);
     }
     none += "the mesh is too large for a page of this size.</p>\n</section>\n";
   }

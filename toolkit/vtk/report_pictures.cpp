@@ -20,16 +20,14 @@ Sheet sheet_seen_from(const ReportView& view) {
   return sheet;
 }
 
-/// Its title tells its number and its largest displacement, where it is darkest.
-Tile component_tile(const Components& components, int component, int number,
-                    const std::string& unit) {
+Tile component_tile(const Components& components, int component, const std::string& unit) {
   const Eigen::Map<const Positions> moved(components.displacements.row(component).data(),
                                           components.vertices(), 3);
   const Eigen::VectorXd lengths = moved.rowwise().norm();
   const double largest = lengths.maxCoeff();
   Tile tile;
   tile.title =
-      std::to_string(number) + ": " + readable(largest, 2) + (unit.empty() ? "" : " " + unit);
+      std::to_string(component) + ": " + readable(largest, 2) + (unit.empty() ? "" : " " + unit);
   tile.positions = components.rest + moved;
   for (const double length : lengths) {
     tile.colors.push_back(even_color(largest > 0 ? length / largest : 0));
@@ -103,18 +101,27 @@ Sheet report_strip(const ReportStudy& study, const ReportView& view, int columns
   return film_strip(rows, options);
 }
 
-Sheet component_gallery(const ReportStudy& study, const ReportView& view, int columns) {
-  const Components& components = *study.components;
+std::vector<int> strongest_components(const Components& components, std::size_t most) {
+  const Eigen::VectorXd energy = motion_energy(components);
+  std::vector<int> order;
+  for (int k = 0; k < components.count(); ++k) {
+    if (energy[k] > 0) order.push_back(k);
+  }
+  std::ranges::stable_sort(order, std::greater<>(), [&energy](int k) { return energy[k]; });
+  order.resize(std::min(order.size(), most));
+  return order;
+}
+
+Sheet component_gallery(const Components& components, const std::vector<int>& shown,
+                        const ReportView& view, int columns) {
   Sheet sheet = sheet_seen_from(view);
   const auto connectivity = std::make_shared<const Connectivity>(
       Connectivity::from_triangles(components.vertices(), components.triangles));
-  int number = 0;
-  for (const Region& region : study.regions.regions) {
-    if (number % columns == 0) {
+  for (std::size_t i = 0; i < shown.size(); ++i) {
+    if (i % static_cast<std::size_t>(columns) == 0) {
       sheet.rows.push_back({"", connectivity, {}, {}});
     }
-    sheet.rows.back().tiles.push_back(
-        component_tile(components, region.component, ++number, view.unit));
+    sheet.rows.back().tiles.push_back(component_tile(components, shown[i], view.unit));
   }
   return sheet;
 }
@@ -123,13 +130,9 @@ std::vector<Chart> weight_charts(const ReportStudy& study) {
   std::vector<Chart> charts;
   const Eigen::VectorXd& times = study.sequence.times();
   if (study.components) {
-    std::vector<int> columns;
+    const std::vector<int> columns = strongest_components(*study.components, kMostLines);
     std::vector<std::string> names;
-    for (const Region& region : study.regions.regions) {
-      if (columns.size() == kMostLines) break;
-      columns.push_back(region.component);
-      names.push_back("component " + std::to_string(columns.size()));
-    }
+    for (const int k : columns) names.push_back("component " + std::to_string(k));
     charts.push_back(weight_chart("Weights of the strongest components", times,
                                   study.components->weights, columns, names));
   }

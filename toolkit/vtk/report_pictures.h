@@ -19,9 +19,13 @@ struct ReportView {
 /// Source, its regions, and what became of it, over time.
 Sheet report_strip(const ReportStudy& study, const ReportView& view, int columns);
 
-/// Each component at weight 1, coloured by displacement from none to its own largest, which its
-/// title tells; in the order of the regions. \pre the study has components
-Sheet component_gallery(const ReportStudy& study, const ReportView& view, int columns);
+/// Components by their motion energy, at most `most` of those that move.
+std::vector<int> strongest_components(const Components& components, std::size_t most);
+
+/// Components at weight 1, coloured by displacement from none to their own largest. Titles tell
+/// this and the component's number, from 0 as in files.
+Sheet component_gallery(const Components& components, const std::vector<int>& shown,
+                        const ReportView& view, int columns);
 
 /// Weights of the strongest components over time, and of the target's strongest expressions.
 std::vector<Chart> weight_charts(const ReportStudy& study);

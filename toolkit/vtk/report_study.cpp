@@ -1,11 +1,8 @@
 #include <mimetra/vtk/report_study.h>
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <set>
-
-#include <nlohmann/json.hpp>
 
 namespace mimetra {
 
@@ -21,38 +18,29 @@ std::string short_name(const std::string& name) {
 /// The run's call, with its sequence under the name that transfer gives it.
 Invocation call_of(const RunRead& run, std::vector<std::string>& notes) {
   Invocation call = *run.invocation;
-  if (!call.inputs.contains("source") && call.inputs.contains("sequence")) {
-    call.inputs["source"] = call.inputs.at("sequence");
-  }
-  if (!call.inputs.contains("source") || !call.parameters.find("radius")) {
-    throw MismatchError(run.record.manifest.string() + ": a run of " + run.record.operation +
-                        "; a report shows what transfer, evaluate or regions wrote");
-  }
-  if (call.parameters.find("full") && call.parameters.flag("full")) {
-    throw MismatchError(run.record.manifest.string() +
-                        ": was made with --full, without regions to show; name a run by regions");
-  }
+  if (!call.inputs.contains("source")) call.inputs["source"] = call.inputs.at("sequence");
   call.log = [&notes](LogLevel level, const std::string& message) {
     if (level == LogLevel::warning) notes.push_back(message);
   };
   return call;
 }
 
-/// K of a run; of several the largest.
-int main_count(const Parameters& parameters) {
-  if (parameters.find("k")->kind == ParameterKind::integer) return parameters.integer("k");
-  return static_cast<int>(*std::ranges::max_element(parameters.integers("k")));
-}
-
-/// The target whose result `run` names; the first where it names all of them.
+/// The target whose result `run` names; the first where it names all of them. Of several targets
+/// each has a folder of its name, or a file NAME-TARGET.EXT.
 const NamedData& target_of(const Invocation& call, const NamedData& run, const Log& log) {
   const std::vector<NamedData>& targets = call.inputs.at("target");
-  const auto named = std::ranges::find(targets, short_name(run.name), &NamedData::name);
+  const std::filesystem::path manifest =
+      absolute(std::get<RunRead>(run.data).record.manifest).lexically_normal();
+  const std::string folder = manifest.parent_path().filename().string();
+  const std::string file = std::filesystem::path(run.name).stem().string();
+  const auto named = std::ranges::find_if(targets, [&](const NamedData& target) {
+    return folder == target.name || file.ends_with('-' + target.name);
+  });
   if (named != targets.end()) return *named;
   if (targets.size() > 1 && log) {
     log(LogLevel::warning, run.name + ": has " + std::to_string(targets.size()) +
                                " targets, the report shows " + targets.front().name +
-                               "; name the folder of another one");
+                               "; name the folder or file of another one");
   }
   return targets.front();
 }
@@ -101,20 +89,17 @@ EvaluationRow completed(EvaluationRow row, const RegionSearch::Found& found) {
   return row;
 }
 
-/// Warns where the inputs do not give any more what they gave when the run was made.
-void check_result(const NamedData& run, const ReportedTransfer& transfer, const Log& log) {
-  constexpr double kTolerance = 1e-6;
-  const Json result = Json::parse(std::get<RunRead>(run.data).record.result, nullptr, false);
-  if (!result.is_object() || !result.contains("targets") || !log) return;
-  const double now = transfer.rows[transfer.main_row].de_all;
-  for (const Json& target : result["targets"]) {
-    if (target.value("name", "") != transfer.target) continue;
-    const double then = target.value("de_all", now);
-    if (std::abs(then - now) <= kTolerance * std::abs(then)) return;
-    log(LogLevel::warning, run.name + ": its inputs, or the program, have changed since (DE was " +
-                               readable(then) + ", is " + readable(now) +
-                               "); the report shows what they give now");
-  }
+/// 1 where two meshes may well have one unit of length, otherwise what makes their sizes equal.
+double shown_scale(const MeshSequence& source, const MeshSequence& target) {
+  constexpr double kOneUnit = 3;
+  const double ratio = source.extent() / target.extent();
+  return ratio > kOneUnit || ratio < 1 / kOneUnit ? ratio : 1;
+}
+
+void enlarge(MeshSequence& sequence, double scale) {
+  if (scale == 1) return;
+  const Positions rest = scale * sequence.rest();
+  sequence = sequence.with_frames(scale * sequence.positions()).with_rest(rest);
 }
 
 /// What `work` warns of is not said of the run.
@@ -158,6 +143,9 @@ ReportedTransfer transferred(Evaluation& evaluation, const NamedData& target,
   transfer.rows.push_back(full.row);
   transfer.full = std::move(full.solution);
   transfer.by_regions = std::move(by_regions.solution);
+  transfer.shown_scale = shown_scale(evaluation.source().sequence, transfer.by_regions.sequence);
+  enlarge(transfer.full.sequence, transfer.shown_scale);
+  enlarge(transfer.by_regions.sequence, transfer.shown_scale);
   return transfer;
 }
 
@@ -172,11 +160,21 @@ std::vector<std::int64_t> all_counts(std::vector<std::int64_t> counts,
 
 }  // namespace
 
+int main_count(const Parameters& parameters) {
+  if (parameters.find("k")->kind == ParameterKind::integer) return parameters.integer("k");
+  return static_cast<int>(*std::ranges::max_element(parameters.integers("k")));
+}
+
 ReportStudy study(const NamedData& run, const std::vector<std::int64_t>& counts,
                   const Progress& progress, const Log& log) {
   const RunRead& read = std::get<RunRead>(run.data);
   ReportStudy result;
   result.run = read.record;
+  for (const auto& file : read.record.changed) {
+    if (!log) break;
+    log(LogLevel::warning, file.string() + ": has changed since " + read.record.manifest.string() +
+                               " was written; the report shows what it gives now");
+  }
   const Invocation call = call_of(read, result.notes);
   result.source = short_name(call.inputs.at("source").front().name);
   if (!call.inputs.contains("target")) {
@@ -198,7 +196,6 @@ ReportStudy study(const NamedData& run, const std::vector<std::int64_t>& counts,
   result.transfer =
       transferred(evaluation, target, search, found, all_counts(counts, call.parameters),
                   result.notes, part_of(progress, 0.3, 1));
-  check_result(run, *result.transfer, log);
   result.regions = std::move(found.regions);
   result.components = std::move(found.components);
   return result;

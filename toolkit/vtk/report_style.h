@@ -18,7 +18,8 @@ dl.facts { display: grid; grid-template-columns: repeat(auto-fit, minmax(8.5rem,
   gap: .6rem 1.25rem; margin: .9rem 0 0; padding: .7rem 0; border: solid var(--line);
   border-width: 1px 0; }
 dl.facts dt { color: var(--soft); font-size: .82rem; }
-dl.facts dd { margin: 0; font-size: 1.12rem; font-variant-numeric: tabular-nums; }
+dl.facts dd { margin: 0; font-size: 1.12rem; font-variant-numeric: tabular-nums;
+  overflow-wrap: anywhere; }
 .names { display: flex; align-items: end; font-size: .9rem; color: var(--soft); }
 .names span { flex: 1 1 0; min-width: 0; padding: 0 .5rem; text-align: center;
   overflow-wrap: anywhere; }
@@ -49,6 +50,7 @@ table { width: 100%; border-collapse: collapse; font-variant-numeric: tabular-nu
 th, td { padding: .35rem .5rem; border-bottom: 1px solid var(--line); text-align: right;
   vertical-align: bottom; }
 th { font-size: .82rem; font-weight: 500; line-height: 1.3; color: var(--soft); }
+td { white-space: nowrap; }
 th:first-child, td:first-child { padding-left: 0; text-align: left; }
 th:last-child, td:last-child { padding-right: 0; }
 tr.main td { font-weight: 650; }

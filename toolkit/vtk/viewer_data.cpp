@@ -106,7 +106,8 @@ double largest_displacement(const ViewerScene& scene) {
   return largest;
 }
 
-/// From where the scene is seen first, and the half width and height that show all of it.
+/// From where the scene is seen first, the half width and height that show all of it, and how far
+/// from its middle the farthest vertex lies.
 Json view_of_scene(const ViewerScene& scene) {
   constexpr double kSpaceAround = 1.05;
   Sheet sheet;
@@ -115,6 +116,7 @@ Json view_of_scene(const ViewerScene& scene) {
   sheet.z_up = scene.z_up;
   const View view = view_of(sheet, 0);
   Eigen::Vector2d half = Eigen::Vector2d::Zero();
+  double reach = 0;
   for (const ViewerMesh& mesh : scene.meshes) {
     const Positions& rest = mesh.sequence.rest();
     const Eigen::RowVector3d center = (rest.colwise().minCoeff() + rest.colwise().maxCoeff()) / 2;
@@ -122,13 +124,15 @@ Json view_of_scene(const ViewerScene& scene) {
       const Positions centered = mesh.sequence.frame(f).rowwise() - center;
       half[0] = std::max(half[0], (centered * view.right).cwiseAbs().maxCoeff());
       half[1] = std::max(half[1], (centered * view.up).cwiseAbs().maxCoeff());
+      reach = std::max(reach, centered.rowwise().norm().maxCoeff());
     }
   }
   half *= kSpaceAround;
   return {{"towardsEye", json_of(view.towards_eye)},
           {"up", json_of(view.up)},
           {"halfWidth", half[0]},
-          {"halfHeight", half[1]}};
+          {"halfHeight", half[1]},
+          {"reach", reach}};
 }
 
 /// All of a scene but its frames.

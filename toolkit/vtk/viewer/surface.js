@@ -51,7 +51,7 @@ export class Surface {
     actor.setMapper(mapper);
     actor.getProperty().set({ ambient: 0.14, diffuse: 0.88, specular: 0.12, specularPower: 18 });
 
-    this.renderer = vtkRenderer.newInstance({ background: [1, 1, 1], clippingRangeExpansion: 1 });
+    this.renderer = vtkRenderer.newInstance({ background: [1, 1, 1] });
     this.renderer.setAutomaticLightCreation(false);
     for (const light of lights) {
       const source = vtkLight.newInstance(light);
@@ -73,7 +73,6 @@ export class Surface {
     }
     this.updateNormals();
     this.updateColors(coloring);
-    // Or it would keep its bounds, and the camera would cut the mesh off.
     this.data.getPoints().dataChange();
     this.normalArray.modified();
     this.colorArray.modified();

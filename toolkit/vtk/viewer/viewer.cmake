@@ -17,6 +17,8 @@ endif()
 
 # Packages are kept beside the build, where they stay as long as the lock file does.
 set(packages ${CMAKE_CURRENT_BINARY_DIR}/viewer)
+set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS
+                                       ${CMAKE_CURRENT_LIST_DIR}/package-lock.json)
 file(SHA256 ${CMAKE_CURRENT_LIST_DIR}/package-lock.json lock)
 if(NOT EXISTS ${packages}/${lock}.installed)
   file(REMOVE_RECURSE ${packages})

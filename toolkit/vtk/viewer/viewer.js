@@ -4,12 +4,19 @@ import vtkCamera from '@kitware/vtk.js/Rendering/Core/Camera';
 import vtkInteractorStyleTrackballCamera from '@kitware/vtk.js/Interaction/Style/InteractorStyleTrackballCamera';
 import vtkOpenGLRenderWindow from '@kitware/vtk.js/Rendering/OpenGL/RenderWindow';
 import vtkRenderWindow from '@kitware/vtk.js/Rendering/Core/RenderWindow';
+import macro from '@kitware/vtk.js/macros';
 import vtkRenderWindowInteractor from '@kitware/vtk.js/Rendering/Core/RenderWindowInteractor';
 
 import { unpackPerformance } from './performance.js';
 import { Surface } from './surface.js';
 
 const element = (id) => document.getElementById(id);
+
+// Turns and zooms, without vtk.js's commands by keys; the player sets the clipping range.
+const newStyle = macro.newInstance((publicAPI, model) => {
+  vtkInteractorStyleTrackballCamera.extend(publicAPI, model, { autoAdjustCameraClippingRange: 0 });
+  publicAPI.handleKeyPress = () => {};
+}, 'playerStyle');
 
 class Player {
   constructor(performance) {
@@ -43,7 +50,7 @@ class Player {
     interactor.setView(this.view);
     interactor.initialize();
     interactor.bindEvents(inner);
-    interactor.setInteractorStyle(vtkInteractorStyleTrackballCamera.newInstance());
+    interactor.setInteractorStyle(newStyle());
   }
 
   connectControls() {
@@ -75,11 +82,13 @@ class Player {
   }
 
   resetView() {
-    const { towardsEye, up, halfWidth, halfHeight } = this.performance.view;
-    const distance = 4 * Math.hypot(halfWidth, halfHeight);
+    const { towardsEye, up, reach } = this.performance.view;
+    const distance = 2 * reach;
     this.camera.setFocalPoint(0, 0, 0);
     this.camera.setPosition(...towardsEye.map((x) => x * distance));
     this.camera.setViewUp(...up);
+    // Holds all meshes at all times, from all sides.
+    this.camera.setClippingRange(distance - 1.1 * reach, distance + 1.1 * reach);
     this.fittedScale = this.fittingScale();
     this.camera.setParallelScale(this.fittedScale);
   }
@@ -159,7 +168,6 @@ class Player {
     const share = next === undefined ? 0 : (now - times[first]) / (next - times[first]);
     for (const surface of this.shown) {
       surface.show(first, share, this.coloring);
-      surface.renderer.resetCameraClippingRange();
     }
     element('clock').textContent = `${now.toFixed(2)} s`;
     this.window.render();
