@@ -68,6 +68,24 @@ class BadInput(HostTest):
         self.assert_refused(series, "time 1: point 7 is not finite", SERIES_FILTERS)
         self.assert_refused(series, "the mesh: point 7 is not finite", ["GeodesicDistance"], 1)
 
+    def test_a_rest_pose_that_is_not_a_number(self):
+        meshes = moving()
+        for mesh in meshes:
+            displacement = np.zeros((36, 3))
+            displacement[4, 2] = np.nan
+            array = numpy_to_vtk(displacement, deep=True)
+            array.SetName("displacement")
+            mesh.GetPointData().AddArray(array)
+        self.assert_refused(self.series_of("rest", meshes),
+                            "time 0: rest pose: vertex 4 is not finite", SERIES_FILTERS)
+
+    def test_triangle_strips(self):
+        strips = vtkCellArray()
+        strips.InsertNextCell(4, [0, 1, 6, 7])
+        mesh = mesh_of(grid()[0], [])
+        mesh.SetStrips(strips)
+        self.assert_refused(self.source_of(mesh), "has triangle strips; apply ParaView's Triangulate")
+
     def test_one_time_step_does_not_spoil_the_others_of_geodesic_distance(self):
         meshes = moving()
         meshes[1] = mesh_of(*grid(1))

@@ -1,4 +1,4 @@
-"""Filters in a pipeline: inputs that are switched, shared, or cannot be read; outputs in any order."""
+"""Filters in a pipeline: inputs that are switched, shared, or not readable; outputs in any order."""
 
 import signal
 import unittest
@@ -18,7 +18,8 @@ class Continuous(VTKPythonAlgorithmBase):
         super().__init__(nInputPorts=0, nOutputPorts=1, outputType="vtkPolyData")
 
     def RequestInformation(self, request, inputs, outputs):
-        outputs.GetInformationObject(0).Set(vtkStreamingDemandDrivenPipeline.TIME_RANGE(), [0, 3], 2)
+        key = vtkStreamingDemandDrivenPipeline.TIME_RANGE()
+        outputs.GetInformationObject(0).Set(key, [0, 3], 2)
         return 1
 
     def RequestData(self, request, inputs, outputs):

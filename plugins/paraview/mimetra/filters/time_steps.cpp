@@ -50,7 +50,7 @@ void TimeSteps::add(vtkDataObject* data) {
   Connectivity connectivity = connectivity_of(mesh, name);
   if (next_ == 0) {
     frames_.resize(static_cast<Eigen::Index>(count()), positions.size());
-    rest_ = rest_of(mesh, positions);
+    rest_ = rest_of(mesh, positions, name);
     vertices_ = connectivity.vertices;
     faces_ = connectivity.polygons.size();
     connectivity_ = std::move(connectivity);
