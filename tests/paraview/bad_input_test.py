@@ -2,10 +2,7 @@
 
 import unittest
 
-from vtkmodules.vtkCommonCore import vtkPoints
-from vtkmodules.vtkCommonDataModel import (vtkCellArray, vtkMultiBlockDataSet, vtkPolyData,
-                                           vtkUnstructuredGrid)
-from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter
+from vtkmodules.vtkCommonDataModel import vtkMultiBlockDataSet, vtkUnstructuredGrid
 
 from host import *
 
@@ -14,44 +11,11 @@ FILTERS = {"RegionsofInterest": {"K": 3}, "SparseComponents": {"K": 3},
 SERIES_FILTERS = ["RegionsofInterest", "SparseComponents", "RegionTransfer"]
 
 
-def mesh_of(positions, cells):
-    mesh = vtkPolyData()
-    points = vtkPoints()
-    points.SetData(numpy_to_vtk(positions, deep=True))
-    mesh.SetPoints(points)
-    array = vtkCellArray()
-    for cell in cells:
-        array.InsertNextCell(len(cell), cell)
-    mesh.SetPolys(array)
-    return mesh
-
-
-def grid(size=6):
-    """Positions and quads of a square."""
-    rows, columns = np.mgrid[0:size, 0:size]
-    positions = np.stack([columns.ravel(), rows.ravel(), 0 * rows.ravel()], axis=1).astype(float)
-    first = (rows[:-1, :-1] * size + columns[:-1, :-1]).ravel()
-    return positions, [[int(v), int(v) + 1, int(v) + size + 1, int(v) + size] for v in first]
-
-
 class BadInput(HostTest):
     def source_of(self, data):
         source = simple.TrivialProducer()
         source.GetClientSideObject().SetOutput(data)
         return source
-
-    def series_of(self, name, meshes):
-        """A .pvd of meshes at the times 0, 1, ..."""
-        entries = ""
-        for i, mesh in enumerate(meshes):
-            writer = vtkXMLPolyDataWriter()
-            writer.SetFileName(str(self.sample / f"{name}_{i}.vtp"))
-            writer.SetInputData(mesh)
-            writer.Write()
-            entries += f'<DataSet timestep="{i}" part="0" file="{name}_{i}.vtp"/>'
-        pvd = self.sample / f"{name}.pvd"
-        pvd.write_text(f'<VTKFile type="Collection"><Collection>{entries}</Collection></VTKFile>')
-        return simple.PVDReader(FileName=str(pvd))
 
     def assert_refused(self, source, words, filters=FILTERS, time=None, **properties):
         target = simple.mimetraSequence(FileName=str(self.sample.head))
@@ -66,11 +30,6 @@ class BadInput(HostTest):
                 self.assertIn(words, messages.text)
                 self.assertEqual(messages.text.count("ERR"), 1, messages.text)
 
-    def moving(self, frames=4):
-        positions, quads = grid()
-        return [mesh_of(positions + [0, 0, 1] * np.exp(-((positions - [f, 2, 0])**2).sum(1))[:, None],
-                        quads) for f in range(frames)]
-
     def test_points_without_cells(self):
         self.assert_refused(self.source_of(mesh_of(grid()[0], [])), "has no faces")
 
@@ -84,24 +43,24 @@ class BadInput(HostTest):
 
     def test_blocks(self):
         blocks = vtkMultiBlockDataSet()
-        blocks.SetBlock(0, self.moving()[0])
+        blocks.SetBlock(0, moving()[0])
         self.assert_refused(self.source_of(blocks), "found vtkMultiBlockDataSet")
 
     def test_another_vertex_count_at_a_later_time(self):
-        meshes = self.moving()
+        meshes = moving()
         meshes[2] = mesh_of(*grid(5))
         self.assert_refused(self.series_of("count", meshes),
                             "time 2: 25 vertices, expected 36 as at time 0", SERIES_FILTERS)
 
     def test_other_faces_at_a_later_time(self):
-        meshes = self.moving()
+        meshes = moving()
         positions, quads = grid()
         meshes[3] = mesh_of(positions, [quads[0], quads[1][::-1]] + quads[2:])
         self.assert_refused(self.series_of("faces", meshes), "time 3: face 1 is not that of time 0",
                             SERIES_FILTERS)
 
     def test_a_position_that_is_not_a_number(self):
-        meshes = self.moving()
+        meshes = moving()
         positions = grid()[0]
         positions[7, 1] = np.nan
         meshes[1] = mesh_of(positions, grid()[1])
@@ -109,8 +68,26 @@ class BadInput(HostTest):
         self.assert_refused(series, "time 1: point 7 is not finite", SERIES_FILTERS)
         self.assert_refused(series, "the mesh: point 7 is not finite", ["GeodesicDistance"], 1)
 
+    def test_a_rest_pose_that_is_not_a_number(self):
+        meshes = moving()
+        for mesh in meshes:
+            displacement = np.zeros((36, 3))
+            displacement[4, 2] = np.nan
+            array = numpy_to_vtk(displacement, deep=True)
+            array.SetName("displacement")
+            mesh.GetPointData().AddArray(array)
+        self.assert_refused(self.series_of("rest", meshes),
+                            "time 0: rest pose: vertex 4 is not finite", SERIES_FILTERS)
+
+    def test_triangle_strips(self):
+        strips = vtkCellArray()
+        strips.InsertNextCell(4, [0, 1, 6, 7])
+        mesh = mesh_of(grid()[0], [])
+        mesh.SetStrips(strips)
+        self.assert_refused(self.source_of(mesh), "has triangle strips; apply ParaView's Triangulate")
+
     def test_one_time_step_does_not_spoil_the_others_of_geodesic_distance(self):
-        meshes = self.moving()
+        meshes = moving()
         meshes[1] = mesh_of(*grid(1))
         filter = simple.GeodesicDistance(Input=self.series_of("spoilt", meshes))
         with Messages() as messages:
@@ -128,15 +105,15 @@ class BadInput(HostTest):
                             ["RegionsofInterest", "SparseComponents"])
 
     def test_more_components_than_vertices(self):
-        self.assert_refused(self.series_of("good", self.moving()),
+        self.assert_refused(self.series_of("good", moving()),
                             "-k: 37 components asked for, the mesh has 36 vertices",
                             ["RegionsofInterest", "SparseComponents"], K=37)
 
     def test_a_value_out_of_its_range(self):
-        self.assert_refused(self.series_of("range", self.moving()),
+        self.assert_refused(self.series_of("range", moving()),
                             "--coverage: expected a number from 1e-09 to 1, found '7'",
                             ["RegionsofInterest"], Coverage="7")
-        self.assert_refused(self.series_of("length", self.moving()), "found 'wide'",
+        self.assert_refused(self.series_of("length", moving()), "found 'wide'",
                             ["RegionsofInterest"], Radius="wide")
 
     def test_a_source_vertex_that_the_mesh_does_not_have(self):
@@ -145,11 +122,11 @@ class BadInput(HostTest):
                             Source="36")
 
     def test_a_target_with_other_vertices(self):
-        self.assert_refused(self.series_of("target", self.moving()), "vertices, expected 36 as in "
+        self.assert_refused(self.series_of("target", moving()), "vertices, expected 36 as in "
                             "the source", ["RegionTransfer"])
 
     def test_says_so_once_while_playing(self):
-        meshes = self.moving()
+        meshes = moving()
         meshes[2] = mesh_of(*grid(5))
         filter = simple.RegionsofInterest(Input=self.series_of("playing", meshes), K=3)
         with Messages() as messages:
@@ -158,16 +135,16 @@ class BadInput(HostTest):
         self.assertEqual(messages.text.count("ERR"), 1, messages.text)
 
     def test_a_filter_recovers_when_its_input_is_put_right(self):
-        bad = self.moving()
+        bad = moving()
         bad[1] = mesh_of(*grid(5))
         filter = simple.RegionsofInterest(Input=self.series_of("bad", bad), K=3)
         with Messages():
             at(filter, 0)
-        filter.Input = self.series_of("right", self.moving())
+        filter.Input = self.series_of("right", moving())
         self.assertEqual(at(filter, 0).GetNumberOfPoints(), 36)
 
     def test_polygons_come_out_as_they_went_in_beside_cells_of_other_kinds(self):
-        meshes = self.moving()
+        meshes = moving()
         for mesh in meshes:
             vertices, lines = vtkCellArray(), vtkCellArray()
             vertices.InsertNextCell(1, [3])

@@ -10,7 +10,9 @@ import unittest
 import numpy as np
 from paraview import simple
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
-from vtkmodules.vtkCommonCore import vtkOutputWindow, vtkStringOutputWindow
+from vtkmodules.vtkCommonCore import vtkOutputWindow, vtkPoints, vtkStringOutputWindow
+from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
+from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter
 
 FRAMES = "0:120:10"
 
@@ -91,6 +93,40 @@ def decompositions(proxy):
     return proxy.GetProperty("Decompositions").GetElement(0)
 
 
+def mesh_of(positions, cells):
+    mesh = vtkPolyData()
+    points = vtkPoints()
+    points.SetData(numpy_to_vtk(positions, deep=True))
+    mesh.SetPoints(points)
+    array = vtkCellArray()
+    for cell in cells:
+        array.InsertNextCell(len(cell), cell)
+    mesh.SetPolys(array)
+    return mesh
+
+
+def grid(size=6):
+    """Positions and quads of a square."""
+    rows, columns = np.mgrid[0:size, 0:size]
+    positions = np.stack([columns.ravel(), rows.ravel(), 0 * rows.ravel()], axis=1).astype(float)
+    first = (rows[:-1, :-1] * size + columns[:-1, :-1]).ravel()
+    return positions, [[int(v), int(v) + 1, int(v) + size + 1, int(v) + size] for v in first]
+
+
+def moving(frames=4, size=6):
+    """A bump that goes over the square."""
+    positions, quads = grid(size)
+    bumps = [np.exp(-((positions - [f, 2, 0])**2).sum(1))[:, None] for f in range(frames)]
+    return [mesh_of(positions + [0, 0, 1] * bump, quads) for bump in bumps]
+
+
+def write_mesh(path, mesh):
+    writer = vtkXMLPolyDataWriter()
+    writer.SetFileName(str(path))
+    writer.SetInputData(mesh)
+    writer.Write()
+
+
 class HostTest(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
@@ -103,6 +139,16 @@ class HostTest(unittest.TestCase):
     def tearDown(self):
         for source in reversed(list(simple.GetSources().values())):
             simple.Delete(source)
+
+    def series_of(self, name, meshes):
+        """A .pvd of meshes at the times 0, 1, ..."""
+        entries = ""
+        for i, mesh in enumerate(meshes):
+            write_mesh(self.sample / f"{name}_{i}.vtp", mesh)
+            entries += f'<DataSet timestep="{i}" part="0" file="{name}_{i}.vtp"/>'
+        pvd = self.sample / f"{name}.pvd"
+        pvd.write_text(f'<VTKFile type="Collection"><Collection>{entries}</Collection></VTKFile>')
+        return simple.PVDReader(FileName=str(pvd))
 
     def assert_table(self, table, rows):
         """The rows of a CSV file, whose times are what charts know as Time."""

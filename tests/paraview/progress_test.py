@@ -47,11 +47,25 @@ class Progress(HostTest):
     def test_ends_with_an_abort_while_components_are_computed(self):
         self.aborted(WHILE_COMPUTING)
 
-    def test_begins_anew_after_an_abort(self):
+    def test_begins_anew_after_an_abort_at_the_same_time_too(self):
         for share in [WHILE_READING, WHILE_COMPUTING]:
-            filter = self.aborted(share)
-            self.assertGreater(point_array(at(filter, 1), "roi").sum(), 0)
-            self.assertEqual(decompositions(filter), 1)
+            for time in [0, 1]:
+                filter = self.aborted(share)
+                self.assertGreater(point_array(at(filter, time), "roi").sum(), 0)
+                self.assertEqual(decompositions(filter), 1)
+
+    def test_reads_again_after_an_abort(self):
+        source = simple.mimetraSequence(FileName=str(self.sample.head))
+        algorithm = source.GetClientSideObject()
+        observer = algorithm.AddObserver("ProgressEvent", lambda *_: algorithm.SetAbortExecute(1))
+        source.FileName = str(self.sample.take)
+        with Messages() as messages:
+            self.assertEqual(at(source, 0).GetNumberOfPoints(), 0)
+        self.assertEqual(messages.text, "")
+        algorithm.RemoveObserver(observer)
+        self.assert_same(points(at(source, 0)), np.load(self.sample.take)[0])
+        source.UpdatePipelineInformation()
+        self.assertEqual(len(source.TimestepValues), 12)
 
 
 if __name__ == "__main__":

@@ -1,5 +1,6 @@
 """The script that `mimetra regions --paraview` writes, without the plugin; needs a display."""
 
+import ast
 import re
 import sys
 import unittest
@@ -10,13 +11,20 @@ from host import *
 
 
 class View(HostTest):
+    def test_opens_a_series_of_any_name(self):
+        script = self.sample / "name.py"
+        series = self.sample / "\u00e9 \U0001f600.pvd"
+        mimetra("regions", self.sample.take, "-k", 2, "-o", series, "--paraview", script)
+        opened = re.search(r"OpenDataFile\((.*)\)", script.read_text(encoding="utf-8")).group(1)
+        self.assertEqual(ast.literal_eval(opened), str(series))
+
     def test_draws_every_region_in_its_colour_beside_a_legend(self):
         script = self.sample / "it's a \"view\".py"
         mimetra("regions", self.sample.take, "-k", 6, "-o", self.sample / "six.pvd", "--paraview",
                 script)
         picture = self.sample / "view.png"
-        done = subprocess.run(["pvpython", str(script), str(picture)], capture_output=True,
-                              text=True)
+        done = subprocess.run([os.environ["PVPYTHON"], str(script), str(picture)],
+                              capture_output=True, text=True)
         self.assertEqual(done.returncode, 0, done.stderr)
         reader = vtkPNGReader()
         reader.SetFileName(str(picture))

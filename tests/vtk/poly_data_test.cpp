@@ -1,3 +1,6 @@
+#include <functional>
+#include <limits>
+
 #include <gtest/gtest.h>
 
 #include <vtkCellArray.h>
@@ -6,6 +9,7 @@
 #include <vtkPointData.h>
 #include <vtkPolyData.h>
 
+#include <mimetra/mesh/errors.h>
 #include <mimetra/vtk/poly_data.h>
 
 #include "vtp_fixture.h"
@@ -56,22 +60,50 @@ TEST_F(PolyData, HoldsZeroOnCellsOfOtherKinds) {
 TEST_F(PolyData, CarriesTheRestPoseToTheLastBit) {
   const Positions positions = fields_.sequence.frame(1);
   const Positions rest = fields_.sequence.rest();
-  EXPECT_FALSE(rest_of(*data_, positions));
+  EXPECT_FALSE(rest_of(*data_, positions, "mesh"));
   add_displacement(*data_, positions - rest);
-  EXPECT_TRUE(rest_of(*data_, positions)->isApprox(rest, 1e-6));  // in single precision
+  EXPECT_TRUE(rest_of(*data_, positions, "mesh")->isApprox(rest, 1e-6));  // in single precision
   set_rest(*data_, rest);
-  EXPECT_TRUE(*rest_of(*data_, positions) == rest);
+  EXPECT_TRUE(*rest_of(*data_, positions, "mesh") == rest);
 }
 
 TEST_F(PolyData, HasNoRestPoseWhereAFilterHasTakenVerticesAway) {
   set_rest(*data_, fields_.sequence.rest());
-  EXPECT_FALSE(rest_of(*data_, fields_.sequence.frame(1).topRows(4)));
+  EXPECT_FALSE(rest_of(*data_, fields_.sequence.frame(1).topRows(4), "mesh"));
 }
 
 TEST_F(PolyData, TakesTheRestPoseBack) {
   set_rest(*data_, fields_.sequence.rest());
   set_rest(*data_, {});
-  EXPECT_FALSE(rest_of(*data_, fields_.sequence.frame(1)));
+  EXPECT_FALSE(rest_of(*data_, fields_.sequence.frame(1), "mesh"));
+}
+
+std::string refusal_of(const std::function<void()>& read) {
+  try {
+    read();
+  } catch (const IoError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST_F(PolyData, RefusesARestPoseThatIsNotFinite) {
+  const Positions positions = fields_.sequence.frame(1);
+  const auto read = [&] { rest_of(*data_, positions, "mesh"); };
+  Positions displacement = positions - fields_.sequence.rest();
+  displacement(2, 1) = std::numeric_limits<double>::quiet_NaN();
+  add_displacement(*data_, displacement);
+  EXPECT_EQ(refusal_of(read), "mesh: rest pose: vertex 2 is not finite");
+  set_rest(*data_, positions - displacement);
+  EXPECT_EQ(refusal_of(read), "mesh: rest pose: vertex 2 is not finite");
+}
+
+TEST_F(PolyData, RefusesTriangleStrips) {
+  vtkNew<vtkCellArray> strips;
+  strips->InsertNextCell({0, 1, 2, 3});
+  data_->SetStrips(strips);
+  EXPECT_EQ(refusal_of([this] { connectivity_of(*data_, "mesh"); }),
+            "mesh: has triangle strips; apply ParaView's Triangulate first");
 }
 
 }  // namespace

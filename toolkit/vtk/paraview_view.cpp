@@ -25,9 +25,9 @@ std::map<int, Color> colors_of(const RegionView& view) {
   return by_region;
 }
 
-/// A string of Python: JSON's escapes are Python's.
+/// A string of Python: JSON's escapes are Python's, save those of characters beyond 16 bits.
 std::string quoted(const std::string& text) {
-  return nlohmann::json(text).dump(-1, ' ', true, nlohmann::json::error_handler_t::replace);
+  return nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
 std::string list_of(const Eigen::RowVector3d& point) {

@@ -110,20 +110,26 @@ Eigen::MatrixXd on_triangles(vtkPolyData& data, const Eigen::MatrixXd& on_cells,
       connectivity.polygon_of_triangle, Eigen::all);
 }
 
-}  // namespace
-
-Positions positions_of(vtkPolyData& data, const std::string& name) {
-  if (data.GetNumberOfPoints() == 0) throw IoError(name, "has no points");
-  const Positions positions = values_of(*data.GetPoints()->GetData());
+Positions finite(Positions positions, const std::string& name, const std::string& what) {
   for (Eigen::Index v = 0; v < positions.rows(); ++v) {
     if (!positions.row(v).allFinite()) {
-      throw IoError(name, "point " + std::to_string(v) + " is not finite");
+      throw IoError(name, what + std::to_string(v) + " is not finite");
     }
   }
   return positions;
 }
 
+}  // namespace
+
+Positions positions_of(vtkPolyData& data, const std::string& name) {
+  if (data.GetNumberOfPoints() == 0) throw IoError(name, "has no points");
+  return finite(values_of(*data.GetPoints()->GetData()), name, "point ");
+}
+
 Connectivity connectivity_of(vtkPolyData& data, const std::string& name) {
+  if (data.GetNumberOfStrips() > 0) {
+    throw IoError(name, "has triangle strips; apply ParaView's Triangulate first");
+  }
   Polygons polygons;
   vtkNew<vtkIdList> corners;
   for (vtkIdType cell = 0; cell < data.GetNumberOfPolys(); ++cell) {
@@ -140,15 +146,17 @@ Connectivity connectivity_of(vtkPolyData& data, const std::string& name) {
   }
 }
 
-std::optional<Positions> rest_of(vtkPolyData& data, const Positions& positions) {
+std::optional<Positions> rest_of(vtkPolyData& data, const Positions& positions,
+                                 const std::string& name) {
+  constexpr const char* kVertex = "rest pose: vertex ";
   const auto of_this_mesh = [&positions](vtkDataArray* array) {
     return array && array->GetNumberOfComponents() == 3 &&
            array->GetNumberOfTuples() == positions.rows();
   };
   vtkDataArray* rest = data.GetFieldData()->GetArray(kRestPose);
-  if (of_this_mesh(rest)) return values_of(*rest);
+  if (of_this_mesh(rest)) return finite(values_of(*rest), name, kVertex);
   vtkDataArray* moved = data.GetPointData()->GetArray(kDisplacement);
-  if (of_this_mesh(moved)) return positions - values_of(*moved);
+  if (of_this_mesh(moved)) return finite(positions - values_of(*moved), name, kVertex);
   return {};
 }
 

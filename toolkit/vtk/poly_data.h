@@ -15,12 +15,13 @@ namespace mimetra {
 /// Positions (N x 3). Throws IoError where there are none, or one is not finite.
 Positions positions_of(vtkPolyData& data, const std::string& name);
 
-/// The polygons; vertices, lines and strips are left out. Throws IoError where there are none.
+/// The polygons; vertices and lines are left out. Throws IoError where there are none, or strips.
 Connectivity connectivity_of(vtkPolyData& data, const std::string& name);
 
 /// The rest pose that data at `positions` tell of: the field data kRestPose, or the positions
-/// without the point data kDisplacement.
-std::optional<Positions> rest_of(vtkPolyData& data, const Positions& positions);
+/// without the point data kDisplacement. Throws IoError where a vertex of it is not finite.
+std::optional<Positions> rest_of(vtkPolyData& data, const Positions& positions,
+                                 const std::string& name);
 
 /// All numeric point data, and cell data of the polygons, save displacements.
 std::vector<Field> fields_of(vtkPolyData& data, const Connectivity& connectivity);

@@ -110,7 +110,7 @@ FieldSequence read_vtp_series(const fs::path& path,
       connectivity = std::move(own);
       frames.resize(times.size(), positions.size());
       result.fields = fields_of(*data, connectivity);
-      rest = rest_of(*data, positions);
+      rest = rest_of(*data, positions, entry.file.string());
     } else if (!same_faces(own, connectivity)) {
       throw MismatchError(entry.file.string() + ": other vertices or faces than " +
                           first.file.string());

@@ -10,6 +10,22 @@
 
 using namespace mimetra;
 
+namespace {
+
+std::string name_of(std::optional<double> time) {
+  return time ? "time " + to_text(*time) : "the mesh";
+}
+
+void expect_count(const std::string& name, const char* what, int found, int expected,
+                  const std::vector<double>& times) {
+  if (found == expected) return;
+  throw MismatchError(name + ": " + std::to_string(found) + ' ' + what + ", expected " +
+                      std::to_string(expected) + " as " +
+                      (times.empty() ? "before" : "at time " + to_text(times.front())));
+}
+
+}  // namespace
+
 vtkPolyData& mesh_of(vtkDataObject* data) {
   vtkPolyData* mesh = vtkPolyData::SafeDownCast(data);
   if (mesh) return *mesh;
@@ -27,25 +43,24 @@ std::optional<double> TimeSteps::next_time() const {
   return times_.empty() ? std::nullopt : std::optional(times_[next_]);
 }
 
-std::string TimeSteps::name() const {
-  return times_.empty() ? "the mesh" : "time " + to_text(times_[next_]);
-}
-
 void TimeSteps::add(vtkDataObject* data) {
   vtkPolyData& mesh = mesh_of(data);
-  const Positions positions = positions_of(mesh, name());
-  Connectivity connectivity = connectivity_of(mesh, name());
+  const std::string name = name_of(next_time());
+  const Positions positions = positions_of(mesh, name);
+  Connectivity connectivity = connectivity_of(mesh, name);
   if (next_ == 0) {
     frames_.resize(static_cast<Eigen::Index>(count()), positions.size());
-    rest_ = rest_of(mesh, positions);
+    rest_ = rest_of(mesh, positions, name);
+    vertices_ = connectivity.vertices;
+    faces_ = connectivity.polygons.size();
     connectivity_ = std::move(connectivity);
-  } else if (connectivity.vertices != connectivity_.vertices) {
-    throw MismatchError(name() + ": " + std::to_string(connectivity.vertices) +
-                        " vertices, expected " + std::to_string(connectivity_.vertices) +
-                        " as at time " + to_text(times_.front()));
-  } else if (const int face = first_different_face(connectivity, connectivity_); face >= 0) {
-    throw MismatchError(name() + ": face " + std::to_string(face) + " is not that of time " +
-                        to_text(times_.front()) + "; all time steps need the same faces");
+  } else {
+    expect_count(name, "vertices", connectivity.vertices, vertices_, times_);
+    const int face = first_different_face(connectivity, connectivity_);
+    if (face >= 0) {
+      throw MismatchError(name + ": face " + std::to_string(face) + " is not that of time " +
+                          to_text(times_.front()) + "; all time steps need the same faces");
+    }
   }
   frames_.row(static_cast<Eigen::Index>(next_)) =
       Eigen::Map<const Eigen::RowVectorXd>(positions.data(), positions.size());
@@ -56,6 +71,12 @@ MeshSequence TimeSteps::sequence() {
   const Eigen::VectorXd times =
       Eigen::Map<const Eigen::VectorXd>(times_.data(), static_cast<Eigen::Index>(times_.size()));
   return {std::move(connectivity_), std::move(frames_), times, std::move(rest_)};
+}
+
+void TimeSteps::expect_counts_of(vtkPolyData& mesh, std::optional<double> time) const {
+  const auto found = [](vtkIdType count) { return static_cast<int>(count); };
+  expect_count(name_of(time), "vertices", found(mesh.GetNumberOfPoints()), vertices_, times_);
+  expect_count(name_of(time), "faces", found(mesh.GetNumberOfPolys()), faces_, times_);
 }
 
 int TimeSteps::nearest(double time) const {

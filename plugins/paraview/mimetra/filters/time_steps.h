@@ -20,23 +20,27 @@ class TimeSteps {
 
   bool complete() const { return next_ == count(); }
   double share() const { return static_cast<double>(next_) / static_cast<double>(count()); }
-  const std::vector<double>& times() const { return times_; }
   /// The time to ask for next; none for a mesh that stands still.
   std::optional<double> next_time() const;
   /// Throws IoError, MismatchError and std::invalid_argument that name the time.
   void add(vtkDataObject* data);
-  /// What was collected, which is then forgotten.
+  /// What was collected, which is then forgotten, save its times and counts.
   mimetra::MeshSequence sequence();
+
+  /// Throws MismatchError for a mesh at `time` with other numbers of vertices or faces than those
+  /// collected.
+  void expect_counts_of(vtkPolyData& mesh, std::optional<double> time) const;
 
   /// The step nearest to a time.
   int nearest(double time) const;
 
  private:
   std::size_t count() const { return times_.empty() ? 1 : times_.size(); }
-  std::string name() const;
 
   std::vector<double> times_;
   std::size_t next_ = 0;
+  int vertices_ = 0;
+  int faces_ = 0;
   mimetra::Connectivity connectivity_;
   mimetra::Frames frames_;
   std::optional<mimetra::Positions> rest_;

@@ -1,5 +1,7 @@
 #include "vtkMimetraAlgorithm.h"
 
+#include <utility>
+
 #include "operation_call.h"
 
 using namespace mimetra;
@@ -51,6 +53,7 @@ vtkMimetraAlgorithm::Attempt vtkMimetraAlgorithm::attempt(const std::function<vo
     work();
     return Attempt::done;
   } catch (const Cancelled&) {
+    aborted_ = true;
     return Attempt::aborted;
   } catch (const std::bad_alloc&) {
     vtkErrorMacro(<< "not enough memory; take fewer time steps");
@@ -63,6 +66,15 @@ vtkMimetraAlgorithm::Attempt vtkMimetraAlgorithm::attempt(const std::function<vo
 bool vtkMimetraAlgorithm::show_progress(double share) {
   UpdateProgress(share);
   return GetAbortExecute() == 0;
+}
+
+int vtkMimetraAlgorithm::ComputePipelineMTime(vtkInformation* request,
+                                              vtkInformationVector** inputs,
+                                              vtkInformationVector* outputs, int port,
+                                              vtkMTimeType* changed) {
+  // What was aborted is no result: the next update begins anew, at the same time too.
+  if (std::exchange(aborted_, false)) Modified();
+  return Superclass::ComputePipelineMTime(request, inputs, outputs, port, changed);
 }
 
 void vtkMimetraAlgorithm::begin_execution() {

@@ -28,6 +28,9 @@ class MIMETRAFILTERS_EXPORT vtkMimetraAlgorithm : public vtkPolyDataAlgorithm {
   /// How often components were computed.
   int GetDecompositions();
 
+  int ComputePipelineMTime(vtkInformation* request, vtkInformationVector** inputs,
+                           vtkInformationVector* outputs, int port, vtkMTimeType* changed) override;
+
  protected:
   explicit vtkMimetraAlgorithm(std::unique_ptr<OperationCall> call);
   ~vtkMimetraAlgorithm() override;
@@ -51,4 +54,5 @@ class MIMETRAFILTERS_EXPORT vtkMimetraAlgorithm : public vtkPolyDataAlgorithm {
   void operator=(const vtkMimetraAlgorithm&) = delete;
 
   std::unique_ptr<OperationCall> call_;
+  bool aborted_ = false;
 };

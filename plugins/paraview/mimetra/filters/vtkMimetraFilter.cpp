@@ -1,9 +1,9 @@
 #include "vtkMimetraFilter.h"
 
-#include <algorithm>
-
+#include <vtkAlgorithmOutput.h>
 #include <vtkDataObject.h>
 #include <vtkInformation.h>
+#include <vtkInformationDoubleKey.h>
 #include <vtkInformationVector.h>
 #include <vtkPolyData.h>
 #include <vtkStreamingDemandDrivenPipeline.h>
@@ -28,6 +28,25 @@ std::vector<double> times_of(vtkInformation& info) {
   return {times, times + info.Length(Pipeline::TIME_STEPS())};
 }
 
+/// The time at which what moves comes out, whichever output asks; what stands still is made of the
+/// first time step, whatever is shown beside it. None for an input that stands still.
+std::optional<double> asked_time(vtkInformation& in, vtkInformation& out) {
+  const std::vector<double> times = times_of(in);
+  if (times.empty()) return {};
+  const bool is_asked = out.Has(Pipeline::TIME_STEPS()) && out.Has(Pipeline::UPDATE_TIME_STEP());
+  return is_asked ? out.Get(Pipeline::UPDATE_TIME_STEP()) : times.front();
+}
+
+/// Throws std::invalid_argument for data of any time in a range.
+void refuse_continuous(vtkInformation& in) {
+  if (in.Has(Pipeline::TIME_STEPS()) || !in.Has(Pipeline::TIME_RANGE())) return;
+  const double* range = in.Get(Pipeline::TIME_RANGE());
+  if (range[0] == range[1]) return;
+  throw std::invalid_argument("expected time steps, found a range of time from " +
+                              to_text(range[0]) + " to " + to_text(range[1]) +
+                              "; save it as a series of files first");
+}
+
 /// Share of the progress in which time steps are read.
 constexpr double kReading = 0.3;
 
@@ -47,91 +66,92 @@ int vtkMimetraFilter::FillInputPortInformation(int, vtkInformation* info) {
   return 1;
 }
 
-int vtkMimetraFilter::RequestInformation(vtkInformation*, vtkInformationVector** inputs,
+int vtkMimetraFilter::RequestInformation(vtkInformation*, vtkInformationVector**,
                                          vtkInformationVector* outputs) {
   for (int port = 0; port < outputs->GetNumberOfInformationObjects(); ++port) {
     if (moves(port)) continue;
     outputs->GetInformationObject(port)->Remove(Pipeline::TIME_STEPS());
     outputs->GetInformationObject(port)->Remove(Pipeline::TIME_RANGE());
   }
-  const vtkMTimeType changed = input_changed_at(0);
-  if (takes_ == Takes::shown_time_step || (has_sequence_ && changed == collected_at_)) return 1;
-  steps_->begin(times_of(*inputs[0]->GetInformationObject(0)));
-  collecting_ = true;
-  has_sequence_ = false;
-  collected_at_ = changed;
   return 1;
 }
 
-int vtkMimetraFilter::RequestUpdateExtent(vtkInformation* request, vtkInformationVector** inputs,
+int vtkMimetraFilter::RequestUpdateExtent(vtkInformation*, vtkInformationVector** inputs,
                                           vtkInformationVector* outputs) {
   vtkInformation* in = inputs[0]->GetInformationObject(0);
-  const std::vector<double> times = times_of(*in);
-  if (times.empty()) return 1;
-  const int port = std::max(0, request->Get(vtkExecutive::FROM_OUTPUT_PORT()));
-  vtkInformation* out = outputs->GetInformationObject(port);
-  // What stands still is made of the first time step, whatever is shown beside it.
-  const bool is_asked = out->Has(Pipeline::TIME_STEPS()) && out->Has(Pipeline::UPDATE_TIME_STEP());
-  asked_time_ = is_asked ? out->Get(Pipeline::UPDATE_TIME_STEP()) : times.front();
-  const auto next = collecting_ ? steps_->next_time() : std::nullopt;
-  in->Set(Pipeline::UPDATE_TIME_STEP(), next.value_or(asked_time_));
+  const auto time = asked_time(*in, *outputs->GetInformationObject(0));
+  if (time) in->Set(Pipeline::UPDATE_TIME_STEP(), *time);
   return 1;
 }
 
-int vtkMimetraFilter::RequestData(vtkInformation* request, vtkInformationVector** inputs,
+int vtkMimetraFilter::RequestData(vtkInformation*, vtkInformationVector** inputs,
                                   vtkInformationVector* outputs) {
-  if (!request->Has(Pipeline::CONTINUE_EXECUTING())) begin_execution();
-  vtkDataObject* data = vtkDataObject::GetData(inputs[0]);
-  if (takes_ == Takes::shown_time_step) {
-    steps_->begin({});
-    collecting_ = true;
-    has_sequence_ = false;
-  }
-  if (collecting_ && !take(data)) {
-    request->Set(Pipeline::CONTINUE_EXECUTING(), 1);
-    return 1;
-  }
-  request->Remove(Pipeline::CONTINUE_EXECUTING());
-  if (has_sequence_) compute_and_show(data, inputs, outputs);
-  return 1;
-}
-
-bool vtkMimetraFilter::take(vtkDataObject* data) {
-  const Attempt attempted = attempt([&] {
-    steps_->add(data);
-    if (!show_progress(kReading * steps_->share())) throw Cancelled();
-  });
-  if (attempted == Attempt::aborted) steps_->begin(steps_->times());
-  if (attempted == Attempt::failed) collecting_ = false;
-  if (attempted != Attempt::done) return true;
-  if (!steps_->complete()) return false;
-  collecting_ = false;
-  has_sequence_ = true;
-  call().give(input_, {input_, SequenceRead{steps_->sequence(), false, {}, {}}});
-  const std::vector<double>& times = steps_->times();
-  return times.empty() || steps_->nearest(asked_time_) == static_cast<int>(times.size()) - 1;
-}
-
-void vtkMimetraFilter::compute_and_show(vtkDataObject* data, vtkInformationVector** inputs,
-                                        vtkInformationVector* outputs) {
+  begin_execution();
   const vtkMTimeType now = changed_at(GetExecutive());
-  if (failed_at_ == now && takes_ == Takes::all_time_steps) return;
+  if (failed_at_ == now && takes_ == Takes::all_time_steps) return 1;
   const Attempt attempted = attempt([&] {
+    vtkInformation& in = *inputs[0]->GetInformationObject(0);
+    const auto time = asked_time(in, *outputs->GetInformationObject(0));
     give_further_inputs(inputs);
-    const bool has_time = data->GetInformation()->Has(vtkDataObject::DATA_TIME_STEP());
-    const double time =
-        has_time ? data->GetInformation()->Get(vtkDataObject::DATA_TIME_STEP()) : asked_time_;
-    const Outcome& computed = outcome(kReading);
-    vtkPolyData& mesh = mesh_of(data);
-    if (prepared_at_ != now) prepare(computed, mesh);
-    prepared_at_ = now;
-    show(computed, mesh, steps_->nearest(time), outputs);
+    collect(in, time);
+    compute_and_show(time, outputs);
   });
   failed_at_ = attempted == Attempt::failed ? now : 0;
+  return 1;
 }
 
-vtkMTimeType vtkMimetraFilter::input_changed_at(int port) {
-  return GetNumberOfInputConnections(port) == 0 ? 0 : changed_at(GetInputExecutive(port, 0));
+void vtkMimetraFilter::collect(vtkInformation& in, std::optional<double> shown) {
+  const bool all = takes_ == Takes::all_time_steps;
+  const Origin origin = origin_of(0);
+  if (all && collected_ == origin) return;
+  collected_.reset();
+  if (all) refuse_continuous(in);
+  steps_->begin(all ? times_of(in) : std::vector<double>());
+  while (!steps_->complete()) {
+    steps_->add(input_at(0, all ? steps_->next_time() : shown));
+    if (!show_progress(kReading * steps_->share())) throw Cancelled();
+  }
+  call().give(input_, {input_, SequenceRead{steps_->sequence(), false, {}, {}}});
+  collected_ = origin;
+}
+
+void vtkMimetraFilter::compute_and_show(std::optional<double> time, vtkInformationVector* outputs) {
+  const Outcome& computed = outcome(kReading);
+  // Others that share the input may have left it at another time.
+  vtkPolyData& mesh = mesh_of(input_at(0, time));
+  steps_->expect_counts_of(mesh, time);
+  const vtkMTimeType now = changed_at(GetExecutive());
+  const std::array cells = {mesh.GetNumberOfVerts(), mesh.GetNumberOfLines(),
+                            mesh.GetNumberOfCells()};
+  if (prepared_at_ != now || prepared_cells_ != cells) prepare(computed, mesh);
+  prepared_at_ = now;
+  prepared_cells_ = cells;
+  vtkInformation* about = mesh.GetInformation();
+  const bool has_time = about->Has(vtkDataObject::DATA_TIME_STEP());
+  const double shown = has_time ? about->Get(vtkDataObject::DATA_TIME_STEP()) : time.value_or(0);
+  show(computed, mesh, steps_->nearest(shown), outputs);
+  // Whatever it is made of, what moves is at the input's time.
+  if (!moves(0)) return;
+  vtkDataObject::GetData(outputs, 0)
+      ->GetInformation()
+      ->CopyEntry(about, vtkDataObject::DATA_TIME_STEP());
+}
+
+vtkMimetraFilter::Origin vtkMimetraFilter::origin_of(int port) {
+  if (GetNumberOfInputConnections(port) == 0) return {};
+  return {GetInputConnection(port, 0), changed_at(GetInputExecutive(port, 0))};
+}
+
+vtkDataObject* vtkMimetraFilter::input_at(int port, std::optional<double> time) {
+  if (time) {
+    vtkExecutive* upstream = GetInputExecutive(port, 0);
+    const int index = GetInputConnection(port, 0)->GetIndex();
+    upstream->GetOutputInformation(index)->Set(Pipeline::UPDATE_TIME_STEP(), *time);
+    if (!upstream->Update(index)) {
+      throw IoError("time " + to_text(*time), "cannot be read; the message before tells why");
+    }
+  }
+  return GetInputDataObject(port, 0);
 }
 
 void vtkMimetraFilter::give_further_inputs(vtkInformationVector**) {}

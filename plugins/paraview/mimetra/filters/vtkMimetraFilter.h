@@ -1,10 +1,14 @@
 #pragma once
 
+#include <array>
 #include <memory>
+#include <optional>
 
 #include "vtkMimetraAlgorithm.h"
 
 class TimeSteps;
+class vtkAlgorithmOutput;
+class vtkDataObject;
 class vtkPolyData;
 
 /// A filter that gives its operation all time steps of its input as one sequence (or, for some, the
@@ -30,29 +34,36 @@ class MIMETRAFILTERS_EXPORT vtkMimetraFilter : public vtkMimetraAlgorithm {
 
   /// True where an output has time steps; a table over time has none.
   virtual bool moves(int port) const;
-  /// When what comes in at a port last became other data; 0 for nothing.
-  vtkMTimeType input_changed_at(int port);
+  /// Where the data at a port come from: other data, save those of another time, have another one.
+  struct Origin {
+    vtkAlgorithmOutput* connection = nullptr;
+    vtkMTimeType changed = 0;
+    bool operator==(const Origin&) const = default;
+  };
+  Origin origin_of(int port);
+  /// What comes in at a port, brought to a time where it has times. Throws IoError where it cannot
+  /// be had.
+  vtkDataObject* input_at(int port, std::optional<double> time);
   /// Gives the operation what comes in at other ports.
   virtual void give_further_inputs(vtkInformationVector** inputs);
-  /// Makes what stays the same over time; called before the first show() after any change.
+  /// Makes what stays the same over time; called before the first show() after any change, and
+  /// where the input has other cells beside its polygons than before.
   virtual void prepare(const mimetra::Outcome& outcome, vtkPolyData& input);
   /// Writes the outputs; `input` is the mesh at the time of the sequence's frame `frame`.
   virtual void show(const mimetra::Outcome& outcome, vtkPolyData& input, int frame,
                     vtkInformationVector* outputs) = 0;
 
  private:
-  /// Takes the time step that came in; false where the next pass brings another one.
-  bool take(vtkDataObject* data);
-  void compute_and_show(vtkDataObject* data, vtkInformationVector** inputs,
-                        vtkInformationVector* outputs);
+  /// Gives the operation the input's time steps, where they are others than before, or the one that
+  /// is shown.
+  void collect(vtkInformation& in, std::optional<double> shown);
+  void compute_and_show(std::optional<double> time, vtkInformationVector* outputs);
 
   const char* input_;
   Takes takes_;
   std::unique_ptr<TimeSteps> steps_;
-  bool collecting_ = false;
-  bool has_sequence_ = false;
-  vtkMTimeType collected_at_ = 0;
+  std::optional<Origin> collected_;
   vtkMTimeType failed_at_ = 0;
   vtkMTimeType prepared_at_ = 0;
-  double asked_time_ = 0;
+  std::array<vtkIdType, 3> prepared_cells_ = {};  ///< vertices, lines, and all
 };

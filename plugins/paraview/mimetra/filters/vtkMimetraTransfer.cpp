@@ -15,7 +15,26 @@
 
 using namespace mimetra;
 
+using Pipeline = vtkStreamingDemandDrivenPipeline;
+
 vtkStandardNewMacro(vtkMimetraTransfer);
+
+namespace {
+
+/// A target is one mesh: of a series, the first.
+std::optional<double> first_time_of(vtkInformation& info) {
+  if (!info.Has(Pipeline::TIME_STEPS())) return {};
+  return info.Get(Pipeline::TIME_STEPS())[0];
+}
+
+BlendshapeModel model_of(vtkPolyData& mesh) {
+  Positions positions = positions_of(mesh, "the target");
+  auto connectivity = std::make_shared<Connectivity>(connectivity_of(mesh, "the target"));
+  ShapeBasis none{{}, Eigen::MatrixXd(positions.size(), 0)};
+  return {std::move(connectivity), std::move(positions), std::move(none)};
+}
+
+}  // namespace
 
 vtkMimetraTransfer::vtkMimetraTransfer() : vtkMimetraFilter("transfer", "source") {
   SetNumberOfInputPorts(2);
@@ -34,11 +53,10 @@ int vtkMimetraTransfer::FillOutputPortInformation(int port, vtkInformation* info
 
 int vtkMimetraTransfer::RequestUpdateExtent(vtkInformation* request, vtkInformationVector** inputs,
                                             vtkInformationVector* outputs) {
-  using Pipeline = vtkStreamingDemandDrivenPipeline;
   if (vtkInformation* target = inputs[1]->GetInformationObject(0)) {
-    // A target is one mesh: of a series, the first.
-    if (target->Has(Pipeline::TIME_STEPS())) {
-      target->Set(Pipeline::UPDATE_TIME_STEP(), target->Get(Pipeline::TIME_STEPS())[0]);
+    const auto time = first_time_of(*target);
+    if (time) {
+      target->Set(Pipeline::UPDATE_TIME_STEP(), *time);
     } else {
       target->Remove(Pipeline::UPDATE_TIME_STEP());
     }
@@ -48,19 +66,19 @@ int vtkMimetraTransfer::RequestUpdateExtent(vtkInformation* request, vtkInformat
 
 void vtkMimetraTransfer::give_further_inputs(vtkInformationVector** inputs) {
   // ParaView asks for a mesh at the port even where the target is a file.
-  const vtkMTimeType changed = call().is_set("target") ? 0 : input_changed_at(1);
-  if (changed == 0) {
-    target_ = nullptr;
+  const Origin origin = call().is_set("target") ? Origin() : origin_of(1);
+  if (given_ == origin) return;
+  given_.reset();
+  target_ = nullptr;
+  if (origin == Origin()) {
     call().take_back("target");
-  } else if (changed != given_at_) {
-    target_ = &mesh_of(vtkDataObject::GetData(inputs[1]));
-    Positions positions = positions_of(*target_, "the target");
-    auto connectivity = std::make_shared<Connectivity>(connectivity_of(*target_, "the target"));
-    ShapeBasis none{{}, Eigen::MatrixXd(positions.size(), 0)};
-    call().give("target", {"the target", BlendshapeModel(std::move(connectivity),
-                                                         std::move(positions), std::move(none))});
+  } else {
+    // A copy, because the target may be the source too, which moves on.
+    target_ = vtkSmartPointer<vtkPolyData>::New();
+    target_->ShallowCopy(&mesh_of(input_at(1, first_time_of(*inputs[1]->GetInformationObject(0)))));
+    call().give("target", {"the target", model_of(*target_)});
   }
-  given_at_ = changed;
+  given_ = origin;
 }
 
 std::vector<std::string> vtkMimetraTransfer::wanted_outputs(const Invocation& invocation) {

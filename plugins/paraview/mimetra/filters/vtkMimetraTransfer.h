@@ -27,5 +27,5 @@ class MIMETRAFILTERS_EXPORT vtkMimetraTransfer : public vtkMimetraFilter {
  private:
   vtkSmartPointer<vtkPolyData> target_;
   vtkNew<vtkPolyData> fields_;
-  vtkMTimeType given_at_ = 0;
+  std::optional<Origin> given_;
 };
