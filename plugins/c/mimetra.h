@@ -164,8 +164,8 @@ typedef struct mimetra_array {
 /*
  * A value: what goes into operations and comes out of them. It is made of named arrays, and shows
  * itself as those. N vertices, T triangles, P polygons, C polygon corners, F frames, K components,
- * R regions, D expressions, I identities; [brackets] may be left out when a value is made; what
- * stands after a | is only shown.
+ * R regions, D expressions, I identities, W weights. What stands in [brackets] may be left out when
+ * a value is made; what stands after a | is only shown.
  *
  *   faces             face_sizes I32 P and corners I32 C, or triangles I32 T x 3;
  *                     both are shown | face_of_triangle I32 T
@@ -173,14 +173,15 @@ typedef struct mimetra_array {
  *   model             neutral N x 3, faces, [expressions D x N x 3, expression_names STRING D];
  *                     without expressions it is a mesh
  *   morphable model   the same, [identities I x N x 3, identity_names STRING I]
- *   animated model    a morphable model; weights F x D, weight_names STRING D, [times F],
+ *   animated model    a morphable model; weights F x W, weight_names STRING W, [times F],
  *                     [landmarks I32 L x 2: number, vertex]
  *   components        rest N x 3, triangles, displacements K x N x 3, weights F x K, centers I32 K
  *                     (-1: it died), support K x N, [energies], [scale 1], [d_min 1], [d_max 1]
  *   regions           masks U8 R x N, triangles or faces | centers I32 R, radii R, energies R,
- *                     energy_shares R, vertex_energy N, and fields: region I32 N (strongest region,
- *                     -1 outside), region_count I32 N, roi I32 N (0/1), in_L I32 T (0/1), ...;
- *                     centers, radii and energies say nothing of regions that were made or read
+ *                     energy_shares R, vertex_energy N, faces where known, and fields: region
+ *                     I32 N (strongest region, -1 outside), region_count I32 N, roi I32 N (0/1),
+ *                     in_L I32 T (0/1), ...; centers, radii and energies say nothing of regions
+ *                     that were made or read
  *   fields            a sequence's arrays, and any number of fields: N or N x c on vertices, T or
  *                     T x c on triangles, by their location
  *   table             one array R per column; NaN is an empty cell
@@ -191,7 +192,8 @@ typedef struct mimetra_array {
  *                     expression_names STRING D, times F, cameras F x 2 x 4, rms F
  *   pictures, view    no arrays: they are there to be saved
  *
- * Where no type stands, it is F64, and F32 is taken too. Values must be finite.
+ * Where no type stands, it is F64, and F32 is taken too. Numbers must be finite, but for fields,
+ * tables and the points of landmarks.
  */
 typedef struct mimetra_data mimetra_data;
 

@@ -4,6 +4,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -35,6 +36,9 @@ enum class DataKind {
   pictures,
   view
 };
+
+/// "sequence", as in the JSON of the operations table.
+std::string_view kind_name(DataKind kind);
 
 /// Regions and the sequence they are shown on (empty for regions that were read).
 struct RegionData {
