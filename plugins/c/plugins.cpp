@@ -43,6 +43,7 @@ fs::path folder_of_installation() {
 
 std::vector<fs::path> libraries_in(const fs::path& folder) {
   std::vector<fs::path> files;
+  if (!fs::is_directory(folder)) throw UsageError("no such folder");
   for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
     if (entry.path().extension() == ".so" && entry.is_regular_file()) files.push_back(entry.path());
   }
@@ -92,8 +93,8 @@ std::vector<std::string> add_plugins(OperationTable& table, const std::vector<fs
     try {
       step();
     } catch (...) {
-      problems.push_back("plugin " + place.string() + ": " +
-                         failure_of(std::current_exception()).message + "; it is left out");
+      const std::string problem = failure_of(std::current_exception()).message;
+      problems.push_back("plugins: " + place.string() + ": " + problem + "; it is left out");
     }
   };
   const auto add = [&](const fs::path& file) {
