@@ -125,7 +125,6 @@ static void check_calls(const mimetra_interface* m, mimetra_context* context) {
   const char* const settings[] = {"speed=3", NULL};
   FAILS(context, MIMETRA_USAGE, "setting 'speed=3'",
         m->save_data(context, take, "a.npy", settings));
-  FAILS(context, MIMETRA_USAGE, ".obj", m->save_data(context, take, "a.docx", NULL));
   m->free_data(data);
   m->free_data(take);
   m->free_call(call);
