@@ -35,6 +35,23 @@ TEST_F(PluginCommand, IsInHelpListingAndCompletion) {
   EXPECT_THAT(run("--help").out, Not(HasSubstr("smooth")));
 }
 
+TEST_F(PluginCommand, IsFoundInTheInstallation) {
+  namespace fs = std::filesystem;
+  fs::create_directories(folder_ / "bin");
+  fs::copy_file(MIMETRA_COMMAND, folder_ / "bin" / "mimetra");
+  fs::create_directories(folder_ / MIMETRA_PLUGIN_FOLDER);
+  fs::copy_file(MIMETRA_TEST_PLUGINS "/samples/smooth.so",
+                folder_ / MIMETRA_PLUGIN_FOLDER / "smooth.so");
+  // By a path, by a name that the shell looks up, and through a link from elsewhere.
+  fs::create_directories(folder_ / "elsewhere");
+  fs::create_symlink("../bin/mimetra", folder_ / "elsewhere" / "mimetra");
+  for (const char* command :
+       {"bin/mimetra", "PATH=$PWD/bin:$PATH mimetra", "PATH=$PWD/elsewhere:$PATH mimetra"}) {
+    EXPECT_THAT(run("", std::string(command) + " --help && true").out,
+                AllOf(HasSubstr("smooth  "), Not(HasSubstr("speed  "))));
+  }
+}
+
 TEST_F(PluginCommand, WorksLikeOneOfTheToolkit) {
   const auto result =
       run_with("samples", "smooth head --weights take.csv --iterations 2 -o smooth.npy");

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <string>
 
 #include "vtkMimetraAlgorithm.h"
 
@@ -19,6 +20,8 @@ class MIMETRAFILTERS_EXPORT vtkMimetraFilter : public vtkMimetraAlgorithm {
   /// `input`: the operation's name for what comes in at port 0.
   vtkMimetraFilter(const char* operation, const char* input, Takes takes = Takes::all_time_steps);
   ~vtkMimetraFilter() override;
+  /// Takes another operation, with its name for what comes in.
+  void become(std::unique_ptr<OperationCall> call, const std::string& input);
 
   int FillInputPortInformation(int port, vtkInformation* info) override;
   int RequestInformation(vtkInformation* request, vtkInformationVector** inputs,
@@ -46,7 +49,7 @@ class MIMETRAFILTERS_EXPORT vtkMimetraFilter : public vtkMimetraAlgorithm {
   void compute_and_show(vtkDataObject* data, vtkInformationVector** inputs,
                         vtkInformationVector* outputs);
 
-  const char* input_;
+  std::string input_;
   Takes takes_;
   std::unique_ptr<TimeSteps> steps_;
   bool collecting_ = false;
