@@ -317,6 +317,7 @@ DataKind kind_of(mimetra_kind kind) {
 
 NamedData made_data(mimetra_kind kind, const std::string& name,
                     const mimetra_array* const* arrays) {
+  if (!is_line(name)) throw UsageError("the value's name is no line of UTF-8");
   GivenArrays given(subject_of(kind, name), arrays);
   return checked(kind, name, given, nullptr);
 }

@@ -14,6 +14,11 @@ const ShownArrays& Value::arrays() const {
 }
 
 const std::string& Value::json() const {
+  {
+    const std::lock_guard lock(mutex_);
+    if (json_) return *json_;
+  }
+  // Not while it is locked, because it asks for the arrays.
   std::string text = json_of(*this);
   const std::lock_guard lock(mutex_);
   if (!json_) json_ = std::move(text);

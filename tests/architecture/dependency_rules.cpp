@@ -43,9 +43,9 @@ const std::vector<ThirdParty>& third_parties() {
 }
 
 /// Headers of the operating system and of C. Those of C++ have no dot.
-constexpr std::array<std::string_view, 9> kSystemHeaders = {"unistd.h",  "fcntl.h",  "poll.h",
-                                                            "glob.h",    "dlfcn.h",  "sys/",
-                                                            "windows.h", "stddef.h", "stdint.h"};
+constexpr std::array<std::string_view, 11> kSystemHeaders = {
+    "unistd.h",  "fcntl.h",  "poll.h",   "glob.h",   "dlfcn.h", "sys/",
+    "windows.h", "stddef.h", "stdint.h", "stdlib.h", "string.h"};
 
 bool contains(const std::vector<std::string>& list, std::string_view item) {
   return std::find(list.begin(), list.end(), item) != list.end();
@@ -184,6 +184,8 @@ const std::vector<FolderRule>& folder_rules() {
         {"fitting", {"mesh", "model", "io", "operations"}, {"dlib", "JSON"}},
         {"samples", all, {}, true},
         {"plugins/c", values_and_operations, {"JSON"}},
+        // What third parties write, who have nothing but the C header.
+        {"samples/plugin", {"c"}, {}},
         {"toolkit/cli",
          {"operations", "vtk", "fitting", "samples", "c"},
          {"CLI11", "spdlog", "fmt", "JSON", "xxHash"}},
@@ -196,10 +198,12 @@ const std::vector<FolderRule>& folder_rules() {
 }
 
 const FolderRule* rule_for(const fs::path& file) {
+  const FolderRule* nearest = nullptr;
   for (const FolderRule& rule : folder_rules()) {
-    if (is_inside(file, rule.path)) return &rule;
+    const bool is_nearer = !nearest || rule.path.size() > nearest->path.size();
+    if (is_inside(file, rule.path) && is_nearer) nearest = &rule;
   }
-  return nullptr;
+  return nearest;
 }
 
 std::vector<std::string> include_errors(const fs::path& file, const std::string& text) {
