@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# fetch_source.sh FOLDER: the source of the installed MeshLab in FOLDER/source, where it is not there
-# yet. Debian packages no headers of MeshLab, but its source has them. It comes from the archive that
-# apt knows the package from, by lists and settings in FOLDER: the system's own stay as they are.
+# fetch_source.sh FOLDER: the source of the installed MeshLab in FOLDER/source, where it is missing.
+# Debian packages no headers of MeshLab, but its source has them. It comes from the archive that apt
+# knows the package from, by lists and settings in FOLDER: the system's own stay as they are.
 set -euo pipefail
 
 fail() {
