@@ -1,11 +1,11 @@
 #include "dialog.h"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
-#include <cmath>
-#include <cstdlib>
 #include <cstring>
-#include <functional>
+
+#include <QProcess>
 
 #include "toolkit.h"
 
@@ -13,34 +13,67 @@ namespace mimetra_meshlab {
 
 namespace {
 
-/// Those of the parameters of files that say how an input is read.
-bool is_of_reading(const mimetra_parameter& parameter) {
-  for (const char* name : {"weights", "topology", "frames", "fps"}) {
-    if (parameter.of_files && !std::strcmp(parameter.name, name)) return true;
+constexpr char kFurtherOptions[] = "options";
+
+bool is_one_of(const char* name, std::initializer_list<const char*> names) {
+  return std::any_of(names.begin(), names.end(),
+                     [name](const char* other) { return !std::strcmp(name, other); });
+}
+
+/// The operation's own parameters, and of those of files the ones that say how a sequence is read.
+std::vector<const mimetra_parameter*> parameters_of(const mimetra_operation& operation) {
+  std::vector<const mimetra_parameter*> parameters;
+  for (auto parameter = operation.parameters; *parameter; ++parameter) {
+    const bool is_of_reading =
+        is_one_of((*parameter)->name, {"weights", "topology", "frames", "fps"});
+    if (!(*parameter)->of_files || is_of_reading) parameters.push_back(*parameter);
   }
-  return false;
+  return parameters;
 }
 
-void for_each_parameter(const mimetra_operation& operation,
-                        const std::function<void(const mimetra_parameter&)>& visit) {
-  for (auto parameter = operation.parameters; *parameter; ++parameter) visit(**parameter);
-}
-
-/// Optional ones, but scripts for other programs, which show files that MeshLab does not write.
-std::vector<const mimetra_port*> offered_outputs(const mimetra_operation& operation) {
-  std::vector<const mimetra_port*> offered;
-  for (auto output = operation.outputs; *output; ++output) {
-    const bool is_optional = ((*output)->flags & MIMETRA_OPTIONAL) != 0;
-    if (is_optional && (*output)->kind != MIMETRA_VIEW) offered.push_back(*output);
+const mimetra_parameter* find_parameter(const mimetra_operation& operation,
+                                        const std::string& name) {
+  for (const mimetra_parameter* parameter : parameters_of(operation)) {
+    if (parameter->name == name) return parameter;
   }
-  return offered;
+  return nullptr;
 }
 
-/// "admm-iterations" is "Admm iterations".
+/// Optional inputs, or outputs but scripts for other programs, which show files not written here.
+std::vector<std::string> optional_ports(const mimetra_port* const* ports) {
+  std::vector<std::string> names;
+  for (; *ports; ++ports) {
+    const bool is_optional = ((*ports)->flags & MIMETRA_OPTIONAL) != 0;
+    if (is_optional && (*ports)->kind != MIMETRA_VIEW) names.emplace_back((*ports)->name);
+  }
+  return names;
+}
+
+bool contains(const std::vector<std::string>& names, const std::string& name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+/// Everything that may stand among the further options.
+std::vector<std::string> option_names(const mimetra_operation& operation) {
+  std::vector<std::string> names = optional_ports(operation.inputs);
+  for (const mimetra_parameter* parameter : parameters_of(operation)) {
+    names.emplace_back(parameter->name);
+  }
+  for (const std::string& output : optional_ports(operation.outputs)) names.push_back(output);
+  return names;
+}
+
+/// "source-rest" is "Source rest".
 QString label_of(const std::string& name) {
   QString label = QString::fromStdString(name).replace('-', ' ');
   label[0] = label[0].toUpper();
   return label;
+}
+
+QStringList choices_of(const mimetra_parameter& parameter) {
+  QStringList choices;
+  for (auto choice = parameter.choices; choice && *choice; ++choice) choices << *choice;
+  return choices;
 }
 
 QString help_of(const mimetra_parameter& parameter) {
@@ -50,20 +83,13 @@ QString help_of(const mimetra_parameter& parameter) {
     help += "; a share of the rest pose's longest side as in 0.1, or a length as in 12abs";
   }
   if (parameter.kind == MIMETRA_FILE && parameter.choices) {
-    help += "; a file, or one of";
-    for (auto choice = parameter.choices; *choice; ++choice) help += QString(" ") + *choice;
+    help += "; a file, or one of " + choices_of(parameter).join(' ');
   }
-  if (!parameter.fallback) help += "; empty for none";
+  if (!parameter.fallback) help += "; may be empty";
   return help;
 }
 
-QStringList choices_of(const mimetra_parameter& parameter) {
-  QStringList choices;
-  for (auto choice = parameter.choices; *choice; ++choice) choices << *choice;
-  return choices;
-}
-
-/// The row's kind: what may be empty, and whatever MeshLab has no field for, is text.
+/// The kind of row: what may be empty, and whatever MeshLab has no field for, is text.
 mimetra_parameter_kind row_kind(const mimetra_parameter& parameter) {
   return parameter.fallback ? parameter.kind : MIMETRA_TEXT;
 }
@@ -134,19 +160,37 @@ std::string value_text(const mimetra_parameter& parameter, const RichParameterLi
   return text == fallback ? std::string() : text;
 }
 
+/// "--rho 5 --signed" and "--rho=5", as names and values.
+std::vector<Setting> further_options(const mimetra_operation& operation,
+                                     const RichParameterList& rows) {
+  if (!rows.hasParameter(kFurtherOptions)) return {};
+  const QStringList words =
+      QProcess::splitCommand(QString::fromStdString(text_of(rows, kFurtherOptions)));
+  const std::vector<std::string> known = option_names(operation);
+  std::vector<Setting> options;
+  for (int i = 0; i < words.size(); ++i) {
+    const std::string word = words[i].toStdString();
+    const std::size_t begin = std::min(word.find_first_not_of('-'), word.size());
+    const std::size_t end = std::min(word.find('='), word.size());
+    const std::string name = word.substr(begin, end - begin);
+    if (begin == 0 || !contains(known, name)) {
+      throw Failure("further options: expected an option such as --" + known.back() + ", found '" +
+                    word + "'");
+    }
+    const mimetra_parameter* parameter = find_parameter(operation, name);
+    std::string text = "true";
+    if (end < word.size()) {
+      text = word.substr(end + 1);
+    } else if (!parameter || parameter->kind != MIMETRA_FLAG) {
+      if (++i == words.size()) throw Failure("further options: " + word + " needs a value");
+      text = words[i].toStdString();
+    }
+    options.push_back({name, text});
+  }
+  return options;
+}
+
 }  // namespace
-
-void add_parameters(const mimetra_operation& operation, RichParameterList& rows) {
-  for_each_parameter(operation, [&rows](const mimetra_parameter& parameter) {
-    if (!parameter.of_files && !rows.hasParameter(parameter.name)) add_row(parameter, rows);
-  });
-}
-
-void add_reading_parameters(const mimetra_operation& operation, RichParameterList& rows) {
-  for_each_parameter(operation, [&rows](const mimetra_parameter& parameter) {
-    if (is_of_reading(parameter)) add_row(parameter, rows);
-  });
-}
 
 void add_input(const mimetra_operation& operation, const std::string& name,
                const std::string& instead, RichParameterList& rows) {
@@ -158,42 +202,55 @@ void add_input(const mimetra_operation& operation, const std::string& name,
   }
 }
 
-void add_outputs(const mimetra_operation& operation, RichParameterList& rows) {
-  for (const mimetra_port* output : offered_outputs(operation)) {
-    const QString help = QString("File to write: ") + output->help + "; empty for none";
-    rows.addParam(RichString(output->name, "", label_of(output->name), help));
+void add_parameters(const mimetra_operation& operation, const std::vector<std::string>& names,
+                    RichParameterList& rows) {
+  for (const std::string& name : names) {
+    if (const mimetra_parameter* parameter = find_parameter(operation, name)) {
+      add_row(*parameter, rows);
+    }
   }
 }
 
-std::vector<Setting> settings_of(const mimetra_operation& operation,
-                                 const RichParameterList& rows) {
+void add_all_parameters(const mimetra_operation& operation, RichParameterList& rows) {
+  for (const mimetra_parameter* parameter : parameters_of(operation)) {
+    if (!parameter->of_files && !rows.hasParameter(parameter->name)) add_row(*parameter, rows);
+  }
+}
+
+void add_further_options(const mimetra_operation& operation, RichParameterList& rows) {
+  QStringList further;
+  for (const std::string& name : option_names(operation)) {
+    const QString option = QString::fromStdString(name);
+    if (!rows.hasParameter(option)) further << (name.size() == 1 ? "-" : "--") + option;
+  }
+  rows.addParam(RichString(
+      kFurtherOptions, "", "Further options",
+      QString("as for the command mimetra %1: ").arg(operation.name) + further.join(' ')));
+}
+
+Request request_of(const mimetra_operation& operation, const RichParameterList& rows) {
   std::vector<Setting> settings;
-  for_each_parameter(operation, [&](const mimetra_parameter& parameter) {
-    if (parameter.of_files) return;
-    const std::string text = value_text(parameter, rows);
-    if (!text.empty()) settings.push_back({parameter.name, text});
-  });
-  return settings;
-}
-
-std::vector<std::string> reading_settings_of(const mimetra_operation& operation,
-                                             const RichParameterList& rows) {
-  std::vector<std::string> settings;
-  for_each_parameter(operation, [&](const mimetra_parameter& parameter) {
-    if (!is_of_reading(parameter)) return;
-    const std::string text = value_text(parameter, rows);
-    if (!text.empty()) settings.push_back(std::string(parameter.name) + '=' + text);
-  });
-  return settings;
-}
-
-std::vector<Setting> outputs_of(const mimetra_operation& operation, const RichParameterList& rows) {
-  std::vector<Setting> outputs;
-  for (const mimetra_port* output : offered_outputs(operation)) {
-    const std::string path = text_of(rows, output->name);
-    if (!path.empty()) outputs.push_back({output->name, path});
+  for (const mimetra_parameter* parameter : parameters_of(operation)) {
+    if (!rows.hasParameter(parameter->name)) continue;
+    const std::string text = value_text(*parameter, rows);
+    if (!text.empty()) settings.push_back({parameter->name, text});
   }
-  return outputs;
+  for (const Setting& option : further_options(operation, rows)) settings.push_back(option);
+
+  Request request;
+  for (const Setting& setting : settings) {
+    const mimetra_parameter* parameter = find_parameter(operation, setting.name);
+    if (parameter && parameter->of_files) {
+      request.reading.push_back(setting.name + '=' + setting.text);
+    } else if (parameter) {
+      request.parameters.push_back(setting);
+    } else if (contains(optional_ports(operation.inputs), setting.name)) {
+      request.inputs.push_back(setting);
+    } else {
+      request.outputs.push_back(setting);
+    }
+  }
+  return request;
 }
 
 std::string text_of(const RichParameterList& rows, const std::string& name) {

@@ -16,7 +16,7 @@ version="$(dpkg-query -W -f='${source:Version}' meshlab 2>/dev/null)" ||
   fail "the package meshlab is not installed"
 [ "$(cat "$folder/version" 2>/dev/null)" != "$version" ] || exit 0
 
-rm -rf "$folder"/{source,sources,lists,cache,version}
+rm -rf "$folder"/{source,version,sources,lists,cache}
 mkdir -p "$folder"/{sources,lists/partial,cache/archives/partial}
 
 # "meshlab | VERSION | URI RELEASE/COMPONENT ARCHITECTURE Packages"
@@ -32,17 +32,25 @@ entry="${entry%%$'\n'*}"
 sed -E 's/^deb([[:space:]])/deb-src\1/; s/^Types:.*/Types: deb-src/' "${entry%:*}" \
   >"$folder/sources/$(basename "${entry%:*}")"
 
+# The hooks that follow an update work on the system's own files.
+cat >"$folder/apt.conf" <<TEXT
+Dir::Etc::SourceList "/dev/null";
+Dir::Etc::SourceParts "$folder/sources";
+Dir::State::Lists "$folder/lists";
+Dir::Cache "$folder/cache";
+APT::Sandbox::User "$(id -un)";
+#clear APT::Update;
+TEXT
+
 own_apt_get() {
-  apt-get -q -o Dir::Etc::sourcelist=/dev/null -o Dir::Etc::sourceparts="$folder/sources" \
-    -o Dir::State::lists="$folder/lists" -o Dir::Cache="$folder/cache" \
-    -o APT::Sandbox::User="$(id -un)" "$@"
+  apt-get -q -c "$folder/apt.conf" "$@"
 }
 
 cd "$folder"
 # Another archive in the same file may hold no sources; what counts is whether meshlab is found.
 own_apt_get update || true
 own_apt_get source --download-only "meshlab=$version" ||
-  fail "the archive $uri has no source of meshlab $version; upgrade the package meshlab"
+  fail "$uri did not give the source of meshlab $version; is there a network, or a newer meshlab?"
 dpkg-source --no-check -x meshlab_*.dsc source
-rm -rf lists cache meshlab_*
+rm -rf apt.conf sources lists cache meshlab_*
 echo "$version" >version

@@ -5,7 +5,6 @@
 
 #include <vcg/complex/algorithms/update/color.h>
 
-#include "dialog.h"
 #include "layers.h"
 
 using namespace mimetra_meshlab;
@@ -66,9 +65,10 @@ std::string selected_vertices(const MeshModel& layer) {
   return list;
 }
 
-/// "mesh 0007".
+/// "mesh 0007" for mesh.ply: MeshLab does not show what stands after the point.
 std::string numbered(const std::string& name, std::int64_t index) {
-  return name + ' ' + QString("%1").arg(index, 4, 10, QChar('0')).toStdString();
+  const QString base = QFileInfo(QString::fromStdString(name)).completeBaseName();
+  return QString("%1 %2").arg(base).arg(index, 4, 10, QChar('0')).toStdString();
 }
 
 void log_line(std::int32_t level, const char* text, void* filter) {
@@ -135,17 +135,18 @@ void FilterMimetra::initParameterSet(QAction* action, MeshDocument&, RichParamet
                              "selected vertices"));
     rows.addParam(RichEnum("quality", 0, {"support", "distance"}, "Quality",
                            "what becomes the vertex quality"));
-  } else if (filter == kRegions) {
+    add_all_parameters(operation, rows);
+    return;
+  }
+  if (filter == kRegions) {
     add_input(operation, "sequence", "the visible layers", rows);
+    add_parameters(operation, {"k", "radius", "region", "coverage"}, rows);
   } else {
     add_input(operation, "source", "the visible layers but the target", rows);
     add_input(operation, "target", "the current layer", rows);
-    add_input(operation, "regions", "those that are found", rows);
+    add_parameters(operation, {"k", "radius", "coverage", "full", "space", "source-rest"}, rows);
   }
-  if (filter != kGeodesic) add_input(operation, "components", "those that are computed", rows);
-  add_parameters(operation, rows);
-  if (filter != kGeodesic) add_reading_parameters(operation, rows);
-  add_outputs(operation, rows);
+  add_further_options(operation, rows);
 }
 
 bool FilterMimetra::applyFilter(QAction* action, MeshDocument& document,
@@ -175,8 +176,9 @@ void FilterMimetra::run_geodesic(MeshDocument& document, const RichParameterList
   MeshModel& layer = current_layer(document);
   Call call(*toolkit_, "geodesic");
   call.give("mesh", toolkit_->sequence(name_of(layer), frames_of({&layer})));
-  if (text_of(rows, "source").empty()) call.set("source", selected_vertices(layer));
-  run(call, kGeodesic, rows);
+  const std::string source = text_of(rows, "source");
+  call.set("source", source.empty() ? selected_vertices(layer) : source);
+  run(call, request_of(operation_of(kGeodesic), rows));
   const char* field = rows.getEnum("quality") == 1 ? "distance" : "support";
   std::vector<double> values = toolkit_->field(call.output("out"), field);
   for (double& value : values) {
@@ -192,16 +194,15 @@ void FilterMimetra::run_regions(MeshDocument& document, const RichParameterList&
   std::vector<MeshModel*> shown = {&current_layer(document)};
   const bool from_layers = text_of(rows, "sequence").empty();
   if (from_layers) shown = visible_layers(document);
-  const Data sequence = sequence_of(kRegions, "sequence", shown, rows);
+  const Request request = request_of(operation_of(kRegions), rows);
+  const Data sequence = sequence_of(rows, "sequence", request.reading, shown);
   if (!from_layers) {
     check_same_faces(toolkit_->frames_of(sequence), toolkit_->name_of(sequence), frames_of(shown),
                      "the current layer");
   }
   Call call(*toolkit_, "regions");
   call.give("sequence", sequence);
-  const std::string components = text_of(rows, "components");
-  if (!components.empty()) call.read("components", components);
-  run(call, kRegions, rows);
+  run(call, request);
   const std::vector<double> region = toolkit_->field(call.output("out"), "region");
   for (MeshModel* layer : shown) show_regions(*layer, region);
 }
@@ -216,14 +217,11 @@ void FilterMimetra::run_transfer(MeshDocument& document, const RichParameterList
   } else {
     call.read("target", model);
   }
-  call.give("source", sequence_of(kTransfer, "source",
-                                  visible_layers(document, to_layer ? &current : nullptr), rows));
-  for (const char* input : {"regions", "components"}) {
-    const std::string path = text_of(rows, input);
-    if (!path.empty()) call.read(input, path);
-  }
+  const Request request = request_of(operation_of(kTransfer), rows);
+  call.give("source", sequence_of(rows, "source", request.reading,
+                                  visible_layers(document, to_layer ? &current : nullptr)));
   if (!rows.getBool("full")) call.want("regions-out");
-  run(call, kTransfer, rows);
+  run(call, request);
 
   const Frames result = toolkit_->frames_of(call.output("out"));
   const Data regions = call.output("regions-out");
@@ -236,12 +234,14 @@ void FilterMimetra::run_transfer(MeshDocument& document, const RichParameterList
   Log(GLLogStream::FILTER, std::to_string(result.count) + " frames are new, hidden layers");
 }
 
-Data FilterMimetra::sequence_of(FilterIDType filter, const char* input,
-                                const std::vector<MeshModel*>& layers,
-                                const RichParameterList& rows) const {
+Data FilterMimetra::sequence_of(const RichParameterList& rows, const char* input,
+                                const std::vector<std::string>& reading,
+                                const std::vector<MeshModel*>& layers) const {
   const std::string path = text_of(rows, input);
-  if (!path.empty()) {
-    return toolkit_->load_sequence(path, reading_settings_of(operation_of(filter), rows));
+  if (!path.empty()) return toolkit_->load_sequence(path, reading);
+  if (!reading.empty()) {
+    throw Failure("further options: " + reading.front() + " speaks of files; name them as the " +
+                  input);
   }
   if (layers.empty()) {
     throw Failure(std::string("there are no frames: show the layers that are the ") + input +
@@ -250,20 +250,17 @@ Data FilterMimetra::sequence_of(FilterIDType filter, const char* input,
   return toolkit_->sequence("layers", frames_of(layers));
 }
 
-void FilterMimetra::run(Call& call, FilterIDType filter, const RichParameterList& rows) {
-  const mimetra_operation& operation = operation_of(filter);
-  for (const Setting& setting : settings_of(operation, rows)) {
-    call.set(setting.name.c_str(), setting.text);
-  }
-  const std::vector<Setting> outputs = outputs_of(operation, rows);
-  for (const Setting& output : outputs) call.want(output.name.c_str());
+void FilterMimetra::run(Call& call, const Request& request) {
+  for (const Setting& setting : request.parameters) call.set(setting.name.c_str(), setting.text);
+  for (const Setting& input : request.inputs) call.read(input.name.c_str(), input.text);
+  for (const Setting& output : request.outputs) call.want(output.name.c_str());
   call.run(
       [](double share, void* self) -> std::int32_t {
         auto* progress = static_cast<FilterMimetra*>(self)->progress_;
         return !progress || progress(static_cast<int>(100 * share), "mimetra");
       },
       this);
-  for (const Setting& output : outputs) {
+  for (const Setting& output : request.outputs) {
     toolkit_->save(call.output(output.name.c_str()), output.text);
   }
   const QStringList lines = QString::fromStdString(call.summary()).split('\n', Qt::SkipEmptyParts);

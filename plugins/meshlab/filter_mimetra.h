@@ -4,6 +4,7 @@
 
 #include <common/interfaces.h>
 
+#include "dialog.h"
 #include "toolkit.h"
 
 /// mimetra's operations as filters of MeshLab. A sequence is the visible layers in their order, or
@@ -34,11 +35,11 @@ class FilterMimetra : public QObject, public MeshFilterInterface {
   void run_regions(MeshDocument& document, const RichParameterList& rows);
   void run_transfer(MeshDocument& document, const RichParameterList& rows);
 
-  /// The frames that the row of `input` names, or else those of `layers`.
-  mimetra_meshlab::Data sequence_of(FilterIDType filter, const char* input,
-                                    const std::vector<MeshModel*>& layers,
-                                    const RichParameterList& rows) const;
-  void run(mimetra_meshlab::Call& call, FilterIDType filter, const RichParameterList& rows);
+  /// The frames of `layers`, or those of a path that stands in the row of `input`.
+  mimetra_meshlab::Data sequence_of(const RichParameterList& rows, const char* input,
+                                    const std::vector<std::string>& reading,
+                                    const std::vector<MeshModel*>& layers) const;
+  void run(mimetra_meshlab::Call& call, const mimetra_meshlab::Request& request);
   const mimetra_operation& operation_of(FilterIDType filter) const;
 
   std::unique_ptr<mimetra_meshlab::Toolkit> toolkit_;

@@ -69,8 +69,18 @@ class BadInput(HostTest):
         self.assert_refused(self.take, [filter_script("Regions of Interest", k=0)], "found '0'")
         self.assert_refused(self.take, [filter_script("Regions of Interest", coverage=7)],
                             "expected a number from 1e-09 to 1, found '7'")
-        self.assert_refused(self.take, [filter_script("Regions of Interest", geodesics=9)],
-                            "geodesics: expected a choice from 0 to 2, found 9")
+        self.assert_refused(self.take, [filter_script("Regions of Interest", region=9)],
+                            "region: expected a choice from 0 to 1, found 9")
+
+    def test_further_options_that_are_none(self):
+        for options, words in [
+                ("--rhoo 5", "expected an option such as --components-out, found '--rhoo'"),
+                ("rho", "found 'rho'"), ("--signed 1", "found '1'"),
+                ("--compress small", "found '--compress'"), ("--rho", "--rho needs a value"),
+                ("--fps 30", "fps=30 speaks of files; name them as the sequence")]:
+            with self.subTest(options=options):
+                self.assert_refused(self.take, [filter_script("Regions of Interest",
+                                                              options=options)], words)
 
     def test_a_vertex_that_is_not_there(self):
         self.assert_refused([self.one], [filter_script("Geodesic Support Map", source="4")],

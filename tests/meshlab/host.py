@@ -17,7 +17,11 @@ FRAMES = "0:120:10"
 SELECTED = 0x20  # of MeshLab's flags of vertices and faces
 OPERATIONS = {"Geodesic Support Map": "geodesic", "Regions of Interest": "regions",
               "Region Transfer": "transfer"}
+INPUTS = {"regions": ["sequence"], "transfer": ["source", "target"]}
+FIRST = {"regions": ["k", "radius", "region", "coverage"],
+         "transfer": ["k", "radius", "coverage", "full", "space", "source-rest"]}
 READING = ["weights", "topology", "frames", "fps"]
+OF_FILES = [*READING, "format", "double", "single", "compress"]
 PLY_TYPES = {"char": "i1", "uchar": "u1", "short": "i2", "ushort": "u2", "int": "i4", "uint": "u4",
              "float": "f4", "double": "f8"}
 
@@ -45,24 +49,14 @@ def text_of(value):
 def rows_of(filter):
     """The rows of a filter's dialog as (name, type, default), as the table declares them."""
     operation = operations()[OPERATIONS[filter]]
-    own = {"geodesic": [("source", "RichString", ""), ("quality", "RichEnum", "0")],
-           "regions": [("sequence", "RichString", "")],
-           "transfer": [(name, "RichString", "") for name in ["source", "target", "regions"]]}
-    rows = own[operation["name"]]
-    reads = operation["name"] != "geodesic"
-    if reads:
-        rows.append(("components", "RichString", ""))
-    of_files = {*READING, "format", "double", "single", "compress"}
-    for parameter in operation["parameters"]:
-        name = parameter["name"]
-        if name not in of_files and name not in [row[0] for row in rows]:
-            rows.append(row_of(parameter))
-    if reads:
-        rows += [row_of(parameter) for parameter in operation["parameters"]
-                 if parameter["name"] in READING]
-    rows += [(output["name"], "RichString", "") for output in operation["outputs"]
-             if output["optional"] and output["name"] != "paraview"]
-    return rows
+    if operation["name"] == "geodesic":
+        return [("source", "RichString", ""), ("quality", "RichEnum", "0"),
+                *[row_of(parameter) for parameter in operation["parameters"]
+                  if parameter["name"] not in ["source", *OF_FILES]]]
+    rows = [(name, "RichString", "") for name in INPUTS[operation["name"]]]
+    by_name = {parameter["name"]: parameter for parameter in operation["parameters"]}
+    rows += [row_of(by_name[name]) for name in FIRST[operation["name"]]]
+    return [*rows, ("options", "RichString", "")]
 
 
 def row_of(parameter):

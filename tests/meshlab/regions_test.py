@@ -31,8 +31,8 @@ class RegionsOfInterest(HostTest):
         weights = self.head / "performance.csv"
         mimetra("regions", self.model, "--weights", weights, "--frames", "0:60:5", "-k", 6,
                 "-o", out)
-        script = filter_script("Regions of Interest", k=6, sequence=self.model, weights=weights,
-                               frames="0:60:5")
+        script = filter_script("Regions of Interest", k=6, sequence=self.model,
+                               options=f'--weights "{weights}" --frames=0:60:5')
         [layer] = self.apply([self.target], [script], [("model.ply", 0, "vq")])
         self.assert_same(layer.vertices["quality"], Fields(out).on_vertices("region").astype("f4"))
 
@@ -40,8 +40,8 @@ class RegionsOfInterest(HostTest):
         out = self.path / "other.vtp"
         mimetra("regions", self.path / "take", "-k", 9, "--radius", "20abs", "--sparsity", 1.7,
                 "--signed", "--region", "support", "--coverage", 0.6, "--rest", "mean", "-o", out)
-        script = filter_script("Regions of Interest", k=9, radius="20abs", sparsity=1.7,
-                               signed=True, region=1, coverage=0.6, rest="mean")
+        script = filter_script("Regions of Interest", k=9, radius="20abs", region=1, coverage=0.6,
+                               options="--sparsity 1.7 --signed --rest mean")
         [layer] = self.apply(self.take, [script], [("other.ply", 0, "vq")])
         self.assert_same(layer.vertices["quality"], Fields(out).on_vertices("region").astype("f4"))
 
@@ -58,12 +58,14 @@ class RegionsOfInterest(HostTest):
     def test_writes_the_components_and_reads_them_again(self):
         components = self.path / "components.h5"
         self.apply(self.take, [filter_script("Regions of Interest", k=12,
-                                             components_out=components)], [("first.ply", 0, "vq")])
+                                             options=f"--components-out {components}")],
+                   [("first.ply", 0, "vq")])
         out = self.path / "from_components.vtp"
         mimetra("regions", self.path / "take", "--components", components, "--radius", 0.05,
                 "-o", out)
-        [layer] = self.apply(self.take, [filter_script("Regions of Interest", components=components,
-                                                       radius="0.05")], [("second.ply", 0, "vq")])
+        script = filter_script("Regions of Interest", radius="0.05",
+                               options=f"--components {components}")
+        [layer] = self.apply(self.take, [script], [("second.ply", 0, "vq")])
         self.assert_same(layer.vertices["quality"], Fields(out).on_vertices("region").astype("f4"))
 
     def test_says_what_it_found(self):

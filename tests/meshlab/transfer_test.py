@@ -29,7 +29,8 @@ class RegionTransfer(HostTest):
     def test_moves_the_current_layer_as_the_others_do(self):
         expected = self.expected(self.path / "take", self.target, "-k", 12, "--outside", "identity",
                                  "--outside-weight", 0.3)
-        script = filter_script("Region Transfer", k=12, outside=1, outside_weight=0.3)
+        script = filter_script("Region Transfer", k=12,
+                               options="--outside identity --outside-weight 0.3")
         self.assert_layers([*self.take, self.target], script, expected)
 
     def test_solves_for_the_blendshapes_of_a_model(self):
@@ -37,7 +38,8 @@ class RegionTransfer(HostTest):
         expected_weights = self.path / "expected.csv"
         expected = self.expected(self.path / "take", self.model, "-k", 12, "--weights-out",
                                  expected_weights)
-        script = filter_script("Region Transfer", k=12, target=self.model, weights_out=weights)
+        script = filter_script("Region Transfer", k=12, target=self.model,
+                               options=f"--weights-out {weights}")
         found = self.assert_layers(self.take, script, expected)
         self.assertEqual(len(found[0].faces), len(Ply(self.target_in_triangles()).faces))
         self.assertEqual(weights.read_text(), expected_weights.read_text())
@@ -76,7 +78,8 @@ class RegionTransfer(HostTest):
         regions = self.path / "lips.json"
         mimetra("regions", self.path / "take", "-k", 4, "-o", regions)
         expected = self.expected(self.path / "take", self.model, "--regions", regions)
-        script = filter_script("Region Transfer", regions=regions, target=self.model)
+        script = filter_script("Region Transfer", target=self.model,
+                               options=f"--regions {regions}")
         self.assert_layers(self.take, script, expected)
 
     def test_can_follow_itself(self):
