@@ -125,13 +125,16 @@ class MeshLab:
         server = pathlib.Path(os.environ["MESHLABSERVER"])
         self.home = folder / "home"
         self.home.mkdir()
-        self.server = folder / "host" / server.name
         # The server looks for its libraries beside its own folder, as they are installed.
         place = folder / "host" / libraries.relative_to(server.parent.parent)
         self.server = folder / "host" / "bin" / server.name
         self.server.parent.mkdir(parents=True)
         shutil.copy(server, self.server)
-        shutil.copytree(libraries, place)
+        (place / "plugins").mkdir(parents=True)
+        shutil.copy(libraries / "libmeshlab-common.so", place)
+        # PLY files, and selecting vertices; all of MeshLab's plugins take long to load.
+        for plugin in ["libio_base.so", "libfilter_func.so"]:
+            shutil.copy(libraries / "plugins" / plugin, place / "plugins")
         shutil.copy(os.environ["MIMETRA_PLUGIN"], place / "plugins")
 
     def run(self, *arguments):
