@@ -165,8 +165,8 @@ bool FilterMimetra::applyFilter(QAction* action, MeshDocument& document,
     }
     return true;
   } catch (const std::exception& error) {
-    // MeshLab shows the message, meshlabserver the log.
-    errorMessage = QString::fromUtf8(error.what());
+    // MeshLab shows the message, as HTML, and meshlabserver the log.
+    errorMessage = QString::fromUtf8(error.what()).toHtmlEscaped();
     Log(GLLogStream::WARNING, std::string(error.what()));
     return false;
   }
@@ -253,7 +253,12 @@ Data FilterMimetra::sequence_of(const RichParameterList& rows, const char* input
 void FilterMimetra::run(Call& call, const Request& request) {
   for (const Setting& setting : request.parameters) call.set(setting.name.c_str(), setting.text);
   for (const Setting& input : request.inputs) call.read(input.name.c_str(), input.text);
-  for (const Setting& output : request.outputs) call.want(output.name.c_str());
+  for (const Setting& output : request.outputs) {
+    if (QFileInfo::exists(QString::fromStdString(output.text))) {
+      throw Failure(output.text + ": exists; choose another name, or remove it");
+    }
+    call.want(output.name.c_str());
+  }
   call.run(
       [](double share, void* self) -> std::int32_t {
         auto* progress = static_cast<FilterMimetra*>(self)->progress_;

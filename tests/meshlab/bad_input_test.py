@@ -5,16 +5,6 @@ import unittest
 from host import *
 
 
-def write_ply(path, points, faces):
-    lines = ["ply", "format ascii 1.0", f"element vertex {len(points)}", "property float x",
-             "property float y", "property float z", f"element face {len(faces)}",
-             "property list uchar int vertex_indices", "end_header"]
-    lines += [" ".join(map(str, point)) for point in points]
-    lines += [" ".join(map(str, [len(face), *face])) for face in faces]
-    path.write_text("\n".join(lines) + "\n")
-    return path
-
-
 class BadInput(HostTest):
     @classmethod
     def setUpClass(cls):
@@ -81,6 +71,10 @@ class BadInput(HostTest):
             with self.subTest(options=options):
                 self.assert_refused(self.take, [filter_script("Regions of Interest",
                                                               options=options)], words)
+
+    def test_an_output_that_exists(self):
+        script = filter_script("Regions of Interest", k=3, options=f"--components-out {self.one}")
+        self.assert_refused(self.take, [script], "one.ply: exists; choose another name")
 
     def test_a_vertex_that_is_not_there(self):
         self.assert_refused([self.one], [filter_script("Geodesic Support Map", source="4")],

@@ -38,6 +38,20 @@ class GeodesicSupportMap(HostTest):
                              [("selected.ply", 0, "vf")])
         self.assertEqual(list(np.flatnonzero(layer.vertices["flags"] & SELECTED)), [1200])
 
+    def test_measures_a_layer_as_its_matrix_places_it(self):
+        project = self.path / "twice.mlp"
+        project.write_text(
+            f'<!DOCTYPE MeshLabDocument><MeshLabProject><MeshGroup><MLMesh label="twice" '
+            f'filename="{self.target}"><MLMatrix44>2 0 0 5 0 2 0 0 0 0 2 0 0 0 0 1</MLMatrix44>'
+            f'</MLMesh></MeshGroup></MeshLabProject>')
+        script = self.script_of([filter_script("Geodesic Support Map", source="1200",
+                                               d_max="120abs")])
+        out = self.path / "twice.ply"
+        done = self.meshlab.run("-p", project, "-s", script, "-o", out, "-m", "vq")
+        self.assertEqual(done.returncode, 0, done.stdout)
+        expected = self.expected("support", "--source", 1200, "--d-max", "60abs")
+        np.testing.assert_allclose(Ply(out).vertices["quality"], expected, atol=1e-6)
+
     def test_asks_for_a_source(self):
         self.assert_refused([self.target], [filter_script("Geodesic Support Map")],
                             "layer 'target.ply' has no selected vertices; select some, or name "

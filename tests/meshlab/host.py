@@ -85,6 +85,18 @@ def filter_script(filter, **values):
     return element
 
 
+def write_ply(path, points, faces):
+    lines = ["ply", "format ascii 1.0", f"element vertex {len(points)}", "property float x",
+             "property float y", "property float z", f"element face {len(faces)}",
+             "property list uchar int vertex_indices", "end_header"]
+    # The command reads all digits, MeshLab what fits into single precision: only such numbers.
+    lines += [" ".join(repr(float(np.float32(x))) for x in point) for point in points]
+    lines += [" ".join(map(str, [len(face), *face])) for face in faces]
+    path.parent.mkdir(exist_ok=True)
+    path.write_text("\n".join(lines) + "\n")
+    return path
+
+
 class Ply:
     """Vertices and faces of a binary PLY file."""
 
@@ -168,15 +180,18 @@ class HostTest(unittest.TestCase):
 
     def serve(self, layers, filters, outputs=()):
         """Opens files as layers, applies filters, writes layers: (path, number, what of it)."""
-        script = ElementTree.Element("FilterScript")
-        script.extend(filters)
-        path = self.path / "script.mlx"
-        path.write_bytes(b"<!DOCTYPE FilterScript>\n" + ElementTree.tostring(script))
         written = []
         for name, layer, mask in outputs:
             of_it = ["-m", *mask.split()] if mask else []
             written += ["-o", self.path / name, "-l", layer, *of_it]
-        return self.meshlab.run("-i", *layers, "-s", path, *written)
+        return self.meshlab.run("-i", *layers, "-s", self.script_of(filters), *written)
+
+    def script_of(self, filters):
+        script = ElementTree.Element("FilterScript")
+        script.extend(filters)
+        path = self.path / "script.mlx"
+        path.write_bytes(b"<!DOCTYPE FilterScript>\n" + ElementTree.tostring(script))
+        return path
 
     def apply(self, layers, filters, outputs):
         """The written layers of a run that must go well."""

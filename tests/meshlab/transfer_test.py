@@ -82,6 +82,21 @@ class RegionTransfer(HostTest):
                                options=f"--regions {regions}")
         self.assert_layers(self.take, script, expected)
 
+    def test_keeps_polygons_of_any_size(self):
+        ring = [(np.cos(a), np.sin(a)) for a in 2 * np.pi * np.arange(7) / 7]
+        faces = [list(range(7)), [*range(13, 6, -1)],
+                 *[[i, 7 + i, 7 + (i + 1) % 7, (i + 1) % 7] for i in range(7)]]
+        for frame in range(3):
+            points = [(x, y, 0) for x, y in ring]
+            points += [(x, y, 1 + 0.1 * frame * (1 + x)) for x, y in ring]
+            first = write_ply(self.path / "prism" / f"{frame}.ply", points, faces)
+        expected = self.expected(self.path / "prism", first, "--full")
+        for source in ["", self.path / "prism"]:
+            layers = [*sorted((self.path / "prism").glob("*.ply")), first]
+            script = filter_script("Region Transfer", full=True, source=source)
+            [layer] = self.apply(layers, [script], [("prism.ply", len(layers) + 1, "")])
+            self.assert_same(layer.points, expected[1])
+
     def test_can_follow_itself(self):
         """New layers are hidden, so that they do not become frames of a further run."""
         expected = self.expected(self.path / "take", self.model, "--full")
