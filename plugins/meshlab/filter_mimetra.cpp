@@ -181,10 +181,8 @@ void FilterMimetra::run_geodesic(MeshDocument& document, const RichParameterList
   run(call, request_of(operation_of(kGeodesic), rows));
   const char* field = rows.getEnum("quality") == 1 ? "distance" : "support";
   std::vector<double> values = toolkit_->field(call.output("out"), field);
-  for (double& value : values) {
-    if (std::isnan(value))
-      value = -1;  // not reached; MeshLab's colours and histograms need numbers
-  }
+  // Not reached; MeshLab's colours and histograms need numbers.
+  for (double& value : values) value = std::isnan(value) ? -1 : value;
   set_quality(layer, values);
   layer.updateDataMask(MeshModel::MM_VERTCOLOR);
   vcg::tri::UpdateColor<CMeshO>::PerVertexQualityRamp(layer.cm);

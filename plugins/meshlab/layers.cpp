@@ -1,7 +1,6 @@
 #include "layers.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include <vcg/complex/append.h>
 
