@@ -104,7 +104,9 @@ enum {
   MIMETRA_MORPHABLE_MODEL = 10,
   MIMETRA_FIT = 11,
   MIMETRA_PICTURES = 12,
-  MIMETRA_VIEW = 13
+  MIMETRA_VIEW = 13,
+  MIMETRA_RUN = 14,
+  MIMETRA_PAGE = 15
 };
 
 /* Kinds of parameters, and how their values are written as text. */
@@ -190,7 +192,8 @@ typedef struct mimetra_array {
  *                     [confidence F]
  *   fit               | alpha F x I, beta F x D, identity_names STRING I,
  *                     expression_names STRING D, times F, cameras F x 2 x 4, rms F
- *   pictures, view    no arrays: they are there to be saved
+ *   pictures, view, run, page
+ *                     no arrays: they are there to be saved, or read by an operation
  *
  * Where no type stands, it is F64, and F32 is taken too. Numbers must be finite, but for fields,
  * tables and the points of landmarks.
