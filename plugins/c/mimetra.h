@@ -322,7 +322,8 @@ typedef struct mimetra_interface {
   mimetra_status (*call_set)(mimetra_call* call, const char* parameter, const char* text);
   /* The value of an input; again for each value of a repeated one. */
   mimetra_status (*call_give)(mimetra_call* call, const char* input, const mimetra_data* data);
-  /* The same from a file, read when the call runs, with its parameters ("frames", "weights"). */
+  /* The same from a file, read when the call runs, with its parameters ("frames", "weights"); comes
+   * after values that were given. */
   mimetra_status (*call_read)(mimetra_call* call, const char* input, const char* text);
   /* Asks for an optional output; needed outputs are always made. */
   mimetra_status (*call_want)(mimetra_call* call, const char* output);
