@@ -24,7 +24,7 @@ if(NOT VTK_DIR AND paraview_vtk)
 endif()
 mimetra_package(GLEW)
 mimetra_package(OpenGL COMPONENTS EGL)
-set(vtk_components ChartsCore CommonCore CommonDataModel IOImage IOXML IOXMLParser RenderingContext2D
+set(vtk_components ChartsCore CommonCore CommonDataModel IOCore IOImage IOXML IOXMLParser RenderingContext2D
                    RenderingContextOpenGL2 RenderingCore RenderingFreeType RenderingOpenGL2)
 find_package(VTK 9.1 REQUIRED COMPONENTS ${vtk_components})
 # Objects compiled against one VTK break with another one's libraries.

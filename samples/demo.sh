@@ -21,9 +21,12 @@ echo "Table I of the paper on the sample (MPE in percent, negative is worse than
   --titles "source,regions of the source that move,target by all triangles,target by these regions only,distance between the two" \
   -o "$out/strip.png"
 
+"$mimetra" report "$out/regions" --unit mm -o "$out/report.html"
+
 cat <<TEXT
 
 What to open:
+  $out/report.html  in a browser: source and target in 3D, components, error and time
   $out/strip.png    source, regions, and the target both ways, as a film strip
   $out/regions.pvd  in ParaView: press Apply, colour by 'region' or 'roi', press Play
   $out/source/      the performance of one head, frame_0000.ply on

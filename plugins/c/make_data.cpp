@@ -308,8 +308,8 @@ NamedData checked(mimetra_kind kind, const std::string& name, GivenArrays& given
 }  // namespace
 
 DataKind kind_of(mimetra_kind kind) {
-  static_assert(std::variant_size_v<Data> == MIMETRA_VIEW, "mimetra.h lists all kinds");
-  if (kind >= MIMETRA_SEQUENCE && kind <= MIMETRA_VIEW) {
+  static_assert(std::variant_size_v<Data> == MIMETRA_PAGE, "mimetra.h lists all kinds");
+  if (kind >= MIMETRA_SEQUENCE && kind <= MIMETRA_PAGE) {
     return static_cast<DataKind>(kind - MIMETRA_SEQUENCE);
   }
   throw UsageError("the kind " + std::to_string(kind) + " is none of mimetra.h");

@@ -104,7 +104,9 @@ enum {
   MIMETRA_MORPHABLE_MODEL = 10,
   MIMETRA_FIT = 11,
   MIMETRA_PICTURES = 12,
-  MIMETRA_VIEW = 13
+  MIMETRA_VIEW = 13,
+  MIMETRA_RUN = 14,
+  MIMETRA_PAGE = 15
 };
 
 /* Kinds of parameters, and how their values are written as text. */
@@ -190,7 +192,8 @@ typedef struct mimetra_array {
  *                     [confidence F]
  *   fit               | alpha F x I, beta F x D, identity_names STRING I,
  *                     expression_names STRING D, times F, cameras F x 2 x 4, rms F
- *   pictures, view    no arrays: they are there to be saved
+ *   pictures, view, run, page
+ *                     no arrays: they are there to be saved, or read by an operation
  *
  * Where no type stands, it is F64, and F32 is taken too. Numbers must be finite, but for fields,
  * tables and the points of landmarks.
@@ -319,7 +322,8 @@ typedef struct mimetra_interface {
   mimetra_status (*call_set)(mimetra_call* call, const char* parameter, const char* text);
   /* The value of an input; again for each value of a repeated one. */
   mimetra_status (*call_give)(mimetra_call* call, const char* input, const mimetra_data* data);
-  /* The same from a file, read when the call runs, with its parameters ("frames", "weights"). */
+  /* The same from a file, read when the call runs, with its parameters ("frames", "weights"); comes
+   * after values that were given. */
   mimetra_status (*call_read)(mimetra_call* call, const char* input, const char* text);
   /* Asks for an optional output; needed outputs are always made. */
   mimetra_status (*call_want)(mimetra_call* call, const char* output);

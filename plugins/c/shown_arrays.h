@@ -41,6 +41,8 @@ class ShownArrays {
   void show(const FittedCoefficients& fit);
   void show(const Pictures&) {}
   void show(const RegionView&) {}
+  void show(const RunRead&) {}
+  void show(const Page&) {}
   void show(const MeshSequence& sequence);
   void show(const MorphableModel& model);
   void show(const Connectivity& faces);

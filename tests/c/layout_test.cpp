@@ -132,8 +132,8 @@ TEST(Words, KeepTheirNumbers) {
   EXPECT_THAT((std::array{MIMETRA_SEQUENCE, MIMETRA_MODEL, MIMETRA_COMPONENTS, MIMETRA_REGIONS,
                           MIMETRA_FIELDS, MIMETRA_TABLE, MIMETRA_ANIMATED_MODEL, MIMETRA_PICTURE,
                           MIMETRA_LANDMARKS, MIMETRA_MORPHABLE_MODEL, MIMETRA_FIT, MIMETRA_PICTURES,
-                          MIMETRA_VIEW}),
-              testing::ElementsAre(1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13));
+                          MIMETRA_VIEW, MIMETRA_RUN, MIMETRA_PAGE}),
+              testing::ElementsAre(1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15));
   EXPECT_THAT((std::array{MIMETRA_FLAG, MIMETRA_INTEGER, MIMETRA_INTEGER_LIST, MIMETRA_NUMBER,
                           MIMETRA_LENGTH, MIMETRA_CHOICE, MIMETRA_TEXT, MIMETRA_FILE}),
               testing::ElementsAre(1, 2, 3, 4, 5, 6, 7, 8));

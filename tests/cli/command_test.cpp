@@ -156,8 +156,8 @@ TEST_F(Command, OperationsListsEveryCommand) {
   for (const json& entry : list) names.insert(entry.at("name").get<std::string>());
   EXPECT_EQ(names,
             (std::set<std::string>{"info", "check", "align", "geodesic", "decompose", "regions",
-                                   "transfer", "evaluate", "convert", "fit", "render", "sample",
-                                   "operations", "completion", "manual"}));
+                                   "transfer", "evaluate", "convert", "fit", "render", "report",
+                                   "sample", "operations", "completion", "manual"}));
 }
 
 TEST_F(Command, SampleIsAModelWithAPerformance) {

@@ -82,6 +82,17 @@ TEST(Chart, PutsLargerValuesHigherAndFartherRight) {
   EXPECT_GT(drawn.front(), drawn.back() + 200);  // of 560, counted from above
 }
 
+TEST(Chart, LeavesOutMarksWhereNoneAreAskedFor) {
+  Chart chart = chart_of({4}, {4}, ChartScale::linear);
+  const auto drawn = [&chart] {
+    const std::vector<double> heights = red_heights(draw({chart}));
+    return std::ranges::count_if(heights, [](double height) { return height >= 0; });
+  };
+  const auto with_mark = drawn();
+  chart.series[0].marked = false;
+  EXPECT_LT(drawn(), with_mark);
+}
+
 TEST(Chart, ShowsOnePointAlone) {
   for (const ChartScale scale : {ChartScale::linear, ChartScale::logarithmic}) {
     const std::vector<double> heights = red_heights(draw({chart_of({4}, {4}, scale)}));

@@ -94,5 +94,32 @@ TEST(Picture, IsWrittenAsPng) {
   EXPECT_EQ(bytes.substr(16, 8), std::string("\0\0\0\2\0\0\0\1", 8));
 }
 
+TEST(SheetLayout, LeavesALineAboveTilesWithATitle) {
+  Sheet sheet = square_sheet();
+  sheet.letters = 17;
+  const SheetLayout plain = SheetLayout::of(sheet);
+  EXPECT_EQ(plain.text, 17);
+  sheet.rows[0].tiles[0].title = "1: 25 mm";
+  const SheetLayout titled = SheetLayout::of(sheet);
+  EXPECT_EQ(titled.tile(0, 0).top, plain.tile(0, 0).top + 2 * 17);
+  EXPECT_EQ(titled.height, plain.height + 2 * 17);
+}
+
+TEST(Picture, WritesTheTitlesOfTiles) {
+  Sheet sheet = square_sheet();
+  const auto dark_above = [&sheet] {
+    const SheetLayout layout = SheetLayout::of(sheet);
+    const Image image = draw(sheet);
+    int count = 0;
+    for (int y = 0; y < layout.tile(0, 0).top; ++y) {
+      for (int x = 0; x < image.width; ++x) count += image.at(x, y).green < 128;
+    }
+    return count;
+  };
+  EXPECT_EQ(dark_above(), 0);
+  sheet.rows[0].tiles[0].title = "title";
+  EXPECT_GT(dark_above(), 10);
+}
+
 }  // namespace
 }  // namespace mimetra

@@ -31,6 +31,7 @@ std::string size_of(const Data& data) {
   if (const auto* regions = std::get_if<RegionData>(&data)) {
     return std::to_string(regions->regions.regions.size()) + " regions";
   }
+  if (const auto* run = std::get_if<RunRead>(&data)) return "a run of " + run->record.operation;
   if (const auto* read = std::get_if<LandmarksRead>(&data)) {
     return std::to_string(read->track.frames()) + " frames of " +
            std::to_string(read->track.landmarks()) + " landmarks";

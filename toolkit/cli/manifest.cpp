@@ -1,36 +1,16 @@
 #include <mimetra/cli/manifest.h>
 
 #include <algorithm>
-#include <cstdio>
-#include <fstream>
-#include <memory>
 
-#include <xxhash.h>
 #include <nlohmann/json.hpp>
 
+#include <mimetra/operations/file_hash.h>
 #include <mimetra/operations/report.h>
+#include <mimetra/operations/run_file.h>
 
 namespace mimetra::cli {
 
 namespace {
-
-/// XXH3 (64 bits) of a file's bytes, as hexadecimal digits; empty where it cannot be read any more.
-std::string hash_of(const std::filesystem::path& path) {
-  std::ifstream stream(path, std::ios::binary);
-  if (!stream) return "";
-  const std::unique_ptr<XXH3_state_t, decltype(&XXH3_freeState)> state(XXH3_createState(),
-                                                                       XXH3_freeState);
-  XXH3_64bits_reset(state.get());
-  std::vector<char> buffer(1 << 20);
-  while (stream) {
-    stream.read(buffer.data(), static_cast<std::streamsize>(buffer.size()));
-    XXH3_64bits_update(state.get(), buffer.data(), static_cast<std::size_t>(stream.gcount()));
-  }
-  char text[17];
-  std::snprintf(text, sizeof text, "%016llx",
-                static_cast<unsigned long long>(XXH3_64bits_digest(state.get())));
-  return text;
-}
 
 /// Files, and the files below folders, in order of their names.
 std::vector<std::filesystem::path> files_below(const std::vector<std::filesystem::path>& inputs) {
@@ -49,40 +29,30 @@ std::vector<std::filesystem::path> files_below(const std::vector<std::filesystem
   return files;
 }
 
-/// True for the manifest of a run that wrote an output of this name into the same folder.
-bool tells_of(const std::filesystem::path& manifest, const std::filesystem::path& output) {
-  std::ifstream stream(manifest);
-  const Json json = Json::parse(stream, nullptr, false);
-  if (!json.is_object() || !json.contains("outputs") || !json["outputs"].is_array()) return false;
-  return std::ranges::any_of(json["outputs"], [&output](const Json& path) {
-    return path.is_string() &&
-           std::filesystem::path(path.get<std::string>()).filename() == output.filename();
-  });
-}
-
 }  // namespace
 
-std::string manifest(const Request& request, const RunRecord& record) {
+std::string manifest(const Request& request, const FinishedRun& run) {
   Json options = Json::object();
   for (const Parameter& parameter : request.parameters.declared()) {
     options[parameter.name] = to_text(request.parameters.value(parameter.name));
   }
   Json inputs = Json::array();
-  for (const auto& path : files_below(record.inputs)) {
-    inputs.push_back({{"path", path.string()}, {"xxh3", hash_of(path)}});
+  for (const auto& path : files_below(run.inputs)) {
+    inputs.push_back({{"path", path.string()}, {"xxh3", file_hash(path)}});
   }
   Json outputs = Json::array();
-  for (const auto& path : record.outputs) outputs.push_back(path.string());
+  for (const auto& path : run.outputs) outputs.push_back(path.string());
   return Json{{"program", "mimetra"},
               {"version", MIMETRA_VERSION},
               {"command", request.operation->name},
               {"arguments", request.arguments},
+              {"named_inputs", request.inputs},
               {"options", options},
               {"inputs", inputs},
               {"outputs", outputs},
-              {"seconds", {{"read", record.read_seconds}, {"run", record.run_seconds}}},
-              {"peak_memory_bytes", record.peak_memory},
-              {"result", Json::parse(record.report)}}
+              {"seconds", {{"read", run.read_seconds}, {"run", run.run_seconds}}},
+              {"peak_memory_bytes", run.peak_memory},
+              {"result", Json::parse(run.report)}}
              .dump(2, ' ', false, Json::error_handler_t::replace) +
          '\n';
 }

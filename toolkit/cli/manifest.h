@@ -9,7 +9,7 @@
 namespace mimetra::cli {
 
 /// What happened before the outputs are written.
-struct RunRecord {
+struct FinishedRun {
   std::vector<std::filesystem::path> inputs;
   std::vector<std::filesystem::path> outputs;
   double read_seconds = 0;
@@ -20,7 +20,7 @@ struct RunRecord {
 
 /// The manifest of a run: versions, arguments, the value of every option, inputs with their hashes,
 /// timings, and the result, as JSON.
-std::string manifest(const Request& request, const RunRecord& record);
+std::string manifest(const Request& request, const FinishedRun& run);
 
 /// Name of the manifest of an output: mimetra-run.json in a folder; NAME.run.json for a file
 /// NAME.EXT, or NAME.EXT.run.json where the former is there and tells of another output.

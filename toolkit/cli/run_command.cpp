@@ -160,10 +160,10 @@ void print_result(const Request& request, const Outcome& outcome) {
 }
 
 /// What a run that wrote something has cost.
-std::string cost(const RunRecord& record, double write_seconds) {
-  return "read in " + readable(record.read_seconds) + " s, computed in " +
-         readable(record.run_seconds) + " s, written in " + readable(write_seconds) +
-         " s, at most " + megabytes(MemoryUse::of_this_process().peak) + " of memory\n";
+std::string cost(const FinishedRun& run, double write_seconds) {
+  return "read in " + readable(run.read_seconds) + " s, computed in " + readable(run.run_seconds) +
+         " s, written in " + readable(write_seconds) + " s, at most " +
+         megabytes(MemoryUse::of_this_process().peak) + " of memory\n";
 }
 
 }  // namespace
@@ -184,19 +184,19 @@ void run_command(const OperationTable& table, const Request& request) {
       spdlog::info(message);
   };
 
-  RunRecord record;
+  FinishedRun run;
   const Stopwatch reading;
   LoadedInputs loaded = load_inputs(table, *request.operation, request.parameters, request.inputs,
                                     part_of(progress, 0, kRunningFrom), log, request.threads);
   const OutputPaths paths =
       output_paths(table, request, repeated_names(*request.operation, loaded));
-  record.inputs = std::move(loaded.files);
+  run.inputs = std::move(loaded.files);
   for (const std::filesystem::path file : request.files) {
-    if (std::ranges::find(record.inputs, file) == record.inputs.end()) {
-      record.inputs.push_back(file);
+    if (std::ranges::find(run.inputs, file) == run.inputs.end()) {
+      run.inputs.push_back(file);
     }
   }
-  record.read_seconds = reading.seconds();
+  run.read_seconds = reading.seconds();
 
   Invocation invocation;
   invocation.inputs = std::move(loaded.data);
@@ -212,18 +212,18 @@ void run_command(const OperationTable& table, const Request& request) {
   }
   const Stopwatch running;
   const Outcome outcome = request.operation->run(invocation);
-  record.run_seconds = running.seconds();
+  run.run_seconds = running.seconds();
   for (const auto& [name, targets] : paths) {
-    record.outputs.insert(record.outputs.end(), targets.begin(), targets.end());
+    run.outputs.insert(run.outputs.end(), targets.begin(), targets.end());
   }
-  record.report = outcome.report;
-  record.peak_memory = MemoryUse::of_this_process().peak;
+  run.report = outcome.report;
+  run.peak_memory = MemoryUse::of_this_process().peak;
   const std::string manifest_text =
-      request.outputs.empty() ? std::string() : manifest(request, record);
+      request.outputs.empty() ? std::string() : manifest(request, run);
   const Stopwatch writing;
   write_outputs(table, request, paths, outcome, manifest_text, bar);
   bar.clear();
-  if (!paths.empty() && !request.quiet) std::cerr << cost(record, writing.seconds());
+  if (!paths.empty() && !request.quiet) std::cerr << cost(run, writing.seconds());
   print_result(request, outcome);
 }
 

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -15,6 +16,7 @@
 #include <mimetra/model/landmark_track.h>
 #include <mimetra/model/morphable_model.h>
 #include <mimetra/operations/image.h>
+#include <mimetra/operations/run_file.h>
 #include <mimetra/regions/regions.h>
 #include <mimetra/splocs/decomposition.h>
 
@@ -34,7 +36,9 @@ enum class DataKind {
   morphable_model,
   fit,
   pictures,
-  view
+  view,
+  run,
+  page
 };
 
 /// "sequence", as in the JSON of the operations table.
@@ -92,10 +96,23 @@ struct ModelRead {
   std::filesystem::path path;  ///< empty for one that was made
 };
 
+struct Invocation;
+
+/// A run that wrote something, ready to be made again.
+struct RunRead {
+  RunRecord record;
+  std::shared_ptr<const Invocation> invocation;  ///< its inputs, read, and its parameters
+};
+
+/// A page for a browser that needs nothing but itself.
+struct Page {
+  std::string html;
+};
+
 /// One value of the kind at the same place in DataKind.
 using Data = std::variant<SequenceRead, BlendshapeModel, Components, RegionData, FieldSequence,
                           Table, AnimatedModel, Image, LandmarksRead, ModelRead, FittedCoefficients,
-                          Pictures, RegionView>;
+                          Pictures, RegionView, RunRead, Page>;
 
 /// A value and what it is called in messages and output names.
 struct NamedData {

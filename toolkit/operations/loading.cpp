@@ -36,6 +36,8 @@ class Loader {
       case DataKind::morphable_model:
         files.push_back(text);
         return {text, ModelRead{read_model(text, threads_), text}};
+      case DataKind::run:
+        return {text, run(text)};
       default:
         break;
     }
@@ -135,6 +137,36 @@ class Loader {
   RegionData regions(const std::string& text) {
     files.push_back(text);
     return {table_.region_reader(text).read(text, vertices_, triangles_), {}};
+  }
+
+  /// What the run read, read again.
+  RunRead run(const std::string& text) {
+    RunRead read{read_run(text), {}};
+    const Operation* operation = table_.find(read.record.operation);
+    if (!operation) {
+      throw MismatchError(read.record.manifest.string() + ": a run of '" + read.record.operation +
+                          "', which this program does not know");
+    }
+    Invocation invocation;
+    invocation.parameters = Parameters(table_.parameters_of(*operation));
+    for (const auto& [name, value] : read.record.options) {
+      const Parameter* parameter = invocation.parameters.find(name);
+      if (parameter && value != to_text(parameter->fallback)) {
+        invocation.parameters.set(name, parse_value(*parameter, value));
+      }
+    }
+    LoadedInputs loaded = load_inputs(table_, *operation, invocation.parameters, read.record.inputs,
+                                      progress_, log_, threads_);
+    for (const Input& input : operation->inputs) {
+      if (input.optional || loaded.data.contains(input.name)) continue;
+      throw IoError(read.record.manifest.string(), "names no " + input.name + " of the run");
+    }
+    files.push_back(read.record.manifest);
+    files.insert(files.end(), loaded.files.begin(), loaded.files.end());
+    invocation.inputs = std::move(loaded.data);
+    invocation.threads = threads_;
+    read.invocation = std::make_shared<const Invocation>(std::move(invocation));
+    return read;
   }
 
   const OperationTable& table_;

@@ -137,6 +137,10 @@ std::string_view kind_name(DataKind kind) {
       return "pictures";
     case DataKind::view:
       return "ParaView script";
+    case DataKind::run:
+      return "run";
+    case DataKind::page:
+      return "page";
   }
   return "";
 }

@@ -122,7 +122,12 @@ void annotate(vtkRenderer& renderer, const Sheet& sheet, const SheetLayout& layo
   for (std::size_t row = 0; row < sheet.rows.size(); ++row) {
     const Box first = layout.tile(row, 0);
     pen.write(fitted(sheet.rows[row].title, layout.width - 2 * layout.margin, layout.text),
-              first.left, first.top - layout.text / 2);
+              first.left, first.top - layout.tile_title - layout.text / 2);
+    for (std::size_t column = 0; column < sheet.rows[row].tiles.size(); ++column) {
+      const Box tile = layout.tile(row, column);
+      pen.write(fitted(sheet.rows[row].tiles[column].title, tile.width, layout.text), tile.left,
+                tile.top - layout.text / 2);
+    }
     if (!sheet.rows[row].bar) continue;
     write_bar(pen, *sheet.rows[row].bar, layout.tile(row, sheet.rows[row].tiles.size()),
               layout.text);

@@ -156,7 +156,7 @@ void add_series(vtkChartXY& shown, const Chart& chart, std::size_t number, int l
   plot.SetColor(color.red, color.green, color.blue, 255);
   plot.SetWidth(static_cast<float>(letters) / 7);
   if (number >= kSeriesColors.size()) plot.GetPen()->SetLineType(vtkPen::DASH_LINE);
-  plot.SetMarkerStyle(vtkPlotPoints::CIRCLE);
+  plot.SetMarkerStyle(series.marked ? vtkPlotPoints::CIRCLE : vtkPlotPoints::NONE);
   plot.SetMarkerSize(static_cast<float>(letters) / 2);
 }
 
@@ -228,7 +228,8 @@ void check(const std::vector<Chart>& row, const ChartSize& size) {
 
 Image draw(const std::vector<Chart>& row, const ChartSize& size) {
   check(row, size);
-  const int letters = std::max(kSmallestLetters, size.height / kLettersPerChart);
+  const int letters =
+      size.letters > 0 ? size.letters : std::max(kSmallestLetters, size.height / kLettersPerChart);
   const OffscreenWindow offscreen(size.width * static_cast<int>(row.size()), size.height);
   const SilentVtk silent;
   vtkNew<vtkContextActor> actor;

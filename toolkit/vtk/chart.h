@@ -15,7 +15,7 @@ struct ChartAxis {
   ChartScale scale = ChartScale::linear;
 };
 
-/// A line through points, with a mark at each.
+/// A line through points.
 struct ChartSeries {
   std::string name;  ///< in the legend
   std::vector<double> x;
@@ -23,6 +23,7 @@ struct ChartSeries {
   /// By default that of the series' place in the chart: told apart with any kind of colour vision.
   /// From the eighth series on the colours repeat, and lines are dashed.
   std::optional<Color> color = {};
+  bool marked = true;  ///< a mark at each point
 };
 
 struct Chart {
@@ -35,6 +36,7 @@ struct Chart {
 struct ChartSize {
   int width = 640;   ///< pixels of one chart, >= 200
   int height = 560;  ///< >= 200
+  int letters = 0;   ///< height of letters, pixels; 0 for what suits the height
 };
 
 /// Draws charts in a row, each with its title, axes and, below them, its legend. Throws

@@ -226,6 +226,7 @@ Sheet film_strip(const std::vector<FieldSequence>& sequences, const StripOptions
   sheet.pitch = options.pitch;
   sheet.z_up = options.z_up;
   sheet.tile_height = options.tile_height;
+  sheet.letters = options.letters;
   sheet.unit = options.unit;
   sheet.column_titles = column_titles(sequences, frames, options);
   for (std::size_t row = 0; row < sequences.size(); ++row) {
@@ -236,7 +237,9 @@ Sheet film_strip(const std::vector<FieldSequence>& sequences, const StripOptions
     tiles.bar = painter.bar();
     for (std::size_t column = 0; column < frames.size(); ++column) {
       tiles.tiles.push_back({pose(sequences[row], frames[column]),
-                             painter.colors(column, tiles.bar), turn_of(options, column)});
+                             painter.colors(column, tiles.bar),
+                             turn_of(options, column),
+                             {}});
     }
     sheet.rows.push_back(std::move(tiles));
   }

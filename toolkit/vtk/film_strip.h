@@ -30,6 +30,7 @@ struct StripOptions {
   double pitch = 5;  ///< degrees
   bool z_up = false;
   int tile_height = 320;  ///< pixels, >= 16
+  int letters = 0;        ///< height of letters, pixels; 0 for what suits the tiles
   std::string unit = {};  ///< of positions
 };
 

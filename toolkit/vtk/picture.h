@@ -24,6 +24,7 @@ struct Tile {
   Positions positions;        ///< N x 3
   std::vector<Color> colors;  ///< per vertex (N), or none for kClay
   double turn = 0;            ///< degrees about the upright axis, besides the sheet's
+  std::string title = {};     ///< above it
 };
 
 struct TileRow {
@@ -42,6 +43,7 @@ struct Sheet {
   double pitch = 0;       ///< degrees; positive looks from above
   bool z_up = false;      ///< else y
   int tile_height = 320;  ///< pixels
+  int letters = 0;        ///< height of letters, pixels; 0 for what suits the tiles
   std::string unit;       ///< of positions, written at the scale bar
 };
 

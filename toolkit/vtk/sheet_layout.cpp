@@ -78,25 +78,30 @@ SheetLayout SheetLayout::of(const Sheet& sheet) {
   layout.half_height = std::max(half[1], half[0] / aspect);
   layout.tile_height = sheet.tile_height;
   layout.tile_width = static_cast<int>(std::ceil(aspect * sheet.tile_height));
-  layout.text = std::max(kSmallestLetters, sheet.tile_height / kLettersPerTile);
+  layout.text = sheet.letters > 0 ? sheet.letters
+                                  : std::max(kSmallestLetters, sheet.tile_height / kLettersPerTile);
   layout.margin = layout.text;
   const int line = 2 * layout.text;
   const auto has_title = [](const TileRow& row) { return !row.title.empty(); };
   layout.column_title = sheet.column_titles.empty() ? 0 : line;
   layout.row_title = std::ranges::any_of(sheet.rows, has_title) ? line : 0;
+  const auto has_tile_titles = [](const TileRow& row) {
+    return std::ranges::any_of(row.tiles, [](const Tile& tile) { return !tile.title.empty(); });
+  };
+  layout.tile_title = std::ranges::any_of(sheet.rows, has_tile_titles) ? line : 0;
   const bool has_bar =
       std::ranges::any_of(sheet.rows, [](const TileRow& row) { return row.bar.has_value(); });
   layout.width = 2 * layout.margin + static_cast<int>(columns) * layout.tile_width +
                  (has_bar ? 8 * layout.text : 0);
-  const Box below = layout.tile(sheet.rows.size(), 0);
-  layout.height = below.top + 2 * layout.text;
+  const Box last = layout.tile(sheet.rows.size() - 1, 0);
+  layout.height = last.top + last.height + 2 * layout.text;
   return layout;
 }
 
 Box SheetLayout::tile(std::size_t row, std::size_t column) const {
-  const int row_height = row_title + tile_height;
+  const int above = row_title + tile_title, row_height = above + tile_height;
   return {margin + static_cast<int>(column) * tile_width,
-          margin + column_title + static_cast<int>(row) * row_height + row_title, tile_width,
+          margin + column_title + static_cast<int>(row) * row_height + above, tile_width,
           tile_height};
 }
 

@@ -31,6 +31,7 @@ struct SheetLayout {
   int text = 0;          ///< height of letters
   int column_title = 0;  ///< height of the line above all rows
   int row_title = 0;     ///< height of the line above each row
+  int tile_title = 0;    ///< height of the line above each tile
   int tile_width = 0;
   int tile_height = 0;
   double half_height = 0;  ///< of a tile, in the unit of the positions

@@ -7,6 +7,7 @@
 #include <mimetra/vtk/paraview_view.h>
 #include <mimetra/vtk/picture.h>
 #include <mimetra/vtk/render_operation.h>
+#include <mimetra/vtk/report_operation.h>
 #include <mimetra/vtk/vtp_formats.h>
 
 namespace mimetra {
@@ -35,11 +36,20 @@ std::vector<std::filesystem::path> write_pictures(const Data& data, const WriteR
   return files;
 }
 
-std::vector<std::filesystem::path> write_view(const Data& data, const WriteRequest& request) {
+std::vector<std::filesystem::path> write_text(const std::string& text,
+                                              const WriteRequest& request) {
   return write_with_extra(request, [&] {
-    write_file(request.target, paraview_view(std::get<RegionView>(data)), request.overwrite);
+    write_file(request.target, text, request.overwrite);
     return std::vector{request.target};
   });
+}
+
+std::vector<std::filesystem::path> write_view(const Data& data, const WriteRequest& request) {
+  return write_text(paraview_view(std::get<RegionView>(data)), request);
+}
+
+std::vector<std::filesystem::path> write_page(const Data& data, const WriteRequest& request) {
+  return write_text(std::get<Page>(data).html, request);
 }
 
 }  // namespace
@@ -49,7 +59,9 @@ void add_vtk(OperationTable& table) {
   table.add(Writer{DataKind::picture, {".png"}, {}, write_picture});
   table.add(Writer{DataKind::pictures, {""}, {}, write_pictures});
   table.add(Writer{DataKind::view, {".py"}, {}, write_view});
+  table.add(Writer{DataKind::page, {".html"}, {}, write_page});
   table.add(render_operation());
+  table.add(report_operation());
 }
 
 }  // namespace mimetra

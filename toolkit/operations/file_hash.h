@@ -1,0 +1,11 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+namespace mimetra {
+
+/// XXH3 (64 bits) of a file's bytes, as hexadecimal digits; empty where it cannot be read.
+std::string file_hash(const std::filesystem::path& path);
+
+}  // namespace mimetra

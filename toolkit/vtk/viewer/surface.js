@@ -1,0 +1,125 @@
+// One mesh of a performance on the screen: its positions, normals and colours at any time.
+import vtkActor from '@kitware/vtk.js/Rendering/Core/Actor';
+import vtkDataArray from '@kitware/vtk.js/Common/Core/DataArray';
+import vtkLight from '@kitware/vtk.js/Rendering/Core/Light';
+import vtkMapper from '@kitware/vtk.js/Rendering/Core/Mapper';
+import vtkPolyData from '@kitware/vtk.js/Common/DataModel/PolyData';
+import vtkRenderer from '@kitware/vtk.js/Rendering/Core/Renderer';
+
+// The light of the still pictures: a key light that grazes from the upper left, a weak one opposite,
+// and one from above.
+const lights = [
+  { position: [-1.1, 1.0, 1.0], intensity: 0.76 },
+  { position: [1.2, 0.1, 0.9], intensity: 0.4 },
+  { position: [0, 1.5, 0.2], intensity: 0.16 },
+];
+
+function trianglesOf(indices) {
+  const cells = new Uint32Array((indices.length / 3) * 4);
+  for (let t = 0; t < indices.length / 3; ++t) {
+    cells[4 * t] = 3;
+    cells.set(indices.subarray(3 * t, 3 * t + 3), 4 * t + 1);
+  }
+  return cells;
+}
+
+export class Surface {
+  constructor(performance, mesh, camera) {
+    this.performance = performance;
+    this.mesh = mesh;
+    const coordinates = 3 * performance.vertices;
+    this.positions = new Float32Array(coordinates);
+    this.normals = new Float32Array(coordinates);
+    this.colors = new Uint8Array(coordinates);
+
+    this.data = vtkPolyData.newInstance();
+    this.data.getPoints().setData(this.positions, 3);
+    this.data.getPolys().setData(trianglesOf(performance.triangles));
+    this.normalArray = vtkDataArray.newInstance({
+      name: 'normals', numberOfComponents: 3, values: this.normals,
+    });
+    this.colorArray = vtkDataArray.newInstance({
+      name: 'colors', numberOfComponents: 3, values: this.colors,
+    });
+    this.data.getPointData().setNormals(this.normalArray);
+    this.data.getPointData().setScalars(this.colorArray);
+
+    const mapper = vtkMapper.newInstance({ scalarVisibility: true });
+    mapper.setColorModeToDirectScalars();
+    mapper.setInputData(this.data);
+    const actor = vtkActor.newInstance();
+    actor.setMapper(mapper);
+    actor.getProperty().set({ ambient: 0.14, diffuse: 0.88, specular: 0.12, specularPower: 18 });
+
+    this.renderer = vtkRenderer.newInstance({ background: [1, 1, 1] });
+    this.renderer.setAutomaticLightCreation(false);
+    for (const light of lights) {
+      const source = vtkLight.newInstance(light);
+      source.setLightTypeToCameraLight();
+      this.renderer.addLight(source);
+    }
+    this.renderer.setActiveCamera(camera);
+    this.renderer.addActor(actor);
+  }
+
+  // Between pose `first` and the next one; poses count from 0, the one at rest is not among them.
+  show(first, share, coloring) {
+    const { poses, step } = this.mesh;
+    const coordinates = this.positions.length;
+    const from = (first + 1) * coordinates;
+    const to = share > 0 ? from + coordinates : from;
+    for (let i = 0; i < coordinates; ++i) {
+      this.positions[i] = step * (poses[from + i] * (1 - share) + poses[to + i] * share);
+    }
+    this.updateNormals();
+    this.updateColors(coloring);
+    this.data.getPoints().dataChange();
+    this.normalArray.modified();
+    this.colorArray.modified();
+    this.data.modified();
+  }
+
+  // By area; vertices at one place share theirs.
+  updateNormals() {
+    const { triangles, places } = this.performance;
+    const p = this.positions;
+    const n = this.normals.fill(0);
+    for (let t = 0; t < triangles.length; t += 3) {
+      const a = 3 * triangles[t], b = 3 * triangles[t + 1], c = 3 * triangles[t + 2];
+      const ux = p[b] - p[a], uy = p[b + 1] - p[a + 1], uz = p[b + 2] - p[a + 2];
+      const vx = p[c] - p[a], vy = p[c + 1] - p[a + 1], vz = p[c + 2] - p[a + 2];
+      const x = uy * vz - uz * vy, y = uz * vx - ux * vz, z = ux * vy - uy * vx;
+      for (let corner = 0; corner < 3; ++corner) {
+        const v = 3 * places[triangles[t + corner]];
+        n[v] += x;
+        n[v + 1] += y;
+        n[v + 2] += z;
+      }
+    }
+    // A vertex comes after the one that it shares its place with, or is that one.
+    for (let v = 0; v < places.length; ++v) {
+      const place = 3 * places[v];
+      const length = place === 3 * v ? Math.hypot(n[place], n[place + 1], n[place + 2]) || 1 : 1;
+      for (let i = 0; i < 3; ++i) n[3 * v + i] = n[place + i] / length;
+    }
+  }
+
+  updateColors(coloring) {
+    const { regions, regionColors, evenColors, clay, largest } = this.performance;
+    const { poses, step } = this.mesh;
+    for (let v = 0; v < regions.length; ++v) {
+      let color = clay;
+      if (coloring === 'regions' && regions[v] >= 0) {
+        color = regionColors[regions[v]];
+      } else if (coloring === 'displacement') {
+        const moved = Math.hypot(
+          this.positions[3 * v] - step * poses[3 * v],
+          this.positions[3 * v + 1] - step * poses[3 * v + 1],
+          this.positions[3 * v + 2] - step * poses[3 * v + 2]);
+        const share = largest > 0 ? Math.min(1, moved / largest) : 0;
+        color = evenColors[Math.round(share * (evenColors.length - 1))];
+      }
+      this.colors.set(color, 3 * v);
+    }
+  }
+}
