@@ -5,6 +5,18 @@ include(GNUInstallDirs)
 set(MIMETRA_INCLUDE_ROOT ${PROJECT_BINARY_DIR}/include)
 set(MIMETRA_PACKAGE_FOLDER ${CMAKE_INSTALL_LIBDIR}/cmake/mimetra)
 
+# mimetra_component(NAME [USES components] [PACKAGES ...]): installs the target mimetra_NAME as the
+# package's component mimetra::NAME.
+function(mimetra_component name)
+  cmake_parse_arguments(ARG "" "" "USES;PACKAGES" ${ARGN})
+  install(TARGETS mimetra_${name} EXPORT mimetra_${name})
+  install(EXPORT mimetra_${name} FILE mimetra_${name}.cmake NAMESPACE mimetra::
+          DESTINATION ${MIMETRA_PACKAGE_FOLDER})
+  set_property(GLOBAL APPEND PROPERTY MIMETRA_COMPONENTS ${name})
+  set_property(GLOBAL PROPERTY MIMETRA_${name}_USES ${ARG_USES})
+  set_property(GLOBAL PROPERTY MIMETRA_${name}_PACKAGES ${ARG_PACKAGES})
+endfunction()
+
 # mimetra_library(NAME
 #   SOURCES ...
 #   HEADERS those that are installed
@@ -37,16 +49,11 @@ function(mimetra_library name)
   file(MAKE_DIRECTORY ${MIMETRA_INCLUDE_ROOT}/mimetra)
   file(CREATE_LINK ${CMAKE_CURRENT_SOURCE_DIR} ${MIMETRA_INCLUDE_ROOT}/mimetra/${name} SYMBOLIC)
 
-  install(TARGETS mimetra_${name} EXPORT mimetra_${name})
   install(FILES ${ARG_HEADERS} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/mimetra/${name})
-  install(EXPORT mimetra_${name} FILE mimetra_${name}.cmake NAMESPACE mimetra::
-          DESTINATION ${MIMETRA_PACKAGE_FOLDER})
   set(uses ${ARG_USES})
   list(FILTER uses INCLUDE REGEX "^mimetra::")
   list(TRANSFORM uses REPLACE "^mimetra::" "")
-  set_property(GLOBAL APPEND PROPERTY MIMETRA_COMPONENTS ${name})
-  set_property(GLOBAL PROPERTY MIMETRA_${name}_USES ${uses})
-  set_property(GLOBAL PROPERTY MIMETRA_${name}_PACKAGES ${ARG_PACKAGES})
+  mimetra_component(${name} USES ${uses} PACKAGES ${ARG_PACKAGES})
 endfunction()
 
 # mimetra_test(NAME SOURCES ... USES ...): one GoogleTest program, one ctest entry per test.

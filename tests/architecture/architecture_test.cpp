@@ -140,6 +140,8 @@ INSTANTIATE_TEST_SUITE_P(
                     Include{"toolkit/splocs/a.cpp", "#include <gtest/gtest.h>"},
                     Include{"toolkit/regions/a.cpp", "#include <unheard/of.h>"},
                     Include{"plugins/c/a.cpp", "#include <mimetra/vtk/vtp_series.h>"},
+                    Include{"samples/plugin/a.cpp", "#include <mimetra/operations/operation.h>"},
+                    Include{"samples/head/a.cpp", "#include <mimetra/c/mimetra.h>"},
                     Include{"toolkit/stray.cpp", ""}));
 
 TEST(LinkRule, NamesFileLineAndReason) {

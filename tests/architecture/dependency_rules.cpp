@@ -42,9 +42,10 @@ const std::vector<ThirdParty>& third_parties() {
   return table;
 }
 
-/// Headers of the operating system. Those of the language have no dot.
-constexpr std::array<std::string_view, 7> kSystemHeaders = {
-    "unistd.h", "fcntl.h", "poll.h", "glob.h", "dlfcn.h", "sys/", "windows.h"};
+/// Headers of the operating system and of C. Those of C++ have no dot.
+constexpr std::array<std::string_view, 11> kSystemHeaders = {
+    "unistd.h",  "fcntl.h",  "poll.h",   "glob.h",   "dlfcn.h", "sys/",
+    "windows.h", "stddef.h", "stdint.h", "stdlib.h", "string.h"};
 
 bool contains(const std::vector<std::string>& list, std::string_view item) {
   return std::find(list.begin(), list.end(), item) != list.end();
@@ -164,6 +165,9 @@ const std::vector<FolderRule>& folder_rules() {
     up_to_operations.push_back("operations");
     std::vector<std::string> all = up_to_operations;
     all.insert(all.end(), {"vtk", "fitting"});
+    // The C interface makes values of all kinds, and shows them.
+    std::vector<std::string> values_and_operations = up_to_operations;
+    values_and_operations.insert(values_and_operations.end(), {"fitting", "samples"});
     // JSON goes wherever operations are declared, because their results are JSON.
     return std::vector<FolderRule>{
         {"geodesic", {}, {"CGAL", "OpenMesh"}},
@@ -179,10 +183,12 @@ const std::vector<FolderRule>& folder_rules() {
         {"toolkit/vtk", up_to_operations, {"VTK", "EGL", "JSON"}},
         {"fitting", {"mesh", "model", "io", "operations"}, {"dlib", "JSON"}},
         {"samples", all, {}, true},
+        {"plugins/c", values_and_operations, {"JSON"}},
+        // What third parties write, who have nothing but the C header.
+        {"samples/plugin", {"c"}, {}},
         {"toolkit/cli",
-         {"operations", "vtk", "fitting", "samples"},
+         {"operations", "vtk", "fitting", "samples", "c"},
          {"CLI11", "spdlog", "fmt", "JSON"}},
-        {"plugins/c", {"operations"}, {"JSON"}},
         {"plugins/paraview", {"operations", "vtk", "c"}, {}, true},
         {"plugins/meshlab", {"operations", "c"}, {}, true},
         {"plugins/blender", {"operations", "c"}, {}, true},
@@ -192,10 +198,12 @@ const std::vector<FolderRule>& folder_rules() {
 }
 
 const FolderRule* rule_for(const fs::path& file) {
+  const FolderRule* nearest = nullptr;
   for (const FolderRule& rule : folder_rules()) {
-    if (is_inside(file, rule.path)) return &rule;
+    const bool is_nearer = !nearest || rule.path.size() > nearest->path.size();
+    if (is_inside(file, rule.path) && is_nearer) nearest = &rule;
   }
-  return nullptr;
+  return nearest;
 }
 
 std::vector<std::string> include_errors(const fs::path& file, const std::string& text) {

@@ -6,6 +6,7 @@
 #include <spdlog/sinks/stdout_sinks.h>
 #include <spdlog/spdlog.h>
 
+#include <mimetra/c/plugins.h>
 #include <mimetra/cli/command_line.h>
 #include <mimetra/cli/completion.h>
 #include <mimetra/cli/manual.h>
@@ -33,6 +34,25 @@ void log_to_stderr(const mimetra::cli::Request& request) {
                                       : spdlog::level::warn);
 }
 
+/// Parses, and tells what was left out of the table: before an error that may come of it, but not
+/// to those who want errors only.
+mimetra::cli::ParsedLine parse(const mimetra::OperationTable& table,
+                               const std::vector<std::string>& arguments,
+                               const std::vector<std::string>& left_out) {
+  const auto warn = [&left_out] {
+    for (const std::string& problem : left_out) spdlog::warn(problem);
+  };
+  try {
+    mimetra::cli::ParsedLine line = mimetra::cli::parse_command_line(table, arguments);
+    if (line.request) log_to_stderr(*line.request);
+    warn();
+    return line;
+  } catch (...) {
+    warn();
+    throw;
+  }
+}
+
 int run(const std::vector<std::string>& arguments) {
   mimetra::OperationTable table;
   mimetra::add_toolkit(table);
@@ -42,14 +62,14 @@ int run(const std::vector<std::string>& arguments) {
   mimetra::add_listing(table);
   mimetra::cli::add_completion(table);
   mimetra::cli::add_manual(table);
-  const mimetra::cli::ParsedLine line = mimetra::cli::parse_command_line(table, arguments);
+  const std::vector<std::string> left_out = mimetra::add_plugins(table, mimetra::plugin_folders());
+  const mimetra::cli::ParsedLine line = parse(table, arguments, left_out);
   if (!line.request) {
     if (!(std::cout << line.text << std::flush)) {
       throw mimetra::OutputError("standard output", "cannot be written");
     }
     return kDone;
   }
-  log_to_stderr(*line.request);
   mimetra::cli::run_command(table, *line.request);
   return kDone;
 }

@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -39,6 +40,9 @@ enum class DataKind {
   run,
   page
 };
+
+/// "sequence", as in the JSON of the operations table.
+std::string_view kind_name(DataKind kind);
 
 /// Regions and the sequence they are shown on (empty for regions that were read).
 struct RegionData {

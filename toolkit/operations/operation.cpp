@@ -48,42 +48,6 @@ std::vector<Parameter> frame_parameters() {
            1e6}};
 }
 
-std::string_view kind_name(DataKind kind) {
-  switch (kind) {
-    case DataKind::sequence:
-      return "sequence";
-    case DataKind::model:
-      return "model";
-    case DataKind::components:
-      return "components";
-    case DataKind::regions:
-      return "regions";
-    case DataKind::fields:
-      return "fields";
-    case DataKind::table:
-      return "table";
-    case DataKind::animated_model:
-      return "model directory";
-    case DataKind::picture:
-      return "picture";
-    case DataKind::landmarks:
-      return "landmarks";
-    case DataKind::morphable_model:
-      return "morphable model";
-    case DataKind::fit:
-      return "fitted coefficients";
-    case DataKind::pictures:
-      return "pictures";
-    case DataKind::view:
-      return "ParaView script";
-    case DataKind::run:
-      return "run";
-    case DataKind::page:
-      return "page";
-  }
-  return "";
-}
-
 std::string_view kind_name(ParameterKind kind) {
   switch (kind) {
     case ParameterKind::flag:
@@ -144,6 +108,42 @@ Json json_of(const Output& output) {
 }
 
 }  // namespace
+
+std::string_view kind_name(DataKind kind) {
+  switch (kind) {
+    case DataKind::sequence:
+      return "sequence";
+    case DataKind::model:
+      return "model";
+    case DataKind::components:
+      return "components";
+    case DataKind::regions:
+      return "regions";
+    case DataKind::fields:
+      return "fields";
+    case DataKind::table:
+      return "table";
+    case DataKind::animated_model:
+      return "model directory";
+    case DataKind::picture:
+      return "picture";
+    case DataKind::landmarks:
+      return "landmarks";
+    case DataKind::morphable_model:
+      return "morphable model";
+    case DataKind::fit:
+      return "fitted coefficients";
+    case DataKind::pictures:
+      return "pictures";
+    case DataKind::view:
+      return "ParaView script";
+    case DataKind::run:
+      return "run";
+    case DataKind::page:
+      return "page";
+  }
+  return "";
+}
 
 std::string Table::csv() const {
   std::ostringstream text;

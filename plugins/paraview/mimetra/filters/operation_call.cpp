@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include <mimetra/c/plugins.h>
 #include <mimetra/operations/loading.h>
 #include <mimetra/vtk/vtp_formats.h>
 
@@ -13,6 +14,8 @@ OperationTable table_of_host() {
   OperationTable table;
   add_toolkit(table);
   add_vtp(table);
+  // What is wrong with them was told when ParaView loaded this.
+  add_plugins(table, plugin_folders());
   return table;
 }
 
@@ -46,13 +49,19 @@ bool same_data(const Data& a, const Data& b) {
   return model && same_model(*model, std::get<BlendshapeModel>(b));
 }
 
+const Operation& found(const OperationTable& table, const std::string& name) {
+  const Operation* operation = table.find(name);
+  if (operation) return *operation;
+  throw std::invalid_argument("there is no operation '" + name + "'; is its plugin missing?");
+}
+
 constexpr const char* kComponents = "components";
 constexpr const char* kComponentsOut = "components-out";
 
 }  // namespace
 
 OperationCall::OperationCall(const std::string& name)
-    : table_(table_of_host()), operation_(*table_.find(name)) {}
+    : table_(table_of_host()), operation_(found(table_, name)) {}
 
 OperationCall::OperationCall(Operation operation)
     : table_(table_of_host()), operation_(std::move(operation)) {}

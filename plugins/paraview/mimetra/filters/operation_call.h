@@ -11,9 +11,11 @@
 /// it depends on changes, and a decomposition until the sequence or its own parameters do.
 class OperationCall {
  public:
-  /// One of the toolkit's operations.
+  /// One of the toolkit's operations, or of a plugin's. Throws std::invalid_argument for another.
   explicit OperationCall(const std::string& name);
   explicit OperationCall(mimetra::Operation operation);
+
+  const mimetra::Operation& operation() const { return operation_; }
 
   /// Sets a parameter, or the path of an input; no text is the default, or no input. Values are
   /// checked when the operation runs. True where something changed.

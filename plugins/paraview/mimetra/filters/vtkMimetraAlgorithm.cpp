@@ -11,6 +11,10 @@ vtkMimetraAlgorithm::vtkMimetraAlgorithm(std::unique_ptr<OperationCall> call)
 
 vtkMimetraAlgorithm::~vtkMimetraAlgorithm() = default;
 
+void vtkMimetraAlgorithm::set_call(std::unique_ptr<OperationCall> call) {
+  call_ = std::move(call);
+}
+
 void vtkMimetraAlgorithm::SetInteger(const char* name, int value) {
   if (call_->set(name, std::int64_t{value})) Modified();
 }

@@ -60,6 +60,12 @@ vtkMimetraFilter::vtkMimetraFilter(const char* operation, const char* input, Tak
 
 vtkMimetraFilter::~vtkMimetraFilter() = default;
 
+void vtkMimetraFilter::become(std::unique_ptr<OperationCall> call, const std::string& input) {
+  set_call(std::move(call));
+  input_ = input;
+  collected_.reset();
+}
+
 // What is no mesh is refused in RequestData, in words that say what to do about it.
 int vtkMimetraFilter::FillInputPortInformation(int, vtkInformation* info) {
   info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkDataObject");

@@ -3,6 +3,7 @@
 #include <array>
 #include <memory>
 #include <optional>
+#include <string>
 
 #include "vtkMimetraAlgorithm.h"
 
@@ -23,6 +24,8 @@ class MIMETRAFILTERS_EXPORT vtkMimetraFilter : public vtkMimetraAlgorithm {
   /// `input`: the operation's name for what comes in at port 0.
   vtkMimetraFilter(const char* operation, const char* input, Takes takes = Takes::all_time_steps);
   ~vtkMimetraFilter() override;
+  /// Takes another operation, with its name for what comes in.
+  void become(std::unique_ptr<OperationCall> call, const std::string& input);
 
   int FillInputPortInformation(int port, vtkInformation* info) override;
   int RequestInformation(vtkInformation* request, vtkInformationVector** inputs,
@@ -59,7 +62,7 @@ class MIMETRAFILTERS_EXPORT vtkMimetraFilter : public vtkMimetraAlgorithm {
   void collect(vtkInformation& in, std::optional<double> shown);
   void compute_and_show(std::optional<double> time, vtkInformationVector* outputs);
 
-  const char* input_;
+  std::string input_;
   Takes takes_;
   std::unique_ptr<TimeSteps> steps_;
   std::optional<Origin> collected_;

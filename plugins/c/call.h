@@ -1,0 +1,48 @@
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <mimetra/c/context.h>
+#include <mimetra/c/value.h>
+
+/// One operation with what goes into it, and what came out of its last run.
+struct mimetra_call {
+  /// Throws UsageError for an unknown operation.
+  mimetra_call(mimetra_context& owner, const std::string& operation);
+
+  mimetra_context& context() const { return context_; }
+  /// Throws UsageError for an unknown name or a value that the parameter cannot have; null brings
+  /// back the default.
+  void set(const std::string& parameter, const char* text);
+  /// Throws UsageError for an unknown input or a value of another kind.
+  void give(const std::string& input, std::shared_ptr<const mimetra::Value> value);
+  void read(const std::string& input, const std::string& text);
+  void want(const std::string& output);
+
+  /// Throws UsageError for an input that is missing, and what readers and operation throw.
+  void run();
+  /// None before a run.
+  const std::vector<std::shared_ptr<const mimetra::Value>>& output(const std::string& name) const;
+  const std::string& report() const { return report_; }
+  const std::string& summary() const { return summary_; }
+
+ private:
+  const mimetra::Input& input(const std::string& name) const;
+  std::map<std::string, std::vector<mimetra::NamedData>> given() const;
+  void check_inputs() const;
+  mimetra::Invocation invocation() const;
+
+  mimetra_context& context_;
+  const mimetra::Operation& operation_;
+  mimetra::Parameters declared_;
+  std::map<std::string, mimetra::ParameterValue> values_;
+  std::map<std::string, std::vector<std::shared_ptr<const mimetra::Value>>> given_;
+  std::map<std::string, std::vector<std::string>> read_;
+  std::map<std::string, std::vector<std::filesystem::path>> wanted_;
+  std::map<std::string, std::vector<std::shared_ptr<const mimetra::Value>>> outputs_;
+  std::string report_;
+  std::string summary_;
+};

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <deque>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include <mimetra/c/mimetra.h>
+#include <mimetra/operations/operation.h>
+
+namespace mimetra {
+
+/// A table of operations, and how the C interface describes it. Neither changes any more.
+class DescribedTable {
+ public:
+  /// Of the operations that `fill` adds.
+  explicit DescribedTable(const std::function<void(OperationTable&)>& fill);
+  DescribedTable(const DescribedTable&) = delete;
+  DescribedTable& operator=(const DescribedTable&) = delete;
+
+  const OperationTable& operations() const { return table_; }
+  /// Ends with NULL.
+  const mimetra_operation* const* list() const { return list_.data(); }
+  /// Null where there is none of that name.
+  const mimetra_operation* find(const std::string& name) const;
+  const std::string& json() const { return json_; }
+
+ private:
+  void describe(const Operation& operation);
+  template <typename Port>
+  const mimetra_port* described(const Port& port, bool named);
+  const mimetra_parameter* described(const Parameter& parameter, bool of_files);
+  const char* kept(const std::string& text);
+  const char* const* kept(const std::vector<std::string>& texts);
+
+  OperationTable table_;
+  std::string json_;
+  std::vector<const mimetra_operation*> list_;
+  std::deque<mimetra_operation> operations_;
+  std::deque<mimetra_port> ports_;
+  std::deque<mimetra_parameter> parameters_;
+  std::deque<std::vector<const mimetra_port*>> port_lists_;
+  std::deque<std::vector<const mimetra_parameter*>> parameter_lists_;
+  std::deque<std::vector<const char*>> text_lists_;
+  std::deque<std::string> texts_;
+};
+
+}  // namespace mimetra

@@ -1,0 +1,53 @@
+#include <mimetra/c/failure.h>
+
+#include <new>
+
+#include <mimetra/mesh/errors.h>
+#include <mimetra/operations/parameter.h>
+
+namespace mimetra {
+
+Failure failure_of(const std::exception_ptr& error) {
+  try {
+    std::rethrow_exception(error);
+  } catch (const MismatchError& mismatch) {
+    return {MIMETRA_MISMATCH, mismatch.what()};
+  } catch (const std::invalid_argument& usage) {
+    return {MIMETRA_USAGE, usage.what()};
+  } catch (const IoError& input) {
+    return {MIMETRA_BAD_INPUT, input.what()};
+  } catch (const OutputError& output) {
+    return {MIMETRA_BAD_OUTPUT, output.what()};
+  } catch (const Cancelled& cancelled) {
+    return {MIMETRA_CANCELLED, cancelled.what()};
+  } catch (const std::bad_alloc&) {
+    return {MIMETRA_FAILED, "not enough memory"};
+  } catch (const std::exception& other) {
+    return {MIMETRA_FAILED, other.what()};
+  } catch (...) {
+    return {MIMETRA_FAILED, "something that is no std::exception was thrown"};
+  }
+}
+
+void throw_failure(mimetra_status status, const std::string& subject, const std::string& message) {
+  const std::string text = subject + ": " + message;
+  switch (status) {
+    case MIMETRA_FAILED:
+      throw std::runtime_error(text);
+    case MIMETRA_USAGE:
+      throw UsageError(text);
+    case MIMETRA_BAD_INPUT:
+      throw IoError(subject, message);
+    case MIMETRA_MISMATCH:
+      throw MismatchError(text);
+    case MIMETRA_BAD_OUTPUT:
+      throw OutputError(subject, message);
+    case MIMETRA_CANCELLED:
+      throw Cancelled();
+    default:
+      throw std::runtime_error(subject + ": returned the status " + std::to_string(status) +
+                               ", which is none of mimetra.h");
+  }
+}
+
+}  // namespace mimetra

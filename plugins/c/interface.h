@@ -1,0 +1,18 @@
+#pragma once
+
+#include <functional>
+
+#include <mimetra/c/mimetra.h>
+#include <mimetra/operations/operation.h>
+
+namespace mimetra {
+
+/// The functions of mimetra.h. Its contexts have the toolkit's operations.
+const mimetra_interface& toolkit_interface();
+
+/// Makes a context with the operations that `fill` adds; what it returns goes to the log as
+/// warnings.
+mimetra_status make_context(const std::function<std::vector<std::string>(OperationTable&)>& fill,
+                            mimetra_log log, void* user, mimetra_context** context) noexcept;
+
+}  // namespace mimetra

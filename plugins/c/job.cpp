@@ -1,0 +1,132 @@
+#include <mimetra/c/job.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include <nlohmann/json.hpp>
+
+using namespace mimetra;
+
+namespace {
+
+/// Longest side of the rest pose of what has one.
+std::optional<double> extent_of(const Data& data) {
+  if (const auto* read = std::get_if<SequenceRead>(&data)) return read->sequence.extent();
+  if (const auto* fields = std::get_if<FieldSequence>(&data)) return fields->sequence.extent();
+  if (const auto* model = std::get_if<BlendshapeModel>(&data)) return extent(model->neutral());
+  if (const auto* components = std::get_if<Components>(&data)) return extent(components->rest);
+  if (const auto* read = std::get_if<ModelRead>(&data)) return extent(read->model.mean());
+  return {};
+}
+
+}  // namespace
+
+mimetra_job::mimetra_job(const Operation& operation, const Invocation& invocation,
+                         std::shared_ptr<const DescribedTable> table)
+    : operation_(operation), invocation_(invocation), context_{std::move(table)} {
+  context_.log = invocation.log;
+  context_.threads = invocation.threads;
+  // The toolkit's operations that it calls can be cancelled; how far they are is theirs.
+  context_.progress = [this](double) {
+    return !invocation_.progress || invocation_.progress(share_);
+  };
+  for (const auto& [name, values] : invocation.inputs) {
+    for (const NamedData& value : values) {
+      inputs_[name].push_back(
+          std::make_unique<mimetra_data>(mimetra_data{std::make_shared<const Value>(value)}));
+    }
+  }
+  outcome_.report = "{}";
+}
+
+const mimetra_data* mimetra_job::input(const std::string& name, int index) const {
+  const auto found = inputs_.find(name);
+  if (found == inputs_.end() || index < 0) return nullptr;
+  const auto i = static_cast<std::size_t>(index);
+  return i < found->second.size() ? found->second[i].get() : nullptr;
+}
+
+double mimetra_job::number(const std::string& name) const {
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  const Parameter* parameter = invocation_.parameters.find(name);
+  if (!parameter) return kNone;
+  const ParameterValue& value = invocation_.parameters.value(name);
+  if (const auto* flag = std::get_if<bool>(&value)) return *flag ? 1 : 0;
+  if (const auto* integer = std::get_if<std::int64_t>(&value)) {
+    return static_cast<double>(*integer);
+  }
+  if (const auto* number = std::get_if<double>(&value)) return *number;
+  const bool has_length =
+      parameter->kind == ParameterKind::length && !std::holds_alternative<std::monostate>(value);
+  if (!has_length) return kNone;
+  for (const Input& input : operation_.inputs) {
+    const mimetra_data* data = this->input(input.name, 0);
+    const auto side = data ? extent_of(data->value->named().data) : std::nullopt;
+    if (side) return invocation_.parameters.length(name, *side);
+  }
+  return kNone;
+}
+
+const char* mimetra_job::text(const std::string& name) {
+  if (!invocation_.parameters.find(name)) return nullptr;
+  const ParameterValue& value = invocation_.parameters.value(name);
+  if (std::holds_alternative<std::monostate>(value)) return nullptr;
+  return texts_.emplace_back(to_text(value)).c_str();
+}
+
+void mimetra_job::progress(double share) {
+  if (!(share >= 0 && share <= 1)) return;
+  share_ = share;
+  report_progress(invocation_.progress, share);
+}
+
+void mimetra_job::log(LogLevel level, const std::string& text) const {
+  if (invocation_.log) invocation_.log(level, operation_.name + ": " + text);
+}
+
+void mimetra_job::output(const std::string& name, const NamedData& value) {
+  const auto declared = std::ranges::find(operation_.outputs, name, &Output::name);
+  if (declared == operation_.outputs.end()) {
+    throw UsageError("operation '" + operation_.name + "' has no output '" + name + "'");
+  }
+  const auto kind = static_cast<DataKind>(value.data.index());
+  if (kind != declared->kind) {
+    throw UsageError("output '" + name + "': expected the kind '" +
+                     std::string(kind_name(declared->kind)) + "', found '" +
+                     std::string(kind_name(kind)) + "'");
+  }
+  outcome_.outputs[name].push_back(value);
+}
+
+void mimetra_job::report(const std::string& json, const std::string& summary) {
+  if (!nlohmann::json::accept(json) || !nlohmann::json::parse(json).is_object()) {
+    throw UsageError("the report is no JSON object: " + json);
+  }
+  outcome_.report = json;
+  outcome_.summary = summary;
+  if (!summary.empty() && summary.back() != '\n') outcome_.summary += '\n';
+}
+
+std::size_t mimetra_job::expected_count(const Output& output) const {
+  if (!output.repeated) return 1;
+  for (const Input& input : operation_.inputs) {
+    const auto values = inputs_.find(input.name);
+    if (input.repeated && values != inputs_.end()) return values->second.size();
+  }
+  return 1;
+}
+
+Outcome mimetra_job::outcome() && {
+  for (const Output& output : operation_.outputs) {
+    const auto made = outcome_.outputs.find(output.name);
+    const std::size_t count = made == outcome_.outputs.end() ? 0 : made->second.size();
+    if (count == 0 && (output.optional || !wants(output.name))) continue;
+    const std::size_t expected = expected_count(output);
+    if (count == expected) continue;
+    throw std::runtime_error("made " + std::to_string(count) + " values of its output '" +
+                             output.name + "', expected " + std::to_string(expected));
+  }
+  return std::move(outcome_);
+}

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <deque>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <mimetra/c/context.h>
+#include <mimetra/c/value.h>
+
+/// One run of a third-party operation, from inside.
+struct mimetra_job {
+  /// Refers to both until it is done; `table` is of the operations it may call.
+  mimetra_job(const mimetra::Operation& operation, const mimetra::Invocation& invocation,
+              std::shared_ptr<const mimetra::DescribedTable> table);
+  mimetra_job(const mimetra_job&) = delete;
+  mimetra_job& operator=(const mimetra_job&) = delete;
+
+  mimetra_context& context() { return context_; }
+  /// Null past the last value of an input, and for an unknown one.
+  const mimetra_data* input(const std::string& name, int index) const;
+  /// NaN where it has no value, or no number.
+  double number(const std::string& parameter) const;
+  /// Null where it has no value.
+  const char* text(const std::string& parameter);
+  int threads() const { return invocation_.threads; }
+  bool wants(const std::string& output) const { return invocation_.wants(output); }
+  /// Throws Cancelled.
+  void progress(double share);
+  void log(mimetra::LogLevel level, const std::string& text) const;
+  /// Throws UsageError for an unknown output or a value of another kind.
+  void output(const std::string& name, const mimetra::NamedData& value);
+  /// Throws UsageError where `json` is no JSON object.
+  void report(const std::string& json, const std::string& summary);
+
+  /// Everything that was made. Throws std::runtime_error that names an output which is missing.
+  mimetra::Outcome outcome() &&;
+
+ private:
+  std::size_t expected_count(const mimetra::Output& output) const;
+
+  const mimetra::Operation& operation_;
+  const mimetra::Invocation& invocation_;
+  mimetra_context context_;
+  double share_ = 0;
+  std::map<std::string, std::vector<std::unique_ptr<mimetra_data>>> inputs_;
+  std::deque<std::string> texts_;
+  mimetra::Outcome outcome_;
+};

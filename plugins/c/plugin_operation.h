@@ -1,0 +1,18 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include <mimetra/c/described_table.h>
+#include <mimetra/c/mimetra.h>
+#include <mimetra/operations/operation.h>
+
+namespace mimetra {
+
+/// An operation of a plugin as one of the table, under its name. What it does wrong ends its run
+/// with an exception that names it, and changes nothing else. `toolkit` is what its runs may call.
+/// Throws UsageError that says what is wrong with the description.
+Operation plugin_operation(const mimetra_operation& described, const std::string& plugin,
+                           std::shared_ptr<const DescribedTable> toolkit);
+
+}  // namespace mimetra

@@ -1,0 +1,118 @@
+#include <mimetra/c/plugins.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <set>
+#include <sstream>
+
+#include <dlfcn.h>
+
+#include <mimetra/c/failure.h>
+#include <mimetra/c/given_arrays.h>
+#include <mimetra/c/plugin_operation.h>
+#include <mimetra/c/whole_struct.h>
+
+namespace mimetra {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The program or library that holds this code.
+fs::path this_binary() {
+  Dl_info info{};
+  const bool known = dladdr(reinterpret_cast<const void*>(&plugin_folders), &info) != 0;
+  const std::string name = known && info.dli_fname ? info.dli_fname : "";
+  // A program's name is what it was called by, which may not be a path.
+  std::error_code error;
+  return fs::canonical(name.find('/') == std::string::npos ? "/proc/self/exe" : name, error);
+}
+
+fs::path folder_of_installation() {
+  // From the program in bin, or a library in lib or a host's folder below it.
+  constexpr int kLevels = 5;
+  fs::path folder = this_binary().parent_path();
+  for (int level = 0; level < kLevels && folder.has_relative_path(); ++level) {
+    std::error_code error;
+    const fs::path plugins = folder / MIMETRA_PLUGIN_FOLDER;
+    if (fs::is_directory(plugins, error)) return plugins;
+    folder = folder.parent_path();
+  }
+  return {};
+}
+
+std::vector<fs::path> libraries_in(const fs::path& folder) {
+  std::vector<fs::path> files;
+  if (!fs::is_directory(folder)) throw UsageError("no such folder");
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+    if (entry.path().extension() == ".so" && entry.is_regular_file()) files.push_back(entry.path());
+  }
+  std::ranges::sort(files);
+  return files;
+}
+
+/// What a library says it is. Throws UsageError where it is no plugin of this version.
+mimetra_plugin loaded(const fs::path& file) {
+  // With all symbols, so that one that is missing ends this and not a later run. Never unloaded:
+  // what it threw or registered for the end of the process may still be needed.
+  void* library = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
+  if (!library) throw UsageError(dlerror());
+  void* symbol = dlsym(library, "mimetra_get_plugin");
+  if (!symbol) throw UsageError("has no function mimetra_get_plugin");
+  const mimetra_plugin* plugin = reinterpret_cast<mimetra_get_plugin_function>(symbol)();
+  if (!plugin) throw UsageError("mimetra_get_plugin returned NULL");
+  const mimetra_plugin known = whole(*plugin);
+  if (known.version != MIMETRA_INTERFACE_VERSION) {
+    throw UsageError("is for version " + std::to_string(known.version) +
+                     " of the interface, expected " + std::to_string(MIMETRA_INTERFACE_VERSION));
+  }
+  if (!known.name || !*known.name || !is_line(known.name)) throw UsageError("has no name");
+  return known;
+}
+
+}  // namespace
+
+std::vector<fs::path> plugin_folders() {
+  std::vector<fs::path> folders;
+  const char* named = std::getenv("MIMETRA_PLUGIN_PATH");
+  std::istringstream list(named ? named : "");
+  for (std::string folder; std::getline(list, folder, ':');) {
+    if (!folder.empty()) folders.emplace_back(folder);
+  }
+  const fs::path installed = folder_of_installation();
+  if (!installed.empty()) folders.push_back(installed);
+  return folders;
+}
+
+std::vector<std::string> add_plugins(OperationTable& table, const std::vector<fs::path>& folders) {
+  std::vector<std::string> problems;
+  std::set<fs::path> seen;
+  std::shared_ptr<const DescribedTable> toolkit;
+  // Runs one step; what it throws is a problem of `place`.
+  const auto attempt = [&problems](const fs::path& place, const auto& step) {
+    try {
+      step();
+    } catch (...) {
+      const std::string problem = failure_of(std::current_exception()).message;
+      problems.push_back("plugins: " + place.string() + ": " + problem + "; it is left out");
+    }
+  };
+  const auto add = [&](const fs::path& file) {
+    const mimetra_plugin plugin = loaded(file);
+    if (!toolkit) toolkit = std::make_shared<const DescribedTable>(add_toolkit);
+    for (auto list = plugin.operations; list && *list; ++list) {
+      attempt(file, [&] { table.add(plugin_operation(whole(**list), plugin.name, toolkit)); });
+    }
+  };
+  for (const fs::path& folder : folders) {
+    attempt(folder, [&] {
+      for (const fs::path& file : libraries_in(folder)) {
+        if (!seen.insert(fs::canonical(file)).second) continue;
+        attempt(file, [&] { add(file); });
+      }
+    });
+  }
+  return problems;
+}
+
+}  // namespace mimetra

@@ -1,0 +1,238 @@
+#include <mimetra/c/shown_arrays.h>
+
+#include <algorithm>
+#include <limits>
+
+namespace mimetra {
+
+namespace {
+
+/// A matrix row after row.
+std::vector<double> by_rows(const Eigen::MatrixXd& matrix) {
+  std::vector<double> values(static_cast<std::size_t>(matrix.size()));
+  Eigen::Map<Frames>(values.data(), matrix.rows(), matrix.cols()) = matrix;
+  return values;
+}
+
+template <typename Value>
+std::vector<double> of_regions(const Regions& regions, Value value) {
+  std::vector<double> values;
+  for (const Region& region : regions.regions) values.push_back(value(region));
+  return values;
+}
+
+}  // namespace
+
+ShownArrays::ShownArrays(const Data& data) {
+  std::visit([this](const auto& value) { show(value); }, data);
+  for (const mimetra_array& array : arrays_) list_.push_back(&array);
+  list_.push_back(nullptr);
+}
+
+const mimetra_array* ShownArrays::find(const std::string& name) const {
+  const auto found =
+      std::ranges::find_if(arrays_, [&](const mimetra_array& array) { return name == array.name; });
+  return found == arrays_.end() ? nullptr : &*found;
+}
+
+void ShownArrays::add(const char* name, int type, Shape shape, const void* values, int location) {
+  // Empty arrays have a place too: many languages take no null pointer.
+  static const double nothing = 0;
+  mimetra_array array{};
+  array.struct_size = sizeof array;
+  array.type = type;
+  array.rank = static_cast<std::int32_t>(shape.size());
+  array.location = location;
+  std::ranges::copy(shape, array.shape);
+  array.name = name;
+  array.values = values ? values : &nothing;
+  arrays_.push_back(array);
+}
+
+void ShownArrays::add_numbers(const char* name, Shape shape, std::vector<double> values,
+                              int location) {
+  add(name, MIMETRA_F64, shape, numbers_.emplace_back(std::move(values)).data(), location);
+}
+
+void ShownArrays::add_integers(const char* name, Shape shape, std::vector<std::int32_t> values,
+                               int location) {
+  add(name, MIMETRA_I32, shape, integers_.emplace_back(std::move(values)).data(), location);
+}
+
+void ShownArrays::add_bytes(const char* name, Shape shape, std::vector<std::uint8_t> values) {
+  add(name, MIMETRA_U8, shape, bytes_.emplace_back(std::move(values)).data());
+}
+
+void ShownArrays::add_strings(const char* name, const std::vector<std::string>& texts) {
+  std::vector<const char*>& pointers = strings_.emplace_back();
+  for (const std::string& text : texts) pointers.push_back(text.c_str());
+  add(name, MIMETRA_STRING, {static_cast<Eigen::Index>(texts.size())}, pointers.data());
+}
+
+void ShownArrays::add_vector(const char* name, const Eigen::VectorXd& values) {
+  if (values.size() > 0) add(name, MIMETRA_F64, {values.size()}, values.data());
+}
+
+void ShownArrays::show(const Connectivity& faces) {
+  const Polygons& polygons = faces.polygons;
+  std::vector<std::int32_t> sizes;
+  for (int i = 0; i < polygons.size(); ++i) {
+    const auto face = static_cast<std::size_t>(i);
+    sizes.push_back(polygons.offsets[face + 1] - polygons.offsets[face]);
+  }
+  add_integers("face_sizes", {polygons.size()}, std::move(sizes));
+  add("corners", MIMETRA_I32, {static_cast<Eigen::Index>(polygons.corners.size())},
+      polygons.corners.data());
+  add("triangles", MIMETRA_I32, {faces.triangles.rows(), 3}, faces.triangles.data());
+  add("face_of_triangle", MIMETRA_I32,
+      {static_cast<Eigen::Index>(faces.polygon_of_triangle.size())},
+      faces.polygon_of_triangle.data());
+}
+
+void ShownArrays::show(const MeshSequence& sequence) {
+  const Eigen::Index vertices = sequence.vertices();
+  add("positions", MIMETRA_F64, {sequence.frames(), vertices, 3}, sequence.positions().data());
+  add_vector("times", sequence.times());
+  if (sequence.rest_is_known()) {
+    add("rest", MIMETRA_F64, {vertices, 3}, sequence.rest().data());
+  }
+  show(sequence.connectivity());
+}
+
+void ShownArrays::show_basis(const ShapeBasis& basis, const char* shapes, const char* names) {
+  if (basis.size() == 0) return;
+  // Column after column in memory, which is shape after shape.
+  add(shapes, MIMETRA_F64, {basis.size(), basis.displacements.rows() / 3, 3},
+      basis.displacements.data());
+  add_strings(names, basis.names);
+}
+
+void ShownArrays::show(const BlendshapeModel& model) {
+  add("neutral", MIMETRA_F64, {model.vertices(), 3}, model.neutral().data());
+  show(model.connectivity());
+  show_basis(model.expressions(), "expressions", "expression_names");
+}
+
+void ShownArrays::show(const MorphableModel& model) {
+  add("neutral", MIMETRA_F64, {model.vertices(), 3}, model.mean().data());
+  show(model.connectivity());
+  show_basis(model.expressions(), "expressions", "expression_names");
+  show_basis(model.identities(), "identities", "identity_names");
+}
+
+void ShownArrays::show(const Components& components) {
+  const Eigen::Index count = components.count();
+  const Eigen::Index vertices = components.vertices();
+  add("rest", MIMETRA_F64, {vertices, 3}, components.rest.data());
+  add("triangles", MIMETRA_I32, {components.triangles.rows(), 3}, components.triangles.data());
+  add("displacements", MIMETRA_F64, {count, vertices, 3}, components.displacements.data());
+  add_numbers("weights", {components.weights.rows(), components.weights.cols()},
+              by_rows(components.weights));
+  add("centers", MIMETRA_I32, {count}, components.centers.data());
+  add_numbers("support", {components.support.rows(), components.support.cols()},
+              by_rows(components.support));
+  add("energies", MIMETRA_F64, {static_cast<Eigen::Index>(components.energies.size())},
+      components.energies.data());
+  add("scale", MIMETRA_F64, {1}, &components.scale);
+  add("d_min", MIMETRA_F64, {1}, &components.d_min);
+  add("d_max", MIMETRA_F64, {1}, &components.d_max);
+}
+
+void ShownArrays::show(const RegionData& data) {
+  const Regions& regions = data.regions;
+  const auto count = static_cast<Eigen::Index>(regions.regions.size());
+  const auto vertices = static_cast<std::size_t>(regions.vertices);
+  std::vector<std::uint8_t> masks(regions.regions.size() * vertices);
+  std::vector<std::int32_t> centers;
+  for (std::size_t r = 0; r < regions.regions.size(); ++r) {
+    for (const VertexIndex vertex : regions.regions[r].vertices) {
+      masks[r * vertices + static_cast<std::size_t>(vertex)] = 1;
+    }
+    centers.push_back(regions.regions[r].center);
+  }
+  add_bytes("masks", {count, regions.vertices}, std::move(masks));
+  add_integers("centers", {count}, std::move(centers));
+  add_numbers("radii", {count}, of_regions(regions, [](const Region& r) { return r.radius; }));
+  add_numbers("energies", {count}, of_regions(regions, [](const Region& r) { return r.energy; }));
+  add_numbers("energy_shares", {count},
+              of_regions(regions, [](const Region& r) { return r.energy_share; }));
+  add_vector("vertex_energy", regions.vertex_energy);
+  const bool has_mesh = data.fields.sequence.vertices() > 0;
+  if (has_mesh) show(data.fields.sequence.connectivity());
+  for (const Field& field : has_mesh ? data.fields.fields : fields_of(regions)) show(field);
+}
+
+void ShownArrays::show(const Field& field) {
+  const int location =
+      field.location == Field::Location::vertices ? MIMETRA_ON_VERTICES : MIMETRA_ON_TRIANGLES;
+  const char* name = names_.emplace_back(field.name).c_str();
+  const Eigen::Index rows = field.values.rows(), columns = field.values.cols();
+  std::vector<double> values = by_rows(field.values);
+  if (!field.integer) {
+    if (columns == 1) return add_numbers(name, {rows}, std::move(values), location);
+    return add_numbers(name, {rows, columns}, std::move(values), location);
+  }
+  std::vector<std::int32_t> integers(values.begin(), values.end());
+  if (columns == 1) return add_integers(name, {rows}, std::move(integers), location);
+  add_integers(name, {rows, columns}, std::move(integers), location);
+}
+
+void ShownArrays::show(const FieldSequence& fields) {
+  show(fields.sequence);
+  for (const Field& field : fields.fields) show(field);
+}
+
+void ShownArrays::show(const Table& table) {
+  const auto rows = static_cast<Eigen::Index>(table.rows.size());
+  for (std::size_t column = 0; column < table.columns.size(); ++column) {
+    std::vector<double> values;
+    for (const auto& row : table.rows) {
+      values.push_back(row[column].value_or(std::numeric_limits<double>::quiet_NaN()));
+    }
+    add_numbers(table.columns[column].c_str(), {rows}, std::move(values));
+  }
+}
+
+void ShownArrays::show(const AnimatedModel& animated) {
+  show(animated.model);
+  const WeightTrack& track = animated.performance;
+  add_numbers("weights", {track.weights.rows(), track.weights.cols()}, by_rows(track.weights));
+  add_strings("weight_names", track.names);
+  add_vector("times", track.times);
+  std::vector<std::int32_t> pairs;
+  for (const auto& [landmark, vertex] : animated.landmarks) {
+    pairs.push_back(landmark);
+    pairs.push_back(vertex);
+  }
+  add_integers("landmarks", {static_cast<Eigen::Index>(animated.landmarks.size()), 2},
+               std::move(pairs));
+}
+
+void ShownArrays::show(const Image& image) {
+  static_assert(sizeof(Color) == 3);
+  add("pixels", MIMETRA_U8, {image.height, image.width, 3}, image.pixels.data());
+}
+
+void ShownArrays::show(const LandmarksRead& read) {
+  const LandmarkTrack& track = read.track;
+  add("points", MIMETRA_F64, {track.frames(), track.landmarks(), 2}, track.points.data());
+  add_strings("names", track.names);
+  add_vector("times", track.times);
+  add_vector("confidence", track.confidence);
+}
+
+void ShownArrays::show(const FittedCoefficients& fit) {
+  add_numbers("alpha", {fit.alpha.rows(), fit.alpha.cols()}, by_rows(fit.alpha));
+  add_numbers("beta", {fit.beta.rows(), fit.beta.cols()}, by_rows(fit.beta));
+  add_strings("identity_names", fit.identities);
+  add_strings("expression_names", fit.expressions);
+  add_vector("times", fit.times);
+  std::vector<double> cameras;
+  for (const auto& camera : fit.cameras) {
+    for (const double value : camera.reshaped<Eigen::RowMajor>()) cameras.push_back(value);
+  }
+  add_numbers("cameras", {static_cast<Eigen::Index>(fit.cameras.size()), 2, 4}, std::move(cameras));
+  add_vector("rms", fit.rms);
+}
+
+}  // namespace mimetra

@@ -1,0 +1,61 @@
+#include <mimetra/c/stored_data.h>
+
+#include <mimetra/operations/loading.h>
+
+namespace mimetra {
+
+namespace {
+
+/// Replaces what exists; no parameter of any operation.
+const Parameter kForce = {"force", ParameterKind::flag, false, "replace what exists"};
+
+Parameters parameters_of(std::vector<Parameter> declared, const char* const* settings) {
+  Parameters parameters(std::move(declared));
+  for (; settings && *settings; ++settings) {
+    const std::string text = *settings;
+    const auto end = text.find('=');
+    const Parameter* parameter =
+        end == std::string::npos ? nullptr : parameters.find(text.substr(0, end));
+    if (!parameter) {
+      std::string known;
+      for (const Parameter& each : parameters.declared()) {
+        known += (known.empty() ? "" : ", ") + each.name;
+      }
+      throw UsageError("setting '" + text + "': expected NAME=VALUE with one of " + known);
+    }
+    parameters.set(parameter->name, parse_value(*parameter, text.substr(end + 1)));
+  }
+  return parameters;
+}
+
+}  // namespace
+
+NamedData loaded_data(const mimetra_context& context, DataKind kind, const std::string& text,
+                      const char* const* settings) {
+  if (kind == DataKind::regions) {
+    throw UsageError(text + ": regions speak of a mesh; read them as an input of a call");
+  }
+  const OperationTable& table = context.table->operations();
+  Operation reading;
+  reading.inputs = {{"input", kind, ""}};
+  const Parameters parameters = parameters_of(table.parameters_of(reading), settings);
+  LoadedInputs loaded = load_inputs(table, reading, parameters, {{"input", {text}}},
+                                    context.progress, context.log, context.threads);
+  return std::move(loaded.data.at("input").front());
+}
+
+void write_data(const mimetra_context& context, const Data& data, const std::string& path,
+                const char* const* settings) {
+  const OperationTable& table = context.table->operations();
+  const auto kind = static_cast<DataKind>(data.index());
+  Operation writing;
+  writing.outputs = {{"output", kind, ""}};
+  std::vector<Parameter> declared = table.parameters_of(writing);
+  declared.push_back(kForce);
+  const Parameters parameters = parameters_of(std::move(declared), settings);
+  WriteRequest request{path, parameters, parameters.flag("force"), context.progress};
+  request.threads = context.threads;
+  table.writer(kind, path).write(data, request);
+}
+
+}  // namespace mimetra

@@ -1,0 +1,260 @@
+#include "dialog.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cstring>
+
+#include <QProcess>
+
+#include "toolkit.h"
+
+namespace mimetra_meshlab {
+
+namespace {
+
+constexpr char kFurtherOptions[] = "options";
+
+bool is_one_of(const char* name, std::initializer_list<const char*> names) {
+  return std::any_of(names.begin(), names.end(),
+                     [name](const char* other) { return !std::strcmp(name, other); });
+}
+
+/// The operation's own parameters, and of those of files the ones that say how a sequence is read.
+std::vector<const mimetra_parameter*> parameters_of(const mimetra_operation& operation) {
+  std::vector<const mimetra_parameter*> parameters;
+  for (auto parameter = operation.parameters; *parameter; ++parameter) {
+    const bool is_of_reading =
+        is_one_of((*parameter)->name, {"weights", "topology", "frames", "fps"});
+    if (!(*parameter)->of_files || is_of_reading) parameters.push_back(*parameter);
+  }
+  return parameters;
+}
+
+const mimetra_parameter* find_parameter(const mimetra_operation& operation,
+                                        const std::string& name) {
+  for (const mimetra_parameter* parameter : parameters_of(operation)) {
+    if (parameter->name == name) return parameter;
+  }
+  return nullptr;
+}
+
+/// Optional inputs, or outputs but scripts for other programs, which show files not written here.
+std::vector<std::string> optional_ports(const mimetra_port* const* ports) {
+  std::vector<std::string> names;
+  for (; *ports; ++ports) {
+    const bool is_optional = ((*ports)->flags & MIMETRA_OPTIONAL) != 0;
+    if (is_optional && (*ports)->kind != MIMETRA_VIEW) names.emplace_back((*ports)->name);
+  }
+  return names;
+}
+
+bool contains(const std::vector<std::string>& names, const std::string& name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+/// Everything that may stand among the further options.
+std::vector<std::string> option_names(const mimetra_operation& operation) {
+  std::vector<std::string> names = optional_ports(operation.inputs);
+  for (const mimetra_parameter* parameter : parameters_of(operation)) {
+    names.emplace_back(parameter->name);
+  }
+  for (const std::string& output : optional_ports(operation.outputs)) names.push_back(output);
+  return names;
+}
+
+/// "source-rest" is "Source rest".
+QString label_of(const std::string& name) {
+  QString label = QString::fromStdString(name).replace('-', ' ');
+  label[0] = label[0].toUpper();
+  return label;
+}
+
+QStringList choices_of(const mimetra_parameter& parameter) {
+  QStringList choices;
+  for (auto choice = parameter.choices; choice && *choice; ++choice) choices << *choice;
+  return choices;
+}
+
+QString help_of(const mimetra_parameter& parameter) {
+  QString help = QString::fromUtf8(parameter.help);
+  if (parameter.unit) help += QString(" (%1)").arg(parameter.unit);
+  if (parameter.kind == MIMETRA_LENGTH) {
+    help += "; a share of the rest pose's longest side as in 0.1, or a length as in 12abs";
+  }
+  if (parameter.kind == MIMETRA_FILE && parameter.choices) {
+    help += "; a file, or one of " + choices_of(parameter).join(' ');
+  }
+  if (!parameter.fallback) help += "; may be empty";
+  return help;
+}
+
+/// The kind of row: what may be empty, and whatever MeshLab has no field for, is text.
+mimetra_parameter_kind row_kind(const mimetra_parameter& parameter) {
+  return parameter.fallback ? parameter.kind : MIMETRA_TEXT;
+}
+
+void add_row(const mimetra_parameter& parameter, RichParameterList& rows) {
+  const QString name = parameter.name;
+  const QString label = label_of(parameter.name);
+  const QString help = help_of(parameter);
+  const QString fallback = parameter.fallback ? parameter.fallback : "";
+  switch (row_kind(parameter)) {
+    case MIMETRA_FLAG:
+      rows.addParam(RichBool(name, fallback == "true", label, help));
+      break;
+    case MIMETRA_INTEGER:
+      rows.addParam(RichInt(name, fallback.toInt(), label, help));
+      break;
+    case MIMETRA_NUMBER:
+      rows.addParam(RichFloat(name, fallback.toFloat(), label, help));
+      break;
+    case MIMETRA_CHOICE: {
+      const QStringList choices = choices_of(parameter);
+      rows.addParam(RichEnum(name, choices.indexOf(fallback), choices, label, help));
+      break;
+    }
+    default:
+      rows.addParam(RichString(name, fallback, label, help));
+  }
+}
+
+/// The shortest text that is this number: 0.1, where a double of it would be 0.100000001.
+std::string number_text(float value) {
+  std::array<char, 32> text = {};
+  return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value).ptr};
+}
+
+std::string choice_text(const mimetra_parameter& parameter, int index) {
+  const QStringList choices = choices_of(parameter);
+  if (index < 0 || index >= choices.size()) {
+    throw Failure(std::string(parameter.name) + ": expected a choice from 0 to " +
+                  std::to_string(choices.size() - 1) + ", found " + std::to_string(index));
+  }
+  return choices[index].toStdString();
+}
+
+/// What stands in the parameter's row; empty for its default.
+std::string value_text(const mimetra_parameter& parameter, const RichParameterList& rows) {
+  const QString name = parameter.name;
+  const std::string fallback = parameter.fallback ? parameter.fallback : "";
+  std::string text;
+  switch (row_kind(parameter)) {
+    case MIMETRA_FLAG:
+      text = rows.getBool(name) ? "true" : "false";
+      break;
+    case MIMETRA_INTEGER:
+      text = std::to_string(rows.getInt(name));
+      break;
+    case MIMETRA_NUMBER: {
+      const float value = rows.getFloat(name);
+      if (value == QString::fromStdString(fallback).toFloat()) return {};
+      return number_text(value);
+    }
+    case MIMETRA_CHOICE:
+      text = choice_text(parameter, rows.getEnum(name));
+      break;
+    default:
+      text = text_of(rows, parameter.name);
+  }
+  return text == fallback ? std::string() : text;
+}
+
+/// "--rho 5 --signed" and "--rho=5", as names and values.
+std::vector<Setting> further_options(const mimetra_operation& operation,
+                                     const RichParameterList& rows) {
+  if (!rows.hasParameter(kFurtherOptions)) return {};
+  const QStringList words =
+      QProcess::splitCommand(QString::fromStdString(text_of(rows, kFurtherOptions)));
+  const std::vector<std::string> known = option_names(operation);
+  std::vector<Setting> options;
+  for (int i = 0; i < words.size(); ++i) {
+    const std::string word = words[i].toStdString();
+    const std::size_t begin = std::min(word.find_first_not_of('-'), word.size());
+    const std::size_t end = std::min(word.find('='), word.size());
+    const std::string name = word.substr(begin, end - begin);
+    if (begin == 0 || !contains(known, name)) {
+      throw Failure("further options: expected an option such as --" + known.back() + ", found '" +
+                    word + "'");
+    }
+    const mimetra_parameter* parameter = find_parameter(operation, name);
+    std::string text = "true";
+    if (end < word.size()) {
+      text = word.substr(end + 1);
+    } else if (!parameter || parameter->kind != MIMETRA_FLAG) {
+      if (++i == words.size()) throw Failure("further options: " + word + " needs a value");
+      text = words[i].toStdString();
+    }
+    options.push_back({name, text});
+  }
+  return options;
+}
+
+}  // namespace
+
+void add_input(const mimetra_operation& operation, const std::string& name,
+               const std::string& instead, RichParameterList& rows) {
+  for (auto input = operation.inputs; *input; ++input) {
+    if ((*input)->name != name) continue;
+    const QString help =
+        QString::fromUtf8((*input)->help) + "; empty for " + QString::fromStdString(instead);
+    rows.addParam(RichString(QString::fromStdString(name), "", label_of(name), help));
+  }
+}
+
+void add_parameters(const mimetra_operation& operation, const std::vector<std::string>& names,
+                    RichParameterList& rows) {
+  for (const std::string& name : names) {
+    if (const mimetra_parameter* parameter = find_parameter(operation, name)) {
+      add_row(*parameter, rows);
+    }
+  }
+}
+
+void add_all_parameters(const mimetra_operation& operation, RichParameterList& rows) {
+  for (const mimetra_parameter* parameter : parameters_of(operation)) {
+    if (!parameter->of_files && !rows.hasParameter(parameter->name)) add_row(*parameter, rows);
+  }
+}
+
+void add_further_options(const mimetra_operation& operation, RichParameterList& rows) {
+  QStringList further;
+  for (const std::string& name : option_names(operation)) {
+    const QString option = QString::fromStdString(name);
+    if (!rows.hasParameter(option)) further << (name.size() == 1 ? "-" : "--") + option;
+  }
+  rows.addParam(RichString(
+      kFurtherOptions, "", "Further options",
+      QString("as for the command mimetra %1: ").arg(operation.name) + further.join(' ')));
+}
+
+Request request_of(const mimetra_operation& operation, const RichParameterList& rows) {
+  std::vector<Setting> settings;
+  for (const mimetra_parameter* parameter : parameters_of(operation)) {
+    if (!rows.hasParameter(parameter->name)) continue;
+    const std::string text = value_text(*parameter, rows);
+    if (!text.empty()) settings.push_back({parameter->name, text});
+  }
+  for (const Setting& option : further_options(operation, rows)) settings.push_back(option);
+
+  Request request;
+  for (const Setting& setting : settings) {
+    const mimetra_parameter* parameter = find_parameter(operation, setting.name);
+    if (parameter && parameter->of_files) {
+      request.reading.push_back(setting.name + '=' + setting.text);
+    } else if (parameter) {
+      request.parameters.push_back(setting);
+    } else if (contains(optional_ports(operation.inputs), setting.name)) {
+      request.inputs.push_back(setting);
+    } else {
+      request.outputs.push_back(setting);
+    }
+  }
+  return request;
+}
+
+std::string text_of(const RichParameterList& rows, const std::string& name) {
+  return rows.getString(QString::fromStdString(name)).trimmed().toStdString();
+}
+
+}  // namespace mimetra_meshlab

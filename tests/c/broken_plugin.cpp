@@ -1,0 +1,111 @@
+// Plugins that cannot be used, one for each BROKEN_... that this is compiled with.
+
+#include <stdexcept>
+
+#include <mimetra/c/mimetra.h>
+
+namespace {
+
+mimetra_status run(const mimetra_interface*, mimetra_job*, void*) {
+  return MIMETRA_OK;
+}
+
+[[maybe_unused]] mimetra_operation operation_named(const char* name) {
+  mimetra_operation operation{};
+  operation.struct_size = sizeof operation;
+  operation.name = name;
+  operation.summary = "does nothing";
+  operation.run = run;
+  return operation;
+}
+
+[[maybe_unused]] mimetra_plugin plugin_of(const mimetra_operation* const* operations) {
+  return {sizeof(mimetra_plugin), MIMETRA_INTERFACE_VERSION, "broken", operations};
+}
+
+}  // namespace
+
+#ifdef BROKEN_OTHER_VERSION
+const mimetra_plugin* mimetra_get_plugin() {
+  static const mimetra_operation operation = operation_named("of-other-version");
+  static const mimetra_operation* const operations[] = {&operation, nullptr};
+  static mimetra_plugin plugin = plugin_of(operations);
+  plugin.version = 2;
+  return &plugin;
+}
+#endif
+
+#ifdef BROKEN_NO_FUNCTION
+MIMETRA_EXPORT const mimetra_plugin* some_other_function() {
+  static const mimetra_plugin plugin = plugin_of(nullptr);
+  return &plugin;
+}
+#endif
+
+#ifdef BROKEN_MISSING_SYMBOL
+extern "C" int nobody_defines_this();
+const mimetra_plugin* mimetra_get_plugin() {
+  static const mimetra_plugin plugin = plugin_of(nullptr);
+  return nobody_defines_this() ? &plugin : nullptr;
+}
+#endif
+
+#ifdef BROKEN_RETURNS_NULL
+const mimetra_plugin* mimetra_get_plugin() {
+  return nullptr;
+}
+#endif
+
+#ifdef BROKEN_THROWS
+const mimetra_plugin* mimetra_get_plugin() {
+  throw std::runtime_error("no licence");
+}
+#endif
+
+#ifdef BROKEN_TAKEN_NAME
+// One of its operations can be used.
+const mimetra_plugin* mimetra_get_plugin() {
+  static const mimetra_operation taken = operation_named("transfer");
+  static const mimetra_operation fine = operation_named("beside-a-taken-name");
+  static const mimetra_operation* const operations[] = {&taken, &fine, nullptr};
+  static const mimetra_plugin plugin = plugin_of(operations);
+  return &plugin;
+}
+#endif
+
+#ifdef BROKEN_DESCRIPTIONS
+const mimetra_plugin* mimetra_get_plugin() {
+  static const mimetra_port no_kind = {sizeof no_kind, 99, "sequence", "", 0, 0};
+  static const mimetra_port no_size = {0, MIMETRA_SEQUENCE, "sequence", "", 0, 0};
+  static const mimetra_port fine = {sizeof fine, MIMETRA_SEQUENCE, "sequence", "", 0, 0};
+  static const mimetra_port* const of_no_kind[] = {&no_kind, nullptr};
+  static const mimetra_port* const of_no_size[] = {&no_size, nullptr};
+  static const mimetra_port* const twice[] = {&fine, &fine, nullptr};
+  static mimetra_parameter common{}, out_of_range{}, two_meanings{};
+  common = {sizeof common, MIMETRA_FLAG, "json", "", nullptr, nullptr, 0, 0, nullptr, 0, 0};
+  out_of_range = {sizeof common, MIMETRA_NUMBER, "x", "", "7", nullptr, 0, 1, nullptr, 0, 0};
+  two_meanings = {sizeof common, MIMETRA_FLAG, "frames", "", nullptr, nullptr, 0, 0, nullptr, 0, 0};
+  static const mimetra_parameter* const of_common[] = {&common, nullptr};
+  static const mimetra_parameter* const of_out_of_range[] = {&out_of_range, nullptr};
+  static const mimetra_parameter* const of_two_meanings[] = {&two_meanings, nullptr};
+  static mimetra_operation all[] = {operation_named(nullptr),        operation_named("Has Blanks"),
+                                    operation_named("no-run"),       operation_named("no-kind"),
+                                    operation_named("no-size"),      operation_named("twice"),
+                                    operation_named("common-name"),  operation_named("no-default"),
+                                    operation_named("two-meanings"), operation_named("no-utf8")};
+  all[2].run = nullptr;
+  all[3].inputs = of_no_kind;
+  all[4].inputs = of_no_size;
+  all[5].inputs = twice;
+  all[6].parameters = of_common;
+  all[7].parameters = of_out_of_range;
+  all[8].inputs = twice + 1;
+  all[8].parameters = of_two_meanings;
+  all[9].summary = "\xff\xfe";
+  static const mimetra_operation* const operations[] = {&all[0], &all[1], &all[2], &all[3],
+                                                        &all[4], &all[5], &all[6], &all[7],
+                                                        &all[8], &all[9], nullptr};
+  static const mimetra_plugin plugin = plugin_of(operations);
+  return &plugin;
+}
+#endif

@@ -1,0 +1,79 @@
+// An operation that can be used, and whose run does something wrong, which its parameter chooses.
+
+#include <cmath>
+#include <new>
+#include <stdexcept>
+#include <string_view>
+
+#include <mimetra/c/mimetra.h>
+
+namespace {
+
+mimetra_status make(const mimetra_interface* m, mimetra_job* job, double z, const char* name) {
+  const double positions[] = {0, 0, 0, 1, 0, 0, 0, 1, z};
+  const std::int32_t corners[] = {0, 1, 2};
+  const mimetra_array arrays[] = {
+      {sizeof(mimetra_array), MIMETRA_F64, 2, 0, {3, 3, 0, 0}, name, positions},
+      {sizeof(mimetra_array), MIMETRA_I32, 2, 0, {1, 3, 0, 0}, "triangles", corners}};
+  const mimetra_array* const list[] = {&arrays[0], &arrays[1], nullptr};
+  mimetra_data* made = nullptr;
+  mimetra_status status = m->new_data(m->job_context(job), MIMETRA_SEQUENCE, "made", list, &made);
+  if (status == MIMETRA_OK) status = m->job_output(job, "out", made);
+  m->free_data(made);
+  return status;
+}
+
+mimetra_status run(const mimetra_interface* m, mimetra_job* job, void* user) {
+  const std::string_view how = m->job_text(job, "how");
+  if (how == "throw") throw std::runtime_error("of the plugin");
+  if (how == "throw-number") throw 42;
+  if (how == "throw-memory") throw std::bad_alloc();
+  if (how == "status") return 77;
+  if (how == "silent") return MIMETRA_MISMATCH;
+  if (how == "refuse") return m->job_fail(job, MIMETRA_MISMATCH, "one eye is closed");
+  if (how == "cancel") return MIMETRA_CANCELLED;
+  if (how == "nothing") return MIMETRA_OK;
+  if (how == "nan") return make(m, job, std::nan(""), "positions");
+  if (how == "name") return make(m, job, 0, "postions");
+  if (how == "ignored-nan") {
+    make(m, job, std::nan(""), "positions");
+    return MIMETRA_OK;
+  }
+  if (how == "twice") make(m, job, 0, "positions");
+  if (how == "kind") return m->job_output(job, "table", m->job_input(job, "sequence", 0));
+  if (how == "report") return m->job_report(job, "{\"a\": ", "");
+  if (how == "null") return m->job_output(job, nullptr, nullptr);
+  if (how == "unknown") {
+    const bool none = !m->job_input(job, "no", 0) && !m->job_input(job, "sequence", 5) &&
+                      !m->job_text(job, "no") && std::isnan(m->job_number(job, "no")) &&
+                      !m->job_wants(job, "no") && user == nullptr;
+    if (!none) return MIMETRA_FAILED;
+  }
+  if (how == "radius") {
+    m->job_report(
+        job, ("{\"radius\": " + std::to_string(m->job_number(job, "radius")) + "}").c_str(), "");
+  }
+  return make(m, job, 0, "positions");
+}
+
+const mimetra_port input = {sizeof input, MIMETRA_SEQUENCE, "sequence", "anything", 0, 0};
+const mimetra_port* const inputs[] = {&input, nullptr};
+const mimetra_port out = {sizeof out, MIMETRA_SEQUENCE, "out", "a triangle", 0, 0};
+const mimetra_port table = {sizeof table, MIMETRA_TABLE, "table", "", MIMETRA_OPTIONAL, 0};
+const mimetra_port* const outputs[] = {&out, &table, nullptr};
+const mimetra_parameter how = {
+    sizeof how, MIMETRA_TEXT, "how", "what goes wrong", "well", nullptr, 0, 0, nullptr, 0, 0};
+const mimetra_parameter radius = {
+    sizeof radius, MIMETRA_LENGTH, "radius", "a length", "0.5", nullptr, 0, 0, nullptr, 0, 0};
+const mimetra_parameter* const parameters[] = {&how, &radius, nullptr};
+const mimetra_operation operation = {
+    sizeof operation, 0,   "misbehave", "Does what is wrong", inputs, outputs, parameters,
+    nullptr,          run, nullptr};
+const mimetra_operation* const operations[] = {&operation, nullptr};
+const mimetra_plugin plugin = {sizeof plugin, MIMETRA_INTERFACE_VERSION, "misbehaving", operations};
+
+}  // namespace
+
+const mimetra_plugin* mimetra_get_plugin() {
+  return &plugin;
+}

@@ -1,0 +1,89 @@
+// Third-party operations in the command.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "cli/command.h"
+
+namespace mimetra {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+
+class PluginCommand : public test::CommandTest {
+ protected:
+  /// With the plugins of a folder of the build.
+  test::CommandResult run_with(const std::string& plugins, const std::string& arguments) const {
+    return run(arguments, "MIMETRA_PLUGIN_PATH=" MIMETRA_TEST_PLUGINS "/" + plugins);
+  }
+};
+
+TEST_F(PluginCommand, IsInHelpListingAndCompletion) {
+  EXPECT_THAT(run_with("samples", "--help").out,
+              AllOf(HasSubstr("smooth  "), HasSubstr("Show how fast each vertex moves")));
+  EXPECT_THAT(run_with("samples", "smooth --help").out,
+              AllOf(HasSubstr("--strength X"), HasSubstr("(default 0.5)"),
+                    HasSubstr("mimetra smooth take.npy --strength 0.3 -o smoothed.npy")));
+  EXPECT_THAT(run_with("samples", "operations --json").out, HasSubstr("\"name\": \"smooth\""));
+  for (const char* shell : {"bash", "zsh", "fish"}) {
+    EXPECT_THAT(run_with("samples", std::string("completion --shell ") + shell).out,
+                AllOf(HasSubstr("smooth"), HasSubstr("strength")));
+  }
+  EXPECT_THAT(run("--help").out, Not(HasSubstr("smooth")));
+}
+
+TEST_F(PluginCommand, IsFoundInTheInstallation) {
+  namespace fs = std::filesystem;
+  fs::create_directories(folder_ / "bin");
+  fs::copy_file(MIMETRA_COMMAND, folder_ / "bin" / "mimetra");
+  fs::create_directories(folder_ / MIMETRA_PLUGIN_FOLDER);
+  fs::copy_file(MIMETRA_TEST_PLUGINS "/samples/smooth.so",
+                folder_ / MIMETRA_PLUGIN_FOLDER / "smooth.so");
+  // By a path, by a name that the shell looks up, and through a link from elsewhere.
+  fs::create_directories(folder_ / "elsewhere");
+  fs::create_symlink("../bin/mimetra", folder_ / "elsewhere" / "mimetra");
+  for (const char* command :
+       {"bin/mimetra", "PATH=$PWD/bin:$PATH mimetra", "PATH=$PWD/elsewhere:$PATH mimetra"}) {
+    EXPECT_THAT(run("", std::string(command) + " --help && true").out,
+                AllOf(HasSubstr("smooth  "), Not(HasSubstr("speed  "))));
+  }
+}
+
+TEST_F(PluginCommand, WorksLikeOneOfTheToolkit) {
+  const auto result =
+      run_with("samples", "smooth head --weights take.csv --iterations 2 -o smooth.npy");
+  EXPECT_EQ(result.code, 0) << result.err;
+  EXPECT_TRUE(listing().contains("smooth.npy"));
+  EXPECT_THAT(text_of(folder_ / "smooth.run.json"), HasSubstr("\"iterations\""));
+  const auto speed = run_with("samples", "speed head --weights take.csv -o speed.pvd --json");
+  EXPECT_EQ(speed.code, 0) << speed.err;
+  EXPECT_THAT(speed.out, HasSubstr("\"top_speed\""));
+  EXPECT_EQ(run_with("samples", "smooth head --strength 2 -o no.npy").code, 2);
+}
+
+TEST_F(PluginCommand, FailsWithTheExitCodeOfThePlugin) {
+  const auto one = run_with("samples", "speed head -o no.pvd");
+  EXPECT_EQ(one.code, 4);
+  EXPECT_THAT(one.err, HasSubstr("speed sample: speed: one frame has no speed"));
+  EXPECT_FALSE(listing().contains("no.pvd"));
+  const auto thrown = run_with("misbehaving", "misbehave head --how throw -o no.npy");
+  EXPECT_EQ(thrown.code, 1);
+  EXPECT_THAT(thrown.err, HasSubstr("misbehaving: misbehave: threw an exception"));
+}
+
+TEST_F(PluginCommand, IsNotHarmedByBrokenPlugins) {
+  const auto result = run_with("broken/DESCRIPTIONS", "info head --json");
+  EXPECT_EQ(result.code, 0);
+  EXPECT_THAT(result.err, HasSubstr("warning: plugins: "));
+  EXPECT_THAT(result.out, HasSubstr("\"vertices\""));
+  EXPECT_THAT(run_with("broken/THROWS", "info head -q").err, IsEmpty());
+  const auto unknown = run_with("broken/OTHER_VERSION", "of-other-version");
+  EXPECT_EQ(unknown.code, 2);
+  EXPECT_THAT(unknown.err, AllOf(HasSubstr("is for version 2"), HasSubstr("no command")));
+}
+
+}  // namespace
+}  // namespace mimetra

@@ -1,0 +1,406 @@
+/*
+ * mimetra.h: the C interface of mimetra. Mesh tools call the toolkit's operations through it, and
+ * shared libraries add operations of their own. This header is its manual; it is C99 and C++.
+ *
+ * A program links libmimetra_c, or loads it, and asks for the table of functions:
+ *
+ *   const mimetra_interface* m = mimetra_get_interface(MIMETRA_INTERFACE_VERSION);
+ *   mimetra_context* context;
+ *   if (!m || m->new_context(NULL, NULL, &context) != MIMETRA_OK) return 1;
+ *
+ *   // A take of F frames and N vertices, as the host holds it.
+ *   mimetra_array positions = {sizeof positions, MIMETRA_F64, 3, 0, {F, N, 3}, "positions", xyz};
+ *   mimetra_array triangles = {sizeof triangles, MIMETRA_I32, 2, 0, {T, 3}, "triangles", corners};
+ *   const mimetra_array* arrays[] = {&positions, &triangles, NULL};
+ *   mimetra_data* take = NULL;
+ *   mimetra_call* call = NULL;
+ *   mimetra_data* result = NULL;
+ *   const mimetra_array* moved = NULL;
+ *   if (m->new_data(context, MIMETRA_SEQUENCE, "take", arrays, &take) ||
+ *       m->new_call(context, "transfer", &call) ||
+ *       m->call_give(call, "source", take) ||
+ *       m->call_read(call, "target", "actor@identity001=1") ||
+ *       m->call_set(call, "k", "30") ||
+ *       m->call_run(call) ||
+ *       m->call_output(call, "out", 0, &result) ||
+ *       m->data_array(context, result, "positions", &moved)) {
+ *     fprintf(stderr, "%s\n", m->message(context));
+ *   } else {
+ *     use((const double*)moved->values, moved->shape);  // F, vertices of the actor, 3
+ *   }
+ *   m->free_data(result);
+ *   m->free_call(call);
+ *   m->free_data(take);
+ *   m->free_context(context);
+ *
+ * Versions. A library that answers NULL does not serve that version of the header; one that serves
+ *   it will for good. Within a version, structs grow at their end only. Whoever makes a struct sets
+ *   its struct_size; fields past that count as zero. A program that is to run with an older library
+ *   asks MIMETRA_HAS(m, function) before it calls a function that was added later.
+ *
+ * Errors. Functions that can fail return a mimetra_status: the exit code of the command in the same
+ *   case. What they were to make is then NULL, and m->message(context) says what is wrong, in words
+ *   for people. NULL where a handle is needed is MIMETRA_USAGE. No C++ exception leaves a function,
+ *   and none may leave a callback.
+ *
+ * Who frees what. What a function hands over through a pointer to a handle (mimetra_context**,
+ *   mimetra_data**, mimetra_call**) is the caller's, to be freed by the free_... function of its
+ *   kind, which takes NULL too. What is behind a pointer to const (text, descriptions, arrays)
+ *   belongs to the handle that was asked for it, and lives as long as that unless said otherwise.
+ *   Arguments are copied: they may go when the function returns.
+ *
+ * Threads. A context, with its calls, serves one thread at a time; several contexts serve several
+ *   threads at once. Values (mimetra_data) belong to no context and never change: any number of
+ *   threads may read one and give it to calls. Callbacks come from the thread that called. Inside,
+ *   an operation uses as many threads as m->set_threads() allows; results do not depend on it.
+ *
+ * Text is UTF-8 and ends with 0. Lists end with NULL. Arrays are in C order, without gaps.
+ */
+#ifndef MIMETRA_H
+#define MIMETRA_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define MIMETRA_INTERFACE_VERSION 1
+
+#if defined(_WIN32)
+#define MIMETRA_EXPORT __declspec(dllexport)
+#elif defined(__GNUC__)
+#define MIMETRA_EXPORT __attribute__((visibility("default")))
+#else
+#define MIMETRA_EXPORT
+#endif
+
+/* ---- Words ---------------------------------------------------------------------------------- */
+
+typedef int32_t mimetra_status;
+enum {
+  MIMETRA_OK = 0,
+  MIMETRA_FAILED = 1,     /* the computation failed */
+  MIMETRA_USAGE = 2,      /* the request is wrong whatever the data */
+  MIMETRA_BAD_INPUT = 3,  /* an input is wrong in itself */
+  MIMETRA_MISMATCH = 4,   /* inputs contradict each other or the request */
+  MIMETRA_BAD_OUTPUT = 5, /* an output cannot be written, or exists */
+  MIMETRA_CANCELLED = 130 /* the progress function said so */
+};
+
+/* Kinds of values. Their arrays are listed at mimetra_data. */
+typedef int32_t mimetra_kind;
+enum {
+  MIMETRA_SEQUENCE = 1,
+  MIMETRA_MODEL = 2,
+  MIMETRA_COMPONENTS = 3,
+  MIMETRA_REGIONS = 4,
+  MIMETRA_FIELDS = 5,
+  MIMETRA_TABLE = 6,
+  MIMETRA_ANIMATED_MODEL = 7,
+  MIMETRA_PICTURE = 8,
+  MIMETRA_LANDMARKS = 9,
+  MIMETRA_MORPHABLE_MODEL = 10,
+  MIMETRA_FIT = 11,
+  MIMETRA_PICTURES = 12,
+  MIMETRA_VIEW = 13
+};
+
+/* Kinds of parameters, and how their values are written as text. */
+typedef int32_t mimetra_parameter_kind;
+enum {
+  MIMETRA_FLAG = 1,         /* "true" or "false" */
+  MIMETRA_INTEGER = 2,      /* "30" */
+  MIMETRA_INTEGER_LIST = 3, /* "10,30,40" */
+  MIMETRA_NUMBER = 4,       /* "0.5" */
+  MIMETRA_LENGTH = 5,       /* "0.1" of the longest side of the rest pose's box, or "12abs" */
+  MIMETRA_CHOICE = 6,       /* one of the choices */
+  MIMETRA_TEXT = 7,
+  MIMETRA_FILE = 8 /* a path, or one of the choices */
+};
+
+/* Types of an array's elements. */
+enum {
+  MIMETRA_F64 = 1,
+  MIMETRA_F32 = 2, /* taken; what comes back is F64 */
+  MIMETRA_I32 = 3,
+  MIMETRA_U8 = 4,
+  MIMETRA_STRING = 5 /* const char* */
+};
+
+/* What an array has one entry of: nothing of the mesh, each vertex, each triangle. */
+enum { MIMETRA_NOWHERE = 0, MIMETRA_ON_VERTICES = 1, MIMETRA_ON_TRIANGLES = 2 };
+
+enum { MIMETRA_INFO = 0, MIMETRA_WARNING = 1 };
+
+/* What an operation may be given and makes: flags of mimetra_port. */
+enum {
+  MIMETRA_OPTIONAL = 1,
+  MIMETRA_REPEATED = 2, /* one value or more; an output has one for each of the repeated input */
+  MIMETRA_NAMED = 4     /* the command takes it as --NAME although it is needed */
+};
+
+/* ---- Callbacks ------------------------------------------------------------------------------ */
+
+/* Share of the work done, in [0, 1]; 0 as the answer cancels. */
+typedef int32_t (*mimetra_progress)(double share, void* user);
+
+/* One line for the user; level is MIMETRA_INFO or MIMETRA_WARNING. */
+typedef void (*mimetra_log)(int32_t level, const char* text, void* user);
+
+/* ---- Values --------------------------------------------------------------------------------- */
+
+typedef struct mimetra_array {
+  uint32_t struct_size;
+  int32_t type;     /* MIMETRA_F64, ... */
+  int32_t rank;     /* 1 to 4 */
+  int32_t location; /* of a field: MIMETRA_ON_VERTICES or MIMETRA_ON_TRIANGLES */
+  int64_t shape[4];
+  const char* name;
+  const void* values;
+} mimetra_array;
+
+/*
+ * A value: what goes into operations and comes out of them. It is made of named arrays, and shows
+ * itself as those. N vertices, T triangles, P polygons, C polygon corners, F frames, K components,
+ * R regions, D expressions, I identities, W weights. What stands in [brackets] may be left out when
+ * a value is made; what stands after a | is only shown.
+ *
+ *   faces             face_sizes I32 P and corners I32 C, or triangles I32 T x 3;
+ *                     both are shown | face_of_triangle I32 T
+ *   sequence          positions F x N x 3 (or N x 3), faces, [times F, seconds], [rest N x 3]
+ *   model             neutral N x 3, faces, [expressions D x N x 3, expression_names STRING D];
+ *                     without expressions it is a mesh
+ *   morphable model   the same, [identities I x N x 3, identity_names STRING I]
+ *   animated model    a morphable model; weights F x W, weight_names STRING W, [times F],
+ *                     [landmarks I32 L x 2: number, vertex]
+ *   components        rest N x 3, triangles, displacements K x N x 3, weights F x K, centers I32 K
+ *                     (-1: it died), support K x N, [energies], [scale 1], [d_min 1], [d_max 1]
+ *   regions           masks U8 R x N, triangles or faces | centers I32 R, radii R, energies R,
+ *                     energy_shares R, vertex_energy N, faces where known, and fields: region
+ *                     I32 N (strongest region, -1 outside), region_count I32 N, roi I32 N (0/1),
+ *                     in_L I32 T (0/1), ...; centers, radii and energies say nothing of regions
+ *                     that were made or read
+ *   fields            a sequence's arrays, and any number of fields: N or N x c on vertices, T or
+ *                     T x c on triangles, by their location
+ *   table             one array R per column; NaN is an empty cell
+ *   picture           pixels U8 height x width x 3, sRGB, from the top left
+ *   landmarks         points F x L x 2 (pixels, y down, NaN: not seen), names STRING L, [times F],
+ *                     [confidence F]
+ *   fit               | alpha F x I, beta F x D, identity_names STRING I,
+ *                     expression_names STRING D, times F, cameras F x 2 x 4, rms F
+ *   pictures, view    no arrays: they are there to be saved
+ *
+ * Where no type stands, it is F64, and F32 is taken too. Numbers must be finite, but for fields,
+ * tables and the points of landmarks.
+ */
+typedef struct mimetra_data mimetra_data;
+
+/* ---- Operations ----------------------------------------------------------------------------- */
+
+/* An input or output. */
+typedef struct mimetra_port {
+  uint32_t struct_size;
+  mimetra_kind kind;
+  const char* name;
+  const char* help; /* one line */
+  uint32_t flags;   /* MIMETRA_OPTIONAL | ... */
+  uint32_t reserved;
+} mimetra_port;
+
+typedef struct mimetra_parameter {
+  uint32_t struct_size;
+  mimetra_parameter_kind kind;
+  const char* name;           /* "radius" */
+  const char* help;           /* one line */
+  const char* fallback;       /* the default as text; NULL for none */
+  const char* unit;           /* NULL for none */
+  double minimum;             /* of numbers and lengths; -INFINITY and INFINITY are open ends */
+  double maximum;             /* there is no range where it is not above the minimum */
+  const char* const* choices; /* NULL for none */
+  uint32_t of_files;          /* 1: speaks of reading files or writing them, not of the operation */
+  uint32_t reserved;
+} mimetra_parameter;
+
+struct mimetra_interface;
+typedef struct mimetra_job mimetra_job;
+
+/* What a third-party operation does; see mimetra_plugin. */
+typedef mimetra_status (*mimetra_run)(const struct mimetra_interface* m, mimetra_job* job,
+                                      void* user);
+
+typedef struct mimetra_operation {
+  uint32_t struct_size;
+  uint32_t reserved;
+  const char* name;    /* "transfer" */
+  const char* summary; /* one line */
+  const mimetra_port* const* inputs;
+  const mimetra_port* const* outputs;
+  const mimetra_parameter* const* parameters;
+  const char* const* examples; /* command lines without the program's name */
+  mimetra_run run;             /* NULL where an operation is only described */
+  void* user;                  /* handed to run */
+} mimetra_operation;
+
+/* An operation table with its plugins, settings, and the last error. */
+typedef struct mimetra_context mimetra_context;
+
+/* One operation with its inputs and parameters, to be run. */
+typedef struct mimetra_call mimetra_call;
+
+/* ---- Functions ------------------------------------------------------------------------------ */
+
+typedef struct mimetra_interface {
+  uint32_t struct_size;
+  uint32_t version;            /* MIMETRA_INTERFACE_VERSION of this table */
+  const char* toolkit_version; /* "0.1.0" */
+
+  /* -- Contexts -- */
+
+  /* A context with the toolkit's operations and those of plugins that are found (mimetra_plugin).
+   * Plugins that cannot be used are told to `log` and left out. `log` may be NULL. */
+  mimetra_status (*new_context)(mimetra_log log, void* user, mimetra_context** context);
+  /* Free its calls first. */
+  void (*free_context)(mimetra_context* context);
+  /* Why the last function that failed with this context did so; until the next one fails. */
+  const char* (*message)(const mimetra_context* context);
+  /* For everything that takes time; NULL for none. */
+  mimetra_status (*set_progress)(mimetra_context* context, mimetra_progress progress, void* user);
+  /* At most so many threads; 0 for all there are. */
+  mimetra_status (*set_threads)(mimetra_context* context, int32_t threads);
+
+  /* -- What there is -- */
+
+  /* All operations; a list that ends with NULL. */
+  const mimetra_operation* const* (*operations)(const mimetra_context* context);
+  /* NULL where there is none of that name. */
+  const mimetra_operation* (*find_operation)(const mimetra_context* context, const char* name);
+  /* The same as a JSON array: what `mimetra operations --json` prints. */
+  mimetra_status (*operations_json)(mimetra_context* context, const char** json);
+
+  /* -- Values -- */
+
+  /* A value of arrays. `name` stands in messages and names of outputs. */
+  mimetra_status (*new_data)(mimetra_context* context, mimetra_kind kind, const char* name,
+                             const mimetra_array* const* arrays, mimetra_data** data);
+  /* The value `base` with these arrays in place of its own; what no array shows, such as texture
+   * coordinates, stays. */
+  mimetra_status (*derive_data)(mimetra_context* context, const mimetra_data* base,
+                                const mimetra_array* const* arrays, mimetra_data** data);
+  /* A value of a file, folder or whatever else the command takes as an input of that kind.
+   * `settings`: "frames=0:100", "fps=25", "weights=take.csv", "topology=mesh.ply"; NULL for none.
+   * Region sets speak of a mesh: they are read as an input of a call, by call_read. */
+  mimetra_status (*load_data)(mimetra_context* context, mimetra_kind kind, const char* text,
+                              const char* const* settings, mimetra_data** data);
+  /* Writes it by the path's extension, as the command does. `settings` are the command's parameters
+   * of writing ("format=obj"), and "force=true" to replace what is there; NULL for none. */
+  mimetra_status (*save_data)(mimetra_context* context, const mimetra_data* data, const char* path,
+                              const char* const* settings);
+  void (*free_data)(mimetra_data* data);
+
+  mimetra_kind (*data_kind)(const mimetra_data* data); /* 0 for NULL */
+  const char* (*data_name)(const mimetra_data* data);
+  /* All its arrays; a list that ends with NULL. */
+  mimetra_status (*data_arrays)(mimetra_context* context, const mimetra_data* data,
+                                const mimetra_array* const** arrays);
+  /* One of them. MIMETRA_USAGE where it has none of that name; the message lists those it has. */
+  mimetra_status (*data_array)(mimetra_context* context, const mimetra_data* data, const char* name,
+                               const mimetra_array** array);
+  /* Regions, tables and fits: what their .json file holds. Others: kind, name and arrays. */
+  mimetra_status (*data_json)(mimetra_context* context, const mimetra_data* data,
+                              const char** json);
+
+  /* -- Calls: first everything that goes in, then call_run, then what came out -- */
+
+  mimetra_status (*new_call)(mimetra_context* context, const char* operation, mimetra_call** call);
+  void (*free_call)(mimetra_call* call);
+  /* A parameter's value as text; NULL brings back its default. */
+  mimetra_status (*call_set)(mimetra_call* call, const char* parameter, const char* text);
+  /* The value of an input; again for each value of a repeated one. */
+  mimetra_status (*call_give)(mimetra_call* call, const char* input, const mimetra_data* data);
+  /* The same from a file, read when the call runs, with its parameters ("frames", "weights"). */
+  mimetra_status (*call_read)(mimetra_call* call, const char* input, const char* text);
+  /* Asks for an optional output; needed outputs are always made. */
+  mimetra_status (*call_want)(mimetra_call* call, const char* output);
+  /* May run again after changes. */
+  mimetra_status (*call_run)(mimetra_call* call);
+  /* How many values an output has; 0 before a run, and for what was not asked for. */
+  int32_t (*call_output_count)(const mimetra_call* call, const char* output);
+  /* One of them, to be freed by free_data; it outlives the call. */
+  mimetra_status (*call_output)(mimetra_call* call, const char* output, int32_t index,
+                                mimetra_data** data);
+  /* What the command prints with --json, and without; until the next run, "" before the first. */
+  const char* (*call_report)(const mimetra_call* call);
+  const char* (*call_summary)(const mimetra_call* call);
+
+  /* -- For third-party operations: a run from inside. What it is given belongs to the job -- */
+
+  /* A context for making values and calling the toolkit's own operations; belongs to the job. Its
+   * message is the job's where run returns an error. */
+  mimetra_context* (*job_context)(mimetra_job* job);
+  /* Value `index` of an input; NULL past its last one, and for an optional one not given. */
+  const mimetra_data* (*job_input)(mimetra_job* job, const char* input, int32_t index);
+  /* A parameter as a number: flags are 0 or 1, lengths in the unit of the first input with
+   * positions. NaN where it has no value or no number. */
+  double (*job_number)(mimetra_job* job, const char* parameter);
+  /* A parameter as text, of any kind; NULL where it has no value. */
+  const char* (*job_text)(mimetra_job* job, const char* parameter);
+  /* How many threads to use at most. */
+  int32_t (*job_threads)(mimetra_job* job);
+  /* 1 where an optional output was asked for; needed ones always are. */
+  int32_t (*job_wants)(mimetra_job* job, const char* output);
+  /* Call it often. MIMETRA_CANCELLED: free what you hold and return that. */
+  mimetra_status (*job_progress)(mimetra_job* job, double share);
+  void (*job_log)(mimetra_job* job, int32_t level, const char* text);
+  /* Says why run fails, and returns `status` for run to return. */
+  mimetra_status (*job_fail)(mimetra_job* job, mimetra_status status, const char* message);
+  /* A value for an output; once for each value of a repeated one. Yours stays yours to free. */
+  mimetra_status (*job_output)(mimetra_job* job, const char* output, const mimetra_data* data);
+  /* The result for programs, a JSON object, and for people, lines of text. */
+  mimetra_status (*job_report)(mimetra_job* job, const char* json, const char* summary);
+} mimetra_interface;
+
+/* True where the library that serves `m` is new enough to have a function. */
+#define MIMETRA_HAS(m, function) \
+  ((m)->struct_size >= offsetof(mimetra_interface, function) + sizeof((m)->function))
+
+typedef const mimetra_interface* (*mimetra_get_interface_function)(uint32_t version);
+
+/* The table of a version, or NULL for one that this library does not serve. Its only symbol. */
+MIMETRA_EXPORT const mimetra_interface* mimetra_get_interface(uint32_t version);
+
+/* ---- Third-party operations ----------------------------------------------------------------- */
+
+/*
+ * A plugin is a shared library with one function, which describes its operations:
+ *
+ *   MIMETRA_EXPORT const mimetra_plugin* mimetra_get_plugin(void) { return &plugin; }
+ *
+ * It links nothing of mimetra: run() is handed the table of functions, of the version that the
+ * plugin was compiled with. Whatever it describes stays as it is until the process ends. run() may
+ * be called from several threads at once, with a job each.
+ *
+ * Plugins are the files *.so in the folders of MIMETRA_PLUGIN_PATH (separated by ':') and in
+ * lib/mimetra/plugins of the installation. Their operations appear in the command, with help and
+ * completion, and in every host. One that cannot be used (another version, no mimetra_get_plugin, a
+ * name that is taken, a description with errors) is reported and left out. What a run hands back is
+ * checked; an error, an exception or an impossible value ends that run only, with a message.
+ */
+typedef struct mimetra_plugin {
+  uint32_t struct_size;
+  uint32_t version; /* MIMETRA_INTERFACE_VERSION */
+  const char* name; /* for messages */
+  const mimetra_operation* const* operations;
+} mimetra_plugin;
+
+typedef const mimetra_plugin* (*mimetra_get_plugin_function)(void);
+
+/* Defined by the plugin. */
+MIMETRA_EXPORT const mimetra_plugin* mimetra_get_plugin(void);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif
