@@ -1,0 +1,337 @@
+"""One Blender operator for each operation of the table."""
+
+import contextlib
+import logging
+import os
+import threading
+import time
+
+import bpy
+
+from . import mimetra, properties, results, sources
+
+# Shares of a run: reading poses, computing, showing.
+_READING, _COMPUTING = 0.3, 0.95
+_STEP = 0.05  # seconds between looks at the user's keys
+
+_classes = []
+
+
+class _Warnings(logging.Handler):
+    """What the library warns of during a run."""
+
+    def __init__(self):
+        super().__init__(logging.WARNING)
+        self.texts = []
+
+    def emit(self, record):
+        self.texts.append(record.getMessage())
+
+
+def _part(steps, begin, end):
+    """Yields the shares of some steps as part of a whole; returns what they do."""
+    while True:
+        try:
+            share = next(steps)
+        except StopIteration as done:
+            return done.value
+        yield begin + (end - begin) * share
+
+
+def _computed(operation, inputs, options):
+    """Yields the share done; returns the result. Closing it cancels the computation."""
+    state = {"share": 0.0}
+    cancelled = threading.Event()
+
+    def watch(share):
+        state["share"] = share
+        return not cancelled.is_set()
+
+    def compute():
+        try:
+            state["result"] = mimetra.run(operation.name, **inputs, **options, progress=watch)
+        except Exception as error:
+            state["error"] = error
+
+    thread = threading.Thread(target=compute, name=f"mimetra {operation.name}")
+    thread.start()
+    try:
+        while thread.is_alive():
+            yield state["share"]
+            thread.join(_STEP)
+    finally:
+        cancelled.set()
+        thread.join()
+    if "error" in state:
+        raise state["error"]
+    return state["result"]
+
+
+class _Run:
+    """What all operators share; `operation` is that of the table."""
+
+    operation = None
+
+    @classmethod
+    def poll(cls, context):
+        if not properties.active_input(cls.operation):
+            return True
+        subject = context.active_object
+        if not subject or subject.type != "MESH":
+            cls.poll_message_set("Select a mesh")
+            return False
+        if subject.mode != "OBJECT":
+            cls.poll_message_set("Leave the mode of editing")
+            return False
+        return True
+
+    def frames(self, scene):
+        """The frames asked for, or the scene's."""
+        start = self.frame_start if self.properties.is_property_set("frame_start") \
+            else scene.frame_start
+        end = self.frame_end if self.properties.is_property_set("frame_end") else scene.frame_end
+        if end < start:
+            raise mimetra.UsageError(f"frames: expected an end of at least {start}, found {end}")
+        return list(range(start, end + 1, self.frame_step))
+
+    def _object(self, port):
+        """The object that an input names."""
+        name = getattr(self, properties.property_name(port.name))
+        if not name:
+            if port.optional:
+                return None
+            raise mimetra.UsageError(f"{self.operation.name}: expected an object as {port.name}:"
+                                     f" {port.help}")
+        subject = bpy.data.objects.get(name)
+        if subject is None or subject.type != "MESH":
+            raise mimetra.BadInput(f"{name}: expected a mesh object as {port.name}")
+        return subject
+
+    def _value(self, context, port, subject, frames):
+        """Yields the share done; returns the value of an object or a path as an input."""
+        if port.kind is mimetra.Model:
+            return sources.model(subject)
+        if port.kind in (mimetra.Sequence, mimetra.Fields):
+            return (yield from sources.sequence(context, subject, frames))
+        text = getattr(self, properties.property_name(port.name))
+        path = bpy.path.abspath(text)
+        if port.kind is mimetra.Regions and text and not os.path.isfile(path):
+            return sources.regions(subject, text)
+        if not text and not port.optional:
+            raise mimetra.UsageError(f"{self.operation.name}: expected a path as {port.name}:"
+                                     f" {port.help}")
+        return path or None
+
+    def _inputs(self, context, frames):
+        """Yields the share done; returns the inputs by name, and the objects they are of."""
+        values, objects = {}, {}
+        active = properties.active_input(self.operation)
+        for port in self.operation.inputs:
+            name = mimetra.python_name(port.name)
+            if port is active:
+                objects[name] = context.active_object
+            elif properties.is_object(self.operation, port):
+                objects[name] = self._object(port)
+                if objects[name] is None:
+                    continue
+            subject = objects.get(name) or context.active_object
+            values[name] = yield from self._value(context, port, subject, frames)
+        return values, objects
+
+    def _options(self, objects):
+        """The parameters that were set, and the optional outputs that are wanted."""
+        options = {}
+        for parameter in properties.parameters_of(self.operation):
+            value = properties.value_of(parameter, self.properties)
+            if value is not None:
+                options[mimetra.python_name(parameter.name)] = value
+        # Vertices that are solved for have no weights.
+        keyed = self._keyed(objects) and options.get("space") != "vertex"
+        for port in self.operation.outputs:
+            asked = port.optional and getattr(self, properties.property_name(port.name))
+            if port.optional and (asked or (keyed and port.kind is mimetra.Table)):
+                options[mimetra.python_name(port.name)] = True
+        return options
+
+    def _keyed(self, objects):
+        """The object whose shape keys may hold the result: the model's of the inputs."""
+        for port in self.operation.inputs:
+            subject = objects.get(mimetra.python_name(port.name))
+            if port.kind is mimetra.Model and subject and sources.expression_keys(subject):
+                return subject
+        return None
+
+    def _steps(self, context):
+        """Yields the share of the work done. Nothing has changed before its last step."""
+        frames = self.frames(context.scene)
+        values, objects = yield from _part(self._inputs(context, frames), 0, _READING)
+        options = self._options(objects)
+        steps = _computed(self.operation, values, options)
+        result = yield from _part(steps, _READING, _COMPUTING)
+        shown = results.Frames(context.scene, frames, self.cache_format, self.cache_folder)
+        self._show(context, result, values, objects, shown)
+        yield 1.0
+
+    def _show(self, context, result, values, objects, frames):
+        """Shows what was made, on the target where there is one."""
+        names = {port.name: mimetra.python_name(port.name) for port in self.operation.outputs}
+        made = {port.name: (port, getattr(result, names[port.name]))
+                for port in self.operation.outputs if getattr(result, names[port.name]) is not None}
+        target = next((objects[mimetra.python_name(port.name)] for port in self.operation.inputs
+                       if port.kind is mimetra.Model), None)
+        source = context.active_object if properties.active_input(self.operation) else None
+        if target and self._show_on_target(made, values, target, frames):
+            made = {name: each for name, each in made.items()
+                    if each[0].kind is not mimetra.Sequence}
+        for port, value in made.values():
+            self._show_value(context, port, value, source, frames)
+        for note in frames.notes:
+            self.report({"WARNING"}, note)
+        if result.summary:
+            results.show_text(f"mimetra {self.operation.name}", result.summary)
+            self.report({"INFO"}, result.summary.strip())
+
+    def _show_on_target(self, made, values, target, frames):
+        """Shape keys where they can hold the result, else a mesh cache. False for neither."""
+        sequence = next((value for port, value in made.values()
+                         if port.kind is mimetra.Sequence), None)
+        if sequence is None or not results.has_faces_of(target, sequence):
+            return False
+        model = next(value for value in values.values() if isinstance(value, mimetra.Model))
+        for port, value in list(made.values()):
+            weights = port.kind is mimetra.Table and results.keyed_weights(target, value)
+            if weights and results.holds(model, weights, sequence["positions"]):
+                results.set_keys(target.data.shape_keys, weights, frames)
+                results.remove_mesh_cache(target)
+                return True
+        if model.keys() >= {"expressions"} and any(
+                port.kind is mimetra.Table for port, _ in made.values()):
+            self.report({"INFO"}, f"{target.name}: moves as shape keys cannot; it got a mesh cache")
+        results.add_mesh_cache(target, sequence["positions"], frames, target.name)
+        return True
+
+    def _show_value(self, context, port, value, source, frames):
+        """One output where no target takes it."""
+        name = f"{source.name} {self.operation.name}" if source else self.operation.name
+        setting = getattr(self, properties.property_name(port.name), None)
+        if port.kind not in properties.SHOWN or (setting and properties.is_written(port)):
+            self._save(port, value, setting)
+        elif port.kind is mimetra.Sequence:
+            results.show_sequence(context, value, source, frames, name)
+        elif port.kind is mimetra.AnimatedModel:
+            results.show_animated_model(context, value, frames, name)
+        elif port.kind is mimetra.Components:
+            results.show_components(context, value, source, frames, name)
+        elif port.kind is mimetra.Table:
+            if setting or not port.optional:
+                results.show_text(f"{name} {port.name}.csv", results.csv_of(value))
+        elif source and port.kind is mimetra.Regions:
+            results.show_regions(value, source)
+        elif source:
+            results.show_fields(value, source)
+
+    def _save(self, port, value, path):
+        if not path:
+            raise mimetra.UsageError(f"{self.operation.name}: expected a path for {port.name}:"
+                                     f" {port.help}")
+        value.save(bpy.path.abspath(path), force=True)
+
+    @contextlib.contextmanager
+    def _reported(self):
+        """Errors and warnings of the library as those of Blender."""
+        warnings = _Warnings()
+        logger = logging.getLogger("mimetra")
+        logger.addHandler(warnings)
+        try:
+            yield
+        finally:
+            logger.removeHandler(warnings)
+            for text in warnings.texts:
+                self.report({"WARNING"}, text)
+
+    def execute(self, context):
+        manager = context.window_manager
+        manager.progress_begin(0, 100)
+        try:
+            with self._reported():
+                for share in self._steps(context):
+                    manager.progress_update(100 * share)
+        except mimetra.Error as error:
+            self.report({"ERROR"}, str(error))
+            return {"CANCELLED"}
+        finally:
+            manager.progress_end()
+        return {"FINISHED"}
+
+    def invoke(self, context, event):
+        if bpy.app.background or not context.window:
+            return self.execute(context)
+        self._running = self._watched_steps(context)
+        self._timer = context.window_manager.event_timer_add(_STEP, window=context.window)
+        context.window_manager.progress_begin(0, 100)
+        context.window_manager.modal_handler_add(self)
+        return {"RUNNING_MODAL"}
+
+    def _watched_steps(self, context):
+        with self._reported():
+            yield from self._steps(context)
+
+    def modal(self, context, event):
+        if event.type == "ESC":
+            self._running.close()
+            self.report({"WARNING"}, f"mimetra {self.operation.name}: cancelled")
+            return self._end(context, {"CANCELLED"})
+        if event.type != "TIMER":
+            return {"RUNNING_MODAL"}
+        until = time.monotonic() + _STEP
+        try:
+            share = next(self._running)
+            while time.monotonic() < until:
+                share = next(self._running)
+        except StopIteration:
+            return self._end(context, {"FINISHED"})
+        except mimetra.Error as error:
+            self.report({"ERROR"}, str(error))
+            return self._end(context, {"CANCELLED"})
+        except Exception:
+            self._end(context, {"CANCELLED"})
+            raise
+        context.window_manager.progress_update(100 * share)
+        context.workspace.status_text_set(
+            f"mimetra {self.operation.name}: {100 * share:.0f} %  (Esc cancels)")
+        return {"RUNNING_MODAL"}
+
+    def cancel(self, context):
+        """Blender ends, or opens another file."""
+        self._running.close()
+        context.window_manager.event_timer_remove(self._timer)
+
+    def _end(self, context, answer):
+        context.window_manager.event_timer_remove(self._timer)
+        context.window_manager.progress_end()
+        context.workspace.status_text_set(None)
+        return answer
+
+
+def idname(operation):
+    """The name of an operation's operator."""
+    return f"mimetra.{mimetra.python_name(operation.name)}"
+
+
+def register():
+    for operation in mimetra.operations.values():
+        made = type(f"MIMETRA_OT_{mimetra.python_name(operation.name)}",
+                    (_Run, bpy.types.Operator), {
+                        "bl_idname": idname(operation),
+                        "bl_label": operation.name.replace("-", " ").capitalize(),
+                        "bl_description": operation.summary,
+                        "bl_options": {"REGISTER", "UNDO"},
+                        "operation": operation,
+                        "__annotations__": properties.annotations_of(operation, pointers=False)})
+        bpy.utils.register_class(made)
+        _classes.append(made)
+
+
+def unregister():
+    while _classes:
+        bpy.utils.unregister_class(_classes.pop())

@@ -1,0 +1,297 @@
+"""What operations make, as Blender shows it."""
+
+import pathlib
+import tempfile
+
+import bpy
+import numpy as np
+
+from . import colors, mimetra, point_cache, sources
+
+_MODIFIER = "mimetra"
+_GROUP = "mimetra region"
+
+
+class Frames:
+    """Where results lie in time, and where their caches go."""
+
+    def __init__(self, scene, frames, cache_format, cache_folder):
+        self.rate = scene.render.fps / scene.render.fps_base
+        self.start = frames[0]
+        self.step = frames[1] - frames[0] if len(frames) > 1 else 1
+        self.cache_format = cache_format
+        self.folder = cache_folder
+        self.notes = []  # for the user
+
+    def at(self, count):
+        """The scene's frames of so many poses."""
+        return self.start + self.step * np.arange(count)
+
+
+def _cache_folder(frames):
+    """The folder of caches; a temporary one as long as the file has no place."""
+    if frames.folder.startswith("//") and not bpy.data.filepath:
+        frames.notes.append("The file has not been saved: its mesh cache goes when Blender ends;"
+                            " save the file, then run again")
+        return pathlib.Path(tempfile.mkdtemp(prefix="mimetra_", dir=bpy.app.tempdir or None))
+    return pathlib.Path(bpy.path.abspath(frames.folder))
+
+
+def _cache_path(folder, name, extension):
+    """A path in a folder that no file has yet: undo brings back what an older one shows."""
+    stem = bpy.path.clean_name(name)
+    path, number = folder / f"{stem}.{extension}", 1
+    while path.exists():
+        number += 1
+        path = folder / f"{stem}.{number:03}.{extension}"
+    return path
+
+
+def add_mesh_cache(subject, positions, frames, name):
+    """Lets an object follow poses by a Mesh Cache modifier. Returns the file."""
+    content = (point_cache.pc2(positions, frames.start) if frames.cache_format == "PC2" else
+               point_cache.mdd(positions, frames.at(len(positions)) / frames.rate))
+    folder = _cache_folder(frames)
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        path = _cache_path(folder, name, frames.cache_format.lower())
+        path.write_bytes(content)
+    except OSError as error:
+        raise mimetra.OutputError(f"{folder}: cannot write the mesh cache: {error.strerror}; choose"
+                                  " another folder") from None
+    modifier = subject.modifiers.get(_MODIFIER)
+    if modifier is None:
+        modifier = subject.modifiers.new(_MODIFIER, "MESH_CACHE")
+        with bpy.context.temp_override(object=subject, active_object=subject):
+            bpy.ops.object.modifier_move_to_index(modifier=modifier.name, index=0)
+    saved = bpy.data.filepath and frames.folder.startswith("//")
+    modifier.cache_format = frames.cache_format
+    modifier.filepath = bpy.path.relpath(str(path)) if saved else str(path)
+    modifier.time_mode, modifier.play_mode = "FRAME", "SCENE"
+    # Blender takes the start off after the scale.
+    modifier.frame_scale = 1 / frames.step
+    modifier.frame_start = frames.start / frames.step
+    modifier.forward_axis, modifier.up_axis = "POS_Y", "POS_Z"
+    return path
+
+
+def remove_mesh_cache(subject):
+    modifier = subject.modifiers.get(_MODIFIER)
+    if modifier and modifier.type == "MESH_CACHE":
+        subject.modifiers.remove(modifier)
+
+
+def _own_action(keys):
+    """An action of these shape keys alone."""
+    animation = keys.animation_data_create()
+    if animation.action is None:
+        animation.action = bpy.data.actions.new(keys.name)
+    elif animation.action.users > 1:
+        animation.action = animation.action.copy()
+    return animation.action
+
+
+def set_keys(keys, weights, frames):
+    """Keyed values of shape keys, {name: F}; other keys and curves stay."""
+    driven = {curve.data_path for curve in keys.animation_data.drivers} if keys.animation_data \
+        else set()
+    paths = {name: f'key_blocks["{bpy.utils.escape_identifier(name)}"].value' for name in weights}
+    for name, path in paths.items():
+        if path in driven:
+            raise mimetra.Mismatch(f"{keys.name}: the shape key '{name}' is driven; remove its"
+                                   " driver, or transfer with the space 'vertex'")
+    action = _own_action(keys)
+    for name, values in weights.items():
+        old = action.fcurves.find(paths[name])
+        if old:
+            action.fcurves.remove(old)
+        curve = action.fcurves.new(paths[name])
+        curve.keyframe_points.add(len(values))
+        points = np.column_stack([frames.at(len(values)), values]).astype(np.float32)
+        curve.keyframe_points.foreach_set("co", points.ravel())
+        for point in curve.keyframe_points:
+            point.interpolation = "LINEAR"
+        curve.update()
+
+
+def keyed_weights(subject, table):
+    """The columns of a table that are an object's shape keys, {name: F}; all must be known."""
+    names = {key.name for key in sources.expression_keys(subject)}
+    columns = {name: table[name] for name in table if name not in ("time", "frame")}
+    return columns if columns and set(columns) <= names else None
+
+
+def holds(model, weights, positions):
+    """True where shape keys with these weights are the poses: a head's motion is none of theirs."""
+    names = model["expression_names"]
+    beta = np.column_stack([weights.get(name, np.zeros(len(positions))) for name in names])
+    poses = model["neutral"] + np.tensordot(beta, model["expressions"], 1)
+    extent = np.ptp(model["neutral"], axis=0).max()
+    return np.abs(poses - positions).max() <= 1e-5 * extent
+
+
+def _new_object(context, name, vertices, faces, beside=None):
+    """An object of a new mesh: upright, since files have y up, or beside another."""
+    mesh = bpy.data.meshes.new(name)
+    ends = np.cumsum(faces.sizes)
+    polygons = [part.tolist() for part in np.split(faces.corners, ends[:-1])]
+    mesh.from_pydata(np.asarray(vertices).tolist(), [], polygons)
+    made = bpy.data.objects.new(name, mesh)
+    context.collection.objects.link(made)
+    mesh.polygons.foreach_set("use_smooth", [True] * len(polygons))
+    made.rotation_euler.x = np.pi / 2
+    if beside:
+        made.matrix_world = beside.matrix_world
+        made.location.x += 1.2 * beside.dimensions.x
+    return made
+
+
+def _copied_object(subject, name):
+    """A copy of an object that moves by nothing but what it is given, beside it."""
+    made = subject.copy()
+    made.name = name
+    made.data = subject.data.copy()
+    made.data.name = name
+    made.modifiers.clear()
+    if made.data.shape_keys:
+        rest = sources.rest_of(subject.data)
+        made.shape_key_clear()
+        made.data.vertices.foreach_set("co", rest.ravel())
+    for collection in subject.users_collection:
+        collection.objects.link(made)
+    made.delta_location.x += 1.2 * subject.dimensions.x
+    return made
+
+
+def has_faces_of(subject, value):
+    """True where a value has an object's polygons."""
+    faces = sources.faces_of(subject.data)
+    return (np.array_equal(value["face_sizes"], faces.sizes)
+            and np.array_equal(value["corners"], faces.corners))
+
+
+def show_sequence(context, value, subject, frames, name):
+    """A sequence as an object with a mesh cache: a copy of `subject` where it has its polygons."""
+    if subject and has_faces_of(subject, value):
+        made = _copied_object(subject, name)
+    else:
+        made = _new_object(context, name, value["positions"][0], value.faces, subject)
+    add_mesh_cache(made, value["positions"], frames, name)
+    return made
+
+
+def show_model(context, name, neutral, faces, shapes, weights, frames, beside=None):
+    """An object with shape keys, {name: N x 3}, keyed by weights, {name: F}."""
+    made = _new_object(context, name, neutral, faces, beside)
+    made.shape_key_add(name="Basis", from_mix=False)
+    for shape, displacement in shapes.items():
+        key = made.shape_key_add(name=shape, from_mix=False)
+        key.slider_min = min(0, *(values.min() for values in weights.values())) if weights else 0
+        key.data.foreach_set("co", (neutral + displacement).astype(np.float32).ravel())
+    if weights:
+        set_keys(made.data.shape_keys, weights, frames)
+    made.data.update()
+    return made
+
+
+def show_animated_model(context, value, frames, name):
+    """A model with its performance, and each of its identities with the same shape keys."""
+    shapes = dict(zip(value["expression_names"], value["expressions"]))
+    weights = {each: column for each, column in zip(value["weight_names"], value["weights"].T)
+               if each in shapes}
+    made = [show_model(context, name, value["neutral"], value.faces, shapes, weights, frames)]
+    context.view_layer.update()
+    if "identities" in value:
+        for identity, shape in zip(value["identity_names"], value["identities"]):
+            made.append(show_model(context, f"{name} {identity}", value["neutral"] + shape,
+                                   value.faces, shapes, {}, frames, made[-1]))
+            context.view_layer.update()
+    return made[0]
+
+
+def show_components(context, value, subject, frames, name):
+    """Components as shape keys with their weights over time."""
+    shapes = {f"component {index:02}": displacement
+              for index, displacement in enumerate(value["displacements"])}
+    weights = dict(zip(shapes, value["weights"].T))
+    faces = sources.faces_of(subject.data) if subject else mimetra.Faces(
+        np.full(len(value["triangles"]), 3), value["triangles"].ravel())
+    return show_model(context, name, value["rest"], faces, shapes, weights, frames, subject)
+
+
+def _check_size(subject, value, count):
+    if count != len(subject.data.vertices):
+        raise mimetra.Mismatch(f"{subject.name}: {len(subject.data.vertices)} vertices, expected"
+                               f" {count} as in {value.name or 'the result'}")
+
+
+def show_regions(value, subject):
+    """Regions as vertex groups, and their fields."""
+    masks = value["masks"]
+    _check_size(subject, value, masks.shape[1])
+    for group in [each for each in subject.vertex_groups if each.name.startswith(_GROUP)]:
+        subject.vertex_groups.remove(group)
+    for index, mask in enumerate(masks):
+        group = subject.vertex_groups.new(name=f"{_GROUP} {index:02}")
+        group.add(np.flatnonzero(mask).tolist(), 1, "REPLACE")
+    show_fields(value, subject)
+
+
+def show_fields(value, subject):
+    """Fields as attributes with their values, and numbers on vertices as colours too."""
+    mesh = subject.data
+    names = [name for name in value if value.location(name)]
+    shown = [name for name in names
+             if value.location(name) == "vertices" and value[name].ndim == 1]
+    for name in names:
+        _show_attribute(mesh, value, name)
+    for name in shown:
+        _check_size(subject, value, len(value[name]))
+        _replace(mesh, f"mimetra {name} color", "FLOAT_COLOR", "POINT").data.foreach_set(
+            "color", colors.of_field(value[name]).ravel())
+    if shown:
+        mesh.color_attributes.active_color = mesh.color_attributes[f"mimetra {shown[0]} color"]
+    mesh.update()
+
+
+def _replace(mesh, name, type, domain):
+    """A new attribute in place of one of that name."""
+    old = mesh.attributes.get(name)
+    if old:
+        mesh.attributes.remove(old)
+    return mesh.attributes.new(name, type, domain)
+
+
+def _show_attribute(mesh, value, name):
+    """One field's values; those of triangles at the largest of their polygon."""
+    values = np.asarray(value[name])
+    domain = "POINT"
+    if value.location(name) == "triangles":
+        of_polygons = np.full((len(mesh.polygons), *values.shape[1:]), values.min(initial=0),
+                              values.dtype)
+        np.maximum.at(of_polygons, value["face_of_triangle"], values)
+        values, domain = of_polygons, "FACE"
+    integer = values.dtype == np.int32
+    if values.ndim == 2 and values.shape[1] == 3:
+        attribute, key = _replace(mesh, f"mimetra {name}", "FLOAT_VECTOR", domain), "vector"
+    elif values.ndim == 1:
+        type = "INT" if integer else "FLOAT"
+        attribute, key = _replace(mesh, f"mimetra {name}", type, domain), "value"
+    else:
+        return
+    attribute.data.foreach_set(key, values.astype(np.int32 if integer else np.float32).ravel())
+
+
+def show_text(name, text):
+    """Text in a text block, in place of one of that name."""
+    block = bpy.data.texts.get(name) or bpy.data.texts.new(name)
+    block.clear()
+    block.write(text)
+
+
+def csv_of(table):
+    """A table as text."""
+    rows = [",".join(table)]
+    for row in zip(*(table[name] for name in table)):
+        rows.append(",".join("" if np.isnan(cell) else repr(float(cell)) for cell in row))
+    return "\n".join(rows) + "\n"

@@ -1,0 +1,50 @@
+"""What the panel's fields hold, in the scene."""
+
+import bpy
+
+from . import mimetra, properties
+
+_groups = []
+
+
+def of(scene, operation):
+    """The settings of an operation."""
+    return getattr(scene.mimetra, properties.property_name(operation.name))
+
+
+def copy(settings, operation, operator):
+    """Hands an operator what was set."""
+    switches = {"frame_start": "use_frames", "frame_end": "use_frames"}
+    for parameter in properties.parameters_of(operation):
+        if properties.is_optional_number(parameter):
+            name = properties.property_name(parameter.name)
+            switches[name] = f"use_{name}"
+    for name in properties.annotations_of(operation, pointers=False):
+        wanted = getattr(settings, switches[name]) if name in switches else \
+            settings.is_property_set(name)
+        value = getattr(settings, name)
+        if isinstance(value, bpy.types.Object):
+            value = value.name
+        if wanted and value is not None:
+            setattr(operator, name, value)
+
+
+def register():
+    fields = {}
+    for operation in mimetra.operations.values():
+        name = properties.property_name(operation.name)
+        group = type(f"MimetraSettings_{name}", (bpy.types.PropertyGroup,),
+                     {"__annotations__": properties.annotations_of(operation, pointers=True)})
+        bpy.utils.register_class(group)
+        _groups.append(group)
+        fields[name] = bpy.props.PointerProperty(type=group)
+    root = type("MimetraSettings", (bpy.types.PropertyGroup,), {"__annotations__": fields})
+    bpy.utils.register_class(root)
+    _groups.append(root)
+    bpy.types.Scene.mimetra = bpy.props.PointerProperty(type=root)
+
+
+def unregister():
+    del bpy.types.Scene.mimetra
+    while _groups:
+        bpy.utils.unregister_class(_groups.pop())

@@ -1,0 +1,130 @@
+"""Blender's objects as values of the toolkit."""
+
+import contextlib
+
+import numpy as np
+
+from . import mimetra
+
+# Modifiers that change which vertices there are. They are left out, so that results fit the mesh.
+_REBUILDING = {"ARRAY", "BEVEL", "BOOLEAN", "BUILD", "DECIMATE", "EDGE_SPLIT", "MASK", "MIRROR",
+               "MULTIRES", "REMESH", "SCREW", "SKIN", "SOLIDIFY", "SUBSURF", "TRIANGULATE",
+               "VOLUME_TO_MESH", "WELD", "WIREFRAME"}
+
+
+def coordinates(points):
+    """N x 3 of vertices or of a shape key's points, in single precision as Blender has them."""
+    values = np.empty(3 * len(points), np.float32)
+    points.foreach_get("co", values)
+    return values.reshape(-1, 3)
+
+
+def faces_of(mesh):
+    """A mesh's polygons."""
+    sizes = np.empty(len(mesh.polygons), np.int32)
+    corners = np.empty(len(mesh.loops), np.int32)
+    mesh.polygons.foreach_get("loop_total", sizes)
+    mesh.loops.foreach_get("vertex_index", corners)
+    if not len(sizes):
+        raise mimetra.BadInput(f"{mesh.name}: has no faces")
+    return mimetra.Faces(sizes, corners)
+
+
+def rest_of(mesh):
+    """The mesh as it is without shape keys and modifiers."""
+    keys = mesh.shape_keys
+    return coordinates(keys.reference_key.data if keys else mesh.vertices)
+
+
+@contextlib.contextmanager
+def _own_vertices(subject):
+    """Modifiers that rebuild the mesh are off as long as the block lasts."""
+    hidden = [each for each in subject.modifiers
+              if each.type in _REBUILDING and each.show_viewport]
+    for modifier in hidden:
+        modifier.show_viewport = False
+    try:
+        yield
+    finally:
+        for modifier in hidden:
+            modifier.show_viewport = True
+
+
+def _pose(context, subject, frame):
+    """The object's vertices at a frame."""
+    context.scene.frame_set(frame)
+    evaluated = subject.evaluated_get(context.evaluated_depsgraph_get())
+    mesh = evaluated.to_mesh()
+    try:
+        found, expected = len(mesh.vertices), len(subject.data.vertices)
+        if found != expected:
+            raise mimetra.Mismatch(
+                f"{subject.name}: {found} vertices in frame {frame}, expected {expected} as in its"
+                " mesh; turn off the modifier that changes them")
+        return coordinates(mesh.vertices)
+    finally:
+        evaluated.to_mesh_clear()
+
+
+def sequence(context, subject, frames):
+    """Yields the share done; returns an object's poses at frames as it is evaluated."""
+    scene = context.scene
+    before = scene.frame_current
+    poses = []
+    try:
+        with _own_vertices(subject):
+            for frame in frames:
+                poses.append(_pose(context, subject, frame))
+                yield len(poses) / len(frames)
+    finally:
+        scene.frame_set(before)
+    rate = scene.render.fps / scene.render.fps_base
+    return mimetra.Sequence(np.stack(poses), faces_of(subject.data),
+                            times=np.array(frames) / rate, rest=rest_of(subject.data),
+                            name=subject.name)
+
+
+def _group_weights(subject, name):
+    """A vertex group's weights, 0 outside."""
+    index = subject.vertex_groups[name].index
+    weights = np.zeros(len(subject.data.vertices))
+    for vertex in subject.data.vertices:
+        for group in vertex.groups:
+            if group.group == index:
+                weights[vertex.index] = group.weight
+    return weights
+
+
+def _displacement(subject, key):
+    """What a shape key adds at value 1."""
+    moved = coordinates(key.data).astype(float) - coordinates(key.relative_key.data)
+    if key.vertex_group in subject.vertex_groups:
+        moved *= _group_weights(subject, key.vertex_group)[:, None]
+    return moved
+
+
+def expression_keys(subject):
+    """The shape keys that can move an object."""
+    keys = subject.data.shape_keys
+    if not keys:
+        return []
+    if not keys.use_relative:
+        raise mimetra.BadInput(f"{subject.name}: expected relative shape keys, found absolute ones")
+    return [key for key in keys.key_blocks if key != keys.reference_key and not key.mute]
+
+
+def model(subject):
+    """An object at rest with its shape keys as expressions."""
+    keys = expression_keys(subject)
+    shapes = np.stack([_displacement(subject, key) for key in keys]) if keys else None
+    return mimetra.Model(rest_of(subject.data), faces_of(subject.data), shapes,
+                         [key.name for key in keys] if keys else None, name=subject.name)
+
+
+def regions(subject, prefix):
+    """Vertex groups whose names begin with a prefix."""
+    names = [group.name for group in subject.vertex_groups if group.name.startswith(prefix)]
+    if not names:
+        raise mimetra.BadInput(f"{subject.name}: no vertex group begins with '{prefix}'")
+    masks = [_group_weights(subject, name) > 0 for name in names]
+    return mimetra.Regions(np.stack(masks), faces_of(subject.data), name=prefix)

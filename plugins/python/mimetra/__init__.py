@@ -1,0 +1,41 @@
+"""The operations of mimetra on NumPy arrays.
+
+    import mimetra
+
+    take = mimetra.Sequence(positions, triangles)          # F x N x 3, T x 3
+    result = mimetra.transfer(take, "actor/", k=30)        # as `mimetra transfer take actor/ -k 30`
+    result.out.positions                                   # F x vertices of the actor x 3
+
+Each operation of the library's table is a function here, those of plugins too: `help(mimetra)`
+lists them, `operations` describes them. Inputs are values (Sequence, Model, ...) or what the
+command takes as text, which is read from files; where a sequence or model is expected, (positions,
+faces) is one. What the library tells goes to logging.getLogger("mimetra"). Functions may be called
+from several threads at once.
+"""
+
+from ._context import library as _library
+from ._data import (AnimatedModel, Components, Data, Faces, Fields, Fit, Landmarks, Model,
+                    MorphableModel, Picture, Pictures, Regions, Sequence, Table, View)
+from ._errors import BadInput, Cancelled, Error, Mismatch, OutputError, UsageError
+from ._operations import Operation, Result, all_operations, function_of, python_name
+
+__version__ = _library.toolkit_version.decode()
+operations = all_operations()
+_functions = {python_name(name): function_of(operation)
+              for name, operation in operations.items()}
+__all__ = [
+    "AnimatedModel", "BadInput", "Cancelled", "Components", "Data", "Error", "Faces", "Fields",
+    "Fit", "Landmarks", "Mismatch", "Model", "MorphableModel", "Operation", "OutputError",
+    "Picture", "Pictures", "Regions", "Result", "Sequence", "Table", "UsageError", "View",
+    "operations", "run", *_functions]
+
+
+def run(name, *inputs, **options):
+    """Runs an operation by its name in the table."""
+    if name not in operations:
+        raise UsageError(f"no operation '{name}'; there are {', '.join(operations)}")
+    return _functions[python_name(name)](*inputs, **options)
+
+
+globals().update({name: function for name, function in _functions.items()
+                  if name not in globals()})

@@ -1,0 +1,93 @@
+"""One context of the library for each thread, with progress, cancelling and logging."""
+
+import contextlib
+import ctypes
+import logging
+import signal
+import threading
+import weakref
+
+from . import _interface as c
+from ._errors import Error, error_of
+
+library = c.load()
+_logger = logging.getLogger("mimetra")
+_contexts = threading.local()
+_first = threading.Lock()
+
+
+@c.Log
+def _log(level, text, _):
+    if getattr(_contexts, "silent", False):
+        return
+    _logger.log(logging.WARNING if level == c.WARNING else logging.INFO, "%s",
+                text.decode(errors="replace"))
+
+
+class Context:
+    """Errors, progress and calls of one thread."""
+
+    def __init__(self, log):
+        self.handle = ctypes.c_void_p()
+        if library.new_context(log, None, ctypes.byref(self.handle)):
+            raise Error("the library cannot make its table of operations")
+        weakref.finalize(self, library.free_context, self.handle)
+
+    def check(self, status):
+        """Raises what a status tells."""
+        if status:
+            raise error_of(status, library.message(self.handle).decode(errors="replace"))
+
+    def operations(self):
+        return [each.contents for each in c.listed(library.operations(self.handle))]
+
+    @contextlib.contextmanager
+    def watched(self, progress=None, threads=None):
+        """Calls `progress(share)`, which may answer False to cancel, as long as the block lasts.
+        What it raises cancels too and is raised at the end, as is the user's Ctrl-C."""
+        raised = []
+
+        @c.Progress
+        def report(share, _):
+            try:
+                return int(not raised and (progress is None or progress(share) is not False))
+            except BaseException as error:
+                raised.append(error)
+                return 0
+
+        self.check(library.set_threads(self.handle, threads or 0))
+        self.check(library.set_progress(self.handle, report, None))
+        try:
+            with _interrupts_kept(raised):
+                yield
+        except Error:
+            if not raised:
+                raise
+        finally:
+            library.set_progress(self.handle, c.Progress(), None)
+        if raised:
+            raise raised[0]
+
+
+@contextlib.contextmanager
+def _interrupts_kept(raised):
+    """Keeps KeyboardInterrupt in a list, since nothing may be raised into the library."""
+    if (threading.current_thread() is not threading.main_thread()
+            or signal.getsignal(signal.SIGINT) is not signal.default_int_handler):
+        yield
+        return
+    signal.signal(signal.SIGINT, lambda *_: raised.append(KeyboardInterrupt()))
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, signal.default_int_handler)
+
+
+def context():
+    """The context of this thread. Plugins that cannot be used are told of by the first one."""
+    if not hasattr(_contexts, "own"):
+        _contexts.silent = _first.locked()
+        _first.acquire(blocking=False)
+        _contexts.own = Context(_log)
+        _contexts.silent = False
+    return _contexts.own

@@ -1,0 +1,133 @@
+"""mimetra.h in ctypes: its structs, its table of functions, and where the library is."""
+
+import ctypes
+import os
+import pathlib
+from ctypes import CFUNCTYPE, POINTER, c_char_p, c_double, c_int32, c_int64, c_uint32, c_void_p
+
+VERSION = 1
+SEQUENCE, MODEL, COMPONENTS, REGIONS, FIELDS, TABLE, ANIMATED_MODEL, PICTURE = range(1, 9)
+LANDMARKS, MORPHABLE_MODEL, FIT, PICTURES, VIEW = range(9, 14)
+FLAG, INTEGER, INTEGER_LIST, NUMBER, LENGTH, CHOICE, TEXT, FILE = range(1, 9)
+F64, F32, I32, U8, STRING = range(1, 6)
+ON_VERTICES, ON_TRIANGLES = 1, 2
+OPTIONAL, REPEATED, NAMED = 1, 2, 4
+WARNING = 1
+
+
+class Struct(ctypes.Structure):
+    """A struct that tells its size to the library."""
+
+    def __init__(self, **values):
+        super().__init__(struct_size=ctypes.sizeof(self), **values)
+
+
+class Array(Struct):
+    _fields_ = [("struct_size", c_uint32), ("type", c_int32), ("rank", c_int32),
+                ("location", c_int32), ("shape", c_int64 * 4), ("name", c_char_p),
+                ("values", c_void_p)]
+
+
+class Port(Struct):
+    _fields_ = [("struct_size", c_uint32), ("kind", c_int32), ("name", c_char_p),
+                ("help", c_char_p), ("flags", c_uint32), ("reserved", c_uint32)]
+
+
+class Parameter(Struct):
+    _fields_ = [("struct_size", c_uint32), ("kind", c_int32), ("name", c_char_p),
+                ("help", c_char_p), ("fallback", c_char_p), ("unit", c_char_p),
+                ("minimum", c_double), ("maximum", c_double), ("choices", POINTER(c_char_p)),
+                ("of_files", c_uint32), ("reserved", c_uint32)]
+
+
+class Operation(Struct):
+    _fields_ = [("struct_size", c_uint32), ("reserved", c_uint32), ("name", c_char_p),
+                ("summary", c_char_p), ("inputs", POINTER(POINTER(Port))),
+                ("outputs", POINTER(POINTER(Port))),
+                ("parameters", POINTER(POINTER(Parameter))), ("examples", POINTER(c_char_p)),
+                ("run", c_void_p), ("user", c_void_p)]
+
+
+Progress = CFUNCTYPE(c_int32, c_double, c_void_p)
+Log = CFUNCTYPE(None, c_int32, c_char_p, c_void_p)
+
+_ARRAYS = POINTER(POINTER(Array))
+_TEXTS = POINTER(c_char_p)
+_HANDLE = POINTER(c_void_p)
+
+
+def _function(result, *arguments):
+    return CFUNCTYPE(result, *arguments)
+
+
+class Interface(ctypes.Structure):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("version", c_uint32),
+        ("toolkit_version", c_char_p),
+        ("new_context", _function(c_int32, Log, c_void_p, _HANDLE)),
+        ("free_context", _function(None, c_void_p)),
+        ("message", _function(c_char_p, c_void_p)),
+        ("set_progress", _function(c_int32, c_void_p, Progress, c_void_p)),
+        ("set_threads", _function(c_int32, c_void_p, c_int32)),
+        ("operations", _function(POINTER(POINTER(Operation)), c_void_p)),
+        ("find_operation", _function(POINTER(Operation), c_void_p, c_char_p)),
+        ("operations_json", _function(c_int32, c_void_p, _TEXTS)),
+        ("new_data", _function(c_int32, c_void_p, c_int32, c_char_p, _ARRAYS, _HANDLE)),
+        ("derive_data", _function(c_int32, c_void_p, c_void_p, _ARRAYS, _HANDLE)),
+        ("load_data", _function(c_int32, c_void_p, c_int32, c_char_p, _TEXTS, _HANDLE)),
+        ("save_data", _function(c_int32, c_void_p, c_void_p, c_char_p, _TEXTS)),
+        ("free_data", _function(None, c_void_p)),
+        ("data_kind", _function(c_int32, c_void_p)),
+        ("data_name", _function(c_char_p, c_void_p)),
+        ("data_arrays", _function(c_int32, c_void_p, c_void_p, POINTER(_ARRAYS))),
+        ("data_array", _function(c_int32, c_void_p, c_void_p, c_char_p, _ARRAYS)),
+        ("data_json", _function(c_int32, c_void_p, c_void_p, _TEXTS)),
+        ("new_call", _function(c_int32, c_void_p, c_char_p, _HANDLE)),
+        ("free_call", _function(None, c_void_p)),
+        ("call_set", _function(c_int32, c_void_p, c_char_p, c_char_p)),
+        ("call_give", _function(c_int32, c_void_p, c_char_p, c_void_p)),
+        ("call_read", _function(c_int32, c_void_p, c_char_p, c_char_p)),
+        ("call_want", _function(c_int32, c_void_p, c_char_p)),
+        ("call_run", _function(c_int32, c_void_p)),
+        ("call_output_count", _function(c_int32, c_void_p, c_char_p)),
+        ("call_output", _function(c_int32, c_void_p, c_char_p, c_int32, _HANDLE)),
+        ("call_report", _function(c_char_p, c_void_p)),
+        ("call_summary", _function(c_char_p, c_void_p)),
+    ]
+
+
+def listed(pointers):
+    """The entries of a list that ends with NULL; none for NULL."""
+    entries = []
+    while pointers and pointers[len(entries)]:
+        entries.append(pointers[len(entries)])
+    return entries
+
+
+def _places():
+    """Where the library may be: as told, beside this module, in its installation, in the system."""
+    told = os.environ.get("MIMETRA_LIBRARY")
+    if told:
+        return [told]
+    here = pathlib.Path(__file__).resolve().parent
+    places = [here / "libmimetra_c.so"]
+    for folder in here.parents[:4]:
+        places += [folder / "libmimetra_c.so", *sorted(folder.glob("*-linux-*/libmimetra_c.so"))]
+    return [str(place) for place in places if place.exists()] or ["libmimetra_c.so.1"]
+
+
+def load():
+    """The table of functions. Throws ImportError where there is no library, or one too old."""
+    place = _places()[0]
+    try:
+        library = ctypes.CDLL(place)
+    except OSError as error:
+        raise ImportError(f"{error}; set MIMETRA_LIBRARY to the path of libmimetra_c.so") from None
+    library.mimetra_get_interface.restype = POINTER(Interface)
+    library.mimetra_get_interface.argtypes = [c_uint32]
+    table = library.mimetra_get_interface(VERSION)
+    if not table or table.contents.struct_size < ctypes.sizeof(Interface):
+        raise ImportError(f"{place}: expected a library that serves version {VERSION} of mimetra.h"
+                          " as this module knows it; install both from one release")
+    return table.contents

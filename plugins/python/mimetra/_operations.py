@@ -1,0 +1,257 @@
+"""One Python function for each operation of the library's table."""
+
+import ctypes
+import inspect
+import json
+import keyword
+import math
+import os
+import types
+
+from . import _interface as c
+from ._context import context, library
+from ._data import CLASSES, Data, Model, Sequence, of_handle, text_of
+
+_ANNOTATIONS = {c.FLAG: "bool", c.INTEGER: "int", c.INTEGER_LIST: "Iterable[int]",
+                c.NUMBER: "float", c.LENGTH: "float | str", c.TEXT: "str",
+                c.FILE: "str | PathLike[str]"}
+_KINDS = {c.FLAG: "flag", c.INTEGER: "integer", c.INTEGER_LIST: "list of integers",
+          c.NUMBER: "number", c.LENGTH: "length", c.CHOICE: "choice", c.TEXT: "text",
+          c.FILE: "path"}
+
+
+class Input:
+    """Something an operation works on."""
+
+    def __init__(self, port):
+        self.name = port.name.decode()
+        self.help = port.help.decode()
+        self.kind = CLASSES[port.kind]
+        self.optional = bool(port.flags & c.OPTIONAL)
+        self.repeated = bool(port.flags & c.REPEATED)
+        self.named = bool(port.flags & c.NAMED)
+
+
+class Output(Input):
+    """Something it makes."""
+
+
+class Parameter:
+    """A parameter: `default` as a Python value or None, `minimum` and `maximum` or None."""
+
+    def __init__(self, described):
+        self.name = described.name.decode()
+        self.help = described.help.decode()
+        self.kind = _KINDS[described.kind]
+        self.unit = described.unit.decode() if described.unit else ""
+        self.choices = [text.decode() for text in c.listed(described.choices)]
+        ranged = described.maximum > described.minimum
+        self.minimum = _finite(described.minimum) if ranged else None
+        self.maximum = _finite(described.maximum) if ranged else None
+        self.of_files = bool(described.of_files)
+        self.default = _value(described.kind, described.fallback)
+        self.annotation = (f"Literal[{', '.join(map(repr, self.choices))}]"
+                           if described.kind == c.CHOICE else _ANNOTATIONS[described.kind])
+
+    def described(self):
+        """Its line of a docstring."""
+        notes = [self.help]
+        if self.choices:
+            also = " or a path" if self.kind == "path" else ""
+            notes.append(f"one of {', '.join(map(repr, self.choices))}{also}")
+        if self.minimum is not None or self.maximum is not None:
+            notes.append(_range(self.minimum, self.maximum))
+        if self.kind == "length":
+            notes.append("a share of the longest side, or text such as '12abs'")
+        if self.unit:
+            notes.append(f"[{self.unit}]")
+        return "; ".join(notes)
+
+
+class Operation:
+    """An operation as the table declares it."""
+
+    def __init__(self, described):
+        self.name = described.name.decode()
+        self.summary = described.summary.decode()
+        self.inputs = [Input(each.contents) for each in c.listed(described.inputs)]
+        self.outputs = [Output(each.contents) for each in c.listed(described.outputs)]
+        self.parameters = [Parameter(each.contents) for each in c.listed(described.parameters)]
+
+
+class Result(types.SimpleNamespace):
+    """What an operation made: its outputs by name, `report` (a dict) and `summary` (text)."""
+
+
+def python_name(name):
+    """An operation's, output's or parameter's name in Python."""
+    made = name.replace("-", "_")
+    return made + "_" if keyword.iskeyword(made) else made
+
+
+def _finite(number):
+    return number if math.isfinite(number) else None
+
+
+def _range(minimum, maximum):
+    if maximum is None:
+        return f"at least {minimum:g}"
+    return f"at most {maximum:g}" if minimum is None else f"{minimum:g} to {maximum:g}"
+
+
+def _value(kind, fallback):
+    """A default in Python."""
+    if fallback is None:
+        return None
+    text = fallback.decode()
+    if kind == c.FLAG:
+        return text == "true"
+    if kind == c.INTEGER_LIST:
+        return tuple(int(each) for each in text.split(",") if each)
+    return {c.INTEGER: int, c.NUMBER: float}.get(kind, str)(text)
+
+
+class _Call:
+    """One run of an operation."""
+
+    def __init__(self, own, name):
+        self.own = own
+        self.handle = ctypes.c_void_p()
+        own.check(library.new_call(own.handle, name.encode(), ctypes.byref(self.handle)))
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        library.free_call(self.handle)
+
+    def set(self, name, value):
+        if value is not None:
+            self.own.check(library.call_set(self.handle, name.encode(), text_of(value).encode()))
+
+    def give(self, port, value):
+        name = port.name.encode()
+        if isinstance(value, (str, os.PathLike)):
+            text = os.fspath(value).encode()
+            self.own.check(library.call_read(self.handle, name, text))
+            return
+        if isinstance(value, tuple) and len(value) == 2 and port.kind in (Sequence, Model):
+            value = port.kind(*value, name=port.name)
+        if not isinstance(value, Data):
+            raise TypeError(f"{port.name}: expected a mimetra.{port.kind.__name__} or a path, found"
+                            f" {type(value).__name__}")
+        self.own.check(library.call_give(self.handle, name, value._handle))
+
+    def output(self, name, index):
+        handle = ctypes.c_void_p()
+        self.own.check(library.call_output(self.handle, name, index, ctypes.byref(handle)))
+        return of_handle(handle)
+
+    def outputs(self, port, many):
+        """The values of an output; the only one where no list was given."""
+        name = port.name.encode()
+        count = library.call_output_count(self.handle, name)
+        values = [self.output(name, index) for index in range(count)]
+        if port.repeated and many:
+            return values
+        return values[0] if values else None
+
+
+def _run(operation, given, *, progress, threads):
+    """Runs an operation with values by their names in Python."""
+    own = context()
+    many = False
+    with _Call(own, operation.name) as call, own.watched(progress, threads):
+        for port in operation.inputs:
+            value = given.get(python_name(port.name))
+            values = value if port.repeated and isinstance(value, list) else [value]
+            many = many or port.repeated and isinstance(value, list)
+            for each in values:
+                if each is not None:
+                    call.give(port, each)
+        for port in operation.outputs:
+            if given.get(python_name(port.name)):
+                own.check(library.call_want(call.handle, port.name.encode()))
+        for parameter in operation.parameters:
+            call.set(parameter.name, given.get(python_name(parameter.name)))
+        own.check(library.call_run(call.handle))
+        made = {python_name(port.name): call.outputs(port, many) for port in operation.outputs}
+        report = library.call_report(call.handle).decode()
+        summary = library.call_summary(call.handle).decode()
+    return Result(**made, report=json.loads(report) if report else {}, summary=summary)
+
+
+def _input_annotation(port):
+    one = f"{port.kind.__name__} | str | PathLike[str]"
+    if port.kind in (Sequence, Model):
+        one += " | tuple[ArrayLike, ArrayLike]"
+    if port.repeated:
+        one += f" | list[{one}]"
+    return one + (" | None" if port.optional else "")
+
+
+def _signature(operation):
+    """Needed inputs in order, all else by name."""
+    Slot = inspect.Parameter
+    slots = []
+    for port in operation.inputs:
+        is_option = port.optional or port.named
+        slots.append(Slot(python_name(port.name),
+                          Slot.KEYWORD_ONLY if is_option else Slot.POSITIONAL_OR_KEYWORD,
+                          default=None if port.optional else Slot.empty,
+                          annotation=_input_annotation(port)))
+    for parameter in operation.parameters:
+        none = " | None" if parameter.default is None else ""
+        slots.append(Slot(python_name(parameter.name), Slot.KEYWORD_ONLY,
+                          default=parameter.default, annotation=parameter.annotation + none))
+    for port in operation.outputs:
+        if port.optional:
+            slots.append(Slot(python_name(port.name), Slot.KEYWORD_ONLY, default=False,
+                              annotation="bool"))
+    slots.append(Slot("progress", Slot.KEYWORD_ONLY, default=None,
+                      annotation="Callable[[float], bool | None] | None"))
+    slots.append(Slot("threads", Slot.KEYWORD_ONLY, default=None, annotation="int | None"))
+    slots.sort(key=lambda slot: slot.kind)
+    return inspect.Signature(slots, return_annotation="Result")
+
+
+def _docstring(operation):
+    lines = [operation.summary + ".", ""]
+    lines += [f"    {python_name(port.name)}: {port.help}" for port in operation.inputs]
+    lines += [f"    {python_name(parameter.name)}: {parameter.described()}"
+              for parameter in operation.parameters]
+    lines += [f"    {python_name(port.name)}: True to make this too, {port.help}"
+              for port in operation.outputs if port.optional]
+    lines += ["    progress: called with the share of the work done; False as its answer cancels",
+              "    threads: at most so many; None for all there are", ""]
+    made = [f"{python_name(port.name)} (mimetra.{port.kind.__name__})"
+            for port in operation.outputs]
+    lines.append(f"Returns {', '.join([*made, 'report and summary'])}.")
+    return "\n".join(lines)
+
+
+def function_of(operation):
+    """The Python function of an operation."""
+    signature = _signature(operation)
+
+    def function(*arguments, **options):
+        try:
+            given = dict(signature.bind(*arguments, **options).arguments)
+        except TypeError as error:
+            raise TypeError(f"{function.__name__}() {error}") from None
+        return _run(operation, given, progress=given.pop("progress", None),
+                    threads=given.pop("threads", None))
+
+    function.__name__ = function.__qualname__ = python_name(operation.name)
+    function.__module__ = "mimetra"
+    function.__doc__ = _docstring(operation)
+    function.__signature__ = signature
+    function.__annotations__ = {slot.name: slot.annotation
+                                for slot in signature.parameters.values()}
+    function.operation = operation
+    return function
+
+
+def all_operations():
+    """The operations of the table, by name."""
+    return {described.name.decode(): Operation(described) for described in context().operations()}

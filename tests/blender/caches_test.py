@@ -1,0 +1,105 @@
+"""Mesh caches as sources and as results, and other meshes that move."""
+
+import bpy
+import numpy as np
+from host import LAST, HostTest, command, mimetra, run_tests
+from mimetra_blender import point_cache
+
+
+class Caches(HostTest):
+    def transferred(self, *options):
+        """The command's positions of the target without expressions."""
+        mesh, out = self.path / "mesh.ply", self.path / "out.npy"
+        command("convert", self.actor, "-o", mesh, "--force")
+        command("transfer", self.take, mesh, *options, "-o", out, "--force")
+        return np.load(out)
+
+    def test_a_target_without_shape_keys_gets_a_mesh_cache(self):
+        bare = self.bare_target()
+        bare.modifiers.new("fine", "SUBSURF").show_viewport = False
+        for cache_format in ("PC2", "MDD"):
+            with self.subTest(cache_format):
+                bpy.ops.mimetra.transfer(target="bare", k=12, cache_format=cache_format,
+                                         cache_folder=str(self.path / "caches"))
+                modifier = bare.modifiers[0]
+                self.assertEqual((modifier.name, modifier.cache_format), ("mimetra", cache_format))
+                self.assertEqual(len(bare.modifiers), 2)
+                self.assert_moves_like(bare, self.transferred("-k", 12))
+
+    def test_vertex_space_gets_a_mesh_cache_where_there_are_shape_keys_too(self):
+        bpy.ops.mimetra.transfer(target="target", k=12, space="vertex")
+        self.assert_moves_like(self.target, self.transferred("-k", 12))
+        self.assertIsNone(self.target.data.shape_keys.animation_data)
+
+    def test_shape_keys_take_the_place_of_a_mesh_cache(self):
+        bpy.ops.mimetra.transfer(target="target", k=5, space="vertex")
+        self.assertEqual(len(self.target.modifiers), 1)
+        bpy.ops.mimetra.transfer(target="target", k=5)
+        self.assertEqual(len(self.target.modifiers), 0)
+
+    def test_a_cache_never_takes_the_place_of_a_file(self):
+        bare = self.bare_target()
+        folder = self.path / "twice"
+        for expected in ("bare.pc2", "bare.002.pc2"):
+            bpy.ops.mimetra.transfer(target="bare", full=True, cache_folder=str(folder))
+            self.assertTrue(bare.modifiers[0].filepath.endswith(expected))
+        self.assertEqual(len(list(folder.iterdir())), 2)
+
+    def test_a_saved_file_has_its_caches_beside_it(self):
+        bare = self.bare_target()
+        bpy.ops.wm.save_as_mainfile(filepath=str(self.path / "scene.blend"))
+        bpy.ops.mimetra.transfer(target="bare", full=True)
+        self.assertEqual(bare.modifiers[0].filepath, "//mimetra/bare.pc2")
+        self.assertTrue((self.path / "mimetra" / "bare.pc2").exists())
+
+    def test_steps_between_frames_are_kept(self):
+        bare = self.bare_target()
+        bpy.ops.mimetra.transfer(target="bare", full=True, frame_start=11, frame_end=111,
+                                 frame_step=20)
+        expected = self.transferred("--full", "--frames", "10:111:20")
+        for index, frame in enumerate(range(11, 112, 20)):
+            self.assert_close(self.shown(bare, frame), expected[index], f"frame {frame}")
+
+    def source_cache(self, cache_format):
+        positions = np.load(self.take).astype(np.float32)
+        path = self.path / f"source.{cache_format.lower()}"
+        path.write_bytes(point_cache.pc2(positions, 1) if cache_format == "PC2" else
+                         point_cache.mdd(positions, np.arange(LAST) / 30))
+        bare = self.mesh_of("cached", positions[0].astype(float),
+                            mimetra.Sequence.load(self.take).faces)
+        modifier = bare.modifiers.new("cache", "MESH_CACHE")
+        modifier.cache_format, modifier.filepath = cache_format, str(path)
+        modifier.frame_start = 1
+        return bare
+
+    def test_a_source_moves_by_a_mesh_cache(self):
+        for cache_format in ("PC2", "MDD"):
+            with self.subTest(cache_format):
+                self.activate(self.source_cache(cache_format))
+                bpy.ops.mimetra.transfer(target="target", k=12)
+                out = self.path / "cached.npy"
+                command("transfer", self.take, self.actor, "-k", 12, "--source-rest", "first", "-o",
+                        out, "--force")
+                self.assert_moves_like(self.target, np.load(out))
+
+    def test_a_source_moves_by_any_modifier_that_keeps_its_vertices(self):
+        bend = self.source.modifiers.new("bend", "SIMPLE_DEFORM")
+        bend.deform_method = "TWIST"
+        bend.angle = 0
+        bend.keyframe_insert("angle", frame=1)
+        bend.angle = 0.4
+        bend.keyframe_insert("angle", frame=LAST)
+        self.source.modifiers.new("fine", "SUBSURF").levels = 1
+        bpy.ops.mimetra.convert()
+        copy = bpy.data.objects["source convert"]
+        self.assertTrue(self.source.modifiers["fine"].show_viewport)
+        self.source.modifiers["fine"].show_viewport = False
+        for frame in (1, 60, LAST):
+            expected = self.shown(self.source, frame)
+            self.assert_close(self.shown(copy, frame), expected, f"frame {frame}")
+        self.assertIsNone(copy.data.shape_keys)
+        self.assertIsNotNone(self.source.data.shape_keys)
+
+
+if __name__ == "__main__":
+    run_tests()

@@ -1,0 +1,111 @@
+"""Regions, fields, components, tables and models as Blender shows them."""
+
+import json
+import pathlib
+import re
+
+import bpy
+import numpy as np
+from host import HostTest, command, run_tests
+from mimetra_blender import mimetra
+
+
+class Fields(HostTest):
+    def values(self, name, dtype=np.int32):
+        attribute = self.source.data.attributes[name]
+        values = np.empty(len(attribute.data), dtype)
+        attribute.data.foreach_get("value", values)
+        return values
+
+    def regions(self):
+        out = self.path / "regions.json"
+        command("regions", self.take, "-k", 8, "-o", out, "--force")
+        return json.loads(out.read_text())["regions"]
+
+    def test_regions_are_vertex_groups(self):
+        bpy.ops.mimetra.regions(k=8)
+        groups = {index: set() for index in range(len(self.source.vertex_groups))}
+        for vertex in self.source.data.vertices:
+            for group in vertex.groups:
+                groups[group.group].add(vertex.index)
+        for index, region in enumerate(self.regions()):
+            self.assertEqual(groups[index], set(region["vertices"]))
+
+    def test_regions_of_an_earlier_run_go(self):
+        bpy.ops.mimetra.regions(k=8)
+        self.source.vertex_groups.new(name="mine")
+        bpy.ops.mimetra.regions(k=3)
+        self.assertEqual({group.name for group in self.source.vertex_groups},
+                         {"mine", *(f"mimetra region {index:02}" for index in range(3))})
+
+    def test_fields_are_attributes_and_colours(self):
+        bpy.ops.mimetra.regions(k=8)
+        region, roi = self.values("mimetra region"), self.values("mimetra roi")
+        np.testing.assert_array_equal(region >= 0, roi == 1)
+        inside = {vertex for each in self.regions() for vertex in each["vertices"]}
+        self.assertEqual(set(np.flatnonzero(roi).tolist()), inside)
+        colors = self.source.data.color_attributes
+        self.assertEqual(colors.active_color.name, "mimetra region color")
+        shown = np.empty(4 * len(region), np.float32)
+        colors["mimetra region color"].data.foreach_get("color", shown)
+        shown = shown.reshape(-1, 4)
+        self.assertEqual(len(np.unique(shown, axis=0)), len(np.unique(region)))
+        on_faces = self.values("mimetra in_L")
+        self.assertEqual(len(on_faces), len(self.source.data.polygons))
+        faces = [any(vertex in inside for vertex in face.vertices)
+                 for face in self.source.data.polygons]
+        self.assertTrue(set(np.flatnonzero(on_faces)) <= set(np.flatnonzero(faces)))
+
+    def test_distances_are_shown_at_the_first_frame(self):
+        bpy.ops.mimetra.geodesic(source="100", geodesics="exact", frame_start=1, frame_end=1)
+        distance = self.values("mimetra distance", np.float32)
+        take = mimetra.Sequence.load(self.take, frames="0:1")
+        expected = mimetra.geodesic(take, source=[100], geodesics="exact").out.distance
+        finite = np.isfinite(expected)
+        np.testing.assert_allclose(distance[finite], expected[finite], rtol=1e-4, atol=1e-3)
+        self.assertEqual(distance[100], 0)
+
+    def test_components_are_shape_keys(self):
+        bpy.ops.mimetra.decompose(k=4)
+        made = bpy.data.objects["source decompose"]
+        take = mimetra.Sequence.load(self.take)
+        expected = mimetra.decompose(take, k=4).out
+        poses = expected.rest + np.tensordot(expected.weights, expected.displacements, 1)
+        self.assert_moves_like(made, poses)
+        self.assertEqual(len(made.data.shape_keys.key_blocks), 5)
+
+    def test_components_go_into_files_and_come_back(self):
+        path = self.path / "components.h5"
+        bpy.ops.mimetra.regions(k=4, components_out=str(path))
+        groups = len(self.source.vertex_groups)
+        self.assertTrue(path.exists())
+        bpy.ops.mimetra.regions(components=str(path))
+        self.assertEqual(len(self.source.vertex_groups), groups)
+
+    def test_tables_and_summaries_are_text(self):
+        bpy.ops.mimetra.evaluate(target="target", k="4,8", out=True)
+        text = bpy.data.texts["source evaluate out.csv"].as_string()
+        self.assertTrue(text.startswith("k,"))
+        self.assertEqual(len(text.strip().splitlines()), 4)
+        bpy.ops.mimetra.info()
+        self.assertIn("frames      120", bpy.data.texts["mimetra info"].as_string())
+
+    def test_the_sample_is_a_head_that_performs_and_its_identities(self):
+        bpy.ops.mimetra.sample()
+        head = bpy.data.objects["sample"]
+        self.assertEqual(len(head.data.shape_keys.key_blocks), 13)
+        weights = self.keyed(head)
+        self.assertGreater(weights["jawOpen"].max(), 0.5)
+        for index in range(4):
+            self.assertIn(f"sample identity00{index}", bpy.data.objects)
+
+    def test_the_example_of_the_documents_runs(self):
+        text = (pathlib.Path(__file__).parents[2] / "docs" / "blender.md").read_text()
+        (example,) = re.findall(r"```python\n(.*?)```", text, re.S)
+        exec(compile(example, "blender.md", "exec"), {})
+        weights = self.keyed(bpy.data.objects["sample identity002"])
+        self.assertGreater(weights["jawOpen"].max(), 0.5)
+
+
+if __name__ == "__main__":
+    run_tests()

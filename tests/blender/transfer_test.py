@@ -1,0 +1,114 @@
+"""Transfer onto shape keys: the weights of the command, keyed."""
+
+import bpy
+import numpy as np
+from host import LAST, HostTest, column, command, run_tests
+from mimetra_blender import point_cache
+
+
+class Transfer(HostTest):
+    def expected(self, *options):
+        """The command's weights {name: F} and positions."""
+        out, weights = self.path / "out.npy", self.path / "weights.csv"
+        command("transfer", self.take, self.actor, *options, "-o", out, "--weights-out", weights,
+                "--force")
+        names = [key.name for key in self.target.data.shape_keys.key_blocks[1:]]
+        return {name: column(weights, name) for name in names}, np.load(out)
+
+    def assert_performs(self, weights, positions):
+        keyed = self.keyed(self.target)
+        self.assertEqual(set(keyed), set(weights))
+        for name, values in weights.items():
+            # Of positions in single precision; the solution is as well conditioned as heads are.
+            np.testing.assert_allclose(keyed[name], values, atol=2e-5, err_msg=name)
+        self.assert_moves_like(self.target, positions)
+
+    def test_keys_the_commands_weights(self):
+        answer = bpy.ops.mimetra.transfer(target="target", k=30)
+        self.assertEqual(answer, {"FINISHED"})
+        self.assert_performs(*self.expected("-k", 30))
+        self.assertEqual(len(self.target.modifiers), 0)
+
+    def test_takes_the_parameters_of_the_command(self):
+        bpy.ops.mimetra.transfer(target="target", k=8, radius=0.2, ridge=0.1, region="support")
+        self.assert_performs(*self.expected("-k", 8, "--radius", 0.2, "--ridge", 0.1, "--region",
+                                            "support"))
+
+    def test_takes_lengths_in_the_meshes_unit(self):
+        bpy.ops.mimetra.transfer(target="target", k=8, radius=30, radius_absolute=True)
+        self.assert_performs(*self.expected("-k", 8, "--radius", "30abs"))
+
+    def test_uses_all_triangles_where_asked(self):
+        bpy.ops.mimetra.transfer(target="target", full=True)
+        self.assert_performs(*self.expected("--full"))
+
+    def test_leaves_the_scene_as_it_was(self):
+        before = self.shown(self.source, 14)
+        bpy.context.scene.frame_set(7)
+        bpy.ops.mimetra.transfer(target="target", k=5)
+        self.assertEqual(bpy.context.scene.frame_current, 7)
+        self.assertEqual(bpy.context.active_object, self.source)
+        np.testing.assert_array_equal(self.shown(self.source, 14), before)
+
+    def test_keeps_polygons_and_other_shape_keys(self):
+        sizes = [len(face.vertices) for face in self.target.data.polygons]
+        self.assertIn(4, sizes)
+        self.target.shape_key_add(name="mine", from_mix=False).mute = True
+        bpy.ops.mimetra.transfer(target="target", k=5)
+        self.assertEqual([len(face.vertices) for face in self.target.data.polygons], sizes)
+        self.assertIn("mine", self.target.data.shape_keys.key_blocks)
+        self.assertNotIn("mine", self.keyed(self.target))
+
+    def test_keys_the_frames_asked_for(self):
+        bpy.ops.mimetra.transfer(target="target", full=True, frame_start=11, frame_end=51,
+                                 frame_step=10)
+        curve = self.target.data.shape_keys.animation_data.action.fcurves[0]
+        self.assertEqual([point.co.x for point in curve.keyframe_points], [11, 21, 31, 41, 51])
+        weights, _ = self.expected("--full", "--frames", "10:60:10")
+        name = curve.data_path.split('"')[1]
+        np.testing.assert_allclose([point.co.y for point in curve.keyframe_points], weights[name],
+                                   atol=2e-5)
+
+    def test_a_second_run_takes_the_place_of_the_first(self):
+        bpy.ops.mimetra.transfer(target="target", k=5)
+        bpy.ops.mimetra.transfer(target="target", k=30)
+        self.assert_performs(*self.expected("-k", 30))
+
+    def test_a_shared_action_stays_as_it_is(self):
+        keys = self.target.data.shape_keys
+        keys.animation_data_create().action = self.source.data.shape_keys.animation_data.action
+        before = self.keyed(self.source)
+        bpy.ops.mimetra.transfer(target="target", k=5)
+        after = self.keyed(self.source)
+        for name, values in before.items():
+            np.testing.assert_array_equal(after[name], values)
+
+    def test_vertex_groups_are_regions(self):
+        out = self.path / "regions.json"
+        command("regions", self.take, "-k", 4, "-o", out)
+        bpy.ops.mimetra.regions(k=4)
+        names = [group.name for group in self.source.vertex_groups]
+        self.assertEqual(names, [f"mimetra region {index:02}" for index in range(len(names))])
+        bpy.ops.mimetra.transfer(target="target", regions="mimetra region")
+        self.assert_performs(*self.expected("--regions", out))
+
+    def test_head_motion_goes_into_a_mesh_cache(self):
+        positions = np.load(self.take)
+        turned = positions.copy()
+        angles = np.linspace(0, 0.3, len(turned))
+        for frame, angle in enumerate(angles):
+            turn = np.array([[np.cos(angle), 0, np.sin(angle)], [0, 1, 0],
+                             [-np.sin(angle), 0, np.cos(angle)]])
+            turned[frame] = positions[frame] @ turn.T
+        path = self.path / "turned.pc2"
+        path.write_bytes(point_cache.pc2(turned, 1))
+        modifier = self.source.modifiers.new("cache", "MESH_CACHE")
+        modifier.cache_format, modifier.filepath, modifier.frame_start = "PC2", str(path), 1
+        bpy.ops.mimetra.transfer(target="target", full=True, align="stable")
+        self.assertEqual(self.target.modifiers[0].type, "MESH_CACHE")
+        moved = self.shown(self.target, LAST) - self.shown(self.target, 1)
+        self.assertGreater(np.abs(moved).max(), 10)
+
+
+if __name__ == "__main__":
+    run_tests()

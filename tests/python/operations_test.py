@@ -1,0 +1,101 @@
+"""Operations on arrays: the results of the command, bit for bit."""
+
+import csv
+import json
+import os
+import subprocess
+import sys
+import unittest
+
+import mimetra
+import numpy as np
+from sample import SampleTest, command
+
+
+class Operations(SampleTest):
+    def test_transfers_to_a_model_as_the_command_does(self):
+        out, weights = self.path / "model.npy", self.path / "weights.csv"
+        command("transfer", self.take, self.actor, "-k", 12, "-o", out, "--weights-out", weights)
+        actor = mimetra.Model.load(self.actor)
+        target = mimetra.Model(actor.neutral, actor.faces, actor.expressions,
+                               actor.expression_names)
+        result = mimetra.transfer(self.arrays, target, k=12, weights_out=True)
+        self.assert_same(result.out.positions, np.load(out))
+        with open(weights, newline="") as file:
+            rows = list(csv.DictReader(file))
+        self.assertGreater(len(rows[0]), 12)
+        for name in rows[0]:
+            self.assert_same(result.weights_out[name], np.array([float(row[name]) for row in rows]),
+                             name)
+        self.assertIsNone(result.regions_out)
+
+    def test_transfers_to_a_mesh_as_the_command_does(self):
+        mesh, out = self.path / "mesh.ply", self.path / "vertices.npy"
+        command("convert", self.actor, "-o", mesh)
+        command("transfer", self.take, mesh, "-k", 12, "-o", out)
+        still = mimetra.Sequence.load(mesh)
+        result = mimetra.transfer(self.arrays, (still.positions[0], still.faces), k=12)
+        self.assert_same(result.out.positions, np.load(out))
+
+    def test_a_list_of_targets_gives_lists(self):
+        out = self.path / "results"
+        command("transfer", self.take, self.actor, self.head, "--full", "-o", out)
+        result = mimetra.transfer(self.arrays, [self.actor, self.head], full=True)
+        self.assertEqual([target["name"] for target in result.report["targets"]],
+                         [sequence.name for sequence in result.out])
+        self.assertEqual(len(result.out), 2)
+        self.assertFalse(np.array_equal(result.out[0].positions, result.out[1].positions))
+
+    def test_finds_the_regions_of_the_command(self):
+        out = self.path / "regions.json"
+        report = json.loads(command("regions", self.take, "-k", 8, "-o", out, "--json"))
+        result = mimetra.regions(self.arrays, k=8)
+        self.assertEqual(result.report["regions"], report["regions"])
+        self.assertEqual(result.out.centers.tolist(), [r["center"] for r in report["regions"]])
+        with open(out) as file:
+            self.assertEqual(json.loads(result.out.json)["regions"], json.load(file)["regions"])
+
+    def test_regions_go_on_into_a_transfer(self):
+        regions, out = self.path / "four.json", self.path / "four.npy"
+        command("regions", self.take, "-k", 4, "-o", regions)
+        command("transfer", self.take, self.actor, "--regions", regions, "-o", out)
+        found = mimetra.regions(self.arrays, k=4).out
+        result = mimetra.transfer(self.arrays, self.actor, regions=found)
+        self.assert_same(result.out.positions, np.load(out))
+        painted = mimetra.Regions(found.masks, self.arrays.faces)
+        result = mimetra.transfer(self.arrays, self.actor, regions=painted)
+        self.assert_same(result.out.positions, np.load(out))
+
+    def test_parameters_are_numbers_text_paths_and_lists(self):
+        rest, out = self.path / "rest.ply", self.path / "aligned.npy"
+        command("convert", f"{self.head}@identity001=1", "-o", rest)
+        command("transfer", self.take, self.actor, "-k", 5, "--radius", "12abs", "--source-rest",
+                rest, "-o", out)
+        result = mimetra.transfer(self.arrays, self.actor, k=np.int32(5), radius="12abs",
+                                  source_rest=rest)
+        self.assert_same(result.out.positions, np.load(out))
+        fields = mimetra.geodesic(self.arrays, source=[3, 70], d_max=0.5).out
+        self.assertEqual(np.flatnonzero(fields.distance == 0).tolist(), [3, 70])
+        self.assertEqual(fields.location("support"), "vertices")
+
+    def test_results_do_not_depend_on_threads(self):
+        one = mimetra.decompose(self.arrays, k=5, threads=1).out
+        two = mimetra.decompose(self.arrays, k=5, threads=2).out
+        self.assert_same(one.displacements, two.displacements)
+        self.assert_same(one.weights, two.weights)
+
+    def test_an_operation_is_found_by_its_name(self):
+        self.assertEqual(mimetra.run("info", self.arrays).report["frames"], 12)
+        with self.assertRaisesRegex(mimetra.UsageError, "no operation 'inof'; there are info,"):
+            mimetra.run("inof", self.arrays)
+
+    def test_a_library_that_is_told_is_used(self):
+        done = subprocess.run([sys.executable, "-c", "import mimetra"], capture_output=True,
+                              text=True, env={**os.environ,
+                                              "MIMETRA_LIBRARY": "/nowhere/libmimetra_c.so"})
+        self.assertNotEqual(done.returncode, 0)
+        self.assertIn("set MIMETRA_LIBRARY to the path of libmimetra_c.so", done.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()

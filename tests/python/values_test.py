@@ -1,0 +1,108 @@
+"""Values: arrays go in and come out as they are, and their memory lives as long as it is seen."""
+
+import gc
+import unittest
+
+import mimetra
+import numpy as np
+from sample import SampleTest
+
+# A square of two triangles beside a quad, and a pose in which one vertex has moved.
+CORNERS = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [2, 0, 0], [2, 1, 0]], float)
+POLYGONS = [[0, 1, 2], [0, 2, 3], [1, 4, 5, 2]]
+
+
+def moved():
+    poses = np.stack([CORNERS, CORNERS])
+    poses[1, 3, 2] = 0.25
+    return poses
+
+
+class Values(SampleTest):
+    def test_arrays_come_out_as_they_went_in(self):
+        take = mimetra.Sequence(moved(), POLYGONS, times=[0, 0.5], rest=CORNERS, name="square")
+        self.assertEqual(take.name, "square")
+        self.assert_same(take.positions, moved())
+        self.assert_same(take["times"], np.array([0, 0.5]))
+        self.assert_same(take.rest, CORNERS)
+        self.assertEqual(take.face_sizes.tolist(), [3, 3, 4])
+        self.assertEqual(take.corners.tolist(), sum(POLYGONS, []))
+        self.assertEqual(len(take.triangles), 4)
+
+    def test_single_precision_and_strided_arrays_are_taken(self):
+        poses = np.asfortranarray(moved().astype(np.float32))
+        self.assert_same(mimetra.Sequence(poses, POLYGONS).positions, moved())
+        twice = np.repeat(moved(), 2, axis=1)[:, ::2]
+        self.assert_same(mimetra.Sequence(twice, POLYGONS).positions, moved())
+
+    def test_faces_are_triangles_quads_lists_or_those_of_another_value(self):
+        triangles = np.array([[0, 1, 2], [0, 2, 3]], dtype=np.int64)
+        flat = mimetra.Sequence(CORNERS, triangles)
+        self.assertEqual(flat.positions.shape, (1, 6, 3))
+        self.assert_same(flat.triangles, triangles.astype(np.int32))
+        quads = mimetra.Sequence(CORNERS, np.array([[0, 1, 2, 3], [1, 4, 5, 2]]))
+        self.assertEqual(quads.face_sizes.tolist(), [4, 4])
+        self.assertEqual(mimetra.Model(CORNERS, quads.faces).corners.tolist(),
+                         quads.corners.tolist())
+
+    def test_views_cannot_be_written_to_and_outlive_the_value(self):
+        take = mimetra.Sequence(moved(), POLYGONS)
+        positions = take.positions
+        self.assertEqual(positions.ctypes.data, take.positions.ctypes.data)
+        with self.assertRaises(ValueError):
+            positions[0] = 0
+        del take
+        gc.collect()
+        self.assert_same(np.array(positions), moved())
+
+    def test_fields_stand_on_vertices_or_triangles(self):
+        value = mimetra.Fields(moved(), POLYGONS, {"heat": np.arange(6.0), "part": [0] * 5 + [1]},
+                               {"inside": np.array([True, False, True, False])})
+        self.assertEqual(value.location("heat"), "vertices")
+        self.assertEqual(value.location("inside"), "triangles")
+        self.assertIsNone(value.location("positions"))
+        self.assert_same(value.heat, np.arange(6.0))
+        self.assert_same(value.part, np.array([0, 0, 0, 0, 0, 1], np.int32))
+        self.assert_same(value.inside, np.array([1, 0, 1, 0], np.int32))
+
+    def test_a_model_keeps_names_and_expressions(self):
+        shapes = np.stack([CORNERS, 2 * CORNERS])
+        model = mimetra.Model(CORNERS, POLYGONS, shapes, ["open", "wide"])
+        self.assert_same(model.expressions, shapes)
+        self.assertEqual(model.expression_names, ["open", "wide"])
+
+    def test_masks_become_regions(self):
+        masks = np.zeros((2, 6), bool)
+        masks[0, :2] = masks[1, 5] = True
+        regions = mimetra.Regions(masks, POLYGONS)
+        self.assert_same(regions.masks, masks.view(np.uint8))
+        self.assertEqual(regions.region.tolist(), [0, 0, -1, -1, -1, 1])
+
+    def test_empty_cells_of_a_table_are_nan(self):
+        table = mimetra.Table({"k": [1, 2], "error": [0.5, np.nan]})
+        self.assertEqual(list(table), ["k", "error"])
+        self.assert_same(table["error"], np.array([0.5, np.nan]))
+        self.assertIn("null", table.json)
+
+    def test_a_derived_value_keeps_the_arrays_it_was_not_given(self):
+        take = mimetra.Sequence(moved(), POLYGONS, times=[0, 2])
+        double = take.derive(positions=2 * moved())
+        self.assert_same(double.positions, 2 * moved())
+        self.assert_same(double.times, np.array([0.0, 2.0]))
+        self.assertEqual(double.corners.tolist(), take.corners.tolist())
+
+    def test_saving_then_loading_is_the_identity(self):
+        path = self.path / "saved.npy"
+        self.arrays.save(path)
+        self.assert_same(mimetra.Sequence.load(path).positions, self.arrays.positions)
+        part = mimetra.Sequence.load(path, frames="2:8:3", fps=10)
+        self.assert_same(part.positions, self.arrays.positions[2:8:3])
+        with self.assertRaisesRegex(mimetra.OutputError, "saved.npy: exists already"):
+            self.arrays.save(path)
+        self.arrays.save(path, force=True, single=True)
+        np.testing.assert_allclose(mimetra.Sequence.load(path).positions, self.arrays.positions,
+                                   atol=1e-5)
+
+
+if __name__ == "__main__":
+    unittest.main()

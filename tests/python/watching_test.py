@@ -1,0 +1,91 @@
+"""Progress, cancelling, logging, and several threads at once."""
+
+import os
+import signal
+import threading
+import unittest
+
+import mimetra
+from sample import SampleTest
+
+
+class Watching(SampleTest):
+    def test_progress_rises_from_nothing_to_all(self):
+        shares = []
+        mimetra.transfer(self.arrays, self.actor, k=8, progress=shares.append)
+        self.assertGreater(len(shares), 5)
+        self.assertEqual(shares, sorted(shares))
+        self.assertGreaterEqual(shares[0], 0)
+        self.assertEqual(shares[-1], 1)
+
+    def test_false_as_the_answer_cancels(self):
+        shares = []
+
+        def watch(share):
+            shares.append(share)
+            return share < 0.3
+
+        with self.assertRaises(mimetra.Cancelled) as caught:
+            mimetra.regions(self.arrays, k=20, progress=watch)
+        self.assertEqual(caught.exception.status, 130)
+        self.assertLess(shares[-1], 0.9)
+        self.assertEqual(len(mimetra.regions(self.arrays, k=2).out.masks), 2)
+
+    def test_what_progress_raises_comes_out(self):
+        def watch(_):
+            raise RuntimeError("enough")
+
+        with self.assertRaisesRegex(RuntimeError, "enough"):
+            mimetra.regions(self.arrays, k=5, progress=watch)
+
+    def test_control_c_ends_a_run(self):
+        def press(share):
+            if share > 0.2:
+                os.kill(os.getpid(), signal.SIGINT)
+
+        with self.assertRaises(KeyboardInterrupt):
+            mimetra.regions(self.arrays, k=20, progress=press)
+        self.assertIs(signal.getsignal(signal.SIGINT), signal.default_int_handler)
+
+    def test_control_c_ends_a_run_without_progress(self):
+        pressed = threading.Timer(0.1, os.kill, (os.getpid(), signal.SIGINT))
+        pressed.start()
+        with self.assertRaises(KeyboardInterrupt):
+            while True:
+                mimetra.decompose(self.arrays, k=40, tolerance=0, iterations=50)
+
+    def test_what_the_library_tells_is_logged(self):
+        bare = mimetra.Sequence(self.arrays.positions, self.arrays.faces)
+        with self.assertLogs("mimetra", "WARNING") as logs:
+            mimetra.transfer(bare, self.actor, k=4)
+        self.assertIn("first frame", " ".join(logs.output))
+
+    def test_two_threads_run_two_operations_at_once(self):
+        alone = [mimetra.transfer(self.arrays, self.actor, k=k).out.positions.copy()
+                 for k in (6, 12)]
+        both = threading.Barrier(2)
+        found, failed = {}, []
+
+        def run(index, k):
+            both.wait()
+            for _ in range(3):
+                found[index] = mimetra.transfer(self.arrays, self.actor, k=k).out.positions
+                try:
+                    mimetra.regions(self.arrays, k=-index)
+                except mimetra.UsageError as error:
+                    failed.append((index, str(error)))
+
+        threads = [threading.Thread(target=run, args=each) for each in [(0, 6), (1, 12)]]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+        for index, expected in enumerate(alone):
+            self.assert_same(found[index], expected)
+        self.assertEqual(len(failed), 6)
+        for index, text in failed:
+            self.assertIn(f"found '{-index}'", text)
+
+
+if __name__ == "__main__":
+    unittest.main()
