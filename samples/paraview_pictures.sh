@@ -12,7 +12,7 @@ cd "$3"
 "$mimetra" sample -o head
 "$mimetra" convert head --weights head/performance.csv -o takes
 "$mimetra" regions takes -k 30 -o rois/take.pvd --paraview rois/view.py
-xvfb-run -a -n 220 pvpython rois/view.py view.png
+xvfb-run -a -n 220 -s "-screen 0 1280x1024x24 -noreset" pvpython rois/view.py view.png
 
 {
   cat rois/view.py

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <mimetra/operations/xml_text.h>
 #include <mimetra/vtk/report_page.h>
 #include <mimetra/vtk/viewer_script.h>
 
@@ -49,10 +50,10 @@ bool holds(const std::string& page, const std::string& text) {
   return page.find(text) != std::string::npos;
 }
 
-TEST(HtmlText, IsEscaped) {
-  EXPECT_EQ(html_escaped("<a href=\"x\">'&'</a>"),
+TEST(Markup, IsEscaped) {
+  EXPECT_EQ(escaped_for_xml("<a href=\"x\">'&'</a>"),
             "&lt;a href=&quot;x&quot;&gt;&#39;&amp;&#39;&lt;/a&gt;");
-  EXPECT_EQ(html_escaped("Grüße"), "Grüße");
+  EXPECT_EQ(escaped_for_xml("Grüße"), "Grüße");
 }
 
 TEST(Report, IsBelowItsLimitAndSaysItsSize) {

@@ -18,6 +18,9 @@ std::string escaped_for_xml(const std::string& text) {
       case '"':
         result += "&quot;";
         break;
+      case '\'':
+        result += "&#39;";
+        break;
       default:
         result += c;
     }

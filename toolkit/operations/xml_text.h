@@ -4,7 +4,7 @@
 
 namespace mimetra {
 
-/// `text` as XML holds it between tags and in attributes.
+/// `text` as XML and HTML hold it, between tags and in attributes.
 std::string escaped_for_xml(const std::string& text);
 
 }  // namespace mimetra

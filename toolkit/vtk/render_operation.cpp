@@ -80,7 +80,7 @@ Outcome run(const Invocation& invocation) {
 }
 
 std::vector<Parameter> parameters() {
-  return {
+  std::vector<Parameter> list = {
       {"layout",
        ParameterKind::choice,
        "strip",
@@ -106,23 +106,34 @@ std::vector<Parameter> parameters() {
        "value of the darkest colour; default the largest",
        "",
        1e-300},
-      {"yaw", ParameterKind::number, 15.0, "seen from the side", "degrees", -360, 360},
-      {"pitch", ParameterKind::number, 5.0, "seen from above", "degrees", -90, 90},
-      {"up",
-       ParameterKind::choice,
-       "y",
-       "axis that points up; the face looks along +z, or -y where z is up",
-       "",
-       {},
-       {},
-       {"y", "z"}},
-      {"size", ParameterKind::integer, std::int64_t{320}, "height of one picture", "pixels", 16,
-       4096},
-      {"unit", ParameterKind::text, {}, "name of the meshes' unit of length, for the scale bar"},
   };
+  const std::vector<Parameter> view = view_parameters();
+  list.insert(list.end(), view.begin(), view.end());
+  list.insert(list.end(), {
+                              {"size", ParameterKind::integer, std::int64_t{320},
+                               "height of one picture", "pixels", 16, 4096},
+                              {"unit",
+                               ParameterKind::text,
+                               {},
+                               "name of the meshes' unit of length, for the scale bar"},
+                          });
+  return list;
 }
 
 }  // namespace
+
+std::vector<Parameter> view_parameters() {
+  return {{"yaw", ParameterKind::number, 15.0, "seen from the side", "degrees", -360, 360},
+          {"pitch", ParameterKind::number, 5.0, "seen from above", "degrees", -90, 90},
+          {"up",
+           ParameterKind::choice,
+           "y",
+           "axis that points up; the face looks along +z, or -y where z is up",
+           "",
+           {},
+           {},
+           {"y", "z"}}};
+}
 
 Operation render_operation() {
   Operation operation;

@@ -6,6 +6,7 @@
 
 #include <mimetra/operations/memory.h>
 #include <mimetra/operations/report.h>
+#include <mimetra/vtk/render_operation.h>
 #include <mimetra/vtk/report_page.h>
 #include <mimetra/vtk/viewer_script.h>
 
@@ -124,20 +125,13 @@ Operation report_operation() {
       {"weights-plot", DataKind::picture, "weights over time, .png", true},
       {"table-plot", DataKind::picture, "error and time against the share of triangles, .png",
        true}};
-  operation.parameters = {
+  operation.parameters = view_parameters();
+  operation.parameters.insert(
+      operation.parameters.begin(),
       {"k", ParameterKind::integer_list, std::vector<std::int64_t>{10, 30, 40},
-       "numbers of components in the table, besides the run's own", "", 1},
-      {"yaw", ParameterKind::number, 15.0, "seen from the side", "degrees", -360, 360},
-      {"pitch", ParameterKind::number, 5.0, "seen from above", "degrees", -90, 90},
-      {"up",
-       ParameterKind::choice,
-       "y",
-       "axis that points up; the face looks along +z, or -y where z is up",
-       "",
-       {},
-       {},
-       {"y", "z"}},
-      {"unit", ParameterKind::text, {}, "name of the meshes' unit of length"}};
+       "numbers of components in the table, besides the run's own", "", 1});
+  operation.parameters.push_back(
+      {"unit", ParameterKind::text, {}, "name of the meshes' unit of length"});
   operation.examples = {"report actor_smile/ -o smile.html",
                         "report rois/take.pvd --unit mm -o take.html --gallery components.png"};
   operation.run = run;

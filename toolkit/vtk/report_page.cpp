@@ -4,8 +4,8 @@
 #include <cctype>
 #include <cmath>
 
-#include <vtkBase64Utilities.h>
-
+#include <mimetra/operations/xml_text.h>
+#include <mimetra/vtk/base64.h>
 #include <mimetra/vtk/report_style.h>
 #include <mimetra/vtk/viewer_data.h>
 
@@ -27,12 +27,7 @@ struct PicturePair {
 };
 
 PagePicture page_picture(const Image& image) {
-  const std::string png = png_of(image);
-  std::string text(4 * ((png.size() + 2) / 3), '=');
-  text.resize(vtkBase64Utilities::Encode(reinterpret_cast<const unsigned char*>(png.data()),
-                                         png.size(),
-                                         reinterpret_cast<unsigned char*>(text.data())));
-  return {"data:image/png;base64," + text, image.width, image.height};
+  return {"data:image/png;base64," + base64(png_of(image)), image.width, image.height};
 }
 
 std::string size_of(const PagePicture& picture) {
@@ -42,13 +37,13 @@ std::string size_of(const PagePicture& picture) {
 
 std::string figure(const PagePicture& picture, const std::string& says) {
   return "<figure><img src=\"" + picture.address + '"' + size_of(picture) + " alt=\"" +
-         html_escaped(says) + "\"></figure>\n";
+         escaped_for_xml(says) + "\"></figure>\n";
 }
 
 std::string figure(const PicturePair& pictures, const std::string& says) {
   return "<figure class=\"strip\"><picture><source media=\"(max-width: 700px)\" srcset=\"" +
          pictures.narrow.address + '"' + size_of(pictures.narrow) + "><img src=\"" +
-         pictures.wide.address + '"' + size_of(pictures.wide) + " alt=\"" + html_escaped(says) +
+         pictures.wide.address + '"' + size_of(pictures.wide) + " alt=\"" + escaped_for_xml(says) +
          "\"></picture></figure>\n";
 }
 
@@ -89,8 +84,8 @@ class PageText {
   PageText(const ReportStudy& study, const ReportView& view) : study_(study), view_(view) {}
 
   std::string title() const {
-    return html_escaped(study_.source) +
-           (study_.transfer ? " → " + html_escaped(study_.transfer->target) : "");
+    return escaped_for_xml(study_.source) +
+           (study_.transfer ? " → " + escaped_for_xml(study_.transfer->target) : "");
   }
 
   std::string facts() const {
@@ -128,10 +123,10 @@ class PageText {
   std::string player() const {
     const std::string& target = study_.transfer ? study_.transfer->target : study_.source;
     std::string names =
-        "<span data-role=\"source\">source: " + html_escaped(study_.source) + "</span>";
+        "<span data-role=\"source\">source: " + escaped_for_xml(study_.source) + "</span>";
     std::string shown;
     if (study_.transfer) {
-      names += "<span data-role=\"target\">target: " + html_escaped(target) + "</span>";
+      names += "<span data-role=\"target\">target: " + escaped_for_xml(target) + "</span>";
       shown =
           "<label>show <select id=\"shown\"><option value=\"all\">both</option>"
           "<option value=\"source\">source</option><option value=\"target\">target</option>"
@@ -171,7 +166,7 @@ class PageText {
               "</tr>\n";
     }
     return "<table class=\"rows\">\n<thead><tr><th>K</th><th>triangles</th><th>DE" +
-           (view_.unit.empty() ? "" : ", " + html_escaped(view_.unit) + "²") +
+           (view_.unit.empty() ? "" : ", " + escaped_for_xml(view_.unit) + "²") +
            "</th><th>MPE, %</th><th>regions, s</th><th>transfer, s</th></tr></thead>\n<tbody>\n" +
            rows + "</tbody>\n</table>\n";
   }
@@ -198,7 +193,7 @@ class PageText {
     for (const std::string& argument : study_.run.arguments) line += ' ' + shell_quoted(argument);
     std::vector<std::string> changed;
     for (const auto& file : study_.run.changed) changed.push_back(file.string());
-    return "<section>\n<h2>The run</h2>\n<pre>" + html_escaped(line) + "</pre>\n" +
+    return "<section>\n<h2>The run</h2>\n<pre>" + escaped_for_xml(line) + "</pre>\n" +
            list("What it warned of:", study_.notes) +
            list("Changed since; this page shows what they give now:", changed) + region_table() +
            "</section>\n";
@@ -209,7 +204,7 @@ class PageText {
   static std::string list(const std::string& title, const std::vector<std::string>& items) {
     if (items.empty()) return "";
     std::string lines;
-    for (const std::string& item : items) lines += "<li>" + html_escaped(item) + "</li>\n";
+    for (const std::string& item : items) lines += "<li>" + escaped_for_xml(item) + "</li>\n";
     return "<p>" + title + "</p>\n<ul>\n" + lines + "</ul>\n";
   }
 
@@ -221,7 +216,7 @@ class PageText {
                std::to_string(color.blue) + ')';
     }
     return "<div id=\"scale\" hidden>0 <i style=\"background: linear-gradient(to right" + stops +
-           ")\"></i> <span id=\"largest\"></span> " + html_escaped(view_.unit) + "</div>\n";
+           ")\"></i> <span id=\"largest\"></span> " + escaped_for_xml(view_.unit) + "</div>\n";
   }
 
   const ReportStudy& study_;
@@ -319,32 +314,6 @@ std::string gallery_section(const Components& components, const ReportView& view
 }
 
 }  // namespace
-
-std::string html_escaped(const std::string& text) {
-  std::string escaped;
-  for (const char letter : text) {
-    switch (letter) {
-      case '&':
-        escaped += "&amp;";
-        break;
-      case '<':
-        escaped += "&lt;";
-        break;
-      case '>':
-        escaped += "&gt;";
-        break;
-      case '"':
-        escaped += "&quot;";
-        break;
-      case '\'':
-        escaped += "&#39;";
-        break;
-      default:
-        escaped += letter;
-    }
-  }
-  return escaped;
-}
 
 ReportPage report_page(const ReportStudy& study, const ReportView& view, std::string_view viewer,
                        const Progress& progress, std::size_t largest) {

@@ -12,9 +12,6 @@ constexpr std::size_t kLargestReport = 10'000'000;
 /// The strongest components that it shows.
 constexpr std::size_t kMostInGallery = 60;
 
-/// `text` for HTML, between tags or in quotes.
-std::string html_escaped(const std::string& text);
-
 struct ReportPage {
   std::string html;
   int viewer_frames = 0;  ///< 0 without a 3D viewer

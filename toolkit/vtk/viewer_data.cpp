@@ -5,12 +5,12 @@
 
 #include <nlohmann/json.hpp>
 
-#include <vtkBase64Utilities.h>
 #include <vtkNew.h>
 #include <vtkZLibDataCompressor.h>
 
 #include <mimetra/mesh/weld.h>
 #include <mimetra/operations/report.h>
+#include <mimetra/vtk/base64.h>
 #include <mimetra/vtk/colors.h>
 #include <mimetra/vtk/sheet_layout.h>
 
@@ -27,10 +27,7 @@ std::string compressed(const std::vector<unsigned char>& bytes) {
   vtkNew<vtkZLibDataCompressor> compressor;
   std::vector<unsigned char> packed(compressor->GetMaximumCompressionSpace(bytes.size()));
   packed.resize(compressor->Compress(bytes.data(), bytes.size(), packed.data(), packed.size()));
-  std::string text(4 * ((packed.size() + 2) / 3), '=');
-  text.resize(vtkBase64Utilities::Encode(packed.data(), packed.size(),
-                                         reinterpret_cast<unsigned char*>(text.data())));
-  return text;
+  return base64({reinterpret_cast<const char*>(packed.data()), packed.size()});
 }
 
 /// The difference of each pose from the one before, all low bytes of a pose before its high ones:
