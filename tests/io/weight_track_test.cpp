@@ -65,8 +65,9 @@ TEST_F(Weights, ErrorsNameLineColumnAndWhatWasFound) {
 }
 
 TEST_F(Weights, ComeBackEqualAfterWriting) {
-  const WeightTrack track{
-      {"a", "b"}, Eigen::MatrixXd::Random(7, 2), Eigen::VectorXd::LinSpaced(7, 0, 0.2)};
+  const WeightTrack track{{"smile, left", "a \"grin\""},
+                          Eigen::MatrixXd::Random(7, 2),
+                          Eigen::VectorXd::LinSpaced(7, 0, 0.2)};
   write_weights(folder_ / "t.csv", track, false);
   const WeightTrack found = read_weights(folder_ / "t.csv");
   EXPECT_EQ(found.names, track.names);

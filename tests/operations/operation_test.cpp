@@ -60,6 +60,27 @@ TEST(OperationTable, RefusesAParameterThatMeansTwoThings) {
               testing::ThrowsMessage<std::invalid_argument>(HasSubstr("'rho' means two things")));
 }
 
+TEST(OperationTable, RefusesANameThatTwoOfAnOperationHave) {
+  OperationTable table = toolkit();
+  Operation operation;
+  operation.name = "mine";
+  operation.inputs = {{"sequence", DataKind::sequence, "a mesh"}};
+  operation.outputs = {{"weights", DataKind::table, "as --weights of reading"}};
+  EXPECT_THAT([&] { table.add(operation); },
+              testing::ThrowsMessage<std::invalid_argument>(HasSubstr("'weights' is there twice")));
+  operation.outputs = {{"out", DataKind::sequence, "a copy"}};
+  operation.parameters = {{"fps", ParameterKind::number, {}, "of the same kind as of reading"}};
+  EXPECT_THAT([&] { table.add(operation); },
+              testing::ThrowsMessage<std::invalid_argument>(HasSubstr("'fps' means two things")));
+  operation.parameters = {{"speed", ParameterKind::number, {}, "its own"}};
+  EXPECT_NO_THROW(table.add(operation));
+}
+
+TEST(Table, QuotesNamesThatHoldACommaOrAQuotationMark) {
+  EXPECT_EQ((Table{{"speed, mm/s", "5\""}, {{1.5, std::nullopt}}}.csv()),
+            "\"speed, mm/s\",\"5\"\"\"\n1.5,\n");
+}
+
 TEST(OperationTable, EveryOperationHasTwoExamplesThatStartWithItsName) {
   const OperationTable table = toolkit();
   for (const Operation& operation : table.operations()) {

@@ -108,7 +108,7 @@ class WeightReader {
     WeightTrack result;
     const auto columns = static_cast<Eigen::Index>(weight_columns_.size());
     for (const int column : weight_columns_) {
-      result.names.emplace_back(header_[static_cast<std::size_t>(column)]);
+      result.names.push_back(text_of_csv(header_[static_cast<std::size_t>(column)]));
     }
     result.weights = Eigen::Map<const Frames>(weights_.data(), frames_, columns);
     result.times =
@@ -183,7 +183,7 @@ void write_weights(const std::filesystem::path& path, const WeightTrack& track, 
   check_sizes(track);
   const bool timed = track.times.size() > 0;
   std::string text = timed ? "time" : "";
-  for (const std::string& name : track.names) text += (text.empty() ? "" : ",") + name;
+  for (const std::string& name : track.names) text += (text.empty() ? "" : ",") + csv_field(name);
   text += '\n';
   for (Eigen::Index f = 0; f < track.weights.rows(); ++f) {
     if (timed) append(text, track.times[f]);

@@ -41,7 +41,8 @@ class Loader {
       default:
         break;
     }
-    throw std::invalid_argument("input '" + input.name + "' is of a kind that no file holds");
+    throw std::invalid_argument("input '" + input.name + "': no file holds a value of the kind '" +
+                                std::string(kind_name(input.kind)) + "'");
   }
 
   /// Region sets that are read speak of a given sequence too.

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include <mimetra/io/pending_output.h>
+#include <mimetra/io/text_cursor.h>
 #include <mimetra/operations/report.h>
 
 namespace mimetra {
@@ -148,7 +149,7 @@ std::string_view kind_name(DataKind kind) {
 std::string Table::csv() const {
   std::ostringstream text;
   for (std::size_t column = 0; column < columns.size(); ++column) {
-    text << (column > 0 ? "," : "") << columns[column];
+    text << (column > 0 ? "," : "") << csv_field(columns[column]);
   }
   text << '\n';
   for (const auto& row : rows) {
@@ -186,12 +187,14 @@ void OperationTable::add(Operation operation) {
     throw std::invalid_argument("there is an operation '" + operation.name + "' already");
   }
   std::set<std::string> names;
-  for (const Parameter& parameter : parameters_of(operation)) {
-    if (!names.insert(parameter.name).second) {
-      throw std::invalid_argument("operation '" + operation.name + "' has two parameters '" +
-                                  parameter.name + "'");
-    }
-  }
+  const auto claim = [&](const std::string& name) {
+    if (names.insert(name).second) return;
+    throw std::invalid_argument("operation '" + operation.name + "': the name '" + name +
+                                "' is there twice");
+  };
+  for (const Input& input : operation.inputs) claim(input.name);
+  for (const Output& output : operation.outputs) claim(output.name);
+  for (const Parameter& parameter : parameters_of(operation)) claim(parameter.name);
   operations_.push_back(std::move(operation));
 }
 
@@ -221,9 +224,10 @@ std::vector<Parameter> OperationTable::parameters_of(const Operation& operation)
   const auto append = [&](const std::vector<Parameter>& more) {
     for (const Parameter& parameter : more) {
       const auto same = std::ranges::find(parameters, parameter.name, &Parameter::name);
+      const bool is_own = same - parameters.begin() < std::ssize(operation.parameters);
       if (same == parameters.end()) {
         parameters.push_back(parameter);
-      } else if (same->kind != parameter.kind) {
+      } else if (is_own || same->kind != parameter.kind) {
         throw std::invalid_argument("operation '" + operation.name + "': parameter '" +
                                     parameter.name + "' means two things");
       }
@@ -263,6 +267,9 @@ const Writer& OperationTable::writer(DataKind kind, const std::filesystem::path&
     }
   }
   if (folder) return *folder;
+  if (known.empty()) {
+    throw UsageError(target.string() + ": this program writes no " + std::string(kind_name(kind)));
+  }
   throw UsageError(target.string() + ": " + std::string(kind_name(kind)) + " can be written as " +
                    listed(known) + ", not as '" + target.extension().string() + "'");
 }

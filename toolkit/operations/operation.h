@@ -137,7 +137,8 @@ struct LandmarkReader {
 /// All operations and formats of a program; built by its main function and passed down.
 class OperationTable {
  public:
-  /// Throws std::invalid_argument for a name that is taken or a parameter declared twice.
+  /// Throws std::invalid_argument for a name that is taken, or that two of the operation's inputs,
+  /// outputs and parameters (with those of its files) have.
   void add(Operation operation);
   void add(Writer writer);
   void add(RegionReader reader);
@@ -148,7 +149,8 @@ class OperationTable {
   const Operation* find(const std::string& name) const;
 
   /// The operation's own parameters, those of reading its inputs and of writing its outputs. Throws
-  /// std::invalid_argument where two of them share a name but not a kind.
+  /// std::invalid_argument where an own one has a name of those, or two of those share a name but
+  /// not a kind.
   std::vector<Parameter> parameters_of(const Operation& operation) const;
   /// The writer of `kind` for a path. Throws UsageError that lists the known extensions.
   const Writer& writer(DataKind kind, const std::filesystem::path& target) const;
