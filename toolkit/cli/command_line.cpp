@@ -7,6 +7,7 @@
 
 #include <mimetra/cli/command.h>
 #include <mimetra/cli/suggestion.h>
+#include <mimetra/mesh/parallel.h>
 #include <mimetra/operations/option_file.h>
 
 namespace mimetra::cli {
@@ -94,8 +95,7 @@ ProgressBar progress_bar(const std::string& text) {
 }
 
 int thread_count(const std::string& text) {
-  constexpr double kMost = 1024;
-  const Parameter parameter{"threads", ParameterKind::integer, {}, "", "", 1, kMost};
+  const Parameter parameter{"threads", ParameterKind::integer, {}, "", "", 1, kMostThreads};
   return static_cast<int>(std::get<std::int64_t>(parse_value(parameter, text)));
 }
 

@@ -108,13 +108,22 @@ OutputPaths output_paths(const OperationTable& table, const Request& request,
   return all;
 }
 
+/// What an input is called in the name of a file: a person of a model by its own name, all else by
+/// that of its file or folder.
+std::string short_name(const Input& input, const std::string& name) {
+  if (input.kind == DataKind::model) return name;
+  std::filesystem::path path(name);
+  if (!path.has_filename()) path = path.parent_path();
+  return path.stem().string();
+}
+
 /// Names of the repeated input.
 std::vector<std::string> repeated_names(const Operation& operation, const LoadedInputs& loaded) {
   std::vector<std::string> names;
   for (const Input& input : operation.inputs) {
     const auto values = loaded.data.find(input.name);
     if (!input.repeated || values == loaded.data.end()) continue;
-    for (const NamedData& value : values->second) names.push_back(value.name);
+    for (const NamedData& value : values->second) names.push_back(short_name(input, value.name));
   }
   return names;
 }

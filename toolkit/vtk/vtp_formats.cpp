@@ -54,7 +54,11 @@ void add_vtp(OperationTable& table) {
                    {".pvd", ".vtp"},
                    parameters,
                    [](const Data& data, const WriteRequest& request) {
-                     return write(std::get<RegionData>(data).fields, request);
+                     const FieldSequence& shown = std::get<RegionData>(data).fields;
+                     if (shown.sequence.frames() > 0) return write(shown, request);
+                     throw MismatchError(request.target.string() +
+                                         ": the regions come without a mesh to show them on; "
+                                         "write .json or .csv");
                    }});
   table.add(Writer{DataKind::fields,
                    {".vtp", ".pvd"},
