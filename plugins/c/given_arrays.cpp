@@ -65,6 +65,10 @@ std::string problem_of(const mimetra_array& array) {
   return count > 0 && !array.values ? "has no values" : "";
 }
 
+/// Sizes of what a value can do without: regions and rows, expressions, identities, landmarks,
+/// corners, polygons, triangles, energies.
+constexpr std::string_view kMayBeNone = "RDILCPTE";
+
 template <typename To, typename From>
 void copy_as(const void* from, std::int64_t count, To* to) {
   std::copy_n(static_cast<const From*>(from), count, to);
@@ -76,6 +80,10 @@ const char* type_name(int type) {
 }
 
 }  // namespace
+
+bool is_same_place(const mimetra_array& a, const mimetra_array& b) {
+  return a.location == b.location && std::string_view(a.name) == b.name;
+}
 
 bool is_line(std::string_view text) {
   const auto is_control = [](unsigned char c) { return c < 0x20 || c == 0x7f; };
@@ -96,7 +104,9 @@ GivenArrays::GivenArrays(std::string subject, const mimetra_array* const* arrays
       throw UsageError(subject_ + ": array " + std::to_string(arrays_.size()) +
                        " has no name; are its struct_size and name set?");
     }
-    if (has(array.name)) throw UsageError(place(array.name) + "is given twice");
+    const bool is_twice = std::ranges::any_of(
+        arrays_, [&array](const mimetra_array& other) { return is_same_place(array, other); });
+    if (is_twice) throw UsageError(place(array.name) + "is given twice");
     const std::string problem = problem_of(array);
     if (!problem.empty()) throw UsageError(place(array.name) + problem);
     arrays_.push_back(array);
@@ -108,8 +118,9 @@ std::string GivenArrays::place(std::string_view name) const {
 }
 
 const mimetra_array* GivenArrays::find(std::string_view name) const {
-  const auto found = std::ranges::find_if(
-      arrays_, [name](const mimetra_array& array) { return array.name == name; });
+  const auto found = std::ranges::find_if(arrays_, [name](const mimetra_array& array) {
+    return array.location == MIMETRA_NOWHERE && array.name == name;
+  });
   return found == arrays_.end() ? nullptr : &*found;
 }
 
@@ -123,6 +134,7 @@ void GivenArrays::set_size(char letter, int size, const std::string& where) {
 }
 
 void GivenArrays::match(const mimetra_array& array, std::string_view shape) {
+  used_.insert(&array);
   const std::vector<std::string> expected = sizes_in(shape);
   const auto refuse = [&] {
     throw UsageError(place(array.name) + "is " + shape_text(array) + ", expected " +
@@ -132,6 +144,10 @@ void GivenArrays::match(const mimetra_array& array, std::string_view shape) {
   for (int i = 0; i < array.rank; ++i) {
     const std::string& size = expected[static_cast<std::size_t>(i)];
     const std::int64_t found = array.shape[i];
+    if (found == 0 && kMayBeNone.find(size[0]) == std::string_view::npos) {
+      throw UsageError(place(array.name) + "is " + shape_text(array) + ", expected " +
+                       std::string(shape) + " with " + size + " at least 1");
+    }
     if (std::isdigit(static_cast<unsigned char>(size[0]))) {
       if (std::to_string(found) != size) refuse();
       continue;
@@ -153,12 +169,20 @@ const mimetra_array& GivenArrays::get(std::string_view name, std::string_view sh
                      std::string(shape) + ")");
   }
   match(*array, shape);
-  used_.insert(std::string(name));
   return *array;
 }
 
 Frames GivenArrays::numbers(std::string_view name, std::string_view shape, bool finite) {
-  const mimetra_array& array = get(name, shape);
+  return values_of(get(name, shape), finite);
+}
+
+Frames GivenArrays::numbers(const mimetra_array& array, std::string_view shape, bool finite) {
+  match(array, shape);
+  return values_of(array, finite);
+}
+
+Frames GivenArrays::values_of(const mimetra_array& array, bool finite) const {
+  const std::string_view name = array.name;
   if (array.type == MIMETRA_STRING) {
     throw UsageError(place(name) + "is STRING, expected F64 or F32");
   }
@@ -241,7 +265,7 @@ std::vector<std::string> GivenArrays::strings(std::string_view name, std::string
 void GivenArrays::check_all_used(const std::set<std::string, std::less<>>& shown) const {
   for (const mimetra_array& array : arrays_) {
     const std::string_view name = array.name;
-    if (used_.contains(name) || shown.contains(name)) continue;
+    if (used_.contains(&array) || shown.contains(name)) continue;
     throw UsageError(place(name) + "is not known here; mimetra.h lists those of each kind");
   }
 }

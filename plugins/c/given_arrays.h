@@ -27,6 +27,7 @@ class GivenArrays {
   const std::string& subject() const { return subject_; }
   /// In the order they came.
   const std::vector<mimetra_array>& all() const { return arrays_; }
+  /// By name; fields, which have a location, are not meant here or below.
   bool has(std::string_view name) const { return find(name) != nullptr; }
   /// 0 where there is none of that name.
   int rank(std::string_view name) const;
@@ -37,6 +38,8 @@ class GivenArrays {
 
   /// Rows by the first size, columns by all others.
   Frames numbers(std::string_view name, std::string_view shape, bool finite = true);
+  /// One of all().
+  Frames numbers(const mimetra_array& array, std::string_view shape, bool finite);
   Eigen::VectorXd vector(std::string_view name, std::string_view shape, bool finite = true);
   Positions positions(std::string_view name);
   std::vector<int> integers(std::string_view name, std::string_view shape);
@@ -50,14 +53,19 @@ class GivenArrays {
  private:
   const mimetra_array* find(std::string_view name) const;
   const mimetra_array& get(std::string_view name, std::string_view shape);
+  /// Checks the shape, and keeps in mind that the array was asked for.
   void match(const mimetra_array& array, std::string_view shape);
+  Frames values_of(const mimetra_array& array, bool finite) const;
   std::string place(std::string_view name) const;
 
   std::string subject_;
   std::vector<mimetra_array> arrays_;
   std::map<char, std::pair<std::int64_t, std::string>> sizes_;
-  std::set<std::string, std::less<>> used_;
+  std::set<const mimetra_array*> used_;
 };
+
+/// True for two arrays that one value cannot have both: of one name, on the same part of the mesh.
+bool is_same_place(const mimetra_array& a, const mimetra_array& b);
 
 /// True for UTF-8 in one line: what stands in messages, names and JSON.
 bool is_line(std::string_view text);

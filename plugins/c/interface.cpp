@@ -8,6 +8,7 @@
 #include <mimetra/c/make_data.h>
 #include <mimetra/c/stored_data.h>
 #include <mimetra/c/value.h>
+#include <mimetra/mesh/parallel.h>
 
 namespace mimetra {
 
@@ -53,8 +54,9 @@ mimetra_status set_progress(mimetra_context* context, mimetra_progress progress,
 
 mimetra_status set_threads(mimetra_context* context, int32_t threads) noexcept {
   return guarded(context, [&] {
-    if (threads < 0) {
-      throw UsageError("threads: expected 0 or more, found " + std::to_string(threads));
+    if (threads < 0 || threads > kMostThreads) {
+      throw UsageError("threads: expected 0 to " + std::to_string(kMostThreads) + ", found " +
+                       std::to_string(threads));
     }
     context->threads = threads;
   });
@@ -70,6 +72,7 @@ const mimetra_operation* find_operation(const mimetra_context* context, const ch
 }
 
 mimetra_status operations_json(mimetra_context* context, const char** json) noexcept {
+  if (json) *json = nullptr;
   return guarded(context, [&] { *needed(json, "json") = context->table->json().c_str(); });
 }
 

@@ -11,14 +11,34 @@ using namespace mimetra;
 
 namespace {
 
+/// The sequence of a value that has one; null for others.
+const MeshSequence* sequence_of(const Data& data) {
+  if (const auto* read = std::get_if<SequenceRead>(&data)) return &read->sequence;
+  if (const auto* fields = std::get_if<FieldSequence>(&data)) return &fields->sequence;
+  return nullptr;
+}
+
 /// Longest side of the rest pose of what has one.
 std::optional<double> extent_of(const Data& data) {
-  if (const auto* read = std::get_if<SequenceRead>(&data)) return read->sequence.extent();
-  if (const auto* fields = std::get_if<FieldSequence>(&data)) return fields->sequence.extent();
+  if (const MeshSequence* sequence = sequence_of(data)) return sequence->extent();
   if (const auto* model = std::get_if<BlendshapeModel>(&data)) return extent(model->neutral());
   if (const auto* components = std::get_if<Components>(&data)) return extent(components->rest);
   if (const auto* read = std::get_if<ModelRead>(&data)) return extent(read->model.mean());
   return {};
+}
+
+/// Regions are shown on a sequence that the operation was given, as the toolkit's own are.
+void show_on(const Invocation& invocation, RegionData& made) {
+  for (const auto& [name, values] : invocation.inputs) {
+    for (const NamedData& value : values) {
+      const MeshSequence* sequence = sequence_of(value.data);
+      const bool fits = sequence && sequence->vertices() == made.regions.vertices &&
+                        sequence->triangles().rows() == made.regions.all_triangles;
+      if (!fits) continue;
+      made.fields = {*sequence, fields_of(made.regions), true};
+      return;
+    }
+  }
 }
 
 }  // namespace
@@ -29,9 +49,7 @@ mimetra_job::mimetra_job(const Operation& operation, const Invocation& invocatio
   context_.log = invocation.log;
   context_.threads = invocation.threads;
   // The toolkit's operations that it calls can be cancelled; how far they are is theirs.
-  context_.progress = [this](double) {
-    return !invocation_.progress || invocation_.progress(share_);
-  };
+  context_.progress = [this](double) { return goes_on(); };
   for (const auto& [name, values] : invocation.inputs) {
     for (const NamedData& value : values) {
       inputs_[name].push_back(
@@ -76,10 +94,14 @@ const char* mimetra_job::text(const std::string& name) {
   return texts_.emplace_back(to_text(value)).c_str();
 }
 
+bool mimetra_job::goes_on() {
+  if (invocation_.progress && !invocation_.progress(share_)) cancelled_ = true;
+  return !cancelled_;
+}
+
 void mimetra_job::progress(double share) {
-  if (!(share >= 0 && share <= 1)) return;
-  share_ = share;
-  report_progress(invocation_.progress, share);
+  if (!std::isnan(share)) share_ = std::clamp(share, 0.0, 1.0);
+  if (!goes_on()) throw Cancelled();
 }
 
 void mimetra_job::log(LogLevel level, const std::string& text) const {
@@ -97,7 +119,9 @@ void mimetra_job::output(const std::string& name, const NamedData& value) {
                      std::string(kind_name(declared->kind)) + "', found '" +
                      std::string(kind_name(kind)) + "'");
   }
-  outcome_.outputs[name].push_back(value);
+  NamedData& made = outcome_.outputs[name].emplace_back(value);
+  auto* regions = std::get_if<RegionData>(&made.data);
+  if (regions && regions->fields.sequence.frames() == 0) show_on(invocation_, *regions);
 }
 
 void mimetra_job::report(const std::string& json, const std::string& summary) {

@@ -26,8 +26,10 @@ struct mimetra_job {
   const char* text(const std::string& parameter);
   int threads() const { return invocation_.threads; }
   bool wants(const std::string& output) const { return invocation_.wants(output); }
-  /// Throws Cancelled.
+  /// Throws Cancelled. A share outside [0, 1] counts as the nearest in it.
   void progress(double share);
+  /// True once the user has cancelled, whatever became of it.
+  bool cancelled() const { return cancelled_; }
   void log(mimetra::LogLevel level, const std::string& text) const;
   /// Throws UsageError for an unknown output or a value of another kind.
   void output(const std::string& name, const mimetra::NamedData& value);
@@ -38,12 +40,14 @@ struct mimetra_job {
   mimetra::Outcome outcome() &&;
 
  private:
+  bool goes_on();
   std::size_t expected_count(const mimetra::Output& output) const;
 
   const mimetra::Operation& operation_;
   const mimetra::Invocation& invocation_;
   mimetra_context context_;
   double share_ = 0;
+  bool cancelled_ = false;
   std::map<std::string, std::vector<std::unique_ptr<mimetra_data>>> inputs_;
   std::deque<std::string> texts_;
   mimetra::Outcome outcome_;

@@ -124,7 +124,7 @@ Components components_of(GivenArrays& given) {
   components.rest = given.positions("rest");
   components.triangles = connectivity_of(given, given.size('N')).triangles;
   components.displacements = given.numbers("displacements", "K x N x 3");
-  components.weights = given.numbers("weights", "F x K");
+  if (given.has("weights")) components.weights = given.numbers("weights", "F x K");
   components.centers = given.integers("centers", "K");
   for (const VertexIndex center : components.centers) {
     if (center >= -1 && center < components.vertices()) continue;
@@ -132,7 +132,7 @@ Components components_of(GivenArrays& given) {
                                        ", expected -1 to " +
                                        std::to_string(components.vertices() - 1));
   }
-  components.support = given.numbers("support", "K x N");
+  if (given.has("support")) components.support = given.numbers("support", "K x N");
   if (given.has("energies")) {
     const Eigen::VectorXd energies = given.vector("energies", "E");
     components.energies.assign(energies.begin(), energies.end());
@@ -167,7 +167,10 @@ Field field_of(GivenArrays& given, const mimetra_array& array) {
   const std::string rows = array.location == MIMETRA_ON_TRIANGLES ? "T" : "N";
   // Each field has a number of columns of its own.
   const std::string columns = array.rank == 2 ? " x " + std::to_string(array.shape[1]) : "";
-  field.values = given.numbers(field.name, rows + columns, false);
+  if (columns == " x 0") {
+    throw UsageError(given.subject() + ": array '" + field.name + "' has no columns");
+  }
+  field.values = given.numbers(array, rows + columns, false);
   field.integer = array.type == MIMETRA_I32 || array.type == MIMETRA_U8;
   return field;
 }
@@ -185,6 +188,9 @@ Table table_of(GivenArrays& given) {
   Table table;
   if (given.all().empty()) throw UsageError(given.subject() + ": a table needs columns");
   for (const mimetra_array& array : given.all()) {
+    if (array.location != MIMETRA_NOWHERE) {
+      throw UsageError(given.subject() + ": column '" + array.name + "' has a location");
+    }
     const Eigen::VectorXd values = given.vector(array.name, "R", false);
     table.columns.emplace_back(array.name);
     table.rows.resize(static_cast<std::size_t>(values.size()));
@@ -227,6 +233,7 @@ LandmarksRead landmarks_of(GivenArrays& given) {
   LandmarkTrack& track = made.track;
   track.points = given.numbers("points", "F x L x 2", false);
   track.names = given.strings("names", "L");
+  if (track.names.empty()) throw UsageError(given.subject() + ": needs a landmark or more");
   const int frames = given.size('F');
   track.times = given.has("times")
                     ? given.vector("times", "F")
@@ -298,6 +305,44 @@ Base hidden_connectivity(const Data& data) {
   return nullptr;
 }
 
+/// Gives a value derived of `base` what no array shows.
+struct KeepHidden {
+  Data& made;
+
+  template <typename Value>
+  Value& as() const {
+    return std::get<Value>(made);
+  }
+
+  void operator()(const SequenceRead& base) const {
+    as<SequenceRead>().model_driven = base.model_driven;
+  }
+  void operator()(const FieldSequence& base) const {
+    as<FieldSequence>().displacement = base.displacement;
+  }
+  void operator()(const ModelRead& base) const { as<ModelRead>().path = base.path; }
+  void operator()(const Components& base) const {
+    const int count = as<Components>().count();
+    as<Components>().options = base.options;
+    as<Components>().options.count = count;
+  }
+  void operator()(const LandmarksRead& base) const {
+    auto& derived = as<LandmarksRead>();
+    if (derived.track.frames() != base.track.frames()) return;
+    derived.images = base.images;
+    derived.frame_notes = base.frame_notes;
+  }
+  void operator()(const RegionData& base) const {
+    auto& derived = as<RegionData>();
+    const MeshSequence& mesh = base.fields.sequence;
+    const bool same_mesh = mesh.frames() > 0 && mesh.vertices() == derived.regions.vertices &&
+                           mesh.triangles().rows() == derived.regions.all_triangles;
+    if (same_mesh) derived.fields = {mesh, fields_of(derived.regions), base.fields.displacement};
+  }
+  template <typename Other>
+  void operator()(const Other&) const {}
+};
+
 NamedData checked(mimetra_kind kind, const std::string& name, GivenArrays& given,
                   const Base& base) {
   NamedData made{name, data_of(kind, given, base)};
@@ -333,16 +378,16 @@ NamedData derived_data(const NamedData& base, const mimetra_array* const* arrays
   const ShownArrays shown(base.data);
   std::vector<const mimetra_array*> all;
   for (const mimetra_array& array : shown.arrays()) {
-    const bool replaced = (new_faces || connectivity) && face_names().contains(array.name);
-    if (!replaced && !changes.has(array.name)) all.push_back(&array);
+    const bool is_face = (new_faces || connectivity) && face_names().contains(array.name);
+    const bool is_changed = std::ranges::any_of(
+        changes.all(), [&](const mimetra_array& other) { return is_same_place(array, other); });
+    if (!is_face && !is_changed) all.push_back(&array);
   }
   for (const mimetra_array& array : changes.all()) all.push_back(&array);
   all.push_back(nullptr);
   GivenArrays given(subject, all.data());
   NamedData made = checked(kind, base.name, given, connectivity);
-  if (auto* fields = std::get_if<FieldSequence>(&made.data)) {
-    fields->displacement = std::get<FieldSequence>(base.data).displacement;
-  }
+  std::visit(KeepHidden{made.data}, base.data);
   return made;
 }
 

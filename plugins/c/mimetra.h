@@ -50,8 +50,9 @@
  *   Arguments are copied: they may go when the function returns.
  *
  * Threads. A context, with its calls, serves one thread at a time; several contexts serve several
- *   threads at once. Values (mimetra_data) belong to no context and never change: any number of
- *   threads may read one and give it to calls. Callbacks come from the thread that called. Inside,
+ *   threads at once. A job serves the thread that called run, and no exception may leave a thread
+ *   that run has started. Values (mimetra_data) belong to no context and never change: any number
+ * of threads may read one and give it to calls. Callbacks come from the thread that called. Inside,
  *   an operation uses as many threads as m->set_threads() allows; results do not depend on it.
  *
  * Text is UTF-8 and ends with 0. Lists end with NULL. Arrays are in C order, without gaps.
@@ -177,8 +178,8 @@ typedef struct mimetra_array {
  *   morphable model   the same, [identities I x N x 3, identity_names STRING I]
  *   animated model    a morphable model; weights F x W, weight_names STRING W, [times F],
  *                     [landmarks I32 L x 2: number, vertex]
- *   components        rest N x 3, triangles, displacements K x N x 3, weights F x K, centers I32 K
- *                     (-1: it died), support K x N, [energies], [scale 1], [d_min 1], [d_max 1]
+ *   components        rest N x 3, triangles, displacements K x N x 3, [weights F x K], centers I32
+ *                     K (-1: it died), [support K x N], [energies], [scale 1], [d_min 1], [d_max 1]
  *   regions           masks U8 R x N, triangles or faces | centers I32 R, radii R, energies R,
  *                     energy_shares R, vertex_energy N, faces where known, and fields: region
  *                     I32 N (strongest region, -1 outside), region_count I32 N, roi I32 N (0/1),
@@ -196,7 +197,11 @@ typedef struct mimetra_array {
  *                     no arrays: they are there to be saved, or read by an operation
  *
  * Where no type stands, it is F64, and F32 is taken too. Numbers must be finite, but for fields,
- * tables and the points of landmarks.
+ * tables and the points of landmarks. Only fields have a location; two of them may share a name
+ * where one is on vertices and one on triangles, and data_array() then gives the first.
+ *
+ * Tables, pictures, animated models and fits are in no file that can be read: as inputs they are
+ * given as values.
  */
 typedef struct mimetra_data mimetra_data;
 
@@ -341,7 +346,8 @@ typedef struct mimetra_interface {
   /* -- For third-party operations: a run from inside. What it is given belongs to the job -- */
 
   /* A context for making values and calling the toolkit's own operations; belongs to the job. Its
-   * message is the job's where run returns an error. */
+   * message, the last error, is the job's where run returns one: after another cause, and after an
+   * error that run got over, say why with job_fail. */
   mimetra_context* (*job_context)(mimetra_job* job);
   /* Value `index` of an input; NULL past its last one, and for an optional one not given. */
   const mimetra_data* (*job_input)(mimetra_job* job, const char* input, int32_t index);
@@ -350,11 +356,12 @@ typedef struct mimetra_interface {
   double (*job_number)(mimetra_job* job, const char* parameter);
   /* A parameter as text, of any kind; NULL where it has no value. */
   const char* (*job_text)(mimetra_job* job, const char* parameter);
-  /* How many threads to use at most. */
+  /* How many threads to use at most; 0 for all there are. */
   int32_t (*job_threads)(mimetra_job* job);
   /* 1 where an optional output was asked for; needed ones always are. */
   int32_t (*job_wants)(mimetra_job* job, const char* output);
-  /* Call it often. MIMETRA_CANCELLED: free what you hold and return that. */
+  /* Call it often; a share outside [0, 1] counts as the nearest in it. MIMETRA_CANCELLED: free what
+   * you hold and return that. */
   mimetra_status (*job_progress)(mimetra_job* job, double share);
   void (*job_log)(mimetra_job* job, int32_t level, const char* text);
   /* Says why run fails, and returns `status` for run to return. */

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
-#include <set>
 #include <string_view>
 
 #include <mimetra/c/given_arrays.h>
@@ -31,6 +31,19 @@ std::string name_of(const char* name, const std::string& what) {
       !std::ranges::all_of(text, fits)) {
     throw UsageError(what + " has the name '" + (is_line(text) ? std::string(text) : "") +
                      "', expected small letters, digits and '-'");
+  }
+  return std::string(text);
+}
+
+/// Choices are typed in shells too: letters, digits, '-', '_' and '.'.
+std::string choice_of(const char* choice, const std::string& what) {
+  const std::string_view text = choice;
+  const auto fits = [](unsigned char c) {
+    return c < 0x80 && (std::isalnum(c) || c == '-' || c == '_' || c == '.');
+  };
+  if (text.empty() || text.front() == '-' || !std::ranges::all_of(text, fits)) {
+    throw UsageError(what + " has the choice '" + (is_line(text) ? std::string(text) : "") +
+                     "', expected letters, digits, '-', '_' and '.'");
   }
   return std::string(text);
 }
@@ -73,7 +86,7 @@ Parameter parameter_of(const mimetra_parameter& described) {
     if (std::isfinite(described.maximum)) parameter.maximum = described.maximum;
   }
   for (const char* const* choice = described.choices; choice && *choice; ++choice) {
-    parameter.choices.push_back(line_of(*choice, what));
+    parameter.choices.push_back(choice_of(*choice, what));
   }
   if (described.fallback) {
     parameter.fallback = parse_value(parameter, line_of(described.fallback, what));
@@ -84,12 +97,10 @@ Parameter parameter_of(const mimetra_parameter& described) {
 }
 
 void check_names(const Operation& operation) {
-  std::set<std::string> names;
-  const auto check = [&names](const std::string& name) {
+  const auto check = [](const std::string& name) {
     if (std::ranges::find(kTaken, name) != kTaken.end()) {
       throw UsageError("the name '" + name + "' is an option of every command");
     }
-    if (!names.insert(name).second) throw UsageError("the name '" + name + "' is there twice");
   };
   for (const Input& input : operation.inputs) check(input.name);
   for (const Output& output : operation.outputs) check(output.name);
@@ -117,11 +128,13 @@ Outcome run(const mimetra_operation& described, const Operation& operation,
   try {
     status = described.run(&toolkit_interface(), &job, described.user);
   } catch (...) {
+    if (job.cancelled()) throw Cancelled();
     const Failure failure = failure_of(std::current_exception());
     throw std::runtime_error(subject + ": threw an exception: " + failure.message);
   }
   const std::string& message = job.context().message;
   if (status != MIMETRA_OK) {
+    if (job.cancelled()) throw Cancelled();
     throw_failure(status, subject, message.empty() ? "failed and does not say why" : message);
   }
   try {

@@ -45,7 +45,9 @@ std::vector<fs::path> libraries_in(const fs::path& folder) {
   std::vector<fs::path> files;
   if (!fs::is_directory(folder)) throw UsageError("no such folder");
   for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
-    if (entry.path().extension() == ".so" && entry.is_regular_file()) files.push_back(entry.path());
+    std::error_code error;
+    const bool is_library = entry.path().extension() == ".so";
+    if (is_library && !entry.is_directory(error)) files.push_back(entry.path());
   }
   std::ranges::sort(files);
   return files;
@@ -107,8 +109,9 @@ std::vector<std::string> add_plugins(OperationTable& table, const std::vector<fs
   for (const fs::path& folder : folders) {
     attempt(folder, [&] {
       for (const fs::path& file : libraries_in(folder)) {
-        if (!seen.insert(fs::canonical(file)).second) continue;
-        attempt(file, [&] { add(file); });
+        attempt(file, [&] {
+          if (seen.insert(fs::canonical(file)).second) add(file);
+        });
       }
     });
   }

@@ -126,11 +126,13 @@ void ShownArrays::show(const Components& components) {
   add("rest", MIMETRA_F64, {vertices, 3}, components.rest.data());
   add("triangles", MIMETRA_I32, {components.triangles.rows(), 3}, components.triangles.data());
   add("displacements", MIMETRA_F64, {count, vertices, 3}, components.displacements.data());
-  add_numbers("weights", {components.weights.rows(), components.weights.cols()},
-              by_rows(components.weights));
+  if (components.weights.size() > 0) {
+    add_numbers("weights", {components.weights.rows(), count}, by_rows(components.weights));
+  }
   add("centers", MIMETRA_I32, {count}, components.centers.data());
-  add_numbers("support", {components.support.rows(), components.support.cols()},
-              by_rows(components.support));
+  if (components.support.size() > 0) {
+    add_numbers("support", {count, vertices}, by_rows(components.support));
+  }
   add("energies", MIMETRA_F64, {static_cast<Eigen::Index>(components.energies.size())},
       components.energies.data());
   add("scale", MIMETRA_F64, {1}, &components.scale);

@@ -1,5 +1,6 @@
 // Plugins that cannot be used, one for each BROKEN_... that this is compiled with.
 
+#include <iterator>
 #include <stdexcept>
 
 #include <mimetra/c/mimetra.h>
@@ -78,33 +79,53 @@ const mimetra_plugin* mimetra_get_plugin() {
   static const mimetra_port no_kind = {sizeof no_kind, 99, "sequence", "", 0, 0};
   static const mimetra_port no_size = {0, MIMETRA_SEQUENCE, "sequence", "", 0, 0};
   static const mimetra_port fine = {sizeof fine, MIMETRA_SEQUENCE, "sequence", "", 0, 0};
+  static const mimetra_port weights = {
+      sizeof weights, MIMETRA_TABLE, "weights", "", MIMETRA_OPTIONAL, 0};
   static const mimetra_port* const of_no_kind[] = {&no_kind, nullptr};
   static const mimetra_port* const of_no_size[] = {&no_size, nullptr};
+  static const mimetra_port* const one[] = {&fine, nullptr};
   static const mimetra_port* const twice[] = {&fine, &fine, nullptr};
-  static mimetra_parameter common{}, out_of_range{}, two_meanings{};
-  common = {sizeof common, MIMETRA_FLAG, "json", "", nullptr, nullptr, 0, 0, nullptr, 0, 0};
-  out_of_range = {sizeof common, MIMETRA_NUMBER, "x", "", "7", nullptr, 0, 1, nullptr, 0, 0};
-  two_meanings = {sizeof common, MIMETRA_FLAG, "frames", "", nullptr, nullptr, 0, 0, nullptr, 0, 0};
+  static const mimetra_port* const an_option[] = {&weights, nullptr};
+  static const char* const phrases[] = {"don't", nullptr};
+  static const char* const words[] = {"npy", nullptr};
+  constexpr auto kSize = sizeof(mimetra_parameter);
+  static const mimetra_parameter common = {kSize, MIMETRA_FLAG, "json", "", nullptr, nullptr, 0,
+                                           0,     nullptr,      0,      0};
+  static const mimetra_parameter out_of_range = {kSize, MIMETRA_NUMBER, "x", "", "7", nullptr, 0,
+                                                 1,     nullptr,        0,   0};
+  static const mimetra_parameter frames = {kSize, MIMETRA_FLAG, "frames", "", nullptr, nullptr, 0,
+                                           0,     nullptr,      0,        0};
+  static const mimetra_parameter format = {kSize, MIMETRA_CHOICE, "format", "", "npy", nullptr, 0,
+                                           0,     words,          0,        0};
+  static const mimetra_parameter phrase = {kSize, MIMETRA_CHOICE, "phrase", "", nullptr, nullptr, 0,
+                                           0,     phrases,        0,        0};
   static const mimetra_parameter* const of_common[] = {&common, nullptr};
   static const mimetra_parameter* const of_out_of_range[] = {&out_of_range, nullptr};
-  static const mimetra_parameter* const of_two_meanings[] = {&two_meanings, nullptr};
-  static mimetra_operation all[] = {operation_named(nullptr),        operation_named("Has Blanks"),
-                                    operation_named("no-run"),       operation_named("no-kind"),
-                                    operation_named("no-size"),      operation_named("twice"),
-                                    operation_named("common-name"),  operation_named("no-default"),
-                                    operation_named("two-meanings"), operation_named("no-utf8")};
+  static const mimetra_parameter* const of_frames[] = {&frames, nullptr};
+  static const mimetra_parameter* const of_format[] = {&format, nullptr};
+  static const mimetra_parameter* const of_phrase[] = {&phrase, nullptr};
+  static mimetra_operation all[] = {
+      operation_named(nullptr),       operation_named("Has Blanks"), operation_named("no-run"),
+      operation_named("no-kind"),     operation_named("no-size"),    operation_named("twice"),
+      operation_named("common-name"), operation_named("no-default"), operation_named("of-reading"),
+      operation_named("of-writing"),  operation_named("an-option"),  operation_named("phrase"),
+      operation_named("no-utf8")};
   all[2].run = nullptr;
   all[3].inputs = of_no_kind;
   all[4].inputs = of_no_size;
   all[5].inputs = twice;
   all[6].parameters = of_common;
   all[7].parameters = of_out_of_range;
-  all[8].inputs = twice + 1;
-  all[8].parameters = of_two_meanings;
-  all[9].summary = "\xff\xfe";
-  static const mimetra_operation* const operations[] = {&all[0], &all[1], &all[2], &all[3],
-                                                        &all[4], &all[5], &all[6], &all[7],
-                                                        &all[8], &all[9], nullptr};
+  all[8].inputs = one;
+  all[8].parameters = of_frames;
+  all[9].outputs = one;
+  all[9].parameters = of_format;
+  all[10].inputs = one;
+  all[10].outputs = an_option;
+  all[11].parameters = of_phrase;
+  all[12].summary = "\xff\xfe";
+  static const mimetra_operation* operations[std::size(all) + 1] = {};
+  for (std::size_t i = 0; i < std::size(all); ++i) operations[i] = &all[i];
   static const mimetra_plugin plugin = plugin_of(operations);
   return &plugin;
 }

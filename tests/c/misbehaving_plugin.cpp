@@ -49,6 +49,17 @@ mimetra_status run(const mimetra_interface* m, mimetra_job* job, void* user) {
                       !m->job_wants(job, "no") && user == nullptr;
     if (!none) return MIMETRA_FAILED;
   }
+  if (how == "throw-when-cancelled" && m->job_progress(job, 0) != MIMETRA_OK) {
+    throw std::runtime_error(m->message(m->job_context(job)));
+  }
+  if (how == "fail-when-cancelled" && m->job_progress(job, 0) != MIMETRA_OK) {
+    return m->job_fail(job, MIMETRA_FAILED, "could not go on");
+  }
+  if (how == "percent") {
+    for (const double share : {50.0, -1.0, std::nan("")}) {
+      if (m->job_progress(job, share) != MIMETRA_OK) return MIMETRA_FAILED;
+    }
+  }
   if (how == "radius") {
     m->job_report(
         job, ("{\"radius\": " + std::to_string(m->job_number(job, "radius")) + "}").c_str(), "");

@@ -64,6 +64,30 @@ TEST_F(PluginCommand, WorksLikeOneOfTheToolkit) {
   EXPECT_EQ(run_with("samples", "smooth head --strength 2 -o no.npy").code, 2);
 }
 
+TEST_F(PluginCommand, ShowsRegionsOnTheMeshTheyWereMadeFor) {
+  for (const char* name : {"spots.pvd", "spot.vtp", "spots.json", "spots.csv"}) {
+    const auto made = run_with("kinds", std::string("spots head --weights take.csv -o ") + name);
+    EXPECT_EQ(made.code, 0) << made.err;
+    EXPECT_TRUE(listing().contains(name));
+  }
+  EXPECT_EQ(run("transfer head head --weights take.csv --regions spot.vtp -o a.npy").code, 0);
+}
+
+TEST_F(PluginCommand, NamesTheOutputsOfSeveralInputsByTheirFiles) {
+  ASSERT_EQ(run("convert head --weights take.csv -o takes/one").code, 0);
+  ASSERT_EQ(run("convert head --weights take.csv -o takes/two").code, 0);
+  const std::string there = (folder_ / "takes").string();
+  const auto made = run_with("kinds", "each " + there + "/one " + there + "/two/ -o out");
+  EXPECT_EQ(made.code, 0) << made.err;
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "out" / "one"));
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "out" / "two"));
+  // The inputs have other names than the outputs, so that nothing of theirs can be replaced.
+  EXPECT_EQ(run_with("kinds", "each " + there + "/one " + there + "/one -o twice --force").code, 2);
+  const auto again = run_with("kinds", "each takes/one takes/two -o out --force");
+  EXPECT_EQ(again.code, 0) << again.err;
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "takes" / "two"));
+}
+
 TEST_F(PluginCommand, FailsWithTheExitCodeOfThePlugin) {
   const auto one = run_with("samples", "speed head -o no.pvd");
   EXPECT_EQ(one.code, 4);

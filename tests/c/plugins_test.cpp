@@ -123,7 +123,9 @@ TEST(Plugins, WithImpossibleDescriptionsAreLeftOut) {
                   HasSubstr("'no-run' has no function to run"), HasSubstr("the kind 99"),
                   HasSubstr("an input has the name ''"), HasSubstr("'sequence' is there twice"),
                   HasSubstr("'json' is an option of every command"), HasSubstr("found '7'"),
-                  HasSubstr("'frames' means two things"), HasSubstr("no line of UTF-8")));
+                  HasSubstr("'frames' means two things"), HasSubstr("'format' means two things"),
+                  HasSubstr("'weights' is there twice"), HasSubstr("has the choice 'don't'"),
+                  HasSubstr("no line of UTF-8")));
   Loaded none({});
   EXPECT_EQ(loaded.table.operations().size(), none.table.operations().size());
 }
@@ -134,6 +136,15 @@ TEST(Plugins, ThatAreNoLibrariesAreReported) {
   std::ofstream(folder.path() / "text.txt") << "not looked at";
   EXPECT_THAT(Loaded({folder.path()}).problems, ElementsAre(HasSubstr("text.so")));
   EXPECT_THAT(Loaded({folder.path() / "none"}).problems, ElementsAre(HasSubstr("no such folder")));
+}
+
+TEST(Plugins, AreTakenBesideALinkThatLeadsNowhere) {
+  const test::TemporaryFolder folder;
+  fs::create_symlink("loop.so", folder.path() / "loop.so");
+  fs::copy_file(kPlugins / "samples" / "smooth.so", folder.path() / "smooth.so");
+  const Loaded loaded({folder.path()});
+  EXPECT_THAT(loaded.problems, ElementsAre(HasSubstr("loop.so")));
+  EXPECT_NE(loaded.table.find("smooth"), nullptr);
 }
 
 TEST(PluginFolders, AreThoseOfTheEnvironment) {
@@ -173,6 +184,23 @@ TEST(PluginRun, FailsWithItsOwnStatusAndWords) {
   EXPECT_THAT(message_of<MismatchError>("silent"), HasSubstr("does not say why"));
   EXPECT_THAT(message_of<std::runtime_error>("status"), HasSubstr("the status 77"));
   EXPECT_THROW(misbehave("cancel"), Cancelled);
+}
+
+TEST(PluginRun, IsCancelledHoweverItTellsSo) {
+  const Progress never = [](double) { return false; };
+  for (const char* how : {"throw-when-cancelled", "fail-when-cancelled", "percent"}) {
+    EXPECT_THROW(misbehave(how, never), Cancelled) << how;
+    EXPECT_NO_THROW(misbehave(how)) << how;
+  }
+}
+
+TEST(PluginRun, ReportsProgressFromNothingToAll) {
+  std::vector<double> shares;
+  misbehave("percent", [&shares](double share) {
+    shares.push_back(share);
+    return true;
+  });
+  EXPECT_THAT(shares, ElementsAre(1, 0, 0));
 }
 
 TEST(PluginRun, HandsBackNothingThatCannotBe) {

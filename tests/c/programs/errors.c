@@ -10,6 +10,14 @@ static void check_null_handles(const mimetra_interface* m) {
         m->set_progress(NULL, NULL, NULL) != MIMETRA_OK);
   CHECK(*m->operations(NULL) == NULL && m->find_operation(NULL, "transfer") == NULL);
   CHECK(m->new_data(NULL, MIMETRA_TABLE, "", NULL, &data) == MIMETRA_USAGE && data == NULL);
+  const mimetra_array *array = (const mimetra_array*)m, *const *arrays = &array;
+  const char *json = "", *operations = "";
+  CHECK(m->data_arrays(NULL, NULL, &arrays) == MIMETRA_USAGE && arrays == NULL);
+  CHECK(m->data_array(NULL, NULL, "rest", &array) == MIMETRA_USAGE && array == NULL);
+  CHECK(m->data_json(NULL, NULL, &json) == MIMETRA_USAGE && json == NULL);
+  CHECK(m->operations_json(NULL, &operations) == MIMETRA_USAGE && operations == NULL);
+  data = (mimetra_data*)m;
+  CHECK(m->load_data(NULL, MIMETRA_TABLE, "", NULL, &data) == MIMETRA_USAGE && data == NULL);
   CHECK(m->data_kind(NULL) == 0 && strcmp(m->data_name(NULL), "") == 0);
   CHECK(m->call_set(NULL, "k", "3") == MIMETRA_USAGE && m->call_run(NULL) == MIMETRA_USAGE);
   CHECK(m->call_output_count(NULL, "out") == 0 && strcmp(m->call_report(NULL), "") == 0);
@@ -166,7 +174,8 @@ int main(void) {
   check_short_structs(m, context);
   check_calls(m, context);
   check_cancelling(m, context);
-  FAILS(context, MIMETRA_USAGE, "threads", m->set_threads(context, -1));
+  FAILS(context, MIMETRA_USAGE, "expected 0 to 1024, found -1", m->set_threads(context, -1));
+  FAILS(context, MIMETRA_USAGE, "found 100000", m->set_threads(context, 100000));
   m->free_context(context);
   return 0;
 }

@@ -1,0 +1,64 @@
+// Operations on kinds of values, and numbers of them, that none of the toolkit takes or makes.
+
+#include <cstdint>
+#include <vector>
+
+#include <mimetra/c/mimetra.h>
+
+namespace {
+
+/// One region: the first vertex of the first triangle.
+mimetra_status spots(const mimetra_interface* m, mimetra_job* job, void*) {
+  mimetra_context* context = m->job_context(job);
+  const mimetra_data* sequence = m->job_input(job, "sequence", 0);
+  const mimetra_array *triangles = nullptr, *positions = nullptr;
+  mimetra_status status = m->data_array(context, sequence, "triangles", &triangles);
+  if (status == MIMETRA_OK) status = m->data_array(context, sequence, "positions", &positions);
+  if (status != MIMETRA_OK) return status;
+  const std::int64_t vertices = positions->shape[1];
+  std::vector<std::uint8_t> inside(static_cast<std::size_t>(vertices));
+  const auto* corners = static_cast<const std::int32_t*>(triangles->values);
+  inside[static_cast<std::size_t>(corners[0])] = 1;
+  const mimetra_array masks = {sizeof masks, MIMETRA_U8,   2, 0, {1, vertices, 0, 0},
+                               "masks",      inside.data()};
+  const mimetra_array* const arrays[] = {&masks, triangles, nullptr};
+  mimetra_data* regions = nullptr;
+  status = m->new_data(context, MIMETRA_REGIONS, "spots", arrays, &regions);
+  if (status == MIMETRA_OK) status = m->job_output(job, "out", regions);
+  m->free_data(regions);
+  return status;
+}
+
+/// Hands every sequence back.
+mimetra_status each(const mimetra_interface* m, mimetra_job* job, void*) {
+  for (std::int32_t i = 0;; ++i) {
+    const mimetra_data* sequence = m->job_input(job, "sequences", i);
+    if (!sequence) return MIMETRA_OK;
+    const mimetra_status status = m->job_output(job, "out", sequence);
+    if (status != MIMETRA_OK) return status;
+  }
+}
+
+constexpr auto kPort = sizeof(mimetra_port);
+const mimetra_port sequence = {kPort, MIMETRA_SEQUENCE, "sequence", "a mesh", 0, 0};
+const mimetra_port sequences = {kPort, MIMETRA_SEQUENCE, "sequences", "", MIMETRA_REPEATED, 0};
+const mimetra_port regions = {kPort, MIMETRA_REGIONS, "out", "a vertex", 0, 0};
+const mimetra_port copies = {kPort, MIMETRA_SEQUENCE, "out", "", MIMETRA_REPEATED, 0};
+const mimetra_port* const spots_inputs[] = {&sequence, nullptr};
+const mimetra_port* const spots_outputs[] = {&regions, nullptr};
+const mimetra_port* const each_inputs[] = {&sequences, nullptr};
+const mimetra_port* const each_outputs[] = {&copies, nullptr};
+constexpr auto kOperation = sizeof(mimetra_operation);
+const mimetra_operation of_spots = {kOperation,    0,       "spots", "Makes regions", spots_inputs,
+                                    spots_outputs, nullptr, nullptr, spots,           nullptr};
+const mimetra_operation of_each = {
+    kOperation, 0,       "each", "Takes several", each_inputs, each_outputs,
+    nullptr,    nullptr, each,   nullptr};
+const mimetra_operation* const operations[] = {&of_spots, &of_each, nullptr};
+const mimetra_plugin plugin = {sizeof plugin, MIMETRA_INTERFACE_VERSION, "kinds", operations};
+
+}  // namespace
+
+const mimetra_plugin* mimetra_get_plugin() {
+  return &plugin;
+}

@@ -1,0 +1,168 @@
+// Values made of arrays, and of other values.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <mimetra/c/make_data.h>
+#include <mimetra/c/shown_arrays.h>
+#include <mimetra/operations/parameter.h>
+
+#include "shapes.h"
+
+namespace mimetra {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::ThrowsMessage;
+
+mimetra_array array(const char* name, int type, std::initializer_list<std::int64_t> shape,
+                    const void* values, int location = MIMETRA_NOWHERE) {
+  mimetra_array made{sizeof made, type,  static_cast<std::int32_t>(shape.size()), location, {},
+                     name,        values};
+  std::ranges::copy(shape, made.shape);
+  return made;
+}
+
+/// A list as the interface takes it.
+std::vector<const mimetra_array*> list_of(const std::vector<mimetra_array>& arrays) {
+  std::vector<const mimetra_array*> list;
+  for (const mimetra_array& each : arrays) list.push_back(&each);
+  list.push_back(nullptr);
+  return list;
+}
+
+NamedData made(mimetra_kind kind, const std::vector<mimetra_array>& arrays) {
+  return made_data(kind, "it", list_of(arrays).data());
+}
+
+template <typename Value>
+Value derived(const Value& base, const std::vector<mimetra_array>& changes) {
+  return std::get<Value>(derived_data({"it", base}, list_of(changes).data()).data);
+}
+
+MeshSequence take() {
+  const test::Shape shape = test::grid(3, 2);
+  Frames frames(2, shape.positions.size());
+  frames.row(0) = shape.positions.reshaped<Eigen::RowMajor>();
+  frames.row(1) = 2 * frames.row(0);
+  const int vertices = static_cast<int>(shape.positions.rows());
+  return {Connectivity::from_triangles(vertices, shape.triangles), frames};
+}
+
+constexpr int kVertices = 6;  // of that take
+constexpr int kTriangles = 4;
+
+Components components() {
+  Components made;
+  const MeshSequence sequence = take();
+  made.rest = sequence.frame(0);
+  made.triangles = sequence.triangles();
+  made.displacements = Frames::Ones(1, 3 * kVertices);
+  made.centers = {0};
+  made.options.sparsity = 7;
+  return made;
+}
+
+TEST(DerivedData, KeepsWhatNoArrayShows) {
+  const MeshSequence sequence = take();
+  const double times[] = {1, 2};
+  const std::vector<mimetra_array> other_times = {array("times", MIMETRA_F64, {2}, times)};
+  EXPECT_TRUE(derived(SequenceRead{sequence, true, {}, {}}, other_times).model_driven);
+  EXPECT_TRUE(derived(FieldSequence{sequence, {}, true}, other_times).displacement);
+  EXPECT_EQ(derived(FieldSequence{sequence, {}, true}, other_times).sequence.times()[1], 2);
+
+  const double scale[] = {3};
+  const Components scaled = derived(components(), {array("scale", MIMETRA_F64, {1}, scale)});
+  EXPECT_EQ(scaled.scale, 3);
+  EXPECT_EQ(scaled.options.sparsity, 7);
+
+  const Positions moved = 2 * sequence.frame(0);
+  const ShapeBasis none{{}, Eigen::MatrixXd(3 * kVertices, 0)};
+  const ModelRead model{
+      MorphableModel(sequence.shared_connectivity(), sequence.frame(0), none, none), "models/it"};
+  const auto larger = derived(model, {array("neutral", MIMETRA_F64, {kVertices, 3}, moved.data())});
+  EXPECT_EQ(larger.path, "models/it");
+  EXPECT_EQ(larger.model.mean(), moved);
+}
+
+TEST(DerivedData, KeepsTheImagesOfAsManyFrames) {
+  LandmarksRead read;
+  read.track.points = Frames::Zero(2, 2);
+  read.track.names = {"nose"};
+  read.track.times = Eigen::Vector2d(0, 1);
+  read.images = {"a.png", "b.png"};
+  read.frame_notes = {"", "dark"};
+  const double points[] = {1, 2, 3, 4, 5, 6};
+  const auto moved = derived(read, {array("points", MIMETRA_F64, {2, 1, 2}, points)});
+  EXPECT_THAT(moved.images, ElementsAre("a.png", "b.png"));
+  EXPECT_THAT(moved.frame_notes, ElementsAre("", "dark"));
+  const double times[] = {0, 1, 2};
+  const auto longer = derived(read, {array("points", MIMETRA_F64, {3, 1, 2}, points),
+                                     array("times", MIMETRA_F64, {3}, times)});
+  EXPECT_TRUE(longer.images.empty());
+}
+
+TEST(DerivedData, KeepsTheMeshOfRegions) {
+  const MeshSequence sequence = take();
+  const Regions regions = regions_from_vertices(kVertices, sequence.triangles(), {{0}});
+  const RegionData base{regions, {sequence, fields_of(regions), true}};
+  const std::uint8_t masks[2 * kVertices] = {1, 0, 0, 0, 0, 0, 0, 1};
+  const RegionData two = derived(base, {array("masks", MIMETRA_U8, {2, kVertices}, masks)});
+  EXPECT_EQ(two.regions.regions.size(), 2u);
+  EXPECT_EQ(two.fields.sequence.frames(), 2);
+  // Its fields are those of the new regions.
+  const auto roi = std::ranges::find(two.fields.fields, "roi", &Field::name);
+  ASSERT_NE(roi, two.fields.fields.end());
+  EXPECT_EQ(roi->values.sum(), 2);
+}
+
+TEST(DerivedData, TellsFieldsOnVerticesFromThoseOnTriangles) {
+  const MeshSequence sequence = take();
+  const FieldSequence base{
+      sequence,
+      {{"energy", Field::Location::vertices, Eigen::MatrixXd::Ones(kVertices, 1), false},
+       {"energy", Field::Location::triangles, Eigen::MatrixXd::Ones(kTriangles, 1), false},
+       {"rest", Field::Location::vertices, Eigen::MatrixXd::Ones(kVertices, 3), false}},
+      false};
+  const double energies[kTriangles] = {5, 5, 5, 5};
+  const auto changed =
+      derived(base, {array("energy", MIMETRA_F64, {kTriangles}, energies, MIMETRA_ON_TRIANGLES)});
+  ASSERT_EQ(changed.fields.size(), 3u);
+  for (const Field& field : changed.fields) {
+    const bool is_changed = field.location == Field::Location::triangles;
+    EXPECT_EQ(field.values(0, 0), is_changed ? 5 : 1) << field.name;
+  }
+  EXPECT_FALSE(changed.sequence.rest_is_known());
+}
+
+TEST(DerivedData, TakesComponentsWithoutWeightsAndSupport) {
+  const Components bare = components();
+  const double scale[] = {2};
+  const Components derived_one = derived(bare, {array("scale", MIMETRA_F64, {1}, scale)});
+  EXPECT_EQ(derived_one.weights.size(), 0);
+  EXPECT_EQ(derived_one.support.size(), 0);
+  EXPECT_EQ(derived_one.displacements, bare.displacements);
+}
+
+TEST(MadeData, HoldsSomething) {
+  const double none[] = {0};
+  const char* const no_names[] = {nullptr};
+  const auto refuses = [](mimetra_kind kind, const std::vector<mimetra_array>& arrays,
+                          const char* message) {
+    EXPECT_THAT([&] { made(kind, arrays); }, ThrowsMessage<UsageError>(HasSubstr(message)));
+  };
+  refuses(MIMETRA_PICTURE, {array("pixels", MIMETRA_U8, {0, 0, 3}, none)}, "with H at least 1");
+  refuses(MIMETRA_LANDMARKS,
+          {array("points", MIMETRA_F64, {0, 1, 2}, none),
+           array("names", MIMETRA_STRING, {0}, no_names)},
+          "with F at least 1");
+  refuses(MIMETRA_LANDMARKS,
+          {array("points", MIMETRA_F64, {1, 0, 2}, none),
+           array("names", MIMETRA_STRING, {0}, no_names)},
+          "needs a landmark or more");
+  refuses(MIMETRA_SEQUENCE, {array("positions", MIMETRA_F64, {1, 0, 3}, none)}, "with N at least");
+}
+
+}  // namespace
+}  // namespace mimetra
