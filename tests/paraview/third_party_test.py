@@ -15,6 +15,13 @@ class ThirdPartyOperations(HostTest):
         self.assertEqual(smooth.Strength, 0.5)
         self.assertEqual(smooth.Iterations, 1)
 
+    def test_has_the_ranges_of_the_plugin(self):
+        smooth = simple.mimetraSmooth(Input=self.source)
+        for name, kind, ends in [("Iterations", "Int", (1, 1000000)), ("Strength", "Double", (0, 1))]:
+            range = smooth.GetProperty(name).FindDomain(f"vtkSM{kind}RangeDomain")
+            self.assertTrue(range.GetMinimumExists(0) and range.GetMaximumExists(0))
+            self.assertEqual((range.GetMinimum(0), range.GetMaximum(0)), ends)
+
     def test_smooths_as_the_command_does(self):
         smooth = simple.mimetraSmooth(Input=self.source, Strength=0.3, Iterations=2)
         array = self.sample / "smooth.npy"

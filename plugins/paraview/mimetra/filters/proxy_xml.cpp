@@ -14,11 +14,11 @@ std::string attribute(const std::string& name, const std::string& value) {
 }
 
 std::string range_domain(const std::string& element, const Parameter& parameter) {
-  const auto bound = [](const char* name, const std::optional<double>& value) {
-    return value ? attribute(name, to_text(*value)) : std::string();
+  const auto bound = [](const char* name, const std::string& text) {
+    return text.empty() ? text : attribute(name, text);
   };
-  return "<" + element + " name=\"range\"" + bound("min", parameter.minimum) +
-         bound("max", parameter.maximum) + "/>";
+  return "<" + element + " name=\"range\"" + bound("min", parameter.minimum_text()) +
+         bound("max", parameter.maximum_text()) + "/>";
 }
 
 std::string choice_domain(const std::vector<std::string>& choices) {
