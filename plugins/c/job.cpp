@@ -146,7 +146,7 @@ Outcome mimetra_job::outcome() && {
   for (const Output& output : operation_.outputs) {
     const auto made = outcome_.outputs.find(output.name);
     const std::size_t count = made == outcome_.outputs.end() ? 0 : made->second.size();
-    if (count == 0 && (output.optional || !wants(output.name))) continue;
+    if (count == 0 && output.optional) continue;
     const std::size_t expected = expected_count(output);
     if (count == expected) continue;
     throw std::runtime_error("made " + std::to_string(count) + " values of its output '" +

@@ -59,7 +59,6 @@ Outcome misbehave(const std::string& how, const Progress& progress = {}) {
   invocation.inputs["sequence"] = {{"take", take()}};
   invocation.parameters = Parameters(loaded.table.parameters_of(operation));
   invocation.parameters.set("how", how);
-  invocation.wanted["out"];
   invocation.progress = progress;
   return operation.run(invocation);
 }

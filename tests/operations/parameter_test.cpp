@@ -35,6 +35,20 @@ TEST(Parameter, NamesOptionRangeAndWhatWasFound) {
   EXPECT_EQ(message_of(kShape, "ball"), "--shape: expected one of disc, support, found 'ball'");
 }
 
+TEST(Parameter, TellsTheRangeOfWholeNumbersInWholeNumbers) {
+  Parameter count = kCount;
+  count.maximum = 1e6;
+  EXPECT_EQ(message_of(count, "0"), "-k: expected a whole number from 1 to 1000000, found '0'");
+  count.minimum = -1e300;
+  count.maximum = 2.5;
+  EXPECT_EQ(count.minimum_text(), "-2147483647");
+  EXPECT_EQ(count.maximum_text(), "2");
+  count.kind = ParameterKind::number;
+  EXPECT_EQ(count.maximum_text(), "2.5");
+  count.maximum.reset();
+  EXPECT_EQ(count.maximum_text(), "");
+}
+
 TEST(Parameter, RefusesNumbersThatAreNotFinite) {
   const Parameter parameter{"x", ParameterKind::number, {}, ""};
   EXPECT_THROW(parse_value(parameter, "inf"), UsageError);

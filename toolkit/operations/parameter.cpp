@@ -15,12 +15,21 @@ std::string shortest(double number) {
   return error == std::errc() ? std::string(buffer, end) : std::to_string(number);
 }
 
+/// `inwards`: std::ceil for a minimum, std::floor for a maximum.
+std::string bound_text(ParameterKind kind, const std::optional<double>& bound,
+                       double (*inwards)(double)) {
+  if (!bound) return "";
+  const bool whole = kind == ParameterKind::integer || kind == ParameterKind::integer_list;
+  if (!whole) return shortest(*bound);
+  // Values of whole numbers are 32 bits wide, whatever their range.
+  return std::to_string(std::lround(std::clamp<double>(inwards(*bound), -INT32_MAX, INT32_MAX)));
+}
+
 std::string range_text(const Parameter& parameter) {
-  if (parameter.minimum && parameter.maximum) {
-    return "from " + shortest(*parameter.minimum) + " to " + shortest(*parameter.maximum);
-  }
-  if (parameter.minimum) return "of at least " + shortest(*parameter.minimum);
-  if (parameter.maximum) return "of at most " + shortest(*parameter.maximum);
+  const std::string minimum = parameter.minimum_text(), maximum = parameter.maximum_text();
+  if (parameter.minimum && parameter.maximum) return "from " + minimum + " to " + maximum;
+  if (parameter.minimum) return "of at least " + minimum;
+  if (parameter.maximum) return "of at most " + maximum;
   return "";
 }
 
@@ -135,6 +144,14 @@ bool is_sound(const Parameter& parameter, const ParameterValue& value) {
 
 std::string Parameter::option() const {
   return (name.size() == 1 ? "-" : "--") + name;
+}
+
+std::string Parameter::minimum_text() const {
+  return bound_text(kind, minimum, std::ceil);
+}
+
+std::string Parameter::maximum_text() const {
+  return bound_text(kind, maximum, std::floor);
 }
 
 ParameterValue parse_value(const Parameter& parameter, const std::string& text) {

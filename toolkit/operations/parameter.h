@@ -44,6 +44,9 @@ struct Parameter {
 
   /// `--radius` or `-k`.
   std::string option() const;
+  /// The ends of the range as people type them, whole for whole numbers; empty where it is open.
+  std::string minimum_text() const;
+  std::string maximum_text() const;
 };
 
 /// Reads a value as people type it. Throws UsageError that names option, range and what was found.

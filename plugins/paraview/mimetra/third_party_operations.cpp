@@ -29,16 +29,22 @@ bool is_filter(const Operation& operation) {
 }
 
 std::string filter_xml(const Operation& operation) {
+  // ParaView sets properties in the order of their names, capitals first; no parameter has the name
+  // or, in Python, the label.
   const std::string which =
-      "      <StringVectorProperty name=\"Operation\" command=\"SetOperation\""
+      "      <StringVectorProperty name=\"MimetraOperation\" command=\"SetOperation\""
       " number_of_elements=\"1\" panel_visibility=\"never\" default_values=\"" +
       operation.name + "\"/>\n";
+  // They are few, and what the operation is about: none is among the advanced ones.
+  std::vector<std::string> shown;
+  for (const Input& input : operation.inputs) shown.push_back(input.name);
+  for (const Parameter& parameter : operation.parameters) shown.push_back(parameter.name);
   return proxy_xml({operation,
                     operation.parameters,
                     "vtkMimetraOperation",
                     "MimetraOperation-" + operation.name,
                     "mimetra " + label_of(operation.name),
-                    {},
+                    shown,
                     {{operation.inputs.front().name, "Input"}},
                     which,
                     "<ShowInMenu category=\"mimetra\"/>"});

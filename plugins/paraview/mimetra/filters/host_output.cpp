@@ -35,6 +35,20 @@ void show_shape(vtkPolyData& output, vtkPolyData& input, const Positions& shape)
   set_positions(output, shape, Precision::double_precision);
 }
 
+void show_frame(vtkPolyData& output, vtkPolyData& input, const MeshSequence& sequence, int frame) {
+  show_shape(output, input, sequence.frame(frame));
+  if (!sequence.rest_is_known()) return;
+  set_rest(output, sequence.rest());
+  add_displacement(output, sequence.frame(frame) - sequence.rest());
+}
+
+void make_mesh(vtkPolyData& mesh, const MeshSequence& sequence, const std::vector<Field>& fields) {
+  mesh.Initialize();
+  set_polygons(mesh, sequence.connectivity());
+  for (const Field& field : fields) add_field(mesh, field, sequence.connectivity());
+  set_rest(mesh, sequence.rest_is_known() ? std::optional(sequence.rest()) : std::nullopt);
+}
+
 void make_fields(vtkPolyData& holder, vtkPolyData& mesh, const std::vector<Field>& fields,
                  const Connectivity& connectivity) {
   holder.Initialize();

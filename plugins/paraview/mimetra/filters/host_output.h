@@ -9,6 +9,15 @@ class vtkTable;
 /// (normals, displacement, rest pose) is left out.
 void show_shape(vtkPolyData& output, vtkPolyData& input, const mimetra::Positions& shape);
 
+/// Makes `output` what `input` is, in the shape of a frame, with its rest pose where it is known.
+void show_frame(vtkPolyData& output, vtkPolyData& input, const mimetra::MeshSequence& sequence,
+                int frame);
+
+/// Makes `mesh` what all frames of a sequence share: faces, fields, and the rest pose where it is
+/// known.
+void make_mesh(vtkPolyData& mesh, const mimetra::MeshSequence& sequence,
+               const std::vector<mimetra::Field>& fields);
+
 /// Makes `holder` hold fields of `mesh`, as arrays that all time steps share.
 void make_fields(vtkPolyData& holder, vtkPolyData& mesh, const std::vector<mimetra::Field>& fields,
                  const mimetra::Connectivity& connectivity);

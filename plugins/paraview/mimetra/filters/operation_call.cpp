@@ -6,6 +6,8 @@
 #include <mimetra/operations/loading.h>
 #include <mimetra/vtk/vtp_formats.h>
 
+#include "proxy_xml.h"
+
 using namespace mimetra;
 
 namespace {
@@ -45,6 +47,11 @@ bool same_data(const Data& a, const Data& b) {
   if (const auto* read = std::get_if<SequenceRead>(&a)) {
     return same_sequence(read->sequence, std::get<SequenceRead>(b).sequence);
   }
+  if (const auto* shown = std::get_if<FieldSequence>(&a)) {
+    const auto& other = std::get<FieldSequence>(b);
+    return same_sequence(shown->sequence, other.sequence) &&
+           std::ranges::equal(shown->fields, other.fields, same_field);
+  }
   const auto* model = std::get_if<BlendshapeModel>(&a);
   return model && same_model(*model, std::get<BlendshapeModel>(b));
 }
@@ -59,6 +66,13 @@ constexpr const char* kComponents = "components";
 constexpr const char* kComponentsOut = "components-out";
 
 }  // namespace
+
+bool same_field(const Field& a, const Field& b) {
+  const auto& x = a.values.array();
+  const auto& y = b.values.array();
+  return a.name == b.name && a.location == b.location && a.integer == b.integer &&
+         x.rows() == y.rows() && x.cols() == y.cols() && (x == y || (x.isNaN() && y.isNaN())).all();
+}
 
 OperationCall::OperationCall(const std::string& name)
     : table_(table_of_host()), operation_(found(table_, name)) {}
@@ -98,6 +112,15 @@ bool OperationCall::set(const std::string& name, const ParameterValue& value) {
   outcome_.reset();
   if (is_of_decomposition(name)) components_.reset();
   return true;
+}
+
+DataKind OperationCall::input_kind(const std::string& name) const {
+  return std::ranges::find(operation_.inputs, name, &Input::name)->kind;
+}
+
+const Data* OperationCall::given(const std::string& input) const {
+  const auto found = given_.find(input);
+  return found == given_.end() ? nullptr : &found->second.data;
 }
 
 bool OperationCall::give(const std::string& input, NamedData data) {
@@ -143,7 +166,14 @@ Invocation OperationCall::invocation(const Progress& progress, const Log& log) c
 }
 
 const Outcome& OperationCall::run(Invocation invocation, const std::vector<std::string>& wanted) {
+  for (const Input& input : operation_.inputs) {
+    if (input.optional || invocation.inputs.contains(input.name)) continue;
+    throw UsageError(label_of(input.name) + ": expected " + input.help + ", found nothing");
+  }
   for (const std::string& output : wanted) invocation.wanted[output] = {};
+  for (const Output& output : operation_.outputs) {
+    if (!output.optional) invocation.wanted[output.name] = {};
+  }
   const bool has_components = invocation.inputs.contains(kComponents);
   if (has_components) invocation.wanted.erase(kComponentsOut);
   Outcome outcome = operation_.run(invocation);

@@ -7,6 +7,9 @@
 
 #include <mimetra/operations/operation.h>
 
+/// True where both have one name, place and values; NaN is NaN.
+bool same_field(const mimetra::Field& a, const mimetra::Field& b);
+
 /// An operation as a host calls it again and again: what it computed is kept until something that
 /// it depends on changes, and a decomposition until the sequence or its own parameters do.
 class OperationCall {
@@ -23,6 +26,9 @@ class OperationCall {
   /// True where it has another value than its default, or a path.
   bool is_set(const std::string& name) const { return values_.contains(name); }
 
+  mimetra::DataKind input_kind(const std::string& name) const;
+  /// What an input was given, or null.
+  const mimetra::Data* given(const std::string& input) const;
   /// Gives an input its value. True where it is another one than before.
   bool give(const std::string& input, mimetra::NamedData data);
   /// Takes it back.
@@ -34,8 +40,9 @@ class OperationCall {
   /// True while what was computed still holds.
   bool is_done() const { return outcome_.has_value(); }
   const mimetra::Outcome& outcome() const { return *outcome_; }
-  /// Runs the operation for the outputs `wanted` besides those that it always makes. What it makes
-  /// as "components-out" is its input `components` from then on. Throws what it throws.
+  /// Runs the operation, for the outputs `wanted` and those that are not optional. What it makes
+  /// as "components-out" is its input `components` from then on. Throws what it throws, and
+  /// UsageError without an input that it needs.
   const mimetra::Outcome& run(mimetra::Invocation invocation,
                               const std::vector<std::string>& wanted);
 

@@ -14,11 +14,11 @@ std::string attribute(const std::string& name, const std::string& value) {
 }
 
 std::string range_domain(const std::string& element, const Parameter& parameter) {
-  const auto bound = [](const char* name, const std::optional<double>& value) {
-    return value ? attribute(name, to_text(*value)) : std::string();
+  const auto bound = [](const char* name, const std::string& text) {
+    return text.empty() ? text : attribute(name, text);
   };
-  return "<" + element + " name=\"range\"" + bound("min", parameter.minimum) +
-         bound("max", parameter.maximum) + "/>";
+  return "<" + element + " name=\"range\"" + bound("min", parameter.minimum_text()) +
+         bound("max", parameter.maximum_text()) + "/>";
 }
 
 std::string choice_domain(const std::vector<std::string>& choices) {
@@ -63,11 +63,14 @@ std::string help_of(const Parameter& parameter) {
   if (parameter.kind == ParameterKind::length) {
     help += "; a share of the rest pose's longest side as in 0.1, or a length as in 12abs";
   }
-  if (parameter.kind == ParameterKind::file && !parameter.choices.empty()) {
-    help += "; a file, or one of";
+  const bool is_file = parameter.kind == ParameterKind::file;
+  const bool optional = std::holds_alternative<std::monostate>(parameter.fallback);
+  // A choice that has a default is one from a list.
+  if (!parameter.choices.empty() && (is_file || optional)) {
+    help += is_file ? "; a file, or one of" : "; one of";
     for (const std::string& choice : parameter.choices) help += ' ' + choice;
   }
-  if (std::holds_alternative<std::monostate>(parameter.fallback)) help += "; empty for none";
+  if (optional) help += "; empty for none";
   return help;
 }
 
@@ -99,7 +102,9 @@ std::string port_xml(const Port& port, int index, const std::string& help) {
 
 /// An input that is a file; where it may come through a port instead, its label says so.
 std::string path_xml(const Input& input, bool has_port, bool advanced) {
-  return property_of({input.name, ParameterKind::file, {}, input.help},
+  // Nothing, where it may stay empty.
+  const auto fallback = input.optional || has_port ? ParameterValue() : ParameterValue("");
+  return property_of({input.name, ParameterKind::file, fallback, input.help},
                      label_of(input.name) + (has_port ? " File" : ""), advanced);
 }
 

@@ -1,8 +1,5 @@
 #include "time_steps.h"
 
-#include <algorithm>
-#include <cmath>
-
 #include <vtkPolyData.h>
 
 #include <mimetra/operations/parameter.h>
@@ -34,9 +31,10 @@ vtkPolyData& mesh_of(vtkDataObject* data) {
                               "; apply Extract Surface or Merge Blocks first");
 }
 
-void TimeSteps::begin(std::vector<double> times) {
+void TimeSteps::begin(std::vector<double> times, bool with_fields) {
   *this = TimeSteps();
   times_ = std::move(times);
+  with_fields_ = with_fields;
 }
 
 std::optional<double> TimeSteps::next_time() const {
@@ -51,6 +49,7 @@ void TimeSteps::add(vtkDataObject* data) {
   if (next_ == 0) {
     frames_.resize(static_cast<Eigen::Index>(count()), positions.size());
     rest_ = rest_of(mesh, positions, name);
+    if (with_fields_) fields_ = fields_of(mesh, connectivity);
     vertices_ = connectivity.vertices;
     faces_ = connectivity.polygons.size();
     connectivity_ = std::move(connectivity);
@@ -67,10 +66,12 @@ void TimeSteps::add(vtkDataObject* data) {
   ++next_;
 }
 
-MeshSequence TimeSteps::sequence() {
+Data TimeSteps::taken() {
   const Eigen::VectorXd times =
       Eigen::Map<const Eigen::VectorXd>(times_.data(), static_cast<Eigen::Index>(times_.size()));
-  return {std::move(connectivity_), std::move(frames_), times, std::move(rest_)};
+  MeshSequence sequence(std::move(connectivity_), std::move(frames_), times, std::move(rest_));
+  if (with_fields_) return FieldSequence{std::move(sequence), std::move(fields_)};
+  return SequenceRead{std::move(sequence), false, {}, {}};
 }
 
 void TimeSteps::expect_counts_of(vtkPolyData& mesh, std::optional<double> time) const {
@@ -79,8 +80,8 @@ void TimeSteps::expect_counts_of(vtkPolyData& mesh, std::optional<double> time) 
   expect_count(name_of(time), "faces", found(mesh.GetNumberOfPolys()), faces_, times_);
 }
 
-int TimeSteps::nearest(double time) const {
-  const auto distance = [time](double step) { return std::abs(step - time); };
-  const auto found = std::ranges::min_element(times_, {}, distance);
-  return found == times_.end() ? 0 : static_cast<int>(found - times_.begin());
+int frame_at(const MeshSequence& sequence, double time) {
+  Eigen::Index frame = 0;
+  (sequence.times().array() - time).abs().minCoeff(&frame);
+  return static_cast<int>(frame);
 }

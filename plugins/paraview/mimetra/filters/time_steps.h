@@ -15,8 +15,9 @@ vtkPolyData& mesh_of(vtkDataObject* data);
 /// The time steps of an input, collected one after the other.
 class TimeSteps {
  public:
-  /// Begins anew; no times for a mesh that stands still.
-  void begin(std::vector<double> times);
+  /// Begins anew; no times for a mesh that stands still. `with_fields`: also the point and cell
+  /// data of the first time step.
+  void begin(std::vector<double> times, bool with_fields);
 
   bool complete() const { return next_ == count(); }
   double share() const { return static_cast<double>(next_) / static_cast<double>(count()); }
@@ -24,24 +25,27 @@ class TimeSteps {
   std::optional<double> next_time() const;
   /// Throws IoError, MismatchError and std::invalid_argument that name the time.
   void add(vtkDataObject* data);
-  /// What was collected, which is then forgotten, save its times and counts.
-  mimetra::MeshSequence sequence();
+  /// What was collected, which is then forgotten, save its times and counts: a SequenceRead, or a
+  /// FieldSequence with fields.
+  mimetra::Data taken();
 
   /// Throws MismatchError for a mesh at `time` with other numbers of vertices or faces than those
   /// collected.
   void expect_counts_of(vtkPolyData& mesh, std::optional<double> time) const;
 
-  /// The step nearest to a time.
-  int nearest(double time) const;
-
  private:
   std::size_t count() const { return times_.empty() ? 1 : times_.size(); }
 
   std::vector<double> times_;
+  bool with_fields_ = false;
   std::size_t next_ = 0;
   int vertices_ = 0;
   int faces_ = 0;
   mimetra::Connectivity connectivity_;
   mimetra::Frames frames_;
   std::optional<mimetra::Positions> rest_;
+  std::vector<mimetra::Field> fields_;
 };
+
+/// The frame nearest to a time.
+int frame_at(const mimetra::MeshSequence& sequence, double time);

@@ -38,7 +38,7 @@ class MIMETRAFILTERS_EXPORT vtkMimetraAlgorithm : public vtkPolyDataAlgorithm {
   OperationCall& call() { return *call_; }
   /// Takes another operation, with its defaults.
   void set_call(std::unique_ptr<OperationCall> call);
-  /// Outputs besides those that the operation always makes.
+  /// Outputs besides those that are not optional.
   virtual std::vector<std::string> wanted_outputs(const mimetra::Invocation& invocation);
   /// The operation's outcome, kept while it holds; its progress is shown from `begin` on. Throws
   /// what the operation throws.

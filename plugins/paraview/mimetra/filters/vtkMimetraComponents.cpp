@@ -33,7 +33,7 @@ std::vector<std::string> vtkMimetraComponents::wanted_outputs(const Invocation&)
   return {"weights-out"};
 }
 
-void vtkMimetraComponents::show(const Outcome& outcome, vtkPolyData& input, int,
+void vtkMimetraComponents::show(const Outcome& outcome, vtkPolyData& input, double,
                                 vtkInformationVector* outputs) {
   const auto& components = std::get<Components>(outcome.outputs.at("out").front().data);
   const auto& weights = std::get<Table>(outcome.outputs.at("weights-out").front().data);

@@ -13,6 +13,6 @@ class MIMETRAFILTERS_EXPORT vtkMimetraComponents : public vtkMimetraFilter {
   int FillOutputPortInformation(int port, vtkInformation* info) override;
   bool moves(int port) const override;
   std::vector<std::string> wanted_outputs(const mimetra::Invocation& invocation) override;
-  void show(const mimetra::Outcome& outcome, vtkPolyData& input, int frame,
+  void show(const mimetra::Outcome& outcome, vtkPolyData& input, double time,
             vtkInformationVector* outputs) override;
 };

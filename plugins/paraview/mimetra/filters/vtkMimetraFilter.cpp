@@ -112,12 +112,13 @@ void vtkMimetraFilter::collect(vtkInformation& in, std::optional<double> shown) 
   if (all && collected_ == origin) return;
   collected_.reset();
   if (all) refuse_continuous(in);
-  steps_->begin(all ? times_of(in) : std::vector<double>());
+  const bool with_fields = call().input_kind(input_) == DataKind::fields;
+  steps_->begin(all ? times_of(in) : std::vector<double>(), with_fields);
   while (!steps_->complete()) {
     steps_->add(input_at(0, all ? steps_->next_time() : shown));
     if (!show_progress(kReading * steps_->share())) throw Cancelled();
   }
-  call().give(input_, {input_, SequenceRead{steps_->sequence(), false, {}, {}}});
+  call().give(input_, {input_, steps_->taken()});
   collected_ = origin;
 }
 
@@ -135,7 +136,7 @@ void vtkMimetraFilter::compute_and_show(std::optional<double> time, vtkInformati
   vtkInformation* about = mesh.GetInformation();
   const bool has_time = about->Has(vtkDataObject::DATA_TIME_STEP());
   const double shown = has_time ? about->Get(vtkDataObject::DATA_TIME_STEP()) : time.value_or(0);
-  show(computed, mesh, steps_->nearest(shown), outputs);
+  show(computed, mesh, shown, outputs);
   // Whatever it is made of, what moves is at the input's time.
   if (!moves(0)) return;
   vtkDataObject::GetData(outputs, 0)

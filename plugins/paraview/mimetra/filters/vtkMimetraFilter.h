@@ -52,8 +52,8 @@ class MIMETRAFILTERS_EXPORT vtkMimetraFilter : public vtkMimetraAlgorithm {
   /// Makes what stays the same over time; called before the first show() after any change, and
   /// where the input has other cells beside its polygons than before.
   virtual void prepare(const mimetra::Outcome& outcome, vtkPolyData& input);
-  /// Writes the outputs; `input` is the mesh at the time of the sequence's frame `frame`.
-  virtual void show(const mimetra::Outcome& outcome, vtkPolyData& input, int frame,
+  /// Writes the outputs; `input` is the mesh at `time`.
+  virtual void show(const mimetra::Outcome& outcome, vtkPolyData& input, double time,
                     vtkInformationVector* outputs) = 0;
 
  private:

@@ -13,7 +13,7 @@ vtkStandardNewMacro(vtkMimetraGeodesic);
 vtkMimetraGeodesic::vtkMimetraGeodesic()
     : vtkMimetraFilter("geodesic", "mesh", Takes::shown_time_step) {}
 
-void vtkMimetraGeodesic::show(const Outcome& outcome, vtkPolyData& input, int,
+void vtkMimetraGeodesic::show(const Outcome& outcome, vtkPolyData& input, double,
                               vtkInformationVector* outputs) {
   vtkPolyData* output = vtkPolyData::GetData(outputs);
   output->ShallowCopy(&input);

@@ -10,6 +10,6 @@ class MIMETRAFILTERS_EXPORT vtkMimetraGeodesic : public vtkMimetraFilter {
 
  protected:
   vtkMimetraGeodesic();
-  void show(const mimetra::Outcome& outcome, vtkPolyData& input, int frame,
+  void show(const mimetra::Outcome& outcome, vtkPolyData& input, double time,
             vtkInformationVector* outputs) override;
 };

@@ -1,8 +1,14 @@
 #pragma once
 
+#include <string>
+
+#include <vtkNew.h>
+#include <vtkPolyData.h>
+
 #include "vtkMimetraFilter.h"
 
-/// An operation of a plugin: the sequence or the fields that it makes of its input's.
+/// An operation of a plugin: the sequence or the fields that it makes of its input's. What it makes
+/// on the input's own faces is shown with the input's data, anything else as a mesh of its own.
 class MIMETRAFILTERS_EXPORT vtkMimetraOperation : public vtkMimetraFilter {
  public:
   vtkTypeMacro(vtkMimetraOperation, vtkMimetraFilter);
@@ -13,6 +19,14 @@ class MIMETRAFILTERS_EXPORT vtkMimetraOperation : public vtkMimetraFilter {
 
  protected:
   vtkMimetraOperation();
-  void show(const mimetra::Outcome& outcome, vtkPolyData& input, int frame,
+  std::vector<std::string> wanted_outputs(const mimetra::Invocation& invocation) override;
+  void prepare(const mimetra::Outcome& outcome, vtkPolyData& input) override;
+  void show(const mimetra::Outcome& outcome, vtkPolyData& input, double time,
             vtkInformationVector* outputs) override;
+
+ private:
+  enum class Shown { on_the_input, in_another_shape, as_a_mesh_of_its_own };
+
+  Shown shown_ = Shown::on_the_input;
+  vtkNew<vtkPolyData> shared_;  ///< what all time steps share: fields, and faces of its own
 };

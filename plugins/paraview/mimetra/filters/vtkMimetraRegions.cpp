@@ -6,6 +6,7 @@
 #include <mimetra/vtk/poly_data.h>
 
 #include "host_output.h"
+#include "time_steps.h"
 
 using namespace mimetra;
 
@@ -43,11 +44,12 @@ void vtkMimetraRegions::prepare(const Outcome& outcome, vtkPolyData& input) {
   make_fields(*fields_, input, fields, shown.sequence.connectivity());
 }
 
-void vtkMimetraRegions::show(const Outcome& outcome, vtkPolyData& input, int frame,
+void vtkMimetraRegions::show(const Outcome& outcome, vtkPolyData& input, double time,
                              vtkInformationVector* outputs) {
   const auto& shown = std::get<RegionData>(outcome.outputs.at("out").front().data).fields;
   vtkPolyData* output = vtkPolyData::GetData(outputs);
   output->ShallowCopy(&input);
   share_fields(*fields_, *output);
+  const int frame = frame_at(shown.sequence, time);
   add_displacement(*output, shown.sequence.frame(frame) - shown.sequence.rest());
 }

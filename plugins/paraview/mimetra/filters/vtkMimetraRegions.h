@@ -19,7 +19,7 @@ class MIMETRAFILTERS_EXPORT vtkMimetraRegions : public vtkMimetraFilter {
   vtkMimetraRegions();
   std::vector<std::string> wanted_outputs(const mimetra::Invocation& invocation) override;
   void prepare(const mimetra::Outcome& outcome, vtkPolyData& input) override;
-  void show(const mimetra::Outcome& outcome, vtkPolyData& input, int frame,
+  void show(const mimetra::Outcome& outcome, vtkPolyData& input, double time,
             vtkInformationVector* outputs) override;
 
  private:

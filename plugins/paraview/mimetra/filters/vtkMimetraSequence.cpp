@@ -1,7 +1,5 @@
 #include "vtkMimetraSequence.h"
 
-#include <algorithm>
-
 #include <vtkInformation.h>
 #include <vtkInformationVector.h>
 #include <vtkObjectFactory.h>
@@ -11,8 +9,10 @@
 #include <mimetra/operations/operation.h>
 #include <mimetra/vtk/poly_data.h>
 
+#include "host_output.h"
 #include "operation_call.h"
 #include "reading.h"
+#include "time_steps.h"
 
 using namespace mimetra;
 using Pipeline = vtkStreamingDemandDrivenPipeline;
@@ -34,10 +34,7 @@ vtkMimetraSequence::vtkMimetraSequence()
 
 void vtkMimetraSequence::read() {
   const auto& [sequence, fields, displacement] = sequence_of(outcome());
-  mesh_->Initialize();
-  set_polygons(*mesh_, sequence.connectivity());
-  for (const Field& field : fields) add_field(*mesh_, field, sequence.connectivity());
-  set_rest(*mesh_, sequence.rest_is_known() ? std::optional(sequence.rest()) : std::nullopt);
+  make_mesh(*mesh_, sequence, fields);
 }
 
 int vtkMimetraSequence::RequestInformation(vtkInformation*, vtkInformationVector**,
@@ -63,15 +60,12 @@ int vtkMimetraSequence::RequestData(vtkInformation*, vtkInformationVector**,
                                     vtkInformationVector* outputs) {
   if (!call().is_done()) return 1;
   const MeshSequence& sequence = sequence_of(call().outcome()).sequence;
-  const Eigen::VectorXd& times = sequence.times();
   vtkInformation* out = outputs->GetInformationObject(0);
-  Eigen::Index frame = 0;
-  if (out->Has(Pipeline::UPDATE_TIME_STEP())) {
-    (times.array() - out->Get(Pipeline::UPDATE_TIME_STEP())).abs().minCoeff(&frame);
-  }
+  const bool is_asked = out->Has(Pipeline::UPDATE_TIME_STEP());
+  const int frame = is_asked ? frame_at(sequence, out->Get(Pipeline::UPDATE_TIME_STEP())) : 0;
   vtkPolyData* output = vtkPolyData::GetData(outputs);
   output->ShallowCopy(mesh_);
-  set_positions(*output, sequence.frame(static_cast<int>(frame)), Precision::double_precision);
-  output->GetInformation()->Set(vtkDataObject::DATA_TIME_STEP(), times[frame]);
+  set_positions(*output, sequence.frame(frame), Precision::double_precision);
+  output->GetInformation()->Set(vtkDataObject::DATA_TIME_STEP(), sequence.times()[frame]);
   return 1;
 }

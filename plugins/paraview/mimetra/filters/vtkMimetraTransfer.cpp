@@ -104,15 +104,11 @@ void vtkMimetraTransfer::prepare(const Outcome& outcome, vtkPolyData& input) {
   make_fields(*fields_, target_ ? *target_ : input, shown.fields, shown.sequence.connectivity());
 }
 
-void vtkMimetraTransfer::show(const Outcome& outcome, vtkPolyData& input, int frame,
+void vtkMimetraTransfer::show(const Outcome& outcome, vtkPolyData& input, double time,
                               vtkInformationVector* outputs) {
   const auto& result = std::get<SequenceRead>(outcome.outputs.at("out").front().data).sequence;
   vtkPolyData* output = vtkPolyData::GetData(outputs, 0);
-  show_shape(*output, target_ ? *target_ : input, result.frame(frame));
-  if (result.rest_is_known()) {
-    set_rest(*output, result.rest());
-    add_displacement(*output, result.frame(frame) - result.rest());
-  }
+  show_frame(*output, target_ ? *target_ : input, result, frame_at(result, time));
   share_fields(*fields_, *output);
   const auto weights = outcome.outputs.find("weights-out");
   if (weights != outcome.outputs.end()) {

@@ -21,7 +21,7 @@ class MIMETRAFILTERS_EXPORT vtkMimetraTransfer : public vtkMimetraFilter {
   std::vector<std::string> wanted_outputs(const mimetra::Invocation& invocation) override;
   void give_further_inputs(vtkInformationVector** inputs) override;
   void prepare(const mimetra::Outcome& outcome, vtkPolyData& input) override;
-  void show(const mimetra::Outcome& outcome, vtkPolyData& input, int frame,
+  void show(const mimetra::Outcome& outcome, vtkPolyData& input, double time,
             vtkInformationVector* outputs) override;
 
  private:
