@@ -156,7 +156,12 @@ const mimetra_operation replace_operation = {sizeof replace_operation,
                                              nullptr,
                                              replace,
                                              nullptr};
-const mimetra_operation* const operations[] = {&remake_operation, &replace_operation, nullptr};
+// It would be called as ParaView's source is.
+const mimetra_operation taken = {
+    sizeof taken, 0,       "sequence", "Take another one", replace_inputs, replace_outputs, nullptr,
+    nullptr,      replace, nullptr};
+const mimetra_operation* const operations[] = {&remake_operation, &replace_operation, &taken,
+                                               nullptr};
 const mimetra_plugin plugin = {sizeof plugin, MIMETRA_INTERFACE_VERSION, "remake", operations};
 
 }  // namespace
