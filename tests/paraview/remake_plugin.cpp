@@ -135,7 +135,18 @@ const mimetra_parameter how = {
     sizeof how, MIMETRA_CHOICE, "operation", "what to do", "asked", nullptr, 0, 0, ways, 0, 0};
 const mimetra_parameter hint = {
     sizeof hint, MIMETRA_CHOICE, "hint", "no default", nullptr, nullptr, 0, 0, ways, 0, 0};
-const mimetra_parameter* const parameters[] = {&how, &hint, nullptr};
+const mimetra_parameter value = {sizeof value,
+                                 MIMETRA_INTEGER,
+                                 "input",
+                                 "called as the port",
+                                 "7",
+                                 nullptr,
+                                 0,
+                                 0,
+                                 nullptr,
+                                 0,
+                                 0};
+const mimetra_parameter* const parameters[] = {&how, &hint, &value, nullptr};
 const mimetra_operation remake_operation = {sizeof remake_operation,
                                             0,
                                             "remake",

@@ -33,6 +33,11 @@ class ThirdPartyOperations(HostTest):
             self.assertTrue(range.GetMinimumExists(0) and range.GetMaximumExists(0))
             self.assertEqual((range.GetMinimum(0), range.GetMaximum(0)), ends)
 
+    def test_keeps_parameters_and_ports_of_one_name_apart(self):
+        remake = simple.mimetraRemake(Input=self.source)
+        self.assertEqual((remake.Input, remake.InputValue), (self.source, 7))
+        self.assertEqual(remake.Operation, "asked")
+
     def test_lists_the_choices_of_a_parameter_without_a_default(self):
         hint = simple.mimetraRemake(Input=self.source).GetProperty("Hint")
         self.assertEqual(hint.GetDocumentation().GetDescription(),
