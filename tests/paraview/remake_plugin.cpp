@@ -135,7 +135,18 @@ const mimetra_parameter how = {
     sizeof how, MIMETRA_CHOICE, "operation", "what to do", "asked", nullptr, 0, 0, ways, 0, 0};
 const mimetra_parameter hint = {
     sizeof hint, MIMETRA_CHOICE, "hint", "no default", nullptr, nullptr, 0, 0, ways, 0, 0};
-const mimetra_parameter* const parameters[] = {&how, &hint, nullptr};
+const mimetra_parameter value = {sizeof value,
+                                 MIMETRA_INTEGER,
+                                 "input",
+                                 "called as the port",
+                                 "7",
+                                 nullptr,
+                                 0,
+                                 0,
+                                 nullptr,
+                                 0,
+                                 0};
+const mimetra_parameter* const parameters[] = {&how, &hint, &value, nullptr};
 const mimetra_operation remake_operation = {sizeof remake_operation,
                                             0,
                                             "remake",
@@ -156,7 +167,12 @@ const mimetra_operation replace_operation = {sizeof replace_operation,
                                              nullptr,
                                              replace,
                                              nullptr};
-const mimetra_operation* const operations[] = {&remake_operation, &replace_operation, nullptr};
+// It would be called as ParaView's source is.
+const mimetra_operation taken = {
+    sizeof taken, 0,       "sequence", "Take another one", replace_inputs, replace_outputs, nullptr,
+    nullptr,      replace, nullptr};
+const mimetra_operation* const operations[] = {&remake_operation, &replace_operation, &taken,
+                                               nullptr};
 const mimetra_plugin plugin = {sizeof plugin, MIMETRA_INTERFACE_VERSION, "remake", operations};
 
 }  // namespace

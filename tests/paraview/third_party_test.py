@@ -33,6 +33,11 @@ class ThirdPartyOperations(HostTest):
             self.assertTrue(range.GetMinimumExists(0) and range.GetMaximumExists(0))
             self.assertEqual((range.GetMinimum(0), range.GetMaximum(0)), ends)
 
+    def test_keeps_parameters_and_ports_of_one_name_apart(self):
+        remake = simple.mimetraRemake(Input=self.source)
+        self.assertEqual((remake.Input, remake.InputValue), (self.source, 7))
+        self.assertEqual(remake.Operation, "asked")
+
     def test_lists_the_choices_of_a_parameter_without_a_default(self):
         hint = simple.mimetraRemake(Input=self.source).GetProperty("Hint")
         self.assertEqual(hint.GetDocumentation().GetDescription(),
@@ -133,6 +138,36 @@ class ThirdPartyOperations(HostTest):
         mimetra("smooth", self.sample.take, "-o", smooth)
         replace.Other = str(smooth)
         self.assert_same(points(at(replace, 0)), np.load(smooth)[0])
+
+    def test_stops_where_the_user_aborts(self):
+        smooth = simple.mimetraSmooth(Input=self.source)
+        algorithm = smooth.GetClientSideObject()
+
+        def abort(*_):
+            if algorithm.GetProgress() > 0.6:
+                algorithm.SetAbortExecute(1)
+
+        observer = algorithm.AddObserver("ProgressEvent", abort)
+        with Messages() as messages:
+            self.assertEqual(at(smooth, 0).GetNumberOfPoints(), 0)
+        self.assertEqual(messages.text, "")
+        algorithm.RemoveObserver(observer)
+        self.assertGreater(at(smooth, 0).GetNumberOfPoints(), 0)
+
+    def test_tells_of_a_plugin_that_cannot_be_used(self):
+        folder = self.sample / "plugins"
+        folder.mkdir()
+        (folder / "garbage.so").write_text("no library")
+        script = self.sample / "list.py"
+        script.write_text("from paraview import simple\nsimple.mimetraSmooth\n")
+        path = f"{folder}:{os.environ['MIMETRA_PLUGIN_PATH']}"
+        done = subprocess.run([os.environ["PVPYTHON"], str(script)], capture_output=True, text=True,
+                              env={**os.environ, "MIMETRA_PLUGIN_PATH": path})
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn(f"plugins: {folder}/garbage.so: ", done.stderr)
+        self.assertIn("it is left out", done.stderr)
+        self.assertIn("operation 'sequence': mimetra Sequence is something else in ParaView",
+                      done.stderr)
 
     def test_comes_back_with_a_saved_state(self):
         smooth = simple.mimetraSmooth(Input=self.source, Strength=0.25, Iterations=3)

@@ -1,6 +1,7 @@
 #include "third_party_operations.h"
 
 #include <algorithm>
+#include <set>
 
 #include <vtkObject.h>
 #include <vtkPVPlugin.h>
@@ -28,6 +29,15 @@ bool is_filter(const Operation& operation) {
          out != operation.outputs.end() && has_frames(out->kind);
 }
 
+std::string filter_label(const Operation& operation) {
+  return "mimetra " + label_of(operation.name);
+}
+
+std::string name_in_python(std::string label) {
+  std::erase(label, ' ');
+  return label;
+}
+
 std::string filter_xml(const Operation& operation) {
   // ParaView sets properties in the order of their names, capitals first; no parameter has the name
   // or, in Python, the label.
@@ -43,7 +53,7 @@ std::string filter_xml(const Operation& operation) {
                     operation.parameters,
                     "vtkMimetraOperation",
                     "MimetraOperation-" + operation.name,
-                    "mimetra " + label_of(operation.name),
+                    filter_label(operation),
                     shown,
                     {{operation.inputs.front().name, "Input"}},
                     which,
@@ -82,9 +92,17 @@ void add_third_party_operations() {
     vtkGenericWarningMacro(<< problem);
   }
   std::string xml;
+  std::set<std::string> taken = {"mimetraSequence"};
   for (std::size_t i = own; i < table.operations().size(); ++i) {
     const Operation& operation = table.operations()[i];
-    if (is_filter(operation)) xml += filter_xml(operation);
+    if (!is_filter(operation)) continue;
+    if (taken.insert(name_in_python(filter_label(operation))).second) {
+      xml += filter_xml(operation);
+    } else {
+      vtkGenericWarningMacro(<< "plugins: operation '" << operation.name
+                             << "': " << filter_label(operation)
+                             << " is something else in ParaView; it is left out there");
+    }
   }
   if (xml.empty()) return;
   // ParaView keeps a pointer to it to its end.

@@ -100,12 +100,12 @@ std::string port_xml(const Port& port, int index, const std::string& help) {
          escaped_for_xml(help) + "</Documentation>\n      </InputProperty>\n";
 }
 
-/// An input that is a file; where it may come through a port instead, its label says so.
-std::string path_xml(const Input& input, bool has_port, bool advanced) {
-  // Nothing, where it may stay empty.
-  const auto fallback = input.optional || has_port ? ParameterValue() : ParameterValue("");
-  return property_of({input.name, ParameterKind::file, fallback, input.help},
-                     label_of(input.name) + (has_port ? " File" : ""), advanced);
+/// A label says what is held where a port has the name alone: Python knows both by their labels.
+std::string label_beside_ports(const Proxy& proxy, const std::string& name,
+                               const std::string& held) {
+  const std::string label = label_of(name);
+  const bool is_taken = std::ranges::find(proxy.ports, label, &Port::property) != proxy.ports.end();
+  return is_taken ? label + ' ' + held : label;
 }
 
 /// The property of a parameter, or of an input that may be a file; nothing for one that may not.
@@ -114,11 +114,15 @@ std::string property_named(const Proxy& proxy, const std::string& name, bool adv
   const auto input = std::ranges::find(inputs, name, &Input::name);
   if (input == inputs.end()) {
     const auto parameter = std::ranges::find(proxy.parameters, name, &Parameter::name);
-    return property_of(*parameter, label_of(name), advanced);
+    return property_of(*parameter, label_beside_ports(proxy, name, "Value"), advanced);
   }
   const auto port = std::ranges::find(proxy.ports, name, &Port::input);
   const bool has_port = port != proxy.ports.end();
-  return has_port && !port->optional ? "" : path_xml(*input, has_port, advanced);
+  if (has_port && !port->optional) return "";
+  // No default, where it may stay empty.
+  const auto fallback = input->optional || has_port ? ParameterValue() : ParameterValue("");
+  return property_of({input->name, ParameterKind::file, fallback, input->help},
+                     label_beside_ports(proxy, name, "File"), advanced);
 }
 
 }  // namespace
