@@ -141,8 +141,10 @@ void mimetra_call::run() {
   outputs_.clear();
   report_.clear();
   summary_.clear();
-  Outcome outcome = operation_.run(invocation());
+  const Invocation asked = invocation();
+  Outcome outcome = operation_.run(asked);
   for (auto& [name, values] : outcome.outputs) {
+    if (!asked.wants(name)) continue;
     for (NamedData& value : values) {
       outputs_[name].push_back(std::make_shared<const Value>(std::move(value)));
     }

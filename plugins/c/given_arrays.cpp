@@ -5,8 +5,7 @@
 #include <cstring>
 #include <limits>
 
-#include <nlohmann/json.hpp>
-
+#include <mimetra/c/text.h>
 #include <mimetra/c/whole_struct.h>
 #include <mimetra/mesh/errors.h>
 #include <mimetra/operations/parameter.h>
@@ -85,17 +84,6 @@ bool is_same_place(const mimetra_array& a, const mimetra_array& b) {
   return a.location == b.location && std::string_view(a.name) == b.name;
 }
 
-bool is_line(std::string_view text) {
-  const auto is_control = [](unsigned char c) { return c < 0x20 || c == 0x7f; };
-  if (std::ranges::any_of(text, is_control)) return false;
-  try {
-    // Serialising is what refuses text that is not UTF-8.
-    return !nlohmann::json(text).dump().empty();
-  } catch (const nlohmann::json::exception&) {
-    return false;
-  }
-}
-
 GivenArrays::GivenArrays(std::string subject, const mimetra_array* const* arrays)
     : subject_(std::move(subject)) {
   for (; arrays && *arrays; ++arrays) {
@@ -107,6 +95,10 @@ GivenArrays::GivenArrays(std::string subject, const mimetra_array* const* arrays
     const bool is_twice = std::ranges::any_of(
         arrays_, [&array](const mimetra_array& other) { return is_same_place(array, other); });
     if (is_twice) throw UsageError(place(array.name) + "is given twice");
+    if (array.location < MIMETRA_NOWHERE || array.location > MIMETRA_ON_TRIANGLES) {
+      throw UsageError(place(array.name) + "has the location " + std::to_string(array.location) +
+                       ", which is none of mimetra.h");
+    }
     const std::string problem = problem_of(array);
     if (!problem.empty()) throw UsageError(place(array.name) + problem);
     arrays_.push_back(array);
@@ -145,8 +137,9 @@ void GivenArrays::match(const mimetra_array& array, std::string_view shape) {
     const std::string& size = expected[static_cast<std::size_t>(i)];
     const std::int64_t found = array.shape[i];
     if (found == 0 && kMayBeNone.find(size[0]) == std::string_view::npos) {
-      throw UsageError(place(array.name) + "is " + shape_text(array) + ", expected " +
-                       std::string(shape) + " with " + size + " at least 1");
+      throw IoError(subject_, "array '" + std::string(array.name) + "' is " + shape_text(array) +
+                                  ", expected " + std::string(shape) + " with " + size +
+                                  " at least 1");
     }
     if (std::isdigit(static_cast<unsigned char>(size[0]))) {
       if (std::to_string(found) != size) refuse();
@@ -162,9 +155,15 @@ void GivenArrays::match(const mimetra_array& array, std::string_view shape) {
   }
 }
 
+void GivenArrays::refuse_location(std::string_view name) const {
+  throw UsageError(place(name) + "has a location, which only fields have");
+}
+
 const mimetra_array& GivenArrays::get(std::string_view name, std::string_view shape) {
   const mimetra_array* array = find(name);
   if (!array) {
+    const auto named = [name](const mimetra_array& other) { return other.name == name; };
+    if (std::ranges::any_of(arrays_, named)) refuse_location(name);
     throw UsageError(subject_ + ": needs the array '" + std::string(name) + "' (" +
                      std::string(shape) + ")");
   }
@@ -266,7 +265,10 @@ void GivenArrays::check_all_used(const std::set<std::string, std::less<>>& shown
   for (const mimetra_array& array : arrays_) {
     const std::string_view name = array.name;
     if (used_.contains(&array) || shown.contains(name)) continue;
-    throw UsageError(place(name) + "is not known here; mimetra.h lists those of each kind");
+    if (array.location != MIMETRA_NOWHERE) refuse_location(name);
+    throw UsageError(place(name) +
+                     "is not known here; mimetra.h lists those of each kind, and a field needs a "
+                     "location");
   }
 }
 

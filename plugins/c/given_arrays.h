@@ -56,6 +56,7 @@ class GivenArrays {
   /// Checks the shape, and keeps in mind that the array was asked for.
   void match(const mimetra_array& array, std::string_view shape);
   Frames values_of(const mimetra_array& array, bool finite) const;
+  [[noreturn]] void refuse_location(std::string_view name) const;
   std::string place(std::string_view name) const;
 
   std::string subject_;
@@ -66,8 +67,5 @@ class GivenArrays {
 
 /// True for two arrays that one value cannot have both: of one name, on the same part of the mesh.
 bool is_same_place(const mimetra_array& a, const mimetra_array& b);
-
-/// True for UTF-8 in one line: what stands in messages, names and JSON.
-bool is_line(std::string_view text);
 
 }  // namespace mimetra

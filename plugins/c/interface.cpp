@@ -1,5 +1,6 @@
 #include <mimetra/c/interface.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include <mimetra/c/call.h>
@@ -54,11 +55,10 @@ mimetra_status set_progress(mimetra_context* context, mimetra_progress progress,
 
 mimetra_status set_threads(mimetra_context* context, int32_t threads) noexcept {
   return guarded(context, [&] {
-    if (threads < 0 || threads > kMostThreads) {
-      throw UsageError("threads: expected 0 to " + std::to_string(kMostThreads) + ", found " +
-                       std::to_string(threads));
+    if (threads < 0) {
+      throw UsageError("threads: expected 0 or more, found " + std::to_string(threads));
     }
-    context->threads = threads;
+    context->threads = std::min(threads, kMostThreads);
   });
 }
 
@@ -256,7 +256,7 @@ void job_log(mimetra_job* job, int32_t level, const char* text) noexcept {
 
 mimetra_status job_fail(mimetra_job* job, mimetra_status status, const char* text) noexcept {
   const mimetra_status kept =
-      guarded(job_context(job), [&] { job->context().message = needed(text, "message"); });
+      guarded(job_context(job), [&] { job->fail(needed(text, "message")); });
   return kept == MIMETRA_OK ? status : kept;
 }
 

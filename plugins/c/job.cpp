@@ -7,6 +7,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include <mimetra/c/text.h>
+
 using namespace mimetra;
 
 namespace {
@@ -25,20 +27,6 @@ std::optional<double> extent_of(const Data& data) {
   if (const auto* components = std::get_if<Components>(&data)) return extent(components->rest);
   if (const auto* read = std::get_if<ModelRead>(&data)) return extent(read->model.mean());
   return {};
-}
-
-/// Regions are shown on a sequence that the operation was given, as the toolkit's own are.
-void show_on(const Invocation& invocation, RegionData& made) {
-  for (const auto& [name, values] : invocation.inputs) {
-    for (const NamedData& value : values) {
-      const MeshSequence* sequence = sequence_of(value.data);
-      const bool fits = sequence && sequence->vertices() == made.regions.vertices &&
-                        sequence->triangles().rows() == made.regions.all_triangles;
-      if (!fits) continue;
-      made.fields = {*sequence, fields_of(made.regions), true};
-      return;
-    }
-  }
 }
 
 }  // namespace
@@ -66,7 +54,12 @@ const mimetra_data* mimetra_job::input(const std::string& name, int index) const
   return i < found->second.size() ? found->second[i].get() : nullptr;
 }
 
-double mimetra_job::number(const std::string& name) const {
+double mimetra_job::number(const std::string& name) {
+  const auto known = numbers_.find(name);
+  return known != numbers_.end() ? known->second : numbers_[name] = number_of(name);
+}
+
+double mimetra_job::number_of(const std::string& name) const {
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   const Parameter* parameter = invocation_.parameters.find(name);
   if (!parameter) return kNone;
@@ -91,7 +84,7 @@ const char* mimetra_job::text(const std::string& name) {
   if (!invocation_.parameters.find(name)) return nullptr;
   const ParameterValue& value = invocation_.parameters.value(name);
   if (std::holds_alternative<std::monostate>(value)) return nullptr;
-  return texts_.emplace_back(to_text(value)).c_str();
+  return texts_.try_emplace(name, to_text(value)).first->second.c_str();
 }
 
 bool mimetra_job::goes_on() {
@@ -105,7 +98,22 @@ void mimetra_job::progress(double share) {
 }
 
 void mimetra_job::log(LogLevel level, const std::string& text) const {
-  if (invocation_.log) invocation_.log(level, operation_.name + ": " + text);
+  if (invocation_.log) invocation_.log(level, operation_.name + ": " + printable(text));
+}
+
+void mimetra_job::fail(const std::string& text) {
+  context_.message = printable(text);
+}
+
+const MeshSequence* mimetra_job::given_mesh(const Connectivity& faces, std::size_t index) const {
+  for (const Input& input : operation_.inputs) {
+    const auto values = invocation_.inputs.find(input.name);
+    const std::size_t i = input.repeated ? index : 0;
+    if (values == invocation_.inputs.end() || i >= values->second.size()) continue;
+    const MeshSequence* sequence = sequence_of(values->second[i].data);
+    if (sequence && same_faces(sequence->connectivity(), faces)) return sequence;
+  }
+  return nullptr;
 }
 
 void mimetra_job::output(const std::string& name, const NamedData& value) {
@@ -121,13 +129,17 @@ void mimetra_job::output(const std::string& name, const NamedData& value) {
   }
   NamedData& made = outcome_.outputs[name].emplace_back(value);
   auto* regions = std::get_if<RegionData>(&made.data);
-  if (regions && regions->fields.sequence.frames() == 0) show_on(invocation_, *regions);
+  if (!regions || !regions->faces) return;
+  // They are shown on a sequence that the operation was given, as the toolkit's own are.
+  const MeshSequence* mesh = given_mesh(*regions->faces, outcome_.outputs[name].size() - 1);
+  if (mesh) regions->fields = {*mesh, fields_of(regions->regions), true};
 }
 
 void mimetra_job::report(const std::string& json, const std::string& summary) {
   if (!nlohmann::json::accept(json) || !nlohmann::json::parse(json).is_object()) {
-    throw UsageError("the report is no JSON object: " + json);
+    throw UsageError("the report is no JSON object: " + printable(json));
   }
+  if (!is_text(summary)) throw UsageError("the summary is no UTF-8: " + printable(summary));
   outcome_.report = json;
   outcome_.summary = summary;
   if (!summary.empty() && summary.back() != '\n') outcome_.summary += '\n';

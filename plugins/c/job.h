@@ -1,6 +1,5 @@
 #pragma once
 
-#include <deque>
 #include <map>
 #include <memory>
 #include <string>
@@ -21,7 +20,7 @@ struct mimetra_job {
   /// Null past the last value of an input, and for an unknown one.
   const mimetra_data* input(const std::string& name, int index) const;
   /// NaN where it has no value, or no number.
-  double number(const std::string& parameter) const;
+  double number(const std::string& parameter);
   /// Null where it has no value.
   const char* text(const std::string& parameter);
   int threads() const { return invocation_.threads; }
@@ -31,9 +30,11 @@ struct mimetra_job {
   /// True once the user has cancelled, whatever became of it.
   bool cancelled() const { return cancelled_; }
   void log(mimetra::LogLevel level, const std::string& text) const;
+  /// Says why the run fails.
+  void fail(const std::string& text);
   /// Throws UsageError for an unknown output or a value of another kind.
   void output(const std::string& name, const mimetra::NamedData& value);
-  /// Throws UsageError where `json` is no JSON object.
+  /// Throws UsageError where `json` is no JSON object, or `summary` no UTF-8.
   void report(const std::string& json, const std::string& summary);
 
   /// Everything that was made. Throws std::runtime_error that names an output which is missing.
@@ -41,6 +42,11 @@ struct mimetra_job {
 
  private:
   bool goes_on();
+  double number_of(const std::string& parameter) const;
+  /// The sequence with these faces that an input holds, of a repeated input the one at `index`;
+  /// null for none.
+  const mimetra::MeshSequence* given_mesh(const mimetra::Connectivity& faces,
+                                          std::size_t index) const;
   std::size_t expected_count(const mimetra::Output& output) const;
 
   const mimetra::Operation& operation_;
@@ -49,6 +55,7 @@ struct mimetra_job {
   double share_ = 0;
   bool cancelled_ = false;
   std::map<std::string, std::vector<std::unique_ptr<mimetra_data>>> inputs_;
-  std::deque<std::string> texts_;
+  std::map<std::string, double> numbers_;
+  std::map<std::string, std::string> texts_;
   mimetra::Outcome outcome_;
 };

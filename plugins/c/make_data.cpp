@@ -5,6 +5,7 @@
 
 #include <mimetra/c/given_arrays.h>
 #include <mimetra/c/shown_arrays.h>
+#include <mimetra/c/text.h>
 #include <mimetra/operations/parameter.h>
 
 namespace mimetra {
@@ -73,7 +74,6 @@ using Base = std::shared_ptr<const Connectivity>;
 MeshSequence sequence_of(GivenArrays& given, const Base& base) {
   const bool is_one = given.rank("positions") == 2;
   Frames frames = given.numbers("positions", is_one ? "N x 3" : "F x N x 3");
-  if (frames.size() == 0) throw IoError(given.subject(), "has no positions");
   if (is_one) {
     frames = Frames(Eigen::Map<const Frames>(frames.data(), 1, frames.size()));
     given.set_size('F', 1, "'positions'");
@@ -99,7 +99,6 @@ ShapeBasis basis_of(GivenArrays& given, const std::string& shapes, const std::st
 
 MorphableModel model_of(GivenArrays& given, const Base& base) {
   Positions neutral = given.positions("neutral");
-  if (neutral.size() == 0) throw IoError(given.subject(), "has no positions");
   auto connectivity = faces_of(given, given.size('N'), base);
   ShapeBasis identities = basis_of(given, "identities", "identity_names", 'I');
   ShapeBasis expressions = basis_of(given, "expressions", "expression_names", 'D');
@@ -153,16 +152,13 @@ RegionData regions_of(GivenArrays& given, const Base& base) {
     const auto n = static_cast<std::size_t>(vertices);
     if (masks[i]) lists[i / n].push_back(static_cast<VertexIndex>(i % n));
   }
-  return {regions_from_vertices(vertices, connectivity->triangles, lists), {}};
+  return {regions_from_vertices(vertices, connectivity->triangles, lists), {}, connectivity};
 }
 
 Field field_of(GivenArrays& given, const mimetra_array& array) {
   Field field{array.name, Field::Location::vertices, {}, false};
   if (array.location == MIMETRA_ON_TRIANGLES) {
     field.location = Field::Location::triangles;
-  } else if (array.location != MIMETRA_ON_VERTICES) {
-    throw UsageError(given.subject() + ": array '" + field.name + "' has the location " +
-                     std::to_string(array.location) + ", which is none of mimetra.h");
   }
   const std::string rows = array.location == MIMETRA_ON_TRIANGLES ? "T" : "N";
   // Each field has a number of columns of its own.
@@ -188,9 +184,6 @@ Table table_of(GivenArrays& given) {
   Table table;
   if (given.all().empty()) throw UsageError(given.subject() + ": a table needs columns");
   for (const mimetra_array& array : given.all()) {
-    if (array.location != MIMETRA_NOWHERE) {
-      throw UsageError(given.subject() + ": column '" + array.name + "' has a location");
-    }
     const Eigen::VectorXd values = given.vector(array.name, "R", false);
     table.columns.emplace_back(array.name);
     table.rows.resize(static_cast<std::size_t>(values.size()));
@@ -233,7 +226,7 @@ LandmarksRead landmarks_of(GivenArrays& given) {
   LandmarkTrack& track = made.track;
   track.points = given.numbers("points", "F x L x 2", false);
   track.names = given.strings("names", "L");
-  if (track.names.empty()) throw UsageError(given.subject() + ": needs a landmark or more");
+  if (track.names.empty()) throw IoError(given.subject(), "needs a landmark or more");
   const int frames = given.size('F');
   track.times = given.has("times")
                     ? given.vector("times", "F")
@@ -302,6 +295,10 @@ Base hidden_connectivity(const Data& data) {
   if (const auto* animated = std::get_if<AnimatedModel>(&data)) {
     return animated->model.shared_connectivity();
   }
+  if (const auto* data_of_regions = std::get_if<RegionData>(&data)) {
+    const MeshSequence& mesh = data_of_regions->fields.sequence;
+    return mesh.frames() > 0 ? mesh.shared_connectivity() : data_of_regions->faces;
+  }
   return nullptr;
 }
 
@@ -320,7 +317,12 @@ struct KeepHidden {
   void operator()(const FieldSequence& base) const {
     as<FieldSequence>().displacement = base.displacement;
   }
-  void operator()(const ModelRead& base) const { as<ModelRead>().path = base.path; }
+  void operator()(const ModelRead& base) const {
+    auto& derived = as<ModelRead>();
+    // What else its folder holds speaks of its vertices.
+    const bool same_mesh = derived.model.shared_connectivity() == base.model.shared_connectivity();
+    if (same_mesh) derived.path = base.path;
+  }
   void operator()(const Components& base) const {
     const int count = as<Components>().count();
     as<Components>().options = base.options;
@@ -335,9 +337,8 @@ struct KeepHidden {
   void operator()(const RegionData& base) const {
     auto& derived = as<RegionData>();
     const MeshSequence& mesh = base.fields.sequence;
-    const bool same_mesh = mesh.frames() > 0 && mesh.vertices() == derived.regions.vertices &&
-                           mesh.triangles().rows() == derived.regions.all_triangles;
-    if (same_mesh) derived.fields = {mesh, fields_of(derived.regions), base.fields.displacement};
+    if (derived.faces != mesh.shared_connectivity()) return;
+    derived.fields = {mesh, fields_of(derived.regions), base.fields.displacement};
   }
   template <typename Other>
   void operator()(const Other&) const {}
@@ -378,7 +379,8 @@ NamedData derived_data(const NamedData& base, const mimetra_array* const* arrays
   const ShownArrays shown(base.data);
   std::vector<const mimetra_array*> all;
   for (const mimetra_array& array : shown.arrays()) {
-    const bool is_face = (new_faces || connectivity) && face_names().contains(array.name);
+    const bool is_face = (new_faces || connectivity) && array.location == MIMETRA_NOWHERE &&
+                         face_names().contains(array.name);
     const bool is_changed = std::ranges::any_of(
         changes.all(), [&](const mimetra_array& other) { return is_same_place(array, other); });
     if (!is_face && !is_changed) all.push_back(&array);

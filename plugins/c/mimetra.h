@@ -34,9 +34,10 @@
  *   m->free_context(context);
  *
  * Versions. A library that answers NULL does not serve that version of the header; one that serves
- *   it will for good. Within a version, structs grow at their end only. Whoever makes a struct sets
- *   its struct_size; fields past that count as zero. A program that is to run with an older library
- *   asks MIMETRA_HAS(m, function) before it calls a function that was added later.
+ *   it will for good. Within a version, structs grow at their end only. Whoever makes a struct,
+ * also as a copy, sets its struct_size; fields past that count as zero. A program that is to run
+ * with an older library asks MIMETRA_HAS(m, function) before it calls a function that was added
+ * later.
  *
  * Errors. Functions that can fail return a mimetra_status: the exit code of the command in the same
  *   case. What they were to make is then NULL, and m->message(context) says what is wrong, in words
@@ -52,8 +53,9 @@
  * Threads. A context, with its calls, serves one thread at a time; several contexts serve several
  *   threads at once. A job serves the thread that called run, and no exception may leave a thread
  *   that run has started. Values (mimetra_data) belong to no context and never change: any number
- * of threads may read one and give it to calls. Callbacks come from the thread that called. Inside,
- *   an operation uses as many threads as m->set_threads() allows; results do not depend on it.
+ *   of threads may read one and give it to calls. Callbacks come from the thread that called.
+ *   Inside, an operation uses as many threads as m->set_threads() allows; results do not depend on
+ *   it.
  *
  * Text is UTF-8 and ends with 0. Lists end with NULL. Arrays are in C order, without gaps.
  */
@@ -114,7 +116,7 @@ enum {
 typedef int32_t mimetra_parameter_kind;
 enum {
   MIMETRA_FLAG = 1,         /* "true" or "false" */
-  MIMETRA_INTEGER = 2,      /* "30" */
+  MIMETRA_INTEGER = 2,      /* "30", of 32 bits */
   MIMETRA_INTEGER_LIST = 3, /* "10,30,40" */
   MIMETRA_NUMBER = 4,       /* "0.5" */
   MIMETRA_LENGTH = 5,       /* "0.1" of the longest side of the rest pose's box, or "12abs" */
@@ -207,6 +209,16 @@ typedef struct mimetra_data mimetra_data;
 
 /* ---- Operations ----------------------------------------------------------------------------- */
 
+/*
+ * Names of operations, inputs, outputs and parameters are typed: small letters, digits and '-', a
+ * letter first. Inputs, outputs and parameters of one operation have different names; none is that
+ * of an option of every command (h help q quiet v verbose o json progress threads config force
+ * dry-run), nor of a parameter that reading its inputs or writing its outputs brings (of_files:
+ * frames, fps, weights, topology, format, ...). The command writes the output "out" by -o. Choices
+ * are letters, digits, '-', '_' and '.', not '-' first. Only the last input that is neither
+ * optional nor named can be repeated.
+ */
+
 /* An input or output. */
 typedef struct mimetra_port {
   uint32_t struct_size;
@@ -275,7 +287,7 @@ typedef struct mimetra_interface {
   const char* (*message)(const mimetra_context* context);
   /* For everything that takes time; NULL for none. */
   mimetra_status (*set_progress)(mimetra_context* context, mimetra_progress progress, void* user);
-  /* At most so many threads; 0 for all there are. */
+  /* At most so many threads, and 1024; 0 for all there are. */
   mimetra_status (*set_threads)(mimetra_context* context, int32_t threads);
 
   /* -- What there is -- */
@@ -298,7 +310,8 @@ typedef struct mimetra_interface {
                                 const mimetra_array* const* arrays, mimetra_data** data);
   /* A value of a file, folder or whatever else the command takes as an input of that kind.
    * `settings`: "frames=0:100", "fps=25", "weights=take.csv", "topology=mesh.ply"; NULL for none.
-   * Region sets speak of a mesh: they are read as an input of a call, by call_read. */
+   * Region sets speak of a mesh: they are read as an input of a call, by call_read, for its first
+   * input that has one. */
   mimetra_status (*load_data)(mimetra_context* context, mimetra_kind kind, const char* text,
                               const char* const* settings, mimetra_data** data);
   /* Writes it by the path's extension, as the command does. `settings` are the command's parameters
@@ -389,8 +402,9 @@ MIMETRA_EXPORT const mimetra_interface* mimetra_get_interface(uint32_t version);
  *   MIMETRA_EXPORT const mimetra_plugin* mimetra_get_plugin(void) { return &plugin; }
  *
  * It links nothing of mimetra: run() is handed the table of functions, of the version that the
- * plugin was compiled with. Whatever it describes stays as it is until the process ends. run() may
- * be called from several threads at once, with a job each.
+ * plugin was compiled with. mimetra_get_plugin() is called for each context, one call at a time.
+ * Whatever it describes stays as it is until the process ends. run() may be called from several
+ * threads at once, with a job each.
  *
  * Plugins are the files *.so in the folders of MIMETRA_PLUGIN_PATH (separated by ':') and in
  * lib/mimetra/plugins of the installation. Their operations appear in the command, with help and

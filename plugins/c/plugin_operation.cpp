@@ -4,12 +4,14 @@
 #include <array>
 #include <cctype>
 #include <cmath>
+#include <cstdint>
+#include <limits>
 #include <string_view>
 
-#include <mimetra/c/given_arrays.h>
 #include <mimetra/c/interface.h>
 #include <mimetra/c/job.h>
 #include <mimetra/c/make_data.h>
+#include <mimetra/c/text.h>
 #include <mimetra/c/whole_struct.h>
 
 namespace mimetra {
@@ -43,7 +45,7 @@ std::string choice_of(const char* choice, const std::string& what) {
   };
   if (text.empty() || text.front() == '-' || !std::ranges::all_of(text, fits)) {
     throw UsageError(what + " has the choice '" + (is_line(text) ? std::string(text) : "") +
-                     "', expected letters, digits, '-', '_' and '.'");
+                     "', expected letters, digits, '-', '_' and '.', not '-' first");
   }
   return std::string(text);
 }
@@ -85,8 +87,21 @@ Parameter parameter_of(const mimetra_parameter& described) {
     if (std::isfinite(described.minimum)) parameter.minimum = described.minimum;
     if (std::isfinite(described.maximum)) parameter.maximum = described.maximum;
   }
+  const bool is_whole =
+      parameter.kind == ParameterKind::integer || parameter.kind == ParameterKind::integer_list;
+  if (is_whole) {
+    constexpr double kMost = std::numeric_limits<std::int32_t>::max();
+    if (parameter.minimum) parameter.minimum = std::clamp(*parameter.minimum, -kMost, kMost);
+    if (parameter.maximum) parameter.maximum = std::clamp(*parameter.maximum, -kMost, kMost);
+  }
   for (const char* const* choice = described.choices; choice && *choice; ++choice) {
     parameter.choices.push_back(choice_of(*choice, what));
+    if (std::ranges::count(parameter.choices, parameter.choices.back()) > 1) {
+      throw UsageError(what + " has the choice '" + *choice + "' twice");
+    }
+  }
+  if (parameter.kind == ParameterKind::choice && parameter.choices.empty()) {
+    throw UsageError(what + " has no choices");
   }
   if (described.fallback) {
     parameter.fallback = parse_value(parameter, line_of(described.fallback, what));

@@ -2,14 +2,15 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <mutex>
 #include <set>
 #include <sstream>
 
 #include <dlfcn.h>
 
 #include <mimetra/c/failure.h>
-#include <mimetra/c/given_arrays.h>
 #include <mimetra/c/plugin_operation.h>
+#include <mimetra/c/text.h>
 #include <mimetra/c/whole_struct.h>
 
 namespace mimetra {
@@ -47,7 +48,8 @@ std::vector<fs::path> libraries_in(const fs::path& folder) {
   for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
     std::error_code error;
     const bool is_library = entry.path().extension() == ".so";
-    if (is_library && !entry.is_directory(error)) files.push_back(entry.path());
+    // A link that leads nowhere is told of; what is no file at all is none of ours.
+    if (is_library && (entry.is_regular_file(error) || error)) files.push_back(entry.path());
   }
   std::ranges::sort(files);
   return files;
@@ -106,6 +108,9 @@ std::vector<std::string> add_plugins(OperationTable& table, const std::vector<fs
       attempt(file, [&] { table.add(plugin_operation(whole(**list), plugin.name, toolkit)); });
     }
   };
+  // Plugins may fill what they describe in mimetra_get_plugin().
+  static std::mutex one_at_a_time;
+  const std::lock_guard lock(one_at_a_time);
   for (const fs::path& folder : folders) {
     attempt(folder, [&] {
       for (const fs::path& file : libraries_in(folder)) {

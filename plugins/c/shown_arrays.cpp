@@ -160,7 +160,11 @@ void ShownArrays::show(const RegionData& data) {
               of_regions(regions, [](const Region& r) { return r.energy_share; }));
   add_vector("vertex_energy", regions.vertex_energy);
   const bool has_mesh = data.fields.sequence.vertices() > 0;
-  if (has_mesh) show(data.fields.sequence.connectivity());
+  if (has_mesh) {
+    show(data.fields.sequence.connectivity());
+  } else if (data.faces) {
+    show(*data.faces);
+  }
   for (const Field& field : has_mesh ? data.fields.fields : fields_of(regions)) show(field);
 }
 

@@ -44,6 +44,7 @@ static mimetra_status run(const mimetra_interface* m, mimetra_job* job, void* us
   mimetra_data* smoothed = NULL;
   mimetra_array moved = *positions; /* the same name and shape */
   const mimetra_array* changes[] = {&moved, NULL};
+  moved.struct_size = sizeof moved;
   moved.values = xyz;
   if (!status) status = m->derive_data(context, sequence, changes, &smoothed);
   if (!status) status = m->job_output(job, "out", smoothed);

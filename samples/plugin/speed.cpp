@@ -33,7 +33,7 @@ mimetra_status run(const mimetra_interface* m, mimetra_job* job, void*) {
 
   std::vector<double> mean(vertices), most(vertices);
   for (std::int64_t f = 1; f < frames; ++f) {
-    if (times[f] <= times[f - 1]) return m->job_fail(job, MIMETRA_BAD_INPUT, "time stands still");
+    if (times[f] <= times[f - 1]) return m->job_fail(job, MIMETRA_BAD_INPUT, "times do not rise");
     for (std::int64_t v = 0; v < vertices; ++v) {
       const double* now = xyz + 3 * (f * vertices + v);
       const double* before = now - 3 * vertices;

@@ -99,6 +99,13 @@ const mimetra_plugin* mimetra_get_plugin() {
                                            0,     words,          0,        0};
   static const mimetra_parameter phrase = {kSize, MIMETRA_CHOICE, "phrase", "", nullptr, nullptr, 0,
                                            0,     phrases,        0,        0};
+  static const char* const same_words[] = {"npy", "npy", nullptr};
+  static const mimetra_parameter again = {kSize, MIMETRA_CHOICE, "again", "", nullptr, nullptr, 0,
+                                          0,     same_words,     0,       0};
+  static const mimetra_parameter nothing = {
+      kSize, MIMETRA_CHOICE, "nothing", "", nullptr, nullptr, 0, 0, nullptr, 0, 0};
+  static const mimetra_parameter* const of_again[] = {&again, nullptr};
+  static const mimetra_parameter* const of_nothing[] = {&nothing, nullptr};
   static const mimetra_parameter* const of_common[] = {&common, nullptr};
   static const mimetra_parameter* const of_out_of_range[] = {&out_of_range, nullptr};
   static const mimetra_parameter* const of_frames[] = {&frames, nullptr};
@@ -109,7 +116,7 @@ const mimetra_plugin* mimetra_get_plugin() {
       operation_named("no-kind"),     operation_named("no-size"),    operation_named("twice"),
       operation_named("common-name"), operation_named("no-default"), operation_named("of-reading"),
       operation_named("of-writing"),  operation_named("an-option"),  operation_named("phrase"),
-      operation_named("no-utf8")};
+      operation_named("no-utf8"),     operation_named("again"),      operation_named("nothing")};
   all[2].run = nullptr;
   all[3].inputs = of_no_kind;
   all[4].inputs = of_no_size;
@@ -124,6 +131,8 @@ const mimetra_plugin* mimetra_get_plugin() {
   all[10].outputs = an_option;
   all[11].parameters = of_phrase;
   all[12].summary = "\xff\xfe";
+  all[13].parameters = of_again;
+  all[14].parameters = of_nothing;
   static const mimetra_operation* operations[std::size(all) + 1] = {};
   for (std::size_t i = 0; i < std::size(all); ++i) operations[i] = &all[i];
   static const mimetra_plugin plugin = plugin_of(operations);

@@ -108,13 +108,16 @@ TEST(DerivedData, KeepsTheMeshOfRegions) {
   const Regions regions = regions_from_vertices(kVertices, sequence.triangles(), {{0}});
   const RegionData base{regions, {sequence, fields_of(regions), true}};
   const std::uint8_t masks[2 * kVertices] = {1, 0, 0, 0, 0, 0, 0, 1};
-  const RegionData two = derived(base, {array("masks", MIMETRA_U8, {2, kVertices}, masks)});
+  const mimetra_array two_masks = array("masks", MIMETRA_U8, {2, kVertices}, masks);
+  const RegionData two = derived(base, {two_masks});
   EXPECT_EQ(two.regions.regions.size(), 2u);
   EXPECT_EQ(two.fields.sequence.frames(), 2);
   // Its fields are those of the new regions.
   const auto roi = std::ranges::find(two.fields.fields, "roi", &Field::name);
   ASSERT_NE(roi, two.fields.fields.end());
   EXPECT_EQ(roi->values.sum(), 2);
+  const RegionData bare{regions, {}, sequence.shared_connectivity()};
+  EXPECT_EQ(derived(bare, {two_masks}).faces, sequence.shared_connectivity());
 }
 
 TEST(DerivedData, TellsFieldsOnVerticesFromThoseOnTriangles) {
@@ -123,12 +126,13 @@ TEST(DerivedData, TellsFieldsOnVerticesFromThoseOnTriangles) {
       sequence,
       {{"energy", Field::Location::vertices, Eigen::MatrixXd::Ones(kVertices, 1), false},
        {"energy", Field::Location::triangles, Eigen::MatrixXd::Ones(kTriangles, 1), false},
-       {"rest", Field::Location::vertices, Eigen::MatrixXd::Ones(kVertices, 3), false}},
+       {"rest", Field::Location::vertices, Eigen::MatrixXd::Ones(kVertices, 3), false},
+       {"corners", Field::Location::vertices, Eigen::MatrixXd::Ones(kVertices, 1), true}},
       false};
   const double energies[kTriangles] = {5, 5, 5, 5};
   const auto changed =
       derived(base, {array("energy", MIMETRA_F64, {kTriangles}, energies, MIMETRA_ON_TRIANGLES)});
-  ASSERT_EQ(changed.fields.size(), 3u);
+  ASSERT_EQ(changed.fields.size(), 4u);
   for (const Field& field : changed.fields) {
     const bool is_changed = field.location == Field::Location::triangles;
     EXPECT_EQ(field.values(0, 0), is_changed ? 5 : 1) << field.name;
@@ -150,7 +154,7 @@ TEST(MadeData, HoldsSomething) {
   const char* const no_names[] = {nullptr};
   const auto refuses = [](mimetra_kind kind, const std::vector<mimetra_array>& arrays,
                           const char* message) {
-    EXPECT_THAT([&] { made(kind, arrays); }, ThrowsMessage<UsageError>(HasSubstr(message)));
+    EXPECT_THAT([&] { made(kind, arrays); }, ThrowsMessage<IoError>(HasSubstr(message)));
   };
   refuses(MIMETRA_PICTURE, {array("pixels", MIMETRA_U8, {0, 0, 3}, none)}, "with H at least 1");
   refuses(MIMETRA_LANDMARKS,
@@ -162,6 +166,21 @@ TEST(MadeData, HoldsSomething) {
            array("names", MIMETRA_STRING, {0}, no_names)},
           "needs a landmark or more");
   refuses(MIMETRA_SEQUENCE, {array("positions", MIMETRA_F64, {1, 0, 3}, none)}, "with N at least");
+  EXPECT_TRUE(
+      std::get<Table>(made(MIMETRA_TABLE, {array("x", MIMETRA_F64, {0}, none)}).data).rows.empty());
+}
+
+TEST(MadeData, SaysWhereALocationIsWrong) {
+  const double positions[3 * kVertices] = {};
+  const auto refuses = [&](mimetra_kind kind, const mimetra_array& one, const char* message) {
+    EXPECT_THAT([&] { made(kind, {one}); }, ThrowsMessage<UsageError>(HasSubstr(message)));
+  };
+  refuses(MIMETRA_SEQUENCE,
+          array("positions", MIMETRA_F64, {kVertices, 3}, positions, MIMETRA_ON_VERTICES),
+          "'positions' has a location, which only fields have");
+  refuses(MIMETRA_TABLE, array("x", MIMETRA_F64, {3}, positions, MIMETRA_ON_VERTICES),
+          "'x' has a location");
+  refuses(MIMETRA_TABLE, array("x", MIMETRA_F64, {3}, positions, 3), "the location 3");
 }
 
 }  // namespace

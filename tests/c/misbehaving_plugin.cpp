@@ -42,6 +42,8 @@ mimetra_status run(const mimetra_interface* m, mimetra_job* job, void* user) {
   if (how == "twice") make(m, job, 0, "positions");
   if (how == "kind") return m->job_output(job, "table", m->job_input(job, "sequence", 0));
   if (how == "report") return m->job_report(job, "{\"a\": ", "");
+  if (how == "no-utf8") return m->job_report(job, "{}", "\xff\xfe");
+  if (how == "fail-in-no-utf8") return m->job_fail(job, MIMETRA_MISMATCH, "\xff!");
   if (how == "null") return m->job_output(job, nullptr, nullptr);
   if (how == "unknown") {
     const bool none = !m->job_input(job, "no", 0) && !m->job_input(job, "sequence", 5) &&

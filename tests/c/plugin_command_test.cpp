@@ -73,6 +73,26 @@ TEST_F(PluginCommand, ShowsRegionsOnTheMeshTheyWereMadeFor) {
   EXPECT_EQ(run("transfer head head --weights take.csv --regions spot.vtp -o a.npy").code, 0);
 }
 
+TEST_F(PluginCommand, ShowsTheRegionsOfSeveralSequencesEachOnItsOwn) {
+  ASSERT_EQ(run("convert head --weights take.csv --frames 0:2 -o two").code, 0);
+  ASSERT_EQ(run("convert head --weights take.csv --frames 0:3 -o three").code, 0);
+  const auto made = run_with("kinds", "spot-each two three -o s.pvd");
+  ASSERT_EQ(made.code, 0) << made.err;
+  EXPECT_THAT(run("info s-two.pvd --json").out, HasSubstr("\"frames\": 2"));
+  EXPECT_THAT(run("info s-three.pvd --json").out, HasSubstr("\"frames\": 3"));
+}
+
+TEST_F(PluginCommand, ReadsRegionsForWhateverHasAMesh) {
+  ASSERT_EQ(run_with("kinds", "spots head --weights take.csv -o spot.vtp").code, 0);
+  ASSERT_EQ(run_with("kinds", "spots head --weights take.csv -o spot.json").code, 0);
+  for (const char* fields : {"spot.vtp", "head"}) {
+    const auto counted =
+        run_with("kinds", std::string("count ") + fields + " --regions spot.json --json");
+    EXPECT_EQ(counted.code, 0) << counted.err;
+    EXPECT_THAT(counted.out, HasSubstr("\"vertices\""));
+  }
+}
+
 TEST_F(PluginCommand, NamesTheOutputsOfSeveralInputsByTheirFiles) {
   ASSERT_EQ(run("convert head --weights take.csv -o takes/one").code, 0);
   ASSERT_EQ(run("convert head --weights take.csv -o takes/two").code, 0);
@@ -83,6 +103,15 @@ TEST_F(PluginCommand, NamesTheOutputsOfSeveralInputsByTheirFiles) {
   EXPECT_TRUE(std::filesystem::exists(folder_ / "out" / "two"));
   // The inputs have other names than the outputs, so that nothing of theirs can be replaced.
   EXPECT_EQ(run_with("kinds", "each " + there + "/one " + there + "/one -o twice --force").code, 2);
+  const std::string from_inside =
+      "cd takes/one && MIMETRA_PLUGIN_PATH=" MIMETRA_TEST_PLUGINS "/kinds";
+  const auto dots = run("each . ../two -o ../../dots --force", from_inside);
+  EXPECT_EQ(dots.code, 0) << dots.err;
+  const auto patterns = run_with("kinds", "each 'takes/one/*.ply' 'takes/two/*.ply' -o patterns");
+  EXPECT_EQ(patterns.code, 0) << patterns.err;
+  for (const char* out : {"dots", "patterns"}) {
+    EXPECT_THAT(listing(out), testing::IsSupersetOf({"one", "two"}));
+  }
   const auto again = run_with("kinds", "each takes/one takes/two -o out --force");
   EXPECT_EQ(again.code, 0) << again.err;
   EXPECT_TRUE(std::filesystem::exists(folder_ / "takes" / "two"));

@@ -124,7 +124,8 @@ TEST(Plugins, WithImpossibleDescriptionsAreLeftOut) {
                   HasSubstr("'json' is an option of every command"), HasSubstr("found '7'"),
                   HasSubstr("'frames' means two things"), HasSubstr("'format' means two things"),
                   HasSubstr("'weights' is there twice"), HasSubstr("has the choice 'don't'"),
-                  HasSubstr("no line of UTF-8")));
+                  HasSubstr("no line of UTF-8"), HasSubstr("the choice 'npy' twice"),
+                  HasSubstr("has no choices")));
   Loaded none({});
   EXPECT_EQ(loaded.table.operations().size(), none.table.operations().size());
 }
@@ -135,6 +136,14 @@ TEST(Plugins, ThatAreNoLibrariesAreReported) {
   std::ofstream(folder.path() / "text.txt") << "not looked at";
   EXPECT_THAT(Loaded({folder.path()}).problems, ElementsAre(HasSubstr("text.so")));
   EXPECT_THAT(Loaded({folder.path() / "none"}).problems, ElementsAre(HasSubstr("no such folder")));
+}
+
+TEST(Plugins, HaveWholeNumbersOf32Bits) {
+  const Loaded loaded({kPlugins / "kinds"});
+  const Parameter& seed = loaded.table.find("spots")->parameters.at(0);
+  EXPECT_EQ(seed.maximum, std::numeric_limits<std::int32_t>::max());
+  EXPECT_NO_THROW(parse_value(seed, "2147483647"));
+  EXPECT_THROW(parse_value(seed, "2147483648"), UsageError);
 }
 
 TEST(Plugins, AreTakenBesideALinkThatLeadsNowhere) {
@@ -208,6 +217,8 @@ TEST(PluginRun, HandsBackNothingThatCannotBe) {
   EXPECT_THAT(message_of<UsageError>("kind"), HasSubstr("expected the kind 'table'"));
   EXPECT_THAT(message_of<UsageError>("null"), HasSubstr("is NULL"));
   EXPECT_THAT(message_of<UsageError>("report"), HasSubstr("no JSON object"));
+  EXPECT_THAT(message_of<UsageError>("no-utf8"), HasSubstr("the summary is no UTF-8: ??"));
+  EXPECT_THAT(message_of<MismatchError>("fail-in-no-utf8"), HasSubstr("misbehave: ?!"));
   EXPECT_THAT(message_of<std::runtime_error>("twice"), HasSubstr("made 2 values"));
   EXPECT_THAT(message_of<std::runtime_error>("nothing"), HasSubstr("made 0 values of its output"));
   EXPECT_THAT(message_of<std::runtime_error>("ignored-nan"),

@@ -14,16 +14,20 @@ std::string joined(const std::vector<std::string>& words, const std::string& bet
   return text;
 }
 
+std::string replaced(const std::string& text, char old, const std::string& by) {
+  std::string result;
+  for (const char c : text) result += c == old ? by : std::string(1, c);
+  return result;
+}
+
 /// `text` in single quotes; a quote inside leaves them for a moment.
-std::string in_quotes(const std::string& text, const std::string& inner_quote = "'\\''") {
-  std::string result = "'";
-  for (const char c : text) {
-    if (c == '\'')
-      result += inner_quote;
-    else
-      result += c;
-  }
-  return result + "'";
+std::string in_quotes(const std::string& text) {
+  return "'" + replaced(text, '\'', "'\\''") + "'";
+}
+
+/// The same for fish, where a backslash escapes inside too.
+std::string in_fish_quotes(const std::string& text) {
+  return "'" + replaced(replaced(text, '\\', "\\\\"), '\'', "\\'") + "'";
 }
 
 std::string all_forms(const Command& command) {
@@ -166,11 +170,10 @@ std::string zsh_completion(const std::vector<Command>& commands) {
 }
 
 std::string fish_completion(const std::vector<Command>& commands) {
-  const std::string fish_quote = "\\'";
   std::string text = "# Completion of mimetra for fish.\n";
   for (const Command& command : commands) {
     text += "complete -c mimetra -f -n __fish_use_subcommand -a " + command.operation->name +
-            " -d " + in_quotes(command.operation->summary, fish_quote) + "\n";
+            " -d " + in_fish_quotes(command.operation->summary) + "\n";
   }
   for (const Command& command : commands) {
     const std::string start =
@@ -181,9 +184,8 @@ std::string fish_completion(const std::vector<Command>& commands) {
         text += form.starts_with("--") ? " -l " + form.substr(2) : " -s " + form.substr(1);
       }
       if (!option.is_flag()) text += option.takes_file ? " -r -F" : " -x";
-      if (!option.choices.empty())
-        text += " -a " + in_quotes(joined(option.choices, " "), fish_quote);
-      text += " -d " + in_quotes(option.help, fish_quote) + "\n";
+      if (!option.choices.empty()) text += " -a " + in_fish_quotes(joined(option.choices, " "));
+      text += " -d " + in_fish_quotes(option.help) + "\n";
     }
   }
   return text;

@@ -48,6 +48,8 @@ std::string_view kind_name(DataKind kind);
 struct RegionData {
   Regions regions;
   FieldSequence fields;
+  /// Faces of those that were made for a mesh without a sequence, or null.
+  std::shared_ptr<const Connectivity> faces = {};
 };
 
 /// How regions that were written are shown.

@@ -11,7 +11,7 @@ namespace mimetra {
 
 namespace {
 
-/// Reads one input after the other; sequences come first, because region sets speak of them.
+/// Reads one input after the other.
 class Loader {
  public:
   Loader(const OperationTable& table, const Parameters& parameters, const Progress& progress,
@@ -41,13 +41,26 @@ class Loader {
       default:
         break;
     }
-    throw std::invalid_argument("input '" + input.name + "': no file holds a value of the kind '" +
-                                std::string(kind_name(input.kind)) + "'");
+    throw UsageError(text + ": no file holds a value of the kind '" +
+                     std::string(kind_name(input.kind)) + "'");
   }
 
-  /// Region sets that are read speak of a given sequence too.
-  void know(const Data& given) {
-    if (const auto* read = std::get_if<SequenceRead>(&given)) know(read->sequence);
+  /// The mesh that region sets speak of, if the value has one.
+  bool know(const Data& data) {
+    if (const auto* read = std::get_if<SequenceRead>(&data)) {
+      return know(read->sequence.vertices(), read->sequence.triangles());
+    }
+    if (const auto* fields = std::get_if<FieldSequence>(&data)) {
+      return know(fields->sequence.vertices(), fields->sequence.triangles());
+    }
+    if (const auto* model = std::get_if<BlendshapeModel>(&data)) {
+      return know(model->vertices(), model->connectivity().triangles);
+    }
+    if (const auto* read = std::get_if<ModelRead>(&data)) {
+      return know(read->model.vertices(), read->model.connectivity().triangles);
+    }
+    const auto* components = std::get_if<Components>(&data);
+    return components && know(components->vertices(), components->triangles);
   }
 
   std::vector<std::filesystem::path> files;
@@ -70,7 +83,7 @@ class Loader {
   }
 
   SequenceRead sequence(const std::string& text) {
-    if (auto read = with_fields(text)) return kept({std::move(read->sequence), false, {}, {}});
+    if (auto read = with_fields(text)) return {std::move(read->sequence), false, {}, {}};
     SequenceSource source = frames_asked_for();
     const auto path = [this](const char* name) {
       const auto value = parameters_.optional_text(name);
@@ -78,7 +91,7 @@ class Loader {
     };
     source.weights = path("weights");
     source.topology = path("topology");
-    return kept(noted(read_sequence(text, source)));
+    return noted(read_sequence(text, source));
   }
 
   LandmarksRead landmarks(const std::string& text) {
@@ -104,14 +117,10 @@ class Loader {
     return read;
   }
 
-  void know(const MeshSequence& sequence) {
-    vertices_ = sequence.vertices();
-    triangles_ = sequence.triangles();
-  }
-
-  SequenceRead kept(SequenceRead read) {
-    know(read.sequence);
-    return read;
+  bool know(int vertices, const Triangles& triangles) {
+    vertices_ = vertices;
+    triangles_ = triangles;
+    return true;
   }
 
   NamedData model(const std::string& text) {
@@ -136,6 +145,7 @@ class Loader {
   }
 
   RegionData regions(const std::string& text) {
+    if (vertices_ == 0) throw UsageError(text + ": regions speak of a mesh, and no input has one");
     files.push_back(text);
     return {table_.region_reader(text).read(text, vertices_, triangles_), {}};
   }
@@ -188,17 +198,27 @@ LoadedInputs load_inputs(const OperationTable& table, const Operation& operation
                          std::map<std::string, std::vector<NamedData>> given) {
   Loader loader(table, parameters, progress, log, threads);
   LoadedInputs loaded{std::move(given), {}};
-  for (const auto& [name, values] : loaded.data) {
-    for (const NamedData& value : values) loader.know(value.data);
-  }
-  for (const bool sequences : {true, false}) {
-    for (const Input& input : operation.inputs) {
-      const auto named = names.find(input.name);
-      if ((input.kind == DataKind::sequence) != sequences || named == names.end()) continue;
-      for (const std::string& text : named->second) {
-        loaded.data[input.name].push_back(loader.load(input, text));
-      }
+  const auto load = [&](const Input& input) {
+    const auto named = names.find(input.name);
+    if (named == names.end()) return;
+    for (const std::string& text : named->second) {
+      loaded.data[input.name].push_back(loader.load(input, text));
     }
+  };
+  for (const Input& input : operation.inputs) {
+    if (input.kind != DataKind::regions) load(input);
+  }
+  // Regions speak of the first mesh.
+  const auto has_mesh = [&](const Input& input) {
+    const auto values = loaded.data.find(input.name);
+    return values != loaded.data.end() && !values->second.empty() &&
+           loader.know(values->second.front().data);
+  };
+  for (const Input& input : operation.inputs) {
+    if (has_mesh(input)) break;
+  }
+  for (const Input& input : operation.inputs) {
+    if (input.kind == DataKind::regions) load(input);
   }
   loaded.files = std::move(loader.files);
   for (const char* name : {"weights", "topology"}) {

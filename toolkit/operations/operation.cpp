@@ -229,7 +229,8 @@ std::vector<Parameter> OperationTable::parameters_of(const Operation& operation)
         parameters.push_back(parameter);
       } else if (is_own || same->kind != parameter.kind) {
         throw std::invalid_argument("operation '" + operation.name + "': parameter '" +
-                                    parameter.name + "' means two things");
+                                    parameter.name +
+                                    "' means two things: it is one of reading or writing already");
       }
     }
   };

@@ -23,11 +23,18 @@ std::filesystem::path series_of(const Invocation& invocation) {
 
 Outcome run(const Invocation& invocation) {
   if (invocation.wants("paraview")) series_of(invocation);
+  const bool with_components = invocation.parameters.flag("component-fields");
+  const Components* given = invocation.find<Components>("components");
+  if (with_components && given && given->support.size() == 0) {
+    throw MismatchError(invocation.inputs.at("components").front().name +
+                        ": holds no support maps, which --component-fields writes; decompose the "
+                        "sequence again");
+  }
   const SequenceRead& read = invocation.get<SequenceRead>("sequence");
   const Analysis analysis = analysis_for(invocation, read);
   const Regions regions = regions_of(invocation, analysis);
   std::vector<Field> fields = fields_of(regions);
-  if (invocation.parameters.flag("component-fields")) {
+  if (with_components) {
     for (Field& field : component_fields(analysis.components, regions)) {
       fields.push_back(std::move(field));
     }

@@ -25,11 +25,19 @@ Choice choose(const Invocation& invocation, const PreparedSource& source) {
     return {{all_triangles(source.sequence.triangles()), {}}, {}};
   }
   if (const RegionData* given = invocation.find<RegionData>("regions")) {
-    if (given->regions.triangles.empty()) {
-      throw MismatchError(invocation.inputs.at("regions").front().name +
-                          ": its regions hold no triangle of the mesh; choose others");
+    const Regions& regions = given->regions;
+    const std::string& name = invocation.inputs.at("regions").front().name;
+    const auto triangles = static_cast<int>(source.sequence.triangles().rows());
+    if (regions.vertices != source.sequence.vertices() || regions.all_triangles != triangles) {
+      throw MismatchError(name + ": regions of a mesh with " + std::to_string(regions.vertices) +
+                          " vertices and " + std::to_string(regions.all_triangles) +
+                          " triangles, expected " + std::to_string(source.sequence.vertices()) +
+                          " and " + std::to_string(triangles) + " as in the source");
     }
-    return {{given->regions.triangles, given->regions.inside}, given->regions};
+    if (regions.triangles.empty()) {
+      throw MismatchError(name + ": its regions hold no triangle of the mesh; choose others");
+    }
+    return {{regions.triangles, regions.inside}, regions};
   }
   const SequenceRead& read = invocation.get<SequenceRead>("source");
   const Stopwatch stopwatch;

@@ -138,6 +138,47 @@ static void check_calls(const mimetra_interface* m, mimetra_context* context) {
   m->free_call(call);
 }
 
+/* Regions and components that do not go with what they are used for. */
+static void check_other_meshes(const mimetra_interface* m, mimetra_context* context) {
+  const take_arrays take = sheet();
+  const mimetra_array triangles = triangles_of(&take);
+  const int32_t one_triangle[] = {0, 1, 2}, center = 0;
+  const uint8_t inside[VERTICES] = {1};
+  double zeros[3 * VERTICES] = {0}, weights[FRAMES] = {0, 1};
+  const mimetra_array masks = {sizeof masks, MIMETRA_U8, 2, 0, {1, VERTICES}, "masks", inside};
+  const mimetra_array other = {sizeof other, MIMETRA_I32, 2, 0, {1, 3}, "triangles", one_triangle};
+  const mimetra_array* const region_arrays[] = {&masks, &other, NULL};
+  zeros[0] = 1;
+  const mimetra_array rest = {sizeof rest, MIMETRA_F64, 2, 0, {VERTICES, 3}, "rest", zeros};
+  const mimetra_array moved = {sizeof moved,     MIMETRA_F64,     3,    0,
+                               {1, VERTICES, 3}, "displacements", zeros};
+  const mimetra_array shares = {sizeof shares, MIMETRA_F64, 2, 0, {FRAMES, 1}, "weights", weights};
+  const mimetra_array centers = {sizeof centers, MIMETRA_I32, 1, 0, {1}, "centers", &center};
+  const mimetra_array* const component_arrays[] = {&rest,   &triangles, &moved,
+                                                   &shares, &centers,   NULL};
+  mimetra_data *data = take_of(m, context), *regions = NULL, *components = NULL;
+  mimetra_call* call = NULL;
+  OK(context, m->new_data(context, MIMETRA_REGIONS, "few", region_arrays, &regions));
+  OK(context, m->new_call(context, "transfer", &call));
+  OK(context, m->call_give(call, "source", data));
+  OK(context, m->call_give(call, "regions", regions));
+  OK(context, m->save_data(context, data, "errors_target.ply", NULL));
+  OK(context, m->call_read(call, "target", "errors_target.ply"));
+  FAILS(context, MIMETRA_MISMATCH, "few: regions of a mesh with 81 vertices and 1 triangles",
+        m->call_run(call));
+  m->free_call(call);
+  OK(context, m->new_data(context, MIMETRA_COMPONENTS, "bare", component_arrays, &components));
+  OK(context, m->new_call(context, "regions", &call));
+  OK(context, m->call_give(call, "sequence", data));
+  OK(context, m->call_give(call, "components", components));
+  OK(context, m->call_set(call, "component-fields", "true"));
+  FAILS(context, MIMETRA_MISMATCH, "bare: holds no support maps", m->call_run(call));
+  m->free_call(call);
+  m->free_data(components);
+  m->free_data(regions);
+  m->free_data(data);
+}
+
 static int32_t stop_half_way(double share, void* user) {
   ++*(int*)user;
   return share < 0.5;
@@ -174,8 +215,9 @@ int main(void) {
   check_short_structs(m, context);
   check_calls(m, context);
   check_cancelling(m, context);
-  FAILS(context, MIMETRA_USAGE, "expected 0 to 1024, found -1", m->set_threads(context, -1));
-  FAILS(context, MIMETRA_USAGE, "found 100000", m->set_threads(context, 100000));
+  check_other_meshes(m, context);
+  FAILS(context, MIMETRA_USAGE, "threads: expected 0 or more", m->set_threads(context, -1));
+  OK(context, m->set_threads(context, INT32_MAX));
   m->free_context(context);
   return 0;
 }
