@@ -284,9 +284,21 @@ class Pictures(Data):
 
 
 class View(Data):
-    """A script that shows regions in ParaView, to be saved."""
+    """A script that shows regions in ParaView."""
 
     kind = c.VIEW
+
+
+class Run(Data):
+    """A run of the command, to be read from its manifest."""
+
+    kind = c.RUN
+
+
+class Page(Data):
+    """A page that tells of a run."""
+
+    kind = c.PAGE
 
 
 CLASSES = {each.kind: each for each in Data.__subclasses__()}
