@@ -3,6 +3,7 @@
 import ctypes
 import os
 import pathlib
+import weakref
 from ctypes import CFUNCTYPE, POINTER, c_char_p, c_double, c_int32, c_int64, c_uint32, c_void_p
 
 VERSION = 1
@@ -103,6 +104,12 @@ def listed(pointers):
     while pointers and pointers[len(entries)]:
         entries.append(pointers[len(entries)])
     return entries
+
+
+def free_with(owner, free, handle):
+    """Frees a handle when its owner goes, but not when the interpreter ends: until the process
+    does, arrays may look at a value and threads be inside a context."""
+    weakref.finalize(owner, free, handle).atexit = False
 
 
 def _places():
