@@ -78,6 +78,8 @@ class Errors(SampleTest):
         for option in ({"format": "obj"}, {"double": True}, {"paraview": True}):
             with self.assertRaisesRegex(TypeError, "unexpected keyword"):
                 mimetra.regions(self.arrays, **option)
+        with self.assertRaisesRegex(TypeError, "unexpected keyword"):
+            mimetra.fit("track.csv", model=self.head, overlay=True)
 
     def test_an_unknown_array_is_told_of_beside_those_there_are(self):
         with self.assertRaisesRegex(AttributeError, "no array 'points'; there are positions,"):

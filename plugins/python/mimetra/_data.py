@@ -290,7 +290,7 @@ class Fit(Data):
 
 
 class Pictures(Data):
-    """Pictures over time, to be saved."""
+    """Pictures over time."""
 
     kind = c.PICTURES
 

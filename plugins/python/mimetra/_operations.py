@@ -10,7 +10,7 @@ import types
 
 from . import _interface as c
 from ._context import context, library
-from ._data import CLASSES, Data, Model, Sequence, View, of_handle, text_of
+from ._data import CLASSES, Data, Model, Page, Pictures, Run, Sequence, View, of_handle, text_of
 
 _ANNOTATIONS = {c.FLAG: "bool", c.INTEGER: "int", c.INTEGER_LIST: "Iterable[int]",
                 c.NUMBER: "float", c.LENGTH: "float | str", c.TEXT: "str",
@@ -21,6 +21,8 @@ _KINDS = {c.FLAG: "flag", c.INTEGER: "integer", c.INTEGER_LIST: "list of integer
 
 # Of the parameters of files, those of writing: `save` takes them, since no operation writes here.
 _WRITING = ("format", "double", "single", "compress")
+# What has no arrays, and is written by programs with VTK only.
+_UNSEEN = (Page, Pictures, Run, View)
 # What a result has besides outputs.
 _TOLD = ("report", "summary")
 
@@ -77,7 +79,7 @@ class Parameter:
 
 
 class Operation:
-    """An operation as the table declares it, but for what only a program that writes can use."""
+    """An operation as the table declares it, but for what only programs that write can use."""
 
     def __init__(self, described):
         self.name = described.name.decode()
@@ -85,7 +87,7 @@ class Operation:
         self.inputs = [Input(each.contents) for each in c.listed(described.inputs)]
         outputs = [Output(each.contents) for each in c.listed(described.outputs)]
         parameters = [Parameter(each.contents) for each in c.listed(described.parameters)]
-        self.outputs = [port for port in outputs if port.kind is not View]  # of files of `out`
+        self.outputs = [port for port in outputs if port.kind not in _UNSEEN]
         self.parameters = [parameter for parameter in parameters
                            if not (parameter.of_files and parameter.name in _WRITING)]
 
