@@ -53,7 +53,8 @@ mimetra_status echo(const mimetra_interface* m, mimetra_job* job, void*) {
   if (!status && m->job_wants(job, "summary")) {
     status = make(m, job, "summary", MIMETRA_TABLE, {column});
   }
-  return status ? status : m->job_report(job, json.empty() ? "{}" : (json + '}').c_str(), "");
+  json = json.empty() ? "{}" : json + '}';
+  return status ? status : m->job_report(job, json.c_str(), json.c_str());
 }
 
 /// Numbers of vertices, the last one far away.
@@ -115,8 +116,8 @@ mimetra_status most(const mimetra_interface* m, mimetra_job* job, void*) {
               {array_of("masks", MIMETRA_U8, {1, vertices}, mask.data()), *triangles});
 }
 
-mimetra_status picture(const mimetra_interface* m, mimetra_job* job, void*) {
-  return m->job_fail(job, MIMETRA_FAILED, "ran although there was no place for its result");
+mimetra_status landmarks(const mimetra_interface* m, mimetra_job* job, void*) {
+  return m->job_fail(job, MIMETRA_FAILED, "ran although it makes nothing");
 }
 
 mimetra_port port(mimetra_kind kind, const char* name, uint32_t flags = 0) {
@@ -188,7 +189,7 @@ const mimetra_plugin* mimetra_get_plugin() {
       {"other-faces", other_faces, sequence, fields},
       {"other-vertices", other_vertices, sequence, fields},
       {"most", most, sequence, {port(MIMETRA_REGIONS, "out")}},
-      {"picture", picture, {}, {port(MIMETRA_PICTURE, "out")}},
+      {"landmarks", landmarks, {}, {port(MIMETRA_LANDMARKS, "out")}},
       {"a-name-that-is-longer-than-those-of-blenders-classes-may-be", one_row, {}, table}};
   static const std::vector<const mimetra_operation*> list = [] {
     std::vector<const mimetra_operation*> operations;
