@@ -1,5 +1,8 @@
 """The add-on is there, with an operator, settings and a panel for each operation of the table."""
 
+import os
+import zipfile
+
 import bpy
 from host import HostTest, mimetra, run_tests
 from mimetra_blender import classes, properties, settings
@@ -13,6 +16,13 @@ class Addon(HostTest):
         self.assertIn("mimetra_blender", mimetra.__file__)
         self.assertLessEqual({"align", "decompose", "regions", "transfer", "evaluate", "sample"},
                              set(mimetra.operations))
+
+    def test_libraries_of_others_come_with_their_licences(self):
+        names = zipfile.ZipFile(os.environ["ADDON_ZIP"]).namelist()
+        others = [name for name in names if ".so" in name and "libmimetra" not in name]
+        licences = [name for name in names if name.endswith(".copyright")]
+        self.assertGreater(len(others), 0)
+        self.assertEqual(len(licences), len(others))
 
     def test_each_operation_is_an_operator_that_can_be_undone(self):
         for operation in mimetra.operations.values():
