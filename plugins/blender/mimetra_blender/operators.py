@@ -66,8 +66,8 @@ def _computed(operation, inputs, options):
 
 
 class _Run:
-    """What all operators share; `_operation` is that of the table. Names without a line before
-    them are Blender's own: all others may be those of parameters."""
+    """What all operators share; `_operation` is that of the table. Names without a leading
+    underscore are Blender's own: any other may be a parameter's."""
 
     _operation = None
 

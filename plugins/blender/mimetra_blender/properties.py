@@ -13,6 +13,7 @@ SHOWN = (mimetra.Sequence, mimetra.Fields, mimetra.Regions, mimetra.Table, mimet
 _MESHES = (mimetra.Sequence, mimetra.Fields, mimetra.Model)
 _OPEN = 2**31 - 1
 _UNSET = "DEFAULT"  # of choices without one; names of the table have small letters
+# Names that parameters cannot have: of properties below, and of Blender's.
 _OWN = {"frame_start", "frame_end", "frame_step", "use_frames", "cache_format", "cache_folder"}
 _RESERVED = _OWN.union(*(
     [*dir(base), *base.bl_rna.properties.keys(), *base.bl_rna.functions.keys()]
