@@ -42,6 +42,25 @@ bool serves_as(DataKind kind, const Data& data) {
   return found == kind || (has_frames(found) && has_frames(kind));
 }
 
+/// Throws UsageError for a value of a parameter that speaks of files where the inputs `read` are
+/// none that it applies to: it would be ignored.
+void check_parameters_of_files(const OperationTable& table, const Operation& operation,
+                               const std::map<std::string, std::vector<std::string>>& read,
+                               const std::map<std::string, ParameterValue>& values) {
+  Operation reading;
+  reading.parameters = operation.parameters;
+  for (const Input& input : operation.inputs) {
+    if (read.contains(input.name)) reading.inputs.push_back(input);
+  }
+  const Parameters used(table.parameters_of(reading));
+  for (const auto& [name, value] : values) {
+    if (used.find(name)) continue;
+    throw UsageError("parameter '" + name +
+                     "' speaks of files, and no input is read from one that it applies to; leave "
+                     "it out");
+  }
+}
+
 }  // namespace
 
 mimetra_call::mimetra_call(mimetra_context& owner, const std::string& operation)
@@ -119,6 +138,7 @@ std::map<std::string, std::vector<NamedData>> mimetra_call::given() const {
 
 Invocation mimetra_call::invocation() const {
   check_inputs();
+  check_parameters_of_files(context_.table->operations(), operation_, read_, values_);
   Invocation invocation;
   invocation.parameters = declared_;
   for (const auto& [name, value] : values_) invocation.parameters.set(name, value);

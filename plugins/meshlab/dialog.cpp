@@ -53,13 +53,19 @@ bool contains(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-/// Everything that may stand among the further options.
-std::vector<std::string> option_names(const mimetra_operation& operation) {
+/// Everything that may stand among the further options: what has no row.
+std::vector<std::string> option_names(const mimetra_operation& operation,
+                                      const RichParameterList& rows) {
   std::vector<std::string> names = optional_ports(operation.inputs);
   for (const mimetra_parameter* parameter : parameters_of(operation)) {
     names.emplace_back(parameter->name);
   }
   for (const std::string& output : optional_ports(operation.outputs)) names.push_back(output);
+  names.erase(std::remove_if(names.begin(), names.end(),
+                             [&rows](const std::string& name) {
+                               return rows.hasParameter(QString::fromStdString(name));
+                             }),
+              names.end());
   return names;
 }
 
@@ -166,13 +172,16 @@ std::vector<Setting> further_options(const mimetra_operation& operation,
   if (!rows.hasParameter(kFurtherOptions)) return {};
   const QStringList words =
       QProcess::splitCommand(QString::fromStdString(text_of(rows, kFurtherOptions)));
-  const std::vector<std::string> known = option_names(operation);
+  const std::vector<std::string> known = option_names(operation, rows);
   std::vector<Setting> options;
   for (int i = 0; i < words.size(); ++i) {
     const std::string word = words[i].toStdString();
     const std::size_t begin = std::min(word.find_first_not_of('-'), word.size());
     const std::size_t end = std::min(word.find('='), word.size());
     const std::string name = word.substr(begin, end - begin);
+    if (begin > 0 && rows.hasParameter(QString::fromStdString(name))) {
+      throw Failure("further options: " + word + " has a row of its own");
+    }
     if (begin == 0 || !contains(known, name)) {
       throw Failure("further options: expected an option such as --" + known.back() + ", found '" +
                     word + "'");
@@ -219,9 +228,8 @@ void add_all_parameters(const mimetra_operation& operation, RichParameterList& r
 
 void add_further_options(const mimetra_operation& operation, RichParameterList& rows) {
   QStringList further;
-  for (const std::string& name : option_names(operation)) {
-    const QString option = QString::fromStdString(name);
-    if (!rows.hasParameter(option)) further << (name.size() == 1 ? "-" : "--") + option;
+  for (const std::string& name : option_names(operation, rows)) {
+    further << (name.size() == 1 ? "-" : "--") + QString::fromStdString(name);
   }
   rows.addParam(RichString(
       kFurtherOptions, "", "Further options",

@@ -19,9 +19,11 @@ version="$(dpkg-query -W -f='${source:Version}' meshlab 2>/dev/null)" ||
 rm -rf "$folder"/{source,version,sources,lists,cache}
 mkdir -p "$folder"/{sources,lists/partial,cache/archives/partial}
 
-# "meshlab | VERSION | URI RELEASE/COMPONENT ARCHITECTURE Packages"
-archive="$(apt-cache madison meshlab | grep -m 1 ' Packages$')" ||
-  fail "apt does not know where meshlab comes from; try apt-get update"
+# "meshlab | VERSION | URI RELEASE/COMPONENT ARCHITECTURE Packages", of each version that apt knows
+installed="$(dpkg-query -W -f='${Version}' meshlab)"
+archive="$(apt-cache madison meshlab |
+  awk -F ' *[|] *' -v version="$installed" '$2 == version && / Packages$/ && !found++')"
+[ -n "$archive" ] || fail "apt does not know where meshlab $installed comes from; try apt-get update"
 read -r uri place _ <<<"${archive##*| }"
 
 # The file that names this archive, with its keys and options, asks for sources instead of packages.

@@ -203,6 +203,7 @@ void FilterMimetra::run_regions(MeshDocument& document, const RichParameterList&
   run(call, request);
   const std::vector<double> region = toolkit_->field(call.output("out"), "region");
   for (MeshModel* layer : shown) show_regions(*layer, region);
+  save_outputs(call, request);
 }
 
 void FilterMimetra::run_transfer(MeshDocument& document, const RichParameterList& rows) {
@@ -230,6 +231,7 @@ void FilterMimetra::run_transfer(MeshDocument& document, const RichParameterList
     if (regions) show_regions(*base, toolkit_->field(regions, "region"));
   }
   Log(GLLogStream::FILTER, std::to_string(result.count) + " frames are new, hidden layers");
+  save_outputs(call, request);
 }
 
 Data FilterMimetra::sequence_of(const RichParameterList& rows, const char* input,
@@ -263,11 +265,14 @@ void FilterMimetra::run(Call& call, const Request& request) {
         return !progress || progress(static_cast<int>(100 * share), "mimetra");
       },
       this);
+  const QStringList lines = QString::fromStdString(call.summary()).split('\n', Qt::SkipEmptyParts);
+  for (const QString& line : lines) Log(GLLogStream::FILTER, line.toStdString());
+}
+
+void FilterMimetra::save_outputs(const Call& call, const Request& request) const {
   for (const Setting& output : request.outputs) {
     toolkit_->save(call.output(output.name.c_str()), output.text);
   }
-  const QStringList lines = QString::fromStdString(call.summary()).split('\n', Qt::SkipEmptyParts);
-  for (const QString& line : lines) Log(GLLogStream::FILTER, line.toStdString());
 }
 
 const mimetra_operation& FilterMimetra::operation_of(FilterIDType filter) const {

@@ -40,6 +40,9 @@ class FilterMimetra : public QObject, public MeshFilterInterface {
                                     const std::vector<std::string>& reading,
                                     const std::vector<MeshModel*>& layers) const;
   void run(mimetra_meshlab::Call& call, const mimetra_meshlab::Request& request);
+  /// Writes further outputs; last, so that a file that cannot be written costs no result.
+  void save_outputs(const mimetra_meshlab::Call& call,
+                    const mimetra_meshlab::Request& request) const;
   const mimetra_operation& operation_of(FilterIDType filter) const;
 
   std::unique_ptr<mimetra_meshlab::Toolkit> toolkit_;

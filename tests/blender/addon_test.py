@@ -1,10 +1,11 @@
 """The add-on is there, with an operator, settings and a panel for each operation of the table."""
 
-
+import os
+import zipfile
 
 import bpy
 from host import HostTest, mimetra, run_tests
-from mimetra_blender import panel, properties, settings
+from mimetra_blender import classes, properties, settings
 
 
 class Addon(HostTest):
@@ -15,6 +16,13 @@ class Addon(HostTest):
         self.assertIn("mimetra_blender", mimetra.__file__)
         self.assertLessEqual({"align", "decompose", "regions", "transfer", "evaluate", "sample"},
                              set(mimetra.operations))
+
+    def test_libraries_of_others_come_with_their_licences(self):
+        names = zipfile.ZipFile(os.environ["ADDON_ZIP"]).namelist()
+        others = [name for name in names if ".so" in name and "libmimetra" not in name]
+        licences = [name for name in names if name.endswith(".copyright")]
+        self.assertGreater(len(others), 0)
+        self.assertEqual(len(licences), len(others))
 
     def test_each_operation_is_an_operator_that_can_be_undone(self):
         for operation in mimetra.operations.values():
@@ -51,6 +59,14 @@ class Addon(HostTest):
     def test_parameters_of_files_are_left_out(self):
         made = bpy.ops.mimetra.transfer.get_rna_type().properties
         for name in ("fps", "topology", "frames", "format"):
+            self.assertNotIn(name, made)
+        self.assertNotIn("paraview", bpy.ops.mimetra.regions.get_rna_type().properties)
+
+    def test_parameters_of_files_are_there_where_files_are_read(self):
+        made = bpy.ops.mimetra.fit.get_rna_type().properties
+        for name in ("frames", "fps", "images", "face_model", "min_confidence"):
+            self.assertIn(name, made)
+        for name in ("format", "double", "single", "overlay"):
             self.assertNotIn(name, made)
 
     def test_the_sidebar_has_a_panel_for_each_operation(self):
@@ -90,7 +106,7 @@ class Addon(HostTest):
     def test_it_can_be_switched_off_and_on(self):
         bpy.ops.preferences.addon_disable(module="mimetra_blender")
         self.assertFalse(hasattr(bpy.types, "MIMETRA_PT_transfer"))
-        self.assertEqual(panel._classes, [])
+        self.assertEqual(classes.count(), 0)
         bpy.ops.preferences.addon_enable(module="mimetra_blender")
         self.assertTrue(hasattr(bpy.types, "MIMETRA_PT_transfer"))
 

@@ -1,6 +1,7 @@
 """What goes wrong: the library's words in Blender's error, and nothing has changed."""
 
 import threading
+import time
 
 import bpy
 import numpy as np
@@ -16,6 +17,7 @@ class BadInput(HostTest):
         self.assertIsNone(self.target.data.shape_keys.animation_data)
         self.assertEqual(len(self.source.vertex_groups), 0)
         self.assertEqual(threading.active_count(), 1)
+        self.assertNotIn("source align", bpy.data.objects)
 
     def test_a_target_without_shape_keys_has_no_weights(self):
         self.bare_target()
@@ -84,15 +86,27 @@ class BadInput(HostTest):
         self.assert_fails("/proc/mimetra: cannot write the mesh cache", bpy.ops.mimetra.transfer,
                           target="bare", full=True, cache_folder="/proc/mimetra")
 
+    def test_a_folder_that_cannot_be_written_without_a_target(self):
+        self.assert_fails("/proc/mimetra: cannot write the mesh cache", bpy.ops.mimetra.align,
+                          cache_folder="/proc/mimetra")
+
+    def test_a_file_that_cannot_be_written(self):
+        for path, text in [("/proc/mimetra/x.h5", "/proc/mimetra/x.h5"),
+                           (str(self.path / "x.npy"), "components can be written as")]:
+            self.assert_fails(text, bpy.ops.mimetra.transfer, target="target", k=3,
+                              components_out=path)
+
     def test_cancelling_ends_the_computation(self):
         poses = np.random.default_rng(1).normal(size=(60, 4334, 3))
         take = mimetra.Sequence(poses, mimetra.Sequence.load(self.take).faces)
         steps = operators._computed(mimetra.operations["decompose"], {"sequence": take},
-                                    {"k": 40, "tolerance": 0, "iterations": 1000})
+                                    {"k": 40, "tolerance": 0, "iterations": 100000})
         next(steps)
         self.assertEqual(threading.active_count(), 2)
+        begun = time.monotonic()
         steps.close()  # as Esc does
         self.assertEqual(threading.active_count(), 1)
+        self.assertLess(time.monotonic() - begun, 30)
 
 
 if __name__ == "__main__":

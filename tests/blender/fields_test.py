@@ -79,8 +79,43 @@ class Fields(HostTest):
         bpy.ops.mimetra.regions(k=4, components_out=str(path))
         groups = len(self.source.vertex_groups)
         self.assertTrue(path.exists())
+        self.assertGreater(groups, 0)
+        self.source.vertex_groups.clear()
         bpy.ops.mimetra.regions(components=str(path))
         self.assertEqual(len(self.source.vertex_groups), groups)
+
+    def track(self):
+        """Landmarks of the first frames of the take, and their images."""
+        lines = (self.head / "landmarks68.txt").read_text().splitlines()
+        pairs = [tuple(map(int, line.split("="))) for line in lines if line[:1].isdigit()]
+        points = np.full((5, 68, 2), np.nan)
+        for landmark, vertex in pairs:
+            points[:, landmark - 1] = np.load(self.take)[:5, vertex, :2] * [1, -1] + 300
+        names = ",".join(f"x{landmark},y{landmark}" for landmark in range(68))
+        np.savetxt(self.path / "track.csv", points.reshape(5, -1), delimiter=",", header=names,
+                   comments="")
+        image = bpy.data.images.new("background", 600, 600)
+        image.file_format = "PNG"
+        for frame in range(5):
+            image.filepath_raw = str(self.path / f"frame{frame}.png")
+            image.save()
+        return self.path / "track.csv", self.path / "frame*.png"
+
+    def test_a_fit_reads_landmarks_as_the_command_does(self):
+        track, images = self.track()
+        out = self.path / "fit.npy"
+        command("fit", track, "--model", self.head, "--frames", "1:5:2", "-o", out, "--force")
+        bpy.ops.mimetra.fit(landmarks=str(track), model=str(self.head), frames="1:5:2",
+                            images=str(images), strip=True)
+        fitted = np.load(out)
+        for index in range(2):
+            self.assert_close(self.shown(bpy.data.objects["fit"], 1 + index), fitted[index])
+        expected = mimetra.fit(track, model=self.head, frames="1:5:2", images=images,
+                               strip=True).strip.pixels
+        strip = bpy.data.images["fit strip"]
+        shown = np.array(strip.pixels[:]).reshape(strip.size[1], strip.size[0], 4)
+        self.assertGreater(len(np.unique(expected)), 2)
+        np.testing.assert_array_equal(np.rint(255 * shown[::-1, :, :3]), expected)
 
     def test_tables_and_summaries_are_text(self):
         bpy.ops.mimetra.evaluate(target="target", k="4,8", out=True)

@@ -59,6 +59,12 @@ class Transfer(HostTest):
         self.assertIn("mine", self.target.data.shape_keys.key_blocks)
         self.assertNotIn("mine", self.keyed(self.target))
 
+    def test_weights_may_leave_the_range_of_sliders(self):
+        for key in self.target.data.shape_keys.key_blocks[1:]:
+            key.slider_max = 0.2
+        bpy.ops.mimetra.transfer(target="target", full=True)
+        self.assert_performs(*self.expected("--full"))
+
     def test_keys_the_frames_asked_for(self):
         bpy.ops.mimetra.transfer(target="target", full=True, frame_start=11, frame_end=51,
                                  frame_step=10)

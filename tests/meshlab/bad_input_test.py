@@ -67,6 +67,7 @@ class BadInput(HostTest):
                 ("--rhoo 5", "expected an option such as --components-out, found '--rhoo'"),
                 ("rho", "found 'rho'"), ("--signed 1", "found '1'"),
                 ("--compress small", "found '--compress'"), ("--rho", "--rho needs a value"),
+                ("--radius 0.2", "--radius has a row of its own"),
                 ("--fps 30", "fps=30 speaks of files; name them as the sequence")]:
             with self.subTest(options=options):
                 self.assert_refused(self.take, [filter_script("Regions of Interest",
@@ -75,6 +76,16 @@ class BadInput(HostTest):
     def test_an_output_that_exists(self):
         script = filter_script("Regions of Interest", k=3, options=f"--components-out {self.one}")
         self.assert_refused(self.take, [script], "one.ply: exists; choose another name")
+
+    def test_an_output_that_cannot_be_written_costs_no_result(self):
+        """It is told of when the layers are there."""
+        out = self.path / "regions.pvd"
+        script = filter_script("Region Transfer", k=3, target=self.model,
+                               options=f"--regions-out {out}")
+        done = self.serve(self.take, [script])
+        self.assertEqual(done.returncode, 255, done.stdout + done.stderr)
+        shown = done.stdout.index("12 frames are new, hidden layers")
+        self.assertGreater(done.stdout.index("regions.pvd: regions can be written as"), shown)
 
     def test_a_vertex_that_is_not_there(self):
         self.assert_refused([self.one], [filter_script("Geodesic Support Map", source="4")],

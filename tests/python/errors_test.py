@@ -65,6 +65,22 @@ class Errors(SampleTest):
         with self.assertRaisesRegex(TypeError, r"transfer\(\) missing a required .*'target'"):
             mimetra.transfer(self.arrays)
 
+    def test_parameters_of_reading_need_an_input_that_is_read(self):
+        for name, value in [("frames", "0:2"), ("fps", 25)]:
+            self.assert_fails(mimetra.UsageError, 2, f"parameter '{name}' speaks of files",
+                              lambda: mimetra.info(self.arrays, **{name: value}))
+        self.assert_fails(mimetra.UsageError, 2, "parameter 'frames' speaks of files",
+                          lambda: mimetra.transfer(self.arrays, self.actor, full=True,
+                                                   frames="0:2"))
+        self.assertEqual(mimetra.info(self.take, frames="0:2").report["frames"], 2)
+
+    def test_what_only_a_program_that_writes_can_use_is_no_option(self):
+        for option in ({"format": "obj"}, {"double": True}, {"paraview": True}):
+            with self.assertRaisesRegex(TypeError, "unexpected keyword"):
+                mimetra.regions(self.arrays, **option)
+        with self.assertRaisesRegex(TypeError, "unexpected keyword"):
+            mimetra.fit("track.csv", model=self.head, overlay=True)
+
     def test_an_unknown_array_is_told_of_beside_those_there_are(self):
         with self.assertRaisesRegex(AttributeError, "no array 'points'; there are positions,"):
             self.arrays.points

@@ -41,6 +41,20 @@ class Hints(unittest.TestCase):
                     self.assertEqual(parameter.unit, expected.get("unit", ""))
                     self.assertEqual(parameter.choices, expected.get("choices", []))
 
+    def test_parameters_of_files_are_those_of_reading(self):
+        """What load() takes for inputs of an operation's kinds; what save() takes is left out."""
+        for name, operation in mimetra.operations.items():
+            known = set()
+            for port in operation.inputs:
+                if port.kind is mimetra.Regions:
+                    continue
+                with self.assertRaises(mimetra.Error) as caught:
+                    port.kind.load("nothing", no_setting=1)
+                known |= set(str(caught.exception).split("with one of ")[-1].split(", "))
+            for parameter in operation.parameters:
+                if parameter.of_files:
+                    self.assertIn(parameter.name, known, name)
+
     def test_docstrings_tell_ranges_units_and_choices(self):
         self.assertIn("k: number of components; at least 1", mimetra.regions.__doc__)
         self.assertIn("[frames per second]", mimetra.regions.__doc__)

@@ -1,6 +1,8 @@
 """Values: arrays go in and come out as they are, and their memory lives as long as it is seen."""
 
+import copy
 import gc
+import pickle
 import unittest
 
 import mimetra
@@ -54,6 +56,18 @@ class Values(SampleTest):
         del take
         gc.collect()
         self.assert_same(np.array(positions), moved())
+
+    def test_a_copy_is_the_value_itself(self):
+        take = mimetra.Sequence(moved(), POLYGONS)
+        copies = copy.copy(take), copy.deepcopy([take])[0]
+        del take
+        gc.collect()
+        for each in copies:
+            self.assert_same(np.array(each.positions), moved())
+
+    def test_values_are_saved_not_pickled(self):
+        with self.assertRaisesRegex(TypeError, "mimetra.Sequence cannot be pickled; save it"):
+            pickle.dumps(mimetra.Sequence(moved(), POLYGONS))
 
     def test_fields_stand_on_vertices_or_triangles(self):
         value = mimetra.Fields(moved(), POLYGONS, {"heat": np.arange(6.0), "part": [0] * 5 + [1]},

@@ -3,9 +3,11 @@
 import os
 import signal
 import threading
+import time
 import unittest
 
 import mimetra
+import numpy as np
 from sample import SampleTest
 
 
@@ -31,6 +33,11 @@ class Watching(SampleTest):
         self.assertLess(shares[-1], 0.9)
         self.assertEqual(len(mimetra.regions(self.arrays, k=2).out.masks), 2)
 
+    def test_a_false_of_numpy_cancels_too(self):
+        limit = np.array([0.3])
+        with self.assertRaises(mimetra.Cancelled):
+            mimetra.regions(self.arrays, k=20, progress=lambda share: share < limit[0])
+
     def test_what_progress_raises_comes_out(self):
         def watch(_):
             raise RuntimeError("enough")
@@ -48,11 +55,15 @@ class Watching(SampleTest):
         self.assertIs(signal.getsignal(signal.SIGINT), signal.default_int_handler)
 
     def test_control_c_ends_a_run_without_progress(self):
-        pressed = threading.Timer(0.1, os.kill, (os.getpid(), signal.SIGINT))
+        # A run that would take minutes.
+        poses = np.random.default_rng(1).normal(size=(60, 4334, 3))
+        take = mimetra.Sequence(poses, self.arrays.faces)
+        pressed = threading.Timer(0.5, os.kill, (os.getpid(), signal.SIGINT))
+        begun = time.monotonic()
         pressed.start()
         with self.assertRaises(KeyboardInterrupt):
-            while True:
-                mimetra.decompose(self.arrays, k=40, tolerance=0, iterations=50)
+            mimetra.decompose(take, k=40, tolerance=0, iterations=10000)
+        self.assertLess(time.monotonic() - begun, 30)
 
     def test_what_the_library_tells_is_logged(self):
         bare = mimetra.Sequence(self.arrays.positions, self.arrays.faces)

@@ -1,6 +1,8 @@
 """mimetra in Blender: its operations in the 3D view's sidebar."""
 
-from . import operators, panel, settings
+import logging
+
+from . import classes, mimetra, operators, panel, settings
 
 bl_info = {
     "name": "mimetra",
@@ -13,13 +15,28 @@ bl_info = {
 }
 
 
+def _register(operation, order):
+    """An operation's classes; returns that of its settings. Blender may not take those of plugins:
+    such an operation is left out, and None returned."""
+    before = classes.count()
+    try:
+        operators.register(operation)
+        group = settings.register(operation)
+        panel.register(operation, order)
+        return group
+    except Exception as error:
+        classes.unregister(before)
+        logging.getLogger("mimetra").warning("%s: Blender does not take this operation: %s",
+                                             operation.name, error)
+        return None
+
+
 def register():
-    operators.register()
-    settings.register()
-    panel.register()
+    groups = {operation.name: _register(operation, order)
+              for order, operation in enumerate(panel.in_order())}
+    settings.register_all({name: group for name, group in groups.items() if group})
 
 
 def unregister():
-    panel.unregister()
-    settings.unregister()
-    operators.unregister()
+    settings.unregister_all()
+    classes.unregister(0)

@@ -20,9 +20,10 @@ def _with_alpha(srgb):
 
 def _of_indices(values):
     """One colour for each index, grey for negative ones; neighbours differ."""
-    table = np.array([colorsys.hsv_to_rgb(index * _GOLDEN % 1, 0.7, 0.95)
-                      for index in range(max(values.max(initial=0), 0) + 1)] + [_OUTSIDE])
-    return table[np.where(values < 0, len(table) - 1, values)]
+    known, places = np.unique(values, return_inverse=True)
+    table = np.array([colorsys.hsv_to_rgb(index * _GOLDEN % 1, 0.7, 0.95) if index >= 0
+                      else _OUTSIDE for index in known.tolist()])
+    return table[places]
 
 
 def of_field(values):

@@ -8,13 +8,11 @@ import time
 
 import bpy
 
-from . import mimetra, properties, results, sources
+from . import classes, mimetra, properties, results, sources
 
 # Shares of a run: reading poses, computing, showing.
 _READING, _COMPUTING = 0.3, 0.95
 _STEP = 0.05  # seconds between looks at the user's keys
-
-_classes = []
 
 
 class _Warnings(logging.Handler):
@@ -68,13 +66,14 @@ def _computed(operation, inputs, options):
 
 
 class _Run:
-    """What all operators share; `operation` is that of the table."""
+    """What all operators share; `_operation` is that of the table. Names without a leading
+    underscore are Blender's own: any other may be a parameter's."""
 
-    operation = None
+    _operation = None
 
     @classmethod
     def poll(cls, context):
-        if not properties.active_input(cls.operation):
+        if not properties.active_input(cls._operation):
             return True
         subject = context.active_object
         if not subject or subject.type != "MESH":
@@ -85,7 +84,7 @@ class _Run:
             return False
         return True
 
-    def frames(self, scene):
+    def _frames(self, scene):
         """The frames asked for, or the scene's."""
         start = self.frame_start if self.properties.is_property_set("frame_start") \
             else scene.frame_start
@@ -100,7 +99,7 @@ class _Run:
         if not name:
             if port.optional:
                 return None
-            raise mimetra.UsageError(f"{self.operation.name}: expected an object as {port.name}:"
+            raise mimetra.UsageError(f"{self._operation.name}: expected an object as {port.name}:"
                                      f" {port.help}")
         subject = bpy.data.objects.get(name)
         if subject is None or subject.type != "MESH":
@@ -118,19 +117,19 @@ class _Run:
         if port.kind is mimetra.Regions and text and not os.path.isfile(path):
             return sources.regions(subject, text)
         if not text and not port.optional:
-            raise mimetra.UsageError(f"{self.operation.name}: expected a path as {port.name}:"
+            raise mimetra.UsageError(f"{self._operation.name}: expected a path as {port.name}:"
                                      f" {port.help}")
         return path or None
 
     def _inputs(self, context, frames):
         """Yields the share done; returns the inputs by name, and the objects they are of."""
         values, objects = {}, {}
-        active = properties.active_input(self.operation)
-        for port in self.operation.inputs:
+        active = properties.active_input(self._operation)
+        for port in self._operation.inputs:
             name = mimetra.python_name(port.name)
             if port is active:
                 objects[name] = context.active_object
-            elif properties.is_object(self.operation, port):
+            elif properties.is_object(self._operation, port):
                 objects[name] = self._object(port)
                 if objects[name] is None:
                     continue
@@ -141,21 +140,24 @@ class _Run:
     def _options(self, objects):
         """The parameters that were set, and the optional outputs that are wanted."""
         options = {}
-        for parameter in properties.parameters_of(self.operation):
+        for parameter in properties.parameters_of(self._operation):
             value = properties.value_of(parameter, self.properties)
             if value is not None:
                 options[mimetra.python_name(parameter.name)] = value
         # Vertices that are solved for have no weights.
         keyed = self._keyed(objects) and options.get("space") != "vertex"
-        for port in self.operation.outputs:
-            asked = port.optional and getattr(self, properties.property_name(port.name))
+        for port in self._operation.outputs:
+            asked = getattr(self, properties.property_name(port.name), None)
             if port.optional and (asked or (keyed and port.kind is mimetra.Table)):
                 options[mimetra.python_name(port.name)] = True
+            if properties.needs_path(port) and not asked:
+                raise mimetra.UsageError(f"{self._operation.name}: expected a path for {port.name}:"
+                                         f" {port.help}")
         return options
 
     def _keyed(self, objects):
         """The object whose shape keys may hold the result: the model's of the inputs."""
-        for port in self.operation.inputs:
+        for port in self._operation.inputs:
             subject = objects.get(mimetra.python_name(port.name))
             if port.kind is mimetra.Model and subject and sources.expression_keys(subject):
                 return subject
@@ -163,78 +165,82 @@ class _Run:
 
     def _steps(self, context):
         """Yields the share of the work done. Nothing has changed before its last step."""
-        frames = self.frames(context.scene)
+        frames = self._frames(context.scene)
         values, objects = yield from _part(self._inputs(context, frames), 0, _READING)
         options = self._options(objects)
-        steps = _computed(self.operation, values, options)
+        steps = _computed(self._operation, values, options)
         result = yield from _part(steps, _READING, _COMPUTING)
         shown = results.Frames(context.scene, frames, self.cache_format, self.cache_folder)
         self._show(context, result, values, objects, shown)
         yield 1.0
 
     def _show(self, context, result, values, objects, frames):
-        """Shows what was made, on the target where there is one."""
-        names = {port.name: mimetra.python_name(port.name) for port in self.operation.outputs}
-        made = {port.name: (port, getattr(result, names[port.name]))
-                for port in self.operation.outputs if getattr(result, names[port.name]) is not None}
-        target = next((objects[mimetra.python_name(port.name)] for port in self.operation.inputs
+        """Shows what was made, on the target where there is one. What may fail comes before what
+        changes the scene: values that do not fit, files, caches."""
+        made = [(port, getattr(result, mimetra.python_name(port.name)))
+                for port in self._operation.outputs]
+        made = [(port, value) for port, value in made if value is not None]
+        target = next((objects[mimetra.python_name(port.name)] for port in self._operation.inputs
                        if port.kind is mimetra.Model), None)
-        source = context.active_object if properties.active_input(self.operation) else None
+        source = context.active_object if properties.active_input(self._operation) else None
+        for port, value in made:
+            if source and port.kind in (mimetra.Fields, mimetra.Regions):
+                results.check_fits(value, source)
+        made = [(port, value) for port, value in made if not self._save(port, value)]
         if target and self._show_on_target(made, values, target, frames):
-            made = {name: each for name, each in made.items()
-                    if each[0].kind is not mimetra.Sequence}
-        for port, value in made.values():
+            made = [each for each in made if each[0].kind is not mimetra.Sequence]
+        for port, value in sorted(made, key=lambda each: each[0].kind is not mimetra.Sequence):
             self._show_value(context, port, value, source, frames)
         for note in frames.notes:
             self.report({"WARNING"}, note)
         if result.summary:
-            results.show_text(f"mimetra {self.operation.name}", result.summary)
+            results.show_text(f"mimetra {self._operation.name}", result.summary)
             self.report({"INFO"}, result.summary.strip())
 
     def _show_on_target(self, made, values, target, frames):
         """Shape keys where they can hold the result, else a mesh cache. False for neither."""
-        sequence = next((value for port, value in made.values()
-                         if port.kind is mimetra.Sequence), None)
+        sequence = next((value for port, value in made if port.kind is mimetra.Sequence), None)
         if sequence is None or not results.has_faces_of(target, sequence):
             return False
         model = next(value for value in values.values() if isinstance(value, mimetra.Model))
-        for port, value in list(made.values()):
+        for port, value in made:
             weights = port.kind is mimetra.Table and results.keyed_weights(target, value)
             if weights and results.holds(model, weights, sequence["positions"]):
                 results.set_keys(target.data.shape_keys, weights, frames)
                 results.remove_mesh_cache(target)
                 return True
         if model.keys() >= {"expressions"} and any(
-                port.kind is mimetra.Table for port, _ in made.values()):
+                port.kind is mimetra.Table for port, _ in made):
             self.report({"INFO"}, f"{target.name}: moves as shape keys cannot; it got a mesh cache")
-        results.add_mesh_cache(target, sequence["positions"], frames, target.name)
+        path = results.write_mesh_cache(sequence["positions"], frames, target.name)
+        results.play_mesh_cache(target, path, frames)
         return True
 
     def _show_value(self, context, port, value, source, frames):
         """One output where no target takes it."""
-        name = f"{source.name} {self.operation.name}" if source else self.operation.name
-        setting = getattr(self, properties.property_name(port.name), None)
-        if port.kind not in properties.SHOWN or (setting and properties.is_written(port)):
-            self._save(port, value, setting)
-        elif port.kind is mimetra.Sequence:
+        name = f"{source.name} {self._operation.name}" if source else self._operation.name
+        if port.kind is mimetra.Sequence:
             results.show_sequence(context, value, source, frames, name)
         elif port.kind is mimetra.AnimatedModel:
             results.show_animated_model(context, value, frames, name)
         elif port.kind is mimetra.Components:
             results.show_components(context, value, source, frames, name)
+        elif port.kind is mimetra.Picture:
+            results.show_picture(f"{name} {port.name}", value)
         elif port.kind is mimetra.Table:
-            if setting or not port.optional:
+            if not port.optional or getattr(self, properties.property_name(port.name)):
                 results.show_text(f"{name} {port.name}.csv", results.csv_of(value))
         elif source and port.kind is mimetra.Regions:
             results.show_regions(value, source)
         elif source:
             results.show_fields(value, source)
 
-    def _save(self, port, value, path):
-        if not path:
-            raise mimetra.UsageError(f"{self.operation.name}: expected a path for {port.name}:"
-                                     f" {port.help}")
-        value.save(bpy.path.abspath(path), force=True)
+    def _save(self, port, value):
+        """Saves an output that goes into a file. False for those that are shown."""
+        path = properties.is_written(port) and getattr(self, properties.property_name(port.name))
+        if path:
+            value.save(bpy.path.abspath(path), force=True)
+        return bool(path)
 
     @contextlib.contextmanager
     def _reported(self):
@@ -279,7 +285,7 @@ class _Run:
     def modal(self, context, event):
         if event.type == "ESC":
             self._running.close()
-            self.report({"WARNING"}, f"mimetra {self.operation.name}: cancelled")
+            self.report({"WARNING"}, f"mimetra {self._operation.name}: cancelled")
             return self._end(context, {"CANCELLED"})
         if event.type != "TIMER":
             return {"RUNNING_MODAL"}
@@ -298,7 +304,7 @@ class _Run:
             raise
         context.window_manager.progress_update(100 * share)
         context.workspace.status_text_set(
-            f"mimetra {self.operation.name}: {100 * share:.0f} %  (Esc cancels)")
+            f"mimetra {self._operation.name}: {100 * share:.0f} %  (Esc cancels)")
         return {"RUNNING_MODAL"}
 
     def cancel(self, context):
@@ -318,20 +324,12 @@ def idname(operation):
     return f"mimetra.{mimetra.python_name(operation.name)}"
 
 
-def register():
-    for operation in mimetra.operations.values():
-        made = type(f"MIMETRA_OT_{mimetra.python_name(operation.name)}",
-                    (_Run, bpy.types.Operator), {
-                        "bl_idname": idname(operation),
-                        "bl_label": operation.name.replace("-", " ").capitalize(),
-                        "bl_description": operation.summary,
-                        "bl_options": {"REGISTER", "UNDO"},
-                        "operation": operation,
-                        "__annotations__": properties.annotations_of(operation, pointers=False)})
-        bpy.utils.register_class(made)
-        _classes.append(made)
-
-
-def unregister():
-    while _classes:
-        bpy.utils.unregister_class(_classes.pop())
+def register(operation):
+    classes.register(type(
+        f"MIMETRA_OT_{mimetra.python_name(operation.name)}", (_Run, bpy.types.Operator), {
+            "bl_idname": idname(operation),
+            "bl_label": operation.name.replace("-", " ").capitalize(),
+            "bl_description": operation.summary,
+            "bl_options": {"REGISTER", "UNDO"},
+            "_operation": operation,
+            "__annotations__": properties.annotations_of(operation, pointers=False)}))

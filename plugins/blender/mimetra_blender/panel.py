@@ -2,14 +2,12 @@
 
 import bpy
 
-from . import mimetra, operators, properties, settings
+from . import classes, mimetra, operators, properties, settings
 
 # Operations and parameters that are looked for first; all others follow.
 _FIRST = ("transfer", "regions")
 _MAIN = ("k", "radius", "coverage", "full", "space", "source", "on")
 _FEW = 8
-
-_classes = []
 
 
 class _Panel:
@@ -115,24 +113,20 @@ def _draw_frames(layout, group):
 
 
 def _add(base, identifier, label, operation, more):
-    made = type(identifier, (base, bpy.types.Panel),
-                {"bl_idname": identifier, "bl_label": label, "operation": operation, **more})
-    bpy.utils.register_class(made)
-    _classes.append(made)
+    classes.register(type(identifier, (base, bpy.types.Panel), {
+        "bl_idname": identifier, "bl_label": label, "operation": operation, **more}))
 
 
-def register():
+def in_order():
+    """The operations as their panels follow each other."""
     names = [*(name for name in _FIRST if name in mimetra.operations),
              *(name for name in mimetra.operations if name not in _FIRST)]
-    for order, name in enumerate(names):
-        operation = mimetra.operations[name]
-        identifier = f"MIMETRA_PT_{mimetra.python_name(name)}"
-        options = set() if order == 0 else {"DEFAULT_CLOSED"}
-        _add(_OperationPanel, identifier, name.replace("-", " ").capitalize(), operation,
-             {"bl_order": order, "bl_options": options})
-        _add(_MorePanel, f"{identifier}_more", "More", operation, {"bl_parent_id": identifier})
+    return [mimetra.operations[name] for name in names]
 
 
-def unregister():
-    while _classes:
-        bpy.utils.unregister_class(_classes.pop())
+def register(operation, order):
+    identifier = f"MIMETRA_PT_{mimetra.python_name(operation.name)}"
+    options = set() if order == 0 else {"DEFAULT_CLOSED"}
+    _add(_OperationPanel, identifier, operation.name.replace("-", " ").capitalize(), operation,
+         {"bl_order": order, "bl_options": options})
+    _add(_MorePanel, f"{identifier}_more", "More", operation, {"bl_parent_id": identifier})

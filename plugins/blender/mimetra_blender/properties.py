@@ -9,12 +9,15 @@ from . import mimetra
 
 # What an operation makes and Blender can show; all else goes into files.
 SHOWN = (mimetra.Sequence, mimetra.Fields, mimetra.Regions, mimetra.Table, mimetra.Components,
-         mimetra.AnimatedModel)
+         mimetra.AnimatedModel, mimetra.Picture)
 _MESHES = (mimetra.Sequence, mimetra.Fields, mimetra.Model)
 _OPEN = 2**31 - 1
 _UNSET = "DEFAULT"  # of choices without one; names of the table have small letters
-_RESERVED = {*dir(bpy.types.Operator), *dir(bpy.types.PropertyGroup), "name", "frame_start",
-             "frame_end", "frame_step", "use_frames", "cache_format", "cache_folder"}
+# Names that parameters cannot have: of properties below, and of Blender's.
+_OWN = {"frame_start", "frame_end", "frame_step", "use_frames", "cache_format", "cache_folder"}
+_RESERVED = _OWN.union(*(
+    [*dir(base), *base.bl_rna.properties.keys(), *base.bl_rna.functions.keys()]
+    for base in (bpy.types.Operator, bpy.types.PropertyGroup)))
 
 
 def property_name(name):
@@ -45,8 +48,9 @@ def is_optional_number(parameter):
 
 
 def parameters_of(operation):
-    """The parameters of the operation itself: Blender reads and writes no files for it."""
-    return [parameter for parameter in operation.parameters if not parameter.of_files]
+    """The parameters of an operation; without those of reading where an object is what it reads."""
+    reads = active_input(operation) is None
+    return [parameter for parameter in operation.parameters if reads or not parameter.of_files]
 
 
 def _limits(parameter, open_end):
@@ -125,6 +129,11 @@ def _input_property(operation, port, options, pointers):
 def is_written(port):
     """True for outputs that go into files, those of components where a path is given."""
     return port.kind not in SHOWN or port.kind is mimetra.Components
+
+
+def needs_path(port):
+    """True for outputs that are always made, and can only go into files."""
+    return not port.optional and port.kind not in SHOWN
 
 
 def _output_property(port, options):

@@ -1,5 +1,7 @@
 """What operations make, as Blender shows it."""
 
+import csv
+import io
 import pathlib
 import tempfile
 
@@ -47,8 +49,8 @@ def _cache_path(folder, name, extension):
     return path
 
 
-def add_mesh_cache(subject, positions, frames, name):
-    """Lets an object follow poses by a Mesh Cache modifier. Returns the file."""
+def write_mesh_cache(positions, frames, name):
+    """A file of poses that play_mesh_cache plays."""
     content = (point_cache.pc2(positions, frames.start) if frames.cache_format == "PC2" else
                point_cache.mdd(positions, frames.at(len(positions)) / frames.rate))
     folder = _cache_folder(frames)
@@ -59,6 +61,11 @@ def add_mesh_cache(subject, positions, frames, name):
     except OSError as error:
         raise mimetra.OutputError(f"{folder}: cannot write the mesh cache: {error.strerror}; choose"
                                   " another folder") from None
+    return path
+
+
+def play_mesh_cache(subject, path, frames):
+    """Lets an object follow the poses of a file by a Mesh Cache modifier."""
     modifier = subject.modifiers.get(_MODIFIER)
     if modifier is None:
         modifier = subject.modifiers.new(_MODIFIER, "MESH_CACHE")
@@ -72,7 +79,6 @@ def add_mesh_cache(subject, positions, frames, name):
     modifier.frame_scale = 1 / frames.step
     modifier.frame_start = frames.start / frames.step
     modifier.forward_axis, modifier.up_axis = "POS_Y", "POS_Z"
-    return path
 
 
 def remove_mesh_cache(subject):
@@ -102,6 +108,10 @@ def set_keys(keys, weights, frames):
                                    " driver, or transfer with the space 'vertex'")
     action = _own_action(keys)
     for name, values in weights.items():
+        # Blender keeps values within the range of their slider.
+        key = keys.key_blocks[name]
+        key.slider_min = min(key.slider_min, values.min())
+        key.slider_max = max(key.slider_max, values.max())
         old = action.fcurves.find(paths[name])
         if old:
             action.fcurves.remove(old)
@@ -172,11 +182,12 @@ def has_faces_of(subject, value):
 
 def show_sequence(context, value, subject, frames, name):
     """A sequence as an object with a mesh cache: a copy of `subject` where it has its polygons."""
+    path = write_mesh_cache(value["positions"], frames, name)
     if subject and has_faces_of(subject, value):
         made = _copied_object(subject, name)
     else:
         made = _new_object(context, name, value["positions"][0], value.faces, subject)
-    add_mesh_cache(made, value["positions"], frames, name)
+    play_mesh_cache(made, path, frames)
     return made
 
 
@@ -184,12 +195,14 @@ def show_model(context, name, neutral, faces, shapes, weights, frames, beside=No
     """An object with shape keys, {name: N x 3}, keyed by weights, {name: F}."""
     made = _new_object(context, name, neutral, faces, beside)
     made.shape_key_add(name="Basis", from_mix=False)
+    keyed = {}
     for shape, displacement in shapes.items():
         key = made.shape_key_add(name=shape, from_mix=False)
-        key.slider_min = min(0, *(values.min() for values in weights.values())) if weights else 0
         key.data.foreach_set("co", (neutral + displacement).astype(np.float32).ravel())
-    if weights:
-        set_keys(made.data.shape_keys, weights, frames)
+        if shape in weights:
+            keyed[key.name] = weights[shape]  # Blender shortens long names
+    if keyed:
+        set_keys(made.data.shape_keys, keyed, frames)
     made.data.update()
     return made
 
@@ -219,16 +232,28 @@ def show_components(context, value, subject, frames, name):
     return show_model(context, name, value["rest"], faces, shapes, weights, frames, subject)
 
 
-def _check_size(subject, value, count):
+def _shown_fields(value):
+    """The names of fields on vertices, and of those on triangles where its polygons are known."""
+    places = {"vertices", "triangles"} if "face_of_triangle" in value else {"vertices"}
+    return [name for name in value if value.location(name) in places]
+
+
+def check_fits(value, subject):
+    """Throws Mismatch where regions or fields are of another mesh than an object's."""
+    name = value.name or "the result"
+    count = value["masks"].shape[1] if "masks" in value else value["positions"].shape[1]
     if count != len(subject.data.vertices):
         raise mimetra.Mismatch(f"{subject.name}: {len(subject.data.vertices)} vertices, expected"
-                               f" {count} as in {value.name or 'the result'}")
+                               f" {count} as in {name}")
+    on_faces = any(value.location(each) == "triangles" for each in _shown_fields(value))
+    if on_faces and not has_faces_of(subject, value):
+        raise mimetra.Mismatch(f"{subject.name}: {len(subject.data.polygons)} faces, expected the"
+                               f" {len(value['face_sizes'])} of {name}")
 
 
 def show_regions(value, subject):
     """Regions as vertex groups, and their fields."""
     masks = value["masks"]
-    _check_size(subject, value, masks.shape[1])
     for group in [each for each in subject.vertex_groups if each.name.startswith(_GROUP)]:
         subject.vertex_groups.remove(group)
     for index, mask in enumerate(masks):
@@ -240,13 +265,12 @@ def show_regions(value, subject):
 def show_fields(value, subject):
     """Fields as attributes with their values, and numbers on vertices as colours too."""
     mesh = subject.data
-    names = [name for name in value if value.location(name)]
+    names = _shown_fields(value)
     shown = [name for name in names
              if value.location(name) == "vertices" and value[name].ndim == 1]
     for name in names:
         _show_attribute(mesh, value, name)
     for name in shown:
-        _check_size(subject, value, len(value[name]))
         _replace(mesh, f"mimetra {name} color", "FLOAT_COLOR", "POINT").data.foreach_set(
             "color", colors.of_field(value[name]).ravel())
     if shown:
@@ -282,6 +306,20 @@ def _show_attribute(mesh, value, name):
     attribute.data.foreach_set(key, values.astype(np.int32 if integer else np.float32).ravel())
 
 
+def show_picture(name, value):
+    """A picture as an image of the file, in place of one of that name."""
+    pixels = value["pixels"]
+    old = bpy.data.images.get(name)
+    if old:
+        bpy.data.images.remove(old)
+    image = bpy.data.images.new(name, pixels.shape[1], pixels.shape[0])
+    # From the bottom left, with alpha.
+    shown = np.ones((*pixels.shape[:2], 4), np.float32)
+    shown[..., :3] = pixels[::-1] / 255
+    image.pixels.foreach_set(shown.ravel())
+    image.pack()
+
+
 def show_text(name, text):
     """Text in a text block, in place of one of that name."""
     block = bpy.data.texts.get(name) or bpy.data.texts.new(name)
@@ -291,7 +329,9 @@ def show_text(name, text):
 
 def csv_of(table):
     """A table as text."""
-    rows = [",".join(table)]
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(table)
     for row in zip(*(table[name] for name in table)):
-        rows.append(",".join("" if np.isnan(cell) else repr(float(cell)) for cell in row))
-    return "\n".join(rows) + "\n"
+        writer.writerow("" if np.isnan(cell) else repr(float(cell)) for cell in row)
+    return text.getvalue()

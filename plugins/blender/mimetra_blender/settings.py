@@ -2,9 +2,7 @@
 
 import bpy
 
-from . import mimetra, properties
-
-_groups = []
+from . import classes, properties
 
 
 def of(scene, operation):
@@ -29,22 +27,23 @@ def copy(settings, operation, operator):
             setattr(operator, name, value)
 
 
-def register():
-    fields = {}
-    for operation in mimetra.operations.values():
-        name = properties.property_name(operation.name)
-        group = type(f"MimetraSettings_{name}", (bpy.types.PropertyGroup,),
-                     {"__annotations__": properties.annotations_of(operation, pointers=True)})
-        bpy.utils.register_class(group)
-        _groups.append(group)
-        fields[name] = bpy.props.PointerProperty(type=group)
+def register(operation):
+    """The class of an operation's settings."""
+    group = type(f"MimetraSettings_{properties.property_name(operation.name)}",
+                 (bpy.types.PropertyGroup,),
+                 {"__annotations__": properties.annotations_of(operation, pointers=True)})
+    classes.register(group)
+    return group
+
+
+def register_all(groups):
+    """The settings of all operations, by the classes of their own."""
+    fields = {properties.property_name(name): bpy.props.PointerProperty(type=group)
+              for name, group in groups.items()}
     root = type("MimetraSettings", (bpy.types.PropertyGroup,), {"__annotations__": fields})
-    bpy.utils.register_class(root)
-    _groups.append(root)
+    classes.register(root)
     bpy.types.Scene.mimetra = bpy.props.PointerProperty(type=root)
 
 
-def unregister():
+def unregister_all():
     del bpy.types.Scene.mimetra
-    while _groups:
-        bpy.utils.unregister_class(_groups.pop())

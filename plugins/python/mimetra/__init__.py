@@ -15,7 +15,7 @@ from several threads at once.
 
 from ._context import library as _library
 from ._data import (AnimatedModel, Components, Data, Faces, Fields, Fit, Landmarks, Model,
-                    MorphableModel, Picture, Pictures, Regions, Sequence, Table, View)
+                    MorphableModel, Page, Picture, Pictures, Regions, Run, Sequence, Table, View)
 from ._errors import BadInput, Cancelled, Error, Mismatch, OutputError, UsageError
 from ._operations import Operation, Result, all_operations, function_of, python_name
 
@@ -26,11 +26,11 @@ _functions = {python_name(name): function_of(operation)
 __all__ = [
     "AnimatedModel", "BadInput", "Cancelled", "Components", "Data", "Error", "Faces", "Fields",
     "Fit", "Landmarks", "Mismatch", "Model", "MorphableModel", "Operation", "OutputError",
-    "Picture", "Pictures", "Regions", "Result", "Sequence", "Table", "UsageError", "View",
-    "operations", "run", *_functions]
+    "Page", "Picture", "Pictures", "Regions", "Result", "Run", "Sequence", "Table", "UsageError",
+    "View", "operations", "run", *_functions]
 
 
-def run(name, *inputs, **options):
+def run(name, /, *inputs, **options):
     """Runs an operation by its name in the table."""
     if name not in operations:
         raise UsageError(f"no operation '{name}'; there are {', '.join(operations)}")

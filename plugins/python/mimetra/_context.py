@@ -1,5 +1,6 @@
 """One context of the library for each thread, with progress, cancelling and logging."""
 
+import atexit
 import contextlib
 import ctypes
 import logging
@@ -13,6 +14,7 @@ from ._errors import Error, error_of
 library = c.load()
 _logger = logging.getLogger("mimetra")
 _contexts = threading.local()
+_all_contexts = weakref.WeakSet()
 _first = threading.Lock()
 
 
@@ -31,7 +33,10 @@ class Context:
         self.handle = ctypes.c_void_p()
         if library.new_context(log, None, ctypes.byref(self.handle)):
             raise Error("the library cannot make its table of operations")
-        weakref.finalize(self, library.free_context, self.handle)
+        c.free_with(self, library.free_context, self.handle)
+        self.running = threading.RLock()
+        self.ending = False
+        _all_contexts.add(self)
 
     def check(self, status):
         """Raises what a status tells."""
@@ -50,21 +55,24 @@ class Context:
         @c.Progress
         def report(share, _):
             try:
-                return int(not raised and (progress is None or progress(share) is not False))
+                answer = progress(share) if progress else None
+                goes_on = answer is None or bool(answer)
+                return int(goes_on and not raised and not self.ending)
             except BaseException as error:
                 raised.append(error)
                 return 0
 
-        self.check(library.set_threads(self.handle, threads or 0))
-        self.check(library.set_progress(self.handle, report, None))
-        try:
-            with _interrupts_kept(raised):
-                yield
-        except Error:
-            if not raised:
-                raise
-        finally:
-            library.set_progress(self.handle, c.Progress(), None)
+        with self.running:
+            self.check(library.set_threads(self.handle, threads or 0))
+            self.check(library.set_progress(self.handle, report, None))
+            try:
+                with _interrupts_kept(raised):
+                    yield
+            except Error:
+                if not raised:
+                    raise
+            finally:
+                library.set_progress(self.handle, c.Progress(), None)
         if raised:
             raise raised[0]
 
@@ -81,6 +89,16 @@ def _interrupts_kept(raised):
         yield
     finally:
         signal.signal(signal.SIGINT, signal.default_int_handler)
+
+
+@atexit.register
+def _end_runs():
+    """Cancels the runs of daemon threads, and begins no more: they would report to an interpreter
+    that is gone."""
+    for each in list(_all_contexts):
+        if each is not getattr(_contexts, "own", None):
+            each.ending = True
+            each.running.acquire()
 
 
 def context():

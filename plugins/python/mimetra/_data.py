@@ -2,7 +2,6 @@
 
 import ctypes
 import os
-import weakref
 from typing import NamedTuple
 
 import numpy as np
@@ -71,20 +70,33 @@ class Data:
     @classmethod
     def _of_handle(cls, handle):
         data = cls.__new__(cls)
-        data._handle = handle
-        data._finalizer = weakref.finalize(data, library.free_data, handle)
-        data._shown = None
+        data._own(handle)
         return data
 
     def _make(self, name, arrays, types=_KNOWN):
         own = context()
         given, kept = _given(arrays, types)
-        self._handle = ctypes.c_void_p()
-        self._shown = None
+        handle = ctypes.c_void_p()
         own.check(library.new_data(own.handle, self.kind, name.encode(), given,
-                                   ctypes.byref(self._handle)))
+                                   ctypes.byref(handle)))
         del kept
-        self._finalizer = weakref.finalize(self, library.free_data, self._handle)
+        self._own(handle)
+
+    def _own(self, handle):
+        self._handle = handle
+        self._shown = None
+        c.free_with(self, library.free_data, handle)
+
+    def __copy__(self):
+        """Itself, since values never change."""
+        return self
+
+    def __deepcopy__(self, _):
+        return self
+
+    def __reduce__(self):
+        raise TypeError(f"a mimetra.{type(self).__name__} cannot be pickled; save it to a file, or"
+                        " pickle its arrays")
 
     @property
     def name(self):
@@ -278,15 +290,27 @@ class Fit(Data):
 
 
 class Pictures(Data):
-    """Pictures over time, to be saved."""
+    """Pictures over time."""
 
     kind = c.PICTURES
 
 
 class View(Data):
-    """A script that shows regions in ParaView, to be saved."""
+    """A script that shows regions in ParaView."""
 
     kind = c.VIEW
+
+
+class Run(Data):
+    """A run of the command, to be read from its manifest."""
+
+    kind = c.RUN
+
+
+class Page(Data):
+    """A page that tells of a run."""
+
+    kind = c.PAGE
 
 
 CLASSES = {each.kind: each for each in Data.__subclasses__()}

@@ -3,11 +3,12 @@
 import ctypes
 import os
 import pathlib
+import weakref
 from ctypes import CFUNCTYPE, POINTER, c_char_p, c_double, c_int32, c_int64, c_uint32, c_void_p
 
 VERSION = 1
 SEQUENCE, MODEL, COMPONENTS, REGIONS, FIELDS, TABLE, ANIMATED_MODEL, PICTURE = range(1, 9)
-LANDMARKS, MORPHABLE_MODEL, FIT, PICTURES, VIEW = range(9, 14)
+LANDMARKS, MORPHABLE_MODEL, FIT, PICTURES, VIEW, RUN, PAGE = range(9, 16)
 FLAG, INTEGER, INTEGER_LIST, NUMBER, LENGTH, CHOICE, TEXT, FILE = range(1, 9)
 F64, F32, I32, U8, STRING = range(1, 6)
 ON_VERTICES, ON_TRIANGLES = 1, 2
@@ -103,6 +104,12 @@ def listed(pointers):
     while pointers and pointers[len(entries)]:
         entries.append(pointers[len(entries)])
     return entries
+
+
+def free_with(owner, free, handle):
+    """Frees a handle when its owner goes, but not when the interpreter ends: until the process
+    does, arrays may look at a value and threads be inside a context."""
+    weakref.finalize(owner, free, handle).atexit = False
 
 
 def _places():

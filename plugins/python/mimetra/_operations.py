@@ -10,7 +10,7 @@ import types
 
 from . import _interface as c
 from ._context import context, library
-from ._data import CLASSES, Data, Model, Sequence, of_handle, text_of
+from ._data import CLASSES, Data, Model, Page, Pictures, Run, Sequence, View, of_handle, text_of
 
 _ANNOTATIONS = {c.FLAG: "bool", c.INTEGER: "int", c.INTEGER_LIST: "Iterable[int]",
                 c.NUMBER: "float", c.LENGTH: "float | str", c.TEXT: "str",
@@ -18,6 +18,13 @@ _ANNOTATIONS = {c.FLAG: "bool", c.INTEGER: "int", c.INTEGER_LIST: "Iterable[int]
 _KINDS = {c.FLAG: "flag", c.INTEGER: "integer", c.INTEGER_LIST: "list of integers",
           c.NUMBER: "number", c.LENGTH: "length", c.CHOICE: "choice", c.TEXT: "text",
           c.FILE: "path"}
+
+# Of the parameters of files, those of writing: `save` takes them, since no operation writes here.
+_WRITING = ("format", "double", "single", "compress")
+# What has no arrays, and is written by programs with VTK only.
+_UNSEEN = (Page, Pictures, Run, View)
+# What a result has besides outputs.
+_TOLD = ("report", "summary")
 
 
 class Input:
@@ -37,7 +44,10 @@ class Output(Input):
 
 
 class Parameter:
-    """A parameter: `default` as a Python value or None, `minimum` and `maximum` or None."""
+    """A parameter: `default` as a Python value or None, `minimum` and `maximum` or None.
+
+    `of_files` is true where it speaks of reading inputs that are given as text.
+    """
 
     def __init__(self, described):
         self.name = described.name.decode()
@@ -69,14 +79,17 @@ class Parameter:
 
 
 class Operation:
-    """An operation as the table declares it."""
+    """An operation as the table declares it, but for what only programs that write can use."""
 
     def __init__(self, described):
         self.name = described.name.decode()
         self.summary = described.summary.decode()
         self.inputs = [Input(each.contents) for each in c.listed(described.inputs)]
-        self.outputs = [Output(each.contents) for each in c.listed(described.outputs)]
-        self.parameters = [Parameter(each.contents) for each in c.listed(described.parameters)]
+        outputs = [Output(each.contents) for each in c.listed(described.outputs)]
+        parameters = [Parameter(each.contents) for each in c.listed(described.parameters)]
+        self.outputs = [port for port in outputs if port.kind not in _UNSEEN]
+        self.parameters = [parameter for parameter in parameters
+                           if not (parameter.of_files and parameter.name in _WRITING)]
 
 
 class Result(types.SimpleNamespace):
@@ -86,7 +99,7 @@ class Result(types.SimpleNamespace):
 def python_name(name):
     """An operation's, output's or parameter's name in Python."""
     made = name.replace("-", "_")
-    return made + "_" if keyword.iskeyword(made) else made
+    return made + "_" if keyword.iskeyword(made) or made in _TOLD else made
 
 
 def _finite(number):

@@ -95,7 +95,7 @@ def text():
         lines += [*_value_class(made), ""]
     for made in (mimetra.Error, *mimetra.Error.__subclasses__()):
         lines += [*_error_class(made), ""]
-    lines += ["def run(name: str, *inputs: Any, **options: Any) -> Result: ..."]
+    lines += ["def run(name: str, /, *inputs: Any, **options: Any) -> Result: ..."]
     for name in mimetra.operations:
         function = getattr(mimetra, mimetra.python_name(name))
         signature = inspect.signature(function)

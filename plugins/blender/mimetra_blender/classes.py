@@ -1,0 +1,20 @@
+"""The classes that the add-on has registered with Blender."""
+
+import bpy
+
+_registered = []
+
+
+def register(made):
+    bpy.utils.register_class(made)
+    _registered.append(made)
+
+
+def count():
+    return len(_registered)
+
+
+def unregister(count):
+    """Takes back all but the first `count`."""
+    while len(_registered) > count:
+        bpy.utils.unregister_class(_registered.pop())
