@@ -43,7 +43,8 @@ const mimetra_port* DescribedTable::described(const Port& port, bool named) {
   return &made;
 }
 
-const mimetra_parameter* DescribedTable::described(const Parameter& parameter, bool of_files) {
+const mimetra_parameter* DescribedTable::described(const Parameter& parameter,
+                                                   std::uint32_t of_files) {
   constexpr double kOpen = std::numeric_limits<double>::infinity();
   mimetra_parameter& made = parameters_.emplace_back();
   made.struct_size = sizeof made;
@@ -57,7 +58,7 @@ const mimetra_parameter* DescribedTable::described(const Parameter& parameter, b
   made.minimum = parameter.minimum.value_or(-kOpen);
   made.maximum = parameter.maximum.value_or(kOpen);
   if (!parameter.choices.empty()) made.choices = kept(parameter.choices);
-  made.of_files = of_files ? 1 : 0;
+  made.of_files = of_files;
   return &made;
 }
 
@@ -75,10 +76,16 @@ void DescribedTable::describe(const Operation& operation) {
   outputs.push_back(nullptr);
   made.outputs = outputs.data();
   std::vector<const mimetra_parameter*>& parameters = parameter_lists_.emplace_back();
+  Operation reading, writing;
+  reading.inputs = operation.inputs;
+  writing.outputs = operation.outputs;
+  const Parameters of_reading(table_.parameters_of(reading));
+  const Parameters of_writing(table_.parameters_of(writing));
   for (const Parameter& parameter : table_.parameters_of(operation)) {
-    const bool own = std::ranges::find(operation.parameters, parameter.name, &Parameter::name) !=
-                     operation.parameters.end();
-    parameters.push_back(described(parameter, !own));
+    std::uint32_t of_files = 0;
+    if (of_reading.find(parameter.name)) of_files |= MIMETRA_READING;
+    if (of_writing.find(parameter.name)) of_files |= MIMETRA_WRITING;
+    parameters.push_back(described(parameter, of_files));
   }
   parameters.push_back(nullptr);
   made.parameters = parameters.data();

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <deque>
 #include <functional>
 #include <string>
@@ -29,7 +30,7 @@ class DescribedTable {
   void describe(const Operation& operation);
   template <typename Port>
   const mimetra_port* described(const Port& port, bool named);
-  const mimetra_parameter* described(const Parameter& parameter, bool of_files);
+  const mimetra_parameter* described(const Parameter& parameter, std::uint32_t of_files);
   const char* kept(const std::string& text);
   const char* const* kept(const std::vector<std::string>& texts);
 

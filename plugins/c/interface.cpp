@@ -9,7 +9,6 @@
 #include <mimetra/c/make_data.h>
 #include <mimetra/c/stored_data.h>
 #include <mimetra/c/value.h>
-#include <mimetra/mesh/parallel.h>
 
 namespace mimetra {
 

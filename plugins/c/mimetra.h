@@ -146,6 +146,11 @@ enum {
   MIMETRA_NAMED = 4     /* the command takes it as --NAME although it is needed */
 };
 
+/* What a parameter of files speaks of: flags of mimetra_parameter. A call takes those of reading
+ * where it reads an input from a file that they apply to, and load_data; save_data takes those of
+ * writing. */
+enum { MIMETRA_READING = 1, MIMETRA_WRITING = 2 };
+
 /* ---- Callbacks ------------------------------------------------------------------------------ */
 
 /* Share of the work done, in [0, 1]; 0 as the answer cancels. */
@@ -239,7 +244,7 @@ typedef struct mimetra_parameter {
   double minimum;             /* of numbers and lengths; -INFINITY and INFINITY are open ends */
   double maximum;             /* there is no range where it is not above the minimum */
   const char* const* choices; /* NULL for none */
-  uint32_t of_files;          /* 1: speaks of reading files or writing them, not of the operation */
+  uint32_t of_files;          /* MIMETRA_READING | MIMETRA_WRITING; 0: of the operation itself */
   uint32_t reserved;
 } mimetra_parameter;
 

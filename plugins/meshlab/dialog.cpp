@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
-#include <cstring>
 
 #include <QProcess>
 
@@ -15,18 +14,11 @@ namespace {
 
 constexpr char kFurtherOptions[] = "options";
 
-bool is_one_of(const char* name, std::initializer_list<const char*> names) {
-  return std::any_of(names.begin(), names.end(),
-                     [name](const char* other) { return !std::strcmp(name, other); });
-}
-
 /// The operation's own parameters, and of those of files the ones that say how a sequence is read.
 std::vector<const mimetra_parameter*> parameters_of(const mimetra_operation& operation) {
   std::vector<const mimetra_parameter*> parameters;
   for (auto parameter = operation.parameters; *parameter; ++parameter) {
-    const bool is_of_reading =
-        is_one_of((*parameter)->name, {"weights", "topology", "frames", "fps"});
-    if (!(*parameter)->of_files || is_of_reading) parameters.push_back(*parameter);
+    if ((*parameter)->of_files != MIMETRA_WRITING) parameters.push_back(*parameter);
   }
   return parameters;
 }

@@ -57,6 +57,15 @@ class Values(SampleTest):
         gc.collect()
         self.assert_same(np.array(positions), moved())
 
+    def test_fields_on_vertices_and_on_triangles_may_share_a_name(self):
+        fields = mimetra.Fields(moved(), POLYGONS, {"area": np.arange(6.0)},
+                                {"area": [0, 0, 0, 1], "part": [0, 0, 1, 1]})
+        self.assert_same(fields.area, np.arange(6.0))
+        changed = fields.derive(part=[2, 2, 3, 3])
+        self.assertEqual(changed.part.tolist(), [2, 2, 3, 3])
+        self.assertEqual(changed.location("part"), "triangles")
+        self.assert_same(changed.area, np.arange(6.0))
+
     def test_a_copy_is_the_value_itself(self):
         take = mimetra.Sequence(moved(), POLYGONS)
         copies = copy.copy(take), copy.deepcopy([take])[0]

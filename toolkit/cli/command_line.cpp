@@ -7,7 +7,6 @@
 
 #include <mimetra/cli/command.h>
 #include <mimetra/cli/suggestion.h>
-#include <mimetra/mesh/parallel.h>
 #include <mimetra/operations/option_file.h>
 
 namespace mimetra::cli {

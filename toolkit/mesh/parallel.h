@@ -6,9 +6,6 @@
 
 namespace mimetra {
 
-/// More than that is a slip of the one who asks for them.
-constexpr int kMostThreads = 1024;
-
 /// Calls `work(i)` once for each i in 0 .. count - 1, from up to `threads` threads (0: as many as
 /// the machine has), the calling one among them. Which thread takes which i is open, so that `work`
 /// must write to places of its own; then the result is the same for every number of threads.

@@ -38,6 +38,9 @@ struct Output {
 enum class LogLevel { info, warning };
 using Log = std::function<void(LogLevel, const std::string&)>;
 
+/// More threads than that are a slip of the one who asks for them.
+constexpr int kMostThreads = 1024;
+
 /// One call of an operation: values, not files.
 struct Invocation {
   std::map<std::string, std::vector<NamedData>> inputs;

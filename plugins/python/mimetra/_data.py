@@ -62,7 +62,10 @@ class Data:
         handle = ctypes.c_void_p()
         own = context()
         types = {name: array.type for name, array in self._arrays.items()}
-        given, kept = _given(arrays, {**_KNOWN, **types})
+        located = {name: array.location for name, array in self._arrays.items() if array.location}
+        changes = [(name, _Field(values, located[name]) if name in located else values)
+                   for name, values in arrays.items()]
+        given, kept = _given(changes, {**_KNOWN, **types})
         own.check(library.derive_data(own.handle, self._handle, given, ctypes.byref(handle)))
         del kept
         return type(self)._of_handle(handle)
@@ -73,9 +76,9 @@ class Data:
         data._own(handle)
         return data
 
-    def _make(self, name, arrays, types=_KNOWN):
+    def _make(self, name, arrays, types=_KNOWN, fields=()):
         own = context()
-        given, kept = _given(arrays, types)
+        given, kept = _given([*arrays.items(), *fields], types)
         handle = ctypes.c_void_p()
         own.check(library.new_data(own.handle, self.kind, name.encode(), given,
                                    ctypes.byref(handle)))
@@ -122,7 +125,10 @@ class Data:
             own = context()
             arrays = ctypes.POINTER(ctypes.POINTER(c.Array))()
             own.check(library.data_arrays(own.handle, self._handle, ctypes.byref(arrays)))
-            self._shown = {each.contents.name.decode(): each.contents for each in c.listed(arrays)}
+            self._shown = {}
+            for each in c.listed(arrays):
+                # Of two fields of one name the first.
+                self._shown.setdefault(each.contents.name.decode(), each.contents)
         return self._shown
 
     def __getitem__(self, name):
@@ -247,12 +253,12 @@ class Fields(Data):
 
     def __init__(self, positions, faces, on_vertices=None, on_triangles=None, times=None, rest=None,
                  name=""):
-        fields = {field: _Field(values, c.ON_VERTICES)
-                  for field, values in (on_vertices or {}).items()}
-        fields.update({field: _Field(values, c.ON_TRIANGLES)
-                       for field, values in (on_triangles or {}).items()})
-        self._make(name, {"positions": positions, **_faces(faces), "times": times, "rest": rest,
-                          **fields})
+        fields = [(field, _Field(values, location))
+                  for values_by_name, location in ((on_vertices, c.ON_VERTICES),
+                                                   (on_triangles, c.ON_TRIANGLES))
+                  for field, values in (values_by_name or {}).items()]
+        self._make(name, {"positions": positions, **_faces(faces), "times": times, "rest": rest},
+                   fields=fields)
 
 
 class Table(Data):
@@ -408,7 +414,7 @@ def _described(name, values, type):
 def _given(arrays, types):
     """The list of arrays that the library takes, and what must live as long."""
     described = [_described(name, values, types.get(name, c.F64))
-                 for name, values in arrays.items() if values is not None]
+                 for name, values in arrays if values is not None]
     pointers = [ctypes.pointer(shown) for shown, _ in described]
     given = (ctypes.POINTER(c.Array) * (len(pointers) + 1))(*pointers)
     return given, described

@@ -19,8 +19,6 @@ _KINDS = {c.FLAG: "flag", c.INTEGER: "integer", c.INTEGER_LIST: "list of integer
           c.NUMBER: "number", c.LENGTH: "length", c.CHOICE: "choice", c.TEXT: "text",
           c.FILE: "path"}
 
-# Of the parameters of files, those of writing: `save` takes them, since no operation writes here.
-_WRITING = ("format", "double", "single", "compress")
 # What has no arrays, and is written by programs with VTK only.
 _UNSEEN = (Page, Pictures, Run, View)
 # What a result has besides outputs.
@@ -86,10 +84,10 @@ class Operation:
         self.summary = described.summary.decode()
         self.inputs = [Input(each.contents) for each in c.listed(described.inputs)]
         outputs = [Output(each.contents) for each in c.listed(described.outputs)]
-        parameters = [Parameter(each.contents) for each in c.listed(described.parameters)]
         self.outputs = [port for port in outputs if port.kind not in _UNSEEN]
-        self.parameters = [parameter for parameter in parameters
-                           if not (parameter.of_files and parameter.name in _WRITING)]
+        # No operation writes here: `save` takes what speaks of that.
+        self.parameters = [Parameter(each.contents) for each in c.listed(described.parameters)
+                           if each.contents.of_files != c.WRITING]
 
 
 class Result(types.SimpleNamespace):
@@ -108,8 +106,13 @@ def _finite(number):
 
 def _range(minimum, maximum):
     if maximum is None:
-        return f"at least {minimum:g}"
-    return f"at most {maximum:g}" if minimum is None else f"{minimum:g} to {maximum:g}"
+        return f"at least {_end(minimum)}"
+    return f"at most {_end(maximum)}" if minimum is None else f"{_end(minimum)} to {_end(maximum)}"
+
+
+def _end(number):
+    """The end of a range, whole numbers without a point."""
+    return str(int(number) if number == int(number) else number)
 
 
 def _value(kind, fallback):

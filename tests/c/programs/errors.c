@@ -166,6 +166,8 @@ static void check_other_meshes(const mimetra_interface* m, mimetra_context* cont
   OK(context, m->call_read(call, "target", "errors_target.ply"));
   FAILS(context, MIMETRA_MISMATCH, "few: regions of a mesh with 81 vertices and 1 triangles",
         m->call_run(call));
+  OK(context, m->call_set(call, "frames", "0:2"));
+  FAILS(context, MIMETRA_USAGE, "'frames' speaks of files", m->call_run(call));
   m->free_call(call);
   OK(context, m->new_data(context, MIMETRA_COMPONENTS, "bare", component_arrays, &components));
   OK(context, m->new_call(context, "regions", &call));

@@ -24,7 +24,7 @@ int main(void) {
   CHECK(*parameter && (*parameter)->kind == MIMETRA_INTEGER && (*parameter)->minimum == 1);
   CHECK(isinf((*parameter)->maximum) && !(*parameter)->choices && !(*parameter)->of_files);
   while (*parameter && strcmp((*parameter)->name, "frames") != 0) ++parameter;
-  CHECK(*parameter && (*parameter)->of_files == 1 && !(*parameter)->fallback);
+  CHECK(*parameter && (*parameter)->of_files == MIMETRA_READING && !(*parameter)->fallback);
   const char* json = NULL;
   OK(context, m->operations_json(context, &json));
   CHECK(json[0] == '[' && strstr(json, "\"decompose\""));

@@ -34,9 +34,10 @@
  *   m->free_context(context);
  *
  * Versions. A library that answers NULL does not serve that version of the header; one that serves
- *   it will for good. Within a version, structs grow at their end only. Whoever makes a struct sets
- *   its struct_size; fields past that count as zero. A program that is to run with an older library
- *   asks MIMETRA_HAS(m, function) before it calls a function that was added later.
+ *   it will for good. Within a version, structs grow at their end only. Whoever makes a struct,
+ * also as a copy, sets its struct_size; fields past that count as zero. A program that is to run
+ * with an older library asks MIMETRA_HAS(m, function) before it calls a function that was added
+ * later.
  *
  * Errors. Functions that can fail return a mimetra_status: the exit code of the command in the same
  *   case. What they were to make is then NULL, and m->message(context) says what is wrong, in words
@@ -50,9 +51,11 @@
  *   Arguments are copied: they may go when the function returns.
  *
  * Threads. A context, with its calls, serves one thread at a time; several contexts serve several
- *   threads at once. Values (mimetra_data) belong to no context and never change: any number of
- *   threads may read one and give it to calls. Callbacks come from the thread that called. Inside,
- *   an operation uses as many threads as m->set_threads() allows; results do not depend on it.
+ *   threads at once. A job serves the thread that called run, and no exception may leave a thread
+ *   that run has started. Values (mimetra_data) belong to no context and never change: any number
+ *   of threads may read one and give it to calls. Callbacks come from the thread that called.
+ *   Inside, an operation uses as many threads as m->set_threads() allows; results do not depend on
+ *   it.
  *
  * Text is UTF-8 and ends with 0. Lists end with NULL. Arrays are in C order, without gaps.
  */
@@ -104,14 +107,16 @@ enum {
   MIMETRA_MORPHABLE_MODEL = 10,
   MIMETRA_FIT = 11,
   MIMETRA_PICTURES = 12,
-  MIMETRA_VIEW = 13
+  MIMETRA_VIEW = 13,
+  MIMETRA_RUN = 14,
+  MIMETRA_PAGE = 15
 };
 
 /* Kinds of parameters, and how their values are written as text. */
 typedef int32_t mimetra_parameter_kind;
 enum {
   MIMETRA_FLAG = 1,         /* "true" or "false" */
-  MIMETRA_INTEGER = 2,      /* "30" */
+  MIMETRA_INTEGER = 2,      /* "30", of 32 bits */
   MIMETRA_INTEGER_LIST = 3, /* "10,30,40" */
   MIMETRA_NUMBER = 4,       /* "0.5" */
   MIMETRA_LENGTH = 5,       /* "0.1" of the longest side of the rest pose's box, or "12abs" */
@@ -140,6 +145,11 @@ enum {
   MIMETRA_REPEATED = 2, /* one value or more; an output has one for each of the repeated input */
   MIMETRA_NAMED = 4     /* the command takes it as --NAME although it is needed */
 };
+
+/* What a parameter of files speaks of: flags of mimetra_parameter. A call takes those of reading
+ * where it reads an input from a file that they apply to, and load_data; save_data takes those of
+ * writing. */
+enum { MIMETRA_READING = 1, MIMETRA_WRITING = 2 };
 
 /* ---- Callbacks ------------------------------------------------------------------------------ */
 
@@ -175,8 +185,8 @@ typedef struct mimetra_array {
  *   morphable model   the same, [identities I x N x 3, identity_names STRING I]
  *   animated model    a morphable model; weights F x W, weight_names STRING W, [times F],
  *                     [landmarks I32 L x 2: number, vertex]
- *   components        rest N x 3, triangles, displacements K x N x 3, weights F x K, centers I32 K
- *                     (-1: it died), support K x N, [energies], [scale 1], [d_min 1], [d_max 1]
+ *   components        rest N x 3, triangles, displacements K x N x 3, [weights F x K], centers I32
+ *                     K (-1: it died), [support K x N], [energies], [scale 1], [d_min 1], [d_max 1]
  *   regions           masks U8 R x N, triangles or faces | centers I32 R, radii R, energies R,
  *                     energy_shares R, vertex_energy N, faces where known, and fields: region
  *                     I32 N (strongest region, -1 outside), region_count I32 N, roi I32 N (0/1),
@@ -190,14 +200,29 @@ typedef struct mimetra_array {
  *                     [confidence F]
  *   fit               | alpha F x I, beta F x D, identity_names STRING I,
  *                     expression_names STRING D, times F, cameras F x 2 x 4, rms F
- *   pictures, view    no arrays: they are there to be saved
+ *   pictures, view, run, page
+ *                     no arrays: they are there to be saved, or read by an operation
  *
  * Where no type stands, it is F64, and F32 is taken too. Numbers must be finite, but for fields,
- * tables and the points of landmarks.
+ * tables and the points of landmarks. Only fields have a location; two of them may share a name
+ * where one is on vertices and one on triangles, and data_array() then gives the first.
+ *
+ * Tables, pictures, animated models and fits are in no file that can be read: as inputs they are
+ * given as values.
  */
 typedef struct mimetra_data mimetra_data;
 
 /* ---- Operations ----------------------------------------------------------------------------- */
+
+/*
+ * Names of operations, inputs, outputs and parameters are typed: small letters, digits and '-', a
+ * letter first. Inputs, outputs and parameters of one operation have different names; none is that
+ * of an option of every command (h help q quiet v verbose o json progress threads config force
+ * dry-run), nor of a parameter that reading its inputs or writing its outputs brings (of_files:
+ * frames, fps, weights, topology, format, ...). The command writes the output "out" by -o. Choices
+ * are letters, digits, '-', '_' and '.', not '-' first. Only the last input that is neither
+ * optional nor named can be repeated.
+ */
 
 /* An input or output. */
 typedef struct mimetra_port {
@@ -219,7 +244,7 @@ typedef struct mimetra_parameter {
   double minimum;             /* of numbers and lengths; -INFINITY and INFINITY are open ends */
   double maximum;             /* there is no range where it is not above the minimum */
   const char* const* choices; /* NULL for none */
-  uint32_t of_files;          /* 1: speaks of reading files or writing them, not of the operation */
+  uint32_t of_files;          /* MIMETRA_READING | MIMETRA_WRITING; 0: of the operation itself */
   uint32_t reserved;
 } mimetra_parameter;
 
@@ -267,7 +292,7 @@ typedef struct mimetra_interface {
   const char* (*message)(const mimetra_context* context);
   /* For everything that takes time; NULL for none. */
   mimetra_status (*set_progress)(mimetra_context* context, mimetra_progress progress, void* user);
-  /* At most so many threads; 0 for all there are. */
+  /* At most so many threads, and 1024; 0 for all there are. */
   mimetra_status (*set_threads)(mimetra_context* context, int32_t threads);
 
   /* -- What there is -- */
@@ -290,7 +315,8 @@ typedef struct mimetra_interface {
                                 const mimetra_array* const* arrays, mimetra_data** data);
   /* A value of a file, folder or whatever else the command takes as an input of that kind.
    * `settings`: "frames=0:100", "fps=25", "weights=take.csv", "topology=mesh.ply"; NULL for none.
-   * Region sets speak of a mesh: they are read as an input of a call, by call_read. */
+   * Region sets speak of a mesh: they are read as an input of a call, by call_read, for its first
+   * input that has one. */
   mimetra_status (*load_data)(mimetra_context* context, mimetra_kind kind, const char* text,
                               const char* const* settings, mimetra_data** data);
   /* Writes it by the path's extension, as the command does. `settings` are the command's parameters
@@ -319,7 +345,8 @@ typedef struct mimetra_interface {
   mimetra_status (*call_set)(mimetra_call* call, const char* parameter, const char* text);
   /* The value of an input; again for each value of a repeated one. */
   mimetra_status (*call_give)(mimetra_call* call, const char* input, const mimetra_data* data);
-  /* The same from a file, read when the call runs, with its parameters ("frames", "weights"). */
+  /* The same from a file, read when the call runs, with its parameters ("frames", "weights"); comes
+   * after values that were given. */
   mimetra_status (*call_read)(mimetra_call* call, const char* input, const char* text);
   /* Asks for an optional output; needed outputs are always made. */
   mimetra_status (*call_want)(mimetra_call* call, const char* output);
@@ -337,7 +364,8 @@ typedef struct mimetra_interface {
   /* -- For third-party operations: a run from inside. What it is given belongs to the job -- */
 
   /* A context for making values and calling the toolkit's own operations; belongs to the job. Its
-   * message is the job's where run returns an error. */
+   * message, the last error, is the job's where run returns one: after another cause, and after an
+   * error that run got over, say why with job_fail. */
   mimetra_context* (*job_context)(mimetra_job* job);
   /* Value `index` of an input; NULL past its last one, and for an optional one not given. */
   const mimetra_data* (*job_input)(mimetra_job* job, const char* input, int32_t index);
@@ -346,11 +374,12 @@ typedef struct mimetra_interface {
   double (*job_number)(mimetra_job* job, const char* parameter);
   /* A parameter as text, of any kind; NULL where it has no value. */
   const char* (*job_text)(mimetra_job* job, const char* parameter);
-  /* How many threads to use at most. */
+  /* How many threads to use at most; 0 for all there are. */
   int32_t (*job_threads)(mimetra_job* job);
   /* 1 where an optional output was asked for; needed ones always are. */
   int32_t (*job_wants)(mimetra_job* job, const char* output);
-  /* Call it often. MIMETRA_CANCELLED: free what you hold and return that. */
+  /* Call it often; a share outside [0, 1] counts as the nearest in it. MIMETRA_CANCELLED: free what
+   * you hold and return that. */
   mimetra_status (*job_progress)(mimetra_job* job, double share);
   void (*job_log)(mimetra_job* job, int32_t level, const char* text);
   /* Says why run fails, and returns `status` for run to return. */
@@ -378,8 +407,9 @@ MIMETRA_EXPORT const mimetra_interface* mimetra_get_interface(uint32_t version);
  *   MIMETRA_EXPORT const mimetra_plugin* mimetra_get_plugin(void) { return &plugin; }
  *
  * It links nothing of mimetra: run() is handed the table of functions, of the version that the
- * plugin was compiled with. Whatever it describes stays as it is until the process ends. run() may
- * be called from several threads at once, with a job each.
+ * plugin was compiled with. mimetra_get_plugin() is called for each context, one call at a time.
+ * Whatever it describes stays as it is until the process ends. run() may be called from several
+ * threads at once, with a job each.
  *
  * Plugins are the files *.so in the folders of MIMETRA_PLUGIN_PATH (separated by ':') and in
  * lib/mimetra/plugins of the installation. Their operations appear in the command, with help and
