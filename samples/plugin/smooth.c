@@ -1,5 +1,4 @@
-/* A plugin in C: the operation `smooth` moves every vertex towards the mean of its neighbours, in
- * every frame. It is a shared library in a folder of MIMETRA_PLUGIN_PATH. */
+/* A plugin in C: `smooth` moves every vertex towards the mean of its neighbours, in every frame. */
 #include <stdlib.h>
 #include <string.h>
 
