@@ -38,7 +38,9 @@ std::vector<std::string> vtkMimetraRegions::wanted_outputs(const Invocation&) {
 }
 
 void vtkMimetraRegions::prepare(const Outcome& outcome, vtkPolyData& input) {
-  const auto& [regions, shown] = std::get<RegionData>(outcome.outputs.at("out").front().data);
+  const auto& made = std::get<RegionData>(outcome.outputs.at("out").front().data);
+  const Regions& regions = made.regions;
+  const FieldSequence& shown = made.fields;
   std::vector<Field> fields = shown.fields;
   if (DisplayedRegion >= 0) fields.push_back(mask_of(regions, DisplayedRegion));
   make_fields(*fields_, input, fields, shown.sequence.connectivity());
