@@ -111,7 +111,10 @@ const MeshSequence* mimetra_job::given_mesh(const Connectivity& faces, std::size
     const std::size_t i = input.repeated ? index : 0;
     if (values == invocation_.inputs.end() || i >= values->second.size()) continue;
     const MeshSequence* sequence = sequence_of(values->second[i].data);
-    if (sequence && same_faces(sequence->connectivity(), faces)) return sequence;
+    const bool fits = sequence && sequence->vertices() == faces.vertices &&
+                      sequence->triangles().rows() == faces.triangles.rows() &&
+                      sequence->triangles() == faces.triangles;
+    if (fits) return sequence;
   }
   return nullptr;
 }

@@ -43,7 +43,7 @@ struct mimetra_job {
  private:
   bool goes_on();
   double number_of(const std::string& parameter) const;
-  /// The sequence with these faces that an input holds, of a repeated input the one at `index`;
+  /// The sequence with these triangles that an input holds, of a repeated input the one at `index`;
   /// null for none.
   const mimetra::MeshSequence* given_mesh(const mimetra::Connectivity& faces,
                                           std::size_t index) const;

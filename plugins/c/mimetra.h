@@ -188,10 +188,10 @@ typedef struct mimetra_array {
  *   components        rest N x 3, triangles, displacements K x N x 3, [weights F x K], centers I32
  *                     K (-1: it died), [support K x N], [energies], [scale 1], [d_min 1], [d_max 1]
  *   regions           masks U8 R x N, triangles or faces | centers I32 R, radii R, energies R,
- *                     energy_shares R, vertex_energy N, faces where known, and fields: region
- *                     I32 N (strongest region, -1 outside), region_count I32 N, roi I32 N (0/1),
- *                     in_L I32 T (0/1), ...; centers, radii and energies say nothing of regions
- *                     that were made or read
+ *                     energy_shares R, vertex_energy N, faces of a mesh that they are shown on, and
+ *                     fields: region I32 N (strongest region, -1 outside), region_count I32 N, roi
+ *                     I32 N (0/1), in_L I32 T (0/1), ...; centers, radii and energies say nothing
+ *                     of regions that were made or read
  *   fields            a sequence's arrays, and any number of fields: N or N x c on vertices, T or
  *                     T x c on triangles, by their location
  *   table             one array R per column; NaN is an empty cell

@@ -83,10 +83,14 @@ void ShownArrays::show(const Connectivity& faces) {
   add_integers("face_sizes", {polygons.size()}, std::move(sizes));
   add("corners", MIMETRA_I32, {static_cast<Eigen::Index>(polygons.corners.size())},
       polygons.corners.data());
-  add("triangles", MIMETRA_I32, {faces.triangles.rows(), 3}, faces.triangles.data());
+  show_triangles(faces.triangles);
   add("face_of_triangle", MIMETRA_I32,
       {static_cast<Eigen::Index>(faces.polygon_of_triangle.size())},
       faces.polygon_of_triangle.data());
+}
+
+void ShownArrays::show_triangles(const Triangles& triangles) {
+  add("triangles", MIMETRA_I32, {triangles.rows(), 3}, triangles.data());
 }
 
 void ShownArrays::show(const MeshSequence& sequence) {
@@ -124,7 +128,7 @@ void ShownArrays::show(const Components& components) {
   const Eigen::Index count = components.count();
   const Eigen::Index vertices = components.vertices();
   add("rest", MIMETRA_F64, {vertices, 3}, components.rest.data());
-  add("triangles", MIMETRA_I32, {components.triangles.rows(), 3}, components.triangles.data());
+  show_triangles(components.triangles);
   add("displacements", MIMETRA_F64, {count, vertices, 3}, components.displacements.data());
   if (components.weights.size() > 0) {
     add_numbers("weights", {components.weights.rows(), count}, by_rows(components.weights));
@@ -163,7 +167,7 @@ void ShownArrays::show(const RegionData& data) {
   if (has_mesh) {
     show(data.fields.sequence.connectivity());
   } else if (data.faces) {
-    show(*data.faces);
+    show_triangles(data.faces->triangles);
   }
   for (const Field& field : has_mesh ? data.fields.fields : fields_of(regions)) show(field);
 }

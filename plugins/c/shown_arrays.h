@@ -29,6 +29,7 @@ class ShownArrays {
   using Shape = std::initializer_list<Eigen::Index>;
 
   void show(const SequenceRead& read) { show(read.sequence); }
+  void show_triangles(const Triangles& triangles);
   void show(const BlendshapeModel& model);
   void show(const Components& components);
   void show(const RegionData& data);

@@ -225,6 +225,24 @@ TEST(PluginRun, HandsBackNothingThatCannotBe) {
               AllOf(HasSubstr("made 0 values"), HasSubstr("its last error: made: array")));
 }
 
+TEST(PluginRun, HasItsRegionsShownOnTheSequenceOfTheirTriangles) {
+  const Loaded loaded({kPlugins / "kinds"});
+  const Operation& spots = *loaded.table.find("spots");
+  // The plugin is given a quad, and speaks of its triangles.
+  const Polygons quad{{0, 1, 2, 3}, {0, 4}};
+  Frames frames(1, 12);
+  frames << 0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0;
+  const MeshSequence sequence(Connectivity::from_polygons(4, quad), frames);
+  Invocation invocation;
+  invocation.inputs["sequence"] = {{"take", SequenceRead{sequence, false, {}, {}}}};
+  invocation.parameters = Parameters(loaded.table.parameters_of(spots));
+  invocation.wanted["out"];
+  const Outcome outcome = spots.run(invocation);
+  const auto& made = std::get<RegionData>(outcome.outputs.at("out").front().data);
+  EXPECT_EQ(made.fields.sequence.shared_connectivity(), sequence.shared_connectivity());
+  EXPECT_EQ(made.fields.fields.front().name, "region");
+}
+
 TEST(PluginRun, GetsNothingForNamesThatItDidNotDeclare) {
   EXPECT_NO_THROW(misbehave("unknown"));
 }
