@@ -81,6 +81,22 @@ class BadInput(HostTest):
         key.driver_remove("value")
         self.target.data.shape_keys.animation_data_clear()
 
+    def test_a_file_that_exists(self):
+        path = self.path / "kept.h5"
+        path.write_bytes(b"kept")
+        self.assert_fails("kept.h5: exists already", bpy.ops.mimetra.transfer, target="target",
+                          k=3, components_out=str(path))
+        self.assertEqual(path.read_bytes(), b"kept")
+        path.unlink()
+
+    def test_a_source_that_blender_does_not_move(self):
+        self.source.hide_viewport = True
+        self.assert_fails("source: is disabled in viewports", bpy.ops.mimetra.info)
+        self.source.hide_viewport = False
+        self.source.show_only_shape_key = True
+        self.assert_fails("source: shows only the shape key", bpy.ops.mimetra.info)
+        self.source.show_only_shape_key = False
+
     def test_a_folder_that_cannot_be_written(self):
         self.bare_target()
         self.assert_fails("/proc/mimetra: cannot write the mesh cache", bpy.ops.mimetra.transfer,

@@ -49,6 +49,19 @@ class Ending(unittest.TestCase):
         """)
         self.assertEqual(printed, "reached\n")
 
+    def test_a_thread_may_wait_in_its_own_progress(self):
+        printed = self.run_script("""
+            import queue
+            import threading
+            shares = queue.Queue(maxsize=1)
+            poses = np.random.default_rng(1).normal(size=(300, 4, 3)) + corners
+            threading.Thread(daemon=True, target=lambda: mimetra.decompose(
+                mimetra.Sequence(poses, triangles), k=4, progress=shares.put)).start()
+            shares.get()
+            keep["end"] = "reached"
+        """)
+        self.assertEqual(printed, "reached\n")
+
 
 if __name__ == "__main__":
     unittest.main()

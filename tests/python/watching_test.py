@@ -2,6 +2,7 @@
 
 import os
 import signal
+import sys
 import threading
 import time
 import unittest
@@ -19,6 +20,30 @@ class Watching(SampleTest):
         self.assertEqual(shares, sorted(shares))
         self.assertGreaterEqual(shares[0], 0)
         self.assertEqual(shares[-1], 1)
+
+    def test_threads_may_look_at_one_value(self):
+        failed = []
+
+        def look(value):
+            try:
+                value.location("field 59")
+            except KeyError as error:
+                failed.append(error)
+
+        interval = sys.getswitchinterval()
+        sys.setswitchinterval(1e-6)
+        try:
+            for _ in range(100):
+                fields = mimetra.Fields([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]],
+                                        {f"field {index}": [0, 0, 0] for index in range(60)})
+                threads = [threading.Thread(target=look, args=(fields,)) for _ in range(4)]
+                for thread in threads:
+                    thread.start()
+                for thread in threads:
+                    thread.join()
+        finally:
+            sys.setswitchinterval(interval)
+        self.assertEqual(failed, [])
 
     def test_false_as_the_answer_cancels(self):
         shares = []

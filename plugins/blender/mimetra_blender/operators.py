@@ -145,7 +145,7 @@ class _Run:
             if value is not None:
                 options[mimetra.python_name(parameter.name)] = value
         # Vertices that are solved for have no weights.
-        keyed = self._keyed(objects) and options.get("space") != "vertex"
+        keyed = None if options.get("space") == "vertex" else self._keyed(objects)
         for port in self._operation.outputs:
             asked = getattr(self, properties.property_name(port.name), None)
             if port.optional and (asked or (keyed and port.kind is mimetra.Table)):
@@ -153,6 +153,12 @@ class _Run:
             if properties.needs_path(port) and not asked:
                 raise mimetra.UsageError(f"{self._operation.name}: expected a path for {port.name}:"
                                          f" {port.help}")
+            path = asked and properties.is_written(port) and bpy.path.abspath(asked)
+            if path and os.path.exists(path):
+                raise mimetra.OutputError(f"{path}: exists already; choose another name for"
+                                          f" {port.name}, or remove it")
+        if keyed and any(port.kind is mimetra.Table for port in self._operation.outputs):
+            results.check_not_driven(keyed)
         return options
 
     def _keyed(self, objects):
@@ -239,7 +245,7 @@ class _Run:
         """Saves an output that goes into a file. False for those that are shown."""
         path = properties.is_written(port) and getattr(self, properties.property_name(port.name))
         if path:
-            value.save(bpy.path.abspath(path), force=True)
+            value.save(bpy.path.abspath(path))
         return bool(path)
 
     @contextlib.contextmanager

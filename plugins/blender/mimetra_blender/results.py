@@ -3,6 +3,7 @@
 import csv
 import io
 import pathlib
+import re
 import tempfile
 
 import bpy
@@ -12,6 +13,7 @@ from . import colors, mimetra, point_cache, sources
 
 _MODIFIER = "mimetra"
 _GROUP = "mimetra region"
+_LONGEST_NAME = 63  # bytes
 
 
 class Frames:
@@ -97,15 +99,24 @@ def _own_action(keys):
     return animation.action
 
 
+def _path_of(key):
+    """Where the value of a shape key is animated."""
+    return f'key_blocks["{bpy.utils.escape_identifier(key)}"].value'
+
+
+def check_not_driven(subject):
+    """Throws Mismatch where a driver holds a shape key that would be keyed."""
+    animation = subject.data.shape_keys.animation_data
+    driven = {curve.data_path for curve in animation.drivers} if animation else set()
+    for key in sources.expression_keys(subject):
+        if _path_of(key.name) in driven:
+            raise mimetra.Mismatch(f"{subject.name}: the shape key '{key.name}' is driven; remove"
+                                   " its driver, mute it, or transfer with the space 'vertex'")
+
+
 def set_keys(keys, weights, frames):
     """Keyed values of shape keys, {name: F}; other keys and curves stay."""
-    driven = {curve.data_path for curve in keys.animation_data.drivers} if keys.animation_data \
-        else set()
-    paths = {name: f'key_blocks["{bpy.utils.escape_identifier(name)}"].value' for name in weights}
-    for name, path in paths.items():
-        if path in driven:
-            raise mimetra.Mismatch(f"{keys.name}: the shape key '{name}' is driven; remove its"
-                                   " driver, or transfer with the space 'vertex'")
+    paths = {name: _path_of(name) for name in weights}
     action = _own_action(keys)
     for name, values in weights.items():
         # Blender keeps values within the range of their slider.
@@ -226,7 +237,7 @@ def show_components(context, value, subject, frames, name):
     """Components as shape keys with their weights over time."""
     shapes = {f"component {index:02}": displacement
               for index, displacement in enumerate(value["displacements"])}
-    weights = dict(zip(shapes, value["weights"].T))
+    weights = dict(zip(shapes, value["weights"].T)) if "weights" in value else {}
     faces = sources.faces_of(subject.data) if subject else mimetra.Faces(
         np.full(len(value["triangles"]), 3), value["triangles"].ravel())
     return show_model(context, name, value["rest"], faces, shapes, weights, frames, subject)
@@ -241,7 +252,8 @@ def _shown_fields(value):
 def check_fits(value, subject):
     """Throws Mismatch where regions or fields are of another mesh than an object's."""
     name = value.name or "the result"
-    count = value["masks"].shape[1] if "masks" in value else value["positions"].shape[1]
+    is_regions = isinstance(value, mimetra.Regions)
+    count = value["masks"].shape[1] if is_regions else value["positions"].shape[1]
     if count != len(subject.data.vertices):
         raise mimetra.Mismatch(f"{subject.name}: {len(subject.data.vertices)} vertices, expected"
                                f" {count} as in {name}")
@@ -254,7 +266,8 @@ def check_fits(value, subject):
 def show_regions(value, subject):
     """Regions as vertex groups, and their fields."""
     masks = value["masks"]
-    for group in [each for each in subject.vertex_groups if each.name.startswith(_GROUP)]:
+    earlier = re.compile(f"{_GROUP} [0-9]+")
+    for group in [each for each in subject.vertex_groups if earlier.fullmatch(each.name)]:
         subject.vertex_groups.remove(group)
     for index, mask in enumerate(masks):
         group = subject.vertex_groups.new(name=f"{_GROUP} {index:02}")
@@ -271,15 +284,22 @@ def show_fields(value, subject):
     for name in names:
         _show_attribute(mesh, value, name)
     for name in shown:
-        _replace(mesh, f"mimetra {name} color", "FLOAT_COLOR", "POINT").data.foreach_set(
-            "color", colors.of_field(value[name]).ravel())
+        made = _replace(mesh, f"mimetra {name} color", "FLOAT_COLOR", "POINT")
+        made.data.foreach_set("color", colors.of_field(value[name]).ravel())
     if shown:
-        mesh.color_attributes.active_color = mesh.color_attributes[f"mimetra {shown[0]} color"]
+        first = _attribute_name(f"mimetra {shown[0]} color")
+        mesh.color_attributes.active_color = mesh.color_attributes[first]
     mesh.update()
+
+
+def _attribute_name(name):
+    """A name as Blender keeps it."""
+    return name.encode()[:_LONGEST_NAME].decode(errors="ignore")
 
 
 def _replace(mesh, name, type, domain):
     """A new attribute in place of one of that name."""
+    name = _attribute_name(name)
     old = mesh.attributes.get(name)
     if old:
         mesh.attributes.remove(old)
@@ -291,9 +311,10 @@ def _show_attribute(mesh, value, name):
     values = np.asarray(value[name])
     domain = "POINT"
     if value.location(name) == "triangles":
-        of_polygons = np.full((len(mesh.polygons), *values.shape[1:]), values.min(initial=0),
-                              values.dtype)
-        np.maximum.at(of_polygons, value["face_of_triangle"], values)
+        least = np.iinfo(values.dtype).min if values.dtype.kind in "iu" else np.nan
+        of_polygons = np.full((len(mesh.polygons), *values.shape[1:]), least, values.dtype)
+        # A number where any triangle has one.
+        np.fmax.at(of_polygons, value["face_of_triangle"], values)
         values, domain = of_polygons, "FACE"
     integer = values.dtype == np.int32
     if values.ndim == 2 and values.shape[1] == 3:

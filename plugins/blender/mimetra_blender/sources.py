@@ -54,6 +54,9 @@ def _pose(context, subject, frame):
     """The object's vertices at a frame."""
     context.scene.frame_set(frame)
     evaluated = subject.evaluated_get(context.evaluated_depsgraph_get())
+    if not evaluated.is_evaluated:
+        raise mimetra.BadInput(f"{subject.name}: is disabled in viewports, where it does not move;"
+                               " switch it on, and the collection that it is in")
     mesh = evaluated.to_mesh()
     try:
         found, expected = len(mesh.vertices), len(subject.data.vertices)
@@ -69,6 +72,9 @@ def _pose(context, subject, frame):
 def sequence(context, subject, frames):
     """Yields the share done; returns an object's poses at frames as it is evaluated."""
     scene = context.scene
+    if subject.show_only_shape_key and subject.data.shape_keys:
+        raise mimetra.BadInput(f"{subject.name}: shows only the shape key"
+                               f" '{subject.active_shape_key.name}'; switch off Shape Key Lock")
     before = scene.frame_current
     poses = []
     try:
@@ -125,6 +131,7 @@ def regions(subject, prefix):
     """Vertex groups whose names begin with a prefix."""
     names = [group.name for group in subject.vertex_groups if group.name.startswith(prefix)]
     if not names:
-        raise mimetra.BadInput(f"{subject.name}: no vertex group begins with '{prefix}'")
+        raise mimetra.BadInput(f"{subject.name}: no vertex group begins with '{prefix}', and there"
+                               " is no such file")
     masks = [_group_weights(subject, name) > 0 for name in names]
     return mimetra.Regions(np.stack(masks), faces_of(subject.data), name=prefix)

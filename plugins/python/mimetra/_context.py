@@ -6,6 +6,7 @@ import ctypes
 import logging
 import signal
 import threading
+import time
 import weakref
 
 from . import _interface as c
@@ -16,6 +17,7 @@ _logger = logging.getLogger("mimetra")
 _contexts = threading.local()
 _all_contexts = weakref.WeakSet()
 _first = threading.Lock()
+_LONGEST_END = 5  # seconds that the interpreter waits for other threads' runs
 
 
 @c.Log
@@ -54,6 +56,8 @@ class Context:
 
         @c.Progress
         def report(share, _):
+            if self.ending:
+                return 0
             try:
                 answer = progress(share) if progress else None
                 goes_on = answer is None or bool(answer)
@@ -94,11 +98,14 @@ def _interrupts_kept(raised):
 @atexit.register
 def _end_runs():
     """Cancels the runs of daemon threads, and begins no more: they would report to an interpreter
-    that is gone."""
-    for each in list(_all_contexts):
-        if each is not getattr(_contexts, "own", None):
-            each.ending = True
-            each.running.acquire()
+    that is gone. One that waits in its own `progress` is left there."""
+    others = [each for each in list(_all_contexts)
+              if each is not getattr(_contexts, "own", None)]
+    for each in others:
+        each.ending = True
+    until = time.monotonic() + _LONGEST_END
+    for each in others:
+        each.running.acquire(timeout=max(0, until - time.monotonic()))
 
 
 def context():

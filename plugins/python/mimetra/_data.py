@@ -125,10 +125,11 @@ class Data:
             own = context()
             arrays = ctypes.POINTER(ctypes.POINTER(c.Array))()
             own.check(library.data_arrays(own.handle, self._handle, ctypes.byref(arrays)))
-            self._shown = {}
+            shown = {}
             for each in c.listed(arrays):
                 # Of two fields of one name the first.
-                self._shown.setdefault(each.contents.name.decode(), each.contents)
+                shown.setdefault(each.contents.name.decode(), each.contents)
+            self._shown = shown  # at once: other threads may look
         return self._shown
 
     def __getitem__(self, name):
@@ -226,11 +227,12 @@ class AnimatedModel(Data):
 
 
 class Components(Data):
-    """Sparse components: displacements K x N x 3, weights F x K, centers K, support K x N."""
+    """Sparse components: displacements K x N x 3, centers K, weights F x K, support K x N."""
 
     kind = c.COMPONENTS
 
-    def __init__(self, rest, triangles, displacements, weights, centers, support, name=""):
+    def __init__(self, rest, triangles, displacements, centers, weights=None, support=None,
+                 name=""):
         self._make(name, {"rest": rest, "triangles": triangles,
                           "displacements": displacements, "weights": weights,
                           "centers": centers, "support": support})
