@@ -7,7 +7,7 @@ import re
 import bpy
 import numpy as np
 from host import HostTest, command, run_tests
-from mimetra_blender import mimetra
+from mimetra_blender import mimetra, results
 
 
 class Fields(HostTest):
@@ -135,6 +135,24 @@ class Fields(HostTest):
         self.assertGreater(weights["jawOpen"].max(), 0.5)
         for index in range(4):
             self.assertIn(f"sample identity00{index}", bpy.data.objects)
+
+    def test_a_performance_keeps_its_times_at_another_rate(self):
+        bpy.context.scene.render.fps = 60
+        bpy.ops.mimetra.sample()
+        (curve, *_) = bpy.data.objects["sample"].data.shape_keys.animation_data.action.fcurves
+        frames = [point.co[0] for point in curve.keyframe_points]
+        self.assertEqual(frames, list(range(1, 2 * 120, 2)))
+
+    def test_a_mesh_cache_keeps_its_times(self):
+        corners = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0]], float)
+        poses = np.stack([corners, corners + [0, 0, 1], corners + [0, 0, 2]])
+        for cache_format in ("PC2", "MDD"):
+            frames = results.Frames(bpy.context.scene, [11, 12], cache_format, str(self.path))
+            value = mimetra.Sequence(poses, [[0, 1, 2]], times=[0, 0.5, 1])
+            made = results.show_sequence(bpy.context, value, None, frames, "slow")
+            for frame, height in ((11, 0), (26, 1), (41, 2)):
+                np.testing.assert_allclose(self.shown(made, frame)[:, 2], height, atol=1e-5)
+            bpy.data.objects.remove(made)
 
     def test_the_example_of_the_documents_runs(self):
         text = (pathlib.Path(__file__).parents[2] / "docs" / "blender.md").read_text()

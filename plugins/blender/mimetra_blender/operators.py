@@ -208,6 +208,7 @@ class _Run:
         sequence = next((value for port, value in made if port.kind is mimetra.Sequence), None)
         if sequence is None or not results.has_faces_of(target, sequence):
             return False
+        frames = frames.of(sequence["times"])
         model = next(value for value in values.values() if isinstance(value, mimetra.Model))
         for port, value in made:
             weights = port.kind is mimetra.Table and results.keyed_weights(target, value)

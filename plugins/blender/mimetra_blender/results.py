@@ -1,5 +1,6 @@
 """What operations make, as Blender shows it."""
 
+import copy
 import csv
 import io
 import pathlib
@@ -23,13 +24,25 @@ class Frames:
         self.rate = scene.render.fps / scene.render.fps_base
         self.start = frames[0]
         self.step = frames[1] - frames[0] if len(frames) > 1 else 1
+        self.offsets = None
         self.cache_format = cache_format
         self.folder = cache_folder
         self.notes = []  # for the user
 
+    def of(self, times):
+        """The same for poses at these times in seconds, of which the first is at the start."""
+        if len(times) < 2:
+            return self
+        made = copy.copy(self)
+        # Rounded, since frames that the scene gave must come out as they were.
+        made.offsets = np.round((times - times[0]) * self.rate, 4)
+        made.step = made.offsets[-1] / (len(times) - 1)
+        return made
+
     def at(self, count):
         """The scene's frames of so many poses."""
-        return self.start + self.step * np.arange(count)
+        return self.start + (self.step * np.arange(count) if self.offsets is None
+                             else self.offsets)
 
 
 def _cache_folder(frames):
@@ -193,6 +206,7 @@ def has_faces_of(subject, value):
 
 def show_sequence(context, value, subject, frames, name):
     """A sequence as an object with a mesh cache: a copy of `subject` where it has its polygons."""
+    frames = frames.of(value["times"])
     path = write_mesh_cache(value["positions"], frames, name)
     if subject and has_faces_of(subject, value):
         made = _copied_object(subject, name)
@@ -220,6 +234,7 @@ def show_model(context, name, neutral, faces, shapes, weights, frames, beside=No
 
 def show_animated_model(context, value, frames, name):
     """A model with its performance, and each of its identities with the same shape keys."""
+    frames = frames.of(value["times"]) if "times" in value else frames
     shapes = dict(zip(value["expression_names"], value["expressions"]))
     weights = {each: column for each, column in zip(value["weight_names"], value["weights"].T)
                if each in shapes}

@@ -12,7 +12,7 @@ def of(scene, operation):
 
 def copy(settings, operation, operator):
     """Hands an operator what was set."""
-    switches = {"frame_start": "use_frames", "frame_end": "use_frames"}
+    switches = {}
     for parameter in properties.parameters_of(operation):
         if properties.is_optional_number(parameter):
             name = properties.property_name(parameter.name)
@@ -20,6 +20,8 @@ def copy(settings, operation, operator):
     for name in properties.annotations_of(operation, pointers=False):
         wanted = getattr(settings, switches[name]) if name in switches else \
             settings.is_property_set(name)
+        if name in ("frame_start", "frame_end"):
+            wanted = wanted and settings.use_frames
         value = getattr(settings, name)
         if isinstance(value, bpy.types.Object):
             value = value.name
