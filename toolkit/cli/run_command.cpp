@@ -14,7 +14,6 @@
 
 #include <mimetra/cli/dry_run.h>
 #include <mimetra/cli/manifest.h>
-#include <mimetra/io/model_file.h>
 #include <mimetra/operations/loading.h>
 #include <mimetra/operations/report.h>
 
@@ -109,24 +108,15 @@ OutputPaths output_paths(const OperationTable& table, const Request& request,
   return all;
 }
 
-/// What an input is called in the name of a file. Throws UsageError for one that has no name.
-std::string short_name(const Input& input, const std::string& name) {
-  if (input.kind == DataKind::model) return name;  // a person's own
-  const bool is_pattern = name.find_first_of("*%") != std::string::npos;
-  ModelSpec spec = is_pattern ? ModelSpec{name, {}, {}} : ModelSpec::parse(name);
-  if (spec.path.stem() == "*") spec.path = spec.path.parent_path();
-  const std::string word = spec.name();
-  if (!word.empty() && word.find('/') == std::string::npos) return word;
-  throw UsageError(name + ": has no name for its output; give it one of its own");
-}
-
 /// Names of the repeated input.
 std::vector<std::string> repeated_names(const Operation& operation, const LoadedInputs& loaded) {
   std::vector<std::string> names;
   for (const Input& input : operation.inputs) {
     const auto values = loaded.data.find(input.name);
     if (!input.repeated || values == loaded.data.end()) continue;
-    for (const NamedData& value : values->second) names.push_back(short_name(input, value.name));
+    for (const NamedData& value : values->second) {
+      names.push_back(name_of_output(input, value.name));
+    }
   }
   return names;
 }

@@ -233,4 +233,14 @@ LoadedInputs load_inputs(const OperationTable& table, const Operation& operation
   return loaded;
 }
 
+std::string name_of_output(const Input& input, const std::string& name) {
+  if (input.kind == DataKind::model) return name;  // a person's own
+  const bool is_pattern = name.find_first_of("*%") != std::string::npos;
+  ModelSpec spec = is_pattern ? ModelSpec{name, {}, {}} : ModelSpec::parse(name);
+  if (spec.path.stem() == "*") spec.path = spec.path.parent_path();
+  const std::string word = spec.name();
+  if (!word.empty() && word.find('/') == std::string::npos) return word;
+  throw UsageError(name + ": has no name for its output; give it one of its own");
+}
+
 }  // namespace mimetra

@@ -23,4 +23,8 @@ LoadedInputs load_inputs(const OperationTable& table, const Operation& operation
                          const Progress& progress, const Log& log, int threads = 0,
                          std::map<std::string, std::vector<NamedData>> given = {});
 
+/// What the output for one value of a repeated input is called, where `name` is what was read: a
+/// person of a model has a name, all else that of its file or folder. Throws UsageError for none.
+std::string name_of_output(const Input& input, const std::string& name);
+
 }  // namespace mimetra
