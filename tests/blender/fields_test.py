@@ -143,6 +143,14 @@ class Fields(HostTest):
         frames = [point.co[0] for point in curve.keyframe_points]
         self.assertEqual(frames, list(range(1, 2 * 120, 2)))
 
+    def test_weights_beyond_what_blender_keeps_are_told_of(self):
+        frames = results.Frames(bpy.context.scene, [1, 2], "PC2", "//")
+        keys = self.target.data.shape_keys
+        results.set_keys(keys, {"jawOpen": np.array([0, 10.0])}, frames)
+        self.assertEqual(frames.notes, [])
+        results.set_keys(keys, {"jawOpen": np.array([0, -12.0])}, frames)
+        self.assertIn("'jawOpen' reaches 12;", frames.notes[0])
+
     def test_a_mesh_cache_keeps_its_times(self):
         corners = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0]], float)
         poses = np.stack([corners, corners + [0, 0, 1], corners + [0, 0, 2]])

@@ -58,15 +58,19 @@ class Remake {
     return hand_over("out", MIMETRA_FIELDS, {array("positions"), array("times"), faces, &field});
   }
 
-  /// As many faces, which look the other way.
+  /// As many faces, which look the other way, and a field that ParaView's plugin also makes.
   mimetra_status turned() const {
     const mimetra_array* given = array("corners");
     const auto* corners = static_cast<const std::int32_t*>(given->values);
     const std::vector<std::int32_t> reversed(std::reverse_iterator(corners + given->shape[0]),
                                              std::reverse_iterator(corners));
     const mimetra_array turned = integers("corners", reversed);
+    const std::vector<std::int32_t> sevens(static_cast<std::size_t>(array("positions")->shape[1]),
+                                           7);
+    mimetra_array field = integers("displacement", sevens);
+    field.location = MIMETRA_ON_VERTICES;
     return hand_over("out", MIMETRA_FIELDS,
-                     {array("positions"), array("times"), array("face_sizes"), &turned});
+                     {array("positions"), array("times"), array("face_sizes"), &turned, &field});
   }
 
   /// Every second frame.

@@ -75,6 +75,7 @@ class ThirdPartyOperations(HostTest):
         self.assert_same(points(found), points(at(source, 2)))
         turned = self.remade("turned", source, 2)
         self.assertEqual(list(polygons(turned)[1]), [v for quad in quads for v in quad][::-1])
+        self.assert_same(point_array(turned, "displacement"), np.full(36, 7, dtype=np.int32))
         self.assert_same(points(turned), points(at(source, 2)))
 
     def test_passes_the_data_of_the_input_through_on_its_own_faces(self):

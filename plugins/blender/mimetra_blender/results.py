@@ -14,6 +14,7 @@ from . import colors, mimetra, point_cache, sources
 
 _MODIFIER = "mimetra"
 _GROUP = "mimetra region"
+_LARGEST_KEY = 10  # of the sliders of shape keys
 _LONGEST_NAME = 63  # bytes
 
 
@@ -136,6 +137,9 @@ def set_keys(keys, weights, frames):
         key = keys.key_blocks[name]
         key.slider_min = min(key.slider_min, values.min())
         key.slider_max = max(key.slider_max, values.max())
+        if np.abs(values).max() > _LARGEST_KEY:
+            frames.notes.append(f"The shape key '{name}' reaches {np.abs(values).max():.3g}; Blender"
+                                f" keeps values from -{_LARGEST_KEY} to {_LARGEST_KEY}")
         old = action.fcurves.find(paths[name])
         if old:
             action.fcurves.remove(old)

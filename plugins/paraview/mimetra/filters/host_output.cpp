@@ -49,6 +49,16 @@ void make_mesh(vtkPolyData& mesh, const MeshSequence& sequence, const std::vecto
   set_rest(mesh, sequence.rest_is_known() ? std::optional(sequence.rest()) : std::nullopt);
 }
 
+void show_mesh(vtkPolyData& output, vtkPolyData& mesh, const MeshSequence& sequence, int frame) {
+  output.ShallowCopy(&mesh);
+  set_positions(output, sequence.frame(frame), Precision::double_precision);
+  // A field of that name is the operation's own.
+  const bool has_one = output.GetPointData()->HasArray(kDisplacement) != 0;
+  if (sequence.rest_is_known() && !has_one) {
+    add_displacement(output, sequence.frame(frame) - sequence.rest());
+  }
+}
+
 void make_fields(vtkPolyData& holder, vtkPolyData& mesh, const std::vector<Field>& fields,
                  const Connectivity& connectivity) {
   holder.Initialize();

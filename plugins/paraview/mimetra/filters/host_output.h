@@ -18,6 +18,10 @@ void show_frame(vtkPolyData& output, vtkPolyData& input, const mimetra::MeshSequ
 void make_mesh(vtkPolyData& mesh, const mimetra::MeshSequence& sequence,
                const std::vector<mimetra::Field>& fields);
 
+/// Shows a frame of a sequence on its mesh, which make_mesh() made.
+void show_mesh(vtkPolyData& output, vtkPolyData& mesh, const mimetra::MeshSequence& sequence,
+               int frame);
+
 /// Makes `holder` hold fields of `mesh`, as arrays that all time steps share.
 void make_fields(vtkPolyData& holder, vtkPolyData& mesh, const std::vector<mimetra::Field>& fields,
                  const mimetra::Connectivity& connectivity);

@@ -95,7 +95,7 @@ void vtkMimetraOperation::show(const Outcome& outcome, vtkPolyData& input, doubl
       show_frame(*output, input, sequence, frame);
       break;
     case Shown::as_a_mesh_of_its_own:
-      show_frame(*output, *shared_, sequence, frame);
+      show_mesh(*output, *shared_, sequence, frame);
       return;
   }
   share_fields(*shared_, *output);
