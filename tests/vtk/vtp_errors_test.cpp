@@ -73,8 +73,9 @@ TEST_F(VtpErrors, AFullDiskIsAnOutputErrorAndLeavesNothing) {
   FieldSequence fields = quad_and_triangle();
   {
     const FileSizeLimit limit(1000);  // the index files fit, a frame of some 3 kB does not
-    EXPECT_THAT([&] { write_vtp_series(fields, in_folder("face.pvd")); },
-                ThrowsMessage<OutputError>(StartsWith(in_folder("face.pvd").string())));
+    EXPECT_THAT(
+        [&] { write_vtp_series(fields, in_folder("face.pvd")); },
+        ThrowsMessage<OutputError>(StartsWith(in_folder("face_vtp/face_0000.vtp").string())));
   }
   EXPECT_TRUE(folder_is_empty());
 }
@@ -123,13 +124,19 @@ TEST_F(VtpErrors, AMissingFieldIsNamedBesideThoseThatAreThere) {
               ThrowsMessage<IoError>(AllOf(HasSubstr("'roi'"), HasSubstr("region, direction"))));
 }
 
+TEST_F(VtpErrors, AppendedDataThatCannotBeReadHaveAWayOut) {
+  write_text(in_folder("appended.vtp"),
+             "<VTKFile type=\"PolyData\"><AppendedData encoding=\"raw\">");
+  EXPECT_THAT([&] { read_vtp_field(in_folder("appended.vtp"), "roi"); },
+              ThrowsMessage<IoError>(HasSubstr("with the data mode Binary")));
+}
+
 TEST_F(VtpErrors, EveryTruncatedPrefixIsAnIoErrorAndPrintsNothing) {
   write_vtp_series(quad_and_triangle(), in_folder("face.vtp"));
   const std::string whole = bytes_of(in_folder("face.vtp"));
-  // The closing tags after the data are not needed to read it.
-  const std::size_t end_of_data = whole.rfind("\n  </AppendedData>");
+  const std::size_t end = whole.rfind("</VTKFile>");
   ::testing::internal::CaptureStderr();
-  for (std::size_t size = 0; size < end_of_data; size += 7) {
+  for (std::size_t size = 0; size < end; size += 7) {
     write_text(in_folder("cut.vtp"), whole.substr(0, size));
     EXPECT_THROW(read_vtp_field(in_folder("cut.vtp"), "displacement_length"), IoError) << size;
   }

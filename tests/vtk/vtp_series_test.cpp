@@ -69,11 +69,11 @@ TEST_F(VtpSeries, WritesTheUsersPolygonsAndNotTheirTriangles) {
   EXPECT_THAT(corners_of(data, 1), ElementsAre(1, 4, 2));
 }
 
-TEST_F(VtpSeries, StoresIdsInThirtyTwoBitsAndDataAppendedRaw) {
+TEST_F(VtpSeries, StoresIdsInThirtyTwoBitsAndWellFormedXml) {
   write_vtp_series(quad_and_triangle(), in_folder("face.pvd"));
   const std::string text = bytes_of(in_folder("face_vtp/face_0000.vtp"));
-  EXPECT_THAT(text, HasSubstr("type=\"Int32\" Name=\"connectivity\" format=\"appended\""));
-  EXPECT_THAT(text, HasSubstr("<AppendedData encoding=\"raw\">"));
+  EXPECT_THAT(text, HasSubstr("type=\"Int32\" Name=\"connectivity\" format=\"binary\""));
+  EXPECT_THAT(text, Not(HasSubstr("AppendedData")));
   EXPECT_THAT(text, HasSubstr("vtkLZ4DataCompressor"));
   EXPECT_THAT(text, Not(HasSubstr("Float64")));
 }

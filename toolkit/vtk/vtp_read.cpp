@@ -23,6 +23,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// What else may be wrong with a file that VTK does not read.
+std::string hint_of(const fs::path& path) {
+  if (read_file(path).find("<AppendedData") == std::string::npos) return "";
+  return "; its data are appended, which VTK does not read with newer versions of libexpat: save "
+         "it "
+         "in ParaView with the data mode Binary";
+}
+
 vtkSmartPointer<vtkPolyData> read_poly_data(const fs::path& path) {
   // VTK reads a folder as an empty file and a missing one as an error without a reason.
   if (!fs::exists(path)) throw IoError(path.string(), "no such file");
@@ -31,7 +39,7 @@ vtkSmartPointer<vtkPolyData> read_poly_data(const fs::path& path) {
   vtkNew<vtkXMLPolyDataReader> reader;
   reader->SetFileName(path.c_str());
   if (!reader->GetExecutive()->Update() || reader->GetErrorCode() != vtkErrorCode::NoError) {
-    throw IoError(path.string(), "not a readable VTP file, or truncated");
+    throw IoError(path.string(), "not a readable VTP file, or truncated" + hint_of(path));
   }
   if (reader->GetOutput()->GetNumberOfPoints() == 0) {
     throw IoError(path.string(), "has no points, or its counts do not fit");

@@ -6,13 +6,10 @@
 #include <mutex>
 #include <set>
 #include <stdexcept>
-#include <system_error>
 #include <utility>
 
-#include <vtkErrorCode.h>
 #include <vtkNew.h>
 #include <vtkPolyData.h>
-#include <vtkSmartPointer.h>
 #include <vtkXMLPolyDataWriter.h>
 
 #include <mimetra/io/pending_output.h>
@@ -74,37 +71,21 @@ class FrameData {
   vtkNew<vtkPolyData> data_;
 };
 
-/// What a code of VTK says; below its own codes are those of the operating system.
-std::string reason_of(unsigned long code) {
-  if (code == vtkErrorCode::OutOfDiskSpaceError) return "no space left on the disk";
-  if (code > vtkErrorCode::NoError && code < vtkErrorCode::FirstVTKErrorCode) {
-    return std::system_category().message(static_cast<int>(code));
-  }
-  return "VTK fails (code " + std::to_string(code) + ")";
-}
-
-vtkSmartPointer<vtkXMLPolyDataWriter> writer_of(vtkPolyData& data, VtpCompression compression) {
-  const auto writer = vtkSmartPointer<vtkXMLPolyDataWriter>::New();
+/// A file in memory: writing to a disk that is full, VTK frees what it does not own.
+std::string vtp_text(vtkPolyData& data, VtpCompression compression) {
+  const vtkNew<vtkXMLPolyDataWriter> writer;
   writer->SetInputData(&data);
-  writer->SetDataModeToAppended();
-  writer->EncodeAppendedDataOff();
+  // VTK up to 9.3 reads no appended data with libexpat from 2.6 on, or Debian 12's with its fixes.
+  writer->SetDataModeToBinary();
   writer->SetByteOrderToLittleEndian();
   if (compression == VtpCompression::lz4) {
     writer->SetCompressorTypeToLZ4();
   } else {
     writer->SetCompressorTypeToZLib();
   }
-  return writer;
-}
-
-/// `shown` is the name that the user asked for.
-void write_frame(vtkPolyData& data, const std::filesystem::path& path, VtpCompression compression,
-                 const std::filesystem::path& shown) {
-  const auto writer = writer_of(data, compression);
-  writer->SetFileName(path.c_str());
-  if (!writer->Write() || writer->GetErrorCode() != vtkErrorCode::NoError) {
-    throw OutputError(shown.string(), "cannot be written: " + reason_of(writer->GetErrorCode()));
-  }
+  writer->WriteToOutputStringOn();
+  if (!writer->Write()) throw std::runtime_error("VTK cannot write this mesh");
+  return writer->GetOutputString();
 }
 
 /// Meshes for several threads: VTK's arrays remember what was computed for a file, so that each
@@ -126,9 +107,7 @@ class FrameDataPool {
     auto data = std::make_unique<FrameData>(fields_);
     // What the arrays remember shows in the next file: every frame but the first is written by a
     // mesh that wrote the first one, whichever thread writes it.
-    const auto first = writer_of(data->at(0), compression_);
-    first->WriteToOutputStringOn();
-    first->Write();
+    vtp_text(data->at(0), compression_);
     return data;
   }
 
@@ -208,7 +187,7 @@ std::vector<FrameEntry> entries_of(const MeshSequence& sequence, const std::stri
 std::filesystem::path write_one(const FieldSequence& fields, const std::filesystem::path& target,
                                 const VtpOptions& options) {
   PendingOutput output(target, PendingOutput::Kind::file, options.overwrite);
-  write_frame(FrameData(fields).at(0), output.path(), options.compression, target);
+  write_bytes(output.path(), vtp_text(FrameData(fields).at(0), options.compression));
   report_progress(options.progress, 1);
   output.commit();
   return target;
@@ -233,7 +212,7 @@ std::vector<std::filesystem::path> write_all(const FieldSequence& fields,
   for (const FrameEntry& entry : entries) written.push_back(beside / entry.file);
   const auto write = [&](FrameData& data, int f) {
     const std::filesystem::path frame = entries[static_cast<std::size_t>(f)].file;
-    write_frame(data.at(f), folder.path() / frame.filename(), options.compression, target);
+    write_bytes(folder.path() / frame.filename(), vtp_text(data.at(f), options.compression));
   };
   FrameDataPool pool(fields, options.compression);
   auto first = std::make_unique<FrameData>(fields);

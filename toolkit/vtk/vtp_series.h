@@ -21,7 +21,7 @@ struct VtpOptions {
 };
 
 /// Writes a sequence with its fields for ParaView: `NAME.pvd` and `NAME.vtp.series` beside a folder
-/// `NAME_vtp` of `NAME_0000.vtp` ..., positions float32, appended raw, 32-bit ids, times in
+/// `NAME_vtp` of `NAME_0000.vtp` ..., positions float32, compressed binary, 32-bit ids, times in
 /// seconds, the user's polygons (triangle fields on the polygon: the largest of its triangles).
 /// Given NAME.vtp, only the first frame, in one file. Atomic: the .pvd appears last. Returns the
 /// files written, the one asked for first. Throws OutputError; std::invalid_argument for a field
