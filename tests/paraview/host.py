@@ -124,6 +124,7 @@ def write_mesh(path, mesh):
     writer = vtkXMLPolyDataWriter()
     writer.SetFileName(str(path))
     writer.SetInputData(mesh)
+    writer.SetDataModeToBinary()  # newer versions of libexpat let VTK read no appended data
     writer.Write()
 
 
