@@ -82,7 +82,7 @@ std::vector<BadInput> output_cases() {
   };
   full("convert_npy", "convert " + kSequence + " -o x.npy", "x.npy", 20);
   full("decompose_h5", "decompose " + kSequence + " -k 2 -o c.h5", "c.h5", 20);
-  full("regions_pvd", "regions " + kSequence + " -k 2 -o r.pvd", "r.pvd", 6);
+  full("regions_pvd", "regions " + kSequence + " -k 2 -o r.pvd", "r_vtp/r_0000.vtp", 6);
   all.push_back({"full_disk",
                  "stdout",
                  {},
