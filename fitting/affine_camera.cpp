@@ -6,6 +6,7 @@
 #include <Eigen/Eigenvalues>
 
 #include <mimetra/io/sequence_file.h>
+#include <mimetra/mesh/product_blocking.h>
 
 namespace mimetra {
 
@@ -23,6 +24,7 @@ AffineCamera estimate_affine_camera(const ModelPoints& points, const ImagePoints
     throw MismatchError(std::to_string(count) +
                         " landmarks, an affine camera needs at least 4 that are not coplanar");
   }
+  fix_product_blocking();
   // Normalised coordinates are centred on both sides. Their scales cancel in the closed form: a
   // linear regression commutes with them, and the eigenvalues' ratios do not depend on them.
   const Eigen::RowVector3d centre = points.colwise().mean();

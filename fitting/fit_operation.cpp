@@ -10,6 +10,7 @@
 #include <mimetra/fitting/landmark_fitter.h>
 #include <mimetra/fitting/landmark_input.h>
 #include <mimetra/fitting/landmark_mapping.h>
+#include <mimetra/mesh/product_blocking.h>
 #include <mimetra/operations/report.h>
 
 namespace mimetra {
@@ -113,6 +114,7 @@ MeshSequence sequence_of(const MorphableModel& model, const FittedCoefficients& 
   if (shape == FitOptions::Shape::clip) return sequence;
   Frames frames = sequence.positions();
   const Eigen::MatrixXd rest_of_identity = fit.alpha.rowwise() - fit.identity().transpose();
+  fix_product_blocking();
   frames.noalias() += rest_of_identity * model.identities().displacements.transpose();
   return sequence.with_frames(std::move(frames));
 }

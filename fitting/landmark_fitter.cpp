@@ -11,6 +11,7 @@
 
 #include <mimetra/fitting/fitted_frame.h>
 #include <mimetra/io/sequence_file.h>
+#include <mimetra/mesh/product_blocking.h>
 
 namespace mimetra {
 
@@ -206,6 +207,7 @@ LandmarkFitter::LandmarkFitter(const MorphableModel& model, std::vector<int> ver
         "a landmark is at vertex " + std::to_string(vertex) + ", but the model has vertices 0 to " +
         std::to_string(model.vertices() - 1) + "; is the mapping for another model?");
   }
+  fix_product_blocking();
   state_ = std::make_unique<State>(State{std::make_shared<const LandmarkRows>(model, vertices)});
 }
 
@@ -217,6 +219,7 @@ std::vector<FrameFit> LandmarkFitter::fit(const Frames& points, const FitOptions
                                           const Eigen::VectorXd& given_times,
                                           const Progress& progress) const {
   const FitOptions options = state_->checked(points, given, given_times);
+  fix_product_blocking();
   const Eigen::Index count = points.rows();
   const Eigen::VectorXd times = given_times.size() > 0
                                     ? given_times

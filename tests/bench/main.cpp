@@ -11,6 +11,7 @@
 
 #include <mimetra/vtk/picture.h>
 
+#include "blocking_bench.h"
 #include "command_bench.h"
 #include "fitting_bench.h"
 #include "geodesic_bench.h"
@@ -75,6 +76,7 @@ class Run {
     add(decomposition_row(first.name, first.performance, components(), settings()));
     add(splocs_kernel_rows(first.name, first.performance, components(), settings()));
     compare_with_numpy(first);
+    if (!settings().quick) compare_blockings(first, components());
     if (large) measure_long_job(*large);
     const Subject told = large ? first_frames(*large, 300) : first;
     add(fitting_rows(settings()));
@@ -162,6 +164,7 @@ class Run {
     constexpr int kManyComponents = 40;
     add(decomposition_row(subject.name, subject.performance, kManyComponents, settings()));
     add(splocs_kernel_rows(subject.name, subject.performance, kManyComponents, settings()));
+    compare_blockings(subject, kManyComponents);
     add(decompose_command_row(subject, kManyComponents, mimetra_, scratch_.path(), settings()));
   }
 
@@ -170,6 +173,12 @@ class Run {
                                                      components(), scratch_.path(), settings());
     add(std::move(comparison.rows));
     results_.notes.push_back(comparison.note);
+  }
+
+  void compare_blockings(const Subject& subject, int count) {
+    for (Comparison& found : blocking_comparisons(subject, count, settings())) {
+      results_.comparisons.push_back(std::move(found));
+    }
   }
 
   /// Set-up and query are shown.

@@ -92,27 +92,31 @@ Row decomposition_row(const std::string& name, const MeshSequence& sequence, int
   return measured({one}, settings.quick).front();
 }
 
-std::vector<Row> splocs_kernel_rows(const std::string& name, const MeshSequence& sequence,
-                                    int count, const Settings& settings) {
-  const Kernels kernels(sequence, count);
+std::vector<Case> splocs_kernel_cases(const std::string& name, const MeshSequence& sequence,
+                                      int count, const Settings& settings) {
+  const auto kernels = std::make_shared<const Kernels>(sequence, count);
   const double frames = sequence.frames(), vertices = sequence.vertices();
   const Size size{name, sequence.frames(), sequence.vertices(), "K", count};
   // As in the loop of the decomposition, each step takes what the one before gave.
-  Eigen::MatrixXd W = kernels.start.weights;
+  const Eigen::MatrixXd& W = kernels->start.weights;
   const UpdateWeights weights{W, W.transpose() * W};
-  ComponentUpdate<double> components = kernels.products;
-  const AdmmOptions admm{kernels.options.sparsity, kernels.options.rho, kAdmmSteps};
-  return measured(
-      {{{kGroup, kStart, size, start_work(frames, vertices, count, settings.machine)},
-        [&] { greedy_start(kernels.X, kernels.support, kernels.options); }},
-       {{kGroup, kWeightStep, size, weight_work(frames, count)},
-        [&] { W = updated_weights(std::move(W), kernels.products.P, kernels.products.H, true); }},
-       {{kGroup, kAdmm, size, admm_work(frames, vertices, count)},
-        [&] {
-          components =
-              updated_components(kernels.X, weights, kernels.maps, std::move(components), admm);
-        }}},
-      settings.quick);
+  const AdmmOptions admm{kernels->options.sparsity, kernels->options.rho, kAdmmSteps};
+  return {{{kGroup, kStart, size, start_work(frames, vertices, count, settings.machine)},
+           [kernels] { greedy_start(kernels->X, kernels->support, kernels->options); }},
+          {{kGroup, kWeightStep, size, weight_work(frames, count)},
+           [kernels, W = Eigen::MatrixXd(W)]() mutable {
+             W = updated_weights(std::move(W), kernels->products.P, kernels->products.H, true);
+           }},
+          {{kGroup, kAdmm, size, admm_work(frames, vertices, count)},
+           [kernels, weights, admm, components = kernels->products]() mutable {
+             components = updated_components(kernels->X, weights, kernels->maps,
+                                             std::move(components), admm);
+           }}};
+}
+
+std::vector<Row> splocs_kernel_rows(const std::string& name, const MeshSequence& sequence,
+                                    int count, const Settings& settings) {
+  return measured(splocs_kernel_cases(name, sequence, count, settings), settings.quick);
 }
 
 }  // namespace mimetra::bench

@@ -26,6 +26,8 @@ Row decomposition_row(const std::string& name, const MeshSequence& sequence, int
                       const Settings& settings);
 
 /// Start, weight step and ADMM on their own.
+std::vector<Case> splocs_kernel_cases(const std::string& name, const MeshSequence& sequence,
+                                      int count, const Settings& settings);
 std::vector<Row> splocs_kernel_rows(const std::string& name, const MeshSequence& sequence,
                                     int count, const Settings& settings);
 

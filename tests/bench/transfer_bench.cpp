@@ -53,25 +53,55 @@ Work box_work(const Counts& n) {
   return {2 * n.frames * n.expressions * n.expressions, 8 * n.frames * 2 * n.expressions};
 }
 
-/// The two halves of a frame of eq. 10: the right-hand side, and the solve in the box.
-std::vector<Row> half_rows(const Subject& subject, const std::vector<int>& triangles,
-                           const Size& size, const Settings& settings) {
-  const Counts counts = counts_of(subject, triangles);
-  const MeshSequence& performance = subject.performance;
-  const DeformationGradients gradients(performance.rest(), subject.target.triangles(), triangles);
-  const RightHandSide right_hand_side(performance.rest(), gradients, subject.target);
-  const auto all_right_hand_sides = [&] {
-    Eigen::MatrixXd h(performance.frames(), subject.target.expressions().size());
+/// The right-hand sides of a performance, on one thread.
+class RightHandSides {
+ public:
+  RightHandSides(const Subject& subject, const std::vector<int>& triangles)
+      : frames_(subject.performance.positions()),
+        expressions_(subject.target.expressions().size()),
+        of_frames_(
+            subject.performance.rest(),
+            DeformationGradients(subject.performance.rest(), subject.target.triangles(), triangles),
+            subject.target) {}
+
+  Eigen::MatrixXd operator()() const {
+    Eigen::MatrixXd h(frames_.rows(), expressions_);
     for (int first = 0; first < h.rows(); first += RightHandSide::kLanes) {
       const auto count = std::min<Eigen::Index>(RightHandSide::kLanes, h.rows() - first);
-      h.middleRows(first, count) =
-          right_hand_side(performance.positions().middleRows(first, count));
+      h.middleRows(first, count) = of_frames_(frames_.middleRows(first, count));
     }
     return h;
-  };
-  const Eigen::MatrixXd h = all_right_hand_sides();
+  }
+
+ private:
+  Frames frames_;
+  Eigen::Index expressions_;
+  RightHandSide of_frames_;
+};
+
+Size size_of(const Subject& subject) {
+  return {subject.name, subject.performance.frames(), subject.performance.vertices(), "D",
+          subject.target.expressions().size()};
+}
+
+Case right_hand_side_case(const Subject& subject, const std::vector<int>& triangles) {
+  const Counts counts = counts_of(subject, triangles);
+  const auto sides = std::make_shared<const RightHandSides>(subject, triangles);
+  return {{kGroup,
+           "right-hand sides, one thread",
+           size_of(subject),
+           right_hand_side_work(counts),
+           {"frame", counts.frames}},
+          [sides] { (*sides)(); }};
+}
+
+/// The two halves of a frame of eq. 10: the right-hand side, and the solve in the box.
+std::vector<Row> half_rows(const Subject& subject, const std::vector<int>& triangles,
+                           const Settings& settings) {
+  const Counts counts = counts_of(subject, triangles);
+  const Eigen::MatrixXd h = RightHandSides(subject, triangles)();
   const Eigen::MatrixXd gram =
-      BlendshapeTransfer(performance.rest(), subject.target, triangles).gram();
+      BlendshapeTransfer(subject.performance.rest(), subject.target, triangles).gram();
   const Eigen::VectorXd lower = Eigen::VectorXd::Zero(gram.rows());
   const Eigen::VectorXd upper = Eigen::VectorXd::Ones(gram.rows());
   const auto solve_all = [&] {
@@ -80,12 +110,14 @@ std::vector<Row> half_rows(const Subject& subject, const std::vector<int>& trian
       beta = box_least_squares(gram, h.row(f).transpose(), lower, upper, beta);
     }
   };
-  const Rate each{"frame", counts.frames};
-  return measured(
-      {{{kGroup, "right-hand sides, one thread", size, right_hand_side_work(counts), each},
-        [&] { all_right_hand_sides(); }},
-       {{kGroup, "box solve, one thread", size, box_work(counts), each}, solve_all}},
-      settings.quick);
+  return measured({right_hand_side_case(subject, triangles),
+                   {{kGroup,
+                     "box solve, one thread",
+                     size_of(subject),
+                     box_work(counts),
+                     {"frame", counts.frames}},
+                    solve_all}},
+                  settings.quick);
 }
 
 }  // namespace
@@ -98,8 +130,7 @@ std::vector<Row> blendshape_rows(const Subject& subject, double share, bool with
   const Counts counts = counts_of(subject, triangles);
   const std::string of_all =
       share < 1 ? ", " + std::to_string(std::lround(100 * share)) + " % of triangles" : "";
-  const Size size{subject.name, performance.frames(), performance.vertices(), "D",
-                  subject.target.expressions().size()};
+  const Size size = size_of(subject);
   const BlendshapeTransfer transfer(performance.rest(), subject.target, triangles);
   std::vector<Row> rows = measured(
       {{{kGroup, kBlendshapeSetup + of_all, size, setup_work(counts)},
@@ -112,9 +143,13 @@ std::vector<Row> blendshape_rows(const Subject& subject, double share, bool with
         [&] { transfer.weights(performance); }}},
       settings.quick);
   if (with_halves) {
-    for (Row& row : half_rows(subject, triangles, size, settings)) rows.push_back(std::move(row));
+    for (Row& row : half_rows(subject, triangles, settings)) rows.push_back(std::move(row));
   }
   return rows;
+}
+
+std::vector<Case> right_hand_side_cases(const Subject& subject) {
+  return {right_hand_side_case(subject, all_triangles(subject.target.triangles()))};
 }
 
 std::vector<Row> vertex_rows(const Subject& subject, const Settings& settings) {

@@ -17,6 +17,9 @@ constexpr const char* kVertexFrames = "vertex space transfer";
 std::vector<Row> blendshape_rows(const Subject& subject, double share, bool with_halves,
                                  const Settings& settings);
 
+/// The right-hand sides of eq. 11 over all triangles and frames, on one thread.
+std::vector<Case> right_hand_side_cases(const Subject& subject);
+
 /// Vertex space over all triangles: set-up and all frames.
 std::vector<Row> vertex_rows(const Subject& subject, const Settings& settings);
 

@@ -3,17 +3,14 @@
 
 #include <mimetra/model/blendshape_model.h>
 
-#include "shapes.h"
+#include "octahedron.h"
 
 namespace mimetra {
 namespace {
 
+using test::octahedron_connectivity;
 using testing::HasSubstr;
 using testing::ThrowsMessage;
-
-std::shared_ptr<const Connectivity> octahedron() {
-  return std::make_shared<Connectivity>(test::mesh_of(test::octahedron()).connectivity);
-}
 
 Positions neutral() {
   return test::octahedron().positions;
@@ -28,7 +25,7 @@ ShapeBasis smile_and_frown() {
 }
 
 BlendshapeModel model() {
-  return {octahedron(), neutral(), smile_and_frown()};
+  return {octahedron_connectivity(), neutral(), smile_and_frown()};
 }
 
 TEST(ShapeBasis, FindsANameOrMinusOne) {
@@ -77,7 +74,7 @@ TEST(BlendshapeModel, SharesItsConnectivityWithItsAnimation) {
 }
 
 TEST(BlendshapeModel, MayHaveNoExpressions) {
-  const BlendshapeModel face(octahedron(), neutral(), {});
+  const BlendshapeModel face(octahedron_connectivity(), neutral(), {});
   EXPECT_EQ(face.expressions().displacements.rows(), 18);
   EXPECT_EQ(face.pose(Eigen::VectorXd(0)), neutral());
   EXPECT_EQ(face.animate(Eigen::MatrixXd(3, 0)).frame(2), neutral());
@@ -92,14 +89,15 @@ TEST(BlendshapeModel, RefusesAnotherNumberOfWeights) {
 
 TEST(BlendshapeModel, RefusesANeutralOfAnotherVertexCount) {
   EXPECT_THAT(
-      [] { BlendshapeModel(octahedron(), Positions::Zero(5, 3), {}); },
+      [] { BlendshapeModel(octahedron_connectivity(), Positions::Zero(5, 3), {}); },
       ThrowsMessage<std::invalid_argument>(HasSubstr("the neutral has 5 vertices, expected 6")));
 }
 
 TEST(BlendshapeModel, RefusesDisplacementsOfAnotherVertexCount) {
   EXPECT_THAT(
       [] {
-        BlendshapeModel(octahedron(), neutral(), {{"smile"}, Eigen::MatrixXd::Zero(15, 1)});
+        BlendshapeModel(octahedron_connectivity(), neutral(),
+                        {{"smile"}, Eigen::MatrixXd::Zero(15, 1)});
       },
       ThrowsMessage<std::invalid_argument>(HasSubstr("15 rows, expected 3 x 6")));
 }
@@ -107,7 +105,8 @@ TEST(BlendshapeModel, RefusesDisplacementsOfAnotherVertexCount) {
 TEST(BlendshapeModel, RefusesDisplacementsWithoutNames) {
   EXPECT_THAT(
       [] {
-        BlendshapeModel(octahedron(), neutral(), {{"smile"}, Eigen::MatrixXd::Zero(18, 2)});
+        BlendshapeModel(octahedron_connectivity(), neutral(),
+                        {{"smile"}, Eigen::MatrixXd::Zero(18, 2)});
       },
       ThrowsMessage<std::invalid_argument>(HasSubstr("2 displacement fields for 1 shape names")));
 }
@@ -115,7 +114,7 @@ TEST(BlendshapeModel, RefusesDisplacementsWithoutNames) {
 TEST(BlendshapeModel, RefusesANameThatOccursTwice) {
   ShapeBasis basis = smile_and_frown();
   basis.names[1] = "smile";
-  EXPECT_THAT([&] { BlendshapeModel(octahedron(), neutral(), basis); },
+  EXPECT_THAT([&] { BlendshapeModel(octahedron_connectivity(), neutral(), basis); },
               ThrowsMessage<std::invalid_argument>(HasSubstr("shape name 'smile' occurs twice")));
 }
 

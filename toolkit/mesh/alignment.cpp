@@ -9,6 +9,7 @@
 #include <Eigen/SVD>
 
 #include <mimetra/mesh/alignment.h>
+#include <mimetra/mesh/product_blocking.h>
 
 namespace mimetra {
 namespace {
@@ -47,6 +48,7 @@ class RigidFitter {
  public:
   RigidFitter(const Eigen::Ref<const Positions>& from, const Eigen::VectorXd& weights)
       : moments_(from.rows(), 4) {
+    fix_product_blocking();
     const Eigen::VectorXd shares = weights / weights.sum();
     center_ = from.transpose() * shares;
     moments_.leftCols<3>() = shares.asDiagonal() * (from.rowwise() - center_.transpose());

@@ -3,6 +3,7 @@
 #include <unordered_set>
 #include <utility>
 
+#include <mimetra/mesh/product_blocking.h>
 #include <mimetra/model/blendshape_model.h>
 
 namespace mimetra {
@@ -66,6 +67,7 @@ Positions BlendshapeModel::pose(const Eigen::VectorXd& beta) const {
 
 MeshSequence BlendshapeModel::animate(const Eigen::MatrixXd& weights, Eigen::VectorXd times) const {
   check_weight_count(weights.cols(), expressions_.size());
+  fix_product_blocking();
   Frames frames = flat(neutral_).transpose().replicate(weights.rows(), 1);
   frames.noalias() += weights * expressions_.displacements.transpose();
   return {connectivity_, std::move(frames), std::move(times), neutral_};

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include <mimetra/mesh/product_blocking.h>
 #include <mimetra/model/second_differences.h>
 #include <mimetra/model/temporal_system.h>
 
@@ -154,6 +155,7 @@ Eigen::MatrixXd smooth_weights(const std::vector<Eigen::MatrixXd>& grams, const 
     throw std::invalid_argument("smoothness: " + std::to_string(times.size()) + " times for " +
                                 std::to_string(h.rows()) + " frames");
   }
+  fix_product_blocking();
   if (h.rows() < 3) return single;
   // Nothing pulls upwards: the interior-point method would have no scale to work with.
   if (h.maxCoeff() <= 0) return Eigen::MatrixXd::Zero(h.rows(), h.cols());

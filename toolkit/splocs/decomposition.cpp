@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include <mimetra/mesh/product_blocking.h>
 #include <mimetra/splocs/component_update.h>
 #include <mimetra/splocs/motion.h>
 #include <mimetra/splocs/start.h>
@@ -154,6 +155,7 @@ void finish(Components& result) {
 Components decompose(const MeshSequence& sequence, const DecompositionOptions& options) {
   require_valid(options);
   require_decomposable(sequence, options.count);
+  fix_product_blocking();
   Components result;
   result.rest = sequence.rest();
   result.triangles = sequence.triangles();

@@ -11,6 +11,7 @@
 
 #include <mimetra/mesh/inspection.h>
 #include <mimetra/mesh/parallel.h>
+#include <mimetra/mesh/product_blocking.h>
 #include <mimetra/model/box_least_squares.h>
 #include <mimetra/model/smooth_weights.h>
 #include <mimetra/regions/regions.h>
@@ -191,6 +192,7 @@ BlendshapeTransfer::BlendshapeTransfer(const Positions& source_rest, const Blend
                                        std::vector<int> triangles,
                                        const BlendshapeTransferOptions& options) {
   check(source_rest, target, options);
+  fix_product_blocking();
   state_ = std::make_unique<State>(source_rest, target, std::move(triangles));
   state_->judge(target);
   state_->set_up(options);
@@ -204,6 +206,7 @@ Eigen::MatrixXd BlendshapeTransfer::weights(const MeshSequence& performance,
                                             const Progress& progress) const {
   const State& state = *state_;
   state.check_size(performance);
+  fix_product_blocking();
   const Eigen::VectorXd lower = Eigen::VectorXd::Zero(state.upper.size());
   const double penalty = state.options.sparsity * state.mean_diagonal;
   const int frames = performance.frames();
@@ -235,6 +238,7 @@ Eigen::VectorXd BlendshapeTransfer::right_hand_side(
     throw MismatchError("the frame has " + std::to_string(frame.rows()) +
                         " vertices, the rest pose " + std::to_string(state_->vertices));
   }
+  fix_product_blocking();
   const Positions copy = frame;
   const Eigen::Map<const Frames> row(copy.data(), 1, copy.size());
   return state_->right_hand_side(row).transpose();
@@ -248,6 +252,7 @@ bool BlendshapeTransfer::rest_looks_unneutral(const MeshSequence& performance,
                                               const Eigen::MatrixXd& weights) const {
   const State& state = *state_;
   state.check_size(performance);
+  fix_product_blocking();
   if (weights.rows() != performance.frames() || weights.cols() != state.gram.cols()) {
     throw MismatchError("the weights are not those of the performance");
   }

@@ -6,17 +6,19 @@
 #include <mimetra/transfer/blendshape_transfer.h>
 #include <mimetra/transfer/vertex_transfer.h>
 
+#include "cache_sizes.h"
 #include "shapes.h"
 
 namespace mimetra {
 namespace {
 
-/// Several blocks of vertices and of frames, so that threads have something to share.
-class Threads : public testing::Test {
+/// Several blocks of vertices and of frames, so that threads have something to share and products
+/// are long enough to be cut.
+class SameBytes : public testing::Test {
  protected:
   static constexpr int kSide = 36, kFrames = 100;
 
-  Threads() {
+  SameBytes() {
     const test::Shape shape = test::grid(kSide, kSide);
     const auto n = static_cast<int>(shape.positions.rows());
     auto connectivity =
@@ -38,18 +40,25 @@ class Threads : public testing::Test {
     sequence_ = model_.animate(weights, Eigen::VectorXd::LinSpaced(kFrames, 0, 4));
   }
 
+  DistanceFunction straight_distances() const {
+    return one_by_one([this](VertexIndex source) {
+      return Eigen::VectorXd(
+          (sequence_.rest().rowwise() - sequence_.rest().row(source)).rowwise().norm());
+    });
+  }
+
   BlendshapeModel model_;
   MeshSequence sequence_;
 };
 
+class Threads : public SameBytes {};
+class ProductBlocking : public SameBytes {};
+
 TEST_F(Threads, DoNotChangeADecomposition) {
-  const DistanceFunction distances = one_by_one([this](VertexIndex source) {
-    return Eigen::VectorXd(
-        (sequence_.rest().rowwise() - sequence_.rest().row(source)).rowwise().norm());
-  });
   const auto components = [&](int threads) {
-    return decompose(sequence_,
-                     {.count = 4, .iterations = 3, .distances = distances, .threads = threads});
+    return decompose(
+        sequence_,
+        {.count = 4, .iterations = 3, .distances = straight_distances(), .threads = threads});
   };
   const Components one = components(1);
   for (const int threads : {2, 5}) {
@@ -76,6 +85,31 @@ TEST_F(Threads, DoNotChangeATransfer) {
     EXPECT_TRUE(weights(threads) == weights(1)) << threads;
     EXPECT_TRUE(frames(threads) == frames(1)) << threads;
   }
+}
+
+TEST_F(ProductBlocking, IsFixedForDecompositions) {
+  for (const bool single : {false, true}) {
+    for (const double tolerance : {0.0, 0.01}) {
+      test::expect_equal_bytes_on_each_processor([&] {
+        return Eigen::MatrixXd(decompose(sequence_, {.count = 4,
+                                                     .iterations = 3,
+                                                     .basis_tolerance = tolerance,
+                                                     .single_precision = single,
+                                                     .distances = straight_distances()})
+                                   .displacements);
+      });
+    }
+  }
+}
+
+TEST_F(ProductBlocking, IsFixedForTransfers) {
+  const std::vector<int> all = all_triangles(sequence_.triangles());
+  test::expect_equal_bytes_on_each_processor(
+      [&] { return BlendshapeTransfer(sequence_.rest(), model_, all).gram(); });
+  const BlendshapeTransfer transfer(sequence_.rest(), model_, all);
+  test::expect_equal_bytes_on_each_processor([&] { return transfer.weights(sequence_); });
+  test::expect_equal_bytes_on_each_processor(
+      [&] { return transfer.right_hand_side(sequence_.frame(7)); });
 }
 
 }  // namespace
