@@ -320,7 +320,8 @@ typedef struct mimetra_interface {
   mimetra_status (*load_data)(mimetra_context* context, mimetra_kind kind, const char* text,
                               const char* const* settings, mimetra_data** data);
   /* Writes it by the path's extension, as the command does. `settings` are the command's parameters
-   * of writing ("format=obj"), and "force=true" to replace what is there; NULL for none. */
+   * of writing ("format=obj"), and "force=true" to replace what was written before; NULL for none.
+   */
   mimetra_status (*save_data)(mimetra_context* context, const mimetra_data* data, const char* path,
                               const char* const* settings);
   void (*free_data)(mimetra_data* data);

@@ -7,7 +7,7 @@ namespace mimetra {
 namespace {
 
 /// Replaces what exists; no parameter of any operation.
-const Parameter kForce = {"force", ParameterKind::flag, false, "replace what exists"};
+const Parameter kForce = {"force", ParameterKind::flag, false, "replace what an earlier run wrote"};
 
 Parameters parameters_of(std::vector<Parameter> declared, const char* const* settings) {
   Parameters parameters(std::move(declared));

@@ -41,7 +41,7 @@ Value derived(const Value& base, const std::vector<mimetra_array>& changes) {
   return std::get<Value>(derived_data({"it", base}, list_of(changes).data()).data);
 }
 
-MeshSequence take() {
+MeshSequence moving_take() {
   const test::Shape shape = test::grid(3, 2);
   Frames frames(2, shape.positions.size());
   frames.row(0) = shape.positions.reshaped<Eigen::RowMajor>();
@@ -55,7 +55,7 @@ constexpr int kTriangles = 4;
 
 Components components() {
   Components made;
-  const MeshSequence sequence = take();
+  const MeshSequence sequence = moving_take();
   made.rest = sequence.frame(0);
   made.triangles = sequence.triangles();
   made.displacements = Frames::Ones(1, 3 * kVertices);
@@ -65,7 +65,7 @@ Components components() {
 }
 
 TEST(DerivedData, KeepsWhatNoArrayShows) {
-  const MeshSequence sequence = take();
+  const MeshSequence sequence = moving_take();
   const double times[] = {1, 2};
   const std::vector<mimetra_array> other_times = {array("times", MIMETRA_F64, {2}, times)};
   EXPECT_TRUE(derived(SequenceRead{sequence, true, {}, {}}, other_times).model_driven);
@@ -104,7 +104,7 @@ TEST(DerivedData, KeepsTheImagesOfAsManyFrames) {
 }
 
 TEST(DerivedData, KeepsTheMeshOfRegions) {
-  const MeshSequence sequence = take();
+  const MeshSequence sequence = moving_take();
   const Regions regions = regions_from_vertices(kVertices, sequence.triangles(), {{0}});
   const RegionData base{regions, {sequence, fields_of(regions), true}};
   const std::uint8_t masks[2 * kVertices] = {1, 0, 0, 0, 0, 0, 0, 1};
@@ -121,7 +121,7 @@ TEST(DerivedData, KeepsTheMeshOfRegions) {
 }
 
 TEST(DerivedData, TellsFieldsOnVerticesFromThoseOnTriangles) {
-  const MeshSequence sequence = take();
+  const MeshSequence sequence = moving_take();
   const FieldSequence base{
       sequence,
       {{"energy", Field::Location::vertices, Eigen::MatrixXd::Ones(kVertices, 1), false},

@@ -84,7 +84,9 @@ TEST_F(Command, RegionsWritesATimeSeriesForParaView) {
   const auto result = run("regions head --weights take.csv -k 3 -o out/r.pvd");
   ASSERT_EQ(result.code, 0) << result.err;
   EXPECT_THAT(text_of(folder_ / "out/r.pvd"), HasSubstr("r_vtp/r_0011.vtp"));
-  EXPECT_EQ(listing("out/r_vtp").size(), 12u);
+  const auto frames = listing("out/r_vtp");
+  EXPECT_EQ(frames.size(), 12u + 1);
+  EXPECT_TRUE(frames.contains("mimetra-run.json"));
 }
 
 TEST_F(Command, TransferToTheSameHeadGivesTheSourceBack) {

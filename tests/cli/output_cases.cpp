@@ -60,6 +60,14 @@ void add_making(std::vector<BadInput>& all, const Making& making) {
   add("file_instead_of_a_folder", "take.csv/" + name, {}, {"take.csv/" + name, "cannot be written"},
       "");
   add("existing_output", name, file(name, "mine"), {name, "exists already", "--force"}, "");
+  if (!fs::path(name).has_extension()) {
+    const auto of_users = [name](const fs::path& folder) {
+      fs::create_directory(folder / name);
+      std::ofstream(folder / name / "notes.txt") << "mine";
+    };
+    add("folder_of_others", name + " --force", of_users, {name, "holds 'notes.txt'", "manifest"},
+        "");
+  }
   // In blocks of 512 bytes; without the signal, writing fails as on a full disk.
   add("full_disk", name, {}, {fs::path(name).stem().string(), "cannot be written"},
       "trap '' XFSZ; ulimit -f 1;");
@@ -80,6 +88,23 @@ std::vector<BadInput> output_cases() {
                    {name, "cannot be written"},
                    "trap '' XFSZ; ulimit -f " + std::to_string(blocks) + ";"});
   };
+  const auto of_input = [&all](const std::string& subject, const std::string& arguments,
+                               std::vector<std::string> says) {
+    all.push_back({"output_is_an_input", subject,
+                   [](const fs::path& folder) {
+                     fs::copy(folder / "head", folder / "p", fs::copy_options::recursive);
+                     fs::create_symlink("take.csv", folder / "link.csv");
+                   },
+                   arguments + " --force", 5, std::move(says)});
+  };
+  of_input("model", "convert head -o head", {"head: is an input of this run"});
+  of_input("dots", "convert head -o p/../head/", {"head", "is an input of this run"});
+  of_input("link", "decompose head --weights link.csv -k 2 -o c.h5 --weights-out take.csv",
+           {"take.csv: is an input of this run"});
+  of_input("part", "convert head --weights take.csv --frames 0:1 -o head/neutral.ply",
+           {"head/neutral.ply: is a part of head, an input of this run"});
+  of_input("folder", "convert head --weights p/performance.csv -o p",
+           {"p: holds p/performance.csv, an input of this run"});
   full("convert_npy", "convert " + kSequence + " -o x.npy", "x.npy", 20);
   full("decompose_h5", "decompose " + kSequence + " -k 2 -o c.h5", "c.h5", 20);
   full("regions_pvd", "regions " + kSequence + " -k 2 -o r.pvd", "r_vtp/r_0000.vtp", 6);

@@ -141,5 +141,56 @@ TEST_F(Output, ProgressBarIsDrawnOnlyWhenAskedForOffATerminal) {
   EXPECT_THAT(run("convert head --weights take.csv -o b.npy --progress always").err, drawn);
 }
 
+TEST_F(Output, KeepsInputsThatItsCompanionsWouldReplace) {
+  ASSERT_EQ(run("convert head --weights take.csv -o a.npy").code, 0);
+  ASSERT_EQ(run("convert head -o x.topology.ply").code, 0);
+  ASSERT_EQ(run("convert head -o y.rest.ply").code, 0);
+  ASSERT_EQ(run("regions a.npy -k 2 -o r.pvd").code, 0);
+  const std::string topology = text_of(folder_ / "x.topology.ply");
+  const std::string rest = text_of(folder_ / "y.rest.ply");
+  const std::string frame = text_of(folder_ / "r_vtp/r_0001.vtp");
+
+  const auto other = run("convert a.npy --topology x.topology.ply -o x.npy --force");
+  EXPECT_EQ(other.code, 5);
+  EXPECT_THAT(other.err, testing::HasSubstr("x.topology.ply: is an input of this run"));
+  const auto stale = run("convert y.rest.ply -o y --force");
+  EXPECT_EQ(stale.code, 5);
+  EXPECT_THAT(stale.err, testing::HasSubstr("y.rest.ply: is an input of this run"));
+  const auto series = run("regions r.vtp.series -k 2 -o r.pvd --force");
+  EXPECT_EQ(series.code, 5);
+  EXPECT_THAT(series.err, testing::HasSubstr("r.vtp.series: is an input of this run"));
+
+  EXPECT_EQ(text_of(folder_ / "x.topology.ply"), topology);
+  EXPECT_EQ(text_of(folder_ / "y.rest.ply"), rest);
+  EXPECT_EQ(text_of(folder_ / "r_vtp/r_0001.vtp"), frame);
+}
+
+TEST_F(Output, MayBeWrittenBesideItsInputWhoseRestPoseItKeeps) {
+  ASSERT_EQ(run("convert head --weights take.csv -o a").code, 0);
+  const std::string rest = text_of(folder_ / "a.rest.ply");
+  ASSERT_EQ(run("convert a -o a.npy").code, 0);
+  EXPECT_EQ(run("convert a -o a.npy --force").code, 0);
+  EXPECT_EQ(text_of(folder_ / "a.rest.ply"), rest);
+}
+
+TEST_F(Output, MayBeReplacedByEveryKindOfRun) {
+  for (const std::string arguments : {"sample -o s", "convert head --weights take.csv -o f",
+                                      "transfer head --weights take.csv head head@wide=1 -k 2 -o t",
+                                      "regions head --weights take.csv -k 2 -o r.pvd"}) {
+    ASSERT_EQ(run(arguments).code, 0) << arguments;
+    const auto again = run(arguments + " --force");
+    EXPECT_EQ(again.code, 0) << arguments << again.err;
+  }
+}
+
+TEST_F(Output, DoesNotLieInAnotherOne) {
+  const auto before = listing();
+  const auto nested =
+      run("transfer head --weights take.csv head -k 2 -o out --regions-out out/r.pvd");
+  EXPECT_EQ(nested.code, 2);
+  EXPECT_THAT(nested.err, testing::HasSubstr("out/r.pvd: lies in out, another output"));
+  EXPECT_EQ(listing(), before);
+}
+
 }  // namespace
 }  // namespace mimetra

@@ -97,9 +97,9 @@ TEST_F(Model, ComesBackAfterWriting) {
 
 TEST_F(Model, AppearsWithItsPerformanceAndFurtherFiles) {
   const WeightTrack track{{"smile"}, Eigen::Vector2d(0, 1), Eigen::Vector2d(0, 0.04)};
-  write_model(folder_ / "m", small_model(), track, false, {{"mimetra-run.json", "{}"}});
+  write_model(folder_ / "m", small_model(), track, false, {{"landmarks68.txt", "1 = 2"}});
   EXPECT_EQ(read_weights(folder_ / "m/performance.csv").weights, track.weights);
-  EXPECT_EQ(read_file(folder_ / "m/mimetra-run.json"), "{}");
+  EXPECT_EQ(read_file(folder_ / "m/landmarks68.txt"), "1 = 2");
 }
 
 TEST_F(Model, IsNotWrittenWhereAShapeNameCannotBeAFile) {

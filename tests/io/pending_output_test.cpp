@@ -1,5 +1,7 @@
 #include <mimetra/io/pending_output.h>
 
+#include <functional>
+
 #include <gmock/gmock.h>
 
 #include <mimetra/mesh/errors.h>
@@ -82,8 +84,11 @@ TEST(PendingOutput, RefusesATargetThatAppearedMeanwhile) {
 
 TEST(PendingOutput, OverwritingReplacesAFolderAsAWhole) {
   const TemporaryFolder folder;
-  fs::create_directory(folder / "out");
-  write_bytes(folder / "out/old", "old");
+  {
+    PendingOutput before(folder / "out", Kind::folder, false);
+    write_bytes(before.path() / "old", "old");
+    before.commit();
+  }
   PendingOutput output(folder / "out", Kind::folder, true);
   write_bytes(output.path() / "new", "new");
   EXPECT_TRUE(fs::exists(folder / "out/old"));
@@ -142,6 +147,100 @@ TEST(ReadFile, SaysWhetherAFileIsMissingOrAFolder) {
             (folder / "none").string() + ": no such file");
   EXPECT_EQ(message_of<IoError>([&] { read_file(folder.path()); }),
             folder.path().string() + ": is a folder, expected a file");
+}
+
+/// A folder as an earlier run left it.
+void write_folder(const fs::path& target, const std::string& content) {
+  PendingOutput output(target, Kind::folder, true);
+  write_bytes(output.path() / "frame_0000.ply", content);
+  fs::create_directory(output.path() / "expressions");
+  write_bytes(output.path() / "expressions/smile.ply", content);
+  output.commit();
+}
+
+TEST(PendingOutput, ReplacesAFolderOfAnEarlierRun) {
+  const TemporaryFolder folder;
+  write_folder(folder / "out", "old");
+  write_folder(folder / "out", "new");
+  EXPECT_EQ(read_file(folder / "out/expressions/smile.ply"), "new");
+  EXPECT_THAT(folder.names(), ElementsAre("out"));
+}
+
+TEST(PendingOutput, ReplacesAnEmptyFolder) {
+  const TemporaryFolder folder;
+  fs::create_directory(folder / "out");
+  write_folder(folder / "out", "new");
+  EXPECT_EQ(read_file(folder / "out/frame_0000.ply"), "new");
+}
+
+TEST(PendingOutput, ListsTheFilesOfAFolderBesideWhatItsManifestSays) {
+  const TemporaryFolder folder;
+  PendingOutput output(folder / "out", Kind::folder, false);
+  write_bytes(output.path() / "a.ply", "a");
+  write_bytes(output.path() / "mimetra-run.json", R"({"command": "convert", "version": "1"})");
+  output.commit();
+  EXPECT_EQ(read_file(folder / "out/mimetra-run.json"),
+            "{\n  \"command\": \"convert\",\n  \"version\": \"1\",\n  \"files\": [\n    "
+            "\"a.ply\"\n  ]\n}\n");
+}
+
+/// What somebody else puts into a folder of ours.
+struct Foreign {
+  std::string name;
+  std::function<void(const fs::path&)> make;
+  std::string named;  ///< in the message
+};
+
+class ForeignFile : public testing::TestWithParam<Foreign> {};
+
+TEST_P(ForeignFile, KeepsAFolderFromBeingReplaced) {
+  const TemporaryFolder folder;
+  write_folder(folder / "out", "old");
+  GetParam().make(folder / "out");
+  EXPECT_EQ(message_of<OutputError>([&] { write_folder(folder / "out", "new"); }),
+            (folder / "out").string() + ": holds " + GetParam().named +
+                ", which no manifest of an earlier run lists; --force replaces nothing else: move "
+                "what is yours, or choose another name");
+  EXPECT_EQ(read_file(folder / "out/frame_0000.ply"), "old");
+  EXPECT_THAT(folder.names(), ElementsAre("out"));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    PendingOutput, ForeignFile,
+    testing::Values(
+        Foreign{"Beside", [](const fs::path& out) { write_bytes(out / "notes.txt", "mine"); },
+                "'notes.txt'"},
+        Foreign{"Hidden", [](const fs::path& out) { write_bytes(out / ".notes", "mine"); },
+                "'.notes'"},
+        Foreign{"Below",
+                [](const fs::path& out) {
+                  fs::create_directory(out / "textures");
+                  write_bytes(out / "textures/skin.png", "mine");
+                },
+                "'textures/skin.png'"},
+        Foreign{"EmptyFolder", [](const fs::path& out) { fs::create_directory(out / "wip"); },
+                "'wip'"},
+        Foreign{"Link", [](const fs::path& out) { fs::create_symlink("/", out / "root"); },
+                "'root'"},
+        Foreign{"Several",
+                [](const fs::path& out) {
+                  for (const char* name : {"e", "d", "c", "b", "a"}) write_bytes(out / name, "");
+                },
+                "'a', 'b', 'c' and 2 more"},
+        Foreign{"NoManifest", [](const fs::path& out) { fs::remove(out / "mimetra-run.json"); },
+                "'expressions/smile.ply', 'frame_0000.ply'"},
+        Foreign{"BrokenManifest",
+                [](const fs::path& out) { write_bytes(out / "mimetra-run.json", "{"); },
+                "'expressions/smile.ply', 'frame_0000.ply', 'mimetra-run.json'"}),
+    [](const auto& test) { return test.param.name; });
+
+TEST(PendingOutput, KeepsWhatSomebodyPutsThereMeanwhile) {
+  const TemporaryFolder folder;
+  write_folder(folder / "out", "old");
+  PendingOutput output(folder / "out", Kind::folder, true);
+  write_bytes(folder / "out/notes.txt", "mine");
+  EXPECT_THROW(output.commit(), OutputError);
+  EXPECT_EQ(read_file(folder / "out/notes.txt"), "mine");
 }
 
 }  // namespace

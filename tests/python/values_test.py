@@ -126,6 +126,18 @@ class Values(SampleTest):
         np.testing.assert_allclose(mimetra.Sequence.load(path).positions, self.arrays.positions,
                                    atol=1e-5)
 
+    def test_a_folder_is_replaced_only_where_all_in_it_was_saved(self):
+        folder = self.path / "frames"
+        self.arrays.save(folder)
+        self.arrays.save(folder, force=True, format="obj")
+        self.assertTrue((folder / "frame_0000.obj").exists())
+        notes = folder / "notes.txt"
+        notes.write_text("mine")
+        with self.assertRaisesRegex(mimetra.OutputError, "holds 'notes.txt'"):
+            self.arrays.save(folder, force=True)
+        self.assertEqual(notes.read_text(), "mine")
+        self.assertTrue((folder / "frame_0000.obj").exists())
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -77,7 +77,7 @@ std::vector<CommandOption> common_options(const Operation& operation) {
       {"threads", {"--threads"}, "N", "threads to compute with (default all)"},
       {"config", {"--config"}, "FILE", "JSON file with values of options", {}, true}};
   if (!operation.outputs.empty()) {
-    options.push_back({"force", {"--force"}, "", "replace what exists"});
+    options.push_back({"force", {"--force"}, "", "replace what an earlier run wrote"});
     options.push_back({"dry-run", {"--dry-run"}, "", "tell the plan and the memory, and stop"});
   }
   for (CommandOption& option : options) option.common = true;

@@ -58,7 +58,7 @@ std::string manifest(const Request& request, const FinishedRun& run) {
 }
 
 std::string manifest_name(const std::filesystem::path& output, bool is_folder) {
-  if (is_folder) return "mimetra-run.json";
+  if (is_folder) return kFolderManifest;
   const std::string name = output.stem().string() + ".run.json";
   const auto path = output.parent_path() / name;
   const bool is_free = !std::filesystem::exists(path) || tells_of(path, output);

@@ -19,7 +19,7 @@ constexpr ExitCodeLine kExitCodes[] = {
     {"2", "usage: an unknown option, or a value that is wrong whatever the data"},
     {"3", "an input is wrong in itself: missing, unreadable, truncated, not finite, without faces"},
     {"4", "inputs contradict each other or the request"},
-    {"5", "an output cannot be written, or exists and --force was not given"},
+    {"5", "an output cannot be written, or exists and may not be replaced"},
     {"130", "interrupted; nothing was written"}};
 
 /// Text as roff shows it: a hyphen is a minus sign, a leading dot is no request.

@@ -87,22 +87,33 @@ void check_outputs(const OperationTable& table, const Request& request) {
   }
 }
 
-/// Where the values of the outputs asked for go, given the names of the repeated input.
+/// Where the values of the outputs asked for go, given the names of the repeated input and all that
+/// was read.
 OutputPaths output_paths(const OperationTable& table, const Request& request,
-                         const std::vector<std::string>& names) {
+                         const std::vector<std::string>& names,
+                         const std::vector<std::filesystem::path>& inputs) {
   OutputPaths all;
-  std::set<std::filesystem::path> places;
+  std::set<std::filesystem::path> places, folders;
   for (const Output& output : request.operation->outputs) {
     const auto asked = path_of(table, request, output);
     if (!asked) continue;
     all[output.name] = table.output_paths(output, *asked, names);
     for (const auto& path : all[output.name]) {
-      table.check_writable(output.kind, path, request.force);
+      table.check_writable(output.kind, path, request.force, inputs);
       if (!places.insert(path).second) {
         throw UsageError(path.string() +
                          ": two outputs would be written there; give each a name of its own, and "
                          "run inputs of one name one by one");
       }
+      if (table.writes_folder(output.kind, path)) folders.insert(path);
+    }
+  }
+  for (const auto& folder : folders) {
+    for (const auto& place : places) {
+      const auto below = place.lexically_relative(folder);
+      if (place == folder || below.empty() || *below.begin() == "..") continue;
+      throw UsageError(place.string() + ": lies in " + folder.string() +
+                       ", another output, which a run replaces as a whole; name a place beside it");
     }
   }
   return all;
@@ -121,8 +132,9 @@ std::vector<std::string> repeated_names(const Operation& operation, const Loaded
   return names;
 }
 
-void write_outputs(const OperationTable& table, const Request& request, const OutputPaths& paths,
-                   const Outcome& outcome, const std::string& manifest_text, Bar& bar) {
+void write_outputs(const OperationTable& table, const Request& request, const FinishedRun& run,
+                   const OutputPaths& paths, const Outcome& outcome,
+                   const std::string& manifest_text, Bar& bar) {
   std::size_t count = 0, written = 0;
   for (const auto& [name, targets] : paths) count += targets.size();
   // Once one output stands, the others follow: an interrupted run leaves all of them or none.
@@ -142,6 +154,7 @@ void write_outputs(const OperationTable& table, const Request& request, const Ou
       const auto& target = wanted->second.at(i);
       WriteRequest write{target, request.parameters, request.force, progress};
       write.threads = request.threads;
+      write.inputs = run.inputs;
       // What accompanies another output is told of in that one's manifest.
       if (request.outputs.contains(output.name)) {
         write.extra = {
@@ -190,14 +203,14 @@ void run_command(const OperationTable& table, const Request& request) {
   const Stopwatch reading;
   LoadedInputs loaded = load_inputs(table, *request.operation, request.parameters, request.inputs,
                                     part_of(progress, 0, kRunningFrom), log, request.threads);
-  const OutputPaths paths =
-      output_paths(table, request, repeated_names(*request.operation, loaded));
   run.inputs = std::move(loaded.files);
   for (const std::filesystem::path file : request.files) {
     if (std::ranges::find(run.inputs, file) == run.inputs.end()) {
       run.inputs.push_back(file);
     }
   }
+  const OutputPaths paths =
+      output_paths(table, request, repeated_names(*request.operation, loaded), run.inputs);
   run.read_seconds = reading.seconds();
 
   Invocation invocation;
@@ -223,7 +236,7 @@ void run_command(const OperationTable& table, const Request& request) {
   const std::string manifest_text =
       request.outputs.empty() ? std::string() : manifest(request, run);
   const Stopwatch writing;
-  write_outputs(table, request, paths, outcome, manifest_text, bar);
+  write_outputs(table, request, run, paths, outcome, manifest_text, bar);
   bar.clear();
   if (!paths.empty() && !request.quiet) std::cerr << cost(run, writing.seconds());
   print_result(request, outcome);

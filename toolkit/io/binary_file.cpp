@@ -17,7 +17,7 @@ namespace mimetra {
 namespace fs = std::filesystem;
 namespace {
 
-std::string last_error() {
+std::string last_reason() {
   return std::error_code(errno, std::generic_category()).message();
 }
 
@@ -51,7 +51,7 @@ InputFile::InputFile(fs::path path)
     size_ = static_cast<std::size_t>(end);
     return;
   }
-  const std::string reason = last_error();
+  const std::string reason = last_reason();
   if (descriptor_ >= 0) ::close(descriptor_);
   throw IoError(path_.string(), "cannot be read: " + reason);
 }
@@ -64,7 +64,7 @@ void InputFile::read(std::size_t offset, char* to, std::size_t bytes) const {
   const ssize_t done = repeated(bytes, [&](std::size_t so_far) {
     return pread(descriptor_, to + so_far, bytes - so_far, static_cast<off_t>(offset + so_far));
   });
-  if (done < 0) throw IoError(path_.string(), "cannot be read: " + last_error());
+  if (done < 0) throw IoError(path_.string(), "cannot be read: " + last_reason());
   if (static_cast<std::size_t>(done) < bytes) {
     throw IoError(path_.string(), "is truncated: it became shorter while it was read");
   }
@@ -116,7 +116,7 @@ void OutputFile::close() {
 }
 
 void OutputFile::fail() const {
-  throw OutputError(committed_name(path_).string(), "cannot be written: " + last_error());
+  throw OutputError(committed_name(path_).string(), "cannot be written: " + last_reason());
 }
 
 }  // namespace mimetra

@@ -20,7 +20,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Regular files of a folder in natural order; none where it is not a folder.
-std::vector<fs::path> files_in(const fs::path& folder) {
+std::vector<fs::path> sorted_files_in(const fs::path& folder) {
   std::vector<fs::path> files;
   std::error_code error;
   for (fs::directory_iterator entry(folder, error), end; !error && entry != end;
@@ -38,7 +38,7 @@ std::vector<fs::path> files_in(const fs::path& folder) {
 /// The file of a folder whose name starts with `start` and ends with `end`.
 std::optional<fs::path> file_like(const fs::path& folder, const std::string& start,
                                   const std::string& end) {
-  for (const fs::path& file : files_in(folder)) {
+  for (const fs::path& file : sorted_files_in(folder)) {
     const std::string name = file.filename().string();
     if (name.starts_with(start) && name.ends_with(end)) return file;
   }
@@ -48,7 +48,7 @@ std::optional<fs::path> file_like(const fs::path& folder, const std::string& sta
 /// The shape model of an eos pair: by its usual name, else by what it starts with.
 std::optional<fs::path> eos_shape_of(const fs::path& folder) {
   if (const auto usual = file_like(folder, "sfm_shape", ".bin")) return usual;
-  for (const fs::path& file : files_in(folder)) {
+  for (const fs::path& file : sorted_files_in(folder)) {
     if (file.extension() == ".bin" && is_eos_shape(file)) return file;
   }
   return {};
@@ -59,7 +59,7 @@ std::optional<fs::path> eos_expressions_of(const fs::path& folder) {
 }
 
 std::optional<fs::path> neutral_of(const fs::path& folder) {
-  for (const fs::path& file : files_in(folder)) {
+  for (const fs::path& file : sorted_files_in(folder)) {
     if (file.stem() == "neutral" && is_mesh_extension(file.extension().string())) return file;
   }
   return {};
@@ -120,7 +120,7 @@ Parts parts_of(const fs::path& folder) {
 ShapeBasis read_shapes(const fs::path& folder, const MeshFileReader& neutral, int threads) {
   ShapeBasis basis;
   std::vector<fs::path> files;
-  for (const fs::path& file : files_in(folder)) {
+  for (const fs::path& file : sorted_files_in(folder)) {
     if (!is_mesh_extension(file.extension().string())) continue;
     files.push_back(file);
     basis.names.push_back(file.stem().string());

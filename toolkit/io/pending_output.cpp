@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include <mimetra/io/binary_file.h>
+#include <mimetra/io/written_files.h>
 #include <mimetra/mesh/errors.h>
 
 namespace mimetra {
@@ -23,6 +24,38 @@ fs::path without_trailing_slash(fs::path path) {
 
 constexpr const char* kExistsAlready = "exists already; use --force to replace it";
 constexpr std::string_view kTemporary = ".tmp";
+
+/// Without links, dots and a slash at the end, as far as the file system tells.
+fs::path place_of(const fs::path& path) {
+  std::error_code error;
+  const fs::path place = fs::weakly_canonical(fs::absolute(path, error), error);
+  return without_trailing_slash(error ? path : place);
+}
+
+/// True for a path below `folder`, and for that itself.
+bool is_within(const fs::path& path, const fs::path& folder) {
+  return std::mismatch(folder.begin(), folder.end(), path.begin(), path.end()).first ==
+         folder.end();
+}
+
+/// What writing `output` would do to one of `inputs`; empty where they all stay.
+std::string harm_to(const std::vector<fs::path>& inputs, const fs::path& output) {
+  const fs::path place = place_of(output);
+  std::error_code unreadable;
+  for (const fs::path& input : inputs) {
+    const fs::path read = place_of(input);
+    std::string what;
+    if (read == place) {
+      what = "is an input of this run";
+    } else if (is_within(read, place)) {
+      what = "holds " + input.string() + ", an input of this run";
+    } else if (is_within(place, read) && fs::exists(place, unreadable)) {
+      what = "is a part of " + input.string() + ", an input of this run";
+    }
+    if (!what.empty()) return what + "; choose another name";
+  }
+  return {};
+}
 
 /// Unique among the processes and threads that write here.
 fs::path temporary_beside(const fs::path& target) {
@@ -47,6 +80,27 @@ std::string cannot_write(const std::error_code& error) {
 
 std::error_code last_error() {
   return {errno, std::generic_category()};
+}
+
+/// "'notes.txt', 'a.obj' and 3 more".
+std::string some_of(const std::vector<fs::path>& paths) {
+  constexpr std::size_t kShown = 3;
+  std::string text;
+  for (std::size_t i = 0; i < std::min(kShown, paths.size()); ++i) {
+    text += (i == 0 ? "'" : ", '") + paths[i].string() + "'";
+  }
+  if (paths.size() > kShown) text += " and " + std::to_string(paths.size() - kShown) + " more";
+  return text;
+}
+
+/// Throws for a folder, now in the place `folder`, that holds what would be lost with it.
+void check_replaceable(const fs::path& target, const fs::path& folder) {
+  const std::vector<fs::path> others = files_of_others(folder);
+  if (others.empty()) return;
+  throw OutputError(target.string(),
+                    "holds " + some_of(others) +
+                        ", which no manifest of an earlier run lists; --force replaces nothing "
+                        "else: move what is yours, or choose another name");
 }
 
 void rename_or_throw(const fs::path& from, const fs::path& to, const fs::path& target) {
@@ -87,6 +141,7 @@ void PendingOutput::check_target() const {
   if (kind_ == Kind::folder && !fs::is_directory(status)) {
     throw OutputError(target_.string(), "exists and is no folder; remove it first");
   }
+  if (kind_ == Kind::folder) check_replaceable(target_, target_);
   // Renaming onto a device such as /dev/null would replace the device.
   if (kind_ == Kind::file && !fs::is_regular_file(status)) {
     throw OutputError(target_.string(), "exists and is no ordinary file; choose another name");
@@ -118,10 +173,10 @@ void PendingOutput::create_temporary() {
 }
 
 void PendingOutput::commit() {
+  if (kind_ == Kind::folder) list_written_files(temporary_);
+  check_target();
   std::error_code ignored;
-  const bool exists = fs::exists(target_, ignored);
-  if (exists && !overwrite_) throw OutputError(target_.string(), kExistsAlready);
-  if (exists && kind_ == Kind::folder) {
+  if (kind_ == Kind::folder && fs::exists(target_, ignored)) {
     replace_folder();
   } else {
     rename_or_throw(temporary_, target_, target_);
@@ -135,6 +190,7 @@ void PendingOutput::replace_folder() {
   const fs::path aside = temporary_beside(target_);
   rename_or_throw(target_, aside, target_);
   try {
+    check_replaceable(target_, aside);  // from here on nobody puts anything there
     rename_or_throw(temporary_, target_, target_);
   } catch (const OutputError&) {
     std::error_code ignored;
@@ -154,7 +210,8 @@ void PendingOutput::discard() {
   }
 }
 
-PendingOutputs::PendingOutputs(bool overwrite) : overwrite_(overwrite) {}
+PendingOutputs::PendingOutputs(bool overwrite, std::vector<fs::path> inputs)
+    : overwrite_(overwrite), inputs_(std::move(inputs)) {}
 
 /// The first one made the parent folders and can remove them only when the others are gone.
 PendingOutputs::~PendingOutputs() {
@@ -178,6 +235,8 @@ void PendingOutputs::add_stale(const fs::path& path) {
 
 void PendingOutputs::commit() {
   check_same();
+  check_inputs_stay();
+  for (const auto& output : outputs_) output->check_target();
   for (const fs::path& path : stale_) {
     std::error_code error;
     fs::remove(path, error);
@@ -193,6 +252,24 @@ void PendingOutputs::check_same() const {
     if (read_file(output->target()) == read_file(output->path())) continue;
     throw OutputError(output->target().string(), kExistsAlready);
   }
+}
+
+void PendingOutputs::check_inputs_stay() const {
+  for (const fs::path& path : stale_) mimetra::check_inputs_stay(path, inputs_);
+  for (const auto& output : outputs_) {
+    const std::string harm = harm_to(inputs_, output->target());
+    if (harm.empty()) continue;
+    std::error_code unreadable;
+    const bool is_file = fs::is_regular_file(output->target(), unreadable);
+    // A rest pose that was read is written again as it was.
+    if (is_file && read_file(output->target()) == read_file(output->path())) continue;
+    throw OutputError(output->target().string(), harm);
+  }
+}
+
+void check_inputs_stay(const fs::path& output, const std::vector<fs::path>& inputs) {
+  const std::string harm = harm_to(inputs, output);
+  if (!harm.empty()) throw OutputError(output.string(), harm);
 }
 
 void write_file(const fs::path& target, std::string_view content, bool overwrite) {

@@ -18,7 +18,8 @@ class PendingOutput {
   enum class Kind { file, folder };
 
   /// Creates missing parent folders, and the temporary file or folder itself. Throws OutputError
-  /// where `target` exists and not `overwrite`, or nothing can be written there.
+  /// where `target` exists and not `overwrite`, nothing can be written there, or a folder to
+  /// overwrite holds anything that its manifest does not list (written_files.h).
   PendingOutput(std::filesystem::path target, Kind kind, bool overwrite);
   ~PendingOutput();
   PendingOutput(const PendingOutput&) = delete;
@@ -28,11 +29,12 @@ class PendingOutput {
   /// has to be told.
   const std::filesystem::path& path() const { return temporary_; }
   const std::filesystem::path& target() const { return target_; }
-  /// Renames into place. Throws OutputError.
+  /// Throws OutputError where `target` is, or meanwhile became, one that the constructor refuses.
+  void check_target() const;
+  /// Renames into place, a folder with a manifest that lists its files. Throws as check_target().
   void commit();
 
  private:
-  void check_target() const;
   void create_parents();
   void create_temporary();
   void replace_folder();
@@ -53,7 +55,8 @@ class PendingOutputs {
   /// What may stand already under an output's name where nothing may be overwritten.
   enum class Existing { nothing, same, anything };
 
-  explicit PendingOutputs(bool overwrite);
+  /// `inputs` are files and folders that were read and must stay.
+  explicit PendingOutputs(bool overwrite, std::vector<std::filesystem::path> inputs = {});
   PendingOutputs(const PendingOutputs&) = delete;
   PendingOutputs& operator=(const PendingOutputs&) = delete;
   ~PendingOutputs();
@@ -68,17 +71,24 @@ class PendingOutputs {
   void add_stale(const std::filesystem::path& path);
 
   /// What was added first comes last: whoever sees it sees all that belongs to it. Throws
-  /// OutputError.
+  /// OutputError, before anything is replaced where one of them cannot be.
   void commit();
 
  private:
   void check_same() const;
+  void check_inputs_stay() const;
 
   bool overwrite_;
+  std::vector<std::filesystem::path> inputs_;
   std::vector<std::unique_ptr<PendingOutput>> outputs_;
   std::vector<const PendingOutput*> must_be_same_;
   std::vector<std::filesystem::path> stale_;
 };
+
+/// Throws OutputError where writing `output` would replace one of `inputs`: it is that file or
+/// folder, holds it, or is a file that exists in it.
+void check_inputs_stay(const std::filesystem::path& output,
+                       const std::vector<std::filesystem::path>& inputs);
 
 /// Writes `content` to `target` by way of a PendingOutput. Throws OutputError.
 void write_file(const std::filesystem::path& target, std::string_view content, bool overwrite);

@@ -53,6 +53,8 @@ struct SequenceWriteOptions {
   bool double_precision = false;
   bool single_precision = false;
   bool overwrite = false;
+  /// Files and folders that were read, which must stay.
+  std::vector<std::filesystem::path> inputs = {};
   /// 0 for all there are; what is written does not depend on it.
   int threads = 0;
   Progress progress = {};

@@ -6,6 +6,7 @@
 #include <mimetra/io/mesh_file.h>
 #include <mimetra/io/pending_output.h>
 #include <mimetra/io/sequence_file.h>
+#include <mimetra/io/written_files.h>
 #include <mimetra/mesh/parallel.h>
 
 namespace mimetra {
@@ -56,7 +57,7 @@ bool needs_double(const MeshSequence& sequence) {
 
 std::vector<fs::path> write_folder(const MeshSequence& sequence, const fs::path& target,
                                    const SequenceWriteOptions& options, const ExtraFiles& extra) {
-  PendingOutputs outputs(options.overwrite);
+  PendingOutputs outputs(options.overwrite, options.inputs);
   const fs::path folder = outputs.add(target, PendingOutput::Kind::folder);
   const bool double_precision = options.double_precision || needs_double(sequence);
   std::vector<fs::path> files;
@@ -73,6 +74,8 @@ std::vector<fs::path> write_folder(const MeshSequence& sequence, const fs::path&
     write_bytes(folder / name, content);
     files.push_back(target / name);
   }
+  const fs::path manifest = target / kFolderManifest;
+  if (std::ranges::find(files, manifest) == files.end()) files.push_back(manifest);
   // STL numbers its vertices anew, so that a rest pose in the old order would not fit.
   add_rest(outputs, target, sequence, options.format != "stl", files);
   report_progress(options.progress, 1);
@@ -82,7 +85,7 @@ std::vector<fs::path> write_folder(const MeshSequence& sequence, const fs::path&
 
 std::vector<fs::path> write_array(const MeshSequence& sequence, const fs::path& target,
                                   const SequenceWriteOptions& options, const ExtraFiles& extra) {
-  PendingOutputs outputs(options.overwrite);
+  PendingOutputs outputs(options.overwrite, options.inputs);
   std::vector<fs::path> files = {target};
   report_progress(options.progress, 0);
   write_npy_frames(outputs.add(target, PendingOutput::Kind::file), sequence.positions(),
@@ -102,7 +105,7 @@ std::vector<fs::path> write_single(const MeshSequence& sequence, const fs::path&
                         std::to_string(sequence.frames()) +
                         " frames; name a folder, a .npy file, or one frame with --frames");
   }
-  PendingOutputs outputs(options.overwrite);
+  PendingOutputs outputs(options.overwrite, options.inputs);
   std::vector<fs::path> files = {target};
   write_mesh(outputs.add(target, PendingOutput::Kind::file), sequence.frame(0),
              sequence.connectivity(),

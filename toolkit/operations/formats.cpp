@@ -31,6 +31,7 @@ Paths write_sequence_data(const Data& data, const WriteRequest& request) {
   options.double_precision = request.parameters.flag("double");
   options.single_precision = request.parameters.flag("single");
   options.overwrite = request.overwrite;
+  options.inputs = request.inputs;
   options.threads = request.threads;
   options.progress = request.progress;
   return write_sequence(std::get<SequenceRead>(data).sequence, request.target, options,
@@ -72,7 +73,7 @@ Paths write_model_data(const Data& data, const WriteRequest& request) {
 
 Paths write_with_extra(const WriteRequest& request, const std::function<Paths()>& write) {
   // The parents that the request's target needs are made first and go last where it fails.
-  PendingOutputs extra(true);
+  PendingOutputs extra(true, request.inputs);
   Paths beside;
   for (const auto& [name, content] : request.extra) {
     beside.push_back(request.target.parent_path() / name);

@@ -25,7 +25,7 @@ bool has_extension(const std::vector<std::string>& extensions, const std::filesy
   return std::ranges::find(extensions, lower(path.extension().string())) != extensions.end();
 }
 
-std::string listed(const std::vector<std::string>& names) {
+std::string joined(const std::vector<std::string>& names) {
   std::string list;
   for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
   return list;
@@ -272,7 +272,7 @@ const Writer& OperationTable::writer(DataKind kind, const std::filesystem::path&
     throw UsageError(target.string() + ": this program writes no " + std::string(kind_name(kind)));
   }
   throw UsageError(target.string() + ": " + std::string(kind_name(kind)) + " can be written as " +
-                   listed(known) + ", not as '" + target.extension().string() + "'");
+                   joined(known) + ", not as '" + target.extension().string() + "'");
 }
 
 bool OperationTable::writes_folder(DataKind kind, const std::filesystem::path& target) const {
@@ -282,8 +282,10 @@ bool OperationTable::writes_folder(DataKind kind, const std::filesystem::path& t
 }
 
 void OperationTable::check_writable(DataKind kind, const std::filesystem::path& target,
-                                    bool overwrite) const {
+                                    bool overwrite,
+                                    const std::vector<std::filesystem::path>& inputs) const {
   using Kind = PendingOutput::Kind;
+  check_inputs_stay(target, inputs);
   PendingOutput(target, writes_folder(kind, target) ? Kind::folder : Kind::file, overwrite);
 }
 
@@ -316,7 +318,7 @@ const RegionReader& OperationTable::region_reader(const std::filesystem::path& p
     if (has_extension(reader.extensions, path)) return reader;
     known.insert(known.end(), reader.extensions.begin(), reader.extensions.end());
   }
-  throw UsageError(path.string() + ": regions can be read from " + listed(known));
+  throw UsageError(path.string() + ": regions can be read from " + joined(known));
 }
 
 const FieldReader* OperationTable::field_reader(const std::filesystem::path& path) const {

@@ -96,6 +96,8 @@ struct WriteRequest {
   const Parameters& parameters;
   bool overwrite = false;
   Progress progress = {};
+  /// Files and folders that were read for it, which must stay.
+  std::vector<std::filesystem::path> inputs = {};
   /// Further files (name, content) that appear together with the output.
   std::vector<std::pair<std::string, std::string>> extra = {};
   int threads = 0;  ///< 0 for all there are; what is written does not depend on it
@@ -160,8 +162,10 @@ class OperationTable {
   /// True where that writer makes a folder.
   bool writes_folder(DataKind kind, const std::filesystem::path& target) const;
   /// Makes and removes what that writer would begin with, so that nobody computes for nothing.
-  /// Throws OutputError where it cannot be written, or exists and not `overwrite`.
-  void check_writable(DataKind kind, const std::filesystem::path& target, bool overwrite) const;
+  /// Throws OutputError where it cannot be written, exists and not `overwrite`, or would replace
+  /// one of `inputs`.
+  void check_writable(DataKind kind, const std::filesystem::path& target, bool overwrite,
+                      const std::vector<std::filesystem::path>& inputs = {}) const;
   /// Where an output's values go, one for each of `names`: the path asked for where there is one
   /// name; otherwise a folder OUT/NAME each, or OUT-NAME.EXT for files.
   std::vector<std::filesystem::path> output_paths(const Output& output,

@@ -17,7 +17,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kFolderManifest = "mimetra-run.json";
 constexpr const char* kFileManifest = ".run.json";
 /// What looks for regions; of several runs in a folder the first kind counts.
 constexpr std::array<std::string_view, 3> kOperations = {"transfer", "evaluate", "regions"};
@@ -122,10 +121,17 @@ RunRecord main_run(const fs::path& folder) {
       "no run that looked for regions; expected what transfer, regions or evaluate wrote");
 }
 
+/// False for one that only lists files: those of a library's, not of a run.
+bool is_of_a_run(const fs::path& manifest) {
+  std::ifstream stream(manifest);
+  const Json json = Json::parse(stream, nullptr, false);
+  return !json.is_object() || json.contains("command") || !json.contains("files");
+}
+
 RunRecord run_of(const fs::path& path) {
   if (fs::is_directory(path)) {
     const fs::path manifest = path / kFolderManifest;
-    return fs::exists(manifest) ? parse(manifest) : main_run(path);
+    return fs::exists(manifest) && is_of_a_run(manifest) ? parse(manifest) : main_run(path);
   }
   if (!fs::exists(path)) throw IoError(path.string(), "no such file or folder");
   const std::string name = path.filename().string();

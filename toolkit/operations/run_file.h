@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include <mimetra/io/written_files.h>
+
 namespace mimetra {
 
 /// What a manifest tells of a run.

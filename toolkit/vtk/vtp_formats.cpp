@@ -14,6 +14,7 @@ std::vector<std::filesystem::path> write(const FieldSequence& fields, const Writ
   options.compression =
       request.parameters.text("compress") == "small" ? VtpCompression::zlib : VtpCompression::lz4;
   options.overwrite = request.overwrite;
+  options.inputs = request.inputs;
   options.threads = request.threads;
   options.progress = request.progress;
   return write_with_extra(request,

@@ -13,6 +13,7 @@
 #include <vtkXMLPolyDataWriter.h>
 
 #include <mimetra/io/pending_output.h>
+#include <mimetra/io/written_files.h>
 #include <mimetra/mesh/parallel.h>
 #include <mimetra/operations/xml_text.h>
 #include <mimetra/vtk/poly_data.h>
@@ -201,6 +202,9 @@ std::vector<std::filesystem::path> write_all(const FieldSequence& fields,
   const std::filesystem::path series = beside / (name + ".vtp.series");
   const std::vector<FrameEntry> entries = entries_of(fields.sequence, name);
 
+  for (const auto& path : {target, series, beside / frames_folder(name)}) {
+    check_inputs_stay(path, options.inputs);
+  }
   PendingOutput folder(beside / frames_folder(name), PendingOutput::Kind::folder,
                        options.overwrite);
   PendingOutput series_file(series, PendingOutput::Kind::file, options.overwrite);
@@ -210,6 +214,7 @@ std::vector<std::filesystem::path> write_all(const FieldSequence& fields,
 
   std::vector<std::filesystem::path> written = {target, series};
   for (const FrameEntry& entry : entries) written.push_back(beside / entry.file);
+  written.push_back(folder.target() / kFolderManifest);
   const auto write = [&](FrameData& data, int f) {
     const std::filesystem::path frame = entries[static_cast<std::size_t>(f)].file;
     write_bytes(folder.path() / frame.filename(), vtp_text(data.at(f), options.compression));

@@ -15,6 +15,8 @@ enum class VtpCompression { lz4, zlib };
 struct VtpOptions {
   VtpCompression compression = VtpCompression::lz4;
   bool overwrite = false;
+  /// Files and folders that were read, which must stay.
+  std::vector<std::filesystem::path> inputs = {};
   /// 0 for all there are; what is written does not depend on it.
   int threads = 0;
   Progress progress = {};

@@ -48,7 +48,7 @@ class Data:
         return cls._of_handle(handle)
 
     def save(self, path, *, force=False, **settings):
-        """Writes it by the path's extension, as the command does; `force` replaces what is there.
+        """Writes it by the path's extension, as the command does; `force` replaces what was written before.
 
         `settings` are the command's parameters of writing, such as format="obj".
         """
