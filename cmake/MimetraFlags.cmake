@@ -6,6 +6,12 @@ target_compile_options(mimetra_flags INTERFACE -Wall -Wextra -Wpedantic -Wshadow
 target_compile_options(
   mimetra_flags INTERFACE $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict -Wno-maybe-uninitialized>)
 
+# Where files are compiled together, GCC takes their classes for those of a header.
+if(CMAKE_UNITY_BUILD)
+  target_compile_options(mimetra_flags
+                         INTERFACE $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
+endif()
+
 # Products of matrices are two and a half times faster with AVX2 and FMA.
 set(MIMETRA_INSTRUCTIONS "" CACHE STRING
     "What the compiler may use (-march); by default AVX2 and FMA where this machine has them")

@@ -18,7 +18,7 @@ namespace {
 
 using Pixels = dlib::array2d<dlib::rgb_pixel>;
 
-constexpr unsigned long kLandmarks = 68;
+constexpr unsigned long kModelLandmarks = 68;
 
 Pixels pixels_of(const Image& image) {
   Pixels pixels(image.height, image.width);
@@ -55,7 +55,7 @@ dlib::shape_predictor read_predictor(const std::filesystem::path& model) {
   } catch (const std::exception& error) {  // a damaged count may also ask for too much memory
     throw IoError(model.string(), std::string("is no shape predictor of dlib: ") + error.what());
   }
-  if (predictor.num_parts() != kLandmarks) {
+  if (predictor.num_parts() != kModelLandmarks) {
     throw IoError(model.string(), "finds " + std::to_string(predictor.num_parts()) +
                                       " landmarks, expected a model of iBUG's 68");
   }
@@ -71,8 +71,8 @@ Face face_of(const dlib::rect_detection& found, const dlib::full_object_detectio
   // Found faces are above the threshold; not all after they were sorted out.
   const double score = std::max(0.0, found.detection_confidence);
   face.confidence = score / (1 + score);
-  face.landmarks.resize(kLandmarks, 2);
-  for (unsigned long i = 0; i < kLandmarks; ++i) {
+  face.landmarks.resize(kModelLandmarks, 2);
+  for (unsigned long i = 0; i < kModelLandmarks; ++i) {
     face.landmarks.row(static_cast<Eigen::Index>(i)) << double(shape.part(i).x()),
         double(shape.part(i).y());
   }

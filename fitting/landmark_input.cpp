@@ -22,13 +22,13 @@ bool is_points(const fs::path& path) {
 }
 
 /// The landmarks of a whole clip before any frame is chosen: files of a frame each, or a track.
-struct Input {
+struct LandmarkFiles {
   Paths frames;  ///< .pts files or images
   fs::path track;
   Paths others;  ///< images beside the .pts files
 };
 
-Input input_of(const std::string& text) {
+LandmarkFiles input_of(const std::string& text) {
   std::error_code unreadable;
   const bool is_folder = fs::is_directory(text, unreadable);
   if (!is_folder && (fs::exists(text, unreadable) || !is_frame_pattern(text))) {
@@ -61,7 +61,7 @@ fs::path image_beside(const fs::path& file) {
 }
 
 /// Says that images were passed over because .pts files stand among them.
-void note_others(LandmarksRead& read, const std::string& text, const Input& input) {
+void note_others(LandmarksRead& read, const std::string& text, const LandmarkFiles& input) {
   const auto has_points = [&](const fs::path& image) {
     return std::ranges::find(input.frames, image.stem(), &fs::path::stem) != input.frames.end();
   };
@@ -178,7 +178,7 @@ LandmarksRead find_in_images(Paths images, const SequenceSource& source, FaceOpt
 
 LandmarksRead read_landmark_input(const std::string& text, const SequenceSource& source,
                                   const LandmarkInputOptions& options) {
-  const Input input = input_of(text);
+  const LandmarkFiles input = input_of(text);
   LandmarkTrack whole;
   if (input.frames.empty()) whole = read_landmarks(input.track);
   const int count = input.frames.empty() ? whole.frames() : static_cast<int>(input.frames.size());

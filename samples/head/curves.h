@@ -11,6 +11,10 @@ namespace mimetra::samples {
 // 754 rounds exactly (+ - * / and the square root), none of the C library's transcendental
 // functions.
 
+constexpr double square(double x) {
+  return x * x;
+}
+
 /// 0 up to x = 0, 1 from x = 1, with zero slope at both.
 constexpr double smooth_step(double x) {
   if (x <= 0) return 0;

@@ -38,10 +38,6 @@ const Stroke kNose[] = {
     {{28, -55, 75}, {6, 18, 60}, {0, 0, -1.2}},       // fold from nose to mouth
 };
 
-double square(double x) {
-  return x * x;
-}
-
 double nose_ridge(double x, double y) {
   static const Curve ridge({{-56, 0},
                             {-51, 1.5},

@@ -15,10 +15,6 @@ constexpr double kEyeballRadius = 13;
 constexpr double kLidThickness = 1.9;
 constexpr double kEyeHalfWidth = 14;
 
-double square(double x) {
-  return x * x;
-}
-
 /// The larger of both, rounded over about `width` where they meet.
 double smooth_max(double a, double b, double width) {
   return (a + b + std::sqrt(square(a - b) + square(width))) / 2;

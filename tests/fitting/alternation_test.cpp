@@ -13,7 +13,7 @@ using Shape = FitOptions::Shape;
 constexpr auto kAlternating = FitOptions::Solver::alternating;
 
 // Normal equations against QR: condition numbers of some hundreds, squared, times rounding.
-constexpr double kRounding = 1e-9;
+constexpr double kLiteralRounding = 1e-9;
 
 TEST(Alternation, IsThePapers) {
   for (const double upper : {1.0, std::numeric_limits<double>::infinity()}) {
@@ -29,12 +29,12 @@ TEST(Alternation, IsThePapers) {
                                               .max_expression = upper,
                                               .ridge = 0.3})
                                  .front();
-        EXPECT_LT((fit.camera - literal.camera).norm(), kRounding * literal.camera.norm());
-        EXPECT_LT((fit.alpha - literal.alpha).norm(), kRounding);
-        EXPECT_LT((fit.beta - literal.beta).norm(), kRounding);
-        EXPECT_NEAR(fit.rms, literal.rms(), kRounding);
+        EXPECT_LT((fit.camera - literal.camera).norm(), kLiteralRounding * literal.camera.norm());
+        EXPECT_LT((fit.alpha - literal.alpha).norm(), kLiteralRounding);
+        EXPECT_LT((fit.beta - literal.beta).norm(), kLiteralRounding);
+        EXPECT_NEAR(fit.rms, literal.rms(), kLiteralRounding);
         ASSERT_EQ(fit.energies.size(), static_cast<std::size_t>(iteration));
-        EXPECT_NEAR(fit.energies.back(), literal.energy(), kRounding * literal.energy());
+        EXPECT_NEAR(fit.energies.back(), literal.energy(), kLiteralRounding * literal.energy());
       }
     }
   }
@@ -53,8 +53,8 @@ TEST(Alternation, StartsAFrameFromTheOneBefore) {
   }
   const auto fits =
       test::fit(clip, {.solver = kAlternating, .shape = Shape::frame, .iterations = 1, .sigma = 2});
-  EXPECT_LT((fits[2].alpha - literal.alpha).norm(), kRounding);
-  EXPECT_LT((fits[2].beta - literal.beta).norm(), kRounding);
+  EXPECT_LT((fits[2].alpha - literal.alpha).norm(), kLiteralRounding);
+  EXPECT_LT((fits[2].beta - literal.beta).norm(), kLiteralRounding);
 }
 
 TEST(Alternation, SolvesForOneIdentityOfTheClip) {

@@ -10,6 +10,7 @@
 namespace mimetra::geodesic {
 namespace {
 
+using test::heat_on;
 using test::mean_error;
 using test::relative_error;
 using test::Shape;
@@ -19,13 +20,6 @@ using testing::HasSubstr;
 using testing::ThrowsMessage;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-// As argued in heat_geodesics_test.cpp.
-constexpr double kRounding = 1e-9;
-
-HeatGeodesics heat_on(const Shape& shape, const HeatOptions& options = {}) {
-  return {shape.positions, shape.triangles, options};
-}
-
 Shape with_triangle(Shape shape, int a, int b, int c) {
   shape.triangles.conservativeResize(shape.triangles.rows() + 1, 3);
   shape.triangles.bottomRows(1) << a, b, c;
@@ -96,7 +90,7 @@ TEST(DegenerateTriangles, AreLeftOutOfExactDistances) {
   for (const Shape& shape : degenerate_shapes()) {
     const ExactGeodesics exact(shape.positions, shape.triangles);
     EXPECT_EQ(exact.degenerate_triangles(), 1);
-    EXPECT_LT(relative_error(exact.distances(3).head(30), expected), kRounding);
+    EXPECT_LT(relative_error(exact.distances(3).head(30), expected), test::kHeatRounding);
   }
 }
 
@@ -153,10 +147,11 @@ TEST(TurnedTriangles, ChangeNothing) {
   for (Eigen::Index t = 1; t < turned.triangles.rows(); t += 3) {
     std::swap(turned.triangles(t, 1), turned.triangles(t, 2));
   }
-  EXPECT_LT(relative_error(heat_on(turned).distances(9), heat_on(shape).distances(9)), kRounding);
+  EXPECT_LT(relative_error(heat_on(turned).distances(9), heat_on(shape).distances(9)),
+            test::kHeatRounding);
   EXPECT_LT(relative_error(ExactGeodesics(turned.positions, turned.triangles).distances(9),
                            ExactGeodesics(shape.positions, shape.triangles).distances(9)),
-            kRounding);
+            test::kHeatRounding);
 }
 
 /// Distances from vertex 0, 0 on page 0 of a book, to each page unfolded next to page 0.
@@ -187,7 +182,7 @@ TEST(EdgesOfThreeTriangles, LetExactDistancesPassAtTheirVertices) {
   const ExactGeodesics exact(book.shape.positions, book.shape.triangles);
   const Eigen::VectorXd distances = exact.distances(book.vertex(0, 4, 3));
   const Eigen::VectorXd expected = unfolded(book, 4, 3);
-  EXPECT_GE((distances - expected).minCoeff(), -kRounding);
+  EXPECT_GE((distances - expected).minCoeff(), -test::kHeatRounding);
   // A detour to a vertex at most half an edge away.
   EXPECT_LT((distances - expected).maxCoeff(), 0.25);
 }
@@ -200,7 +195,7 @@ TEST(SheetsThatTouchAtAVertex, AreJoinedThere) {
   expected.tail(touch) = beyond.tail(touch);
 
   const ExactGeodesics exact(shape.positions, shape.triangles);
-  EXPECT_LT(relative_error(exact.distances(source), expected), kRounding);
+  EXPECT_LT(relative_error(exact.distances(source), expected), test::kHeatRounding);
   // Some edges' error on ten, and the bottleneck of one vertex.
   EXPECT_LT(mean_error(heat_on(shape).distances(source), expected), 0.1);
 }

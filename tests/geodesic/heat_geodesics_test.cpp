@@ -14,13 +14,10 @@
 namespace mimetra::geodesic {
 namespace {
 
+using test::heat_on;
 using test::mean_error;
 using test::relative_error;
 using test::Shape;
-
-HeatGeodesics heat_on(const Shape& shape, const HeatOptions& options = {}) {
-  return {shape.positions, shape.triangles, options};
-}
 
 /// Great-circle distance on the unit sphere.
 Eigen::VectorXd great_circle(const Shape& sphere, VertexIndex from) {
@@ -91,10 +88,6 @@ TEST(HeatGeodesics, TakeASourceTwiceAsOnce) {
   EXPECT_EQ(heat.distances(twice), heat.distances(7));
 }
 
-// The result has conditions of about 1e4 in the heat step and 1e4 in the Poisson system, times
-// 1e-16 for each rounding of the coordinates.
-constexpr double kRounding = 1e-9;
-
 TEST(HeatGeodesics, DoNotChangeUnderRigidMotion) {
   Shape shape = test::bumpy_sphere(3);
   const Eigen::VectorXd expected = heat_on(shape).distances(5);
@@ -102,7 +95,7 @@ TEST(HeatGeodesics, DoNotChangeUnderRigidMotion) {
       Eigen::AngleAxisd(1.1, Eigen::Vector3d(1, 2, 3).normalized()).toRotationMatrix();
   shape.positions = (shape.positions * rotation.transpose()).eval();
   shape.positions.rowwise() += Eigen::RowVector3d(4, -5, 6);
-  EXPECT_LT(relative_error(heat_on(shape).distances(5), expected), kRounding);
+  EXPECT_LT(relative_error(heat_on(shape).distances(5), expected), test::kHeatRounding);
 }
 
 TEST(HeatGeodesics, DoNotChangeFarFromTheOrigin) {
@@ -118,7 +111,7 @@ TEST(HeatGeodesics, ScaleWithTheMesh) {
   const Eigen::VectorXd expected = heat_on(shape).distances(5);
   for (const double scale : {1e-6, 1e6}) {
     const Shape scaled{shape.positions * scale, shape.triangles};
-    EXPECT_LT(relative_error(heat_on(scaled).distances(5), expected * scale), kRounding);
+    EXPECT_LT(relative_error(heat_on(scaled).distances(5), expected * scale), test::kHeatRounding);
   }
 }
 
@@ -130,7 +123,7 @@ TEST(HeatGeodesics, FollowTheOrderOfTheVertices) {
   reversed.triangles = (vertices - 1 - shape.triangles.array()).matrix();
   EXPECT_LT(relative_error(heat_on(reversed).distances(vertices - 1 - 5).reverse(),
                            heat_on(shape).distances(5)),
-            kRounding);
+            test::kHeatRounding);
 }
 
 TEST(HeatGeodesics, AreInfiniteOnOtherComponents) {

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include <mimetra/geodesic/heat_geodesics.h>
+
 #include "shapes.h"
 
 /// Surfaces for the geodesic tests.
@@ -16,6 +18,15 @@ inline Shape bumpy_sphere(int levels) {
     p *= 1 + 0.2 * std::sin(3 * x + 1) * std::cos(2 * y - 0.5) + 0.1 * std::sin(5 * z + x);
   }
   return shape;
+}
+
+/// Heat distances have conditions of about 1e4 in the heat step and 1e4 in the Poisson system,
+/// times 1e-16 for each rounding of the coordinates.
+constexpr double kHeatRounding = 1e-9;
+
+inline geodesic::HeatGeodesics heat_on(const Shape& shape,
+                                       const geodesic::HeatOptions& options = {}) {
+  return {shape.positions, shape.triangles, options};
 }
 
 /// Largest |actual - expected| as a share of the largest expected distance.

@@ -5,8 +5,6 @@
 namespace mimetra::test {
 namespace {
 
-constexpr double kFewestQuality = 1e-3;
-
 class HeadExpression : public ::testing::TestWithParam<int> {
  protected:
   Positions moved() const { return field(head().expressions(), GetParam()); }

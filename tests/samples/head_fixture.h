@@ -16,6 +16,9 @@
 
 namespace mimetra::test {
 
+/// Sound triangles of real faces go down to 4e-3 (kDegenerateQuality is a thousandth of this).
+constexpr double kFewestQuality = 1e-3;
+
 /// The head is always the same: made once for all tests.
 inline const MorphableModel& head() {
   static const MorphableModel model = samples::parametric_head();

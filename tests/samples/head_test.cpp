@@ -10,9 +10,6 @@
 namespace mimetra::test {
 namespace {
 
-// Sound triangles of real faces go down to 4e-3 (kDegenerateQuality is a thousandth of this).
-constexpr double kFewestQuality = 1e-3;
-
 MeshReport report() {
   return inspect(head().mean(), head().connectivity());
 }

@@ -43,7 +43,7 @@ Alignment aligned(const Invocation& invocation) {
                invocation.progress);
 }
 
-Outcome run(const Invocation& invocation) {
+Outcome run_align(const Invocation& invocation) {
   const SequenceRead& read = invocation.get<SequenceRead>("sequence");
   Alignment alignment = aligned(invocation);
   double degrees = 0, shift = 0;
@@ -85,7 +85,7 @@ Operation align_operation() {
       {"undo", ParameterKind::file, {}, "manifest of an align run, whose motion is given back"}};
   operation.examples = {"align takes/ -o still/",
                         "align still/ --undo still/mimetra-run.json -o back/"};
-  operation.run = run;
+  operation.run = run_align;
   operation.memory = [](const Invocation& invocation) {
     const MeshSequence& sequence = invocation.get<SequenceRead>("sequence").sequence;
     return static_cast<double>(sequence.positions().size() * sizeof(double));

@@ -38,7 +38,7 @@ std::vector<std::string> warnings_of(const MeshSequence& sequence) {
   return warnings;
 }
 
-Outcome run(const Invocation& invocation) {
+Outcome run_check(const Invocation& invocation) {
   const NamedData& input = invocation.inputs.at("sequence").front();
   const MeshSequence& sequence = std::get<SequenceRead>(input.data).sequence;
   const std::vector<std::string> warnings = warnings_of(sequence);
@@ -66,7 +66,7 @@ Operation check_operation() {
   operation.parameters = {
       {"strict", ParameterKind::flag, false, "fail where there is a warning (exit code 4)"}};
   operation.examples = {"check takes/smile_%04d.obj", "check take.npy --strict"};
-  operation.run = run;
+  operation.run = run_check;
   return operation;
 }
 

@@ -25,7 +25,7 @@ Table weight_table(const Components& components, const Eigen::VectorXd& times) {
   return table;
 }
 
-Outcome run(const Invocation& invocation) {
+Outcome run_decompose(const Invocation& invocation) {
   const SequenceRead& read = invocation.get<SequenceRead>("sequence");
   const StillSequence still = without_motion(invocation, read, read.sequence);
   Analysis analysis = analyse(invocation, read, still.sequence, invocation.parameters.integer("k"),
@@ -78,7 +78,7 @@ Operation decompose_operation() {
   }
   operation.examples = {"decompose takes/ -k 30 -o take.h5",
                         "decompose take.npy -k 50 --compat splocs2013 -o take.h5"};
-  operation.run = run;
+  operation.run = run_decompose;
   operation.memory = [](const Invocation& invocation) {
     return analysis_bytes(invocation, invocation.get<SequenceRead>("sequence"),
                           invocation.parameters.integer("k"));

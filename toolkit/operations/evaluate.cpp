@@ -34,7 +34,7 @@ std::string text_of(const std::vector<EvaluationRow>& rows) {
   return text;
 }
 
-Outcome run(const Invocation& invocation) {
+Outcome run_evaluate(const Invocation& invocation) {
   Evaluation evaluation(invocation, invocation.inputs.at("target").front());
   const SequenceRead& read = invocation.get<SequenceRead>("source");
   const std::vector<std::int64_t>& counts = invocation.parameters.integers("k");
@@ -63,7 +63,7 @@ Outcome run(const Invocation& invocation) {
 }
 
 /// One decomposition after the other, each followed by a transfer.
-double memory(const Invocation& invocation) {
+double memory_of_evaluate(const Invocation& invocation) {
   const SequenceRead& source = invocation.get<SequenceRead>("source");
   const auto& counts = invocation.parameters.integers("k");
   const double analysis =
@@ -96,8 +96,8 @@ Operation evaluate_operation() {
   }
   operation.examples = {"evaluate take.npy actor/ -k 10,30,40",
                         "evaluate takes/ actor@identity007=2 -k 10,20,30,40,50 -o table.csv"};
-  operation.run = run;
-  operation.memory = memory;
+  operation.run = run_evaluate;
+  operation.memory = memory_of_evaluate;
   return operation;
 }
 

@@ -33,7 +33,7 @@ Eigen::VectorXd nearest(const SurfaceDistances& distances, const std::vector<std
   return result;
 }
 
-Outcome run(const Invocation& invocation) {
+Outcome run_geodesic(const Invocation& invocation) {
   const MeshSequence& sequence = invocation.get<SequenceRead>("mesh").sequence;
   const Parameters& parameters = invocation.parameters;
   const MeshSequence mesh = sequence.slice(0, 1).with_rest(sequence.frame(0));
@@ -82,7 +82,7 @@ Operation geodesic_operation() {
     operation.parameters.push_back(parameter);
   operation.examples = {"geodesic neutral.obj --source 1200 -o nose.vtp",
                         "geodesic neutral.obj --source 1200 --geodesics exact -o exact.vtp"};
-  operation.run = run;
+  operation.run = run_geodesic;
   return operation;
 }
 

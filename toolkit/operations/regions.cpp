@@ -21,7 +21,7 @@ std::filesystem::path series_of(const Invocation& invocation) {
   throw UsageError("--paraview: needs regions that ParaView opens, with -o NAME.pvd or NAME.vtp");
 }
 
-Outcome run(const Invocation& invocation) {
+Outcome run_regions(const Invocation& invocation) {
   if (invocation.wants("paraview")) series_of(invocation);
   const bool with_components = invocation.parameters.flag("component-fields");
   const Components* given = invocation.find<Components>("components");
@@ -76,7 +76,7 @@ Operation regions_operation() {
   }
   operation.examples = {"regions takes/ -k 30 -o rois/take.pvd --paraview view.py",
                         "regions take.npy --coverage 0.8 --radius 12abs -o rois.json"};
-  operation.run = run;
+  operation.run = run_regions;
   operation.memory = [](const Invocation& invocation) {
     return analysis_bytes(invocation, invocation.get<SequenceRead>("sequence"),
                           invocation.parameters.integer("k"));

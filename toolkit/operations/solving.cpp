@@ -12,7 +12,7 @@ const BlendshapeModel& model_of(const NamedData& target) {
 }
 
 /// "a, b, c and 12 more".
-std::string listed(const std::vector<std::string>& names) {
+std::string some_of(const std::vector<std::string>& names) {
   constexpr std::size_t kShown = 8;
   std::string text;
   for (std::size_t i = 0; i < std::min(names.size(), kShown); ++i) {
@@ -31,12 +31,12 @@ void warn_of(const Invocation& invocation, const std::string& name,
   if (!conditions.unseen.empty()) {
     invocation.warn(
         start + std::to_string(conditions.unseen.size()) +
-        " expressions do not move in the regions and stay 0: " + listed(conditions.unseen));
+        " expressions do not move in the regions and stay 0: " + some_of(conditions.unseen));
   }
   if (!conditions.weakly_seen.empty()) {
     invocation.warn(
         start + std::to_string(conditions.weakly_seen.size()) +
-        " expressions are weakly seen in the regions: " + listed(conditions.weakly_seen));
+        " expressions are weakly seen in the regions: " + some_of(conditions.weakly_seen));
   }
   if (conditions.condition > kPoorCondition) {
     invocation.warn(start + "the regions hardly tell the expressions apart (condition number " +

@@ -105,7 +105,7 @@ void check_outputs(const Invocation& invocation) {
   }
 }
 
-Outcome run(const Invocation& invocation) {
+Outcome run_transfer(const Invocation& invocation) {
   const Stopwatch stopwatch;
   const PreparedSource source = prepare_source(invocation);
   const std::vector<NamedData>& targets = invocation.inputs.at("target");
@@ -167,7 +167,7 @@ Outcome run(const Invocation& invocation) {
 }
 
 /// Decomposition, then one target after the other, whose results are kept.
-double memory(const Invocation& invocation) {
+double memory_of_transfer(const Invocation& invocation) {
   const SequenceRead& source = invocation.get<SequenceRead>("source");
   const bool looks_for_regions =
       !invocation.parameters.flag("full") && !invocation.find<RegionData>("regions");
@@ -219,8 +219,8 @@ Operation transfer_operation() {
   operation.examples = {
       "transfer takes/smile_%04d.obj actor/ -k 30 -o actor_smile/ --regions-out rois/smile.pvd",
       "transfer take.npy actor@identity007=2 double/ --full -o results/"};
-  operation.run = run;
-  operation.memory = memory;
+  operation.run = run_transfer;
+  operation.memory = memory_of_transfer;
   return operation;
 }
 

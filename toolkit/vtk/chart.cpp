@@ -33,7 +33,7 @@ namespace {
 constexpr int kSmallestSide = 200;
 /// Letters are this part of a chart's height, but never too small to read.
 constexpr int kLettersPerChart = 36;
-constexpr int kSmallestLetters = 11;
+constexpr int kSmallestChartLetters = 11;
 
 /// Without the yellow of [Okabe, Ito. Color universal design. 2008], which nobody sees on white.
 constexpr std::array<Color, 7> kSeriesColors = {{{0, 114, 178},
@@ -228,8 +228,9 @@ void check(const std::vector<Chart>& row, const ChartSize& size) {
 
 Image draw(const std::vector<Chart>& row, const ChartSize& size) {
   check(row, size);
-  const int letters =
-      size.letters > 0 ? size.letters : std::max(kSmallestLetters, size.height / kLettersPerChart);
+  const int letters = size.letters > 0
+                          ? size.letters
+                          : std::max(kSmallestChartLetters, size.height / kLettersPerChart);
   const OffscreenWindow offscreen(size.width * static_cast<int>(row.size()), size.height);
   const SilentVtk silent;
   vtkNew<vtkContextActor> actor;

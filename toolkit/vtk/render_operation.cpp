@@ -57,7 +57,7 @@ Sheet sheet_of(const Invocation& invocation) {
   return film_strip(sequences, options_of(invocation));
 }
 
-Outcome run(const Invocation& invocation) {
+Outcome run_render(const Invocation& invocation) {
   const Sheet sheet = sheet_of(invocation);
   Image image = draw(sheet, invocation.progress);
   Outcome outcome;
@@ -146,7 +146,7 @@ Operation render_operation() {
   operation.examples = {
       "render take.npy regions.pvd actor_smile/ --color none,region,none -o strip.png",
       "render actor/ --layout turntable --columns 6 --unit mm -o actor.png"};
-  operation.run = run;
+  operation.run = run_render;
   operation.memory = [](const Invocation& invocation) {
     return drawing_bytes(sheet_of(invocation));
   };

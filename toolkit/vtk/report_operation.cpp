@@ -60,7 +60,7 @@ void add_pictures(Outcome& outcome, const Invocation& invocation, const ReportSt
   add("table-plot", [&] { return draw(table_charts(*study.transfer, view.unit)); });
 }
 
-Outcome run(const Invocation& invocation) {
+Outcome run_report(const Invocation& invocation) {
   check_pictures(invocation);
   const ReportView view = view_of(invocation.parameters);
   const ReportStudy found =
@@ -134,7 +134,7 @@ Operation report_operation() {
       {"unit", ParameterKind::text, {}, "name of the meshes' unit of length"});
   operation.examples = {"report actor_smile/ -o smile.html",
                         "report rois/take.pvd --unit mm -o take.html --gallery components.png"};
-  operation.run = run;
+  operation.run = run_report;
   operation.memory = memory;
   return operation;
 }

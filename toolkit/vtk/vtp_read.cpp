@@ -47,18 +47,18 @@ vtkSmartPointer<vtkPolyData> read_poly_data(const fs::path& path) {
   return reader->GetOutput();
 }
 
-struct FrameEntry {
+struct FrameFile {
   fs::path file;
   double time;
 };
 
-std::vector<FrameEntry> entries_of_pvd(const fs::path& path) {
+std::vector<FrameFile> entries_of_pvd(const fs::path& path) {
   const SilentVtk silent;
   const auto root = vtkSmartPointer<vtkXMLDataElement>::Take(
       vtkXMLUtilities::ReadElementFromString(read_file(path).c_str()));
   vtkXMLDataElement* list = root ? root->FindNestedElementWithName("Collection") : nullptr;
   if (!list) throw IoError(path.string(), "expected a VTKFile with a Collection");
-  std::vector<FrameEntry> entries;
+  std::vector<FrameFile> entries;
   for (int i = 0; i < list->GetNumberOfNestedElements(); ++i) {
     vtkXMLDataElement* element = list->GetNestedElement(i);
     const char* file = element->GetAttribute("file");
@@ -71,8 +71,8 @@ std::vector<FrameEntry> entries_of_pvd(const fs::path& path) {
   return entries;
 }
 
-std::vector<FrameEntry> entries_of_series(const fs::path& path) {
-  std::vector<FrameEntry> entries;
+std::vector<FrameFile> entries_of_series(const fs::path& path) {
+  std::vector<FrameFile> entries;
   try {
     const auto series = nlohmann::json::parse(read_file(path));
     for (const auto& entry : series.at("files")) {
@@ -85,13 +85,13 @@ std::vector<FrameEntry> entries_of_series(const fs::path& path) {
   return entries;
 }
 
-std::vector<FrameEntry> entries_of(const fs::path& path) {
+std::vector<FrameFile> entries_of(const fs::path& path) {
   std::string extension = path.extension().string();
   std::ranges::transform(extension, extension.begin(),
                          [](unsigned char c) { return std::tolower(c); });
-  std::vector<FrameEntry> entries = extension == ".vtp"   ? std::vector{FrameEntry{path, 0}}
-                                    : extension == ".pvd" ? entries_of_pvd(path)
-                                                          : entries_of_series(path);
+  std::vector<FrameFile> entries = extension == ".vtp"   ? std::vector{FrameFile{path, 0}}
+                                   : extension == ".pvd" ? entries_of_pvd(path)
+                                                         : entries_of_series(path);
   if (entries.empty()) throw IoError(path.string(), "names no frame");
   return entries;
 }
@@ -101,16 +101,16 @@ std::vector<FrameEntry> entries_of(const fs::path& path) {
 FieldSequence read_vtp_series(const fs::path& path,
                               const std::function<std::vector<int>(int count)>& selected,
                               const Progress& progress) {
-  const std::vector<FrameEntry> all = entries_of(path);
+  const std::vector<FrameFile> all = entries_of(path);
   const std::vector<int> chosen = selected(static_cast<int>(all.size()));
-  const FrameEntry& first = all[static_cast<std::size_t>(chosen.front())];
+  const FrameFile& first = all[static_cast<std::size_t>(chosen.front())];
   FieldSequence result;
   Connectivity connectivity;
   Frames frames;
   Eigen::VectorXd times(static_cast<Eigen::Index>(chosen.size()));
   std::optional<Positions> rest;
   for (Eigen::Index f = 0; f < times.size(); ++f) {
-    const FrameEntry& entry = all[static_cast<std::size_t>(chosen[static_cast<std::size_t>(f)])];
+    const FrameFile& entry = all[static_cast<std::size_t>(chosen[static_cast<std::size_t>(f)])];
     const auto data = read_poly_data(entry.file);
     const Positions positions = positions_of(*data, entry.file.string());
     Connectivity own = connectivity_of(*data, entry.file.string());
@@ -134,7 +134,7 @@ FieldSequence read_vtp_series(const fs::path& path,
 
 std::vector<fs::path> vtp_series_files(const fs::path& path) {
   std::vector<fs::path> files = {path};
-  for (const FrameEntry& entry : entries_of(path)) {
+  for (const FrameFile& entry : entries_of(path)) {
     if (entry.file != path) files.push_back(entry.file);
   }
   return files;
