@@ -1,8 +1,12 @@
-# One library per folder; `#include <mimetra/FOLDER/header.h>` means the same in the source tree and
-# in an installation, where each library is a component of the package.
+# One library per folder. An include names the header's path from the root of the tree, which an
+# installation keeps below include/mimetra; each library is a component of the package.
 
 include(GNUInstallDirs)
-set(MIMETRA_INCLUDE_ROOT ${PROJECT_BINARY_DIR}/include)
+get_filename_component(MIMETRA_ROOT ${CMAKE_CURRENT_LIST_DIR} DIRECTORY)
+# What users write, `#include <mimetra/toolkit/mesh/tri_mesh.h>`, holds for samples in the build tree.
+set(MIMETRA_CONSUMER_INCLUDES ${PROJECT_BINARY_DIR}/include)
+file(MAKE_DIRECTORY ${MIMETRA_CONSUMER_INCLUDES})
+file(CREATE_LINK ${MIMETRA_ROOT} ${MIMETRA_CONSUMER_INCLUDES}/mimetra SYMBOLIC)
 set(MIMETRA_PACKAGE_FOLDER ${CMAKE_INSTALL_LIBDIR}/cmake/mimetra)
 
 # mimetra_component(NAME [USES components] [PACKAGES ...]): installs the target mimetra_NAME as the
@@ -40,16 +44,17 @@ function(mimetra_library name)
   # structs stay at 16.
   target_compile_definitions(mimetra_${name} PUBLIC EIGEN_MAX_ALIGN_BYTES=64
                                                     EIGEN_MAX_STATIC_ALIGN_BYTES=16)
-  target_include_directories(mimetra_${name} PUBLIC $<BUILD_INTERFACE:${MIMETRA_INCLUDE_ROOT}>
-                                                    $<INSTALL_INTERFACE:include>)
+  target_include_directories(
+    mimetra_${name}
+    PUBLIC $<BUILD_INTERFACE:${MIMETRA_ROOT}>
+    INTERFACE $<BUILD_INTERFACE:${MIMETRA_CONSUMER_INCLUDES}> $<INSTALL_INTERFACE:include>
+              $<INSTALL_INTERFACE:include/mimetra>)
   target_link_libraries(
     mimetra_${name}
     PUBLIC ${ARG_USES}
     PRIVATE ${ARG_PRIVATE} $<BUILD_INTERFACE:mimetra_flags>)
-  file(MAKE_DIRECTORY ${MIMETRA_INCLUDE_ROOT}/mimetra)
-  file(CREATE_LINK ${CMAKE_CURRENT_SOURCE_DIR} ${MIMETRA_INCLUDE_ROOT}/mimetra/${name} SYMBOLIC)
-
-  install(FILES ${ARG_HEADERS} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/mimetra/${name})
+  file(RELATIVE_PATH folder ${MIMETRA_ROOT} ${CMAKE_CURRENT_SOURCE_DIR})
+  install(FILES ${ARG_HEADERS} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/mimetra/${folder})
   set(uses ${ARG_USES})
   list(FILTER uses INCLUDE REGEX "^mimetra::")
   list(TRANSFORM uses REPLACE "^mimetra::" "")
@@ -60,7 +65,7 @@ endfunction()
 function(mimetra_test name)
   cmake_parse_arguments(ARG "" "" "SOURCES;USES" ${ARGN})
   add_executable(${name}_test ${ARG_SOURCES})
-  target_include_directories(${name}_test PRIVATE ${PROJECT_SOURCE_DIR}/tests)
+  target_include_directories(${name}_test PRIVATE ${MIMETRA_ROOT})
   target_link_libraries(${name}_test PRIVATE ${ARG_USES} mimetra_flags mimetra_test_folders
                                              GTest::gmock GTest::gtest_main)
   gtest_discover_tests(${name}_test NO_PRETTY_VALUES DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 600)

@@ -1,12 +1,12 @@
-#include <mimetra/fitting/affine_camera.h>
+#include "fitting/affine_camera.h"
 
 #include <cmath>
 #include <string>
 
 #include <Eigen/Eigenvalues>
 
-#include <mimetra/io/sequence_file.h>
-#include <mimetra/mesh/product_blocking.h>
+#include "toolkit/mesh/errors.h"
+#include "toolkit/mesh/product_blocking.h"
 
 namespace mimetra {
 

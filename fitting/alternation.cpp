@@ -3,10 +3,11 @@
 
 #include <Eigen/Cholesky>
 
-#include <mimetra/fitting/fitted_frame.h>
-#include <mimetra/model/box_least_squares.h>
-#include <mimetra/model/second_differences.h>
-#include <mimetra/model/smooth_weights.h>
+#include "fitting/fitted_frame.h"
+#include "toolkit/mesh/progress.h"
+#include "toolkit/model/box_least_squares.h"
+#include "toolkit/model/second_differences.h"
+#include "toolkit/model/smooth_weights.h"
 
 namespace mimetra {
 
@@ -49,7 +50,7 @@ class Alternation {
         smooth_(times.size() > 0),
         one_identity_(options.shape == FitOptions::Shape::clip) {}
 
-  FittedClip run(const Progress& progress) {
+  FittedClip run() {
     FittedClip result;
     // The smoothness term has no weight yet, so that there is no energy to compare the first with.
     double before = smooth_ ? std::numeric_limits<double>::infinity()
@@ -63,7 +64,7 @@ class Alternation {
       const double now = energy(frames_, one_identity_, *options_.ridge) + bending();
       result.energies.push_back(now);
       if (has_converged(before, now, options_.tolerance)) break;
-      report_progress(progress, double(result.iterations) / options_.iterations);
+      report_progress(options_.progress, double(result.iterations) / options_.iterations);
       before = now;
     }
     result.frames = std::move(frames_);
@@ -147,14 +148,13 @@ class Alternation {
 
 }  // namespace
 
-FittedClip fit_alternating(std::vector<FittedFrame> frames, const FitOptions& options,
-                           const Progress& progress) {
-  return Alternation(std::move(frames), options).run(progress);
+FittedClip fit_alternating(std::vector<FittedFrame> frames, const FitOptions& options) {
+  return Alternation(std::move(frames), options).run();
 }
 
 FittedClip fit_smoothly(std::vector<FittedFrame> frames, const FitOptions& options,
-                        const Eigen::VectorXd& times, const Progress& progress) {
-  return Alternation(std::move(frames), options, times).run(progress);
+                        const Eigen::VectorXd& times) {
+  return Alternation(std::move(frames), options, times).run();
 }
 
 }  // namespace mimetra

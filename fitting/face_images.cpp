@@ -1,4 +1,4 @@
-#include <mimetra/fitting/face_images.h>
+#include "fitting/face_images.h"
 
 #include <algorithm>
 #include <iterator>
@@ -7,9 +7,10 @@
 #include <sstream>
 #include <stdexcept>
 
-#include <mimetra/fitting/image_codec.h>
-#include <mimetra/fitting/landmark_formats.h>
-#include <mimetra/mesh/parallel.h>
+#include "fitting/image_codec.h"
+#include "fitting/landmark_formats.h"
+#include "toolkit/mesh/errors.h"
+#include "toolkit/mesh/parallel.h"
 
 namespace mimetra {
 
@@ -125,8 +126,7 @@ std::string low_confidence_note(double confidence, double min_confidence) {
   return text.str();
 }
 
-FaceTrack track_face(const std::vector<fs::path>& images, const FaceOptions& options,
-                     const Progress& progress) {
+FaceTrack track_face(const std::vector<fs::path>& images, const FaceOptions& options) {
   if (images.empty()) throw std::invalid_argument("there are no images");
   require_dlib(images.front().string());
   const FaceFinder finder(options.model);
@@ -135,7 +135,7 @@ FaceTrack track_face(const std::vector<fs::path>& images, const FaceOptions& opt
     const auto at = static_cast<std::size_t>(i);
     frames[at] = {images[at], finder.faces(read_image(images[at]))};
   };
-  parallel_for(static_cast<int>(images.size()), options.threads, look_at, progress);
+  parallel_for(static_cast<int>(images.size()), options.threads, look_at, options.progress);
   FaceTrack track = follow_face(frames, options.min_confidence);
   check_some_face(track);
   if (options.model == FaceOptions{}.model) track.notes.insert(track.notes.begin(), kTerms);

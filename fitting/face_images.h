@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include <mimetra/fitting/affine_camera.h>
-#include <mimetra/fitting/image.h>
-#include <mimetra/fitting/landmark_track.h>
-#include <mimetra/mesh/errors.h>
+#include "fitting/affine_camera.h"
+#include "fitting/image_files.h"
+#include "fitting/landmark_file.h"
+#include "toolkit/mesh/progress.h"
 
 namespace mimetra {
 
@@ -28,6 +28,7 @@ struct FaceOptions {
   /// Faces of less confidence are taken for none, in [0, 1].
   double min_confidence = 0.1;
   int threads = 0;  ///< 0 for all there are; what is found does not depend on it
+  Progress progress = {};
 };
 
 /// Finds faces and their landmarks by dlib's frontal face detector and a 68-point shape predictor.
@@ -90,7 +91,6 @@ std::string low_confidence_note(double confidence, double min_confidence);
 
 /// Finds the faces of all images, and follows one. Throws as FaceFinder, read_image and
 /// follow_face; IoError where no image shows a face; Cancelled.
-FaceTrack track_face(const std::vector<std::filesystem::path>& images, const FaceOptions& = {},
-                     const Progress& = {});
+FaceTrack track_face(const std::vector<std::filesystem::path>& images, const FaceOptions& = {});
 
 }  // namespace mimetra

@@ -8,8 +8,9 @@
 #include <dlib/image_processing/frontal_face_detector.h>
 #include <dlib/image_processing/shape_predictor.h>
 
-#include <mimetra/fitting/face_images.h>
-#include <mimetra/fitting/image_codec.h>
+#include "fitting/face_images.h"
+#include "fitting/image_codec.h"
+#include "toolkit/mesh/errors.h"
 
 /// All that needs dlib.
 namespace mimetra {

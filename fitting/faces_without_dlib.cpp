@@ -1,5 +1,6 @@
-#include <mimetra/fitting/face_images.h>
-#include <mimetra/fitting/image_codec.h>
+#include "fitting/face_images.h"
+#include "fitting/image_codec.h"
+#include "toolkit/mesh/errors.h"
 
 /// What a build without dlib says where images are asked for.
 namespace mimetra {

@@ -1,4 +1,4 @@
-#include <mimetra/fitting/fit_operation.h>
+#include "fitting/fit_operation.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,12 +6,15 @@
 
 #include <nlohmann/json.hpp>
 
-#include <mimetra/fitting/fit_pictures.h>
-#include <mimetra/fitting/landmark_fitter.h>
-#include <mimetra/fitting/landmark_input.h>
-#include <mimetra/fitting/landmark_mapping.h>
-#include <mimetra/mesh/product_blocking.h>
-#include <mimetra/operations/report.h>
+#include "fitting/fit_pictures.h"
+#include "fitting/landmark_fitter.h"
+#include "fitting/landmark_input.h"
+#include "fitting/landmark_mapping.h"
+#include "toolkit/mesh/errors.h"
+#include "toolkit/mesh/product_blocking.h"
+#include "toolkit/mesh/progress.h"
+#include "toolkit/mesh/text.h"
+#include "toolkit/operations/json.h"
 
 namespace mimetra {
 
@@ -119,17 +122,6 @@ MeshSequence sequence_of(const MorphableModel& model, const FittedCoefficients& 
   return sequence.with_frames(std::move(frames));
 }
 
-/// "0, 5, 17 and 12 more".
-std::string listed(const std::vector<int>& frames) {
-  constexpr std::size_t kShown = 8;
-  std::string text;
-  for (std::size_t i = 0; i < std::min(frames.size(), kShown); ++i) {
-    text += (i == 0 ? "" : ", ") + std::to_string(frames[i]);
-  }
-  if (frames.size() > kShown) text += " and " + std::to_string(frames.size() - kShown) + " more";
-  return text;
-}
-
 struct FitSummary {
   double rms = 0;  ///< over all landmarks of all frames, pixels
   int worst = 0;   ///< frame of the largest RMS
@@ -166,13 +158,11 @@ auto naming_landmarks(const Invocation& invocation, Call call) {
 }
 
 std::vector<FrameFit> fitted(const Invocation& invocation, const MorphableModel& model,
-                             const MappedLandmarks& mapped, const FitOptions& options) {
-  const Progress progress = [&](double share) {
-    return !invocation.progress || invocation.progress(0.5 * share);
-  };
+                             const MappedLandmarks& mapped, FitOptions options) {
+  options.progress = part_of(invocation.progress, 0, 0.5);
   const Eigen::VectorXd& times = invocation.get<LandmarksRead>("landmarks").track.times;
   return naming_landmarks(invocation, [&] {
-    return LandmarkFitter(model, mapped.vertices).fit(mapped.points, options, times, progress);
+    return LandmarkFitter(model, mapped.vertices).fit(mapped.points, options, times);
   });
 }
 
@@ -217,7 +207,7 @@ Outcome run(const Invocation& invocation) {
     invocation.warn(invocation.inputs.at("landmarks").front().name +
                     ": frames of the result without landmarks, whose face lies between those of "
                     "their neighbours: " +
-                    listed(summary.unseen));
+                    listed(words_of(summary.unseen)));
   }
   const MeshSequence sequence = sequence_of(read.model, fit, options.shape);
   Outcome outcome;

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <mimetra/operations/operation.h>
+#include "toolkit/operations/operation.h"
 
 namespace mimetra {
 

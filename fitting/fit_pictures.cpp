@@ -1,9 +1,9 @@
-#include <mimetra/fitting/fit_pictures.h>
+#include "fitting/fit_pictures.h"
 
 #include <algorithm>
 #include <stdexcept>
 
-#include <mimetra/mesh/errors.h>
+#include "toolkit/mesh/errors.h"
 
 namespace mimetra {
 

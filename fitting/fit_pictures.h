@@ -4,11 +4,11 @@
 #include <memory>
 #include <vector>
 
-#include <mimetra/fitting/affine_camera.h>
-#include <mimetra/fitting/image.h>
-#include <mimetra/fitting/landmark_mapping.h>
-#include <mimetra/fitting/overlay.h>
-#include <mimetra/mesh/mesh_sequence.h>
+#include "fitting/affine_camera.h"
+#include "fitting/image_files.h"
+#include "fitting/landmark_mapping.h"
+#include "fitting/overlay.h"
+#include "toolkit/mesh/mesh_sequence.h"
 
 /// What the operation `fit` draws. Internal to fit_operation.h.
 namespace mimetra {

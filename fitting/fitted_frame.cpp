@@ -1,4 +1,4 @@
-#include <mimetra/fitting/fitted_frame.h>
+#include "fitting/fitted_frame.h"
 
 #include <utility>
 

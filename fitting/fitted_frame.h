@@ -3,8 +3,8 @@
 #include <memory>
 #include <vector>
 
-#include <mimetra/fitting/landmark_fitter.h>
-#include <mimetra/fitting/landmark_rows.h>
+#include "fitting/fit_options.h"
+#include "fitting/landmark_rows.h"
 
 /// Frames while they are being fitted. Internal to landmark_fitter.h.
 namespace mimetra {
@@ -57,16 +57,14 @@ double energy(const std::vector<FittedFrame>& frames, bool one_identity, double 
 bool has_converged(double before, double after, double tolerance);
 
 /// The paper's alternation, from where the frames are. `options.ridge` is set.
-FittedClip fit_alternating(std::vector<FittedFrame> frames, const FitOptions& options,
-                           const Progress& progress);
+FittedClip fit_alternating(std::vector<FittedFrame> frames, const FitOptions& options);
 
 /// The alternation with options.smoothness; `times` belong to the frames.
 FittedClip fit_smoothly(std::vector<FittedFrame> frames, const FitOptions& options,
-                        const Eigen::VectorXd& times, const Progress& progress);
+                        const Eigen::VectorXd& times);
 
 /// Gauss-Newton on cameras, the one alpha of the frames, and beta within its box. `options.ridge`
 /// is set.
-FittedClip fit_jointly(std::vector<FittedFrame> frames, const FitOptions& options,
-                       const Progress& progress);
+FittedClip fit_jointly(std::vector<FittedFrame> frames, const FitOptions& options);
 
 }  // namespace mimetra

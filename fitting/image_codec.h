@@ -3,9 +3,9 @@
 #include <filesystem>
 #include <string>
 
-#include <mimetra/fitting/image.h>
+#include "toolkit/operations/image.h"
 
-/// Bytes of image files to pixels, where dlib is there. Internal to image.h.
+/// Bytes of image files to pixels, where dlib is there. Internal to image_files.h.
 namespace mimetra {
 
 /// What an image file says about itself.

@@ -1,8 +1,8 @@
 #include <cstddef>
 #include <string_view>
 
-#include <mimetra/fitting/image_codec.h>
-#include <mimetra/io/sequence_file.h>
+#include "fitting/image_codec.h"
+#include "toolkit/mesh/errors.h"
 
 namespace mimetra {
 

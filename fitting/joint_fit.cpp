@@ -4,8 +4,9 @@
 #include <Eigen/Cholesky>
 #include <Eigen/QR>
 
-#include <mimetra/fitting/fitted_frame.h>
-#include <mimetra/model/box_least_squares.h>
+#include "fitting/fitted_frame.h"
+#include "toolkit/mesh/progress.h"
+#include "toolkit/model/box_least_squares.h"
 
 namespace mimetra {
 
@@ -178,8 +179,7 @@ std::vector<FittedFrame> moved(std::vector<FittedFrame> frames, const BoxedStep:
 
 }  // namespace
 
-FittedClip fit_jointly(std::vector<FittedFrame> frames, const FitOptions& options,
-                       const Progress& progress) {
+FittedClip fit_jointly(std::vector<FittedFrame> frames, const FitOptions& options) {
   constexpr int kHalvings = 10;
   FittedClip result{std::move(frames), 0, {}};
   double before = energy(result.frames, true, *options.ridge);
@@ -197,7 +197,7 @@ FittedClip fit_jointly(std::vector<FittedFrame> frames, const FitOptions& option
     ++result.iterations;
     result.energies.push_back(now);
     if (has_converged(before, now, options.tolerance) || now == before) break;
-    report_progress(progress, double(result.iterations) / options.iterations);
+    report_progress(options.progress, double(result.iterations) / options.iterations);
     before = now;
   }
   return result;

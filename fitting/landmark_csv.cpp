@@ -5,18 +5,15 @@
 #include <optional>
 #include <string_view>
 
-#include <mimetra/fitting/landmark_formats.h>
-#include <mimetra/io/pending_output.h>
-#include <mimetra/io/sequence_file.h>
-#include <mimetra/io/text_cursor.h>
+#include "fitting/landmark_formats.h"
+#include "toolkit/io/csv.h"
+#include "toolkit/mesh/errors.h"
 
 namespace mimetra {
 
 namespace {
 
 constexpr double kUnseen = std::numeric_limits<double>::quiet_NaN();
-
-using Fields = std::vector<std::string_view>;
 
 /// Number of a column called x7 or x_7, for the letter 'x'.
 std::optional<std::size_t> landmark_number(std::string_view name, char letter) {
@@ -28,39 +25,23 @@ std::optional<std::size_t> landmark_number(std::string_view name, char letter) {
   return number;
 }
 
-class CsvReader {
+class LandmarkReader {
  public:
-  explicit CsvReader(const std::filesystem::path& path)
-      : path_(path.string()),
-        bytes_(read_file(path)),
-        text_(path_, without_byte_order_mark(bytes_), {}) {}
+  explicit LandmarkReader(const std::filesystem::path& path) : path_(path), csv_(path) {}
 
   LandmarkTrack read() {
-    while (!text_.at_end()) {
-      line_ = text_.line();
-      const std::string_view line = text_.rest_of_line();
-      if (line.empty()) continue;
-      if (header_.empty()) {
-        read_header(line);
-      } else {
-        read_row(line);
-      }
-    }
-    if (header_.empty()) throw IoError(path_, "is empty; expected a line of column names");
-    if (frames_ == 0) throw IoError(path_, "has column names but no frame");
+    choose_columns();
+    while (csv_.next_row()) read_row();
+    if (frames_ == 0) throw IoError(path_.string(), "has column names but no frame");
     return track();
   }
 
  private:
-  [[noreturn]] void fail(const std::string& message) const {
-    throw IoError(path_, "line " + std::to_string(line_) + ": " + message);
-  }
-
-  void read_header(std::string_view line) {
-    header_ = comma_separated(line);
+  void choose_columns() {
+    const auto& names = csv_.names();
     std::map<std::size_t, std::size_t> x, y;
-    for (std::size_t column = 0; column < header_.size(); ++column) {
-      const std::string_view name = header_[column];
+    for (std::size_t column = 0; column < names.size(); ++column) {
+      const std::string_view name = names[column];
       if (const auto number = landmark_number(name, 'x')) {
         add_column(x, *number, column);
       } else if (const auto row = landmark_number(name, 'y')) {
@@ -75,68 +56,53 @@ class CsvReader {
         success_ = column;
       }
     }
-    if (x.empty()) fail("no landmarks; expected columns x0, y0, x1, ... or x_0, ..., y_0, ...");
+    if (x.empty())
+      csv_.fail("no landmarks; expected columns x0, y0, x1, ... or x_0, ..., y_0, ...");
     for (const auto& [number, column] : x) {
       if (number != columns_.size() / 2) {
-        fail("column 'x" + std::to_string(columns_.size() / 2) + "' is missing before '" +
-             std::string(header_[column]) + "'");
+        csv_.fail("column 'x" + std::to_string(columns_.size() / 2) + "' is missing before '" +
+                  std::string(names[column]) + "'");
       }
       const auto found = y.find(number);
-      if (found == y.end()) fail("no column 'y' for '" + std::string(header_[column]) + "'");
+      if (found == y.end()) csv_.fail("no column 'y' for '" + std::string(names[column]) + "'");
       columns_.insert(columns_.end(), {column, found->second});
     }
-    if (y.size() != x.size()) fail("there are more columns of y than of x");
+    if (y.size() != x.size()) csv_.fail("there are more columns of y than of x");
   }
 
   void add_column(std::map<std::size_t, std::size_t>& columns, std::size_t number,
                   std::size_t column) const {
     if (!columns.emplace(number, column).second) {
-      fail("the column '" + std::string(header_[column]) + "' occurs twice");
+      csv_.fail("the column '" + std::string(csv_.names()[column]) + "' occurs twice");
     }
   }
 
-  double number(const Fields& row, std::size_t column) const {
-    const std::string_view field = row[column];
-    double value = 0;
-    const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), value);
-    if (error != std::errc() || end != field.data() + field.size() || !std::isfinite(value)) {
-      fail("column '" + std::string(header_[column]) + "': expected a finite number, found '" +
-           std::string(field) + "'");
-    }
-    return value;
+  double coordinate(std::size_t column) const {
+    const std::string_view field = csv_.field(column);
+    return field.empty() || field == "nan" || field == "NaN" ? kUnseen : csv_.number(column);
   }
 
-  double coordinate(const Fields& row, std::size_t column) const {
-    const std::string_view field = row[column];
-    return field.empty() || field == "nan" || field == "NaN" ? kUnseen : number(row, column);
-  }
-
-  void read_row(std::string_view line) {
-    const Fields row = comma_separated(line);
-    if (row.size() != header_.size()) {
-      fail(std::to_string(row.size()) + " fields, expected " + std::to_string(header_.size()) +
-           " as in the first line");
-    }
-    const bool seen = !success_ || number(row, *success_) != 0;
+  void read_row() {
+    const bool seen = !success_ || csv_.number(*success_) != 0;
     for (std::size_t i = 0; i < columns_.size(); i += 2) {
-      const double x = coordinate(row, columns_[i]), y = coordinate(row, columns_[i + 1]);
+      const double x = coordinate(columns_[i]), y = coordinate(columns_[i + 1]);
       if (std::isnan(x) != std::isnan(y)) {
-        fail("only one of '" + std::string(header_[columns_[i]]) + "' and '" +
-             std::string(header_[columns_[i + 1]]) + "' is a number");
+        csv_.fail("only one of '" + std::string(csv_.names()[columns_[i]]) + "' and '" +
+                  std::string(csv_.names()[columns_[i + 1]]) + "' is a number");
       }
       points_.insert(points_.end(), {seen ? x : kUnseen, seen ? y : kUnseen});
     }
     if (time_) {
-      const double time = number(row, *time_);
+      const double time = csv_.number(*time_);
       if (!times_.empty() && time <= times_.back()) {
-        fail("times do not ascend; expected one face and one row a frame");
+        csv_.fail("times do not ascend; expected one face and one row a frame");
       }
       times_.push_back(time);
     }
-    if (frame_ && !time_) check_frame(number(row, *frame_));
+    if (frame_ && !time_) check_frame(csv_.number(*frame_));
     if (confidence_) {
-      const double confidence = number(row, *confidence_);
-      if (!(confidence >= 0 && confidence <= 1)) fail("the confidence is outside [0, 1]");
+      const double confidence = csv_.number(*confidence_);
+      if (!(confidence >= 0 && confidence <= 1)) csv_.fail("the confidence is outside [0, 1]");
       confidences_.push_back(confidence);
     }
     ++frames_;
@@ -145,9 +111,9 @@ class CsvReader {
   /// Without times, rows are taken for consecutive frames.
   void check_frame(double frame) {
     if (last_frame_ && frame != *last_frame_ + 1) {
-      fail("frame " + std::to_string(std::lround(frame)) + " follows " +
-           std::to_string(std::lround(*last_frame_)) +
-           "; expected consecutive frames, or a column 'time'");
+      csv_.fail("frame " + std::to_string(std::lround(frame)) + " follows " +
+                std::to_string(std::lround(*last_frame_)) +
+                "; expected consecutive frames, or a column 'time'");
     }
     last_frame_ = frame;
   }
@@ -163,11 +129,8 @@ class CsvReader {
             vector(confidences_)};
   }
 
-  std::string path_;
-  std::string bytes_;
-  TextCursor text_;
-  int line_ = 0;
-  Fields header_;
+  std::filesystem::path path_;
+  CsvReader csv_;
   /// Columns of x0, y0, x1, y1, ...
   std::vector<std::size_t> columns_;
   std::optional<std::size_t> frame_, time_, confidence_, success_;
@@ -179,7 +142,7 @@ class CsvReader {
 }  // namespace
 
 LandmarkTrack read_landmark_csv(const std::filesystem::path& path) {
-  return CsvReader(path).read();
+  return LandmarkReader(path).read();
 }
 
 }  // namespace mimetra

@@ -1,4 +1,4 @@
-#include <mimetra/fitting/landmark_fitter.h>
+#include "fitting/landmark_fitter.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,9 +9,10 @@
 #include <string>
 #include <utility>
 
-#include <mimetra/fitting/fitted_frame.h>
-#include <mimetra/io/sequence_file.h>
-#include <mimetra/mesh/product_blocking.h>
+#include "fitting/fitted_frame.h"
+#include "toolkit/mesh/errors.h"
+#include "toolkit/mesh/product_blocking.h"
+#include "toolkit/mesh/progress.h"
 
 namespace mimetra {
 
@@ -71,49 +72,47 @@ std::vector<FrameFit> results_of(const FittedClip& clip) {
   return fits;
 }
 
-FittedClip solved(std::vector<FittedFrame> frames, const FitOptions& options,
-                  const Progress& progress) {
-  return options.solver == FitOptions::Solver::joint
-             ? fit_jointly(std::move(frames), options, progress)
-             : fit_alternating(std::move(frames), options, progress);
+FittedClip solved(std::vector<FittedFrame> frames, const FitOptions& options) {
+  return options.solver == FitOptions::Solver::joint ? fit_jointly(std::move(frames), options)
+                                                     : fit_alternating(std::move(frames), options);
 }
 
 /// One clip of all frames, or one of each frame, which starts from the one before.
-std::vector<FittedClip> solved_by_shape(std::vector<FittedFrame> frames, const FitOptions& options,
-                                        const Progress& progress) {
+std::vector<FittedClip> solved_by_shape(std::vector<FittedFrame> frames,
+                                        const FitOptions& options) {
   std::vector<FittedClip> clips;
   if (options.shape == FitOptions::Shape::clip) {
-    clips.push_back(solved(std::move(frames), options, progress));
+    clips.push_back(solved(std::move(frames), options));
     return clips;
   }
+  FitOptions of_frame = options;
+  of_frame.progress = {};
   for (FittedFrame& frame : frames) {
-    report_progress(progress, double(clips.size()) / double(frames.size()));
+    report_progress(options.progress, double(clips.size()) / double(frames.size()));
     if (!clips.empty()) {
       const FittedFrame& before = clips.back().frames.front();
       frame.set_alpha(before.alpha());
       frame.set_beta(before.beta());
       frame.estimate_camera();
     }
-    clips.push_back(solved({std::move(frame)}, options, {}));
+    clips.push_back(solved({std::move(frame)}, of_frame));
   }
   return clips;
 }
 
 /// Fits of frames that are seen, at their `times`.
 std::vector<FrameFit> fits_of(std::vector<FittedFrame> frames, const FitOptions& options,
-                              const Eigen::VectorXd& times, const Progress& progress) {
+                              const Eigen::VectorXd& times) {
   std::vector<FrameFit> fits;
   std::vector<FittedFrame> rough;
-  for (FittedClip& clip : solved_by_shape(std::move(frames), options, progress)) {
+  for (FittedClip& clip : solved_by_shape(std::move(frames), options)) {
     if (options.smoothness > 0) {
       std::ranges::move(clip.frames, std::back_inserter(rough));
     } else {
       std::ranges::move(results_of(clip), std::back_inserter(fits));
     }
   }
-  return options.smoothness > 0
-             ? results_of(fit_smoothly(std::move(rough), options, times, progress))
-             : fits;
+  return options.smoothness > 0 ? results_of(fit_smoothly(std::move(rough), options, times)) : fits;
 }
 
 /// A frame without landmarks at a share of the way between two with some. What is equal in both
@@ -216,8 +215,7 @@ LandmarkFitter::LandmarkFitter(LandmarkFitter&&) noexcept = default;
 LandmarkFitter& LandmarkFitter::operator=(LandmarkFitter&&) noexcept = default;
 
 std::vector<FrameFit> LandmarkFitter::fit(const Frames& points, const FitOptions& given,
-                                          const Eigen::VectorXd& given_times,
-                                          const Progress& progress) const {
+                                          const Eigen::VectorXd& given_times) const {
   const FitOptions options = state_->checked(points, given, given_times);
   fix_product_blocking();
   const Eigen::Index count = points.rows();
@@ -234,7 +232,7 @@ std::vector<FrameFit> LandmarkFitter::fit(const Frames& points, const FitOptions
     frames.push_back(state_->frame(points, f, seen, options, rows_of_seen));
   }
   if (frames.empty()) throw MismatchError("no frame has landmarks");
-  const std::vector<FrameFit> fits = fits_of(std::move(frames), options, times(indices), progress);
+  const std::vector<FrameFit> fits = fits_of(std::move(frames), options, times(indices));
   return with_unseen(fits, indices, times);
 }
 

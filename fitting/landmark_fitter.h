@@ -4,38 +4,11 @@
 #include <optional>
 #include <vector>
 
-#include <mimetra/fitting/affine_camera.h>
-#include <mimetra/mesh/errors.h>
-#include <mimetra/model/morphable_model.h>
+#include "fitting/affine_camera.h"
+#include "fitting/fit_options.h"
+#include "toolkit/model/morphable_model.h"
 
 namespace mimetra {
-
-struct FitOptions {
-  /// `alternating`: camera, alpha, camera, beta, in turn, as in the paper. `joint`: Gauss-Newton
-  /// steps of all of them together, two or three of which reach what hundreds of iterations do.
-  enum class Solver { alternating, joint };
-  /// `clip`: one alpha for all frames; `frame`: an alpha in every frame, which starts from the
-  /// frame before.
-  enum class Shape { clip, frame };
-
-  Solver solver = Solver::joint;
-  Shape shape = Shape::clip;
-  /// Iterations at most, >= 1; in every frame where each has its shape.
-  int iterations = 5;
-  /// It ends where the energy falls by less than this share of it in one iteration, >= 0.
-  double tolerance = 1e-4;
-  /// Noise of the landmarks in pixels, > 0. By default 0.017485 x the RMS distance of the used
-  /// landmarks from their centroid, in each frame, so that the image's scale changes nothing.
-  std::optional<double> sigma = std::nullopt;
-  /// Upper bound of each beta, > 0; infinity leaves only beta >= 0.
-  double max_expression = 1;
-  /// Weight of |beta|^2 beside |alpha|^2, >= 0. By default 0, or 0.1 with more than ten
-  /// expressions.
-  std::optional<double> ridge = std::nullopt;
-  /// Weight of squared second differences of beta over time: time constant in seconds, >= 0. The
-  /// alternation finds it, from where the solver ends without it. Needs max_expression = 1.
-  double smoothness = 0;
-};
 
 /// What was fitted to one frame.
 struct FrameFit {
@@ -78,7 +51,7 @@ class LandmarkFitter {
   /// std::invalid_argument where sizes disagree or an option is out of range; MismatchError where
   /// no frame has landmarks, or those of a frame are fewer than four or coplanar; Cancelled.
   std::vector<FrameFit> fit(const Frames& points, const FitOptions& = {},
-                            const Eigen::VectorXd& times = {}, const Progress& = {}) const;
+                            const Eigen::VectorXd& times = {}) const;
 
  private:
   struct State;

@@ -1,8 +1,12 @@
 #pragma once
 
-#include <mimetra/fitting/landmark_track.h>
+#include <filesystem>
+#include <string>
+#include <vector>
 
-/// One reader for each format. Internal to landmark_track.h.
+#include "toolkit/model/landmark_track.h"
+
+/// One reader for each format. Internal to landmark_file.h.
 namespace mimetra {
 
 LandmarkTrack read_pts(const std::filesystem::path& path);

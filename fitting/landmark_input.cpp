@@ -1,14 +1,16 @@
-#include <mimetra/fitting/landmark_input.h>
+#include "fitting/landmark_input.h"
 
 #include <algorithm>
 #include <functional>
 #include <iterator>
 #include <limits>
 
-#include <mimetra/fitting/image.h>
-#include <mimetra/fitting/landmark_track.h>
-#include <mimetra/io/frame_files.h>
-#include <mimetra/mesh/errors.h>
+#include "fitting/image_files.h"
+#include "fitting/landmark_file.h"
+#include "toolkit/io/frame_files.h"
+#include "toolkit/mesh/errors.h"
+#include "toolkit/mesh/progress.h"
+#include "toolkit/mesh/text.h"
 
 namespace mimetra {
 
@@ -100,14 +102,14 @@ Paths images_of(const std::string& text, const Paths& frames, int count,
   return images;
 }
 
-Paths part_of(const Paths& all, const std::vector<int>& frames) {
+Paths taken_from(const Paths& all, const std::vector<int>& frames) {
   Paths part;
   if (all.empty()) return part;
   for (const int frame : frames) part.push_back(all[static_cast<std::size_t>(frame)]);
   return part;
 }
 
-LandmarkTrack part_of(LandmarkTrack track, const std::vector<int>& frames) {
+LandmarkTrack taken_from(LandmarkTrack track, const std::vector<int>& frames) {
   track.points = Frames(track.points(frames, Eigen::all));
   if (track.times.size() > 0) track.times = Eigen::VectorXd(track.times(frames));
   if (track.confidence.size() > 0) track.confidence = Eigen::VectorXd(track.confidence(frames));
@@ -164,7 +166,8 @@ void drop_doubtful(LandmarksRead& read, const std::string& text, double min_conf
 
 LandmarksRead find_in_images(Paths images, const SequenceSource& source, FaceOptions options) {
   options.threads = source.threads;
-  FaceTrack faces = track_face(images, options, source.progress);
+  options.progress = source.progress;
+  FaceTrack faces = track_face(images, options);
   LandmarksRead read;
   read.track = std::move(faces.landmarks);
   read.files = images;
@@ -183,17 +186,17 @@ LandmarksRead read_landmark_input(const std::string& text, const SequenceSource&
   if (input.frames.empty()) whole = read_landmarks(input.track);
   const int count = input.frames.empty() ? whole.frames() : static_cast<int>(input.frames.size());
   const std::vector<int> selected = selected_frames(source.frames, count);
-  const Paths files = part_of(input.frames, selected);
+  const Paths files = taken_from(input.frames, selected);
   LandmarksRead read;
   const bool from_images = !files.empty() && is_image(files.front());
   check_needed(text, from_images, options);
   if (from_images) {
     read = find_in_images(files, source, options.faces);
   } else {
-    read.track =
-        files.empty() ? part_of(std::move(whole), selected) : read_points(files, source.progress);
+    read.track = files.empty() ? taken_from(std::move(whole), selected)
+                               : read_points(files, source.progress);
     read.files = files.empty() ? Paths{input.track} : files;
-    read.images = part_of(images_of(text, input.frames, count, options), selected);
+    read.images = taken_from(images_of(text, input.frames, count, options), selected);
     read.files.insert(read.files.end(), read.images.begin(), read.images.end());
     drop_doubtful(read, text, options.faces.min_confidence);
     note_others(read, text, input);

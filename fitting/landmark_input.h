@@ -3,8 +3,8 @@
 #include <optional>
 #include <string>
 
-#include <mimetra/fitting/face_images.h>
-#include <mimetra/operations/data.h>
+#include "fitting/face_images.h"
+#include "toolkit/operations/data.h"
 
 namespace mimetra {
 

@@ -4,10 +4,10 @@
 
 #include <nlohmann/json.hpp>
 
-#include <mimetra/fitting/landmark_formats.h>
-#include <mimetra/io/pending_output.h>
-#include <mimetra/io/sequence_file.h>
-#include <mimetra/io/text_cursor.h>
+#include "fitting/landmark_formats.h"
+#include "toolkit/io/text_cursor.h"
+#include "toolkit/io/whole_file.h"
+#include "toolkit/mesh/errors.h"
 
 namespace mimetra {
 

@@ -1,13 +1,13 @@
-#include <mimetra/fitting/landmark_mapping.h>
+#include "fitting/landmark_mapping.h"
 
 #include <algorithm>
 #include <limits>
 #include <set>
 
-#include <mimetra/fitting/landmark_formats.h>
-#include <mimetra/io/pending_output.h>
-#include <mimetra/io/sequence_file.h>
-#include <mimetra/io/text_cursor.h>
+#include "fitting/landmark_formats.h"
+#include "toolkit/io/text_cursor.h"
+#include "toolkit/io/whole_file.h"
+#include "toolkit/mesh/errors.h"
 
 namespace mimetra {
 
@@ -93,7 +93,7 @@ LandmarkMapping read_landmark_mapping(const fs::path& path) {
 fs::path find_landmark_mapping(const fs::path& model) {
   const fs::path folder = fs::is_directory(model) ? model : model.parent_path();
   std::vector<fs::path> found;
-  std::error_code missing;  // then nothing is found, which is told below
+  std::error_code missing;  // then nothing is found, which is reported below
   for (const fs::path& file : fs::directory_iterator(folder.empty() ? "." : folder, missing)) {
     const std::string name = file.filename().string();
     if (name == "landmarks68.txt" || (name.starts_with("ibug_to_") && name.ends_with(".txt"))) {

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include <mimetra/fitting/landmark_track.h>
+#include "fitting/landmark_file.h"
 
 namespace mimetra {
 

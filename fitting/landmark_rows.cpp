@@ -1,4 +1,4 @@
-#include <mimetra/fitting/landmark_rows.h>
+#include "fitting/landmark_rows.h"
 
 #include <utility>
 

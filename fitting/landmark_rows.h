@@ -2,8 +2,8 @@
 
 #include <vector>
 
-#include <mimetra/fitting/affine_camera.h>
-#include <mimetra/model/morphable_model.h>
+#include "fitting/affine_camera.h"
+#include "toolkit/model/morphable_model.h"
 
 /// The few rows of a model that landmarks need, folded so that no camera costs a normal matrix
 /// over landmarks. Internal to landmark_fitter.h.

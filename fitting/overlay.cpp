@@ -1,4 +1,4 @@
-#include <mimetra/fitting/overlay.h>
+#include "fitting/overlay.h"
 
 #include <algorithm>
 #include <cmath>

@@ -2,9 +2,9 @@
 
 #include <vector>
 
-#include <mimetra/fitting/affine_camera.h>
-#include <mimetra/fitting/image.h>
-#include <mimetra/model/morphable_model.h>
+#include "fitting/affine_camera.h"
+#include "fitting/image_files.h"
+#include "toolkit/model/morphable_model.h"
 
 namespace mimetra {
 

@@ -8,9 +8,9 @@
 #include <CGAL/Surface_mesh_shortest_path.h>
 #include <CGAL/boost/graph/graph_traits_TriMesh_ArrayKernelT.h>
 
-#include <mimetra/geodesic/exact_geodesics.h>
-#include <mimetra/geodesic/glued_surface.h>
-#include <mimetra/geodesic/surface_components.h>
+#include "geodesic/exact_geodesics.h"
+#include "geodesic/glued_surface.h"
+#include "geodesic/surface_components.h"
 
 namespace mimetra::geodesic {
 namespace {

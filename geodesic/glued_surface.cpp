@@ -3,7 +3,7 @@
 #include <numeric>
 #include <utility>
 
-#include <mimetra/geodesic/glued_surface.h>
+#include "geodesic/glued_surface.h"
 
 namespace mimetra::geodesic {
 namespace {

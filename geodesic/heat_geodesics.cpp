@@ -6,9 +6,9 @@
 #include <string>
 #include <utility>
 
-#include <mimetra/geodesic/heat_geodesics.h>
-#include <mimetra/geodesic/heat_operators.h>
-#include <mimetra/geodesic/sparse_factor.h>
+#include "geodesic/heat_geodesics.h"
+#include "geodesic/heat_operators.h"
+#include "geodesic/sparse_factor.h"
 
 namespace mimetra::geodesic {
 namespace {

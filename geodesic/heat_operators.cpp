@@ -15,8 +15,8 @@
 #include <CGAL/Heat_method_3/Surface_mesh_geodesic_distances_3.h>
 #include <CGAL/boost/graph/graph_traits_TriMesh_ArrayKernelT.h>
 
-#include <mimetra/geodesic/glued_surface.h>
-#include <mimetra/geodesic/heat_operators.h>
+#include "geodesic/glued_surface.h"
+#include "geodesic/heat_operators.h"
 
 namespace mimetra::geodesic {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <Eigen/SparseCore>
 
-#include <mimetra/geodesic/surface_components.h>
+#include "geodesic/surface_components.h"
 
 namespace mimetra::geodesic {
 

@@ -1,4 +1,4 @@
-#include <mimetra/geodesic/sparse_factor.h>
+#include "geodesic/sparse_factor.h"
 
 #include <stdexcept>
 

@@ -3,7 +3,7 @@
 #include <stdexcept>
 #include <string>
 
-#include <mimetra/geodesic/support_map.h>
+#include "geodesic/support_map.h"
 
 namespace mimetra::geodesic {
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <mimetra/geodesic/types.h>
+#include "geodesic/types.h"
 
 namespace mimetra::geodesic {
 

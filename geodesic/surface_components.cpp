@@ -5,7 +5,7 @@
 
 #include <Eigen/Geometry>
 
-#include <mimetra/geodesic/surface_components.h>
+#include "geodesic/surface_components.h"
 
 namespace mimetra::geodesic {
 namespace {

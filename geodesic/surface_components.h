@@ -3,7 +3,7 @@
 #include <span>
 #include <vector>
 
-#include <mimetra/geodesic/types.h>
+#include "geodesic/types.h"
 
 namespace mimetra::geodesic {
 

@@ -2,13 +2,13 @@
 
 #include <iostream>
 
-#include <mimetra/io/model_file.h>
-#include <mimetra/io/sequence_file.h>
-#include <mimetra/mesh/alignment.h>
-#include <mimetra/regions/regions.h>
-#include <mimetra/samples/head.h>
-#include <mimetra/transfer/blendshape_transfer.h>
-#include <mimetra/transfer/transfer_error.h>
+#include <mimetra/samples/head/head.h>
+#include <mimetra/toolkit/io/model_file.h>
+#include <mimetra/toolkit/io/sequence_file.h>
+#include <mimetra/toolkit/mesh/alignment.h>
+#include <mimetra/toolkit/regions/regions.h>
+#include <mimetra/toolkit/transfer/blendshape_transfer.h>
+#include <mimetra/toolkit/transfer/transfer_error.h>
 using namespace mimetra;
 
 MeshSequence built_in_performance() {

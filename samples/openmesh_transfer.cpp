@@ -4,10 +4,10 @@
 
 #include <OpenMesh/Core/Utils/PropertyManager.hh>
 
-#include <mimetra/mesh/openmesh.h>
-#include <mimetra/regions/regions.h>
-#include <mimetra/samples/head.h>
-#include <mimetra/transfer/vertex_transfer.h>
+#include <mimetra/samples/head/head.h>
+#include <mimetra/toolkit/mesh/openmesh.h>
+#include <mimetra/toolkit/regions/regions.h>
+#include <mimetra/toolkit/transfer/vertex_transfer.h>
 using namespace mimetra;
 using Mesh = OpenMesh::TriMesh_ArrayKernelT<>;
 

@@ -2,11 +2,11 @@
 
 #include <iostream>
 
-#include <mimetra/io/sequence_file.h>
-#include <mimetra/mesh/alignment.h>
-#include <mimetra/regions/regions.h>
-#include <mimetra/samples/head.h>
-#include <mimetra/vtk/vtp_series.h>
+#include <mimetra/samples/head/head.h>
+#include <mimetra/toolkit/io/sequence_file.h>
+#include <mimetra/toolkit/mesh/alignment.h>
+#include <mimetra/toolkit/regions/regions.h>
+#include <mimetra/toolkit/vtk/vtp_series.h>
 using namespace mimetra;
 
 MeshSequence built_in_performance() {

@@ -3,8 +3,9 @@
 
 #include <iostream>
 
-#include <mimetra/operations/operation.h>
-#include <mimetra/samples/head.h>
+#include <mimetra/samples/head/head.h>
+#include <mimetra/toolkit/mesh/errors.h>
+#include <mimetra/toolkit/operations/operation.h>
 using namespace mimetra;
 
 int main() {

@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 #include <Eigen/Core>
 
-/// What a program, or a processor, may have told Eigen before mimetra computes.
+/// What a program, or a processor, may have set in Eigen before mimetra computes.
 namespace mimetra::test {
 
 /// Sizes of the three levels in bytes.

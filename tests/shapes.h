@@ -5,7 +5,7 @@
 #include <numbers>
 #include <utility>
 
-#include <mimetra/mesh/tri_mesh.h>
+#include "toolkit/mesh/tri_mesh.h"
 
 /// Meshes whose mathematics is known.
 namespace mimetra::test {

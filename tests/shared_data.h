@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "test_folders.h"
+#include "tests/test_folders.h"
 
 /// Skips the running test where `path` is not there.
 #define MIMETRA_SKIP_WITHOUT(path) \

@@ -1,4 +1,4 @@
-#include "test_folders.h"
+#include "tests/test_folders.h"
 
 #include <cstdlib>
 

@@ -1,9 +1,9 @@
-#include <mimetra/c/call.h>
+#include "plugins/c/call.h"
 
 #include <algorithm>
 
-#include <mimetra/operations/loading.h>
-#include <mimetra/operations/report.h>
+#include "toolkit/mesh/progress.h"
+#include "toolkit/operations/loading.h"
 
 using namespace mimetra;
 
@@ -42,7 +42,7 @@ bool serves_as(DataKind kind, const Data& data) {
   return found == kind || (has_frames(found) && has_frames(kind));
 }
 
-/// Throws UsageError for a value of a parameter that speaks of files where the inputs `read` are
+/// Throws UsageError for a value of a parameter of files where the inputs `read` are
 /// none that it applies to: it would be ignored.
 void check_parameters_of_files(const OperationTable& table, const Operation& operation,
                                const std::map<std::string, std::vector<std::string>>& read,

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include <mimetra/c/context.h>
-#include <mimetra/c/value.h>
+#include "plugins/c/context.h"
+#include "plugins/c/value.h"
 
 /// One operation with what goes into it, and what came out of its last run.
 struct mimetra_call {

@@ -5,10 +5,11 @@
 #include <string>
 #include <utility>
 
-#include <mimetra/c/described_table.h>
-#include <mimetra/c/failure.h>
-#include <mimetra/c/mimetra.h>
-#include <mimetra/operations/operation.h>
+#include "plugins/c/described_table.h"
+#include "plugins/c/failure.h"
+#include "plugins/c/mimetra.h"
+#include "toolkit/mesh/progress.h"
+#include "toolkit/operations/operation.h"
 
 struct mimetra_context {
   std::shared_ptr<const mimetra::DescribedTable> table;

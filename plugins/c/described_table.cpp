@@ -1,4 +1,4 @@
-#include <mimetra/c/described_table.h>
+#include "plugins/c/described_table.h"
 
 #include <algorithm>
 #include <limits>

@@ -1,9 +1,9 @@
-#include <mimetra/c/failure.h>
+#include "plugins/c/failure.h"
 
 #include <new>
 
-#include <mimetra/mesh/errors.h>
-#include <mimetra/operations/parameter.h>
+#include "toolkit/mesh/errors.h"
+#include "toolkit/operations/parameter.h"
 
 namespace mimetra {
 

@@ -3,7 +3,7 @@
 #include <exception>
 #include <string>
 
-#include <mimetra/c/mimetra.h>
+#include "plugins/c/mimetra.h"
 
 namespace mimetra {
 

@@ -1,14 +1,14 @@
-#include <mimetra/c/given_arrays.h>
+#include "plugins/c/given_arrays.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <limits>
 
-#include <mimetra/c/text.h>
-#include <mimetra/c/whole_struct.h>
-#include <mimetra/mesh/errors.h>
-#include <mimetra/operations/parameter.h>
+#include "plugins/c/utf8.h"
+#include "plugins/c/whole_struct.h"
+#include "toolkit/mesh/errors.h"
+#include "toolkit/operations/parameter.h"
 
 namespace mimetra {
 

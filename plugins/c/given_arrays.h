@@ -7,8 +7,8 @@
 #include <string_view>
 #include <vector>
 
-#include <mimetra/c/mimetra.h>
-#include <mimetra/mesh/mesh_sequence.h>
+#include "plugins/c/mimetra.h"
+#include "toolkit/mesh/mesh_sequence.h"
 
 namespace mimetra {
 

@@ -1,14 +1,14 @@
-#include <mimetra/c/interface.h>
+#include "plugins/c/interface.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include <mimetra/c/call.h>
-#include <mimetra/c/context.h>
-#include <mimetra/c/job.h>
-#include <mimetra/c/make_data.h>
-#include <mimetra/c/stored_data.h>
-#include <mimetra/c/value.h>
+#include "plugins/c/call.h"
+#include "plugins/c/context.h"
+#include "plugins/c/job.h"
+#include "plugins/c/make_data.h"
+#include "plugins/c/stored_data.h"
+#include "plugins/c/value.h"
 
 namespace mimetra {
 
@@ -163,7 +163,7 @@ void free_call(mimetra_call* call) noexcept {
   delete call;
 }
 
-/// The context whose message tells of a call's errors.
+/// The context whose message describes a call's errors.
 mimetra_context* context_of(const mimetra_call* call) {
   return call ? &call->context() : nullptr;
 }

@@ -2,8 +2,8 @@
 
 #include <functional>
 
-#include <mimetra/c/mimetra.h>
-#include <mimetra/operations/operation.h>
+#include "plugins/c/mimetra.h"
+#include "toolkit/operations/operation.h"
 
 namespace mimetra {
 

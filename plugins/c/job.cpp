@@ -1,4 +1,4 @@
-#include <mimetra/c/job.h>
+#include "plugins/c/job.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include <mimetra/c/text.h>
+#include "plugins/c/utf8.h"
+#include "toolkit/mesh/errors.h"
 
 using namespace mimetra;
 

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include <mimetra/c/context.h>
-#include <mimetra/c/value.h>
+#include "plugins/c/context.h"
+#include "plugins/c/value.h"
 
 /// One run of a third-party operation, from inside.
 struct mimetra_job {
@@ -34,7 +34,7 @@ struct mimetra_job {
   void fail(const std::string& text);
   /// Throws UsageError for an unknown output or a value of another kind.
   void output(const std::string& name, const mimetra::NamedData& value);
-  /// Throws UsageError where `json` is no JSON object, or `summary` no UTF-8.
+  /// Throws UsageError where `json` is not a JSON object, or `summary` not UTF-8.
   void report(const std::string& json, const std::string& summary);
 
   /// Everything that was made. Throws std::runtime_error that names an output which is missing.

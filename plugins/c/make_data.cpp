@@ -1,12 +1,13 @@
-#include <mimetra/c/make_data.h>
+#include "plugins/c/make_data.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include <mimetra/c/given_arrays.h>
-#include <mimetra/c/shown_arrays.h>
-#include <mimetra/c/text.h>
-#include <mimetra/operations/parameter.h>
+#include "plugins/c/given_arrays.h"
+#include "plugins/c/shown_arrays.h"
+#include "plugins/c/utf8.h"
+#include "toolkit/mesh/errors.h"
+#include "toolkit/operations/parameter.h"
 
 namespace mimetra {
 
@@ -319,7 +320,7 @@ struct KeepHidden {
   }
   void operator()(const ModelRead& base) const {
     auto& derived = as<ModelRead>();
-    // What else its folder holds speaks of its vertices.
+    // What else its folder holds is about its vertices.
     const bool same_mesh = derived.model.shared_connectivity() == base.model.shared_connectivity();
     if (same_mesh) derived.path = base.path;
   }

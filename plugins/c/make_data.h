@@ -1,7 +1,7 @@
 #pragma once
 
-#include <mimetra/c/mimetra.h>
-#include <mimetra/operations/data.h>
+#include "plugins/c/mimetra.h"
+#include "toolkit/operations/data.h"
 
 namespace mimetra {
 

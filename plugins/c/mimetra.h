@@ -146,7 +146,7 @@ enum {
   MIMETRA_NAMED = 4     /* the command takes it as --NAME although it is needed */
 };
 
-/* What a parameter of files speaks of: flags of mimetra_parameter. A call takes those of reading
+/* What a parameter of files applies to: flags of mimetra_parameter. A call takes those of reading
  * where it reads an input from a file that they apply to, and load_data; save_data takes those of
  * writing. */
 enum { MIMETRA_READING = 1, MIMETRA_WRITING = 2 };
@@ -284,7 +284,7 @@ typedef struct mimetra_interface {
   /* -- Contexts -- */
 
   /* A context with the toolkit's operations and those of plugins that are found (mimetra_plugin).
-   * Plugins that cannot be used are told to `log` and left out. `log` may be NULL. */
+   * Plugins that cannot be used are reported to `log` and left out. `log` may be NULL. */
   mimetra_status (*new_context)(mimetra_log log, void* user, mimetra_context** context);
   /* Free its calls first. */
   void (*free_context)(mimetra_context* context);
@@ -315,7 +315,7 @@ typedef struct mimetra_interface {
                                 const mimetra_array* const* arrays, mimetra_data** data);
   /* A value of a file, folder or whatever else the command takes as an input of that kind.
    * `settings`: "frames=0:100", "fps=25", "weights=take.csv", "topology=mesh.ply"; NULL for none.
-   * Region sets speak of a mesh: they are read as an input of a call, by call_read, for its first
+   * Region sets belong to a mesh: they are read as an input of a call, by call_read, for its first
    * input that has one. */
   mimetra_status (*load_data)(mimetra_context* context, mimetra_kind kind, const char* text,
                               const char* const* settings, mimetra_data** data);

@@ -1,4 +1,4 @@
-#include <mimetra/c/plugin_operation.h>
+#include "plugins/c/plugin_operation.h"
 
 #include <algorithm>
 #include <array>
@@ -8,11 +8,12 @@
 #include <limits>
 #include <string_view>
 
-#include <mimetra/c/interface.h>
-#include <mimetra/c/job.h>
-#include <mimetra/c/make_data.h>
-#include <mimetra/c/text.h>
-#include <mimetra/c/whole_struct.h>
+#include "plugins/c/interface.h"
+#include "plugins/c/job.h"
+#include "plugins/c/make_data.h"
+#include "plugins/c/utf8.h"
+#include "plugins/c/whole_struct.h"
+#include "toolkit/mesh/errors.h"
 
 namespace mimetra {
 

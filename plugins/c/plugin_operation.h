@@ -3,9 +3,9 @@
 #include <memory>
 #include <string>
 
-#include <mimetra/c/described_table.h>
-#include <mimetra/c/mimetra.h>
-#include <mimetra/operations/operation.h>
+#include "plugins/c/described_table.h"
+#include "plugins/c/mimetra.h"
+#include "toolkit/operations/operation.h"
 
 namespace mimetra {
 

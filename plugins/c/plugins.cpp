@@ -1,4 +1,4 @@
-#include <mimetra/c/plugins.h>
+#include "plugins/c/plugins.h"
 
 #include <algorithm>
 #include <cstdlib>
@@ -8,10 +8,10 @@
 
 #include <dlfcn.h>
 
-#include <mimetra/c/failure.h>
-#include <mimetra/c/plugin_operation.h>
-#include <mimetra/c/text.h>
-#include <mimetra/c/whole_struct.h>
+#include "plugins/c/failure.h"
+#include "plugins/c/plugin_operation.h"
+#include "plugins/c/utf8.h"
+#include "plugins/c/whole_struct.h"
 
 namespace mimetra {
 
@@ -48,7 +48,7 @@ std::vector<fs::path> libraries_in(const fs::path& folder) {
   for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
     std::error_code error;
     const bool is_library = entry.path().extension() == ".so";
-    // A link that leads nowhere is told of; what is no file at all is none of ours.
+    // A link that leads nowhere is reported; what is not a file at all is none of ours.
     if (is_library && (entry.is_regular_file(error) || error)) files.push_back(entry.path());
   }
   std::ranges::sort(files);

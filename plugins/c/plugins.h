@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include <mimetra/operations/operation.h>
+#include "toolkit/operations/operation.h"
 
 namespace mimetra {
 

@@ -1,9 +1,12 @@
 // The one symbol of libmimetra_c.
 
-#include <mimetra/c/interface.h>
-#include <mimetra/c/plugins.h>
-#include <mimetra/fitting/fit_operation.h>
-#include <mimetra/samples/sample_operation.h>
+#include "plugins/c/interface.h"
+#include "plugins/c/plugins.h"
+#include "samples/head/sample_operation.h"
+
+#ifdef MIMETRA_HAS_FITTING
+#include "fitting/fit_operation.h"
+#endif
 
 namespace {
 
@@ -11,7 +14,9 @@ mimetra_status new_context(mimetra_log log, void* user, mimetra_context** contex
   return mimetra::make_context(
       [](mimetra::OperationTable& table) {
         mimetra::add_toolkit(table);
+#ifdef MIMETRA_HAS_FITTING
         mimetra::add_fitting(table);
+#endif
         mimetra::samples::add_sample(table);
         return mimetra::add_plugins(table, mimetra::plugin_folders());
       },

@@ -1,4 +1,4 @@
-#include <mimetra/c/shown_arrays.h>
+#include "plugins/c/shown_arrays.h"
 
 #include <algorithm>
 #include <limits>

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include <mimetra/c/mimetra.h>
-#include <mimetra/operations/data.h>
+#include "plugins/c/mimetra.h"
+#include "toolkit/operations/data.h"
 
 namespace mimetra {
 

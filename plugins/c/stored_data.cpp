@@ -1,6 +1,6 @@
-#include <mimetra/c/stored_data.h>
+#include "plugins/c/stored_data.h"
 
-#include <mimetra/operations/loading.h>
+#include "toolkit/operations/loading.h"
 
 namespace mimetra {
 

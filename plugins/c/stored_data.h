@@ -2,8 +2,8 @@
 
 #include <string>
 
-#include <mimetra/c/context.h>
-#include <mimetra/operations/data.h>
+#include "plugins/c/context.h"
+#include "toolkit/operations/data.h"
 
 namespace mimetra {
 

@@ -1,9 +1,9 @@
-#include <mimetra/c/value.h>
+#include "plugins/c/value.h"
 
 #include <nlohmann/json.hpp>
 
-#include <mimetra/io/regions_file.h>
-#include <mimetra/operations/report.h>
+#include "toolkit/io/regions_file.h"
+#include "toolkit/operations/json.h"
 
 namespace mimetra {
 

@@ -4,9 +4,9 @@
 #include <mutex>
 #include <optional>
 
-#include <mimetra/c/mimetra.h>
-#include <mimetra/c/shown_arrays.h>
-#include <mimetra/operations/data.h>
+#include "plugins/c/mimetra.h"
+#include "plugins/c/shown_arrays.h"
+#include "toolkit/operations/data.h"
 
 namespace mimetra {
 

@@ -1,4 +1,4 @@
-#include "dialog.h"
+#include "plugins/meshlab/dialog.h"
 
 #include <algorithm>
 #include <array>
@@ -6,7 +6,7 @@
 
 #include <QProcess>
 
-#include "toolkit.h"
+#include "plugins/meshlab/toolkit.h"
 
 namespace mimetra_meshlab {
 

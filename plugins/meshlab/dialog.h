@@ -5,7 +5,7 @@
 
 #include <common/filter_parameter/rich_parameter_list.h>
 
-#include <mimetra/c/mimetra.h>
+#include "plugins/c/mimetra.h"
 
 /// MeshLab's dialogs, made of the descriptions of operations.
 namespace mimetra_meshlab {

@@ -1,11 +1,11 @@
-#include "filter_mimetra.h"
+#include "plugins/meshlab/filter_mimetra.h"
 
 #include <array>
 #include <cmath>
 
 #include <vcg/complex/algorithms/update/color.h>
 
-#include "layers.h"
+#include "plugins/meshlab/layers.h"
 
 using namespace mimetra_meshlab;
 

@@ -4,8 +4,8 @@
 
 #include <common/interfaces.h>
 
-#include "dialog.h"
-#include "toolkit.h"
+#include "plugins/meshlab/dialog.h"
+#include "plugins/meshlab/toolkit.h"
 
 /// mimetra's operations as filters of MeshLab. A sequence is the visible layers in their order, or
 /// what a path names.

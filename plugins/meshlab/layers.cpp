@@ -1,10 +1,10 @@
-#include "layers.h"
+#include "plugins/meshlab/layers.h"
 
 #include <algorithm>
 
 #include <vcg/complex/append.h>
 
-#include "polygons.h"
+#include "plugins/meshlab/polygons.h"
 
 namespace mimetra_meshlab {
 

@@ -5,7 +5,7 @@
 
 #include <common/meshmodel.h>
 
-#include "toolkit.h"
+#include "plugins/meshlab/toolkit.h"
 
 /// MeshLab's layers as sequences, and results as layers.
 namespace mimetra_meshlab {

@@ -1,4 +1,4 @@
-#include "polygons.h"
+#include "plugins/meshlab/polygons.h"
 
 #include <algorithm>
 #include <map>

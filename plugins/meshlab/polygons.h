@@ -2,7 +2,7 @@
 
 #include <common/meshmodel.h>
 
-#include "toolkit.h"
+#include "plugins/meshlab/toolkit.h"
 
 namespace mimetra_meshlab {
 

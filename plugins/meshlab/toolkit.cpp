@@ -1,4 +1,4 @@
-#include "toolkit.h"
+#include "plugins/meshlab/toolkit.h"
 
 namespace mimetra_meshlab {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include <mimetra/c/mimetra.h>
+#include "plugins/c/mimetra.h"
 
 /// mimetra's C interface for C++: handles that free themselves, errors as exceptions.
 namespace mimetra_meshlab {
@@ -30,7 +30,7 @@ struct Frames {
 /// The operations, and the values that they work on. Functions throw Failure.
 class Toolkit {
  public:
-  /// What is told while loading and running goes to `log`.
+  /// Messages while loading and running go to `log`.
   Toolkit(mimetra_log log, void* user);
   ~Toolkit();
   Toolkit(const Toolkit&) = delete;

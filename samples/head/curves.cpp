@@ -1,4 +1,4 @@
-#include <mimetra/samples/curves.h>
+#include "samples/head/curves.h"
 
 namespace mimetra::samples {
 

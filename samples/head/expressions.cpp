@@ -1,13 +1,14 @@
-#include <mimetra/samples/expressions.h>
+#include "samples/head/expressions.h"
 
 #include <cmath>
 #include <functional>
 #include <span>
 #include <utility>
 
-#include <mimetra/samples/curves.h>
-#include <mimetra/samples/head_shape.h>
-#include <mimetra/samples/strokes.h>
+#include "samples/head/curves.h"
+#include "samples/head/features.h"
+#include "samples/head/head_shape.h"
+#include "samples/head/strokes.h"
 
 namespace mimetra::samples {
 namespace {

@@ -1,7 +1,7 @@
 #pragma once
 
-#include <mimetra/model/blendshape_model.h>
-#include <mimetra/samples/head_grid.h>
+#include "samples/head/head_grid.h"
+#include "toolkit/model/blendshape_model.h"
 
 namespace mimetra::samples {
 

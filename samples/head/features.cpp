@@ -1,10 +1,9 @@
-#include <mimetra/samples/features.h>
+#include "samples/head/features.h"
 
 #include <cmath>
 
-#include <mimetra/samples/curves.h>
-#include <mimetra/samples/head_shape.h>
-#include <mimetra/samples/strokes.h>
+#include "samples/head/curves.h"
+#include "samples/head/strokes.h"
 
 namespace mimetra::samples {
 namespace {

@@ -4,6 +4,13 @@
 
 namespace mimetra::samples {
 
+/// Height of the line between the lips, mm.
+constexpr double kMouthHeight = -66;
+/// Half the distance between the corners of the mouth, mm.
+constexpr double kMouthHalfWidth = 25.5;
+/// Middle of the head's left eyeball, mm.
+inline const Eigen::Vector3d kLeftEye{31, -0.5, 60.5};
+
 /// The face on a bare skull: brows, sockets, nose, cheeks, lips and chin. `p` is a place on the
 /// skull, moved up or down by lids and lips already; `lip` its height above the line between the
 /// lips; `front` is 1 on the face and falls to 0 towards the ears. Lengths in mm.

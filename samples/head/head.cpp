@@ -1,7 +1,7 @@
-#include <mimetra/samples/head.h>
+#include "samples/head/head.h"
 
-#include <mimetra/samples/expressions.h>
-#include <mimetra/samples/head_shape.h>
+#include "samples/head/expressions.h"
+#include "samples/head/head_shape.h"
 
 namespace mimetra::samples {
 

@@ -3,8 +3,8 @@
 #include <utility>
 #include <vector>
 
-#include <mimetra/io/weight_track.h>
-#include <mimetra/model/morphable_model.h>
+#include "toolkit/io/weight_track.h"
+#include "toolkit/model/morphable_model.h"
 
 namespace mimetra::samples {
 

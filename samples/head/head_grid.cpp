@@ -1,4 +1,4 @@
-#include <mimetra/samples/head_grid.h>
+#include "samples/head/head_grid.h"
 
 #include <array>
 #include <cmath>

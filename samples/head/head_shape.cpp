@@ -1,11 +1,11 @@
-#include <mimetra/samples/head_shape.h>
+#include "samples/head/head_shape.h"
 
 #include <array>
 #include <cmath>
 
-#include <mimetra/samples/curves.h>
-#include <mimetra/samples/features.h>
-#include <mimetra/samples/skull.h>
+#include "samples/head/curves.h"
+#include "samples/head/features.h"
+#include "samples/head/skull.h"
 
 namespace mimetra::samples {
 namespace {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <mimetra/samples/head_grid.h>
+#include "samples/head/head_grid.h"
 
 namespace mimetra::samples {
 
@@ -13,12 +13,5 @@ struct Eyelids {
 
 /// Rest positions of the grid's vertices with the given eyelids.
 Positions head_positions(const HeadGrid& grid, const Eyelids& left = {}, const Eyelids& right = {});
-
-/// Height of the line between the lips, mm.
-constexpr double kMouthHeight = -66;
-/// Half the distance between the corners of the mouth, mm.
-constexpr double kMouthHalfWidth = 25.5;
-/// Middle of the head's left eyeball, mm.
-inline const Eigen::Vector3d kLeftEye{31, -0.5, 60.5};
 
 }  // namespace mimetra::samples

@@ -1,10 +1,11 @@
-#include <mimetra/samples/expressions.h>
+#include "samples/head/expressions.h"
 
 #include <cmath>
 #include <utility>
 
-#include <mimetra/samples/curves.h>
-#include <mimetra/samples/head_shape.h>
+#include "samples/head/curves.h"
+#include "samples/head/features.h"
+#include "samples/head/head_shape.h"
 
 namespace mimetra::samples {
 namespace {

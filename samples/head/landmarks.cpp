@@ -1,8 +1,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include <mimetra/samples/head.h>
-#include <mimetra/samples/head_shape.h>
+#include "samples/head/features.h"
+#include "samples/head/head.h"
+#include "samples/head/head_shape.h"
 
 namespace mimetra::samples {
 namespace {

@@ -1,8 +1,8 @@
-#include <mimetra/samples/head.h>
+#include "samples/head/head.h"
 
 #include <algorithm>
 
-#include <mimetra/samples/curves.h>
+#include "samples/head/curves.h"
 
 namespace mimetra::samples {
 namespace {

@@ -1,9 +1,9 @@
-#include <mimetra/samples/sample_operation.h>
+#include "samples/head/sample_operation.h"
 
 #include <nlohmann/json.hpp>
 
-#include <mimetra/operations/report.h>
-#include <mimetra/samples/head.h>
+#include "samples/head/head.h"
+#include "toolkit/operations/json.h"
 
 namespace mimetra::samples {
 

@@ -1,4 +1,4 @@
-#include <mimetra/samples/skull.h>
+#include "samples/head/skull.h"
 
 #include <array>
 

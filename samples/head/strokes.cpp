@@ -1,6 +1,6 @@
-#include <mimetra/samples/strokes.h>
+#include "samples/head/strokes.h"
 
-#include <mimetra/samples/curves.h>
+#include "samples/head/curves.h"
 
 namespace mimetra::samples {
 

@@ -2,7 +2,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include <mimetra/c/mimetra.h>
+#include <mimetra/plugins/c/mimetra.h>
 
 /* One step for one frame of n vertices; `mean` has 4 n numbers: sums of neighbours, their count. */
 static void smooth(double* xyz, int64_t n, const mimetra_array* triangles, double strength,

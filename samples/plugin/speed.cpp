@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include <mimetra/c/mimetra.h>
+#include <mimetra/plugins/c/mimetra.h>
 
 namespace {
 

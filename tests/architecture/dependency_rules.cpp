@@ -1,4 +1,4 @@
-#include "dependency_rules.h"
+#include "tests/architecture/dependency_rules.h"
 
 #include <algorithm>
 #include <array>
@@ -73,17 +73,12 @@ bool is_header(const fs::path& file) {
   return file.extension().string().starts_with(".h");
 }
 
-/// vtkPolyData.h, not our own vtk_formats.h.
-bool is_vtk_header(std::string_view header) {
-  return header.starts_with("vtk") && header.size() > 3 && header[3] >= 'A' && header[3] <= 'Z';
-}
-
 bool is_bridge_header(const fs::path& file) {
   return file == "toolkit/mesh/openmesh.h";
 }
 
 std::optional<std::string> folder_error(const FolderRule& rule, const std::string& folder) {
-  if (folder == rule.name() || contains(rule.folders, folder)) return {};
+  if (folder == rule.name || contains(rule.folders, folder)) return {};
   return rule.path + " may not use " + folder + " (only " + joined(rule.folders) + ")";
 }
 
@@ -99,7 +94,7 @@ std::optional<std::string> header_error(const FolderRule& rule, const fs::path& 
   if (!is_header(file) || name == "Eigen" || rule.any_third_party) return {};
   if (name == "OpenMesh" && is_bridge_header(file)) return {};
   // An operation's result is a JSON value.
-  if (name == "JSON" && rule.name() == "operations") return {};
+  if (name == "JSON" && rule.name == "operations") return {};
   return std::string(name) + " belongs into .cpp files, not into headers";
 }
 
@@ -116,22 +111,28 @@ std::optional<std::string> header_use_error(const FolderRule& rule, const fs::pa
   return "this third party is not in the table of dependency_rules.cpp";
 }
 
-std::optional<std::string> include_error(const FolderRule& rule, const fs::path& file, char kind,
-                                         const std::string& header) {
-  constexpr std::string_view kOwn = "mimetra/";
-  if (header.starts_with(kOwn)) {
-    const auto end = header.find('/', kOwn.size());
-    return folder_error(rule, header.substr(kOwn.size(), end - kOwn.size()));
+constexpr std::string_view kInstalled = "mimetra/";
+
+/// `#include` of one line.
+struct Include {
+  int line;
+  bool quoted;
+  std::string header;
+
+  /// The file of the tree that is meant; none for one from elsewhere.
+  std::optional<fs::path> of_the_tree() const {
+    if (quoted) return header;
+    if (header.starts_with(kInstalled)) return header.substr(kInstalled.size());
+    return {};
   }
-  // Quotes also find headers outside the project, and VTK's lie in no folder of their own.
-  const bool local = kind == '"' && (header.find("..") != std::string::npos ||
-                                     header.find('/') == std::string::npos);
-  if (local && !is_vtk_header(header)) {
-    const fs::path target = (file.parent_path() / header).lexically_normal();
-    if (is_inside(target, rule.path)) return {};
-    return "quotes lead out of " + rule.path + "; write <mimetra/FOLDER/...>";
-  }
-  return header_use_error(rule, file, header);
+};
+
+std::optional<std::string> include_error(const FolderRule& rule, const fs::path& file,
+                                         const Include& include) {
+  const std::optional<fs::path> target = include.of_the_tree();
+  if (!target) return header_use_error(rule, file, include.header);
+  const FolderRule* folder = rule_for(*target);
+  return folder ? folder_error(rule, folder->name) : "no folder of the architecture holds it";
 }
 
 std::optional<std::string> link_error(const FolderRule& rule, const std::string& library) {
@@ -155,43 +156,140 @@ std::string place(const fs::path& file, int line) {
   return file.generic_string() + ":" + std::to_string(line) + ": ";
 }
 
+std::vector<Include> includes_of(const std::string& text) {
+  static const std::regex include(R"re(^\s*#\s*include\s*([<"])([^>"]+)[>"].*)re");
+  std::vector<Include> includes;
+  for_each_line(text, [&](int number, const std::string& line) {
+    std::smatch match;
+    if (!std::regex_match(line, match, include)) return;
+    includes.push_back({number, match.str(1) == "\"", match.str(2)});
+  });
+  return includes;
+}
+
+/// Programs that know an installation, as a user has it.
+bool is_users_program(const fs::path& file) {
+  return file.parent_path() == "samples" || is_inside(file, "samples/plugin") ||
+         is_inside(file, "tests/package") || is_inside(file, "tests/c/programs");
+}
+
+bool is_test(const fs::path& file) {
+  return is_inside(file, "tests");
+}
+
+/// A header and the source of its name.
+fs::path unit_of(fs::path file) {
+  return file.replace_extension();
+}
+
+using Units = std::map<fs::path, std::set<fs::path>>;
+
+Units units_of(const Tree& sources) {
+  Units units;
+  for (const auto& [file, text] : sources) {
+    std::set<fs::path>& used = units[unit_of(file)];
+    for (const Include& include : includes_of(text)) {
+      const auto target = include.of_the_tree();
+      if (target && sources.contains(*target)) used.insert(unit_of(*target));
+    }
+    used.erase(unit_of(file));
+  }
+  return units;
+}
+
+/// Walks depth first, and notes each way back to where it has come through.
+class CircleSearch {
+ public:
+  explicit CircleSearch(const Units& units) : units_(units) {
+    for (const auto& [unit, used] : units) visit(unit);
+  }
+
+  std::vector<std::string> circles;
+
+ private:
+  void visit(const fs::path& unit) {
+    if (done_.contains(unit)) return;
+    const auto begin = std::find(path_.begin(), path_.end(), unit);
+    if (begin != path_.end()) {
+      std::string circle;
+      for (auto each = begin; each != path_.end(); ++each)
+        circle += each->generic_string() + " -> ";
+      circles.push_back(circle + unit.generic_string());
+      return;
+    }
+    path_.push_back(unit);
+    for (const fs::path& used : units_.at(unit)) visit(used);
+    path_.pop_back();
+    done_.insert(unit);
+  }
+
+  const Units& units_;
+  std::vector<fs::path> path_;
+  std::set<fs::path> done_;
+};
+
+/// What a folder's CMakeLists.txt installs.
+std::set<fs::path> public_headers(const Tree& lists) {
+  static const std::regex headers(R"re(HEADERS\s+((?:[\w/]+\.h\s*)+))re");
+  static const std::regex word(R"re(\S+)re");
+  std::set<fs::path> found;
+  for (const auto& [list, text] : lists) {
+    for (std::sregex_iterator each(text.begin(), text.end(), headers), end; each != end; ++each) {
+      const std::string names = each->str(1);
+      for (std::sregex_iterator name(names.begin(), names.end(), word); name != end; ++name) {
+        found.insert(list.parent_path() / name->str());
+      }
+    }
+  }
+  return found;
+}
+
 }  // namespace
 
 const std::vector<FolderRule>& folder_rules() {
   static const std::vector<FolderRule> rules = [] {
-    const std::vector<std::string> above_operations = {"geodesic", "mesh",     "model", "splocs",
+    const std::vector<std::string> below_operations = {"geodesic", "mesh",     "model", "splocs",
                                                        "regions",  "transfer", "io"};
-    std::vector<std::string> up_to_operations = above_operations;
-    up_to_operations.push_back("operations");
-    std::vector<std::string> all = up_to_operations;
-    all.insert(all.end(), {"vtk", "fitting"});
-    // The C interface makes values of all kinds, and shows them.
-    std::vector<std::string> values_and_operations = up_to_operations;
-    values_and_operations.insert(values_and_operations.end(), {"fitting", "samples"});
+    const auto with = [](std::vector<std::string> folders, const std::vector<std::string>& more) {
+      folders.insert(folders.end(), more.begin(), more.end());
+      return folders;
+    };
+    const std::vector<std::string> up_to_operations = with(below_operations, {"operations"});
+    const std::vector<std::string> up_to_vtk = with(up_to_operations, {"vtk"});
+    const std::vector<std::string> up_to_report = with(up_to_vtk, {"pictures", "report"});
     // JSON goes wherever operations are declared, because their results are JSON.
     return std::vector<FolderRule>{
-        {"geodesic", {}, {"CGAL", "OpenMesh"}},
-        {"toolkit/mesh", {"geodesic"}, {"OpenMesh"}},
-        {"toolkit/model", {"mesh"}, {}},
-        {"toolkit/splocs", {"mesh", "geodesic"}, {"OpenMesh", "OpenBLAS"}},
-        {"toolkit/regions", {"splocs", "mesh", "geodesic"}, {"OpenMesh"}},
-        {"toolkit/transfer", {"model", "regions", "mesh", "geodesic"}, {"OpenMesh", "CHOLMOD"}},
-        {"toolkit/io",
+        {"geodesic", "geodesic", {}, {"CGAL", "OpenMesh"}},
+        {"mesh", "toolkit/mesh", {"geodesic"}, {"OpenMesh"}},
+        {"model", "toolkit/model", {"mesh"}},
+        {"splocs", "toolkit/splocs", {"mesh", "geodesic"}, {"OpenMesh", "OpenBLAS"}},
+        {"regions", "toolkit/regions", {"splocs", "mesh", "geodesic"}, {"OpenMesh"}},
+        {"transfer",
+         "toolkit/transfer",
+         {"model", "regions", "mesh", "geodesic"},
+         {"OpenMesh", "CHOLMOD"}},
+        {"io",
+         "toolkit/io",
          {"mesh", "model", "splocs", "regions"},
          {"OpenMesh", "HDF5", "JSON", "zlib", "tinygltf"}},
-        {"toolkit/operations", above_operations, {"JSON", "xxHash"}},
-        {"toolkit/vtk", up_to_operations, {"VTK", "EGL", "JSON"}},
-        {"fitting", {"mesh", "model", "io", "operations"}, {"dlib", "JSON"}},
-        {"samples", all, {}, true},
-        {"plugins/c", values_and_operations, {"JSON"}},
+        {"operations", "toolkit/operations", below_operations, {"JSON", "xxHash"}},
+        {"vtk", "toolkit/vtk", up_to_operations, {"VTK", "JSON"}},
+        {"pictures", "toolkit/pictures", up_to_vtk, {"VTK", "EGL", "JSON"}},
+        {"report", "toolkit/report", with(up_to_vtk, {"pictures"}), {"VTK", "JSON"}},
+        {"fitting", "fitting", {"mesh", "model", "io", "operations"}, {"dlib", "JSON"}},
+        {"samples", "samples/head", up_to_operations, {"JSON"}},
+        // The C interface makes values of all kinds, and shows them.
+        {"c", "plugins/c", with(up_to_operations, {"fitting", "samples"}), {"JSON"}},
+        {"programs", "samples", with(up_to_report, {"fitting", "samples"}), {}, true},
         // What third parties write, who have nothing but the C header.
-        {"samples/plugin", {"c"}, {}},
-        {"toolkit/cli",
-         {"operations", "vtk", "fitting", "samples", "c"},
+        {"plugin", "samples/plugin", {"c"}},
+        {"cli",
+         "toolkit/cli",
+         {"mesh", "operations", "vtk", "pictures", "report", "fitting", "samples", "c"},
          {"CLI11", "spdlog", "fmt", "JSON"}},
-        {"plugins/paraview", {"operations", "vtk", "c"}, {}, true},
-        {"plugins/meshlab", {"operations", "c"}, {}, true},
-        {"plugins/blender", {"operations", "c"}, {}, true},
+        {"paraview", "plugins/paraview", {"mesh", "operations", "vtk", "c"}, {}, true},
+        {"meshlab", "plugins/meshlab", {"operations", "c"}, {}, true},
+        {"blender", "plugins/blender", {"operations", "c"}, {}, true},
     };
   }();
   return rules;
@@ -207,16 +305,13 @@ const FolderRule* rule_for(const fs::path& file) {
 }
 
 std::vector<std::string> include_errors(const fs::path& file, const std::string& text) {
-  static const std::regex include(R"re(^\s*#\s*include\s*([<"])([^>"]+)[>"].*)re");
   const FolderRule* rule = rule_for(file);
   if (!rule) return {file.generic_string() + ": no folder of the architecture holds this file"};
   std::vector<std::string> errors;
-  for_each_line(text, [&](int number, const std::string& line) {
-    std::smatch match;
-    if (!std::regex_match(line, match, include)) return;
-    const auto error = include_error(*rule, file, match.str(1)[0], match.str(2));
-    if (error) errors.push_back(place(file, number) + match.str(2) + ": " + *error);
-  });
+  for (const Include& include : includes_of(text)) {
+    const auto error = include_error(*rule, file, include);
+    if (error) errors.push_back(place(file, include.line) + include.header + ": " + *error);
+  }
   return errors;
 }
 
@@ -234,6 +329,56 @@ std::vector<std::string> link_errors(const fs::path& file, const std::string& te
     }
   });
   return errors;
+}
+
+std::vector<std::string> path_errors(const Tree& sources) {
+  std::vector<std::string> errors;
+  for (const auto& [file, text] : sources) {
+    for (const Include& include : includes_of(text)) {
+      const auto target = include.of_the_tree();
+      if (!target) continue;
+      const std::string start = place(file, include.line) + include.header + ": ";
+      if (!sources.contains(*target)) errors.push_back(start + "is not a file of the tree");
+      if (include.quoted) continue;
+      if (is_users_program(file)) continue;
+      errors.push_back(start + "write \"" + target->generic_string() + "\"");
+    }
+  }
+  return errors;
+}
+
+std::vector<std::string> private_header_errors(const Tree& sources, const Tree& lists) {
+  const std::set<fs::path> installed = public_headers(lists);
+  std::vector<std::string> errors;
+  for (const auto& [file, text] : sources) {
+    if (is_test(file)) continue;
+    for (const Include& include : includes_of(text)) {
+      const auto target = include.of_the_tree();
+      if (!target || rule_for(*target) == rule_for(file) || installed.contains(*target)) continue;
+      errors.push_back(place(file, include.line) + include.header +
+                       ": is private to its folder; its CMakeLists.txt does not install it");
+    }
+  }
+  return errors;
+}
+
+std::vector<std::string> name_errors(const Tree& sources) {
+  // The first version's header, with which old programs are built.
+  const fs::path kept = "tests/c/programs/version_1/mimetra.h";
+  std::map<fs::path, fs::path> first;
+  std::vector<std::string> errors;
+  for (const auto& [file, text] : sources) {
+    if (!is_header(file) || file == kept) continue;
+    const auto [other, is_new] = first.emplace(file.filename(), file);
+    if (is_new) continue;
+    errors.push_back(file.generic_string() + ": has the name of " + other->second.generic_string());
+  }
+  return errors;
+}
+
+std::vector<std::string> circles(const Tree& sources) {
+  const Units units = units_of(sources);
+  return CircleSearch(units).circles;
 }
 
 }  // namespace mimetra::test

@@ -1,4 +1,4 @@
-#include "blocking_bench.h"
+#include "tests/bench/blocking_bench.h"
 
 #include <algorithm>
 #include <array>
@@ -7,10 +7,9 @@
 
 #include <Eigen/Core>
 
-#include <mimetra/mesh/product_blocking.h>
-
-#include "splocs_bench.h"
-#include "transfer_bench.h"
+#include "tests/bench/splocs_bench.h"
+#include "tests/bench/transfer_bench.h"
+#include "toolkit/mesh/product_blocking.h"
 
 namespace mimetra::bench {
 namespace {

@@ -2,8 +2,8 @@
 
 #include <vector>
 
-#include "report.h"
-#include "subjects.h"
+#include "tests/bench/report.h"
+#include "tests/bench/subjects.h"
 
 namespace mimetra::bench {
 

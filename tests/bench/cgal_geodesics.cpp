@@ -1,5 +1,5 @@
 // CGAL's heat method takes 20 s to compile: no other file of the benchmarks sees it.
-#include "cgal_geodesics.h"
+#include "tests/bench/cgal_geodesics.h"
 
 #include <CGAL/Heat_method_3/Surface_mesh_geodesic_distances_3.h>
 #include <CGAL/Simple_cartesian.h>

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include <mimetra/geodesic/types.h>
+#include "geodesic/types.h"
 
 namespace mimetra::bench {
 

@@ -1,15 +1,14 @@
-#include "command_bench.h"
+#include "tests/bench/command_bench.h"
 
 #include <algorithm>
 #include <fstream>
 
 #include <nlohmann/json.hpp>
 
-#include <mimetra/io/model_file.h>
-#include <mimetra/io/sequence_file.h>
-
-#include "process.h"
-#include "splocs_bench.h"
+#include "tests/bench/process.h"
+#include "tests/bench/splocs_bench.h"
+#include "toolkit/io/model_file.h"
+#include "toolkit/io/sequence_file.h"
 
 namespace mimetra::bench {
 namespace {

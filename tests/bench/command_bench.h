@@ -3,8 +3,8 @@
 #include <filesystem>
 #include <vector>
 
-#include "subjects.h"
-#include "suite.h"
+#include "tests/bench/subjects.h"
+#include "tests/bench/suite.h"
 
 namespace mimetra::bench {
 

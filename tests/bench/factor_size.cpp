@@ -1,4 +1,4 @@
-#include "factor_size.h"
+#include "tests/bench/factor_size.h"
 
 #include <vector>
 

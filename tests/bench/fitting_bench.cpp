@@ -1,8 +1,8 @@
-#include "fitting_bench.h"
+#include "tests/bench/fitting_bench.h"
 
 #include <string>
 
-#include "fitting/synthetic_clip.h"
+#include "tests/fitting/synthetic_clip.h"
 
 namespace mimetra::bench {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "suite.h"
+#include "tests/bench/suite.h"
 
 namespace mimetra::bench {
 

@@ -1,14 +1,13 @@
-#include "geodesic_bench.h"
+#include "tests/bench/geodesic_bench.h"
 
 #include <algorithm>
 #include <span>
 #include <stdexcept>
 
-#include <mimetra/geodesic/heat_geodesics.h>
-#include <mimetra/mesh/parallel.h>
-
-#include "cgal_geodesics.h"
-#include "factor_size.h"
+#include "geodesic/heat_geodesics.h"
+#include "tests/bench/cgal_geodesics.h"
+#include "tests/bench/factor_size.h"
+#include "toolkit/mesh/parallel.h"
 
 namespace mimetra::bench {
 namespace {

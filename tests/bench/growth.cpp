@@ -1,4 +1,4 @@
-#include "growth.h"
+#include "tests/bench/growth.h"
 
 #include <algorithm>
 #include <cmath>

@@ -3,9 +3,8 @@
 #include <string>
 #include <vector>
 
-#include <mimetra/vtk/chart.h>
-
-#include "suite.h"
+#include "tests/bench/suite.h"
+#include "toolkit/pictures/chart.h"
 
 namespace mimetra::bench {
 

@@ -1,7 +1,7 @@
-#include "io_bench.h"
+#include "tests/bench/io_bench.h"
 
-#include <mimetra/io/array_file.h>
-#include <mimetra/io/sequence_file.h>
+#include "toolkit/io/array_file.h"
+#include "toolkit/io/sequence_file.h"
 
 namespace mimetra::bench {
 namespace {

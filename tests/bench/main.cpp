@@ -9,19 +9,18 @@
 #include <fstream>
 #include <stdexcept>
 
-#include <mimetra/vtk/picture.h>
-
-#include "blocking_bench.h"
-#include "command_bench.h"
-#include "fitting_bench.h"
-#include "geodesic_bench.h"
-#include "growth.h"
-#include "io_bench.h"
-#include "numpy_bench.h"
-#include "report.h"
-#include "splocs_bench.h"
-#include "subjects.h"
-#include "transfer_bench.h"
+#include "tests/bench/blocking_bench.h"
+#include "tests/bench/command_bench.h"
+#include "tests/bench/fitting_bench.h"
+#include "tests/bench/geodesic_bench.h"
+#include "tests/bench/growth.h"
+#include "tests/bench/io_bench.h"
+#include "tests/bench/numpy_bench.h"
+#include "tests/bench/report.h"
+#include "tests/bench/splocs_bench.h"
+#include "tests/bench/subjects.h"
+#include "tests/bench/transfer_bench.h"
+#include "toolkit/pictures/picture.h"
 
 namespace mimetra::bench {
 namespace {

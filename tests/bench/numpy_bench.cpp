@@ -1,4 +1,4 @@
-#include "numpy_bench.h"
+#include "tests/bench/numpy_bench.h"
 
 #include <cmath>
 #include <map>
@@ -8,11 +8,10 @@
 
 #include <nlohmann/json.hpp>
 
-#include <mimetra/io/array_file.h>
-
-#include "process.h"
-#include "splocs_bench.h"
-#include "test_folders.h"
+#include "tests/bench/process.h"
+#include "tests/bench/splocs_bench.h"
+#include "tests/test_folders.h"
+#include "toolkit/io/array_file.h"
 
 namespace mimetra::bench {
 namespace {

@@ -4,9 +4,8 @@
 #include <string>
 #include <vector>
 
-#include <mimetra/mesh/mesh_sequence.h>
-
-#include "suite.h"
+#include "tests/bench/suite.h"
+#include "toolkit/mesh/mesh_sequence.h"
 
 namespace mimetra::bench {
 

@@ -1,4 +1,4 @@
-#include "process.h"
+#include "tests/bench/process.h"
 
 #include <algorithm>
 #include <chrono>

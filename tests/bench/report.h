@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "growth.h"
-#include "suite.h"
+#include "tests/bench/growth.h"
+#include "tests/bench/suite.h"
 
 namespace mimetra::bench {
 

@@ -1,10 +1,10 @@
-#include "splocs_bench.h"
+#include "tests/bench/splocs_bench.h"
 
-#include <mimetra/splocs/component_update.h>
-#include <mimetra/splocs/motion.h>
-#include <mimetra/splocs/start.h>
-#include <mimetra/splocs/support_maps.h>
-#include <mimetra/splocs/weights.h>
+#include "toolkit/splocs/component_update.h"
+#include "toolkit/splocs/motion.h"
+#include "toolkit/splocs/start.h"
+#include "toolkit/splocs/support_maps.h"
+#include "toolkit/splocs/weights.h"
 
 namespace mimetra::bench {
 namespace {

@@ -3,10 +3,9 @@
 #include <optional>
 #include <vector>
 
-#include <mimetra/splocs/decomposition.h>
-
-#include "subjects.h"
-#include "suite.h"
+#include "tests/bench/subjects.h"
+#include "tests/bench/suite.h"
+#include "toolkit/splocs/decomposition.h"
 
 namespace mimetra::bench {
 

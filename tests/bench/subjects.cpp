@@ -1,4 +1,4 @@
-#include "subjects.h"
+#include "tests/bench/subjects.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -6,11 +6,10 @@
 #include <numeric>
 #include <utility>
 
-#include <mimetra/io/model_file.h>
-#include <mimetra/io/weight_track.h>
-#include <mimetra/samples/head.h>
-
-#include "test_folders.h"
+#include "samples/head/head.h"
+#include "tests/test_folders.h"
+#include "toolkit/io/model_file.h"
+#include "toolkit/io/weight_track.h"
 
 namespace mimetra::bench {
 namespace {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include <mimetra/model/blendshape_model.h>
+#include "toolkit/model/blendshape_model.h"
 
 namespace mimetra::bench {
 
@@ -13,7 +13,7 @@ struct Subject {
   std::string name;
   MeshSequence performance;
   BlendshapeModel target;
-  /// How the command is told the target; empty where it is in no file.
+  /// The target as the command takes it; empty where it is in no file.
   std::string target_text = {};
 };
 

@@ -1,4 +1,4 @@
-#include "suite.h"
+#include "tests/bench/suite.h"
 
 #include <algorithm>
 #include <cstdio>

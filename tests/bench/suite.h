@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "machine.h"
+#include "tests/bench/machine.h"
 
 namespace mimetra::bench {
 
@@ -20,7 +20,7 @@ struct Size {
   std::string text() const;
 };
 
-/// How a time is told besides: a share of it for each of `pieces`, or the rate of `bytes`.
+/// What is shown beside a time: a share of it for each of `pieces`, or the rate of `bytes`.
 struct Rate {
   std::string piece = {};
   double pieces = 0;

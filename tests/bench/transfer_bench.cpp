@@ -1,17 +1,16 @@
-#include "transfer_bench.h"
+#include "tests/bench/transfer_bench.h"
 
 #include <algorithm>
 #include <cmath>
 #include <set>
 
-#include <mimetra/model/box_least_squares.h>
-#include <mimetra/regions/regions.h>
-#include <mimetra/transfer/blendshape_transfer.h>
-#include <mimetra/transfer/deformation_gradients.h>
-#include <mimetra/transfer/right_hand_side.h>
-#include <mimetra/transfer/vertex_transfer.h>
-
-#include "factor_size.h"
+#include "tests/bench/factor_size.h"
+#include "toolkit/model/box_least_squares.h"
+#include "toolkit/regions/regions.h"
+#include "toolkit/transfer/blendshape_transfer.h"
+#include "toolkit/transfer/deformation_gradients.h"
+#include "toolkit/transfer/right_hand_side.h"
+#include "toolkit/transfer/vertex_transfer.h"
 
 namespace mimetra::bench {
 namespace {

@@ -2,8 +2,8 @@
 
 #include <vector>
 
-#include "subjects.h"
-#include "suite.h"
+#include "tests/bench/subjects.h"
+#include "tests/bench/suite.h"
 
 namespace mimetra::bench {
 

@@ -3,7 +3,7 @@
 #include <iterator>
 #include <stdexcept>
 
-#include <mimetra/c/mimetra.h>
+#include "plugins/c/mimetra.h"
 
 namespace {
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include <mimetra/c/mimetra.h>
+#include "plugins/c/mimetra.h"
 
 namespace {
 

@@ -10,7 +10,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <mimetra/c/mimetra.h>
+#include "plugins/c/mimetra.h"
 
 namespace {
 

@@ -3,11 +3,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <mimetra/c/make_data.h>
-#include <mimetra/c/shown_arrays.h>
-#include <mimetra/operations/parameter.h>
-
-#include "shapes.h"
+#include "plugins/c/make_data.h"
+#include "plugins/c/shown_arrays.h"
+#include "tests/shapes.h"
+#include "toolkit/mesh/errors.h"
+#include "toolkit/operations/parameter.h"
 
 namespace mimetra {
 namespace {

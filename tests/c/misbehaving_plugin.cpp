@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <string_view>
 
-#include <mimetra/c/mimetra.h>
+#include "plugins/c/mimetra.h"
 
 namespace {
 

@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "cli/command.h"
+#include "tests/cli/command_fixture.h"
 
 namespace mimetra {
 namespace {

@@ -8,11 +8,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <mimetra/c/plugins.h>
-#include <mimetra/mesh/errors.h>
-
-#include "shapes.h"
-#include "temporary_folder.h"
+#include "plugins/c/plugins.h"
+#include "tests/shapes.h"
+#include "tests/temporary_folder.h"
+#include "toolkit/mesh/errors.h"
+#include "toolkit/mesh/progress.h"
 
 namespace mimetra {
 namespace {
@@ -228,7 +228,7 @@ TEST(PluginRun, HandsBackNothingThatCannotBe) {
 TEST(PluginRun, HasItsRegionsShownOnTheSequenceOfTheirTriangles) {
   const Loaded loaded({kPlugins / "kinds"});
   const Operation& spots = *loaded.table.find("spots");
-  // The plugin is given a quad, and speaks of its triangles.
+  // The plugin is given a quad, and returns values of its triangles.
   const Polygons quad{{0, 1, 2, 3}, {0, 4}};
   Frames frames(1, 12);
   frames << 0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0;

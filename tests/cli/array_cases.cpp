@@ -1,6 +1,6 @@
 #include <limits>
 
-#include "bad_input.h"
+#include "tests/cli/bad_input.h"
 
 /// NumPy arrays and the mesh that gives them faces.
 namespace mimetra::test {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "command.h"
+#include "tests/cli/command_fixture.h"
 
 namespace mimetra::test {
 

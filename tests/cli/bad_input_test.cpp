@@ -4,7 +4,7 @@
 
 #include <gmock/gmock.h>
 
-#include "bad_input.h"
+#include "tests/cli/bad_input.h"
 
 namespace mimetra {
 namespace {

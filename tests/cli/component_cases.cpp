@@ -1,8 +1,7 @@
 #include <limits>
 
-#include <mimetra/io/components_file.h>
-
-#include "bad_input.h"
+#include "tests/cli/bad_input.h"
+#include "toolkit/io/components_file.h"
 
 /// Files of components, and the sequence they are used with.
 namespace mimetra::test {

@@ -1,6 +1,6 @@
 #include <limits>
 
-#include "bad_input.h"
+#include "tests/cli/bad_input.h"
 
 /// The pair of files in which eos keeps a morphable model.
 namespace mimetra::test {

@@ -1,6 +1,5 @@
-#include <mimetra/model/morphable_model.h>
-
-#include "bad_input.h"
+#include "tests/cli/bad_input.h"
+#include "toolkit/model/morphable_model.h"
 
 /// Landmarks, mappings, and the coefficients that were fitted to them.
 namespace mimetra::test {

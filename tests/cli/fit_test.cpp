@@ -4,10 +4,9 @@
 #include <Eigen/Geometry>
 #include <nlohmann/json.hpp>
 
-#include <mimetra/io/fit_file.h>
-
-#include "command.h"
-#include "fitting/synthetic_clip.h"
+#include "tests/cli/command_fixture.h"
+#include "tests/fitting/synthetic_clip.h"
+#include "toolkit/io/fit_file.h"
 
 namespace mimetra {
 namespace {

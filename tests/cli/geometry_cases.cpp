@@ -1,4 +1,4 @@
-#include "bad_input.h"
+#include "tests/cli/bad_input.h"
 
 /// Every operation on a mesh with elements that are useless but allowed, and on targets that do not
 /// fit the source.

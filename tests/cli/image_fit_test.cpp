@@ -3,11 +3,10 @@
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 
-#include <mimetra/fitting/face_images.h>
-#include <mimetra/fitting/image.h>
-
-#include "command.h"
-#include "shared_data.h"
+#include "fitting/face_images.h"
+#include "fitting/image_files.h"
+#include "tests/cli/command_fixture.h"
+#include "tests/shared_data.h"
 
 namespace mimetra {
 namespace {

@@ -1,4 +1,4 @@
-#include "bad_input.h"
+#include "tests/cli/bad_input.h"
 
 /// What the command reads back as JSON: an align run's manifest and files of options.
 namespace mimetra::test {

@@ -7,7 +7,7 @@
 
 #include <gmock/gmock.h>
 
-#include "command.h"
+#include "tests/cli/command_fixture.h"
 
 namespace mimetra {
 namespace {

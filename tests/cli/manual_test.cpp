@@ -1,8 +1,8 @@
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 
-#include "command.h"
-#include "test_folders.h"
+#include "tests/cli/command_fixture.h"
+#include "tests/test_folders.h"
 
 namespace mimetra {
 namespace {

@@ -1,6 +1,6 @@
 #include <limits>
 
-#include "bad_input.h"
+#include "tests/cli/bad_input.h"
 
 /// Every class of a bad mesh in every mesh format.
 namespace mimetra::test {

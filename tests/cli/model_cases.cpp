@@ -1,4 +1,4 @@
-#include "bad_input.h"
+#include "tests/cli/bad_input.h"
 
 /// Model folders, model.json and the weights that drive them.
 namespace mimetra::test {

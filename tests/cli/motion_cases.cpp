@@ -1,4 +1,4 @@
-#include "bad_input.h"
+#include "tests/cli/bad_input.h"
 
 /// Every operation where motion is missing, and every number of components that is too high or low.
 namespace mimetra::test {

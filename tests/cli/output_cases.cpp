@@ -1,6 +1,6 @@
 #include <map>
 
-#include "bad_input.h"
+#include "tests/cli/bad_input.h"
 
 /// Requests that are wrong whatever the data, and outputs that cannot be written.
 namespace mimetra::test {

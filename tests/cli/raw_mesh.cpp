@@ -2,7 +2,7 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "bad_input.h"
+#include "tests/cli/bad_input.h"
 
 namespace mimetra::test {
 

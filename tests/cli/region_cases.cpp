@@ -1,4 +1,4 @@
-#include "bad_input.h"
+#include "tests/cli/bad_input.h"
 
 /// Region sets for a mesh of 225 vertices.
 namespace mimetra::test {

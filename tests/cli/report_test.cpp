@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "command.h"
+#include "tests/cli/command_fixture.h"
 
 namespace mimetra {
 namespace {

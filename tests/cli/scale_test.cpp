@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 
-#include "command.h"
+#include "tests/cli/command_fixture.h"
 
 namespace mimetra {
 namespace {

@@ -1,6 +1,6 @@
 #include <limits>
 
-#include "bad_input.h"
+#include "tests/cli/bad_input.h"
 
 /// Folders and patterns of frames: what later frames may not do.
 namespace mimetra::test {

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include <mimetra/cli/suggestion.h>
+#include "toolkit/cli/suggestion.h"
 
 namespace mimetra::cli {
 namespace {

@@ -1,10 +1,9 @@
-#include "fitting/two_videos.h"
+#include "tests/fitting/two_videos.h"
 
 #include <gtest/gtest.h>
 
-#include <mimetra/samples/head.h>
-
-#include "command.h"
+#include "samples/head/head.h"
+#include "tests/cli/command_fixture.h"
 
 namespace mimetra {
 namespace {

@@ -1,11 +1,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <mimetra/mesh/errors.h>
-
-#include "literal_fit.h"
-#include "synthetic_clip.h"
-#include "temporary_folder.h"
+#include "tests/fitting/literal_fit.h"
+#include "tests/fitting/synthetic_clip.h"
+#include "tests/temporary_folder.h"
+#include "toolkit/mesh/errors.h"
 
 namespace mimetra {
 namespace {

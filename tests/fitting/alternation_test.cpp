@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include "literal_fit.h"
-#include "synthetic_clip.h"
+#include "tests/fitting/literal_fit.h"
+#include "tests/fitting/synthetic_clip.h"
 
 namespace mimetra {
 namespace {

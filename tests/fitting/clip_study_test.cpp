@@ -8,12 +8,11 @@
 
 #include <gtest/gtest.h>
 
-#include <mimetra/fitting/landmark_mapping.h>
-#include <mimetra/io/model_file.h>
-#include <mimetra/samples/head.h>
-
-#include "shared_data.h"
-#include "two_videos.h"
+#include "fitting/landmark_mapping.h"
+#include "samples/head/head.h"
+#include "tests/fitting/two_videos.h"
+#include "tests/shared_data.h"
+#include "toolkit/io/model_file.h"
 
 /// What the solvers and the two ways to see identity find of a clip that is known: docs/accuracy.md
 /// has the table that this prints in a release build.

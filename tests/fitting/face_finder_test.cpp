@@ -6,14 +6,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <mimetra/fitting/face_images.h>
-#include <mimetra/fitting/landmark_fitter.h>
-#include <mimetra/fitting/landmark_mapping.h>
-#include <mimetra/io/model_file.h>
-
-#include "saved_image.h"
-#include "shared_data.h"
-#include "temporary_folder.h"
+#include "fitting/face_images.h"
+#include "fitting/landmark_fitter.h"
+#include "fitting/landmark_mapping.h"
+#include "tests/fitting/saved_image.h"
+#include "tests/shared_data.h"
+#include "tests/temporary_folder.h"
+#include "toolkit/io/model_file.h"
+#include "toolkit/mesh/errors.h"
 
 namespace mimetra::test {
 namespace {
@@ -162,7 +162,7 @@ TEST_F(FaceImages, BelowTheConfidenceAskedForShowNoFace) {
 }
 
 TEST_F(FaceImages, CanBeCancelled) {
-  EXPECT_THROW(track_face({photo_, photo_}, {}, [](double share) { return share == 0; }),
+  EXPECT_THROW(track_face({photo_, photo_}, {.progress = [](double share) { return share == 0; }}),
                Cancelled);
 }
 

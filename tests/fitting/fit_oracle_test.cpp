@@ -5,11 +5,10 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include <mimetra/fitting/landmark_fitter.h>
-#include <mimetra/fitting/landmark_mapping.h>
-#include <mimetra/io/model_file.h>
-
-#include "shared_data.h"
+#include "fitting/landmark_fitter.h"
+#include "fitting/landmark_mapping.h"
+#include "tests/shared_data.h"
+#include "toolkit/io/model_file.h"
 
 /// The paper's alternation on a photograph against another program's.
 namespace mimetra::test {

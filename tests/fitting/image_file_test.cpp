@@ -5,12 +5,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <mimetra/fitting/image.h>
-#include <mimetra/io/pending_output.h>
-#include <mimetra/mesh/errors.h>
-
-#include "saved_image.h"
-#include "temporary_folder.h"
+#include "fitting/image_files.h"
+#include "tests/fitting/saved_image.h"
+#include "tests/temporary_folder.h"
+#include "toolkit/io/whole_file.h"
+#include "toolkit/mesh/errors.h"
 
 namespace mimetra {
 namespace {

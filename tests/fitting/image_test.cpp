@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include <mimetra/fitting/image.h>
+#include "fitting/image_files.h"
 
 namespace mimetra {
 namespace {

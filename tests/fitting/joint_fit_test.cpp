@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "synthetic_clip.h"
+#include "tests/fitting/synthetic_clip.h"
 
 namespace mimetra {
 namespace {

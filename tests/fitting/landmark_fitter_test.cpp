@@ -6,10 +6,9 @@
 #include <gtest/gtest.h>
 #include <Eigen/Geometry>
 
-#include <mimetra/mesh/errors.h>
-
-#include "synthetic_clip.h"
-#include "temporary_folder.h"
+#include "tests/fitting/synthetic_clip.h"
+#include "tests/temporary_folder.h"
+#include "toolkit/mesh/errors.h"
 
 namespace mimetra {
 namespace {
@@ -186,9 +185,11 @@ TEST(LandmarkFitter, CanBeCancelled) {
   const test::SyntheticClip clip = test::synthetic_clip(15, {.frames = 3});
   const LandmarkFitter fitter(clip.model, clip.vertices);
   for (const Shape shape : {Shape::clip, Shape::frame}) {
-    EXPECT_THROW(fitter.fit(clip.points, {.shape = shape, .tolerance = 0}, clip.times,
-                            [](double) { return false; }),
-                 Cancelled);
+    EXPECT_THROW(
+        fitter.fit(clip.points,
+                   {.shape = shape, .tolerance = 0, .progress = [](double) { return false; }},
+                   clip.times),
+        Cancelled);
   }
 }
 

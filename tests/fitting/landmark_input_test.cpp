@@ -3,9 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <mimetra/fitting/landmark_input.h>
-
-#include "temporary_folder.h"
+#include "fitting/landmark_input.h"
+#include "tests/temporary_folder.h"
+#include "toolkit/mesh/errors.h"
 
 namespace mimetra {
 namespace {

@@ -3,11 +3,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <mimetra/fitting/landmark_mapping.h>
-#include <mimetra/mesh/errors.h>
-
-#include "shared_data.h"
-#include "temporary_folder.h"
+#include "fitting/landmark_mapping.h"
+#include "tests/shared_data.h"
+#include "tests/temporary_folder.h"
+#include "toolkit/mesh/errors.h"
 
 namespace mimetra {
 namespace {

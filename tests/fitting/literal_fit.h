@@ -7,7 +7,7 @@
 #include <Eigen/LU>
 #include <Eigen/QR>
 
-#include <mimetra/fitting/landmark_fitter.h>
+#include "fitting/landmark_fitter.h"
 
 /// The paper's fit of one frame, transcribed with dense matrices.
 namespace mimetra::test {

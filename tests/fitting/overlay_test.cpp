@@ -4,9 +4,8 @@
 
 #include <gtest/gtest.h>
 
-#include <mimetra/fitting/overlay.h>
-
-#include "temporary_folder.h"
+#include "fitting/overlay.h"
+#include "tests/temporary_folder.h"
 
 namespace mimetra {
 namespace {

@@ -1,5 +1,5 @@
-#include "cache_sizes.h"
-#include "synthetic_clip.h"
+#include "tests/cache_sizes.h"
+#include "tests/fitting/synthetic_clip.h"
 
 namespace mimetra {
 namespace {

@@ -5,7 +5,7 @@
 #include <dlib/array2d.h>
 #include <dlib/image_saver/save_png.h>
 
-#include <mimetra/operations/image.h>
+#include "toolkit/operations/image.h"
 
 namespace mimetra::test {
 

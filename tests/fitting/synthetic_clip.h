@@ -5,7 +5,7 @@
 
 #include <Eigen/QR>
 
-#include <mimetra/fitting/landmark_fitter.h>
+#include "fitting/landmark_fitter.h"
 
 namespace mimetra::test {
 

@@ -7,9 +7,8 @@
 
 #include <Eigen/Geometry>
 
-#include <mimetra/samples/head.h>
-
-#include "fitting/synthetic_clip.h"
+#include "samples/head/head.h"
+#include "tests/fitting/synthetic_clip.h"
 
 namespace mimetra::test {
 

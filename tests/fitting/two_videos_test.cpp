@@ -1,19 +1,18 @@
-#include "two_videos.h"
+#include "tests/fitting/two_videos.h"
 
 #include <iomanip>
 #include <iostream>
 
 #include <gtest/gtest.h>
 
-#include <mimetra/fitting/landmark_mapping.h>
-#include <mimetra/io/model_file.h>
-#include <mimetra/io/weight_track.h>
-#include <mimetra/regions/regions.h>
-#include <mimetra/samples/head.h>
-#include <mimetra/splocs/decomposition.h>
-#include <mimetra/transfer/blendshape_transfer.h>
-
-#include "shared_data.h"
+#include "fitting/landmark_mapping.h"
+#include "samples/head/head.h"
+#include "tests/shared_data.h"
+#include "toolkit/io/model_file.h"
+#include "toolkit/io/weight_track.h"
+#include "toolkit/regions/regions.h"
+#include "toolkit/splocs/decomposition.h"
+#include "toolkit/transfer/blendshape_transfer.h"
 
 /// The paper's case of two videos: fit both, transfer the source's expressions to the target's
 /// face.

@@ -3,9 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <mimetra/fitting/face_images.h>
-
-#include "temporary_folder.h"
+#include "fitting/face_images.h"
+#include "tests/temporary_folder.h"
+#include "toolkit/mesh/errors.h"
 
 namespace mimetra {
 namespace {

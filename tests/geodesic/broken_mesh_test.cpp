@@ -2,10 +2,9 @@
 
 #include <gmock/gmock.h>
 
-#include <mimetra/geodesic/exact_geodesics.h>
-#include <mimetra/geodesic/heat_geodesics.h>
-
-#include "surfaces.h"
+#include "geodesic/exact_geodesics.h"
+#include "geodesic/heat_geodesics.h"
+#include "tests/geodesic/surfaces.h"
 
 namespace mimetra::geodesic {
 namespace {

@@ -6,11 +6,10 @@
 
 #include <gtest/gtest.h>
 
-#include <mimetra/geodesic/exact_geodesics.h>
-#include <mimetra/geodesic/heat_geodesics.h>
-
-#include "shared_data.h"
-#include "surfaces.h"
+#include "geodesic/exact_geodesics.h"
+#include "geodesic/heat_geodesics.h"
+#include "tests/geodesic/surfaces.h"
+#include "tests/shared_data.h"
 
 namespace mimetra::geodesic {
 namespace {

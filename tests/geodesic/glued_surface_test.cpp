@@ -1,8 +1,7 @@
 #include <gmock/gmock.h>
 
-#include <mimetra/geodesic/glued_surface.h>
-
-#include "surfaces.h"
+#include "geodesic/glued_surface.h"
+#include "tests/geodesic/surfaces.h"
 
 namespace mimetra::geodesic {
 namespace {

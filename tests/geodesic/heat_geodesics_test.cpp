@@ -7,9 +7,8 @@
 
 #include <Eigen/Geometry>
 
-#include <mimetra/geodesic/heat_geodesics.h>
-
-#include "surfaces.h"
+#include "geodesic/heat_geodesics.h"
+#include "tests/geodesic/surfaces.h"
 
 namespace mimetra::geodesic {
 namespace {

@@ -9,9 +9,8 @@
 
 #include <gtest/gtest.h>
 
-#include <mimetra/geodesic/heat_geodesics.h>
-
-#include "surfaces.h"
+#include "geodesic/heat_geodesics.h"
+#include "tests/geodesic/surfaces.h"
 
 namespace mimetra::geodesic {
 namespace {

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 #include <Eigen/Cholesky>
 
-#include <mimetra/geodesic/sparse_factor.h>
+#include "geodesic/sparse_factor.h"
 
 namespace mimetra::geodesic {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include <mimetra/geodesic/support_map.h>
+#include "geodesic/support_map.h"
 
 namespace mimetra::geodesic {
 namespace {

@@ -2,9 +2,8 @@
 
 #include <cmath>
 
-#include <mimetra/geodesic/heat_geodesics.h>
-
-#include "shapes.h"
+#include "geodesic/heat_geodesics.h"
+#include "tests/shapes.h"
 
 /// Surfaces for the geodesic tests.
 namespace mimetra::test {

@@ -1,13 +1,13 @@
-#include <mimetra/io/array_file.h>
+#include "toolkit/io/array_file.h"
 
 #include <limits>
 
 #include <gmock/gmock.h>
 
-#include <mimetra/io/pending_output.h>
-#include <mimetra/mesh/errors.h>
-#include "npy.h"
-#include "temporary_folder.h"
+#include "tests/npy.h"
+#include "tests/temporary_folder.h"
+#include "toolkit/io/whole_file.h"
+#include "toolkit/mesh/errors.h"
 
 namespace mimetra {
 namespace {

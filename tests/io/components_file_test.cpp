@@ -8,12 +8,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <mimetra/io/components_file.h>
-#include <mimetra/io/pending_output.h>
-#include <mimetra/mesh/errors.h>
-
-#include "shapes.h"
-#include "temporary_folder.h"
+#include "tests/shapes.h"
+#include "tests/temporary_folder.h"
+#include "toolkit/io/components_file.h"
+#include "toolkit/io/whole_file.h"
+#include "toolkit/mesh/errors.h"
 
 namespace mimetra {
 namespace {

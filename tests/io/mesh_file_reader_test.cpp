@@ -1,4 +1,4 @@
-#include <mimetra/io/mesh_file.h>
+#include "toolkit/io/mesh_file.h"
 
 #include <functional>
 #include <limits>
@@ -6,11 +6,12 @@
 
 #include <gmock/gmock.h>
 
-#include <mimetra/io/array_file.h>
-#include <mimetra/io/pending_output.h>
-#include <mimetra/io/sequence_file.h>
-#include "shapes.h"
-#include "temporary_folder.h"
+#include "tests/shapes.h"
+#include "tests/temporary_folder.h"
+#include "toolkit/io/array_file.h"
+#include "toolkit/io/sequence_file.h"
+#include "toolkit/io/whole_file.h"
+#include "toolkit/mesh/errors.h"
 
 namespace mimetra {
 namespace {

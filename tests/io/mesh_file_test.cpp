@@ -1,14 +1,14 @@
-#include <mimetra/io/mesh_file.h>
+#include "toolkit/io/mesh_file.h"
 
 #include <limits>
 
 #include <gmock/gmock.h>
 
-#include <mimetra/io/pending_output.h>
-#include <mimetra/mesh/errors.h>
-#include "shapes.h"
-#include "shared_data.h"
-#include "temporary_folder.h"
+#include "tests/shapes.h"
+#include "tests/shared_data.h"
+#include "tests/temporary_folder.h"
+#include "toolkit/io/whole_file.h"
+#include "toolkit/mesh/errors.h"
 
 namespace mimetra {
 namespace {

@@ -1,11 +1,12 @@
-#include <mimetra/io/pending_output.h>
+#include "toolkit/io/pending_output.h"
 
 #include <functional>
 
 #include <gmock/gmock.h>
 
-#include <mimetra/mesh/errors.h>
-#include "temporary_folder.h"
+#include "tests/temporary_folder.h"
+#include "toolkit/io/whole_file.h"
+#include "toolkit/mesh/errors.h"
 
 namespace mimetra {
 namespace {

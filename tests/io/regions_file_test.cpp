@@ -4,11 +4,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <mimetra/io/regions_file.h>
-#include <mimetra/mesh/errors.h>
-
-#include "shapes.h"
-#include "temporary_folder.h"
+#include "tests/shapes.h"
+#include "tests/temporary_folder.h"
+#include "toolkit/io/regions_file.h"
+#include "toolkit/mesh/errors.h"
 
 namespace mimetra {
 namespace {

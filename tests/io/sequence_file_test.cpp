@@ -1,13 +1,14 @@
-#include <mimetra/io/sequence_file.h>
+#include "toolkit/io/sequence_file.h"
 
 #include <gmock/gmock.h>
 
-#include <mimetra/io/array_file.h>
-#include <mimetra/io/mesh_file.h>
-#include <mimetra/io/pending_output.h>
-#include "shapes.h"
-#include "shared_data.h"
-#include "temporary_folder.h"
+#include "tests/shapes.h"
+#include "tests/shared_data.h"
+#include "tests/temporary_folder.h"
+#include "toolkit/io/array_file.h"
+#include "toolkit/io/mesh_file.h"
+#include "toolkit/io/whole_file.h"
+#include "toolkit/mesh/errors.h"
 
 namespace mimetra {
 namespace {
@@ -49,20 +50,6 @@ class TwelveFiles : public testing::Test {
 
   TemporaryFolder folder_;
 };
-
-TEST(NaturalLess, TwoComesBeforeTen) {
-  EXPECT_TRUE(natural_less("frame_2.obj", "frame_10.obj"));
-  EXPECT_FALSE(natural_less("frame_10.obj", "frame_2.obj"));
-  EXPECT_TRUE(natural_less("a9b1", "a10b0"));
-  EXPECT_TRUE(natural_less("a", "a1"));
-  EXPECT_TRUE(natural_less("1", "99999999999999999999999999999"));
-}
-
-TEST(NaturalLess, OrdersEqualNumbersOfDifferentLengthOneWay) {
-  EXPECT_NE(natural_less("f1", "f01"), natural_less("f01", "f1"));
-  EXPECT_FALSE(natural_less("f1", "f1"));
-  EXPECT_TRUE(natural_less("f01a", "f1b"));
-}
 
 TEST_F(TwelveFiles, AreReadFromTheirFolderInNaturalOrder) {
   const SequenceRead read = read_sequence(text());
@@ -402,7 +389,7 @@ TEST_F(SmallModel, NotesNameWhatWasNotMatched) {
   const SequenceRead read = read_sequence(text(), {.weights = folder_ / "w.csv"});
   ASSERT_EQ(read.notes.size(), 2);
   EXPECT_THAT(read.notes[0], HasSubstr("columns that drive no expression: other1, other2"));
-  EXPECT_THAT(read.notes[0], HasSubstr("other8, and 2 more"));
+  EXPECT_THAT(read.notes[0], HasSubstr("other8 and 2 more"));
   EXPECT_THAT(read.notes[1], HasSubstr("expressions that no column drives: pout"));
 }
 

@@ -5,11 +5,11 @@
 #include <gtest/gtest.h>
 #include <Eigen/Geometry>
 
-#include <mimetra/mesh/alignment.h>
-
-#include "captured_performance.h"
-#include "shapes.h"
-#include "shared_data.h"
+#include "tests/mesh/captured_performance.h"
+#include "tests/shapes.h"
+#include "tests/shared_data.h"
+#include "toolkit/mesh/alignment.h"
+#include "toolkit/mesh/errors.h"
 
 namespace mimetra {
 namespace {
@@ -179,7 +179,7 @@ TEST(StableAlignment, DoesBetterThanAllVertices) {
   const MeshSequence jaw = opening_jaw(24);
   const MeshSequence moved = with_motion(jaw, random_motion(24, 5, 0.1));
   // The jaw's motion of up to a quarter of the radius reads as a rotation of more than a degree.
-  EXPECT_GT(difference(align(moved, AlignmentVertices::all).sequence, jaw), 0.02);
+  EXPECT_GT(difference(align(moved, {.vertices = AlignmentVertices::all}).sequence, jaw), 0.02);
 }
 
 TEST(StableAlignment, IsAsGoodAsTheNoise) {
@@ -267,23 +267,22 @@ TEST(StableAlignment, OfCoincidingVerticesIsFinite) {
 }
 
 TEST(StableAlignment, StopsWhenAskedTo) {
-  EXPECT_THROW(align(opening_jaw(2), AlignmentVertices::stable, [](double) { return false; }),
-               Cancelled);
+  EXPECT_THROW(align(opening_jaw(2), {.progress = [](double) { return false; }}), Cancelled);
 }
 
 TEST(StableAlignment, ReportsProgressThatEndsAtOne) {
   double last = -1;
-  align(opening_jaw(2), AlignmentVertices::stable, [&last](double share) {
-    EXPECT_GE(share, last);
-    last = share;
-    return true;
-  });
+  align(opening_jaw(2), {.progress = [&last](double share) {
+          EXPECT_GE(share, last);
+          last = share;
+          return true;
+        }});
   EXPECT_EQ(last, 1);
 }
 
 TEST(Alignment, OfAllVerticesIsTheRigidFitOfEachFrame) {
   const MeshSequence jaw = opening_jaw(6);
-  const Alignment alignment = align(jaw, AlignmentVertices::all);
+  const Alignment alignment = align(jaw, {.vertices = AlignmentVertices::all});
   for (int f = 1; f < 6; ++f) {
     const RigidTransform fit = rigid_fit(jaw.rest(), jaw.frame(f));
     EXPECT_TRUE(alignment.motion[f].rotation.isApprox(fit.rotation, kRounding));

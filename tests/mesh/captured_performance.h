@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include <mimetra/mesh/mesh_sequence.h>
+#include "toolkit/mesh/mesh_sequence.h"
 
 /// Real captures driven on real models, read with the least that does it: these tests stand below
 /// the library that reads files.

@@ -1,7 +1,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <mimetra/mesh/errors.h>
+#include "toolkit/mesh/errors.h"
+#include "toolkit/mesh/progress.h"
 
 namespace mimetra {
 namespace {

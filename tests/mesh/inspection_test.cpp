@@ -7,11 +7,10 @@
 #include <gtest/gtest.h>
 #include <OpenMesh/Core/Mesh/TriMesh_ArrayKernelT.hh>
 
-#include <mimetra/mesh/inspection.h>
-
-#include "captured_performance.h"
-#include "shapes.h"
-#include "shared_data.h"
+#include "tests/mesh/captured_performance.h"
+#include "tests/shapes.h"
+#include "tests/shared_data.h"
+#include "toolkit/mesh/inspection.h"
 
 namespace mimetra {
 namespace {

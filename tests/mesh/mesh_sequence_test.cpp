@@ -3,9 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <mimetra/mesh/mesh_sequence.h>
-
-#include "shapes.h"
+#include "tests/shapes.h"
+#include "toolkit/mesh/mesh_sequence.h"
 
 namespace mimetra {
 namespace {

@@ -1,9 +1,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <mimetra/mesh/openmesh.h>
-
-#include "shapes.h"
+#include "tests/shapes.h"
+#include "toolkit/mesh/openmesh.h"
 
 namespace mimetra {
 namespace {

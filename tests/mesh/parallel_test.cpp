@@ -7,7 +7,8 @@
 
 #include <gtest/gtest.h>
 
-#include <mimetra/mesh/parallel.h>
+#include "toolkit/mesh/errors.h"
+#include "toolkit/mesh/parallel.h"
 
 namespace mimetra {
 namespace {

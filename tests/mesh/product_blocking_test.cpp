@@ -1,9 +1,8 @@
 #include <random>
 
-#include <mimetra/mesh/alignment.h>
-#include <mimetra/mesh/product_blocking.h>
-
-#include "cache_sizes.h"
+#include "tests/cache_sizes.h"
+#include "toolkit/mesh/alignment.h"
+#include "toolkit/mesh/product_blocking.h"
 
 namespace mimetra {
 namespace {

@@ -1,9 +1,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <mimetra/mesh/tri_mesh.h>
-
-#include "shapes.h"
+#include "tests/shapes.h"
+#include "toolkit/mesh/tri_mesh.h"
 
 namespace mimetra {
 namespace {

@@ -4,7 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <mimetra/mesh/weld.h>
+#include "toolkit/mesh/weld.h"
 
 namespace mimetra {
 namespace {

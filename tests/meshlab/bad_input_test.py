@@ -78,7 +78,7 @@ class BadInput(HostTest):
         self.assert_refused(self.take, [script], "one.ply: exists; choose another name")
 
     def test_an_output_that_cannot_be_written_costs_no_result(self):
-        """It is told of when the layers are there."""
+        """The message comes when the layers are there."""
         out = self.path / "regions.pvd"
         script = filter_script("Region Transfer", k=3, target=self.model,
                                options=f"--regions-out {out}")

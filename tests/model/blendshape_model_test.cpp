@@ -1,9 +1,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <mimetra/model/blendshape_model.h>
-
-#include "octahedron.h"
+#include "tests/model/octahedron.h"
+#include "toolkit/model/blendshape_model.h"
 
 namespace mimetra {
 namespace {

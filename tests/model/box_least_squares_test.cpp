@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 #include <Eigen/QR>
 
-#include <mimetra/model/box_least_squares.h>
+#include "toolkit/model/box_least_squares.h"
 
 namespace mimetra {
 namespace {

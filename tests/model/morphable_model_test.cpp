@@ -1,9 +1,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <mimetra/model/morphable_model.h>
-
-#include "octahedron.h"
+#include "tests/model/octahedron.h"
+#include "toolkit/model/morphable_model.h"
 
 namespace mimetra {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <memory>
 
-#include "shapes.h"
+#include "tests/shapes.h"
 
 namespace mimetra::test {
 

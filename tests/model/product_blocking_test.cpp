@@ -1,9 +1,8 @@
 #include <random>
 
-#include <mimetra/model/blendshape_model.h>
-#include <mimetra/model/smooth_weights.h>
-
-#include "cache_sizes.h"
+#include "tests/cache_sizes.h"
+#include "toolkit/model/blendshape_model.h"
+#include "toolkit/model/smooth_weights.h"
 
 namespace mimetra {
 namespace {

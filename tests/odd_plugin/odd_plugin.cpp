@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include <mimetra/c/mimetra.h>
+#include "plugins/c/mimetra.h"
 
 namespace {
 

@@ -5,12 +5,12 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include <mimetra/operations/listing.h>
-#include <mimetra/operations/loading.h>
-#include <mimetra/operations/operation.h>
-
-#include "shapes.h"
-#include "temporary_folder.h"
+#include "tests/shapes.h"
+#include "tests/temporary_folder.h"
+#include "toolkit/mesh/errors.h"
+#include "toolkit/operations/listing.h"
+#include "toolkit/operations/loading.h"
+#include "toolkit/operations/operation.h"
 
 namespace mimetra {
 namespace {

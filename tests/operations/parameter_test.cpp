@@ -1,7 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <mimetra/operations/parameter.h>
+#include "toolkit/operations/parameter.h"
 
 namespace mimetra {
 namespace {

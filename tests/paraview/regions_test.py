@@ -48,7 +48,7 @@ class RegionsOfInterest(HostTest):
     def test_takes_a_series_of_mesh_files(self):
         folder = self.sample / "frames"
         mimetra("convert", self.sample.take, "-o", folder)
-        # The mesh files alone, as other tools write them, tell of no rest pose.
+        # The mesh files alone, as other tools write them, hold no rest pose.
         (self.sample / "frames.rest.ply").unlink()
         pvd = self.sample / "frames.pvd"
         mimetra("regions", folder, "-k", 12, "-o", pvd)

@@ -3,7 +3,7 @@
 #include <string_view>
 #include <vector>
 
-#include <mimetra/c/mimetra.h>
+#include "plugins/c/mimetra.h"
 
 namespace {
 

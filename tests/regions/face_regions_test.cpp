@@ -3,12 +3,12 @@
 
 #include <gmock/gmock.h>
 
-#include <mimetra/mesh/inspection.h>
-#include <mimetra/regions/regions.h>
-
-#include "mesh/captured_performance.h"
-#include "shapes.h"
-#include "shared_data.h"
+#include "tests/mesh/captured_performance.h"
+#include "tests/shapes.h"
+#include "tests/shared_data.h"
+#include "toolkit/mesh/inspection.h"
+#include "toolkit/mesh/progress.h"
+#include "toolkit/regions/regions.h"
 
 /// Regions with distances along the surface, from decomposition to the triangles.
 namespace mimetra::test {

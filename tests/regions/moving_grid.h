@@ -2,9 +2,8 @@
 
 #include <limits>
 
-#include <mimetra/regions/regions.h>
-
-#include "shapes.h"
+#include "tests/shapes.h"
+#include "toolkit/regions/regions.h"
 
 /// Components written down by hand on a flat grid of 12 x 5 vertices.
 namespace mimetra::test {

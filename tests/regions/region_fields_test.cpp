@@ -2,7 +2,7 @@
 
 #include <gmock/gmock.h>
 
-#include "moving_grid.h"
+#include "tests/regions/moving_grid.h"
 
 namespace mimetra::test {
 namespace {

@@ -1,4 +1,4 @@
-#include <mimetra/regions/regions.h>
+#include "toolkit/regions/regions.h"
 
 #include <algorithm>
 #include <limits>
@@ -6,7 +6,8 @@
 
 #include <gmock/gmock.h>
 
-#include "moving_grid.h"
+#include "tests/regions/moving_grid.h"
+#include "toolkit/mesh/errors.h"
 
 namespace mimetra::test {
 namespace {

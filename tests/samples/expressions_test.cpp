@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 
-#include "head_fixture.h"
+#include "samples/head/features.h"
+#include "tests/samples/head_fixture.h"
 
 namespace mimetra::test {
 namespace {

@@ -9,10 +9,10 @@
 
 #include <Eigen/Geometry>
 
-#include <mimetra/mesh/inspection.h>
-#include <mimetra/samples/head.h>
-#include <mimetra/samples/head_grid.h>
-#include <mimetra/samples/head_shape.h>
+#include "samples/head/head.h"
+#include "samples/head/head_grid.h"
+#include "samples/head/head_shape.h"
+#include "toolkit/mesh/inspection.h"
 
 namespace mimetra::test {
 

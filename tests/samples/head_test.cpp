@@ -5,7 +5,8 @@
 
 #include <gmock/gmock.h>
 
-#include "head_fixture.h"
+#include "samples/head/features.h"
+#include "tests/samples/head_fixture.h"
 
 namespace mimetra::test {
 namespace {

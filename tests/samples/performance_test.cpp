@@ -1,6 +1,6 @@
 #include <gmock/gmock.h>
 
-#include "head_fixture.h"
+#include "tests/samples/head_fixture.h"
 
 namespace mimetra::test {
 namespace {

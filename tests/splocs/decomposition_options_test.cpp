@@ -3,9 +3,9 @@
 
 #include <gmock/gmock.h>
 
-#include <mimetra/splocs/decomposition.h>
-
-#include "synthetic.h"
+#include "tests/splocs/synthetic.h"
+#include "toolkit/mesh/errors.h"
+#include "toolkit/splocs/decomposition.h"
 
 namespace mimetra::test {
 namespace {

@@ -1,15 +1,15 @@
-#include <mimetra/splocs/decomposition.h>
+#include "toolkit/splocs/decomposition.h"
 
 #include <algorithm>
 #include <numeric>
 
 #include <gmock/gmock.h>
 
-#include <mimetra/geodesic/support_map.h>
-#include <mimetra/splocs/start.h>
-
-#include "literal_splocs.h"
-#include "synthetic.h"
+#include "geodesic/support_map.h"
+#include "tests/splocs/literal_splocs.h"
+#include "tests/splocs/synthetic.h"
+#include "toolkit/mesh/errors.h"
+#include "toolkit/splocs/start.h"
 
 namespace mimetra::test {
 namespace {

@@ -7,7 +7,7 @@
 #include <Eigen/LU>
 #include <Eigen/SVD>
 
-#include <mimetra/mesh/mesh_sequence.h>
+#include "toolkit/mesh/mesh_sequence.h"
 
 /// The decomposition as the paper writes it: dense, with the residual as a matrix, no products
 /// kept.

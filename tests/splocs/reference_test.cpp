@@ -7,11 +7,10 @@
 
 #include <gmock/gmock.h>
 
-#include <mimetra/splocs/decomposition.h>
-#include <mimetra/splocs/start.h>
-
-#include "npy.h"
-#include "shared_data.h"
+#include "tests/npy.h"
+#include "tests/shared_data.h"
+#include "toolkit/splocs/decomposition.h"
+#include "toolkit/splocs/start.h"
 
 /// The decomposition against what the reference implementation gave for the same sequence and the
 /// same distances.

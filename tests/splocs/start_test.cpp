@@ -1,8 +1,8 @@
-#include <mimetra/splocs/start.h>
+#include "toolkit/splocs/start.h"
 
 #include <gmock/gmock.h>
 
-#include "synthetic.h"
+#include "tests/splocs/synthetic.h"
 
 namespace mimetra::test {
 namespace {

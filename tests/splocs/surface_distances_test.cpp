@@ -3,10 +3,9 @@
 #include <limits>
 #include <thread>
 
-#include <mimetra/geodesic/exact_geodesics.h>
-#include <mimetra/splocs/surface_distances.h>
-
-#include "shapes.h"
+#include "geodesic/exact_geodesics.h"
+#include "tests/shapes.h"
+#include "toolkit/splocs/surface_distances.h"
 
 namespace mimetra {
 namespace {

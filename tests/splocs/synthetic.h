@@ -3,9 +3,8 @@
 #include <cmath>
 #include <random>
 
-#include <mimetra/splocs/decomposition.h>
-
-#include "shapes.h"
+#include "tests/shapes.h"
+#include "toolkit/splocs/decomposition.h"
 
 /// Sequences whose components are known, on flat grids where the straight line is the way along the
 /// surface.

@@ -1,4 +1,4 @@
-#include <mimetra/splocs/time_basis.h>
+#include "toolkit/splocs/time_basis.h"
 
 #include <cmath>
 
@@ -7,7 +7,7 @@
 #include <Eigen/QR>
 #include <Eigen/SVD>
 
-#include "synthetic.h"
+#include "tests/splocs/synthetic.h"
 
 namespace mimetra::test {
 namespace {

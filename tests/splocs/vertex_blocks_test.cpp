@@ -1,10 +1,9 @@
-#include <mimetra/splocs/vertex_blocks.h>
+#include "toolkit/splocs/vertex_blocks.h"
 
 #include <gtest/gtest.h>
 
-#include <mimetra/splocs/motion.h>
-
-#include "synthetic.h"
+#include "tests/splocs/synthetic.h"
+#include "toolkit/splocs/motion.h"
 
 namespace mimetra::test {
 namespace {

@@ -1,8 +1,7 @@
 #include <gtest/gtest.h>
 
-#include <mimetra/transfer/blendshape_transfer.h>
-
-#include "faces.h"
+#include "tests/transfer/faces.h"
+#include "toolkit/transfer/blendshape_transfer.h"
 
 /// What a blendshape transfer does not depend on.
 namespace mimetra {

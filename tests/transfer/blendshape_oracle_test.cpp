@@ -3,11 +3,10 @@
 #include <gtest/gtest.h>
 #include <Eigen/Cholesky>
 
-#include <mimetra/regions/regions.h>
-#include <mimetra/transfer/blendshape_transfer.h>
-
-#include "npy.h"
-#include "shared_data.h"
+#include "tests/npy.h"
+#include "tests/shared_data.h"
+#include "toolkit/regions/regions.h"
+#include "toolkit/transfer/blendshape_transfer.h"
 
 /// Equation 10 on the Surrey model against exact solutions of another program.
 namespace mimetra::test {

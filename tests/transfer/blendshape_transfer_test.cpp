@@ -6,11 +6,11 @@
 #include <Eigen/LU>
 #include <Eigen/SVD>
 
-#include <mimetra/model/box_least_squares.h>
-#include <mimetra/transfer/blendshape_transfer.h>
-#include <mimetra/transfer/deformation_gradients.h>
-
-#include "faces.h"
+#include "tests/transfer/faces.h"
+#include "toolkit/mesh/errors.h"
+#include "toolkit/model/box_least_squares.h"
+#include "toolkit/transfer/blendshape_transfer.h"
+#include "toolkit/transfer/deformation_gradients.h"
 
 namespace mimetra {
 namespace {
@@ -247,9 +247,33 @@ TEST(BlendshapeTransfer, RefusesTrianglesInWhichNothingMoves) {
 
 TEST(BlendshapeTransfer, StopsWhenAsked) {
   const BlendshapeModel model = model_on(patch(), 3);
-  const BlendshapeTransfer transfer(model.neutral(), model, all_triangles(model.triangles()));
-  EXPECT_THROW(transfer.weights(model.animate(random_weights(40, 3)), [](double) { return false; }),
-               Cancelled);
+  const BlendshapeTransfer transfer(model.neutral(), model, all_triangles(model.triangles()),
+                                    {.progress = [](double) { return false; }});
+  EXPECT_THROW(transfer.weights(model.animate(random_weights(40, 3))), Cancelled);
+}
+
+TEST(BlendshapeTransfer, BendsLessWithSmoothness) {
+  const BlendshapeModel model = model_on(patch(), 4);
+  const MeshSequence take = model.animate(random_weights(30, 4));
+  const auto all = all_triangles(model.triangles());
+  const auto bend = [](const Eigen::MatrixXd& w) {
+    const auto n = w.rows() - 2;
+    return (w.topRows(n) - 2 * w.middleRows(1, n) + w.bottomRows(n)).norm();
+  };
+  EXPECT_LT(
+      bend(BlendshapeTransfer(model.neutral(), model, all, {.smoothness = 0.1}).weights(take)),
+      0.5 * bend(BlendshapeTransfer(model.neutral(), model, all).weights(take)));
+}
+
+TEST(BlendshapeTransfer, KeepsUnseenExpressionsAtZeroWithSmoothness) {
+  const Shape shape = patch();
+  ShapeBasis basis = test::bumps(shape.positions, 4);
+  basis.displacements.col(2).setZero();
+  const BlendshapeModel model(test::connectivity_of(shape), shape.positions, basis);
+  const BlendshapeTransfer transfer(model.neutral(), model, all_triangles(model.triangles()),
+                                    {.smoothness = 0.1});
+  const Eigen::MatrixXd beta = transfer.weights(model.animate(random_weights(12, 4)));
+  EXPECT_EQ(beta.col(2), Eigen::VectorXd::Zero(12));
 }
 
 }  // namespace

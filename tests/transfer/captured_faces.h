@@ -2,10 +2,9 @@
 
 #include <algorithm>
 
-#include <mimetra/model/blendshape_model.h>
-
-#include "mesh/captured_performance.h"
-#include "shared_data.h"
+#include "tests/mesh/captured_performance.h"
+#include "tests/shared_data.h"
+#include "toolkit/model/blendshape_model.h"
 
 /// Real identities with real expressions, driven by a real capture.
 namespace mimetra::test {

@@ -1,8 +1,7 @@
 #include <gtest/gtest.h>
 
-#include <mimetra/transfer/deformation_gradients.h>
-
-#include "faces.h"
+#include "tests/transfer/faces.h"
+#include "toolkit/transfer/deformation_gradients.h"
 
 namespace mimetra {
 namespace {

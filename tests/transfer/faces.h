@@ -6,10 +6,9 @@
 
 #include <Eigen/Geometry>
 
-#include <mimetra/model/blendshape_model.h>
-#include <mimetra/regions/regions.h>
-
-#include "shapes.h"
+#include "tests/shapes.h"
+#include "toolkit/model/blendshape_model.h"
+#include "toolkit/regions/regions.h"
 
 /// Small models to transfer between.
 namespace mimetra::test {

@@ -1,9 +1,8 @@
 #include <gtest/gtest.h>
 
-#include <mimetra/regions/regions.h>
-#include <mimetra/transfer/blendshape_transfer.h>
-
-#include "captured_faces.h"
+#include "tests/transfer/captured_faces.h"
+#include "toolkit/regions/regions.h"
+#include "toolkit/transfer/blendshape_transfer.h"
 
 /// Whether a source's rest pose is neutral, on a real capture of two real identities.
 namespace mimetra {

@@ -2,12 +2,11 @@
 
 #include <gtest/gtest.h>
 
-#include <mimetra/regions/regions.h>
-#include <mimetra/transfer/blendshape_transfer.h>
-#include <mimetra/transfer/vertex_transfer.h>
-
-#include "cache_sizes.h"
-#include "shapes.h"
+#include "tests/cache_sizes.h"
+#include "tests/shapes.h"
+#include "toolkit/regions/regions.h"
+#include "toolkit/transfer/blendshape_transfer.h"
+#include "toolkit/transfer/vertex_transfer.h"
 
 namespace mimetra {
 namespace {

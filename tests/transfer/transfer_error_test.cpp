@@ -3,13 +3,13 @@
 #include <gtest/gtest.h>
 #include <Eigen/LU>
 
-#include <mimetra/transfer/blendshape_transfer.h>
-#include <mimetra/transfer/deformation_gradients.h>
-#include <mimetra/transfer/edges.h>
-#include <mimetra/transfer/transfer_error.h>
-#include <mimetra/transfer/vertex_transfer.h>
-
-#include "faces.h"
+#include "tests/transfer/faces.h"
+#include "toolkit/mesh/errors.h"
+#include "toolkit/transfer/blendshape_transfer.h"
+#include "toolkit/transfer/deformation_gradients.h"
+#include "toolkit/transfer/edges.h"
+#include "toolkit/transfer/transfer_error.h"
+#include "toolkit/transfer/vertex_transfer.h"
 
 namespace mimetra {
 namespace {

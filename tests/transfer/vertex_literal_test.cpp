@@ -6,10 +6,9 @@
 #include <Eigen/LU>
 #include <Eigen/QR>
 
-#include <mimetra/mesh/inspection.h>
-#include <mimetra/transfer/vertex_transfer.h>
-
-#include "faces.h"
+#include "tests/transfer/faces.h"
+#include "toolkit/mesh/inspection.h"
+#include "toolkit/transfer/vertex_transfer.h"
 
 namespace mimetra {
 namespace {

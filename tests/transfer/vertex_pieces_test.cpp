@@ -3,10 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <mimetra/transfer/vertex_transfer.h>
-#include <mimetra/transfer/vertex_unknowns.h>
-
-#include "faces.h"
+#include "tests/transfer/faces.h"
+#include "toolkit/transfer/vertex_transfer.h"
+#include "toolkit/transfer/vertex_unknowns.h"
 
 /// What holds the pieces of a mesh in place.
 namespace mimetra {

@@ -2,9 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include <mimetra/transfer/vertex_pull.h>
-
-#include "faces.h"
+#include "tests/transfer/faces.h"
+#include "toolkit/transfer/vertex_pull.h"
 
 namespace mimetra {
 namespace {

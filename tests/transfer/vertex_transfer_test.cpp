@@ -1,9 +1,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <mimetra/transfer/vertex_transfer.h>
-
-#include "faces.h"
+#include "tests/transfer/faces.h"
+#include "toolkit/mesh/errors.h"
+#include "toolkit/transfer/vertex_transfer.h"
 
 namespace mimetra {
 namespace {
@@ -186,9 +186,9 @@ TEST_F(VertexTransferRefusal, HoldsForPerformancesOfOtherMeshes) {
 TEST(VertexTransfer, StopsWhenAsked) {
   const Shape shape = patch();
   const VertexTransfer transfer(shape.positions, shape.positions, shape.triangles,
-                                all_triangles(shape.triangles));
-  EXPECT_THROW(transfer.frames(test::shaken(shape, 2, 0.1), [](double) { return false; }),
-               Cancelled);
+                                all_triangles(shape.triangles),
+                                {.progress = [](double) { return false; }});
+  EXPECT_THROW(transfer.frames(test::shaken(shape, 2, 0.1)), Cancelled);
 }
 
 }  // namespace

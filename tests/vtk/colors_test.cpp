@@ -3,9 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include <mimetra/vtk/colors.h>
-
-#include "shapes.h"
+#include "tests/shapes.h"
+#include "toolkit/vtk/colors.h"
 
 namespace mimetra {
 namespace {

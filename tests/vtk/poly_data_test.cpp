@@ -9,10 +9,9 @@
 #include <vtkPointData.h>
 #include <vtkPolyData.h>
 
-#include <mimetra/mesh/errors.h>
-#include <mimetra/vtk/poly_data.h>
-
-#include "vtp_fixture.h"
+#include "tests/vtk/vtp_fixture.h"
+#include "toolkit/mesh/errors.h"
+#include "toolkit/vtk/poly_data.h"
 
 namespace mimetra::test {
 namespace {

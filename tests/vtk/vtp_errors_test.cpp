@@ -3,7 +3,8 @@
 
 #include <gmock/gmock.h>
 
-#include "vtp_fixture.h"
+#include "tests/vtk/vtp_fixture.h"
+#include "toolkit/mesh/errors.h"
 
 namespace mimetra::test {
 namespace {

@@ -9,7 +9,7 @@
 
 #include <gtest/gtest.h>
 
-#include <mimetra/vtk/vtp_series.h>
+#include "toolkit/vtk/vtp_series.h"
 
 namespace mimetra::test {
 

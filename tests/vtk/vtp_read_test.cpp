@@ -3,19 +3,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "temporary_folder.h"
-#include "vtp_fixture.h"
+#include "tests/temporary_folder.h"
+#include "tests/vtk/vtp_fixture.h"
+#include "toolkit/mesh/errors.h"
 
 namespace mimetra::test {
 namespace {
 
 using ::testing::HasSubstr;
-
-std::vector<int> all(int count) {
-  std::vector<int> frames(static_cast<std::size_t>(count));
-  std::iota(frames.begin(), frames.end(), 0);
-  return frames;
-}
 
 class VtpRead : public VtpTest {
  protected:
@@ -31,7 +26,7 @@ TEST_F(VtpRead, GivesBackWhatWasWritten) {
   const FieldSequence written = quad_and_triangle();
   write_vtp_series(written, in_folder("face.pvd"));
   for (const char* name : {"face.pvd", "face.vtp.series"}) {
-    const FieldSequence read = read_vtp_series(in_folder(name), all);
+    const FieldSequence read = read_vtp_series(in_folder(name));
     EXPECT_TRUE(same_faces(read.sequence.connectivity(), written.sequence.connectivity()));
     EXPECT_TRUE(read.sequence.positions().isApprox(written.sequence.positions(), kRounding));
     EXPECT_TRUE(read.sequence.times() == written.sequence.times());
@@ -51,7 +46,7 @@ TEST_F(VtpRead, GivesBackWhatWasWritten) {
 TEST_F(VtpRead, KnowsExtensionsInCapitals) {
   write_vtp_series(quad_and_triangle(), in_folder("face.pvd"));
   std::filesystem::rename(in_folder("face.pvd"), in_folder("face.PVD"));
-  EXPECT_EQ(read_vtp_series(in_folder("face.PVD"), all).sequence.frames(), 3);
+  EXPECT_EQ(read_vtp_series(in_folder("face.PVD")).sequence.frames(), 3);
   EXPECT_EQ(vtp_series_files(in_folder("face.PVD")).size(), 4u);
 }
 
@@ -59,7 +54,7 @@ TEST_F(VtpRead, TakesThePartThatIsAskedFor) {
   const FieldSequence written = quad_and_triangle();
   write_vtp_series(written, in_folder("face.pvd"));
   const auto last = [](int count) { return std::vector<int>{count - 1}; };
-  const MeshSequence read = read_vtp_series(in_folder("face.pvd"), last).sequence;
+  const MeshSequence read = read_vtp_series(in_folder("face.pvd"), {.selected = last}).sequence;
   ASSERT_EQ(read.frames(), 1);
   EXPECT_TRUE(read.frame(0).isApprox(written.sequence.frame(2), kRounding));
   EXPECT_EQ(read.times()[0], written.sequence.times()[2]);
@@ -73,7 +68,7 @@ TEST_F(VtpRead, NamesTheFileThatIsWrong) {
       "<VTKFile><Collection><DataSet timestep=\"0\" file=\"x.vtp\"/></Collection></VTKFile>");
   write_text("bad.series", "{}");
   const auto message = [this](const std::string& name) {
-    return message_of<IoError>([&] { read_vtp_series(in_folder(name), all); });
+    return message_of<IoError>([&] { read_vtp_series(in_folder(name)); });
   };
   EXPECT_THAT(message("no.pvd"), HasSubstr("no.pvd: expected a VTKFile with a Collection"));
   EXPECT_THAT(message("none.pvd"), HasSubstr("none.pvd: names no frame"));
@@ -89,7 +84,7 @@ TEST_F(VtpRead, RefusesAFrameWithOtherFaces) {
   other.fields.clear();
   write_vtp_series(other, in_folder("face_vtp/face_0001.vtp"), {.overwrite = true});
   const auto message =
-      message_of<MismatchError>([this] { read_vtp_series(in_folder("face.pvd"), all); });
+      message_of<MismatchError>([this] { read_vtp_series(in_folder("face.pvd")); });
   EXPECT_THAT(message, HasSubstr("face_0001.vtp: other vertices or faces"));
 }
 

@@ -10,7 +10,7 @@
 #include <vtkPolyData.h>
 #include <vtkXMLPolyDataReader.h>
 
-#include "vtp_fixture.h"
+#include "tests/vtk/vtp_fixture.h"
 
 namespace mimetra::test {
 namespace {

@@ -1,4 +1,4 @@
-#include <mimetra/cli/command.h>
+#include "toolkit/cli/command.h"
 
 #include <algorithm>
 #include <cctype>

@@ -1,13 +1,14 @@
-#include <mimetra/cli/command_line.h>
+#include "toolkit/cli/command_line.h"
 
 #include <algorithm>
 #include <list>
 
 #include <CLI/CLI.hpp>
 
-#include <mimetra/cli/command.h>
-#include <mimetra/cli/suggestion.h>
-#include <mimetra/operations/option_file.h>
+#include "toolkit/cli/command.h"
+#include "toolkit/cli/suggestion.h"
+#include "toolkit/mesh/text.h"
+#include "toolkit/operations/option_file.h"
 
 namespace mimetra::cli {
 
@@ -30,12 +31,6 @@ struct Slots {
   }
 };
 
-std::string joined(const std::vector<std::string>& forms) {
-  std::string text;
-  for (const std::string& form : forms) text += (text.empty() ? "" : ",") + form;
-  return text;
-}
-
 void declare(CLI::App& app, const Command& command, Slots& slots) {
   for (const Input& input : command.positionals) {
     app.add_option(input.name, slots.inputs[input.name], input.help)
@@ -45,7 +40,7 @@ void declare(CLI::App& app, const Command& command, Slots& slots) {
         ->required();
   }
   for (const CommandOption& option : command.options) {
-    const std::string forms = joined(option.forms);
+    const std::string forms = joined(option.forms, ",");
     CLI::Option* declared = option.is_flag()
                                 ? app.add_flag(forms, slots.flags[option.name], option.help)
                                 : app.add_option(forms, slots.values[option.name], option.help)

@@ -1,18 +1,13 @@
-#include <mimetra/cli/completion.h>
+#include "toolkit/cli/completion.h"
 
 #include <nlohmann/json.hpp>
 
-#include <mimetra/operations/report.h>
+#include "toolkit/mesh/text.h"
+#include "toolkit/operations/json.h"
 
 namespace mimetra::cli {
 
 namespace {
-
-std::string joined(const std::vector<std::string>& words, const std::string& between) {
-  std::string text;
-  for (const std::string& word : words) text += (text.empty() ? "" : between) + word;
-  return text;
-}
 
 std::string replaced(const std::string& text, char old, const std::string& by) {
   std::string result;

@@ -1,4 +1,4 @@
-#include <mimetra/cli/dry_run.h>
+#include "toolkit/cli/dry_run.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include <mimetra/operations/report.h>
+#include "toolkit/operations/json.h"
 
 namespace mimetra::cli {
 

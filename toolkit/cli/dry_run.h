@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include <mimetra/cli/command_line.h>
+#include "toolkit/cli/command_line.h"
 
 namespace mimetra::cli {
 

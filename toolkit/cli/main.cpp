@@ -6,15 +6,23 @@
 #include <spdlog/sinks/stdout_sinks.h>
 #include <spdlog/spdlog.h>
 
-#include <mimetra/c/plugins.h>
-#include <mimetra/cli/command_line.h>
-#include <mimetra/cli/completion.h>
-#include <mimetra/cli/manual.h>
-#include <mimetra/cli/run_command.h>
-#include <mimetra/fitting/fit_operation.h>
-#include <mimetra/operations/listing.h>
-#include <mimetra/samples/sample_operation.h>
-#include <mimetra/vtk/vtk_formats.h>
+#include "plugins/c/plugins.h"
+#include "samples/head/sample_operation.h"
+#include "toolkit/cli/command_line.h"
+#include "toolkit/cli/completion.h"
+#include "toolkit/cli/manual.h"
+#include "toolkit/cli/run_command.h"
+#include "toolkit/mesh/errors.h"
+#include "toolkit/operations/listing.h"
+
+#ifdef MIMETRA_HAS_VTK
+#include "toolkit/pictures/picture_formats.h"
+#include "toolkit/report/report_operation.h"
+#include "toolkit/vtk/vtk_formats.h"
+#endif
+#ifdef MIMETRA_HAS_FITTING
+#include "fitting/fit_operation.h"
+#endif
 
 namespace {
 
@@ -53,15 +61,26 @@ mimetra::cli::ParsedLine parse(const mimetra::OperationTable& table,
   }
 }
 
-int run(const std::vector<std::string>& arguments) {
-  mimetra::OperationTable table;
+/// The operations of all parts that were built.
+void add_built(mimetra::OperationTable& table) {
   mimetra::add_toolkit(table);
+#ifdef MIMETRA_HAS_VTK
   mimetra::add_vtk(table);
+  mimetra::add_pictures(table);
+  mimetra::add_report(table);
+#endif
+#ifdef MIMETRA_HAS_FITTING
   mimetra::add_fitting(table);
+#endif
   mimetra::samples::add_sample(table);
   mimetra::add_listing(table);
   mimetra::cli::add_completion(table);
   mimetra::cli::add_manual(table);
+}
+
+int run(const std::vector<std::string>& arguments) {
+  mimetra::OperationTable table;
+  add_built(table);
   const std::vector<std::string> left_out = mimetra::add_plugins(table, mimetra::plugin_folders());
   const mimetra::cli::ParsedLine line = parse(table, arguments, left_out);
   if (!line.request) {

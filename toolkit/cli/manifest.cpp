@@ -1,12 +1,12 @@
-#include <mimetra/cli/manifest.h>
+#include "toolkit/cli/manifest.h"
 
 #include <algorithm>
 
 #include <nlohmann/json.hpp>
 
-#include <mimetra/operations/file_hash.h>
-#include <mimetra/operations/report.h>
-#include <mimetra/operations/run_file.h>
+#include "toolkit/operations/file_hash.h"
+#include "toolkit/operations/json.h"
+#include "toolkit/operations/run_file.h"
 
 namespace mimetra::cli {
 
@@ -61,7 +61,7 @@ std::string manifest_name(const std::filesystem::path& output, bool is_folder) {
   if (is_folder) return kFolderManifest;
   const std::string name = output.stem().string() + ".run.json";
   const auto path = output.parent_path() / name;
-  const bool is_free = !std::filesystem::exists(path) || tells_of(path, output);
+  const bool is_free = !std::filesystem::exists(path) || is_manifest_of(path, output);
   return is_free ? name : output.filename().string() + ".run.json";
 }
 

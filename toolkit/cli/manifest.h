@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include <mimetra/cli/command_line.h>
+#include "toolkit/cli/command_line.h"
 
 namespace mimetra::cli {
 
@@ -23,7 +23,7 @@ struct FinishedRun {
 std::string manifest(const Request& request, const FinishedRun& run);
 
 /// Name of the manifest of an output: mimetra-run.json in a folder; NAME.run.json for a file
-/// NAME.EXT, or NAME.EXT.run.json where the former is there and tells of another output.
+/// NAME.EXT, or NAME.EXT.run.json where the former is there and belongs to another output.
 std::string manifest_name(const std::filesystem::path& output, bool is_folder);
 
 }  // namespace mimetra::cli

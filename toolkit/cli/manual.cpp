@@ -1,8 +1,8 @@
-#include <mimetra/cli/manual.h>
+#include "toolkit/cli/manual.h"
 
 #include <nlohmann/json.hpp>
 
-#include <mimetra/operations/report.h>
+#include "toolkit/operations/json.h"
 
 namespace mimetra::cli {
 

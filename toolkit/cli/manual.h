@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include <mimetra/cli/command.h>
+#include "toolkit/cli/command.h"
 
 namespace mimetra::cli {
 

@@ -1,4 +1,4 @@
-#include <mimetra/cli/run_command.h>
+#include "toolkit/cli/run_command.h"
 
 #include <algorithm>
 #include <atomic>
@@ -12,10 +12,14 @@
 #include <unistd.h>
 #include <nlohmann/json.hpp>
 
-#include <mimetra/cli/dry_run.h>
-#include <mimetra/cli/manifest.h>
-#include <mimetra/operations/loading.h>
-#include <mimetra/operations/report.h>
+#include "toolkit/cli/dry_run.h"
+#include "toolkit/cli/manifest.h"
+#include "toolkit/mesh/errors.h"
+#include "toolkit/mesh/progress.h"
+#include "toolkit/mesh/text.h"
+#include "toolkit/operations/json.h"
+#include "toolkit/operations/loading.h"
+#include "toolkit/operations/stopwatch.h"
 
 namespace mimetra::cli {
 
@@ -155,7 +159,7 @@ void write_outputs(const OperationTable& table, const Request& request, const Fi
       WriteRequest write{target, request.parameters, request.force, progress};
       write.threads = request.threads;
       write.inputs = run.inputs;
-      // What accompanies another output is told of in that one's manifest.
+      // What accompanies another output stands in that one's manifest.
       if (request.outputs.contains(output.name)) {
         write.extra = {
             {manifest_name(target, table.writes_folder(output.kind, target)), manifest_text}};

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <mimetra/cli/command_line.h>
+#include "toolkit/cli/command_line.h"
 
 namespace mimetra::cli {
 

@@ -1,4 +1,4 @@
-#include <mimetra/cli/suggestion.h>
+#include "toolkit/cli/suggestion.h"
 
 #include <algorithm>
 #include <numeric>

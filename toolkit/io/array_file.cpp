@@ -1,4 +1,4 @@
-#include <mimetra/io/array_file.h>
+#include "toolkit/io/array_file.h"
 
 #include <algorithm>
 #include <charconv>
@@ -7,11 +7,11 @@
 #include <optional>
 #include <span>
 
-#include <mimetra/io/binary_file.h>
-#include <mimetra/io/bytes.h>
-#include <mimetra/io/pending_output.h>
-#include <mimetra/mesh/errors.h>
-#include <mimetra/mesh/parallel.h>
+#include "toolkit/io/binary_file.h"
+#include "toolkit/io/bytes.h"
+#include "toolkit/io/whole_file.h"
+#include "toolkit/mesh/errors.h"
+#include "toolkit/mesh/parallel.h"
 
 namespace mimetra {
 namespace {
@@ -222,7 +222,7 @@ Frames frames_of(const NumericArray& array) {
                                   static_cast<Eigen::Index>(array.values.size()) / rows);
 }
 
-/// True where no exponent is that of infinity and of what is no number.
+/// True where no exponent is that of infinity and of what is not a number.
 bool all_finite(std::span<const double> values) {
   constexpr std::uint64_t kSign = std::uint64_t{1} << 63, kOne = std::uint64_t{1} << 52;
   std::uint64_t carried = 0;  // adding one to the largest exponent carries into the sign

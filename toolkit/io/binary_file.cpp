@@ -1,4 +1,4 @@
-#include <mimetra/io/binary_file.h>
+#include "toolkit/io/binary_file.h"
 
 #include <algorithm>
 #include <cerrno>
@@ -10,16 +10,12 @@
 #include <sys/uio.h>
 #include <unistd.h>
 
-#include <mimetra/io/pending_output.h>
-#include <mimetra/mesh/errors.h>
+#include "toolkit/io/temporary_name.h"
+#include "toolkit/mesh/errors.h"
 
 namespace mimetra {
 namespace fs = std::filesystem;
 namespace {
-
-std::string last_reason() {
-  return std::error_code(errno, std::generic_category()).message();
-}
 
 /// Calls `transfer`, which returns a number of bytes or -1, until `bytes` are done or none come.
 /// Returns how many are done; -1 with errno for an error.
@@ -37,6 +33,10 @@ ssize_t repeated(std::size_t bytes, const Transfer& transfer) {
 }
 
 }  // namespace
+
+std::string last_reason() {
+  return std::error_code(errno, std::generic_category()).message();
+}
 
 bool InputFile::has_size(const fs::path& path) {
   std::error_code unreadable;

@@ -3,16 +3,20 @@
 #include <cstddef>
 #include <filesystem>
 #include <initializer_list>
+#include <string>
 #include <string_view>
 
 /// Files of which parts are read and written, from several threads where wanted. Internal to the
 /// readers and writers of large files.
 namespace mimetra {
 
+/// Why the last call to the operating system failed.
+std::string last_reason();
+
 /// An ordinary file that is open for reading.
 class InputFile {
  public:
-  /// True for a file whose size tells what it holds: no pipe, and nothing that seems empty.
+  /// True for a file whose size is that of its content: no pipe, and nothing that seems empty.
   static bool has_size(const std::filesystem::path& path);
 
   /// Throws IoError.
@@ -31,7 +35,7 @@ class InputFile {
   std::size_t size_ = 0;
 };
 
-/// A file that is written anew. Errors tell the name it gets by PendingOutput.
+/// A file that is written anew. Errors name what PendingOutput makes of it.
 class OutputFile {
  public:
   /// Throws OutputError.

@@ -1,4 +1,4 @@
-#include <mimetra/io/components_file.h>
+#include "toolkit/io/components_file.h"
 
 #include <hdf5.h>
 
@@ -10,7 +10,9 @@
 #include <type_traits>
 #include <vector>
 
-#include <mimetra/io/pending_output.h>
+#include "toolkit/io/pending_output.h"
+#include "toolkit/io/whole_file.h"
+#include "toolkit/mesh/errors.h"
 
 namespace mimetra {
 
@@ -36,7 +38,7 @@ class Handle {
   herr_t (*close_)(hid_t);
 };
 
-/// HDF5 prints its errors on stderr unless told not to; a library does not print.
+/// HDF5 prints its errors on stderr unless it is switched off; a library does not print.
 class QuietErrors {
  public:
   QuietErrors() {

@@ -2,7 +2,7 @@
 
 #include <filesystem>
 
-#include <mimetra/splocs/decomposition.h>
+#include "toolkit/splocs/decomposition.h"
 
 namespace mimetra {
 

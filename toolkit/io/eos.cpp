@@ -1,13 +1,13 @@
-#include <mimetra/io/eos.h>
+#include "toolkit/io/eos.h"
 
 #include <array>
 #include <bit>
 #include <cmath>
 #include <fstream>
 
-#include <mimetra/io/bytes.h>
-#include <mimetra/io/pending_output.h>
-#include <mimetra/mesh/errors.h>
+#include "toolkit/io/bytes.h"
+#include "toolkit/io/whole_file.h"
+#include "toolkit/mesh/errors.h"
 
 namespace mimetra {
 

@@ -2,7 +2,7 @@
 
 #include <filesystem>
 
-#include <mimetra/model/morphable_model.h>
+#include "toolkit/model/morphable_model.h"
 
 namespace mimetra {
 

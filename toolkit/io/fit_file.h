@@ -6,7 +6,7 @@
 
 #include <Eigen/Core>
 
-#include <mimetra/io/weight_track.h>
+#include "toolkit/io/weight_track.h"
 
 namespace mimetra {
 

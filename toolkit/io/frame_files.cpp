@@ -1,4 +1,4 @@
-#include <mimetra/io/frame_files.h>
+#include "toolkit/io/frame_files.h"
 
 #include <algorithm>
 #include <array>
@@ -8,9 +8,9 @@
 
 #include <glob.h>
 
-#include <mimetra/io/mesh_file.h>
-#include <mimetra/io/sequence_file.h>
-#include <mimetra/mesh/errors.h>
+#include "toolkit/io/mesh_file.h"
+#include "toolkit/mesh/errors.h"
+#include "toolkit/mesh/text.h"
 
 namespace mimetra {
 namespace fs = std::filesystem;
@@ -137,14 +137,6 @@ std::vector<fs::path> sorted_frames(std::vector<fs::path> files, const std::stri
   return files;
 }
 
-/// The run of digits at `at` without leading zeros; moves `at` behind it.
-std::string_view number_run(const std::string& text, std::size_t& at) {
-  while (at < text.size() && text[at] == '0') ++at;
-  const std::size_t first = at;
-  while (at < text.size() && is_digit(text[at])) ++at;
-  return std::string_view(text).substr(first, at - first);
-}
-
 struct FrameRange {
   std::optional<int> first;
   std::optional<int> last;
@@ -179,12 +171,6 @@ FrameRange parsed_range(const std::string& text) {
 }
 
 }  // namespace
-
-std::string lower_extension(const fs::path& path) {
-  std::string extension = path.extension().string();
-  for (char& c : extension) c = static_cast<char>(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c);
-  return extension;
-}
 
 bool is_array(const fs::path& path) {
   return lower_extension(path) == ".npy";
@@ -231,25 +217,6 @@ fs::path beside(const fs::path& sequence, const std::string& suffix) {
   if (!name.has_filename()) name = name.parent_path();
   if (is_array(name)) name.replace_extension();
   return name += suffix;
-}
-
-bool natural_less(const std::string& a, const std::string& b) {
-  std::size_t i = 0, j = 0;
-  while (i < a.size() && j < b.size()) {
-    if (is_digit(a[i]) && is_digit(b[j])) {
-      const std::string_view left = number_run(a, i), right = number_run(b, j);
-      if (left.size() != right.size()) return left.size() < right.size();
-      if (left != right) return left < right;
-    } else if (a[i] != b[j]) {
-      return static_cast<unsigned char>(a[i]) < static_cast<unsigned char>(b[j]);
-    } else {
-      ++i;
-      ++j;
-    }
-  }
-  const bool a_ends = i == a.size(), b_ends = j == b.size();
-  // "1" and "01" are equal numbers: any fixed order will do.
-  return a_ends && b_ends ? a < b : a_ends;
 }
 
 std::string frame_name(int frame, int frames, const std::string& extension) {

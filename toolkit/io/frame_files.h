@@ -5,15 +5,12 @@
 #include <string>
 #include <vector>
 
-/// Which files and which frames a sequence's name speaks of.
+/// Which files and which frames a sequence's name means.
 namespace mimetra {
 
 /// What follows a sequence's name in the names of the files beside it that belong to it.
 inline constexpr const char* kRestSuffix = ".rest.ply";
 inline constexpr const char* kTopologySuffix = ".topology.ply";
-
-/// ".ply" for NAME.PLY.
-std::string lower_extension(const std::filesystem::path& path);
 
 /// True for NAME.npy in any case.
 bool is_array(const std::filesystem::path& path);
@@ -35,7 +32,7 @@ std::vector<std::filesystem::path> frames_of_pattern(const std::string& pattern)
 std::vector<std::filesystem::path> frames_of_folder(const std::filesystem::path& folder);
 
 /// Indices of the frames that `range` ("A:B:STEP") takes of `frames`; all without one. Throws
-/// std::invalid_argument for what is no range, MismatchError for one beyond the last frame.
+/// std::invalid_argument for what is not a range, MismatchError for one beyond the last frame.
 std::vector<int> selected_frames(const std::optional<std::string>& range, int frames);
 
 /// "frame_0007.ply" for frame 7 of up to 10000, more digits where four do not suffice.

@@ -1,25 +1,22 @@
-#include <mimetra/io/mesh_file.h>
+#include "toolkit/io/mesh_file.h"
 
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
-#include <mimetra/io/mesh_formats.h>
-#include <mimetra/io/mesh_layout.h>
-#include <mimetra/io/pending_output.h>
-#include <mimetra/mesh/errors.h>
-#include <mimetra/mesh/weld.h>
+#include "toolkit/io/mesh_formats.h"
+#include "toolkit/io/mesh_layout.h"
+#include "toolkit/io/whole_file.h"
+#include "toolkit/mesh/errors.h"
+#include "toolkit/mesh/text.h"
+#include "toolkit/mesh/weld.h"
 
 namespace mimetra {
 namespace fs = std::filesystem;
 namespace {
 
-std::string extension_of(const fs::path& path) {
-  return lower_case(path.extension().string());
-}
-
 std::string read_bytes(const fs::path& path) {
-  const std::string extension = extension_of(path);
+  const std::string extension = lower_extension(path);
   if (!is_mesh_extension(extension)) {
     throw IoError(path.string(), unknown_mesh_extension(extension));
   }
@@ -27,7 +24,7 @@ std::string read_bytes(const fs::path& path) {
 }
 
 MeshContent read_content(const fs::path& path, std::string_view bytes) {
-  const std::string extension = extension_of(path);
+  const std::string extension = lower_extension(path);
   if (extension == ".obj") return read_obj(path.string(), bytes);
   if (extension == ".ply") return read_ply(path.string(), bytes);
   return read_off(path.string(), bytes);
@@ -186,7 +183,7 @@ void check_same_faces(const fs::path& path, const MeshContent& content,
 }
 
 TriMesh read_mesh(const fs::path& path, std::string_view bytes) {
-  if (extension_of(path) == ".stl") return read_stl(path, bytes);
+  if (lower_extension(path) == ".stl") return read_stl(path, bytes);
   MeshContent content = read_checked(path, bytes);
   TriMesh mesh{positions_of(content.coordinates), {}};
   mesh.connectivity = Connectivity::from_polygons(static_cast<int>(mesh.positions.rows()),
@@ -198,7 +195,8 @@ TriMesh read_mesh(const fs::path& path, std::string_view bytes) {
 
 Positions read_positions(const fs::path& path, std::string_view bytes, const Connectivity& expected,
                          const fs::path& expected_path) {
-  if (extension_of(path) == ".stl") return gathered_corners(path, bytes, expected, expected_path);
+  if (lower_extension(path) == ".stl")
+    return gathered_corners(path, bytes, expected, expected_path);
   const MeshContent content = read_checked(path, bytes);
   const auto vertices = static_cast<long long>(content.coordinates.size() / 3);
   if (vertices != expected.vertices) {
@@ -233,7 +231,7 @@ Positions read_positions(const fs::path& path, const Connectivity& expected,
 MeshFileReader::MeshFileReader(fs::path first) : first_(std::move(first)) {
   std::string bytes = read_bytes(first_);
   mesh_ = read_mesh(first_, bytes);
-  layout_ = layout_of(extension_of(first_), std::move(bytes), mesh_);
+  layout_ = layout_of(lower_extension(first_), std::move(bytes), mesh_);
 }
 
 MeshFileReader::~MeshFileReader() = default;
@@ -244,7 +242,7 @@ void MeshFileReader::read(const fs::path& path, std::span<double> coordinates) c
                                 std::to_string(mesh_.positions.size()));
   }
   const std::string bytes = read_bytes(path);
-  const bool same_format = extension_of(path) == extension_of(first_);
+  const bool same_format = lower_extension(path) == lower_extension(first_);
   if (layout_ && same_format && layout_->read(bytes, coordinates)) return;
   const Positions positions = read_positions(path, bytes, mesh_.connectivity, first_);
   std::copy_n(positions.data(), positions.size(), coordinates.begin());

@@ -5,7 +5,7 @@
 #include <span>
 #include <string>
 
-#include <mimetra/mesh/tri_mesh.h>
+#include "toolkit/mesh/tri_mesh.h"
 
 namespace mimetra {
 
@@ -70,7 +70,7 @@ void write_mesh(const std::filesystem::path& path, const TriMesh& mesh,
 /// Files may be written from several threads.
 class MeshFileWriter {
  public:
-  /// `extension` as in MeshWriteOptions; throws std::invalid_argument for one that is no mesh
+  /// `extension` as in MeshWriteOptions; throws std::invalid_argument for one that is not a mesh
   /// format.
   MeshFileWriter(const Connectivity& connectivity, const std::string& extension,
                  bool double_precision = false);

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include <mimetra/mesh/tri_mesh.h>
+#include "toolkit/mesh/tri_mesh.h"
 
 /// One reader and one writer for each mesh format, on bytes in memory. Internal to mesh_file.h,
 /// which chooses among them and checks what they return.
@@ -56,7 +56,6 @@ void append_integer(std::string& text, long long value);
 std::string position_lines(std::string_view before, const PositionsView& positions,
                            bool double_precision);
 
-std::string lower_case(std::string text);
 /// What is wrong with an extension in lower case that is_mesh_extension() refuses.
 std::string unknown_mesh_extension(const std::string& extension);
 

@@ -4,10 +4,11 @@
 #include <charconv>
 #include <stdexcept>
 
-#include <mimetra/io/binary_file.h>
-#include <mimetra/io/mesh_file.h>
-#include <mimetra/io/mesh_formats.h>
-#include <mimetra/mesh/errors.h>
+#include "toolkit/io/binary_file.h"
+#include "toolkit/io/mesh_file.h"
+#include "toolkit/io/mesh_formats.h"
+#include "toolkit/mesh/errors.h"
+#include "toolkit/mesh/text.h"
 
 namespace mimetra {
 namespace fs = std::filesystem;
@@ -70,12 +71,6 @@ void write_mesh(const fs::path& path, const TriMesh& mesh, const MeshWriteOption
 bool is_mesh_extension(const std::string& extension) {
   const std::string known = lower_case(extension);
   return known == ".obj" || known == ".ply" || known == ".off" || known == ".stl";
-}
-
-std::string lower_case(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return text;
 }
 
 std::string unknown_mesh_extension(const std::string& extension) {

@@ -1,4 +1,4 @@
-#include <mimetra/io/model_file.h>
+#include "toolkit/io/model_file.h"
 
 #include <algorithm>
 #include <charconv>
@@ -6,12 +6,14 @@
 
 #include <nlohmann/json.hpp>
 
-#include <mimetra/io/eos.h>
-#include <mimetra/io/fit_file.h>
-#include <mimetra/io/mesh_file.h>
-#include <mimetra/io/pending_output.h>
-#include <mimetra/io/sequence_file.h>
-#include <mimetra/mesh/parallel.h>
+#include "toolkit/io/eos.h"
+#include "toolkit/io/fit_file.h"
+#include "toolkit/io/mesh_file.h"
+#include "toolkit/io/pending_output.h"
+#include "toolkit/io/whole_file.h"
+#include "toolkit/mesh/errors.h"
+#include "toolkit/mesh/parallel.h"
+#include "toolkit/mesh/text.h"
 
 namespace mimetra {
 

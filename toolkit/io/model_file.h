@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
-#include <mimetra/io/weight_track.h>
-#include <mimetra/model/morphable_model.h>
+#include "toolkit/io/weight_track.h"
+#include "toolkit/model/morphable_model.h"
 
 namespace mimetra {
 
@@ -39,16 +39,16 @@ struct ModelSpec {
 /// MismatchError where shapes differ in topology. `threads`: 0 for all there are.
 MorphableModel read_model(const std::filesystem::path& path, int threads = 0);
 
-/// The person a spec speaks of. Throws as read_model and read_fit; MismatchError for an unknown
+/// The person that a spec names. Throws as read_model and read_fit; MismatchError for an unknown
 /// identity name, and for a fit of another model.
 BlendshapeModel read_person(const ModelSpec& spec, int threads = 0);
 
-/// The person that `text` speaks of: a model, or `MODEL@identity003=1.5`. Throws as
+/// The person that `text` names: a model, or `MODEL@identity003=1.5`. Throws as
 /// ModelSpec::parse and read_person.
 BlendshapeModel read_blendshapes(const std::string& text);
 
 /// True for a directory that looks like something read_model reads, and for an eos shape model;
-/// another file is no model.
+/// another file is not a model.
 bool is_model(const std::filesystem::path& path);
 
 /// Writes a model directory: neutral.ply, expressions/NAME.ply, identities/NAME.ply (absolute

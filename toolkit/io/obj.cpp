@@ -1,7 +1,7 @@
 #include <climits>
 
-#include <mimetra/io/mesh_formats.h>
-#include <mimetra/io/text_cursor.h>
+#include "toolkit/io/mesh_formats.h"
+#include "toolkit/io/text_cursor.h"
 
 namespace mimetra {
 namespace {

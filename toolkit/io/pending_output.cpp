@@ -1,4 +1,4 @@
-#include <mimetra/io/pending_output.h>
+#include "toolkit/io/pending_output.h"
 
 #include <algorithm>
 #include <atomic>
@@ -8,9 +8,11 @@
 
 #include <unistd.h>
 
-#include <mimetra/io/binary_file.h>
-#include <mimetra/io/written_files.h>
-#include <mimetra/mesh/errors.h>
+#include "toolkit/io/temporary_name.h"
+#include "toolkit/io/whole_file.h"
+#include "toolkit/io/written_files.h"
+#include "toolkit/mesh/errors.h"
+#include "toolkit/mesh/text.h"
 
 namespace mimetra {
 namespace fs = std::filesystem;
@@ -23,7 +25,6 @@ fs::path without_trailing_slash(fs::path path) {
 }
 
 constexpr const char* kExistsAlready = "exists already; use --force to replace it";
-constexpr std::string_view kTemporary = ".tmp";
 
 /// Without links, dots and a slash at the end, as far as the file system tells.
 fs::path place_of(const fs::path& path) {
@@ -57,23 +58,6 @@ std::string harm_to(const std::vector<fs::path>& inputs, const fs::path& output)
   return {};
 }
 
-/// Unique among the processes and threads that write here.
-fs::path temporary_beside(const fs::path& target) {
-  static std::atomic<int> counter = 0;
-  return target.parent_path() / ("." + target.filename().string() + "." + std::to_string(getpid()) +
-                                 "-" + std::to_string(counter++) + std::string(kTemporary));
-}
-
-/// NAME of .NAME.123-4.tmp, of which NAME may again be such a name.
-std::string without_temporary(std::string name) {
-  while (name.starts_with('.') && name.ends_with(kTemporary)) {
-    const std::size_t number = name.rfind('.', name.size() - kTemporary.size() - 1);
-    if (number == 0 || number == std::string::npos) break;
-    name = name.substr(1, number - 1);
-  }
-  return name;
-}
-
 std::string cannot_write(const std::error_code& error) {
   return "cannot be written: " + error.message();
 }
@@ -82,23 +66,14 @@ std::error_code last_error() {
   return {errno, std::generic_category()};
 }
 
-/// "'notes.txt', 'a.obj' and 3 more".
-std::string some_of(const std::vector<fs::path>& paths) {
-  constexpr std::size_t kShown = 3;
-  std::string text;
-  for (std::size_t i = 0; i < std::min(kShown, paths.size()); ++i) {
-    text += (i == 0 ? "'" : ", '") + paths[i].string() + "'";
-  }
-  if (paths.size() > kShown) text += " and " + std::to_string(paths.size() - kShown) + " more";
-  return text;
-}
-
 /// Throws for a folder, now in the place `folder`, that holds what would be lost with it.
 void check_replaceable(const fs::path& target, const fs::path& folder) {
   const std::vector<fs::path> others = files_of_others(folder);
   if (others.empty()) return;
+  std::vector<std::string> quoted_names;
+  for (const fs::path& other : others) quoted_names.push_back("'" + other.string() + "'");
   throw OutputError(target.string(),
-                    "holds " + some_of(others) +
+                    "holds " + listed(quoted_names, 3) +
                         ", which no manifest of an earlier run lists; --force replaces nothing "
                         "else: move what is yours, or choose another name");
 }
@@ -276,45 +251,6 @@ void write_file(const fs::path& target, std::string_view content, bool overwrite
   PendingOutput output(target, PendingOutput::Kind::file, overwrite);
   write_bytes(output.path(), content);
   output.commit();
-}
-
-void write_bytes(const fs::path& path, std::string_view content) {
-  OutputFile file(path);
-  file.write({content});
-  file.close();
-}
-
-fs::path committed_name(const fs::path& path) {
-  fs::path name;
-  for (const fs::path& part : path) name /= without_temporary(part.string());
-  return name;
-}
-
-std::string read_file(const fs::path& path) {
-  std::error_code error;
-  const fs::file_status status = fs::status(path, error);
-  if (status.type() == fs::file_type::not_found) {
-    throw IoError(path.string(), "no such file");
-  }
-  if (fs::is_directory(status)) {
-    throw IoError(path.string(), "is a folder, expected a file");
-  }
-  std::ifstream file(path, std::ios::binary);
-  if (!file) throw IoError(path.string(), "cannot be read: " + last_error().message());
-  // One byte more than the file has, to meet its end at the first reading. A pipe has no size: it
-  // is read to its end, whatever the size says.
-  constexpr std::uintmax_t kPipeBlock = 1 << 16;
-  const std::uintmax_t known = fs::is_regular_file(status) ? fs::file_size(path, error) : 0;
-  const auto block = static_cast<std::size_t>(std::max(error ? 0 : known + 1, kPipeBlock));
-  std::string content;
-  while (file) {
-    const std::size_t size = content.size();
-    content.resize(size + block);
-    file.read(content.data() + size, static_cast<std::streamsize>(block));
-    content.resize(size + static_cast<std::size_t>(file.gcount()));
-  }
-  if (file.bad()) throw IoError(path.string(), "cannot be read: " + last_error().message());
-  return content;
 }
 
 }  // namespace mimetra

@@ -26,7 +26,7 @@ class PendingOutput {
   PendingOutput& operator=(const PendingOutput&) = delete;
 
   /// A hidden name without the target's extension: a writer that chooses its format by extension
-  /// has to be told.
+  /// needs it from elsewhere.
   const std::filesystem::path& path() const { return temporary_; }
   const std::filesystem::path& target() const { return target_; }
   /// Throws OutputError where `target` is, or meanwhile became, one that the constructor refuses.
@@ -92,15 +92,5 @@ void check_inputs_stay(const std::filesystem::path& output,
 
 /// Writes `content` to `target` by way of a PendingOutput. Throws OutputError.
 void write_file(const std::filesystem::path& target, std::string_view content, bool overwrite);
-
-/// Writes `content` to `path` itself, replacing what is there. Not atomic. Throws OutputError.
-void write_bytes(const std::filesystem::path& path, std::string_view content);
-
-/// What `path` is called once it is committed: without the temporary names of PendingOutput, which
-/// nobody asked for. Messages tell this name.
-std::filesystem::path committed_name(const std::filesystem::path& path);
-
-/// The bytes of a file. Throws IoError that says whether it is missing, a folder or unreadable.
-std::string read_file(const std::filesystem::path& path);
 
 }  // namespace mimetra

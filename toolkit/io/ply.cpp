@@ -4,11 +4,11 @@
 #include <cmath>
 #include <utility>
 
-#include <mimetra/io/bytes.h>
-#include <mimetra/io/mesh_formats.h>
-#include <mimetra/io/ply_header.h>
-#include <mimetra/io/text_cursor.h>
-#include <mimetra/mesh/errors.h>
+#include "toolkit/io/bytes.h"
+#include "toolkit/io/mesh_formats.h"
+#include "toolkit/io/ply_header.h"
+#include "toolkit/io/text_cursor.h"
+#include "toolkit/mesh/errors.h"
 
 namespace mimetra {
 namespace {

@@ -1,10 +1,10 @@
-#include <mimetra/io/ply_header.h>
+#include "toolkit/io/ply_header.h"
 
 #include <array>
 #include <optional>
 #include <utility>
 
-#include <mimetra/io/text_cursor.h>
+#include "toolkit/io/text_cursor.h"
 
 namespace mimetra {
 namespace {

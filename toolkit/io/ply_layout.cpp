@@ -2,9 +2,9 @@
 #include <cmath>
 #include <optional>
 
-#include <mimetra/io/bytes.h>
-#include <mimetra/io/mesh_layout.h>
-#include <mimetra/io/ply_header.h>
+#include "toolkit/io/bytes.h"
+#include "toolkit/io/mesh_layout.h"
+#include "toolkit/io/ply_header.h"
 
 namespace mimetra {
 namespace {

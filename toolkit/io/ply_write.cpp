@@ -1,5 +1,5 @@
-#include <mimetra/io/bytes.h>
-#include <mimetra/io/mesh_formats.h>
+#include "toolkit/io/bytes.h"
+#include "toolkit/io/mesh_formats.h"
 
 namespace mimetra {
 namespace {

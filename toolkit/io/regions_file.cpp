@@ -1,4 +1,4 @@
-#include <mimetra/io/regions_file.h>
+#include "toolkit/io/regions_file.h"
 
 #include <algorithm>
 #include <limits>
@@ -6,8 +6,9 @@
 
 #include <nlohmann/json.hpp>
 
-#include <mimetra/io/pending_output.h>
-#include <mimetra/io/text_cursor.h>
+#include "toolkit/io/text_cursor.h"
+#include "toolkit/io/whole_file.h"
+#include "toolkit/mesh/errors.h"
 
 namespace mimetra {
 

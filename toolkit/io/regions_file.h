@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <string>
 
-#include <mimetra/regions/regions.h>
+#include "toolkit/regions/regions.h"
 
 namespace mimetra {
 

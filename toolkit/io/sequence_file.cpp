@@ -1,13 +1,16 @@
-#include <mimetra/io/sequence_file.h>
+#include "toolkit/io/sequence_file.h"
 
 #include <stdexcept>
 
-#include <mimetra/io/array_file.h>
-#include <mimetra/io/fit_file.h>
-#include <mimetra/io/frame_files.h>
-#include <mimetra/io/mesh_file.h>
-#include <mimetra/io/model_file.h>
-#include <mimetra/mesh/parallel.h>
+#include "toolkit/io/array_file.h"
+#include "toolkit/io/fit_file.h"
+#include "toolkit/io/frame_files.h"
+#include "toolkit/io/mesh_file.h"
+#include "toolkit/io/model_file.h"
+#include "toolkit/mesh/errors.h"
+#include "toolkit/mesh/parallel.h"
+#include "toolkit/mesh/progress.h"
+#include "toolkit/mesh/text.h"
 
 namespace mimetra {
 namespace fs = std::filesystem;
@@ -118,16 +121,6 @@ SequenceRead read_array(const fs::path& path, const SequenceSource& source) {
   return read;
 }
 
-std::string listed(const std::vector<std::string>& names) {
-  constexpr std::size_t kMost = 8;
-  std::string text;
-  for (std::size_t i = 0; i < names.size() && i < kMost; ++i) {
-    text += (i > 0 ? ", " : "") + names[i];
-  }
-  if (names.size() > kMost) text += ", and " + std::to_string(names.size() - kMost) + " more";
-  return text;
-}
-
 std::vector<std::string> match_notes(const fs::path& weights, const fs::path& model,
                                      const WeightMatch& match) {
   std::vector<std::string> notes;
@@ -182,7 +175,7 @@ SequenceRead read_driven(const ModelSpec& spec, const SequenceSource& source) {
   return read;
 }
 
-/// What the name in `text` turned out to be is no model: nothing there can be driven.
+/// What the name in `text` turned out to be is not a model: nothing there can be driven.
 void check_undriven(const std::string& text, const SequenceSource& source) {
   if (!source.weights) return;
   throw MismatchError(text + " is no model that the weights of " + source.weights->string() +

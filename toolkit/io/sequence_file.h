@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include <mimetra/mesh/errors.h>
-#include <mimetra/mesh/mesh_sequence.h>
+#include "toolkit/mesh/mesh_sequence.h"
+#include "toolkit/mesh/progress.h"
 
 namespace mimetra {
 
@@ -71,8 +71,5 @@ std::vector<std::filesystem::path> write_sequence(
     const MeshSequence& sequence, const std::filesystem::path& target,
     const SequenceWriteOptions& = {},
     const std::vector<std::pair<std::string, std::string>>& extra = {});
-
-/// Orders names as people count: runs of digits by their value, so that 2 comes before 10.
-bool natural_less(const std::string& a, const std::string& b);
 
 }  // namespace mimetra

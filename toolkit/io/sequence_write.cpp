@@ -1,13 +1,16 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include <mimetra/io/array_file.h>
-#include <mimetra/io/frame_files.h>
-#include <mimetra/io/mesh_file.h>
-#include <mimetra/io/pending_output.h>
-#include <mimetra/io/sequence_file.h>
-#include <mimetra/io/written_files.h>
-#include <mimetra/mesh/parallel.h>
+#include "toolkit/io/array_file.h"
+#include "toolkit/io/frame_files.h"
+#include "toolkit/io/mesh_file.h"
+#include "toolkit/io/pending_output.h"
+#include "toolkit/io/sequence_file.h"
+#include "toolkit/io/whole_file.h"
+#include "toolkit/io/written_files.h"
+#include "toolkit/mesh/errors.h"
+#include "toolkit/mesh/parallel.h"
+#include "toolkit/mesh/progress.h"
 
 namespace mimetra {
 namespace fs = std::filesystem;

@@ -1,9 +1,9 @@
 #include <Eigen/Geometry>
 
-#include <mimetra/io/bytes.h>
-#include <mimetra/io/mesh_formats.h>
-#include <mimetra/io/text_cursor.h>
-#include <mimetra/mesh/errors.h>
+#include "toolkit/io/bytes.h"
+#include "toolkit/io/mesh_formats.h"
+#include "toolkit/io/text_cursor.h"
+#include "toolkit/mesh/errors.h"
 
 namespace mimetra {
 namespace {

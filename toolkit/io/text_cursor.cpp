@@ -1,9 +1,9 @@
-#include <mimetra/io/text_cursor.h>
+#include "toolkit/io/text_cursor.h"
 
 #include <algorithm>
 #include <cstdlib>
 
-#include <mimetra/mesh/errors.h>
+#include "toolkit/mesh/errors.h"
 
 namespace mimetra {
 namespace {
@@ -25,58 +25,11 @@ std::string_view without_plus(std::string_view word) {
   return plus ? word.substr(1) : word;
 }
 
-std::string_view without_blanks(std::string_view text) {
-  while (!text.empty() && is_blank(text.front())) text.remove_prefix(1);
-  while (!text.empty() && is_blank(text.back())) text.remove_suffix(1);
-  return text;
-}
-
-/// The comma that ends the first field; npos for the last one.
-std::size_t end_of_field(std::string_view line) {
-  const auto first = line.find_first_not_of(" \t");
-  bool quoted = first != std::string_view::npos && line[first] == '"';
-  if (!quoted) return line.find(',');
-  for (std::size_t i = first + 1; i < line.size(); ++i) {
-    if (line[i] == '"') quoted = !quoted;
-    if (line[i] == ',' && !quoted) return i;
-  }
-  return std::string_view::npos;
-}
-
 }  // namespace
 
 std::string_view without_byte_order_mark(std::string_view text) {
   constexpr std::string_view kMark = "\xEF\xBB\xBF";
   return text.starts_with(kMark) ? text.substr(kMark.size()) : text;
-}
-
-std::vector<std::string_view> comma_separated(std::string_view line) {
-  std::vector<std::string_view> fields;
-  for (;;) {
-    const auto end = end_of_field(line);
-    std::string_view field = without_blanks(line.substr(0, end));
-    if (field.starts_with('"')) field.remove_prefix(1);
-    if (field.ends_with('"')) field.remove_suffix(1);
-    fields.push_back(without_blanks(field));
-    if (end == std::string_view::npos) return fields;
-    line.remove_prefix(end + 1);
-  }
-}
-
-std::string csv_field(const std::string& text) {
-  if (text.find_first_of(",\"") == std::string::npos) return text;
-  std::string field = "\"";
-  for (const char c : text) field += c == '"' ? "\"\"" : std::string(1, c);
-  return field + '"';
-}
-
-std::string text_of_csv(std::string_view field) {
-  std::string text;
-  for (std::size_t i = 0; i < field.size(); ++i) {
-    text += field[i];
-    if (field.substr(i, 2) == "\"\"") ++i;
-  }
-  return text;
 }
 
 TextCursor::TextCursor(const std::string& path, std::string_view text, Syntax syntax,

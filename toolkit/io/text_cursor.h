@@ -3,7 +3,6 @@
 #include <charconv>
 #include <string>
 #include <string_view>
-#include <vector>
 
 namespace mimetra {
 
@@ -18,16 +17,6 @@ inline bool ends_word(char c) {
 
 /// `text` without the mark that some programs put before UTF-8.
 std::string_view without_byte_order_mark(std::string_view text);
-
-/// The fields of a line of CSV, without the blanks and quotation marks around them; those inside a
-/// field stay doubled.
-std::vector<std::string_view> comma_separated(std::string_view line);
-
-/// `text` as a field of CSV: in quotation marks where it holds a comma or such a mark.
-std::string csv_field(const std::string& text);
-
-/// The text of a field that comma_separated() gives.
-std::string text_of_csv(std::string_view field);
 
 /// Walks through the text of a file word by word, within a line or across lines, and knows the line
 /// for messages. Lines end in LF or CRLF. For readers.

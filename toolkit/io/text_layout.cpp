@@ -4,8 +4,8 @@
 #include <utility>
 #include <vector>
 
-#include <mimetra/io/mesh_layout.h>
-#include <mimetra/io/text_cursor.h>
+#include "toolkit/io/mesh_layout.h"
+#include "toolkit/io/text_cursor.h"
 
 namespace mimetra {
 namespace {

@@ -1,104 +1,62 @@
-#include <mimetra/io/weight_track.h>
+#include "toolkit/io/weight_track.h"
 
 #include <algorithm>
-#include <cctype>
 #include <charconv>
-#include <cmath>
 #include <set>
 #include <string_view>
 
-#include <mimetra/io/pending_output.h>
-#include <mimetra/io/text_cursor.h>
-#include <mimetra/mesh/errors.h>
+#include "toolkit/io/csv.h"
+#include "toolkit/io/pending_output.h"
+#include "toolkit/mesh/errors.h"
+#include "toolkit/mesh/text.h"
 
 namespace mimetra {
 
 namespace {
 
-using Row = std::vector<std::string_view>;
-
-std::string lower(std::string_view text) {
-  std::string result(text);
-  std::ranges::transform(result, result.begin(), [](unsigned char c) { return std::tolower(c); });
-  return result;
-}
-
 /// Columns of captures that are not weights.
 bool is_bookkeeping(std::string_view name) {
-  const std::string plain = lower(name);
+  const std::string plain = lower_case(std::string(name));
   return plain == "frame" || plain == "timecode" || plain == "blendshapecount";
 }
 
 class WeightReader {
  public:
-  explicit WeightReader(const std::filesystem::path& path)
-      : path_(path.string()), text_(read_file(path)) {}
+  explicit WeightReader(const std::filesystem::path& path) : path_(path), csv_(path) {}
 
   WeightTrack read() {
-    std::string_view rest = without_byte_order_mark(text_);
-    while (!rest.empty()) {
-      const auto end = rest.find('\n');
-      const std::string_view line = rest.substr(0, end);
-      rest.remove_prefix(end == std::string_view::npos ? rest.size() : end + 1);
-      ++line_;
-      if (line.find_first_not_of(" \t\r") == std::string_view::npos) continue;
-      if (header_.empty())
-        read_header(line);
-      else
-        read_row(line);
-    }
-    if (header_.empty()) throw IoError(path_, "is empty; expected a line of names");
-    if (frames_ == 0) throw IoError(path_, "has names but no row of weights");
+    choose_columns();
+    while (csv_.next_row()) read_row();
+    if (frames_ == 0) throw IoError(path_.string(), "has names but no row of weights");
     return track();
   }
 
  private:
-  [[noreturn]] void fail(const std::string& message) const {
-    throw IoError(path_, "line " + std::to_string(line_) + ": " + message);
-  }
-
-  void read_header(std::string_view line) {
-    header_ = comma_separated(line);
-    if (header_.size() == 1 && line.find(';') != std::string_view::npos) {
-      fail("names are separated by ';', expected ','");
+  void choose_columns() {
+    const auto& names = csv_.names();
+    if (names.size() == 1 && names.front().find(';') != std::string_view::npos) {
+      csv_.fail("names are separated by ';', expected ','");
     }
     std::set<std::string_view> seen;
-    for (std::size_t column = 0; column < header_.size(); ++column) {
-      const std::string_view name = header_[column];
-      if (name.empty()) fail("column " + std::to_string(column + 1) + " has no name");
-      if (!seen.insert(name).second) fail("the name '" + std::string(name) + "' occurs twice");
-      if (lower(name) == "time") {
-        if (time_column_ >= 0) fail("the name 'time' occurs twice");
-        time_column_ = static_cast<int>(column);
+    for (std::size_t column = 0; column < names.size(); ++column) {
+      const std::string_view name = names[column];
+      if (name.empty()) csv_.fail("column " + std::to_string(column + 1) + " has no name");
+      if (!seen.insert(name).second) csv_.fail("the name '" + std::string(name) + "' occurs twice");
+      if (lower_case(std::string(name)) == "time") {
+        if (time_column_) csv_.fail("the name 'time' occurs twice");
+        time_column_ = column;
       } else if (!is_bookkeeping(name)) {
-        weight_columns_.push_back(static_cast<int>(column));
+        weight_columns_.push_back(column);
       }
     }
-    if (weight_columns_.empty()) fail("no column of weights");
+    if (weight_columns_.empty()) csv_.fail("no column of weights");
   }
 
-  double number(const Row& row, int column) const {
-    const std::string_view field = row[static_cast<std::size_t>(column)];
-    double value = 0;
-    const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), value);
-    if (error != std::errc() || end != field.data() + field.size() || !std::isfinite(value)) {
-      fail("column '" + std::string(header_[static_cast<std::size_t>(column)]) +
-           "': expected a finite number, found '" + std::string(field) + "'");
-    }
-    return value;
-  }
-
-  void read_row(std::string_view line) {
-    const Row row = comma_separated(line);
-    if (row.size() != header_.size()) {
-      fail(std::to_string(row.size()) + (row.size() == 1 ? " field" : " fields") + ", expected " +
-           std::to_string(header_.size()) + " as in the first line" +
-           (row.size() > header_.size() ? " (decimal commas are not supported)" : ""));
-    }
-    for (const int column : weight_columns_) weights_.push_back(number(row, column));
-    if (time_column_ >= 0) {
-      const double time = number(row, time_column_);
-      if (!times_.empty() && time <= times_.back()) fail("times do not ascend");
+  void read_row() {
+    for (const std::size_t column : weight_columns_) weights_.push_back(csv_.number(column));
+    if (time_column_) {
+      const double time = csv_.number(*time_column_);
+      if (!times_.empty() && time <= times_.back()) csv_.fail("times do not ascend");
       times_.push_back(time);
     }
     ++frames_;
@@ -107,8 +65,8 @@ class WeightReader {
   WeightTrack track() const {
     WeightTrack result;
     const auto columns = static_cast<Eigen::Index>(weight_columns_.size());
-    for (const int column : weight_columns_) {
-      result.names.push_back(text_of_csv(header_[static_cast<std::size_t>(column)]));
+    for (const std::size_t column : weight_columns_) {
+      result.names.push_back(text_of_csv(csv_.names()[column]));
     }
     result.weights = Eigen::Map<const Frames>(weights_.data(), frames_, columns);
     result.times =
@@ -116,17 +74,14 @@ class WeightReader {
     return result;
   }
 
-  std::string path_;
-  std::string text_;
-  int line_ = 0;
-  Row header_;
-  int time_column_ = -1;
-  std::vector<int> weight_columns_;
+  std::filesystem::path path_;
+  CsvReader csv_;
+  std::optional<std::size_t> time_column_;
+  std::vector<std::size_t> weight_columns_;
   std::vector<double> weights_;
   std::vector<double> times_;
   int frames_ = 0;
 };
-
 void append(std::string& text, double number) {
   char buffer[32];
   text.append(buffer, std::to_chars(buffer, buffer + sizeof buffer, number).ptr);
@@ -155,7 +110,7 @@ std::string without_side(const std::string& name) {
 }
 
 std::string folded(const std::string& name) {
-  std::string result = lower(name);
+  std::string result = lower_case(std::string(name));
   std::erase(result, '_');
   return result;
 }

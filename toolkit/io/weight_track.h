@@ -7,7 +7,7 @@
 
 #include <Eigen/Core>
 
-#include <mimetra/model/blendshape_model.h>
+#include "toolkit/model/blendshape_model.h"
 
 namespace mimetra {
 

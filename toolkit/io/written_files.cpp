@@ -1,4 +1,4 @@
-#include <mimetra/io/written_files.h>
+#include "toolkit/io/written_files.h"
 
 #include <algorithm>
 #include <fstream>
@@ -7,8 +7,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include <mimetra/io/pending_output.h>
-#include <mimetra/mesh/errors.h>
+#include "toolkit/io/whole_file.h"
+#include "toolkit/mesh/errors.h"
 
 namespace mimetra {
 namespace fs = std::filesystem;

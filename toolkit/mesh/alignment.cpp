@@ -8,8 +8,10 @@
 #include <Eigen/LU>
 #include <Eigen/SVD>
 
-#include <mimetra/mesh/alignment.h>
-#include <mimetra/mesh/product_blocking.h>
+#include "toolkit/mesh/alignment.h"
+#include "toolkit/mesh/errors.h"
+#include "toolkit/mesh/product_blocking.h"
+#include "toolkit/mesh/progress.h"
 
 namespace mimetra {
 namespace {
@@ -207,16 +209,16 @@ RigidTransform rigid_fit(const Eigen::Ref<const Positions>& from,
   return RigidFitter(from, weights).carry_to(to);
 }
 
-Alignment align(const MeshSequence& sequence, AlignmentVertices vertices,
-                const Progress& progress) {
+Alignment align(const MeshSequence& sequence, const AlignmentOptions& options) {
   std::vector<RigidTransform> motion(sequence.frames());
   if (sequence.vertices() == 0) return align(sequence, std::move(motion));
-  if (vertices == AlignmentVertices::all) {
+  if (options.vertices == AlignmentVertices::all) {
     motion = fit_frames(sequence, Eigen::VectorXd::Ones(sequence.vertices()));
-  } else if (StableFit fit = fit_stable(sequence, progress); is_significant(sequence, fit)) {
+  } else if (StableFit fit = fit_stable(sequence, options.progress);
+             is_significant(sequence, fit)) {
     motion = std::move(fit.motion);
   }
-  report_progress(progress, 1);
+  report_progress(options.progress, 1);
   return align(sequence, std::move(motion));
 }
 

@@ -2,8 +2,8 @@
 
 #include <vector>
 
-#include <mimetra/mesh/errors.h>
-#include <mimetra/mesh/mesh_sequence.h>
+#include "toolkit/mesh/mesh_sequence.h"
+#include "toolkit/mesh/progress.h"
 
 namespace mimetra {
 
@@ -32,6 +32,11 @@ enum class AlignmentVertices {
   all      ///< least squares over all vertices (reads a moving jaw as rotation)
 };
 
+struct AlignmentOptions {
+  AlignmentVertices vertices = AlignmentVertices::stable;
+  Progress progress = {};
+};
+
 /// A sequence without its rigid motion, and that motion.
 struct Alignment {
   MeshSequence sequence;
@@ -46,10 +51,8 @@ struct Alignment {
 /// that was moved rigidly per frame gives the same result, moved as its rest pose was. Where the
 /// motion found is no larger than noise of the still vertices' own size can feign (three standard
 /// errors of the fit), the result is the input itself, bit by bit, and every transform the
-/// identity.
-Alignment align(const MeshSequence& sequence,
-                AlignmentVertices vertices = AlignmentVertices::stable,
-                const Progress& progress = {});
+/// identity. Throws Cancelled.
+Alignment align(const MeshSequence& sequence, const AlignmentOptions& options = {});
 
 /// Removes the given motion (F). Throws MismatchError where the count differs from the frames.
 Alignment align(const MeshSequence& sequence, std::vector<RigidTransform> motion);

@@ -1,4 +1,4 @@
-#include <mimetra/mesh/errors.h>
+#include "toolkit/mesh/errors.h"
 
 namespace mimetra {
 namespace {
@@ -16,9 +16,5 @@ OutputError::OutputError(std::string_view path, std::string_view message)
     : std::runtime_error(with_path(path, message)) {}
 
 Cancelled::Cancelled() : std::runtime_error("cancelled") {}
-
-void report_progress(const Progress& progress, double share) {
-  if (progress && !progress(share)) throw Cancelled();
-}
 
 }  // namespace mimetra

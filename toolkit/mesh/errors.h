@@ -1,6 +1,5 @@
 #pragma once
 
-#include <functional>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -32,12 +31,5 @@ class Cancelled : public std::runtime_error {
  public:
   Cancelled();
 };
-
-/// Called now and then with the share of the work done, in [0, 1]. Returning false stops the
-/// computation, which then throws Cancelled.
-using Progress = std::function<bool(double)>;
-
-/// Calls `progress` if there is one. Throws Cancelled when it returns false.
-void report_progress(const Progress& progress, double share);
 
 }  // namespace mimetra

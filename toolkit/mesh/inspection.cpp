@@ -6,8 +6,8 @@
 
 #include <Eigen/Geometry>
 
-#include <mimetra/mesh/inspection.h>
-#include <mimetra/mesh/weld.h>
+#include "toolkit/mesh/inspection.h"
+#include "toolkit/mesh/weld.h"
 
 namespace mimetra {
 namespace {

@@ -3,7 +3,7 @@
 #include <memory>
 #include <optional>
 
-#include <mimetra/mesh/tri_mesh.h>
+#include "toolkit/mesh/tri_mesh.h"
 
 namespace mimetra {
 

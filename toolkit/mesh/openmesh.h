@@ -5,7 +5,7 @@
 
 #include <OpenMesh/Core/Mesh/TriMesh_ArrayKernelT.hh>
 
-#include <mimetra/mesh/tri_mesh.h>
+#include "toolkit/mesh/tri_mesh.h"
 
 namespace mimetra {
 

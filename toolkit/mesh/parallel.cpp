@@ -1,4 +1,4 @@
-#include <mimetra/mesh/parallel.h>
+#include "toolkit/mesh/parallel.h"
 
 #include <algorithm>
 #include <atomic>
@@ -6,6 +6,8 @@
 #include <mutex>
 #include <thread>
 #include <vector>
+
+#include "toolkit/mesh/progress.h"
 
 namespace mimetra {
 
@@ -16,7 +18,7 @@ class Loop {
  public:
   Loop(int count, const std::function<void(int)>& work) : count_(count), work_(work) {}
 
-  /// Takes one index after the other; `after` is told how many are done.
+  /// Takes one index after the other; calls `after` with how many are done.
   void run(const std::function<void(int)>& after) {
     // An index that was taken is worked on: none below the one that fails is left out.
     while (!stopped_) {

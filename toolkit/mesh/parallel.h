@@ -2,7 +2,7 @@
 
 #include <functional>
 
-#include <mimetra/mesh/errors.h>
+#include "toolkit/mesh/progress.h"
 
 namespace mimetra {
 

@@ -1,4 +1,4 @@
-#include <mimetra/mesh/product_blocking.h>
+#include "toolkit/mesh/product_blocking.h"
 
 #include <Eigen/Core>
 

@@ -2,7 +2,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include <mimetra/mesh/tri_mesh.h>
+#include "toolkit/mesh/tri_mesh.h"
 
 namespace mimetra {
 namespace {

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include <mimetra/geodesic/types.h>
+#include "geodesic/types.h"
 
 namespace mimetra {
 
@@ -30,7 +30,7 @@ struct TextureCoordinates {
   std::vector<int> corners;
 };
 
-/// A line of an OBJ file that speaks of the faces after it: `g lips`, `usemtl skin`, `s 1`.
+/// A line of an OBJ file that is about the faces after it: `g lips`, `usemtl skin`, `s 1`.
 struct FaceGroup {
   int first_face;
   std::string statement;

@@ -4,7 +4,7 @@
 #include <string>
 #include <tuple>
 
-#include <mimetra/mesh/weld.h>
+#include "toolkit/mesh/weld.h"
 
 namespace mimetra {
 namespace {

@@ -3,8 +3,8 @@
 #include <unordered_set>
 #include <utility>
 
-#include <mimetra/mesh/product_blocking.h>
-#include <mimetra/model/blendshape_model.h>
+#include "toolkit/mesh/product_blocking.h"
+#include "toolkit/model/blendshape_model.h"
 
 namespace mimetra {
 namespace {

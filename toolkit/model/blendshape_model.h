@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include <mimetra/mesh/mesh_sequence.h>
+#include "toolkit/mesh/mesh_sequence.h"
 
 namespace mimetra {
 

@@ -1,4 +1,4 @@
-#include <mimetra/model/box_least_squares.h>
+#include "toolkit/model/box_least_squares.h"
 
 #include <algorithm>
 #include <limits>

@@ -1,7 +1,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include <mimetra/model/morphable_model.h>
+#include "toolkit/model/morphable_model.h"
 
 namespace mimetra {
 

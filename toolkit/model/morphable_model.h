@@ -1,6 +1,6 @@
 #pragma once
 
-#include <mimetra/model/blendshape_model.h>
+#include "toolkit/model/blendshape_model.h"
 
 namespace mimetra {
 

@@ -1,4 +1,4 @@
-#include <mimetra/model/second_differences.h>
+#include "toolkit/model/second_differences.h"
 
 #include <algorithm>
 #include <cmath>

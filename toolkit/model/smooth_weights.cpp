@@ -1,4 +1,4 @@
-#include <mimetra/model/smooth_weights.h>
+#include "toolkit/model/smooth_weights.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include <mimetra/mesh/product_blocking.h>
-#include <mimetra/model/second_differences.h>
-#include <mimetra/model/temporal_system.h>
+#include "toolkit/mesh/product_blocking.h"
+#include "toolkit/model/second_differences.h"
+#include "toolkit/model/temporal_system.h"
 
 namespace mimetra {
 

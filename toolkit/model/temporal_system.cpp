@@ -1,4 +1,4 @@
-#include <mimetra/model/temporal_system.h>
+#include "toolkit/model/temporal_system.h"
 
 #include <algorithm>
 #include <stdexcept>

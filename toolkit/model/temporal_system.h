@@ -4,7 +4,7 @@
 
 #include <Eigen/Core>
 
-#include <mimetra/model/second_differences.h>
+#include "toolkit/model/second_differences.h"
 
 namespace mimetra {
 

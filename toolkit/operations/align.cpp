@@ -4,9 +4,10 @@
 
 #include <nlohmann/json.hpp>
 
-#include <mimetra/operations/analysis.h>
-#include <mimetra/operations/report.h>
-#include <mimetra/operations/toolkit_operations.h>
+#include "toolkit/mesh/text.h"
+#include "toolkit/operations/analysis.h"
+#include "toolkit/operations/json.h"
+#include "toolkit/operations/toolkit_operations.h"
 
 namespace mimetra {
 
@@ -39,8 +40,8 @@ Alignment aligned(const Invocation& invocation) {
     return {with_motion(sequence, motion), std::move(motion)};
   }
   const bool stable = invocation.parameters.text("on") == "stable";
-  return align(sequence, stable ? AlignmentVertices::stable : AlignmentVertices::all,
-               invocation.progress);
+  return align(sequence, {.vertices = stable ? AlignmentVertices::stable : AlignmentVertices::all,
+                          .progress = invocation.progress});
 }
 
 Outcome run_align(const Invocation& invocation) {

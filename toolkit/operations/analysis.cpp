@@ -1,13 +1,17 @@
-#include <mimetra/operations/analysis.h>
+#include "toolkit/operations/analysis.h"
 
 #include <algorithm>
 
 #include <Eigen/LU>
 #include <nlohmann/json.hpp>
 
-#include <mimetra/io/mesh_file.h>
-#include <mimetra/io/pending_output.h>
-#include <mimetra/operations/report.h>
+#include "toolkit/io/mesh_file.h"
+#include "toolkit/io/whole_file.h"
+#include "toolkit/mesh/errors.h"
+#include "toolkit/mesh/progress.h"
+#include "toolkit/mesh/text.h"
+#include "toolkit/operations/json.h"
+#include "toolkit/operations/stopwatch.h"
 
 namespace mimetra {
 
@@ -237,14 +241,13 @@ std::string alignment_of(const Invocation& invocation, const SequenceRead& read)
   return invocation.parameters.optional_text("align").value_or(still ? "none" : "stable");
 }
 
-StillSequence without_motion(const Invocation& invocation, const SequenceRead& read,
-                             const MeshSequence& sequence) {
+Alignment without_motion(const Invocation& invocation, const SequenceRead& read,
+                         const MeshSequence& sequence) {
   const std::string how = alignment_of(invocation, read);
   if (how == "none") return {sequence, {}};
-  Alignment alignment = how == "stable" ? align(sequence, AlignmentVertices::stable)
-                        : how == "all"  ? align(sequence, AlignmentVertices::all)
-                                        : align(sequence, read_motion(how, sequence.frames()));
-  return {std::move(alignment.sequence), std::move(alignment.motion)};
+  if (how == "stable") return align(sequence);
+  if (how == "all") return align(sequence, {.vertices = AlignmentVertices::all});
+  return align(sequence, read_motion(how, sequence.frames()));
 }
 
 Analysis analyse(const Invocation& invocation, const SequenceRead& read,
@@ -289,7 +292,7 @@ Output components_output() {
 Analysis analysis_for(const Invocation& invocation, const SequenceRead& read) {
   const Components* given = invocation.find<Components>("components");
   if (!given) {
-    const StillSequence still = without_motion(invocation, read, read.sequence);
+    const Alignment still = without_motion(invocation, read, read.sequence);
     return analyse(invocation, read, still.sequence, invocation.parameters.integer("k"),
                    invocation.progress);
   }

@@ -3,10 +3,11 @@
 #include <string>
 #include <vector>
 
-#include <mimetra/mesh/alignment.h>
-#include <mimetra/operations/operation.h>
-#include <mimetra/operations/report.h>
-#include <mimetra/regions/regions.h>
+#include "toolkit/mesh/alignment.h"
+#include "toolkit/mesh/progress.h"
+#include "toolkit/operations/json.h"
+#include "toolkit/operations/operation.h"
+#include "toolkit/regions/regions.h"
 
 namespace mimetra {
 
@@ -17,18 +18,12 @@ std::vector<Parameter> geodesic_parameters();
 std::vector<Parameter> decomposition_parameters(int count);
 std::vector<Parameter> region_parameters();
 
-/// A sequence without its head motion, and that motion (empty where none was looked for).
-struct StillSequence {
-  MeshSequence sequence;
-  std::vector<RigidTransform> motion;
-};
-
 /// What --align says, or its default: none where the neutral is known.
 std::string alignment_of(const Invocation& invocation, const SequenceRead& read);
 
-/// Applies --align to what was read.
-StillSequence without_motion(const Invocation& invocation, const SequenceRead& read,
-                             const MeshSequence& sequence);
+/// Applies --align to what was read; the motion is empty where none was looked for.
+Alignment without_motion(const Invocation& invocation, const SequenceRead& read,
+                         const MeshSequence& sequence);
 
 /// Distances by --geodesics and --weld; warns of triangles and vertices that had to be left out.
 SurfaceDistances distances_on(const Invocation& invocation, const Positions& rest,
@@ -54,7 +49,7 @@ Analysis analysis_for(const Invocation& invocation, const SequenceRead& read);
 /// Applies --radius, --region and --coverage.
 Regions regions_of(const Invocation& invocation, const Analysis& analysis);
 
-/// What operations tell of regions: keys regions, vertices, triangles, vertex_share, ...
+/// What operations report about regions: keys regions, vertices, triangles, vertex_share, ...
 Json report_of(const Regions& regions);
 std::string summary_of(const Regions& regions);
 

@@ -1,8 +1,9 @@
 #include <nlohmann/json.hpp>
 
-#include <mimetra/mesh/inspection.h>
-#include <mimetra/operations/report.h>
-#include <mimetra/operations/toolkit_operations.h>
+#include "toolkit/mesh/errors.h"
+#include "toolkit/mesh/inspection.h"
+#include "toolkit/operations/json.h"
+#include "toolkit/operations/toolkit_operations.h"
 
 namespace mimetra {
 

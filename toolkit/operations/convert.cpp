@@ -1,7 +1,7 @@
 #include <nlohmann/json.hpp>
 
-#include <mimetra/operations/report.h>
-#include <mimetra/operations/toolkit_operations.h>
+#include "toolkit/operations/json.h"
+#include "toolkit/operations/toolkit_operations.h"
 
 namespace mimetra {
 

@@ -9,16 +9,16 @@
 #include <variant>
 #include <vector>
 
-#include <mimetra/io/fit_file.h>
-#include <mimetra/io/sequence_file.h>
-#include <mimetra/io/weight_track.h>
-#include <mimetra/mesh/fields.h>
-#include <mimetra/model/landmark_track.h>
-#include <mimetra/model/morphable_model.h>
-#include <mimetra/operations/image.h>
-#include <mimetra/operations/run_file.h>
-#include <mimetra/regions/regions.h>
-#include <mimetra/splocs/decomposition.h>
+#include "toolkit/io/fit_file.h"
+#include "toolkit/io/sequence_file.h"
+#include "toolkit/io/weight_track.h"
+#include "toolkit/mesh/fields.h"
+#include "toolkit/model/landmark_track.h"
+#include "toolkit/model/morphable_model.h"
+#include "toolkit/operations/image.h"
+#include "toolkit/operations/run_file.h"
+#include "toolkit/regions/regions.h"
+#include "toolkit/splocs/decomposition.h"
 
 namespace mimetra {
 

@@ -2,10 +2,11 @@
 
 #include <nlohmann/json.hpp>
 
-#include <mimetra/operations/analysis.h>
-#include <mimetra/operations/memory.h>
-#include <mimetra/operations/report.h>
-#include <mimetra/operations/toolkit_operations.h>
+#include "toolkit/mesh/text.h"
+#include "toolkit/operations/analysis.h"
+#include "toolkit/operations/json.h"
+#include "toolkit/operations/memory.h"
+#include "toolkit/operations/toolkit_operations.h"
 
 namespace mimetra {
 
@@ -27,7 +28,7 @@ Table weight_table(const Components& components, const Eigen::VectorXd& times) {
 
 Outcome run_decompose(const Invocation& invocation) {
   const SequenceRead& read = invocation.get<SequenceRead>("sequence");
-  const StillSequence still = without_motion(invocation, read, read.sequence);
+  const Alignment still = without_motion(invocation, read, read.sequence);
   Analysis analysis = analyse(invocation, read, still.sequence, invocation.parameters.integer("k"),
                               invocation.progress);
   const Components& components = analysis.components;

@@ -3,10 +3,12 @@
 
 #include <nlohmann/json.hpp>
 
-#include <mimetra/operations/evaluation.h>
-#include <mimetra/operations/memory.h>
-#include <mimetra/operations/report.h>
-#include <mimetra/operations/toolkit_operations.h>
+#include "toolkit/mesh/progress.h"
+#include "toolkit/operations/evaluation.h"
+#include "toolkit/operations/json.h"
+#include "toolkit/operations/memory.h"
+#include "toolkit/operations/stopwatch.h"
+#include "toolkit/operations/toolkit_operations.h"
 
 namespace mimetra {
 

@@ -1,4 +1,6 @@
-#include <mimetra/operations/evaluation.h>
+#include "toolkit/operations/evaluation.h"
+
+#include "toolkit/mesh/progress.h"
 
 namespace mimetra {
 

@@ -3,7 +3,8 @@
 #include <optional>
 #include <vector>
 
-#include <mimetra/operations/solving.h>
+#include "toolkit/mesh/progress.h"
+#include "toolkit/operations/solving.h"
 
 namespace mimetra {
 
@@ -37,7 +38,7 @@ class Evaluation {
   /// MismatchError where the target has other vertices or faces.
   Evaluation(const Invocation& invocation, const NamedData& target);
 
-  const PreparedSource& source() const { return source_; }
+  const Alignment& source() const { return source_; }
   EvaluatedTransfer full(const Progress& progress);
   /// \pre full() was called
   EvaluatedTransfer by(const Regions& regions, const Progress& progress) const;
@@ -45,7 +46,7 @@ class Evaluation {
  private:
   const Invocation& invocation_;
   const NamedData& target_;
-  PreparedSource source_;
+  Alignment source_;
   TransferError full_;
 };
 

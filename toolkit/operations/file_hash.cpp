@@ -1,4 +1,4 @@
-#include <mimetra/operations/file_hash.h>
+#include "toolkit/operations/file_hash.h"
 
 #include <cstdio>
 #include <fstream>

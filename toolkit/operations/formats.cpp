@@ -1,10 +1,11 @@
-#include <mimetra/operations/formats.h>
+#include "toolkit/operations/formats.h"
 
-#include <mimetra/io/components_file.h>
-#include <mimetra/io/model_file.h>
-#include <mimetra/io/pending_output.h>
-#include <mimetra/io/regions_file.h>
-#include <mimetra/io/sequence_file.h>
+#include "toolkit/io/components_file.h"
+#include "toolkit/io/model_file.h"
+#include "toolkit/io/pending_output.h"
+#include "toolkit/io/regions_file.h"
+#include "toolkit/io/sequence_file.h"
+#include "toolkit/io/whole_file.h"
 
 namespace mimetra {
 
@@ -36,13 +37,6 @@ Paths write_sequence_data(const Data& data, const WriteRequest& request) {
   options.progress = request.progress;
   return write_sequence(std::get<SequenceRead>(data).sequence, request.target, options,
                         request.extra);
-}
-
-Paths write_text(const std::string& text, const WriteRequest& request) {
-  return write_with_extra(request, [&]() -> Paths {
-    write_file(request.target, text, request.overwrite);
-    return {request.target};
-  });
 }
 
 Paths write_components_data(const Data& data, const WriteRequest& request) {
@@ -85,6 +79,13 @@ Paths write_with_extra(const WriteRequest& request, const std::function<Paths()>
   return written;
 }
 
+Paths write_text(const WriteRequest& request, const std::string& text) {
+  return write_with_extra(request, [&]() -> Paths {
+    write_file(request.target, text, request.overwrite);
+    return {request.target};
+  });
+}
+
 void add_formats(OperationTable& table) {
   table.add(Writer{DataKind::sequence,
                    {".npy", ".ply", ".obj", ".off", ".stl", ""},
@@ -94,22 +95,22 @@ void add_formats(OperationTable& table) {
   table.add(Writer{DataKind::animated_model, {""}, {}, write_model_data});
   table.add(
       Writer{DataKind::regions, {".json"}, {}, [](const Data& data, const WriteRequest& request) {
-               return write_text(regions_json(std::get<RegionData>(data).regions), request);
+               return write_text(request, regions_json(std::get<RegionData>(data).regions));
              }});
   table.add(
       Writer{DataKind::regions, {".csv"}, {}, [](const Data& data, const WriteRequest& request) {
-               return write_text(regions_csv(std::get<RegionData>(data).regions), request);
+               return write_text(request, regions_csv(std::get<RegionData>(data).regions));
              }});
   table.add(
       Writer{DataKind::table, {".csv"}, {}, [](const Data& data, const WriteRequest& request) {
-               return write_text(std::get<Table>(data).csv(), request);
+               return write_text(request, std::get<Table>(data).csv());
              }});
   table.add(
       Writer{DataKind::table, {".json"}, {}, [](const Data& data, const WriteRequest& request) {
-               return write_text(std::get<Table>(data).json(), request);
+               return write_text(request, std::get<Table>(data).json());
              }});
   table.add(Writer{DataKind::fit, {".json"}, {}, [](const Data& data, const WriteRequest& request) {
-                     return write_text(fit_json(std::get<FittedCoefficients>(data)), request);
+                     return write_text(request, fit_json(std::get<FittedCoefficients>(data)));
                    }});
   table.add(RegionReader{{".json", ".csv", ".txt"}, read_regions});
 }

@@ -4,7 +4,7 @@
 #include <functional>
 #include <vector>
 
-#include <mimetra/operations/operation.h>
+#include "toolkit/operations/operation.h"
 
 namespace mimetra {
 
@@ -16,5 +16,9 @@ void add_formats(OperationTable& table);
 /// files. Throws OutputError.
 std::vector<std::filesystem::path> write_with_extra(
     const WriteRequest& request, const std::function<std::vector<std::filesystem::path>()>& write);
+
+/// Writes `text` to the request's target, and its further files beside it. Returns all files.
+/// Throws OutputError.
+std::vector<std::filesystem::path> write_text(const WriteRequest& request, const std::string& text);
 
 }  // namespace mimetra

@@ -4,10 +4,12 @@
 
 #include <nlohmann/json.hpp>
 
-#include <mimetra/geodesic/support_map.h>
-#include <mimetra/operations/analysis.h>
-#include <mimetra/operations/report.h>
-#include <mimetra/operations/toolkit_operations.h>
+#include "geodesic/support_map.h"
+#include "toolkit/mesh/errors.h"
+#include "toolkit/mesh/text.h"
+#include "toolkit/operations/analysis.h"
+#include "toolkit/operations/json.h"
+#include "toolkit/operations/toolkit_operations.h"
 
 namespace mimetra {
 

@@ -1,8 +1,8 @@
-#include <mimetra/operations/listing.h>
+#include "toolkit/operations/listing.h"
 
 #include <nlohmann/json.hpp>
 
-#include <mimetra/operations/report.h>
+#include "toolkit/operations/json.h"
 
 namespace mimetra {
 

@@ -1,11 +1,13 @@
-#include <mimetra/operations/loading.h>
+#include "toolkit/operations/loading.h"
 
 #include <algorithm>
 
-#include <mimetra/io/components_file.h>
-#include <mimetra/io/frame_files.h>
-#include <mimetra/io/mesh_file.h>
-#include <mimetra/io/model_file.h>
+#include "toolkit/io/components_file.h"
+#include "toolkit/io/frame_files.h"
+#include "toolkit/io/mesh_file.h"
+#include "toolkit/io/model_file.h"
+#include "toolkit/mesh/errors.h"
+#include "toolkit/mesh/progress.h"
 
 namespace mimetra {
 
@@ -45,7 +47,7 @@ class Loader {
                      std::string(kind_name(input.kind)) + "'");
   }
 
-  /// The mesh that region sets speak of, if the value has one.
+  /// The mesh that region sets are for, if the value has one.
   bool know(const Data& data) {
     if (const auto* read = std::get_if<SequenceRead>(&data)) {
       return know(read->sequence.vertices(), read->sequence.triangles());
@@ -208,7 +210,7 @@ LoadedInputs load_inputs(const OperationTable& table, const Operation& operation
   for (const Input& input : operation.inputs) {
     if (input.kind != DataKind::regions) load(input);
   }
-  // Regions speak of the first mesh.
+  // Regions are for the first mesh.
   const auto has_mesh = [&](const Input& input) {
     const auto values = loaded.data.find(input.name);
     return values != loaded.data.end() && !values->second.empty() &&

@@ -4,7 +4,8 @@
 #include <string>
 #include <vector>
 
-#include <mimetra/operations/operation.h>
+#include "toolkit/mesh/progress.h"
+#include "toolkit/operations/operation.h"
 
 namespace mimetra {
 

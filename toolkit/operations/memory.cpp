@@ -1,8 +1,8 @@
-#include <mimetra/operations/memory.h>
+#include "toolkit/operations/memory.h"
 
 #include <thread>
 
-#include <mimetra/operations/analysis.h>
+#include "toolkit/operations/analysis.h"
 
 namespace mimetra {
 

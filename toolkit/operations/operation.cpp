@@ -1,4 +1,4 @@
-#include <mimetra/operations/operation.h>
+#include "toolkit/operations/operation.h"
 
 #include <algorithm>
 #include <cctype>
@@ -8,27 +8,16 @@
 
 #include <nlohmann/json.hpp>
 
-#include <mimetra/io/pending_output.h>
-#include <mimetra/io/text_cursor.h>
-#include <mimetra/operations/report.h>
+#include "toolkit/io/pending_output.h"
+#include "toolkit/mesh/text.h"
+#include "toolkit/operations/json.h"
 
 namespace mimetra {
 
 namespace {
 
-std::string lower(std::string text) {
-  std::ranges::transform(text, text.begin(), [](unsigned char c) { return std::tolower(c); });
-  return text;
-}
-
 bool has_extension(const std::vector<std::string>& extensions, const std::filesystem::path& path) {
-  return std::ranges::find(extensions, lower(path.extension().string())) != extensions.end();
-}
-
-std::string joined(const std::vector<std::string>& names) {
-  std::string list;
-  for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
-  return list;
+  return std::ranges::find(extensions, lower_extension(path)) != extensions.end();
 }
 
 /// What `read_sequence` takes besides a name.
@@ -109,70 +98,6 @@ Json json_of(const Output& output) {
 }
 
 }  // namespace
-
-std::string_view kind_name(DataKind kind) {
-  switch (kind) {
-    case DataKind::sequence:
-      return "sequence";
-    case DataKind::model:
-      return "model";
-    case DataKind::components:
-      return "components";
-    case DataKind::regions:
-      return "regions";
-    case DataKind::fields:
-      return "fields";
-    case DataKind::table:
-      return "table";
-    case DataKind::animated_model:
-      return "model directory";
-    case DataKind::picture:
-      return "picture";
-    case DataKind::landmarks:
-      return "landmarks";
-    case DataKind::morphable_model:
-      return "morphable model";
-    case DataKind::fit:
-      return "fitted coefficients";
-    case DataKind::pictures:
-      return "pictures";
-    case DataKind::view:
-      return "ParaView script";
-    case DataKind::run:
-      return "run";
-    case DataKind::page:
-      return "page";
-  }
-  return "";
-}
-
-std::string Table::csv() const {
-  std::ostringstream text;
-  for (std::size_t column = 0; column < columns.size(); ++column) {
-    text << (column > 0 ? "," : "") << csv_field(columns[column]);
-  }
-  text << '\n';
-  for (const auto& row : rows) {
-    for (std::size_t column = 0; column < row.size(); ++column) {
-      if (column > 0) text << ',';
-      if (row[column]) text << to_text(*row[column]);
-    }
-    text << '\n';
-  }
-  return text.str();
-}
-
-std::string Table::json() const {
-  Json list = Json::array();
-  for (const auto& row : rows) {
-    Json entry;
-    for (std::size_t column = 0; column < columns.size(); ++column) {
-      entry[columns[column]] = row[column] ? Json(*row[column]) : Json(nullptr);
-    }
-    list.push_back(entry);
-  }
-  return Json{{"rows", list}}.dump(2) + '\n';
-}
 
 void Invocation::warn(const std::string& message) const {
   if (log) log(LogLevel::warning, message);

@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include <mimetra/mesh/errors.h>
-#include <mimetra/operations/data.h>
-#include <mimetra/operations/parameter.h>
+#include "toolkit/mesh/progress.h"
+#include "toolkit/operations/data.h"
+#include "toolkit/operations/parameter.h"
 
 namespace mimetra {
 

@@ -1,10 +1,10 @@
-#include <mimetra/operations/option_file.h>
+#include "toolkit/operations/option_file.h"
 
 #include <nlohmann/json.hpp>
 
-#include <mimetra/io/pending_output.h>
-#include <mimetra/mesh/errors.h>
-#include <mimetra/operations/report.h>
+#include "toolkit/io/whole_file.h"
+#include "toolkit/mesh/errors.h"
+#include "toolkit/operations/json.h"
 
 namespace mimetra {
 

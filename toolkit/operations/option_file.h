@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include <mimetra/operations/parameter.h>
+#include "toolkit/operations/parameter.h"
 
 namespace mimetra {
 

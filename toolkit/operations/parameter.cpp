@@ -1,4 +1,4 @@
-#include <mimetra/operations/parameter.h>
+#include "toolkit/operations/parameter.h"
 
 #include <algorithm>
 #include <charconv>

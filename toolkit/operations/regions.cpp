@@ -1,9 +1,10 @@
 #include <nlohmann/json.hpp>
 
-#include <mimetra/operations/analysis.h>
-#include <mimetra/operations/memory.h>
-#include <mimetra/operations/report.h>
-#include <mimetra/operations/toolkit_operations.h>
+#include "toolkit/mesh/errors.h"
+#include "toolkit/operations/analysis.h"
+#include "toolkit/operations/json.h"
+#include "toolkit/operations/memory.h"
+#include "toolkit/operations/toolkit_operations.h"
 
 namespace mimetra {
 

@@ -1,4 +1,4 @@
-#include <mimetra/operations/run_file.h>
+#include "toolkit/operations/run_file.h"
 
 #include <algorithm>
 #include <array>
@@ -6,10 +6,10 @@
 
 #include <nlohmann/json.hpp>
 
-#include <mimetra/io/pending_output.h>
-#include <mimetra/mesh/errors.h>
-#include <mimetra/operations/file_hash.h>
-#include <mimetra/operations/report.h>
+#include "toolkit/io/whole_file.h"
+#include "toolkit/mesh/errors.h"
+#include "toolkit/operations/file_hash.h"
+#include "toolkit/operations/json.h"
 
 namespace mimetra {
 
@@ -50,7 +50,7 @@ fs::path manifest_beside(const fs::path& file) {
   fs::path stem = file;
   for (const fs::path& name :
        {fs::path(file) += kFileManifest, stem.replace_extension() += kFileManifest}) {
-    if (fs::exists(name) && tells_of(name, file)) return name;
+    if (fs::exists(name) && is_manifest_of(name, file)) return name;
   }
   return {};
 }
@@ -81,7 +81,7 @@ void check_looked_for_regions(const RunRecord& run) {
   }
 }
 
-/// None for what is no manifest of a run that looked for regions.
+/// None for what is not a manifest of a run that looked for regions.
 std::optional<RunRecord> parse_if_suitable(const fs::path& manifest) {
   try {
     RunRecord run = parse(manifest);
@@ -156,7 +156,7 @@ RunRecord read_run(const fs::path& path) {
   return run;
 }
 
-bool tells_of(const fs::path& manifest, const fs::path& output) {
+bool is_manifest_of(const fs::path& manifest, const fs::path& output) {
   std::ifstream stream(manifest);
   const Json json = Json::parse(stream, nullptr, false);
   if (!json.is_object() || !json.contains("outputs") || !json["outputs"].is_array()) return false;

@@ -5,11 +5,11 @@
 #include <string>
 #include <vector>
 
-#include <mimetra/io/written_files.h>
+#include "toolkit/io/written_files.h"
 
 namespace mimetra {
 
-/// What a manifest tells of a run.
+/// What a manifest says about a run.
 struct RunRecord {
   std::filesystem::path manifest;
   std::string operation;
@@ -29,6 +29,6 @@ struct RunRecord {
 RunRecord read_run(const std::filesystem::path& path);
 
 /// True for the manifest of a run that wrote an output of this file name.
-bool tells_of(const std::filesystem::path& manifest, const std::filesystem::path& output);
+bool is_manifest_of(const std::filesystem::path& manifest, const std::filesystem::path& output);
 
 }  // namespace mimetra

@@ -1,7 +1,10 @@
-#include <mimetra/operations/solving.h>
+#include "toolkit/operations/solving.h"
 
-#include <mimetra/operations/report.h>
-#include <mimetra/transfer/vertex_transfer.h>
+#include "toolkit/mesh/errors.h"
+#include "toolkit/mesh/progress.h"
+#include "toolkit/mesh/text.h"
+#include "toolkit/operations/stopwatch.h"
+#include "toolkit/transfer/vertex_transfer.h"
 
 namespace mimetra {
 
@@ -9,17 +12,6 @@ namespace {
 
 const BlendshapeModel& model_of(const NamedData& target) {
   return std::get<BlendshapeModel>(target.data);
-}
-
-/// "a, b, c and 12 more".
-std::string some_of(const std::vector<std::string>& names) {
-  constexpr std::size_t kShown = 8;
-  std::string text;
-  for (std::size_t i = 0; i < std::min(names.size(), kShown); ++i) {
-    text += (i == 0 ? "" : ", ") + names[i];
-  }
-  if (names.size() > kShown) text += " and " + std::to_string(names.size() - kShown) + " more";
-  return text;
 }
 
 /// Beyond this the weights are hardly determined by the regions.
@@ -31,12 +23,12 @@ void warn_of(const Invocation& invocation, const std::string& name,
   if (!conditions.unseen.empty()) {
     invocation.warn(
         start + std::to_string(conditions.unseen.size()) +
-        " expressions do not move in the regions and stay 0: " + some_of(conditions.unseen));
+        " expressions do not move in the regions and stay 0: " + listed(conditions.unseen));
   }
   if (!conditions.weakly_seen.empty()) {
     invocation.warn(
         start + std::to_string(conditions.weakly_seen.size()) +
-        " expressions are weakly seen in the regions: " + some_of(conditions.weakly_seen));
+        " expressions are weakly seen in the regions: " + listed(conditions.weakly_seen));
   }
   if (conditions.condition > kPoorCondition) {
     invocation.warn(start + "the regions hardly tell the expressions apart (condition number " +
@@ -58,7 +50,7 @@ void warn_of_degenerate(const Invocation& invocation, const std::string& name,
   }
 }
 
-Solution solve_blendshapes(const Invocation& invocation, const PreparedSource& source,
+Solution solve_blendshapes(const Invocation& invocation, const Alignment& source,
                            const NamedData& target, const Selection& selection,
                            const Progress& progress) {
   const Stopwatch stopwatch;
@@ -68,9 +60,10 @@ Solution solve_blendshapes(const Invocation& invocation, const PreparedSource& s
                                     {.ridge = parameters.number("ridge"),
                                      .sparsity = parameters.number("l1"),
                                      .smoothness = parameters.number("smoothness"),
-                                     .threads = invocation.threads});
+                                     .threads = invocation.threads,
+                                     .progress = progress});
   Solution solution;
-  solution.weights = transfer.weights(source.sequence, progress);
+  solution.weights = transfer.weights(source.sequence);
   solution.sequence = model.animate(solution.weights, source.sequence.times());
   solution.seconds = stopwatch.seconds();
   solution.conditions = transfer.conditions();
@@ -108,7 +101,7 @@ VertexTransferOptions vertex_options(const Parameters& parameters, int vertices)
   return options;
 }
 
-Solution solve_vertices(const Invocation& invocation, const PreparedSource& source,
+Solution solve_vertices(const Invocation& invocation, const Alignment& source,
                         const NamedData& target, const Selection& selection,
                         const Progress& progress) {
   const Stopwatch stopwatch;
@@ -116,6 +109,7 @@ Solution solve_vertices(const Invocation& invocation, const PreparedSource& sour
   VertexTransferOptions options = vertex_options(invocation.parameters, model.vertices());
   options.inside = selection.inside;
   options.threads = invocation.threads;
+  options.progress = progress;
   const bool all = selection.triangles.size() == static_cast<std::size_t>(model.triangles().rows());
   if (invocation.parameters.is_set("anchor") && options.outside == Outside::fixed && !all) {
     throw UsageError(
@@ -125,9 +119,8 @@ Solution solve_vertices(const Invocation& invocation, const PreparedSource& sour
   const VertexTransfer transfer(source.sequence.rest(), model.neutral(), model.triangles(),
                                 selection.triangles, options);
   Solution solution;
-  solution.sequence =
-      MeshSequence(model.shared_connectivity(), transfer.frames(source.sequence, progress),
-                   source.sequence.times(), model.neutral());
+  solution.sequence = MeshSequence(model.shared_connectivity(), transfer.frames(source.sequence),
+                                   source.sequence.times(), model.neutral());
   solution.seconds = stopwatch.seconds();
   solution.degenerate_source_triangles = transfer.degenerate_source_triangles();
   solution.degenerate_target_triangles = transfer.degenerate_target_triangles();
@@ -200,11 +193,9 @@ std::vector<Parameter> solving_parameters() {
   };
 }
 
-PreparedSource prepare_source(const Invocation& invocation) {
+Alignment prepare_source(const Invocation& invocation) {
   const SequenceRead& read = invocation.get<SequenceRead>("source");
-  StillSequence still =
-      without_motion(invocation, read, with_source_rest(invocation, read.sequence));
-  return {std::move(still.sequence), std::move(still.motion)};
+  return without_motion(invocation, read, with_source_rest(invocation, read.sequence));
 }
 
 void check_target(const MeshSequence& source, const NamedData& target) {
@@ -221,7 +212,7 @@ void check_target(const MeshSequence& source, const NamedData& target) {
   }
 }
 
-Solution solve(const Invocation& invocation, const PreparedSource& source, const NamedData& target,
+Solution solve(const Invocation& invocation, const Alignment& source, const NamedData& target,
                const Selection& selection, const Progress& progress) {
   const std::string& space = invocation.parameters.text("space");
   const bool has_expressions = model_of(target).expressions().size() > 0;

@@ -1,22 +1,18 @@
 #pragma once
 
-#include <mimetra/operations/analysis.h>
-#include <mimetra/transfer/blendshape_transfer.h>
-#include <mimetra/transfer/transfer_error.h>
+#include "toolkit/mesh/progress.h"
+#include "toolkit/operations/analysis.h"
+#include "toolkit/transfer/blendshape_transfer.h"
+#include "toolkit/transfer/transfer_error.h"
 
 namespace mimetra {
 
 /// Parameters shared by transfer and evaluate.
 std::vector<Parameter> solving_parameters();
 
-/// A source that is ready: its neutral as rest pose, without head motion.
-struct PreparedSource {
-  MeshSequence sequence;
-  std::vector<RigidTransform> motion;  ///< empty where none was taken out
-};
-
-/// Applies --source-rest and --align.
-PreparedSource prepare_source(const Invocation& invocation);
+/// Applies --source-rest and --align: the source with its neutral as rest pose, without head
+/// motion.
+Alignment prepare_source(const Invocation& invocation);
 
 /// Throws MismatchError unless the target has the source's vertices and faces.
 void check_target(const MeshSequence& source, const NamedData& target);
@@ -39,7 +35,7 @@ struct Selection {
 
 /// Solves in blendshape or vertex space, as --space says and the target allows; warns of what the
 /// user should know.
-Solution solve(const Invocation& invocation, const PreparedSource& source, const NamedData& target,
+Solution solve(const Invocation& invocation, const Alignment& source, const NamedData& target,
                const Selection& selection, const Progress& progress);
 
 }  // namespace mimetra

@@ -1,6 +1,6 @@
-#include <mimetra/operations/toolkit_operations.h>
+#include "toolkit/operations/toolkit_operations.h"
 
-#include <mimetra/operations/formats.h>
+#include "toolkit/operations/formats.h"
 
 namespace mimetra {
 

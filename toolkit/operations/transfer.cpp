@@ -2,10 +2,14 @@
 
 #include <nlohmann/json.hpp>
 
-#include <mimetra/operations/memory.h>
-#include <mimetra/operations/report.h>
-#include <mimetra/operations/solving.h>
-#include <mimetra/operations/toolkit_operations.h>
+#include "toolkit/mesh/errors.h"
+#include "toolkit/mesh/progress.h"
+#include "toolkit/mesh/text.h"
+#include "toolkit/operations/json.h"
+#include "toolkit/operations/memory.h"
+#include "toolkit/operations/solving.h"
+#include "toolkit/operations/stopwatch.h"
+#include "toolkit/operations/toolkit_operations.h"
 
 namespace mimetra {
 
@@ -20,7 +24,7 @@ struct Choice {
   double seconds = 0;
 };
 
-Choice choose(const Invocation& invocation, const PreparedSource& source) {
+Choice choose(const Invocation& invocation, const Alignment& source) {
   if (invocation.parameters.flag("full")) {
     return {{all_triangles(source.sequence.triangles()), {}}, {}};
   }
@@ -107,7 +111,7 @@ void check_outputs(const Invocation& invocation) {
 
 Outcome run_transfer(const Invocation& invocation) {
   const Stopwatch stopwatch;
-  const PreparedSource source = prepare_source(invocation);
+  const Alignment source = prepare_source(invocation);
   const std::vector<NamedData>& targets = invocation.inputs.at("target");
   for (const NamedData& target : targets) check_target(source.sequence, target);
   check_outputs(invocation);

@@ -1,4 +1,4 @@
-#include <mimetra/operations/xml_text.h>
+#include "toolkit/operations/xml_text.h"
 
 namespace mimetra {
 

@@ -1,6 +1,6 @@
 #include <string>
 
-#include <mimetra/regions/regions.h>
+#include "toolkit/regions/regions.h"
 
 namespace mimetra {
 namespace {

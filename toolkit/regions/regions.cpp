@@ -1,4 +1,4 @@
-#include <mimetra/regions/regions.h>
+#include "toolkit/regions/regions.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,6 +6,9 @@
 #include <stdexcept>
 #include <string>
 #include <utility>
+
+#include "toolkit/mesh/errors.h"
+#include "toolkit/mesh/text.h"
 
 namespace mimetra {
 namespace {
@@ -38,16 +41,6 @@ struct Site {
   double energy;
   Eigen::VectorXd distances;
 };
-
-/// "2, 5 and 7"
-std::string listed(const std::vector<int>& numbers) {
-  std::string list;
-  for (std::size_t i = 0; i < numbers.size(); ++i) {
-    if (i > 0) list += i + 1 < numbers.size() ? ", " : " and ";
-    list += std::to_string(numbers[i]);
-  }
-  return list;
-}
 
 /// Components of which one moves, from the strongest to the weakest.
 std::vector<int> living_components(const Components& components, const Eigen::VectorXd& energies) {
@@ -91,13 +84,14 @@ std::vector<std::string> notes_on(const Components& components, const std::vecto
     if (components.centers[k] < 0) dead.push_back(k);
   }
   if (!dead.empty()) {
-    notes.push_back((dead.size() > 1 ? "components " : "component ") + listed(dead) +
+    notes.push_back((dead.size() > 1 ? "components " : "component ") +
+                    joined(words_of(dead), ", ", " and ") +
                     " died in the decomposition: no region");
   }
   std::string merged;
   for (const Site& site : sites) {
     if (site.components.size() == 1) continue;
-    merged += (merged.empty() ? "" : "; ") + listed(site.components);
+    merged += (merged.empty() ? "" : "; ") + joined(words_of(site.components), ", ", " and ");
   }
   if (!merged.empty()) notes.push_back("components with the same centre share a region: " + merged);
   return notes;

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include <mimetra/mesh/fields.h>
-#include <mimetra/splocs/decomposition.h>
+#include "toolkit/mesh/fields.h"
+#include "toolkit/splocs/decomposition.h"
 
 namespace mimetra {
 

@@ -4,7 +4,7 @@
 #include <functional>
 #include <vector>
 
-#include <mimetra/mesh/parallel.h>
+#include "toolkit/mesh/parallel.h"
 
 namespace mimetra {
 

@@ -1,4 +1,4 @@
-#include <mimetra/splocs/component_update.h>
+#include "toolkit/splocs/component_update.h"
 
 #include <functional>
 #include <limits>
@@ -6,7 +6,7 @@
 
 #include <Eigen/Cholesky>
 
-#include <mimetra/splocs/block_sums.h>
+#include "toolkit/splocs/block_sums.h"
 
 namespace mimetra {
 namespace {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <mimetra/splocs/vertex_blocks.h>
+#include "toolkit/splocs/vertex_blocks.h"
 
 namespace mimetra {
 

@@ -1,4 +1,4 @@
-#include <mimetra/splocs/decomposition.h>
+#include "toolkit/splocs/decomposition.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,13 +6,15 @@
 #include <string>
 #include <utility>
 
-#include <mimetra/mesh/product_blocking.h>
-#include <mimetra/splocs/component_update.h>
-#include <mimetra/splocs/motion.h>
-#include <mimetra/splocs/start.h>
-#include <mimetra/splocs/support_maps.h>
-#include <mimetra/splocs/time_basis.h>
-#include <mimetra/splocs/weights.h>
+#include "toolkit/mesh/errors.h"
+#include "toolkit/mesh/product_blocking.h"
+#include "toolkit/mesh/progress.h"
+#include "toolkit/splocs/component_update.h"
+#include "toolkit/splocs/motion.h"
+#include "toolkit/splocs/start.h"
+#include "toolkit/splocs/support_maps.h"
+#include "toolkit/splocs/time_basis.h"
+#include "toolkit/splocs/weights.h"
 
 namespace mimetra {
 namespace {
@@ -74,13 +76,6 @@ double energy(double X_norm2, const Eigen::MatrixXd& W, const Eigen::MatrixXd& g
   const double mixed = W.cwiseProduct(P).sum();
   const double square = gram.cwiseProduct(H).sum();
   return std::max(0.0, X_norm2 - 2 * mixed + square) + penalty;
-}
-
-/// `progress` for a part of the work: its 0 .. 1 becomes first .. last.
-Progress part_of(const Progress& progress, double first, double last) {
-  if (!progress) return {};
-  return
-      [&progress, first, last](double share) { return progress(first + share * (last - first)); };
 }
 
 /// Alternates between weights and components; fills displacements, weights, support and energies.
@@ -174,7 +169,9 @@ Components decompose(const MeshSequence& sequence, const DecompositionOptions& o
                                            GeodesicMethod::heat, options.threads);
   const SupportFunction support =
       support_function(distances, sequence.vertices(), result.d_min, result.d_max);
-  Start start = greedy_start(motion.X, support, options, part_of(options.progress, 0, kStartShare));
+  DecompositionOptions of_start = options;
+  of_start.progress = part_of(options.progress, 0, kStartShare);
+  Start start = greedy_start(motion.X, support, of_start);
   iterate(result, std::move(motion), std::move(start),
           SupportMaps(support, options.count, sequence.vertices()),
           part_of(options.progress, kStartShare, 1));

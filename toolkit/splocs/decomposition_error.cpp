@@ -1,4 +1,4 @@
-#include <mimetra/splocs/decomposition.h>
+#include "toolkit/splocs/decomposition.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,8 @@
 #include <stdexcept>
 #include <string>
 
-#include <mimetra/splocs/support_maps.h>
+#include "toolkit/mesh/errors.h"
+#include "toolkit/splocs/support_maps.h"
 
 namespace mimetra {
 namespace {

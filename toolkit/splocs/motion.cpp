@@ -1,10 +1,11 @@
-#include <mimetra/splocs/motion.h>
+#include "toolkit/splocs/motion.h"
 
 #include <cmath>
 #include <stdexcept>
 #include <string>
 
-#include <mimetra/mesh/parallel.h>
+#include "toolkit/mesh/errors.h"
+#include "toolkit/mesh/parallel.h"
 
 namespace mimetra {
 namespace {

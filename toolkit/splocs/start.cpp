@@ -1,12 +1,13 @@
-#include <mimetra/splocs/start.h>
+#include "toolkit/splocs/start.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include <Eigen/Eigenvalues>
 
-#include <mimetra/mesh/parallel.h>
-#include <mimetra/splocs/weights.h>
+#include "toolkit/mesh/parallel.h"
+#include "toolkit/mesh/progress.h"
+#include "toolkit/splocs/weights.h"
 
 namespace mimetra {
 namespace {
@@ -125,10 +126,10 @@ Eigen::VectorXd oriented_weights(const Eigen::VectorXd& w, SignRule rule, bool n
 }
 
 Start greedy_start(const VertexBlocks<double>& X, const SupportFunction& support,
-                   const DecompositionOptions& options, const Progress& progress) {
+                   const DecompositionOptions& options) {
   Residual residual(X, options.count, options.threads);
   for (int k = 0; k < options.count; ++k) {
-    report_progress(progress, static_cast<double>(k) / options.count);
+    report_progress(options.progress, static_cast<double>(k) / options.count);
     const VertexIndex center = residual.strongest();
     if (center < 0) break;
     const Eigen::VectorXd w = oriented_weights(strongest_motion(residual.at(center)),

@@ -2,8 +2,8 @@
 
 #include <vector>
 
-#include <mimetra/splocs/decomposition.h>
-#include <mimetra/splocs/support_maps.h>
+#include "toolkit/splocs/decomposition_options.h"
+#include "toolkit/splocs/support_maps.h"
 
 namespace mimetra {
 
@@ -15,12 +15,11 @@ struct Start {
 };
 
 /// Greedy start, options.count times: the vertex that the earlier components explain least, the
-/// strongest direction of its residual, and what its weights explain around it. X is F x 3N. Calls
-/// `progress` with shares of the start.
+/// strongest direction of its residual, and what its weights explain around it. X is F x 3N.
 ///
 /// [Neumann et al. Sparse Localized Deformation Components. ACM TOG 32(6), 2013], section 4.2
 Start greedy_start(const VertexBlocks<double>& X, const SupportFunction& support,
-                   const DecompositionOptions& options, const Progress& progress = {});
+                   const DecompositionOptions& options);
 
 /// Feasible weights of a start from `w` (F) or from -w, whichever `rule` prefers.
 Eigen::VectorXd oriented_weights(const Eigen::VectorXd& w, SignRule rule, bool nonnegative);

@@ -1,10 +1,10 @@
-#include <mimetra/splocs/support_maps.h>
+#include "toolkit/splocs/support_maps.h"
 
 #include <stdexcept>
 #include <string>
 #include <utility>
 
-#include <mimetra/geodesic/support_map.h>
+#include "geodesic/support_map.h"
 
 namespace mimetra {
 

@@ -4,8 +4,8 @@
 #include <span>
 #include <vector>
 
-#include <mimetra/splocs/surface_distances.h>
-#include <mimetra/splocs/vertex_blocks.h>
+#include "toolkit/splocs/surface_distances.h"
+#include "toolkit/splocs/vertex_blocks.h"
 
 namespace mimetra {
 

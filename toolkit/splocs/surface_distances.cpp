@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include <mimetra/geodesic/exact_geodesics.h>
-#include <mimetra/mesh/parallel.h>
-#include <mimetra/splocs/surface_distances.h>
+#include "geodesic/exact_geodesics.h"
+#include "toolkit/mesh/parallel.h"
+#include "toolkit/splocs/surface_distances.h"
 
 namespace mimetra {
 namespace {

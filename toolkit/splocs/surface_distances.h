@@ -4,8 +4,8 @@
 #include <memory>
 #include <span>
 
-#include <mimetra/geodesic/heat_geodesics.h>
-#include <mimetra/mesh/weld.h>
+#include "geodesic/heat_geodesics.h"
+#include "toolkit/mesh/weld.h"
 
 namespace mimetra {
 

@@ -1,4 +1,4 @@
-#include <mimetra/splocs/time_basis.h>
+#include "toolkit/splocs/time_basis.h"
 
 #include <algorithm>
 #include <random>
@@ -7,7 +7,7 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/QR>
 
-#include <mimetra/splocs/block_sums.h>
+#include "toolkit/splocs/block_sums.h"
 
 namespace mimetra {
 namespace {

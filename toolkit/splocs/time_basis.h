@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include <mimetra/splocs/vertex_blocks.h>
+#include "toolkit/splocs/vertex_blocks.h"
 
 namespace mimetra {
 

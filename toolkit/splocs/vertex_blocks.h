@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include <mimetra/mesh/mesh_sequence.h>
+#include "toolkit/mesh/mesh_sequence.h"
 
 namespace mimetra {
 

@@ -1,4 +1,4 @@
-#include <mimetra/splocs/weights.h>
+#include "toolkit/splocs/weights.h"
 
 namespace mimetra {
 namespace {

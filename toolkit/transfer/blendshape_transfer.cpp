@@ -1,4 +1,4 @@
-#include <mimetra/transfer/blendshape_transfer.h>
+#include "toolkit/transfer/blendshape_transfer.h"
 
 #include <algorithm>
 #include <functional>
@@ -9,15 +9,16 @@
 
 #include <Eigen/Eigenvalues>
 
-#include <mimetra/mesh/inspection.h>
-#include <mimetra/mesh/parallel.h>
-#include <mimetra/mesh/product_blocking.h>
-#include <mimetra/model/box_least_squares.h>
-#include <mimetra/model/smooth_weights.h>
-#include <mimetra/regions/regions.h>
-#include <mimetra/transfer/deformation_gradients.h>
-#include <mimetra/transfer/edges.h>
-#include <mimetra/transfer/right_hand_side.h>
+#include "toolkit/mesh/errors.h"
+#include "toolkit/mesh/inspection.h"
+#include "toolkit/mesh/parallel.h"
+#include "toolkit/mesh/product_blocking.h"
+#include "toolkit/model/box_least_squares.h"
+#include "toolkit/model/smooth_weights.h"
+#include "toolkit/regions/regions.h"
+#include "toolkit/transfer/deformation_gradients.h"
+#include "toolkit/transfer/edges.h"
+#include "toolkit/transfer/right_hand_side.h"
 
 namespace mimetra {
 
@@ -202,8 +203,7 @@ BlendshapeTransfer::~BlendshapeTransfer() = default;
 BlendshapeTransfer::BlendshapeTransfer(BlendshapeTransfer&&) noexcept = default;
 BlendshapeTransfer& BlendshapeTransfer::operator=(BlendshapeTransfer&&) noexcept = default;
 
-Eigen::MatrixXd BlendshapeTransfer::weights(const MeshSequence& performance,
-                                            const Progress& progress) const {
+Eigen::MatrixXd BlendshapeTransfer::weights(const MeshSequence& performance) const {
   const State& state = *state_;
   state.check_size(performance);
   fix_product_blocking();
@@ -223,7 +223,7 @@ Eigen::MatrixXd BlendshapeTransfer::weights(const MeshSequence& performance,
     }
   };
   const int blocks = (frames + kFramesPerBlock - 1) / kFramesPerBlock;
-  parallel_for(blocks, state.options.threads, solve_block, progress);
+  parallel_for(blocks, state.options.threads, solve_block, state.options.progress);
   if (state.options.smoothness > 0) state.smooth(performance, h, beta);
   return beta;
 }

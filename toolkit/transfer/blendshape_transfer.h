@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include <mimetra/mesh/errors.h>
-#include <mimetra/model/blendshape_model.h>
+#include "toolkit/mesh/progress.h"
+#include "toolkit/model/blendshape_model.h"
 
 namespace mimetra {
 
@@ -20,6 +20,8 @@ struct BlendshapeTransferOptions {
   double smoothness = 0;
   /// 0 for all there are; the result does not depend on it.
   int threads = 0;
+  /// Of weights().
+  Progress progress = {};
 };
 
 /// What the chosen triangles tell about the target's expressions.
@@ -53,7 +55,7 @@ class BlendshapeTransfer {
   BlendshapeTransfer& operator=(BlendshapeTransfer&&) noexcept;
 
   /// beta for every frame (F x D), each within [0, 1]. Throws MismatchError, Cancelled.
-  Eigen::MatrixXd weights(const MeshSequence& performance, const Progress& progress = {}) const;
+  Eigen::MatrixXd weights(const MeshSequence& performance) const;
 
   /// A^T A of eq. 11 over L (D x D).
   const Eigen::MatrixXd& gram() const;

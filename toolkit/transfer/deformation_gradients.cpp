@@ -1,4 +1,4 @@
-#include <mimetra/transfer/deformation_gradients.h>
+#include "toolkit/transfer/deformation_gradients.h"
 
 #include <cmath>
 #include <stdexcept>
@@ -7,7 +7,7 @@
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 
-#include <mimetra/mesh/inspection.h>
+#include "toolkit/mesh/inspection.h"
 
 namespace mimetra {
 

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include <mimetra/mesh/mesh_sequence.h>
+#include "toolkit/mesh/mesh_sequence.h"
 
 namespace mimetra {
 

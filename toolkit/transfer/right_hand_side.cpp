@@ -1,6 +1,8 @@
-#include <mimetra/transfer/right_hand_side.h>
+#include "toolkit/transfer/right_hand_side.h"
 
 #include <algorithm>
+
+#include "toolkit/mesh/progress.h"
 
 namespace mimetra {
 

@@ -1,7 +1,7 @@
 #pragma once
 
-#include <mimetra/model/blendshape_model.h>
-#include <mimetra/transfer/vertex_pull.h>
+#include "toolkit/model/blendshape_model.h"
+#include "toolkit/transfer/vertex_pull.h"
 
 namespace mimetra {
 

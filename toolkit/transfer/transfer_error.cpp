@@ -1,4 +1,4 @@
-#include <mimetra/transfer/transfer_error.h>
+#include "toolkit/transfer/transfer_error.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,10 +7,10 @@
 
 #include <Eigen/Geometry>
 
-#include <mimetra/mesh/errors.h>
-#include <mimetra/regions/regions.h>
-#include <mimetra/transfer/deformation_gradients.h>
-#include <mimetra/transfer/edges.h>
+#include "toolkit/mesh/errors.h"
+#include "toolkit/regions/regions.h"
+#include "toolkit/transfer/deformation_gradients.h"
+#include "toolkit/transfer/edges.h"
 
 namespace mimetra {
 

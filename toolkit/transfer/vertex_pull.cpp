@@ -1,4 +1,4 @@
-#include <mimetra/transfer/vertex_pull.h>
+#include "toolkit/transfer/vertex_pull.h"
 
 #include <algorithm>
 #include <array>

@@ -2,8 +2,8 @@
 
 #include <vector>
 
-#include <mimetra/transfer/deformation_gradients.h>
-#include <mimetra/transfer/edges.h>
+#include "toolkit/transfer/deformation_gradients.h"
+#include "toolkit/transfer/edges.h"
 
 namespace mimetra {
 

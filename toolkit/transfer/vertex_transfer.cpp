@@ -1,4 +1,4 @@
-#include <mimetra/transfer/vertex_transfer.h>
+#include "toolkit/transfer/vertex_transfer.h"
 
 #include <algorithm>
 #include <array>
@@ -11,12 +11,13 @@
 #include <Eigen/LU>
 #include <Eigen/SparseCore>
 
-#include <mimetra/geodesic/sparse_factor.h>
-#include <mimetra/mesh/inspection.h>
-#include <mimetra/mesh/parallel.h>
-#include <mimetra/transfer/deformation_gradients.h>
-#include <mimetra/transfer/vertex_pull.h>
-#include <mimetra/transfer/vertex_unknowns.h>
+#include "geodesic/sparse_factor.h"
+#include "toolkit/mesh/errors.h"
+#include "toolkit/mesh/inspection.h"
+#include "toolkit/mesh/parallel.h"
+#include "toolkit/transfer/deformation_gradients.h"
+#include "toolkit/transfer/vertex_pull.h"
+#include "toolkit/transfer/vertex_unknowns.h"
 
 namespace mimetra {
 
@@ -325,7 +326,7 @@ VertexTransfer::~VertexTransfer() = default;
 VertexTransfer::VertexTransfer(VertexTransfer&&) noexcept = default;
 VertexTransfer& VertexTransfer::operator=(VertexTransfer&&) noexcept = default;
 
-Frames VertexTransfer::frames(const MeshSequence& performance, const Progress& progress) const {
+Frames VertexTransfer::frames(const MeshSequence& performance) const {
   const State& state = *state_;
   const Eigen::Index vertices = state.target_rest.rows();
   if (performance.vertices() != vertices) {
@@ -339,7 +340,7 @@ Frames VertexTransfer::frames(const MeshSequence& performance, const Progress& p
     state.solve(performance.positions().middleRows(first, count), result.middleRows(first, count));
   };
   const int blocks = (performance.frames() + kLanes - 1) / kLanes;
-  parallel_for(blocks, state.options.threads, solve_block, progress);
+  parallel_for(blocks, state.options.threads, solve_block, state.options.progress);
   return result;
 }
 

@@ -3,8 +3,8 @@
 #include <memory>
 #include <vector>
 
-#include <mimetra/mesh/errors.h>
-#include <mimetra/mesh/mesh_sequence.h>
+#include "toolkit/mesh/mesh_sequence.h"
+#include "toolkit/mesh/progress.h"
 
 namespace mimetra {
 
@@ -31,7 +31,7 @@ struct VertexTransferOptions {
   Outside outside = Outside::fixed;
   /// Vertices that Outside::fixed lets move (N): those inside the regions. By default the vertices
   /// all of whose triangles are in L.
-  std::vector<bool> inside;
+  std::vector<bool> inside = {};
   /// Weight of triangles outside L for Outside::identity, > 0, relative to those inside.
   double outside_weight = 0.1;
   /// Weight of squared differences of displacement gradients across edges of triangles outside L,
@@ -42,6 +42,8 @@ struct VertexTransferOptions {
   VertexIndex anchor_vertex = -1;
   /// 0 for all there are; the result does not depend on it.
   int threads = 0;
+  /// Of frames().
+  Progress progress = {};
 };
 
 /// Positions of a target that follow a source's deformation gradients on triangles L; the target
@@ -67,7 +69,7 @@ class VertexTransfer {
 
   /// Target poses for every frame, F x 3N. Throws MismatchError, Cancelled, std::runtime_error
   /// where the system cannot be factored.
-  Frames frames(const MeshSequence& performance, const Progress& progress = {}) const;
+  Frames frames(const MeshSequence& performance) const;
 
   int degenerate_source_triangles() const;
   int degenerate_target_triangles() const;

@@ -1,4 +1,4 @@
-#include <mimetra/transfer/vertex_unknowns.h>
+#include "toolkit/transfer/vertex_unknowns.h"
 
 #include <algorithm>
 #include <numeric>

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include <mimetra/mesh/tri_mesh.h>
+#include "toolkit/mesh/tri_mesh.h"
 
 namespace mimetra {
 

@@ -1,4 +1,4 @@
-#include <mimetra/vtk/colors.h>
+#include "toolkit/vtk/colors.h"
 
 #include <algorithm>
 #include <array>

@@ -2,8 +2,8 @@
 
 #include <vector>
 
-#include <mimetra/mesh/tri_mesh.h>
-#include <mimetra/operations/image.h>
+#include "toolkit/mesh/tri_mesh.h"
+#include "toolkit/operations/image.h"
 
 namespace mimetra {
 

@@ -1,4 +1,4 @@
-#include <mimetra/vtk/paraview_view.h>
+#include "toolkit/vtk/paraview_view.h"
 
 #include <algorithm>
 #include <map>
@@ -6,7 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include <mimetra/vtk/colors.h>
+#include "toolkit/vtk/colors.h"
 
 namespace mimetra {
 

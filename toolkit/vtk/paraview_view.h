@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include <mimetra/operations/data.h>
+#include "toolkit/operations/data.h"
 
 namespace mimetra {
 

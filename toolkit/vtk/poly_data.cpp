@@ -1,4 +1,4 @@
-#include <mimetra/vtk/poly_data.h>
+#include "toolkit/vtk/poly_data.h"
 
 #include <algorithm>
 #include <cmath>
@@ -17,7 +17,7 @@
 #include <vtkSmartPointer.h>
 #include <vtkTypeInt32Array.h>
 
-#include <mimetra/mesh/errors.h>
+#include "toolkit/mesh/errors.h"
 
 namespace mimetra {
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include <mimetra/mesh/fields.h>
+#include "toolkit/mesh/fields.h"
 
 class vtkPolyData;
 
@@ -18,7 +18,7 @@ Positions positions_of(vtkPolyData& data, const std::string& name);
 /// The polygons; vertices and lines are left out. Throws IoError where there are none, or strips.
 Connectivity connectivity_of(vtkPolyData& data, const std::string& name);
 
-/// The rest pose that data at `positions` tell of: the field data kRestPose, or the positions
+/// The rest pose of data at `positions`: the field data kRestPose, or the positions
 /// without the point data kDisplacement. Throws IoError where a vertex of it is not finite.
 std::optional<Positions> rest_of(vtkPolyData& data, const Positions& positions,
                                  const std::string& name);

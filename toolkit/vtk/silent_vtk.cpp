@@ -1,4 +1,4 @@
-#include <mimetra/vtk/silent_vtk.h>
+#include "toolkit/vtk/silent_vtk.h"
 
 #include <vtkObject.h>
 

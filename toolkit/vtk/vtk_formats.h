@@ -1,11 +1,10 @@
 #pragma once
 
-#include <mimetra/operations/operation.h>
+#include "toolkit/operations/operation.h"
 
 namespace mimetra {
 
-/// Adds what VTK reads, writes and draws: .pvd and .vtp of regions and fields, region sets from
-/// .vtp, .png, .html, and the operations `render` and `report`.
+/// Adds .vtp and .pvd, and scripts (.py) that show regions in ParaView.
 void add_vtk(OperationTable& table);
 
 }  // namespace mimetra

@@ -1,9 +1,11 @@
-#include <mimetra/vtk/vtp_formats.h>
+#include "toolkit/vtk/vtp_formats.h"
 
 #include <cmath>
 
-#include <mimetra/operations/formats.h>
-#include <mimetra/vtk/vtp_series.h>
+#include "toolkit/mesh/errors.h"
+#include "toolkit/mesh/progress.h"
+#include "toolkit/operations/formats.h"
+#include "toolkit/vtk/vtp_series.h"
 
 namespace mimetra {
 
@@ -68,7 +70,11 @@ void add_vtp(OperationTable& table) {
                      return write(std::get<FieldSequence>(data), request);
                    }});
   table.add(RegionReader{{".vtp"}, read_regions_from_vtp});
-  table.add(FieldReader{{".pvd", ".vtp", ".series"}, read_vtp_series, vtp_series_files});
+  const auto read = [](const std::filesystem::path& path, const auto& selected,
+                       const Progress& progress) {
+    return read_vtp_series(path, {.selected = selected, .progress = progress});
+  };
+  table.add(FieldReader{{".pvd", ".vtp", ".series"}, read, vtp_series_files});
 }
 
 }  // namespace mimetra

@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <cctype>
 
+#include <numeric>
+
 #include <vtkErrorCode.h>
 #include <vtkExecutive.h>
 #include <vtkNew.h>
@@ -12,10 +14,13 @@
 #include <vtkXMLUtilities.h>
 #include <nlohmann/json.hpp>
 
-#include <mimetra/io/pending_output.h>
-#include <mimetra/vtk/poly_data.h>
-#include <mimetra/vtk/silent_vtk.h>
-#include <mimetra/vtk/vtp_series.h>
+#include "toolkit/io/whole_file.h"
+#include "toolkit/mesh/errors.h"
+#include "toolkit/mesh/progress.h"
+#include "toolkit/mesh/text.h"
+#include "toolkit/vtk/poly_data.h"
+#include "toolkit/vtk/silent_vtk.h"
+#include "toolkit/vtk/vtp_series.h"
 
 namespace mimetra {
 
@@ -86,9 +91,7 @@ std::vector<FrameFile> entries_of_series(const fs::path& path) {
 }
 
 std::vector<FrameFile> entries_of(const fs::path& path) {
-  std::string extension = path.extension().string();
-  std::ranges::transform(extension, extension.begin(),
-                         [](unsigned char c) { return std::tolower(c); });
+  const std::string extension = lower_extension(path);
   std::vector<FrameFile> entries = extension == ".vtp"   ? std::vector{FrameFile{path, 0}}
                                    : extension == ".pvd" ? entries_of_pvd(path)
                                                          : entries_of_series(path);
@@ -98,11 +101,11 @@ std::vector<FrameFile> entries_of(const fs::path& path) {
 
 }  // namespace
 
-FieldSequence read_vtp_series(const fs::path& path,
-                              const std::function<std::vector<int>(int count)>& selected,
-                              const Progress& progress) {
+FieldSequence read_vtp_series(const fs::path& path, const VtpReadOptions& options) {
   const std::vector<FrameFile> all = entries_of(path);
-  const std::vector<int> chosen = selected(static_cast<int>(all.size()));
+  std::vector<int> chosen(all.size());
+  std::iota(chosen.begin(), chosen.end(), 0);
+  if (options.selected) chosen = options.selected(static_cast<int>(all.size()));
   const FrameFile& first = all[static_cast<std::size_t>(chosen.front())];
   FieldSequence result;
   Connectivity connectivity;
@@ -125,7 +128,8 @@ FieldSequence read_vtp_series(const fs::path& path,
     }
     frames.row(f) = Eigen::Map<const Eigen::RowVectorXd>(positions.data(), positions.size());
     times[f] = entry.time;
-    report_progress(progress, static_cast<double>(f + 1) / static_cast<double>(times.size()));
+    report_progress(options.progress,
+                    static_cast<double>(f + 1) / static_cast<double>(times.size()));
   }
   result.sequence =
       MeshSequence(std::move(connectivity), std::move(frames), std::move(times), std::move(rest));

@@ -1,4 +1,4 @@
-#include <mimetra/vtk/vtp_series.h>
+#include "toolkit/vtk/vtp_series.h"
 
 #include <algorithm>
 #include <charconv>
@@ -12,12 +12,14 @@
 #include <vtkPolyData.h>
 #include <vtkXMLPolyDataWriter.h>
 
-#include <mimetra/io/pending_output.h>
-#include <mimetra/io/written_files.h>
-#include <mimetra/mesh/parallel.h>
-#include <mimetra/operations/xml_text.h>
-#include <mimetra/vtk/poly_data.h>
-#include <mimetra/vtk/silent_vtk.h>
+#include "toolkit/io/pending_output.h"
+#include "toolkit/io/whole_file.h"
+#include "toolkit/io/written_files.h"
+#include "toolkit/mesh/parallel.h"
+#include "toolkit/mesh/progress.h"
+#include "toolkit/operations/xml_text.h"
+#include "toolkit/vtk/poly_data.h"
+#include "toolkit/vtk/silent_vtk.h"
 
 namespace mimetra {
 namespace {

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include <mimetra/mesh/errors.h>
-#include <mimetra/mesh/fields.h>
+#include "toolkit/mesh/fields.h"
+#include "toolkit/mesh/progress.h"
 
 namespace mimetra {
 
@@ -33,13 +33,17 @@ std::vector<std::filesystem::path> write_vtp_series(const FieldSequence& fields,
                                                     const std::filesystem::path& target,
                                                     const VtpOptions& = {});
 
+struct VtpReadOptions {
+  /// Chooses frames, 0-based, from their number; all without.
+  std::function<std::vector<int>(int count)> selected = {};
+  Progress progress = {};
+};
+
 /// Reads a series as write_vtp_series writes it, and ParaView too: NAME.pvd, NAME.vtp.series, or
-/// one NAME.vtp. `selected` chooses frames, 0-based, from their number. Fields are those of the
-/// first chosen frame; `displacement` tells the rest pose, and is no field. Throws IoError that
+/// one NAME.vtp. Fields are those of the
+/// first chosen frame; `displacement` gives the rest pose, and is not a field. Throws IoError that
 /// names the file, MismatchError where a frame has other vertices or faces.
-FieldSequence read_vtp_series(const std::filesystem::path& path,
-                              const std::function<std::vector<int>(int count)>& selected,
-                              const Progress& = {});
+FieldSequence read_vtp_series(const std::filesystem::path& path, const VtpReadOptions& = {});
 
 /// The files that read_vtp_series reads for a path: itself, and the frames it names.
 std::vector<std::filesystem::path> vtp_series_files(const std::filesystem::path& path);

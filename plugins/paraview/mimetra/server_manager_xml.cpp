@@ -6,10 +6,9 @@
 #include <string>
 #include <vector>
 
-#include <mimetra/operations/operation.h>
-
-#include "filters/proxy_xml.h"
-#include "filters/reading.h"
+#include "plugins/paraview/mimetra/filters/proxy_xml.h"
+#include "plugins/paraview/mimetra/filters/reading.h"
+#include "toolkit/operations/operation.h"
 
 using namespace mimetra;
 

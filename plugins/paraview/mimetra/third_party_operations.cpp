@@ -1,4 +1,4 @@
-#include "third_party_operations.h"
+#include "plugins/paraview/mimetra/third_party_operations.h"
 
 #include <algorithm>
 #include <set>
@@ -7,10 +7,9 @@
 #include <vtkPVPlugin.h>
 #include <vtkPVServerManagerPluginInterface.h>
 
-#include <mimetra/c/plugins.h>
-#include <mimetra/operations/operation.h>
-
-#include "filters/proxy_xml.h"
+#include "plugins/c/plugins.h"
+#include "plugins/paraview/mimetra/filters/proxy_xml.h"
+#include "toolkit/operations/operation.h"
 
 using namespace mimetra;
 

@@ -109,7 +109,7 @@ def _end_runs():
 
 
 def context():
-    """The context of this thread. Plugins that cannot be used are told of by the first one."""
+    """The context of this thread. The first one names plugins that cannot be used."""
     if not hasattr(_contexts, "own"):
         _contexts.silent = _first.locked()
         _first.acquire(blocking=False)

@@ -316,7 +316,7 @@ class Run(Data):
 
 
 class Page(Data):
-    """A page that tells of a run."""
+    """A page that shows a run."""
 
     kind = c.PAGE
 

@@ -38,6 +38,6 @@ class Cancelled(Error):
 
 
 def error_of(status, message):
-    """The exception that tells of a status other than 0."""
+    """The exception for a status other than 0."""
     classes = (UsageError, BadInput, Mismatch, OutputError, Cancelled)
     return next((each for each in classes if each.status == status), Error)(message)

@@ -22,7 +22,7 @@ _KINDS = {c.FLAG: "flag", c.INTEGER: "integer", c.INTEGER_LIST: "list of integer
 # What has no arrays, and is written by programs with VTK only.
 _UNSEEN = (Page, Pictures, Run, View)
 # What a result has besides outputs.
-_TOLD = ("report", "summary")
+_REPORTED = ("report", "summary")
 
 
 class Input:
@@ -44,7 +44,7 @@ class Output(Input):
 class Parameter:
     """A parameter: `default` as a Python value or None, `minimum` and `maximum` or None.
 
-    `of_files` is true where it speaks of reading inputs that are given as text.
+    `of_files` is true where it is about reading inputs that are given as text.
     """
 
     def __init__(self, described):
@@ -85,7 +85,7 @@ class Operation:
         self.inputs = [Input(each.contents) for each in c.listed(described.inputs)]
         outputs = [Output(each.contents) for each in c.listed(described.outputs)]
         self.outputs = [port for port in outputs if port.kind not in _UNSEEN]
-        # No operation writes here: `save` takes what speaks of that.
+        # No operation writes here: `save` takes what is about that.
         self.parameters = [Parameter(each.contents) for each in c.listed(described.parameters)
                            if each.contents.of_files != c.WRITING]
 
@@ -97,7 +97,7 @@ class Result(types.SimpleNamespace):
 def python_name(name):
     """An operation's, output's or parameter's name in Python."""
     made = name.replace("-", "_")
-    return made + "_" if keyword.iskeyword(made) or made in _TOLD else made
+    return made + "_" if keyword.iskeyword(made) or made in _REPORTED else made
 
 
 def _finite(number):

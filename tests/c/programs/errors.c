@@ -1,7 +1,7 @@
 /* Every wrong use is a status and a message. */
-#include <mimetra/c/mimetra.h>
+#include <mimetra/plugins/c/mimetra.h>
 
-#include "take.h"
+#include "tests/c/programs/take.h"
 
 static void check_null_handles(const mimetra_interface* m) {
   mimetra_data* data = (mimetra_data*)m;

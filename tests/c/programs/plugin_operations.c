@@ -1,8 +1,8 @@
 /* Third-party operations through the C interface, from the folder in MIMETRA_PLUGIN_PATH: the two
  * samples. */
-#include <mimetra/c/mimetra.h>
+#include <mimetra/plugins/c/mimetra.h>
 
-#include "take.h"
+#include "tests/c/programs/take.h"
 
 static void fail_on_log(int32_t level, const char* text, void* user) {
   (void)level;

@@ -1,7 +1,7 @@
 /* The arrays of the command's take in, the same transfer: bit for bit what the command wrote. */
-#include <mimetra/c/mimetra.h>
+#include <mimetra/plugins/c/mimetra.h>
 
-#include "take.h"
+#include "tests/c/programs/take.h"
 
 /* The arrays of a value as a host holds them: in memory of its own. */
 static mimetra_data* rebuilt(const mimetra_interface* m, mimetra_context* context,

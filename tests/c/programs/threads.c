@@ -1,9 +1,9 @@
 /* Two threads with a context each run operations at once on one value: what one alone gets. */
 #include <pthread.h>
 
-#include <mimetra/c/mimetra.h>
+#include <mimetra/plugins/c/mimetra.h>
 
-#include "take.h"
+#include "tests/c/programs/take.h"
 
 enum { RUNS = 5 };
 

@@ -1,7 +1,7 @@
 /* Values of all kinds go in as arrays and come out as they went in. */
-#include <mimetra/c/mimetra.h>
+#include <mimetra/plugins/c/mimetra.h>
 
-#include "take.h"
+#include "tests/c/programs/take.h"
 
 /* All arrays of a value make the same value again. */
 static mimetra_data* again(const mimetra_interface* m, mimetra_context* context,

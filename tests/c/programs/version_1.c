@@ -1,7 +1,6 @@
 /* Compiled against version 1 of the header as it was; it must run with every later library. */
-#include "version_1/mimetra.h"
-
-#include "take.h"
+#include "tests/c/programs/version_1/mimetra.h"
+#include "tests/c/programs/take.h"
 
 static void remember(int32_t level, const char* text, void* user) {
   (void)level;

@@ -2,7 +2,7 @@
 
 #include <cstring>
 
-#include <mimetra/model/blendshape_model.h>
+#include <mimetra/toolkit/model/blendshape_model.h>
 
 int main() {
   constexpr int kVertices = 30, kExpressions = 1200, kFrames = 20;

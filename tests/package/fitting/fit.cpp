@@ -9,7 +9,9 @@
 #include <nlohmann/json.hpp>
 
 #include <mimetra/fitting/fit_operation.h>
-#include <mimetra/io/pending_output.h>
+#include <mimetra/toolkit/io/pending_output.h>
+
+#include "toolkit/io/whole_file.h"
 
 using namespace mimetra;
 

@@ -1,4 +1,4 @@
-#include "host_output.h"
+#include "plugins/paraview/mimetra/filters/host_output.h"
 
 #include <limits>
 
@@ -9,7 +9,7 @@
 #include <vtkPolyData.h>
 #include <vtkTable.h>
 
-#include <mimetra/vtk/poly_data.h>
+#include "toolkit/vtk/poly_data.h"
 
 using namespace mimetra;
 

@@ -1,11 +1,11 @@
 #pragma once
 
-#include <mimetra/operations/data.h>
+#include "toolkit/operations/data.h"
 
 class vtkPolyData;
 class vtkTable;
 
-/// Makes `output` what `input` is, in another shape: what the input tells of its own shape
+/// Makes `output` what `input` is, in another shape: what the input says about its own shape
 /// (normals, displacement, rest pose) is left out.
 void show_shape(vtkPolyData& output, vtkPolyData& input, const mimetra::Positions& shape);
 

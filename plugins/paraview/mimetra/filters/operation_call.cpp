@@ -1,12 +1,12 @@
-#include "operation_call.h"
+#include "plugins/paraview/mimetra/filters/operation_call.h"
 
 #include <algorithm>
 
-#include <mimetra/c/plugins.h>
-#include <mimetra/operations/loading.h>
-#include <mimetra/vtk/vtp_formats.h>
-
-#include "proxy_xml.h"
+#include "plugins/c/plugins.h"
+#include "plugins/paraview/mimetra/filters/proxy_xml.h"
+#include "toolkit/mesh/progress.h"
+#include "toolkit/operations/loading.h"
+#include "toolkit/vtk/vtp_formats.h"
 
 using namespace mimetra;
 
@@ -16,7 +16,7 @@ OperationTable table_of_host() {
   OperationTable table;
   add_toolkit(table);
   add_vtp(table);
-  // What is wrong with them was told when ParaView loaded this.
+  // What is wrong with them was reported when ParaView loaded this.
   add_plugins(table, plugin_folders());
   return table;
 }

@@ -5,7 +5,8 @@
 #include <string>
 #include <vector>
 
-#include <mimetra/operations/operation.h>
+#include "toolkit/mesh/progress.h"
+#include "toolkit/operations/operation.h"
 
 /// True where both have one name, place and values; NaN is NaN.
 bool same_field(const mimetra::Field& a, const mimetra::Field& b);

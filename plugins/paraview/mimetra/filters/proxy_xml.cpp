@@ -1,9 +1,9 @@
-#include "proxy_xml.h"
+#include "plugins/paraview/mimetra/filters/proxy_xml.h"
 
 #include <algorithm>
 #include <cctype>
 
-#include <mimetra/operations/xml_text.h>
+#include "toolkit/operations/xml_text.h"
 
 namespace mimetra {
 

@@ -1,4 +1,4 @@
-#include "reading.h"
+#include "plugins/paraview/mimetra/filters/reading.h"
 
 using namespace mimetra;
 

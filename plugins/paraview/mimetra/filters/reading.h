@@ -1,6 +1,6 @@
 #pragma once
 
-#include <mimetra/operations/operation.h>
+#include "toolkit/operations/operation.h"
 
 /// What the source does: it reads a sequence, with the fields of formats that have some.
 mimetra::Operation reading_operation();

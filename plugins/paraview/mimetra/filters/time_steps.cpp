@@ -1,9 +1,10 @@
-#include "time_steps.h"
+#include "plugins/paraview/mimetra/filters/time_steps.h"
 
 #include <vtkPolyData.h>
 
-#include <mimetra/operations/parameter.h>
-#include <mimetra/vtk/poly_data.h>
+#include "toolkit/mesh/errors.h"
+#include "toolkit/operations/parameter.h"
+#include "toolkit/vtk/poly_data.h"
 
 using namespace mimetra;
 

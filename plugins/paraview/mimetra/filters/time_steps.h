@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include <mimetra/operations/data.h>
+#include "toolkit/operations/data.h"
 
 class vtkDataObject;
 class vtkPolyData;

@@ -1,8 +1,10 @@
-#include "vtkMimetraAlgorithm.h"
+#include "plugins/paraview/mimetra/filters/vtkMimetraAlgorithm.h"
 
 #include <utility>
 
-#include "operation_call.h"
+#include "plugins/paraview/mimetra/filters/operation_call.h"
+#include "toolkit/mesh/errors.h"
+#include "toolkit/mesh/progress.h"
 
 using namespace mimetra;
 

@@ -7,7 +7,7 @@
 
 #include <vtkPolyDataAlgorithm.h>
 
-#include "MimetraFiltersModule.h"
+#include <MimetraFiltersModule.h>
 
 class OperationCall;
 namespace mimetra {

@@ -1,4 +1,4 @@
-#include "vtkMimetraComponents.h"
+#include "plugins/paraview/mimetra/filters/vtkMimetraComponents.h"
 
 #include <vtkInformation.h>
 #include <vtkMultiBlockDataSet.h>
@@ -7,10 +7,9 @@
 #include <vtkPolyData.h>
 #include <vtkTable.h>
 
-#include <mimetra/operations/operation.h>
-#include <mimetra/vtk/poly_data.h>
-
-#include "host_output.h"
+#include "plugins/paraview/mimetra/filters/host_output.h"
+#include "toolkit/operations/operation.h"
+#include "toolkit/vtk/poly_data.h"
 
 using namespace mimetra;
 

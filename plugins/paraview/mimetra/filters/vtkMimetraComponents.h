@@ -1,6 +1,6 @@
 #pragma once
 
-#include "vtkMimetraFilter.h"
+#include "plugins/paraview/mimetra/filters/vtkMimetraFilter.h"
 
 /// Sparse components, each a block that shows it at weight 1, and their weights over time.
 class MIMETRAFILTERS_EXPORT vtkMimetraComponents : public vtkMimetraFilter {

@@ -1,4 +1,4 @@
-#include "vtkMimetraFilter.h"
+#include "plugins/paraview/mimetra/filters/vtkMimetraFilter.h"
 
 #include <vtkAlgorithmOutput.h>
 #include <vtkDataObject.h>
@@ -8,8 +8,9 @@
 #include <vtkPolyData.h>
 #include <vtkStreamingDemandDrivenPipeline.h>
 
-#include "operation_call.h"
-#include "time_steps.h"
+#include "plugins/paraview/mimetra/filters/operation_call.h"
+#include "plugins/paraview/mimetra/filters/time_steps.h"
+#include "toolkit/mesh/errors.h"
 
 using namespace mimetra;
 using Pipeline = vtkStreamingDemandDrivenPipeline;
@@ -66,7 +67,7 @@ void vtkMimetraFilter::become(std::unique_ptr<OperationCall> call, const std::st
   collected_.reset();
 }
 
-// What is no mesh is refused in RequestData, in words that say what to do about it.
+// What is not a mesh is refused in RequestData, in words that say what to do about it.
 int vtkMimetraFilter::FillInputPortInformation(int, vtkInformation* info) {
   info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkDataObject");
   return 1;

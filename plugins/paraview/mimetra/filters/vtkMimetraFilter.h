@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "vtkMimetraAlgorithm.h"
+#include "plugins/paraview/mimetra/filters/vtkMimetraAlgorithm.h"
 
 class TimeSteps;
 class vtkAlgorithmOutput;

@@ -1,10 +1,10 @@
-#include "vtkMimetraGeodesic.h"
+#include "plugins/paraview/mimetra/filters/vtkMimetraGeodesic.h"
 
 #include <vtkObjectFactory.h>
 #include <vtkPolyData.h>
 
-#include <mimetra/operations/operation.h>
-#include <mimetra/vtk/poly_data.h>
+#include "toolkit/operations/operation.h"
+#include "toolkit/vtk/poly_data.h"
 
 using namespace mimetra;
 

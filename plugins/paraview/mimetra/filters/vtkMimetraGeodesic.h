@@ -1,6 +1,6 @@
 #pragma once
 
-#include "vtkMimetraFilter.h"
+#include "plugins/paraview/mimetra/filters/vtkMimetraFilter.h"
 
 /// Distances along the mesh of the time step that is shown.
 class MIMETRAFILTERS_EXPORT vtkMimetraGeodesic : public vtkMimetraFilter {

@@ -1,16 +1,15 @@
-#include "vtkMimetraOperation.h"
+#include "plugins/paraview/mimetra/filters/vtkMimetraOperation.h"
 
 #include <algorithm>
 #include <stdexcept>
 
 #include <vtkObjectFactory.h>
 
-#include <mimetra/operations/operation.h>
-#include <mimetra/vtk/poly_data.h>
-
-#include "host_output.h"
-#include "operation_call.h"
-#include "time_steps.h"
+#include "plugins/paraview/mimetra/filters/host_output.h"
+#include "plugins/paraview/mimetra/filters/operation_call.h"
+#include "plugins/paraview/mimetra/filters/time_steps.h"
+#include "toolkit/operations/operation.h"
+#include "toolkit/vtk/poly_data.h"
 
 using namespace mimetra;
 

@@ -5,7 +5,7 @@
 #include <vtkNew.h>
 #include <vtkPolyData.h>
 
-#include "vtkMimetraFilter.h"
+#include "plugins/paraview/mimetra/filters/vtkMimetraFilter.h"
 
 /// An operation of a plugin: the sequence or the fields that it makes of its input's. What it makes
 /// on the input's own faces is shown with the input's data, anything else as a mesh of its own.

@@ -1,12 +1,11 @@
-#include "vtkMimetraRegions.h"
+#include "plugins/paraview/mimetra/filters/vtkMimetraRegions.h"
 
 #include <vtkObjectFactory.h>
 
-#include <mimetra/operations/operation.h>
-#include <mimetra/vtk/poly_data.h>
-
-#include "host_output.h"
-#include "time_steps.h"
+#include "plugins/paraview/mimetra/filters/host_output.h"
+#include "plugins/paraview/mimetra/filters/time_steps.h"
+#include "toolkit/operations/operation.h"
+#include "toolkit/vtk/poly_data.h"
 
 using namespace mimetra;
 

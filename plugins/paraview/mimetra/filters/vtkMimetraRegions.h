@@ -3,7 +3,7 @@
 #include <vtkNew.h>
 #include <vtkPolyData.h>
 
-#include "vtkMimetraFilter.h"
+#include "plugins/paraview/mimetra/filters/vtkMimetraFilter.h"
 
 /// Regions of interest as fields on the input.
 class MIMETRAFILTERS_EXPORT vtkMimetraRegions : public vtkMimetraFilter {

@@ -1,4 +1,4 @@
-#include "vtkMimetraSequence.h"
+#include "plugins/paraview/mimetra/filters/vtkMimetraSequence.h"
 
 #include <vtkInformation.h>
 #include <vtkInformationVector.h>
@@ -6,13 +6,12 @@
 #include <vtkPolyData.h>
 #include <vtkStreamingDemandDrivenPipeline.h>
 
-#include <mimetra/operations/operation.h>
-#include <mimetra/vtk/poly_data.h>
-
-#include "host_output.h"
-#include "operation_call.h"
-#include "reading.h"
-#include "time_steps.h"
+#include "plugins/paraview/mimetra/filters/host_output.h"
+#include "plugins/paraview/mimetra/filters/operation_call.h"
+#include "plugins/paraview/mimetra/filters/reading.h"
+#include "plugins/paraview/mimetra/filters/time_steps.h"
+#include "toolkit/operations/operation.h"
+#include "toolkit/vtk/poly_data.h"
 
 using namespace mimetra;
 using Pipeline = vtkStreamingDemandDrivenPipeline;

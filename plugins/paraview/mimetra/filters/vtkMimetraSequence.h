@@ -2,7 +2,7 @@
 
 #include <vtkNew.h>
 
-#include "vtkMimetraAlgorithm.h"
+#include "plugins/paraview/mimetra/filters/vtkMimetraAlgorithm.h"
 
 /// Reads a sequence or model of any format, with its times.
 class MIMETRAFILTERS_EXPORT vtkMimetraSequence : public vtkMimetraAlgorithm {

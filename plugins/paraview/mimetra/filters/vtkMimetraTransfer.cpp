@@ -1,4 +1,4 @@
-#include "vtkMimetraTransfer.h"
+#include "plugins/paraview/mimetra/filters/vtkMimetraTransfer.h"
 
 #include <vtkInformation.h>
 #include <vtkInformationVector.h>
@@ -6,12 +6,11 @@
 #include <vtkStreamingDemandDrivenPipeline.h>
 #include <vtkTable.h>
 
-#include <mimetra/operations/operation.h>
-#include <mimetra/vtk/poly_data.h>
-
-#include "host_output.h"
-#include "operation_call.h"
-#include "time_steps.h"
+#include "plugins/paraview/mimetra/filters/host_output.h"
+#include "plugins/paraview/mimetra/filters/operation_call.h"
+#include "plugins/paraview/mimetra/filters/time_steps.h"
+#include "toolkit/operations/operation.h"
+#include "toolkit/vtk/poly_data.h"
 
 using namespace mimetra;
 

@@ -4,7 +4,7 @@
 #include <vtkPolyData.h>
 #include <vtkSmartPointer.h>
 
-#include "vtkMimetraFilter.h"
+#include "plugins/paraview/mimetra/filters/vtkMimetraFilter.h"
 
 /// The deformation of what comes in at port 0 on a target: a mesh at port 1, or a model's file.
 class MIMETRAFILTERS_EXPORT vtkMimetraTransfer : public vtkMimetraFilter {

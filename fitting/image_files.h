@@ -1,0 +1,38 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "toolkit/operations/image.h"
+
+namespace mimetra {
+
+/// True for NAME.png, NAME.jpg and NAME.jpeg in any case.
+bool is_image(const std::filesystem::path& path);
+
+/// The images that `text` names: a PNG or JPEG file, a folder of them or a pattern, in natural
+/// order (2 before 10). Throws IoError where there is none.
+std::vector<std::filesystem::path> image_files(const std::string& text);
+
+/// Reads a PNG or JPEG file of 8 bits a channel, whatever its extension. Throws IoError for one
+/// that is truncated, damaged or of another type, and where mimetra was built without dlib.
+Image read_image(const std::filesystem::path& path);
+
+/// Throws as read_image for a file that is no such image or was cut; its pixels are not decoded.
+void check_image(const std::filesystem::path& path);
+
+/// The part of columns left .. left + width - 1 and rows top .. top + height - 1 that is inside the
+/// image. Throws std::invalid_argument where nothing is.
+Image cropped(const Image& image, int left, int top, int width, int height);
+
+/// The image at another height (>= 1), its sides in proportion: each pixel is the mean of what it
+/// covers. Throws std::invalid_argument for an image without pixels.
+Image scaled_to_height(const Image& image, int height);
+
+/// The images side by side, each scaled to `height` (0: that of the lowest), `gap` white columns
+/// between them. Throws std::invalid_argument for no images, one without pixels, or a negative
+/// height or gap.
+Image strip(const std::vector<Image>& images, int height = 0, int gap = 8);
+
+}  // namespace mimetra

@@ -1,0 +1,170 @@
+#include <cmath>
+#include <fstream>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "fitting/landmark_file.h"
+#include "tests/temporary_folder.h"
+#include "toolkit/mesh/errors.h"
+
+namespace mimetra {
+namespace {
+
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::StartsWith;
+
+class Landmarks : public testing::Test {
+ protected:
+  LandmarkTrack read(const std::string& name, const std::string& content) {
+    std::ofstream(folder_ / name, std::ios::binary) << content;
+    return read_landmarks(folder_ / name);
+  }
+  std::string message(const std::string& name, const std::string& content) {
+    return test::message_of<IoError>([&] { read(name, content); });
+  }
+  test::TemporaryFolder folder_;
+};
+
+const char* const kPts = "version: 1\nn_points:  2\n{\n1 1\n3.5 7\n}\n";
+
+TEST_F(Landmarks, OfAPtsFileBecomeZeroBased) {
+  const LandmarkTrack track = read("a.pts", kPts);
+  EXPECT_THAT(track.names, ElementsAre("1", "2"));
+  EXPECT_EQ(track.points, Eigen::RowVector4d(0, 0, 2.5, 6));
+  EXPECT_EQ(track.times.size(), 0);
+}
+
+TEST_F(Landmarks, OfAPtsFileMayHaveAByteOrderMarkAndCarriageReturns) {
+  EXPECT_EQ(read("a.PTS", "\xEF\xBB\xBFversion: 1\r\nn_points: 1\r\n{\r\n2 3\r\n}\r\n").points,
+            Eigen::RowVector2d(1, 2));
+}
+
+TEST_F(Landmarks, OfEveryTruncatedPtsFileAreAnError) {
+  const std::string content = kPts;
+  for (std::size_t length = 0; length + 2 < content.size(); ++length) {
+    EXPECT_THAT(message("a.pts", content.substr(0, length)), HasSubstr("a.pts")) << length;
+  }
+}
+
+TEST_F(Landmarks, OfABrokenPtsFileNameTheLine) {
+  EXPECT_THAT(message("a.pts", "version: 2\n"),
+              AllOf(StartsWith((folder_ / "a.pts").string()),
+                    HasSubstr("line 1: expected '1', found '2'")));
+  EXPECT_THAT(message("a.pts", "version: 1\nn_points: 0\n{\n}\n"),
+              HasSubstr("line 2: n_points is 0"));
+  EXPECT_THAT(message("a.pts", "version: 1\nn_points: 1\n{\n1 a\n}\n"),
+              HasSubstr("line 4: expected a number for y, found 'a'"));
+  EXPECT_THAT(message("a.pts", "version: 1\nn_points: 1\n{\n1 nan\n}\n"),
+              HasSubstr("line 4: a coordinate is not finite"));
+  EXPECT_THAT(message("a.pts", "version: 1\nn_points: 1\n{\n1 2\n3 4\n}\n"),
+              HasSubstr("line 5: expected '}', found '3'"));
+  EXPECT_THAT(message("a.pts", "version: 1\nn_points: 99999999999\n{\n1 2\n}\n"),
+              HasSubstr("line 2: n_points is 99999999999"));
+}
+
+TEST_F(Landmarks, OfACsvTrackHaveTimesAndGaps) {
+  const LandmarkTrack track =
+      read("a.csv", "frame,time,x0,y0,x1,y1\n1,0,10,20,30,40\n2,0.04,,,31,41\n");
+  EXPECT_EQ(track.frames(), 2);
+  EXPECT_THAT(track.names, ElementsAre("1", "2"));
+  EXPECT_EQ(track.times, Eigen::Vector2d(0, 0.04));
+  EXPECT_EQ(track.points.row(0), Eigen::RowVector4d(10, 20, 30, 40));
+}
+
+TEST_F(Landmarks, OfACsvTrackAreWholeOrMissing) {
+  const LandmarkTrack track = read("a.csv", "x0,y0,x1,y1\n,,31,41\nnan,NaN,1,2\n");
+  EXPECT_TRUE(std::isnan(track.points(0, 0)) && std::isnan(track.points(1, 1)));
+  EXPECT_EQ(track.points(0, 3), 41);
+  EXPECT_EQ(track.times.size(), 0);
+  EXPECT_THAT(message("a.csv", "x0,y0\n1,\n"),
+              HasSubstr("line 2: only one of 'x0' and 'y0' is a number"));
+}
+
+TEST_F(Landmarks, OfOpenFaceAreRead) {
+  const LandmarkTrack track = read(
+      "a.csv",
+      "frame, face_id, timestamp, confidence, success, eye_lmk_x_0, x_0, x_1, y_0, y_1, X_0\r\n"
+      "1, 0, 0.000, 0.98, 1, 5, 10, 11, 20, 21, 7\r\n2, 0, 0.033, 0.1, 0, 5, 0, 0, 0, 0, 7\r\n");
+  EXPECT_EQ(track.points.row(0), Eigen::RowVector4d(10, 20, 11, 21));
+  EXPECT_TRUE(track.points.row(1).array().isNaN().all());
+  EXPECT_EQ(track.times, Eigen::Vector2d(0, 0.033));
+  EXPECT_EQ(track.confidence, Eigen::Vector2d(0.98, 0.1));
+}
+
+TEST_F(Landmarks, OfABrokenCsvTrackNameTheLine) {
+  EXPECT_THAT(message("a.csv", ""), HasSubstr("is empty; expected a line of column names"));
+  EXPECT_THAT(message("a.csv", "x0,y0\n"), HasSubstr("has column names but no frame"));
+  EXPECT_THAT(message("a.csv", "a,b\n1,2\n"),
+              HasSubstr("line 1: no landmarks; expected columns x0, y0"));
+  EXPECT_THAT(message("a.csv", "x0,y0,x2,y2\n1,2,3,4\n"),
+              HasSubstr("line 1: column 'x1' is missing before 'x2'"));
+  EXPECT_THAT(message("a.csv", "x0,y1\n1,2\n"), HasSubstr("line 1: no column 'y' for 'x0'"));
+  EXPECT_THAT(message("a.csv", "x0,y0,y1\n1,2,3\n"),
+              HasSubstr("line 1: there are more columns of y than of x"));
+  EXPECT_THAT(message("a.csv", "x0,y0,x_0\n1,2,3\n"),
+              HasSubstr("line 1: the column 'x_0' occurs twice"));
+  EXPECT_THAT(message("a.csv", "x0,y0\n1,2\n\n1\n"),
+              HasSubstr("line 4: 1 field, expected 2 as in the first line"));
+  EXPECT_THAT(message("a.csv", "x0,y0\n1,b\n"),
+              HasSubstr("line 2: column 'y0': expected a finite number, found 'b'"));
+  EXPECT_THAT(message("a.csv", "x0,y0\n1,inf\n"), HasSubstr("found 'inf'"));
+  EXPECT_THAT(message("a.csv", "time,x0,y0\n1,1,2\n1,1,2\n"),
+              HasSubstr("line 3: times do not ascend; expected one face and one row a frame"));
+}
+
+TEST_F(Landmarks, OfAJsonFileMayHaveNames) {
+  const LandmarkTrack track = read("a.json",
+                                   R"({"names": ["chin", "nose"], "frames": [
+              {"time": 0, "confidence": 1, "points": [[1, 2], [3, 4]]},
+              {"time": 0.5, "confidence": 0.5, "points": [null, [5, 6]]}]})");
+  EXPECT_THAT(track.names, ElementsAre("chin", "nose"));
+  EXPECT_EQ(track.points.row(0), Eigen::RowVector4d(1, 2, 3, 4));
+  EXPECT_TRUE(std::isnan(track.points(1, 0)) && std::isnan(track.points(1, 1)));
+  EXPECT_EQ(track.points(1, 3), 6);
+  EXPECT_EQ(track.times, Eigen::Vector2d(0, 0.5));
+  EXPECT_EQ(track.confidence, Eigen::Vector2d(1, 0.5));
+}
+
+TEST_F(Landmarks, OfAJsonFileMayBeOneFrame) {
+  const LandmarkTrack track = read("a.json", R"({"points": [[1, 2]]})");
+  EXPECT_EQ(track.points, Eigen::RowVector2d(1, 2));
+  EXPECT_THAT(track.names, ElementsAre("1"));
+}
+
+TEST_F(Landmarks, OfABrokenJsonFileNameTheElement) {
+  EXPECT_THAT(message("a.json", "{"), HasSubstr("is not JSON"));
+  EXPECT_THAT(message("a.json", "[]"), HasSubstr("expected an object with \"frames\""));
+  EXPECT_THAT(message("a.json", "{}"), HasSubstr("/points: expected a list of points"));
+  EXPECT_THAT(message("a.json", R"({"points": []})"), HasSubstr("/points: 0 points"));
+  EXPECT_THAT(message("a.json", R"({"frames": []})"), HasSubstr("/frames: expected a list"));
+  EXPECT_THAT(message("a.json", R"({"points": [[1]]})"),
+              HasSubstr("/points/0: expected [x, y] or null"));
+  EXPECT_THAT(message("a.json", R"({"points": [["a", 1]]})"),
+              HasSubstr("/points/0: expected a finite number"));
+  EXPECT_THAT(message("a.json", R"({"frames": [{"points": [[1, 2]]}, {"points": []}]})"),
+              HasSubstr("/frames/1/points: 0 points, expected 1 as in the first frame"));
+  EXPECT_THAT(
+      message("a.json", R"({"frames": [{"points": [null]}, {"time": 1, "points": [null]}]})"),
+      HasSubstr("\"time\" is in 1 of 2 frames"));
+  EXPECT_THAT(message("a.json", R"({"frames": [{"time": 1, "points": [null]},
+                                               {"time": 1, "points": [null]}]})"),
+              HasSubstr("/frames/1/time: times do not ascend"));
+  EXPECT_THAT(message("a.json", R"({"names": ["a", "b"], "points": [null]})"),
+              HasSubstr("/names: expected a list of 1 names"));
+  EXPECT_THAT(message("a.json", R"({"names": [1], "points": [null]})"),
+              HasSubstr("/names: expected strings"));
+  EXPECT_THAT(message("a.json", R"({"names": ["a", "a"], "points": [null, null]})"),
+              HasSubstr("/names: the name 'a' occurs twice"));
+}
+
+TEST_F(Landmarks, OfAnUnknownFormatAreRefused) {
+  EXPECT_THAT(message("a.txt", ""), HasSubstr("expected .pts, .csv or .json"));
+  EXPECT_THAT(test::message_of<IoError>([&] { read_landmarks(folder_ / "none.pts"); }),
+              HasSubstr("none.pts"));
+}
+
+}  // namespace
+}  // namespace mimetra

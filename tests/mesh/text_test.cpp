@@ -1,0 +1,40 @@
+#include <gtest/gtest.h>
+
+#include "toolkit/mesh/text.h"
+
+namespace mimetra {
+namespace {
+
+TEST(NaturalLess, TwoComesBeforeTen) {
+  EXPECT_TRUE(natural_less("frame_2.obj", "frame_10.obj"));
+  EXPECT_FALSE(natural_less("frame_10.obj", "frame_2.obj"));
+  EXPECT_TRUE(natural_less("a9b1", "a10b0"));
+  EXPECT_TRUE(natural_less("a", "a1"));
+  EXPECT_TRUE(natural_less("1", "99999999999999999999999999999"));
+}
+
+TEST(NaturalLess, OrdersEqualNumbersOfDifferentLengthOneWay) {
+  EXPECT_NE(natural_less("f1", "f01"), natural_less("f01", "f1"));
+  EXPECT_FALSE(natural_less("f1", "f1"));
+  EXPECT_TRUE(natural_less("f01a", "f1b"));
+}
+
+TEST(Text, ListsTheFirstOfManyAndCountsTheRest) {
+  EXPECT_EQ(listed({"a", "b", "c"}, 3), "a, b, c");
+  EXPECT_EQ(listed({"a", "b", "c"}, 2), "a, b and 1 more");
+  EXPECT_EQ(listed({}, 2), "");
+}
+
+TEST(Text, JoinsWordsAsPeopleReadThem) {
+  EXPECT_EQ(joined(words_of({2}), ", ", " and "), "2");
+  EXPECT_EQ(joined(words_of({2, 5, 7}), ", ", " and "), "2, 5 and 7");
+}
+
+TEST(Text, LowersTheLettersOfAnExtensionAndNothingElse) {
+  EXPECT_EQ(lower_extension("FACE.PLY"), ".ply");
+  EXPECT_EQ(lower_extension("Face"), "");
+  EXPECT_EQ(lower_case("\xC3\x84Z_9"), "\xC3\x84z_9");
+}
+
+}  // namespace
+}  // namespace mimetra

@@ -1,0 +1,124 @@
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "tests/shapes.h"
+#include "toolkit/pictures/picture.h"
+#include "toolkit/pictures/sheet_layout.h"
+
+namespace mimetra {
+namespace {
+
+/// A flat square of 2 x 2 units that faces the eye.
+Sheet square_sheet(double scale = 1, double shift = 0) {
+  const test::Shape shape = test::grid(3, 3);
+  Sheet sheet;
+  TileRow row;
+  row.connectivity =
+      std::make_shared<Connectivity>(Connectivity::from_triangles(9, shape.triangles));
+  Positions positions = scale * shape.positions;
+  positions.array() += shift;
+  row.tiles.push_back({positions, std::vector<Color>(9, Color{200, 40, 40}), 0});
+  sheet.rows.push_back(row);
+  sheet.tile_height = 100;
+  return sheet;
+}
+
+bool is_red(const Color& color) {
+  return color.red > 80 && color.green < color.red / 2 && color.blue < color.red / 2;
+}
+
+/// Pixels of the mesh's colour.
+int red_pixels(const Image& image) {
+  int count = 0;
+  for (int y = 0; y < image.height; ++y) {
+    for (int x = 0; x < image.width; ++x) count += is_red(image.at(x, y));
+  }
+  return count;
+}
+
+TEST(Picture, ShowsAMeshInItsColourAndScaleOnWhite) {
+  const Sheet sheet = square_sheet();
+  const SheetLayout layout = SheetLayout::of(sheet);
+  const Image image = draw(sheet);
+  ASSERT_EQ(image.width, layout.width);
+  ASSERT_EQ(image.height, layout.height);
+  const Box tile = layout.tile(0, 0);
+  EXPECT_TRUE(is_red(image.at(tile.left + tile.width / 2, tile.top + tile.height / 2)));
+  EXPECT_EQ(image.at(0, 0), (Color{255, 255, 255}));
+  // Two units wide and high; a pixel's width of doubt along the border.
+  const double side = 2 * layout.pixels_per_unit();
+  EXPECT_NEAR(red_pixels(image), side * side, 4 * side);
+}
+
+TEST(Picture, DoesNotDependOnUnitOrOrigin) {
+  const Image image = draw(square_sheet());
+  for (const double scale : {1e-6, 1e6}) {
+    const int tolerance = 4 * 100;  // a pixel's width along the border
+    EXPECT_NEAR(red_pixels(draw(square_sheet(scale, 1000 * scale))), red_pixels(image), tolerance);
+  }
+}
+
+TEST(Picture, IsTheSameEveryTime) {
+  EXPECT_EQ(draw(square_sheet()).pixels, draw(square_sheet()).pixels);
+}
+
+TEST(Picture, HasAScaleBarOfTheLengthItSays) {
+  Sheet sheet = square_sheet();
+  sheet.rows[0].tiles[0].colors.assign(9, Color{255, 255, 255});
+  const SheetLayout layout = SheetLayout::of(sheet);
+  const Image image = draw(sheet);
+  const double length = round_length(layout.tile_width / 3.0 / layout.pixels_per_unit());
+  int longest = 0;
+  for (int y = layout.height - 2 * layout.text; y < layout.height; ++y) {
+    int run = 0;
+    for (int x = 0; x < layout.width; ++x) {
+      run = image.at(x, y).red < 60 ? run + 1 : 0;
+      longest = std::max(longest, run);
+    }
+  }
+  EXPECT_NEAR(longest, length * layout.pixels_per_unit(), 1.5);
+}
+
+TEST(Picture, OfNothingIsRefused) {
+  EXPECT_THROW(draw(Sheet{}), std::invalid_argument);
+  Sheet huge = square_sheet();
+  huge.tile_height = 20000;
+  EXPECT_THROW(draw(huge), std::invalid_argument);
+}
+
+TEST(Picture, IsWrittenAsPng) {
+  const std::string bytes = png_of(Image(2, 1, {255, 0, 0}));
+  EXPECT_EQ(bytes.substr(0, 8), "\x89PNG\r\n\x1a\n");
+  EXPECT_EQ(bytes.substr(16, 8), std::string("\0\0\0\2\0\0\0\1", 8));
+}
+
+TEST(SheetLayout, LeavesALineAboveTilesWithATitle) {
+  Sheet sheet = square_sheet();
+  sheet.letters = 17;
+  const SheetLayout plain = SheetLayout::of(sheet);
+  EXPECT_EQ(plain.text, 17);
+  sheet.rows[0].tiles[0].title = "1: 25 mm";
+  const SheetLayout titled = SheetLayout::of(sheet);
+  EXPECT_EQ(titled.tile(0, 0).top, plain.tile(0, 0).top + 2 * 17);
+  EXPECT_EQ(titled.height, plain.height + 2 * 17);
+}
+
+TEST(Picture, WritesTheTitlesOfTiles) {
+  Sheet sheet = square_sheet();
+  const auto dark_above = [&sheet] {
+    const SheetLayout layout = SheetLayout::of(sheet);
+    const Image image = draw(sheet);
+    int count = 0;
+    for (int y = 0; y < layout.tile(0, 0).top; ++y) {
+      for (int x = 0; x < image.width; ++x) count += image.at(x, y).green < 128;
+    }
+    return count;
+  };
+  EXPECT_EQ(dark_above(), 0);
+  sheet.rows[0].tiles[0].title = "title";
+  EXPECT_GT(dark_above(), 10);
+}
+
+}  // namespace
+}  // namespace mimetra

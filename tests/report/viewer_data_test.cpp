@@ -1,0 +1,185 @@
+#include "toolkit/report/viewer_data.h"
+
+#include <cmath>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <vtkBase64Utilities.h>
+#include <vtkNew.h>
+#include <vtkZLibDataCompressor.h>
+#include <nlohmann/json.hpp>
+
+#include "tests/shapes.h"
+
+namespace mimetra {
+namespace {
+
+using nlohmann::json;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::Not;
+
+/// A grid that swings along z, a wave further each frame, far from the origin.
+MeshSequence swinging(int frames, double seconds, int side = 12) {
+  const test::Shape shape = test::grid(side, side);
+  const Positions rest = shape.positions.rowwise() + Eigen::RowVector3d(100, -50, 7);
+  Frames positions(frames, rest.size());
+  Eigen::VectorXd times(frames);
+  for (int f = 0; f < frames; ++f) {
+    Positions pose = rest;
+    for (int v = 0; v < pose.rows(); ++v) pose(v, 2) += std::sin(0.7 * v + 0.3 * f);
+    positions.row(f) = Eigen::Map<const Eigen::RowVectorXd>(pose.data(), pose.size());
+    times[f] = 2 + f * seconds / frames;
+  }
+  const auto n = static_cast<int>(rest.rows());
+  return MeshSequence(Connectivity::from_triangles(n, shape.triangles), positions, times, rest);
+}
+
+ViewerScene scene_of(const MeshSequence& sequence) {
+  ViewerScene scene;
+  scene.meshes = {{"source", "take </script> & co", sequence}, {"target", "actor", sequence}};
+  scene.regions.assign(static_cast<std::size_t>(sequence.vertices()), -1);
+  scene.regions[3] = 0;
+  scene.regions[4] = 1;
+  return scene;
+}
+
+constexpr std::size_t kPlenty = 5'000'000;
+
+std::vector<unsigned char> inflated(const std::string& text, std::size_t size) {
+  std::vector<unsigned char> packed(text.size());
+  packed.resize(
+      vtkBase64Utilities::DecodeSafely(reinterpret_cast<const unsigned char*>(text.data()),
+                                       text.size(), packed.data(), packed.size()));
+  std::vector<unsigned char> bytes(size);
+  vtkNew<vtkZLibDataCompressor> compressor;
+  EXPECT_EQ(compressor->Uncompress(packed.data(), packed.size(), bytes.data(), size), size);
+  return bytes;
+}
+
+std::vector<int> indices(const json& text, std::size_t count) {
+  const auto bytes = inflated(text.get<std::string>(), 4 * count);
+  std::vector<int> result;
+  unsigned sum = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    for (unsigned byte = 0; byte < 4; ++byte) sum += unsigned{bytes[4 * i + byte]} << (8 * byte);
+    result.push_back(static_cast<int>(sum));
+  }
+  return result;
+}
+
+/// Poses of a mesh in steps, the one at rest first, as a browser unpacks them.
+Eigen::MatrixXd poses_in(const json& mesh, int poses, int width) {
+  const auto bytes =
+      inflated(mesh.at("poses").get<std::string>(),
+               2 * static_cast<std::size_t>(poses) * static_cast<std::size_t>(width));
+  Eigen::MatrixXd result(poses, width);
+  for (int f = 0; f < poses; ++f) {
+    const unsigned char* row = bytes.data() + 2 * f * width;
+    for (int i = 0; i < width; ++i) {
+      const auto difference = static_cast<std::int16_t>(row[i] | (row[width + i] << 8));
+      result(f, i) = difference + (f > 0 ? result(f - 1, i) : 0);
+    }
+  }
+  return result;
+}
+
+TEST(ViewerData, HoldsEveryPositionWithinHalfAStep) {
+  const MeshSequence sequence = swinging(9, 0.3);
+  const PackedScene scene = packed(scene_of(sequence), kPlenty);
+  ASSERT_EQ(scene.frames, 9);
+  const json mesh = json::parse(scene.json).at("meshes").at(1);
+  const double step = mesh.at("step").get<double>();
+  // The wave reaches 1 beyond the grid of side 11, whose centre is half of that away.
+  EXPECT_LE(step, 5.5 / kMostSteps * (1 + 1e-9));
+  const Eigen::MatrixXd poses = poses_in(mesh, 10, 3 * sequence.vertices());
+  const Eigen::RowVector3d center(105.5, -44.5, 7);
+  for (int f = 0; f < 10; ++f) {
+    const Positions pose = f == 0 ? sequence.rest() : Positions(sequence.frame(f - 1));
+    for (int i = 0; i < pose.size(); ++i) {
+      const double shown = step * poses(f, i) + center[i % 3];
+      ASSERT_NEAR(shown, pose.data()[i], (0.5 + 1e-6) * step) << "pose " << f << ", " << i;
+    }
+  }
+}
+
+TEST(ViewerData, HoldsTrianglesAndRegionsAsTheyAre) {
+  const MeshSequence sequence = swinging(3, 0.1);
+  const ViewerScene scene = scene_of(sequence);
+  const json data = json::parse(packed(scene, kPlenty).json);
+  const auto triangles = indices(data.at("triangles"), sequence.triangles().size());
+  const Triangles& expected = sequence.triangles();
+  for (std::size_t i = 0; i < triangles.size(); ++i) {
+    ASSERT_EQ(triangles[i], expected(static_cast<int>(i) / 3, static_cast<int>(i) % 3));
+  }
+  EXPECT_EQ(indices(data.at("regions"), scene.regions.size()), scene.regions);
+  EXPECT_EQ(data.at("regionColors").size(), 2u);
+  EXPECT_NE(data.at("regionColors").at(0), data.at("clay"));
+}
+
+TEST(ViewerData, ShadesVerticesAtOnePlaceAsOne) {
+  Positions rest(4, 3);
+  rest << 0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 0, 0;
+  Triangles triangles(2, 3);
+  triangles << 0, 1, 2, 0, 3, 2;
+  Frames frames(2, 12);
+  for (int f = 0; f < 2; ++f) {
+    frames.row(f) = (1 + f) * Eigen::Map<const Eigen::RowVectorXd>(rest.data(), 12);
+  }
+  const MeshSequence sequence(Connectivity::from_triangles(4, triangles), frames, {}, rest);
+  ViewerScene scene;
+  scene.meshes = {{"source", "seam", sequence}};
+  scene.regions = {-1, -1, -1, -1};
+  const json data = json::parse(packed(scene, kPlenty).json);
+  EXPECT_THAT(indices(data.at("places"), 4), ElementsAre(0, 1, 2, 1));
+}
+
+TEST(ViewerData, TellsTheLargestDisplacementOfAllFrames) {
+  const MeshSequence sequence = swinging(40, 1);
+  const json data = json::parse(packed(scene_of(sequence), kPlenty).json);
+  double largest = 0;
+  for (int f = 0; f < 40; ++f) {
+    largest = std::max(largest, (sequence.frame(f) - sequence.rest()).cwiseAbs().maxCoeff());
+  }
+  EXPECT_DOUBLE_EQ(data.at("largest").get<double>(), largest);
+}
+
+TEST(ViewerData, ThinsEvenlyAndKeepsBothEnds) {
+  EXPECT_THAT(thinned(10, 4), ElementsAre(0, 3, 6, 9));
+  EXPECT_THAT(thinned(11, 3), ElementsAre(0, 5, 10));
+  EXPECT_THAT(thinned(3, 8), ElementsAre(0, 1, 2));
+  EXPECT_THAT(thinned(1, 2), ElementsAre(0));
+}
+
+TEST(ViewerData, ThinsFramesUntilTheyFit) {
+  const MeshSequence sequence = swinging(100, 4, 30);
+  const std::size_t all = packed(scene_of(sequence), kPlenty).json.size();
+  const PackedScene half = packed(scene_of(sequence), all / 2);
+  EXPECT_LE(half.json.size(), all / 2);
+  // Fewer frames differ more from each other: their sizes are estimated, and cut twice here.
+  EXPECT_GT(half.json.size(), 0.7 * (all / 2.0));
+  EXPECT_LT(half.frames, 100);
+  const json times = json::parse(half.json).at("times");
+  EXPECT_EQ(times.size(), static_cast<std::size_t>(half.frames));
+  EXPECT_DOUBLE_EQ(times.front().get<double>(), sequence.times()[0]);
+  EXPECT_DOUBLE_EQ(times.back().get<double>(), sequence.times()[99]);
+}
+
+TEST(ViewerData, HasNoMoreThanThirtyFramesASecond) {
+  EXPECT_EQ(packed(scene_of(swinging(120, 2)), kPlenty).frames, 61);
+}
+
+TEST(ViewerData, IsEmptyWhereNotEvenTwoFramesFit) {
+  const PackedScene scene = packed(scene_of(swinging(20, 1)), 500);
+  EXPECT_TRUE(scene.json.empty());
+  EXPECT_EQ(scene.frames, 0);
+}
+
+TEST(ViewerData, CannotEndTheScriptElementItStandsIn) {
+  const std::string text = packed(scene_of(swinging(3, 0.1)), kPlenty).json;
+  EXPECT_THAT(text, Not(HasSubstr("<")));
+  EXPECT_EQ(json::parse(text).at("meshes").at(0).at("name"), "take </script> & co");
+}
+
+}  // namespace
+}  // namespace mimetra

@@ -1,0 +1,106 @@
+#include "toolkit/io/csv.h"
+
+#include <charconv>
+#include <cmath>
+
+#include "toolkit/io/whole_file.h"
+#include "toolkit/mesh/errors.h"
+
+namespace mimetra {
+namespace {
+
+std::string_view without_blanks(std::string_view text) {
+  while (!text.empty() && is_blank(text.front())) text.remove_prefix(1);
+  while (!text.empty() && is_blank(text.back())) text.remove_suffix(1);
+  return text;
+}
+
+/// The comma that ends the first field; npos for the last one.
+std::size_t end_of_field(std::string_view line) {
+  const auto first = line.find_first_not_of(" \t");
+  bool quoted = first != std::string_view::npos && line[first] == '"';
+  if (!quoted) return line.find(',');
+  for (std::size_t i = first + 1; i < line.size(); ++i) {
+    if (line[i] == '"') quoted = !quoted;
+    if (line[i] == ',' && !quoted) return i;
+  }
+  return std::string_view::npos;
+}
+
+std::vector<std::string_view> comma_separated(std::string_view line) {
+  std::vector<std::string_view> fields;
+  for (;;) {
+    const auto end = end_of_field(line);
+    std::string_view field = without_blanks(line.substr(0, end));
+    if (field.starts_with('"')) field.remove_prefix(1);
+    if (field.ends_with('"')) field.remove_suffix(1);
+    fields.push_back(without_blanks(field));
+    if (end == std::string_view::npos) return fields;
+    line.remove_prefix(end + 1);
+  }
+}
+
+}  // namespace
+
+std::string csv_field(const std::string& text) {
+  if (text.find_first_of(",\"") == std::string::npos) return text;
+  std::string field = "\"";
+  for (const char c : text) field += c == '"' ? "\"\"" : std::string(1, c);
+  return field + '"';
+}
+
+std::string text_of_csv(std::string_view field) {
+  std::string text;
+  for (std::size_t i = 0; i < field.size(); ++i) {
+    text += field[i];
+    if (field.substr(i, 2) == "\"\"") ++i;
+  }
+  return text;
+}
+
+CsvReader::CsvReader(const std::filesystem::path& path)
+    : path_(path.string()),
+      bytes_(read_file(path)),
+      text_(path_, without_byte_order_mark(bytes_), {}) {
+  const std::string_view line = next_line();
+  if (line.empty()) throw IoError(path_, "is empty; expected a line of column names");
+  names_ = comma_separated(line);
+}
+
+bool CsvReader::next_row() {
+  const std::string_view line = next_line();
+  if (line.empty()) return false;
+  row_ = comma_separated(line);
+  if (row_.size() != names_.size()) {
+    fail(std::to_string(row_.size()) + (row_.size() == 1 ? " field" : " fields") + ", expected " +
+         std::to_string(names_.size()) + " as in the first line" +
+         (row_.size() > names_.size() ? " (decimal commas are not supported)" : ""));
+  }
+  return true;
+}
+
+double CsvReader::number(std::size_t column) const {
+  const std::string_view field = row_[column];
+  double value = 0;
+  const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), value);
+  if (error != std::errc() || end != field.data() + field.size() || !std::isfinite(value)) {
+    fail("column '" + std::string(names_[column]) + "': expected a finite number, found '" +
+         std::string(field) + "'");
+  }
+  return value;
+}
+
+void CsvReader::fail(const std::string& message) const {
+  throw IoError(path_, "line " + std::to_string(line_) + ": " + message);
+}
+
+std::string_view CsvReader::next_line() {
+  while (!text_.at_end()) {
+    line_ = text_.line();
+    const std::string_view line = text_.rest_of_line();
+    if (!line.empty()) return line;
+  }
+  return {};
+}
+
+}  // namespace mimetra

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "toolkit/io/text_cursor.h"
+
+/// Comma-separated values: a line of column names, then rows of as many fields. For readers and
+/// writers.
+namespace mimetra {
+
+/// `text` as a field: in quotation marks where it holds a comma or such a mark.
+std::string csv_field(const std::string& text);
+
+/// The text of a field as CsvReader has it.
+std::string text_of_csv(std::string_view field);
+
+/// Reads a file row by row. Lines end in LF or CRLF; those that are blank are passed over.
+class CsvReader {
+ public:
+  /// Reads the column names. Throws IoError where there are none.
+  explicit CsvReader(const std::filesystem::path& path);
+  CsvReader(const CsvReader&) = delete;
+  CsvReader& operator=(const CsvReader&) = delete;
+
+  /// Without the blanks and quotation marks around them; those inside stay doubled.
+  const std::vector<std::string_view>& names() const { return names_; }
+
+  /// Moves to the next row; false where there is none. Throws IoError for one that has not a field
+  /// for each name.
+  bool next_row();
+
+  /// A field of the row, as names() are.
+  std::string_view field(std::size_t column) const { return row_[column]; }
+  /// Throws IoError where the field is not a finite number.
+  double number(std::size_t column) const;
+
+  /// Throws IoError with the path and the line of the row, or of the names before the first one.
+  [[noreturn]] void fail(const std::string& message) const;
+
+ private:
+  /// The next line that is not blank; empty at the end of the file.
+  std::string_view next_line();
+
+  std::string path_;
+  std::string bytes_;
+  TextCursor text_;
+  int line_ = 0;
+  std::vector<std::string_view> names_, row_;
+};
+
+}  // namespace mimetra

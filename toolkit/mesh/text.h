@@ -1,0 +1,38 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+/// Names and numbers as people read and order them.
+namespace mimetra {
+
+/// A to Z become a to z.
+std::string lower_case(std::string text);
+
+/// ".ply" for NAME.PLY.
+std::string lower_extension(const std::filesystem::path& path);
+
+/// Orders names as people count: runs of digits by their value, so that 2 comes before 10.
+bool natural_less(const std::string& a, const std::string& b);
+
+/// The words with `between` between them, and `last` before the last one: "2, 5 and 7".
+std::string joined(const std::vector<std::string>& words, std::string_view between,
+                   std::string_view last);
+std::string joined(const std::vector<std::string>& words, std::string_view between = ", ");
+
+/// The first of many: "a, b, c and 12 more".
+std::string listed(const std::vector<std::string>& words, std::size_t most = 8);
+
+/// 0, 5, 17 as words.
+std::vector<std::string> words_of(const std::vector<int>& numbers);
+
+/// `value` with `digits` significant digits.
+std::string readable(double value, int digits = 4);
+
+/// A share as a percentage: 0.1234 is "12.3 %".
+std::string percent(double share);
+
+}  // namespace mimetra

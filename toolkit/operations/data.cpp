@@ -1,0 +1,77 @@
+#include "toolkit/operations/data.h"
+
+#include <sstream>
+
+#include <nlohmann/json.hpp>
+
+#include "toolkit/io/csv.h"
+#include "toolkit/operations/json.h"
+#include "toolkit/operations/parameter.h"
+
+namespace mimetra {
+
+std::string_view kind_name(DataKind kind) {
+  switch (kind) {
+    case DataKind::sequence:
+      return "sequence";
+    case DataKind::model:
+      return "model";
+    case DataKind::components:
+      return "components";
+    case DataKind::regions:
+      return "regions";
+    case DataKind::fields:
+      return "fields";
+    case DataKind::table:
+      return "table";
+    case DataKind::animated_model:
+      return "model directory";
+    case DataKind::picture:
+      return "picture";
+    case DataKind::landmarks:
+      return "landmarks";
+    case DataKind::morphable_model:
+      return "morphable model";
+    case DataKind::fit:
+      return "fitted coefficients";
+    case DataKind::pictures:
+      return "pictures";
+    case DataKind::view:
+      return "ParaView script";
+    case DataKind::run:
+      return "run";
+    case DataKind::page:
+      return "page";
+  }
+  return "";
+}
+
+std::string Table::csv() const {
+  std::ostringstream text;
+  for (std::size_t column = 0; column < columns.size(); ++column) {
+    text << (column > 0 ? "," : "") << csv_field(columns[column]);
+  }
+  text << '\n';
+  for (const auto& row : rows) {
+    for (std::size_t column = 0; column < row.size(); ++column) {
+      if (column > 0) text << ',';
+      if (row[column]) text << to_text(*row[column]);
+    }
+    text << '\n';
+  }
+  return text.str();
+}
+
+std::string Table::json() const {
+  Json list = Json::array();
+  for (const auto& row : rows) {
+    Json entry;
+    for (std::size_t column = 0; column < columns.size(); ++column) {
+      entry[columns[column]] = row[column] ? Json(*row[column]) : Json(nullptr);
+    }
+    list.push_back(entry);
+  }
+  return Json{{"rows", list}}.dump(2) + '\n';
+}
+
+}  // namespace mimetra

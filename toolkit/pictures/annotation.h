@@ -1,0 +1,13 @@
+#pragma once
+
+#include "toolkit/pictures/sheet_layout.h"
+
+class vtkRenderer;
+
+namespace mimetra {
+
+/// Adds what is written on a sheet to a renderer over the whole picture: titles of rows and
+/// columns, colour bars and the scale bar.
+void annotate(vtkRenderer& renderer, const Sheet& sheet, const SheetLayout& layout);
+
+}  // namespace mimetra

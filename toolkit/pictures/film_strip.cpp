@@ -1,0 +1,249 @@
+#include "toolkit/pictures/film_strip.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <stdexcept>
+
+#include "toolkit/mesh/errors.h"
+
+namespace mimetra {
+
+namespace {
+
+constexpr int kSmallestTile = 16;
+
+const std::string& entry(const std::vector<std::string>& list, std::size_t row) {
+  return list.size() == 1 ? list.front() : list[row];
+}
+
+std::string row_name(const StripOptions& options, std::size_t row) {
+  return "row " + std::to_string(row + 1) +
+         (options.titles.empty() ? "" : " (" + options.titles[row] + ")");
+}
+
+void check(const std::vector<FieldSequence>& sequences, const StripOptions& options) {
+  if (sequences.empty()) throw std::invalid_argument("a strip needs a sequence");
+  if (options.columns < 1) throw std::invalid_argument("a strip needs at least one column");
+  if (options.tile_height < kSmallestTile) {
+    throw std::invalid_argument("tiles are at least " + std::to_string(kSmallestTile) +
+                                " pixels high");
+  }
+  if (options.colors.size() != 1 && options.colors.size() != sequences.size()) {
+    throw std::invalid_argument(std::to_string(options.colors.size()) + " colours for " +
+                                std::to_string(sequences.size()) +
+                                " rows; expected one for all, or one each");
+  }
+  if (!options.titles.empty() && options.titles.size() != sequences.size()) {
+    throw std::invalid_argument(std::to_string(options.titles.size()) + " titles for " +
+                                std::to_string(sequences.size()) + " rows");
+  }
+}
+
+/// Frames that all rows have: sequences that move are of one length.
+int common_frames(const std::vector<FieldSequence>& sequences, const StripOptions& options) {
+  int frames = 1;
+  for (std::size_t row = 0; row < sequences.size(); ++row) {
+    const int own = sequences[row].sequence.frames();
+    if (own == 1 || own == frames) continue;
+    if (frames != 1) {
+      throw MismatchError(row_name(options, row) + ": " + std::to_string(own) +
+                          " frames, expected " + std::to_string(frames) +
+                          " as in the rows above; use --frames");
+    }
+    frames = own;
+  }
+  return frames;
+}
+
+std::vector<int> shown_frames(int frames, const StripOptions& options) {
+  for (const int frame : options.frames) {
+    if (frame < 0 || frame >= frames) {
+      throw MismatchError("frame " + std::to_string(frame) + ", there are " +
+                          std::to_string(frames) + " (0-based)");
+    }
+  }
+  if (options.layout == StripLayout::turntable) {
+    const int frame = options.frames.empty() ? 0 : options.frames.front();
+    return std::vector<int>(static_cast<std::size_t>(options.columns), frame);
+  }
+  if (!options.frames.empty()) return options.frames;
+  const int columns = std::min(options.columns, frames);
+  std::vector<int> shown;
+  shown.reserve(static_cast<std::size_t>(columns));
+  for (int column = 0; column < columns; ++column) {
+    shown.push_back(columns == 1 ? 0 : column * (frames - 1) / (columns - 1));
+  }
+  return shown;
+}
+
+Positions pose(const FieldSequence& fields, int frame) {
+  return fields.sequence.frame(fields.sequence.frames() == 1 ? 0 : frame);
+}
+
+/// Values of triangles on their vertices: the largest.
+Eigen::VectorXd on_vertices(const Eigen::VectorXd& values, const MeshSequence& sequence) {
+  Eigen::VectorXd result =
+      Eigen::VectorXd::Constant(sequence.vertices(), std::numeric_limits<double>::quiet_NaN());
+  const Triangles& triangles = sequence.triangles();
+  for (Eigen::Index t = 0; t < triangles.rows(); ++t) {
+    for (const int v : triangles.row(t)) result[v] = std::fmax(result[v], values[t]);
+  }
+  return result;
+}
+
+const Field& field_of(const FieldSequence& fields, const std::string& name,
+                      const std::string& row) {
+  const auto found = std::ranges::find(fields.fields, name, &Field::name);
+  if (found != fields.fields.end()) return *found;
+  std::string known = "none, displacement, difference";
+  for (const Field& field : fields.fields) known += ", " + field.name;
+  throw MismatchError(row + ": no field '" + name + "'; it can be coloured by " + known);
+}
+
+/// One value a vertex: a field of several columns by its length.
+Eigen::VectorXd vertex_values(const Field& field, const MeshSequence& sequence) {
+  const Eigen::VectorXd values = field.values.cols() == 1
+                                     ? Eigen::VectorXd(field.values.col(0))
+                                     : Eigen::VectorXd(field.values.rowwise().norm());
+  return field.location == Field::Location::vertices ? values : on_vertices(values, sequence);
+}
+
+/// Whole numbers that are names: regions, and those of which the negative ones mean "none".
+bool is_category(const Field& field) {
+  return field.integer && field.values.cols() == 1 && field.values.size() > 0 &&
+         (field.name == "region" || field.values.minCoeff() < 0);
+}
+
+/// The colours of one row.
+class RowPainter {
+ public:
+  RowPainter(const std::vector<FieldSequence>& sequences, const StripOptions& options,
+             std::size_t row, const std::vector<int>& frames)
+      : sequences_(sequences), options_(options), row_(row), color_(entry(options.colors, row)) {
+    if (color_ == "none") return;
+    const FieldSequence& own = sequences[row];
+    if (color_ == "displacement") {
+      for (const int frame : frames) {
+        values_.push_back(distance(pose(own, frame), own.sequence.rest()));
+      }
+    } else if (color_ == "difference") {
+      for (const int frame : frames) values_.push_back(difference(frame));
+    } else {
+      const Field& field = field_of(own, color_, row_name(options, row));
+      values_.assign(frames.size(), vertex_values(field, own.sequence));
+      if (is_category(field)) {
+        categories_ = category_colors(whole_numbers(values_.front()), own.sequence.triangles());
+      }
+    }
+  }
+
+  std::optional<ColorBar> bar() const {
+    if (values_.empty() || !categories_.empty()) return {};
+    ColorBar bar{0, 0, color_ == "displacement" || color_ == "difference" ? options_.unit : ""};
+    for (const Eigen::VectorXd& values : values_) {
+      for (const double value : values) {
+        if (!std::isfinite(value)) continue;
+        bar.minimum = std::min(bar.minimum, value);
+        bar.maximum = std::max(bar.maximum, value);
+      }
+    }
+    if (options_.maximum) bar.maximum = *options_.maximum;
+    return bar;
+  }
+
+  std::vector<Color> colors(std::size_t column, const std::optional<ColorBar>& bar) const {
+    if (!categories_.empty() || values_.empty()) return categories_;
+    const double range = bar->maximum - bar->minimum;
+    std::vector<Color> colors;
+    for (const double value : values_[column]) {
+      colors.push_back(even_color(range > 0 ? (value - bar->minimum) / range : 0));
+    }
+    return colors;
+  }
+
+ private:
+  static Eigen::VectorXd distance(const Positions& a, const Positions& b) {
+    return (a - b).rowwise().norm();
+  }
+
+  static std::vector<int> whole_numbers(const Eigen::VectorXd& values) {
+    std::vector<int> numbers;
+    for (const double value : values) numbers.push_back(static_cast<int>(std::lround(value)));
+    return numbers;
+  }
+
+  Eigen::VectorXd difference(int frame) const {
+    const std::string name = row_name(options_, row_);
+    if (row_ == 0) throw MismatchError(name + ": there is no row above to differ from");
+    const Positions own = pose(sequences_[row_], frame), above = pose(sequences_[row_ - 1], frame);
+    if (own.rows() != above.rows()) {
+      throw MismatchError(name + ": " + std::to_string(own.rows()) +
+                          " vertices, the row above has " + std::to_string(above.rows()) +
+                          ", so that there is no difference");
+    }
+    return distance(own, above);
+  }
+
+  const std::vector<FieldSequence>& sequences_;
+  const StripOptions& options_;
+  std::size_t row_;
+  const std::string& color_;
+  std::vector<Eigen::VectorXd> values_;  // by column; empty for none
+  std::vector<Color> categories_;
+};
+
+std::string time_title(double seconds) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.2f s", seconds);
+  return text;
+}
+
+double turn_of(const StripOptions& options, std::size_t column) {
+  if (options.layout != StripLayout::turntable) return 0;
+  return 360.0 * static_cast<double>(column) / options.columns;
+}
+
+std::vector<std::string> column_titles(const std::vector<FieldSequence>& sequences,
+                                       const std::vector<int>& frames,
+                                       const StripOptions& options) {
+  const auto longest = std::ranges::max_element(
+      sequences, {}, [](const FieldSequence& fields) { return fields.sequence.frames(); });
+  std::vector<std::string> titles;
+  if (longest->sequence.frames() == 1 || options.layout == StripLayout::turntable) return titles;
+  for (const int frame : frames) titles.push_back(time_title(longest->sequence.times()[frame]));
+  return titles;
+}
+
+}  // namespace
+
+Sheet film_strip(const std::vector<FieldSequence>& sequences, const StripOptions& options) {
+  check(sequences, options);
+  const std::vector<int> frames = shown_frames(common_frames(sequences, options), options);
+  Sheet sheet;
+  sheet.yaw = options.yaw;
+  sheet.pitch = options.pitch;
+  sheet.z_up = options.z_up;
+  sheet.tile_height = options.tile_height;
+  sheet.letters = options.letters;
+  sheet.unit = options.unit;
+  sheet.column_titles = column_titles(sequences, frames, options);
+  for (std::size_t row = 0; row < sequences.size(); ++row) {
+    const RowPainter painter(sequences, options, row, frames);
+    TileRow tiles;
+    if (!options.titles.empty()) tiles.title = options.titles[row];
+    tiles.connectivity = sequences[row].sequence.shared_connectivity();
+    tiles.bar = painter.bar();
+    for (std::size_t column = 0; column < frames.size(); ++column) {
+      tiles.tiles.push_back({pose(sequences[row], frames[column]),
+                             painter.colors(column, tiles.bar),
+                             turn_of(options, column),
+                             {}});
+    }
+    sheet.rows.push_back(std::move(tiles));
+  }
+  return sheet;
+}
+
+}  // namespace mimetra

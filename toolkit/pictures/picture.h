@@ -1,0 +1,26 @@
+#pragma once
+
+#include <string>
+
+#include "toolkit/mesh/progress.h"
+#include "toolkit/pictures/sheet.h"
+
+namespace mimetra {
+
+struct DrawOptions {
+  Progress progress = {};
+};
+
+/// Draws a sheet. Light comes from the upper left, so that wrinkles show; vertices at one place are
+/// shaded as one. Throws std::invalid_argument for a sheet without tiles or larger than
+/// kLargestPicture, std::runtime_error where there is no OpenGL or it has not enough memory,
+/// Cancelled.
+Image draw(const Sheet& sheet, const DrawOptions& options = {});
+
+/// Bytes that draw() takes at its peak.
+double drawing_bytes(const Sheet& sheet);
+
+/// The picture as the bytes of a PNG file.
+std::string png_of(const Image& image);
+
+}  // namespace mimetra

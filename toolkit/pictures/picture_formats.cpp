@@ -1,0 +1,42 @@
+#include "toolkit/pictures/picture_formats.h"
+
+#include "toolkit/io/frame_files.h"
+#include "toolkit/io/pending_output.h"
+#include "toolkit/io/whole_file.h"
+#include "toolkit/mesh/parallel.h"
+#include "toolkit/operations/formats.h"
+#include "toolkit/pictures/picture.h"
+#include "toolkit/pictures/render_operation.h"
+
+namespace mimetra {
+
+namespace {
+
+std::vector<std::filesystem::path> write_picture(const Data& data, const WriteRequest& request) {
+  return write_text(request, png_of(std::get<Image>(data)));
+}
+
+std::vector<std::filesystem::path> write_pictures(const Data& data, const WriteRequest& request) {
+  const auto& pictures = std::get<Pictures>(data);
+  PendingOutput folder(request.target, PendingOutput::Kind::folder, request.overwrite);
+  const auto name = [&](int i) { return frame_name(i, pictures.count, ".png"); };
+  const auto write_one = [&](int i) {
+    write_bytes(folder.path() / name(i), png_of(pictures.draw(i)));
+  };
+  parallel_for(pictures.count, request.threads, write_one, request.progress);
+  for (const auto& [extra, content] : request.extra) write_bytes(folder.path() / extra, content);
+  folder.commit();
+  std::vector<std::filesystem::path> files;
+  for (int i = 0; i < pictures.count; ++i) files.push_back(request.target / name(i));
+  return files;
+}
+
+}  // namespace
+
+void add_pictures(OperationTable& table) {
+  table.add(Writer{DataKind::picture, {".png"}, {}, write_picture});
+  table.add(Writer{DataKind::pictures, {""}, {}, write_pictures});
+  table.add(render_operation());
+}
+
+}  // namespace mimetra

@@ -1,0 +1,118 @@
+#include "toolkit/pictures/sheet_layout.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+
+#include <Eigen/Geometry>
+
+#include "toolkit/mesh/errors.h"
+
+namespace mimetra {
+
+namespace {
+
+constexpr double kSpaceAround = 1.05;
+/// Letters are this part of a tile's height, but never too small to read.
+constexpr int kLettersPerTile = 18;
+constexpr int kSmallestLetters = 12;
+
+/// Half the width and height that all tiles need, seen from their sides.
+Eigen::Vector2d half_extent(const Sheet& sheet, const std::vector<Eigen::RowVector3d>& centers) {
+  Eigen::Vector2d half = Eigen::Vector2d::Zero();
+  for (std::size_t row = 0; row < sheet.rows.size(); ++row) {
+    for (const Tile& tile : sheet.rows[row].tiles) {
+      const View view = view_of(sheet, tile.turn);
+      const Positions centered = tile.positions.rowwise() - centers[row];
+      half[0] = std::max(half[0], (centered * view.right).cwiseAbs().maxCoeff());
+      half[1] = std::max(half[1], (centered * view.up).cwiseAbs().maxCoeff());
+    }
+  }
+  return half;
+}
+
+double reach_of(const Sheet& sheet, const std::vector<Eigen::RowVector3d>& centers) {
+  double reach = 0;
+  for (std::size_t row = 0; row < sheet.rows.size(); ++row) {
+    for (const Tile& tile : sheet.rows[row].tiles) {
+      const Positions centered = tile.positions.rowwise() - centers[row];
+      reach = std::max(reach, centered.rowwise().norm().maxCoeff());
+    }
+  }
+  return reach;
+}
+
+}  // namespace
+
+View view_of(const Sheet& sheet, double turn) {
+  const double yaw = (sheet.yaw + turn) * std::numbers::pi / 180;
+  const double pitch = sheet.pitch * std::numbers::pi / 180;
+  View view;
+  view.right = {std::cos(yaw), 0, -std::sin(yaw)};
+  view.towards_eye = {std::cos(pitch) * std::sin(yaw), std::sin(pitch),
+                      std::cos(pitch) * std::cos(yaw)};
+  view.up = view.towards_eye.cross(view.right);
+  if (sheet.z_up) {
+    for (Eigen::Vector3d* axis : {&view.right, &view.up, &view.towards_eye}) {
+      *axis = Eigen::Vector3d(axis->x(), -axis->z(), axis->y());
+    }
+  }
+  return view;
+}
+
+SheetLayout SheetLayout::of(const Sheet& sheet) {
+  SheetLayout layout;
+  std::size_t columns = 0;
+  for (const TileRow& row : sheet.rows) {
+    if (row.tiles.empty()) throw std::invalid_argument("a row of a sheet has no tile");
+    const Positions& first = row.tiles.front().positions;
+    layout.centers.push_back((first.colwise().minCoeff() + first.colwise().maxCoeff()) / 2);
+    columns = std::max(columns, row.tiles.size());
+  }
+  if (sheet.rows.empty()) throw std::invalid_argument("a sheet has no row");
+  layout.reach = reach_of(sheet, layout.centers);
+  if (!(layout.reach > 0)) {
+    throw MismatchError("all vertices are at one place, so that there is nothing to draw");
+  }
+  const Eigen::Vector2d half = kSpaceAround * half_extent(sheet, layout.centers);
+  const double aspect = std::clamp(half[0] / half[1], 0.5, 2.0);
+  layout.half_height = std::max(half[1], half[0] / aspect);
+  layout.tile_height = sheet.tile_height;
+  layout.tile_width = static_cast<int>(std::ceil(aspect * sheet.tile_height));
+  layout.text = sheet.letters > 0 ? sheet.letters
+                                  : std::max(kSmallestLetters, sheet.tile_height / kLettersPerTile);
+  layout.margin = layout.text;
+  const int line = 2 * layout.text;
+  const auto has_title = [](const TileRow& row) { return !row.title.empty(); };
+  layout.column_title = sheet.column_titles.empty() ? 0 : line;
+  layout.row_title = std::ranges::any_of(sheet.rows, has_title) ? line : 0;
+  const auto has_tile_titles = [](const TileRow& row) {
+    return std::ranges::any_of(row.tiles, [](const Tile& tile) { return !tile.title.empty(); });
+  };
+  layout.tile_title = std::ranges::any_of(sheet.rows, has_tile_titles) ? line : 0;
+  const bool has_bar =
+      std::ranges::any_of(sheet.rows, [](const TileRow& row) { return row.bar.has_value(); });
+  layout.width = 2 * layout.margin + static_cast<int>(columns) * layout.tile_width +
+                 (has_bar ? 8 * layout.text : 0);
+  const Box last = layout.tile(sheet.rows.size() - 1, 0);
+  layout.height = last.top + last.height + 2 * layout.text;
+  return layout;
+}
+
+Box SheetLayout::tile(std::size_t row, std::size_t column) const {
+  const int above = row_title + tile_title, row_height = above + tile_height;
+  return {margin + static_cast<int>(column) * tile_width,
+          margin + column_title + static_cast<int>(row) * row_height + above, tile_width,
+          tile_height};
+}
+
+double round_length(double length) {
+  const double power = std::pow(10, std::floor(std::log10(length)));
+  for (const double factor : {5.0, 2.0}) {
+    if (factor * power <= length) return factor * power;
+  }
+  return power;
+}
+
+}  // namespace mimetra

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "toolkit/pictures/sheet.h"
+
+namespace mimetra {
+
+/// Pixels from the upper left corner.
+struct Box {
+  int left = 0;
+  int top = 0;
+  int width = 0;
+  int height = 0;
+};
+
+/// From where a tile is seen: three unit vectors at right angles.
+struct View {
+  Eigen::Vector3d right;
+  Eigen::Vector3d up;
+  Eigen::Vector3d towards_eye;
+};
+
+View view_of(const Sheet& sheet, double turn);
+
+/// Where everything in a sheet lies.
+struct SheetLayout {
+  int width = 0;  ///< pixels of the whole picture
+  int height = 0;
+  int margin = 0;
+  int text = 0;          ///< height of letters
+  int column_title = 0;  ///< height of the line above all rows
+  int row_title = 0;     ///< height of the line above each row
+  int tile_title = 0;    ///< height of the line above each tile
+  int tile_width = 0;
+  int tile_height = 0;
+  double half_height = 0;  ///< of a tile, in the unit of the positions
+  double reach = 0;        ///< no vertex is farther than this from its row's centre
+  std::vector<Eigen::RowVector3d> centers;  ///< middle of each row's first tile
+
+  /// Throws std::invalid_argument where there is no tile, MismatchError where nothing has an
+  /// extent.
+  static SheetLayout of(const Sheet& sheet);
+
+  Box tile(std::size_t row, std::size_t column) const;
+  double pixels_per_unit() const { return tile_height / (2 * half_height); }
+};
+
+/// The largest of 1, 2 and 5 times a power of ten that is at most `length` > 0.
+double round_length(double length);
+
+}  // namespace mimetra

@@ -1,0 +1,374 @@
+#include "toolkit/report/report_page.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+
+#include "toolkit/mesh/progress.h"
+#include "toolkit/mesh/text.h"
+#include "toolkit/operations/xml_text.h"
+#include "toolkit/report/base64.h"
+#include "toolkit/report/report_style.h"
+#include "toolkit/report/viewer_data.h"
+
+namespace mimetra {
+
+namespace {
+
+/// A picture as a page holds it.
+struct PagePicture {
+  std::string address;  ///< with its content
+  int width;
+  int height;
+};
+
+/// A picture for windows, and one with fewer columns for phones.
+struct PicturePair {
+  PagePicture wide;
+  PagePicture narrow;
+};
+
+PagePicture page_picture(const Image& image) {
+  return {"data:image/png;base64," + base64(png_of(image)), image.width, image.height};
+}
+
+std::string size_of(const PagePicture& picture) {
+  return " width=\"" + std::to_string(picture.width) + "\" height=\"" +
+         std::to_string(picture.height) + '"';
+}
+
+std::string figure(const PagePicture& picture, const std::string& says) {
+  return "<figure><img src=\"" + picture.address + '"' + size_of(picture) + " alt=\"" +
+         escaped_for_xml(says) + "\"></figure>\n";
+}
+
+std::string figure(const PicturePair& pictures, const std::string& says) {
+  return "<figure class=\"strip\"><picture><source media=\"(max-width: 700px)\" srcset=\"" +
+         pictures.narrow.address + '"' + size_of(pictures.narrow) + "><img src=\"" +
+         pictures.wide.address + '"' + size_of(pictures.wide) + " alt=\"" + escaped_for_xml(says) +
+         "\"></picture></figure>\n";
+}
+
+std::string section(const std::string& title, const std::string& text, const std::string& content) {
+  return "<section>\n<h2>" + title + "</h2>\n<p class=\"soft\">" + text + "</p>\n" + content +
+         "</section>\n";
+}
+
+std::string cell(const std::string& content) {
+  return "<td>" + content + "</td>";
+}
+
+std::string number(const std::optional<double>& value, int digits = 3) {
+  return value ? readable(*value, digits) : "";
+}
+
+/// `value` with its sign and two decimals: what is worse than full is negative.
+std::string signed_percent(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%+.2f", value);
+  return text;
+}
+
+/// For a POSIX shell.
+std::string shell_quoted(const std::string& argument) {
+  const bool is_plain = std::ranges::all_of(argument, [](unsigned char letter) {
+    return std::isalnum(letter) || letter >= 0x80 ||
+           std::string_view("_@%+=:,./-").find(static_cast<char>(letter)) != std::string::npos;
+  });
+  if (is_plain && !argument.empty()) return argument;
+  std::string quoted = "'";
+  for (const char letter : argument) quoted += letter == '\'' ? "'\\''" : std::string(1, letter);
+  return quoted + '\'';
+}
+
+class PageText {
+ public:
+  PageText(const ReportStudy& study, const ReportView& view) : study_(study), view_(view) {}
+
+  std::string title() const {
+    return escaped_for_xml(study_.source) +
+           (study_.transfer ? " → " + escaped_for_xml(study_.transfer->target) : "");
+  }
+
+  std::string facts() const {
+    const Regions& regions = study_.regions;
+    std::string list;
+    const auto add = [&list](const std::string& name, const std::string& value) {
+      list += "<div><dt>" + name + "</dt><dd>" + value + "</dd></div>\n";
+    };
+    add("frames", std::to_string(study_.sequence.frames()));
+    add("vertices", std::to_string(study_.sequence.vertices()));
+    add("regions", std::to_string(regions.regions.size()));
+    add("triangles inside", percent(regions.triangle_share()));
+    if (regions.vertex_energy.size() > 0) {
+      add("motion inside", percent(regions.energy_share));
+    }
+    if (study_.transfer) {
+      const EvaluationRow& row = study_.transfer->rows[study_.transfer->main_row];
+      if (row.mpe_all) add("MPE against full", signed_percent(*row.mpe_all) + " %");
+      add("transfer", readable(row.transfer_seconds, 2) + " s");
+    }
+    return "<dl class=\"facts\">\n" + list + "</dl>\n";
+  }
+
+  /// What is not as in the files.
+  std::string remarks() const {
+    std::string text;
+    if (study_.moved_head) text += "Shown without the head's motion. ";
+    if (study_.transfer && study_.transfer->shown_scale != 1) {
+      text += "The target is shown " + readable(study_.transfer->shown_scale, 3) +
+              " times its size: its unit of length seems to be another.";
+    }
+    return text.empty() ? "" : "<p class=\"soft\">" + text + "</p>\n";
+  }
+
+  std::string player() const {
+    const std::string& target = study_.transfer ? study_.transfer->target : study_.source;
+    std::string names =
+        "<span data-role=\"source\">source: " + escaped_for_xml(study_.source) + "</span>";
+    std::string shown;
+    if (study_.transfer) {
+      names += "<span data-role=\"target\">target: " + escaped_for_xml(target) + "</span>";
+      shown =
+          "<label>show <select id=\"shown\"><option value=\"all\">both</option>"
+          "<option value=\"source\">source</option><option value=\"target\">target</option>"
+          "</select></label>\n";
+    }
+    return R"(<noscript><p>The 3D viewer needs JavaScript.</p></noscript>
+<p id="no-webgl" hidden>This browser has no WebGL 2, which the 3D viewer needs.</p>
+<div id="player" hidden>
+<div class="names">)" +
+           names + R"(</div>
+<div id="stage"></div>
+<div class="controls">
+<button id="play" type="button">Play</button>
+<div class="timeline"><input id="time" type="range" min="0" value="0" aria-label="time"><output id="clock" for="time"></output></div>
+)" + shown +
+           R"(<label>colour <select id="coloring"><option value="regions">regions</option><option value="displacement">displacement</option><option value="none">none</option></select></label>
+<button id="reset" type="button">Reset view</button>
+</div>
+)" + scale() +
+           "<p class=\"soft\">Drag to turn, two fingers or Ctrl and the wheel to "
+           "zoom.</p>\n</div>\n";
+  }
+
+  std::string table() const {
+    const ReportedTransfer& transfer = *study_.transfer;
+    std::string rows;
+    for (std::size_t i = 0; i < transfer.rows.size(); ++i) {
+      const EvaluationRow& row = transfer.rows[i];
+      const bool is_full = i + 1 == transfer.rows.size();
+      rows += i == transfer.main_row ? "<tr class=\"main\">" : "<tr>";
+      rows += cell(row.k     ? std::to_string(*row.k)
+                   : is_full ? "full"
+                             : "given") +
+              cell(percent(row.triangle_share)) + cell(readable(row.de_all, 4)) +
+              cell(row.mpe_all ? signed_percent(*row.mpe_all) : "") +
+              cell(number(row.decompose_seconds, 2)) + cell(number(row.transfer_seconds, 2)) +
+              "</tr>\n";
+    }
+    return "<table class=\"rows\">\n<thead><tr><th>K</th><th>triangles</th><th>DE" +
+           (view_.unit.empty() ? "" : ", " + escaped_for_xml(view_.unit) + "²") +
+           "</th><th>MPE, %</th><th>regions, s</th><th>transfer, s</th></tr></thead>\n<tbody>\n" +
+           rows + "</tbody>\n</table>\n";
+  }
+
+  std::string region_table() const {
+    std::string rows;
+    for (std::size_t i = 0; i < study_.regions.regions.size(); ++i) {
+      const Region& region = study_.regions.regions[i];
+      rows += "<tr>" + cell(std::to_string(i)) +
+              cell(region.component >= 0 ? std::to_string(region.component) : "") +
+              cell(region.center >= 0 ? std::to_string(region.center) : "") +
+              cell(readable(region.radius, 3)) + cell(std::to_string(region.vertices.size())) +
+              cell(percent(region.energy_share)) + "</tr>\n";
+    }
+    return "<details>\n<summary>All regions</summary>\n<table>\n<thead><tr><th>region</th>"
+           "<th>component</th><th>centre vertex</th><th>radius</th><th>vertices</th><th>motion "
+           "energy</th></tr>"
+           "</thead>\n<tbody>\n" +
+           rows + "</tbody>\n</table>\n</details>\n";
+  }
+
+  std::string run() const {
+    std::string line = "mimetra";
+    for (const std::string& argument : study_.run.arguments) line += ' ' + shell_quoted(argument);
+    std::vector<std::string> changed;
+    for (const auto& file : study_.run.changed) changed.push_back(file.string());
+    return "<section>\n<h2>The run</h2>\n<pre>" + escaped_for_xml(line) + "</pre>\n" +
+           list("What it warned of:", study_.notes) +
+           list("Changed since; this page shows what they give now:", changed) + region_table() +
+           "</section>\n";
+  }
+
+ private:
+  /// Nothing for no items.
+  static std::string list(const std::string& title, const std::vector<std::string>& items) {
+    if (items.empty()) return "";
+    std::string lines;
+    for (const std::string& item : items) lines += "<li>" + escaped_for_xml(item) + "</li>\n";
+    return "<p>" + title + "</p>\n<ul>\n" + lines + "</ul>\n";
+  }
+
+  std::string scale() const {
+    std::string stops;
+    for (int i = 0; i <= 8; ++i) {
+      const Color color = even_color(i / 8.0);
+      stops += ", rgb(" + std::to_string(color.red) + ' ' + std::to_string(color.green) + ' ' +
+               std::to_string(color.blue) + ')';
+    }
+    return "<div id=\"scale\" hidden>0 <i style=\"background: linear-gradient(to right" + stops +
+           ")\"></i> <span id=\"largest\"></span> " + escaped_for_xml(view_.unit) + "</div>\n";
+  }
+
+  const ReportStudy& study_;
+  const ReportView& view_;
+};
+
+ViewerScene scene_of(const ReportStudy& study, const ReportView& view) {
+  ViewerScene scene;
+  scene.meshes.push_back({"source", study.source, study.sequence});
+  if (study.transfer) {
+    scene.meshes.push_back({"target", study.transfer->target, study.transfer->by_regions.sequence});
+  }
+  const Field region = fields_of(study.regions).front();
+  for (const double index : region.values.col(0)) {
+    scene.regions.push_back(static_cast<int>(std::lround(index)));
+  }
+  scene.yaw = view.yaw;
+  scene.pitch = view.pitch;
+  scene.z_up = view.z_up;
+  return scene;
+}
+
+std::string charts(const std::vector<Chart>& list) {
+  // Large letters: on a phone the picture is drawn at less than half its size.
+  constexpr ChartSize kSize{900, 700, 26};
+  std::string figures;
+  for (const Chart& chart : list) {
+    figures += figure(page_picture(draw(std::vector<Chart>{chart}, kSize)), chart.title);
+  }
+  return "<div class=\"charts\">\n" + figures + "</div>\n";
+}
+
+/// How a sheet is drawn for one kind of window: pixels as many as that shows.
+struct SheetSize {
+  int columns;
+  int tile_height;
+  int letters;
+
+  /// With `share` of its pixels, and a little less.
+  SheetSize shrunk(double share) const {
+    const double factor = 0.95 * std::sqrt(share);
+    return {columns, std::max(kSmallestTile, static_cast<int>(tile_height * factor)),
+            std::max(kSmallestLetters, static_cast<int>(letters * factor))};
+  }
+
+  static constexpr int kSmallestTile = 32;
+  static constexpr int kSmallestLetters = 9;
+};
+
+/// Smaller where the pictures of a mesh with much detail would take more than `bytes`.
+template <typename SheetOf>
+PicturePair drawn(const SheetOf& sheet_of, SheetSize wide, SheetSize narrow, std::size_t bytes,
+                  const Progress& progress) {
+  const auto draw_one = [&](const SheetSize& size, const Progress& part) {
+    Sheet sheet = sheet_of(size.columns);
+    sheet.tile_height = size.tile_height;
+    sheet.letters = size.letters;
+    return page_picture(draw(sheet, {.progress = part}));
+  };
+  for (double from = 0;; from += (1 - from) / 2) {
+    const Progress part = part_of(progress, from, from + (1 - from) / 2);
+    PicturePair pair{draw_one(wide, part_of(part, 0, 0.6)),
+                     draw_one(narrow, part_of(part, 0.6, 1))};
+    const double share = static_cast<double>(bytes) /
+                         static_cast<double>(pair.wide.address.size() + pair.narrow.address.size());
+    if (share >= 1 || wide.tile_height == SheetSize::kSmallestTile) return pair;
+    wide = wide.shrunk(share);
+    narrow = narrow.shrunk(share);
+  }
+}
+
+std::string strip_section(const ReportStudy& study, const ReportView& view, std::size_t bytes,
+                          const Progress& progress) {
+  const auto sheet = [&](int columns) { return report_strip(study, view, columns); };
+  return section("Over time", "Frames at even distances, all at one scale.",
+                 figure(drawn(sheet, {7, 230, 15}, {3, 220, 20}, bytes, progress),
+                        "Film strip of the source, its regions and what became of it"));
+}
+
+std::string gallery_section(const Components& components, const ReportView& view, std::size_t bytes,
+                            const Progress& progress) {
+  const std::vector<int> shown = strongest_components(components, kMostInGallery);
+  const auto sheet = [&](int columns) {
+    return component_gallery(components, shown, view, columns);
+  };
+  const bool has_all = static_cast<int>(shown.size()) == components.count();
+  return section(
+      "Components",
+      (has_all ? "Each component"
+               : "The " + std::to_string(shown.size()) + " strongest of " +
+                     std::to_string(components.count()) + " components") +
+          " at weight 1, the strongest first: its number, and its largest displacement, "
+          "where it is darkest.",
+      figure(drawn(sheet, {8, 210, 16}, {3, 220, 19}, bytes, progress), "Gallery of components"));
+}
+
+}  // namespace
+
+ReportPage report_page(const ReportStudy& study, const ReportView& view, std::string_view viewer,
+                       const Progress& progress, std::size_t largest) {
+  const PageText page(study, view);
+  const std::string head =
+      "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
+      "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; "
+      "img-src data:; style-src 'unsafe-inline'; script-src 'unsafe-inline'\">\n"
+      "<link rel=\"icon\" href=\"data:,\">\n<title>" +
+      page.title() + "</title>\n<style>" + kReportStyle +
+      "</style>\n</head>\n<body>\n<header>\n<h1>" + page.title() + "</h1>\n" + page.remarks() +
+      page.facts() + "</header>\n";
+  // Strip and gallery leave something for the player.
+  const std::size_t each = largest * 3 / 10;
+  std::string rest = strip_section(study, view, each, part_of(progress, 0, 0.4));
+  if (study.transfer) {
+    rest += section("Error and time",
+                    "The paper's Table I. DE: mean squared distance of the target's triangles from "
+                    "what the source's deformation makes of them (eq. 12). MPE: against the "
+                    "transfer by all triangles; negative is worse.",
+                    page.table() + charts(table_charts(*study.transfer, view.unit)));
+  }
+  if (study.components) {
+    rest += gallery_section(*study.components, view, each, part_of(progress, 0.4, 0.8));
+  }
+  const std::vector<Chart> weights = weight_charts(study);
+  if (!weights.empty()) {
+    rest += section("Weights", "The strongest ones over time.", charts(weights));
+  }
+  rest += page.run() + "</body>\n</html>\n";
+
+  const std::string player = "<section>\n" + page.player();
+  const std::string before = "<script type=\"application/json\" id=\"performance\">";
+  const std::string between = "</script>\n</section>\n";
+  const std::size_t used =
+      head.size() + player.size() + before.size() + between.size() + rest.size() + viewer.size();
+  constexpr std::size_t kTags = 100;
+  PackedScene scene;
+  std::string none = "<section>\n<p class=\"soft\">No 3D viewer: ";
+  if (viewer.empty()) {
+    none += "this mimetra was built without npm.</p>\n</section>\n";
+  } else {
+    if (used + kTags < largest) {
+      scene = packed(scene_of(study, view), largest - used - kTags);
+    }
+    none += "the mesh is too large for a page of this size.</p>\n</section>\n";
+  }
+  if (scene.json.empty()) return {head + none + rest, 0};
+  const std::string script = "<script>" + std::string(viewer) + "</script>\n";
+  return {head + player + before + scene.json + between + rest.substr(0, rest.rfind("</body>")) +
+              script + "</body>\n</html>\n",
+          scene.frames};
+}
+
+}  // namespace mimetra

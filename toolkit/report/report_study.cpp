@@ -1,0 +1,207 @@
+#include "toolkit/report/report_study.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <set>
+
+#include "toolkit/mesh/progress.h"
+#include "toolkit/operations/stopwatch.h"
+
+namespace mimetra {
+
+namespace {
+
+/// "take" of "shots/take/", for a headline.
+std::string short_name(const std::string& name) {
+  std::filesystem::path path(name);
+  if (!path.has_filename()) path = path.parent_path();
+  return path.filename().string();
+}
+
+/// The run's call, with its sequence under the name that transfer gives it.
+Invocation call_of(const RunRead& run, std::vector<std::string>& notes) {
+  Invocation call = *run.invocation;
+  if (!call.inputs.contains("source")) call.inputs["source"] = call.inputs.at("sequence");
+  call.log = [&notes](LogLevel level, const std::string& message) {
+    if (level == LogLevel::warning) notes.push_back(message);
+  };
+  return call;
+}
+
+/// The target whose result `run` names; the first where it names all of them. Of several targets
+/// each has a folder of its name, or a file NAME-TARGET.EXT.
+const NamedData& target_of(const Invocation& call, const NamedData& run, const Log& log) {
+  const std::vector<NamedData>& targets = call.inputs.at("target");
+  const std::filesystem::path manifest =
+      absolute(std::get<RunRead>(run.data).record.manifest).lexically_normal();
+  const std::string folder = manifest.parent_path().filename().string();
+  const std::string file = std::filesystem::path(run.name).stem().string();
+  const auto named = std::ranges::find_if(targets, [&](const NamedData& target) {
+    return folder == target.name || file.ends_with('-' + target.name);
+  });
+  if (named != targets.end()) return *named;
+  if (targets.size() > 1 && log) {
+    log(LogLevel::warning, run.name + ": has " + std::to_string(targets.size()) +
+                               " targets, the report shows " + targets.front().name +
+                               "; name the folder or file of another one");
+  }
+  return targets.front();
+}
+
+/// Looks for regions as the run did.
+class RegionSearch {
+ public:
+  RegionSearch(const Invocation& call, const MeshSequence& sequence)
+      : call_(call), read_(call.get<SequenceRead>("source")), sequence_(sequence) {}
+
+  struct Found {
+    Regions regions;
+    std::optional<Components> components;
+    double seconds = 0;
+  };
+
+  Found as_run(const Progress& progress) const {
+    if (const RegionData* given = call_.find<RegionData>("regions")) {
+      return {given->regions, {}, 0};
+    }
+    if (!call_.find<Components>("components")) {
+      return of(main_count(call_.parameters), progress);
+    }
+    Analysis analysis = analysis_for(call_, read_);
+    Regions regions = regions_of(call_, analysis);
+    return {std::move(regions), std::move(analysis.components), 0};
+  }
+
+  Found of(int count, const Progress& progress) const {
+    const Stopwatch stopwatch;
+    Analysis analysis = analyse(call_, read_, sequence_, count, progress);
+    Regions regions = regions_of(call_, analysis);
+    return {std::move(regions), std::move(analysis.components), stopwatch.seconds()};
+  }
+
+ private:
+  const Invocation& call_;
+  const SequenceRead& read_;
+  const MeshSequence& sequence_;
+};
+
+EvaluationRow completed(EvaluationRow row, const RegionSearch::Found& found) {
+  if (!found.components) return row;
+  row.k = found.components->count();
+  if (found.seconds > 0) row.decompose_seconds = found.seconds;
+  return row;
+}
+
+/// 1 where two meshes may well have one unit of length, otherwise what makes their sizes equal.
+double shown_scale(const MeshSequence& source, const MeshSequence& target) {
+  constexpr double kOneUnit = 3;
+  const double ratio = source.extent() / target.extent();
+  return ratio > kOneUnit || ratio < 1 / kOneUnit ? ratio : 1;
+}
+
+void enlarge(MeshSequence& sequence, double scale) {
+  if (scale == 1) return;
+  const Positions rest = scale * sequence.rest();
+  sequence = sequence.with_frames(scale * sequence.positions()).with_rest(rest);
+}
+
+/// What `work` warns of is not said of the run.
+template <typename Work>
+auto apart_from(std::vector<std::string>& notes, const Work& work) {
+  const std::size_t before = notes.size();
+  auto result = work();
+  notes.resize(before);
+  return result;
+}
+
+ReportedTransfer transferred(Evaluation& evaluation, const NamedData& target,
+                             const RegionSearch& search, const RegionSearch::Found& main,
+                             const std::vector<std::int64_t>& counts,
+                             std::vector<std::string>& notes, const Progress& progress) {
+  ReportedTransfer transfer;
+  transfer.target = short_name(target.name);
+  EvaluatedTransfer full =
+      apart_from(notes, [&] { return evaluation.full(part_of(progress, 0, 0.1)); });
+  EvaluatedTransfer by_regions = evaluation.by(main.regions, part_of(progress, 0.1, 0.2));
+  if (by_regions.solution.weights.size() > 0) {
+    transfer.expressions = std::get<BlendshapeModel>(target.data).expressions().names;
+  }
+  const EvaluationRow main_row = completed(by_regions.row, main);
+  transfer.rows.push_back(main_row);
+  const std::set<std::int64_t> more(counts.begin(), counts.end());
+  double done = 0.2;
+  const double each = (1 - done) / static_cast<double>(std::max<std::size_t>(1, more.size()));
+  for (const std::int64_t k : more) {
+    const Progress part = part_of(progress, done, done + each);
+    done += each;
+    if (k == main_row.k || k > main.regions.vertices) continue;
+    transfer.rows.push_back(apart_from(notes, [&] {
+      const auto found = search.of(static_cast<int>(k), part_of(part, 0, 0.7));
+      return completed(evaluation.by(found.regions, part_of(part, 0.7, 1)).row, found);
+    }));
+  }
+  std::ranges::stable_sort(transfer.rows, {}, [](const EvaluationRow& row) { return row.k; });
+  transfer.main_row = static_cast<std::size_t>(
+      std::ranges::find(transfer.rows, main_row.k, &EvaluationRow::k) - transfer.rows.begin());
+  transfer.rows.push_back(full.row);
+  transfer.full = std::move(full.solution);
+  transfer.by_regions = std::move(by_regions.solution);
+  transfer.shown_scale = shown_scale(evaluation.source().sequence, transfer.by_regions.sequence);
+  enlarge(transfer.full.sequence, transfer.shown_scale);
+  enlarge(transfer.by_regions.sequence, transfer.shown_scale);
+  return transfer;
+}
+
+/// Numbers of components in the table: those asked for, and those of an evaluation.
+std::vector<std::int64_t> all_counts(std::vector<std::int64_t> counts,
+                                     const Parameters& parameters) {
+  if (parameters.find("k")->kind != ParameterKind::integer_list) return counts;
+  const auto& own = parameters.integers("k");
+  counts.insert(counts.end(), own.begin(), own.end());
+  return counts;
+}
+
+}  // namespace
+
+int main_count(const Parameters& parameters) {
+  if (parameters.find("k")->kind == ParameterKind::integer) return parameters.integer("k");
+  return static_cast<int>(*std::ranges::max_element(parameters.integers("k")));
+}
+
+ReportStudy study(const NamedData& run, const std::vector<std::int64_t>& counts,
+                  const Progress& progress, const Log& log) {
+  const RunRead& read = std::get<RunRead>(run.data);
+  ReportStudy result;
+  result.run = read.record;
+  for (const auto& file : read.record.changed) {
+    if (!log) break;
+    log(LogLevel::warning, file.string() + ": has changed since " + read.record.manifest.string() +
+                               " was written; the report shows what it gives now");
+  }
+  const Invocation call = call_of(read, result.notes);
+  result.source = short_name(call.inputs.at("source").front().name);
+  if (!call.inputs.contains("target")) {
+    const SequenceRead& source = call.get<SequenceRead>("source");
+    const Alignment still = without_motion(call, source, source.sequence);
+    result.moved_head = !still.motion.empty();
+    result.sequence = still.sequence;
+    auto found = RegionSearch(call, result.sequence).as_run(progress);
+    result.regions = std::move(found.regions);
+    result.components = std::move(found.components);
+    return result;
+  }
+  const NamedData& target = target_of(call, run, log);
+  Evaluation evaluation(call, target);
+  result.moved_head = !evaluation.source().motion.empty();
+  result.sequence = evaluation.source().sequence;
+  const RegionSearch search(call, evaluation.source().sequence);
+  auto found = search.as_run(part_of(progress, 0, 0.3));
+  result.transfer =
+      transferred(evaluation, target, search, found, all_counts(counts, call.parameters),
+                  result.notes, part_of(progress, 0.3, 1));
+  result.regions = std::move(found.regions);
+  result.components = std::move(found.components);
+  return result;
+}
+
+}  // namespace mimetra

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "toolkit/mesh/progress.h"
+#include "toolkit/operations/evaluation.h"
+
+namespace mimetra {
+
+/// What a report shows of a transfer.
+struct ReportedTransfer {
+  std::string target;
+  std::vector<std::string> expressions;  ///< of the target, for a solution of weights
+  Solution full;
+  Solution by_regions;
+  std::vector<EvaluationRow> rows;  ///< ascending in K, all triangles last
+  std::size_t main_row = 0;         ///< the run's own
+  /// How many times larger than it is the target is shown: 1, unless its unit of length seems to be
+  /// another than the source's. The solutions' sequences are enlarged.
+  double shown_scale = 1;
+};
+
+/// What a report shows of a run, found by doing it again. Sequences have their neutral as rest pose
+/// and no head motion.
+struct ReportStudy {
+  RunRecord run;
+  std::string source;
+  MeshSequence sequence;
+  bool moved_head = false;  ///< head motion was taken out
+  Regions regions;
+  std::optional<Components> components;  ///< none for regions that were given
+  std::optional<ReportedTransfer> transfer;
+  std::vector<std::string> notes;  ///< what the run warned of
+};
+
+/// K of a run that looked for regions; of several the largest.
+int main_count(const Parameters& parameters);
+
+/// `counts`: numbers of components that the table has besides the run's own; those above what the
+/// mesh can have are left out. Throws what the run's operation throws.
+ReportStudy study(const NamedData& run, const std::vector<std::int64_t>& counts,
+                  const Progress& progress, const Log& log);
+
+}  // namespace mimetra

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "toolkit/mesh/mesh_sequence.h"
+
+namespace mimetra {
+
+/// A mesh that a report plays.
+struct ViewerMesh {
+  std::string role;  ///< "source" or "target"
+  std::string name;
+  MeshSequence sequence;
+};
+
+/// What a report plays: meshes of one connectivity, with the times of the first.
+struct ViewerScene {
+  std::vector<ViewerMesh> meshes;
+  std::vector<int> regions;  ///< strongest region of each vertex (N), -1 outside
+  double yaw = 0;            ///< degrees, as Sheet's
+  double pitch = 0;
+  bool z_up = false;
+};
+
+/// Poses as whole numbers of steps from a centre.
+struct QuantizedPoses {
+  Eigen::RowVector3d center;  ///< of the rest pose's bounding box
+  double step = 0;            ///< length; every coordinate is off by half of it at most
+  /// The pose at rest, then the frames, 1 + F x 3N.
+  Eigen::Matrix<std::int16_t, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> poses;
+};
+
+/// Coordinates are at most this many steps from the centre.
+constexpr int kMostSteps = 4095;
+
+QuantizedPoses quantized(const MeshSequence& sequence, const std::vector<int>& frames);
+
+/// `count` of `frames` frames, evenly spread, the first and the last among them (all where there
+/// are fewer). \pre count >= 2
+std::vector<int> thinned(int frames, int count);
+
+/// A scene as a report holds it.
+struct PackedScene {
+  std::string json;  ///< empty where not even two frames fit
+  int frames = 0;
+};
+
+/// As many frames as `bytes` hold, but not more than 30 a second.
+PackedScene packed(const ViewerScene& scene, std::size_t bytes);
+
+}  // namespace mimetra

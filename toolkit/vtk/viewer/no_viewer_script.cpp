@@ -1,9 +1,0 @@
-#include <mimetra/vtk/viewer_script.h>
-
-namespace mimetra {
-
-std::string_view viewer_script() {
-  return {};
-}
-
-}  // namespace mimetra
