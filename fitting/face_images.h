@@ -8,6 +8,7 @@
 #include "fitting/affine_camera.h"
 #include "fitting/image_files.h"
 #include "fitting/landmark_file.h"
+#include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/progress.h"
 
 namespace mimetra {

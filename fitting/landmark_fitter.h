@@ -6,6 +6,7 @@
 
 #include "fitting/affine_camera.h"
 #include "fitting/fit_options.h"
+#include "toolkit/mesh/errors.h"
 #include "toolkit/model/morphable_model.h"
 
 namespace mimetra {

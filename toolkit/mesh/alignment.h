@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/mesh_sequence.h"
 #include "toolkit/mesh/progress.h"
 

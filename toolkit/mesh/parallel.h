@@ -2,6 +2,7 @@
 
 #include <functional>
 
+#include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/progress.h"
 
 namespace mimetra {

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/progress.h"
 #include "toolkit/operations/data.h"
 #include "toolkit/operations/parameter.h"

@@ -3,6 +3,7 @@
 #include <optional>
 #include <vector>
 
+#include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/mesh_sequence.h"
 #include "toolkit/splocs/decomposition_options.h"
 

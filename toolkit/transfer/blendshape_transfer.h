@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/progress.h"
 #include "toolkit/model/blendshape_model.h"
 

@@ -3,6 +3,7 @@
 #include <memory>
 #include <vector>
 
+#include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/mesh_sequence.h"
 #include "toolkit/mesh/progress.h"
 

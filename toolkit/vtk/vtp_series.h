@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/fields.h"
 #include "toolkit/mesh/progress.h"
 

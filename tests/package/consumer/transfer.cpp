@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include <mimetra/toolkit/mesh/mesh_sequence.h>
+#include <mimetra/toolkit/regions/regions.h>
 #include <mimetra/toolkit/transfer/transfer_error.h>
 #include <mimetra/toolkit/transfer/vertex_transfer.h>
 using namespace mimetra;

@@ -9,9 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include <mimetra/fitting/fit_operation.h>
-#include <mimetra/toolkit/io/pending_output.h>
-
-#include "toolkit/io/whole_file.h"
+#include <mimetra/toolkit/io/whole_file.h>
 
 using namespace mimetra;
 
