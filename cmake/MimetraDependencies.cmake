@@ -32,8 +32,8 @@ if(MIMETRA_VTK)
   mimetra_package(GLEW)
   mimetra_package(OpenGL COMPONENTS EGL)
   set(vtk_files CommonCore CommonDataModel IOCore IOXML IOXMLParser)
-  set(vtk_rendering ChartsCore IOImage RenderingContext2D RenderingContextOpenGL2 RenderingCore RenderingFreeType
-                    RenderingOpenGL2)
+  set(vtk_rendering ChartsCore IOImage RenderingContext2D RenderingContextOpenGL2 RenderingCore
+                    RenderingFreeType RenderingOpenGL2)
   find_package(VTK 9.1 REQUIRED COMPONENTS ${vtk_files} ${vtk_rendering})
   # Objects compiled against one VTK break with another one's libraries.
   set(same_vtk VTK ${VTK_VERSION} EXACT HINTS ${VTK_DIR})

@@ -3,10 +3,17 @@
 
 include(GNUInstallDirs)
 get_filename_component(MIMETRA_ROOT ${CMAKE_CURRENT_LIST_DIR} DIRECTORY)
-# What users write, `#include <mimetra/toolkit/mesh/tri_mesh.h>`, holds for samples in the build tree.
-set(MIMETRA_CONSUMER_INCLUDES ${PROJECT_BINARY_DIR}/include)
-file(MAKE_DIRECTORY ${MIMETRA_CONSUMER_INCLUDES})
-file(CREATE_LINK ${MIMETRA_ROOT} ${MIMETRA_CONSUMER_INCLUDES}/mimetra SYMBOLIC)
+if(PROJECT_NAME STREQUAL mimetra)
+  include_directories(${MIMETRA_ROOT})
+  # What users write, `#include <mimetra/toolkit/mesh/tri_mesh.h>`, holds for samples and consumers
+  # of the build tree.
+  set(MIMETRA_CONSUMER_INCLUDES ${PROJECT_BINARY_DIR}/as_installed)
+  file(MAKE_DIRECTORY ${MIMETRA_CONSUMER_INCLUDES})
+  file(CREATE_LINK ${MIMETRA_ROOT} ${MIMETRA_CONSUMER_INCLUDES}/mimetra SYMBOLIC)
+else()
+  # The headers of the installation come before those of the checkout: what is linked is installed.
+  add_compile_options(-idirafter${MIMETRA_ROOT})
+endif()
 set(MIMETRA_PACKAGE_FOLDER ${CMAKE_INSTALL_LIBDIR}/cmake/mimetra)
 
 # mimetra_component(NAME [USES components] [PACKAGES ...]): installs the target mimetra_NAME as the
@@ -45,10 +52,12 @@ function(mimetra_library name)
   target_compile_definitions(mimetra_${name} PUBLIC EIGEN_MAX_ALIGN_BYTES=64
                                                     EIGEN_MAX_STATIC_ALIGN_BYTES=16)
   target_include_directories(
-    mimetra_${name}
-    PUBLIC $<BUILD_INTERFACE:${MIMETRA_ROOT}>
-    INTERFACE $<BUILD_INTERFACE:${MIMETRA_CONSUMER_INCLUDES}> $<INSTALL_INTERFACE:include>
-              $<INSTALL_INTERFACE:include/mimetra>)
+    mimetra_${name} INTERFACE $<INSTALL_INTERFACE:include> $<INSTALL_INTERFACE:include/mimetra>)
+  if(MIMETRA_CONSUMER_INCLUDES)
+    target_include_directories(
+      mimetra_${name} INTERFACE $<BUILD_INTERFACE:${MIMETRA_ROOT}>
+                                $<BUILD_INTERFACE:${MIMETRA_CONSUMER_INCLUDES}>)
+  endif()
   target_link_libraries(
     mimetra_${name}
     PUBLIC ${ARG_USES}
@@ -65,7 +74,6 @@ endfunction()
 function(mimetra_test name)
   cmake_parse_arguments(ARG "" "" "SOURCES;USES" ${ARGN})
   add_executable(${name}_test ${ARG_SOURCES})
-  target_include_directories(${name}_test PRIVATE ${MIMETRA_ROOT})
   target_link_libraries(${name}_test PRIVATE ${ARG_USES} mimetra_flags mimetra_test_folders
                                              GTest::gmock GTest::gtest_main)
   gtest_discover_tests(${name}_test NO_PRETTY_VALUES DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 600)

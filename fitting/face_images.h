@@ -7,9 +7,9 @@
 
 #include "fitting/affine_camera.h"
 #include "fitting/image_files.h"
-#include "fitting/landmark_file.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/progress.h"
+#include "toolkit/model/landmark_track.h"
 
 namespace mimetra {
 

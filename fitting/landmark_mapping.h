@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "fitting/landmark_file.h"
+#include "toolkit/model/landmark_track.h"
 
 namespace mimetra {
 

@@ -187,7 +187,7 @@ OpenMesh::Vec3d corner_position(const IntrinsicMesh& mesh, Mesh::HalfedgeHandle 
 }
 
 /// `matrix` on the rows of its unknowns. Unknowns with the same row are one, which joins the sheets
-/// of a surface that is no manifold.
+/// of a surface that is not a manifold.
 Eigen::SparseMatrix<double> joined(const Eigen::SparseMatrix<double>& matrix,
                                    const std::vector<VertexIndex>& row_of, Eigen::Index rows) {
   const bool joins_nothing = rows == matrix.rows() && std::ranges::is_sorted(row_of);

@@ -18,7 +18,7 @@ std::vector<MeshModel*> visible_layers(MeshDocument& document, const MeshModel* 
 /// first layer has.
 Frames frames_of(const std::vector<MeshModel*>& layers);
 
-/// Throws Failure that tells how the faces of `found` differ from those of `expected`.
+/// Throws Failure that says how the faces of `found` differ from those of `expected`.
 void check_same_faces(const Frames& found, const std::string& found_name, const Frames& expected,
                       const std::string& expected_name);
 

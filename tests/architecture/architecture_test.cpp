@@ -168,6 +168,8 @@ INSTANTIATE_TEST_SUITE_P(
                     Include{"toolkit/io/a.cpp", "#include \"toolkit/transfer/x.h\""},
                     Include{"toolkit/vtk/a.h", "#include <vtkPolyData.h>"},
                     Include{"toolkit/vtk/a.cpp", "#include <EGL/egl.h>"},
+                    Include{"toolkit/vtk/a.cpp", "#include <vtkRenderWindow.h>"},
+                    Include{"plugins/paraview/a.cpp", "#include <toolkit/io/pending_output.h>"},
                     Include{"toolkit/vtk/a.cpp", "#include \"toolkit/pictures/picture.h\""},
                     Include{"toolkit/pictures/a.cpp", "#include \"toolkit/report/x.h\""},
                     Include{"toolkit/cli/a.cpp", "#include <dlib/image_io.h>"},
@@ -182,6 +184,18 @@ TEST(PathRule, KnowsAFileOnlyByItsPathFromTheRoot) {
   const std::string own = "#include \"b.h\"\n#include \"toolkit/mesh/b.h\"\n#include <vector>\n";
   EXPECT_THAT(test::path_errors({{"toolkit/mesh/a.cpp", own}, {"toolkit/mesh/b.h", ""}}),
               ElementsAre("toolkit/mesh/a.cpp:1: b.h: is not a file of the tree"));
+}
+
+TEST(PathRule, TakesNoAnglesForAFileOfTheTree) {
+  EXPECT_THAT(test::path_errors({{"tests/mesh/a.cpp", "#include <toolkit/mesh/b.h>\n"},
+                                 {"toolkit/mesh/b.h", ""}}),
+              ElementsAre(HasSubstr("write \"toolkit/mesh/b.h\"")));
+}
+
+TEST(PathRule, LeavesTheTreesPathToTheTree) {
+  EXPECT_THAT(
+      test::path_errors({{"samples/a.cpp", "#include \"geodesic/b.h\"\n"}, {"geodesic/b.h", ""}}),
+      ElementsAre(HasSubstr("write <mimetra/geodesic/b.h>")));
 }
 
 TEST(PathRule, LeavesTheInstalledPathToUsers) {
@@ -233,6 +247,14 @@ TEST(LinkRule, NamesFileLineAndReason) {
 TEST(LinkRule, FindsThirdPartiesOfOtherFolders) {
   EXPECT_THAT(link_errors("toolkit/model/CMakeLists.txt", "PRIVATE VTK::IOXML OpenMeshCore"),
               ElementsAre(HasSubstr("may not use VTK"), HasSubstr("may not use OpenMesh")));
+}
+
+TEST(LinkRule, LooksIntoGeneratorExpressions) {
+  EXPECT_THAT(link_errors("toolkit/io/CMakeLists.txt",
+                          "PRIVATE $<BUILD_INTERFACE:mimetra::vtk> mimetra_report "
+                          "$<LINK_ONLY:dlib::dlib>"),
+              ElementsAre(HasSubstr("may not use vtk"), HasSubstr("may not use report"),
+                          HasSubstr("may not use dlib")));
 }
 
 TEST(LinkRule, AllowsWhatTheTableAllows) {

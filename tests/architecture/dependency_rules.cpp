@@ -29,8 +29,12 @@ const std::vector<ThirdParty>& third_parties() {
       {"JSON", {"nlohmann/"}, {"nlohmann_json::"}},
       {"zlib", {"zlib.h"}, {"ZLIB::", "${ZLIB_"}},
       {"tinygltf", {"tiny_gltf.h"}, {"tinygltf"}},
+      {"VTK's rendering",
+       {"vtkActor", "vtkCamera", "vtkChart", "vtkContext", "vtkLight", "vtkPlot",
+        "vtkPolyDataMapper", "vtkProperty", "vtkRender", "vtkText", "vtkGenericOpenGL"},
+       {"VTK::Charts", "VTK::Rendering"}},
       {"VTK", {"vtk"}, {"VTK::", "${VTK_LIBRARIES"}},
-      {"EGL", {"EGL/"}, {"OpenGL::EGL"}},
+      {"OpenGL", {"EGL/", "GL/"}, {"OpenGL::", "GLEW::"}},
       {"CLI11", {"CLI/"}, {"CLI11::"}},
       {"spdlog", {"spdlog/"}, {"spdlog::"}},
       {"fmt", {"fmt/"}, {"fmt::"}},
@@ -119,10 +123,11 @@ struct Include {
   bool quoted;
   std::string header;
 
+  bool is_as_installed() const { return !quoted && header.starts_with(kInstalled); }
   /// The file of the tree that is meant; none for one from elsewhere.
   std::optional<fs::path> of_the_tree() const {
-    if (quoted) return header;
-    if (header.starts_with(kInstalled)) return header.substr(kInstalled.size());
+    if (is_as_installed()) return header.substr(kInstalled.size());
+    if (quoted || rule_for(header)) return header;
     return {};
   }
 };
@@ -135,9 +140,15 @@ std::optional<std::string> include_error(const FolderRule& rule, const fs::path&
   return folder ? folder_error(rule, folder->name) : "no folder of the architecture holds it";
 }
 
+/// `library` may be a target, mimetra::io or mimetra_io, or a third party's.
 std::optional<std::string> link_error(const FolderRule& rule, const std::string& library) {
-  constexpr std::string_view kOwn = "mimetra::";
-  if (library.starts_with(kOwn)) return folder_error(rule, library.substr(kOwn.size()));
+  for (const std::string_view own : {"mimetra::", "mimetra_"}) {
+    if (!library.starts_with(own)) continue;
+    const std::string name = library.substr(own.size());
+    const auto is_of_name = [&name](const FolderRule& other) { return other.name == name; };
+    const bool is_folder = std::any_of(folder_rules().begin(), folder_rules().end(), is_of_name);
+    return is_folder ? folder_error(rule, name) : std::nullopt;
+  }
   for (const ThirdParty& party : third_parties()) {
     if (starts_with_any(library, party.targets)) return third_party_error(rule, party.name);
   }
@@ -170,11 +181,9 @@ std::vector<Include> includes_of(const std::string& text) {
 /// Programs that know an installation, as a user has it.
 bool is_users_program(const fs::path& file) {
   return file.parent_path() == "samples" || is_inside(file, "samples/plugin") ||
-         is_inside(file, "tests/package") || is_inside(file, "tests/c/programs");
-}
-
-bool is_test(const fs::path& file) {
-  return is_inside(file, "tests");
+         is_inside(file, "tests/c/programs") ||
+         // The fitting module's own test where it is built alone.
+         (is_inside(file, "tests/package") && !is_inside(file, "tests/package/fitting"));
 }
 
 /// A header and the source of its name.
@@ -274,7 +283,7 @@ const std::vector<FolderRule>& folder_rules() {
          {"OpenMesh", "HDF5", "JSON", "zlib", "tinygltf"}},
         {"operations", "toolkit/operations", below_operations, {"JSON", "xxHash"}},
         {"vtk", "toolkit/vtk", up_to_operations, {"VTK", "JSON"}},
-        {"pictures", "toolkit/pictures", up_to_vtk, {"VTK", "EGL", "JSON"}},
+        {"pictures", "toolkit/pictures", up_to_vtk, {"VTK", "VTK's rendering", "OpenGL", "JSON"}},
         {"report", "toolkit/report", with(up_to_vtk, {"pictures"}), {"VTK", "JSON"}},
         {"fitting", "fitting", {"mesh", "model", "io", "operations"}, {"dlib", "JSON"}},
         {"samples", "samples/head", up_to_operations, {"JSON"}},
@@ -316,7 +325,8 @@ std::vector<std::string> include_errors(const fs::path& file, const std::string&
 }
 
 std::vector<std::string> link_errors(const fs::path& file, const std::string& text) {
-  static const std::regex word(R"re([^\s()"]+)re");
+  // What a generator expression, $<LINK_ONLY:dlib::dlib>, stands for is a word of its own.
+  static const std::regex word(R"re((?:[^\s()"<>$:]|::|\$\{)+)re");
   const FolderRule* rule = rule_for(file);
   if (!rule) return {};
   std::vector<std::string> errors;
@@ -339,9 +349,11 @@ std::vector<std::string> path_errors(const Tree& sources) {
       if (!target) continue;
       const std::string start = place(file, include.line) + include.header + ": ";
       if (!sources.contains(*target)) errors.push_back(start + "is not a file of the tree");
-      if (include.quoted) continue;
-      if (is_users_program(file)) continue;
-      errors.push_back(start + "write \"" + target->generic_string() + "\"");
+      // What a test of users' programs has for itself is in no installation.
+      const bool as_user = is_users_program(file) && !is_inside(*target, "tests");
+      if (as_user ? include.is_as_installed() : include.quoted) continue;
+      const std::string path = target->generic_string();
+      errors.push_back(start + "write " + (as_user ? "<mimetra/" + path + ">" : '"' + path + '"'));
     }
   }
   return errors;
@@ -351,7 +363,6 @@ std::vector<std::string> private_header_errors(const Tree& sources, const Tree& 
   const std::set<fs::path> installed = public_headers(lists);
   std::vector<std::string> errors;
   for (const auto& [file, text] : sources) {
-    if (is_test(file)) continue;
     for (const Include& include : includes_of(text)) {
       const auto target = include.of_the_tree();
       if (!target || rule_for(*target) == rule_for(file) || installed.contains(*target)) continue;

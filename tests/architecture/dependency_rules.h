@@ -1,10 +1,8 @@
 #pragma once
 
 #include <filesystem>
-#include <functional>
 #include <map>
 #include <optional>
-#include <set>
 #include <string>
 #include <vector>
 
@@ -44,7 +42,7 @@ using Tree = std::map<std::filesystem::path, std::string>;
 std::vector<std::string> path_errors(const Tree& sources);
 
 /// One message per header that another folder includes and that the HEADERS of its CMakeLists.txt
-/// do not name. Tests may look inside.
+/// do not name. `sources` are without tests, which may look inside.
 std::vector<std::string> private_header_errors(const Tree& sources, const Tree& lists);
 
 /// One message per header whose name another header has, too.

@@ -39,7 +39,7 @@ class Redirection {
   posix_spawn_file_actions_t actions_{};
 };
 
-/// Follows the most memory that a child has held until this object goes. What wait4 tells counts
+/// Follows the most memory that a child has held until this object goes. What wait4 returns counts
 /// the memory that its parent had when the child began.
 class MemoryWatch {
  public:

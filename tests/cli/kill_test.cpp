@@ -62,7 +62,7 @@ class KillTest : public test::CommandTest, public testing::WithParamInterface<Ki
     return WIFEXITED(status);
   }
 
-  /// What stands under the names asked for, but for the manifest, which tells how long it took.
+  /// What stands under the names asked for, but for the manifest, which holds how long it took.
   std::map<std::string, std::string> result() const {
     std::map<std::string, std::string> contents;
     const auto add = [&](const fs::path& path) {

@@ -132,24 +132,6 @@ TEST(WriteFile, WritesAllBytes) {
   EXPECT_EQ(read_file(folder / "out"), content);
 }
 
-TEST(ReadFile, ReadsFilesOfAnySize) {
-  const TemporaryFolder folder;
-  for (const std::size_t size : {0, 1, 65535, 65536, 65537, 1000000}) {
-    std::string content(size, '\0');
-    for (std::size_t i = 0; i < size; ++i) content[i] = static_cast<char>(i % 251);
-    write_bytes(folder / "a", content);
-    EXPECT_TRUE(read_file(folder / "a") == content) << size;
-  }
-}
-
-TEST(ReadFile, SaysWhetherAFileIsMissingOrAFolder) {
-  const TemporaryFolder folder;
-  EXPECT_EQ(message_of<IoError>([&] { read_file(folder / "none"); }),
-            (folder / "none").string() + ": no such file");
-  EXPECT_EQ(message_of<IoError>([&] { read_file(folder.path()); }),
-            folder.path().string() + ": is a folder, expected a file");
-}
-
 /// A folder as an earlier run left it.
 void write_folder(const fs::path& target, const std::string& content) {
   PendingOutput output(target, Kind::folder, true);

@@ -30,6 +30,12 @@ TEST(Text, JoinsWordsAsPeopleReadThem) {
   EXPECT_EQ(joined(words_of({2, 5, 7}), ", ", " and "), "2, 5 and 7");
 }
 
+TEST(Text, ShowsNumbersAndSharesAsPeopleReadThem) {
+  EXPECT_EQ(readable(1234.56), "1235");
+  EXPECT_EQ(readable(0.000123456, 2), "0.00012");
+  EXPECT_EQ(percent(0.1234), "12.3 %");
+}
+
 TEST(Text, LowersTheLettersOfAnExtensionAndNothingElse) {
   EXPECT_EQ(lower_extension("FACE.PLY"), ".ply");
   EXPECT_EQ(lower_extension("Face"), "");

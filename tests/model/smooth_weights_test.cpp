@@ -1,3 +1,5 @@
+#include <random>
+
 #include <gtest/gtest.h>
 
 #include "toolkit/model/box_least_squares.h"
@@ -54,11 +56,18 @@ struct Clip {
   double mean_diagonal() const { return gram.diagonal().mean(); }
 };
 
+/// Uniform in [-1, 1], the same in every run.
+Eigen::MatrixXd random(Eigen::Index rows, Eigen::Index columns) {
+  std::mt19937 generator(2);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  return Eigen::MatrixXd::NullaryExpr(rows, columns, [&] { return uniform(generator); });
+}
+
 /// Right-hand sides of weights that jump from frame to frame and go beyond the box.
 Clip noisy_clip(int frames, int d) {
-  const Eigen::MatrixXd columns = Eigen::MatrixXd::Random(20 * d, d);
+  const Eigen::MatrixXd columns = random(20 * d, d);
   const Eigen::MatrixXd gram = columns.transpose() * columns;
-  const Eigen::MatrixXd weights = (0.8 * Eigen::MatrixXd::Random(frames, d)).array() + 0.5;
+  const Eigen::MatrixXd weights = (0.8 * random(frames, d)).array() + 0.5;
   return {gram, weights * gram};
 }
 
@@ -161,7 +170,7 @@ TEST(SmoothWeights, AreExactlyZeroWhereNothingPulls) {
 
 TEST(SmoothWeights, AreTheSingleFramesWhereThereAreTooFew) {
   const Clip clip = noisy_clip(2, 3);
-  const Eigen::MatrixXd single = Eigen::MatrixXd::Random(2, 3).cwiseAbs();
+  const Eigen::MatrixXd single = random(2, 3).cwiseAbs();
   EXPECT_EQ(smooth_weights({clip.gram}, clip.h, even(clip.h.rows()), 1, single), single);
 }
 

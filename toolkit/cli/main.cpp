@@ -42,8 +42,8 @@ void log_to_stderr(const mimetra::cli::Request& request) {
                                       : spdlog::level::warn);
 }
 
-/// Parses, and tells what was left out of the table: before an error that may come of it, but not
-/// to those who want errors only.
+/// Parses, and warns of what was left out of the table: before an error that may come of it, but
+/// not to those who want errors only.
 mimetra::cli::ParsedLine parse(const mimetra::OperationTable& table,
                                const std::vector<std::string>& arguments,
                                const std::vector<std::string>& left_out) {

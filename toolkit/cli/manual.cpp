@@ -22,7 +22,7 @@ constexpr ExitCodeLine kExitCodes[] = {
     {"5", "an output cannot be written, or exists and may not be replaced"},
     {"130", "interrupted; nothing was written"}};
 
-/// Text as roff shows it: a hyphen is a minus sign, a leading dot is no request.
+/// Text as roff shows it: a hyphen is a minus sign, a leading dot is not a request.
 std::string roff(const std::string& text) {
   std::string result = text.starts_with('.') || text.starts_with('\'') ? "\\&" : "";
   for (const char c : text) {

@@ -16,10 +16,6 @@ namespace mimetra {
 namespace fs = std::filesystem;
 namespace {
 
-bool is_digit(char c) {
-  return c >= '0' && c <= '9';
-}
-
 /// `%d`, `%4d` or `%04d` in a file's name.
 struct NumberField {
   std::size_t begin;
@@ -60,7 +56,7 @@ std::vector<fs::path> files_in(const fs::path& folder) {
   for (fs::directory_iterator entry(folder.empty() ? "." : folder, error), end;
        !error && entry != end; entry.increment(error)) {
     const bool hidden = entry->path().filename().string().starts_with('.');
-    std::error_code dangling;  // a link that leads nowhere is no file
+    std::error_code dangling;  // a link that leads nowhere is not a file
     if (!hidden && entry->is_regular_file(dangling)) {
       files.push_back(folder / entry->path().filename());
     }

@@ -28,7 +28,7 @@ std::vector<fs::path> sorted_files_in(const fs::path& folder) {
   for (fs::directory_iterator entry(folder, error), end; !error && entry != end;
        entry.increment(error)) {
     const bool hidden = entry->path().filename().string().starts_with('.');
-    std::error_code dangling;  // a link that leads nowhere is no file
+    std::error_code dangling;  // a link that leads nowhere is not a file
     if (!hidden && entry->is_regular_file(dangling)) files.push_back(entry->path());
   }
   std::ranges::sort(files, [](const fs::path& a, const fs::path& b) {

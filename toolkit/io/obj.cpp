@@ -46,7 +46,7 @@ class ObjReader {
   }
 
  private:
-  /// Statements that say nothing of a mesh are passed over; what is no statement is not.
+  /// Statements that are not about a mesh are passed over; what is not a statement is an error.
   void check_keyword(std::string_view keyword) const {
     const char first = keyword.empty() ? 'v' : keyword[0];
     const bool is_name = (first >= 'a' && first <= 'z') || (first >= 'A' && first <= 'Z');

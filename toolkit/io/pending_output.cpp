@@ -1,7 +1,6 @@
 #include "toolkit/io/pending_output.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cerrno>
 #include <fstream>
 #include <system_error>

@@ -168,7 +168,7 @@ void read_corners(PlyBody& body, const PlyProperty& property, Polygons& polygons
   const std::size_t corners = list_length(body, property);
   for (std::size_t i = 0; i < corners; ++i) {
     const double vertex = body.value(property.type);
-    // What is no int is out of range in any case.
+    // What is not an int is out of range in any case.
     const bool fits = vertex >= 0 && vertex <= INT_MAX && vertex == std::floor(vertex);
     if (!fits) body.fail("vertex index " + std::to_string(vertex) + ", expected 0 or more");
     polygons.corners.push_back(static_cast<int>(vertex));

@@ -5,10 +5,6 @@
 namespace mimetra {
 namespace {
 
-bool is_digit(char c) {
-  return c >= '0' && c <= '9';
-}
-
 /// The digits from `at` on without leading zeros; moves `at` behind them.
 std::string_view number_run(const std::string& text, std::size_t& at) {
   while (at < text.size() && text[at] == '0') ++at;

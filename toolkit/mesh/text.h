@@ -9,6 +9,11 @@
 /// Names and numbers as people read and order them.
 namespace mimetra {
 
+/// True for 0 to 9, whatever the locale.
+inline bool is_digit(char c) {
+  return c >= '0' && c <= '9';
+}
+
 /// A to Z become a to z.
 std::string lower_case(std::string text);
 

@@ -109,7 +109,7 @@ class Loader {
     return source;
   }
 
-  /// Tells the notes of what was read, and keeps its files for the manifest.
+  /// Logs the notes of what was read, and keeps its files for the manifest.
   template <typename Read>
   Read noted(Read read) {
     for (const std::string& note : read.notes) {

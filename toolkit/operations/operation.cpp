@@ -1,10 +1,8 @@
 #include "toolkit/operations/operation.h"
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <set>
-#include <sstream>
 
 #include <nlohmann/json.hpp>
 

@@ -205,7 +205,7 @@ std::size_t regions_to_cover(const Regions& regions, double coverage) {
   return count;
 }
 
-std::string percent(double share) {
+std::string whole_percent(double share) {
   return std::to_string(static_cast<int>(std::lround(100 * share))) + " %";
 }
 
@@ -214,8 +214,8 @@ void cover(Regions& regions, double coverage, const Triangles& triangles) {
   complete(regions, triangles);
   if (regions.energy_share >= coverage - kSumRounding) return;
   regions.notes.push_back("all " + std::to_string(regions.regions.size()) + " regions hold " +
-                          percent(regions.energy_share) + " of the motion energy; " +
-                          percent(coverage) + " were asked for");
+                          whole_percent(regions.energy_share) + " of the motion energy; " +
+                          whole_percent(coverage) + " were asked for");
 }
 
 }  // namespace

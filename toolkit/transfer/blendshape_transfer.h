@@ -25,7 +25,7 @@ struct BlendshapeTransferOptions {
   Progress progress = {};
 };
 
-/// What the chosen triangles tell about the target's expressions.
+/// What the chosen triangles show of the target's expressions.
 struct BlendshapeConditions {
   /// Columns with no motion in L: their weight is 0 in every frame.
   std::vector<std::string> unseen;

@@ -32,7 +32,7 @@ std::vector<int> numbered_vertices(const BlendshapeModel& target,
 }
 
 /// Rows of the displacement fields at the selected triangles' vertices.
-Eigen::MatrixXd part_of(const Eigen::MatrixXd& basis, const std::vector<int>& row_of_vertex) {
+Eigen::MatrixXd rows_at(const Eigen::MatrixXd& basis, const std::vector<int>& row_of_vertex) {
   std::vector<Eigen::Index> rows;
   for (std::size_t v = 0; v < row_of_vertex.size(); ++v) {
     if (row_of_vertex[v] < 0) continue;
@@ -47,7 +47,7 @@ RightHandSide::RightHandSide(const Positions& rest, const DeformationGradients& 
                              const BlendshapeModel& target)
     : pull_(rest, target.triangles(), gradients, neutral_edges(target, gradients.selected()),
             numbered_vertices(target, gradients.selected())),
-      basis_(part_of(target.expressions().displacements,
+      basis_(rows_at(target.expressions().displacements,
                      numbered_vertices(target, gradients.selected()))) {}
 
 Eigen::MatrixXd RightHandSide::operator()(const Eigen::Ref<const Frames>& frames) const {

@@ -1,7 +1,4 @@
 #include <algorithm>
-#include <cctype>
-
-#include <numeric>
 
 #include <vtkErrorCode.h>
 #include <vtkExecutive.h>
@@ -14,6 +11,7 @@
 #include <vtkXMLUtilities.h>
 #include <nlohmann/json.hpp>
 
+#include "toolkit/io/frame_files.h"
 #include "toolkit/io/whole_file.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/progress.h"
@@ -103,9 +101,9 @@ std::vector<FrameFile> entries_of(const fs::path& path) {
 
 FieldSequence read_vtp_series(const fs::path& path, const VtpReadOptions& options) {
   const std::vector<FrameFile> all = entries_of(path);
-  std::vector<int> chosen(all.size());
-  std::iota(chosen.begin(), chosen.end(), 0);
-  if (options.selected) chosen = options.selected(static_cast<int>(all.size()));
+  const auto count = static_cast<int>(all.size());
+  const std::vector<int> chosen =
+      options.selected ? options.selected(count) : selected_frames({}, count);
   const FrameFile& first = all[static_cast<std::size_t>(chosen.front())];
   FieldSequence result;
   Connectivity connectivity;

@@ -9,7 +9,7 @@
 Each operation of the library's table is a function here, those of plugins too: `help(mimetra)`
 lists them, `operations` describes them. Inputs are values (Sequence, Model, ...) or what the
 command takes as text, which is read from files; where a sequence or model is expected, (positions,
-faces) is one. What the library tells goes to logging.getLogger("mimetra"). Functions may be called
+faces) is one. What the library logs goes to logging.getLogger("mimetra"). Functions may be called
 from several threads at once.
 """
 

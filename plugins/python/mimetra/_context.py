@@ -41,7 +41,7 @@ class Context:
         _all_contexts.add(self)
 
     def check(self, status):
-        """Raises what a status tells."""
+        """Raises the exception of a status."""
         if status:
             raise error_of(status, library.message(self.handle).decode(errors="replace"))
 

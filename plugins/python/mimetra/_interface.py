@@ -18,7 +18,7 @@ WARNING = 1
 
 
 class Struct(ctypes.Structure):
-    """A struct that tells its size to the library."""
+    """A struct that begins with its size."""
 
     def __init__(self, **values):
         super().__init__(struct_size=ctypes.sizeof(self), **values)
@@ -114,10 +114,10 @@ def free_with(owner, free, handle):
 
 
 def _places():
-    """Where the library may be: as told, beside this module, in its installation, in the system."""
-    told = os.environ.get("MIMETRA_LIBRARY")
-    if told:
-        return [told]
+    """Where the library may be: as the environment says, beside this module, in its installation, in the system."""
+    named = os.environ.get("MIMETRA_LIBRARY")
+    if named:
+        return [named]
     here = pathlib.Path(__file__).resolve().parent
     places = [here / "libmimetra_c.so"]
     for folder in here.parents[:4]:

@@ -1,4 +1,4 @@
-// A product has the same bytes, whatever caches the program tells Eigen of.
+// A product has the same bytes, whatever caches the program sets in Eigen.
 
 #include <cstring>
 

@@ -8,8 +8,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include <mimetra/fitting/fit_operation.h>
-#include <mimetra/toolkit/io/whole_file.h>
+#include "fitting/fit_operation.h"
+#include "toolkit/io/whole_file.h"
 
 using namespace mimetra;
 

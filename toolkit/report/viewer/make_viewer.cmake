@@ -12,8 +12,8 @@ if(NOT EXISTS ${PACKAGES}/${lock}.installed)
     OUTPUT_QUIET ERROR_VARIABLE reason
     TIMEOUT 300)
   if(failed)
-    message("npm cannot get the packages of the report's 3D viewer: reports will have none; to try "
-            "again, remove ${SOURCE}\n${reason}")
+    message("npm cannot get the packages of the report's 3D viewer: reports will have none until it "
+            "can and mimetra is configured and built again\n${reason}")
     configure_file(${FOLDER}/no_viewer_script.cpp ${SOURCE} COPYONLY)
     file(TOUCH_NOCREATE ${SOURCE})
     return()

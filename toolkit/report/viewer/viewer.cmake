@@ -20,6 +20,11 @@ endif()
 set(packages ${CMAKE_CURRENT_BINARY_DIR}/viewer)
 set(viewer_source ${CMAKE_CURRENT_BINARY_DIR}/viewer_script.cpp)
 set(folder ${CMAKE_CURRENT_LIST_DIR})
+# Where the packages could not be had, the next configuration lets it be tried again.
+file(GLOB installed ${packages}/*.installed)
+if(NOT installed)
+  file(REMOVE ${viewer_source})
+endif()
 add_custom_command(
   OUTPUT ${viewer_source}
   COMMAND ${CMAKE_COMMAND} -DNPM=${NPM} -DNODE=${NODE} -DFOLDER=${folder} -DPACKAGES=${packages}
