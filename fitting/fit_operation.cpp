@@ -21,54 +21,43 @@ namespace mimetra {
 namespace {
 
 std::vector<Parameter> fit_parameters() {
-  return {{"mapping",
-           ParameterKind::file,
-           {},
-           "vertex of each landmark (default: ibug_to_*.txt or landmarks68.txt in the model's "
-           "folder)"},
-          {"solver",
-           ParameterKind::choice,
-           "joint",
-           "joint: camera, shape and expressions together; alternating: in turn, as in the paper",
-           "",
-           {},
-           {},
-           {"joint", "alternating"}},
-          {"shape",
-           ParameterKind::choice,
-           "clip",
-           "one identity for the clip, or one in every frame",
-           "",
-           {},
-           {},
-           {"clip", "frame"}},
-          {"iterations", ParameterKind::integer, std::int64_t{5}, "iterations at most", "", 1, 1e6},
-          {"tolerance", ParameterKind::number, 1e-4,
-           "it ends where an iteration lowers the energy by a smaller share", "", 0, 1},
-          {"sigma",
-           ParameterKind::number,
-           {},
-           "noise of the landmarks (default: 0.017485 of the face's RMS radius)",
-           "pixels",
-           1e-9,
-           1e9},
-          {"ridge",
-           ParameterKind::number,
-           {},
-           "weight of squared expressions (default: 0.1 with more than ten of them, else 0)",
-           "",
-           0,
-           1e9},
-          {"smoothness", ParameterKind::number, 0.0, "time constant of smooth expressions",
-           "seconds", 0, 1e6}};
+  return {
+      {"mapping",
+       ParameterKind::file,
+       {},
+       "vertex of each landmark (default: ibug_to_*.txt or landmarks68.txt in the model's "
+       "folder)"},
+      choice_parameter(
+          "solver", FitOptions{}.solver,
+          "joint: camera, shape and expressions together; alternating: in turn, as in the paper"),
+      choice_parameter("shape", FitOptions{}.shape,
+                       "one identity for the clip, or one in every frame"),
+      {"iterations", ParameterKind::integer, std::int64_t{FitOptions{}.iterations},
+       "iterations at most", "", 1, 1e6},
+      {"tolerance", ParameterKind::number, FitOptions{}.tolerance,
+       "it ends where an iteration lowers the energy by a smaller share", "", 0, 1},
+      {"sigma",
+       ParameterKind::number,
+       {},
+       "noise of the landmarks (default: 0.017485 of the face's RMS radius)",
+       "pixels",
+       1e-9,
+       1e9},
+      {"ridge",
+       ParameterKind::number,
+       {},
+       "weight of squared expressions (default: 0.1 with more than ten of them, else 0)",
+       "",
+       0,
+       1e9},
+      {"smoothness", ParameterKind::number, FitOptions{}.smoothness,
+       "time constant of smooth expressions", "seconds", 0, 1e6}};
 }
 
 FitOptions options_of(const Parameters& parameters) {
   FitOptions options;
-  options.solver = parameters.text("solver") == "joint" ? FitOptions::Solver::joint
-                                                        : FitOptions::Solver::alternating;
-  options.shape =
-      parameters.text("shape") == "clip" ? FitOptions::Shape::clip : FitOptions::Shape::frame;
+  options.solver = parameters.choice<FitOptions::Solver>("solver");
+  options.shape = parameters.choice<FitOptions::Shape>("shape");
   options.iterations = parameters.integer("iterations");
   options.tolerance = parameters.number("tolerance");
   options.sigma = parameters.optional_number("sigma");
@@ -269,7 +258,8 @@ double memory(const Invocation& invocation) {
   const MorphableModel& model = invocation.get<ModelRead>("model").model;
   const double coordinates = 3.0 * model.vertices();
   const double unknowns = 8.0 + model.identities().size() + model.expressions().size();
-  const bool each_frame = invocation.parameters.text("shape") == "frame";
+  const bool each_frame =
+      invocation.parameters.choice<FitOptions::Shape>("shape") == FitOptions::Shape::frame;
   return sizeof(double) *
          (coordinates * ((each_frame ? 2 : 1) * frames + 2 * model.expressions().size()) +
           (each_frame ? 0 : frames * unknowns * unknowns));

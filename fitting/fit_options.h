@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <string_view>
 
 #include "toolkit/mesh/progress.h"
 
@@ -9,7 +10,7 @@ namespace mimetra {
 struct FitOptions {
   /// `alternating`: camera, alpha, camera, beta, in turn, as in the paper. `joint`: Gauss-Newton
   /// steps of all of them together, two or three of which reach what hundreds of iterations do.
-  enum class Solver { alternating, joint };
+  enum class Solver { joint, alternating };
   /// `clip`: one alpha for all frames; `frame`: an alpha in every frame, which starts from the
   /// frame before.
   enum class Shape { clip, frame };
@@ -33,5 +34,27 @@ struct FitOptions {
   double smoothness = 0;
   Progress progress = {};
 };
+
+/// As people choose it.
+constexpr std::string_view choice_name(FitOptions::Solver value) {
+  switch (value) {
+    case FitOptions::Solver::joint:
+      return "joint";
+    case FitOptions::Solver::alternating:
+      return "alternating";
+  }
+  return {};
+}
+
+/// As people choose it.
+constexpr std::string_view choice_name(FitOptions::Shape value) {
+  switch (value) {
+    case FitOptions::Shape::clip:
+      return "clip";
+    case FitOptions::Shape::frame:
+      return "frame";
+  }
+  return {};
+}
 
 }  // namespace mimetra

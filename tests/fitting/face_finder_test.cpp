@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "fitting/face_images.h"
+#include "fitting/landmark_file.h"
 #include "fitting/landmark_fitter.h"
 #include "fitting/landmark_mapping.h"
 #include "tests/fitting/saved_image.h"

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "fitting/landmark_file.h"
 #include "fitting/landmark_fitter.h"
 #include "fitting/landmark_mapping.h"
 #include "tests/shared_data.h"

@@ -29,6 +29,48 @@ TEST(Parameter, ParsesEachKindFromText) {
             ParameterValue(std::vector<std::int64_t>{10, 30, 40}));
 }
 
+enum class Fruit { apple, pear, plum };
+
+constexpr std::string_view choice_name(Fruit value) {
+  switch (value) {
+    case Fruit::apple:
+      return "apple";
+    case Fruit::pear:
+      return "pear";
+    case Fruit::plum:
+      return "plum";
+  }
+  return {};
+}
+
+TEST(Parameter, OfAnEnumTakesEachOfItsValuesByName) {
+  const Parameter parameter = choice_parameter("fruit", Fruit::pear, "what is picked");
+  EXPECT_THAT(parameter.choices, testing::ElementsAre("apple", "pear", "plum"));
+  Parameters parameters({parameter});
+  EXPECT_EQ(parameters.choice<Fruit>("fruit"), Fruit::pear);
+  for (const Fruit fruit : choices<Fruit>()) {
+    parameters.set("fruit", parse_value(parameter, std::string(choice_name(fruit))));
+    EXPECT_EQ(parameters.choice<Fruit>("fruit"), fruit);
+  }
+  EXPECT_EQ(message_of(parameter, "peach"),
+            "--fruit: expected one of apple, pear, plum, found 'peach'");
+}
+
+TEST(Parameters, GiveNoChoiceOfAnotherEnum) {
+  Parameters parameters({kShape});
+  EXPECT_THROW(parameters.choice<Fruit>("shape"), std::invalid_argument);
+}
+
+TEST(Parameter, OfAPathTakesTheValuesOfAnEnumBesideIt) {
+  const Parameter parameter = file_parameter<Fruit>("rest", {}, "a fruit, or a file");
+  Parameters parameters({parameter});
+  EXPECT_FALSE(parameters.optional_text("rest"));
+  parameters.set("rest", "plum");
+  EXPECT_THAT(parameters.files(), testing::IsEmpty());
+  parameters.set("rest", "tree.obj");
+  EXPECT_THAT(parameters.files(), testing::ElementsAre("tree.obj"));
+}
+
 TEST(Parameter, NamesOptionRangeAndWhatWasFound) {
   EXPECT_EQ(message_of(kCount, "0"), "-k: expected a whole number from 1 to 100, found '0'");
   EXPECT_EQ(message_of(kCount, "ten"), "-k: expected a whole number from 1 to 100, found 'ten'");

@@ -80,12 +80,9 @@ Parameters parameters_of(const CLI::App& app, const Command& command, const Slot
 }
 
 ProgressBar progress_bar(const std::string& text) {
-  const Parameter parameter{"progress", ParameterKind::choice,      {}, "", "", {},
-                            {},         {"auto", "always", "never"}};
-  parse_value(parameter, text);
-  return text == "always"  ? ProgressBar::always
-         : text == "never" ? ProgressBar::never
-                           : ProgressBar::automatic;
+  Parameters parameters({choice_parameter("progress", ProgressBar::automatic, "")});
+  parameters.set("progress", text);
+  return parameters.choice<ProgressBar>("progress");
 }
 
 int thread_count(const std::string& text) {

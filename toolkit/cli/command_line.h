@@ -3,6 +3,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "toolkit/operations/operation.h"
@@ -10,6 +11,19 @@
 namespace mimetra::cli {
 
 enum class ProgressBar { automatic, always, never };
+
+/// As people choose it.
+constexpr std::string_view choice_name(ProgressBar value) {
+  switch (value) {
+    case ProgressBar::automatic:
+      return "auto";
+    case ProgressBar::always:
+      return "always";
+    case ProgressBar::never:
+      return "never";
+  }
+  return {};
+}
 
 /// One call of the program, taken apart.
 struct Request {

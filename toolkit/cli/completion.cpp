@@ -62,20 +62,42 @@ std::string zsh_argument(const CommandOption& option) {
   return line + in_quotes(rest);
 }
 
+enum class Shell { bash, zsh, fish };
+
+constexpr std::string_view choice_name(Shell value) {
+  switch (value) {
+    case Shell::bash:
+      return "bash";
+    case Shell::zsh:
+      return "zsh";
+    case Shell::fish:
+      return "fish";
+  }
+  return {};
+}
+
+std::string script_for(Shell shell, const std::vector<Command>& commands) {
+  switch (shell) {
+    case Shell::bash:
+      return bash_completion(commands);
+    case Shell::zsh:
+      return zsh_completion(commands);
+    case Shell::fish:
+      break;
+  }
+  return fish_completion(commands);
+}
+
 Operation completion_operation(const OperationTable& table) {
   Operation operation;
   operation.name = "completion";
   operation.summary = "Print a script that completes this command in a shell";
-  operation.parameters = {
-      {"shell", ParameterKind::choice, "bash", "shell", "", {}, {}, {"bash", "zsh", "fish"}}};
+  operation.parameters = {choice_parameter("shell", Shell::bash, "shell")};
   operation.examples = {"completion --shell bash > /etc/bash_completion.d/mimetra",
                         "completion --shell fish > ~/.config/fish/completions/mimetra.fish"};
   operation.run = [&table](const Invocation& invocation) {
     const std::vector<Command> commands = commands_of(table);
-    const std::string& shell = invocation.parameters.text("shell");
-    const std::string script = shell == "bash"  ? bash_completion(commands)
-                               : shell == "zsh" ? zsh_completion(commands)
-                                                : fish_completion(commands);
+    const std::string script = script_for(invocation.parameters.choice<Shell>("shell"), commands);
     return Outcome{{}, Json{{"script", script}}.dump(), script};
   };
   return operation;

@@ -89,25 +89,30 @@ std::vector<CommandOption> common_options(const std::vector<Command>& commands) 
   return common;
 }
 
+enum class ManualFormat { man, markdown };
+
+constexpr std::string_view choice_name(ManualFormat value) {
+  switch (value) {
+    case ManualFormat::man:
+      return "man";
+    case ManualFormat::markdown:
+      return "markdown";
+  }
+  return {};
+}
+
 Operation manual_operation(const OperationTable& table) {
   Operation operation;
   operation.name = "manual";
   operation.summary = "Print the manual of all commands";
-  operation.parameters = {{"format",
-                           ParameterKind::choice,
-                           "man",
-                           "man: for the program man; markdown: the reference page",
-                           "",
-                           {},
-                           {},
-                           {"man", "markdown"}}};
+  operation.parameters = {choice_parameter(
+      "format", ManualFormat::man, "man: for the program man; markdown: the reference page")};
   operation.examples = {"manual > /usr/local/share/man/man1/mimetra.1",
                         "manual --format markdown > reference.md"};
   operation.run = [&table](const Invocation& invocation) {
     const std::vector<Command> commands = commands_of(table);
-    const std::string page = invocation.parameters.text("format") == "man"
-                                 ? man_page(commands)
-                                 : reference_page(commands);
+    const bool for_man = invocation.parameters.choice<ManualFormat>("format") == ManualFormat::man;
+    const std::string page = for_man ? man_page(commands) : reference_page(commands);
     return Outcome{{}, Json{{"page", page}}.dump(), page};
   };
   return operation;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <string_view>
 #include <vector>
 
 #include "toolkit/mesh/errors.h"
@@ -32,6 +33,17 @@ enum class AlignmentVertices {
   stable,  ///< robust: the vertices that move least, found together with the motion
   all      ///< least squares over all vertices (reads a moving jaw as rotation)
 };
+
+/// As people choose it.
+constexpr std::string_view choice_name(AlignmentVertices value) {
+  switch (value) {
+    case AlignmentVertices::stable:
+      return "stable";
+    case AlignmentVertices::all:
+      return "all";
+  }
+  return {};
+}
 
 struct AlignmentOptions {
   AlignmentVertices vertices = AlignmentVertices::stable;

@@ -39,8 +39,7 @@ Alignment aligned(const Invocation& invocation) {
     std::vector<RigidTransform> motion = read_motion(*undo, sequence.frames());
     return {with_motion(sequence, motion), std::move(motion)};
   }
-  const bool stable = invocation.parameters.text("on") == "stable";
-  return align(sequence, {.vertices = stable ? AlignmentVertices::stable : AlignmentVertices::all,
+  return align(sequence, {.vertices = invocation.parameters.choice<AlignmentVertices>("on"),
                           .progress = invocation.progress});
 }
 
@@ -75,14 +74,8 @@ Operation align_operation() {
   operation.inputs = {{"sequence", DataKind::sequence, "sequence to align"}};
   operation.outputs = {{"out", DataKind::sequence, ".npy, a mesh file, or a folder of frames"}};
   operation.parameters = {
-      {"on",
-       ParameterKind::choice,
-       "stable",
-       "fit on the vertices that move least (stable), or on all of them",
-       "",
-       {},
-       {},
-       {"stable", "all"}},
+      choice_parameter("on", AlignmentOptions{}.vertices,
+                       "fit on the vertices that move least (stable), or on all of them"),
       {"undo", ParameterKind::file, {}, "manifest of an align run, whose motion is given back"}};
   operation.examples = {"align takes/ -o still/",
                         "align still/ --undo still/mimetra-run.json -o back/"};

@@ -17,22 +17,75 @@ namespace mimetra {
 
 namespace {
 
-Weld weld_of(const Parameters& parameters, const Positions& positions) {
-  return parameters.text("weld") == "exact" ? Weld::exact(positions)
-                                            : Weld::none(static_cast<int>(positions.rows()));
+enum class Welding { exact, none };
+
+constexpr std::string_view choice_name(Welding value) {
+  switch (value) {
+    case Welding::exact:
+      return "exact";
+    case Welding::none:
+      return "none";
+  }
+  return {};
 }
 
-GeodesicMethod method_of(const Parameters& parameters) {
-  const std::string& name = parameters.text("geodesics");
-  if (name == "heat") return GeodesicMethod::heat;
-  return name == "heat-direct" ? GeodesicMethod::heat_direct : GeodesicMethod::exact;
+enum class RestPose { first, mean };
+
+constexpr std::string_view choice_name(RestPose value) {
+  switch (value) {
+    case RestPose::first:
+      return "first";
+    case RestPose::mean:
+      return "mean";
+  }
+  return {};
+}
+
+enum class Precision { double_precision, single_precision };
+
+constexpr std::string_view choice_name(Precision value) {
+  switch (value) {
+    case Precision::double_precision:
+      return "double";
+    case Precision::single_precision:
+      return "single";
+  }
+  return {};
+}
+
+enum class Compatibility { none, splocs2013 };
+
+constexpr std::string_view choice_name(Compatibility value) {
+  switch (value) {
+    case Compatibility::none:
+      return "none";
+    case Compatibility::splocs2013:
+      return "splocs2013";
+  }
+  return {};
+}
+
+Weld weld_of(const Parameters& parameters, const Positions& positions) {
+  switch (parameters.choice<Welding>("weld")) {
+    case Welding::exact:
+      return Weld::exact(positions);
+    case Welding::none:
+      break;
+  }
+  return Weld::none(static_cast<int>(positions.rows()));
 }
 
 MeshSequence with_decomposition_rest(const Parameters& parameters, const MeshSequence& sequence) {
   const std::string& rest = parameters.text("rest");
-  if (rest == "first") return sequence.with_rest(sequence.frame(0));
-  if (rest == "mean") return sequence.with_rest(mean_pose(sequence));
-  return sequence.with_rest(read_rest(rest, sequence));
+  const auto pose = choice_of<RestPose>(rest);
+  if (!pose) return sequence.with_rest(read_rest(rest, sequence));
+  switch (*pose) {
+    case RestPose::first:
+      return sequence.with_rest(sequence.frame(0));
+    case RestPose::mean:
+      break;
+  }
+  return sequence.with_rest(mean_pose(sequence));
 }
 
 /// Longest side that any single frame's bounding box has: the reference's unit of length.
@@ -49,7 +102,7 @@ double largest_frame_extent(const MeshSequence& sequence) {
 constexpr double kPartingShare = 1e-4;
 
 void warn_of_parting(const Invocation& invocation, const MeshSequence& sequence) {
-  if (invocation.parameters.text("weld") == "none") return;
+  if (invocation.parameters.choice<Welding>("weld") == Welding::none) return;
   const auto parting =
       parting_vertices(sequence, Weld::exact(sequence.rest()), kPartingShare * sequence.extent());
   if (parting.empty()) return;
@@ -84,7 +137,8 @@ RigidTransform transform_of(const Json& json) {
 SurfaceDistances distances_on(const Invocation& invocation, const Positions& rest,
                               const Triangles& triangles) {
   SurfaceDistances distances(rest, triangles, weld_of(invocation.parameters, rest),
-                             method_of(invocation.parameters), invocation.threads);
+                             invocation.parameters.choice<GeodesicMethod>("geodesics"),
+                             invocation.threads);
   if (distances.degenerate_triangles() > 0) {
     invocation.warn(std::to_string(distances.degenerate_triangles()) +
                     " triangles without area were left out of the geodesic distances");
@@ -99,79 +153,46 @@ SurfaceDistances distances_on(const Invocation& invocation, const Positions& res
 }
 
 std::vector<Parameter> alignment_parameters() {
-  return {{"align",
-           ParameterKind::file,
-           {},
-           "head motion to take out first: fitted on what moves least, on all vertices, none, or "
-           "as an align run's manifest tells; default none where the neutral is known, else stable",
-           "",
-           {},
-           {},
-           {"stable", "all", "none"}}};
+  return {file_parameter<HeadMotion>(
+      "align", {},
+      "head motion to take out first: fitted on what moves least, on all vertices, none, or "
+      "as an align run's manifest tells; default none where the neutral is known, else stable")};
 }
 
 std::vector<Parameter> geodesic_parameters() {
   return {
-      {"geodesics",
-       ParameterKind::choice,
-       "heat",
-       "how distances are computed",
-       "",
-       {},
-       {},
-       {"heat", "heat-direct", "exact"}},
-      {"weld",
-       ParameterKind::choice,
-       "exact",
-       "treat vertices at one place as one for distances (UV seams)",
-       "",
-       {},
-       {},
-       {"exact", "none"}},
+      choice_parameter("geodesics", GeodesicMethod::heat, "how distances are computed"),
+      choice_parameter("weld", Welding::exact,
+                       "treat vertices at one place as one for distances (UV seams)"),
   };
 }
 
 std::vector<Parameter> decomposition_parameters(int count) {
   std::vector<Parameter> parameters = {
       {"k", ParameterKind::integer, std::int64_t{count}, "number of components", "", 1},
-      {"rest",
-       ParameterKind::file,
-       "first",
-       "rest pose of the decomposition: a frame, the mean, or a mesh",
-       "",
-       {},
-       {},
-       {"first", "mean"}},
+      file_parameter<RestPose>("rest", RestPose::first,
+                               "rest pose of the decomposition: a frame, the mean, or a mesh"),
       {"d-min", ParameterKind::length, "0.1",
        "geodesic distance up to which sparsity costs nothing"},
       {"d-max", ParameterKind::length, "0.7", "geodesic distance from which it costs all"},
-      {"sparsity", ParameterKind::number, 2.0, "weight lambda of the sparsity term", "", 0},
-      {"rho", ParameterKind::number, 10.0, "penalty of ADMM", "", 1e-6},
-      {"iterations", ParameterKind::integer, std::int64_t{10}, "outer iterations at most", "", 1},
-      {"admm-iterations", ParameterKind::integer, std::int64_t{10}, "ADMM steps in each", "", 1},
-      {"tolerance", ParameterKind::number, 1e-4,
+      {"sparsity", ParameterKind::number, DecompositionOptions{}.sparsity,
+       "weight lambda of the sparsity term", "", 0},
+      {"rho", ParameterKind::number, DecompositionOptions{}.rho, "penalty of ADMM", "", 1e-6},
+      {"iterations", ParameterKind::integer, std::int64_t{DecompositionOptions{}.iterations},
+       "outer iterations at most", "", 1},
+      {"admm-iterations", ParameterKind::integer,
+       std::int64_t{DecompositionOptions{}.admm_iterations}, "ADMM steps in each", "", 1},
+      {"tolerance", ParameterKind::number, DecompositionOptions{}.tolerance,
        "stop when the energy changes by less than this share; 0 runs all iterations", "", 0, 1},
       {"signed", ParameterKind::flag, false, "allow negative weights"},
-      {"precision",
-       ParameterKind::choice,
-       "double",
-       "of the iterations; single moves components by about 1e-6 of themselves",
-       "",
-       {},
-       {},
-       {"double", "single"}},
-      {"basis-tolerance", ParameterKind::number, 0.0,
+      choice_parameter("precision", Precision::double_precision,
+                       "of the iterations; single moves components by about 1e-6 of themselves"),
+      {"basis-tolerance", ParameterKind::number, DecompositionOptions{}.basis_tolerance,
        "iterate on as few poses over time as leave out this share of the motion, 1e-6 or more; 0 "
        "on all",
        "", 0, 0.5},
-      {"compat",
-       ParameterKind::choice,
-       "none",
-       "splocs2013: follow the reference implementation to the letter",
-       "",
-       {},
-       {},
-       {"none", "splocs2013"}},
+      choice_parameter("compat", Compatibility::none,
+                       "splocs2013: follow the reference implementation to the letter"),
   };
   for (const Parameter& parameter : geodesic_parameters()) parameters.push_back(parameter);
   return parameters;
@@ -183,14 +204,9 @@ constexpr double kLeastRadius = 1e-9;
 std::vector<Parameter> region_parameters() {
   return {
       {"radius", ParameterKind::length, "0.1", "geodesic radius of a region", "", kLeastRadius},
-      {"region",
-       ParameterKind::choice,
-       "disc",
-       "disc: within the radius; support: vertices with 95 % of the component's energy",
-       "",
-       {},
-       {},
-       {"disc", "support"}},
+      choice_parameter(
+          "region", RegionOptions{}.shape,
+          "disc: within the radius; support: vertices with 95 % of the component's energy"),
       {"coverage",
        ParameterKind::number,
        {},
@@ -235,19 +251,31 @@ SupportRange support_range(const Parameters& parameters, double unit) {
                    " and " + parameters.text("d-max"));
 }
 
-std::string alignment_of(const Invocation& invocation, const SequenceRead& read) {
+HeadMotionSource alignment_of(const Invocation& invocation, const SequenceRead& read) {
+  if (const auto text = invocation.parameters.optional_text("align")) {
+    if (const auto fitted = choice_of<HeadMotion>(*text)) return *fitted;
+    return std::filesystem::path(*text);
+  }
   const bool still =
       read.model_driven || read.sequence.rest_is_known() || read.sequence.frames() == 1;
-  return invocation.parameters.optional_text("align").value_or(still ? "none" : "stable");
+  return still ? HeadMotion::none : HeadMotion::stable;
 }
 
 Alignment without_motion(const Invocation& invocation, const SequenceRead& read,
                          const MeshSequence& sequence) {
-  const std::string how = alignment_of(invocation, read);
-  if (how == "none") return {sequence, {}};
-  if (how == "stable") return align(sequence);
-  if (how == "all") return align(sequence, {.vertices = AlignmentVertices::all});
-  return align(sequence, read_motion(how, sequence.frames()));
+  const HeadMotionSource source = alignment_of(invocation, read);
+  if (const auto* manifest = std::get_if<std::filesystem::path>(&source)) {
+    return align(sequence, read_motion(manifest->string(), sequence.frames()));
+  }
+  switch (std::get<HeadMotion>(source)) {
+    case HeadMotion::stable:
+      return align(sequence, {.vertices = AlignmentVertices::stable});
+    case HeadMotion::all:
+      return align(sequence, {.vertices = AlignmentVertices::all});
+    case HeadMotion::none:
+      break;
+  }
+  return {sequence, {}};
 }
 
 Analysis analyse(const Invocation& invocation, const SequenceRead& read,
@@ -262,7 +290,7 @@ Analysis analyse(const Invocation& invocation, const SequenceRead& read,
   warn_of_parting(invocation, work);
   SurfaceDistances distances = distances_on(invocation, work.rest(), work.triangles());
   DecompositionOptions options;
-  const bool reference = parameters.text("compat") == "splocs2013";
+  const bool reference = parameters.choice<Compatibility>("compat") == Compatibility::splocs2013;
   const double unit = reference ? largest_frame_extent(read.sequence) : work.extent();
   options.count = count;
   const SupportRange range = support_range(parameters, unit);
@@ -275,7 +303,8 @@ Analysis analyse(const Invocation& invocation, const SequenceRead& read,
   options.tolerance = reference ? 0 : parameters.number("tolerance");
   options.nonnegative = !parameters.flag("signed");
   options.sign_rule = reference ? SignRule::literal : SignRule::amplitude;
-  options.single_precision = parameters.text("precision") == "single";
+  options.single_precision =
+      parameters.choice<Precision>("precision") == Precision::single_precision;
   options.basis_tolerance = parameters.number("basis-tolerance");
   options.distances = distances;
   options.threads = invocation.threads;
@@ -320,7 +349,7 @@ Regions regions_of(const Invocation& invocation, const Analysis& analysis) {
   const Parameters& parameters = invocation.parameters;
   RegionOptions options;
   options.radius = parameters.length("radius", extent(analysis.components.rest));
-  options.shape = parameters.text("region") == "disc" ? RegionShape::disc : RegionShape::support;
+  options.shape = parameters.choice<RegionShape>("region");
   options.coverage = parameters.optional_number("coverage");
   options.distances = analysis.distances;
   Regions regions = find_regions(analysis.components, options);

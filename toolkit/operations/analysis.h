@@ -1,6 +1,9 @@
 #pragma once
 
+#include <filesystem>
 #include <string>
+#include <string_view>
+#include <variant>
 #include <vector>
 
 #include "toolkit/mesh/alignment.h"
@@ -18,8 +21,27 @@ std::vector<Parameter> geodesic_parameters();
 std::vector<Parameter> decomposition_parameters(int count);
 std::vector<Parameter> region_parameters();
 
+/// What the head's motion is found on; `none` looks for none.
+enum class HeadMotion { stable, all, none };
+
+/// As people choose it.
+constexpr std::string_view choice_name(HeadMotion value) {
+  switch (value) {
+    case HeadMotion::stable:
+      return "stable";
+    case HeadMotion::all:
+      return "all";
+    case HeadMotion::none:
+      return "none";
+  }
+  return {};
+}
+
+/// Found by a fit, or read from the manifest of an align run.
+using HeadMotionSource = std::variant<HeadMotion, std::filesystem::path>;
+
 /// What --align says, or its default: none where the neutral is known.
-std::string alignment_of(const Invocation& invocation, const SequenceRead& read);
+HeadMotionSource alignment_of(const Invocation& invocation, const SequenceRead& read);
 
 /// Applies --align to what was read; the motion is empty where none was looked for.
 Alignment without_motion(const Invocation& invocation, const SequenceRead& read,

@@ -3,6 +3,7 @@
 #include <thread>
 
 #include "toolkit/operations/analysis.h"
+#include "toolkit/operations/solving.h"
 
 namespace mimetra {
 
@@ -28,7 +29,9 @@ double numbers_of(const MeshSequence& sequence) {
 }  // namespace
 
 double alignment_bytes(const Invocation& invocation, const SequenceRead& read) {
-  return alignment_of(invocation, read) == "none" ? 0 : kNumber * numbers_of(read.sequence);
+  return alignment_of(invocation, read) == HeadMotionSource(HeadMotion::none)
+             ? 0
+             : kNumber * numbers_of(read.sequence);
 }
 
 double analysis_bytes(const Invocation& invocation, const SequenceRead& read, int count) {
@@ -47,7 +50,7 @@ double solution_bytes(const Invocation& invocation, const SequenceRead& read,
   const auto expressions = static_cast<double>(target.expressions().size());
   const double vertices = target.vertices(),
                triangles = static_cast<double>(target.triangles().rows());
-  const bool by_vertices = invocation.parameters.text("space") == "vertex" || expressions == 0;
+  const bool by_vertices = solves_for_vertices(invocation.parameters, target);
   const double set_up =
       by_vertices ? kFactorsPerVertex * vertices : kNumber * expressions * 3 * vertices;
   const double threads =

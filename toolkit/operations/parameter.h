@@ -8,6 +8,8 @@
 #include <variant>
 #include <vector>
 
+#include "toolkit/mesh/choice.h"
+
 namespace mimetra {
 
 /// The request is wrong whatever the data: an unknown name, a value out of its range.
@@ -49,6 +51,28 @@ struct Parameter {
   std::string maximum_text() const;
 };
 
+/// A choice among the values of an enum.
+template <NamedChoice Enum>
+Parameter choice_parameter(std::string name, Enum fallback, std::string help) {
+  return {std::move(name),
+          ParameterKind::choice,
+          std::string(choice_name(fallback)),
+          std::move(help),
+          "",
+          {},
+          {},
+          choice_names<Enum>()};
+}
+
+/// A path, or one of the values of an enum.
+template <NamedChoice Enum>
+Parameter file_parameter(std::string name, std::optional<Enum> fallback, std::string help) {
+  ParameterValue value;
+  if (fallback) value = std::string(choice_name(*fallback));
+  return {std::move(name),     ParameterKind::file, std::move(value), std::move(help), "", {}, {},
+          choice_names<Enum>()};
+}
+
 /// Reads a value as people type it. Throws UsageError that names option, range and what was found.
 ParameterValue parse_value(const Parameter& parameter, const std::string& text);
 
@@ -81,6 +105,12 @@ class Parameters {
   const std::vector<std::int64_t>& integers(const std::string& name) const;
   std::optional<double> optional_number(const std::string& name) const;
   std::optional<std::string> optional_text(const std::string& name) const;
+  /// A value of choice_parameter(). Throws std::invalid_argument where it is not one of the enum's.
+  template <NamedChoice Enum>
+  Enum choice(const std::string& name) const {
+    if (const auto value = choice_of<Enum>(text(name))) return *value;
+    throw std::invalid_argument("parameter '" + name + "': no such choice as '" + text(name) + "'");
+  }
   /// A length in the unit of a mesh whose longest side is `extent`.
   double length(const std::string& name, double extent) const;
 

@@ -10,6 +10,48 @@ namespace mimetra {
 
 namespace {
 
+/// What weights or vertices are solved for.
+enum class Space { automatic, blendshape, vertex };
+
+constexpr std::string_view choice_name(Space value) {
+  switch (value) {
+    case Space::automatic:
+      return "auto";
+    case Space::blendshape:
+      return "blendshape";
+    case Space::vertex:
+      return "vertex";
+  }
+  return {};
+}
+
+enum class SourceRest { neutral, first, mean };
+
+constexpr std::string_view choice_name(SourceRest value) {
+  switch (value) {
+    case SourceRest::neutral:
+      return "neutral";
+    case SourceRest::first:
+      return "first";
+    case SourceRest::mean:
+      return "mean";
+  }
+  return {};
+}
+
+/// What stands for an anchor besides the number of a vertex.
+enum class AnchorWord { source, centroid };
+
+constexpr std::string_view choice_name(AnchorWord value) {
+  switch (value) {
+    case AnchorWord::source:
+      return "source";
+    case AnchorWord::centroid:
+      return "centroid";
+  }
+  return {};
+}
+
 const BlendshapeModel& model_of(const NamedData& target) {
   return std::get<BlendshapeModel>(target.data);
 }
@@ -81,14 +123,14 @@ Solution solve_blendshapes(const Invocation& invocation, const Alignment& source
 
 VertexTransferOptions vertex_options(const Parameters& parameters, int vertices) {
   VertexTransferOptions options;
-  options.triangle_weight =
-      parameters.text("triangle-weight") == "area" ? TriangleWeight::area : TriangleWeight::unit;
-  options.outside = parameters.text("outside") == "fixed" ? Outside::fixed : Outside::identity;
+  options.triangle_weight = parameters.choice<TriangleWeight>("triangle-weight");
+  options.outside = parameters.choice<Outside>("outside");
   options.outside_weight = parameters.number("outside-weight");
   options.outside_smoothness = parameters.number("outside-smoothness");
   const std::string& anchor = parameters.text("anchor");
-  if (anchor == "centroid") options.anchor = Anchor::centroid;
-  if (anchor != "centroid" && anchor != "source") {
+  if (const auto word = choice_of<AnchorWord>(anchor)) {
+    options.anchor = *word == AnchorWord::centroid ? Anchor::centroid : Anchor::source_motion;
+  } else {
     const Parameter vertex{"anchor", ParameterKind::integer, {}, "", "", 0};
     const auto number = std::get<std::int64_t>(parse_value(vertex, anchor));
     if (number >= vertices) {
@@ -138,59 +180,52 @@ MeshSequence with_source_rest(const Invocation& invocation, const MeshSequence& 
                     "--source-rest FILE");
     return sequence;
   }
-  if (*rest == "neutral") {
-    if (sequence.rest_is_known()) return sequence;
-    throw MismatchError(name + ": its neutral is not known; give it with --source-rest FILE");
+  const auto pose = choice_of<SourceRest>(*rest);
+  if (!pose) return sequence.with_rest(read_rest(*rest, sequence));
+  switch (*pose) {
+    case SourceRest::neutral:
+      if (sequence.rest_is_known()) return sequence;
+      throw MismatchError(name + ": its neutral is not known; give it with --source-rest FILE");
+    case SourceRest::first:
+      return sequence.with_rest(sequence.frame(0));
+    case SourceRest::mean:
+      break;
   }
-  if (*rest == "first") return sequence.with_rest(sequence.frame(0));
-  if (*rest == "mean") return sequence.with_rest(mean_pose(sequence));
-  return sequence.with_rest(read_rest(*rest, sequence));
+  return sequence.with_rest(mean_pose(sequence));
 }
 
 }  // namespace
 
 std::vector<Parameter> solving_parameters() {
   return {
-      {"source-rest",
-       ParameterKind::file,
-       {},
-       "source's undeformed shape; default the neutral where it is known, else the first frame",
-       "",
-       {},
-       {},
-       {"neutral", "first", "mean"}},
-      {"space",
-       ParameterKind::choice,
-       "auto",
-       "solve for blendshape weights or vertices; auto: weights where the target has expressions",
-       "",
-       {},
-       {},
-       {"auto", "blendshape", "vertex"}},
-      {"ridge", ParameterKind::number, 0.0, "pull of the weights towards 0", "", 0},
-      {"l1", ParameterKind::number, 0.0, "sparsity of the weights", "", 0},
-      {"smoothness", ParameterKind::number, 0.0, "time constant of smooth weights", "s", 0},
-      {"triangle-weight",
-       ParameterKind::choice,
-       "unit",
-       "vertex space: every triangle alike, or by area",
-       "",
-       {},
-       {},
-       {"unit", "area"}},
-      {"outside",
-       ParameterKind::choice,
-       "fixed",
-       "vertex space: vertices outside the regions stay, or triangles there keep their shape",
-       "",
-       {},
-       {},
-       {"fixed", "identity"}},
-      {"outside-weight", ParameterKind::number, 0.1, "weight of --outside identity", "", 1e-12},
-      {"outside-smoothness", ParameterKind::number, 0.0, "smoothness of --outside identity", "", 0},
+      file_parameter<SourceRest>(
+          "source-rest", {},
+          "source's undeformed shape; default the neutral where it is known, else the first frame"),
+      choice_parameter("space", Space::automatic,
+                       "solve for blendshape weights or vertices; auto: weights where the target "
+                       "has expressions"),
+      {"ridge", ParameterKind::number, BlendshapeTransferOptions{}.ridge,
+       "pull of the weights towards 0", "", 0},
+      {"l1", ParameterKind::number, BlendshapeTransferOptions{}.sparsity, "sparsity of the weights",
+       "", 0},
+      {"smoothness", ParameterKind::number, BlendshapeTransferOptions{}.smoothness,
+       "time constant of smooth weights", "s", 0},
+      choice_parameter("triangle-weight", VertexTransferOptions{}.triangle_weight,
+                       "vertex space: every triangle alike, or by area"),
+      choice_parameter(
+          "outside", VertexTransferOptions{}.outside,
+          "vertex space: vertices outside the regions stay, or triangles there keep their shape"),
+      {"outside-weight", ParameterKind::number, VertexTransferOptions{}.outside_weight,
+       "weight of --outside identity", "", 1e-12},
+      {"outside-smoothness", ParameterKind::number, VertexTransferOptions{}.outside_smoothness,
+       "smoothness of --outside identity", "", 0},
       {"anchor", ParameterKind::text, "source",
        "vertex space: what holds a piece in place: source (its motion), centroid, or a vertex"},
   };
+}
+
+bool solves_for_vertices(const Parameters& parameters, const BlendshapeModel& target) {
+  return parameters.choice<Space>("space") == Space::vertex || target.expressions().size() == 0;
 }
 
 Alignment prepare_source(const Invocation& invocation) {
@@ -214,12 +249,12 @@ void check_target(const MeshSequence& source, const NamedData& target) {
 
 Solution solve(const Invocation& invocation, const Alignment& source, const NamedData& target,
                const Selection& selection, const Progress& progress) {
-  const std::string& space = invocation.parameters.text("space");
-  const bool has_expressions = model_of(target).expressions().size() > 0;
-  if (space == "blendshape" && !has_expressions) {
+  const BlendshapeModel& model = model_of(target);
+  const auto space = invocation.parameters.choice<Space>("space");
+  if (space == Space::blendshape && model.expressions().size() == 0) {
     throw MismatchError(target.name + ": has no expressions; use --space vertex");
   }
-  return space == "vertex" || !has_expressions
+  return solves_for_vertices(invocation.parameters, model)
              ? solve_vertices(invocation, source, target, selection, progress)
              : solve_blendshapes(invocation, source, target, selection, progress);
 }

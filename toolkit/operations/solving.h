@@ -14,6 +14,9 @@ std::vector<Parameter> solving_parameters();
 /// motion.
 Alignment prepare_source(const Invocation& invocation);
 
+/// True for the vertex space of --space, and where a target has no expressions to solve for.
+bool solves_for_vertices(const Parameters& parameters, const BlendshapeModel& target);
+
 /// Throws MismatchError unless the target has the source's vertices and faces.
 void check_target(const MeshSequence& source, const NamedData& target);
 

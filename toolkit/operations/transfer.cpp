@@ -15,6 +15,19 @@ namespace mimetra {
 
 namespace {
 
+/// What becomes of the head motion that was taken out of the source.
+enum class RemovedMotion { keep, drop };
+
+constexpr std::string_view choice_name(RemovedMotion value) {
+  switch (value) {
+    case RemovedMotion::keep:
+      return "keep";
+    case RemovedMotion::drop:
+      return "drop";
+  }
+  return {};
+}
+
 /// The triangles a transfer uses, the regions they come from (none for --full), and the components
 /// these come from (none for a region set).
 struct Choice {
@@ -102,8 +115,7 @@ void check_outputs(const Invocation& invocation) {
   }
   if (!invocation.wants("weights-out")) return;
   for (const NamedData& target : invocation.inputs.at("target")) {
-    const bool has_expressions = std::get<BlendshapeModel>(target.data).expressions().size() > 0;
-    if (invocation.parameters.text("space") == "vertex" || !has_expressions) {
+    if (solves_for_vertices(invocation.parameters, std::get<BlendshapeModel>(target.data))) {
       throw UsageError("--weights-out: " + target.name + " is solved for vertices, not weights");
     }
   }
@@ -116,8 +128,8 @@ Outcome run_transfer(const Invocation& invocation) {
   for (const NamedData& target : targets) check_target(source.sequence, target);
   check_outputs(invocation);
   Choice choice = choose(invocation, source);
-  const bool give_back =
-      !source.motion.empty() && invocation.parameters.text("head-motion") == "keep";
+  const bool give_back = !source.motion.empty() && invocation.parameters.choice<RemovedMotion>(
+                                                       "head-motion") == RemovedMotion::keep;
 
   Outcome outcome;
   Json reports = Json::array();
@@ -208,14 +220,8 @@ Operation transfer_operation() {
       {"weights-out", DataKind::table, "blendshape weights: .csv or .json", true, true}};
   operation.parameters = {
       {"full", ParameterKind::flag, false, "use all triangles instead of regions"},
-      {"head-motion",
-       ParameterKind::choice,
-       "keep",
-       "give the motion that --align took out back to the target, or drop it",
-       "",
-       {},
-       {},
-       {"keep", "drop"}}};
+      choice_parameter("head-motion", RemovedMotion::keep,
+                       "give the motion that --align took out back to the target, or drop it")};
   for (const auto& group : {region_parameters(), decomposition_parameters(30),
                             alignment_parameters(), solving_parameters()}) {
     for (const Parameter& parameter : group) operation.parameters.push_back(parameter);

@@ -11,6 +11,32 @@ namespace mimetra {
 
 namespace {
 
+enum class Layout { strip, frame, turntable };
+
+constexpr std::string_view choice_name(Layout value) {
+  switch (value) {
+    case Layout::strip:
+      return "strip";
+    case Layout::frame:
+      return "frame";
+    case Layout::turntable:
+      return "turntable";
+  }
+  return {};
+}
+
+enum class UpAxis { y, z };
+
+constexpr std::string_view choice_name(UpAxis value) {
+  switch (value) {
+    case UpAxis::y:
+      return "y";
+    case UpAxis::z:
+      return "z";
+  }
+  return {};
+}
+
 std::vector<std::string> split(const std::string& text) {
   std::vector<std::string> parts;
   std::istringstream stream(text);
@@ -23,16 +49,16 @@ StripOptions options_of(const Invocation& invocation) {
   const Parameters& parameters = invocation.parameters;
   const std::vector<NamedData>& inputs = invocation.inputs.at("input");
   StripOptions options;
-  const std::string& layout = parameters.text("layout");
-  if (layout == "turntable") options.layout = StripLayout::turntable;
-  options.columns = layout == "frame" ? 1 : parameters.integer("columns");
+  const auto layout = parameters.choice<Layout>("layout");
+  if (layout == Layout::turntable) options.layout = StripLayout::turntable;
+  options.columns = layout == Layout::frame ? 1 : parameters.integer("columns");
   if (parameters.is_set("at")) {
     for (const std::int64_t frame : parameters.integers("at")) {
       options.frames.push_back(static_cast<int>(frame));
     }
   }
-  if (layout != "strip" && options.frames.size() > 1) {
-    throw UsageError("--at: expected one frame with --layout " + layout);
+  if (layout != Layout::strip && options.frames.size() > 1) {
+    throw UsageError("--at: expected one frame with --layout " + parameters.text("layout"));
   }
   options.colors = split(parameters.text("color"));
   if (const auto titles = parameters.optional_text("titles")) {
@@ -43,7 +69,7 @@ StripOptions options_of(const Invocation& invocation) {
   options.maximum = parameters.optional_number("maximum");
   options.yaw = parameters.number("yaw");
   options.pitch = parameters.number("pitch");
-  options.z_up = parameters.text("up") == "z";
+  options.z_up = is_z_up(parameters);
   options.tile_height = parameters.integer("size");
   options.unit = parameters.optional_text("unit").value_or("");
   return options;
@@ -81,14 +107,8 @@ Outcome run_render(const Invocation& invocation) {
 
 std::vector<Parameter> parameters() {
   std::vector<Parameter> list = {
-      {"layout",
-       ParameterKind::choice,
-       "strip",
-       "strip: a column a frame; frame: one; turntable: one from all around",
-       "",
-       {},
-       {},
-       {"strip", "frame", "turntable"}},
+      choice_parameter("layout", Layout::strip,
+                       "strip: a column a frame; frame: one; turntable: one from all around"),
       {"columns", ParameterKind::integer, std::int64_t{8}, "pictures in a row", "", 1, 100},
       {"at",
        ParameterKind::integer_list,
@@ -125,14 +145,12 @@ std::vector<Parameter> parameters() {
 std::vector<Parameter> view_parameters() {
   return {{"yaw", ParameterKind::number, 15.0, "seen from the side", "degrees", -360, 360},
           {"pitch", ParameterKind::number, 5.0, "seen from above", "degrees", -90, 90},
-          {"up",
-           ParameterKind::choice,
-           "y",
-           "axis that points up; the face looks along +z, or -y where z is up",
-           "",
-           {},
-           {},
-           {"y", "z"}}};
+          choice_parameter("up", UpAxis::y,
+                           "axis that points up; the face looks along +z, or -y where z is up")};
+}
+
+bool is_z_up(const Parameters& parameters) {
+  return parameters.choice<UpAxis>("up") == UpAxis::z;
 }
 
 Operation render_operation() {

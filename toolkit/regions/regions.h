@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "toolkit/mesh/fields.h"
@@ -14,6 +15,17 @@ enum class RegionShape {
   disc,    ///< vertices within a geodesic radius of the component's centre
   support  ///< fewest vertices that carry 95 % of the component's energy
 };
+
+/// As people choose it.
+constexpr std::string_view choice_name(RegionShape value) {
+  switch (value) {
+    case RegionShape::disc:
+      return "disc";
+    case RegionShape::support:
+      return "support";
+  }
+  return {};
+}
 
 struct RegionOptions {
   RegionShape shape = RegionShape::disc;

@@ -22,7 +22,7 @@ ReportView view_of(const Parameters& parameters) {
   ReportView view;
   view.yaw = parameters.number("yaw");
   view.pitch = parameters.number("pitch");
-  view.z_up = parameters.text("up") == "z";
+  view.z_up = is_z_up(parameters);
   view.unit = parameters.optional_text("unit").value_or("");
   return view;
 }

@@ -3,6 +3,7 @@
 #include <functional>
 #include <memory>
 #include <span>
+#include <string_view>
 
 #include "geodesic/heat_geodesics.h"
 #include "toolkit/mesh/weld.h"
@@ -17,6 +18,19 @@ using DistanceFunction = std::function<Eigen::MatrixXd(std::span<const VertexInd
 DistanceFunction one_by_one(std::function<Eigen::VectorXd(VertexIndex)> distances);
 
 enum class GeodesicMethod { heat, heat_direct, exact };
+
+/// As people choose it.
+constexpr std::string_view choice_name(GeodesicMethod value) {
+  switch (value) {
+    case GeodesicMethod::heat:
+      return "heat";
+    case GeodesicMethod::heat_direct:
+      return "heat-direct";
+    case GeodesicMethod::exact:
+      return "exact";
+  }
+  return {};
+}
 
 /// Distances along a surface whose coinciding vertices are welded, so that they pass across UV
 /// seams. Each vertex is computed once and kept; copies share what they know.

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <string_view>
 #include <vector>
 
 #include "toolkit/mesh/errors.h"
@@ -14,11 +15,33 @@ enum class TriangleWeight {
   area   ///< by the area of the target's triangle
 };
 
+/// As people choose it.
+constexpr std::string_view choice_name(TriangleWeight value) {
+  switch (value) {
+    case TriangleWeight::unit:
+      return "unit";
+    case TriangleWeight::area:
+      return "area";
+  }
+  return {};
+}
+
 /// What happens to the triangles and vertices outside L.
 enum class Outside {
   fixed,    ///< vertices outside the regions stay exactly where they are
   identity  ///< triangles outside L want to keep their shape, weakly
 };
+
+/// As people choose it.
+constexpr std::string_view choice_name(Outside value) {
+  switch (value) {
+    case Outside::fixed:
+      return "fixed";
+    case Outside::identity:
+      return "identity";
+  }
+  return {};
+}
 
 /// What holds a connected piece that nothing else holds in place.
 enum class Anchor {

@@ -13,8 +13,7 @@ namespace {
 
 std::vector<std::filesystem::path> write(const FieldSequence& fields, const WriteRequest& request) {
   VtpOptions options;
-  options.compression =
-      request.parameters.text("compress") == "small" ? VtpCompression::zlib : VtpCompression::lz4;
+  options.compression = request.parameters.choice<VtpCompression>("compress");
   options.overwrite = request.overwrite;
   options.inputs = request.inputs;
   options.threads = request.threads;
@@ -45,14 +44,8 @@ Regions read_regions_from_vtp(const std::filesystem::path& path, int vertices,
 }  // namespace
 
 void add_vtp(OperationTable& table) {
-  const std::vector<Parameter> parameters = {{"compress",
-                                              ParameterKind::choice,
-                                              "fast",
-                                              "compression of .vtp: fast (LZ4) or small (zlib)",
-                                              "",
-                                              {},
-                                              {},
-                                              {"fast", "small"}}};
+  const std::vector<Parameter> parameters = {choice_parameter(
+      "compress", VtpOptions{}.compression, "compression of .vtp: fast (LZ4) or small (zlib)")};
   table.add(Writer{DataKind::regions,
                    {".pvd", ".vtp"},
                    parameters,

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <functional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "toolkit/mesh/errors.h"
@@ -12,6 +13,17 @@
 namespace mimetra {
 
 enum class VtpCompression { lz4, zlib };
+
+/// As people choose it.
+constexpr std::string_view choice_name(VtpCompression value) {
+  switch (value) {
+    case VtpCompression::lz4:
+      return "fast";
+    case VtpCompression::zlib:
+      return "small";
+  }
+  return {};
+}
 
 struct VtpOptions {
   VtpCompression compression = VtpCompression::lz4;

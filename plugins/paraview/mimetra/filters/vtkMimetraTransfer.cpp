@@ -10,6 +10,7 @@
 #include "plugins/paraview/mimetra/filters/operation_call.h"
 #include "plugins/paraview/mimetra/filters/time_steps.h"
 #include "toolkit/operations/operation.h"
+#include "toolkit/operations/solving.h"
 #include "toolkit/vtk/poly_data.h"
 
 using namespace mimetra;
@@ -89,7 +90,7 @@ std::vector<std::string> vtkMimetraTransfer::wanted_outputs(const Invocation& in
   const bool full = invocation.parameters.flag("full");
   if (!full) wanted.push_back("regions-out");
   if (!full && !invocation.inputs.contains("regions")) wanted.push_back("components-out");
-  if (invocation.parameters.text("space") != "vertex" && model.expressions().size() > 0) {
+  if (!solves_for_vertices(invocation.parameters, model)) {
     wanted.push_back("weights-out");
   }
   return wanted;
