@@ -10,7 +10,7 @@ namespace mimetra {
 
 namespace {
 
-/// What weights or vertices are solved for.
+/// The unknowns; automatic: weights where the target has expressions.
 enum class Space { automatic, blendshape, vertex };
 
 constexpr std::string_view choice_name(Space value) {
