@@ -11,12 +11,6 @@
 #include "tests/report/report_fixture.h"
 #include "toolkit/report/viewer_script.h"
 
-/// LeakSanitizer asks. At the end of a process that has driven a browser its search itself failed
-/// now and then; the tests of the report, which do the same without a browser, are searched.
-extern "C" int __lsan_is_turned_off() {
-  return 1;
-}
-
 namespace mimetra {
 namespace {
 
