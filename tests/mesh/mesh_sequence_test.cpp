@@ -138,7 +138,7 @@ TEST(Motion, OfAUniformShiftIsItsLengthTimesTheShareOfFrames) {
   Frames frames = counting_frames(1).replicate(4, 1);
   frames.row(3).array() += 1;
   // One frame of four is sqrt(3) away: sqrt(3 / 4), up to rounding.
-  EXPECT_NEAR(motion({triangle(), frames}), std::sqrt(0.75), 1e-15);
+  EXPECT_NEAR(motion(MeshSequence(triangle(), frames)), std::sqrt(0.75), 1e-15);
 }
 
 TEST(Motion, OfNothingIsZero) {

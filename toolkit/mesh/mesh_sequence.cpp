@@ -1,4 +1,3 @@
-#include <cmath>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -29,11 +28,6 @@ void check_rest(const Positions& rest, int vertices) {
   }
 }
 
-Eigen::VectorXd default_times(Eigen::Index frames) {
-  return Eigen::VectorXd::LinSpaced(frames, 0, static_cast<double>(frames - 1)) /
-         kDefaultFramesPerSecond;
-}
-
 }  // namespace
 
 MeshSequence::MeshSequence(Connectivity connectivity, Frames frames, Eigen::VectorXd times,
@@ -49,19 +43,27 @@ MeshSequence::MeshSequence(std::shared_ptr<const Connectivity> connectivity, Fra
 MeshSequence::MeshSequence(std::shared_ptr<const Connectivity> connectivity,
                            std::shared_ptr<const Frames> frames, Eigen::VectorXd times,
                            std::optional<Positions> rest)
-    : connectivity_(std::move(connectivity)),
-      frames_(std::move(frames)),
-      times_(std::move(times)),
-      rest_is_known_(rest.has_value()) {
-  if (!connectivity_) throw std::invalid_argument("a sequence needs a connectivity");
-  check_frames(*frames_, connectivity_->vertices);
-  if (times_.size() == 0) times_ = default_times(frames_->rows());
-  if (times_.size() != frames_->rows()) {
-    throw std::invalid_argument(std::to_string(times_.size()) + " times for " +
-                                std::to_string(frames_->rows()) + " frames");
+    : FrameSource({std::move(connectivity), std::move(times), {}, rest.has_value()}),
+      frames_(std::move(frames)) {
+  if (!header_.connectivity) throw std::invalid_argument("a sequence needs a connectivity");
+  check_frames(*frames_, vertices());
+  const auto count = static_cast<int>(frames_->rows());
+  if (header_.times.size() == 0) header_.times = default_times(count);
+  if (this->frames() != count) {
+    throw std::invalid_argument(std::to_string(this->frames()) + " times for " +
+                                std::to_string(count) + " frames");
   }
-  rest_ = rest ? *std::move(rest) : Positions(frame(0));
-  check_rest(rest_, vertices());
+  header_.rest = rest ? *std::move(rest) : Positions(frame(0));
+  check_rest(header_.rest, vertices());
+}
+
+MeshSequence::MeshSequence(const FrameSource& source, const BlockOptions& options)
+    : FrameSource(source) {
+  auto all = std::make_shared<Frames>(source.frames(), 3 * Eigen::Index{vertices()});
+  for_each_run(source, options, [&](int first, int count) {
+    source.read(first, FramesView(all->row(first).data(), count, all->cols()));
+  });
+  frames_ = std::move(all);
 }
 
 PositionsView MeshSequence::frame(int f) const {
@@ -77,12 +79,13 @@ MeshSequence MeshSequence::slice(int first, int last, int step) const {
   }
   const auto chosen = Eigen::seq(first, last - 1, step);
   std::optional<Positions> rest;
-  if (rest_is_known_) rest = rest_;
-  return {connectivity_, Frames((*frames_)(chosen, Eigen::all)), times_(chosen), std::move(rest)};
+  if (rest_is_known()) rest = this->rest();
+  return {shared_connectivity(), Frames((*frames_)(chosen, Eigen::all)), times()(chosen),
+          std::move(rest)};
 }
 
 MeshSequence MeshSequence::with_rest(Positions rest) const {
-  return {connectivity_, frames_, times_, std::move(rest)};
+  return {shared_connectivity(), frames_, times(), std::move(rest)};
 }
 
 MeshSequence MeshSequence::with_frames(Frames frames) const {
@@ -91,27 +94,18 @@ MeshSequence MeshSequence::with_frames(Frames frames) const {
     throw std::invalid_argument(std::to_string(frames.rows()) + " frames, expected " +
                                 std::to_string(frames_->rows()) + " as in the sequence");
   }
-  MeshSequence result;
-  result.connectivity_ = connectivity_;
+  MeshSequence result = *this;
   result.frames_ = std::make_shared<const Frames>(std::move(frames));
-  result.times_ = times_;
-  result.rest_ = rest_;
-  result.rest_is_known_ = rest_is_known_;
   return result;
+}
+
+void MeshSequence::read_frames(int first, FramesView poses) const {
+  poses = frames_->middleRows(first, poses.rows());
 }
 
 Positions mean_pose(const MeshSequence& sequence) {
   if (sequence.frames() == 0) return {};
   return as_positions(sequence.positions().colwise().mean());
-}
-
-double motion(const MeshSequence& sequence) {
-  double sum = 0;
-  for (int f = 0; f < sequence.frames(); ++f) {
-    sum += (sequence.frame(f) - sequence.rest()).squaredNorm();
-  }
-  const double points = static_cast<double>(sequence.frames()) * sequence.vertices();
-  return points > 0 ? std::sqrt(sum / points) : 0;
 }
 
 }  // namespace mimetra

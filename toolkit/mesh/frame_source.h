@@ -1,0 +1,121 @@
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "toolkit/mesh/errors.h"
+#include "toolkit/mesh/progress.h"
+#include "toolkit/mesh/tri_mesh.h"
+
+namespace mimetra {
+
+/// Poses of one mesh in correspondence, F x 3N: row f is x0 y0 z0 x1 y1 z1 ... of frame f.
+using Frames = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+/// Rows of Frames, in place.
+using FramesView = Eigen::Map<Frames>;
+
+/// Frames per second of sequences that carry no times.
+constexpr double kDefaultFramesPerSecond = 30;
+
+/// Times of `frames` frames at kDefaultFramesPerSecond, from 0 on (F).
+Eigen::VectorXd default_times(int frames);
+
+/// A sequence without its poses.
+struct SequenceHeader {
+  std::shared_ptr<const Connectivity> connectivity = std::make_shared<Connectivity>();
+  /// Seconds (F).
+  Eigen::VectorXd times = {};
+  /// N x 3; the first frame where nobody knows it.
+  Positions rest = {};
+  bool rest_is_known = false;
+};
+
+/// One mesh that moves, whose poses are read when they are needed: one connectivity, F poses, their
+/// times, and the rest pose, which need not be a frame.
+class FrameSource {
+ public:
+  virtual ~FrameSource() = default;
+
+  const SequenceHeader& header() const { return header_; }
+  int frames() const { return static_cast<int>(header_.times.size()); }
+  int vertices() const { return header_.connectivity->vertices; }
+  const Connectivity& connectivity() const { return *header_.connectivity; }
+  const std::shared_ptr<const Connectivity>& shared_connectivity() const {
+    return header_.connectivity;
+  }
+  const Triangles& triangles() const { return header_.connectivity->triangles; }
+  /// Seconds (F).
+  const Eigen::VectorXd& times() const { return header_.times; }
+  /// N x 3; where nobody knows it, it is the first frame.
+  const Positions& rest() const { return header_.rest; }
+  bool rest_is_known() const { return header_.rest_is_known; }
+  /// Longest side of the rest pose's bounding box.
+  double extent() const { return mimetra::extent(rest()); }
+
+  /// The frames `first` .. first + poses.rows() - 1 (rows x 3N); any run of frames gives the same
+  /// numbers. May be called from several threads. Throws std::out_of_range for frames that are not
+  /// there, std::invalid_argument unless the rows have 3N columns, and what reading throws.
+  void read(int first, FramesView poses) const;
+  Frames read(int first, int count) const;
+
+ protected:
+  FrameSource() = default;
+  explicit FrameSource(SequenceHeader header) : header_(std::move(header)) {}
+  FrameSource(const FrameSource&) = default;
+  FrameSource(FrameSource&&) = default;
+  FrameSource& operator=(const FrameSource&) = default;
+  FrameSource& operator=(FrameSource&&) = default;
+
+  SequenceHeader header_;
+
+ private:
+  /// \pre the frames are there and `poses` has 3N columns
+  virtual void read_frames(int first, FramesView poses) const = 0;
+};
+
+/// Takes the poses of a sequence whose header it knows.
+class FrameSink {
+ public:
+  virtual ~FrameSink() = default;
+
+  /// The poses of the frames `first` .. first + poses.rows() - 1, each frame once, in any order.
+  /// May be called from several threads. Throws OutputError, MismatchError for what its format
+  /// cannot hold.
+  virtual void write(int first, const Frames& poses) = 0;
+  /// Makes all that was written appear, and returns its files. Without this nothing appears. \pre
+  /// every frame was written
+  virtual std::vector<std::filesystem::path> commit() = 0;
+};
+
+/// The frames `chosen` of a source, in this order; the rest pose is its own where it is known, else
+/// the first chosen one. Throws std::out_of_range for frames that are not there.
+std::shared_ptr<const FrameSource> selected(std::shared_ptr<const FrameSource> source,
+                                            std::vector<int> chosen);
+
+struct BlockOptions {
+  /// 0 for all there are.
+  int threads = 0;
+  Progress progress = {};
+};
+
+/// Most bytes of a block of frames, unless one frame takes more.
+constexpr std::size_t kBlockBytes = std::size_t{4} << 20;
+
+/// Calls `work` with runs of frames (first frame, how many), each of at most kBlockBytes, that hold
+/// every frame once, in any order, from several threads. Throws what `work` throws, Cancelled.
+void for_each_run(const FrameSource& source, const BlockOptions& options,
+                  const std::function<void(int first, int count)>& work);
+
+/// Calls `work` with every frame of `source` once, in blocks (first frame, poses) of at most
+/// kBlockBytes for each thread, in any order, from several threads. Throws what reading and `work`
+/// throw, Cancelled.
+void for_each_block(const FrameSource& source, const BlockOptions& options,
+                    const std::function<void(int first, const Frames& poses)>& work);
+
+/// Root mean square over vertices and frames of the distance from the rest pose.
+double motion(const FrameSource& source, const BlockOptions& = {});
+
+}  // namespace mimetra

@@ -1,0 +1,45 @@
+#include "toolkit/model/animation.h"
+
+#include <algorithm>
+#include <stdexcept>
+#include <string>
+
+namespace mimetra {
+namespace {
+
+SequenceHeader header_of(const BlendshapeModel& model, const Eigen::MatrixXd& weights,
+                         Eigen::VectorXd times) {
+  if (weights.cols() != model.expressions().size()) {
+    throw std::invalid_argument(std::to_string(weights.cols()) + " weights for a model of " +
+                                std::to_string(model.expressions().size()) + " expressions");
+  }
+  if (times.size() == 0) times = default_times(static_cast<int>(weights.rows()));
+  if (times.size() != weights.rows()) {
+    throw std::invalid_argument(std::to_string(times.size()) + " times for " +
+                                std::to_string(weights.rows()) + " frames");
+  }
+  return {model.shared_connectivity(), std::move(times), model.neutral(), true};
+}
+
+}  // namespace
+
+Animation::Animation(std::shared_ptr<const BlendshapeModel> model, Eigen::MatrixXd weights,
+                     Eigen::VectorXd times)
+    : FrameSource(header_of(*model, weights, std::move(times))),
+      model_(std::move(model)),
+      weights_(std::move(weights)) {}
+
+void Animation::read_frames(int first, FramesView poses) const {
+  // A product takes its columns, here the frames, in fours and the rest one by one, which adds in
+  // another order; and it takes another way altogether where there is only one. Runs that start
+  // at a multiple of four and end at one, or at the end, see the same numbers as the whole.
+  constexpr int kFrames = 4;
+  const int last = first + static_cast<int>(poses.rows());
+  const int end = std::min(frames(), (last + kFrames - 1) / kFrames * kFrames);
+  const int start =
+      std::max(0, std::min(first / kFrames * kFrames, end / kFrames * kFrames - kFrames));
+  const MeshSequence run = model_->animate(weights_.middleRows(start, end - start));
+  poses = run.positions().middleRows(first - start, poses.rows());
+}
+
+}  // namespace mimetra

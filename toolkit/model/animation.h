@@ -1,0 +1,29 @@
+#pragma once
+
+#include <memory>
+
+#include "toolkit/mesh/frame_source.h"
+#include "toolkit/model/blendshape_model.h"
+
+namespace mimetra {
+
+/// A model driven by weights; poses are computed when they are read. The rest pose is the neutral.
+class Animation : public FrameSource {
+ public:
+  /// `weights` F x D; `times` F in seconds, or empty for kDefaultFramesPerSecond. Throws
+  /// std::invalid_argument where sizes disagree.
+  Animation(std::shared_ptr<const BlendshapeModel> model, Eigen::MatrixXd weights,
+            Eigen::VectorXd times = {});
+
+  const BlendshapeModel& model() const { return *model_; }
+  const Eigen::MatrixXd& weights() const { return weights_; }
+
+ private:
+  /// The same numbers as those frames of model().animate(weights()).
+  void read_frames(int first, FramesView poses) const override;
+
+  std::shared_ptr<const BlendshapeModel> model_;
+  Eigen::MatrixXd weights_;
+};
+
+}  // namespace mimetra
