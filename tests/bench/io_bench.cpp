@@ -10,7 +10,7 @@ namespace fs = std::filesystem;
 
 constexpr const char* kGroup = "files";
 
-SequenceWriteOptions in_format(const std::string& format) {
+SequenceWriteOptions in_format(MeshFormat format) {
   SequenceWriteOptions options;
   options.format = format;
   options.overwrite = true;
@@ -30,12 +30,13 @@ std::vector<Row> io_rows(const Subject& subject, const fs::path& scratch,
     cases.push_back(
         {{kGroup, what, size, {0, file_bytes + in_memory}, {"", 0, file_bytes}}, std::move(run)});
   };
-  for (const std::string format : {"obj", "ply"}) {
-    const fs::path folder = scratch / format;
+  for (const MeshFormat format : {MeshFormat::obj, MeshFormat::ply}) {
+    const std::string name(choice_name(format));
+    const fs::path folder = scratch / name;
     write_sequence(performance, folder, in_format(format));
     const double bytes = bytes_below(folder);
-    add("read " + format + " files", bytes, [folder] { read_sequence(folder); });
-    add("write " + format + " files", bytes,
+    add("read " + name + " files", bytes, [folder] { read_sequence(folder); });
+    add("write " + name + " files", bytes,
         [folder, format, &performance] { write_sequence(performance, folder, in_format(format)); });
   }
   const fs::path array = scratch / "array.npy";

@@ -11,6 +11,7 @@
 #include "toolkit/io/array_file.h"
 #include "toolkit/io/sequence_file.h"
 #include "toolkit/io/whole_file.h"
+#include "toolkit/mesh/choice.h"
 #include "toolkit/mesh/errors.h"
 
 namespace mimetra {
@@ -278,18 +279,21 @@ MeshSequence twenty_frames() {
   return {mesh.connectivity, frames};
 }
 
-class EveryFormat : public testing::TestWithParam<std::string> {};
+class EveryFormat : public testing::TestWithParam<std::string> {
+ protected:
+  MeshFormat format() const { return *choice_of<MeshFormat>(GetParam()); }
+};
 
 TEST_P(EveryFormat, IsWrittenAndReadAlikeByAnyNumberOfThreads) {
   const TemporaryFolder folder;
   const MeshSequence sequence = twenty_frames();
   const fs::path one = folder / "1";
-  write_sequence(sequence, one, {.format = GetParam(), .threads = 1});
+  write_sequence(sequence, one, {.format = format(), .threads = 1});
   const Frames read = read_sequence(one.string(), {.threads = 1}).sequence.positions();
   for (const int threads : {2, 3}) {
     const fs::path other = folder / std::to_string(threads);
     for (const fs::path& file :
-         write_sequence(sequence, other, {.format = GetParam(), .threads = threads})) {
+         write_sequence(sequence, other, {.format = format(), .threads = threads})) {
       EXPECT_EQ(read_file(file), read_file(one / file.filename()));
     }
     EXPECT_EQ(read_sequence(one.string(), {.threads = threads}).sequence.positions(), read);
@@ -298,7 +302,7 @@ TEST_P(EveryFormat, IsWrittenAndReadAlikeByAnyNumberOfThreads) {
 
 TEST_P(EveryFormat, NamesTheFirstBadFrameWhicheverThreadFindsIt) {
   const TemporaryFolder folder;
-  write_sequence(twenty_frames(), folder / "a", {.format = GetParam()});
+  write_sequence(twenty_frames(), folder / "a", {.format = format()});
   for (const char* frame : {"frame_0005.", "frame_0006.", "frame_0019."}) {
     write_bytes(folder / "a" / (frame + GetParam()), "?");
   }

@@ -36,20 +36,30 @@ Number number_at(const char* at, std::endian order) {
   return std::bit_cast<Number>(bits);
 }
 
-/// Puts a number, least significant byte first. \pre there is room for sizeof(Number) bytes
+/// Puts a number in a byte order. \pre there is room for sizeof(Number) bytes
 template <typename Number>
-void put_little_endian(char* at, Number value) {
+void put_number_at(char* at, Number value, std::endian order) {
   auto bits = std::bit_cast<UnsignedOf<sizeof(Number)>>(value);
-  if (std::endian::native != std::endian::little) bits = byte_swapped(bits);
+  if (order != std::endian::native) bits = byte_swapped(bits);
   std::memcpy(at, &bits, sizeof bits);
 }
 
-/// Appends a number, least significant byte first.
+/// Appends a number in a byte order.
+template <typename Number>
+void append_bytes_of(std::string& bytes, Number value, std::endian order) {
+  char raw[sizeof value];
+  put_number_at(raw, value, order);
+  bytes.append(raw, sizeof raw);
+}
+
+/// The same, least significant byte first.
+template <typename Number>
+void put_little_endian(char* at, Number value) {
+  put_number_at(at, value, std::endian::little);
+}
 template <typename Number>
 void append_little_endian(std::string& bytes, Number value) {
-  char raw[sizeof value];
-  put_little_endian(raw, value);
-  bytes.append(raw, sizeof raw);
+  append_bytes_of(bytes, value, std::endian::little);
 }
 
 }  // namespace mimetra

@@ -9,6 +9,7 @@
 #include <glob.h>
 
 #include "toolkit/io/mesh_file.h"
+#include "toolkit/io/sequence_format.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/text.h"
 
@@ -168,10 +169,6 @@ FrameRange parsed_range(const std::string& text) {
 
 }  // namespace
 
-bool is_array(const fs::path& path) {
-  return lower_extension(path) == ".npy";
-}
-
 bool is_frame_pattern(const std::string& text) {
   return text.find_first_of("*?") != std::string::npos ||
          number_field(fs::path(text).filename().string()).has_value();
@@ -211,7 +208,8 @@ std::vector<int> selected_frames(const std::optional<std::string>& range, int fr
 fs::path beside(const fs::path& sequence, const std::string& suffix) {
   fs::path name = sequence.lexically_normal();
   if (!name.has_filename()) name = name.parent_path();
-  if (is_array(name)) name.replace_extension();
+  const SequenceFormat* format = sequence_format(name);
+  if (format && format->has_companions) name.replace_extension();
   return name += suffix;
 }
 

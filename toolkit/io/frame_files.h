@@ -12,9 +12,6 @@ namespace mimetra {
 inline constexpr const char* kRestSuffix = ".rest.ply";
 inline constexpr const char* kTopologySuffix = ".topology.ply";
 
-/// True for NAME.npy in any case.
-bool is_array(const std::filesystem::path& path);
-
 /// True for text with `*`, `?` or `%04d` that names files only by way of a pattern.
 bool is_frame_pattern(const std::string& text);
 

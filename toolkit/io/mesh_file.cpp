@@ -23,13 +23,6 @@ std::string read_bytes(const fs::path& path) {
   return read_file(path);
 }
 
-MeshContent read_content(const fs::path& path, std::string_view bytes) {
-  const std::string extension = lower_extension(path);
-  if (extension == ".obj") return read_obj(path.string(), bytes);
-  if (extension == ".ply") return read_ply(path.string(), bytes);
-  return read_off(path.string(), bytes);
-}
-
 Positions positions_of(const std::vector<double>& coordinates) {
   return Eigen::Map<const Positions>(coordinates.data(),
                                      static_cast<Eigen::Index>(coordinates.size() / 3), 3);
@@ -76,7 +69,7 @@ void check_faces(const std::string& path, const MeshContent& content) {
 }
 
 MeshContent read_checked(const fs::path& path, std::string_view bytes) {
-  MeshContent content = read_content(path, bytes);
+  MeshContent content = mesh_codec(lower_extension(path))->read(path.string(), bytes);
   check_finite(path.string(), content.coordinates, "vertex", content.first_index);
   check_faces(path.string(), content);
   return content;
@@ -182,8 +175,13 @@ void check_same_faces(const fs::path& path, const MeshContent& content,
                       expected_path.string());
 }
 
+/// True where a file has corners of triangles only.
+bool names_no_vertices(const fs::path& path) {
+  return !mesh_codec(lower_extension(path))->read;
+}
+
 TriMesh read_mesh(const fs::path& path, std::string_view bytes) {
-  if (lower_extension(path) == ".stl") return read_stl(path, bytes);
+  if (names_no_vertices(path)) return read_stl(path, bytes);
   MeshContent content = read_checked(path, bytes);
   TriMesh mesh{positions_of(content.coordinates), {}};
   mesh.connectivity = Connectivity::from_polygons(static_cast<int>(mesh.positions.rows()),
@@ -195,8 +193,7 @@ TriMesh read_mesh(const fs::path& path, std::string_view bytes) {
 
 Positions read_positions(const fs::path& path, std::string_view bytes, const Connectivity& expected,
                          const fs::path& expected_path) {
-  if (lower_extension(path) == ".stl")
-    return gathered_corners(path, bytes, expected, expected_path);
+  if (names_no_vertices(path)) return gathered_corners(path, bytes, expected, expected_path);
   const MeshContent content = read_checked(path, bytes);
   const auto vertices = static_cast<long long>(content.coordinates.size() / 3);
   if (vertices != expected.vertices) {
@@ -204,17 +201,6 @@ Positions read_positions(const fs::path& path, std::string_view bytes, const Con
   }
   check_same_faces(path, content, expected, expected_path);
   return positions_of(content.coordinates);
-}
-
-/// None for STL, whose vertices are found anew in every file.
-std::unique_ptr<const MeshLayout> layout_of(const std::string& extension, std::string bytes,
-                                            const TriMesh& mesh) {
-  if (extension == ".obj") return obj_layout(std::move(bytes));
-  if (extension == ".ply") return ply_layout(bytes);
-  if (extension == ".off") {
-    return off_layout(std::move(bytes), static_cast<std::size_t>(mesh.positions.rows()));
-  }
-  return nullptr;
 }
 
 }  // namespace
@@ -231,7 +217,9 @@ Positions read_positions(const fs::path& path, const Connectivity& expected,
 MeshFileReader::MeshFileReader(fs::path first) : first_(std::move(first)) {
   std::string bytes = read_bytes(first_);
   mesh_ = read_mesh(first_, bytes);
-  layout_ = layout_of(lower_extension(first_), std::move(bytes), mesh_);
+  if (const auto layout = mesh_codec(lower_extension(first_))->layout) {
+    layout_ = layout(std::move(bytes), static_cast<std::size_t>(mesh_.positions.rows()));
+  }
 }
 
 MeshFileReader::~MeshFileReader() = default;

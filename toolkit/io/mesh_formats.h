@@ -1,14 +1,17 @@
 #pragma once
 
 #include <functional>
+#include <memory>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "toolkit/mesh/tri_mesh.h"
+#include "toolkit/io/mesh_file.h"
+#include "toolkit/io/mesh_layout.h"
 
-/// One reader and one writer for each mesh format, on bytes in memory. Internal to mesh_file.h,
-/// which chooses among them and checks what they return.
+/// The table of mesh formats: one reader and one writer for each, on bytes in memory. Internal to
+/// mesh_file.h, which chooses among them and checks what they return.
 namespace mimetra {
 
 /// What a mesh file says, before anybody has checked that it makes sense.
@@ -38,11 +41,31 @@ struct MeshFrame {
   std::function<std::string(const PositionsView&)> positions;
 };
 
-/// Coordinates are floats unless `double_precision`. No reference to the connectivity is kept.
+/// Coordinates are floats unless `double_precision`, in STL always. No reference to the
+/// connectivity is kept.
 MeshFrame obj_frame(const Connectivity& connectivity, bool double_precision);
 MeshFrame ply_frame(const Connectivity& connectivity, bool double_precision);
 MeshFrame off_frame(const Connectivity& connectivity, bool double_precision);
-MeshFrame stl_frame(const Connectivity& connectivity);
+MeshFrame stl_frame(const Connectivity& connectivity, bool double_precision);
+
+/// A format, declared once.
+struct MeshCodec {
+  MeshFormat format;
+  /// Null for STL, whose files name no vertices.
+  MeshContent (*read)(const std::string& path, std::string_view bytes);
+  /// From the bytes of the first file and its vertex count; null for a format whose files have
+  /// nothing in common.
+  std::unique_ptr<const MeshLayout> (*layout)(std::string first, std::size_t vertices);
+  MeshFrame (*frame)(const Connectivity& connectivity, bool double_precision);
+
+  /// ".ply".
+  std::string extension() const;
+};
+
+/// All formats; lists of them have this order.
+std::span<const MeshCodec> mesh_codecs();
+/// The format of an extension (".ply") in any case; null for one that is no mesh format.
+const MeshCodec* mesh_codec(const std::string& extension);
 
 /// Characters that the shortest digits of a number take at most: a double has 24, an integer 20.
 inline constexpr std::size_t kMostDigits = 32;

@@ -22,9 +22,9 @@ class MeshLayout {
 
 /// From the bytes of a first file that the format's reader accepts. Null where the file is written
 /// in a way that only that reader knows.
-std::unique_ptr<const MeshLayout> obj_layout(std::string first);
-std::unique_ptr<const MeshLayout> ply_layout(const std::string& first);
 /// `vertices`: how many the reader found.
+std::unique_ptr<const MeshLayout> obj_layout(std::string first, std::size_t vertices);
+std::unique_ptr<const MeshLayout> ply_layout(std::string first, std::size_t vertices);
 std::unique_ptr<const MeshLayout> off_layout(std::string first, std::size_t vertices);
 
 }  // namespace mimetra

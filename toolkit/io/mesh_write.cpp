@@ -13,14 +13,6 @@ namespace mimetra {
 namespace fs = std::filesystem;
 namespace {
 
-MeshFrame frame_of(const std::string& extension, const Connectivity& connectivity,
-                   bool double_precision) {
-  if (extension == ".obj") return obj_frame(connectivity, double_precision);
-  if (extension == ".ply") return ply_frame(connectivity, double_precision);
-  if (extension == ".off") return off_frame(connectivity, double_precision);
-  return stl_frame(connectivity);
-}
-
 /// The shortest digits that read back equal, to where `text` has room for them.
 template <typename Number>
 char* put_shortest(char* text, Number value) {
@@ -32,11 +24,9 @@ char* put_shortest(char* text, Number value) {
 MeshFileWriter::MeshFileWriter(const Connectivity& connectivity, const std::string& extension,
                                bool double_precision)
     : vertices_(connectivity.vertices) {
-  const std::string format = lower_case(extension);
-  if (!is_mesh_extension(format)) {
-    throw std::invalid_argument(unknown_mesh_extension(format));
-  }
-  frame_ = std::make_unique<const MeshFrame>(frame_of(format, connectivity, double_precision));
+  const MeshCodec* codec = mesh_codec(extension);
+  if (!codec) throw std::invalid_argument(unknown_mesh_extension(lower_case(extension)));
+  frame_ = std::make_unique<const MeshFrame>(codec->frame(connectivity, double_precision));
 }
 
 MeshFileWriter::~MeshFileWriter() = default;
@@ -65,16 +55,6 @@ void write_mesh(const fs::path& path, const PositionsView& positions,
 void write_mesh(const fs::path& path, const TriMesh& mesh, const MeshWriteOptions& options) {
   write_mesh(path, PositionsView(mesh.positions.data(), mesh.positions.rows(), 3),
              mesh.connectivity, options);
-}
-
-bool is_mesh_extension(const std::string& extension) {
-  const std::string known = lower_case(extension);
-  return known == ".obj" || known == ".ply" || known == ".off" || known == ".stl";
-}
-
-std::string unknown_mesh_extension(const std::string& extension) {
-  return (extension.empty() ? "has no extension" : "'" + extension + "' is no mesh format") +
-         std::string("; expected .obj, .ply, .off or .stl");
 }
 
 char* put_number(char* text, double value, bool double_precision) {

@@ -1,10 +1,13 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "toolkit/io/mesh_file.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/mesh_sequence.h"
 #include "toolkit/mesh/progress.h"
@@ -26,30 +29,44 @@ struct SequenceSource {
   Progress progress = {};
 };
 
-/// A sequence and what was noticed while reading it.
-struct SequenceRead {
-  MeshSequence sequence;
+/// A sequence whose poses are read when they are needed, and what was noticed while opening it.
+struct OpenSequence {
+  std::shared_ptr<const FrameSource> frames;
   /// True for a model, with or without weights: its rest pose is its neutral.
   bool model_driven = false;
-  /// Files it came from, in order.
+  /// Files it comes from, in order.
   std::vector<std::filesystem::path> files = {};
   /// Which weight names were not matched, and the like.
   std::vector<std::string> notes = {};
 };
 
-/// Reads `text`: a directory, glob or printf pattern of OBJ/PLY/OFF/STL files in natural order (2
-/// before 10), one such file, an .npy array (faces from `topology` or NAME.topology.ply beside it),
-/// or a model with weights; a model without weights is its neutral, and MODEL@NAME.fit.json the
-/// performance that was fitted. The rest pose of an array or a
-/// directory is NAME.rest.ply where that stands beside it. Throws IoError, MismatchError (frames
-/// that differ in vertices or faces, naming both files), std::invalid_argument for a bad frame
-/// range, Cancelled.
+/// A sequence in memory and what was noticed while reading it.
+struct SequenceRead {
+  MeshSequence sequence;
+  /// True for a model, with or without weights: its rest pose is its neutral.
+  bool model_driven = false;
+  std::vector<std::filesystem::path> files = {};
+  std::vector<std::string> notes = {};
+};
+
+/// Opens `text`: a directory, glob or printf pattern of OBJ/PLY/OFF/STL files in natural order (2
+/// before 10), a file in one of sequence_formats(), or a model with weights; a model without
+/// weights is its neutral, and MODEL@NAME.fit.json the performance that was fitted. The rest pose
+/// of a directory or of a file without faces is NAME.rest.ply where that stands beside it; its
+/// faces are those of `topology` or NAME.topology.ply.
+///
+/// No frame is read but the first, for faces and where it stands in for the rest pose. Throws
+/// IoError, MismatchError, std::invalid_argument for a bad frame range; reading frames throws
+/// IoError, and MismatchError for frames that differ in vertices or faces, naming both files.
+OpenSequence open_sequence(const std::string& text, const SequenceSource& source = {});
+
+/// The same, with all frames in memory. Throws what opening and reading throw, Cancelled.
 SequenceRead read_sequence(const std::string& text, const SequenceSource& source = {});
 
 struct SequenceWriteOptions {
-  /// Format of the frames in a folder: "ply", "obj", "off" or "stl".
-  std::string format = "ply";
-  /// Double precision in mesh files, which those far from the origin have in any case; single
+  /// Of the frames in a folder.
+  MeshFormat format = MeshFormat::ply;
+  /// Double precision in mesh files, which poses far from the origin have in any case; single
   /// precision in arrays.
   bool double_precision = false;
   bool single_precision = false;
@@ -61,16 +78,26 @@ struct SequenceWriteOptions {
   Progress progress = {};
 };
 
-/// Writes `target`: NAME.npy (with NAME.topology.ply, and NAME.rest.ply where the rest pose is
-/// known), one mesh file for a sequence of one frame, or a folder of frame_0000.ply on
-/// (`frame_00000` and so on where four digits do not suffice) with NAME.rest.ply beside it where
-/// the rest pose is known (never for STL, which numbers the vertices anew). Atomic. Returns the
-/// files written. Throws OutputError, MismatchError for several frames into one mesh file. `extra`
-/// are further files (name, content) that appear in the folder, or beside the file, together with
-/// it.
-std::vector<std::filesystem::path> write_sequence(
-    const MeshSequence& sequence, const std::filesystem::path& target,
-    const SequenceWriteOptions& = {},
-    const std::vector<std::pair<std::string, std::string>>& extra = {});
+/// Further files (name, content) that appear together with an output: in its folder, or beside its
+/// file.
+using ExtraFiles = std::vector<std::pair<std::string, std::string>>;
+
+/// Begins `target`: a file in the format of its extension (sequence_formats(); a mesh file takes
+/// one frame), with NAME.topology.ply and, where the rest pose is known, NAME.rest.ply beside it
+/// where the format has no place for them, or a folder of frame_0000.ply on (`frame_00000` and so
+/// on where four digits do not suffice) with NAME.rest.ply beside it where the rest pose is known
+/// (never for STL, which numbers the vertices anew). Atomic. Throws OutputError, MismatchError for
+/// what the format cannot hold.
+std::unique_ptr<FrameSink> begin_sequence(const SequenceHeader& header,
+                                          const std::filesystem::path& target,
+                                          const SequenceWriteOptions& = {},
+                                          const ExtraFiles& extra = {});
+
+/// Begins `target`, writes all frames and returns the files written. Throws what reading throws,
+/// too, and Cancelled.
+std::vector<std::filesystem::path> write_sequence(const FrameSource& sequence,
+                                                  const std::filesystem::path& target,
+                                                  const SequenceWriteOptions& = {},
+                                                  const ExtraFiles& extra = {});
 
 }  // namespace mimetra

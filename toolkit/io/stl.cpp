@@ -115,7 +115,7 @@ std::vector<double> read_stl_corners(const std::string& path, std::string_view b
                           : read_ascii(path, without_byte_order_mark(bytes));
 }
 
-MeshFrame stl_frame(const Connectivity& connectivity) {
+MeshFrame stl_frame(const Connectivity& connectivity, bool) {
   std::string before(kHeaderBytes, ' ');
   append_little_endian(before, static_cast<std::uint32_t>(connectivity.triangles.rows()));
   return {

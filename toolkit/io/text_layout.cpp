@@ -176,7 +176,7 @@ class OffLayout : public MeshLayout {
 
 }  // namespace
 
-std::unique_ptr<const MeshLayout> obj_layout(std::string first) {
+std::unique_ptr<const MeshLayout> obj_layout(std::string first, std::size_t) {
   if (may_continue(first)) return nullptr;
   return std::make_unique<ObjLayout>(std::move(first));
 }

@@ -4,7 +4,7 @@
 #include "toolkit/io/model_file.h"
 #include "toolkit/io/pending_output.h"
 #include "toolkit/io/regions_file.h"
-#include "toolkit/io/sequence_file.h"
+#include "toolkit/io/sequence_format.h"
 #include "toolkit/io/whole_file.h"
 
 namespace mimetra {
@@ -14,21 +14,14 @@ using Paths = std::vector<std::filesystem::path>;
 namespace {
 
 std::vector<Parameter> sequence_writing_parameters() {
-  return {{"format",
-           ParameterKind::choice,
-           "ply",
-           "format of frames in a folder",
-           "",
-           {},
-           {},
-           {"ply", "obj", "off", "stl"}},
+  return {choice_parameter("format", SequenceWriteOptions{}.format, "format of frames in a folder"),
           {"double", ParameterKind::flag, false, "double precision in mesh files"},
           {"single", ParameterKind::flag, false, "single precision in .npy"}};
 }
 
 Paths write_sequence_data(const Data& data, const WriteRequest& request) {
   SequenceWriteOptions options;
-  options.format = request.parameters.text("format");
+  options.format = request.parameters.choice<MeshFormat>("format");
   options.double_precision = request.parameters.flag("double");
   options.single_precision = request.parameters.flag("single");
   options.overwrite = request.overwrite;
@@ -87,10 +80,10 @@ Paths write_text(const WriteRequest& request, const std::string& text) {
 }
 
 void add_formats(OperationTable& table) {
-  table.add(Writer{DataKind::sequence,
-                   {".npy", ".ply", ".obj", ".off", ".stl", ""},
-                   sequence_writing_parameters(),
-                   write_sequence_data});
+  std::vector<std::string> extensions = sequence_extensions();
+  extensions.emplace_back();  // a folder
+  table.add(
+      Writer{DataKind::sequence, extensions, sequence_writing_parameters(), write_sequence_data});
   table.add(Writer{DataKind::components, {".h5", ".hdf5"}, {}, write_components_data});
   table.add(Writer{DataKind::animated_model, {""}, {}, write_model_data});
   table.add(

@@ -1,0 +1,135 @@
+#include "toolkit/io/frame_sequence.h"
+
+#include <algorithm>
+#include <span>
+
+#include "toolkit/io/frame_files.h"
+#include "toolkit/io/mesh_file.h"
+#include "toolkit/io/mesh_formats.h"
+#include "toolkit/io/sequence_parts.h"
+#include "toolkit/io/whole_file.h"
+#include "toolkit/io/written_files.h"
+
+namespace mimetra {
+namespace fs = std::filesystem;
+namespace {
+
+/// A mesh file for each frame.
+class FrameFiles : public FrameSource {
+ public:
+  FrameFiles(std::unique_ptr<const MeshFileReader> reader, std::vector<fs::path> files,
+             SequenceHeader header)
+      : FrameSource(std::move(header)), reader_(std::move(reader)), files_(std::move(files)) {
+    if (!rest_is_known()) {
+      header_.rest =
+          files_[0] == reader_->first() ? reader_->mesh().positions : reader_->read(files_[0]);
+    }
+  }
+
+ private:
+  void read_frames(int first, FramesView poses) const override {
+    for (Eigen::Index row = 0; row < poses.rows(); ++row) {
+      const fs::path& file = files_[static_cast<std::size_t>(first + row)];
+      const std::span<double> pose(poses.row(row).data(), static_cast<std::size_t>(poses.cols()));
+      if (file == reader_->first()) {
+        std::copy_n(reader_->mesh().positions.data(), pose.size(), pose.begin());
+      } else {
+        reader_->read(file, pose);
+      }
+    }
+  }
+
+  std::unique_ptr<const MeshFileReader> reader_;
+  std::vector<fs::path> files_;
+};
+
+class FolderSink : public FrameSink {
+ public:
+  FolderSink(const SequenceHeader& header, const fs::path& target,
+             const SequenceWriteOptions& options, const ExtraFiles& extra)
+      : header_(header),
+        extent_(extent(header.rest)),
+        target_(target),
+        extra_(extra),
+        extension_('.' + std::string(choice_name(options.format))),
+        outputs_(options.overwrite, options.inputs),
+        folder_(outputs_.add(target, PendingOutput::Kind::folder)),
+        writer_(*header.connectivity, extension_, options.double_precision),
+        exact_writer_(*header.connectivity, extension_, true) {
+    const auto frames = static_cast<int>(header.times.size());
+    for (int frame = 0; frame < frames; ++frame) {
+      files_.push_back(target / frame_name(frame, frames, extension_));
+    }
+  }
+
+  void write(int first, const Frames& poses) override {
+    for (Eigen::Index row = 0; row < poses.rows(); ++row) {
+      const PositionsView pose(poses.row(row).data(), header_.connectivity->vertices, 3);
+      const MeshFileWriter& writer = needs_double(pose, extent_) ? exact_writer_ : writer_;
+      writer.write(folder_ / files_[static_cast<std::size_t>(first + row)].filename(), pose);
+    }
+  }
+
+  std::vector<fs::path> commit() override {
+    std::vector<fs::path> files = files_;
+    for (const auto& [name, content] : extra_) {
+      write_bytes(folder_ / name, content);
+      files.push_back(target_ / name);
+    }
+    const fs::path manifest = target_ / kFolderManifest;
+    if (std::ranges::find(files, manifest) == files.end()) files.push_back(manifest);
+    // A format without vertices numbers them anew, so that a rest pose in the old order would not
+    // fit.
+    SequenceHeader kept = header_;
+    kept.rest_is_known = kept.rest_is_known && mesh_codec(extension_)->read;
+    add_rest_beside(outputs_, target_, kept, files);
+    outputs_.commit();
+    return files;
+  }
+
+ private:
+  SequenceHeader header_;
+  double extent_;
+  fs::path target_;
+  ExtraFiles extra_;
+  std::string extension_;
+  PendingOutputs outputs_;
+  fs::path folder_;
+  std::vector<fs::path> files_;
+  MeshFileWriter writer_;
+  /// Of poses far from the origin.
+  MeshFileWriter exact_writer_;
+};
+
+}  // namespace
+
+OpenSequence open_frames(const std::vector<fs::path>& files, const fs::path& folder,
+                         const SequenceSource& source) {
+  const std::vector<int> chosen = selected_frames(source.frames, static_cast<int>(files.size()));
+  OpenSequence open;
+  for (const int frame : chosen) open.files.push_back(files[static_cast<std::size_t>(frame)]);
+  std::vector<fs::path> frames = open.files;
+  // Where files name no vertices, the first frame says which corners are one, asked for or not.
+  const bool names_vertices = mesh_codec(files[0].extension().string())->read;
+  auto reader = std::make_unique<const MeshFileReader>(names_vertices ? frames[0] : files[0]);
+  SequenceHeader header;
+  header.connectivity = std::make_shared<const Connectivity>(reader->mesh().connectivity);
+  header.times = frame_times(static_cast<int>(files.size()), source)(chosen);
+  if (!folder.empty()) {
+    if (auto rest = rest_beside(folder, *reader, open.files)) {
+      header.rest = *std::move(rest);
+      header.rest_is_known = true;
+    }
+  }
+  open.frames =
+      std::make_shared<const FrameFiles>(std::move(reader), std::move(frames), std::move(header));
+  return open;
+}
+
+std::unique_ptr<FrameSink> begin_folder(const SequenceHeader& header, const fs::path& target,
+                                        const SequenceWriteOptions& options,
+                                        const ExtraFiles& extra) {
+  return std::make_unique<FolderSink>(header, target, options, extra);
+}
+
+}  // namespace mimetra

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <vector>
+
+#include "toolkit/io/sequence_file.h"
+
+/// Sequences with a mesh file for each frame. Internal to sequence_file.h.
+namespace mimetra {
+
+/// The part of `files` that `source` takes. `folder` is where a rest pose may lie beside; empty for
+/// patterns and single files. Throws IoError, MismatchError.
+OpenSequence open_frames(const std::vector<std::filesystem::path>& files,
+                         const std::filesystem::path& folder, const SequenceSource& source);
+
+/// A folder of numbered files. Throws OutputError.
+std::unique_ptr<FrameSink> begin_folder(const SequenceHeader& header,
+                                        const std::filesystem::path& target,
+                                        const SequenceWriteOptions& options,
+                                        const ExtraFiles& extra);
+
+}  // namespace mimetra

@@ -1,0 +1,67 @@
+#include "toolkit/io/frame_sequence.h"
+#include "toolkit/io/mesh_file.h"
+#include "toolkit/io/sequence_format.h"
+#include "toolkit/io/sequence_parts.h"
+#include "toolkit/mesh/errors.h"
+
+namespace mimetra {
+namespace fs = std::filesystem;
+namespace {
+
+OpenSequence open_mesh(const fs::path& path, const SequenceSource& source) {
+  return open_frames({path}, {}, source);
+}
+
+class MeshSink : public FrameSink {
+ public:
+  MeshSink(const SequenceHeader& header, const fs::path& target,
+           const SequenceWriteOptions& options, const ExtraFiles& extra)
+      : header_(header),
+        target_(target),
+        extra_(extra),
+        double_precision_(options.double_precision),
+        outputs_(options.overwrite, options.inputs),
+        path_(outputs_.add(target, PendingOutput::Kind::file)) {}
+
+  void write(int, const Frames& poses) override {
+    const PositionsView pose(poses.data(), header_.connectivity->vertices, 3);
+    const bool far_out = needs_double(pose, extent(header_.rest));
+    write_mesh(path_, pose, *header_.connectivity,
+               {.double_precision = double_precision_ || far_out,
+                .extension = target_.extension().string()});
+  }
+
+  std::vector<fs::path> commit() override {
+    std::vector<fs::path> files = {target_};
+    add_extra_beside(outputs_, target_, extra_, files);
+    outputs_.commit();
+    return files;
+  }
+
+ private:
+  SequenceHeader header_;
+  fs::path target_;
+  ExtraFiles extra_;
+  bool double_precision_;
+  PendingOutputs outputs_;
+  fs::path path_;
+};
+
+std::unique_ptr<FrameSink> begin_mesh(const SequenceHeader& header, const fs::path& target,
+                                      const SequenceWriteOptions& options,
+                                      const ExtraFiles& extra) {
+  if (header.times.size() != 1) {
+    throw MismatchError(target.string() + ": one mesh file cannot hold " +
+                        std::to_string(header.times.size()) +
+                        " frames; name a folder, a .npy file, or one frame with --frames");
+  }
+  return std::make_unique<MeshSink>(header, target, options, extra);
+}
+
+}  // namespace
+
+SequenceFormat mesh_format() {
+  return {"mesh", mesh_extensions(), false, open_mesh, begin_mesh};
+}
+
+}  // namespace mimetra

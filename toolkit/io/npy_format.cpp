@@ -1,0 +1,101 @@
+#include <algorithm>
+
+#include "toolkit/io/array_file.h"
+#include "toolkit/io/npy_cache.h"
+#include "toolkit/io/npy_header.h"
+#include "toolkit/io/sequence_format.h"
+#include "toolkit/io/whole_file.h"
+
+namespace mimetra {
+namespace fs = std::filesystem;
+namespace {
+
+int frames_of(const NpyHeader& header) {
+  return header.shape.size() == 3 ? static_cast<int>(header.shape[0]) : 1;
+}
+
+int vertices_of(const NpyHeader& header) {
+  return static_cast<int>(header.shape[header.shape.size() - 2]);
+}
+
+/// What an array starts with; all of its header in version 1.
+std::string beginning_of(const InputFile& file) {
+  constexpr std::size_t kMost = 1 << 17;
+  std::string bytes(std::min(file.size(), kMost), '\0');
+  file.read(0, bytes.data(), bytes.size());
+  return bytes;
+}
+
+class StoredArray : public StoredPointCache {
+ public:
+  StoredArray(const fs::path& path, const NpyHeader& header) : StoredPointCache(path) {
+    checked_count(path.string(), file_.size(), header);
+    frames_ = frames_of(header);
+    vertices_ = vertices_of(header);
+    positions_ = {header.data, header.item_bytes, header.order};
+  }
+};
+
+/// One that cannot be read in parts.
+class LoadedArray : public PointCache {
+ public:
+  explicit LoadedArray(const fs::path& path) : PointCache(path) {
+    const std::string bytes = read_file(path);
+    const NpyHeader header = read_npy_header(path.string(), bytes);
+    check_frames_header(path.string(), header);
+    array_ = npy_values(path.string(), bytes, header);
+    frames_ = frames_of(header);
+    vertices_ = vertices_of(header);
+  }
+
+ private:
+  void read_values(int first, FramesView poses) const override {
+    std::copy_n(array_.values.begin() + first * poses.cols(), poses.size(), poses.data());
+  }
+
+  NumericArray array_;
+};
+
+OpenSequence open_npy(const fs::path& path, const SequenceSource& source) {
+  return open_point_cache(open_npy_cache(path), source);
+}
+
+std::unique_ptr<FrameSink> begin_npy(const SequenceHeader& header, const fs::path& target,
+                                     const SequenceWriteOptions& options, const ExtraFiles& extra) {
+  const auto begin = [&](const fs::path& path) {
+    return begin_npy_cache(path, static_cast<std::size_t>(header.times.size()),
+                           static_cast<std::size_t>(header.connectivity->vertices),
+                           options.single_precision);
+  };
+  return write_point_cache(header, target, options, extra, begin);
+}
+
+}  // namespace
+
+std::unique_ptr<const PointCache> open_npy_cache(const fs::path& path) {
+  if (InputFile::has_size(path)) {
+    const std::string beginning = beginning_of(InputFile(path));
+    if (npy_version(beginning) == 1) {
+      const NpyHeader header = read_npy_header(path.string(), beginning);
+      check_frames_header(path.string(), header);
+      if (!header.fortran_order) return std::make_unique<const StoredArray>(path, header);
+    }
+  }
+  return std::make_unique<const LoadedArray>(path);
+}
+
+PointCacheTarget begin_npy_cache(const fs::path& path, std::size_t frames, std::size_t vertices,
+                                 bool single_precision) {
+  PointCacheTarget target{std::make_unique<OutputFile>(path), {}};
+  target.positions.bytes = single_precision ? sizeof(float) : sizeof(double);
+  const std::string header = npy_header_bytes(frames, vertices, target.positions.bytes);
+  target.positions.offset = header.size();
+  target.file->write({header});
+  return target;
+}
+
+SequenceFormat npy_format() {
+  return {"NumPy array", {".npy"}, true, open_npy, begin_npy};
+}
+
+}  // namespace mimetra

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <bit>
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+/// The header of NumPy's arrays. Internal to those who read and write them.
+namespace mimetra {
+
+/// What stands before the values.
+struct NpyHeader {
+  std::endian order = std::endian::little;
+  char kind = 'f';  ///< f, i, u or b
+  std::size_t item_bytes = 8;
+  bool fortran_order = false;
+  std::vector<std::size_t> shape;
+  std::size_t data = 0;  ///< where the values start
+};
+
+/// "4 x 5 x 3".
+std::string shape_text(const std::vector<std::size_t>& shape);
+/// The version that the first bytes of a file name; 0 where they are too few.
+int npy_version(std::string_view bytes);
+/// From the first bytes of a file. Throws IoError that names `path`.
+NpyHeader read_npy_header(const std::string& path, std::string_view bytes);
+/// Number of values, which the file holds exactly: found before memory is asked for. Throws
+/// IoError.
+std::size_t checked_count(const std::string& path, std::size_t file_bytes, const NpyHeader& header);
+/// Throws IoError unless the array is F x N x 3 or N x 3, in floating point and not empty.
+void check_frames_header(const std::string& path, const NpyHeader& header);
+/// What stands before F x N x 3 little-endian numbers: version 1, padded so that the values start
+/// at a multiple of 64 bytes, as NumPy does.
+std::string npy_header_bytes(std::size_t frames, std::size_t vertices, std::size_t item_bytes);
+
+}  // namespace mimetra

@@ -1,0 +1,217 @@
+#include "toolkit/io/point_cache.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <span>
+
+#include "toolkit/io/bytes.h"
+#include "toolkit/io/frame_files.h"
+#include "toolkit/io/mesh_file.h"
+#include "toolkit/io/sequence_parts.h"
+#include "toolkit/mesh/errors.h"
+
+namespace mimetra {
+namespace fs = std::filesystem;
+namespace {
+
+/// True where no exponent is that of infinity and of what is not a number.
+bool all_finite(std::span<const double> values) {
+  constexpr std::uint64_t kSign = std::uint64_t{1} << 63, kOne = std::uint64_t{1} << 52;
+  std::uint64_t carried = 0;  // adding one to the largest exponent carries into the sign
+  for (const double value : values)
+    carried |= (std::bit_cast<std::uint64_t>(value) & ~kSign) + kOne;
+  return (carried & kSign) == 0;
+}
+
+void check_finite(const fs::path& path, int first, const FramesView& poses) {
+  const std::span<const double> values(poses.data(), static_cast<std::size_t>(poses.size()));
+  if (all_finite(values)) return;
+  const auto bad = std::ranges::find_if(values, [](double value) { return !std::isfinite(value); });
+  const Eigen::Index at = bad - values.begin();
+  throw IoError(path.string(), "frame " + std::to_string(first + at / poses.cols()) + ": vertex " +
+                                   std::to_string(at % poses.cols() / 3) +
+                                   " has no finite position");
+}
+
+template <typename Stored>
+void decode(const char* stored, std::endian order, std::span<double> values) {
+  const auto decode_in = [stored, values](auto given) {
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      values[i] = static_cast<double>(number_at<Stored>(stored + i * sizeof(Stored), given()));
+    }
+  };
+  // With an order that is known when the loop is compiled, it runs at the speed of memory.
+  if (order == std::endian::native) {
+    decode_in([] { return std::endian::native; });
+  } else {
+    decode_in([order] { return order; });
+  }
+}
+
+template <typename Stored>
+std::string encoded(std::span<const double> values, std::endian order) {
+  std::string bytes(values.size() * sizeof(Stored), '\0');
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    put_number_at(bytes.data() + i * sizeof(Stored), static_cast<Stored>(values[i]), order);
+  }
+  return bytes;
+}
+
+/// A cache on a mesh.
+class CachedFrames : public FrameSource {
+ public:
+  CachedFrames(std::unique_ptr<const PointCache> cache, SequenceHeader header)
+      : FrameSource(std::move(header)), cache_(std::move(cache)) {
+    if (rest_is_known()) return;
+    Frames first(1, 3 * Eigen::Index{vertices()});
+    cache_->read(0, FramesView(first.data(), 1, first.cols()));
+    header_.rest = PositionsView(first.data(), vertices(), 3);
+  }
+
+ private:
+  void read_frames(int first, FramesView poses) const override { cache_->read(first, poses); }
+
+  std::unique_ptr<const PointCache> cache_;
+};
+
+/// Frames keep the time they have in the whole sequence, whichever part is taken.
+Eigen::VectorXd times_of(const PointCache& cache, const SequenceSource& source) {
+  if (cache.times().size() > 0) return cache.times();
+  return cache.step() * frame_times(cache.frames(), source);
+}
+
+class PointCacheSink : public FrameSink {
+ public:
+  PointCacheSink(const SequenceHeader& header, const fs::path& target,
+                 const SequenceWriteOptions& options, const ExtraFiles& extra,
+                 const std::function<PointCacheTarget(const fs::path&)>& begin)
+      : header_(header),
+        target_(target),
+        extra_(extra),
+        outputs_(options.overwrite, options.inputs),
+        cache_(begin(outputs_.add(target, PendingOutput::Kind::file))),
+        columns_(3 * static_cast<std::size_t>(header.connectivity->vertices)) {}
+
+  void write(int first, const Frames& poses) override {
+    cache_.positions.write(*cache_.file, columns_ * static_cast<std::size_t>(first),
+                           {poses.data(), static_cast<std::size_t>(poses.size())});
+  }
+
+  std::vector<fs::path> commit() override {
+    cache_.file->close();
+    std::vector<fs::path> files = {target_};
+    add_topology_beside(outputs_, target_, header_, files);
+    add_rest_beside(outputs_, target_, header_, files);
+    add_extra_beside(outputs_, target_, extra_, files);
+    outputs_.commit();
+    return files;
+  }
+
+ private:
+  SequenceHeader header_;
+  fs::path target_;
+  ExtraFiles extra_;
+  PendingOutputs outputs_;
+  PointCacheTarget cache_;
+  std::size_t columns_;
+};
+
+}  // namespace
+
+void PointCache::read(int first, FramesView poses) const {
+  read_values(first, poses);
+  check_finite(path_, first, poses);
+}
+
+void StoredFloats::read(const InputFile& file, std::size_t first, std::span<double> values) const {
+  const std::size_t from = offset + first * bytes;
+  if (bytes == sizeof(double) && order == std::endian::native) {
+    file.read(from, reinterpret_cast<char*>(values.data()), values.size_bytes());
+    return;
+  }
+  std::string stored(values.size() * bytes, '\0');
+  file.read(from, stored.data(), stored.size());
+  if (bytes == sizeof(float)) {
+    decode<float>(stored.data(), order, values);
+  } else {
+    decode<double>(stored.data(), order, values);
+  }
+}
+
+void StoredFloats::write(const OutputFile& file, std::size_t first,
+                         std::span<const double> values) const {
+  const std::size_t to = offset + first * bytes;
+  if (bytes == sizeof(double) && order == std::endian::native) {
+    file.write_at(to, {reinterpret_cast<const char*>(values.data()), values.size_bytes()});
+  } else if (bytes == sizeof(float)) {
+    file.write_at(to, encoded<float>(values, order));
+  } else {
+    file.write_at(to, encoded<double>(values, order));
+  }
+}
+
+void StoredPointCache::check_size() const {
+  if (frames_ < 1 || vertices_ < 1) {
+    throw IoError(path_.string(), "has " + std::to_string(frames_) + " frames of " +
+                                      std::to_string(vertices_) +
+                                      " vertices, expected at least "
+                                      "one of each");
+  }
+  const std::size_t frame = 3 * positions_.bytes * static_cast<std::size_t>(vertices_);
+  const std::size_t expected = positions_.offset + frame * static_cast<std::size_t>(frames_);
+  if (file_.size() == expected) return;
+  const std::string wanted = std::to_string(frames_) + " frames of " + std::to_string(vertices_) +
+                             " vertices, which are " + std::to_string(expected) + " bytes";
+  throw IoError(path_.string(),
+                file_.size() < expected
+                    ? "is truncated: " + std::to_string(file_.size()) + " bytes, expected " + wanted
+                    : std::to_string(file_.size() - expected) + " bytes follow its " + wanted);
+}
+
+void StoredPointCache::read_values(int first, FramesView poses) const {
+  const std::size_t columns = 3 * static_cast<std::size_t>(vertices_);
+  positions_.read(file_, columns * static_cast<std::size_t>(first),
+                  {poses.data(), static_cast<std::size_t>(poses.size())});
+}
+
+OpenSequence open_point_cache(std::unique_ptr<const PointCache> cache,
+                              const SequenceSource& source) {
+  const fs::path path = cache->path();
+  OpenSequence open;
+  open.files = {path, topology_of(path, source)};
+  const MeshFileReader reader(open.files.back());
+  if (cache->vertices() != reader.mesh().connectivity.vertices) {
+    throw MismatchError(path.string() + ": " + std::to_string(cache->vertices()) +
+                        " vertices, expected " + std::to_string(reader.mesh().positions.rows()) +
+                        " as in " + open.files.back().string());
+  }
+  SequenceHeader header;
+  header.connectivity = std::make_shared<const Connectivity>(reader.mesh().connectivity);
+  header.times = times_of(*cache, source);
+  if (auto rest = rest_beside(path, reader, open.files)) {
+    header.rest = *std::move(rest);
+    header.rest_is_known = true;
+  }
+  open.frames =
+      part_of(std::make_shared<const CachedFrames>(std::move(cache), std::move(header)), source);
+  return open;
+}
+
+std::unique_ptr<FrameSink> write_point_cache(
+    const SequenceHeader& header, const fs::path& target, const SequenceWriteOptions& options,
+    const ExtraFiles& extra, const std::function<PointCacheTarget(const fs::path&)>& begin) {
+  return std::make_unique<PointCacheSink>(header, target, options, extra, begin);
+}
+
+void check_single_precision(const fs::path& target, const Frames& poses, double extent) {
+  const PositionsView points(poses.data(), poses.size() / 3, 3);
+  if (!needs_double(points, extent)) return;
+  throw MismatchError(target.string() +
+                      ": holds single precision, which would round motion that "
+                      "one sees: positions lie too far from the origin for a mesh whose longest "
+                      "side is " +
+                      std::to_string(extent) + "; move the mesh, or write .npy");
+}
+
+}  // namespace mimetra

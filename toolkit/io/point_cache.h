@@ -1,0 +1,98 @@
+#pragma once
+
+#include <bit>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "toolkit/io/binary_file.h"
+#include "toolkit/io/sequence_file.h"
+
+/// Files with positions over time and without faces. Internal to the formats that are such files.
+namespace mimetra {
+
+/// One such file, open for reading.
+class PointCache {
+ public:
+  virtual ~PointCache() = default;
+
+  const std::filesystem::path& path() const { return path_; }
+  int frames() const { return frames_; }
+  int vertices() const { return vertices_; }
+  /// Seconds (F); empty where the file holds none.
+  const Eigen::VectorXd& times() const { return times_; }
+  /// How many frames of the animation lie from one to the next.
+  double step() const { return step_; }
+
+  /// Frames from `first` on (x 3N). From several threads. Throws IoError, also for a position that
+  /// is not finite.
+  void read(int first, FramesView poses) const;
+
+ protected:
+  explicit PointCache(std::filesystem::path path) : path_(std::move(path)) {}
+
+  std::filesystem::path path_;
+  int frames_ = 0;
+  int vertices_ = 0;
+  Eigen::VectorXd times_ = {};
+  double step_ = 1;
+
+ private:
+  virtual void read_values(int first, FramesView poses) const = 0;
+};
+
+/// Floating-point numbers that stand one after the other in a file.
+struct StoredFloats {
+  std::size_t offset = 0;  ///< of the first, in bytes
+  std::size_t bytes = 4;   ///< of each: 4 or 8
+  std::endian order = std::endian::little;
+
+  /// Those from number `first` on. Throws IoError.
+  void read(const InputFile& file, std::size_t first, std::span<double> values) const;
+  /// Throws OutputError.
+  void write(const OutputFile& file, std::size_t first, std::span<const double> values) const;
+};
+
+/// A cache whose positions stand frame after frame, x y z of each vertex.
+class StoredPointCache : public PointCache {
+ protected:
+  explicit StoredPointCache(const std::filesystem::path& path) : PointCache(path), file_(path) {}
+
+  /// Throws IoError unless the file ends with the last frame, and for no frames or vertices.
+  void check_size() const;
+
+  InputFile file_;
+  StoredFloats positions_;
+
+ private:
+  void read_values(int first, FramesView poses) const override;
+};
+
+/// Frames selected from a cache, with the faces of `source.topology` or NAME.topology.ply beside it
+/// and the rest pose of NAME.rest.ply. Throws IoError, MismatchError.
+OpenSequence open_point_cache(std::unique_ptr<const PointCache> cache,
+                              const SequenceSource& source);
+
+/// Where a cache's frames go.
+struct PointCacheTarget {
+  /// Made by PendingOutput: whatever stands before the positions is written by now.
+  std::unique_ptr<OutputFile> file;
+  StoredFloats positions;
+};
+
+/// Writes a cache, with NAME.topology.ply and, where it is known, NAME.rest.ply beside it. `begin`
+/// makes the file at a path. Throws OutputError.
+std::unique_ptr<FrameSink> write_point_cache(
+    const SequenceHeader& header, const std::filesystem::path& target,
+    const SequenceWriteOptions& options, const ExtraFiles& extra,
+    const std::function<PointCacheTarget(const std::filesystem::path&)>& begin);
+
+/// Throws MismatchError where single precision would round motion that one sees: `poses` lie too
+/// far from the origin for a mesh whose longest side is `extent`.
+void check_single_precision(const std::filesystem::path& target, const Frames& poses,
+                            double extent);
+
+}  // namespace mimetra

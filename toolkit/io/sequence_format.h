@@ -1,0 +1,33 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "toolkit/io/sequence_file.h"
+
+namespace mimetra {
+
+/// A format of files that hold a sequence, declared once: readers, writers, and every list of
+/// formats come from it.
+struct SequenceFormat {
+  /// "point cache of 3ds Max (PC2)".
+  std::string name;
+  /// In lower case, such as ".pc2".
+  std::vector<std::string> extensions;
+  /// True where faces and rest pose stand in files beside it.
+  bool has_companions = false;
+  OpenSequence (*open)(const std::filesystem::path&, const SequenceSource&);
+  std::unique_ptr<FrameSink> (*begin)(const SequenceHeader&, const std::filesystem::path& target,
+                                      const SequenceWriteOptions&, const ExtraFiles&);
+};
+
+/// All formats, in the order in which lists have them.
+const std::vector<SequenceFormat>& sequence_formats();
+/// The format of a path by its extension, in any case; null for one that is none of theirs.
+const SequenceFormat* sequence_format(const std::filesystem::path& path);
+/// The extensions of all formats.
+std::vector<std::string> sequence_extensions();
+
+}  // namespace mimetra

@@ -1,0 +1,33 @@
+#include <algorithm>
+
+#include "toolkit/io/sequence_format.h"
+#include "toolkit/mesh/text.h"
+
+namespace mimetra {
+
+// Each in the file of its name.
+SequenceFormat mesh_format(), npy_format();
+
+const std::vector<SequenceFormat>& sequence_formats() {
+  static const std::vector<SequenceFormat> formats = {npy_format(), mesh_format()};
+  return formats;
+}
+
+const SequenceFormat* sequence_format(const std::filesystem::path& path) {
+  const std::string extension = lower_extension(path);
+  const auto& formats = sequence_formats();
+  const auto found = std::ranges::find_if(formats, [&extension](const SequenceFormat& format) {
+    return std::ranges::find(format.extensions, extension) != format.extensions.end();
+  });
+  return found == formats.end() ? nullptr : &*found;
+}
+
+std::vector<std::string> sequence_extensions() {
+  std::vector<std::string> all;
+  for (const SequenceFormat& format : sequence_formats()) {
+    all.insert(all.end(), format.extensions.begin(), format.extensions.end());
+  }
+  return all;
+}
+
+}  // namespace mimetra
