@@ -10,6 +10,7 @@
 #include "toolkit/io/mesh_file.h"
 #include "toolkit/io/sequence_parts.h"
 #include "toolkit/mesh/errors.h"
+#include "toolkit/mesh/text.h"
 
 namespace mimetra {
 namespace fs = std::filesystem;
@@ -62,18 +63,19 @@ std::string encoded(std::span<const double> values, std::endian order) {
 class CachedFrames : public FrameSource {
  public:
   CachedFrames(std::unique_ptr<const PointCache> cache, SequenceHeader header)
-      : FrameSource(std::move(header)), cache_(std::move(cache)) {
-    if (rest_is_known()) return;
-    Frames first(1, 3 * Eigen::Index{vertices()});
-    cache_->read(0, FramesView(first.data(), 1, first.cols()));
-    header_.rest = PositionsView(first.data(), vertices(), 3);
-  }
+      : FrameSource(std::move(header)), cache_(std::move(cache)) {}
 
  private:
   void read_frames(int first, FramesView poses) const override { cache_->read(first, poses); }
 
   std::unique_ptr<const PointCache> cache_;
 };
+
+Positions pose_of(const PointCache& cache, int frame) {
+  Positions pose(cache.vertices(), 3);
+  cache.read(frame, FramesView(pose.data(), 1, pose.size()));
+  return pose;
+}
 
 /// Frames keep the time they have in the whole sequence, whichever part is taken.
 Eigen::VectorXd times_of(const PointCache& cache, const SequenceSource& source) {
@@ -94,6 +96,7 @@ class PointCacheSink : public FrameSink {
         columns_(3 * static_cast<std::size_t>(header.connectivity->vertices)) {}
 
   void write(int first, const Frames& poses) override {
+    if (cache_.only_single_precision) check_single_precision(poses);
     cache_.positions.write(*cache_.file, columns_ * static_cast<std::size_t>(first),
                            {poses.data(), static_cast<std::size_t>(poses.size())});
   }
@@ -109,6 +112,18 @@ class PointCacheSink : public FrameSink {
   }
 
  private:
+  /// Rounding would spoil motion without a word.
+  void check_single_precision(const Frames& poses) const {
+    const PositionsView points(poses.data(), poses.size() / 3, 3);
+    const double longest = extent(header_.rest);
+    if (!needs_double(points, longest)) return;
+    throw MismatchError(target_.string() + ": " + target_.extension().string() +
+                        " holds single precision only, which would round motion that one sees: "
+                        "the mesh lies " +
+                        readable(points.cwiseAbs().maxCoeff() / longest, 2) +
+                        " times its size from the origin; move it, or write .npy");
+  }
+
   SequenceHeader header_;
   fs::path target_;
   ExtraFiles extra_;
@@ -189,12 +204,13 @@ OpenSequence open_point_cache(std::unique_ptr<const PointCache> cache,
   SequenceHeader header;
   header.connectivity = std::make_shared<const Connectivity>(reader.mesh().connectivity);
   header.times = times_of(*cache, source);
-  if (auto rest = rest_beside(path, reader, open.files)) {
-    header.rest = *std::move(rest);
-    header.rest_is_known = true;
-  }
-  open.frames =
-      part_of(std::make_shared<const CachedFrames>(std::move(cache), std::move(header)), source);
+  const std::vector<int> chosen = selected_frames(source.frames, cache->frames());
+  auto rest = rest_beside(path, reader, open.files);
+  header.rest_is_known = rest.has_value();
+  // Frames that nobody asks for are not read.
+  header.rest = rest ? *std::move(rest) : pose_of(*cache, chosen.front());
+  open.frames = std::make_shared<const CachedFrames>(std::move(cache), std::move(header));
+  if (source.frames) open.frames = selected(open.frames, chosen);
   return open;
 }
 
@@ -202,16 +218,6 @@ std::unique_ptr<FrameSink> write_point_cache(
     const SequenceHeader& header, const fs::path& target, const SequenceWriteOptions& options,
     const ExtraFiles& extra, const std::function<PointCacheTarget(const fs::path&)>& begin) {
   return std::make_unique<PointCacheSink>(header, target, options, extra, begin);
-}
-
-void check_single_precision(const fs::path& target, const Frames& poses, double extent) {
-  const PositionsView points(poses.data(), poses.size() / 3, 3);
-  if (!needs_double(points, extent)) return;
-  throw MismatchError(target.string() +
-                      ": holds single precision, which would round motion that "
-                      "one sees: positions lie too far from the origin for a mesh whose longest "
-                      "side is " +
-                      std::to_string(extent) + "; move the mesh, or write .npy");
 }
 
 }  // namespace mimetra

@@ -81,18 +81,16 @@ struct PointCacheTarget {
   /// Made by PendingOutput: whatever stands before the positions is written by now.
   std::unique_ptr<OutputFile> file;
   StoredFloats positions;
+  /// True where the format has no other: poses that it would round too much are refused.
+  bool only_single_precision = false;
 };
 
 /// Writes a cache, with NAME.topology.ply and, where it is known, NAME.rest.ply beside it. `begin`
-/// makes the file at a path. Throws OutputError.
+/// makes the file at a path. Throws OutputError; MismatchError for poses that lie too far from the
+/// origin for the format's precision.
 std::unique_ptr<FrameSink> write_point_cache(
     const SequenceHeader& header, const std::filesystem::path& target,
     const SequenceWriteOptions& options, const ExtraFiles& extra,
     const std::function<PointCacheTarget(const std::filesystem::path&)>& begin);
-
-/// Throws MismatchError where single precision would round motion that one sees: `poses` lie too
-/// far from the origin for a mesh whose longest side is `extent`.
-void check_single_precision(const std::filesystem::path& target, const Frames& poses,
-                            double extent);
 
 }  // namespace mimetra

@@ -38,13 +38,6 @@ Eigen::VectorXd frame_times(int frames, const SequenceSource& source) {
   return times;
 }
 
-std::shared_ptr<const FrameSource> part_of(std::shared_ptr<const FrameSource> whole,
-                                           const SequenceSource& source) {
-  if (!source.frames) return whole;
-  std::vector<int> chosen = selected_frames(source.frames, whole->frames());
-  return selected(std::move(whole), std::move(chosen));
-}
-
 fs::path topology_of(const fs::path& path, const SequenceSource& source) {
   if (source.topology) return *source.topology;
   const fs::path topology = beside(path, kTopologySuffix);

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <filesystem>
-#include <memory>
 #include <optional>
 #include <vector>
 
@@ -13,10 +12,6 @@ namespace mimetra {
 
 /// Times of `frames` frames without any, by `source.fps` (F). Throws std::invalid_argument.
 Eigen::VectorXd frame_times(int frames, const SequenceSource& source);
-
-/// The frames that `source.frames` takes. Throws as selected_frames().
-std::shared_ptr<const FrameSource> part_of(std::shared_ptr<const FrameSource> whole,
-                                           const SequenceSource& source);
 
 /// The file with the faces of `path`, which has none itself. Throws IoError where there is none.
 std::filesystem::path topology_of(const std::filesystem::path& path, const SequenceSource& source);
