@@ -1,0 +1,192 @@
+#include <bit>
+#include <cstdint>
+#include <limits>
+
+#include <gmock/gmock.h>
+
+#include "tests/shapes.h"
+#include "tests/temporary_folder.h"
+#include "toolkit/io/mesh_file.h"
+#include "toolkit/io/sequence_file.h"
+#include "toolkit/io/whole_file.h"
+#include "toolkit/mesh/errors.h"
+
+namespace mimetra {
+namespace {
+
+using test::message_of;
+using test::TemporaryFolder;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+/// A number as one byte after the other, written without any help of the library.
+template <typename Number>
+std::string bytes_in(std::endian order, Number number) {
+  std::string bytes(reinterpret_cast<const char*>(&number), sizeof number);
+  if (order != std::endian::native) std::reverse(bytes.begin(), bytes.end());
+  return bytes;
+}
+
+constexpr auto kLittle = std::endian::little, kBig = std::endian::big;
+
+/// Positions of frame f of an octahedron: all that single precision holds exactly.
+Positions octahedron_pose(int f) {
+  return test::octahedron().positions.array() + 0.25 * f;
+}
+
+std::string floats(int frames, std::endian order) {
+  std::string bytes;
+  for (int f = 0; f < frames; ++f) {
+    const Positions pose = octahedron_pose(f);
+    for (Eigen::Index i = 0; i < pose.size(); ++i) {
+      bytes += bytes_in(order, static_cast<float>(pose.data()[i]));
+    }
+  }
+  return bytes;
+}
+
+/// [Autodesk's PointCache2: 12 characters, version, points, start frame, sample rate, samples]
+std::string pc2_bytes(int frames, float start = 0, float rate = 1, int version = 1) {
+  return std::string("POINTCACHE2\0", 12) + bytes_in(kLittle, version) + bytes_in(kLittle, 6) +
+         bytes_in(kLittle, start) + bytes_in(kLittle, rate) + bytes_in(kLittle, frames) +
+         floats(frames, kLittle);
+}
+
+/// [LightWave's MDD: frames, points, a time each, then the positions]
+std::string mdd_bytes(const std::vector<float>& times) {
+  std::string bytes = bytes_in(kBig, static_cast<std::int32_t>(times.size())) + bytes_in(kBig, 6);
+  for (const float time : times) bytes += bytes_in(kBig, time);
+  return bytes + floats(static_cast<int>(times.size()), kBig);
+}
+
+MeshSequence moving_octahedron(int frames, const Eigen::RowVector3d& shift = {0, 0, 0}) {
+  const TriMesh mesh = test::mesh_of(test::octahedron());
+  Frames poses(frames, mesh.positions.size());
+  for (int f = 0; f < frames; ++f) {
+    const Positions pose = octahedron_pose(f).rowwise() + shift;
+    poses.row(f) = Eigen::Map<const Eigen::RowVectorXd>(pose.data(), pose.size());
+  }
+  const Positions rest = mesh.positions.rowwise() + shift;
+  return {mesh.connectivity, poses, {}, rest};
+}
+
+class PointCaches : public testing::Test {
+ protected:
+  void SetUp() override {
+    write_mesh(folder_ / "a.topology.ply", test::mesh_of(test::octahedron()));
+  }
+
+  MeshSequence read(const std::string& name, const SequenceSource& source = {}) const {
+    return read_sequence((folder_ / name).string(), source).sequence;
+  }
+  std::string error(const std::string& name, const std::string& bytes) const {
+    write_bytes(folder_ / name, bytes);
+    return message_of<IoError>([&] { read(name); });
+  }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(PointCaches, Pc2IsReadAsItsDescriptionSays) {
+  write_bytes(folder_ / "a.pc2", pc2_bytes(3));
+  const MeshSequence sequence = read("a.pc2");
+  ASSERT_EQ(sequence.frames(), 3);
+  for (int f = 0; f < 3; ++f) EXPECT_EQ(sequence.frame(f), octahedron_pose(f));
+  EXPECT_EQ(sequence.times()[2], 2 / kDefaultFramesPerSecond);
+}
+
+TEST_F(PointCaches, Pc2IsSampledEverySoManyFrames) {
+  write_bytes(folder_ / "a.pc2", pc2_bytes(3, 1, 0.5));
+  EXPECT_EQ(read("a.pc2", {.fps = 25}).times()[2], 2 * 0.5 / 25);
+}
+
+TEST_F(PointCaches, Pc2IsWrittenAsItsDescriptionSays) {
+  write_sequence(moving_octahedron(3), folder_ / "b.pc2");
+  EXPECT_EQ(read_file(folder_ / "b.pc2"), pc2_bytes(3));
+  EXPECT_THAT(folder_.names(),
+              ElementsAre("a.topology.ply", "b.pc2", "b.rest.ply", "b.topology.ply"));
+}
+
+TEST_F(PointCaches, MddIsReadAsItsDescriptionSays) {
+  write_bytes(folder_ / "a.mdd", mdd_bytes({0, 0.5, 2}));
+  const MeshSequence sequence = read("a.mdd");
+  ASSERT_EQ(sequence.frames(), 3);
+  for (int f = 0; f < 3; ++f) EXPECT_EQ(sequence.frame(f), octahedron_pose(f));
+  EXPECT_EQ(sequence.times(), Eigen::Vector3d(0, 0.5, 2));
+}
+
+TEST_F(PointCaches, MddIsWrittenAsItsDescriptionSays) {
+  const MeshSequence sequence = moving_octahedron(3);
+  write_sequence(MeshSequence(sequence.shared_connectivity(), sequence.positions(),
+                              Eigen::Vector3d(0, 0.5, 2)),
+                 folder_ / "b.mdd");
+  EXPECT_EQ(read_file(folder_ / "b.mdd"), mdd_bytes({0, 0.5, 2}));
+}
+
+TEST_F(PointCaches, KeepTheRestPoseBesideThem) {
+  for (const std::string name : {"b.pc2", "c.mdd"}) {
+    write_sequence(moving_octahedron(2), folder_ / name);
+    EXPECT_TRUE(read(name).rest_is_known());
+    EXPECT_EQ(read(name).rest(), octahedron_pose(0));
+  }
+}
+
+TEST_F(PointCaches, EveryPrefixIsAnError) {
+  const std::string pc2 = pc2_bytes(1), mdd = mdd_bytes({0});
+  for (std::size_t size = 0; size < pc2.size(); ++size) {
+    EXPECT_THAT(error("a.pc2", pc2.substr(0, size)), HasSubstr("a.pc2: is truncated")) << size;
+  }
+  for (std::size_t size = 0; size < mdd.size(); ++size) {
+    EXPECT_THAT(error("a.mdd", mdd.substr(0, size)), HasSubstr("a.mdd: is truncated")) << size;
+  }
+}
+
+TEST_F(PointCaches, WhatFollowsTheLastFrameIsAnError) {
+  EXPECT_THAT(error("a.pc2", pc2_bytes(2) + "?"), HasSubstr("1 bytes follow its 2 frames"));
+  EXPECT_THAT(error("a.mdd", mdd_bytes({0, 1}) + "??"), HasSubstr("2 bytes follow its 2 frames"));
+}
+
+TEST_F(PointCaches, WrongHeadersAreNamed) {
+  std::string other = pc2_bytes(1);
+  other[0] = 'p';
+  EXPECT_THAT(error("a.pc2", other), HasSubstr("is no PC2 point cache"));
+  EXPECT_THAT(error("a.pc2", pc2_bytes(1, 0, 1, 2)), HasSubstr("has PC2 version 2, expected 1"));
+  EXPECT_THAT(error("a.pc2", pc2_bytes(1, 0, 0)), HasSubstr("expected more than 0"));
+  EXPECT_THAT(error("a.pc2", pc2_bytes(0)), HasSubstr("has 0 frames of 6 vertices"));
+  EXPECT_THAT(error("a.mdd", mdd_bytes({})), HasSubstr("has 0 frames of 6 vertices"));
+  EXPECT_THAT(error("a.mdd", bytes_in(kBig, -1) + bytes_in(kBig, 6)), HasSubstr("has -1 frames"));
+}
+
+TEST_F(PointCaches, TimesOfMddRise) {
+  EXPECT_THAT(error("a.mdd", mdd_bytes({0, 1, 1})), HasSubstr("frame 2 is at 1.000000 s"));
+  EXPECT_THAT(error("a.mdd", mdd_bytes({std::numeric_limits<float>::quiet_NaN()})),
+              HasSubstr("frame 0 is at nan s"));
+}
+
+TEST_F(PointCaches, APositionThatIsNotFiniteIsNamed) {
+  std::string bytes = pc2_bytes(3);
+  const std::string infinite = bytes_in(kLittle, std::numeric_limits<float>::infinity());
+  bytes.replace(32 + 4 * (2 * 18 + 3 * 5 + 1), 4, infinite);
+  EXPECT_THAT(error("a.pc2", bytes), HasSubstr("a.pc2: frame 2: vertex 5 has no finite position"));
+}
+
+TEST_F(PointCaches, RefuseWhatSinglePrecisionWouldSpoil) {
+  const MeshSequence far_out = moving_octahedron(2, {1e6, 0, 0});
+  for (const std::string name : {"b.pc2", "b.mdd"}) {
+    EXPECT_THAT(message_of<MismatchError>([&] { write_sequence(far_out, folder_ / name); }),
+                HasSubstr("holds single precision only"));
+  }
+  EXPECT_THAT(folder_.names(), ElementsAre("a.topology.ply"));
+}
+
+TEST_F(PointCaches, ReadOnlyTheFramesThatAreAskedFor) {
+  // The first two frames have no finite position; nobody looks at them.
+  std::string bytes = pc2_bytes(3);
+  const std::string infinite = bytes_in(kLittle, std::numeric_limits<float>::infinity());
+  bytes.replace(32, 4, infinite).replace(32 + 4 * 18, 4, infinite);
+  write_bytes(folder_ / "a.pc2", bytes);
+  EXPECT_EQ(read("a.pc2", {.frames = "2:3"}).frame(0), octahedron_pose(2));
+}
+
+}  // namespace
+}  // namespace mimetra

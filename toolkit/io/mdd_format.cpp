@@ -1,0 +1,75 @@
+#include <algorithm>
+#include <cmath>
+
+#include "toolkit/io/bytes.h"
+#include "toolkit/io/point_cache.h"
+#include "toolkit/io/sequence_format.h"
+#include "toolkit/mesh/errors.h"
+
+namespace mimetra {
+namespace fs = std::filesystem;
+namespace {
+
+/// Frames, vertices, then the time of each frame; all big-endian.
+constexpr std::size_t kMddHeader = 2 * sizeof(std::int32_t);
+
+class MddFile : public StoredPointCache {
+ public:
+  explicit MddFile(const fs::path& path) : StoredPointCache(path) {
+    std::string head(kMddHeader, '\0');
+    if (file_.size() < head.size()) throw IoError(path.string(), "is truncated in its header");
+    file_.read(0, head.data(), head.size());
+    frames_ = number_at<std::int32_t>(head.data(), std::endian::big);
+    vertices_ = number_at<std::int32_t>(head.data() + 4, std::endian::big);
+    const std::size_t times = sizeof(float) * static_cast<std::size_t>(std::max(frames_, 0));
+    positions_ = {kMddHeader + times, sizeof(float), std::endian::big};
+    check_size();
+    read_times();
+  }
+
+ private:
+  void read_times() {
+    times_.resize(frames_);
+    StoredFloats{kMddHeader, sizeof(float), std::endian::big}.read(
+        file_, 0, {times_.data(), static_cast<std::size_t>(frames_)});
+    for (int frame = 0; frame < frames_; ++frame) {
+      if (std::isfinite(times_[frame]) && (frame == 0 || times_[frame] > times_[frame - 1])) {
+        continue;
+      }
+      throw IoError(path_.string(), "frame " + std::to_string(frame) + " is at " +
+                                        std::to_string(times_[frame]) +
+                                        " s, expected times that rise");
+    }
+  }
+};
+
+OpenSequence open_mdd(const fs::path& path, const SequenceSource& source) {
+  return open_point_cache(std::make_unique<const MddFile>(path), source);
+}
+
+PointCacheTarget begin_mdd_file(const SequenceHeader& header, const fs::path& path) {
+  std::string head;
+  append_bytes_of(head, static_cast<std::int32_t>(header.times.size()), std::endian::big);
+  append_bytes_of(head, static_cast<std::int32_t>(header.connectivity->vertices), std::endian::big);
+  for (const double time : header.times) {
+    append_bytes_of(head, static_cast<float>(time), std::endian::big);
+  }
+  PointCacheTarget target{
+      std::make_unique<OutputFile>(path), {head.size(), sizeof(float), std::endian::big}, true};
+  target.file->write({head});
+  return target;
+}
+
+std::unique_ptr<FrameSink> begin_mdd(const SequenceHeader& header, const fs::path& target,
+                                     const SequenceWriteOptions& options, const ExtraFiles& extra) {
+  return write_point_cache(header, target, options, extra,
+                           [&](const fs::path& path) { return begin_mdd_file(header, path); });
+}
+
+}  // namespace
+
+SequenceFormat mdd_format() {
+  return {"MDD point cache", {".mdd"}, true, open_mdd, begin_mdd};
+}
+
+}  // namespace mimetra

@@ -1,0 +1,74 @@
+#include <cmath>
+
+#include "toolkit/io/bytes.h"
+#include "toolkit/io/point_cache.h"
+#include "toolkit/io/sequence_format.h"
+#include "toolkit/mesh/errors.h"
+
+namespace mimetra {
+namespace fs = std::filesystem;
+namespace {
+
+/// Header: this, the version, vertices, first frame, frames from one sample to the next, samples.
+constexpr std::string_view kPc2Magic{"POINTCACHE2\0", 12};
+constexpr std::int32_t kPc2Version = 1;
+constexpr std::size_t kPc2Header = kPc2Magic.size() + 5 * 4;
+
+class Pc2File : public StoredPointCache {
+ public:
+  explicit Pc2File(const fs::path& path) : StoredPointCache(path) {
+    std::string head(kPc2Header, '\0');
+    if (file_.size() < head.size()) throw IoError(path.string(), "is truncated in its header");
+    file_.read(0, head.data(), head.size());
+    if (!head.starts_with(kPc2Magic)) throw IoError(path.string(), "is no PC2 point cache");
+    const auto version = integer(head, 0);
+    if (version != kPc2Version) {
+      throw IoError(path.string(), "has PC2 version " + std::to_string(version) + ", expected " +
+                                       std::to_string(kPc2Version));
+    }
+    vertices_ = integer(head, 1);
+    step_ = number_at<float>(head.data() + kPc2Magic.size() + 12, std::endian::little);
+    frames_ = integer(head, 4);
+    positions_ = {kPc2Header, sizeof(float), std::endian::little};
+    check_size();
+    if (std::isfinite(step_) && step_ > 0) return;
+    throw IoError(path.string(), "has " + std::to_string(step_) +
+                                     " frames from one sample to the next, expected more than 0");
+  }
+
+ private:
+  static std::int32_t integer(const std::string& head, std::size_t field) {
+    return number_at<std::int32_t>(head.data() + kPc2Magic.size() + 4 * field, std::endian::little);
+  }
+};
+
+OpenSequence open_pc2(const fs::path& path, const SequenceSource& source) {
+  return open_point_cache(std::make_unique<const Pc2File>(path), source);
+}
+
+PointCacheTarget begin_pc2_file(const SequenceHeader& header, const fs::path& path) {
+  std::string head(kPc2Magic);
+  append_little_endian(head, kPc2Version);
+  append_little_endian(head, static_cast<std::int32_t>(header.connectivity->vertices));
+  append_little_endian(head, 0.0F);
+  append_little_endian(head, 1.0F);
+  append_little_endian(head, static_cast<std::int32_t>(header.times.size()));
+  PointCacheTarget target{
+      std::make_unique<OutputFile>(path), {head.size(), sizeof(float), std::endian::little}, true};
+  target.file->write({head});
+  return target;
+}
+
+std::unique_ptr<FrameSink> begin_pc2(const SequenceHeader& header, const fs::path& target,
+                                     const SequenceWriteOptions& options, const ExtraFiles& extra) {
+  return write_point_cache(header, target, options, extra,
+                           [&](const fs::path& path) { return begin_pc2_file(header, path); });
+}
+
+}  // namespace
+
+SequenceFormat pc2_format() {
+  return {"PC2 point cache", {".pc2"}, true, open_pc2, begin_pc2};
+}
+
+}  // namespace mimetra
