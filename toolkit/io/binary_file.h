@@ -13,21 +13,31 @@ namespace mimetra {
 /// Why the last call to the operating system failed.
 std::string last_reason();
 
+/// Bytes of which parts are read, from several threads.
+class InputBytes {
+ public:
+  InputBytes() = default;
+  virtual ~InputBytes() = default;
+  InputBytes(const InputBytes&) = delete;
+  InputBytes& operator=(const InputBytes&) = delete;
+
+  virtual std::size_t size() const = 0;
+  /// Copies `bytes` bytes from `offset` on. Throws IoError, also where they end before.
+  virtual void read(std::size_t offset, char* to, std::size_t bytes) const = 0;
+};
+
 /// An ordinary file that is open for reading.
-class InputFile {
+class InputFile : public InputBytes {
  public:
   /// True for a file whose size is that of its content: no pipe, and nothing that seems empty.
   static bool has_size(const std::filesystem::path& path);
 
   /// Throws IoError.
   explicit InputFile(std::filesystem::path path);
-  ~InputFile();
-  InputFile(const InputFile&) = delete;
-  InputFile& operator=(const InputFile&) = delete;
+  ~InputFile() override;
 
-  std::size_t size() const { return size_; }
-  /// Copies `bytes` bytes from `offset` on. Throws IoError, also where the file ends before.
-  void read(std::size_t offset, char* to, std::size_t bytes) const;
+  std::size_t size() const override { return size_; }
+  void read(std::size_t offset, char* to, std::size_t bytes) const override;
 
  private:
   std::filesystem::path path_;

@@ -17,8 +17,8 @@ class MddFile : public StoredPointCache {
  public:
   explicit MddFile(const fs::path& path) : StoredPointCache(path) {
     std::string head(kMddHeader, '\0');
-    if (file_.size() < head.size()) throw IoError(path.string(), "is truncated in its header");
-    file_.read(0, head.data(), head.size());
+    if (file_->size() < head.size()) throw IoError(path.string(), "is truncated in its header");
+    file_->read(0, head.data(), head.size());
     frames_ = number_at<std::int32_t>(head.data(), std::endian::big);
     vertices_ = number_at<std::int32_t>(head.data() + 4, std::endian::big);
     const std::size_t times = sizeof(float) * static_cast<std::size_t>(std::max(frames_, 0));
@@ -31,7 +31,7 @@ class MddFile : public StoredPointCache {
   void read_times() {
     times_.resize(frames_);
     StoredFloats{kMddHeader, sizeof(float), std::endian::big}.read(
-        file_, 0, {times_.data(), static_cast<std::size_t>(frames_)});
+        *file_, 0, {times_.data(), static_cast<std::size_t>(frames_)});
     for (int frame = 0; frame < frames_; ++frame) {
       if (std::isfinite(times_[frame]) && (frame == 0 || times_[frame] > times_[frame - 1])) {
         continue;

@@ -16,6 +16,9 @@ NumericArray npy_values(const std::string& path, std::string_view bytes, const N
 /// F x N x 3, or N x 3 (one frame), float32 or float64, either byte order; in C order it is read
 /// frame by frame, in Fortran order, and from a pipe, whole. Throws IoError.
 std::unique_ptr<const PointCache> open_npy_cache(const std::filesystem::path& path);
+/// The same of bytes that messages call `name`.
+std::unique_ptr<const PointCache> open_npy_cache(const std::string& name,
+                                                 std::unique_ptr<const InputBytes> bytes);
 
 /// Throws OutputError.
 PointCacheTarget begin_npy_cache(const std::filesystem::path& path, std::size_t frames,

@@ -19,7 +19,7 @@ int vertices_of(const NpyHeader& header) {
 }
 
 /// What an array starts with; all of its header in version 1.
-std::string beginning_of(const InputFile& file) {
+std::string beginning_of(const InputBytes& file) {
   constexpr std::size_t kMost = 1 << 17;
   std::string bytes(std::min(file.size(), kMost), '\0');
   file.read(0, bytes.data(), bytes.size());
@@ -28,8 +28,9 @@ std::string beginning_of(const InputFile& file) {
 
 class StoredArray : public StoredPointCache {
  public:
-  StoredArray(const fs::path& path, const NpyHeader& header) : StoredPointCache(path) {
-    checked_count(path.string(), file_.size(), header);
+  StoredArray(const fs::path& path, const NpyHeader& header, std::unique_ptr<const InputBytes> file)
+      : StoredPointCache(path, std::move(file)) {
+    checked_count(path.string(), file_->size(), header);
     frames_ = frames_of(header);
     vertices_ = vertices_of(header);
     positions_ = {header.data, header.item_bytes, header.order};
@@ -39,8 +40,7 @@ class StoredArray : public StoredPointCache {
 /// One that cannot be read in parts.
 class LoadedArray : public PointCache {
  public:
-  explicit LoadedArray(const fs::path& path) : PointCache(path) {
-    const std::string bytes = read_file(path);
+  LoadedArray(const fs::path& path, std::string_view bytes) : PointCache(path) {
     const NpyHeader header = read_npy_header(path.string(), bytes);
     check_frames_header(path.string(), header);
     array_ = npy_values(path.string(), bytes, header);
@@ -73,22 +73,33 @@ std::unique_ptr<FrameSink> begin_npy(const SequenceHeader& header, const fs::pat
 }  // namespace
 
 std::unique_ptr<const PointCache> open_npy_cache(const fs::path& path) {
-  if (InputFile::has_size(path)) {
-    const std::string beginning = beginning_of(InputFile(path));
-    if (npy_version(beginning) == 1) {
-      const NpyHeader header = read_npy_header(path.string(), beginning);
-      check_frames_header(path.string(), header);
-      if (!header.fortran_order) return std::make_unique<const StoredArray>(path, header);
+  if (!InputFile::has_size(path)) {
+    return std::make_unique<const LoadedArray>(path, read_file(path));
+  }
+  return open_npy_cache(path.string(), std::make_unique<const InputFile>(path));
+}
+
+std::unique_ptr<const PointCache> open_npy_cache(const std::string& name,
+                                                 std::unique_ptr<const InputBytes> bytes) {
+  const std::string beginning = beginning_of(*bytes);
+  if (npy_version(beginning) == 1) {
+    const NpyHeader header = read_npy_header(name, beginning);
+    check_frames_header(name, header);
+    if (!header.fortran_order) {
+      return std::make_unique<const StoredArray>(name, header, std::move(bytes));
     }
   }
-  return std::make_unique<const LoadedArray>(path);
+  std::string all(bytes->size(), '\0');
+  bytes->read(0, all.data(), all.size());
+  return std::make_unique<const LoadedArray>(name, all);
 }
 
 PointCacheTarget begin_npy_cache(const fs::path& path, std::size_t frames, std::size_t vertices,
                                  bool single_precision) {
   PointCacheTarget target{std::make_unique<OutputFile>(path), {}};
   target.positions.bytes = single_precision ? sizeof(float) : sizeof(double);
-  const std::string header = npy_header_bytes(frames, vertices, target.positions.bytes);
+  const std::string header =
+      npy_header_bytes(single_precision ? "<f4" : "<f8", {frames, vertices, 3});
   target.positions.offset = header.size();
   target.file->write({header});
   return target;

@@ -144,10 +144,12 @@ void check_frames_header(const std::string& path, const NpyHeader& header) {
   }
 }
 
-std::string npy_header_bytes(std::size_t frames, std::size_t vertices, std::size_t item_bytes) {
-  std::string text = std::string("{'descr': '<f") + std::to_string(item_bytes) +
-                     "', 'fortran_order': False, 'shape': (" + std::to_string(frames) + ", " +
-                     std::to_string(vertices) + ", 3), }";
+std::string npy_header_bytes(std::string_view type, const std::vector<std::size_t>& shape) {
+  std::string sizes;
+  for (const std::size_t size : shape) sizes += (sizes.empty() ? "" : ", ") + std::to_string(size);
+  if (shape.size() == 1) sizes += ',';
+  std::string text =
+      "{'descr': '" + std::string(type) + "', 'fortran_order': False, 'shape': (" + sizes + "), }";
   constexpr std::size_t kBefore = 10, kAlignment = 64;
   text.append((kAlignment - (kBefore + text.size() + 1) % kAlignment) % kAlignment, ' ');
   text += '\n';

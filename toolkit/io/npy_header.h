@@ -30,8 +30,8 @@ NpyHeader read_npy_header(const std::string& path, std::string_view bytes);
 std::size_t checked_count(const std::string& path, std::size_t file_bytes, const NpyHeader& header);
 /// Throws IoError unless the array is F x N x 3 or N x 3, in floating point and not empty.
 void check_frames_header(const std::string& path, const NpyHeader& header);
-/// What stands before F x N x 3 little-endian numbers: version 1, padded so that the values start
-/// at a multiple of 64 bytes, as NumPy does.
-std::string npy_header_bytes(std::size_t frames, std::size_t vertices, std::size_t item_bytes);
+/// What stands before numbers of a type ("<f8") in C order: version 1, padded so that the values
+/// start at a multiple of 64 bytes, as NumPy does.
+std::string npy_header_bytes(std::string_view type, const std::vector<std::size_t>& shape);
 
 }  // namespace mimetra

@@ -18,8 +18,8 @@ class Pc2File : public StoredPointCache {
  public:
   explicit Pc2File(const fs::path& path) : StoredPointCache(path) {
     std::string head(kPc2Header, '\0');
-    if (file_.size() < head.size()) throw IoError(path.string(), "is truncated in its header");
-    file_.read(0, head.data(), head.size());
+    if (file_->size() < head.size()) throw IoError(path.string(), "is truncated in its header");
+    file_->read(0, head.data(), head.size());
     if (!head.starts_with(kPc2Magic)) throw IoError(path.string(), "is no PC2 point cache");
     const auto version = integer(head, 0);
     if (version != kPc2Version) {

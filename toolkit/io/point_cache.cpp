@@ -77,6 +77,21 @@ Positions pose_of(const PointCache& cache, int frame) {
   return pose;
 }
 
+/// Faces, and where it is not known the rest pose, of files that stand beside a cache.
+void add_parts_beside(const PointCache& cache, const SequenceSource& source, PointCacheParts& parts,
+                      std::vector<fs::path>& files) {
+  const fs::path path = files.front();
+  files.push_back(topology_of(path, source));
+  const MeshFileReader reader(files.back());
+  if (cache.vertices() != reader.mesh().connectivity.vertices) {
+    throw MismatchError(path.string() + ": " + std::to_string(cache.vertices()) +
+                        " vertices, expected " + std::to_string(reader.mesh().positions.rows()) +
+                        " as in " + files.back().string());
+  }
+  parts.faces = std::make_shared<const Connectivity>(reader.mesh().connectivity);
+  if (!parts.rest) parts.rest = rest_beside(path, reader, files);
+}
+
 /// Frames keep the time they have in the whole sequence, whichever part is taken.
 Eigen::VectorXd times_of(const PointCache& cache, const SequenceSource& source) {
   if (cache.times().size() > 0) return cache.times();
@@ -139,7 +154,7 @@ void PointCache::read(int first, FramesView poses) const {
   check_finite(path_, first, poses);
 }
 
-void StoredFloats::read(const InputFile& file, std::size_t first, std::span<double> values) const {
+void StoredFloats::read(const InputBytes& file, std::size_t first, std::span<double> values) const {
   const std::size_t from = offset + first * bytes;
   if (bytes == sizeof(double) && order == std::endian::native) {
     file.read(from, reinterpret_cast<char*>(values.data()), values.size_bytes());
@@ -175,40 +190,34 @@ void StoredPointCache::check_size() const {
   }
   const std::size_t frame = 3 * positions_.bytes * static_cast<std::size_t>(vertices_);
   const std::size_t expected = positions_.offset + frame * static_cast<std::size_t>(frames_);
-  if (file_.size() == expected) return;
+  if (file_->size() == expected) return;
   const std::string wanted = std::to_string(frames_) + " frames of " + std::to_string(vertices_) +
                              " vertices, which are " + std::to_string(expected) + " bytes";
-  throw IoError(path_.string(),
-                file_.size() < expected
-                    ? "is truncated: " + std::to_string(file_.size()) + " bytes, expected " + wanted
-                    : std::to_string(file_.size() - expected) + " bytes follow its " + wanted);
+  throw IoError(
+      path_.string(),
+      file_->size() < expected
+          ? "is truncated: " + std::to_string(file_->size()) + " bytes, expected " + wanted
+          : std::to_string(file_->size() - expected) + " bytes follow its " + wanted);
 }
 
 void StoredPointCache::read_values(int first, FramesView poses) const {
   const std::size_t columns = 3 * static_cast<std::size_t>(vertices_);
-  positions_.read(file_, columns * static_cast<std::size_t>(first),
+  positions_.read(*file_, columns * static_cast<std::size_t>(first),
                   {poses.data(), static_cast<std::size_t>(poses.size())});
 }
 
-OpenSequence open_point_cache(std::unique_ptr<const PointCache> cache,
-                              const SequenceSource& source) {
-  const fs::path path = cache->path();
+OpenSequence open_point_cache(std::unique_ptr<const PointCache> cache, const SequenceSource& source,
+                              PointCacheParts parts) {
   OpenSequence open;
-  open.files = {path, topology_of(path, source)};
-  const MeshFileReader reader(open.files.back());
-  if (cache->vertices() != reader.mesh().connectivity.vertices) {
-    throw MismatchError(path.string() + ": " + std::to_string(cache->vertices()) +
-                        " vertices, expected " + std::to_string(reader.mesh().positions.rows()) +
-                        " as in " + open.files.back().string());
-  }
+  open.files = {parts.path.empty() ? cache->path() : parts.path};
+  if (!parts.faces) add_parts_beside(*cache, source, parts, open.files);
   SequenceHeader header;
-  header.connectivity = std::make_shared<const Connectivity>(reader.mesh().connectivity);
-  header.times = times_of(*cache, source);
+  header.connectivity = std::move(parts.faces);
+  header.times = parts.times ? *parts.times : times_of(*cache, source);
+  header.rest_is_known = parts.rest.has_value();
   const std::vector<int> chosen = selected_frames(source.frames, cache->frames());
-  auto rest = rest_beside(path, reader, open.files);
-  header.rest_is_known = rest.has_value();
   // Frames that nobody asks for are not read.
-  header.rest = rest ? *std::move(rest) : pose_of(*cache, chosen.front());
+  header.rest = parts.rest ? *std::move(parts.rest) : pose_of(*cache, chosen.front());
   open.frames = std::make_shared<const CachedFrames>(std::move(cache), std::move(header));
   if (source.frames) open.frames = selected(open.frames, chosen);
   return open;

@@ -4,6 +4,8 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -51,7 +53,7 @@ struct StoredFloats {
   std::endian order = std::endian::little;
 
   /// Those from number `first` on. Throws IoError.
-  void read(const InputFile& file, std::size_t first, std::span<double> values) const;
+  void read(const InputBytes& file, std::size_t first, std::span<double> values) const;
   /// Throws OutputError.
   void write(const OutputFile& file, std::size_t first, std::span<const double> values) const;
 };
@@ -59,22 +61,34 @@ struct StoredFloats {
 /// A cache whose positions stand frame after frame, x y z of each vertex.
 class StoredPointCache : public PointCache {
  protected:
-  explicit StoredPointCache(const std::filesystem::path& path) : PointCache(path), file_(path) {}
+  StoredPointCache(const std::filesystem::path& path, std::unique_ptr<const InputBytes> file)
+      : PointCache(path), file_(std::move(file)) {}
+  explicit StoredPointCache(const std::filesystem::path& path)
+      : StoredPointCache(path, std::make_unique<const InputFile>(path)) {}
 
   /// Throws IoError unless the file ends with the last frame, and for no frames or vertices.
   void check_size() const;
 
-  InputFile file_;
+  std::unique_ptr<const InputBytes> file_;
   StoredFloats positions_;
 
  private:
   void read_values(int first, FramesView poses) const override;
 };
 
-/// Frames selected from a cache, with the faces of `source.topology` or NAME.topology.ply beside it
-/// and the rest pose of NAME.rest.ply. Throws IoError, MismatchError.
-OpenSequence open_point_cache(std::unique_ptr<const PointCache> cache,
-                              const SequenceSource& source);
+/// What a file holds besides a cache.
+struct PointCacheParts {
+  std::filesystem::path path = {};  ///< empty for the cache's own
+  std::shared_ptr<const Connectivity> faces = {};
+  std::optional<Eigen::VectorXd> times = {};
+  std::optional<Positions> rest = {};
+};
+
+/// The frames that `source` takes of a cache. Where its file holds no faces they are those of
+/// `source.topology` or NAME.topology.ply beside it, and the rest pose is NAME.rest.ply. Throws
+/// IoError, MismatchError.
+OpenSequence open_point_cache(std::unique_ptr<const PointCache> cache, const SequenceSource& source,
+                              PointCacheParts parts = {});
 
 /// Where a cache's frames go.
 struct PointCacheTarget {
