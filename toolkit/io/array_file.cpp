@@ -1,78 +1,11 @@
 #include "toolkit/io/array_file.h"
 
-#include <algorithm>
-#include <span>
-
-#include "toolkit/io/bytes.h"
 #include "toolkit/io/npy_cache.h"
+#include "toolkit/io/npy_header.h"
 #include "toolkit/io/whole_file.h"
 #include "toolkit/mesh/parallel.h"
 
 namespace mimetra {
-namespace {
-
-template <typename Stored>
-void decode_as(const char* stored, const NpyHeader& header, std::span<double> values) {
-  const auto decode_in = [stored, values](auto order) {
-    for (std::size_t i = 0; i < values.size(); ++i) {
-      values[i] = static_cast<double>(number_at<Stored>(stored + i * sizeof(Stored), order()));
-    }
-  };
-  // With an order that is known when the loop is compiled, it runs at the speed of memory.
-  if (header.order == std::endian::native) {
-    decode_in([] { return std::endian::native; });
-  } else {
-    decode_in([&header] { return header.order; });
-  }
-}
-
-/// The values in the file's order.
-void decode(const char* bytes, const NpyHeader& header, std::span<double> values) {
-  const bool is_signed = header.kind == 'i';
-  if (header.kind == 'f') {
-    header.item_bytes == 4 ? decode_as<float>(bytes, header, values)
-                           : decode_as<double>(bytes, header, values);
-  } else if (header.item_bytes == 1) {
-    is_signed ? decode_as<std::int8_t>(bytes, header, values)
-              : decode_as<std::uint8_t>(bytes, header, values);
-  } else if (header.item_bytes == 2) {
-    is_signed ? decode_as<std::int16_t>(bytes, header, values)
-              : decode_as<std::uint16_t>(bytes, header, values);
-  } else if (header.item_bytes == 4) {
-    is_signed ? decode_as<std::int32_t>(bytes, header, values)
-              : decode_as<std::uint32_t>(bytes, header, values);
-  } else {
-    is_signed ? decode_as<std::int64_t>(bytes, header, values)
-              : decode_as<std::uint64_t>(bytes, header, values);
-  }
-}
-
-/// Fortran order has the first index fastest; here the last one is.
-std::vector<double> in_c_order(const std::vector<double>& values,
-                               const std::vector<std::size_t>& shape) {
-  std::vector<double> ordered(values.size());
-  std::vector<std::size_t> index(shape.size(), 0);
-  for (const double value : values) {
-    std::size_t place = 0;
-    for (std::size_t axis = 0; axis < shape.size(); ++axis) {
-      place = place * shape[axis] + index[axis];
-    }
-    ordered[place] = value;
-    for (std::size_t axis = 0; axis < shape.size() && ++index[axis] == shape[axis]; ++axis) {
-      index[axis] = 0;
-    }
-  }
-  return ordered;
-}
-
-}  // namespace
-
-NumericArray npy_values(const std::string& path, std::string_view bytes, const NpyHeader& header) {
-  NumericArray array{header.shape, std::vector<double>(checked_count(path, bytes.size(), header))};
-  decode(bytes.data() + header.data, header, array.values);
-  if (header.fortran_order) array.values = in_c_order(array.values, array.shape);
-  return array;
-}
 
 NumericArray read_npy(const std::filesystem::path& path) {
   const std::string bytes = read_file(path);

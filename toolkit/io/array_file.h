@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <vector>
 
+#include "toolkit/io/npy_values.h"
 #include "toolkit/mesh/mesh_sequence.h"
 
 namespace mimetra {
@@ -14,10 +15,6 @@ Frames read_npy_frames(const std::filesystem::path& path, int threads = 0);
 
 /// Reads a NumPy array of any shape as its shape and its values in C order; integers become
 /// doubles. Throws IoError.
-struct NumericArray {
-  std::vector<std::size_t> shape;
-  std::vector<double> values;
-};
 NumericArray read_npy(const std::filesystem::path& path);
 
 /// Writes frames (F x 3N) as F x N x 3, float64, or float32 with `single_precision`, by `threads`

@@ -4,8 +4,8 @@
 #include <span>
 
 #include "toolkit/io/frame_files.h"
+#include "toolkit/io/mesh_codecs.h"
 #include "toolkit/io/mesh_file.h"
-#include "toolkit/io/mesh_formats.h"
 #include "toolkit/io/sequence_parts.h"
 #include "toolkit/io/whole_file.h"
 #include "toolkit/io/written_files.h"

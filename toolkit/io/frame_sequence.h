@@ -4,7 +4,7 @@
 #include <memory>
 #include <vector>
 
-#include "toolkit/io/sequence_file.h"
+#include "toolkit/io/sequence_options.h"
 
 /// Sequences with a mesh file for each frame. Internal to sequence_file.h.
 namespace mimetra {

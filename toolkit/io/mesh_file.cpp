@@ -4,7 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "toolkit/io/mesh_formats.h"
+#include "toolkit/io/mesh_codecs.h"
 #include "toolkit/io/mesh_layout.h"
 #include "toolkit/io/whole_file.h"
 #include "toolkit/mesh/errors.h"

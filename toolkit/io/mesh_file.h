@@ -4,32 +4,14 @@
 #include <memory>
 #include <span>
 #include <string>
-#include <string_view>
-#include <vector>
 
+#include "toolkit/io/mesh_formats.h"
 #include "toolkit/mesh/tri_mesh.h"
 
 namespace mimetra {
 
 class MeshLayout;
 struct MeshFrame;
-
-enum class MeshFormat { ply, obj, off, stl };
-
-/// As people choose it; with a dot before it, its extension.
-constexpr std::string_view choice_name(MeshFormat value) {
-  switch (value) {
-    case MeshFormat::ply:
-      return "ply";
-    case MeshFormat::obj:
-      return "obj";
-    case MeshFormat::off:
-      return "off";
-    case MeshFormat::stl:
-      return "stl";
-  }
-  return {};
-}
 
 /// Reads one mesh by its extension: .obj, .ply (ascii, binary little and big endian), .off, .stl
 /// (ascii and binary; corners at one place become one vertex, in order of first use). Vertices and
@@ -103,10 +85,5 @@ class MeshFileWriter {
   int vertices_;
   std::unique_ptr<const MeshFrame> frame_;
 };
-
-/// True for an extension (".obj") that read_mesh knows, in any case.
-bool is_mesh_extension(const std::string& extension);
-/// All of them, in lower case.
-std::vector<std::string> mesh_extensions();
 
 }  // namespace mimetra

@@ -1,40 +1,20 @@
 #include "toolkit/io/mesh_formats.h"
 
 #include <algorithm>
-#include <array>
 
+#include "toolkit/mesh/choice.h"
 #include "toolkit/mesh/text.h"
 
 namespace mimetra {
-namespace {
-
-constexpr std::array kCodecs = {MeshCodec{MeshFormat::obj, read_obj, obj_layout, obj_frame},
-                                MeshCodec{MeshFormat::ply, read_ply, ply_layout, ply_frame},
-                                MeshCodec{MeshFormat::off, read_off, off_layout, off_frame},
-                                MeshCodec{MeshFormat::stl, nullptr, nullptr, stl_frame}};
-
-}  // namespace
-
-std::string MeshCodec::extension() const {
-  return '.' + std::string(choice_name(format));
-}
-
-std::span<const MeshCodec> mesh_codecs() {
-  return kCodecs;
-}
-
-const MeshCodec* mesh_codec(const std::string& extension) {
-  const auto found = std::ranges::find(kCodecs, lower_case(extension), &MeshCodec::extension);
-  return found == kCodecs.end() ? nullptr : &*found;
-}
 
 bool is_mesh_extension(const std::string& extension) {
-  return mesh_codec(extension) != nullptr;
+  const std::vector<std::string> all = mesh_extensions();
+  return std::ranges::find(all, lower_case(extension)) != all.end();
 }
 
 std::vector<std::string> mesh_extensions() {
-  std::vector<std::string> extensions;
-  for (const MeshCodec& codec : kCodecs) extensions.push_back(codec.extension());
+  std::vector<std::string> extensions = choice_names<MeshFormat>();
+  for (std::string& extension : extensions) extension.insert(0, ".");
   return extensions;
 }
 

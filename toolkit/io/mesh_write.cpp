@@ -4,8 +4,8 @@
 #include <stdexcept>
 
 #include "toolkit/io/binary_file.h"
+#include "toolkit/io/mesh_codecs.h"
 #include "toolkit/io/mesh_file.h"
-#include "toolkit/io/mesh_formats.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/text.h"
 

@@ -3,15 +3,10 @@
 #include <filesystem>
 #include <memory>
 
-#include "toolkit/io/array_file.h"
-#include "toolkit/io/npy_header.h"
 #include "toolkit/io/point_cache.h"
 
 /// NumPy's arrays as point caches. Internal to their readers and writers.
 namespace mimetra {
-
-/// The values of an array in C order, from all bytes of its file. Throws IoError.
-NumericArray npy_values(const std::string& path, std::string_view bytes, const NpyHeader& header);
 
 /// F x N x 3, or N x 3 (one frame), float32 or float64, either byte order; in C order it is read
 /// frame by frame, in Fortran order, and from a pipe, whole. Throws IoError.

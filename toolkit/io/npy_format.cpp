@@ -1,8 +1,8 @@
 #include <algorithm>
 
-#include "toolkit/io/array_file.h"
 #include "toolkit/io/npy_cache.h"
 #include "toolkit/io/npy_header.h"
+#include "toolkit/io/npy_values.h"
 #include "toolkit/io/sequence_format.h"
 #include "toolkit/io/whole_file.h"
 

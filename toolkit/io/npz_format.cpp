@@ -6,6 +6,7 @@
 #include "toolkit/io/frame_files.h"
 #include "toolkit/io/npy_cache.h"
 #include "toolkit/io/npy_header.h"
+#include "toolkit/io/npy_values.h"
 #include "toolkit/io/pending_output.h"
 #include "toolkit/io/sequence_format.h"
 #include "toolkit/io/sequence_parts.h"

@@ -1,6 +1,6 @@
 #include <climits>
 
-#include "toolkit/io/mesh_formats.h"
+#include "toolkit/io/mesh_codecs.h"
 #include "toolkit/io/text_cursor.h"
 
 namespace mimetra {

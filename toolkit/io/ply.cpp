@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "toolkit/io/bytes.h"
-#include "toolkit/io/mesh_formats.h"
+#include "toolkit/io/mesh_codecs.h"
 #include "toolkit/io/ply_header.h"
 #include "toolkit/io/text_cursor.h"
 #include "toolkit/mesh/errors.h"

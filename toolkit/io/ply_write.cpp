@@ -1,5 +1,5 @@
 #include "toolkit/io/bytes.h"
-#include "toolkit/io/mesh_formats.h"
+#include "toolkit/io/mesh_codecs.h"
 
 namespace mimetra {
 namespace {

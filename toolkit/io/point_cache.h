@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "toolkit/io/binary_file.h"
-#include "toolkit/io/sequence_file.h"
+#include "toolkit/io/sequence_options.h"
 
 /// Files with positions over time and without faces. Internal to the formats that are such files.
 namespace mimetra {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "toolkit/io/sequence_file.h"
+#include "toolkit/io/sequence_options.h"
 
 namespace mimetra {
 

@@ -4,8 +4,9 @@
 #include <optional>
 #include <vector>
 
+#include "toolkit/io/mesh_file.h"
 #include "toolkit/io/pending_output.h"
-#include "toolkit/io/sequence_file.h"
+#include "toolkit/io/sequence_options.h"
 
 /// What formats of sequences have in common. Internal to them.
 namespace mimetra {

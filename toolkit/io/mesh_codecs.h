@@ -1,0 +1,83 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "toolkit/io/mesh_formats.h"
+#include "toolkit/io/mesh_layout.h"
+#include "toolkit/mesh/tri_mesh.h"
+
+/// The table of mesh formats: one reader and one writer for each, on bytes in memory. Internal to
+/// mesh_file.h, which chooses among them and checks what they return.
+namespace mimetra {
+
+/// What a mesh file says, before anybody has checked that it makes sense.
+struct MeshContent {
+  std::vector<double> coordinates;  ///< x y z of each vertex
+  Polygons polygons;
+  TextureCoordinates texture;
+  std::vector<FaceGroup> groups;
+  /// Line of each face in a text file; empty where lines mean nothing.
+  std::vector<int> face_lines;
+  /// How the format counts vertices, for messages: 1 for OBJ.
+  int first_index = 0;
+};
+
+/// Throw IoError that names `path` and the line or the element.
+MeshContent read_obj(const std::string& path, std::string_view bytes);
+MeshContent read_ply(const std::string& path, std::string_view bytes);
+MeshContent read_off(const std::string& path, std::string_view bytes);
+/// The corners of all triangles, one after the other, not welded (x y z each).
+std::vector<double> read_stl_corners(const std::string& path, std::string_view bytes);
+
+/// The bytes of all files of one mesh, in a format and a precision.
+struct MeshFrame {
+  std::string before;  ///< what stands before the positions
+  std::string after;   ///< what stands behind them
+  /// What stands between for some positions. Safe to call from several threads.
+  std::function<std::string(const PositionsView&)> positions;
+};
+
+/// Coordinates are floats unless `double_precision`, in STL always. No reference to the
+/// connectivity is kept.
+MeshFrame obj_frame(const Connectivity& connectivity, bool double_precision);
+MeshFrame ply_frame(const Connectivity& connectivity, bool double_precision);
+MeshFrame off_frame(const Connectivity& connectivity, bool double_precision);
+MeshFrame stl_frame(const Connectivity& connectivity, bool double_precision);
+
+/// A format, declared once.
+struct MeshCodec {
+  MeshFormat format;
+  /// Null for STL, whose files name no vertices.
+  MeshContent (*read)(const std::string& path, std::string_view bytes);
+  /// From the bytes of the first file and its vertex count; null for a format whose files have
+  /// nothing in common.
+  std::unique_ptr<const MeshLayout> (*layout)(std::string first, std::size_t vertices);
+  MeshFrame (*frame)(const Connectivity& connectivity, bool double_precision);
+
+  /// ".ply".
+  std::string extension() const;
+};
+
+/// All formats; lists of them have this order.
+std::span<const MeshCodec> mesh_codecs();
+/// The format of an extension (".ply") in any case; null for one that is no mesh format.
+const MeshCodec* mesh_codec(const std::string& extension);
+
+/// Characters that the shortest digits of a number take at most: a double has 24, an integer 20.
+inline constexpr std::size_t kMostDigits = 32;
+
+/// Puts the shortest digits that read back equal, as float or as double, to where `text` has room
+/// for kMostDigits; returns where they end.
+char* put_number(char* text, double value, bool double_precision);
+void append_number(std::string& text, double value, bool double_precision);
+void append_integer(std::string& text, long long value);
+/// A line "x y z" for each vertex, with `before` in front of it.
+std::string position_lines(std::string_view before, const PositionsView& positions,
+                           bool double_precision);
+
+}  // namespace mimetra

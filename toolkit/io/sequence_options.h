@@ -1,0 +1,62 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "toolkit/io/mesh_formats.h"
+#include "toolkit/mesh/frame_source.h"
+#include "toolkit/mesh/progress.h"
+
+/// What opening a sequence is given and gives, and what writing one is given.
+namespace mimetra {
+
+/// What a sequence's name does not say.
+struct SequenceSource {
+  /// Blendshape weights that drive a model.
+  std::optional<std::filesystem::path> weights = {};
+  /// Mesh file with the faces of an array.
+  std::optional<std::filesystem::path> topology = {};
+  /// Part `A:B:STEP` of the frames, 0-based, B excluded; each may be left out.
+  std::optional<std::string> frames = {};
+  /// Frames per second where the files say nothing of time, > 0.
+  std::optional<double> fps = {};
+  /// 0 for all there are; what is read does not depend on it.
+  int threads = 0;
+  Progress progress = {};
+};
+
+/// A sequence whose poses are read when they are needed, and what was noticed while opening it.
+struct OpenSequence {
+  std::shared_ptr<const FrameSource> frames;
+  /// True for a model, with or without weights: its rest pose is its neutral.
+  bool model_driven = false;
+  /// Files it comes from, in order.
+  std::vector<std::filesystem::path> files = {};
+  /// Which weight names were not matched, and the like.
+  std::vector<std::string> notes = {};
+};
+
+struct SequenceWriteOptions {
+  /// Of the frames in a folder.
+  MeshFormat format = MeshFormat::ply;
+  /// Double precision in mesh files, which poses far from the origin have in any case; single
+  /// precision in arrays.
+  bool double_precision = false;
+  bool single_precision = false;
+  bool overwrite = false;
+  /// Files and folders that were read, which must stay.
+  std::vector<std::filesystem::path> inputs = {};
+  /// 0 for all there are; what is written does not depend on it.
+  int threads = 0;
+  Progress progress = {};
+};
+
+/// Further files (name, content) that appear together with an output: in its folder, or beside its
+/// file.
+using ExtraFiles = std::vector<std::pair<std::string, std::string>>;
+
+}  // namespace mimetra
