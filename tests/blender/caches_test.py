@@ -3,7 +3,6 @@
 import bpy
 import numpy as np
 from host import LAST, HostTest, command, mimetra, run_tests
-from mimetra_blender import point_cache
 
 
 class Caches(HostTest):
@@ -61,12 +60,10 @@ class Caches(HostTest):
             self.assert_close(self.shown(bare, frame), expected[index], f"frame {frame}")
 
     def source_cache(self, cache_format):
-        positions = np.load(self.take).astype(np.float32)
+        take = mimetra.Sequence.load(self.take)
         path = self.path / f"source.{cache_format.lower()}"
-        path.write_bytes(point_cache.pc2(positions, 1) if cache_format == "PC2" else
-                         point_cache.mdd(positions, np.arange(LAST) / 30))
-        bare = self.mesh_of("cached", positions[0].astype(float),
-                            mimetra.Sequence.load(self.take).faces)
+        take.save(path)
+        bare = self.mesh_of("cached", take["positions"][0], take.faces)
         modifier = bare.modifiers.new("cache", "MESH_CACHE")
         modifier.cache_format, modifier.filepath = cache_format, str(path)
         modifier.frame_start = 1

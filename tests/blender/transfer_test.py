@@ -2,8 +2,7 @@
 
 import bpy
 import numpy as np
-from host import LAST, HostTest, column, command, run_tests
-from mimetra_blender import point_cache
+from host import LAST, HostTest, column, command, mimetra, run_tests
 
 
 class Transfer(HostTest):
@@ -107,7 +106,7 @@ class Transfer(HostTest):
                              [-np.sin(angle), 0, np.cos(angle)]])
             turned[frame] = positions[frame] @ turn.T
         path = self.path / "turned.pc2"
-        path.write_bytes(point_cache.pc2(turned, 1))
+        mimetra.Sequence(turned, mimetra.Sequence.load(self.take).faces).save(path)
         modifier = self.source.modifiers.new("cache", "MESH_CACHE")
         modifier.cache_format, modifier.filepath, modifier.frame_start = "PC2", str(path), 1
         bpy.ops.mimetra.transfer(target="target", full=True, align="stable")

@@ -21,7 +21,7 @@ bool has_extension(const std::vector<std::string>& extensions, const std::filesy
 /// What `read_sequence` takes besides a name.
 std::vector<Parameter> sequence_parameters() {
   return {{"weights", ParameterKind::file, {}, "CSV of blendshape weights that drive a model"},
-          {"topology", ParameterKind::file, {}, "mesh with the faces of an .npy array"}};
+          {"topology", ParameterKind::file, {}, "mesh with the faces of a file that holds none"}};
 }
 
 /// What everything with frames takes.

@@ -219,7 +219,7 @@ class _Run:
         if model.keys() >= {"expressions"} and any(
                 port.kind is mimetra.Table for port, _ in made):
             self.report({"INFO"}, f"{target.name}: moves as shape keys cannot; it got a mesh cache")
-        path = results.write_mesh_cache(sequence["positions"], frames, target.name)
+        path = results.write_mesh_cache(sequence, frames, target.name)
         results.play_mesh_cache(target, path, frames)
         return True
 

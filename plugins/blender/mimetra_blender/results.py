@@ -10,7 +10,7 @@ import tempfile
 import bpy
 import numpy as np
 
-from . import colors, mimetra, point_cache, sources
+from . import colors, mimetra, sources
 
 _MODIFIER = "mimetra"
 _GROUP = "mimetra region"
@@ -65,15 +65,18 @@ def _cache_path(folder, name, extension):
     return path
 
 
-def write_mesh_cache(positions, frames, name):
-    """A file of poses that play_mesh_cache plays."""
-    content = (point_cache.pc2(positions, frames.start) if frames.cache_format == "PC2" else
-               point_cache.mdd(positions, frames.at(len(positions)) / frames.rate))
+def write_mesh_cache(value, frames, name):
+    """A file of a value's poses that play_mesh_cache plays."""
+    times = frames.at(len(value["positions"])) / frames.rate
+    poses = mimetra.Sequence(value["positions"], value.faces, times=times)
     folder = _cache_folder(frames)
     try:
         folder.mkdir(parents=True, exist_ok=True)
         path = _cache_path(folder, name, frames.cache_format.lower())
-        path.write_bytes(content)
+        # Blender has the faces: what would stand beside the cache goes with this folder.
+        with tempfile.TemporaryDirectory(prefix=".mimetra_", dir=folder) as scratch:
+            poses.save(pathlib.Path(scratch) / path.name)
+            (pathlib.Path(scratch) / path.name).rename(path)
     except OSError as error:
         raise mimetra.OutputError(f"{folder}: cannot write the mesh cache: {error.strerror}; choose"
                                   " another folder") from None
@@ -211,7 +214,7 @@ def has_faces_of(subject, value):
 def show_sequence(context, value, subject, frames, name):
     """A sequence as an object with a mesh cache: a copy of `subject` where it has its polygons."""
     frames = frames.of(value["times"])
-    path = write_mesh_cache(value["positions"], frames, name)
+    path = write_mesh_cache(value, frames, name)
     if subject and has_faces_of(subject, value):
         made = _copied_object(subject, name)
     else:

@@ -3,11 +3,13 @@
 
 #include <fstream>
 #include <iostream>
+#include <set>
 #include <string>
 #include <vector>
 
 #include "plugins/paraview/mimetra/filters/proxy_xml.h"
 #include "plugins/paraview/mimetra/filters/reading.h"
+#include "toolkit/io/sequence_format.h"
 #include "toolkit/operations/operation.h"
 
 using namespace mimetra;
@@ -41,6 +43,17 @@ std::string with_weights(const std::string& first) {
 const std::string kInMenu = "<ShowInMenu category=\"mimetra\"/>";
 const std::string kChart = "<View type=\"XYChartView\" port=\"1\"/>";
 
+/// "npy off": the formats that ParaView has no reader of its own for.
+std::string file_extensions() {
+  const std::set<std::string> own = {".obj", ".ply", ".stl"};
+  std::string words;
+  for (const std::string& extension : sequence_extensions()) {
+    if (own.contains(extension)) continue;
+    words += (words.empty() ? "" : " ") + extension.substr(1);
+  }
+  return words;
+}
+
 Proxy sequence_proxy(const OperationTable& table) {
   const Operation operation = reading_operation();
   return {operation,
@@ -53,8 +66,9 @@ Proxy sequence_proxy(const OperationTable& table) {
           kTimes,
           kInMenu +
               "<DefaultFileNameProperty name=\"FileName\"/>"
-              "<ReaderFactory extensions=\"npy off\""
-              " file_description=\"Mesh sequences (mimetra)\"/>"};
+              "<ReaderFactory extensions=\"" +
+              file_extensions() +
+              "\" file_description=\"Mesh sequences (mimetra)\"/>"};
 }
 
 std::vector<Proxy> filter_proxies(const OperationTable& table) {

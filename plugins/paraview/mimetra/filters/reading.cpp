@@ -1,5 +1,8 @@
 #include "plugins/paraview/mimetra/filters/reading.h"
 
+#include "toolkit/io/sequence_format.h"
+#include "toolkit/mesh/text.h"
+
 using namespace mimetra;
 
 Operation reading_operation() {
@@ -7,8 +10,9 @@ Operation reading_operation() {
   operation.name = "read";
   operation.summary = "Mesh sequence or model of any format that mimetra reads";
   operation.inputs = {{"FileName", DataKind::fields,
-                       "a mesh, .npy array, .pvd, or model; typed, also a folder of meshes, a "
-                       "pattern as in smile_%04d.obj, or MODEL@identity=1.5"}};
+                       joined(sequence_extensions()) +
+                           ", .pvd, or a model; typed, also a folder of meshes, a pattern as in "
+                           "smile_%04d.obj, or MODEL@identity=1.5"}};
   operation.outputs = {{"out", DataKind::fields, "the sequence"}};
   operation.run = [](const Invocation& invocation) {
     Outcome outcome;
