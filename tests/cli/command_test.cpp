@@ -2,6 +2,8 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/cli/command_fixture.h"
+#include "toolkit/io/array_file.h"
+#include "toolkit/io/mesh_file.h"
 
 namespace mimetra {
 namespace {
@@ -46,6 +48,45 @@ TEST_F(Command, FramesTakesAPartOfTheSequence) {
   const auto result = run("info head --weights take.csv --frames 2:10:4 --json");
   ASSERT_EQ(result.code, 0) << result.err;
   EXPECT_EQ(json::parse(result.out).at("frames"), 2);
+}
+
+TEST_F(Command, FramesReadsOnlyThoseOfALargeArray) {
+  // 4.8 GB that the disk does not hold: all zeros.
+  const test::Shape faces = test::grid(100, 100);
+  write_mesh(folder_ / "large.topology.ply", test::mesh_of(faces));
+  std::string header = "{'descr': '<f8', 'fortran_order': False, 'shape': (20000, 10000, 3), }";
+  header.append(117 - header.size(), ' ').append("\n");
+  write("large.npy", std::string("\x93NUMPY\x01\0\x76\0", 10) + header);
+  std::filesystem::resize_file(folder_ / "large.npy", 128 + 20000LL * 10000 * 3 * 8);
+  const auto result = run("convert large.npy --frames 19990:20000 -o part.npy --dry-run --json");
+  ASSERT_EQ(result.code, 0) << result.err;
+  const json plan = json::parse(result.out);
+  EXPECT_FALSE(plan.at("inputs").at(0).at("in_memory").get<bool>());
+  EXPECT_LT(plan.at("memory_bytes").get<double>(), 1e9);
+  ASSERT_EQ(run("convert large.npy --frames 19990:20000 -o part.npy").code, 0);
+  EXPECT_EQ(read_npy_frames(folder_ / "part.npy"), Frames::Zero(10, 30000));
+}
+
+TEST_F(Command, DryRunSaysWhatIsReadIntoMemoryAsAWhole) {
+  const auto plan_of = [this](const std::string& arguments) {
+    return json::parse(run(arguments + " --dry-run --json").out).at("inputs").at(0);
+  };
+  EXPECT_EQ(plan_of("info head --weights take.csv").at("in_memory"), false);
+  EXPECT_EQ(plan_of("decompose head --weights take.csv -k 2 -o c.h5").at("in_memory"), true);
+}
+
+TEST_F(Command, ConvertsThroughEveryFormatOfOneFile) {
+  ASSERT_EQ(run("convert head --weights take.csv -o take.npy").code, 0);
+  const Frames frames = read_npy_frames(folder_ / "take.npy");
+  std::string from = "take.npy";
+  for (const std::string to : {"a.npz", "b.pc2", "c.mdd", "d.npy"}) {
+    const auto result = run("convert " + from + " -o " + to);
+    ASSERT_EQ(result.code, 0) << result.err;
+    from = to;
+  }
+  EXPECT_EQ(read_npy_frames(folder_ / "d.npy"), frames.cast<float>().cast<double>());
+  EXPECT_TRUE(listing().contains("b.topology.ply"));
+  EXPECT_FALSE(listing().contains("a.topology.ply"));
 }
 
 TEST_F(Command, ConvertToNpyKeepsTopologyAndRestBeside) {

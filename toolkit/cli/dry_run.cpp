@@ -15,11 +15,11 @@ namespace {
 
 /// "300 frames of 6706 vertices", or what else a value is made of.
 std::string size_of(const Data& data) {
-  const auto frames = [](const MeshSequence& sequence) {
+  const auto frames = [](const FrameSource& sequence) {
     return std::to_string(sequence.frames()) + " frames of " + std::to_string(sequence.vertices()) +
            " vertices";
   };
-  if (const auto* read = std::get_if<SequenceRead>(&data)) return frames(read->sequence);
+  if (const auto* read = std::get_if<SequenceRead>(&data)) return frames(read->frames());
   if (const auto* fields = std::get_if<FieldSequence>(&data)) return frames(fields->sequence);
   if (const auto* model = std::get_if<BlendshapeModel>(&data)) {
     return std::to_string(model->vertices()) + " vertices, " +
@@ -42,6 +42,12 @@ std::string size_of(const Data& data) {
            std::to_string(read->model.expressions().size()) + " expressions";
   }
   return "";
+}
+
+/// True for a sequence whose frames are all in memory.
+bool is_in_memory(const Data& data) {
+  const auto* read = std::get_if<SequenceRead>(&data);
+  return (read && !read->stream) || std::holds_alternative<FieldSequence>(data);
 }
 
 }  // namespace
@@ -72,9 +78,12 @@ Outcome planned(const Operation& operation, const Invocation& invocation) {
     const auto given = invocation.inputs.find(input.name);
     if (given == invocation.inputs.end()) continue;
     for (const NamedData& value : given->second) {
-      inputs.push_back(
-          {{"input", input.name}, {"name", value.name}, {"size", size_of(value.data)}});
-      text << "  reads   " << value.name << ": " << size_of(value.data) << '\n';
+      inputs.push_back({{"input", input.name},
+                        {"name", value.name},
+                        {"size", size_of(value.data)},
+                        {"in_memory", is_in_memory(value.data)}});
+      text << "  reads   " << value.name << ": " << size_of(value.data)
+           << (is_in_memory(value.data) ? ", all in memory" : "") << '\n';
     }
   }
   for (const auto& [name, paths] : invocation.wanted) {

@@ -205,8 +205,9 @@ void run_command(const OperationTable& table, const Request& request) {
 
   FinishedRun run;
   const Stopwatch reading;
-  LoadedInputs loaded = load_inputs(table, *request.operation, request.parameters, request.inputs,
-                                    part_of(progress, 0, kRunningFrom), log, request.threads);
+  LoadedInputs loaded =
+      load_inputs(table, *request.operation, request.parameters, request.inputs,
+                  part_of(progress, 0, kRunningFrom), log, request.threads, {}, true);
   run.inputs = std::move(loaded.files);
   for (const std::filesystem::path file : request.files) {
     if (std::ranges::find(run.inputs, file) == run.inputs.end()) {

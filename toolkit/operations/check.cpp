@@ -1,3 +1,5 @@
+#include <atomic>
+
 #include <nlohmann/json.hpp>
 
 #include "toolkit/mesh/errors.h"
@@ -14,8 +16,20 @@ std::string counted(std::size_t count, const std::string& what, int first) {
   return std::to_string(count) + " " + what + ", the first is " + std::to_string(first);
 }
 
+/// Whether any frame differs from the first. Reads all of them.
+bool moves(const FrameSource& sequence, const BlockOptions& options) {
+  const Frames first = sequence.read(0, 1);
+  std::atomic<bool> differs = false;
+  for_each_block(sequence, options, [&](int, const Frames& poses) {
+    for (Eigen::Index row = 0; row < poses.rows(); ++row) {
+      if (poses.row(row) != first) differs = true;
+    }
+  });
+  return differs;
+}
+
 /// What is legal but often a mistake.
-std::vector<std::string> warnings_of(const MeshSequence& sequence) {
+std::vector<std::string> warnings_of(const FrameSource& sequence, bool moves) {
   const MeshReport mesh = inspect(sequence.rest(), sequence.connectivity());
   std::vector<std::string> warnings;
   if (!mesh.degenerate_triangles.empty()) {
@@ -32,7 +46,7 @@ std::vector<std::string> warnings_of(const MeshSequence& sequence) {
                                "vertices without a face (in no region)",
                                mesh.vertices_without_face.front()));
   }
-  if (sequence.frames() > 1 && motion(sequence.with_rest(sequence.frame(0))) == 0) {
+  if (sequence.frames() > 1 && !moves) {
     warnings.push_back("nothing moves: all " + std::to_string(sequence.frames()) +
                        " frames are equal");
   }
@@ -41,8 +55,9 @@ std::vector<std::string> warnings_of(const MeshSequence& sequence) {
 
 Outcome run_check(const Invocation& invocation) {
   const NamedData& input = invocation.inputs.at("sequence").front();
-  const MeshSequence& sequence = std::get<SequenceRead>(input.data).sequence;
-  const std::vector<std::string> warnings = warnings_of(sequence);
+  const FrameSource& sequence = std::get<SequenceRead>(input.data).frames();
+  const std::vector<std::string> warnings = warnings_of(
+      sequence, moves(sequence, {.threads = invocation.threads, .progress = invocation.progress}));
   if (!warnings.empty() && invocation.parameters.flag("strict")) {
     throw MismatchError(input.name + ": " + warnings.front() +
                         (warnings.size() > 1
@@ -64,6 +79,7 @@ Operation check_operation() {
   operation.name = "check";
   operation.summary = "Tell whether a sequence can be used, and what is odd about it";
   operation.inputs = {{"sequence", DataKind::sequence, "sequence to check"}};
+  operation.inputs.front().streamed = true;
   operation.parameters = {
       {"strict", ParameterKind::flag, false, "fail where there is a warning (exit code 4)"}};
   operation.examples = {"check takes/smile_%04d.obj", "check take.npy --strict"};

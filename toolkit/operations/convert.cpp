@@ -10,6 +10,7 @@ Operation convert_operation() {
   operation.name = "convert";
   operation.summary = "Write a sequence in another format; vertex order and faces stay as they are";
   operation.inputs = {{"sequence", DataKind::sequence, "sequence to convert"}};
+  operation.inputs.front().streamed = true;
   operation.outputs = {{"out", DataKind::sequence, ".npy, a mesh file, or a folder of frames"}};
   operation.examples = {"convert takes/smile_%04d.obj -o smile.npy",
                         "convert actor@identity003=1.5 --weights take.csv --frames 0:300 -o take/"};
@@ -17,12 +18,12 @@ Operation convert_operation() {
     const SequenceRead& read = invocation.get<SequenceRead>("sequence");
     Outcome outcome;
     outcome.outputs["out"].push_back({"", read});
-    outcome.report = Json{{"frames", read.sequence.frames()},
-                          {"vertices", read.sequence.vertices()},
-                          {"faces", read.sequence.connectivity().polygons.size()}}
+    outcome.report = Json{{"frames", read.frames().frames()},
+                          {"vertices", read.frames().vertices()},
+                          {"faces", read.frames().connectivity().polygons.size()}}
                          .dump();
-    outcome.summary = std::to_string(read.sequence.frames()) + " frames of " +
-                      std::to_string(read.sequence.vertices()) + " vertices\n";
+    outcome.summary = std::to_string(read.frames().frames()) + " frames of " +
+                      std::to_string(read.frames().vertices()) + " vertices\n";
     return outcome;
   };
   return operation;

@@ -28,7 +28,7 @@ Paths write_sequence_data(const Data& data, const WriteRequest& request) {
   options.inputs = request.inputs;
   options.threads = request.threads;
   options.progress = request.progress;
-  return write_sequence(std::get<SequenceRead>(data).sequence, request.target, options,
+  return write_sequence(std::get<SequenceRead>(data).frames(), request.target, options,
                         request.extra);
 }
 

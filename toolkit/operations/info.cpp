@@ -11,7 +11,7 @@ namespace mimetra {
 
 namespace {
 
-Json report_of(const MeshSequence& sequence, const MeshReport& mesh) {
+Json report_of(const FrameSource& sequence, const MeshReport& mesh, double motion) {
   const Eigen::VectorXd& times = sequence.times();
   return {{"frames", sequence.frames()},
           {"vertices", mesh.vertices},
@@ -26,12 +26,12 @@ Json report_of(const MeshSequence& sequence, const MeshReport& mesh) {
           {"components_after_welding", mesh.components_after_welding},
           {"boundary_edges_after_welding", mesh.boundary_edges_after_welding},
           {"extent", {mesh.extent[0], mesh.extent[1], mesh.extent[2]}},
-          {"motion", motion(sequence)},
+          {"motion", motion},
           {"rest_known", sequence.rest_is_known()},
           {"seconds", times[times.size() - 1] - times[0]}};
 }
 
-std::string summary_of(const MeshSequence& sequence, const MeshReport& mesh) {
+std::string summary_of(const FrameSource& sequence, const MeshReport& mesh, double motion) {
   std::ostringstream text;
   const Eigen::VectorXd& times = sequence.times();
   text << "frames      " << sequence.frames() << " (" << readable(times[0]) << " to "
@@ -46,7 +46,7 @@ std::string summary_of(const MeshSequence& sequence, const MeshReport& mesh) {
        << mesh.vertices_without_face.size() << " vertices without face\n"
        << "extent      " << readable(mesh.extent[0]) << " x " << readable(mesh.extent[1]) << " x "
        << readable(mesh.extent[2]) << '\n'
-       << "motion      " << readable(motion(sequence)) << " (RMS distance from the rest pose: "
+       << "motion      " << readable(motion) << " (RMS distance from the rest pose: "
        << (sequence.rest_is_known() ? "the neutral" : "the first frame") << ")\n";
   return text.str();
 }
@@ -58,11 +58,14 @@ Operation info_operation() {
   operation.name = "info";
   operation.summary = "What a sequence is made of: frames, vertices, faces, components, defects";
   operation.inputs = {{"sequence", DataKind::sequence, "sequence to look at"}};
+  operation.inputs.front().streamed = true;
   operation.examples = {"info takes/smile_%04d.obj", "info actor/ --weights take.csv --json"};
   operation.run = [](const Invocation& invocation) {
-    const MeshSequence& sequence = invocation.get<SequenceRead>("sequence").sequence;
+    const FrameSource& sequence = invocation.get<SequenceRead>("sequence").frames();
     const MeshReport mesh = inspect(sequence.rest(), sequence.connectivity());
-    return Outcome{{}, report_of(sequence, mesh).dump(), summary_of(sequence, mesh)};
+    const double moved =
+        motion(sequence, {.threads = invocation.threads, .progress = invocation.progress});
+    return Outcome{{}, report_of(sequence, mesh, moved).dump(), summary_of(sequence, mesh, moved)};
   };
   return operation;
 }

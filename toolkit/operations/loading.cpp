@@ -17,13 +17,18 @@ namespace {
 class Loader {
  public:
   Loader(const OperationTable& table, const Parameters& parameters, const Progress& progress,
-         const Log& log, int threads)
-      : table_(table), parameters_(parameters), progress_(progress), log_(log), threads_(threads) {}
+         const Log& log, int threads, bool may_stream)
+      : table_(table),
+        parameters_(parameters),
+        progress_(progress),
+        log_(log),
+        threads_(threads),
+        may_stream_(may_stream) {}
 
   NamedData load(const Input& input, const std::string& text) {
     switch (input.kind) {
       case DataKind::sequence:
-        return {text, sequence(text)};
+        return {text, sequence(text, may_stream_ && input.streamed)};
       case DataKind::model:
         return model(text);
       case DataKind::components:
@@ -50,7 +55,7 @@ class Loader {
   /// The mesh that region sets are for, if the value has one.
   bool know(const Data& data) {
     if (const auto* read = std::get_if<SequenceRead>(&data)) {
-      return know(read->sequence.vertices(), read->sequence.triangles());
+      return know(read->frames().vertices(), read->frames().triangles());
     }
     if (const auto* fields = std::get_if<FieldSequence>(&data)) {
       return know(fields->sequence.vertices(), fields->sequence.triangles());
@@ -81,10 +86,10 @@ class Loader {
 
   FieldSequence fields(const std::string& text) {
     if (auto read = with_fields(text)) return std::move(*read);
-    return {sequence(text).sequence, {}};
+    return {sequence(text, false).sequence, {}};
   }
 
-  SequenceRead sequence(const std::string& text) {
+  SequenceRead sequence(const std::string& text, bool streamed) {
     if (auto read = with_fields(text)) return {std::move(read->sequence), false, {}, {}};
     SequenceSource source = frames_asked_for();
     const auto path = [this](const char* name) {
@@ -93,7 +98,13 @@ class Loader {
     };
     source.weights = path("weights");
     source.topology = path("topology");
-    return noted(read_sequence(text, source));
+    if (!streamed) return noted(read_sequence(text, source));
+    OpenSequence open = open_sequence(text, source);
+    return noted(SequenceRead{{},
+                              open.model_driven,
+                              std::move(open.files),
+                              std::move(open.notes),
+                              std::move(open.frames)});
   }
 
   LandmarksRead landmarks(const std::string& text) {
@@ -187,6 +198,7 @@ class Loader {
   const Progress& progress_;
   const Log& log_;
   int threads_;
+  bool may_stream_;
   int vertices_ = 0;
   Triangles triangles_;
 };
@@ -197,8 +209,8 @@ LoadedInputs load_inputs(const OperationTable& table, const Operation& operation
                          const Parameters& parameters,
                          const std::map<std::string, std::vector<std::string>>& names,
                          const Progress& progress, const Log& log, int threads,
-                         std::map<std::string, std::vector<NamedData>> given) {
-  Loader loader(table, parameters, progress, log, threads);
+                         std::map<std::string, std::vector<NamedData>> given, bool may_stream) {
+  Loader loader(table, parameters, progress, log, threads, may_stream);
   LoadedInputs loaded{std::move(given), {}};
   const auto load = [&](const Input& input) {
     const auto named = names.find(input.name);
