@@ -71,7 +71,7 @@ TEST_F(Command, DryRunSaysWhatIsReadIntoMemoryAsAWhole) {
   const auto plan_of = [this](const std::string& arguments) {
     return json::parse(run(arguments + " --dry-run --json").out).at("inputs").at(0);
   };
-  EXPECT_EQ(plan_of("info head --weights take.csv").at("in_memory"), false);
+  EXPECT_EQ(plan_of("convert head --weights take.csv -o a.npy").at("in_memory"), false);
   EXPECT_EQ(plan_of("decompose head --weights take.csv -k 2 -o c.h5").at("in_memory"), true);
 }
 
