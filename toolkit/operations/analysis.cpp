@@ -9,9 +9,9 @@
 #include "toolkit/io/whole_file.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/progress.h"
+#include "toolkit/mesh/stopwatch.h"
 #include "toolkit/mesh/text.h"
 #include "toolkit/operations/json.h"
-#include "toolkit/operations/stopwatch.h"
 
 namespace mimetra {
 
@@ -37,18 +37,6 @@ constexpr std::string_view choice_name(RestPose value) {
       return "first";
     case RestPose::mean:
       return "mean";
-  }
-  return {};
-}
-
-enum class Precision { double_precision, single_precision };
-
-constexpr std::string_view choice_name(Precision value) {
-  switch (value) {
-    case Precision::double_precision:
-      return "double";
-    case Precision::single_precision:
-      return "single";
   }
   return {};
 }
@@ -185,7 +173,7 @@ std::vector<Parameter> decomposition_parameters(int count) {
       {"tolerance", ParameterKind::number, DecompositionOptions{}.tolerance,
        "stop when the energy changes by less than this share; 0 runs all iterations", "", 0, 1},
       {"signed", ParameterKind::flag, false, "allow negative weights"},
-      choice_parameter("precision", Precision::double_precision,
+      choice_parameter("precision", DecompositionOptions{}.precision,
                        "of the iterations; single moves components by about 1e-6 of themselves"),
       {"basis-tolerance", ParameterKind::number, DecompositionOptions{}.basis_tolerance,
        "iterate on as few poses over time as leave out this share of the motion, 1e-6 or more; 0 "
@@ -303,8 +291,7 @@ Analysis analyse(const Invocation& invocation, const SequenceRead& read,
   options.tolerance = reference ? 0 : parameters.number("tolerance");
   options.nonnegative = !parameters.flag("signed");
   options.sign_rule = reference ? SignRule::literal : SignRule::amplitude;
-  options.single_precision =
-      parameters.choice<Precision>("precision") == Precision::single_precision;
+  options.precision = parameters.choice<IterationPrecision>("precision");
   options.basis_tolerance = parameters.number("basis-tolerance");
   options.distances = distances;
   options.threads = invocation.threads;

@@ -4,10 +4,10 @@
 #include <nlohmann/json.hpp>
 
 #include "toolkit/mesh/progress.h"
+#include "toolkit/mesh/stopwatch.h"
 #include "toolkit/operations/evaluation.h"
 #include "toolkit/operations/json.h"
 #include "toolkit/operations/memory.h"
-#include "toolkit/operations/stopwatch.h"
 #include "toolkit/operations/toolkit_operations.h"
 
 namespace mimetra {

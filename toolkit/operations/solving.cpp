@@ -2,8 +2,8 @@
 
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/progress.h"
+#include "toolkit/mesh/stopwatch.h"
 #include "toolkit/mesh/text.h"
-#include "toolkit/operations/stopwatch.h"
 #include "toolkit/transfer/vertex_transfer.h"
 
 namespace mimetra {
@@ -127,6 +127,7 @@ VertexTransferOptions vertex_options(const Parameters& parameters, int vertices)
   options.outside = parameters.choice<Outside>("outside");
   options.outside_weight = parameters.number("outside-weight");
   options.outside_smoothness = parameters.number("outside-smoothness");
+  if (!parameters.is_set("anchor")) return options;
   const std::string& anchor = parameters.text("anchor");
   if (const auto word = choice_of<AnchorWord>(anchor)) {
     options.anchor = *word == AnchorWord::centroid ? Anchor::centroid : Anchor::source_motion;

@@ -4,11 +4,11 @@
 
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/progress.h"
+#include "toolkit/mesh/stopwatch.h"
 #include "toolkit/mesh/text.h"
 #include "toolkit/operations/json.h"
 #include "toolkit/operations/memory.h"
 #include "toolkit/operations/solving.h"
-#include "toolkit/operations/stopwatch.h"
 #include "toolkit/operations/toolkit_operations.h"
 
 namespace mimetra {

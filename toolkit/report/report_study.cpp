@@ -5,7 +5,7 @@
 #include <set>
 
 #include "toolkit/mesh/progress.h"
-#include "toolkit/operations/stopwatch.h"
+#include "toolkit/mesh/stopwatch.h"
 
 namespace mimetra {
 
