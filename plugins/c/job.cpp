@@ -76,7 +76,7 @@ double mimetra_job::number_of(const std::string& name) const {
   for (const Input& input : operation_.inputs) {
     const mimetra_data* data = this->input(input.name, 0);
     const auto side = data ? extent_of(data->value->named().data) : std::nullopt;
-    if (side) return invocation_.parameters.length(name, *side);
+    if (side) return invocation_.parameters.length(name).in(*side);
   }
   return kNone;
 }

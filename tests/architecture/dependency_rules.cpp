@@ -258,12 +258,13 @@ std::set<fs::path> public_headers(const Tree& lists) {
 
 const std::vector<FolderRule>& folder_rules() {
   static const std::vector<FolderRule> rules = [] {
-    const std::vector<std::string> below_operations = {"geodesic", "mesh",     "model", "splocs",
-                                                       "regions",  "transfer", "io"};
+    const std::vector<std::string> below_pipeline = {"geodesic", "mesh",    "model",
+                                                     "splocs",   "regions", "transfer"};
     const auto with = [](std::vector<std::string> folders, const std::vector<std::string>& more) {
       folders.insert(folders.end(), more.begin(), more.end());
       return folders;
     };
+    const std::vector<std::string> below_operations = with(below_pipeline, {"pipeline", "io"});
     const std::vector<std::string> up_to_operations = with(below_operations, {"operations"});
     const std::vector<std::string> up_to_vtk = with(up_to_operations, {"vtk"});
     const std::vector<std::string> up_to_report = with(up_to_vtk, {"pictures", "report"});
@@ -278,6 +279,7 @@ const std::vector<FolderRule>& folder_rules() {
          "toolkit/transfer",
          {"model", "regions", "mesh", "geodesic"},
          {"OpenMesh", "CHOLMOD"}},
+        {"pipeline", "toolkit/pipeline", below_pipeline},
         {"io",
          "toolkit/io",
          {"mesh", "model", "splocs", "regions"},

@@ -33,7 +33,7 @@ Components small_components() {
   components.d_max = 2.1;
   components.options.count = 3;
   components.options.sparsity = 1.5;
-  components.options.single_precision = true;
+  components.options.precision = IterationPrecision::single_precision;
   components.options.basis_tolerance = 1e-3;
   components.options.sign_rule = SignRule::literal;
   return components;
@@ -55,7 +55,7 @@ TEST(ComponentsFile, ComesBackEqualAfterWriting) {
   EXPECT_EQ(found.d_max, written.d_max);
   EXPECT_EQ(found.options.sparsity, 1.5);
   EXPECT_EQ(found.options.sign_rule, SignRule::literal);
-  EXPECT_TRUE(found.options.single_precision);
+  EXPECT_EQ(found.options.precision, IterationPrecision::single_precision);
   EXPECT_EQ(found.options.basis_tolerance, 1e-3);
 }
 

@@ -130,9 +130,9 @@ TEST(Parameters, RefuseUnknownNamesAndWrongTypes) {
 
 TEST(Parameters, LengthsAreSharesOfTheExtentUnlessAbsolute) {
   Parameters parameters({kRadius});
-  EXPECT_DOUBLE_EQ(parameters.length("radius", 200), 0.1 * 200);
+  EXPECT_DOUBLE_EQ(parameters.length("radius").in(200), 0.1 * 200);
   parameters.set("radius", "12abs");
-  EXPECT_DOUBLE_EQ(parameters.length("radius", 200), 12);
+  EXPECT_DOUBLE_EQ(parameters.length("radius").in(200), 12);
 }
 
 }  // namespace

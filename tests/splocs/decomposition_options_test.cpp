@@ -72,7 +72,7 @@ TEST(DecompositionOptions, RefuseACompressionThatRoundingHides) {
               ThrowsMessage<std::invalid_argument>(HasSubstr("from 1e-6")));
   EXPECT_THAT(with([](auto& o) { o.basis_tolerance = 1; }),
               ThrowsMessage<std::invalid_argument>(
-                  HasSubstr("basis_tolerance must be 0, or from 1e-6 to below 1")));
+                  HasSubstr("basis_tolerance is 1; it must be from 0 to 0.5")));
 }
 
 TEST(DecompositionOptions, RefuseDistancesOfAnotherMesh) {

@@ -293,7 +293,7 @@ TEST(Decomposition, InSinglePrecisionIsTheSameToItsRounding) {
   const MeshSequence sequence = long_performance();
   DecompositionOptions options = grid_options(sequence, 3);
   const Components in_double = decompose(sequence, options);
-  options.single_precision = true;
+  options.precision = IterationPrecision::single_precision;
   const Components in_single = decompose(sequence, options);
   // 6e-8 in each of 100 ADMM steps and some ten thousand sums.
   EXPECT_LT(largest_difference(in_single, in_double), 1e-4);

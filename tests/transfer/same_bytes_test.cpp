@@ -87,13 +87,13 @@ TEST_F(Threads, DoNotChangeATransfer) {
 }
 
 TEST_F(ProductBlocking, IsFixedForDecompositions) {
-  for (const bool single : {false, true}) {
+  for (const IterationPrecision precision : choices<IterationPrecision>()) {
     for (const double tolerance : {0.0, 0.01}) {
       test::expect_equal_bytes_on_each_processor([&] {
         return Eigen::MatrixXd(decompose(sequence_, {.count = 4,
                                                      .iterations = 3,
                                                      .basis_tolerance = tolerance,
-                                                     .single_precision = single,
+                                                     .precision = precision,
                                                      .distances = straight_distances()})
                                    .displacements);
       });

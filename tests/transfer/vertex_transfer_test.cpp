@@ -152,12 +152,12 @@ TEST_F(VertexTransferRefusal, NamesBothVertexCounts) {
 
 TEST_F(VertexTransferRefusal, NamesAnOutsideWeightOfZero) {
   options_.outside_weight = 0;
-  expect<std::invalid_argument>("outside_weight: expected more than 0");
+  expect<std::invalid_argument>("outside_weight is 0; it must be at least 1e-12");
 }
 
 TEST_F(VertexTransferRefusal, NamesANegativeSmoothness) {
   options_.outside_smoothness = -1;
-  expect<std::invalid_argument>("outside_smoothness: expected at least 0");
+  expect<std::invalid_argument>("outside_smoothness is -1; it must be at least 0");
 }
 
 TEST_F(VertexTransferRefusal, NamesTheLengthOfInside) {

@@ -16,10 +16,10 @@
 #include "toolkit/cli/manifest.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/progress.h"
+#include "toolkit/mesh/stopwatch.h"
 #include "toolkit/mesh/text.h"
 #include "toolkit/operations/json.h"
 #include "toolkit/operations/loading.h"
-#include "toolkit/operations/stopwatch.h"
 
 namespace mimetra::cli {
 

@@ -224,7 +224,7 @@ void write_options(Writer& writer, const Components& components) {
   writer.attribute("admm_iterations", options.admm_iterations);
   writer.attribute("tolerance", options.tolerance);
   writer.attribute("nonnegative", options.nonnegative);
-  writer.attribute("single_precision", options.single_precision);
+  writer.attribute("single_precision", options.precision == IterationPrecision::single_precision);
   writer.attribute("basis_tolerance", options.basis_tolerance);
   writer.attribute("literal_sign_rule", options.sign_rule == SignRule::literal);
 }
@@ -241,7 +241,9 @@ void read_options(const Reader& reader, Components& components) {
   options.admm_iterations = reader.whole_attribute("admm_iterations", options.admm_iterations);
   options.tolerance = reader.attribute("tolerance", options.tolerance);
   options.nonnegative = reader.attribute("nonnegative", options.nonnegative) != 0;
-  options.single_precision = reader.attribute("single_precision", options.single_precision) != 0;
+  if (reader.attribute("single_precision", false) != 0) {
+    options.precision = IterationPrecision::single_precision;
+  }
   options.basis_tolerance = reader.attribute("basis_tolerance", options.basis_tolerance);
   options.sign_rule =
       reader.attribute("literal_sign_rule", 0) != 0 ? SignRule::literal : SignRule::amplitude;

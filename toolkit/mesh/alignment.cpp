@@ -210,6 +210,7 @@ RigidTransform rigid_fit(const Eigen::Ref<const Positions>& from,
 }
 
 Alignment align(const MeshSequence& sequence, const AlignmentOptions& options) {
+  check_options(options);
   std::vector<RigidTransform> motion(sequence.frames());
   if (sequence.vertices() == 0) return align(sequence, std::move(motion));
   if (options.vertices == AlignmentVertices::all) {

@@ -5,6 +5,7 @@
 
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/mesh_sequence.h"
+#include "toolkit/mesh/option.h"
 #include "toolkit/mesh/progress.h"
 
 namespace mimetra {
@@ -48,6 +49,9 @@ constexpr std::string_view choice_name(AlignmentVertices value) {
 struct AlignmentOptions {
   AlignmentVertices vertices = AlignmentVertices::stable;
   Progress progress = {};
+
+  static constexpr Option kVertices{"vertices", &AlignmentOptions::vertices};
+  static constexpr auto declared() { return std::tuple(kVertices); }
 };
 
 /// A sequence without its rigid motion, and that motion.

@@ -4,9 +4,11 @@
 
 #include <nlohmann/json.hpp>
 
+#include "toolkit/mesh/alignment.h"
 #include "toolkit/mesh/text.h"
-#include "toolkit/operations/analysis.h"
+#include "toolkit/operations/bound_parameters.h"
 #include "toolkit/operations/json.h"
+#include "toolkit/operations/parameter_files.h"
 #include "toolkit/operations/toolkit_operations.h"
 
 namespace mimetra {
@@ -33,14 +35,35 @@ Json json_of(const std::vector<RigidTransform>& motion) {
   return list;
 }
 
+struct AlignCall {
+  AlignmentOptions alignment = {};
+  /// Manifest of the motion that is given back.
+  std::optional<std::string> undo = {};
+};
+
+BoundParameters<AlignCall> align_parameters() {
+  BoundParameters<AlignmentOptions> alignment;
+  alignment.add("on", AlignmentOptions::kVertices,
+                "fit on the vertices that move least (stable), or on all of them");
+  BoundParameters<AlignCall> list;
+  list.add(&AlignCall::alignment, alignment)
+      .add(
+          {"undo", ParameterKind::file, {}, "manifest of an align run, whose motion is given back"},
+          [](const Parameters& values, AlignCall& call) {
+            call.undo = values.optional_text("undo");
+          });
+  return list;
+}
+
 Alignment aligned(const Invocation& invocation) {
   const MeshSequence& sequence = invocation.get<SequenceRead>("sequence").sequence;
-  if (const auto undo = invocation.parameters.optional_text("undo")) {
-    std::vector<RigidTransform> motion = read_motion(*undo, sequence.frames());
+  AlignCall call = align_parameters().read(invocation.parameters);
+  if (call.undo) {
+    std::vector<RigidTransform> motion = read_motion(*call.undo, sequence.frames());
     return {with_motion(sequence, motion), std::move(motion)};
   }
-  return align(sequence, {.vertices = invocation.parameters.choice<AlignmentVertices>("on"),
-                          .progress = invocation.progress});
+  call.alignment.progress = invocation.progress;
+  return align(sequence, call.alignment);
 }
 
 Outcome run_align(const Invocation& invocation) {
@@ -73,10 +96,7 @@ Operation align_operation() {
   operation.summary = "Take the rigid motion out of each frame; the manifest keeps it";
   operation.inputs = {{"sequence", DataKind::sequence, "sequence to align"}};
   operation.outputs = {{"out", DataKind::sequence, ".npy, a mesh file, or a folder of frames"}};
-  operation.parameters = {
-      choice_parameter("on", AlignmentOptions{}.vertices,
-                       "fit on the vertices that move least (stable), or on all of them"),
-      {"undo", ParameterKind::file, {}, "manifest of an align run, whose motion is given back"}};
+  operation.parameters = align_parameters().declared();
   operation.examples = {"align takes/ -o still/",
                         "align still/ --undo still/mimetra-run.json -o back/"};
   operation.run = run_align;

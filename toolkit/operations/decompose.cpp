@@ -3,14 +3,25 @@
 #include <nlohmann/json.hpp>
 
 #include "toolkit/mesh/text.h"
-#include "toolkit/operations/analysis.h"
 #include "toolkit/operations/json.h"
-#include "toolkit/operations/memory.h"
+#include "toolkit/operations/pipeline_parameters.h"
 #include "toolkit/operations/toolkit_operations.h"
 
 namespace mimetra {
 
 namespace {
+
+struct DecomposeCall {
+  AnalysisOptions analysis = {.decomposition = {}};
+  SourceOptions source = {};
+};
+
+BoundParameters<DecomposeCall> decompose_parameters(const MeshSequence* sequence = nullptr) {
+  BoundParameters<DecomposeCall> list;
+  return list.add(&DecomposeCall::analysis, count_parameters(DecomposeCall{}.analysis))
+      .add(&DecomposeCall::analysis, analysis_parameters(sequence))
+      .add(&DecomposeCall::source, alignment_parameters(sequence));
+}
 
 /// Each component's weight over time.
 Table weight_table(const Components& components, const Eigen::VectorXd& times) {
@@ -28,9 +39,14 @@ Table weight_table(const Components& components, const Eigen::VectorXd& times) {
 
 Outcome run_decompose(const Invocation& invocation) {
   const SequenceRead& read = invocation.get<SequenceRead>("sequence");
-  const Alignment still = without_motion(invocation, read, read.sequence);
-  Analysis analysis = analyse(invocation, read, still.sequence, invocation.parameters.integer("k"),
-                              invocation.progress);
+  DecomposeCall call = decompose_parameters(&read.sequence).read(invocation.parameters);
+  call.analysis.threads = invocation.threads;
+  call.analysis.progress = invocation.progress;
+  call.analysis.notes = warnings_of(invocation);
+  const Source still = without_head_motion(
+      read.sequence, described(call.source, invocation.inputs.at("sequence").front()));
+  Analysis analysis =
+      in_command_terms(invocation.parameters, [&] { return analyse(still, call.analysis); });
   const Components& components = analysis.components;
   const DecompositionError error =
       decomposition_error(still.sequence.with_rest(components.rest), components);
@@ -73,10 +89,7 @@ Operation decompose_operation() {
   operation.inputs = {{"sequence", DataKind::sequence, "sequence to decompose"}};
   operation.outputs = {{"out", DataKind::components, ".h5"},
                        {"weights-out", DataKind::table, "weights over time: .csv or .json", true}};
-  operation.parameters = decomposition_parameters(50);
-  for (const Parameter& parameter : alignment_parameters()) {
-    operation.parameters.push_back(parameter);
-  }
+  operation.parameters = decompose_parameters().declared();
   operation.examples = {"decompose takes/ -k 30 -o take.h5",
                         "decompose take.npy -k 50 --compat splocs2013 -o take.h5"};
   operation.run = run_decompose;

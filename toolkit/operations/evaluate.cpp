@@ -3,16 +3,26 @@
 
 #include <nlohmann/json.hpp>
 
-#include "toolkit/mesh/progress.h"
-#include "toolkit/operations/evaluation.h"
+#include "toolkit/operations/evaluation_table.h"
 #include "toolkit/operations/json.h"
-#include "toolkit/operations/memory.h"
-#include "toolkit/operations/stopwatch.h"
+#include "toolkit/operations/pipeline_parameters.h"
 #include "toolkit/operations/toolkit_operations.h"
+#include "toolkit/pipeline/memory.h"
 
 namespace mimetra {
 
 namespace {
+
+BoundParameters<EvaluationOptions> evaluation_parameters(const MeshSequence* sequence = nullptr) {
+  using Options = EvaluationOptions;
+  BoundParameters<Options> list;
+  return list.add(&Options::regions, region_parameters())
+      .add("k", Options::kCounts, "numbers of components, one row each")
+      .add(&Options::analysis, analysis_parameters(sequence))
+      .add(&Options::source, alignment_parameters(sequence))
+      .add(&Options::source, source_rest_parameters(sequence))
+      .add(&Options::solving, solving_parameters());
+}
 
 std::string text_of(const std::vector<EvaluationRow>& rows) {
   std::string text =
@@ -37,25 +47,16 @@ std::string text_of(const std::vector<EvaluationRow>& rows) {
 }
 
 Outcome run_evaluate(const Invocation& invocation) {
-  Evaluation evaluation(invocation, invocation.inputs.at("target").front());
   const SequenceRead& read = invocation.get<SequenceRead>("source");
-  const std::vector<std::int64_t>& counts = invocation.parameters.integers("k");
-  const double steps = static_cast<double>(counts.size()) + 1;
-  const EvaluationRow full = evaluation.full(part_of(invocation.progress, 0, 1 / steps)).row;
-  std::vector<EvaluationRow> rows;
-  for (const std::int64_t k : counts) {
-    const double done = static_cast<double>(rows.size()) + 1;
-    const Progress progress = part_of(invocation.progress, done / steps, (done + 1) / steps);
-    const Stopwatch stopwatch;
-    const Analysis analysis = analyse(invocation, read, evaluation.source().sequence,
-                                      static_cast<int>(k), part_of(progress, 0, 0.7));
-    const Regions regions = regions_of(invocation, analysis);
-    const double seconds = stopwatch.seconds();
-    rows.push_back(evaluation.by(regions, part_of(progress, 0.7, 1)).row);
-    rows.back().k = static_cast<int>(k);
-    rows.back().decompose_seconds = seconds;
-  }
-  rows.push_back(full);
+  const NamedData& target = invocation.inputs.at("target").front();
+  EvaluationOptions options = evaluation_parameters(&read.sequence).read(invocation.parameters);
+  options.source = described(options.source, invocation.inputs.at("source").front());
+  options.threads = invocation.threads;
+  options.progress = invocation.progress;
+  options.notes = warnings_of(invocation);
+  const std::vector<EvaluationRow> rows = in_command_terms(invocation.parameters, [&] {
+    return evaluate(read.sequence, {target.name, std::get<BlendshapeModel>(target.data)}, options);
+  });
   const Table table = table_of(rows);
   Outcome outcome;
   outcome.report = Json::parse(table.json()).dump();
@@ -66,13 +67,15 @@ Outcome run_evaluate(const Invocation& invocation) {
 
 /// One decomposition after the other, each followed by a transfer.
 double memory_of_evaluate(const Invocation& invocation) {
-  const SequenceRead& source = invocation.get<SequenceRead>("source");
-  const auto& counts = invocation.parameters.integers("k");
+  const SequenceRead& read = invocation.get<SequenceRead>("source");
+  EvaluationOptions options = evaluation_parameters().read(invocation.parameters);
+  options.solving.threads = invocation.threads;
+  const auto& source = invocation.inputs.at("source").front();
+  const double alignment = alignment_bytes(read.sequence, described(options.source, source));
   const double analysis =
-      analysis_bytes(invocation, source, static_cast<int>(*std::ranges::max_element(counts)));
-  const auto& target = std::get<BlendshapeModel>(invocation.inputs.at("target").front().data);
-  return std::max(analysis,
-                  alignment_bytes(invocation, source) + solution_bytes(invocation, source, target));
+      alignment + analysis_bytes(read.sequence, *std::ranges::max_element(options.counts));
+  const auto& target = invocation.get<BlendshapeModel>("target");
+  return std::max(analysis, alignment + solution_bytes(read.sequence, target, options.solving));
 }
 
 }  // namespace
@@ -85,17 +88,7 @@ Operation evaluate_operation() {
       {"source", DataKind::sequence, "sequence whose deformation is transferred"},
       {"target", DataKind::model, "model (MODEL or MODEL@identity=1.5) or mesh that receives it"}};
   operation.outputs = {{"out", DataKind::table, "the table: .csv or .json", true}};
-  operation.parameters = region_parameters();
-  for (const auto& group :
-       {decomposition_parameters(30), alignment_parameters(), solving_parameters()}) {
-    for (const Parameter& parameter : group) operation.parameters.push_back(parameter);
-  }
-  for (Parameter& parameter : operation.parameters) {
-    if (parameter.name != "k") continue;
-    parameter.kind = ParameterKind::integer_list;
-    parameter.fallback = std::vector<std::int64_t>{10, 30, 40};
-    parameter.help = "numbers of components, one row each";
-  }
+  operation.parameters = evaluation_parameters().declared();
   operation.examples = {"evaluate take.npy actor/ -k 10,30,40",
                         "evaluate takes/ actor@identity007=2 -k 10,20,30,40,50 -o table.csv"};
   operation.run = run_evaluate;

@@ -7,20 +7,41 @@
 #include "geodesic/support_map.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/text.h"
-#include "toolkit/operations/analysis.h"
 #include "toolkit/operations/json.h"
+#include "toolkit/operations/pipeline_parameters.h"
 #include "toolkit/operations/toolkit_operations.h"
 
 namespace mimetra {
 
 namespace {
 
+struct GeodesicCall {
+  /// Vertices to measure from.
+  std::vector<int> sources = {0};
+  /// Between which the support map rises.
+  Length d_min = AnalysisOptions{}.d_min;
+  Length d_max = AnalysisOptions{}.d_max;
+  DistanceOptions distances = {};
+
+  static constexpr Option kSources{"sources", &GeodesicCall::sources, {.minimum = 0}};
+  static constexpr Option kMinimum{"d_min", &GeodesicCall::d_min};
+  static constexpr Option kMaximum{"d_max", &GeodesicCall::d_max};
+};
+
+BoundParameters<GeodesicCall> geodesic_parameters() {
+  BoundParameters<GeodesicCall> list;
+  return list.add("source", GeodesicCall::kSources, "vertices to measure from, 0-based")
+      .add("d-min", GeodesicCall::kMinimum, "distance up to which the support map is 0")
+      .add("d-max", GeodesicCall::kMaximum, "distance from which the support map is 1")
+      .add(&GeodesicCall::distances, distance_parameters());
+}
+
 /// Distance to the nearest of the sources.
-Eigen::VectorXd nearest(const SurfaceDistances& distances, const std::vector<std::int64_t>& sources,
+Eigen::VectorXd nearest(const SurfaceDistances& distances, const std::vector<int>& sources,
                         int vertices) {
   Eigen::VectorXd result =
       Eigen::VectorXd::Constant(vertices, std::numeric_limits<double>::infinity());
-  for (const std::int64_t source : sources) {
+  for (const int source : sources) {
     if (source >= vertices) {
       throw MismatchError("--source: vertex " + std::to_string(source) + ", the mesh has " +
                           std::to_string(vertices) + " (0-based)");
@@ -30,19 +51,21 @@ Eigen::VectorXd nearest(const SurfaceDistances& distances, const std::vector<std
       throw MismatchError("--source: vertex " + std::to_string(source) +
                           " belongs to no triangle with area; choose another");
     }
-    result = result.cwiseMin(distances(static_cast<VertexIndex>(source)));
+    result = result.cwiseMin(distances(source));
   }
   return result;
 }
 
 Outcome run_geodesic(const Invocation& invocation) {
   const MeshSequence& sequence = invocation.get<SequenceRead>("mesh").sequence;
-  const Parameters& parameters = invocation.parameters;
+  GeodesicCall call = geodesic_parameters().read(invocation.parameters);
+  call.distances.threads = invocation.threads;
+  call.distances.notes = warnings_of(invocation);
   const MeshSequence mesh = sequence.slice(0, 1).with_rest(sequence.frame(0));
-  const SupportRange range = support_range(parameters, mesh.extent());
-  const SurfaceDistances distances = distances_on(invocation, mesh.rest(), mesh.triangles());
-  const Eigen::VectorXd distance =
-      nearest(distances, parameters.integers("source"), mesh.vertices());
+  const SupportRange range = in_command_terms(
+      invocation.parameters, [&] { return support_range(call.d_min, call.d_max, mesh.extent()); });
+  const SurfaceDistances distances = distances_along(mesh.rest(), mesh.triangles(), call.distances);
+  const Eigen::VectorXd distance = nearest(distances, call.sources, mesh.vertices());
   const Eigen::VectorXd support = geodesic::support_map(distance, range.d_min, range.d_max);
   int reached = 0;
   double farthest = 0;
@@ -75,13 +98,7 @@ Operation geodesic_operation() {
   operation.summary = "Distances along a mesh from a vertex, and the support map around it";
   operation.inputs = {{"mesh", DataKind::sequence, "mesh, or the first frame of a sequence"}};
   operation.outputs = {{"out", DataKind::fields, ".vtp with the fields distance and support"}};
-  operation.parameters = {
-      {"source", ParameterKind::integer_list, std::vector<std::int64_t>{0},
-       "vertices to measure from, 0-based", "", 0},
-      {"d-min", ParameterKind::length, "0.1", "distance up to which the support map is 0"},
-      {"d-max", ParameterKind::length, "0.7", "distance from which the support map is 1"}};
-  for (const Parameter& parameter : geodesic_parameters())
-    operation.parameters.push_back(parameter);
+  operation.parameters = geodesic_parameters().declared();
   operation.examples = {"geodesic neutral.obj --source 1200 -o nose.vtp",
                         "geodesic neutral.obj --source 1200 --geodesics exact -o exact.vtp"};
   operation.run = run_geodesic;

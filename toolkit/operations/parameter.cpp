@@ -90,13 +90,12 @@ std::vector<std::int64_t> parse_list(const Parameter& parameter, const std::stri
 
 constexpr std::string_view kAbsolute = "abs";
 
-/// The number in a length and whether it is absolute.
-std::optional<std::pair<double, bool>> parse_length(std::string_view text) {
+std::optional<Length> parse_length(std::string_view text) {
   const bool absolute = text.ends_with(kAbsolute);
   if (absolute) text.remove_suffix(kAbsolute.size());
   const auto number = parse_number<double>(text);
   if (!number || !std::isfinite(*number) || *number < 0) return {};
-  return std::pair(*number, absolute);
+  return Length{*number, absolute};
 }
 
 bool in_range(const Parameter& parameter, double number) {
@@ -127,7 +126,7 @@ bool is_sound(const Parameter& parameter, const ParameterValue& value) {
     case ParameterKind::length: {
       const auto* text = std::get_if<std::string>(&value);
       const auto length = text ? parse_length(*text) : std::nullopt;
-      return length && in_range(parameter, length->first);
+      return length && in_range(parameter, length->value);
     }
     case ParameterKind::choice: {
       const auto* text = std::get_if<std::string>(&value);
@@ -205,6 +204,10 @@ std::string to_text(const ParameterValue& value) {
   return std::visit(Visitor{}, value);
 }
 
+std::string to_text(const Length& length) {
+  return shortest(length.value) + std::string(length.absolute ? kAbsolute : "");
+}
+
 Parameters::Parameters(std::vector<Parameter> declared) : declared_(std::move(declared)) {}
 
 const Parameter* Parameters::find(const std::string& name) const {
@@ -263,9 +266,8 @@ std::optional<std::string> Parameters::optional_text(const std::string& name) co
   return text ? std::optional(*text) : std::nullopt;
 }
 
-double Parameters::length(const std::string& name, double extent) const {
-  const auto parsed = parse_length(text(name));
-  return parsed->second ? parsed->first : parsed->first * extent;
+Length Parameters::length(const std::string& name) const {
+  return *parse_length(text(name));
 }
 
 }  // namespace mimetra

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "toolkit/mesh/choice.h"
+#include "toolkit/mesh/length.h"
 
 namespace mimetra {
 
@@ -81,6 +82,7 @@ void check_value(const Parameter& parameter, const ParameterValue& value);
 
 /// A value as people type it; empty for none.
 std::string to_text(const ParameterValue& value);
+std::string to_text(const Length& length);
 
 /// Values by name, with the defaults of those that were not set.
 class Parameters {
@@ -111,8 +113,7 @@ class Parameters {
     if (const auto value = choice_of<Enum>(text(name))) return *value;
     throw std::invalid_argument("parameter '" + name + "': no such choice as '" + text(name) + "'");
   }
-  /// A length in the unit of a mesh whose longest side is `extent`.
-  double length(const std::string& name, double extent) const;
+  Length length(const std::string& name) const;
 
  private:
   std::vector<Parameter> declared_;

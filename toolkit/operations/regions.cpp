@@ -1,14 +1,44 @@
 #include <nlohmann/json.hpp>
 
 #include "toolkit/mesh/errors.h"
-#include "toolkit/operations/analysis.h"
 #include "toolkit/operations/json.h"
-#include "toolkit/operations/memory.h"
+#include "toolkit/operations/pipeline_parameters.h"
+#include "toolkit/operations/region_report.h"
 #include "toolkit/operations/toolkit_operations.h"
 
 namespace mimetra {
 
 namespace {
+
+struct RegionsCall {
+  RegionChoiceOptions regions = {};
+  /// Also write support_k and component_k of each region.
+  bool component_fields = false;
+  AnalysisOptions analysis = {};
+  SourceOptions source = {};
+
+  static constexpr Option kComponentFields{"component_fields", &RegionsCall::component_fields};
+};
+
+BoundParameters<RegionsCall> regions_parameters(const MeshSequence* sequence = nullptr) {
+  BoundParameters<RegionsCall> list;
+  return list.add(&RegionsCall::regions, region_parameters())
+      .add("component-fields", RegionsCall::kComponentFields,
+           "also write support_k and component_k of each region")
+      .add(&RegionsCall::analysis, count_parameters())
+      .add(&RegionsCall::analysis, analysis_parameters(sequence))
+      .add(&RegionsCall::source, alignment_parameters(sequence));
+}
+
+/// Components given, or those of the sequence without its motion.
+Analysis analysis_of(const Invocation& invocation, const RegionsCall& call) {
+  const NamedData& input = invocation.inputs.at("sequence").front();
+  const MeshSequence& sequence = std::get<SequenceRead>(input.data).sequence;
+  if (const auto given = given_components(invocation)) {
+    return analysis_of(*given, sequence, call.analysis);
+  }
+  return analyse(without_head_motion(sequence, described(call.source, input)), call.analysis);
+}
 
 /// What the script for ParaView opens: the main output.
 std::filesystem::path series_of(const Invocation& invocation) {
@@ -24,18 +54,22 @@ std::filesystem::path series_of(const Invocation& invocation) {
 
 Outcome run_regions(const Invocation& invocation) {
   if (invocation.wants("paraview")) series_of(invocation);
-  const bool with_components = invocation.parameters.flag("component-fields");
+  const SequenceRead& read = invocation.get<SequenceRead>("sequence");
+  RegionsCall call = regions_parameters(&read.sequence).read(invocation.parameters);
+  call.regions.notes = call.analysis.notes = warnings_of(invocation);
+  call.analysis.threads = invocation.threads;
+  call.analysis.progress = invocation.progress;
   const Components* given = invocation.find<Components>("components");
-  if (with_components && given && given->support.size() == 0) {
+  if (call.component_fields && given && given->support.size() == 0) {
     throw MismatchError(invocation.inputs.at("components").front().name +
                         ": holds no support maps, which --component-fields writes; decompose the "
                         "sequence again");
   }
-  const SequenceRead& read = invocation.get<SequenceRead>("sequence");
-  const Analysis analysis = analysis_for(invocation, read);
-  const Regions regions = regions_of(invocation, analysis);
+  const Analysis analysis =
+      in_command_terms(invocation.parameters, [&] { return analysis_of(invocation, call); });
+  const Regions regions = choose_regions(analysis, call.regions);
   std::vector<Field> fields = fields_of(regions);
-  if (with_components) {
+  if (call.component_fields) {
     for (Field& field : component_fields(analysis.components, regions)) {
       fields.push_back(std::move(field));
     }
@@ -69,12 +103,7 @@ Operation regions_operation() {
                        components_output(),
                        {"paraview", DataKind::view,
                         "script (.py) that shows them: paraview --script=VIEW.py", true}};
-  operation.parameters = region_parameters();
-  operation.parameters.push_back({"component-fields", ParameterKind::flag, false,
-                                  "also write support_k and component_k of each region"});
-  for (const auto& group : {decomposition_parameters(30), alignment_parameters()}) {
-    for (const Parameter& parameter : group) operation.parameters.push_back(parameter);
-  }
+  operation.parameters = regions_parameters().declared();
   operation.examples = {"regions takes/ -k 30 -o rois/take.pvd --paraview view.py",
                         "regions take.npy --coverage 0.8 --radius 12abs -o rois.json"};
   operation.run = run_regions;

@@ -3,76 +3,64 @@
 #include <nlohmann/json.hpp>
 
 #include "toolkit/mesh/errors.h"
-#include "toolkit/mesh/progress.h"
+#include "toolkit/mesh/stopwatch.h"
 #include "toolkit/mesh/text.h"
 #include "toolkit/operations/json.h"
-#include "toolkit/operations/memory.h"
-#include "toolkit/operations/solving.h"
-#include "toolkit/operations/stopwatch.h"
+#include "toolkit/operations/pipeline_parameters.h"
+#include "toolkit/operations/region_report.h"
 #include "toolkit/operations/toolkit_operations.h"
+#include "toolkit/pipeline/memory.h"
 
 namespace mimetra {
 
 namespace {
 
-/// What becomes of the head motion that was taken out of the source.
-enum class RemovedMotion { keep, drop };
-
-constexpr std::string_view choice_name(RemovedMotion value) {
-  switch (value) {
-    case RemovedMotion::keep:
-      return "keep";
-    case RemovedMotion::drop:
-      return "drop";
-  }
-  return {};
+BoundParameters<TransferOptions> transfer_parameters(const MeshSequence* sequence = nullptr) {
+  using Options = TransferOptions;
+  BoundParameters<Options> list;
+  return list.add("full", Options::kFull, "use all triangles instead of regions")
+      .add("head-motion", Options::kHeadMotion,
+           "give the motion that --align took out back to the target, or drop it")
+      .add(&Options::regions, region_parameters())
+      .add(&Options::analysis, count_parameters())
+      .add(&Options::analysis, analysis_parameters(sequence))
+      .add(&Options::source, alignment_parameters(sequence))
+      .add(&Options::source, source_rest_parameters(sequence))
+      .add(&Options::solving, solving_parameters());
 }
 
-/// The triangles a transfer uses, the regions they come from (none for --full), and the components
-/// these come from (none for a region set).
-struct Choice {
-  Selection selection;
-  std::optional<Regions> regions;
-  std::optional<Components> components = {};
-  double seconds = 0;
-};
+const BlendshapeModel& model_of(const NamedData& target) {
+  return std::get<BlendshapeModel>(target.data);
+}
 
-Choice choose(const Invocation& invocation, const Alignment& source) {
-  if (invocation.parameters.flag("full")) {
-    return {{all_triangles(source.sequence.triangles()), {}}, {}};
+std::vector<Target> targets_of(const Invocation& invocation) {
+  std::vector<Target> targets;
+  for (const NamedData& target : invocation.inputs.at("target")) {
+    targets.push_back({target.name, model_of(target)});
   }
-  if (const RegionData* given = invocation.find<RegionData>("regions")) {
-    const Regions& regions = given->regions;
-    const std::string& name = invocation.inputs.at("regions").front().name;
-    const auto triangles = static_cast<int>(source.sequence.triangles().rows());
-    if (regions.vertices != source.sequence.vertices() || regions.all_triangles != triangles) {
-      throw MismatchError(name + ": regions of a mesh with " + std::to_string(regions.vertices) +
-                          " vertices and " + std::to_string(regions.all_triangles) +
-                          " triangles, expected " + std::to_string(source.sequence.vertices()) +
-                          " and " + std::to_string(triangles) + " as in the source");
-    }
-    if (regions.triangles.empty()) {
-      throw MismatchError(name + ": its regions hold no triangle of the mesh; choose others");
-    }
-    return {{regions.triangles, regions.inside}, regions};
+  return targets;
+}
+
+TransferOptions options_of(const Invocation& invocation) {
+  const NamedData& source = invocation.inputs.at("source").front();
+  TransferOptions options = transfer_parameters(&std::get<SequenceRead>(source.data).sequence)
+                                .read(invocation.parameters);
+  options.source = described(std::move(options.source), source);
+  if (const RegionData* regions = invocation.find<RegionData>("regions")) {
+    options.given = GivenRegions{invocation.inputs.at("regions").front().name, regions->regions};
+  } else if (auto components = given_components(invocation)) {
+    options.given = std::move(*components);
   }
-  const SequenceRead& read = invocation.get<SequenceRead>("source");
-  const Stopwatch stopwatch;
-  Analysis analysis =
-      invocation.find<Components>("components")
-          ? analysis_for(invocation, read)
-          : analyse(invocation, read, source.sequence, invocation.parameters.integer("k"),
-                    part_of(invocation.progress, 0, 0.4));
-  Regions regions = regions_of(invocation, analysis);
-  Selection selection{regions.triangles, regions.inside};
-  return {std::move(selection), std::move(regions), std::move(analysis.components),
-          stopwatch.seconds()};
+  options.threads = invocation.threads;
+  options.progress = invocation.progress;
+  options.notes = warnings_of(invocation);
+  return options;
 }
 
 NamedData weight_table(const NamedData& target, const Solution& solution) {
   Table table;
   table.columns = {"time"};
-  const auto& names = std::get<BlendshapeModel>(target.data).expressions().names;
+  const auto& names = model_of(target).expressions().names;
   table.columns.insert(table.columns.end(), names.begin(), names.end());
   for (int f = 0; f < solution.weights.rows(); ++f) {
     table.rows.push_back({solution.sequence.times()[f]});
@@ -81,7 +69,8 @@ NamedData weight_table(const NamedData& target, const Solution& solution) {
   return {target.name, std::move(table)};
 }
 
-Json report_of(const NamedData& target, const Solution& solution, const TransferError& error) {
+Json report_of(const NamedData& target, const TransferredTarget& transferred) {
+  const auto& [solution, error] = transferred;
   Json json = {{"name", target.name},          {"output", nullptr},  {"de_all", error.de_all},
                {"de_region", error.de_region}, {"leak", error.leak}, {"flipped", error.flipped},
                {"seconds", solution.seconds}};
@@ -95,8 +84,8 @@ Json report_of(const NamedData& target, const Solution& solution, const Transfer
   return json;
 }
 
-std::string summary_of(const NamedData& target, const Solution& solution,
-                       const TransferError& error) {
+std::string summary_of(const NamedData& target, const TransferredTarget& transferred) {
+  const auto& [solution, error] = transferred;
   return target.name + ": DE " + readable(error.de_all) + " over all triangles, " +
          readable(error.de_region) + " over the regions; leak " + readable(error.leak) + ", " +
          std::to_string(error.flipped) + " flipped triangles; " + readable(solution.seconds) +
@@ -105,77 +94,72 @@ std::string summary_of(const NamedData& target, const Solution& solution,
 
 /// Refuses outputs that this request cannot make, before anything is computed.
 void check_outputs(const Invocation& invocation) {
-  if (invocation.wants("regions-out") && invocation.parameters.flag("full")) {
+  const TransferOptions options = transfer_parameters().read(invocation.parameters);
+  if (invocation.wants("regions-out") && options.full) {
     throw UsageError("--regions-out: there are no regions with --full");
   }
-  const bool decomposes =
-      !invocation.parameters.flag("full") && !invocation.find<RegionData>("regions");
+  const bool decomposes = !options.full && !invocation.find<RegionData>("regions");
   if (invocation.wants("components-out") && !decomposes) {
     throw UsageError("--components-out: there are no components with --full or --regions");
   }
   if (!invocation.wants("weights-out")) return;
   for (const NamedData& target : invocation.inputs.at("target")) {
-    if (solves_for_vertices(invocation.parameters, std::get<BlendshapeModel>(target.data))) {
+    if (solves_for_vertices(model_of(target), options.solving.space)) {
       throw UsageError("--weights-out: " + target.name + " is solved for vertices, not weights");
     }
   }
 }
 
-Outcome run_transfer(const Invocation& invocation) {
-  const Stopwatch stopwatch;
-  const Alignment source = prepare_source(invocation);
+/// What each target's results are, in the order of the targets.
+void add_targets(Outcome& outcome, Json& report, const Invocation& invocation,
+                 TransferResult& result) {
   const std::vector<NamedData>& targets = invocation.inputs.at("target");
-  for (const NamedData& target : targets) check_target(source.sequence, target);
-  check_outputs(invocation);
-  Choice choice = choose(invocation, source);
-  const bool give_back = !source.motion.empty() && invocation.parameters.choice<RemovedMotion>(
-                                                       "head-motion") == RemovedMotion::keep;
-
-  Outcome outcome;
   Json reports = Json::array();
-  const double first = choice.regions ? 0.4 : 0.0;
   for (std::size_t t = 0; t < targets.size(); ++t) {
-    const double count = static_cast<double>(targets.size());
-    const Progress progress =
-        part_of(invocation.progress, first + (1 - first) * static_cast<double>(t) / count,
-                first + (1 - first) * static_cast<double>(t + 1) / count);
-    Solution solution = solve(invocation, source, targets[t], choice.selection, progress);
-    const TransferError error =
-        transfer_error(source.sequence, solution.sequence, choice.selection.triangles);
-    reports.push_back(report_of(targets[t], solution, error));
+    TransferredTarget& transferred = result.targets[t];
+    reports.push_back(report_of(targets[t], transferred));
     const auto paths = invocation.wanted.find("out");
     if (paths != invocation.wanted.end() && !paths->second.empty()) {
       reports.back()["output"] = paths->second.at(t).string();
     }
-    outcome.summary += summary_of(targets[t], solution, error);
+    outcome.summary += summary_of(targets[t], transferred);
+    Solution& solution = transferred.solution;
     if (invocation.wants("weights-out") && solution.weights.size() > 0) {
       outcome.outputs["weights-out"].push_back(weight_table(targets[t], solution));
     }
-    MeshSequence result = std::move(solution.sequence);
-    if (give_back) {
-      // The neutral has no head motion: kept beside these frames it would promise that they have
-      // none.
-      const MeshSequence moved = with_motion(result, source.motion);
-      result = MeshSequence(moved.shared_connectivity(), moved.positions(), moved.times());
-    }
     outcome.outputs["out"].push_back(
-        {targets[t].name, SequenceRead{std::move(result), false, {}, {}}});
+        {targets[t].name, SequenceRead{std::move(solution.sequence), false, {}, {}}});
   }
+  report["targets"] = reports;
+}
+
+void add_regions(Outcome& outcome, Json& report, const Invocation& invocation,
+                 const TransferResult& result) {
+  if (!result.regions) return;
+  Json regions = report_of(*result.regions);
+  regions["seconds"] = result.region_seconds;
+  report["regions"] = regions;
+  outcome.summary = summary_of(*result.regions) + outcome.summary;
+  if (!invocation.wants("regions-out")) return;
+  outcome.outputs["regions-out"].push_back(
+      {"", RegionData{*result.regions,
+                      {invocation.get<SequenceRead>("source").sequence, fields_of(*result.regions),
+                       true}}});
+}
+
+Outcome run_transfer(const Invocation& invocation) {
+  const Stopwatch stopwatch;
+  check_outputs(invocation);
+  TransferResult result = in_command_terms(invocation.parameters, [&] {
+    return transfer(invocation.get<SequenceRead>("source").sequence, targets_of(invocation),
+                    options_of(invocation));
+  });
+  Outcome outcome;
+  Json report = Json::object();
+  add_targets(outcome, report, invocation, result);
+  add_regions(outcome, report, invocation, result);
   if (invocation.wants("components-out")) {
-    outcome.outputs["components-out"].push_back({"", std::move(*choice.components)});
-  }
-  Json report = {{"targets", reports}};
-  if (choice.regions) {
-    Json regions = report_of(*choice.regions);
-    regions["seconds"] = choice.seconds;
-    report["regions"] = regions;
-    outcome.summary = summary_of(*choice.regions) + outcome.summary;
-    if (invocation.wants("regions-out")) {
-      outcome.outputs["regions-out"].push_back(
-          {"", RegionData{*choice.regions,
-                          {invocation.get<SequenceRead>("source").sequence,
-                           fields_of(*choice.regions), true}}});
-    }
+    outcome.outputs["components-out"].push_back({"", std::move(*result.components)});
   }
   report["seconds"] = stopwatch.seconds();
   outcome.report = report.dump();
@@ -185,14 +169,16 @@ Outcome run_transfer(const Invocation& invocation) {
 /// Decomposition, then one target after the other, whose results are kept.
 double memory_of_transfer(const Invocation& invocation) {
   const SequenceRead& source = invocation.get<SequenceRead>("source");
-  const bool looks_for_regions =
-      !invocation.parameters.flag("full") && !invocation.find<RegionData>("regions");
+  TransferOptions options = transfer_parameters().read(invocation.parameters);
+  options.source = described(std::move(options.source), invocation.inputs.at("source").front());
+  options.solving.threads = invocation.threads;
+  const bool looks_for_regions = !options.full && !invocation.find<RegionData>("regions");
   const double analysis =
-      looks_for_regions ? analysis_bytes(invocation, source, invocation.parameters.integer("k"))
+      looks_for_regions ? analysis_bytes(invocation, source, options.analysis.decomposition.count)
                         : 0;
-  double solutions = alignment_bytes(invocation, source);
+  double solutions = alignment_bytes(source.sequence, options.source);
   for (const NamedData& target : invocation.inputs.at("target")) {
-    solutions += solution_bytes(invocation, source, std::get<BlendshapeModel>(target.data));
+    solutions += solution_bytes(source.sequence, model_of(target), options.solving);
   }
   return std::max(analysis, solutions);
 }
@@ -218,14 +204,7 @@ Operation transfer_operation() {
        true},
       components_output(),
       {"weights-out", DataKind::table, "blendshape weights: .csv or .json", true, true}};
-  operation.parameters = {
-      {"full", ParameterKind::flag, false, "use all triangles instead of regions"},
-      choice_parameter("head-motion", RemovedMotion::keep,
-                       "give the motion that --align took out back to the target, or drop it")};
-  for (const auto& group : {region_parameters(), decomposition_parameters(30),
-                            alignment_parameters(), solving_parameters()}) {
-    for (const Parameter& parameter : group) operation.parameters.push_back(parameter);
-  }
+  operation.parameters = transfer_parameters().declared();
   operation.examples = {
       "transfer takes/smile_%04d.obj actor/ -k 30 -o actor_smile/ --regions-out rois/smile.pvd",
       "transfer take.npy actor@identity007=2 double/ --full -o results/"};

@@ -13,9 +13,6 @@
 namespace mimetra {
 namespace {
 
-// Default radius of a disc, in longest sides of the rest pose.
-constexpr double kDefaultRadius = 0.1;
-
 // Share of its component's energy that RegionShape::support holds.
 constexpr double kSupportShare = 0.95;
 
@@ -27,10 +24,7 @@ void require_valid(const RegionOptions& options) {
     throw std::invalid_argument("radius is " + std::to_string(*options.radius) +
                                 "; it must be above 0");
   }
-  if (options.coverage && !(*options.coverage > 0 && *options.coverage <= 1)) {
-    throw std::invalid_argument("coverage is " + std::to_string(*options.coverage) +
-                                "; it must be in (0, 1]");
-  }
+  check_options(options);
 }
 
 /// Components that move the same vertex most, strongest first, and how far all vertices are from
@@ -151,7 +145,7 @@ Region region_around(const Site& site, const Components& components, const Regio
     region.vertices = energetic_vertices(site, energy_on_vertices(components, site.components));
     region.radius = farthest(site, region.vertices);
   } else {
-    region.radius = options.radius.value_or(kDefaultRadius * extent(components.rest));
+    region.radius = options.radius.value_or(RegionOptions::kRadiusShare * extent(components.rest));
     region.vertices = disc(site, region.radius);
   }
   return region;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "toolkit/mesh/fields.h"
+#include "toolkit/mesh/option.h"
 #include "toolkit/splocs/decomposition.h"
 
 namespace mimetra {
@@ -29,15 +30,21 @@ constexpr std::string_view choice_name(RegionShape value) {
 
 struct RegionOptions {
   RegionShape shape = RegionShape::disc;
-  /// Radius of a disc, length; by default 0.1 of the rest pose's longest side.
+  /// Radius of a disc, length > 0; by default this share of the rest pose's longest side.
+  static constexpr double kRadiusShare = 0.1;
   std::optional<double> radius = {};
-  /// Take the strongest components until the union holds this share of the motion energy, (0, 1];
-  /// without it, all components.
+  /// Take the strongest components until the union holds this share of the motion energy; without
+  /// it, all components.
   std::optional<double> coverage = {};
   /// Distances along the rest pose; by default SurfaceDistances of its exactly welded vertices.
   DistanceFunction distances = {};
   /// For those default distances; 0 for all there are. The result does not depend on it.
   int threads = 0;
+
+  static constexpr Option kShape{"shape", &RegionOptions::shape};
+  static constexpr Option kCoverage{
+      "coverage", &RegionOptions::coverage, {.minimum = 1e-9, .maximum = 1}};
+  static constexpr auto declared() { return std::tuple(kShape, kCoverage); }
 };
 
 /// A region of interest: where one component moves the face.

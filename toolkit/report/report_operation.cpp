@@ -7,10 +7,12 @@
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/progress.h"
 #include "toolkit/mesh/text.h"
+#include "toolkit/operations/evaluation_table.h"
 #include "toolkit/operations/formats.h"
 #include "toolkit/operations/json.h"
-#include "toolkit/operations/memory.h"
+#include "toolkit/operations/pipeline_parameters.h"
 #include "toolkit/pictures/render_operation.h"
+#include "toolkit/pipeline/memory.h"
 #include "toolkit/report/report_page.h"
 #include "toolkit/report/viewer_script.h"
 
@@ -112,7 +114,9 @@ double memory(const Invocation& invocation) {
   const double analysis = drawing_bytes(read.sequence.vertices(), most) +
                           analysis_bytes(call, read, static_cast<int>(most));
   if (!call.inputs.contains("target")) return analysis;
-  return analysis + 3 * solution_bytes(call, read, call.get<BlendshapeModel>("target"));
+  SolveOptions options = solving_parameters().read(call.parameters);
+  options.threads = call.threads;
+  return analysis + 3 * solution_bytes(read.sequence, call.get<BlendshapeModel>("target"), options);
 }
 
 Operation report_operation() {

@@ -4,8 +4,8 @@
 #include <filesystem>
 #include <set>
 
-#include "toolkit/mesh/progress.h"
-#include "toolkit/operations/stopwatch.h"
+#include "toolkit/mesh/stopwatch.h"
+#include "toolkit/operations/pipeline_parameters.h"
 
 namespace mimetra {
 
@@ -48,11 +48,13 @@ const NamedData& target_of(const Invocation& call, const NamedData& run, const L
   return targets.front();
 }
 
-/// Looks for regions as the run did.
-class RegionSearch {
+/// Does the steps of a run as it did them.
+class RunSteps {
  public:
-  RegionSearch(const Invocation& call, const MeshSequence& sequence)
-      : call_(call), read_(call.get<SequenceRead>("source")), sequence_(sequence) {}
+  explicit RunSteps(const Invocation& call)
+      : call_(call), read_(call.get<SequenceRead>("source")), source_(source_of(call)) {}
+
+  const Source& source() const { return source_; }
 
   struct Found {
     Regions regions;
@@ -60,32 +62,80 @@ class RegionSearch {
     double seconds = 0;
   };
 
-  Found as_run(const Progress& progress) const {
+  Found regions_as_run(const Progress& progress) const {
     if (const RegionData* given = call_.find<RegionData>("regions")) {
       return {given->regions, {}, 0};
     }
-    if (!call_.find<Components>("components")) {
-      return of(main_count(call_.parameters), progress);
-    }
-    Analysis analysis = analysis_for(call_, read_);
-    Regions regions = regions_of(call_, analysis);
+    const auto given = given_components(call_);
+    if (!given) return regions_of(main_count(call_.parameters), progress);
+    Analysis analysis = analysis_of(*given, read_.sequence, analysis_options(progress));
+    Regions regions = choose_regions(analysis, region_options());
     return {std::move(regions), std::move(analysis.components), 0};
   }
 
-  Found of(int count, const Progress& progress) const {
+  Found regions_of(int count, const Progress& progress) const {
     const Stopwatch stopwatch;
-    Analysis analysis = analyse(call_, read_, sequence_, count, progress);
-    Regions regions = regions_of(call_, analysis);
+    AnalysisOptions options = analysis_options(progress);
+    options.decomposition.count = count;
+    Analysis analysis =
+        in_command_terms(call_.parameters, [&] { return analyse(source_, options); });
+    Regions regions = choose_regions(analysis, region_options());
     return {std::move(regions), std::move(analysis.components), stopwatch.seconds()};
   }
 
+  EvaluatedTransfer full(const Target& target, const Progress& progress) const {
+    return in_command_terms(
+        call_.parameters, [&] { return evaluate_full(source_, target, solve_options(progress)); });
+  }
+
+  EvaluatedTransfer by(const Regions& regions, const EvaluatedTransfer& full, const Target& target,
+                       const Progress& progress) const {
+    return in_command_terms(call_.parameters, [&] {
+      return evaluate_by(regions, full, source_, target, solve_options(progress));
+    });
+  }
+
  private:
+  SolveOptions solve_options(const Progress& progress) const {
+    SolveOptions options = solving_parameters().read(call_.parameters);
+    options.threads = call_.threads;
+    options.progress = progress;
+    options.notes = warnings_of(call_);
+    return options;
+  }
+
+  static Source source_of(const Invocation& call) {
+    const NamedData& input = call.inputs.at("source").front();
+    const MeshSequence& sequence = std::get<SequenceRead>(input.data).sequence;
+    const bool transfers = call.inputs.contains("target");
+    BoundParameters<SourceOptions> list = alignment_parameters(&sequence);
+    if (transfers) list.add(source_rest_parameters(&sequence));
+    SourceOptions options = described(list.read(call.parameters), input);
+    options.notes = warnings_of(call);
+    if (!transfers) return without_head_motion(sequence, options);
+    return in_command_terms(call.parameters, [&] { return prepare_source(sequence, options); });
+  }
+
+  AnalysisOptions analysis_options(const Progress& progress) const {
+    AnalysisOptions options = analysis_parameters(&read_.sequence).read(call_.parameters);
+    options.threads = call_.threads;
+    options.notes = warnings_of(call_);
+    options.progress = progress;
+    return options;
+  }
+
+  RegionChoiceOptions region_options() const {
+    RegionChoiceOptions options = region_parameters().read(call_.parameters);
+    options.notes = warnings_of(call_);
+    return options;
+  }
+
   const Invocation& call_;
   const SequenceRead& read_;
-  const MeshSequence& sequence_;
+  Source source_;
 };
 
-EvaluationRow completed(EvaluationRow row, const RegionSearch::Found& found) {
+EvaluationRow completed(EvaluationRow row, const RunSteps::Found& found) {
   if (!found.components) return row;
   row.k = found.components->count();
   if (found.seconds > 0) row.decompose_seconds = found.seconds;
@@ -114,15 +164,15 @@ auto apart_from(std::vector<std::string>& notes, const Work& work) {
   return result;
 }
 
-ReportedTransfer transferred(Evaluation& evaluation, const NamedData& target,
-                             const RegionSearch& search, const RegionSearch::Found& main,
-                             const std::vector<std::int64_t>& counts,
+ReportedTransfer transferred(const RunSteps& steps, const NamedData& target,
+                             const RunSteps::Found& main, const std::vector<std::int64_t>& counts,
                              std::vector<std::string>& notes, const Progress& progress) {
+  const Target to{target.name, std::get<BlendshapeModel>(target.data)};
   ReportedTransfer transfer;
   transfer.target = short_name(target.name);
   EvaluatedTransfer full =
-      apart_from(notes, [&] { return evaluation.full(part_of(progress, 0, 0.1)); });
-  EvaluatedTransfer by_regions = evaluation.by(main.regions, part_of(progress, 0.1, 0.2));
+      apart_from(notes, [&] { return steps.full(to, part_of(progress, 0, 0.1)); });
+  EvaluatedTransfer by_regions = steps.by(main.regions, full, to, part_of(progress, 0.1, 0.2));
   if (by_regions.solution.weights.size() > 0) {
     transfer.expressions = std::get<BlendshapeModel>(target.data).expressions().names;
   }
@@ -136,8 +186,8 @@ ReportedTransfer transferred(Evaluation& evaluation, const NamedData& target,
     done += each;
     if (k == main_row.k || k > main.regions.vertices) continue;
     transfer.rows.push_back(apart_from(notes, [&] {
-      const auto found = search.of(static_cast<int>(k), part_of(part, 0, 0.7));
-      return completed(evaluation.by(found.regions, part_of(part, 0.7, 1)).row, found);
+      const auto found = steps.regions_of(static_cast<int>(k), part_of(part, 0, 0.7));
+      return completed(steps.by(found.regions, full, to, part_of(part, 0.7, 1)).row, found);
     }));
   }
   std::ranges::stable_sort(transfer.rows, {}, [](const EvaluationRow& row) { return row.k; });
@@ -146,7 +196,7 @@ ReportedTransfer transferred(Evaluation& evaluation, const NamedData& target,
   transfer.rows.push_back(full.row);
   transfer.full = std::move(full.solution);
   transfer.by_regions = std::move(by_regions.solution);
-  transfer.shown_scale = shown_scale(evaluation.source().sequence, transfer.by_regions.sequence);
+  transfer.shown_scale = shown_scale(steps.source().sequence, transfer.by_regions.sequence);
   enlarge(transfer.full.sequence, transfer.shown_scale);
   enlarge(transfer.by_regions.sequence, transfer.shown_scale);
   return transfer;
@@ -180,25 +230,19 @@ ReportStudy study(const NamedData& run, const std::vector<std::int64_t>& counts,
   }
   const Invocation call = call_of(read, result.notes);
   result.source = short_name(call.inputs.at("source").front().name);
-  if (!call.inputs.contains("target")) {
-    const SequenceRead& source = call.get<SequenceRead>("source");
-    const Alignment still = without_motion(call, source, source.sequence);
-    result.moved_head = !still.motion.empty();
-    result.sequence = still.sequence;
-    auto found = RegionSearch(call, result.sequence).as_run(progress);
-    result.regions = std::move(found.regions);
-    result.components = std::move(found.components);
-    return result;
+  const RunSteps steps(call);
+  result.moved_head = !steps.source().motion.empty();
+  result.sequence = steps.source().sequence;
+  const NamedData* target = call.inputs.contains("target") ? &target_of(call, run, log) : nullptr;
+  if (target) {
+    check_target(result.sequence, {target->name, std::get<BlendshapeModel>(target->data)});
   }
-  const NamedData& target = target_of(call, run, log);
-  Evaluation evaluation(call, target);
-  result.moved_head = !evaluation.source().motion.empty();
-  result.sequence = evaluation.source().sequence;
-  const RegionSearch search(call, evaluation.source().sequence);
-  auto found = search.as_run(part_of(progress, 0, 0.3));
-  result.transfer =
-      transferred(evaluation, target, search, found, all_counts(counts, call.parameters),
-                  result.notes, part_of(progress, 0.3, 1));
+  const double found_at = target ? 0.3 : 1;
+  auto found = steps.regions_as_run(part_of(progress, 0, found_at));
+  if (target) {
+    result.transfer = transferred(steps, *target, found, all_counts(counts, call.parameters),
+                                  result.notes, part_of(progress, found_at, 1));
+  }
   result.regions = std::move(found.regions);
   result.components = std::move(found.components);
   return result;

@@ -5,7 +5,8 @@
 #include <vector>
 
 #include "toolkit/mesh/progress.h"
-#include "toolkit/operations/evaluation.h"
+#include "toolkit/operations/operation.h"
+#include "toolkit/pipeline/evaluation.h"
 
 namespace mimetra {
 

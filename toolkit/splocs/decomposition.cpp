@@ -19,10 +19,6 @@
 namespace mimetra {
 namespace {
 
-// Defaults of d_min and d_max, in longest sides of the rest pose.
-constexpr double kDefaultMinimum = 0.1;
-constexpr double kDefaultMaximum = 0.7;
-
 // Share of the work that the start takes, distances included: for the caller's progress.
 constexpr double kStartShare = 0.4;
 
@@ -31,21 +27,9 @@ void require(bool condition, const std::string& message) {
 }
 
 void require_valid(const DecompositionOptions& options) {
-  require(options.count >= 1,
-          "count is " + std::to_string(options.count) + "; at least 1 component");
-  require(options.sparsity >= 0 && std::isfinite(options.sparsity),
-          "sparsity is " + std::to_string(options.sparsity) + "; it must be 0 or more");
-  require(options.rho > 0 && std::isfinite(options.rho),
-          "rho is " + std::to_string(options.rho) + "; it must be above 0");
-  require(options.iterations >= 1,
-          "iterations is " + std::to_string(options.iterations) + "; at least 1");
-  require(options.admm_iterations >= 1,
-          "admm_iterations is " + std::to_string(options.admm_iterations) + "; at least 1");
-  require(options.tolerance >= 0,
-          "tolerance is " + std::to_string(options.tolerance) + "; it must be 0 or more");
-  require(options.basis_tolerance == 0 ||
-              (options.basis_tolerance >= kLeastBasisTolerance && options.basis_tolerance < 1),
-          "basis_tolerance must be 0, or from 1e-6 to below 1");
+  check_options(options);
+  require(options.basis_tolerance == 0 || options.basis_tolerance >= kLeastBasisTolerance,
+          "basis_tolerance must be 0, or from 1e-6 to 0.5");
 }
 
 void require_valid(double d_min, double d_max) {
@@ -123,7 +107,7 @@ void iterate(Components& result, Motion motion, Start start, SupportMaps support
   // What is not needed any more is released: it is the largest array there is.
   VertexBlocks<double> X = std::move(motion.X);
   if (basis) X = std::move(basis->B);
-  if (options.single_precision) {
+  if (options.precision == IterationPrecision::single_precision) {
     alternate(result, motion.norm2, std::move(X).cast<float>(), basis, std::move(start),
               std::move(support), progress);
   } else {
@@ -154,8 +138,8 @@ Components decompose(const MeshSequence& sequence, const DecompositionOptions& o
   Components result;
   result.rest = sequence.rest();
   result.triangles = sequence.triangles();
-  result.d_min = options.d_min.value_or(kDefaultMinimum * sequence.extent());
-  result.d_max = options.d_max.value_or(kDefaultMaximum * sequence.extent());
+  result.d_min = options.d_min.value_or(DecompositionOptions::kMinimumShare * sequence.extent());
+  result.d_max = options.d_max.value_or(DecompositionOptions::kMaximumShare * sequence.extent());
   require_valid(result.d_min, result.d_max);
   result.options = options;
   result.options.distances = nullptr;

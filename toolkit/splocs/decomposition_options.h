@@ -2,6 +2,7 @@
 
 #include <optional>
 
+#include "toolkit/mesh/option.h"
 #include "toolkit/mesh/progress.h"
 #include "toolkit/splocs/surface_distances.h"
 
@@ -13,18 +14,33 @@ enum class SignRule {
   literal     ///< by the norms of the projections, each divided by its maximum (reference, 2013)
 };
 
+/// Of the numbers that a decomposition iterates on.
+enum class IterationPrecision { double_precision, single_precision };
+
+/// As people choose it.
+constexpr std::string_view choice_name(IterationPrecision value) {
+  switch (value) {
+    case IterationPrecision::double_precision:
+      return "double";
+    case IterationPrecision::single_precision:
+      return "single";
+  }
+  return {};
+}
+
 struct DecompositionOptions {
-  /// K, 1 .. 3N.
+  /// K, at most 3N.
   int count = 50;
-  /// Support map: 0 up to d_min, 1 from d_max. Lengths; by default 0.1 and 0.7 of the rest pose's
+  /// Support map: 0 up to d_min, 1 from d_max. Lengths; by default these shares of the rest pose's
   /// longest side.
+  static constexpr double kMinimumShare = 0.1, kMaximumShare = 0.7;
   std::optional<double> d_min = {};
   std::optional<double> d_max = {};
-  /// Weight lambda >= 0 of the sparsity term, for X scaled to standard deviation 1.
+  /// Weight lambda of the sparsity term, for X scaled to standard deviation 1.
   double sparsity = 2;
-  /// Penalty rho > 0 of ADMM.
+  /// Penalty rho of ADMM.
   double rho = 10;
-  /// Outer iterations at most, >= 1, and ADMM steps in each, >= 1.
+  /// Outer iterations at most, and ADMM steps in each.
   int iterations = 10;
   int admm_iterations = 10;
   /// Stop when the energy changes by less than this share of itself; 0 runs all iterations.
@@ -35,13 +51,32 @@ struct DecompositionOptions {
   /// Iterate on the motion's coordinates in as few poses over time as keep its Frobenius norm up to
   /// this share, at least 1e-6; 0 iterates on all frames. The start always does.
   double basis_tolerance = 0;
-  /// Iterate in single precision. The start is in double precision in any case.
-  bool single_precision = false;
+  /// The start is in double precision in any case; single moves components by about 1e-6 of
+  /// themselves.
+  IterationPrecision precision = IterationPrecision::double_precision;
   /// Distances along the rest pose; by default SurfaceDistances of its exactly welded vertices.
   DistanceFunction distances = {};
   /// 0 for all there are; the result does not depend on it.
   int threads = 0;
   Progress progress = {};
+
+  static constexpr Option kCount{"count", &DecompositionOptions::count, {.minimum = 1}};
+  static constexpr Option kSparsity{"sparsity", &DecompositionOptions::sparsity, {.minimum = 0}};
+  static constexpr Option kRho{"rho", &DecompositionOptions::rho, {.minimum = 1e-6}};
+  static constexpr Option kIterations{
+      "iterations", &DecompositionOptions::iterations, {.minimum = 1}};
+  static constexpr Option kAdmmIterations{
+      "admm_iterations", &DecompositionOptions::admm_iterations, {.minimum = 1}};
+  static constexpr Option kTolerance{
+      "tolerance", &DecompositionOptions::tolerance, {.minimum = 0, .maximum = 1}};
+  static constexpr Option kNonnegative{"nonnegative", &DecompositionOptions::nonnegative};
+  static constexpr Option kPrecision{"precision", &DecompositionOptions::precision};
+  static constexpr Option kBasisTolerance{
+      "basis_tolerance", &DecompositionOptions::basis_tolerance, {.minimum = 0, .maximum = 0.5}};
+  static constexpr auto declared() {
+    return std::tuple(kCount, kSparsity, kRho, kIterations, kAdmmIterations, kTolerance,
+                      kNonnegative, kPrecision, kBasisTolerance);
+  }
 };
 
 }  // namespace mimetra

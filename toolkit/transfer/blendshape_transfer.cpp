@@ -102,14 +102,7 @@ void check(const Positions& source_rest, const BlendshapeModel& target,
                         " vertices, the target " + std::to_string(target.vertices()) +
                         "; both need the same connectivity");
   }
-  const auto check_share = [](const char* name, double value) {
-    if (value >= 0 && value < std::numeric_limits<double>::infinity()) return;
-    throw std::invalid_argument(std::string(name) + ": expected at least 0, found " +
-                                std::to_string(value));
-  };
-  check_share("ridge", options.ridge);
-  check_share("sparsity", options.sparsity);
-  check_share("smoothness", options.smoothness);
+  check_options(options);
 }
 
 }  // namespace

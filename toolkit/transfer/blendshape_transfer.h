@@ -5,24 +5,32 @@
 #include <vector>
 
 #include "toolkit/mesh/errors.h"
+#include "toolkit/mesh/option.h"
 #include "toolkit/mesh/progress.h"
 #include "toolkit/model/blendshape_model.h"
 
 namespace mimetra {
 
 struct BlendshapeTransferOptions {
-  /// Weight of |beta|^2, as a share of the Gram matrix' mean diagonal over the columns that L sees,
-  /// >= 0.
+  /// Weight of |beta|^2, as a share of the Gram matrix' mean diagonal over the columns that L
+  /// sees.
   double ridge = 0;
-  /// Weight of 2 |beta|_1, as a share of the same, >= 0.
+  /// Weight of 2 |beta|_1, as a share of the same.
   double sparsity = 0;
-  /// Weight of squared second differences of beta over time: time constant in seconds, >= 0. The
-  /// penalty is (smoothness * frame rate)^4 times the same.
+  /// Weight of squared second differences of beta over time: time constant in seconds. The penalty
+  /// is (smoothness * frame rate)^4 times the same.
   double smoothness = 0;
   /// 0 for all there are; the result does not depend on it.
   int threads = 0;
   /// Of weights().
   Progress progress = {};
+
+  static constexpr Option kRidge{"ridge", &BlendshapeTransferOptions::ridge, {.minimum = 0}};
+  static constexpr Option kSparsity{
+      "sparsity", &BlendshapeTransferOptions::sparsity, {.minimum = 0}};
+  static constexpr Option kSmoothness{
+      "smoothness", &BlendshapeTransferOptions::smoothness, {.minimum = 0}, "s"};
+  static constexpr auto declared() { return std::tuple(kRidge, kSparsity, kSmoothness); }
 };
 
 /// What the chosen triangles show of the target's expressions.

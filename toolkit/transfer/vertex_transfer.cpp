@@ -72,14 +72,7 @@ geodesic::SparseFactor factor_of(const Eigen::SparseMatrix<double>& system) {
 }
 
 void check_options(const VertexTransferOptions& options, Eigen::Index vertices) {
-  if (!(options.outside_weight > 0 && std::isfinite(options.outside_weight))) {
-    throw std::invalid_argument("outside_weight: expected more than 0, found " +
-                                std::to_string(options.outside_weight));
-  }
-  if (!(options.outside_smoothness >= 0 && std::isfinite(options.outside_smoothness))) {
-    throw std::invalid_argument("outside_smoothness: expected at least 0, found " +
-                                std::to_string(options.outside_smoothness));
-  }
+  check_options(options);
   if (!options.inside.empty() && options.inside.size() != static_cast<std::size_t>(vertices)) {
     throw std::invalid_argument("inside: expected one entry for each of " +
                                 std::to_string(vertices) + " vertices, found " +
@@ -161,7 +154,7 @@ VertexTransfer::State::State(const Positions& source, const Positions& target,
   weigh();
   fix();
   unknowns = number_unknowns(triangles, weights, fixed);
-  if (options.anchor != Anchor::source_motion && unknowns.some_held) {
+  if (options.anchor && unknowns.some_held) {
     throw std::invalid_argument(
         "an anchor was given, but fixed vertices hold the mesh in place already; let the vertices "
         "outside the regions move (Outside::identity) or select all triangles");
@@ -267,7 +260,8 @@ Row VertexTransfer::State::shift_of(const FloatingPiece& piece,
                                     const Eigen::Ref<const Frames>& frames,
                                     const Rows& displacement) const {
   Row shift = Row::Zero();
-  if (options.anchor == Anchor::vertex) {
+  const Anchor anchor = options.anchor.value_or(Anchor::source_motion);
+  if (anchor == Anchor::vertex) {
     const bool holds_it = std::ranges::binary_search(piece.vertices, options.anchor_vertex);
     const int row = unknowns.of_vertex[options.anchor_vertex];
     if (holds_it && row >= 0) shift = -displacement.row(row);
@@ -276,7 +270,7 @@ Row VertexTransfer::State::shift_of(const FloatingPiece& piece,
   for (const VertexIndex v : piece.vertices) {
     if (unknowns.of_vertex[v] >= 0) shift -= displacement.row(unknowns.of_vertex[v]);
   }
-  if (options.anchor == Anchor::source_motion) shift += motion_of(piece, frames);
+  if (anchor == Anchor::source_motion) shift += motion_of(piece, frames);
   return shift / static_cast<double>(piece.vertices.size());
 }
 

@@ -1,11 +1,13 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string_view>
 #include <vector>
 
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/mesh_sequence.h"
+#include "toolkit/mesh/option.h"
 #include "toolkit/mesh/progress.h"
 
 namespace mimetra {
@@ -56,18 +58,30 @@ struct VertexTransferOptions {
   /// Vertices that Outside::fixed lets move (N): those inside the regions. By default the vertices
   /// all of whose triangles are in L.
   std::vector<bool> inside = {};
-  /// Weight of triangles outside L for Outside::identity, > 0, relative to those inside.
+  /// Weight of triangles outside L for Outside::identity, relative to those inside.
   double outside_weight = 0.1;
-  /// Weight of squared differences of displacement gradients across edges of triangles outside L,
-  /// >= 0.
+  /// Weight of squared differences of displacement gradients across edges of triangles outside L.
   double outside_smoothness = 0;
-  Anchor anchor = Anchor::source_motion;
+  /// By default the source's motion. One that is given is refused where fixed vertices hold the
+  /// mesh.
+  std::optional<Anchor> anchor = {};
   /// The vertex of Anchor::vertex; other pieces are then held by their lowest vertex.
   VertexIndex anchor_vertex = -1;
   /// 0 for all there are; the result does not depend on it.
   int threads = 0;
   /// Of frames().
   Progress progress = {};
+
+  static constexpr Option kTriangleWeight{"triangle_weight",
+                                          &VertexTransferOptions::triangle_weight};
+  static constexpr Option kOutside{"outside", &VertexTransferOptions::outside};
+  static constexpr Option kOutsideWeight{
+      "outside_weight", &VertexTransferOptions::outside_weight, {.minimum = 1e-12}};
+  static constexpr Option kOutsideSmoothness{
+      "outside_smoothness", &VertexTransferOptions::outside_smoothness, {.minimum = 0}};
+  static constexpr auto declared() {
+    return std::tuple(kTriangleWeight, kOutside, kOutsideWeight, kOutsideSmoothness);
+  }
 };
 
 /// Positions of a target that follow a source's deformation gradients on triangles L; the target

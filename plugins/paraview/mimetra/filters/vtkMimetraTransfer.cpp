@@ -10,7 +10,7 @@
 #include "plugins/paraview/mimetra/filters/operation_call.h"
 #include "plugins/paraview/mimetra/filters/time_steps.h"
 #include "toolkit/operations/operation.h"
-#include "toolkit/operations/solving.h"
+#include "toolkit/operations/pipeline_parameters.h"
 #include "toolkit/vtk/poly_data.h"
 
 using namespace mimetra;

@@ -1,9 +1,6 @@
-#include "toolkit/operations/memory.h"
+#include "toolkit/pipeline/memory.h"
 
 #include <thread>
-
-#include "toolkit/operations/analysis.h"
-#include "toolkit/operations/solving.h"
 
 namespace mimetra {
 
@@ -28,33 +25,29 @@ double numbers_of(const MeshSequence& sequence) {
 
 }  // namespace
 
-double alignment_bytes(const Invocation& invocation, const SequenceRead& read) {
-  return alignment_of(invocation, read) == HeadMotionSource(HeadMotion::none)
-             ? 0
-             : kNumber * numbers_of(read.sequence);
+double alignment_bytes(const MeshSequence& sequence, const SourceOptions& options) {
+  return takes_out_motion(sequence, options) ? kNumber * numbers_of(sequence) : 0;
 }
 
-double analysis_bytes(const Invocation& invocation, const SequenceRead& read, int count) {
-  if (invocation.find<Components>("components")) return 0;
-  const double vertices = read.sequence.vertices();
-  const double displacements = numbers_of(read.sequence);
+double analysis_bytes(const MeshSequence& sequence, int count) {
+  const double vertices = sequence.vertices();
+  const double displacements = numbers_of(sequence);
   const double components = 2 * count * 3 * vertices;  // C and the dual variable
   const double maps = (1 + kCentersPerComponent) * count * vertices;
-  return alignment_bytes(invocation, read) + kFactorsPerVertex * vertices +
-         kNumber * (displacements + components + maps);
+  return kFactorsPerVertex * vertices + kNumber * (displacements + components + maps);
 }
 
-double solution_bytes(const Invocation& invocation, const SequenceRead& read,
-                      const BlendshapeModel& target) {
-  const double result = kNumber * numbers_of(read.sequence);
+double solution_bytes(const MeshSequence& sequence, const BlendshapeModel& target,
+                      const SolveOptions& options) {
+  const double result = kNumber * numbers_of(sequence);
   const auto expressions = static_cast<double>(target.expressions().size());
   const double vertices = target.vertices(),
                triangles = static_cast<double>(target.triangles().rows());
-  const bool by_vertices = solves_for_vertices(invocation.parameters, target);
-  const double set_up =
-      by_vertices ? kFactorsPerVertex * vertices : kNumber * expressions * 3 * vertices;
+  const double set_up = solves_for_vertices(target, options.space)
+                            ? kFactorsPerVertex * vertices
+                            : kNumber * expressions * 3 * vertices;
   const double threads =
-      invocation.threads > 0 ? invocation.threads : std::thread::hardware_concurrency();
+      options.threads > 0 ? options.threads : std::thread::hardware_concurrency();
   return result + set_up + kPullPerTriangle * triangles + threads * kLanesPerVertex * vertices;
 }
 

@@ -1,0 +1,61 @@
+#include "toolkit/pipeline/evaluation.h"
+
+#include <gmock/gmock.h>
+
+#include "tests/pipeline/takes.h"
+
+namespace mimetra {
+namespace {
+
+using test::take;
+using testing::HasSubstr;
+using testing::ThrowsMessage;
+
+class EvaluationTest : public testing::Test {
+ protected:
+  const MeshSequence source_ = take();
+  // With fewer expressions than the source has, no transfer is exact.
+  const BlendshapeModel actor_ = test::model_on(test::bent_patch(), 3);
+  EvaluationOptions options_{.counts = {2, 4}, .regions = {.radius = Length::share(0.2)}};
+};
+
+TEST_F(EvaluationTest, HasARowForEachCountAndOneByAllTriangles) {
+  const auto rows = evaluate(source_, {"actor", actor_}, options_);
+  ASSERT_EQ(rows.size(), 3U);
+  EXPECT_EQ(rows[0].k, 2);
+  EXPECT_EQ(rows[1].k, 4);
+  EXPECT_FALSE(rows[2].k);
+  EXPECT_FALSE(rows[2].mpe_all);
+  EXPECT_EQ(rows[2].triangles, source_.triangles().rows());
+}
+
+TEST_F(EvaluationTest, IsTheErrorOfTheTransferByTheSameRegions) {
+  const auto rows = evaluate(source_, {"actor", actor_}, options_);
+  TransferOptions options{.analysis = {.decomposition = {.count = 2}}, .regions = options_.regions};
+  const TransferResult by_two = transfer(source_, {{"actor", actor_}}, options);
+  EXPECT_EQ(rows[0].de_all, by_two.targets[0].error.de_all);
+  EXPECT_EQ(rows[0].de_region, by_two.targets[0].error.de_region);
+  EXPECT_EQ(rows[0].triangles, static_cast<int>(by_two.regions->triangles.size()));
+  options.full = true;
+  EXPECT_EQ(rows[2].de_all,
+            transfer(source_, {{"actor", actor_}}, options).targets[0].error.de_all);
+}
+
+TEST_F(EvaluationTest, ByAllTrianglesHasTheLeastErrorOverThem) {
+  const auto rows = evaluate(source_, {"actor", actor_}, options_);
+  for (const EvaluationRow& row : rows) EXPECT_GE(row.de_all, rows.back().de_all);
+  EXPECT_EQ(*rows[0].mpe_all, mean_percentage_error(rows.back().de_all, rows[0].de_all));
+  EXPECT_LE(*rows[0].mpe_all, 0);
+}
+
+TEST_F(EvaluationTest, RefusesACountBelowOne) {
+  options_.counts = {3, 0};
+  EXPECT_THAT(
+      [&] {
+        evaluate(source_, {"actor", actor_}, options_);
+      },
+      ThrowsMessage<std::invalid_argument>(HasSubstr("counts is 0; it must be at least 1")));
+}
+
+}  // namespace
+}  // namespace mimetra

@@ -1,0 +1,115 @@
+#include "toolkit/pipeline/solution.h"
+
+#include <gmock/gmock.h>
+
+#include "tests/pipeline/takes.h"
+
+namespace mimetra {
+namespace {
+
+using test::Noted;
+using test::take;
+using testing::HasSubstr;
+using testing::ThrowsMessage;
+
+class SolveTest : public testing::Test {
+ protected:
+  const Source source_ = prepare_source(take());
+  const BlendshapeModel actor_ = test::model_on(test::bent_patch(), 5);
+  const BlendshapeModel mesh_{actor_.shared_connectivity(),
+                              actor_.neutral(),
+                              {{}, Eigen::MatrixXd(3 * actor_.vertices(), 0)}};
+  Selection some_{test::half_of(actor_.triangles()), std::vector<bool>(81, true)};
+  SolveOptions options_;
+};
+
+TEST_F(SolveTest, LooksForWeightsWhereTheTargetHasExpressions) {
+  EXPECT_EQ(solve(source_, {"actor", actor_}, some_).weights.cols(), 5);
+  EXPECT_EQ(solve(source_, {"mesh", mesh_}, some_).weights.size(), 0);
+  options_.space = Space::vertex;
+  EXPECT_EQ(solve(source_, {"actor", actor_}, some_, options_).weights.size(), 0);
+}
+
+TEST_F(SolveTest, HasTheTargetsNeutralAsRestAndTheSourcesTimes) {
+  const MeshSequence result = solve(source_, {"mesh", mesh_}, some_).sequence;
+  EXPECT_TRUE(result.rest() == mesh_.neutral());
+  EXPECT_TRUE(result.times() == source_.sequence.times());
+}
+
+TEST_F(SolveTest, RefusesWeightsOfATargetWithoutExpressions) {
+  options_.space = Space::blendshape;
+  const auto work = [this] { solve(source_, {"mesh", mesh_}, some_, options_); };
+  EXPECT_EQ(test::topic_of(work), Topic::no_expressions);
+  EXPECT_THAT(work, ThrowsMessage<MismatchError>("mesh: has no expressions"));
+}
+
+TEST_F(SolveTest, RefusesAnAnchorThatTheMeshDoesNotHave) {
+  options_.vertex = {.anchor = Anchor::vertex, .anchor_vertex = 81};
+  const auto work = [this] { solve(source_, {"mesh", mesh_}, whole(source_.sequence), options_); };
+  EXPECT_EQ(test::topic_of(work), Topic::anchor_vertex);
+}
+
+TEST_F(SolveTest, RefusesAnAnchorWhereFixedVerticesHoldTheMesh) {
+  for (const Anchor anchor : {Anchor::source_motion, Anchor::centroid}) {
+    options_.vertex.anchor = anchor;
+    EXPECT_EQ(test::topic_of([this] {
+                solve(source_, {"mesh", mesh_}, some_, options_);
+              }),
+              Topic::held_anchor);
+  }
+}
+
+TEST_F(SolveTest, TakesAnAnchorWhereNothingIsFixed) {
+  options_.vertex.anchor = Anchor::centroid;
+  EXPECT_NO_THROW(solve(source_, {"mesh", mesh_}, whole(source_.sequence), options_));
+  options_.vertex.outside = Outside::identity;
+  EXPECT_NO_THROW(solve(source_, {"mesh", mesh_}, some_, options_));
+}
+
+TEST_F(SolveTest, NotesExpressionsThatTheTrianglesDoNotShow) {
+  Noted noted;
+  options_.notes = noted.sink();
+  const VertexIndex corner = 0;
+  Selection few;
+  for (int t = 0; t < actor_.triangles().rows(); ++t) {
+    if ((actor_.triangles().row(t).array() == corner).any()) few.triangles.push_back(t);
+  }
+  ShapeBasis two = test::bumps(actor_.neutral(), 1);
+  two.names.push_back("corner");
+  two.displacements.conservativeResize(Eigen::NoChange, 2);
+  two.displacements.col(1).setZero();
+  two.displacements(3 * corner + 2, 1) = 1;
+  two.displacements.col(0).head(3 * 20).setZero();
+  const BlendshapeModel model(actor_.shared_connectivity(), actor_.neutral(), two);
+  solve(source_, {"actor", model}, few, options_);
+  ASSERT_FALSE(noted.notes.empty());
+  EXPECT_EQ(noted.notes[0].text,
+            "actor: 1 expressions do not move in the regions and stay 0: shape0");
+}
+
+TEST_F(SolveTest, NotesExpressionsThatLookAlike) {
+  ShapeBasis twins = test::bumps(actor_.neutral(), 2);
+  // Differences of 1e-4 make a condition number of about 1e8.
+  twins.displacements.col(1) = twins.displacements.col(0) + 1e-4 * twins.displacements.col(1);
+  const BlendshapeModel model(actor_.shared_connectivity(), actor_.neutral(), twins);
+  Noted noted;
+  options_.notes = noted.sink();
+  solve(source_, {"twins", model}, whole(source_.sequence), options_);
+  EXPECT_TRUE(noted.has(Topic::poor_condition));
+}
+
+TEST_F(SolveTest, NotesARestPoseThatIsNotNeutral) {
+  const MeshSequence performance = source_.sequence;
+  const BlendshapeModel model = test::model_on(test::patch(), 5);
+  const Source wrong{performance, performance.with_rest(model.pose(Eigen::VectorXd::Ones(5))), {}};
+  Noted noted;
+  options_.notes = noted.sink();
+  solve(wrong, {"actor", model}, whole(performance), options_);
+  EXPECT_TRUE(noted.has(Topic::unneutral_rest));
+  noted.notes.clear();
+  solve(source_, {"actor", model}, whole(performance), options_);
+  EXPECT_FALSE(noted.has(Topic::unneutral_rest));
+}
+
+}  // namespace
+}  // namespace mimetra

@@ -1,0 +1,107 @@
+#include "toolkit/pipeline/source.h"
+
+#include <gmock/gmock.h>
+
+#include "tests/pipeline/takes.h"
+
+namespace mimetra {
+namespace {
+
+using test::bare;
+using test::nodding;
+using test::Noted;
+using test::take;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::ThrowsMessage;
+
+/// Coordinates of the patch are below 10 and rotations orthogonal: a motion there and back leaves a
+/// few roundings of 1e-15.
+constexpr double kRounding = 1e-13;
+
+TEST(SourceRestPose, IsByDefaultTheNeutralWhereThatIsKnown) {
+  Noted noted;
+  const Source source = prepare_source(take(), {.notes = noted.sink()});
+  EXPECT_TRUE(source.sequence.rest() == take().rest());
+  EXPECT_THAT(noted.notes, IsEmpty());
+}
+
+TEST(SourceRestPose, IsOtherwiseTheFirstFrameWithANote) {
+  Noted noted;
+  const MeshSequence sequence = bare(take());
+  const Source source = prepare_source(
+      sequence, {.name = "smile", .head_motion = HeadMotion::none, .notes = noted.sink()});
+  EXPECT_TRUE(source.sequence.rest() == sequence.frame(0));
+  ASSERT_EQ(noted.notes.size(), 1U);
+  EXPECT_EQ(noted.notes[0].topic, Topic::unknown_neutral);
+  EXPECT_EQ(noted.notes[0].text,
+            "smile: its neutral is not known, the first frame stands in for it");
+}
+
+TEST(SourceRestPose, IsTheOneThatIsAskedFor) {
+  const MeshSequence sequence = take();
+  const Positions given = 2 * sequence.rest();
+  EXPECT_TRUE(prepare_source(sequence, {.rest = SourceRest::neutral}).sequence.rest() ==
+              sequence.rest());
+  EXPECT_TRUE(prepare_source(sequence, {.rest = SourceRest::first}).sequence.rest() ==
+              sequence.frame(0));
+  EXPECT_TRUE(prepare_source(sequence, {.rest = SourceRest::mean}).sequence.rest() ==
+              mean_pose(sequence));
+  EXPECT_TRUE(prepare_source(sequence, {.rest = given}).sequence.rest() == given);
+}
+
+TEST(SourceRestPose, IsNoNeutralThatNobodyKnows) {
+  const auto prepare = [] {
+    prepare_source(bare(take()), {.name = "smile", .rest = SourceRest::neutral});
+  };
+  EXPECT_EQ(test::topic_of(prepare), Topic::unknown_neutral);
+  EXPECT_THAT(prepare, ThrowsMessage<MismatchError>("smile: its neutral is not known"));
+}
+
+TEST(SourceRestPose, IsRefusedWithAnotherNumberOfVertices) {
+  EXPECT_THROW(prepare_source(take(), {.rest = Positions(3, 3)}), std::invalid_argument);
+}
+
+TEST(HeadMotion, IsLookedForOnlyWhereTheSourceMayHaveSome) {
+  EXPECT_FALSE(takes_out_motion(take(), {}));
+  EXPECT_FALSE(takes_out_motion(bare(take()).slice(0, 1), {}));
+  EXPECT_FALSE(takes_out_motion(bare(take()), {.model_driven = true}));
+  EXPECT_TRUE(takes_out_motion(bare(take()), {}));
+  EXPECT_TRUE(takes_out_motion(take(), {.head_motion = HeadMotion::all}));
+  EXPECT_FALSE(takes_out_motion(bare(take()), {.head_motion = HeadMotion::none}));
+}
+
+TEST(HeadMotion, IsByDefaultTheOneOfWhatMovesLeast) {
+  const MeshSequence moved = with_motion(bare(take()), nodding(8));
+  const Source source = without_head_motion(moved);
+  EXPECT_TRUE(source.sequence.positions() == align(moved).sequence.positions());
+  EXPECT_TRUE(source.given.positions() == moved.positions());
+}
+
+TEST(HeadMotion, IsJudgedByTheSequenceWhateverRestIsAskedFor) {
+  const MeshSequence sequence = bare(take());
+  EXPECT_EQ(prepare_source(sequence, {.rest = SourceRest::first}).motion.size(), 8U);
+  EXPECT_THAT(prepare_source(take(), {.rest = SourceRest::first}).motion, IsEmpty());
+}
+
+TEST(HeadMotion, ThatIsGivenIsTakenOutAndGivenBack) {
+  const MeshSequence still = take();
+  const MeshSequence moved = with_motion(still, nodding(8));
+  const Source source = prepare_source(moved, {.head_motion = nodding(8)});
+  EXPECT_LT((source.sequence.positions() - still.positions()).cwiseAbs().maxCoeff(), kRounding);
+  const MeshSequence back = with_head_motion(source.sequence, source.motion);
+  EXPECT_LT((back.positions() - moved.positions()).cwiseAbs().maxCoeff(), kRounding);
+}
+
+TEST(HeadMotion, ThatIsGivenBackLeavesNoNeutral) {
+  const MeshSequence still = take();
+  EXPECT_TRUE(still.rest_is_known());
+  EXPECT_FALSE(with_head_motion(still, nodding(8)).rest_is_known());
+}
+
+TEST(HeadMotion, OfAnotherNumberOfFramesIsRefused) {
+  EXPECT_THROW(prepare_source(take(), {.head_motion = nodding(3)}), MismatchError);
+}
+
+}  // namespace
+}  // namespace mimetra

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <Eigen/Geometry>
+
+#include "tests/transfer/faces.h"
+#include "toolkit/pipeline/transfer.h"
+
+/// Performances of a small model.
+namespace mimetra::test {
+
+/// A performance of a patch with `expressions` bumps; its neutral is known and is not a frame.
+inline MeshSequence take(int frames = 8, int expressions = 5) {
+  return model_on(patch(), expressions).animate(random_weights(frames, expressions));
+}
+
+/// The same frames, of which nobody knows the neutral.
+inline MeshSequence bare(const MeshSequence& sequence) {
+  return {sequence.shared_connectivity(), sequence.positions(), sequence.times()};
+}
+
+/// A turn and a shift of the head, larger from frame to frame.
+inline std::vector<RigidTransform> nodding(int frames) {
+  std::vector<RigidTransform> motion(frames);
+  for (int f = 0; f < frames; ++f) {
+    const Eigen::AngleAxisd turn(0.1 * f, Eigen::Vector3d(1, 2, 0).normalized());
+    motion[f] = {turn.toRotationMatrix(), Eigen::Vector3d(0.5 * f, -f, 0.2)};
+  }
+  return motion;
+}
+
+/// Keeps what is noted.
+struct Noted {
+  std::vector<Note> notes;
+
+  Notes sink() {
+    return [this](const Note& note) { notes.push_back(note); };
+  }
+  bool has(Topic topic) const {
+    return std::ranges::find(notes, topic, &Note::topic) != notes.end();
+  }
+};
+
+/// What an OptionError that `work` throws is about.
+template <typename Work>
+Topic topic_of(const Work& work) {
+  try {
+    work();
+  } catch (const OptionError& error) {
+    return error.topic();
+  }
+  ADD_FAILURE() << "no OptionError was thrown";
+  return Topic::other;
+}
+
+}  // namespace mimetra::test

@@ -1,0 +1,176 @@
+#include "toolkit/pipeline/transfer.h"
+
+#include <gmock/gmock.h>
+
+#include "tests/pipeline/takes.h"
+
+namespace mimetra {
+namespace {
+
+using test::bare;
+using test::nodding;
+using test::take;
+using testing::HasSubstr;
+using testing::ThrowsMessage;
+
+class TransferTest : public testing::Test {
+ protected:
+  const MeshSequence source_ = take();
+  const BlendshapeModel actor_ = test::model_on(test::bent_patch(), 5);
+  const BlendshapeModel mesh_{actor_.shared_connectivity(),
+                              actor_.neutral(),
+                              {{}, Eigen::MatrixXd(3 * actor_.vertices(), 0)}};
+  TransferOptions options_{.analysis = {.decomposition = {.count = 4}},
+                           .regions = {.radius = Length::share(0.3)}};
+
+  TransferredTarget to(const BlendshapeModel& model) const {
+    return transfer(source_, {{"actor", model}}, options_).targets.front();
+  }
+
+  static const Frames& frames_of(const TransferredTarget& target) {
+    return target.solution.sequence.positions();
+  }
+
+  /// The regions, found by hand.
+  Regions regions() const {
+    const MeshSequence sequence = source_.with_rest(source_.frame(0));
+    return find_regions(decompose(sequence, {.count = 4}), {.radius = 0.3 * sequence.extent()});
+  }
+};
+
+TEST_F(TransferTest, IsItsPartsDoneByHand) {
+  const TransferResult result = transfer(source_, {{"actor", actor_}}, options_);
+  const Regions regions = this->regions();
+  ASSERT_TRUE(result.regions);
+  EXPECT_EQ(result.regions->triangles, regions.triangles);
+  EXPECT_EQ(result.components->count(), 4);
+
+  const BlendshapeTransfer by_hand(source_.rest(), actor_, regions.triangles);
+  const Eigen::MatrixXd weights = by_hand.weights(source_);
+  const MeshSequence expected = actor_.animate(weights, source_.times());
+  EXPECT_TRUE(result.targets.front().solution.weights == weights);
+  EXPECT_TRUE(frames_of(result.targets.front()) == expected.positions());
+  EXPECT_EQ(result.targets.front().error.de_all,
+            transfer_error(source_, expected, regions.triangles).de_all);
+}
+
+TEST_F(TransferTest, SolvesForTheVerticesInsideTheRegionsOfAMesh) {
+  const Regions regions = this->regions();
+  const VertexTransfer by_hand(source_.rest(), mesh_.neutral(), mesh_.triangles(),
+                               regions.triangles, {.inside = regions.inside});
+  EXPECT_TRUE(frames_of(to(mesh_)) == by_hand.frames(source_));
+}
+
+TEST_F(TransferTest, OntoItselfReturnsTheSource) {
+  options_.full = true;
+  const BlendshapeModel self = test::model_on(test::patch(), 5);
+  // The weights are exact to the rounding of a system whose condition is below 1e3.
+  EXPECT_LT((frames_of(to(self)) - source_.positions()).cwiseAbs().maxCoeff(), 1e-10);
+}
+
+TEST_F(TransferTest, ByAllTrianglesHasNoRegions) {
+  options_.full = true;
+  const TransferResult result = transfer(source_, {{"actor", actor_}}, options_);
+  EXPECT_FALSE(result.regions);
+  EXPECT_FALSE(result.components);
+  const BlendshapeTransfer by_hand(source_.rest(), actor_, all_triangles(source_.triangles()));
+  EXPECT_TRUE(result.targets.front().solution.weights == by_hand.weights(source_));
+}
+
+TEST_F(TransferTest, ByRegionsThatAreGivenDecomposesNothing) {
+  options_.given = GivenRegions{"rois.json", regions()};
+  const TransferResult result = transfer(source_, {{"actor", actor_}}, options_);
+  EXPECT_FALSE(result.components);
+  options_.given = {};
+  EXPECT_TRUE(frames_of(result.targets.front()) == frames_of(to(actor_)));
+}
+
+TEST_F(TransferTest, ByComponentsThatAreGivenIsTheOneThatFoundThem) {
+  const TransferResult found = transfer(source_, {{"actor", actor_}}, options_);
+  options_.given = GivenComponents{"take.h5", *found.components};
+  EXPECT_TRUE(frames_of(to(actor_)) == frames_of(found.targets.front()));
+}
+
+TEST_F(TransferTest, ToManyTargetsIsTheOneToEach) {
+  const TransferResult both = transfer(source_, {{"actor", actor_}, {"mesh", mesh_}}, options_);
+  ASSERT_EQ(both.targets.size(), 2U);
+  EXPECT_TRUE(frames_of(both.targets[0]) == frames_of(to(actor_)));
+  EXPECT_TRUE(frames_of(both.targets[1]) == frames_of(to(mesh_)));
+}
+
+TEST_F(TransferTest, DoesNotDependOnTheNumberOfThreads) {
+  options_.threads = 1;
+  const TransferredTarget one = to(actor_);
+  options_.threads = 3;
+  EXPECT_TRUE(frames_of(one) == frames_of(to(actor_)));
+}
+
+TEST_F(TransferTest, GivesHeadMotionBackUnlessItIsDropped) {
+  const MeshSequence moved = with_motion(source_, nodding(8));
+  options_.source.head_motion = nodding(8);
+  const auto result = [&](RemovedMotion removed) {
+    options_.head_motion = removed;
+    return transfer(moved, {{"actor", actor_}}, options_).targets.front().solution.sequence;
+  };
+  const MeshSequence kept = result(RemovedMotion::keep), dropped = result(RemovedMotion::drop);
+  EXPECT_TRUE(kept.positions() == with_motion(dropped, nodding(8)).positions());
+  EXPECT_TRUE(dropped.rest() == actor_.neutral());
+  EXPECT_TRUE(dropped.rest_is_known());
+  EXPECT_FALSE(kept.rest_is_known());
+}
+
+TEST_F(TransferTest, GivesBackNothingWhereNoneWasLookedFor) {
+  EXPECT_TRUE(to(actor_).solution.sequence.rest_is_known());
+}
+
+TEST_F(TransferTest, RefusesATargetBeforeAnythingIsComputed) {
+  const BlendshapeModel other = test::model_on(test::grid(3, 3), 1);
+  int reports = 0;
+  options_.progress = [&reports](double) { return ++reports > 0; };
+  EXPECT_THAT(
+      [&] {
+        transfer(source_, {{"actor", actor_}, {"small", other}}, options_);
+      },
+      ThrowsMessage<MismatchError>("small: 9 vertices, expected 81 as in the source"));
+  EXPECT_EQ(reports, 0);
+}
+
+TEST_F(TransferTest, RefusesRegionsOfAnotherMesh) {
+  Regions regions = this->regions();
+  regions.all_triangles = 7;
+  options_.given = GivenRegions{"rois.json", regions};
+  EXPECT_THAT([&] { to(actor_); },
+              ThrowsMessage<MismatchError>(HasSubstr("rois.json: regions of a mesh with 81")));
+}
+
+TEST_F(TransferTest, RefusesRegionsWithoutATriangle) {
+  Regions regions = this->regions();
+  regions.triangles.clear();
+  options_.given = GivenRegions{"rois.json", regions};
+  EXPECT_THAT([&] { to(actor_); },
+              ThrowsMessage<MismatchError>(HasSubstr("hold no triangle of the mesh")));
+}
+
+TEST_F(TransferTest, ReportsProgressThatRises) {
+  std::vector<double> shares;
+  options_.progress = [&shares](double share) {
+    shares.push_back(share);
+    return true;
+  };
+  to(actor_);
+  EXPECT_TRUE(std::ranges::is_sorted(shares));
+  EXPECT_EQ(shares.back(), 1);
+}
+
+TEST_F(TransferTest, EndsWhereProgressAsksForIt) {
+  options_.progress = [](double share) { return share < 0.5; };
+  EXPECT_THROW(to(actor_), Cancelled);
+}
+
+TEST_F(TransferTest, ChecksItsRangesBeforeItComputes) {
+  options_.analysis.decomposition.rho = 0;
+  EXPECT_THAT([&] { to(actor_); }, ThrowsMessage<std::invalid_argument>(HasSubstr("rho is 0")));
+}
+
+}  // namespace
+}  // namespace mimetra

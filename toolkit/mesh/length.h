@@ -1,0 +1,17 @@
+#pragma once
+
+namespace mimetra {
+
+/// A length that may depend on the mesh: a share of its longest side, or in the unit of its file.
+struct Length {
+  double value = 0;  ///< >= 0
+  bool absolute = false;
+
+  static constexpr Length share(double of_longest_side) { return {of_longest_side, false}; }
+  static constexpr Length of(double length) { return {length, true}; }
+
+  /// In the unit of a mesh whose longest side is `longest_side`.
+  constexpr double in(double longest_side) const { return absolute ? value : value * longest_side; }
+};
+
+}  // namespace mimetra

@@ -1,0 +1,33 @@
+#include "toolkit/mesh/option.h"
+
+#include <cmath>
+
+#include "toolkit/mesh/text.h"
+
+namespace mimetra {
+
+namespace {
+
+std::string text_of(const Range& range) {
+  if (range.minimum && range.maximum) {
+    return "from " + readable(*range.minimum) + " to " + readable(*range.maximum);
+  }
+  if (range.minimum) return "at least " + readable(*range.minimum);
+  if (range.maximum) return "at most " + readable(*range.maximum);
+  return "finite";
+}
+
+}  // namespace
+
+bool Range::holds(double number) const {
+  return std::isfinite(number) && (!minimum || number >= *minimum) &&
+         (!maximum || number <= *maximum);
+}
+
+void check_number(std::string_view name, const Range& range, double number) {
+  if (range.holds(number)) return;
+  throw std::invalid_argument(std::string(name) + " is " + readable(number) + "; it must be " +
+                              text_of(range));
+}
+
+}  // namespace mimetra

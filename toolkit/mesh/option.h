@@ -1,0 +1,73 @@
+#pragma once
+
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <tuple>
+#include <type_traits>
+#include <vector>
+
+#include "toolkit/mesh/choice.h"
+#include "toolkit/mesh/length.h"
+
+/// Options of algorithms, declared once: a struct of options lists the members that its users set,
+/// each with the values it takes. The algorithm checks them by that list, and parameters of
+/// commands and dialogs take default, range and unit from it.
+namespace mimetra {
+
+/// The numbers that an option takes, both ends included; open where there is no end.
+struct Range {
+  std::optional<double> minimum = {};
+  std::optional<double> maximum = {};
+
+  /// False for what is not finite.
+  bool holds(double number) const;
+};
+
+/// A member of a struct of options: its name, its range (for a Length that of its number, share or
+/// absolute) and its unit. The default is what the struct holds when it is made.
+template <typename Options, typename Value>
+struct Option {
+  constexpr Option(std::string_view own_name, Value Options::*own_member, Range own_range = {},
+                   std::string_view own_unit = "")
+      : name(own_name), member(own_member), range(own_range), unit(own_unit) {}
+
+  std::string_view name;
+  Value Options::*member;
+  Range range;
+  std::string_view unit;
+};
+
+/// Throws std::invalid_argument that names the option and its range unless that holds the number.
+void check_number(std::string_view name, const Range& range, double number);
+
+/// Throws std::invalid_argument for a number out of its range, and for an enum that has no such
+/// value.
+template <typename Options, typename Value>
+void check_option(const Options& options, const Option<Options, Value>& option) {
+  const Value& value = options.*option.member;
+  if constexpr (NamedChoice<Value>) {
+    if (!choice_name(value).empty()) return;
+    throw std::invalid_argument(std::string(option.name) + ": no such choice");
+  } else if constexpr (std::is_same_v<Value, Length>) {
+    check_number(option.name, {option.range.minimum.value_or(0), option.range.maximum},
+                 value.value);
+  } else if constexpr (std::is_same_v<Value, std::optional<double>>) {
+    if (value) check_number(option.name, option.range, *value);
+  } else if constexpr (std::is_same_v<Value, std::vector<int>>) {
+    for (const int number : value) check_number(option.name, option.range, number);
+  } else {
+    static_assert(std::is_arithmetic_v<Value>);
+    check_number(option.name, option.range, static_cast<double>(value));
+  }
+}
+
+/// Checks all that `Options::declared()`, a tuple of them, lists.
+template <typename Options>
+void check_options(const Options& options) {
+  std::apply([&options](const auto&... each) { (check_option(options, each), ...); },
+             Options::declared());
+}
+
+}  // namespace mimetra

@@ -1,0 +1,63 @@
+#include "toolkit/operations/parameter_files.h"
+
+#include <Eigen/LU>
+#include <nlohmann/json.hpp>
+
+#include "toolkit/io/mesh_file.h"
+#include "toolkit/io/whole_file.h"
+#include "toolkit/operations/json.h"
+
+namespace mimetra {
+
+namespace {
+
+/// Manifests keep all digits; a rotation that was typed or rounded by another tool passes too.
+constexpr double kRotationTolerance = 1e-4;
+
+RigidTransform transform_of(const Json& json) {
+  RigidTransform transform;
+  const auto rotation = json.at("rotation").get<std::vector<double>>();
+  const auto translation = json.at("translation").get<std::vector<double>>();
+  if (rotation.size() != 9 || translation.size() != 3) {
+    throw std::invalid_argument("expected 9 numbers of rotation and 3 of translation a frame");
+  }
+  transform.rotation =
+      Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(rotation.data());
+  transform.translation = Eigen::Map<const Eigen::Vector3d>(translation.data());
+  const Eigen::Matrix3d& R = transform.rotation;
+  if (!(R * R.transpose()).isIdentity(kRotationTolerance) || R.determinant() < 0) {
+    throw std::invalid_argument("its rotation is no rotation matrix (row by row)");
+  }
+  return transform;
+}
+
+}  // namespace
+
+Positions read_rest(const std::string& path, const MeshSequence& sequence) {
+  Positions rest = read_mesh(path).positions;
+  if (rest.rows() != sequence.vertices()) {
+    throw MismatchError(path + ": " + std::to_string(rest.rows()) + " vertices, expected " +
+                        std::to_string(sequence.vertices()) + " as in the sequence");
+  }
+  return rest;
+}
+
+std::vector<RigidTransform> read_motion(const std::string& path, int frames) {
+  std::vector<RigidTransform> motion;
+  try {
+    const Json json = Json::parse(read_file(path));
+    for (const Json& entry : json.at("result").at("motion")) motion.push_back(transform_of(entry));
+  } catch (const Json::exception&) {
+    throw IoError(path, "expected the manifest of an align run with result.motion");
+  } catch (const std::invalid_argument& error) {
+    throw IoError(path, "motion of frame " + std::to_string(motion.size()) + ": " + error.what());
+  }
+  if (static_cast<int>(motion.size()) != frames) {
+    throw MismatchError(path + ": " + std::to_string(motion.size()) +
+                        " rigid transforms, expected " + std::to_string(frames) +
+                        ", one per frame of the sequence");
+  }
+  return motion;
+}
+
+}  // namespace mimetra

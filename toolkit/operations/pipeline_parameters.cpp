@@ -1,0 +1,241 @@
+#include "toolkit/operations/pipeline_parameters.h"
+
+#include "toolkit/operations/parameter_files.h"
+#include "toolkit/pipeline/memory.h"
+
+namespace mimetra {
+
+namespace {
+
+/// What stands for an anchor besides the number of a vertex.
+enum class AnchorWord { source, centroid };
+
+constexpr std::string_view choice_name(AnchorWord value) {
+  switch (value) {
+    case AnchorWord::source:
+      return "source";
+    case AnchorWord::centroid:
+      return "centroid";
+  }
+  return {};
+}
+
+/// An anchor that nobody names holds nothing where fixed vertices do; one that is named is refused
+/// there.
+void apply_anchor(const Parameters& parameters, VertexTransferOptions& options) {
+  if (!parameters.is_set("anchor")) return;
+  const std::string& text = parameters.text("anchor");
+  if (const auto word = choice_of<AnchorWord>(text)) {
+    switch (*word) {
+      case AnchorWord::source:
+        options.anchor = Anchor::source_motion;
+        return;
+      case AnchorWord::centroid:
+        options.anchor = Anchor::centroid;
+        return;
+    }
+  }
+  const Parameter vertex{"anchor", ParameterKind::integer, {}, "", "", 0};
+  options.anchor = Anchor::vertex;
+  options.anchor_vertex =
+      static_cast<VertexIndex>(std::get<std::int64_t>(parse_value(vertex, text)));
+}
+
+std::function<Positions(const std::string&)> rest_reader(const MeshSequence* sequence) {
+  return [sequence](const std::string& path) {
+    return sequence ? read_rest(path, *sequence) : Positions();
+  };
+}
+
+BoundParameters<DecompositionOptions> decomposition_parameters() {
+  using Options = DecompositionOptions;
+  BoundParameters<Options> list;
+  list.add("sparsity", Options::kSparsity, "weight lambda of the sparsity term")
+      .add("rho", Options::kRho, "penalty of ADMM")
+      .add("iterations", Options::kIterations, "outer iterations at most")
+      .add("admm-iterations", Options::kAdmmIterations, "ADMM steps in each")
+      .add("tolerance", Options::kTolerance,
+           "stop when the energy changes by less than this share; 0 runs all iterations")
+      .add_opposite("signed", Options::kNonnegative, "allow negative weights")
+      .add("precision", Options::kPrecision,
+           "of the iterations; single moves components by about 1e-6 of themselves")
+      .add("basis-tolerance", Options::kBasisTolerance,
+           "iterate on as few poses over time as leave out this share of the motion, 1e-6 or "
+           "more; 0 on all");
+  return list;
+}
+
+BoundParameters<BlendshapeTransferOptions> blendshape_parameters() {
+  using Options = BlendshapeTransferOptions;
+  BoundParameters<Options> list;
+  list.add("ridge", Options::kRidge, "pull of the weights towards 0")
+      .add("l1", Options::kSparsity, "sparsity of the weights")
+      .add("smoothness", Options::kSmoothness, "time constant of smooth weights");
+  return list;
+}
+
+BoundParameters<VertexTransferOptions> vertex_parameters() {
+  using Options = VertexTransferOptions;
+  BoundParameters<Options> list;
+  list.add("triangle-weight", Options::kTriangleWeight,
+           "vertex space: every triangle alike, or by area")
+      .add("outside", Options::kOutside,
+           "vertex space: vertices outside the regions stay, or triangles there keep their shape")
+      .add("outside-weight", Options::kOutsideWeight, "weight of --outside identity")
+      .add("outside-smoothness", Options::kOutsideSmoothness, "smoothness of --outside identity")
+      .add({"anchor", ParameterKind::text, std::string(choice_name(AnchorWord::source)),
+            "vertex space: what holds a piece in place: source (its motion), centroid, or a "
+            "vertex"},
+           apply_anchor);
+  return list;
+}
+
+/// A text of the pipeline, and how the command helps it.
+std::string in_command_terms(Topic topic, const std::string& text) {
+  switch (topic) {
+    case Topic::other:
+    case Topic::support_range:
+      return text;
+    case Topic::parting_vertices:
+      return text + ", use --weld none to keep them apart";
+    case Topic::unknown_neutral:
+    case Topic::unneutral_rest:
+      return text + "; give it with --source-rest FILE";
+    case Topic::poor_condition:
+      return text + "; take more regions (-k, --radius) or --full";
+    case Topic::component_count:
+      return "-k: " + text;
+    case Topic::no_expressions:
+      return text + "; use --space vertex";
+    case Topic::anchor_vertex:
+      return "--anchor: " + text;
+    case Topic::held_anchor:
+      return "--anchor: " + text + "; use --outside identity or --full";
+  }
+  return text;
+}
+
+}  // namespace
+
+BoundParameters<SourceOptions> alignment_parameters(const MeshSequence* sequence) {
+  using Motion = std::vector<RigidTransform>;
+  BoundParameters<SourceOptions> list;
+  list.add_word_or_file<HeadMotion, Motion>(
+      "align", SourceOptions::kHeadMotion,
+      "head motion to take out first: fitted on what moves least, on all vertices, none, or "
+      "as an align run's manifest tells; default none where the neutral is known, else stable",
+      [sequence](const std::string& path) {
+        return sequence ? read_motion(path, sequence->frames()) : Motion();
+      });
+  return list;
+}
+
+BoundParameters<SourceOptions> source_rest_parameters(const MeshSequence* sequence) {
+  BoundParameters<SourceOptions> list;
+  list.add_word_or_file<SourceRest, Positions>(
+      "source-rest", SourceOptions::kRest,
+      "source's undeformed shape; default the neutral where it is known, else the first frame",
+      rest_reader(sequence));
+  return list;
+}
+
+BoundParameters<DistanceOptions> distance_parameters() {
+  BoundParameters<DistanceOptions> list;
+  list.add("geodesics", DistanceOptions::kMethod, "how distances are computed")
+      .add("weld", DistanceOptions::kWelding,
+           "treat vertices at one place as one for distances (UV seams)");
+  return list;
+}
+
+BoundParameters<AnalysisOptions> count_parameters(const AnalysisOptions& defaults) {
+  BoundParameters<DecompositionOptions> count(defaults.decomposition);
+  count.add("k", DecompositionOptions::kCount, "number of components");
+  BoundParameters<AnalysisOptions> list(defaults);
+  return list.add(&AnalysisOptions::decomposition, count);
+}
+
+BoundParameters<AnalysisOptions> analysis_parameters(const MeshSequence* sequence) {
+  BoundParameters<AnalysisOptions> list;
+  list.add_word_or_file<RestPose, Positions>(
+          "rest", AnalysisOptions::kRest,
+          "rest pose of the decomposition: a frame, the mean, or a mesh", rest_reader(sequence))
+      .add("d-min", AnalysisOptions::kMinimum,
+           "geodesic distance up to which sparsity costs nothing")
+      .add("d-max", AnalysisOptions::kMaximum, "geodesic distance from which it costs all")
+      .add(&AnalysisOptions::decomposition, decomposition_parameters())
+      .add("compat", AnalysisOptions::kCompatibility,
+           "splocs2013: follow the reference implementation to the letter")
+      .add(&AnalysisOptions::distances, distance_parameters());
+  return list;
+}
+
+BoundParameters<RegionChoiceOptions> region_parameters() {
+  BoundParameters<RegionOptions> regions;
+  regions
+      .add("region", RegionOptions::kShape,
+           "disc: within the radius; support: vertices with 95 % of the component's energy")
+      .add("coverage", RegionOptions::kCoverage,
+           "take the strongest regions until they hold this share of the motion energy");
+  BoundParameters<RegionChoiceOptions> list;
+  list.add("radius", RegionChoiceOptions::kRadius, "geodesic radius of a region")
+      .add(&RegionChoiceOptions::regions, regions);
+  return list;
+}
+
+BoundParameters<SolveOptions> solving_parameters() {
+  BoundParameters<SolveOptions> list;
+  list.add("space", SolveOptions::kSpace,
+           "solve for blendshape weights or vertices; auto: weights where the target has "
+           "expressions")
+      .add(&SolveOptions::blendshape, blendshape_parameters())
+      .add(&SolveOptions::vertex, vertex_parameters());
+  return list;
+}
+
+SourceOptions described(SourceOptions options, const NamedData& input) {
+  options.name = input.name;
+  options.model_driven = std::get<SequenceRead>(input.data).model_driven;
+  return options;
+}
+
+std::optional<GivenComponents> given_components(const Invocation& invocation) {
+  const Components* components = invocation.find<Components>("components");
+  if (!components) return {};
+  return GivenComponents{invocation.inputs.at("components").front().name, *components};
+}
+
+Output components_output() {
+  return {"components-out", DataKind::components,
+          "the components (.h5), for later runs with --components", true};
+}
+
+bool solves_for_vertices(const Parameters& parameters, const BlendshapeModel& target) {
+  return solves_for_vertices(target, solving_parameters().read(parameters).space);
+}
+
+double analysis_bytes(const Invocation& invocation, const SequenceRead& read, int count) {
+  if (invocation.find<Components>("components")) return 0;
+  SourceOptions options = alignment_parameters().read(invocation.parameters);
+  options.model_driven = read.model_driven;
+  return alignment_bytes(read.sequence, options) + analysis_bytes(read.sequence, count);
+}
+
+Notes warnings_of(const Invocation& invocation) {
+  return
+      [&invocation](const Note& note) { invocation.warn(in_command_terms(note.topic, note.text)); };
+}
+
+void refuse(const OptionError& error, const Parameters& parameters) {
+  const std::string text = in_command_terms(error.topic(), error.what());
+  switch (error.topic()) {
+    case Topic::support_range:
+      throw UsageError("--d-min: expected less than --d-max, found " + parameters.text("d-min") +
+                       " and " + parameters.text("d-max"));
+    case Topic::held_anchor:
+      throw UsageError(text);
+    default:
+      throw MismatchError(text);
+  }
+}
+
+}  // namespace mimetra

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <string>
+
+#include "toolkit/operations/bound_parameters.h"
+#include "toolkit/operations/operation.h"
+#include "toolkit/pipeline/evaluation.h"
+#include "toolkit/pipeline/transfer.h"
+
+namespace mimetra {
+
+// The pipeline's options as parameters, shared by operations. Files that a call names must fit
+// `sequence`; without one they are not read, and what they hold is empty.
+
+/// --align.
+BoundParameters<SourceOptions> alignment_parameters(const MeshSequence* sequence = nullptr);
+/// --source-rest.
+BoundParameters<SourceOptions> source_rest_parameters(const MeshSequence* sequence = nullptr);
+/// --geodesics and --weld.
+BoundParameters<DistanceOptions> distance_parameters();
+/// -k, by default as many as the decomposition of `defaults` has.
+BoundParameters<AnalysisOptions> count_parameters(const AnalysisOptions& defaults = {});
+/// All others of a decomposition, the distances' included.
+BoundParameters<AnalysisOptions> analysis_parameters(const MeshSequence* sequence = nullptr);
+/// --radius, --region and --coverage.
+BoundParameters<RegionChoiceOptions> region_parameters();
+/// --space and what belongs to each.
+BoundParameters<SolveOptions> solving_parameters();
+
+/// The options, with what an input that is a sequence says of itself.
+SourceOptions described(SourceOptions options, const NamedData& input);
+
+/// The optional input `components` of a call.
+std::optional<GivenComponents> given_components(const Invocation& invocation);
+
+/// The output `components-out` of operations that decompose on the way to something else.
+Output components_output();
+
+/// True for the vertex space of --space, and where a target has no expressions to solve for.
+bool solves_for_vertices(const Parameters& parameters, const BlendshapeModel& target);
+
+/// Bytes of the decomposition of a sequence into `count` components, alignment included; 0 for
+/// components that are given.
+double analysis_bytes(const Invocation& invocation, const SequenceRead& read, int count);
+
+/// Notes become warnings that name the options which help.
+Notes warnings_of(const Invocation& invocation);
+
+/// Throws what the command says where an option does not fit: UsageError, MismatchError.
+[[noreturn]] void refuse(const OptionError& error, const Parameters& parameters);
+
+/// Does `work` of the pipeline; its errors name the command's options.
+template <typename Work>
+auto in_command_terms(const Parameters& parameters, const Work& work) {
+  try {
+    return work();
+  } catch (const OptionError& error) {
+    refuse(error, parameters);
+  }
+}
+
+}  // namespace mimetra

@@ -1,0 +1,35 @@
+#include "toolkit/operations/region_report.h"
+
+#include <nlohmann/json.hpp>
+
+#include "toolkit/mesh/text.h"
+
+namespace mimetra {
+
+Json report_of(const Regions& regions) {
+  Json list = Json::array();
+  for (const Region& region : regions.regions) {
+    list.push_back({{"center", region.center},
+                    {"radius", region.radius},
+                    {"vertices", region.vertices.size()},
+                    {"energy_share", region.energy_share},
+                    {"component", region.component}});
+  }
+  return {{"regions", list},
+          {"vertices", regions.vertex_count()},
+          {"triangles", regions.triangles.size()},
+          {"vertex_share", regions.vertex_share()},
+          {"triangle_share", regions.triangle_share()},
+          {"energy_share", regions.energy_share},
+          {"notes", regions.notes}};
+}
+
+std::string summary_of(const Regions& regions) {
+  return std::to_string(regions.regions.size()) + " regions hold " +
+         std::to_string(regions.vertex_count()) + " vertices (" + percent(regions.vertex_share()) +
+         "), " + std::to_string(regions.triangles.size()) + " triangles (" +
+         percent(regions.triangle_share()) + ") and " + percent(regions.energy_share) +
+         " of the motion energy\n";
+}
+
+}  // namespace mimetra

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "toolkit/pipeline/solution.h"
+#include "toolkit/transfer/transfer_error.h"
+
+namespace mimetra {
+
+/// One row of the paper's Table I.
+struct EvaluationRow {
+  std::optional<int> k;  ///< number of components; none for the full transfer and for given regions
+  int vertices = 0;
+  int triangles = 0;
+  double vertex_share = 1;
+  double triangle_share = 1;
+  double de_all = 0;
+  double de_region = 0;
+  std::optional<double> mpe_all;  ///< percent; none for the full transfer, or where it is exact
+  std::optional<double> mpe_region;
+  std::optional<double> decompose_seconds;
+  double transfer_seconds = 0;
+};
+
+/// A transfer, and how far it is from the source's deformation.
+struct EvaluatedTransfer {
+  EvaluationRow row;
+  Solution solution;
+  TransferError error;
+};
+
+/// The transfer by all triangles. \pre check_target() Throws as solve().
+EvaluatedTransfer evaluate_full(const Source& source, const Target& target,
+                                const SolveOptions& options = {});
+
+/// The transfer by regions, beside the one by all triangles. \pre check_target() Throws as solve().
+EvaluatedTransfer evaluate_by(const Regions& regions, const EvaluatedTransfer& full,
+                              const Source& source, const Target& target,
+                              const SolveOptions& options = {});
+
+struct EvaluationOptions {
+  /// Numbers of components, each >= 1: one row each.
+  std::vector<int> counts = {10, 30, 40};
+  /// Of the parts; their threads, progress and notes are those of the evaluation, and the number of
+  /// components is each of `counts`.
+  SourceOptions source = {};
+  AnalysisOptions analysis = {};
+  RegionChoiceOptions regions = {};
+  SolveOptions solving = {};
+  /// 0 for all there are; the result does not depend on it.
+  int threads = 0;
+  Progress progress = {};
+  Notes notes = {};
+
+  static constexpr Option kCounts{"counts", &EvaluationOptions::counts, {.minimum = 1}};
+  static constexpr auto declared() { return std::tuple(kCounts); }
+};
+
+/// The paper's Table I: a row for each number of components, and one by all triangles, which is the
+/// last. Throws what prepare_source(), check_target(), analyse() and solve() throw.
+std::vector<EvaluationRow> evaluate(const MeshSequence& source, const Target& target,
+                                    const EvaluationOptions& options = {});
+
+}  // namespace mimetra

@@ -1,0 +1,20 @@
+#pragma once
+
+#include "toolkit/pipeline/solution.h"
+
+namespace mimetra {
+
+// Bytes that the steps take at their peak, besides what they were given. Counted are the arrays
+// that grow with the sequence or the number of components.
+
+/// The sequence without its head motion; 0 where none is taken out.
+double alignment_bytes(const MeshSequence& sequence, const SourceOptions& options);
+
+/// A decomposition into `count` components, alignment not included.
+double analysis_bytes(const MeshSequence& sequence, int count);
+
+/// Set-up and result of a transfer to `target`.
+double solution_bytes(const MeshSequence& sequence, const BlendshapeModel& target,
+                      const SolveOptions& options);
+
+}  // namespace mimetra

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "toolkit/mesh/errors.h"
+
+namespace mimetra {
+
+/// What a note or an error is about. Who shows it may add how to help it in words of their own: the
+/// command names its options.
+enum class Topic {
+  other,
+  parting_vertices,  ///< vertices that are welded at rest do not stay together
+  unknown_neutral,   ///< of the source
+  unneutral_rest,    ///< the source's rest pose is likely not its neutral
+  poor_condition,    ///< the regions hardly tell the target's expressions apart
+  component_count,   ///< more than the mesh can have
+  support_range,     ///< d_min is not below d_max
+  no_expressions,    ///< of the target, where weights are asked for
+  anchor_vertex,     ///< one that the mesh does not have
+  held_anchor        ///< an anchor where fixed vertices hold the mesh
+};
+
+/// What the user of a computation should know of it.
+struct Note {
+  Topic topic;
+  std::string text;
+};
+
+/// Called with each note, from the thread that computes.
+using Notes = std::function<void(const Note&)>;
+
+/// Calls `notes` if there is one.
+void note(const Notes& notes, std::string text, Topic topic = Topic::other);
+
+/// An option that does not fit the data or another option.
+class OptionError : public MismatchError {
+ public:
+  OptionError(Topic topic, const std::string& text);
+
+  Topic topic() const { return topic_; }
+
+ private:
+  Topic topic_;
+};
+
+}  // namespace mimetra

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <string>
+
+#include "toolkit/pipeline/analysis.h"
+#include "toolkit/regions/regions.h"
+
+namespace mimetra {
+
+struct RegionChoiceOptions {
+  /// Geodesic radius of a region. One of no size would hold nothing but its centre, and no triangle
+  /// would be sure to be in it.
+  Length radius = Length::share(RegionOptions::kRadiusShare);
+  /// Its radius and distances are those of the choice.
+  RegionOptions regions = {};
+  Notes notes = {};
+
+  static constexpr Option kRadius{"radius", &RegionChoiceOptions::radius, {.minimum = 1e-9}};
+  static constexpr auto declared() { return std::tuple(kRadius); }
+};
+
+/// Regions of an analysis; what find_regions() notes is noted. Throws std::invalid_argument for
+/// options out of range.
+Regions choose_regions(const Analysis& analysis, const RegionChoiceOptions& options = {});
+
+/// Regions that were made before.
+struct GivenRegions {
+  /// In errors.
+  std::string name = "the regions";
+  Regions regions;
+};
+
+/// Throws MismatchError where they are of another mesh than the sequence, or hold no triangle.
+void check_regions(const GivenRegions& given, const MeshSequence& sequence);
+
+/// What a transfer looks at.
+struct Selection {
+  std::vector<int> triangles;  ///< L
+  std::vector<bool> inside;    ///< vertices inside the regions (N); empty for all
+};
+
+Selection selection_of(const Regions& regions);
+/// All triangles.
+Selection whole(const MeshSequence& sequence);
+
+}  // namespace mimetra

@@ -1,0 +1,149 @@
+#include "toolkit/pipeline/solution.h"
+
+#include "toolkit/mesh/stopwatch.h"
+#include "toolkit/mesh/text.h"
+
+namespace mimetra {
+
+namespace {
+
+/// Beyond this the weights are hardly determined by the regions.
+constexpr double kPoorCondition = 1e5;
+
+/// Notes of a target.
+class TargetNotes {
+ public:
+  TargetNotes(const Target& target, const SolveOptions& options)
+      : start_(target.name + ": "), notes_(options.notes) {}
+
+  void add(const std::string& text, Topic topic = Topic::other) const {
+    note(notes_, start_ + text, topic);
+  }
+
+  void add(const BlendshapeConditions& conditions) const {
+    if (!conditions.unseen.empty()) {
+      add(std::to_string(conditions.unseen.size()) +
+          " expressions do not move in the regions and stay 0: " + listed(conditions.unseen));
+    }
+    if (!conditions.weakly_seen.empty()) {
+      add(std::to_string(conditions.weakly_seen.size()) +
+          " expressions are weakly seen in the regions: " + listed(conditions.weakly_seen));
+    }
+    if (conditions.condition > kPoorCondition) {
+      add("the regions hardly tell the expressions apart (condition number " +
+              readable(conditions.condition, 2) + ")",
+          Topic::poor_condition);
+    }
+  }
+
+  void add_degenerate(const Solution& solution) const {
+    if (solution.degenerate_source_triangles > 0) {
+      add(std::to_string(solution.degenerate_source_triangles) +
+          " degenerate triangles of the source take their neighbours' deformation");
+    }
+    if (solution.degenerate_target_triangles > 0) {
+      add(std::to_string(solution.degenerate_target_triangles) +
+          " degenerate triangles of the target");
+    }
+  }
+
+ private:
+  std::string start_;
+  const Notes& notes_;
+};
+
+Solution solve_blendshapes(const Source& source, const Target& target, const Selection& selection,
+                           const SolveOptions& options) {
+  const Stopwatch stopwatch;
+  const BlendshapeModel& model = target.model;
+  BlendshapeTransferOptions of_space = options.blendshape;
+  of_space.threads = options.threads;
+  of_space.progress = options.progress;
+  const BlendshapeTransfer transfer(source.sequence.rest(), model, selection.triangles, of_space);
+  Solution solution;
+  solution.weights = transfer.weights(source.sequence);
+  solution.sequence = model.animate(solution.weights, source.sequence.times());
+  solution.seconds = stopwatch.seconds();
+  solution.conditions = transfer.conditions();
+  solution.degenerate_source_triangles = solution.conditions.degenerate_source_triangles;
+  solution.degenerate_target_triangles = solution.conditions.degenerate_target_triangles;
+  const TargetNotes notes(target, options);
+  notes.add(solution.conditions);
+  notes.add_degenerate(solution);
+  if (transfer.rest_looks_unneutral(source.sequence, solution.weights)) {
+    notes.add(
+        "many expressions want to be negative, so the source's rest pose is likely not its "
+        "neutral",
+        Topic::unneutral_rest);
+  }
+  return solution;
+}
+
+void check_anchor(const VertexTransferOptions& options, const BlendshapeModel& model,
+                  const Selection& selection) {
+  if (!options.anchor) return;
+  if (*options.anchor == Anchor::vertex && options.anchor_vertex >= model.vertices()) {
+    throw OptionError(Topic::anchor_vertex, "vertex " + std::to_string(options.anchor_vertex) +
+                                                ", the mesh has " +
+                                                std::to_string(model.vertices()) + " (0-based)");
+  }
+  const bool all = selection.triangles.size() == static_cast<std::size_t>(model.triangles().rows());
+  if (options.outside == Outside::fixed && !all) {
+    throw OptionError(Topic::held_anchor, "vertices outside the regions are fixed already");
+  }
+}
+
+Solution solve_vertices(const Source& source, const Target& target, const Selection& selection,
+                        const SolveOptions& options) {
+  const Stopwatch stopwatch;
+  const BlendshapeModel& model = target.model;
+  VertexTransferOptions of_space = options.vertex;
+  of_space.inside = selection.inside;
+  of_space.threads = options.threads;
+  of_space.progress = options.progress;
+  check_anchor(of_space, model, selection);
+  const VertexTransfer transfer(source.sequence.rest(), model.neutral(), model.triangles(),
+                                selection.triangles, of_space);
+  Solution solution;
+  solution.sequence = MeshSequence(model.shared_connectivity(), transfer.frames(source.sequence),
+                                   source.sequence.times(), model.neutral());
+  solution.seconds = stopwatch.seconds();
+  solution.degenerate_source_triangles = transfer.degenerate_source_triangles();
+  solution.degenerate_target_triangles = transfer.degenerate_target_triangles();
+  TargetNotes(target, options).add_degenerate(solution);
+  return solution;
+}
+
+}  // namespace
+
+bool solves_for_vertices(const BlendshapeModel& target, Space space) {
+  return space == Space::vertex || target.expressions().size() == 0;
+}
+
+void check_target(const MeshSequence& source, const Target& target) {
+  const BlendshapeModel& model = target.model;
+  if (model.vertices() != source.vertices()) {
+    throw MismatchError(target.name + ": " + std::to_string(model.vertices()) +
+                        " vertices, expected " + std::to_string(source.vertices()) +
+                        " as in the source");
+  }
+  const int face = first_different_face(source.connectivity(), model.connectivity());
+  if (face >= 0) {
+    throw MismatchError(target.name + ": face " + std::to_string(face) +
+                        " is not the source's; source and target need the same faces");
+  }
+}
+
+Solution solve(const Source& source, const Target& target, const Selection& selection,
+               const SolveOptions& options) {
+  check_options(options);
+  const BlendshapeModel& model = target.model;
+  if (options.space == Space::blendshape && model.expressions().size() == 0) {
+    throw OptionError(Topic::no_expressions, target.name + ": has no expressions");
+  }
+  return solves_for_vertices(model, options.space)
+             ? solve_vertices(source, target, selection, options)
+             : solve_blendshapes(source, target, selection, options);
+}
+
+}  // namespace mimetra

@@ -1,0 +1,88 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "toolkit/mesh/alignment.h"
+#include "toolkit/pipeline/note.h"
+
+namespace mimetra {
+
+/// The undeformed shape that a source's deformation is measured from.
+enum class SourceRest { neutral, first, mean };
+
+/// As people choose it.
+constexpr std::string_view choice_name(SourceRest value) {
+  switch (value) {
+    case SourceRest::neutral:
+      return "neutral";
+    case SourceRest::first:
+      return "first";
+    case SourceRest::mean:
+      return "mean";
+  }
+  return {};
+}
+
+/// What the head's motion is found on; `none` looks for none.
+enum class HeadMotion { stable, all, none };
+
+/// As people choose it.
+constexpr std::string_view choice_name(HeadMotion value) {
+  switch (value) {
+    case HeadMotion::stable:
+      return "stable";
+    case HeadMotion::all:
+      return "all";
+    case HeadMotion::none:
+      return "none";
+  }
+  return {};
+}
+
+struct SourceOptions {
+  /// In notes and errors.
+  std::string name = "the source";
+  /// Or the shape itself (N x 3). By default the neutral where it is known, otherwise the first
+  /// frame, with a note.
+  std::optional<std::variant<SourceRest, Positions>> rest = {};
+  /// Or the motion itself: head_motion[f] carries frame f without it to frame f (F). By default
+  /// none for one frame, and where the neutral is known or a model drives the source; otherwise
+  /// stable.
+  std::optional<std::variant<HeadMotion, std::vector<RigidTransform>>> head_motion = {};
+  /// A model drives it: it has no head motion of its own.
+  bool model_driven = false;
+  Notes notes = {};
+
+  static constexpr Option kRest{"rest", &SourceOptions::rest};
+  static constexpr Option kHeadMotion{"head_motion", &SourceOptions::head_motion};
+};
+
+/// A sequence whose deformation is looked at.
+struct Source {
+  MeshSequence given;     ///< as it came
+  MeshSequence sequence;  ///< without its head motion; the rest pose is the one that was asked for
+  std::vector<RigidTransform> motion;  ///< of the head (F); empty where none was looked for
+};
+
+/// True where these options take a head motion out of the sequence.
+bool takes_out_motion(const MeshSequence& sequence, const SourceOptions& options);
+
+/// The sequence without its head motion, its rest pose as it is: `options.rest` is for transfers.
+/// Throws MismatchError where a given motion has another number of frames, Cancelled.
+Source without_head_motion(const MeshSequence& sequence, const SourceOptions& options = {});
+
+/// The source of a transfer: also its rest pose is the one that was asked for. Throws OptionError
+/// (Topic::unknown_neutral) where the neutral is asked for and not known, std::invalid_argument for
+/// a rest pose of another number of vertices.
+Source prepare_source(const MeshSequence& sequence, const SourceOptions& options = {});
+
+/// A result with the head motion (F) given back to its frames. Its neutral, which has none, is not
+/// its rest pose any more. Throws MismatchError.
+MeshSequence with_head_motion(const MeshSequence& result,
+                              const std::vector<RigidTransform>& motion);
+
+}  // namespace mimetra

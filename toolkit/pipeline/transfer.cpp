@@ -1,0 +1,80 @@
+#include "toolkit/pipeline/transfer.h"
+
+#include "toolkit/mesh/stopwatch.h"
+
+namespace mimetra {
+
+namespace {
+
+/// The part of the work until there are regions, as progress shows it.
+constexpr double kRegionShare = 0.4;
+
+struct Choice {
+  Selection selection;
+  std::optional<Regions> regions = {};
+  std::optional<Components> components = {};
+  double seconds = 0;
+};
+
+Analysis analysis_for(const Source& source, const TransferOptions& options) {
+  AnalysisOptions of_analysis = options.analysis;
+  of_analysis.threads = options.threads;
+  of_analysis.notes = options.notes;
+  of_analysis.progress = part_of(options.progress, 0, kRegionShare);
+  if (const auto* given = std::get_if<GivenComponents>(&options.given)) {
+    return analysis_of(*given, source.sequence, of_analysis);
+  }
+  return analyse(source, of_analysis);
+}
+
+Choice choose(const Source& source, const TransferOptions& options) {
+  if (options.full) return {whole(source.sequence)};
+  if (const auto* given = std::get_if<GivenRegions>(&options.given)) {
+    check_regions(*given, source.sequence);
+    return {selection_of(given->regions), given->regions};
+  }
+  const Stopwatch stopwatch;
+  Analysis analysis = analysis_for(source, options);
+  RegionChoiceOptions of_regions = options.regions;
+  of_regions.notes = options.notes;
+  Regions regions = choose_regions(analysis, of_regions);
+  Selection selection = selection_of(regions);
+  return {std::move(selection), std::move(regions), std::move(analysis.components),
+          stopwatch.seconds()};
+}
+
+}  // namespace
+
+TransferResult transfer(const MeshSequence& sequence, const std::vector<Target>& targets,
+                        const TransferOptions& options) {
+  check_options(options);
+  SourceOptions of_source = options.source;
+  of_source.notes = options.notes;
+  const Source source = prepare_source(sequence, of_source);
+  for (const Target& target : targets) check_target(source.sequence, target);
+  Choice choice = choose(source, options);
+  const bool give_back = !source.motion.empty() && options.head_motion == RemovedMotion::keep;
+
+  TransferResult result;
+  SolveOptions of_solving = options.solving;
+  of_solving.threads = options.threads;
+  of_solving.notes = options.notes;
+  const double first = choice.regions ? kRegionShare : 0;
+  const auto count = static_cast<double>(targets.size());
+  for (std::size_t t = 0; t < targets.size(); ++t) {
+    of_solving.progress =
+        part_of(options.progress, first + (1 - first) * static_cast<double>(t) / count,
+                first + (1 - first) * static_cast<double>(t + 1) / count);
+    Solution solution = solve(source, targets[t], choice.selection, of_solving);
+    TransferError error =
+        transfer_error(source.sequence, solution.sequence, choice.selection.triangles);
+    if (give_back) solution.sequence = with_head_motion(solution.sequence, source.motion);
+    result.targets.push_back({std::move(solution), std::move(error)});
+  }
+  result.regions = std::move(choice.regions);
+  result.components = std::move(choice.components);
+  result.region_seconds = choice.seconds;
+  return result;
+}
+
+}  // namespace mimetra

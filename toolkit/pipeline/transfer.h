@@ -1,0 +1,77 @@
+#pragma once
+
+#include <optional>
+#include <variant>
+#include <vector>
+
+#include "toolkit/pipeline/solution.h"
+#include "toolkit/transfer/transfer_error.h"
+
+namespace mimetra {
+
+/// What becomes of the head motion that was taken out of the source.
+enum class RemovedMotion {
+  keep,  ///< it is given back to the target
+  drop
+};
+
+/// As people choose it.
+constexpr std::string_view choice_name(RemovedMotion value) {
+  switch (value) {
+    case RemovedMotion::keep:
+      return "keep";
+    case RemovedMotion::drop:
+      return "drop";
+  }
+  return {};
+}
+
+struct TransferOptions {
+  /// Use all triangles instead of regions.
+  bool full = false;
+  RemovedMotion head_motion = RemovedMotion::keep;
+  /// Regions, or components to find them by, that are known already; otherwise the source is
+  /// decomposed.
+  std::variant<std::monostate, GivenRegions, GivenComponents> given = {};
+  /// Of the parts; their threads, progress and notes are those of the transfer.
+  SourceOptions source = {};
+  AnalysisOptions analysis = {};
+  RegionChoiceOptions regions = {};
+  SolveOptions solving = {};
+  /// 0 for all there are; the result does not depend on it.
+  int threads = 0;
+  Progress progress = {};
+  Notes notes = {};
+
+  static constexpr Option kFull{"full", &TransferOptions::full};
+  static constexpr Option kHeadMotion{"head_motion", &TransferOptions::head_motion};
+  static constexpr auto declared() { return std::tuple(kFull, kHeadMotion); }
+};
+
+/// What came of one target.
+struct TransferredTarget {
+  /// Its sequence has the source's head motion where that was taken out and is kept; its neutral is
+  /// then not its rest pose.
+  Solution solution;
+  /// Before head motion was given back.
+  TransferError error;
+};
+
+struct TransferResult {
+  std::vector<TransferredTarget> targets;  ///< in the order of the targets
+  std::optional<Regions> regions;          ///< none for all triangles
+  std::optional<Components> components;    ///< that the regions come from
+  double region_seconds = 0;               ///< decomposition and choice of regions
+};
+
+/// The main job: transfers the deformation of a sequence to each of some targets. The rest pose and
+/// the head motion of the source are settled, its regions found, and the target's poses solved for
+/// on their triangles. What depends on the source only is done once.
+///
+/// Throws what prepare_source(), check_target(), analyse(), analysis_of(), check_regions(),
+/// choose_regions() and solve() throw; Cancelled. A target that does not fit is refused before
+/// anything is computed.
+TransferResult transfer(const MeshSequence& source, const std::vector<Target>& targets,
+                        const TransferOptions& options = {});
+
+}  // namespace mimetra
