@@ -14,6 +14,7 @@
 #include "toolkit/mesh/product_blocking.h"
 #include "toolkit/mesh/progress.h"
 #include "toolkit/mesh/text.h"
+#include "toolkit/operations/formats.h"
 #include "toolkit/operations/json.h"
 
 namespace mimetra {
@@ -277,7 +278,7 @@ void add_fitting(OperationTable& table) {
                       {"model", DataKind::morphable_model,
                        "model folder with identities and expressions, or eos shape model (.bin)",
                        false, false, true}};
-  operation.outputs = {{"out", DataKind::sequence, "a folder of frames, .npy, or a mesh file"},
+  operation.outputs = {{"out", DataKind::sequence, sequence_outputs()},
                        {"fit-out", DataKind::fit,
                         "coefficients and cameras, .json (default: NAME.fit.json beside OUT), for "
                         "MODEL@NAME.fit.json",

@@ -7,6 +7,7 @@
 #include "tests/report/report_fixture.h"
 #include "tests/temporary_folder.h"
 #include "toolkit/mesh/errors.h"
+#include "toolkit/operations/evaluation_table.h"
 #include "toolkit/operations/xml_text.h"
 #include "toolkit/report/report_page.h"
 #include "toolkit/report/viewer_script.h"

@@ -7,6 +7,7 @@
 #include "toolkit/mesh/alignment.h"
 #include "toolkit/mesh/text.h"
 #include "toolkit/operations/bound_parameters.h"
+#include "toolkit/operations/formats.h"
 #include "toolkit/operations/json.h"
 #include "toolkit/operations/parameter_files.h"
 #include "toolkit/operations/toolkit_operations.h"
@@ -95,7 +96,7 @@ Operation align_operation() {
   operation.name = "align";
   operation.summary = "Take the rigid motion out of each frame; the manifest keeps it";
   operation.inputs = {{"sequence", DataKind::sequence, "sequence to align"}};
-  operation.outputs = {{"out", DataKind::sequence, ".npy, a mesh file, or a folder of frames"}};
+  operation.outputs = {{"out", DataKind::sequence, sequence_outputs()}};
   operation.parameters = align_parameters().declared();
   operation.examples = {"align takes/ -o still/",
                         "align still/ --undo still/mimetra-run.json -o back/"};

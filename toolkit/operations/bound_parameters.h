@@ -75,6 +75,10 @@ class BoundParameters {
  public:
   /// How a parameter's value comes into the struct.
   using Apply = std::function<void(const Parameters&, Options&)>;
+  struct Entry {
+    Parameter parameter;
+    Apply apply;
+  };
 
   /// `defaults` are those of the parameters.
   explicit BoundParameters(Options defaults = {}) : defaults_(std::move(defaults)) {}
@@ -124,10 +128,11 @@ class BoundParameters {
   /// The parameters of a part of the struct, in their order.
   template <typename Part>
   BoundParameters& add(Part Options::*member, const BoundParameters<Part>& part) {
-    for (const auto& [parameter, apply] : part.entries()) {
-      add(parameter, [member, apply](const Parameters& parameters, Options& options) {
-        apply(parameters, options.*member);
-      });
+    for (const auto& entry : part.entries()) {
+      add(entry.parameter,
+          [member, apply = entry.apply](const Parameters& parameters, Options& options) {
+            apply(parameters, options.*member);
+          });
     }
     return *this;
   }
@@ -140,24 +145,24 @@ class BoundParameters {
 
   /// A parameter that is not like its member; `apply` reads it.
   BoundParameters& add(Parameter parameter, Apply apply) {
-    entries_.emplace_back(std::move(parameter), std::move(apply));
+    entries_.push_back({std::move(parameter), std::move(apply)});
     return *this;
   }
 
   std::vector<Parameter> declared() const {
     std::vector<Parameter> parameters;
-    for (const auto& [parameter, apply] : entries_) parameters.push_back(parameter);
+    for (const Entry& entry : entries_) parameters.push_back(entry.parameter);
     return parameters;
   }
 
   /// The struct with the values of a call.
   Options read(const Parameters& parameters) const {
     Options options = defaults_;
-    for (const auto& [parameter, apply] : entries_) apply(parameters, options);
+    for (const Entry& entry : entries_) entry.apply(parameters, options);
     return options;
   }
 
-  const std::vector<std::pair<Parameter, Apply>>& entries() const { return entries_; }
+  const std::vector<Entry>& entries() const { return entries_; }
 
  private:
   template <typename Value>
@@ -183,7 +188,7 @@ class BoundParameters {
   }
 
   Options defaults_;
-  std::vector<std::pair<Parameter, Apply>> entries_;
+  std::vector<Entry> entries_;
 };
 
 }  // namespace mimetra

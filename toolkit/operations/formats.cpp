@@ -6,6 +6,7 @@
 #include "toolkit/io/regions_file.h"
 #include "toolkit/io/sequence_format.h"
 #include "toolkit/io/whole_file.h"
+#include "toolkit/mesh/text.h"
 
 namespace mimetra {
 
@@ -16,7 +17,7 @@ namespace {
 std::vector<Parameter> sequence_writing_parameters() {
   return {choice_parameter("format", SequenceWriteOptions{}.format, "format of frames in a folder"),
           {"double", ParameterKind::flag, false, "double precision in mesh files"},
-          {"single", ParameterKind::flag, false, "single precision in .npy"}};
+          {"single", ParameterKind::flag, false, "single precision in .npy and .npz"}};
 }
 
 Paths write_sequence_data(const Data& data, const WriteRequest& request) {
@@ -77,6 +78,10 @@ Paths write_text(const WriteRequest& request, const std::string& text) {
     write_file(request.target, text, request.overwrite);
     return {request.target};
   });
+}
+
+std::string sequence_outputs() {
+  return joined(sequence_extensions()) + " (one frame in a mesh file), or a folder of meshes";
 }
 
 void add_formats(OperationTable& table) {

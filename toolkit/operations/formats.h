@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <string>
 #include <vector>
 
 #include "toolkit/operations/operation.h"
@@ -10,6 +11,9 @@ namespace mimetra {
 
 /// Adds the writers and region readers of io.
 void add_formats(OperationTable& table);
+
+/// What a sequence can be written as, for help: its formats, or a folder.
+std::string sequence_outputs();
 
 /// Calls `write`, which makes the request's target and returns its files, and lets the request's
 /// further files appear beside it right after; where either fails, nothing appears. Returns all

@@ -22,7 +22,7 @@ struct Input {
   bool optional = false;
   bool repeated = false;  ///< one or more; only the last positional input
   bool named = false;     ///< an option although it is needed
-  bool streamed = false;  ///< frames of this sequence are read when they are needed, not all at once
+  bool streamed = false;  ///< frames are read when they are needed, not all at once
 };
 
 /// Something an operation makes.

@@ -5,6 +5,7 @@
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/stopwatch.h"
 #include "toolkit/mesh/text.h"
+#include "toolkit/operations/formats.h"
 #include "toolkit/operations/json.h"
 #include "toolkit/operations/pipeline_parameters.h"
 #include "toolkit/operations/region_report.h"
@@ -198,8 +199,7 @@ Operation transfer_operation() {
        true}};
   operation.outputs = {
       {"out", DataKind::sequence,
-       "a folder of frames, .npy, or a mesh file; with several targets a folder with one each",
-       false, true},
+       sequence_outputs() + "; with several targets one each, named after it", false, true},
       {"regions-out", DataKind::regions, "regions: .pvd (a time series), .vtp, .json or .csv",
        true},
       components_output(),
