@@ -80,6 +80,10 @@ Paths write_text(const WriteRequest& request, const std::string& text) {
   });
 }
 
+std::vector<std::string> sequence_files() {
+  return sequence_extensions();
+}
+
 std::string sequence_outputs() {
   return joined(sequence_extensions()) + " (one frame in a mesh file), or a folder of meshes";
 }

@@ -12,6 +12,8 @@ namespace mimetra {
 /// Adds the writers and region readers of io.
 void add_formats(OperationTable& table);
 
+/// Extensions of the files that hold a sequence, those of ParaView's aside; for dialogs.
+std::vector<std::string> sequence_files();
 /// What a sequence can be written as, for help: its formats, or a folder.
 std::string sequence_outputs();
 

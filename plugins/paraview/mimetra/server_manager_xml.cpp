@@ -9,7 +9,7 @@
 
 #include "plugins/paraview/mimetra/filters/proxy_xml.h"
 #include "plugins/paraview/mimetra/filters/reading.h"
-#include "toolkit/io/sequence_format.h"
+#include "toolkit/operations/formats.h"
 #include "toolkit/operations/operation.h"
 
 using namespace mimetra;
@@ -47,7 +47,7 @@ const std::string kChart = "<View type=\"XYChartView\" port=\"1\"/>";
 std::string file_extensions() {
   const std::set<std::string> own = {".obj", ".ply", ".stl"};
   std::string words;
-  for (const std::string& extension : sequence_extensions()) {
+  for (const std::string& extension : sequence_files()) {
     if (own.contains(extension)) continue;
     words += (words.empty() ? "" : " ") + extension.substr(1);
   }
@@ -67,8 +67,7 @@ Proxy sequence_proxy(const OperationTable& table) {
           kInMenu +
               "<DefaultFileNameProperty name=\"FileName\"/>"
               "<ReaderFactory extensions=\"" +
-              file_extensions() +
-              "\" file_description=\"Mesh sequences (mimetra)\"/>"};
+              file_extensions() + "\" file_description=\"Mesh sequences (mimetra)\"/>"};
 }
 
 std::vector<Proxy> filter_proxies(const OperationTable& table) {

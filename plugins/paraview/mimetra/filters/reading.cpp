@@ -1,7 +1,7 @@
 #include "plugins/paraview/mimetra/filters/reading.h"
 
-#include "toolkit/io/sequence_format.h"
 #include "toolkit/mesh/text.h"
+#include "toolkit/operations/formats.h"
 
 using namespace mimetra;
 
@@ -10,7 +10,7 @@ Operation reading_operation() {
   operation.name = "read";
   operation.summary = "Mesh sequence or model of any format that mimetra reads";
   operation.inputs = {{"FileName", DataKind::fields,
-                       joined(sequence_extensions()) +
+                       joined(sequence_files()) +
                            ", .pvd, or a model; typed, also a folder of meshes, a pattern as in "
                            "smile_%04d.obj, or MODEL@identity=1.5"}};
   operation.outputs = {{"out", DataKind::fields, "the sequence"}};
