@@ -175,6 +175,18 @@ TEST_F(NpzFiles, DamageOfACompressedOneIsFound) {
               HasSubstr("its member positions.npy cannot be read"));
 }
 
+TEST_F(NpzFiles, ClaimsOfAHugeSizeAreRefusedBeforeMemoryIsAskedFor) {
+  for (const bool compressed : {false, true}) {
+    write({positions_, faces_}, compressed);
+    std::string bytes = read_file(folder_ / "a.npz");
+    // Sizes stand 20 and 24 bytes behind the start of an entry of the central directory.
+    const std::size_t entry = bytes.find("PK\1\2");
+    bytes.replace(entry + 20, 4, "\xf0\xff\xff\x0f").replace(entry + 24, 4, "\xf0\xff\xff\x7f");
+    write_bytes(folder_ / "a.npz", bytes);
+    EXPECT_THAT(message_of<IoError>([this] { read(); }), HasSubstr("lies about its size"));
+  }
+}
+
 TEST_F(NpzFiles, NameWhatIsWrongInThem) {
   EXPECT_THAT(error({faces_}), HasSubstr("holds faces.npy, expected an array positions"));
   EXPECT_THAT(error({{"positions.npy", npy("<i8", "1, 3", kFace)}, faces_}),

@@ -97,7 +97,7 @@ TEST_F(PointCaches, Pc2IsReadAsItsDescriptionSays) {
 
 TEST_F(PointCaches, Pc2IsSampledEverySoManyFrames) {
   write_bytes(folder_ / "a.pc2", pc2_bytes(3, 1, 0.5));
-  EXPECT_EQ(read("a.pc2", {.fps = 25}).times()[2], 2 * 0.5 / 25);
+  EXPECT_DOUBLE_EQ(read("a.pc2", {.fps = 25}).times()[2], (1 + 2 * 0.5) / 25);
 }
 
 TEST_F(PointCaches, Pc2IsWrittenAsItsDescriptionSays) {
@@ -105,6 +105,25 @@ TEST_F(PointCaches, Pc2IsWrittenAsItsDescriptionSays) {
   EXPECT_EQ(read_file(folder_ / "b.pc2"), pc2_bytes(3));
   EXPECT_THAT(folder_.names(),
               ElementsAre("a.topology.ply", "b.pc2", "b.rest.ply", "b.topology.ply"));
+}
+
+TEST_F(PointCaches, Pc2KeepsEvenTimes) {
+  const MeshSequence sequence = moving_octahedron(3);
+  write_sequence(MeshSequence(sequence.shared_connectivity(), sequence.positions(),
+                              Eigen::Vector3d(0.5, 0.75, 1)),
+                 folder_ / "b.pc2");
+  // Single precision holds these exactly.
+  EXPECT_TRUE(read("b.pc2").times().isApprox(Eigen::Vector3d(0.5, 0.75, 1), 1e-15));
+}
+
+TEST_F(PointCaches, MddRefusesTimesThatItWouldMakeOne) {
+  const MeshSequence sequence = moving_octahedron(3);
+  const double day = 86400;
+  const MeshSequence late(sequence.shared_connectivity(), sequence.positions(),
+                          Eigen::Vector3d(day, day + 1.0 / 240, day + 2.0 / 240));
+  EXPECT_THAT(message_of<MismatchError>([&] { write_sequence(late, folder_ / "b.mdd"); }),
+              HasSubstr("b.mdd: .mdd holds times in single precision, in which frame 2 at 86400"));
+  EXPECT_THAT(folder_.names(), ElementsAre("a.topology.ply"));
 }
 
 TEST_F(PointCaches, MddIsReadAsItsDescriptionSays) {
@@ -157,8 +176,19 @@ TEST_F(PointCaches, WrongHeadersAreNamed) {
   EXPECT_THAT(error("a.mdd", bytes_in(kBig, -1) + bytes_in(kBig, 6)), HasSubstr("has -1 frames"));
 }
 
+TEST_F(PointCaches, HugeClaimsAreFoundBeforeMemoryIsAskedFor) {
+  const std::string huge = bytes_in(kLittle, 1 << 29);
+  std::string pc2 = pc2_bytes(1).replace(16, 4, huge).replace(28, 4, huge);
+  EXPECT_THAT(error("a.pc2", pc2), HasSubstr("is truncated"));
+  EXPECT_THAT(error("a.pc2", pc2.substr(0, 32)), HasSubstr("is truncated"));
+  EXPECT_THAT(error("a.mdd", bytes_in(kBig, 1 << 29) + bytes_in(kBig, 1 << 29)),
+              HasSubstr("is truncated"));
+  EXPECT_THAT(error("a.mdd", bytes_in(kBig, 1 << 30) + bytes_in(kBig, 6)),
+              HasSubstr("has 1073741824 frames of 6 vertices, expected 1 to 715827882"));
+}
+
 TEST_F(PointCaches, TimesOfMddRise) {
-  EXPECT_THAT(error("a.mdd", mdd_bytes({0, 1, 1})), HasSubstr("frame 2 is at 1.000000 s"));
+  EXPECT_THAT(error("a.mdd", mdd_bytes({0, 1, 1})), HasSubstr("frame 2 is at 1 s"));
   EXPECT_THAT(error("a.mdd", mdd_bytes({std::numeric_limits<float>::quiet_NaN()})),
               HasSubstr("frame 0 is at nan s"));
 }

@@ -235,6 +235,18 @@ TEST(WriteSequence, FolderHoldsNumberedFramesAndNothingElse) {
   EXPECT_THAT(folder.names(), ElementsAre("s"));
 }
 
+TEST(WriteSequence, PosesFarFromTheOriginAreInDoublePrecision) {
+  const TemporaryFolder folder;
+  MeshSequence sequence = octahedra(2);
+  Frames frames = sequence.positions();
+  frames.row(1).array() += 1e6 + 1 / 3.0;
+  sequence = sequence.with_frames(frames);
+  write_sequence(sequence, folder / "s");
+  const MeshSequence back = read_sequence((folder / "s").string()).sequence;
+  EXPECT_EQ(back.frame(0), sequence.frame(0).cast<float>().cast<double>());
+  EXPECT_EQ(back.frame(1), sequence.frame(1));
+}
+
 TEST(WriteSequence, RestPoseOfAFolderStandsBesideIt) {
   const TemporaryFolder folder;
   write_sequence(octahedra(2, pose(4)), folder / "s");

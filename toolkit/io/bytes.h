@@ -3,6 +3,7 @@
 #include <bit>
 #include <cstdint>
 #include <cstring>
+#include <span>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -34,6 +35,22 @@ Number number_at(const char* at, std::endian order) {
   std::memcpy(&bits, at, sizeof bits);
   if (order != std::endian::native) bits = byte_swapped(bits);
   return std::bit_cast<Number>(bits);
+}
+
+/// Numbers that stand one after the other, as doubles. \pre values.size() of them are there
+template <typename Stored>
+void decode_numbers(const char* stored, std::endian order, std::span<double> values) {
+  const auto decode_in = [stored, values](auto given) {
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      values[i] = static_cast<double>(number_at<Stored>(stored + i * sizeof(Stored), given()));
+    }
+  };
+  // With an order that is known when the loop is compiled, it runs at the speed of memory.
+  if (order == std::endian::native) {
+    decode_in([] { return std::endian::native; });
+  } else {
+    decode_in([order] { return order; });
+  }
 }
 
 /// Puts a number in a byte order. \pre there is room for sizeof(Number) bytes

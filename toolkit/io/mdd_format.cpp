@@ -1,10 +1,11 @@
 #include <algorithm>
-#include <cmath>
 
 #include "toolkit/io/bytes.h"
 #include "toolkit/io/point_cache.h"
 #include "toolkit/io/sequence_format.h"
+#include "toolkit/io/sequence_parts.h"
 #include "toolkit/mesh/errors.h"
+#include "toolkit/mesh/text.h"
 
 namespace mimetra {
 namespace fs = std::filesystem;
@@ -32,19 +33,23 @@ class MddFile : public StoredPointCache {
     times_.resize(frames_);
     StoredFloats{kMddHeader, sizeof(float), std::endian::big}.read(
         *file_, 0, {times_.data(), static_cast<std::size_t>(frames_)});
-    for (int frame = 0; frame < frames_; ++frame) {
-      if (std::isfinite(times_[frame]) && (frame == 0 || times_[frame] > times_[frame - 1])) {
-        continue;
-      }
-      throw IoError(path_.string(), "frame " + std::to_string(frame) + " is at " +
-                                        std::to_string(times_[frame]) +
-                                        " s, expected times that rise");
-    }
+    check_times(path_.string(), times_);
   }
 };
 
 OpenSequence open_mdd(const fs::path& path, const SequenceSource& source) {
   return open_point_cache(std::make_unique<const MddFile>(path), source);
+}
+
+/// Seconds since midnight may be too many for single precision.
+void check_rounded_times(const fs::path& target, const Eigen::VectorXd& times) {
+  for (Eigen::Index frame = 1; frame < times.size(); ++frame) {
+    if (static_cast<float>(times[frame]) > static_cast<float>(times[frame - 1])) continue;
+    throw MismatchError(target.string() +
+                        ": .mdd holds times in single precision, in which frame " +
+                        std::to_string(frame) + " at " + readable(times[frame], 12) +
+                        " s is not later than the one before; write .npz");
+  }
 }
 
 PointCacheTarget begin_mdd_file(const SequenceHeader& header, const fs::path& path) {
@@ -62,6 +67,7 @@ PointCacheTarget begin_mdd_file(const SequenceHeader& header, const fs::path& pa
 
 std::unique_ptr<FrameSink> begin_mdd(const SequenceHeader& header, const fs::path& target,
                                      const SequenceWriteOptions& options, const ExtraFiles& extra) {
+  check_rounded_times(target, header.times);
   return write_point_cache(header, target, options, extra,
                            [&](const fs::path& path) { return begin_mdd_file(header, path); });
 }

@@ -19,10 +19,6 @@ std::string MeshCodec::extension() const {
   return '.' + std::string(choice_name(format));
 }
 
-std::span<const MeshCodec> mesh_codecs() {
-  return kCodecs;
-}
-
 const MeshCodec* mesh_codec(const std::string& extension) {
   const auto found = std::ranges::find(kCodecs, lower_case(extension), &MeshCodec::extension);
   return found == kCodecs.end() ? nullptr : &*found;

@@ -2,7 +2,6 @@
 
 #include <functional>
 #include <memory>
-#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -63,8 +62,6 @@ struct MeshCodec {
   std::string extension() const;
 };
 
-/// All formats; lists of them have this order.
-std::span<const MeshCodec> mesh_codecs();
 /// The format of an extension (".ply") in any case; null for one that is no mesh format.
 const MeshCodec* mesh_codec(const std::string& extension);
 

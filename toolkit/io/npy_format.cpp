@@ -1,21 +1,31 @@
 #include <algorithm>
+#include <limits>
 
 #include "toolkit/io/npy_cache.h"
 #include "toolkit/io/npy_header.h"
 #include "toolkit/io/npy_values.h"
 #include "toolkit/io/sequence_format.h"
 #include "toolkit/io/whole_file.h"
+#include "toolkit/mesh/errors.h"
 
 namespace mimetra {
 namespace fs = std::filesystem;
 namespace {
 
-int frames_of(const NpyHeader& header) {
-  return header.shape.size() == 3 ? static_cast<int>(header.shape[0]) : 1;
+/// Frames, and coordinates of one, are counted by ints.
+int counted(const fs::path& path, std::size_t size) {
+  constexpr std::size_t kMost = std::numeric_limits<int>::max() / 3;
+  if (size <= kMost) return static_cast<int>(size);
+  throw IoError(path.string(), "has " + std::to_string(size) + " frames or vertices, expected " +
+                                   std::to_string(kMost) + " at most");
 }
 
-int vertices_of(const NpyHeader& header) {
-  return static_cast<int>(header.shape[header.shape.size() - 2]);
+int frames_of(const fs::path& path, const NpyHeader& header) {
+  return header.shape.size() == 3 ? counted(path, header.shape[0]) : 1;
+}
+
+int vertices_of(const fs::path& path, const NpyHeader& header) {
+  return counted(path, header.shape[header.shape.size() - 2]);
 }
 
 /// What an array starts with; all of its header in version 1.
@@ -31,8 +41,8 @@ class StoredArray : public StoredPointCache {
   StoredArray(const fs::path& path, const NpyHeader& header, std::unique_ptr<const InputBytes> file)
       : StoredPointCache(path, std::move(file)) {
     checked_count(path.string(), file_->size(), header);
-    frames_ = frames_of(header);
-    vertices_ = vertices_of(header);
+    frames_ = frames_of(path, header);
+    vertices_ = vertices_of(path, header);
     positions_ = {header.data, header.item_bytes, header.order};
   }
 };
@@ -44,8 +54,8 @@ class LoadedArray : public PointCache {
     const NpyHeader header = read_npy_header(path.string(), bytes);
     check_frames_header(path.string(), header);
     array_ = npy_values(path.string(), bytes, header);
-    frames_ = frames_of(header);
-    vertices_ = vertices_of(header);
+    frames_ = frames_of(path, header);
+    vertices_ = vertices_of(path, header);
   }
 
  private:

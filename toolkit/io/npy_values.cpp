@@ -9,39 +9,24 @@
 namespace mimetra {
 namespace {
 
-template <typename Stored>
-void decode_as(const char* stored, const NpyHeader& header, std::span<double> values) {
-  const auto decode_in = [stored, values](auto order) {
-    for (std::size_t i = 0; i < values.size(); ++i) {
-      values[i] = static_cast<double>(number_at<Stored>(stored + i * sizeof(Stored), order()));
-    }
-  };
-  // With an order that is known when the loop is compiled, it runs at the speed of memory.
-  if (header.order == std::endian::native) {
-    decode_in([] { return std::endian::native; });
-  } else {
-    decode_in([&header] { return header.order; });
-  }
-}
-
 /// The values in the file's order.
 void decode(const char* bytes, const NpyHeader& header, std::span<double> values) {
   const bool is_signed = header.kind == 'i';
   if (header.kind == 'f') {
-    header.item_bytes == 4 ? decode_as<float>(bytes, header, values)
-                           : decode_as<double>(bytes, header, values);
+    header.item_bytes == 4 ? decode_numbers<float>(bytes, header.order, values)
+                           : decode_numbers<double>(bytes, header.order, values);
   } else if (header.item_bytes == 1) {
-    is_signed ? decode_as<std::int8_t>(bytes, header, values)
-              : decode_as<std::uint8_t>(bytes, header, values);
+    is_signed ? decode_numbers<std::int8_t>(bytes, header.order, values)
+              : decode_numbers<std::uint8_t>(bytes, header.order, values);
   } else if (header.item_bytes == 2) {
-    is_signed ? decode_as<std::int16_t>(bytes, header, values)
-              : decode_as<std::uint16_t>(bytes, header, values);
+    is_signed ? decode_numbers<std::int16_t>(bytes, header.order, values)
+              : decode_numbers<std::uint16_t>(bytes, header.order, values);
   } else if (header.item_bytes == 4) {
-    is_signed ? decode_as<std::int32_t>(bytes, header, values)
-              : decode_as<std::uint32_t>(bytes, header, values);
+    is_signed ? decode_numbers<std::int32_t>(bytes, header.order, values)
+              : decode_numbers<std::uint32_t>(bytes, header.order, values);
   } else {
-    is_signed ? decode_as<std::int64_t>(bytes, header, values)
-              : decode_as<std::uint64_t>(bytes, header, values);
+    is_signed ? decode_numbers<std::int64_t>(bytes, header.order, values)
+              : decode_numbers<std::uint64_t>(bytes, header.order, values);
   }
 }
 

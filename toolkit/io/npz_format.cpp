@@ -99,13 +99,9 @@ Eigen::VectorXd times_in(const std::string& name, const NumericArray& array, int
   if (array.shape != std::vector<std::size_t>{static_cast<std::size_t>(frames)}) {
     fail_shape(name, array, std::to_string(frames) + ", one time for each frame");
   }
-  for (std::size_t frame = 0; frame < array.values.size(); ++frame) {
-    const double time = array.values[frame];
-    if (std::isfinite(time) && (frame == 0 || time > array.values[frame - 1])) continue;
-    throw IoError(name, "frame " + std::to_string(frame) + " is at " + readable(time) +
-                            " s, expected times that rise");
-  }
-  return Eigen::Map<const Eigen::VectorXd>(array.values.data(), frames);
+  Eigen::VectorXd times = Eigen::Map<const Eigen::VectorXd>(array.values.data(), frames);
+  check_times(name, times);
+  return times;
 }
 
 Positions rest_in(const std::string& name, const NumericArray& array, int vertices) {
@@ -167,6 +163,19 @@ std::string npy_bytes(const Connectivity& connectivity) {
   return npy_bytes("<i4", {faces, most}, corners);
 }
 
+/// The name of a file that goes with this.
+struct ScratchFile {
+  fs::path path;
+
+  explicit ScratchFile(fs::path own_path) : path(std::move(own_path)) {}
+  ~ScratchFile() {
+    std::error_code gone;
+    fs::remove(path, gone);
+  }
+  ScratchFile(const ScratchFile&) = delete;
+  ScratchFile& operator=(const ScratchFile&) = delete;
+};
+
 /// The positions go to a file of their own first, since an archive has one member after the other.
 class NpzSink : public FrameSink {
  public:
@@ -178,15 +187,9 @@ class NpzSink : public FrameSink {
         outputs_(options.overwrite, options.inputs),
         archive_(outputs_.add(target, PendingOutput::Kind::file)),
         scratch_(temporary_beside(target)),
-        positions_(begin_npy_cache(scratch_, static_cast<std::size_t>(header.times.size()),
+        positions_(begin_npy_cache(scratch_.path, static_cast<std::size_t>(header.times.size()),
                                    static_cast<std::size_t>(header.connectivity->vertices),
                                    options.single_precision)) {}
-  ~NpzSink() override {
-    std::error_code gone;
-    fs::remove(scratch_, gone);
-  }
-  NpzSink(const NpzSink&) = delete;
-  NpzSink& operator=(const NpzSink&) = delete;
 
   void write(int first, const Frames& poses) override {
     const auto columns = static_cast<std::size_t>(poses.cols());
@@ -199,7 +202,7 @@ class NpzSink : public FrameSink {
     const auto count = [](Eigen::Index size) { return static_cast<std::size_t>(size); };
     const auto name = [](const std::vector<std::string>& names) { return names.front() + ".npy"; };
     ZipWriter zip(archive_);
-    zip.add_file(name(kPositionNames), scratch_);
+    zip.add_file(name(kPositionNames), scratch_.path);
     zip.add(name(kFaceNames), npy_bytes(*header_.connectivity));
     zip.add(name(kTimeNames), npy_bytes<double>("<f8", {count(header_.times.size())},
                                                 {header_.times.begin(), header_.times.end()}));
@@ -221,7 +224,7 @@ class NpzSink : public FrameSink {
   ExtraFiles extra_;
   PendingOutputs outputs_;
   fs::path archive_;
-  fs::path scratch_;
+  ScratchFile scratch_;
   PointCacheTarget positions_;
 };
 

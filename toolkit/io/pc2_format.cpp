@@ -27,10 +27,12 @@ class Pc2File : public StoredPointCache {
                                        std::to_string(kPc2Version));
     }
     vertices_ = integer(head, 1);
+    start_ = number_at<float>(head.data() + kPc2Magic.size() + 8, std::endian::little);
     step_ = number_at<float>(head.data() + kPc2Magic.size() + 12, std::endian::little);
     frames_ = integer(head, 4);
     positions_ = {kPc2Header, sizeof(float), std::endian::little};
     check_size();
+    if (!std::isfinite(start_)) throw IoError(path.string(), "starts at no finite frame");
     if (std::isfinite(step_) && step_ > 0) return;
     throw IoError(path.string(), "has " + std::to_string(step_) +
                                      " frames from one sample to the next, expected more than 0");
@@ -46,12 +48,19 @@ OpenSequence open_pc2(const fs::path& path, const SequenceSource& source) {
   return open_point_cache(std::make_unique<const Pc2File>(path), source);
 }
 
+/// Frames of the animation from one to the next, on average; 1 where there is only one.
+double frames_between(const Eigen::VectorXd& times) {
+  const auto last = times.size() - 1;
+  if (last < 1) return 1;
+  return kDefaultFramesPerSecond * (times[last] - times[0]) / static_cast<double>(last);
+}
+
 PointCacheTarget begin_pc2_file(const SequenceHeader& header, const fs::path& path) {
   std::string head(kPc2Magic);
   append_little_endian(head, kPc2Version);
   append_little_endian(head, static_cast<std::int32_t>(header.connectivity->vertices));
-  append_little_endian(head, 0.0F);
-  append_little_endian(head, 1.0F);
+  append_little_endian(head, static_cast<float>(kDefaultFramesPerSecond * header.times[0]));
+  append_little_endian(head, static_cast<float>(frames_between(header.times)));
   append_little_endian(head, static_cast<std::int32_t>(header.times.size()));
   PointCacheTarget target{
       std::make_unique<OutputFile>(path), {head.size(), sizeof(float), std::endian::little}, true};

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <span>
 
 #include "toolkit/io/bytes.h"
@@ -33,21 +34,6 @@ void check_finite(const fs::path& path, int first, const FramesView& poses) {
   throw IoError(path.string(), "frame " + std::to_string(first + at / poses.cols()) + ": vertex " +
                                    std::to_string(at % poses.cols() / 3) +
                                    " has no finite position");
-}
-
-template <typename Stored>
-void decode(const char* stored, std::endian order, std::span<double> values) {
-  const auto decode_in = [stored, values](auto given) {
-    for (std::size_t i = 0; i < values.size(); ++i) {
-      values[i] = static_cast<double>(number_at<Stored>(stored + i * sizeof(Stored), given()));
-    }
-  };
-  // With an order that is known when the loop is compiled, it runs at the speed of memory.
-  if (order == std::endian::native) {
-    decode_in([] { return std::endian::native; });
-  } else {
-    decode_in([order] { return order; });
-  }
 }
 
 template <typename Stored>
@@ -95,7 +81,9 @@ void add_parts_beside(const PointCache& cache, const SequenceSource& source, Poi
 /// Frames keep the time they have in the whole sequence, whichever part is taken.
 Eigen::VectorXd times_of(const PointCache& cache, const SequenceSource& source) {
   if (cache.times().size() > 0) return cache.times();
-  return cache.step() * frame_times(cache.frames(), source);
+  const double frame = 1 / source.fps.value_or(kDefaultFramesPerSecond);
+  return (cache.start() * frame + cache.step() * frame_times(cache.frames(), source).array())
+      .matrix();
 }
 
 class PointCacheSink : public FrameSink {
@@ -163,9 +151,9 @@ void StoredFloats::read(const InputBytes& file, std::size_t first, std::span<dou
   std::string stored(values.size() * bytes, '\0');
   file.read(from, stored.data(), stored.size());
   if (bytes == sizeof(float)) {
-    decode<float>(stored.data(), order, values);
+    decode_numbers<float>(stored.data(), order, values);
   } else {
-    decode<double>(stored.data(), order, values);
+    decode_numbers<double>(stored.data(), order, values);
   }
 }
 
@@ -182,22 +170,25 @@ void StoredFloats::write(const OutputFile& file, std::size_t first,
 }
 
 void StoredPointCache::check_size() const {
-  if (frames_ < 1 || vertices_ < 1) {
+  // Frames, and coordinates of one, are counted by ints.
+  constexpr int kMost = std::numeric_limits<int>::max() / 3;
+  if (frames_ < 1 || vertices_ < 1 || frames_ > kMost || vertices_ > kMost) {
     throw IoError(path_.string(), "has " + std::to_string(frames_) + " frames of " +
-                                      std::to_string(vertices_) +
-                                      " vertices, expected at least "
-                                      "one of each");
+                                      std::to_string(vertices_) + " vertices, expected 1 to " +
+                                      std::to_string(kMost));
   }
   const std::size_t frame = 3 * positions_.bytes * static_cast<std::size_t>(vertices_);
-  const std::size_t expected = positions_.offset + frame * static_cast<std::size_t>(frames_);
-  if (file_->size() == expected) return;
-  const std::string wanted = std::to_string(frames_) + " frames of " + std::to_string(vertices_) +
-                             " vertices, which are " + std::to_string(expected) + " bytes";
-  throw IoError(
-      path_.string(),
-      file_->size() < expected
-          ? "is truncated: " + std::to_string(file_->size()) + " bytes, expected " + wanted
-          : std::to_string(file_->size() - expected) + " bytes follow its " + wanted);
+  const auto frames = static_cast<std::size_t>(frames_);
+  const std::size_t held = file_->size() - std::min(file_->size(), positions_.offset);
+  const std::string wanted =
+      std::to_string(frames_) + " frames of " + std::to_string(vertices_) + " vertices";
+  if (held / frame < frames) {
+    throw IoError(path_.string(),
+                  "is truncated: " + std::to_string(file_->size()) + " bytes, expected " + wanted);
+  }
+  if (held == frame * frames) return;
+  throw IoError(path_.string(),
+                std::to_string(held - frame * frames) + " bytes follow its " + wanted);
 }
 
 void StoredPointCache::read_values(int first, FramesView poses) const {

@@ -26,7 +26,9 @@ class PointCache {
   int vertices() const { return vertices_; }
   /// Seconds (F); empty where the file holds none.
   const Eigen::VectorXd& times() const { return times_; }
-  /// How many frames of the animation lie from one to the next.
+  /// Where it holds none: the frame of the animation at which it starts, and how many of those lie
+  /// from one of its frames to the next.
+  double start() const { return start_; }
   double step() const { return step_; }
 
   /// Frames from `first` on (x 3N). From several threads. Throws IoError, also for a position that
@@ -40,6 +42,7 @@ class PointCache {
   int frames_ = 0;
   int vertices_ = 0;
   Eigen::VectorXd times_ = {};
+  double start_ = 0;
   double step_ = 1;
 
  private:

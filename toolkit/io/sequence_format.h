@@ -12,7 +12,7 @@ namespace mimetra {
 /// A format of files that hold a sequence, declared once: readers, writers, and every list of
 /// formats come from it.
 struct SequenceFormat {
-  /// "point cache of 3ds Max (PC2)".
+  /// "PC2 point cache".
   std::string name;
   /// In lower case, such as ".pc2".
   std::vector<std::string> extensions;

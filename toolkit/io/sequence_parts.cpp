@@ -1,5 +1,6 @@
 #include "toolkit/io/sequence_parts.h"
 
+#include <cmath>
 #include <stdexcept>
 #include <string>
 
@@ -7,6 +8,7 @@
 #include "toolkit/io/mesh_file.h"
 #include "toolkit/io/whole_file.h"
 #include "toolkit/mesh/errors.h"
+#include "toolkit/mesh/text.h"
 
 namespace mimetra {
 namespace fs = std::filesystem;
@@ -36,6 +38,14 @@ Eigen::VectorXd frame_times(int frames, const SequenceSource& source) {
   Eigen::VectorXd times(frames);
   for (Eigen::Index i = 0; i < times.size(); ++i) times[i] = static_cast<double>(i) / fps;
   return times;
+}
+
+void check_times(const std::string& name, const Eigen::VectorXd& times) {
+  for (Eigen::Index frame = 0; frame < times.size(); ++frame) {
+    if (std::isfinite(times[frame]) && (frame == 0 || times[frame] > times[frame - 1])) continue;
+    throw IoError(name, "frame " + std::to_string(frame) + " is at " + readable(times[frame]) +
+                            " s, expected times that rise");
+  }
 }
 
 fs::path topology_of(const fs::path& path, const SequenceSource& source) {

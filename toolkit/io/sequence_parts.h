@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "toolkit/io/mesh_file.h"
@@ -13,6 +14,10 @@ namespace mimetra {
 
 /// Times of `frames` frames without any, by `source.fps` (F). Throws std::invalid_argument.
 Eigen::VectorXd frame_times(int frames, const SequenceSource& source);
+
+/// Throws IoError that names `name` and the first frame whose time is not finite, or not later than
+/// the one before.
+void check_times(const std::string& name, const Eigen::VectorXd& times);
 
 /// The file with the faces of `path`, which has none itself. Throws IoError where there is none.
 std::filesystem::path topology_of(const std::filesystem::path& path, const SequenceSource& source);

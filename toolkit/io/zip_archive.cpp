@@ -7,6 +7,7 @@
 
 #include <zip.h>
 
+#include "toolkit/io/temporary_name.h"
 #include "toolkit/mesh/errors.h"
 
 namespace mimetra {
@@ -70,14 +71,19 @@ class StoredMember : public InputBytes {
 
 class LoadedMember : public InputBytes {
  public:
-  explicit LoadedMember(std::string bytes) : bytes_(std::move(bytes)) {}
+  LoadedMember(std::string name, std::string bytes)
+      : name_(std::move(name)), bytes_(std::move(bytes)) {}
 
   std::size_t size() const override { return bytes_.size(); }
   void read(std::size_t offset, char* to, std::size_t bytes) const override {
+    if (offset > bytes_.size() || bytes > bytes_.size() - offset) {
+      throw IoError(name_, "is truncated");
+    }
     std::memcpy(to, bytes_.data() + offset, bytes);
   }
 
  private:
+  std::string name_;
   std::string bytes_;
 };
 
@@ -110,23 +116,30 @@ std::unique_ptr<const InputBytes> ZipReader::member(const std::string& name) con
   const std::lock_guard lock(zip_->mutex);
   zip_stat_t stat;
   zip_stat_init(&stat);
-  zip_file_t* file = nullptr;
-  if (zip_stat(zip_->archive, name.c_str(), 0, &stat) == 0) {
-    file = zip_fopen(zip_->archive, name.c_str(), 0);
+  if (zip_stat(zip_->archive, name.c_str(), 0, &stat) != 0) {
+    zip_->fail(name, zip_strerror(zip_->archive));
   }
+  // Both sizes are claims of the archive's.
+  const bool stored = stat.comp_method == ZIP_CM_STORE;
+  if (stat.comp_size > fs::file_size(zip_->path) ||
+      stat.size / (stored ? 1 : kMostDeflated) > stat.comp_size) {
+    zip_->fail(name, "it lies about its size");
+  }
+  std::unique_ptr<zip_file_t, decltype(&zip_fclose)> file(zip_fopen(zip_->archive, name.c_str(), 0),
+                                                          zip_fclose);
   if (!file) zip_->fail(name, zip_strerror(zip_->archive));
-  if (stat.comp_method == ZIP_CM_STORE) {
-    return std::make_unique<const StoredMember>(zip_, name, file, stat.size);
+  if (stored) {
+    return std::make_unique<const StoredMember>(zip_, name, file.release(), stat.size);
   }
-  const std::unique_ptr<zip_file_t, decltype(&zip_fclose)> closed(file, zip_fclose);
-  if (stat.size / kMostDeflated > stat.comp_size) zip_->fail(name, "it lies about its size");
   std::string bytes(stat.size, '\0');
-  const zip_int64_t read = zip_fread(file, bytes.data(), bytes.size());
+  const zip_int64_t read = zip_fread(file.get(), bytes.data(), bytes.size());
   char beyond = 0;
   // Only behind the last byte does the library compare checksums.
-  if (read < 0 || zip_fread(file, &beyond, 1) < 0) zip_->fail(name, zip_file_strerror(file));
+  if (read < 0 || zip_fread(file.get(), &beyond, 1) < 0) {
+    zip_->fail(name, zip_file_strerror(file.get()));
+  }
   if (static_cast<std::size_t>(read) < bytes.size()) zip_->fail(name, "it is truncated");
-  return std::make_unique<const LoadedMember>(std::move(bytes));
+  return std::make_unique<const LoadedMember>(zip_->path.string() + ": " + name, std::move(bytes));
 }
 
 struct ZipWriter::State {
@@ -154,7 +167,8 @@ struct ZipWriter::State {
     }
   }
   [[noreturn]] void fail() const {
-    throw OutputError(path.string(), std::string("cannot be written: ") + zip_strerror(archive));
+    throw OutputError(committed_name(path).string(),
+                      std::string("cannot be written: ") + zip_strerror(archive));
   }
 };
 
@@ -163,7 +177,8 @@ ZipWriter::ZipWriter(fs::path path) : state_(std::make_unique<State>()) {
   int error = 0;
   state_->archive = zip_open(state_->path.c_str(), ZIP_CREATE | ZIP_TRUNCATE, &error);
   if (!state_->archive) {
-    throw OutputError(state_->path.string(), "cannot be written: " + zip_reason(error));
+    throw OutputError(committed_name(state_->path).string(),
+                      "cannot be written: " + zip_reason(error));
   }
 }
 

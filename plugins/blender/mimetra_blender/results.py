@@ -77,8 +77,9 @@ def write_mesh_cache(value, frames, name):
         with tempfile.TemporaryDirectory(prefix=".mimetra_", dir=folder) as scratch:
             poses.save(pathlib.Path(scratch) / path.name)
             (pathlib.Path(scratch) / path.name).rename(path)
-    except OSError as error:
-        raise mimetra.OutputError(f"{folder}: cannot write the mesh cache: {error.strerror}; choose"
+    except (OSError, mimetra.OutputError) as error:
+        reason = getattr(error, "strerror", None) or error
+        raise mimetra.OutputError(f"{folder}: cannot write the mesh cache: {reason}; choose"
                                   " another folder") from None
     return path
 
