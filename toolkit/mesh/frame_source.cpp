@@ -51,7 +51,8 @@ class SelectedFrames : public FrameSource {
 int frames_in_block(const FrameSource& source) {
   constexpr int kBlocks = 64;
   const std::size_t frame = std::max<std::size_t>(1, 3 * sizeof(double) * source.vertices());
-  const auto most = static_cast<int>(std::min<std::size_t>(kBlockBytes / frame, 1 << 20));
+  // Readers and writers hold a block up to three times more, in their own encodings.
+  const auto most = static_cast<int>(std::min<std::size_t>(kBlockBytes / 4 / frame, 1 << 20));
   const int wanted = std::min(most, source.frames() / kBlocks + 1);
   // Products of matrices take rows in fours.
   return most < 4 ? std::max(1, wanted) : std::max(4, wanted / 4 * 4);
