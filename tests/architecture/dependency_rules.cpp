@@ -297,7 +297,7 @@ const std::vector<FolderRule>& folder_rules() {
         {"plugin", "samples/plugin", {"c"}},
         {"cli",
          "toolkit/cli",
-         {"mesh", "operations", "vtk", "pictures", "report", "fitting", "samples", "c"},
+         {"mesh", "io", "operations", "vtk", "pictures", "report", "fitting", "samples", "c"},
          {"CLI11", "spdlog", "fmt", "JSON"}},
         {"paraview", "plugins/paraview", {"mesh", "operations", "vtk", "c"}, {}, true},
         {"meshlab", "plugins/meshlab", {"operations", "c"}, {}, true},
