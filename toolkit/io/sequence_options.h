@@ -18,7 +18,7 @@ namespace mimetra {
 struct SequenceSource {
   /// Blendshape weights that drive a model.
   std::optional<std::filesystem::path> weights = {};
-  /// Mesh file with the faces of an array.
+  /// Mesh file with the faces of a file that holds none.
   std::optional<std::filesystem::path> topology = {};
   /// Part `A:B:STEP` of the frames, 0-based, B excluded; each may be left out.
   std::optional<std::string> frames = {};

@@ -12,7 +12,7 @@ namespace mimetra {
 /// Adds the writers and region readers of io.
 void add_formats(OperationTable& table);
 
-/// Extensions of the files that hold a sequence, those of ParaView's aside; for dialogs.
+/// Extensions of the files that io reads and writes a sequence as, for dialogs.
 std::vector<std::string> sequence_files();
 /// What a sequence can be written as, for help: its formats, or a folder.
 std::string sequence_outputs();
