@@ -2,15 +2,11 @@
 
 #include <algorithm>
 
-#include "toolkit/mesh/progress.h"
-#include "toolkit/operations/loading.h"
+#include "toolkit/operations/call.h"
 
 using namespace mimetra;
 
 namespace {
-
-/// Reading files as a share of the progress.
-constexpr double kReading = 0.3;
 
 const Operation& operation_named(const OperationTable& table, const std::string& name) {
   const Operation* operation = table.find(name);
@@ -18,47 +14,6 @@ const Operation& operation_named(const OperationTable& table, const std::string&
   std::string known;
   for (const Operation& each : table.operations()) known += (known.empty() ? "" : ", ") + each.name;
   throw UsageError("there is no operation '" + name + "'; there are " + known);
-}
-
-/// A sequence where it can stand for what is asked for: fields that are none, and the other way
-/// round; otherwise the value itself.
-NamedData as_kind(DataKind kind, const NamedData& value) {
-  const auto* sequence = std::get_if<SequenceRead>(&value.data);
-  if (sequence && kind == DataKind::fields) {
-    return {value.name, FieldSequence{sequence->sequence, {}}};
-  }
-  const auto* fields = std::get_if<FieldSequence>(&value.data);
-  if (fields && kind == DataKind::sequence) {
-    return {value.name, SequenceRead{fields->sequence, false, {}, {}}};
-  }
-  return value;
-}
-
-bool serves_as(DataKind kind, const Data& data) {
-  const auto found = static_cast<DataKind>(data.index());
-  const auto has_frames = [](DataKind each) {
-    return each == DataKind::sequence || each == DataKind::fields;
-  };
-  return found == kind || (has_frames(found) && has_frames(kind));
-}
-
-/// Throws UsageError for a value of a parameter of files where the inputs `read` are
-/// none that it applies to: it would be ignored.
-void check_parameters_of_files(const OperationTable& table, const Operation& operation,
-                               const std::map<std::string, std::vector<std::string>>& read,
-                               const std::map<std::string, ParameterValue>& values) {
-  Operation reading;
-  reading.parameters = operation.parameters;
-  for (const Input& input : operation.inputs) {
-    if (read.contains(input.name)) reading.inputs.push_back(input);
-  }
-  const Parameters used(table.parameters_of(reading));
-  for (const auto& [name, value] : values) {
-    if (used.find(name)) continue;
-    throw UsageError("parameter '" + name +
-                     "' speaks of files, and no input is read from one that it applies to; leave "
-                     "it out");
-  }
 }
 
 }  // namespace
@@ -88,12 +43,7 @@ void mimetra_call::set(const std::string& parameter, const char* text) {
 
 void mimetra_call::give(const std::string& name, std::shared_ptr<const Value> value) {
   const Input& declared = input(name);
-  if (!serves_as(declared.kind, value->named().data)) {
-    throw UsageError("input '" + name + "' of '" + operation_.name + "': expected the kind '" +
-                     std::string(kind_name(declared.kind)) + "', found '" +
-                     std::string(kind_name(static_cast<DataKind>(value->named().data.index()))) +
-                     "'");
-  }
+  check_kind(operation_, declared, value->named().data);
   if (!declared.repeated) {
     given_[name].clear();
     read_.erase(name);
@@ -109,62 +59,57 @@ void mimetra_call::read(const std::string& name, const std::string& text) {
   read_[name].push_back(text);
 }
 
+const Output& mimetra_call::declared_output(const std::string& name) const {
+  const auto found = std::ranges::find(operation_.outputs, name, &Output::name);
+  if (found != operation_.outputs.end()) return *found;
+  throw UsageError("operation '" + operation_.name + "' has no output '" + name + "'");
+}
+
 void mimetra_call::want(const std::string& name) {
-  const auto& outputs = operation_.outputs;
-  if (std::ranges::find(outputs, name, &Output::name) == outputs.end()) {
-    throw UsageError("operation '" + operation_.name + "' has no output '" + name + "'");
-  }
-  wanted_[name];
+  wanted_.insert(declared_output(name).name);
 }
 
-void mimetra_call::check_inputs() const {
-  for (const Input& declared : operation_.inputs) {
-    const bool has_one = given_.contains(declared.name) || read_.contains(declared.name);
-    if (has_one || declared.optional) continue;
-    throw UsageError("operation '" + operation_.name + "' needs its input '" + declared.name +
-                     "': " + declared.help);
-  }
+void mimetra_call::write(const std::string& name, const std::string& path, bool overwrite) {
+  want(name);
+  paths_[name] = path;
+  overwrite_ = overwrite_ || overwrite;
 }
 
-std::map<std::string, std::vector<NamedData>> mimetra_call::given() const {
-  std::map<std::string, std::vector<NamedData>> copies;
+void mimetra_call::write_manifest(const std::string& path, bool overwrite) {
+  manifest_ = path;
+  overwrite_ = overwrite_ || overwrite;
+}
+
+CallRequest mimetra_call::request() const {
+  CallRequest request;
+  request.operation = &operation_;
+  request.parameters = declared_;
+  for (const auto& [name, value] : values_) request.parameters.set(name, value);
   for (const auto& [name, values] : given_) {
-    for (const auto& value : values) {
-      copies[name].push_back(as_kind(input(name).kind, value->named()));
-    }
+    for (const auto& value : values) request.given[name].push_back(value->named());
   }
-  return copies;
-}
-
-Invocation mimetra_call::invocation() const {
-  check_inputs();
-  check_parameters_of_files(context_.table->operations(), operation_, read_, values_);
-  Invocation invocation;
-  invocation.parameters = declared_;
-  for (const auto& [name, value] : values_) invocation.parameters.set(name, value);
-  const double read = read_.empty() ? 0 : kReading;
-  invocation.inputs =
-      load_inputs(context_.table->operations(), operation_, invocation.parameters, read_,
-                  part_of(context_.progress, 0, read), context_.log, context_.threads, given())
-          .data;
-  invocation.wanted = wanted_;
-  for (const Output& output : operation_.outputs) {
-    if (!output.optional) invocation.wanted[output.name];
-  }
-  invocation.progress = part_of(context_.progress, read, 1);
-  invocation.log = context_.log;
-  invocation.threads = context_.threads;
-  return invocation;
+  request.named = read_;
+  request.wanted = wanted_;
+  request.paths = paths_;
+  request.manifest = manifest_;
+  request.overwrite = overwrite_;
+  request.threads = context_.threads;
+  request.progress = context_.progress;
+  request.log = context_.log;
+  return request;
 }
 
 void mimetra_call::run() {
   outputs_.clear();
   report_.clear();
   summary_.clear();
-  const Invocation asked = invocation();
-  Outcome outcome = operation_.run(asked);
+  Call call(context_.table->operations(), request());
+  call.load();
+  call.run();
+  call.write();
+  Outcome& outcome = call.outcome();
   for (auto& [name, values] : outcome.outputs) {
-    if (!asked.wants(name)) continue;
+    if (!call.invocation().wants(name)) continue;
     for (NamedData& value : values) {
       outputs_[name].push_back(std::make_shared<const Value>(std::move(value)));
     }

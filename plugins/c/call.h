@@ -2,11 +2,14 @@
 
 #include <map>
 #include <memory>
+#include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
 #include "plugins/c/context.h"
 #include "plugins/c/value.h"
+#include "toolkit/operations/call.h"
 
 /// One operation with what goes into it, and what came out of its last run.
 struct mimetra_call {
@@ -20,9 +23,12 @@ struct mimetra_call {
   /// Throws UsageError for an unknown input or a value of another kind.
   void give(const std::string& input, std::shared_ptr<const mimetra::Value> value);
   void read(const std::string& input, const std::string& text);
+  /// Throw UsageError for an unknown output.
   void want(const std::string& output);
+  void write(const std::string& output, const std::string& path, bool overwrite);
+  void write_manifest(const std::string& path, bool overwrite);
 
-  /// Throws UsageError for an input that is missing, and what readers and operation throw.
+  /// Throws UsageError for an input that is missing, and what readers, operation and writers throw.
   void run();
   /// None before a run.
   const std::vector<std::shared_ptr<const mimetra::Value>>& output(const std::string& name) const;
@@ -31,9 +37,8 @@ struct mimetra_call {
 
  private:
   const mimetra::Input& input(const std::string& name) const;
-  std::map<std::string, std::vector<mimetra::NamedData>> given() const;
-  void check_inputs() const;
-  mimetra::Invocation invocation() const;
+  const mimetra::Output& declared_output(const std::string& name) const;
+  mimetra::CallRequest request() const;
 
   mimetra_context& context_;
   const mimetra::Operation& operation_;
@@ -41,7 +46,10 @@ struct mimetra_call {
   std::map<std::string, mimetra::ParameterValue> values_;
   std::map<std::string, std::vector<std::shared_ptr<const mimetra::Value>>> given_;
   std::map<std::string, std::vector<std::string>> read_;
-  std::map<std::string, std::vector<std::filesystem::path>> wanted_;
+  std::set<std::string> wanted_;
+  std::map<std::string, std::filesystem::path> paths_;
+  std::optional<std::filesystem::path> manifest_;
+  bool overwrite_ = false;
   std::map<std::string, std::vector<std::shared_ptr<const mimetra::Value>>> outputs_;
   std::string report_;
   std::string summary_;

@@ -270,6 +270,18 @@ mimetra_status job_report(mimetra_job* job, const char* json, const char* summar
                  [&] { job->report(json ? json : "{}", summary ? summary : ""); });
 }
 
+mimetra_status call_write(mimetra_call* call, const char* output, const char* path,
+                          int32_t replace) noexcept {
+  return guarded(context_of(call), [&] {
+    needed(path, "path");
+    if (output) {
+      call->write(output, path, replace != 0);
+    } else {
+      call->write_manifest(path, replace != 0);
+    }
+  });
+}
+
 }  // namespace
 
 mimetra_status make_context(const std::function<std::vector<std::string>(OperationTable&)>& fill,
@@ -337,7 +349,8 @@ const mimetra_interface& toolkit_interface() {
                                                   job_log,
                                                   job_fail,
                                                   job_output,
-                                                  job_report};
+                                                  job_report,
+                                                  call_write};
   return functions;
 }
 

@@ -147,8 +147,8 @@ enum {
 };
 
 /* What a parameter of files applies to: flags of mimetra_parameter. A call takes those of reading
- * where it reads an input from a file that they apply to, and load_data; save_data takes those of
- * writing. */
+ * where it reads an input from a file that they apply to, and those of writing where it writes such
+ * an output; load_data takes the former, save_data the latter. */
 enum { MIMETRA_READING = 1, MIMETRA_WRITING = 2 };
 
 /* ---- Callbacks ------------------------------------------------------------------------------ */
@@ -389,6 +389,17 @@ typedef struct mimetra_interface {
   mimetra_status (*job_output)(mimetra_job* job, const char* output, const mimetra_data* data);
   /* The result for programs, a JSON object, and for people, lines of text. */
   mimetra_status (*job_report)(mimetra_job* job, const char* json, const char* summary);
+
+  /* -- Calls that write -- */
+
+  /* Asks for an output, and for its files: call_run writes it as the command does, by the path's
+   * extension and the call's parameters of writing, with the run's manifest beside or in it. With
+   * NULL as the output, the manifest alone: version, the value of every parameter, the inputs with
+   * hashes of their files, and the report, as JSON ("align" gives motion back that the manifest of
+   * a run of it tells of). What exists is an error unless `replace`, which replaces what an earlier
+   * run wrote. */
+  mimetra_status (*call_write)(mimetra_call* call, const char* output, const char* path,
+                               int32_t replace);
 } mimetra_interface;
 
 /* True where the library that serves `m` is new enough to have a function. */

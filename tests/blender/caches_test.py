@@ -51,6 +51,20 @@ class Caches(HostTest):
         self.assertEqual(bare.modifiers[0].filepath, "//mimetra/bare.pc2")
         self.assertTrue((self.path / "mimetra" / "bare.pc2").exists())
 
+    def test_a_manifest_gives_motion_back(self):
+        manifest = str(self.path / "align.json")
+        poses = {frame: self.shown(self.source, frame) for frame in (1, 30, LAST)}
+        bpy.ops.mimetra.align(on="all", manifest=manifest, cache_folder=str(self.path / "still"))
+        still = bpy.data.objects["source align"]
+        self.assertGreater(np.abs(self.shown(still, 30) - poses[30]).max(), 1e-3)
+        with self.assertRaisesRegex(RuntimeError, "align.json: exists already"):
+            bpy.ops.mimetra.align(manifest=manifest)
+        self.activate(still)
+        bpy.ops.mimetra.align(undo=manifest, cache_folder=str(self.path / "moving"))
+        moving = bpy.data.objects["source align align"]
+        for frame, pose in poses.items():
+            self.assert_close(self.shown(moving, frame), pose, f"frame {frame}")
+
     def test_steps_between_frames_are_kept(self):
         bare = self.bare_target()
         bpy.ops.mimetra.transfer(target="bare", full=True, frame_start=11, frame_end=111,

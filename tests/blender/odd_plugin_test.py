@@ -63,7 +63,8 @@ class OddPlugin(HostTest):
 
     def test_a_result_that_only_a_file_holds_needs_its_path_before_the_run(self):
         self.assert_fails("landmarks: expected a path for out", bpy.ops.mimetra.landmarks)
-        self.assert_fails("ran although", bpy.ops.mimetra.landmarks, out="/nowhere.csv")
+        self.assert_fails("this program writes no landmarks", bpy.ops.mimetra.landmarks,
+                          out="/nowhere.csv")
 
 
 if __name__ == "__main__":

@@ -121,6 +121,7 @@ TEST(Layout, OfInterface) {
   FOLLOWS(job_fail);
   FOLLOWS(job_output);
   FOLLOWS(job_report);
+  FOLLOWS(call_write);
 #undef FOLLOWS
   EXPECT_EQ(sizeof(mimetra_interface), offset);
 }

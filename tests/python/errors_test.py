@@ -74,10 +74,13 @@ class Errors(SampleTest):
                                                    frames="0:2"))
         self.assertEqual(mimetra.info(self.take, frames="0:2").report["frames"], 2)
 
-    def test_what_only_a_program_that_writes_can_use_is_no_option(self):
-        for option in ({"format": "obj"}, {"double": True}, {"paraview": True}):
-            with self.assertRaisesRegex(TypeError, "unexpected keyword"):
-                mimetra.regions(self.arrays, **option)
+    def test_parameters_of_writing_need_an_output_that_is_written(self):
+        self.assert_fails(mimetra.UsageError, 2, "parameter 'format' speaks of files",
+                          lambda: mimetra.align(self.arrays, format="obj"))
+
+    def test_what_only_a_program_with_vtk_can_use_is_no_option(self):
+        with self.assertRaisesRegex(TypeError, "unexpected keyword"):
+            mimetra.regions(self.arrays, paraview=True)
         with self.assertRaisesRegex(TypeError, "unexpected keyword"):
             mimetra.fit("track.csv", model=self.head, overlay=True)
 

@@ -84,6 +84,29 @@ class Operations(SampleTest):
         self.assert_same(one.displacements, two.displacements)
         self.assert_same(one.weights, two.weights)
 
+    def test_a_path_for_an_output_is_where_the_command_writes_it(self):
+        asked, written = self.path / "asked", self.path / "written"
+        command("align", self.take, "--on", "all", "--format", "obj", "-o", asked)
+        result = mimetra.align(self.take, on="all", format="obj", out=written)
+        self.assertEqual(sorted(os.listdir(asked)), sorted(os.listdir(written)))
+        for name in os.listdir(asked):
+            if name.endswith(".obj"):
+                self.assertEqual((asked / name).read_bytes(), (written / name).read_bytes())
+        with open(written / "mimetra-run.json") as file:
+            manifest = json.load(file)
+        self.assertEqual(manifest["result"], result.report)
+        self.assertEqual(manifest["named_inputs"], {"sequence": [str(self.take)]})
+        with self.assertRaisesRegex(mimetra.OutputError, "written"):
+            mimetra.align(self.take, out=written)
+        self.assertEqual(mimetra.align(self.take, out=written, force=True).report["frames"], 12)
+
+    def test_a_manifest_gives_motion_back(self):
+        manifest = self.path / "align.json"
+        still = mimetra.align(self.arrays, on="all", manifest=manifest).out
+        self.assertGreater(np.abs(still.positions - self.arrays.positions).max(), 1e-6)
+        moving = mimetra.align(still, undo=manifest).out
+        self.assertLess(np.abs(moving.positions - self.arrays.positions).max(), 1e-12)
+
     def test_an_operation_is_found_by_its_name(self):
         self.assertEqual(mimetra.run("info", self.arrays).report["frames"], 12)
         with self.assertRaisesRegex(mimetra.UsageError, "no operation 'inof'; there are info,"):

@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <sstream>
 
 #include <nlohmann/json.hpp>
 
 #include "toolkit/operations/json.h"
+#include "toolkit/operations/memory_use.h"
 
 namespace mimetra::cli {
 
@@ -54,20 +54,6 @@ bool is_in_memory(const Data& data) {
 
 std::string megabytes(double bytes) {
   return std::to_string(std::lround(bytes / 1e6)) + " MB";
-}
-
-MemoryUse MemoryUse::of_this_process() {
-  MemoryUse use;
-  std::ifstream status("/proc/self/status");
-  for (std::string line; std::getline(status, line);) {
-    std::istringstream words(line);
-    std::string name;
-    double kilobytes = 0;
-    words >> name >> kilobytes;
-    if (name == "VmRSS:") use.now = 1024 * kilobytes;
-    if (name == "VmHWM:") use.peak = 1024 * kilobytes;
-  }
-  return use;
 }
 
 Outcome planned(const Operation& operation, const Invocation& invocation) {

@@ -36,6 +36,14 @@ def _part(steps, begin, end):
         yield begin + (end - begin) * share
 
 
+def _free(path, name):
+    """The path, if there is one, where nothing stands yet."""
+    if path and os.path.exists(path):
+        raise mimetra.OutputError(f"{path}: exists already; choose another name for {name}, or"
+                                  " remove it")
+    return path
+
+
 def _computed(operation, inputs, options):
     """Yields the share done; returns the result. Closing it cancels the computation."""
     state = {"share": 0.0}
@@ -148,15 +156,14 @@ class _Run:
         keyed = None if options.get("space") == "vertex" else self._keyed(objects)
         for port in self._operation.outputs:
             asked = getattr(self, properties.property_name(port.name), None)
-            if port.optional and (asked or (keyed and port.kind is mimetra.Table)):
-                options[mimetra.python_name(port.name)] = True
             if properties.needs_path(port) and not asked:
                 raise mimetra.UsageError(f"{self._operation.name}: expected a path for {port.name}:"
                                          f" {port.help}")
-            path = asked and properties.is_written(port) and bpy.path.abspath(asked)
-            if path and os.path.exists(path):
-                raise mimetra.OutputError(f"{path}: exists already; choose another name for"
-                                          f" {port.name}, or remove it")
+            path = self._path_of(port)
+            if path or port.optional and (asked or (keyed and port.kind is mimetra.Table)):
+                options[mimetra.python_name(port.name)] = _free(path, port.name) or True
+        if self.manifest:
+            options["manifest"] = _free(bpy.path.abspath(self.manifest), "the manifest")
         if keyed and any(port.kind is mimetra.Table for port in self._operation.outputs):
             results.check_not_driven(keyed)
         return options
@@ -192,7 +199,7 @@ class _Run:
         for port, value in made:
             if source and port.kind in (mimetra.Fields, mimetra.Regions):
                 results.check_fits(value, source)
-        made = [(port, value) for port, value in made if not self._save(port, value)]
+        made = [(port, value) for port, value in made if not self._path_of(port)]
         if target and self._show_on_target(made, values, target, frames):
             made = [each for each in made if each[0].kind is not mimetra.Sequence]
         for port, value in sorted(made, key=lambda each: each[0].kind is not mimetra.Sequence):
@@ -242,12 +249,10 @@ class _Run:
         elif source:
             results.show_fields(value, source)
 
-    def _save(self, port, value):
-        """Saves an output that goes into a file. False for those that are shown."""
+    def _path_of(self, port):
+        """Where an output goes that goes into a file; None for those that are shown."""
         path = properties.is_written(port) and getattr(self, properties.property_name(port.name))
-        if path:
-            value.save(bpy.path.abspath(path))
-        return bool(path)
+        return bpy.path.abspath(path) if path else None
 
     @contextlib.contextmanager
     def _reported(self):

@@ -90,6 +90,7 @@ class _MorePanel(_Panel):
         for port in operation.outputs:
             if not _is_main_output(port) and (port.optional or properties.is_written(port)):
                 layout.prop(group, properties.property_name(port.name))
+        layout.prop(group, "manifest")
         if active:
             _draw_frames(layout, group)
 

@@ -14,7 +14,8 @@ _MESHES = (mimetra.Sequence, mimetra.Fields, mimetra.Model)
 _OPEN = 2**31 - 1
 _UNSET = "DEFAULT"  # of choices without one; names of the table have small letters
 # Names that parameters cannot have: of properties below, and of Blender's.
-_OWN = {"frame_start", "frame_end", "frame_step", "use_frames", "cache_format", "cache_folder"}
+_OWN = {"frame_start", "frame_end", "frame_step", "use_frames", "cache_format", "cache_folder",
+        "manifest"}
 _RESERVED = _OWN.union(*(
     [*dir(base), *base.bl_rna.properties.keys(), *base.bl_rna.functions.keys()]
     for base in (bpy.types.Operator, bpy.types.PropertyGroup)))
@@ -144,7 +145,7 @@ def _output_property(port, options):
     return BoolProperty(description=f"Make {_label(port).lower()} too", **common)
 
 
-def _frame_properties(options):
+def _run_properties(options):
     ends = {"options": options}
     return {
         "frame_start": IntProperty(name="Start", description="First frame, if not the scene's",
@@ -159,6 +160,10 @@ def _frame_properties(options):
         "cache_folder": StringProperty(
             name="Folder", subtype="DIR_PATH", default="//mimetra", options=options,
             description="Folder of mesh caches; // is that of the saved file"),
+        "manifest": StringProperty(
+            name="Manifest", subtype="FILE_PATH", options=options,
+            description="File for what ran: its options, inputs and report, for one Align the"
+                        " motion that another gives back"),
     }
 
 
@@ -166,7 +171,7 @@ def annotations_of(operation, *, pointers):
     """All properties of an operation; `pointers` to objects in settings, their names otherwise."""
     # What an operator ran with before is not what the panel says now.
     options = set() if pointers else {"SKIP_SAVE"}
-    made = _frame_properties(options)
+    made = _run_properties(options)
     if pointers:
         made["use_frames"] = BoolProperty(name="Own Frames", options=options,
                                           description="These frames instead of the scene's")

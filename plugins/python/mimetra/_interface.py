@@ -62,6 +62,11 @@ def _function(result, *arguments):
     return CFUNCTYPE(result, *arguments)
 
 
+# For operations that are written in C.
+_OF_JOBS = ("job_context", "job_input", "job_number", "job_text", "job_threads", "job_wants",
+            "job_progress", "job_log", "job_fail", "job_output", "job_report")
+
+
 class Interface(ctypes.Structure):
     _fields_ = [
         ("struct_size", c_uint32),
@@ -96,6 +101,8 @@ class Interface(ctypes.Structure):
         ("call_output", _function(c_int32, c_void_p, c_char_p, c_int32, _HANDLE)),
         ("call_report", _function(c_char_p, c_void_p)),
         ("call_summary", _function(c_char_p, c_void_p)),
+        *((name, c_void_p) for name in _OF_JOBS),
+        ("call_write", _function(c_int32, c_void_p, c_char_p, c_char_p, c_int32)),
     ]
 
 

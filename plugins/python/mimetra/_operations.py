@@ -21,8 +21,8 @@ _KINDS = {c.FLAG: "flag", c.INTEGER: "integer", c.INTEGER_LIST: "list of integer
 
 # What has no arrays, and is written by programs with VTK only.
 _UNSEEN = (Page, Pictures, Run, View)
-# What a result has besides outputs.
-_REPORTED = ("report", "summary")
+# What a result has besides outputs, and a function besides what the table says.
+_RESERVED = ("report", "summary", "manifest", "force")
 
 
 class Input:
@@ -85,9 +85,10 @@ class Operation:
         self.inputs = [Input(each.contents) for each in c.listed(described.inputs)]
         outputs = [Output(each.contents) for each in c.listed(described.outputs)]
         self.outputs = [port for port in outputs if port.kind not in _UNSEEN]
-        # No operation writes here: `save` takes what is about that.
-        self.parameters = [Parameter(each.contents) for each in c.listed(described.parameters)
-                           if each.contents.of_files != c.WRITING]
+        parameters = [each.contents for each in c.listed(described.parameters)]
+        self.parameters = [Parameter(each) for each in parameters if each.of_files != c.WRITING]
+        #: Those of writing its outputs to files.
+        self.writing = [Parameter(each) for each in parameters if each.of_files == c.WRITING]
 
 
 class Result(types.SimpleNamespace):
@@ -97,7 +98,7 @@ class Result(types.SimpleNamespace):
 def python_name(name):
     """An operation's, output's or parameter's name in Python."""
     made = name.replace("-", "_")
-    return made + "_" if keyword.iskeyword(made) or made in _REPORTED else made
+    return made + "_" if keyword.iskeyword(made) or made in _RESERVED else made
 
 
 def _finite(number):
@@ -158,6 +159,14 @@ class _Call:
                             f" {type(value).__name__}")
         self.own.check(library.call_give(self.handle, name, value._handle))
 
+    def ask(self, name, wish, force):
+        """Asks for an output, or for the manifest (None): True for a value, a path for its files."""
+        if isinstance(wish, (str, os.PathLike)):
+            path = os.fspath(wish).encode()
+            self.own.check(library.call_write(self.handle, name, path, bool(force)))
+        elif wish:
+            self.own.check(library.call_want(self.handle, name))
+
     def output(self, name, index):
         handle = ctypes.c_void_p()
         self.own.check(library.call_output(self.handle, name, index, ctypes.byref(handle)))
@@ -185,10 +194,11 @@ def _run(operation, given, *, progress, threads):
             for each in values:
                 if each is not None:
                     call.give(port, each)
+        force = given.get("force")
         for port in operation.outputs:
-            if given.get(python_name(port.name)):
-                own.check(library.call_want(call.handle, port.name.encode()))
-        for parameter in operation.parameters:
+            call.ask(port.name.encode(), given.get(python_name(port.name)), force)
+        call.ask(None, given.get("manifest"), force)
+        for parameter in operation.parameters + operation.writing:
             call.set(parameter.name, given.get(python_name(parameter.name)))
         own.check(library.call_run(call.handle))
         made = {python_name(port.name): call.outputs(port, many) for port in operation.outputs}
@@ -216,14 +226,16 @@ def _signature(operation):
                           Slot.KEYWORD_ONLY if is_option else Slot.POSITIONAL_OR_KEYWORD,
                           default=None if port.optional else Slot.empty,
                           annotation=_input_annotation(port)))
-    for parameter in operation.parameters:
+    for parameter in operation.parameters + operation.writing:
         none = " | None" if parameter.default is None else ""
         slots.append(Slot(python_name(parameter.name), Slot.KEYWORD_ONLY,
                           default=parameter.default, annotation=parameter.annotation + none))
     for port in operation.outputs:
-        if port.optional:
-            slots.append(Slot(python_name(port.name), Slot.KEYWORD_ONLY, default=False,
-                              annotation="bool"))
+        slots.append(Slot(python_name(port.name), Slot.KEYWORD_ONLY, default=not port.optional,
+                          annotation="bool | str | PathLike[str]"))
+    slots.append(Slot("force", Slot.KEYWORD_ONLY, default=False, annotation="bool"))
+    slots.append(Slot("manifest", Slot.KEYWORD_ONLY, default=None,
+                      annotation="str | PathLike[str] | None"))
     slots.append(Slot("progress", Slot.KEYWORD_ONLY, default=None,
                       annotation="Callable[[float], bool | None] | None"))
     slots.append(Slot("threads", Slot.KEYWORD_ONLY, default=None, annotation="int | None"))
@@ -235,10 +247,12 @@ def _docstring(operation):
     lines = [operation.summary + ".", ""]
     lines += [f"    {python_name(port.name)}: {port.help}" for port in operation.inputs]
     lines += [f"    {python_name(parameter.name)}: {parameter.described()}"
-              for parameter in operation.parameters]
-    lines += [f"    {python_name(port.name)}: True to make this too, {port.help}"
-              for port in operation.outputs if port.optional]
-    lines += ["    progress: called with the share of the work done; False as its answer cancels",
+              for parameter in operation.parameters + operation.writing]
+    lines += [f"    {python_name(port.name)}: {'True to make this too, or ' if port.optional else ''}"
+              f"a path to write it to: {port.help}" for port in operation.outputs]
+    lines += ["    force: replace what an earlier run wrote at these paths",
+              "    manifest: a file for the manifest of the run: its options, inputs and report",
+              "    progress: called with the share of the work done; False as its answer cancels",
               "    threads: at most so many; None for all there are", ""]
     made = [f"{python_name(port.name)} (mimetra.{port.kind.__name__})"
             for port in operation.outputs]

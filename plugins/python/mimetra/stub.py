@@ -26,6 +26,7 @@ class Operation:
     inputs: list[Any]
     outputs: list[Any]
     parameters: list[Any]
+    writing: list[Any]
 
 class Result(SimpleNamespace):
     report: dict[str, Any]

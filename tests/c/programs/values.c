@@ -170,6 +170,58 @@ static void check_files(const mimetra_interface* m, mimetra_context* context) {
   m->free_data(take);
 }
 
+static long size_of(const char* path) {
+  FILE* file = fopen(path, "rb");
+  if (!file) return -1;
+  fseek(file, 0, SEEK_END);
+  const long size = ftell(file);
+  fclose(file);
+  return size;
+}
+
+/* A call writes its output and the manifest, by which another call gives the motion back. */
+static void check_writing(const mimetra_interface* m, mimetra_context* context) {
+  mimetra_data *take = take_of(m, context), *still = NULL, *moving = NULL;
+  mimetra_call* call = NULL;
+  OK(context, m->new_call(context, "align", &call));
+  OK(context, m->call_give(call, "sequence", take));
+  OK(context, m->call_set(call, "on", "all"));
+  OK(context, m->call_set(call, "single", "true"));
+  FAILS(context, MIMETRA_USAGE, "'single' speaks of files", m->call_run(call));
+  OK(context, m->call_set(call, "single", NULL));
+  FAILS(context, MIMETRA_USAGE, "no output 'none'", m->call_write(call, "none", "a.npy", 0));
+  OK(context, m->call_write(call, "out", "values_still.npy", 1));
+  OK(context, m->call_write(call, NULL, "values_align.json", 1));
+  OK(context, m->call_run(call));
+  OK(context, m->call_output(call, "out", 0, &still));
+  m->free_call(call);
+  CHECK(size_of("values_still.npy") > 0 && size_of("values_still.run.json") > 0);
+  CHECK(size_of("values_align.json") > 0);
+
+  OK(context, m->new_call(context, "align", &call));
+  OK(context, m->call_read(call, "sequence", "values_still.npy"));
+  OK(context, m->call_set(call, "undo", "values_align.json"));
+  OK(context, m->call_run(call));
+  OK(context, m->call_output(call, "out", 0, &moving));
+  const mimetra_array *before = NULL, *between = NULL, *after = NULL;
+  OK(context, m->data_array(context, take, "positions", &before));
+  OK(context, m->data_array(context, still, "positions", &between));
+  OK(context, m->data_array(context, moving, "positions", &after));
+  double moved = 0, error = 0;
+  for (int64_t i = 0; i < before->shape[0] * before->shape[1] * 3; ++i) {
+    const double x = ((const double*)before->values)[i];
+    moved = fmax(moved, fabs(((const double*)between->values)[i] - x));
+    error = fmax(error, fabs(((const double*)after->values)[i] - x));
+  }
+  CHECK(moved > 1e-3 && error < 1e-12);
+  OK(context, m->call_write(call, "out", "values_still.npy", 0));
+  FAILS(context, MIMETRA_BAD_OUTPUT, "values_still.npy", m->call_run(call));
+  m->free_call(call);
+  m->free_data(moving);
+  m->free_data(still);
+  m->free_data(take);
+}
+
 int main(void) {
   const mimetra_interface* m = mimetra_get_interface(MIMETRA_INTERFACE_VERSION);
   mimetra_context* context = NULL;
@@ -178,6 +230,7 @@ int main(void) {
   check_results(m, context);
   check_deriving(m, context);
   check_files(m, context);
+  check_writing(m, context);
   m->free_context(context);
   return 0;
 }

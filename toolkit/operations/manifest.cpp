@@ -1,4 +1,4 @@
-#include "toolkit/cli/manifest.h"
+#include "toolkit/operations/manifest.h"
 
 #include <algorithm>
 
@@ -8,7 +8,7 @@
 #include "toolkit/operations/json.h"
 #include "toolkit/operations/run_file.h"
 
-namespace mimetra::cli {
+namespace mimetra {
 
 namespace {
 
@@ -31,10 +31,10 @@ std::vector<std::filesystem::path> files_below(const std::vector<std::filesystem
 
 }  // namespace
 
-std::string manifest(const Request& request, const FinishedRun& run) {
+std::string manifest(const FinishedRun& run) {
   Json options = Json::object();
-  for (const Parameter& parameter : request.parameters.declared()) {
-    options[parameter.name] = to_text(request.parameters.value(parameter.name));
+  for (const Parameter& parameter : run.parameters.declared()) {
+    options[parameter.name] = to_text(run.parameters.value(parameter.name));
   }
   Json inputs = Json::array();
   for (const auto& path : files_below(run.inputs)) {
@@ -42,19 +42,19 @@ std::string manifest(const Request& request, const FinishedRun& run) {
   }
   Json outputs = Json::array();
   for (const auto& path : run.outputs) outputs.push_back(path.string());
-  return Json{{"program", "mimetra"},
-              {"version", MIMETRA_VERSION},
-              {"command", request.operation->name},
-              {"arguments", request.arguments},
-              {"named_inputs", request.inputs},
-              {"options", options},
-              {"inputs", inputs},
-              {"outputs", outputs},
-              {"seconds", {{"read", run.read_seconds}, {"run", run.run_seconds}}},
-              {"peak_memory_bytes", run.peak_memory},
-              {"result", Json::parse(run.report)}}
-             .dump(2, ' ', false, Json::error_handler_t::replace) +
-         '\n';
+  Json json = {{"program", "mimetra"},
+               {"version", MIMETRA_VERSION},
+               {"command", run.operation},
+               {"arguments", run.arguments},
+               {"named_inputs", run.named_inputs},
+               {"options", options},
+               {"inputs", inputs},
+               {"outputs", outputs},
+               {"seconds", {{"read", run.read_seconds}, {"run", run.run_seconds}}},
+               {"peak_memory_bytes", run.peak_memory},
+               {"result", Json::parse(run.report)}};
+  if (!run.given_inputs.empty()) json["given_inputs"] = run.given_inputs;
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
 }
 
 std::string manifest_name(const std::filesystem::path& output, bool is_folder) {
@@ -65,4 +65,4 @@ std::string manifest_name(const std::filesystem::path& output, bool is_folder) {
   return is_free ? name : output.filename().string() + ".run.json";
 }
 
-}  // namespace mimetra::cli
+}  // namespace mimetra

@@ -1,0 +1,180 @@
+#include <filesystem>
+#include <fstream>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <Eigen/Geometry>
+#include <nlohmann/json.hpp>
+
+#include "tests/shapes.h"
+#include "tests/temporary_folder.h"
+#include "toolkit/mesh/alignment.h"
+#include "toolkit/mesh/errors.h"
+#include "toolkit/operations/call.h"
+
+namespace mimetra {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+using testing::HasSubstr;
+
+/// A bumpy grid that turns as a whole.
+MeshSequence turning_grid() {
+  const test::Shape shape = test::grid(7, 7);
+  Positions rest = shape.positions;
+  for (int i = 0; i < rest.rows(); ++i) rest(i, 2) = 0.2 * std::sin(3.0 * i);
+  Frames frames(5, rest.size());
+  for (int f = 0; f < 5; ++f) {
+    RigidTransform turn;
+    turn.rotation = Eigen::AngleAxisd(0.1 * f, Eigen::Vector3d::UnitY()).toRotationMatrix();
+    const Positions pose = turn.apply(rest);
+    frames.row(f) = Eigen::Map<const Eigen::RowVectorXd>(pose.data(), pose.size());
+  }
+  return MeshSequence(Connectivity::from_triangles(49, shape.triangles), frames, {}, rest);
+}
+
+class CallOfAnOperation : public testing::Test {
+ protected:
+  CallOfAnOperation() { add_toolkit(table_); }
+
+  CallRequest request(const std::string& operation) const {
+    CallRequest request;
+    request.operation = table_.find(operation);
+    request.parameters = Parameters(table_.parameters_of(*request.operation));
+    return request;
+  }
+
+  CallRequest align_of(const MeshSequence& sequence) const {
+    CallRequest align = request("align");
+    align.given["sequence"] = {{"take", SequenceRead{sequence}}};
+    return align;
+  }
+
+  Call run(CallRequest request) const {
+    Call call(table_, std::move(request));
+    call.load();
+    call.run();
+    call.write();
+    return call;
+  }
+
+  static const MeshSequence& out_of(Call& call) {
+    return std::get<SequenceRead>(call.outcome().outputs.at("out").front().data).sequence;
+  }
+
+  fs::path at(const std::string& name) const { return folder_.path() / name; }
+
+  OperationTable table_;
+  test::TemporaryFolder folder_;
+};
+
+TEST_F(CallOfAnOperation, GivesMotionBackThatAManifestOfAnotherCallTellsOf) {
+  const MeshSequence sequence = turning_grid();
+  CallRequest align = align_of(sequence);
+  align.manifest = at("align.json");
+  Call aligned = run(align);
+  const MeshSequence still = out_of(aligned);
+  EXPECT_GT((still.positions() - sequence.positions()).cwiseAbs().maxCoeff(), 0.01);
+
+  CallRequest undo = align_of(still);
+  undo.parameters.set("undo", at("align.json").string());
+  Call undone = run(undo);
+  EXPECT_LT((out_of(undone).positions() - sequence.positions()).cwiseAbs().maxCoeff(), 1e-12);
+}
+
+TEST_F(CallOfAnOperation, TellsInItsManifestWhatWasGivenAndWhatWasRead) {
+  CallRequest align = align_of(turning_grid());
+  align.paths["out"] = at("still.npy");
+  run(align);
+  const json written = json::parse(std::ifstream(at("still.run.json")));
+  EXPECT_EQ(written["given_inputs"], (json{{"sequence", {"take"}}}));
+  EXPECT_TRUE(written["named_inputs"].empty());
+  EXPECT_TRUE(written["inputs"].empty());
+  EXPECT_EQ(written["outputs"], json::array({at("still.npy").string()}));
+  EXPECT_EQ(written["result"]["frames"], 5);
+
+  CallRequest again = request("align");
+  again.named["sequence"] = {at("still.npy").string()};
+  again.manifest = at("again.json");
+  run(again);
+  const json read = json::parse(std::ifstream(at("again.json")));
+  EXPECT_EQ(read["named_inputs"], (json{{"sequence", {at("still.npy").string()}}}));
+  EXPECT_FALSE(read.contains("given_inputs"));
+  EXPECT_EQ(read["inputs"][0]["path"], at("still.npy").string());
+}
+
+TEST_F(CallOfAnOperation, WritesWhatItHandsOver) {
+  CallRequest align = align_of(turning_grid());
+  align.paths["out"] = at("still.npy");
+  Call call = run(align);
+  CallRequest back = request("convert");
+  back.named["sequence"] = {at("still.npy").string()};
+  back.wanted = {"out"};
+  Call read = run(back);
+  EXPECT_EQ(out_of(read).positions(), out_of(call).positions());
+}
+
+TEST_F(CallOfAnOperation, RefusesBeforeAnythingIsRead) {
+  const auto refusal = [&](CallRequest request) {
+    return [this, request] { Call(table_, request); };
+  };
+  EXPECT_THAT(refusal(request("align")),
+              testing::ThrowsMessage<UsageError>(HasSubstr("needs its input 'sequence'")));
+
+  CallRequest table = request("align");
+  table.given["sequence"] = {{"rows", Table{}}};
+  EXPECT_THAT(refusal(table), testing::ThrowsMessage<UsageError>(
+                                  HasSubstr("expected the kind 'sequence', found 'table'")));
+
+  CallRequest frames = align_of(turning_grid());
+  frames.parameters.set("frames", std::string("0:2"));
+  EXPECT_THAT(refusal(frames),
+              testing::ThrowsMessage<UsageError>(HasSubstr("parameter 'frames' speaks of files")));
+
+  CallRequest format = align_of(turning_grid());
+  format.parameters.set("format", std::string("obj"));
+  EXPECT_THAT(refusal(format),
+              testing::ThrowsMessage<UsageError>(HasSubstr("parameter 'format' speaks of files")));
+
+  std::ofstream(at("there.json")) << "{}";
+  CallRequest manifest = align_of(turning_grid());
+  manifest.manifest = at("there.json");
+  EXPECT_THAT(refusal(manifest),
+              testing::ThrowsMessage<OutputError>(HasSubstr("there.json: exists")));
+  manifest.overwrite = true;
+  EXPECT_NO_THROW(refusal(manifest)());
+}
+
+TEST_F(CallOfAnOperation, LeavesNothingBehindWhereTheOperationFails) {
+  Operation operation;
+  operation.name = "failing";
+  operation.inputs = {{"sequence", DataKind::sequence, "a mesh"}};
+  operation.outputs = {{"out", DataKind::sequence, "nothing"}};
+  operation.run = [](const Invocation&) -> Outcome { throw std::runtime_error("it cannot"); };
+  table_.add(operation);
+  CallRequest failing = request("failing");
+  failing.given["sequence"] = {{"take", SequenceRead{turning_grid()}}};
+  failing.paths["out"] = at("folder") / "out.npy";
+  failing.manifest = at("manifest.json");
+  EXPECT_THAT([&] { run(failing); },
+              testing::ThrowsMessage<std::runtime_error>(HasSubstr("it cannot")));
+  EXPECT_TRUE(fs::is_empty(folder_.path()));
+}
+
+TEST_F(CallOfAnOperation, ReportsProgressFromNothingToAll) {
+  std::vector<double> shares;
+  CallRequest align = align_of(turning_grid());
+  align.paths["out"] = at("still.npy");
+  align.progress = [&shares](double share) {
+    shares.push_back(share);
+    return true;
+  };
+  run(align);
+  EXPECT_TRUE(std::ranges::is_sorted(shares));
+  EXPECT_GE(shares.front(), 0);
+  EXPECT_DOUBLE_EQ(shares.back(), 1);
+}
+
+}  // namespace
+}  // namespace mimetra

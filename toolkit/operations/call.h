@@ -1,0 +1,100 @@
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "toolkit/operations/manifest.h"
+#include "toolkit/operations/operation.h"
+
+namespace mimetra {
+
+/// What a host asks of an operation.
+struct CallRequest {
+  const Operation* operation = nullptr;
+  /// Of OperationTable::parameters_of() the operation.
+  Parameters parameters = Parameters();
+  /// Values that the host has, by name of the input.
+  std::map<std::string, std::vector<NamedData>> given = {};
+  /// What is read when the call is loaded, as people name it, by name of the input; comes after
+  /// given values.
+  std::map<std::string, std::vector<std::string>> named = {};
+  /// Optional outputs whose values are asked for; needed ones always are.
+  std::set<std::string> wanted = {};
+  /// Outputs that are written, and where; with their companions.
+  std::map<std::string, std::filesystem::path> paths = {};
+  /// A file for the manifest, which also accompanies every output that is written.
+  std::optional<std::filesystem::path> manifest = {};
+  /// Replace what an earlier run wrote.
+  bool overwrite = false;
+  /// Frames of streamed inputs may be read when they are needed; otherwise all are in memory.
+  bool may_stream = false;
+  /// 0 for all there are.
+  int threads = 0;
+  Progress progress = {};
+  Log log = {};
+  /// For the manifest: the command line, and files that were read for it besides the inputs.
+  std::vector<std::string> arguments = {};
+  std::vector<std::filesystem::path> files = {};
+};
+
+/// Throws UsageError unless a value can be given to an input of an operation.
+void check_kind(const Operation& operation, const Input& input, const Data& data);
+
+/// One call of an operation, from what a host asks for to what stands on disk: checks, inputs,
+/// wanted outputs, and the manifest that accompanies what is written. load(), run() and write() in
+/// this order.
+class Call {
+ public:
+  /// Throws UsageError for an input that is missing or of another kind, for a parameter of files
+  /// that applies to none, and for an output that no writer takes; OutputError for one that cannot
+  /// be written. Nothing is read yet.
+  Call(const OperationTable& table, CallRequest request);
+
+  /// Reads the inputs. Throws what the readers throw, and UsageError where two outputs would be
+  /// written to one place.
+  void load();
+  /// What the operation is going to get. \pre load()
+  const Invocation& invocation() const { return invocation_; }
+  /// Also asks for an output's value.
+  void want(const std::string& output);
+  /// Also gives an input a value, in place of its others.
+  void give(const std::string& input, NamedData data);
+
+  /// Runs the operation. Throws what it throws. \pre load()
+  const Outcome& run();
+  /// Writes the outputs that have a path, each with the run's manifest, and the manifest. Throws
+  /// what the writers throw; Cancelled while nothing stands yet. \pre run()
+  void write();
+
+  /// True where something is written.
+  bool writes() const { return !paths_.empty(); }
+  Outcome& outcome() { return outcome_; }
+  const FinishedRun& finished() const { return finished_; }
+  double write_seconds() const { return write_seconds_; }
+
+ private:
+  using Paths = std::vector<std::filesystem::path>;
+
+  std::optional<std::filesystem::path> path_of(const Output& output) const;
+  void check_inputs() const;
+  void check_parameters_of_files() const;
+  void check_outputs() const;
+  std::vector<std::string> repeated_names() const;
+  void place_outputs();
+  void write_values(const Output& output, const Paths& targets, const std::string& manifest,
+                    const Progress& progress, std::size_t& written) const;
+
+  const OperationTable& table_;
+  CallRequest request_;
+  Invocation invocation_;
+  std::map<std::string, Paths> paths_;
+  Outcome outcome_;
+  FinishedRun finished_;
+  double write_seconds_ = 0;
+};
+
+}  // namespace mimetra
