@@ -31,12 +31,12 @@ const mimetra_parameter* find_parameter(const mimetra_operation& operation,
   return nullptr;
 }
 
-/// Optional inputs, or outputs but scripts for other programs, which show files not written here.
+/// Optional inputs, or outputs but documents, which show files not written here.
 std::vector<std::string> optional_ports(const mimetra_port* const* ports) {
   std::vector<std::string> names;
   for (; *ports; ++ports) {
     const bool is_optional = ((*ports)->flags & MIMETRA_OPTIONAL) != 0;
-    if (is_optional && (*ports)->kind != MIMETRA_VIEW) names.emplace_back((*ports)->name);
+    if (is_optional && (*ports)->kind != MIMETRA_DOCUMENT) names.emplace_back((*ports)->name);
   }
   return names;
 }
