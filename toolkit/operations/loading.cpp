@@ -8,6 +8,7 @@
 #include "toolkit/io/model_file.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/progress.h"
+#include "toolkit/operations/sequence_parameters.h"
 
 namespace mimetra {
 
@@ -77,7 +78,7 @@ class Loader {
   std::optional<FieldSequence> with_fields(const std::string& text) {
     const FieldReader* reader = table_.field_reader(text);
     if (!reader) return {};
-    const auto frames = parameters_.optional_text("frames");
+    const auto frames = frame_parameters().read(parameters_).frames;
     const auto selected = [&frames](int count) { return selected_frames(frames, count); };
     FieldSequence read = reader->read(text, selected, progress_);
     for (const auto& file : reader->files(text)) files.push_back(file);
@@ -91,13 +92,7 @@ class Loader {
 
   SequenceRead sequence(const std::string& text, bool streamed) {
     if (auto read = with_fields(text)) return {std::move(read->sequence), false, {}, {}};
-    SequenceSource source = frames_asked_for();
-    const auto path = [this](const char* name) {
-      const auto value = parameters_.optional_text(name);
-      return value ? std::optional<std::filesystem::path>(*value) : std::nullopt;
-    };
-    source.weights = path("weights");
-    source.topology = path("topology");
+    const SequenceSource source = source_by(sequence_parameters());
     if (!streamed) return noted(read_sequence(text, source));
     OpenSequence open = open_sequence(text, source);
     return noted(SequenceRead{{},
@@ -108,13 +103,11 @@ class Loader {
   }
 
   LandmarksRead landmarks(const std::string& text) {
-    return noted(table_.landmark_reader().read(text, frames_asked_for(), parameters_));
+    return noted(table_.landmark_reader().read(text, source_by(frame_parameters()), parameters_));
   }
 
-  SequenceSource frames_asked_for() const {
-    SequenceSource source;
-    source.frames = parameters_.optional_text("frames");
-    source.fps = parameters_.optional_number("fps");
+  SequenceSource source_by(const BoundParameters<SequenceSource>& list) const {
+    SequenceSource source = list.read(parameters_);
     source.threads = threads_;
     source.progress = progress_;
     return source;
@@ -235,15 +228,15 @@ LoadedInputs load_inputs(const OperationTable& table, const Operation& operation
     if (input.kind == DataKind::regions) load(input);
   }
   loaded.files = std::move(loader.files);
-  for (const char* name : {"weights", "topology"}) {
+  const auto check_read = [&](const std::string& name, const std::string& reader) {
     const auto path = parameters.find(name) ? parameters.optional_text(name) : std::nullopt;
-    if (!path ||
-        std::ranges::find(loaded.files, std::filesystem::path(*path)) != loaded.files.end())
-      continue;
-    throw MismatchError("--" + std::string(name) + " " + *path + ": no input is " +
-                        (name == std::string("weights") ? "a model that it could drive"
-                                                        : "an array that needs its faces"));
-  }
+    if (!path) return;
+    const bool is_read =
+        std::ranges::find(loaded.files, std::filesystem::path(*path)) != loaded.files.end();
+    if (!is_read) throw MismatchError("--" + name + " " + *path + ": no input is " + reader);
+  };
+  check_read("weights", "a model that it could drive");
+  check_read("topology", "an array that needs its faces");
   return loaded;
 }
 
