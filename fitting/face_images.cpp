@@ -91,9 +91,7 @@ void check_some_face(const FaceTrack& track) {
 }  // namespace
 
 FaceTrack follow_face(const std::vector<FacesInImage>& frames, double min_confidence) {
-  if (!(min_confidence >= 0 && min_confidence <= 1)) {
-    throw std::invalid_argument("min_confidence must be in [0, 1]");
-  }
+  check_options(FaceOptions{.min_confidence = min_confidence});
   const auto count = static_cast<Eigen::Index>(frames.size());
   FaceTrack track;
   track.landmarks.names = numbered_names(kLandmarks);
@@ -129,7 +127,8 @@ std::string low_confidence_note(double confidence, double min_confidence) {
 FaceTrack track_face(const std::vector<fs::path>& images, const FaceOptions& options) {
   if (images.empty()) throw std::invalid_argument("there are no images");
   require_dlib(images.front().string());
-  const FaceFinder finder(options.model);
+  const fs::path model = options.model.value_or(kDebianFaceModel);
+  const FaceFinder finder(model);
   std::vector<FacesInImage> frames(images.size());
   const auto look_at = [&](int i) {
     const auto at = static_cast<std::size_t>(i);
@@ -138,7 +137,7 @@ FaceTrack track_face(const std::vector<fs::path>& images, const FaceOptions& opt
   parallel_for(static_cast<int>(images.size()), options.threads, look_at, options.progress);
   FaceTrack track = follow_face(frames, options.min_confidence);
   check_some_face(track);
-  if (options.model == FaceOptions{}.model) track.notes.insert(track.notes.begin(), kTerms);
+  if (model == kDebianFaceModel) track.notes.insert(track.notes.begin(), kTerms);
   return track;
 }
 

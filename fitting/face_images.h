@@ -2,12 +2,14 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "fitting/affine_camera.h"
 #include "fitting/image_files.h"
 #include "toolkit/mesh/errors.h"
+#include "toolkit/mesh/option.h"
 #include "toolkit/mesh/progress.h"
 #include "toolkit/model/landmark_track.h"
 
@@ -23,13 +25,22 @@ struct Face {
   ImagePoints landmarks;
 };
 
+/// The 68-point shape predictor of Debian's libdlib-data.
+inline constexpr const char* kDebianFaceModel =
+    "/usr/share/dlib/shape_predictor_68_face_landmarks.dat";
+
 struct FaceOptions {
-  /// 68-point shape predictor; the one of Debian's libdlib-data by default.
-  std::filesystem::path model = "/usr/share/dlib/shape_predictor_68_face_landmarks.dat";
-  /// Faces of less confidence are taken for none, in [0, 1].
+  /// 68-point shape predictor; kDebianFaceModel by default.
+  std::optional<std::filesystem::path> model = {};
+  /// Faces of less confidence are taken for none.
   double min_confidence = 0.1;
   int threads = 0;  ///< 0 for all there are; what is found does not depend on it
   Progress progress = {};
+
+  static constexpr Option kModel{"model", &FaceOptions::model};
+  static constexpr Option kMinConfidence{
+      "min_confidence", &FaceOptions::min_confidence, {.minimum = 0, .maximum = 1}};
+  static constexpr auto declared() { return std::tuple(kMinConfidence); }
 };
 
 /// Finds faces and their landmarks by dlib's frontal face detector and a 68-point shape predictor.
@@ -42,7 +53,7 @@ class FaceFinder {
  public:
   /// Throws IoError that says what is missing and which package has it: the model, or dlib where
   /// mimetra was built without it; and for a file that is no such model.
-  explicit FaceFinder(const std::filesystem::path& model = FaceOptions{}.model);
+  explicit FaceFinder(const std::filesystem::path& model = kDebianFaceModel);
   ~FaceFinder();
   FaceFinder(FaceFinder&&) noexcept;
   FaceFinder& operator=(FaceFinder&&) noexcept;
@@ -83,7 +94,7 @@ struct FaceTrack {
 
 /// Chooses one face in each frame: the largest, and once there is one, that whose middle is nearest
 /// to the last chosen one's. Equal ones: the first. Throws std::invalid_argument where
-/// min_confidence is outside [0, 1].
+/// min_confidence is out of its range.
 FaceTrack follow_face(const std::vector<FacesInImage>& frames,
                       double min_confidence = FaceOptions{}.min_confidence);
 

@@ -14,6 +14,7 @@
 #include "toolkit/mesh/product_blocking.h"
 #include "toolkit/mesh/progress.h"
 #include "toolkit/mesh/text.h"
+#include "toolkit/operations/bound_parameters.h"
 #include "toolkit/operations/formats.h"
 #include "toolkit/operations/json.h"
 
@@ -21,56 +22,37 @@ namespace mimetra {
 
 namespace {
 
-std::vector<Parameter> fit_parameters() {
-  return {
-      {"mapping",
-       ParameterKind::file,
-       {},
-       "vertex of each landmark (default: ibug_to_*.txt or landmarks68.txt in the model's "
-       "folder)"},
-      choice_parameter(
-          "solver", FitOptions{}.solver,
-          "joint: camera, shape and expressions together; alternating: in turn, as in the paper"),
-      choice_parameter("shape", FitOptions{}.shape,
-                       "one identity for the clip, or one in every frame"),
-      {"iterations", ParameterKind::integer, std::int64_t{FitOptions{}.iterations},
-       "iterations at most", "", 1, 1e6},
-      {"tolerance", ParameterKind::number, FitOptions{}.tolerance,
-       "it ends where an iteration lowers the energy by a smaller share", "", 0, 1},
-      {"sigma",
-       ParameterKind::number,
-       {},
-       "noise of the landmarks (default: 0.017485 of the face's RMS radius)",
-       "pixels",
-       1e-9,
-       1e9},
-      {"ridge",
-       ParameterKind::number,
-       {},
-       "weight of squared expressions (default: 0.1 with more than ten of them, else 0)",
-       "",
-       0,
-       1e9},
-      {"smoothness", ParameterKind::number, FitOptions{}.smoothness,
-       "time constant of smooth expressions", "seconds", 0, 1e6}};
+struct FitCall {
+  FitOptions fit = {};
+  /// Vertex of each landmark; by default the file in the model's folder.
+  std::optional<std::filesystem::path> mapping = {};
+
+  static constexpr Option kMapping{"mapping", &FitCall::mapping};
+};
+
+BoundParameters<FitCall> fit_parameters() {
+  BoundParameters<FitOptions> fit;
+  fit.add("solver", FitOptions::kSolver,
+          "joint: camera, shape and expressions together; alternating: in turn, as in the paper")
+      .add("shape", FitOptions::kShape, "one identity for the clip, or one in every frame")
+      .add("iterations", FitOptions::kIterations, "iterations at most")
+      .add("tolerance", FitOptions::kTolerance,
+           "it ends where an iteration lowers the energy by a smaller share")
+      .add("sigma", FitOptions::kSigma,
+           "noise of the landmarks (default: 0.017485 of the face's RMS radius)")
+      .add("ridge", FitOptions::kRidge,
+           "weight of squared expressions (default: 0.1 with more than ten of them, else 0)")
+      .add("smoothness", FitOptions::kSmoothness, "time constant of smooth expressions");
+  BoundParameters<FitCall> list;
+  return list
+      .add("mapping", FitCall::kMapping,
+           "vertex of each landmark (default: ibug_to_*.txt or landmarks68.txt in the model's "
+           "folder)")
+      .add(&FitCall::fit, fit);
 }
 
-FitOptions options_of(const Parameters& parameters) {
-  FitOptions options;
-  options.solver = parameters.choice<FitOptions::Solver>("solver");
-  options.shape = parameters.choice<FitOptions::Shape>("shape");
-  options.iterations = parameters.integer("iterations");
-  options.tolerance = parameters.number("tolerance");
-  options.sigma = parameters.optional_number("sigma");
-  options.ridge = parameters.optional_number("ridge");
-  options.smoothness = parameters.number("smoothness");
-  return options;
-}
-
-LandmarkMapping mapping_of(const Invocation& invocation, const NamedData& model) {
-  if (const auto file = invocation.parameters.optional_text("mapping")) {
-    return read_landmark_mapping(*file);
-  }
+LandmarkMapping mapping_of(const FitCall& call, const NamedData& model) {
+  if (call.mapping) return read_landmark_mapping(*call.mapping);
   const std::filesystem::path& path = model.origin.path;
   if (path.empty()) throw UsageError("--mapping: is needed for a model without a folder");
   return read_landmark_mapping(find_landmark_mapping(path));
@@ -182,14 +164,19 @@ Outcome run(const Invocation& invocation) {
   const NamedData& landmarks = invocation.input("landmarks");
   const LandmarkTrack& track = std::get<LandmarkTrack>(landmarks.data);
   const MorphableModel& model = invocation.get<ModelData>("model").model;
+  if (model.identities().size() == 0 && model.expressions().size() == 0) {
+    const NamedData& input = invocation.input("model");
+    throw IoError(input.origin.path.empty() ? input.name : input.origin.path.string(),
+                  "is no model: it has neither identities nor expressions");
+  }
   check_images(invocation);
-  const FitOptions options = options_of(invocation.parameters);
-  const LandmarkMapping mapping = mapping_of(invocation, invocation.input("model"));
+  const FitCall call = fit_parameters().read(invocation.parameters);
+  const LandmarkMapping mapping = mapping_of(call, invocation.input("model"));
   const MappedLandmarks mapped =
       naming_landmarks(invocation, [&] { return map_landmarks(track, mapping); });
   report_progress(invocation.progress, 0);
   FittedCoefficients fit =
-      coefficients_of(model, track.times, fitted(invocation, model, mapped, options));
+      coefficients_of(model, track.times, fitted(invocation, model, mapped, call.fit));
   fit.notes = landmarks.origin.frame_notes;
   report_progress(invocation.progress, 0.5);
 
@@ -200,7 +187,7 @@ Outcome run(const Invocation& invocation) {
                     "their neighbours: " +
                     listed(words_of(summary.unseen)));
   }
-  const MeshSequence sequence = sequence_of(model, fit, options.shape);
+  const MeshSequence sequence = sequence_of(model, fit, call.fit.shape);
   Outcome outcome;
   Json report = {{"rms_px", summary.rms},
                  {"vertices", model.vertices()},
@@ -228,27 +215,27 @@ Outcome run(const Invocation& invocation) {
   return outcome;
 }
 
+BoundParameters<LandmarkInputOptions> landmark_parameters() {
+  BoundParameters<FaceOptions> faces;
+  faces
+      .add("face-model", FaceOptions::kModel,
+           "dlib's predictor of 68 landmarks (default: that of the package libdlib-data)")
+      .add("min-confidence", FaceOptions::kMinConfidence,
+           "frames of which the detector was less sure are taken as not seen");
+  BoundParameters<LandmarkInputOptions> list;
+  return list
+      .add("images", LandmarkInputOptions::kImages,
+           "images that landmarks from files belong to, for --overlay and --strip: a file, folder "
+           "or pattern (default: of the same name beside .pts files)")
+      .add(&LandmarkInputOptions::faces, faces);
+}
+
 LandmarkReader landmark_reader() {
   LandmarkReader reader;
-  reader.parameters = {
-      {"images",
-       ParameterKind::text,
-       {},
-       "images that landmarks from files belong to, for --overlay and --strip: a file, folder or "
-       "pattern (default: of the same name beside .pts files)"},
-      {"face-model",
-       ParameterKind::file,
-       {},
-       "dlib's predictor of 68 landmarks (default: that of the package libdlib-data)"},
-      {"min-confidence", ParameterKind::number, FaceOptions{}.min_confidence,
-       "frames of which the detector was less sure are taken as not seen", "", 0, 1}};
+  reader.parameters = landmark_parameters().declared();
   reader.read = [](const std::string& text, const SequenceSource& source,
                    const Parameters& parameters) {
-    LandmarkInputOptions options;
-    options.images = parameters.optional_text("images");
-    options.faces.min_confidence = parameters.number("min-confidence");
-    if (const auto model = parameters.optional_text("face-model")) options.faces.model = *model;
-    return read_landmark_input(text, source, options);
+    return read_landmark_input(text, source, landmark_parameters().read(parameters));
   };
   return reader;
 }
@@ -260,8 +247,8 @@ double memory(const Invocation& invocation) {
   const MorphableModel& model = invocation.get<ModelData>("model").model;
   const double coordinates = 3.0 * model.vertices();
   const double unknowns = 8.0 + model.identities().size() + model.expressions().size();
-  const bool each_frame =
-      invocation.parameters.choice<FitOptions::Shape>("shape") == FitOptions::Shape::frame;
+  const FitCall call = fit_parameters().read(invocation.parameters);
+  const bool each_frame = call.fit.shape == FitOptions::Shape::frame;
   return sizeof(double) *
          (coordinates * ((each_frame ? 2 : 1) * frames + 2 * model.expressions().size()) +
           (each_frame ? 0 : frames * unknowns * unknowns));
@@ -291,7 +278,7 @@ void add_fitting(OperationTable& table) {
   operation.inputs.back().identities = true;
   operation.outputs[2].extensions = {""};
   operation.outputs[3].extensions = {".png"};
-  operation.parameters = fit_parameters();
+  operation.parameters = fit_parameters().declared();
   operation.examples = {"fit face.png --model sfm/ -o face.obj --strip face_fit.png",
                         "fit track.csv --model sfm/ --smoothness 0.1 -o take/"};
   operation.run = run;

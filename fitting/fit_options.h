@@ -3,6 +3,7 @@
 #include <optional>
 #include <string_view>
 
+#include "toolkit/mesh/option.h"
 #include "toolkit/mesh/progress.h"
 
 namespace mimetra {
@@ -17,22 +18,36 @@ struct FitOptions {
 
   Solver solver = Solver::joint;
   Shape shape = Shape::clip;
-  /// Iterations at most, >= 1; in every frame where each has its shape.
+  /// Iterations at most; in every frame where each has its shape.
   int iterations = 5;
-  /// It ends where the energy falls by less than this share of it in one iteration, >= 0.
+  /// It ends where the energy falls by less than this share of it in one iteration.
   double tolerance = 1e-4;
-  /// Noise of the landmarks in pixels, > 0. By default 0.017485 x the RMS distance of the used
-  /// landmarks from their centroid, in each frame, so that the image's scale changes nothing.
+  /// Noise of the landmarks. By default 0.017485 x the RMS distance of the used landmarks from
+  /// their centroid, in each frame, so that the image's scale changes nothing.
   std::optional<double> sigma = std::nullopt;
   /// Upper bound of each beta, > 0; infinity leaves only beta >= 0.
   double max_expression = 1;
-  /// Weight of |beta|^2 beside |alpha|^2, >= 0. By default 0, or 0.1 with more than ten
-  /// expressions.
+  /// Weight of |beta|^2 beside |alpha|^2. By default 0, or 0.1 with more than ten expressions.
   std::optional<double> ridge = std::nullopt;
-  /// Weight of squared second differences of beta over time: time constant in seconds, >= 0. The
+  /// Time constant that is the weight of squared second differences of beta over time. The
   /// alternation finds it, from where the solver ends without it. Needs max_expression = 1.
   double smoothness = 0;
   Progress progress = {};
+
+  static constexpr Option kSolver{"solver", &FitOptions::solver};
+  static constexpr Option kShape{"shape", &FitOptions::shape};
+  static constexpr Option kIterations{
+      "iterations", &FitOptions::iterations, {.minimum = 1, .maximum = 1e6}};
+  static constexpr Option kTolerance{
+      "tolerance", &FitOptions::tolerance, {.minimum = 0, .maximum = 1}};
+  static constexpr Option kSigma{
+      "sigma", &FitOptions::sigma, {.minimum = 1e-9, .maximum = 1e9}, "pixels"};
+  static constexpr Option kRidge{"ridge", &FitOptions::ridge, {.minimum = 0, .maximum = 1e9}};
+  static constexpr Option kSmoothness{
+      "smoothness", &FitOptions::smoothness, {.minimum = 0, .maximum = 1e6}, "seconds"};
+  static constexpr auto declared() {
+    return std::tuple(kSolver, kShape, kIterations, kTolerance, kSigma, kRidge, kSmoothness);
+  }
 };
 
 /// As people choose it.

@@ -32,16 +32,8 @@ std::string frame_name(Eigen::Index frame) {
 
 void check(const FitOptions& options) {
   const auto fail = [](const char* message) { throw std::invalid_argument(message); };
-  if (options.iterations < 1) fail("iterations must be at least 1");
-  if (!(options.tolerance >= 0)) fail("tolerance must not be negative");
-  if (options.sigma && !(*options.sigma > 0 && std::isfinite(*options.sigma))) {
-    fail("sigma must be a positive number of pixels");
-  }
+  check_options(options);
   if (!(options.max_expression > 0)) fail("max_expression must be positive");
-  if (options.ridge && !(*options.ridge >= 0 && std::isfinite(*options.ridge))) {
-    fail("ridge must be finite and not negative");
-  }
-  if (!(options.smoothness >= 0)) fail("smoothness must not be negative");
   if (options.smoothness > 0 && options.max_expression != 1) {
     fail("smoothness needs expressions of at most 1");
   }

@@ -79,7 +79,7 @@ void check_needed(const std::string& text, bool images, const LandmarkInputOptio
   if (images && options.images) {
     throw MismatchError("--images: " + text + " are images themselves");
   }
-  if (!images && options.faces.model != FaceOptions{}.model) {
+  if (!images && options.faces.model) {
     throw MismatchError("--face-model: " + text + " are landmarks already");
   }
 }
@@ -181,6 +181,8 @@ LandmarksRead find_in_images(Paths images, const SequenceSource& source, FaceOpt
 
 LandmarksRead read_landmark_input(const std::string& text, const SequenceSource& source,
                                   const LandmarkInputOptions& options) {
+  check_options(source);
+  check_options(options.faces);
   const LandmarkFiles input = input_of(text);
   LandmarkTrack whole;
   if (input.frames.empty()) whole = read_landmarks(input.track);

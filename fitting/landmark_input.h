@@ -14,14 +14,16 @@ struct LandmarkInputOptions {
   /// The images that the landmarks of a track or of .pts files belong to, one for each frame: a
   /// file, folder or pattern. By default those of the same name beside .pts files, or none.
   std::optional<std::string> images = {};
+
+  static constexpr Option kImages{"images", &LandmarkInputOptions::images};
 };
 
 /// Reads the landmarks of a clip: one .pts, .csv or .json file, a folder or pattern of .pts files,
 /// or an image, a folder or pattern of images in which faces are found; one frame a file in natural
 /// order. With times, the frames that `source.frames` takes. Throws IoError, also as track_face;
 /// MismatchError for files that differ in their number of landmarks, another number of images, an
-/// option that changes nothing, and
-/// as selected_frames; Cancelled.
+/// option that changes nothing, and as selected_frames; std::invalid_argument for options out of
+/// range; Cancelled.
 LandmarksRead read_landmark_input(const std::string& text, const SequenceSource& source = {},
                                   const LandmarkInputOptions& = {});
 

@@ -28,7 +28,7 @@ int count_of(const std::string& text, const std::string& part) {
 class ImageFit : public test::CommandTest {
  protected:
   void SetUp() override {
-    MIMETRA_SKIP_WITHOUT(FaceOptions{}.model);
+    MIMETRA_SKIP_WITHOUT(kDebianFaceModel);
     CommandTest::SetUp();
     ASSERT_EQ(run("sample -o face").code, 0);
     draw("1.png", 0);

@@ -65,7 +65,7 @@ class FaceImages : public FaceModel {
  protected:
   void SetUp() override {
     MIMETRA_SKIP_WITHOUT(shared_path("data/sfm/image_0010.png"));
-    MIMETRA_SKIP_WITHOUT(FaceOptions{}.model);
+    MIMETRA_SKIP_WITHOUT(kDebianFaceModel);
     photo_ = shared_path("data/sfm/image_0010.png");
   }
   /// The face and a little around it.

@@ -7,6 +7,7 @@
 #include <Eigen/Geometry>
 
 #include "tests/fitting/synthetic_clip.h"
+#include "tests/option_ranges.h"
 #include "tests/temporary_folder.h"
 #include "toolkit/mesh/errors.h"
 
@@ -250,17 +251,21 @@ TEST(LandmarkFitter, RefusesAnotherNumberOfLandmarks) {
               HasSubstr("40 columns, expected x and y of 19 landmarks"));
 }
 
+TEST(LandmarkFitter, ChecksTheRangesOfItsOptions) {
+  test::expect_ranges<FitOptions>();
+}
+
 TEST(LandmarkFitter, RefusesOptionsOutOfRange) {
   const test::SyntheticClip clip = test::synthetic_clip(16);
   const auto message = [&](const FitOptions& options) {
     return test::message_of<std::invalid_argument>([&] { test::fit(clip, options); });
   };
-  EXPECT_THAT(message({.iterations = 0}), HasSubstr("iterations must be at least 1"));
-  EXPECT_THAT(message({.tolerance = -1}), HasSubstr("tolerance must not be negative"));
-  EXPECT_THAT(message({.sigma = 0}), HasSubstr("sigma must be a positive"));
+  EXPECT_THAT(message({.iterations = 0}), HasSubstr("iterations is 0; it must be from 1"));
+  EXPECT_THAT(message({.tolerance = -1}), HasSubstr("tolerance is -1; it must be from 0"));
+  EXPECT_THAT(message({.sigma = 0}), HasSubstr("sigma is 0; it must be from 1e-09"));
   EXPECT_THAT(message({.max_expression = 0}), HasSubstr("max_expression must be positive"));
-  EXPECT_THAT(message({.ridge = kNan}), HasSubstr("ridge must be finite"));
-  EXPECT_THAT(message({.smoothness = -1}), HasSubstr("smoothness must not be negative"));
+  EXPECT_THAT(message({.ridge = kNan}), HasSubstr("ridge is nan; it must be from 0"));
+  EXPECT_THAT(message({.smoothness = -1}), HasSubstr("smoothness is -1; it must be from 0"));
   EXPECT_THAT(message({.max_expression = 2, .smoothness = 1}),
               HasSubstr("smoothness needs expressions of at most 1"));
 }

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "fitting/landmark_input.h"
+#include "tests/option_ranges.h"
 #include "tests/temporary_folder.h"
 #include "toolkit/mesh/errors.h"
 
@@ -46,6 +47,20 @@ TEST_F(LandmarkInput, OfLittleConfidenceIsTakenAsNotSeen) {
   EXPECT_THAT(read.notes, ElementsAre(AllOf(HasSubstr("t.csv: 1 of 3 frames"),
                                             HasSubstr("taken as not seen"))));
   EXPECT_THAT(this->read("t.csv", {}, {.faces = {.min_confidence = 0}}).notes, IsEmpty());
+}
+
+TEST_F(LandmarkInput, RefusesOptionsOutOfRange) {
+  write("t.csv", "x0,y0\n1,2\n");
+  test::expect_ranges<FaceOptions>();
+  EXPECT_THROW(read("t.csv", {}, {.faces = {.min_confidence = 2}}), std::invalid_argument);
+  EXPECT_THROW(read("t.csv", {.fps = 0}), std::invalid_argument);
+}
+
+TEST_F(LandmarkInput, RefusesAFaceModelWhereNoFaceIsLookedFor) {
+  write("t.csv", "x0,y0\n1,2\n");
+  EXPECT_THAT(test::message_of<MismatchError>(
+                  [&] { read("t.csv", {}, {.faces = {.model = kDebianFaceModel}}); }),
+              HasSubstr("--face-model: "));
 }
 
 TEST_F(LandmarkInput, HasTheImagesBesidePoints) {

@@ -57,6 +57,10 @@ TEST_F(RegionsFile, TextIsAListOrAMask) {
   EXPECT_EQ(read("m.txt", mask).regions[0].vertices, (std::vector<int>{7, 8}));
 }
 
+TEST_F(RegionsFile, MayHaveAnExtensionInCapitals) {
+  EXPECT_EQ(read("R.JSON", "[[3, 4]]").regions[0].vertices, (std::vector<int>{3, 4}));
+}
+
 TEST_F(RegionsFile, VertexOutsideTheMeshIsAMismatchThatNamesIt) {
   try {
     read("a.txt", "3\n20\n");

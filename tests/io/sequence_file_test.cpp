@@ -170,7 +170,8 @@ TEST_F(TwelveFiles, ReadingStopsWhenProgressSaysSo) {
 
 TEST_F(TwelveFiles, TimesAreThirtyPerSecondWithoutInformation) {
   EXPECT_EQ(read_sequence(text()).sequence.times()[3], 3 / 30.0);
-  EXPECT_THROW(read_sequence(text(), {.fps = 0}), std::invalid_argument);
+  EXPECT_EQ(message_of<std::invalid_argument>([&] { read_sequence(text(), {.fps = 0}); }),
+            "fps is 0; it must be from 0.001 to 1e+06");
 }
 
 TEST(ReadSequence, SaysWhatIsMissing) {

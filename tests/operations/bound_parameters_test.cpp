@@ -14,7 +14,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::ThrowsMessage;
 
-enum class Produce { apple, pear };
+enum class Produce { apple, pear, plum };
 
 constexpr std::string_view choice_name(Produce value) {
   switch (value) {
@@ -22,9 +22,13 @@ constexpr std::string_view choice_name(Produce value) {
       return "apple";
     case Produce::pear:
       return "pear";
+    case Produce::plum:
+      return "plum";
   }
   return {};
 }
+
+enum class Nameless { one, two };
 
 struct BasketOptions {
   int count = 3;
@@ -35,6 +39,10 @@ struct BasketOptions {
   Length size = Length::share(0.25);
   std::vector<int> days = {1, 2};
   std::variant<Produce, std::string> label = Produce::apple;
+  std::string owner = {};
+  std::vector<int> lids = {};
+  std::optional<std::filesystem::path> list = {};
+  std::optional<std::string> note = {};
 
   static constexpr Option kCount{"count", &BasketOptions::count, {.minimum = 1, .maximum = 9}};
   static constexpr Option kWeight{"weight", &BasketOptions::weight, {.minimum = 0}, "kg"};
@@ -44,6 +52,10 @@ struct BasketOptions {
   static constexpr Option kSize{"size", &BasketOptions::size};
   static constexpr Option kDays{"days", &BasketOptions::days, {.minimum = 1}};
   static constexpr Option kLabel{"label", &BasketOptions::label};
+  static constexpr Option kOwner{"owner", &BasketOptions::owner};
+  static constexpr Option kLids{"lids", &BasketOptions::lids};
+  static constexpr Option kList{"list", &BasketOptions::list};
+  static constexpr Option kNote{"note", &BasketOptions::note};
 };
 
 BoundParameters<BasketOptions> basket_parameters(const BasketOptions& defaults = {}) {
@@ -56,7 +68,11 @@ BoundParameters<BasketOptions> basket_parameters(const BasketOptions& defaults =
       .add("size", BasketOptions::kSize, "of the basket")
       .add("days", BasketOptions::kDays, "when")
       .add_word_or_file<Produce, std::string>("label", BasketOptions::kLabel, "on it",
-                                              [](const std::string& path) { return "at " + path; });
+                                              [](const std::string& path) { return "at " + path; })
+      .add("owner", BasketOptions::kOwner, "of it")
+      .add("lids", BasketOptions::kLids, "of it")
+      .add("list", BasketOptions::kList, "what to buy")
+      .add("note", BasketOptions::kNote, "to the owner");
   return list;
 }
 
@@ -75,12 +91,42 @@ TEST(BoundParameters, HaveDefaultRangeAndUnitOfTheirMember) {
   EXPECT_FALSE(declared[1].maximum);
   EXPECT_EQ(declared[2].fallback, ParameterValue());
   EXPECT_EQ(declared[3].fallback, ParameterValue(false));
-  EXPECT_THAT(declared[4].choices, ElementsAre("apple", "pear"));
+  EXPECT_THAT(declared[4].choices, ElementsAre("apple", "pear", "plum"));
   EXPECT_EQ(declared[5].kind, ParameterKind::length);
   EXPECT_EQ(declared[5].fallback, ParameterValue("0.25"));
   EXPECT_EQ(declared[6].fallback, ParameterValue(std::vector<std::int64_t>{1, 2}));
   EXPECT_EQ(declared[7].kind, ParameterKind::file);
   EXPECT_EQ(declared[7].fallback, ParameterValue("apple"));
+  EXPECT_EQ(declared[8].kind, ParameterKind::text);
+  EXPECT_EQ(declared[9].kind, ParameterKind::integer_list);
+  EXPECT_EQ(declared[10].kind, ParameterKind::file);
+  EXPECT_EQ(declared[11].kind, ParameterKind::text);
+}
+
+TEST(BoundParameters, HaveNoDefaultWhereTheMemberHoldsNothing) {
+  const auto declared = basket_parameters().declared();
+  for (std::size_t i = 8; i < 12; ++i) EXPECT_EQ(declared[i].fallback, ParameterValue());
+  const auto filled = basket_parameters({.owner = "Ada", .lids = {3}, .list = "a.txt"}).declared();
+  EXPECT_EQ(filled[8].fallback, ParameterValue("Ada"));
+  EXPECT_EQ(filled[9].fallback, ParameterValue(std::vector<std::int64_t>{3}));
+  EXPECT_EQ(filled[10].fallback, ParameterValue("a.txt"));
+}
+
+template <typename Value>
+struct Holder {
+  Value value = {};
+};
+
+/// Whether a parameter can be bound to a member of that type.
+template <typename Value>
+concept IsBound = requires(BoundParameters<Holder<Value>> list) {
+  list.add("value", Option("value", &Holder<Value>::value), "");
+};
+
+TEST(BoundParameters, DoNotCompileForAnEnumWithoutNames) {
+  static_assert(IsBound<Produce> && IsBound<int> && IsBound<std::optional<std::string>>);
+  static_assert(!IsBound<Nameless> && !IsBound<std::optional<Nameless>>);
+  static_assert(!IsBound<const char*>);
 }
 
 TEST(BoundParameters, ReadTheDefaultsWhereNothingIsSet) {
@@ -92,6 +138,10 @@ TEST(BoundParameters, ReadTheDefaultsWhereNothingIsSet) {
   EXPECT_TRUE(read.size.absolute);
   EXPECT_EQ(read.size.value, 4);
   EXPECT_EQ(std::get<Produce>(read.label), Produce::apple);
+  EXPECT_EQ(read.owner, "");
+  EXPECT_THAT(read.lids, testing::IsEmpty());
+  EXPECT_FALSE(read.list);
+  EXPECT_FALSE(read.note);
 }
 
 TEST(BoundParameters, ReadEachValueThatIsSetIntoItsMember) {
@@ -105,6 +155,10 @@ TEST(BoundParameters, ReadEachValueThatIsSetIntoItsMember) {
   values.set("size", "12abs");
   values.set("days", std::vector<std::int64_t>{4});
   values.set("label", "tag.txt");
+  values.set("owner", "Ada");
+  values.set("lids", std::vector<std::int64_t>{7});
+  values.set("list", "list.txt");
+  values.set("note", "fresh");
   const BasketOptions read = list.read(values);
   EXPECT_EQ(read.count, 5);
   EXPECT_EQ(read.weight, 0.5);
@@ -114,6 +168,10 @@ TEST(BoundParameters, ReadEachValueThatIsSetIntoItsMember) {
   EXPECT_EQ(read.size.in(100), 12);
   EXPECT_THAT(read.days, ElementsAre(4));
   EXPECT_EQ(std::get<std::string>(read.label), "at tag.txt");
+  EXPECT_EQ(read.owner, "Ada");
+  EXPECT_THAT(read.lids, ElementsAre(7));
+  EXPECT_EQ(read.list, "list.txt");
+  EXPECT_EQ(read.note, "fresh");
 }
 
 TEST(BoundParameters, OfAPartAreReadIntoThatPart) {

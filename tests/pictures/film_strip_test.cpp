@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "tests/option_ranges.h"
 #include "tests/temporary_folder.h"
 #include "tests/vtk/vtp_fixture.h"
 #include "toolkit/mesh/errors.h"
@@ -36,7 +37,7 @@ TEST(FilmStrip, ShowsTheFirstAndLastFrameAndThoseBetweenEvenly) {
 }
 
 TEST(FilmStrip, ColoursDisplacementByItsShareOfTheLargest) {
-  const Sheet sheet = film_strip({rising(5)}, {.columns = 5, .colors = {"displacement"}});
+  const Sheet sheet = film_strip({rising(5)}, {.columns = 5, .colors = {StripColor::displacement}});
   const TileRow& row = sheet.rows.front();
   EXPECT_EQ(row.bar->maximum, 4);
   for (int column = 0; column < 5; ++column) {
@@ -45,8 +46,8 @@ TEST(FilmStrip, ColoursDisplacementByItsShareOfTheLargest) {
 }
 
 TEST(FilmStrip, ColoursTheDifferenceFromTheRowAbove) {
-  const Sheet sheet =
-      film_strip({rising(1), rising(3)}, {.columns = 3, .colors = {"none", "difference"}});
+  const Sheet sheet = film_strip(
+      {rising(1), rising(3)}, {.columns = 3, .colors = {StripColor::none, StripColor::difference}});
   EXPECT_TRUE(sheet.rows[0].tiles[0].colors.empty());
   EXPECT_FALSE(sheet.rows[0].bar);
   EXPECT_EQ(sheet.rows[1].bar->maximum, 2);
@@ -79,6 +80,23 @@ TEST(FilmStrip, TurnsATurntableOnceAround) {
   EXPECT_EQ(sheet.rows[0].tiles[3].positions(0, 2), 2);
 }
 
+TEST(FilmStrip, ShowsOneFrameWhereTheLayoutIsOne) {
+  EXPECT_EQ(film_strip({rising(3)}, {.layout = StripLayout::frame}).rows[0].tiles.size(), 1u);
+  const Sheet sheet = film_strip({rising(3)}, {.layout = StripLayout::frame, .frames = {2}});
+  ASSERT_EQ(sheet.rows[0].tiles.size(), 1u);
+  EXPECT_EQ(sheet.rows[0].tiles[0].positions(0, 2), 2);
+}
+
+TEST(FilmStrip, RefusesOptionsOutOfRange) {
+  test::expect_ranges<StripOptions>();
+  test::expect_ranges<Viewpoint>();
+  EXPECT_THAT(message_of<std::invalid_argument>([] { film_strip({rising(1)}, {.columns = 0}); }),
+              HasSubstr("columns is 0"));
+  EXPECT_THAT(message_of<std::invalid_argument>(
+                  [] { film_strip({rising(1)}, {.viewpoint = {.pitch = 91}}); }),
+              HasSubstr("pitch is 91"));
+}
+
 TEST(FilmStrip, NamesWhatItCannotShow) {
   EXPECT_THAT(
       message_of<MismatchError>([] { film_strip({rising(1)}, {.colors = {"regoin"}}); }),
@@ -90,19 +108,20 @@ TEST(FilmStrip, NamesWhatItCannotShow) {
               HasSubstr("row 2: 3 frames, expected 2"));
   EXPECT_THAT(message_of<MismatchError>([] { film_strip({rising(2)}, {.frames = {2}}); }),
               HasSubstr("frame 2, there are 2"));
-  EXPECT_THAT(
-      message_of<MismatchError>([] { film_strip({rising(2)}, {.colors = {"difference"}}); }),
-      HasSubstr("no row above"));
+  EXPECT_THAT(message_of<MismatchError>(
+                  [] { film_strip({rising(2)}, {.colors = {StripColor::difference}}); }),
+              HasSubstr("no row above"));
   EXPECT_THAT(message_of<std::invalid_argument>([] {
-                film_strip({rising(2)}, {.colors = {"none", "none"}});
+                film_strip({rising(2)}, {.colors = {StripColor::none, StripColor::none}});
               }),
               HasSubstr("2 colours for 1 rows"));
 }
 
 TEST(SheetLayout, ScalesEveryTileAlikeAndKeepsTheMeshInside) {
-  const Sheet sheet = film_strip({rising(4)}, {.columns = 4, .yaw = 30, .pitch = 20});
+  const Sheet sheet =
+      film_strip({rising(4)}, {.columns = 4, .viewpoint = {.yaw = 30, .pitch = 20}});
   const SheetLayout layout = SheetLayout::of(sheet);
-  const View view = view_of(sheet, 0);
+  const View view = view_of(sheet.viewpoint);
   const double half_width = layout.half_height * layout.tile_width / layout.tile_height;
   for (const Tile& tile : sheet.rows[0].tiles) {
     const Positions centered = tile.positions.rowwise() - layout.centers[0];
@@ -112,13 +131,13 @@ TEST(SheetLayout, ScalesEveryTileAlikeAndKeepsTheMeshInside) {
 }
 
 TEST(SheetLayout, LooksAtTheFrontWithTheRightAxisUp) {
-  Sheet sheet;
-  EXPECT_TRUE(view_of(sheet, 0).towards_eye.isApprox(Eigen::Vector3d::UnitZ()));
-  EXPECT_TRUE(view_of(sheet, 90).towards_eye.isApprox(Eigen::Vector3d::UnitX()));
-  sheet.z_up = true;
-  EXPECT_TRUE(view_of(sheet, 0).towards_eye.isApprox(-Eigen::Vector3d::UnitY()));
-  EXPECT_TRUE(view_of(sheet, 0).up.isApprox(Eigen::Vector3d::UnitZ()));
-  EXPECT_TRUE(view_of(sheet, 0).right.isApprox(Eigen::Vector3d::UnitX()));
+  Viewpoint front{.yaw = 0, .pitch = 0};
+  EXPECT_TRUE(view_of(front).towards_eye.isApprox(Eigen::Vector3d::UnitZ()));
+  EXPECT_TRUE(view_of(front, 90).towards_eye.isApprox(Eigen::Vector3d::UnitX()));
+  front.up = UpAxis::z;
+  EXPECT_TRUE(view_of(front).towards_eye.isApprox(-Eigen::Vector3d::UnitY()));
+  EXPECT_TRUE(view_of(front).up.isApprox(Eigen::Vector3d::UnitZ()));
+  EXPECT_TRUE(view_of(front).right.isApprox(Eigen::Vector3d::UnitX()));
 }
 
 TEST(SheetLayout, RoundsLengthsDown) {

@@ -1,8 +1,6 @@
-#include <cmath>
-#include <limits>
+#include <gtest/gtest.h>
 
-#include <gmock/gmock.h>
-
+#include "tests/option_ranges.h"
 #include "toolkit/mesh/alignment.h"
 #include "toolkit/pipeline/evaluation.h"
 #include "toolkit/pipeline/transfer.h"
@@ -10,64 +8,7 @@
 namespace mimetra {
 namespace {
 
-using testing::HasSubstr;
-using testing::ThrowsMessage;
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-template <typename Value>
-void set(Value& value, double number) {
-  if constexpr (std::is_same_v<Value, Length>) {
-    value.value = number;
-  } else if constexpr (std::is_same_v<Value, std::vector<int>>) {
-    value.back() = static_cast<int>(number);
-  } else if constexpr (std::is_same_v<Value, bool> || NamedChoice<Value>) {
-    FAIL() << "has no range";
-  } else {
-    value = static_cast<std::remove_cvref_t<decltype(value)>>(number);
-  }
-}
-
-/// The next value out of the range at an end of it.
-template <typename Value>
-double beyond(double end, double direction) {
-  const bool whole = std::is_same_v<Value, int> || std::is_same_v<Value, std::vector<int>>;
-  return whole ? end + std::copysign(1, direction) : std::nextafter(end, direction);
-}
-
-template <typename Options, typename Value>
-void expect_refusal(const Option<Options, Value>& option, double number) {
-  Options options;
-  set(options.*option.member, number);
-  EXPECT_THAT([&] { check_options(options); },
-              ThrowsMessage<std::invalid_argument>(HasSubstr(std::string(option.name) + " is ")));
-}
-
-template <typename Options, typename Value>
-void expect_acceptance(const Option<Options, Value>& option, double number) {
-  Options options;
-  set(options.*option.member, number);
-  EXPECT_NO_THROW(check_options(options)) << option.name << ' ' << number;
-}
-
-/// Each option that has a range takes its ends, and nothing beyond.
-template <typename Options>
-void expect_ranges() {
-  EXPECT_NO_THROW(check_options(Options()));
-  const auto check = [](const auto& option) {
-    using Value = std::remove_cvref_t<decltype(Options().*option.member)>;
-    const auto& [minimum, maximum] = option.range;
-    if (minimum) {
-      expect_acceptance(option, *minimum);
-      expect_refusal(option, beyond<Value>(*minimum, -kInfinity));
-    }
-    if (maximum) {
-      expect_acceptance(option, *maximum);
-      expect_refusal(option, beyond<Value>(*maximum, kInfinity));
-    }
-  };
-  std::apply([&](const auto&... each) { (check(each), ...); }, Options::declared());
-}
+using test::expect_ranges;
 
 TEST(DeclaredOptions, AreTheRangesThatAlgorithmsCheck) {
   expect_ranges<AlignmentOptions>();

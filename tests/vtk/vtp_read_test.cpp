@@ -43,8 +43,7 @@ TEST_F(VtpRead, GivesBackWhatWasWritten) {
 }
 
 TEST_F(VtpRead, KnowsExtensionsInCapitals) {
-  write_vtp_series(quad_and_triangle(), in_folder("face.pvd"));
-  std::filesystem::rename(in_folder("face.pvd"), in_folder("face.PVD"));
+  write_vtp_series(quad_and_triangle(), in_folder("face.PVD"));
   EXPECT_EQ(read_vtp_series(in_folder("face.PVD")).sequence().frames(), 3);
   EXPECT_EQ(vtp_series_files(in_folder("face.PVD")).size(), 4u);
 }
@@ -66,6 +65,7 @@ TEST_F(VtpRead, NamesTheFileThatIsWrong) {
       "lost.pvd",
       "<VTKFile><Collection><DataSet timestep=\"0\" file=\"x.vtp\"/></Collection></VTKFile>");
   write_text("bad.series", "{}");
+  write_text("bad.json", "{}");
   const auto message = [this](const std::string& name) {
     return message_of<IoError>([&] { read_vtp_series(in_folder(name)); });
   };
@@ -73,6 +73,7 @@ TEST_F(VtpRead, NamesTheFileThatIsWrong) {
   EXPECT_THAT(message("none.pvd"), HasSubstr("none.pvd: names no frame"));
   EXPECT_THAT(message("lost.pvd"), HasSubstr("x.vtp: no such file"));
   EXPECT_THAT(message("bad.series"), HasSubstr("bad.series: expected JSON"));
+  EXPECT_THAT(message("bad.json"), HasSubstr("bad.json: expected a series in .pvd"));
 }
 
 TEST_F(VtpRead, RefusesAFrameWithOtherFaces) {

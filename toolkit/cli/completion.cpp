@@ -83,9 +83,9 @@ std::string script_for(Shell shell, const std::vector<Command>& commands) {
     case Shell::zsh:
       return zsh_completion(commands);
     case Shell::fish:
-      break;
+      return fish_completion(commands);
   }
-  return fish_completion(commands);
+  return {};
 }
 
 Operation completion_operation(const OperationTable& table) {

@@ -103,6 +103,16 @@ constexpr std::string_view choice_name(ManualFormat value) {
   return {};
 }
 
+std::string page_in(ManualFormat format, const std::vector<Command>& commands) {
+  switch (format) {
+    case ManualFormat::man:
+      return man_page(commands);
+    case ManualFormat::markdown:
+      return reference_page(commands);
+  }
+  return {};
+}
+
 Operation manual_operation(const OperationTable& table) {
   Operation operation;
   operation.name = "manual";
@@ -112,9 +122,8 @@ Operation manual_operation(const OperationTable& table) {
   operation.examples = {"manual > /usr/local/share/man/man1/mimetra.1",
                         "manual --format markdown > reference.md"};
   operation.run = [&table](const Invocation& invocation) {
-    const std::vector<Command> commands = commands_of(table);
-    const bool for_man = invocation.parameters.choice<ManualFormat>("format") == ManualFormat::man;
-    const std::string page = for_man ? man_page(commands) : reference_page(commands);
+    const std::string page =
+        page_in(invocation.parameters.choice<ManualFormat>("format"), commands_of(table));
     return Outcome{{}, Json{{"page", page}}.dump(), page};
   };
   return operation;

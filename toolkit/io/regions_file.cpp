@@ -9,6 +9,7 @@
 #include "toolkit/io/text_cursor.h"
 #include "toolkit/io/whole_file.h"
 #include "toolkit/mesh/errors.h"
+#include "toolkit/mesh/text.h"
 
 namespace mimetra {
 
@@ -136,7 +137,7 @@ Lists read_list(const std::string& path, const std::string& text, int vertices) 
 }  // namespace
 
 Regions read_regions(const std::filesystem::path& path, int vertices, const Triangles& triangles) {
-  const std::string name = path.string(), extension = path.extension().string();
+  const std::string name = path.string(), extension = lower_extension(path);
   const std::string text = read_file(path);
   if (extension == ".json") return read_json(name, text, vertices, triangles);
   if (extension == ".csv")

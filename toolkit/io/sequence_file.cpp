@@ -97,6 +97,7 @@ OpenSequence open_path(const fs::path& path, const SequenceSource& source) {
 }  // namespace
 
 OpenSequence open_sequence(const std::string& text, const SequenceSource& source) {
+  check_options(source);
   const bool exists = is_there(text);
   if (exists && is_model(text)) return open_driven(ModelSpec{text, {}, {}}, source);
   if (!exists && !is_frame_pattern(text) && text.find('@') != std::string::npos) {

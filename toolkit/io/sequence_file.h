@@ -30,8 +30,9 @@ struct SequenceRead {
 /// faces are those of `topology` or NAME.topology.ply.
 ///
 /// No frame is read but the first, for faces and where it stands in for the rest pose. Throws
-/// IoError, MismatchError, std::invalid_argument for a bad frame range; reading frames throws
-/// IoError, and MismatchError for frames that differ in vertices or faces, naming both files.
+/// IoError, MismatchError, std::invalid_argument for a bad frame range and for options out of
+/// range; reading frames throws IoError, and MismatchError for frames that differ in vertices or
+/// faces, naming both files.
 OpenSequence open_sequence(const std::string& text, const SequenceSource& source = {});
 
 /// The same, with all frames in memory. Throws what opening and reading throw, Cancelled.
@@ -42,7 +43,7 @@ SequenceRead read_sequence(const std::string& text, const SequenceSource& source
 /// where the format has no place for them, or a folder of frame_0000.ply on (`frame_00000` and so
 /// on where four digits do not suffice) with NAME.rest.ply beside it where the rest pose is known
 /// (never for STL, which numbers the vertices anew). Atomic. Throws OutputError, MismatchError for
-/// what the format cannot hold.
+/// what the format cannot hold, std::invalid_argument for options out of range.
 std::unique_ptr<FrameSink> begin_sequence(const SequenceHeader& header,
                                           const std::filesystem::path& target,
                                           const SequenceWriteOptions& = {},

@@ -9,6 +9,7 @@
 
 #include "toolkit/io/mesh_formats.h"
 #include "toolkit/mesh/frame_source.h"
+#include "toolkit/mesh/option.h"
 #include "toolkit/mesh/progress.h"
 
 /// What opening a sequence is given and gives, and what writing one is given.
@@ -22,11 +23,18 @@ struct SequenceSource {
   std::optional<std::filesystem::path> topology = {};
   /// Part `A:B:STEP` of the frames, 0-based, B excluded; each may be left out.
   std::optional<std::string> frames = {};
-  /// Frames per second where the files say nothing of time, > 0.
+  /// Frames per second where the files say nothing of time.
   std::optional<double> fps = {};
   /// 0 for all there are; what is read does not depend on it.
   int threads = 0;
   Progress progress = {};
+
+  static constexpr Option kWeights{"weights", &SequenceSource::weights};
+  static constexpr Option kTopology{"topology", &SequenceSource::topology};
+  static constexpr Option kFrames{"frames", &SequenceSource::frames};
+  static constexpr Option kFps{
+      "fps", &SequenceSource::fps, {.minimum = 1e-3, .maximum = 1e6}, "frames per second"};
+  static constexpr auto declared() { return std::tuple(kFps); }
 };
 
 /// A sequence whose poses are read when they are needed, and what was noticed while opening it.
@@ -53,6 +61,15 @@ struct SequenceWriteOptions {
   /// 0 for all there are; what is written does not depend on it.
   int threads = 0;
   Progress progress = {};
+
+  static constexpr Option kFormat{"format", &SequenceWriteOptions::format};
+  static constexpr Option kDoublePrecision{"double_precision",
+                                           &SequenceWriteOptions::double_precision};
+  static constexpr Option kSinglePrecision{"single_precision",
+                                           &SequenceWriteOptions::single_precision};
+  static constexpr auto declared() {
+    return std::tuple(kFormat, kDoublePrecision, kSinglePrecision);
+  }
 };
 
 /// Further files (name, content) that appear together with an output: in its folder, or beside its

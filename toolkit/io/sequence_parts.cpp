@@ -1,7 +1,6 @@
 #include "toolkit/io/sequence_parts.h"
 
 #include <cmath>
-#include <stdexcept>
 #include <string>
 
 #include "toolkit/io/frame_files.h"
@@ -32,9 +31,6 @@ bool stands(const fs::path& path) {
 
 Eigen::VectorXd frame_times(int frames, const SequenceSource& source) {
   const double fps = source.fps.value_or(kDefaultFramesPerSecond);
-  if (!(fps > 0)) {
-    throw std::invalid_argument("fps is " + std::to_string(fps) + ", expected more than 0");
-  }
   Eigen::VectorXd times(frames);
   for (Eigen::Index i = 0; i < times.size(); ++i) times[i] = static_cast<double>(i) / fps;
   return times;

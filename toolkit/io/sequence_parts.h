@@ -12,7 +12,7 @@
 /// What formats of sequences have in common. Internal to them.
 namespace mimetra {
 
-/// Times of `frames` frames without any, by `source.fps` (F). Throws std::invalid_argument.
+/// Times of `frames` frames without any, by `source.fps` (F).
 Eigen::VectorXd frame_times(int frames, const SequenceSource& source);
 
 /// Throws IoError that names `name` and the first frame whose time is not finite, or not later than

@@ -12,6 +12,7 @@ namespace fs = std::filesystem;
 std::unique_ptr<FrameSink> begin_sequence(const SequenceHeader& header, const fs::path& target,
                                           const SequenceWriteOptions& options,
                                           const ExtraFiles& extra) {
+  check_options(options);
   if (header.times.size() == 0) throw std::invalid_argument("the sequence has no frames");
   const SequenceFormat* format = sequence_format(target);
   return (format ? format->begin : begin_folder)(header, target, options, extra);

@@ -39,7 +39,9 @@ Json json_of(const std::vector<RigidTransform>& motion) {
 struct AlignCall {
   AlignmentOptions alignment = {};
   /// Manifest of the motion that is given back.
-  std::optional<std::string> undo = {};
+  std::optional<std::filesystem::path> undo = {};
+
+  static constexpr Option kUndo{"undo", &AlignCall::undo};
 };
 
 BoundParameters<AlignCall> align_parameters() {
@@ -47,20 +49,15 @@ BoundParameters<AlignCall> align_parameters() {
   alignment.add("on", AlignmentOptions::kVertices,
                 "fit on the vertices that move least (stable), or on all of them");
   BoundParameters<AlignCall> list;
-  list.add(&AlignCall::alignment, alignment)
-      .add(
-          {"undo", ParameterKind::file, {}, "manifest of an align run, whose motion is given back"},
-          [](const Parameters& values, AlignCall& call) {
-            call.undo = values.optional_text("undo");
-          });
-  return list;
+  return list.add(&AlignCall::alignment, alignment)
+      .add("undo", AlignCall::kUndo, "manifest of an align run, whose motion is given back");
 }
 
 Alignment aligned(const Invocation& invocation) {
   const MeshSequence& sequence = invocation.sequence("sequence");
   AlignCall call = align_parameters().read(invocation.parameters);
   if (call.undo) {
-    std::vector<RigidTransform> motion = read_motion(*call.undo, sequence.frames());
+    std::vector<RigidTransform> motion = read_motion(call.undo->string(), sequence.frames());
     return {with_motion(sequence, motion), std::move(motion)};
   }
   call.alignment.progress = invocation.progress;

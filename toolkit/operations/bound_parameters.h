@@ -1,8 +1,10 @@
 #pragma once
 
+#include <cstdint>
+#include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
-#include <type_traits>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -12,61 +14,113 @@
 
 namespace mimetra {
 
-/// How a member of an option struct is typed in and shown.
+/// How a member of an option struct is a parameter: its kind, the `value` that it has as one, and
+/// `read`, which gives the value of a call. A type without a kind is no parameter's.
 template <typename Value>
-constexpr ParameterKind parameter_kind() {
-  if constexpr (NamedChoice<Value>) {
-    return ParameterKind::choice;
-  } else if constexpr (std::is_same_v<Value, bool>) {
-    return ParameterKind::flag;
-  } else if constexpr (std::is_same_v<Value, int>) {
-    return ParameterKind::integer;
-  } else if constexpr (std::is_same_v<Value, std::vector<int>>) {
-    return ParameterKind::integer_list;
-  } else if constexpr (std::is_same_v<Value, Length>) {
-    return ParameterKind::length;
-  } else {
-    static_assert(std::is_same_v<Value, double> || std::is_same_v<Value, std::optional<double>>);
-    return ParameterKind::number;
-  }
-}
+struct ParameterType {};
 
-template <typename Value>
-ParameterValue parameter_value(const Value& value) {
-  if constexpr (NamedChoice<Value>) {
-    return std::string(choice_name(value));
-  } else if constexpr (std::is_same_v<Value, int>) {
-    return std::int64_t{value};
-  } else if constexpr (std::is_same_v<Value, std::vector<int>>) {
-    return std::vector<std::int64_t>(value.begin(), value.end());
-  } else if constexpr (std::is_same_v<Value, Length>) {
-    return to_text(value);
-  } else if constexpr (std::is_same_v<Value, std::optional<double>>) {
-    return value ? ParameterValue(*value) : ParameterValue();
-  } else {
-    return value;
+template <NamedChoice Enum>
+struct ParameterType<Enum> {
+  static constexpr ParameterKind kKind = ParameterKind::choice;
+  static ParameterValue value(Enum choice) { return std::string(choice_name(choice)); }
+  static Enum read(const Parameters& parameters, const std::string& name) {
+    return parameters.choice<Enum>(name);
   }
-}
+};
 
-template <typename Value>
-Value option_value(const Parameters& parameters, const std::string& name) {
-  if constexpr (NamedChoice<Value>) {
-    return parameters.choice<Value>(name);
-  } else if constexpr (std::is_same_v<Value, bool>) {
+template <>
+struct ParameterType<bool> {
+  static constexpr ParameterKind kKind = ParameterKind::flag;
+  static ParameterValue value(bool flag) { return flag; }
+  static bool read(const Parameters& parameters, const std::string& name) {
     return parameters.flag(name);
-  } else if constexpr (std::is_same_v<Value, int>) {
+  }
+};
+
+template <>
+struct ParameterType<int> {
+  static constexpr ParameterKind kKind = ParameterKind::integer;
+  static ParameterValue value(int number) { return std::int64_t{number}; }
+  static int read(const Parameters& parameters, const std::string& name) {
     return parameters.integer(name);
-  } else if constexpr (std::is_same_v<Value, std::vector<int>>) {
-    const auto& list = parameters.integers(name);
-    return {list.begin(), list.end()};
-  } else if constexpr (std::is_same_v<Value, Length>) {
-    return parameters.length(name);
-  } else if constexpr (std::is_same_v<Value, std::optional<double>>) {
-    return parameters.optional_number(name);
-  } else {
+  }
+};
+
+template <>
+struct ParameterType<double> {
+  static constexpr ParameterKind kKind = ParameterKind::number;
+  static ParameterValue value(double number) { return number; }
+  static double read(const Parameters& parameters, const std::string& name) {
     return parameters.number(name);
   }
-}
+};
+
+template <>
+struct ParameterType<Length> {
+  static constexpr ParameterKind kKind = ParameterKind::length;
+  static ParameterValue value(const Length& length) { return to_text(length); }
+  static Length read(const Parameters& parameters, const std::string& name) {
+    return parameters.length(name);
+  }
+};
+
+/// An empty list is none.
+template <>
+struct ParameterType<std::vector<int>> {
+  static constexpr ParameterKind kKind = ParameterKind::integer_list;
+  static ParameterValue value(const std::vector<int>& list) {
+    if (list.empty()) return {};
+    return std::vector<std::int64_t>(list.begin(), list.end());
+  }
+  static std::vector<int> read(const Parameters& parameters, const std::string& name) {
+    const auto* list = std::get_if<std::vector<std::int64_t>>(&parameters.value(name));
+    return list ? std::vector<int>(list->begin(), list->end()) : std::vector<int>();
+  }
+};
+
+/// An empty text is none.
+template <>
+struct ParameterType<std::string> {
+  static constexpr ParameterKind kKind = ParameterKind::text;
+  static ParameterValue value(const std::string& text) {
+    return text.empty() ? ParameterValue() : ParameterValue(text);
+  }
+  static std::string read(const Parameters& parameters, const std::string& name) {
+    return parameters.optional_text(name).value_or("");
+  }
+};
+
+template <>
+struct ParameterType<std::filesystem::path> {
+  static constexpr ParameterKind kKind = ParameterKind::file;
+  static ParameterValue value(const std::filesystem::path& path) { return path.string(); }
+  static std::filesystem::path read(const Parameters& parameters, const std::string& name) {
+    return parameters.text(name);
+  }
+};
+
+/// What a parameter can be bound to; of enums only those whose values have names.
+template <typename Value>
+concept ParameterMember = requires {
+  ParameterType<Value>::kKind;
+};
+
+/// All of them but choices, of which one is always made.
+template <typename Value>
+concept OptionalMember = ParameterMember<Value> && !NamedChoice<Value>;
+
+/// None where none is given.
+template <OptionalMember Value>
+struct ParameterType<std::optional<Value>> {
+  static constexpr ParameterKind kKind = ParameterType<Value>::kKind;
+  static ParameterValue value(const std::optional<Value>& held) {
+    return held ? ParameterType<Value>::value(*held) : ParameterValue();
+  }
+  static std::optional<Value> read(const Parameters& parameters, const std::string& name) {
+    if (std::holds_alternative<std::monostate>(parameters.value(name))) return {};
+    return ParameterType<Value>::read(parameters, name);
+  }
+};
 
 /// Parameters of an operation, each bound to a member of a struct of options, whose default, range
 /// and unit it has. What is declared and what is read is one list.
@@ -83,14 +137,14 @@ class BoundParameters {
   /// `defaults` are those of the parameters.
   explicit BoundParameters(Options defaults = {}) : defaults_(std::move(defaults)) {}
 
-  template <typename Value>
+  template <ParameterMember Value>
   BoundParameters& add(const std::string& name, const Option<Options, Value>& option,
                        std::string help) {
     Parameter parameter = declaration<Value>(name, option, std::move(help));
     if constexpr (NamedChoice<Value>) parameter.choices = choice_names<Value>();
     return add(std::move(parameter),
                [name, member = option.member](const Parameters& parameters, Options& options) {
-                 options.*member = option_value<Value>(parameters, name);
+                 options.*member = ParameterType<Value>::read(parameters, name);
                });
   }
 
@@ -169,8 +223,8 @@ class BoundParameters {
   Parameter declaration(const std::string& name, const Option<Options, Value>& option,
                         std::string help) const {
     return {name,
-            parameter_kind<Value>(),
-            parameter_value(defaults_.*option.member),
+            ParameterType<Value>::kKind,
+            ParameterType<Value>::value(defaults_.*option.member),
             std::move(help),
             std::string(option.unit),
             option.range.minimum,

@@ -4,12 +4,25 @@
 
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/inspection.h"
+#include "toolkit/operations/bound_parameters.h"
 #include "toolkit/operations/json.h"
 #include "toolkit/operations/toolkit_operations.h"
 
 namespace mimetra {
 
 namespace {
+
+struct CheckCall {
+  /// Fail where there is a warning.
+  bool strict = false;
+
+  static constexpr Option kStrict{"strict", &CheckCall::strict};
+};
+
+BoundParameters<CheckCall> check_parameters() {
+  BoundParameters<CheckCall> list;
+  return list.add("strict", CheckCall::kStrict, "fail where there is a warning (exit code 4)");
+}
 
 /// "3 degenerate triangles, the first is 17".
 std::string counted(std::size_t count, const std::string& what, int first) {
@@ -58,7 +71,7 @@ Outcome run_check(const Invocation& invocation) {
   const FrameSource& sequence = *std::get<FieldSequence>(input.data).frames;
   const std::vector<std::string> warnings = warnings_of(
       sequence, moves(sequence, {.threads = invocation.threads, .progress = invocation.progress}));
-  if (!warnings.empty() && invocation.parameters.flag("strict")) {
+  if (!warnings.empty() && check_parameters().read(invocation.parameters).strict) {
     throw MismatchError(input.name + ": " + warnings.front() +
                         (warnings.size() > 1
                              ? "; and " + std::to_string(warnings.size() - 1) + " more warnings"
@@ -80,8 +93,7 @@ Operation check_operation() {
   operation.summary = "Tell whether a sequence can be used, and what is odd about it";
   operation.inputs = {{"sequence", DataKind::sequence, "sequence to check"}};
   operation.inputs.front().streamed = true;
-  operation.parameters = {
-      {"strict", ParameterKind::flag, false, "fail where there is a warning (exit code 4)"}};
+  operation.parameters = check_parameters().declared();
   operation.examples = {"check takes/smile_%04d.obj", "check take.npy --strict"};
   operation.run = run_check;
   return operation;

@@ -8,6 +8,7 @@
 #include "toolkit/io/sequence_format.h"
 #include "toolkit/io/whole_file.h"
 #include "toolkit/mesh/text.h"
+#include "toolkit/operations/sequence_parameters.h"
 
 namespace mimetra {
 
@@ -15,17 +16,8 @@ using Paths = std::vector<std::filesystem::path>;
 
 namespace {
 
-std::vector<Parameter> sequence_writing_parameters() {
-  return {choice_parameter("format", SequenceWriteOptions{}.format, "format of frames in a folder"),
-          {"double", ParameterKind::flag, false, "double precision in mesh files"},
-          {"single", ParameterKind::flag, false, "single precision in .npy and .npz"}};
-}
-
 Paths write_sequence_data(const Data& data, const WriteRequest& request) {
-  SequenceWriteOptions options;
-  options.format = request.parameters.choice<MeshFormat>("format");
-  options.double_precision = request.parameters.flag("double");
-  options.single_precision = request.parameters.flag("single");
+  SequenceWriteOptions options = sequence_writing_parameters().read(request.parameters);
   options.overwrite = request.overwrite;
   options.inputs = request.inputs;
   options.threads = request.threads;
@@ -94,8 +86,8 @@ std::string sequence_outputs() {
 void add_formats(OperationTable& table) {
   std::vector<std::string> extensions = sequence_extensions();
   extensions.emplace_back();  // a folder
-  table.add(
-      Writer{DataKind::sequence, extensions, sequence_writing_parameters(), write_sequence_data});
+  table.add(Writer{DataKind::sequence, extensions, sequence_writing_parameters().declared(),
+                   write_sequence_data});
   table.add(Writer{DataKind::components, {".h5", ".hdf5"}, {}, write_components_data});
   table.add(Writer{DataKind::model, {""}, {}, write_model_data});
   table.add(

@@ -5,11 +5,13 @@
 #include "toolkit/io/components_file.h"
 #include "toolkit/io/frame_files.h"
 #include "toolkit/io/mesh_file.h"
+#include "toolkit/io/mesh_formats.h"
 #include "toolkit/io/model_file.h"
 #include "toolkit/io/sequence_file.h"
 #include "toolkit/io/whole_file.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/progress.h"
+#include "toolkit/operations/sequence_parameters.h"
 
 namespace mimetra {
 
@@ -72,7 +74,7 @@ class Loader {
   std::optional<FieldSequence> with_fields(const std::string& text) {
     const FieldReader* reader = table_.field_reader(text);
     if (!reader) return {};
-    const auto frames = parameters_.optional_text("frames");
+    const auto frames = frame_parameters().read(parameters_).frames;
     const auto selected = [&frames](int count) { return selected_frames(frames, count); };
     FieldSequence read = reader->read(text, selected, progress_);
     for (const auto& file : reader->files(text)) files.push_back(file);
@@ -84,13 +86,7 @@ class Loader {
       if (!input.fields) read->fields.clear();
       return {text, std::move(*read)};
     }
-    SequenceSource source = frames_asked_for();
-    const auto path = [this](const char* name) {
-      const auto value = parameters_.optional_text(name);
-      return value ? std::optional<std::filesystem::path>(*value) : std::nullopt;
-    };
-    source.weights = path("weights");
-    source.topology = path("topology");
+    const SequenceSource source = source_by(sequence_parameters());
     if (may_stream_ && input.streamed) {
       OpenSequence open = noted(open_sequence(text, source));
       return {text, FieldSequence(std::move(open.frames)), {.model_driven = open.model_driven}};
@@ -101,17 +97,15 @@ class Loader {
 
   NamedData landmarks(const std::string& text) {
     LandmarksRead read =
-        noted(table_.landmark_reader().read(text, frames_asked_for(), parameters_));
+        noted(table_.landmark_reader().read(text, source_by(frame_parameters()), parameters_));
     Origin origin;
     origin.images = std::move(read.images);
     origin.frame_notes = std::move(read.frame_notes);
     return {text, std::move(read.track), std::move(origin)};
   }
 
-  SequenceSource frames_asked_for() const {
-    SequenceSource source;
-    source.frames = parameters_.optional_text("frames");
-    source.fps = parameters_.optional_number("fps");
+  SequenceSource source_by(const BoundParameters<SequenceSource>& list) const {
+    SequenceSource source = list.read(parameters_);
     source.threads = threads_;
     source.progress = progress_;
     return source;
@@ -139,16 +133,16 @@ class Loader {
     Origin origin;
     origin.path = spec.path;
     files.push_back(spec.path);
+    if (spec.fit) files.push_back(*spec.fit);
+    if (with_identities && !is_person && !is_mesh_extension(spec.path.extension().string())) {
+      return {spec.name(), ModelData{read_model(spec.path, threads_)}, std::move(origin)};
+    }
     if (!std::filesystem::exists(spec.path)) {
       throw IoError(spec.path.string(), "no such file or folder");
     }
-    if (spec.fit) files.push_back(*spec.fit);
     if (std::filesystem::is_directory(spec.path) || is_model(spec.path)) {
-      const auto read = [&] {
-        return with_identities && !is_person ? read_model(spec.path, threads_)
-                                             : MorphableModel(read_person(spec, threads_));
-      };
-      return {spec.name(), ModelData{read()}, std::move(origin)};
+      return {spec.name(), ModelData{MorphableModel(read_person(spec, threads_))},
+              std::move(origin)};
     }
     if (is_person) {
       throw MismatchError(text + ": '" + spec.path.string() +
@@ -241,15 +235,15 @@ LoadedInputs load_inputs(const OperationTable& table, const Operation& operation
     if (input.kind == DataKind::regions) load(input);
   }
   loaded.files = std::move(loader.files);
-  for (const char* name : {"weights", "topology"}) {
+  const auto check_read = [&](const std::string& name, const std::string& reader) {
     const auto path = parameters.find(name) ? parameters.optional_text(name) : std::nullopt;
-    if (!path ||
-        std::ranges::find(loaded.files, std::filesystem::path(*path)) != loaded.files.end())
-      continue;
-    throw MismatchError("--" + std::string(name) + " " + *path + ": no input is " +
-                        (name == std::string("weights") ? "a model that it could drive"
-                                                        : "an array that needs its faces"));
-  }
+    if (!path) return;
+    const bool is_read =
+        std::ranges::find(loaded.files, std::filesystem::path(*path)) != loaded.files.end();
+    if (!is_read) throw MismatchError("--" + name + " " + *path + ": no input is " + reader);
+  };
+  check_read("weights", "a model that it could drive");
+  check_read("topology", "an array that needs its faces");
   return loaded;
 }
 

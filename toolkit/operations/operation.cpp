@@ -9,6 +9,7 @@
 #include "toolkit/io/pending_output.h"
 #include "toolkit/mesh/text.h"
 #include "toolkit/operations/json.h"
+#include "toolkit/operations/sequence_parameters.h"
 
 namespace mimetra {
 
@@ -16,24 +17,6 @@ namespace {
 
 bool has_extension(const std::vector<std::string>& extensions, const std::filesystem::path& path) {
   return std::ranges::find(extensions, lower_extension(path)) != extensions.end();
-}
-
-/// What `read_sequence` takes besides a name.
-std::vector<Parameter> sequence_parameters() {
-  return {{"weights", ParameterKind::file, {}, "CSV of blendshape weights that drive a model"},
-          {"topology", ParameterKind::file, {}, "mesh with the faces of a file that holds none"}};
-}
-
-/// What everything with frames takes.
-std::vector<Parameter> frame_parameters() {
-  return {{"frames", ParameterKind::text, {}, "part A:B:STEP of the frames, 0-based, B excluded"},
-          {"fps",
-           ParameterKind::number,
-           {},
-           "frame rate of formats without times",
-           "frames per second",
-           1e-3,
-           1e6}};
 }
 
 /// Those that the writer can write an output with.
@@ -170,12 +153,11 @@ std::vector<Parameter> OperationTable::parameters_of(const Operation& operation)
   };
   if (std::ranges::find(operation.inputs, DataKind::sequence, &Input::kind) !=
       operation.inputs.end()) {
-    append(sequence_parameters());
-    append(frame_parameters());
+    append(sequence_parameters().declared());
   }
   if (std::ranges::find(operation.inputs, DataKind::landmarks, &Input::kind) !=
       operation.inputs.end()) {
-    append(frame_parameters());
+    append(frame_parameters().declared());
     if (landmark_reader_) append(landmark_reader_->parameters);
   }
   for (const Output& output : operation.outputs) {

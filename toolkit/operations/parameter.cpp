@@ -256,11 +256,6 @@ const std::vector<std::int64_t>& Parameters::integers(const std::string& name) c
   return std::get<std::vector<std::int64_t>>(value(name));
 }
 
-std::optional<double> Parameters::optional_number(const std::string& name) const {
-  const auto* number = std::get_if<double>(&value(name));
-  return number ? std::optional(*number) : std::nullopt;
-}
-
 std::optional<std::string> Parameters::optional_text(const std::string& name) const {
   const auto* text = std::get_if<std::string>(&value(name));
   return text ? std::optional(*text) : std::nullopt;

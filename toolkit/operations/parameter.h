@@ -105,7 +105,6 @@ class Parameters {
   double number(const std::string& name) const { return std::get<double>(value(name)); }
   const std::string& text(const std::string& name) const;
   const std::vector<std::int64_t>& integers(const std::string& name) const;
-  std::optional<double> optional_number(const std::string& name) const;
   std::optional<std::string> optional_text(const std::string& name) const;
   /// A value of choice_parameter(). Throws std::invalid_argument where it is not one of the enum's.
   template <NamedChoice Enum>

@@ -1,6 +1,7 @@
 #include <nlohmann/json.hpp>
 
 #include "toolkit/mesh/errors.h"
+#include "toolkit/mesh/text.h"
 #include "toolkit/operations/json.h"
 #include "toolkit/operations/paraview_view.h"
 #include "toolkit/operations/pipeline_parameters.h"
@@ -46,7 +47,8 @@ std::filesystem::path series_of(const Invocation& invocation) {
   const auto out = invocation.wanted.find("out");
   if (out != invocation.wanted.end() && !out->second.empty()) {
     const std::filesystem::path& path = out->second.front();
-    if (path.extension() == ".pvd" || path.extension() == ".vtp") {
+    const std::string extension = lower_extension(path);
+    if (extension == ".pvd" || extension == ".vtp") {
       return std::filesystem::absolute(path).lexically_normal();
     }
   }

@@ -10,6 +10,7 @@
 #include "toolkit/mesh/errors.h"
 #include "toolkit/operations/file_hash.h"
 #include "toolkit/operations/json.h"
+#include "toolkit/operations/parameter.h"
 
 namespace mimetra {
 
@@ -75,7 +76,7 @@ void check_looked_for_regions(const RunRecord& run) {
                         "; expected one of transfer, evaluate or regions");
   }
   const auto full = run.options.find("full");
-  if (full != run.options.end() && full->second == "true") {
+  if (full != run.options.end() && full->second == to_text(true)) {
     throw MismatchError(run.manifest.string() +
                         ": was made with --full, without regions; name a run by regions");
   }

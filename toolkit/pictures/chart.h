@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "toolkit/operations/data.h"
 #include "toolkit/operations/colors.h"
+#include "toolkit/operations/data.h"
 
 namespace mimetra {
 

@@ -7,15 +7,14 @@
 #include <stdexcept>
 
 #include "toolkit/mesh/errors.h"
+#include "toolkit/mesh/text.h"
 
 namespace mimetra {
 
 namespace {
 
-constexpr int kSmallestTile = 16;
-
-const std::string& entry(const std::vector<std::string>& list, std::size_t row) {
-  return list.size() == 1 ? list.front() : list[row];
+const RowColor& color_of(const StripOptions& options, std::size_t row) {
+  return options.colors.size() == 1 ? options.colors.front() : options.colors[row];
 }
 
 std::string row_name(const StripOptions& options, std::size_t row) {
@@ -25,11 +24,8 @@ std::string row_name(const StripOptions& options, std::size_t row) {
 
 void check(const std::vector<FieldSequence>& sequences, const StripOptions& options) {
   if (sequences.empty()) throw std::invalid_argument("a strip needs a sequence");
-  if (options.columns < 1) throw std::invalid_argument("a strip needs at least one column");
-  if (options.tile_height < kSmallestTile) {
-    throw std::invalid_argument("tiles are at least " + std::to_string(kSmallestTile) +
-                                " pixels high");
-  }
+  check_options(options);
+  check_options(options.viewpoint);
   if (options.colors.size() != 1 && options.colors.size() != sequences.size()) {
     throw std::invalid_argument(std::to_string(options.colors.size()) + " colours for " +
                                 std::to_string(sequences.size()) +
@@ -57,25 +53,33 @@ int common_frames(const std::vector<FieldSequence>& sequences, const StripOption
   return frames;
 }
 
-std::vector<int> shown_frames(int frames, const StripOptions& options) {
-  for (const int frame : options.frames) {
-    if (frame < 0 || frame >= frames) {
-      throw MismatchError("frame " + std::to_string(frame) + ", there are " +
-                          std::to_string(frames) + " (0-based)");
-    }
-  }
-  if (options.layout == StripLayout::turntable) {
-    const int frame = options.frames.empty() ? 0 : options.frames.front();
-    return std::vector<int>(static_cast<std::size_t>(options.columns), frame);
-  }
-  if (!options.frames.empty()) return options.frames;
-  const int columns = std::min(options.columns, frames);
+std::vector<int> evenly_spread(int frames, int most) {
+  const int columns = std::min(most, frames);
   std::vector<int> shown;
   shown.reserve(static_cast<std::size_t>(columns));
   for (int column = 0; column < columns; ++column) {
     shown.push_back(columns == 1 ? 0 : column * (frames - 1) / (columns - 1));
   }
   return shown;
+}
+
+std::vector<int> shown_frames(int frames, const StripOptions& options) {
+  for (const int frame : options.frames) {
+    if (frame >= frames) {
+      throw MismatchError("frame " + std::to_string(frame) + ", there are " +
+                          std::to_string(frames) + " (0-based)");
+    }
+  }
+  const int first = options.frames.empty() ? 0 : options.frames.front();
+  switch (options.layout) {
+    case StripLayout::strip:
+      return options.frames.empty() ? evenly_spread(frames, options.columns) : options.frames;
+    case StripLayout::frame:
+      return {first};
+    case StripLayout::turntable:
+      return std::vector<int>(static_cast<std::size_t>(options.columns), first);
+  }
+  return {};
 }
 
 Positions pose(const FieldSequence& fields, int frame) {
@@ -97,7 +101,7 @@ const Field& field_of(const FieldSequence& fields, const std::string& name,
                       const std::string& row) {
   const auto found = std::ranges::find(fields.fields, name, &Field::name);
   if (found != fields.fields.end()) return *found;
-  std::string known = "none, displacement, difference";
+  std::string known = joined(choice_names<StripColor>());
   for (const Field& field : fields.fields) known += ", " + field.name;
   throw MismatchError(row + ": no field '" + name + "'; it can be coloured by " + known);
 }
@@ -121,27 +125,19 @@ class RowPainter {
  public:
   RowPainter(const std::vector<FieldSequence>& sequences, const StripOptions& options,
              std::size_t row, const std::vector<int>& frames)
-      : sequences_(sequences), options_(options), row_(row), color_(entry(options.colors, row)) {
-    if (color_ == "none") return;
-    const FieldSequence& own = sequences[row];
-    if (color_ == "displacement") {
-      for (const int frame : frames) {
-        values_.push_back(distance(pose(own, frame), own.sequence().rest()));
-      }
-    } else if (color_ == "difference") {
-      for (const int frame : frames) values_.push_back(difference(frame));
+      : sequences_(sequences), options_(options), row_(row) {
+    const RowColor& color = color_of(options, row);
+    if (const auto* measured = std::get_if<StripColor>(&color)) {
+      measure(*measured, frames);
     } else {
-      const Field& field = field_of(own, color_, row_name(options, row));
-      values_.assign(frames.size(), vertex_values(field, own.sequence()));
-      if (is_category(field)) {
-        categories_ = category_colors(whole_numbers(values_.front()), own.sequence().triangles());
-      }
+      show(field_of(sequences[row], std::get<std::string>(color), row_name(options, row)),
+           frames.size());
     }
   }
 
   std::optional<ColorBar> bar() const {
     if (values_.empty() || !categories_.empty()) return {};
-    ColorBar bar{0, 0, color_ == "displacement" || color_ == "difference" ? options_.unit : ""};
+    ColorBar bar{0, 0, unit_};
     for (const Eigen::VectorXd& values : values_) {
       for (const double value : values) {
         if (!std::isfinite(value)) continue;
@@ -164,6 +160,33 @@ class RowPainter {
   }
 
  private:
+  /// Lengths in each of the frames.
+  void measure(StripColor color, const std::vector<int>& frames) {
+    const FieldSequence& own = sequences_[row_];
+    unit_ = options_.unit;
+    for (const int frame : frames) {
+      switch (color) {
+        case StripColor::none:
+          break;
+        case StripColor::displacement:
+          values_.push_back(distance(pose(own, frame), own.frames->rest()));
+          break;
+        case StripColor::difference:
+          values_.push_back(difference(frame));
+          break;
+      }
+    }
+  }
+
+  /// The same in all columns.
+  void show(const Field& field, std::size_t columns) {
+    const MeshSequence& sequence = sequences_[row_].sequence();
+    values_.assign(columns, vertex_values(field, sequence));
+    if (is_category(field)) {
+      categories_ = category_colors(whole_numbers(values_.front()), sequence.triangles());
+    }
+  }
+
   static Eigen::VectorXd distance(const Positions& a, const Positions& b) {
     return (a - b).rowwise().norm();
   }
@@ -189,8 +212,8 @@ class RowPainter {
   const std::vector<FieldSequence>& sequences_;
   const StripOptions& options_;
   std::size_t row_;
-  const std::string& color_;
   std::vector<Eigen::VectorXd> values_;  // by column; empty for none
+  std::string unit_;                     // of the values
   std::vector<Color> categories_;
 };
 
@@ -222,9 +245,7 @@ Sheet film_strip(const std::vector<FieldSequence>& sequences, const StripOptions
   check(sequences, options);
   const std::vector<int> frames = shown_frames(common_frames(sequences, options), options);
   Sheet sheet;
-  sheet.yaw = options.yaw;
-  sheet.pitch = options.pitch;
-  sheet.z_up = options.z_up;
+  sheet.viewpoint = options.viewpoint;
   sheet.tile_height = options.tile_height;
   sheet.letters = options.letters;
   sheet.unit = options.unit;

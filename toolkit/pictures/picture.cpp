@@ -149,7 +149,7 @@ void add_tile(vtkRenderWindow& window, const Sheet& sheet, const SheetLayout& la
   const auto renderer = empty_renderer(layout.tile(row, column), layout);
   renderer->AddActor(actor_of(*surface_of(tile, tiles, layout.centers[row], weld)));
   add_lights(*renderer);
-  aim(*renderer->GetActiveCamera(), view_of(sheet, tile.turn), layout.half_height,
+  aim(*renderer->GetActiveCamera(), view_of(sheet.viewpoint, tile.turn), layout.half_height,
       4 * layout.reach);
   window.AddRenderer(renderer);
 }

@@ -4,38 +4,13 @@
 
 #include <nlohmann/json.hpp>
 
+#include "toolkit/mesh/text.h"
 #include "toolkit/operations/json.h"
 #include "toolkit/pictures/film_strip.h"
 
 namespace mimetra {
 
 namespace {
-
-enum class Layout { strip, frame, turntable };
-
-constexpr std::string_view choice_name(Layout value) {
-  switch (value) {
-    case Layout::strip:
-      return "strip";
-    case Layout::frame:
-      return "frame";
-    case Layout::turntable:
-      return "turntable";
-  }
-  return {};
-}
-
-enum class UpAxis { y, z };
-
-constexpr std::string_view choice_name(UpAxis value) {
-  switch (value) {
-    case UpAxis::y:
-      return "y";
-    case UpAxis::z:
-      return "z";
-  }
-  return {};
-}
 
 std::vector<std::string> split(const std::string& text) {
   std::vector<std::string> parts;
@@ -45,33 +20,57 @@ std::vector<std::string> split(const std::string& text) {
   return parts;
 }
 
+std::vector<RowColor> colors_of(const std::string& text) {
+  std::vector<RowColor> colors;
+  for (const std::string& name : split(text)) {
+    const auto measured = choice_of<StripColor>(name);
+    colors.push_back(measured ? RowColor(*measured) : RowColor(name));
+  }
+  return colors;
+}
+
+std::string text_of(const std::vector<RowColor>& colors) {
+  std::vector<std::string> names;
+  for (const RowColor& color : colors) {
+    const auto* measured = std::get_if<StripColor>(&color);
+    names.emplace_back(measured ? choice_name(*measured) : std::get<std::string>(color));
+  }
+  return joined(names, ",");
+}
+
+BoundParameters<StripOptions> strip_parameters() {
+  BoundParameters<StripOptions> list;
+  return list
+      .add("layout", StripOptions::kLayout,
+           "strip: a column a frame; frame: one; turntable: one from all around")
+      .add("columns", StripOptions::kColumns, "pictures in a row")
+      .add("at", StripOptions::kFrames, "frames to show, 0-based; default spread evenly")
+      .add({"color", ParameterKind::text, text_of(StripOptions{}.colors),
+            joined(choice_names<StripColor>()) +
+                " (from the row above) or a field; one for all rows or a list"},
+           [](const Parameters& parameters, StripOptions& options) {
+             options.colors = colors_of(parameters.text("color"));
+           })
+      .add({"titles", ParameterKind::text, {}, "a title for each row, separated by commas"},
+           [](const Parameters& parameters, StripOptions& options) {
+             options.titles = split(parameters.optional_text("titles").value_or(""));
+           })
+      .add("maximum", StripOptions::kMaximum, "value of the darkest colour; default the largest")
+      .add(&StripOptions::viewpoint, viewpoint_parameters())
+      .add("size", StripOptions::kTileHeight, "height of one picture")
+      .add("unit", StripOptions::kUnit, "name of the meshes' unit of length, for the scale bar");
+}
+
 StripOptions options_of(const Invocation& invocation) {
-  const Parameters& parameters = invocation.parameters;
+  StripOptions options = strip_parameters().read(invocation.parameters);
+  if (options.layout != StripLayout::strip && options.frames.size() > 1) {
+    throw UsageError("--at: expected one frame with --layout " +
+                     std::string(choice_name(options.layout)));
+  }
   const std::vector<NamedData>& inputs = invocation.inputs.at("input");
-  StripOptions options;
-  const auto layout = parameters.choice<Layout>("layout");
-  if (layout == Layout::turntable) options.layout = StripLayout::turntable;
-  options.columns = layout == Layout::frame ? 1 : parameters.integer("columns");
-  if (parameters.is_set("at")) {
-    for (const std::int64_t frame : parameters.integers("at")) {
-      options.frames.push_back(static_cast<int>(frame));
-    }
-  }
-  if (layout != Layout::strip && options.frames.size() > 1) {
-    throw UsageError("--at: expected one frame with --layout " + parameters.text("layout"));
-  }
-  options.colors = split(parameters.text("color"));
-  if (const auto titles = parameters.optional_text("titles")) {
-    options.titles = split(*titles);
-  } else if (inputs.size() > 1) {
+  if (inputs.size() > 1 && !invocation.parameters.is_set("titles")) {
     for (const NamedData& input : inputs) options.titles.push_back(input.name);
   }
-  options.maximum = parameters.optional_number("maximum");
-  options.yaw = parameters.number("yaw");
-  options.pitch = parameters.number("pitch");
-  options.z_up = is_z_up(parameters);
-  options.tile_height = parameters.integer("size");
-  options.unit = parameters.optional_text("unit").value_or("");
   return options;
 }
 
@@ -105,52 +104,14 @@ Outcome run_render(const Invocation& invocation) {
   return outcome;
 }
 
-std::vector<Parameter> parameters() {
-  std::vector<Parameter> list = {
-      choice_parameter("layout", Layout::strip,
-                       "strip: a column a frame; frame: one; turntable: one from all around"),
-      {"columns", ParameterKind::integer, std::int64_t{8}, "pictures in a row", "", 1, 100},
-      {"at",
-       ParameterKind::integer_list,
-       {},
-       "frames to show, 0-based; default spread evenly",
-       "",
-       0},
-      {"color", ParameterKind::text, "none",
-       "none, displacement, difference (from the row above) or a field; one for all rows or a "
-       "list"},
-      {"titles", ParameterKind::text, {}, "a title for each row, separated by commas"},
-      {"maximum",
-       ParameterKind::number,
-       {},
-       "value of the darkest colour; default the largest",
-       "",
-       1e-300},
-  };
-  const std::vector<Parameter> view = view_parameters();
-  list.insert(list.end(), view.begin(), view.end());
-  list.insert(list.end(), {
-                              {"size", ParameterKind::integer, std::int64_t{320},
-                               "height of one picture", "pixels", 16, 4096},
-                              {"unit",
-                               ParameterKind::text,
-                               {},
-                               "name of the meshes' unit of length, for the scale bar"},
-                          });
-  return list;
-}
-
 }  // namespace
 
-std::vector<Parameter> view_parameters() {
-  return {{"yaw", ParameterKind::number, 15.0, "seen from the side", "degrees", -360, 360},
-          {"pitch", ParameterKind::number, 5.0, "seen from above", "degrees", -90, 90},
-          choice_parameter("up", UpAxis::y,
-                           "axis that points up; the face looks along +z, or -y where z is up")};
-}
-
-bool is_z_up(const Parameters& parameters) {
-  return parameters.choice<UpAxis>("up") == UpAxis::z;
+BoundParameters<Viewpoint> viewpoint_parameters() {
+  BoundParameters<Viewpoint> list;
+  return list.add("yaw", Viewpoint::kYaw, "seen from the side")
+      .add("pitch", Viewpoint::kPitch, "seen from above")
+      .add("up", Viewpoint::kUp,
+           "axis that points up; the face looks along +z, or -y where z is up");
 }
 
 Operation render_operation() {
@@ -162,7 +123,7 @@ Operation render_operation() {
   operation.inputs.front().fields = true;
   operation.outputs = {{"out", DataKind::pictures, ".png"}};
   operation.outputs.front().extensions = {".png"};
-  operation.parameters = parameters();
+  operation.parameters = strip_parameters().declared();
   operation.examples = {
       "render take.npy regions.pvd actor_smile/ --color none,region,none -o strip.png",
       "render actor/ --layout turntable --columns 6 --unit mm -o actor.png"};

@@ -1,14 +1,13 @@
 #pragma once
 
+#include "toolkit/operations/bound_parameters.h"
 #include "toolkit/operations/operation.h"
+#include "toolkit/pictures/viewpoint.h"
 
 namespace mimetra {
 
-/// From where meshes are seen: yaw, pitch and up.
-std::vector<Parameter> view_parameters();
-
-/// What they say of the axis that points up.
-bool is_z_up(const Parameters& parameters);
+/// --yaw, --pitch and --up.
+BoundParameters<Viewpoint> viewpoint_parameters();
 
 /// `render`: pictures of sequences.
 Operation render_operation();

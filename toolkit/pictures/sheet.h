@@ -7,6 +7,7 @@
 
 #include "toolkit/mesh/tri_mesh.h"
 #include "toolkit/operations/colors.h"
+#include "toolkit/pictures/viewpoint.h"
 
 namespace mimetra {
 
@@ -37,9 +38,7 @@ struct TileRow {
 struct Sheet {
   std::vector<TileRow> rows;
   std::vector<std::string> column_titles;
-  double yaw = 0;         ///< degrees; 0 looks at what faces +z (-y where z is up)
-  double pitch = 0;       ///< degrees; positive looks from above
-  bool z_up = false;      ///< else y
+  Viewpoint viewpoint = {.yaw = 0, .pitch = 0};
   int tile_height = 320;  ///< pixels
   int letters = 0;        ///< height of letters, pixels; 0 for what suits the tiles
   std::string unit;       ///< of positions, written at the scale bar

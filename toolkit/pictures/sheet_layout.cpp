@@ -23,7 +23,7 @@ Eigen::Vector2d half_extent(const Sheet& sheet, const std::vector<Eigen::RowVect
   Eigen::Vector2d half = Eigen::Vector2d::Zero();
   for (std::size_t row = 0; row < sheet.rows.size(); ++row) {
     for (const Tile& tile : sheet.rows[row].tiles) {
-      const View view = view_of(sheet, tile.turn);
+      const View view = view_of(sheet.viewpoint, tile.turn);
       const Positions centered = tile.positions.rowwise() - centers[row];
       half[0] = std::max(half[0], (centered * view.right).cwiseAbs().maxCoeff());
       half[1] = std::max(half[1], (centered * view.up).cwiseAbs().maxCoeff());
@@ -45,15 +45,15 @@ double reach_of(const Sheet& sheet, const std::vector<Eigen::RowVector3d>& cente
 
 }  // namespace
 
-View view_of(const Sheet& sheet, double turn) {
-  const double yaw = (sheet.yaw + turn) * std::numbers::pi / 180;
-  const double pitch = sheet.pitch * std::numbers::pi / 180;
+View view_of(const Viewpoint& viewpoint, double turn) {
+  const double yaw = (viewpoint.yaw + turn) * std::numbers::pi / 180;
+  const double pitch = viewpoint.pitch * std::numbers::pi / 180;
   View view;
   view.right = {std::cos(yaw), 0, -std::sin(yaw)};
   view.towards_eye = {std::cos(pitch) * std::sin(yaw), std::sin(pitch),
                       std::cos(pitch) * std::cos(yaw)};
   view.up = view.towards_eye.cross(view.right);
-  if (sheet.z_up) {
+  if (viewpoint.up == UpAxis::z) {
     for (Eigen::Vector3d* axis : {&view.right, &view.up, &view.towards_eye}) {
       *axis = Eigen::Vector3d(axis->x(), -axis->z(), axis->y());
     }

@@ -23,7 +23,8 @@ struct View {
   Eigen::Vector3d towards_eye;
 };
 
-View view_of(const Sheet& sheet, double turn);
+/// `turn`: about the upright axis, degrees.
+View view_of(const Viewpoint& viewpoint, double turn = 0);
 
 /// Where everything in a sheet lies.
 struct SheetLayout {

@@ -20,13 +20,22 @@ namespace mimetra {
 
 namespace {
 
-ReportView view_of(const Parameters& parameters) {
-  ReportView view;
-  view.yaw = parameters.number("yaw");
-  view.pitch = parameters.number("pitch");
-  view.z_up = is_z_up(parameters);
-  view.unit = parameters.optional_text("unit").value_or("");
-  return view;
+struct ReportCall {
+  /// Numbers of components in the table, besides the run's own.
+  std::vector<int> counts = {10, 30, 40};
+  ReportView view = {};
+
+  static constexpr Option kCounts{"counts", &ReportCall::counts, {.minimum = 1}};
+};
+
+BoundParameters<ReportCall> report_parameters() {
+  BoundParameters<ReportView> view;
+  view.add(&ReportView::viewpoint, viewpoint_parameters())
+      .add("unit", ReportView::kUnit, "name of the meshes' unit of length");
+  BoundParameters<ReportCall> list;
+  return list
+      .add("k", ReportCall::kCounts, "numbers of components in the table, besides the run's own")
+      .add(&ReportCall::view, view);
 }
 
 /// Pictures that a run cannot give are refused before anything is computed.
@@ -68,18 +77,18 @@ void draw_wanted(Outcome& outcome, const Invocation& invocation, const ReportStu
 
 Outcome run_report(const Invocation& invocation) {
   check_pictures(invocation);
-  const ReportView view = view_of(invocation.parameters);
-  const ReportStudy found = study(invocation.input("run"), invocation.parameters.integers("k"),
+  const ReportCall call = report_parameters().read(invocation.parameters);
+  const ReportStudy found = study(invocation.input("run"), call.counts,
                                   part_of(invocation.progress, 0, 0.6), invocation.log);
   const std::string_view viewer = viewer_script();
-  ReportPage page = report_page(found, view, viewer, part_of(invocation.progress, 0.6, 1));
+  ReportPage page = report_page(found, call.view, viewer, part_of(invocation.progress, 0.6, 1));
   if (page.viewer_frames == 0) {
     invocation.warn(viewer.empty()
                         ? "the report has no 3D viewer: this mimetra was built without npm"
                         : "the report has no 3D viewer: the mesh is too large for it");
   }
   Outcome outcome;
-  draw_wanted(outcome, invocation, found, view);
+  draw_wanted(outcome, invocation, found, call.view);
   Json report = {{"bytes", page.html.size()},
                  {"frames", found.sequence.frames()},
                  {"viewer_frames", page.viewer_frames}};
@@ -93,13 +102,12 @@ Outcome run_report(const Invocation& invocation) {
 }
 
 /// What drawing takes, measured: OpenGL on a processor, and each vertex of each tile of a sheet.
-double drawing_bytes(int vertices, std::int64_t components) {
+double drawing_bytes(int vertices, int components) {
   constexpr double kOpenGl = 2.5e8;
   constexpr double kVertex = 500;
-  constexpr std::int64_t kStripTiles = 35;
-  const std::int64_t tiles =
-      std::max(kStripTiles, std::min<std::int64_t>(components, kMostInGallery));
-  return kOpenGl + kVertex * vertices * static_cast<double>(tiles);
+  constexpr int kStripTiles = 35;
+  const int tiles = std::max(kStripTiles, std::min(components, static_cast<int>(kMostInGallery)));
+  return kOpenGl + kVertex * vertices * tiles;
 }
 
 /// The decompositions, one after the other, and what is kept: the source, both transfers, and the
@@ -108,11 +116,10 @@ double memory(const Invocation& invocation) {
   const Invocation& call = invocation.input("run").origin.run->invocation;
   const NamedData& source = call.input(call.inputs.contains("source") ? "source" : "sequence");
   const MeshSequence& sequence = std::get<FieldSequence>(source.data).sequence();
-  const auto& counts = invocation.parameters.integers("k");
-  const std::int64_t most =
-      std::max<std::int64_t>(main_count(call.parameters), *std::ranges::max_element(counts));
-  const double analysis = drawing_bytes(sequence.vertices(), most) +
-                          analysis_bytes(call, source, static_cast<int>(most));
+  const ReportCall report = report_parameters().read(invocation.parameters);
+  const int most = std::max(main_count(call.parameters), *std::ranges::max_element(report.counts));
+  const double analysis =
+      drawing_bytes(sequence.vertices(), most) + analysis_bytes(call, source, most);
   if (!call.inputs.contains("target")) return analysis;
   SolveOptions options = solving_parameters().read(call.parameters);
   options.threads = call.threads;
@@ -137,13 +144,7 @@ Operation report_operation() {
   for (Output& output : operation.outputs) {
     if (output.kind == DataKind::pictures) output.extensions = {".png"};
   }
-  operation.parameters = view_parameters();
-  operation.parameters.insert(
-      operation.parameters.begin(),
-      {"k", ParameterKind::integer_list, std::vector<std::int64_t>{10, 30, 40},
-       "numbers of components in the table, besides the run's own", "", 1});
-  operation.parameters.push_back(
-      {"unit", ParameterKind::text, {}, "name of the meshes' unit of length"});
+  operation.parameters = report_parameters().declared();
   operation.examples = {"report actor_smile/ -o smile.html",
                         "report rois/take.pvd --unit mm -o take.html --gallery components.png"};
   operation.run = run_report;

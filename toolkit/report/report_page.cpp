@@ -235,9 +235,7 @@ ViewerScene scene_of(const ReportStudy& study, const ReportView& view) {
   for (const double index : region.values.col(0)) {
     scene.regions.push_back(static_cast<int>(std::lround(index)));
   }
-  scene.yaw = view.yaw;
-  scene.pitch = view.pitch;
-  scene.z_up = view.z_up;
+  scene.viewpoint = view.viewpoint;
   return scene;
 }
 

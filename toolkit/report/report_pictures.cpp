@@ -15,9 +15,7 @@ constexpr std::size_t kMostLines = 6;
 
 Sheet sheet_seen_from(const ReportView& view) {
   Sheet sheet;
-  sheet.yaw = view.yaw;
-  sheet.pitch = view.pitch;
-  sheet.z_up = view.z_up;
+  sheet.viewpoint = view.viewpoint;
   sheet.unit = view.unit;
   return sheet;
 }
@@ -78,27 +76,25 @@ std::vector<int> middle_frames(int frames, int count) {
 Sheet report_strip(const ReportStudy& study, const ReportView& view, int columns) {
   StripOptions options;
   options.frames = middle_frames(study.sequence.frames(), columns);
-  options.yaw = view.yaw;
-  options.pitch = view.pitch;
-  options.z_up = view.z_up;
+  options.viewpoint = view.viewpoint;
   options.unit = view.unit;
-  options.colors = {"none", "region"};
+  options.colors = {StripColor::none, "region"};
   options.titles = {"source: " + study.source, "regions of the source that move"};
   std::vector<FieldSequence> rows = {{study.sequence, {}, false},
                                      {study.sequence, fields_of(study.regions), false}};
-  const auto add = [&](const MeshSequence& sequence, const char* color, const std::string& title) {
+  const auto add = [&](const MeshSequence& sequence, StripColor color, const std::string& title) {
     rows.push_back({sequence, {}, false});
     options.colors.emplace_back(color);
     options.titles.push_back(title);
   };
   if (study.transfer) {
     const ReportedTransfer& transfer = *study.transfer;
-    add(transfer.full.sequence, "none", "target by all triangles: " + transfer.target);
-    add(transfer.by_regions.sequence, "none", "target by these regions only");
+    add(transfer.full.sequence, StripColor::none, "target by all triangles: " + transfer.target);
+    add(transfer.by_regions.sequence, StripColor::none, "target by these regions only");
     // The row above it is the one by regions.
-    add(transfer.full.sequence, "difference", "distance between the two");
+    add(transfer.full.sequence, StripColor::difference, "distance between the two");
   } else {
-    add(study.sequence, "displacement", "distance from the rest pose");
+    add(study.sequence, StripColor::displacement, "distance from the rest pose");
   }
   return film_strip(rows, options);
 }

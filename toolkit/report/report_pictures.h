@@ -10,10 +10,10 @@ namespace mimetra {
 
 /// From where meshes are seen, and their unit of length.
 struct ReportView {
-  double yaw = 15;   ///< degrees
-  double pitch = 5;  ///< degrees
-  bool z_up = false;
-  std::string unit;
+  Viewpoint viewpoint = {};
+  std::string unit = {};
+
+  static constexpr Option kUnit{"unit", &ReportView::unit};
 };
 
 /// Source, its regions, and what became of it, over time.

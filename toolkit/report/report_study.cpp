@@ -165,7 +165,7 @@ auto apart_from(std::vector<std::string>& notes, const Work& work) {
 }
 
 ReportedTransfer transferred(const RunSteps& steps, const NamedData& target,
-                             const RunSteps::Found& main, const std::vector<std::int64_t>& counts,
+                             const RunSteps::Found& main, const std::vector<int>& counts,
                              std::vector<std::string>& notes, const Progress& progress) {
   const BlendshapeModel& model = std::get<ModelData>(target.data).model.average();
   const Target to{target.name, model};
@@ -179,15 +179,15 @@ ReportedTransfer transferred(const RunSteps& steps, const NamedData& target,
   }
   const EvaluationRow main_row = completed(by_regions.row, main);
   transfer.rows.push_back(main_row);
-  const std::set<std::int64_t> more(counts.begin(), counts.end());
+  const std::set<int> more(counts.begin(), counts.end());
   double done = 0.2;
   const double each = (1 - done) / static_cast<double>(std::max<std::size_t>(1, more.size()));
-  for (const std::int64_t k : more) {
+  for (const int k : more) {
     const Progress part = part_of(progress, done, done + each);
     done += each;
     if (k == main_row.k || k > main.regions.vertices) continue;
     transfer.rows.push_back(apart_from(notes, [&] {
-      const auto found = steps.regions_of(static_cast<int>(k), part_of(part, 0, 0.7));
+      const auto found = steps.regions_of(k, part_of(part, 0, 0.7));
       return completed(steps.by(found.regions, full, to, part_of(part, 0.7, 1)).row, found);
     }));
   }
@@ -204,8 +204,7 @@ ReportedTransfer transferred(const RunSteps& steps, const NamedData& target,
 }
 
 /// Numbers of components in the table: those asked for, and those of an evaluation.
-std::vector<std::int64_t> all_counts(std::vector<std::int64_t> counts,
-                                     const Parameters& parameters) {
+std::vector<int> all_counts(std::vector<int> counts, const Parameters& parameters) {
   if (parameters.find("k")->kind != ParameterKind::integer_list) return counts;
   const auto& own = parameters.integers("k");
   counts.insert(counts.end(), own.begin(), own.end());
@@ -219,8 +218,8 @@ int main_count(const Parameters& parameters) {
   return static_cast<int>(*std::ranges::max_element(parameters.integers("k")));
 }
 
-ReportStudy study(const NamedData& run, const std::vector<std::int64_t>& counts,
-                  const Progress& progress, const Log& log) {
+ReportStudy study(const NamedData& run, const std::vector<int>& counts, const Progress& progress,
+                  const Log& log) {
   const RunRead& read = *run.origin.run;
   ReportStudy result;
   result.run = read.record;

@@ -41,7 +41,7 @@ int main_count(const Parameters& parameters);
 
 /// `counts`: numbers of components that the table has besides the run's own; those above what the
 /// mesh can have are left out. Throws what the run's operation throws.
-ReportStudy study(const NamedData& run, const std::vector<std::int64_t>& counts,
-                  const Progress& progress, const Log& log);
+ReportStudy study(const NamedData& run, const std::vector<int>& counts, const Progress& progress,
+                  const Log& log);
 
 }  // namespace mimetra

@@ -107,11 +107,7 @@ double largest_displacement(const ViewerScene& scene) {
 /// from its middle the farthest vertex lies.
 Json view_of_scene(const ViewerScene& scene) {
   constexpr double kSpaceAround = 1.05;
-  Sheet sheet;
-  sheet.yaw = scene.yaw;
-  sheet.pitch = scene.pitch;
-  sheet.z_up = scene.z_up;
-  const View view = view_of(sheet, 0);
+  const View view = view_of(scene.viewpoint);
   Eigen::Vector2d half = Eigen::Vector2d::Zero();
   double reach = 0;
   for (const ViewerMesh& mesh : scene.meshes) {

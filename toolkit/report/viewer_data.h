@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "toolkit/mesh/mesh_sequence.h"
+#include "toolkit/pictures/viewpoint.h"
 
 namespace mimetra {
 
@@ -19,9 +20,7 @@ struct ViewerMesh {
 struct ViewerScene {
   std::vector<ViewerMesh> meshes;
   std::vector<int> regions;  ///< strongest region of each vertex (N), -1 outside
-  double yaw = 0;            ///< degrees, as Sheet's
-  double pitch = 0;
-  bool z_up = false;
+  Viewpoint viewpoint = {.yaw = 0, .pitch = 0};
 };
 
 /// Poses as whole numbers of steps from a centre.

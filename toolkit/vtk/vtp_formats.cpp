@@ -4,6 +4,7 @@
 
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/progress.h"
+#include "toolkit/operations/bound_parameters.h"
 #include "toolkit/operations/formats.h"
 #include "toolkit/vtk/vtp_series.h"
 
@@ -11,9 +12,14 @@ namespace mimetra {
 
 namespace {
 
+BoundParameters<VtpOptions> vtp_parameters() {
+  BoundParameters<VtpOptions> list;
+  return list.add("compress", VtpOptions::kCompression,
+                  "compression of .vtp: fast (LZ4) or small (zlib)");
+}
+
 std::vector<std::filesystem::path> write(const FieldSequence& fields, const WriteRequest& request) {
-  VtpOptions options;
-  options.compression = request.parameters.choice<VtpCompression>("compress");
+  VtpOptions options = vtp_parameters().read(request.parameters);
   options.overwrite = request.overwrite;
   options.inputs = request.inputs;
   options.threads = request.threads;
@@ -51,8 +57,7 @@ Regions read_regions_from_vtp(const std::filesystem::path& path, int vertices,
 }  // namespace
 
 void add_vtp(OperationTable& table) {
-  const std::vector<Parameter> parameters = {choice_parameter(
-      "compress", VtpOptions{}.compression, "compression of .vtp: fast (LZ4) or small (zlib)")};
+  const std::vector<Parameter> parameters = vtp_parameters().declared();
   table.add(Writer{DataKind::regions,
                    {".pvd", ".vtp"},
                    parameters,

@@ -88,11 +88,16 @@ std::vector<FrameFile> entries_of_series(const fs::path& path) {
   return entries;
 }
 
-std::vector<FrameFile> entries_of(const fs::path& path) {
+std::vector<FrameFile> listed_by(const fs::path& path) {
   const std::string extension = lower_extension(path);
-  std::vector<FrameFile> entries = extension == ".vtp"   ? std::vector{FrameFile{path, 0}}
-                                   : extension == ".pvd" ? entries_of_pvd(path)
-                                                         : entries_of_series(path);
+  if (extension == ".vtp") return {{path, 0}};
+  if (extension == ".pvd") return entries_of_pvd(path);
+  if (extension == ".series") return entries_of_series(path);
+  throw IoError(path.string(), "expected a series in .pvd or .vtp.series, or one mesh in .vtp");
+}
+
+std::vector<FrameFile> entries_of(const fs::path& path) {
+  std::vector<FrameFile> entries = listed_by(path);
   if (entries.empty()) throw IoError(path.string(), "names no frame");
   return entries;
 }

@@ -17,6 +17,7 @@
 #include "toolkit/io/written_files.h"
 #include "toolkit/mesh/parallel.h"
 #include "toolkit/mesh/progress.h"
+#include "toolkit/mesh/text.h"
 #include "toolkit/operations/xml_text.h"
 #include "toolkit/vtk/poly_data.h"
 #include "toolkit/vtk/silent_vtk.h"
@@ -245,9 +246,11 @@ std::vector<std::filesystem::path> write_vtp_series(const FieldSequence& fields,
                                                     const std::filesystem::path& target,
                                                     const VtpOptions& options) {
   check(fields);
+  check_options(options);
   const SilentVtk silent;
-  if (target.extension() == ".vtp") return {write_one(fields, target, options)};
-  if (target.extension() == ".pvd") return write_all(fields, target, options);
+  const std::string extension = lower_extension(target);
+  if (extension == ".vtp") return {write_one(fields, target, options)};
+  if (extension == ".pvd") return write_all(fields, target, options);
   throw std::invalid_argument(target.string() + ": expected a name that ends in .pvd or .vtp");
 }
 

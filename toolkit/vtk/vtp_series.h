@@ -8,6 +8,7 @@
 
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/fields.h"
+#include "toolkit/mesh/option.h"
 #include "toolkit/mesh/progress.h"
 
 namespace mimetra {
@@ -33,6 +34,9 @@ struct VtpOptions {
   /// 0 for all there are; what is written does not depend on it.
   int threads = 0;
   Progress progress = {};
+
+  static constexpr Option kCompression{"compression", &VtpOptions::compression};
+  static constexpr auto declared() { return std::tuple(kCompression); }
 };
 
 /// Writes a sequence with its fields for ParaView: `NAME.pvd` and `NAME.vtp.series` beside a folder

@@ -1,0 +1,27 @@
+#include "toolkit/operations/sequence_parameters.h"
+
+namespace mimetra {
+
+BoundParameters<SequenceSource> frame_parameters() {
+  BoundParameters<SequenceSource> list;
+  return list
+      .add("frames", SequenceSource::kFrames, "part A:B:STEP of the frames, 0-based, B excluded")
+      .add("fps", SequenceSource::kFps, "frame rate of formats without times");
+}
+
+BoundParameters<SequenceSource> sequence_parameters() {
+  BoundParameters<SequenceSource> list;
+  return list
+      .add("weights", SequenceSource::kWeights, "CSV of blendshape weights that drive a model")
+      .add("topology", SequenceSource::kTopology, "mesh with the faces of a file that holds none")
+      .add(frame_parameters());
+}
+
+BoundParameters<SequenceWriteOptions> sequence_writing_parameters() {
+  BoundParameters<SequenceWriteOptions> list;
+  return list.add("format", SequenceWriteOptions::kFormat, "format of frames in a folder")
+      .add("double", SequenceWriteOptions::kDoublePrecision, "double precision in mesh files")
+      .add("single", SequenceWriteOptions::kSinglePrecision, "single precision in .npy and .npz");
+}
+
+}  // namespace mimetra
