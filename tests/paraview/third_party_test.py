@@ -96,6 +96,12 @@ class ThirdPartyOperations(HostTest):
             self.assertEqual(found.GetPointData().HasArray("Normals"), has_normals)
             self.assertEqual(found.GetNumberOfPolys(), 25)
 
+    def test_shows_a_table_beside_the_mesh(self):
+        remake = simple.mimetraRemake(Input=self.source)
+        self.assertGreater(at(remake).GetNumberOfPoints(), 0)
+        self.assertEqual(list(column(at(remake, port=1), "column")), [0])
+        self.assertEqual(remake.SMProxy.GetOutputPortName(1), "Rows")
+
     def test_shows_the_frame_of_the_time(self):
         source = self.series_of("halved", moving())
         for time, frame in [(0, 0), (2, 2), (3, 2)]:

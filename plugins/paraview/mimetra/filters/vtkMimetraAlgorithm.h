@@ -36,6 +36,7 @@ class MIMETRAFILTERS_EXPORT vtkMimetraAlgorithm : public vtkPolyDataAlgorithm {
   ~vtkMimetraAlgorithm() override;
 
   OperationCall& call() { return *call_; }
+  const OperationCall& call() const { return *call_; }
   /// Takes another operation, with its defaults.
   void set_call(std::unique_ptr<OperationCall> call);
   /// Outputs besides those that are not optional.

@@ -6,7 +6,9 @@
 
 #include "plugins/paraview/mimetra/filters/vtkMimetraFilter.h"
 
-/// The deformation of what comes in at port 0 on a target: a mesh at port 1, or a model's file.
+/// The deformation of what comes in at port 0 on a target: a mesh at port 1, or a model's file. A
+/// class of its own because of that port, whose mesh is what moves, and because it shows the
+/// regions too.
 class MIMETRAFILTERS_EXPORT vtkMimetraTransfer : public vtkMimetraFilter {
  public:
   vtkTypeMacro(vtkMimetraTransfer, vtkMimetraFilter);

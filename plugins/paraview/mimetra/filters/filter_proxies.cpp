@@ -1,0 +1,160 @@
+#include "plugins/paraview/mimetra/filters/filter_proxies.h"
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+namespace mimetra {
+
+namespace {
+
+const std::string kDecompositions =
+    "      <IntVectorProperty name=\"Decompositions\" command=\"GetDecompositions\""
+    " information_only=\"1\">\n        <SimpleIntInformationHelper/>\n"
+    "        <Documentation>How often components were computed.</Documentation>\n"
+    "      </IntVectorProperty>\n";
+
+const std::string kDisplayedRegion =
+    "      <IntVectorProperty name=\"DisplayedRegion\" command=\"SetDisplayedRegion\""
+    " number_of_elements=\"1\" default_values=\"-1\">\n"
+    "        <IntRangeDomain name=\"range\" min=\"-1\"/>\n"
+    "        <Documentation>Region that the point data displayed_region tell of, with what others"
+    " cover; -1 for none.</Documentation>\n      </IntVectorProperty>\n";
+
+const std::string kInMenu = "<ShowInMenu category=\"mimetra\"/>";
+const std::string kChart = "<View type=\"XYChartView\" port=\"1\"/>";
+
+/// ParaView saves what it shows by a menu of its own.
+const std::set<std::string> kLeftOut = {"convert"};
+
+/// A filter with a class of its own; why it needs one stands there.
+struct OwnFilter {
+  std::string class_name;
+  std::string label;
+  std::vector<std::string> first;
+  std::vector<Port> further_ports = {};
+  std::vector<std::string> outputs = {};
+  std::string further = {};
+  std::string hints = {};
+};
+
+const std::map<std::string, OwnFilter>& own_filters() {
+  static const std::map<std::string, OwnFilter> filters = {
+      {"regions",
+       {"vtkMimetraRegions",
+        "Regions of Interest",
+        {"k", "radius", "coverage"},
+        {},
+        {},
+        kDisplayedRegion + kDecompositions}},
+      {"decompose",
+       {"vtkMimetraComponents",
+        "Sparse Components",
+        {"k"},
+        {},
+        {"Components", "Weights"},
+        kDecompositions,
+        kChart}},
+      {"transfer",
+       {"vtkMimetraTransfer",
+        "Region Transfer",
+        {"target", "k", "radius", "coverage", "full", "space"},
+        {{"target", "Target", true}},
+        {"Target", "Weights"},
+        kDecompositions,
+        kChart}},
+      {"geodesic", {"vtkMimetraGeodesic", "Geodesic Distance", {"source"}}}};
+  return filters;
+}
+
+Proxy own_proxy(const Operation& operation, const OwnFilter& filter) {
+  std::vector<Port> ports = {{piped_input(operation)->name, "Input"}};
+  ports.insert(ports.end(), filter.further_ports.begin(), filter.further_ports.end());
+  return {operation,         operation.parameters,
+          filter.class_name, filter.class_name.substr(std::string("vtk").size()),
+          filter.label,      filter.first,
+          std::move(ports),  filter.outputs,
+          filter.further,    kInMenu + filter.hints};
+}
+
+/// What is shown at once of an operation with many parameters. Of others it is everything: they are
+/// what the operation is about.
+const std::map<std::string, std::vector<std::string>>& first_of_many() {
+  static const std::map<std::string, std::vector<std::string>> names = {
+      {"evaluate", {"target", "k", "radius", "coverage"}}};
+  return names;
+}
+
+std::vector<std::string> shown_at_once(const Operation& operation) {
+  const auto chosen = first_of_many().find(operation.name);
+  if (chosen != first_of_many().end()) return chosen->second;
+  std::vector<std::string> names;
+  for (const Input& input : operation.inputs) names.push_back(input.name);
+  for (const Parameter& parameter : operation.parameters) names.push_back(parameter.name);
+  return names;
+}
+
+Proxy generic_proxy(const Operation& operation) {
+  // ParaView sets properties in the order of their names, capitals first; no parameter has the name
+  // or, in Python, the label.
+  const std::string which =
+      "      <StringVectorProperty name=\"MimetraOperation\" command=\"SetOperation\""
+      " number_of_elements=\"1\" panel_visibility=\"never\" default_values=\"" +
+      operation.name + "\"/>\n";
+  const std::vector<ShownOutput> shown = shown_outputs(operation);
+  std::vector<std::string> outputs;
+  std::string hints = kInMenu;
+  for (std::size_t port = 0; port < shown.size(); ++port) {
+    if (shown.size() > 1) outputs.push_back(label_of(shown[port].output));
+    if (shown[port].content == ShownOutput::Content::mesh) continue;
+    hints += "<View type=\"SpreadSheetView\" port=\"" + std::to_string(port) + "\"/>";
+  }
+  return {operation,
+          operation.parameters,
+          "vtkMimetraOperation",
+          "MimetraOperation-" + operation.name,
+          "mimetra " + label_of(operation.name),
+          shown_at_once(operation),
+          {{piped_input(operation)->name, "Input"}},
+          std::move(outputs),
+          which,
+          std::move(hints)};
+}
+
+bool has_frames(DataKind kind) {
+  return kind == DataKind::sequence || kind == DataKind::fields;
+}
+
+}  // namespace
+
+const Input* piped_input(const Operation& operation) {
+  const auto needed = std::ranges::find(operation.inputs, false, &Input::optional);
+  return needed != operation.inputs.end() && has_frames(needed->kind) ? &*needed : nullptr;
+}
+
+std::vector<ShownOutput> shown_outputs(const Operation& operation) {
+  std::vector<ShownOutput> shown;
+  const auto mesh = std::ranges::find_if(operation.outputs, has_frames, &Output::kind);
+  if (mesh != operation.outputs.end()) {
+    shown.push_back({ShownOutput::Content::mesh, mesh->name});
+  }
+  for (const Output& output : operation.outputs) {
+    if (output.kind != DataKind::table) continue;
+    shown.push_back({ShownOutput::Content::table, output.name});
+  }
+  if (shown.empty()) shown.emplace_back();
+  return shown;
+}
+
+std::vector<Proxy> filter_proxies(const OperationTable& table) {
+  std::vector<Proxy> proxies;
+  for (const Operation& operation : table.operations()) {
+    if (!piped_input(operation) || kLeftOut.contains(operation.name)) continue;
+    const auto own = own_filters().find(operation.name);
+    proxies.push_back(own == own_filters().end() ? generic_proxy(operation)
+                                                 : own_proxy(operation, own->second));
+  }
+  return proxies;
+}
+
+}  // namespace mimetra
