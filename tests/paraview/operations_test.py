@@ -100,12 +100,12 @@ class Operations(HostTest):
         self.assertEqual(messages.text.count("ERR"), 1, messages.text)
         self.assertIn("1 vertices without a face", messages.text)
 
-    def test_evaluate_is_the_table_of_the_command(self):
-        target, path = f"{self.sample.head}@identity002=1", self.sample / "table.csv"
+    def assert_evaluates(self, target, **inputs):
+        """The table of the command for a target, in all columns but times."""
+        path = self.sample / f"{self._testMethodName}.csv"
         mimetra("evaluate", self.sample.take, target, "-k", "3,6", "-o", path)
-        evaluate = simple.mimetraEvaluate(Input=self.sequence_of(self.sample.take), Target=target,
-                                          K="3,6")
-        table = at(evaluate)
+        table = at(simple.mimetraEvaluate(Input=self.sequence_of(self.sample.take), K="3,6",
+                                          **inputs))
         with open(path, newline="") as file:
             rows = list(csv.DictReader(file))
         self.assertEqual([table.GetColumnName(i) for i in range(table.GetNumberOfColumns())],
@@ -115,6 +115,15 @@ class Operations(HostTest):
                 continue
             self.assert_same(column(table, name),
                              np.array([float(row[name] or "nan") for row in rows]), name)
+
+    def test_evaluate_measures_the_transfer_to_a_model(self):
+        target = f"{self.sample.head}@identity002=1"
+        self.assert_evaluates(target, TargetFile=target)
+
+    def test_evaluate_measures_the_transfer_to_a_mesh_of_the_pipeline(self):
+        target = self.sample / "target.ply"
+        mimetra("convert", f"{self.sample.head}@identity002=1", "-o", target)
+        self.assert_evaluates(target, Target=self.sequence_of(target))
 
     def test_evaluate_asks_for_a_target(self):
         with Messages() as messages:

@@ -146,6 +146,15 @@ class ThirdPartyOperations(HostTest):
         replace.Other = str(smooth)
         self.assert_same(points(at(replace, 0)), np.load(smooth)[0])
 
+    def test_takes_models_from_the_pipeline_or_from_files(self):
+        source = self.series_of("follow", moving())
+        actor = simple.TrivialProducer()
+        actor.GetClientSideObject().SetOutput(mesh_of(*grid()))
+        follow = simple.mimetraFollow(Input=source, Actor=actor)
+        self.assert_same(points(at(follow, 2)), points(at(source, 2)))
+        follow.ActorFile = str(self.sample.head)
+        self.assert_refused("the actor has other vertices", follow)
+
     def test_stops_where_the_user_aborts(self):
         smooth = simple.mimetraSmooth(Input=self.source)
         algorithm = smooth.GetClientSideObject()

@@ -32,7 +32,6 @@ struct OwnFilter {
   std::string class_name;
   std::string label;
   std::vector<std::string> first;
-  std::vector<Port> further_ports = {};
   std::vector<std::string> outputs = {};
   std::string further = {};
   std::string hints = {};
@@ -45,13 +44,11 @@ const std::map<std::string, OwnFilter>& own_filters() {
         "Regions of Interest",
         {"k", "radius", "coverage"},
         {},
-        {},
         kDisplayedRegion + kDecompositions}},
       {"decompose",
        {"vtkMimetraComponents",
         "Sparse Components",
         {"k"},
-        {},
         {"Components", "Weights"},
         kDecompositions,
         kChart}},
@@ -59,7 +56,6 @@ const std::map<std::string, OwnFilter>& own_filters() {
        {"vtkMimetraTransfer",
         "Region Transfer",
         {"target", "k", "radius", "coverage", "full", "space"},
-        {{"target", "Target", true}},
         {"Target", "Weights"},
         kDecompositions,
         kChart}},
@@ -67,14 +63,20 @@ const std::map<std::string, OwnFilter>& own_filters() {
   return filters;
 }
 
-Proxy own_proxy(const Operation& operation, const OwnFilter& filter) {
+std::vector<Port> ports_of(const Operation& operation) {
   std::vector<Port> ports = {{piped_input(operation)->name, "Input"}};
-  ports.insert(ports.end(), filter.further_ports.begin(), filter.further_ports.end());
-  return {operation,         operation.parameters,
-          filter.class_name, filter.class_name.substr(std::string("vtk").size()),
-          filter.label,      filter.first,
-          std::move(ports),  filter.outputs,
-          filter.further,    kInMenu + filter.hints};
+  for (const std::string& name : mesh_inputs(operation)) {
+    ports.push_back({name, label_of(name), true});
+  }
+  return ports;
+}
+
+Proxy own_proxy(const Operation& operation, const OwnFilter& filter) {
+  return {operation,           operation.parameters,
+          filter.class_name,   filter.class_name.substr(std::string("vtk").size()),
+          filter.label,        filter.first,
+          ports_of(operation), filter.outputs,
+          filter.further,      kInMenu + filter.hints};
 }
 
 /// What is shown at once of an operation with many parameters. Of others it is everything: they are
@@ -115,7 +117,7 @@ Proxy generic_proxy(const Operation& operation) {
           "MimetraOperation-" + operation.name,
           "mimetra " + label_of(operation.name),
           shown_at_once(operation),
-          {{piped_input(operation)->name, "Input"}},
+          ports_of(operation),
           std::move(outputs),
           which,
           std::move(hints)};
@@ -130,6 +132,14 @@ bool has_frames(DataKind kind) {
 const Input* piped_input(const Operation& operation) {
   const auto needed = std::ranges::find(operation.inputs, false, &Input::optional);
   return needed != operation.inputs.end() && has_frames(needed->kind) ? &*needed : nullptr;
+}
+
+std::vector<std::string> mesh_inputs(const Operation& operation) {
+  std::vector<std::string> names;
+  for (const Input& input : operation.inputs) {
+    if (input.kind == DataKind::model && !input.optional) names.push_back(input.name);
+  }
+  return names;
 }
 
 std::vector<ShownOutput> shown_outputs(const Operation& operation) {

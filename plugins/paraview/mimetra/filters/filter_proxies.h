@@ -11,6 +11,10 @@ namespace mimetra {
 /// that is a sequence or fields. Null for an operation that begins with something else.
 const Input* piped_input(const Operation& operation);
 
+/// Further inputs that the operation needs and that may come in as a mesh, one at each port after
+/// the first, or as a file: models.
+std::vector<std::string> mesh_inputs(const Operation& operation);
+
 /// What a filter shows at one of its output ports.
 struct ShownOutput {
   enum class Content { mesh, table, report };

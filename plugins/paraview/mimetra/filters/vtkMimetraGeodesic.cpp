@@ -10,8 +10,7 @@ using namespace mimetra;
 
 vtkStandardNewMacro(vtkMimetraGeodesic);
 
-vtkMimetraGeodesic::vtkMimetraGeodesic()
-    : vtkMimetraFilter("geodesic", "mesh", Takes::shown_time_step) {}
+vtkMimetraGeodesic::vtkMimetraGeodesic() : vtkMimetraFilter("geodesic", Takes::shown_time_step) {}
 
 void vtkMimetraGeodesic::show(const Outcome& outcome, vtkPolyData& input, double,
                               vtkInformationVector* outputs) {

@@ -49,16 +49,13 @@ bool same_shape(const MeshSequence& made, const MeshSequence& given) {
 
 }  // namespace
 
-vtkMimetraOperation::vtkMimetraOperation() : vtkMimetraFilter("convert", "sequence") {}
+vtkMimetraOperation::vtkMimetraOperation() : vtkMimetraFilter("convert") {}
 
 void vtkMimetraOperation::SetOperation(const char* name) {
   attempt([&] {
     auto call = std::make_unique<OperationCall>(name);
     if (call->operation().name == this->call().operation().name) return;
-    const Input* input = piped_input(call->operation());
-    if (!input) throw std::invalid_argument(std::string(name) + ": begins with no mesh");
-    const std::string input_name = input->name;
-    become(std::move(call), input_name);
+    become(std::move(call));
     SetNumberOfOutputPorts(static_cast<int>(shown_outputs(this->call().operation()).size()));
     // They said what the operation before shows.
     for (int port = 0; port < GetNumberOfOutputPorts(); ++port) {
@@ -121,7 +118,7 @@ void vtkMimetraOperation::prepare_mesh(const Outcome& outcome, vtkPolyData& inpu
     make_mesh(*shared_, sequence, fields);
     return;
   }
-  const Data& given = *call().given(piped_input(call().operation())->name);
+  const Data& given = *call().given(piped());
   const bool same = same_shape(sequence, sequence_of(given));
   shown_ = same ? Shown::on_the_input : Shown::in_another_shape;
   // What was only handed on is the input's own, which may change over time.

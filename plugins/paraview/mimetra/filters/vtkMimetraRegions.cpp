@@ -30,7 +30,7 @@ Field mask_of(const Regions& regions, int index) {
 
 }  // namespace
 
-vtkMimetraRegions::vtkMimetraRegions() : vtkMimetraFilter("regions", "sequence") {}
+vtkMimetraRegions::vtkMimetraRegions() : vtkMimetraFilter("regions") {}
 
 std::vector<std::string> vtkMimetraRegions::wanted_outputs(const Invocation&) {
   return {"components-out"};
