@@ -24,6 +24,9 @@ const std::string kDisplayedRegion =
 const std::string kInMenu = "<ShowInMenu category=\"mimetra\"/>";
 const std::string kChart = "<View type=\"XYChartView\" port=\"1\"/>";
 
+/// What comes in first.
+constexpr const char* kInput = "Input";
+
 /// ParaView saves what it shows by a menu of its own.
 const std::set<std::string> kLeftOut = {"convert"};
 
@@ -64,7 +67,7 @@ const std::map<std::string, OwnFilter>& own_filters() {
 }
 
 std::vector<Port> ports_of(const Operation& operation) {
-  std::vector<Port> ports = {{piped_input(operation)->name, "Input"}};
+  std::vector<Port> ports = {{piped_input(operation)->name, kInput}};
   for (const std::string& name : mesh_inputs(operation)) {
     ports.push_back({name, label_of(name), true});
   }
@@ -137,7 +140,9 @@ const Input* piped_input(const Operation& operation) {
 std::vector<std::string> mesh_inputs(const Operation& operation) {
   std::vector<std::string> names;
   for (const Input& input : operation.inputs) {
-    if (input.kind == DataKind::model && !input.optional) names.push_back(input.name);
+    // Two ports of one name cannot be told apart: such a model is a file.
+    const bool has_port = input.kind == DataKind::model && label_of(input.name) != kInput;
+    if (has_port && !input.optional) names.push_back(input.name);
   }
   return names;
 }
