@@ -50,11 +50,34 @@ class Operations(HostTest):
         self.assertEqual(time_steps(align), list(source.TimestepValues))
         self.assertGreater(np.abs(points(at(align)) - points(at(source))).max(), 1)
 
-    def test_align_gives_back_the_motion_of_a_manifest(self):
+    def test_align_gives_back_the_motion_of_the_commands_manifest(self):
         mimetra("align", self.moved, "-o", self.sample / "kept.npy")
-        source = self.sequence_of(self.moved)
-        back = simple.mimetraAlign(Input=simple.mimetraAlign(Input=source),
-                                   Undo=str(self.sample / "kept.run.json"))
+        self.assert_undone(self.sequence_of(self.moved), str(self.sample / "kept.run.json"))
+
+    def test_align_gives_back_the_motion_of_its_own_manifest(self):
+        run = self.sample / "align.json"
+        self.assert_undone(self.sequence_of(self.moved), str(run), RunFile=str(run))
+        manifest = json.loads(run.read_text())
+        self.assertEqual((manifest["command"], manifest["options"]["on"]), ("align", "stable"))
+        self.assertEqual(len(manifest["result"]["motion"]), 12)
+
+    def test_a_further_run_replaces_the_manifest_and_nothing_else(self):
+        run = self.sample / "replaced.json"
+        align = simple.mimetraAlign(Input=self.sequence_of(self.moved), RunFile=str(run))
+        at(align)
+        align.On = "all"
+        at(align)
+        self.assertEqual(json.loads(run.read_text())["options"]["on"], "all")
+        run.write_text("mine")
+        align.On = "stable"
+        with Messages() as messages:
+            self.assertEqual(at(align).GetNumberOfPoints(), 0)
+        self.assertIn(f"{run}: ", messages.text)
+        self.assertEqual(run.read_text(), "mine")
+
+    def assert_undone(self, source, manifest, **properties):
+        back = simple.mimetraAlign(Input=simple.mimetraAlign(Input=source, **properties),
+                                   Undo=manifest)
         # Both ways there is a product of rounded numbers, some units in the last place each.
         for time in source.TimestepValues:
             np.testing.assert_allclose(points(at(back, time)), points(at(source, time)), rtol=0,
@@ -128,8 +151,8 @@ class Operations(HostTest):
     def test_evaluate_asks_for_a_target(self):
         with Messages() as messages:
             at(simple.mimetraEvaluate(Input=self.sequence_of(self.sample.take)))
-        self.assertIn("Target: expected model", messages.text)
-        self.assertIn("found nothing", messages.text)
+        self.assertIn("Target: expected a mesh at the port Target, or a model as Target File, found "
+                      "nothing", messages.text)
 
     def test_tables_and_reports_are_shown_as_rows(self):
         for filter in [simple.mimetraInfo, simple.mimetraEvaluate]:

@@ -21,6 +21,13 @@ const std::string kDisplayedRegion =
     "        <Documentation>Region that the point data displayed_region tell of, with what others"
     " cover; -1 for none.</Documentation>\n      </IntVectorProperty>\n";
 
+const std::string kRunFile =
+    "      <StringVectorProperty name=\"RunFile\" command=\"SetRunFile\" number_of_elements=\"1\""
+    " default_values=\"\" panel_visibility=\"advanced\">\n"
+    "        <FileListDomain name=\"files\"/><Hints><AcceptAnyFile/></Hints>\n"
+    "        <Documentation>file for the manifest of each run, which replaces that of an earlier"
+    " one; empty for none</Documentation>\n      </StringVectorProperty>\n";
+
 const std::string kInMenu = "<ShowInMenu category=\"mimetra\"/>";
 const std::string kChart = "<View type=\"XYChartView\" port=\"1\"/>";
 
@@ -75,11 +82,16 @@ std::vector<Port> ports_of(const Operation& operation) {
 }
 
 Proxy own_proxy(const Operation& operation, const OwnFilter& filter) {
-  return {operation,           operation.parameters,
-          filter.class_name,   filter.class_name.substr(std::string("vtk").size()),
-          filter.label,        filter.first,
-          ports_of(operation), filter.outputs,
-          filter.further,      kInMenu + filter.hints};
+  return {operation,
+          operation.parameters,
+          filter.class_name,
+          filter.class_name.substr(std::string("vtk").size()),
+          filter.label,
+          filter.first,
+          ports_of(operation),
+          filter.outputs,
+          filter.further + kRunFile,
+          kInMenu + filter.hints};
 }
 
 /// What is shown at once of an operation with many parameters. Of others it is everything: they are
@@ -122,7 +134,7 @@ Proxy generic_proxy(const Operation& operation) {
           shown_at_once(operation),
           ports_of(operation),
           std::move(outputs),
-          which,
+          which + kRunFile,
           std::move(hints)};
 }
 

@@ -25,6 +25,9 @@ class MIMETRAFILTERS_EXPORT vtkMimetraAlgorithm : public vtkPolyDataAlgorithm {
   void SetNumber(const char* name, double value);
   void SetText(const char* name, const char* value);
 
+  /// A file for the manifest of each run, which replaces that of an earlier one; no text for none.
+  void SetRunFile(const char* path);
+
   /// How often components were computed.
   int GetDecompositions();
 

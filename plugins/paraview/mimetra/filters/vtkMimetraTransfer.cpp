@@ -26,9 +26,6 @@ int vtkMimetraTransfer::FillOutputPortInformation(int port, vtkInformation* info
 }
 
 std::vector<std::string> vtkMimetraTransfer::wanted_outputs(const Invocation& invocation) {
-  if (!invocation.inputs.contains("target")) {
-    throw UsageError("expected a target: a mesh at the port Target, or a model as Target File");
-  }
   const auto& model = invocation.get<BlendshapeModel>("target");
   std::vector<std::string> wanted;
   const bool full = invocation.parameters.flag("full");
