@@ -11,8 +11,9 @@ namespace {
 /// MeshLab's dialogs do not scroll: more parameters are further options.
 constexpr int kMostRows = 8;
 
-/// The row that chooses among fields; no parameter has capitals.
+/// Rows beside those of inputs, outputs and parameters, whose names have no capitals.
 constexpr char kField[] = "Field";
+constexpr char kManifest[] = "Manifest";
 
 constexpr int kQualityMask = MeshModel::MM_VERTQUALITY | MeshModel::MM_VERTCOLOR;
 constexpr int kRegionMask =
@@ -78,6 +79,9 @@ void add_rows_of_layers(const mimetra_operation& operation, RichParameterList& r
                              "first"));
   }
   add_own_parameters(operation, kMostRows, rows);
+  rows.addParam(RichString(kManifest, "", kManifest,
+                           "file to write what ran into: options, inputs and report; may be "
+                           "empty"));
   add_further_options(operation, rows);
 }
 
@@ -306,6 +310,8 @@ void FilterMimetra::run_on_layers(const mimetra_operation& operation, MeshDocume
   Call call(*toolkit_, operation.name);
   const std::vector<MeshModel*> given =
       give_inputs(call, operation, document, rows, request.reading);
+  const std::string manifest = text_of(rows, kManifest);
+  if (!manifest.empty()) call.write_manifest(manifest);
   run(call, request);
   for (auto output = operation.outputs; *output; ++output) {
     if (!is_needed(**output) || !is_shown(**output)) continue;

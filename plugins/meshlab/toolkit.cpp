@@ -195,6 +195,11 @@ void Call::want(const char* output) {
   toolkit_.check(toolkit_.functions_->call_want(call_, output));
 }
 
+void Call::write_manifest(const std::string& path) {
+  const std::int32_t replace = 0;
+  toolkit_.check(toolkit_.functions_->call_write(call_, nullptr, path.c_str(), replace));
+}
+
 void Call::run(mimetra_progress progress, void* user) {
   const mimetra_interface& functions = *toolkit_.functions_;
   toolkit_.check(functions.set_progress(toolkit_.context_, progress, user));

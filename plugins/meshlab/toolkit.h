@@ -87,6 +87,8 @@ class Call {
   /// The value of an input from a file.
   void read(const char* input, const std::string& text);
   void want(const char* output);
+  /// Asks for the manifest of the run, in a file that does not exist.
+  void write_manifest(const std::string& path);
   /// `progress` gets the share of the work that is done; 0 as its answer cancels.
   void run(mimetra_progress progress, void* user);
   /// Null where the call has not made it.

@@ -65,7 +65,7 @@ def rows_of_layers(operation):
     files += ["Field"] * any(output["kind"] == "fields" for output in made)
     own = [parameter for parameter in operation["parameters"] if parameter["name"] not in OF_FILES]
     return [*[(name, "RichString", "") for name in files], *map(row_of, own[:MOST_ROWS]),
-            ("options", "RichString", "")]
+            ("Manifest", "RichString", ""), ("options", "RichString", "")]
 
 
 def rows_of(filter):

@@ -29,6 +29,18 @@ class Operations(HostTest):
             # Rounded to single precision, of a head of some hundred units, here and there.
             np.testing.assert_allclose(layer.points, Ply(frame).points, rtol=0, atol=1e-4)
 
+    def test_align_writes_a_manifest_that_undoes_it(self):
+        still = self.path / "still.npy"
+        mimetra("align", self.path / "take", "-o", still)
+        manifest = self.path / "manifest.json"
+        script = filter_script("mimetra Align", Manifest=manifest)
+        self.log(self.take, script)
+        back = self.expected("align", still, "--undo", manifest)
+        for pose, frame in zip(back, self.take, strict=True):
+            # Layers, like frames, are in single precision.
+            np.testing.assert_allclose(pose, Ply(frame).points, rtol=0, atol=1e-4)
+        self.assert_refused(self.take, [script], "manifest.json: exists")
+
     def test_convert_opens_a_sequence_as_layers(self):
         out = self.path / "opened.npy"
         mimetra("convert", self.path / "take", "-o", out)
