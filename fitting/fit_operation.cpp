@@ -67,12 +67,13 @@ FitOptions options_of(const Parameters& parameters) {
   return options;
 }
 
-LandmarkMapping mapping_of(const Invocation& invocation, const ModelRead& read) {
+LandmarkMapping mapping_of(const Invocation& invocation, const NamedData& model) {
   if (const auto file = invocation.parameters.optional_text("mapping")) {
     return read_landmark_mapping(*file);
   }
-  if (read.path.empty()) throw UsageError("--mapping: is needed for a model without a folder");
-  return read_landmark_mapping(find_landmark_mapping(read.path));
+  const std::filesystem::path& path = model.origin.path;
+  if (path.empty()) throw UsageError("--mapping: is needed for a model without a folder");
+  return read_landmark_mapping(find_landmark_mapping(path));
 }
 
 FittedCoefficients coefficients_of(const MorphableModel& model, const Eigen::VectorXd& times,
@@ -143,29 +144,29 @@ auto naming_landmarks(const Invocation& invocation, Call call) {
   try {
     return call();
   } catch (const MismatchError& error) {
-    throw MismatchError(invocation.inputs.at("landmarks").front().name + ": " + error.what());
+    throw MismatchError(invocation.input("landmarks").name + ": " + error.what());
   }
 }
 
 std::vector<FrameFit> fitted(const Invocation& invocation, const MorphableModel& model,
                              const MappedLandmarks& mapped, FitOptions options) {
   options.progress = part_of(invocation.progress, 0, 0.5);
-  const Eigen::VectorXd& times = invocation.get<LandmarksRead>("landmarks").track.times;
+  const Eigen::VectorXd& times = invocation.get<LandmarkTrack>("landmarks").times;
   return naming_landmarks(invocation, [&] {
     return LandmarkFitter(model, mapped.vertices).fit(mapped.points, options, times);
   });
 }
 
 /// Before anything is computed: pictures need what they are drawn on, and that it is sound.
-void check_images(const Invocation& invocation, const LandmarksRead& landmarks) {
+void check_images(const Invocation& invocation) {
+  const NamedData& landmarks = invocation.input("landmarks");
   for (const char* output : {"overlay", "strip"}) {
     if (!invocation.wants(output)) continue;
-    if (landmarks.images.empty()) {
-      throw UsageError("--" + std::string(output) + ": " +
-                       invocation.inputs.at("landmarks").front().name +
+    if (landmarks.origin.images.empty()) {
+      throw UsageError("--" + std::string(output) + ": " + landmarks.name +
                        " has no images; name them by --images");
     }
-    for (const auto& image : landmarks.images) check_image(image);
+    for (const auto& image : landmarks.origin.images) check_image(image);
   }
 }
 
@@ -178,31 +179,31 @@ std::vector<int> seen_frames(const FittedCoefficients& fit) {
 }
 
 Outcome run(const Invocation& invocation) {
-  const LandmarksRead& landmarks = invocation.get<LandmarksRead>("landmarks");
-  const LandmarkTrack& track = landmarks.track;
-  const ModelRead& read = invocation.get<ModelRead>("model");
-  check_images(invocation, landmarks);
+  const NamedData& landmarks = invocation.input("landmarks");
+  const LandmarkTrack& track = std::get<LandmarkTrack>(landmarks.data);
+  const MorphableModel& model = invocation.get<ModelData>("model").model;
+  check_images(invocation);
   const FitOptions options = options_of(invocation.parameters);
-  const LandmarkMapping mapping = mapping_of(invocation, read);
+  const LandmarkMapping mapping = mapping_of(invocation, invocation.input("model"));
   const MappedLandmarks mapped =
       naming_landmarks(invocation, [&] { return map_landmarks(track, mapping); });
   report_progress(invocation.progress, 0);
   FittedCoefficients fit =
-      coefficients_of(read.model, track.times, fitted(invocation, read.model, mapped, options));
-  fit.notes = landmarks.frame_notes;
+      coefficients_of(model, track.times, fitted(invocation, model, mapped, options));
+  fit.notes = landmarks.origin.frame_notes;
   report_progress(invocation.progress, 0.5);
 
   const FitSummary summary = summary_of(fit);
   if (!summary.unseen.empty()) {
-    invocation.warn(invocation.inputs.at("landmarks").front().name +
+    invocation.warn(landmarks.name +
                     ": frames of the result without landmarks, whose face lies between those of "
                     "their neighbours: " +
                     listed(words_of(summary.unseen)));
   }
-  const MeshSequence sequence = sequence_of(read.model, fit, options.shape);
+  const MeshSequence sequence = sequence_of(model, fit, options.shape);
   Outcome outcome;
   Json report = {{"rms_px", summary.rms},
-                 {"vertices", read.model.vertices()},
+                 {"vertices", model.vertices()},
                  {"mapped_landmarks", mapped.vertices.size()},
                  {"unseen_frames", summary.unseen}};
   report.update(Json::parse(fit_json(fit)));
@@ -212,16 +213,16 @@ Outcome run(const Invocation& invocation) {
       std::to_string(track.landmarks()) + " landmarks mapped: RMS " + readable(summary.rms) +
       " px (worst " + readable(fit.rms[summary.worst]) + " in frame " +
       std::to_string(summary.worst) + "), " + std::to_string(summary.iterations) + " iterations\n";
-  outcome.outputs["out"].push_back({"", SequenceRead{sequence, true, {}, {}}});
+  outcome.outputs["out"].push_back({"", FieldSequence(sequence), {.model_driven = true}});
   outcome.outputs["fit-out"].push_back({"", fit});
   if (invocation.wants("overlay") || invocation.wants("strip")) {
-    const FitPictures pictures(landmarks.images, sequence, fit.cameras, mapped);
+    const FitPictures pictures(landmarks.origin.images, sequence, fit.cameras, mapped);
     if (invocation.wants("overlay")) {
       outcome.outputs["overlay"].push_back(
           {"", Pictures{fit.frames(), [pictures](int f) { return pictures.overlay(f); }}});
     }
     if (invocation.wants("strip")) {
-      outcome.outputs["strip"].push_back({"", pictures.strip(seen_frames(fit))});
+      outcome.outputs["strip"].push_back({"", Pictures::of(pictures.strip(seen_frames(fit)))});
     }
   }
   return outcome;
@@ -255,8 +256,8 @@ LandmarkReader landmark_reader() {
 /// The sequence, and the person whose expressions are copied; with one identity for all frames also
 /// the joint solver's system of each.
 double memory(const Invocation& invocation) {
-  const double frames = invocation.get<LandmarksRead>("landmarks").track.frames();
-  const MorphableModel& model = invocation.get<ModelRead>("model").model;
+  const double frames = invocation.get<LandmarkTrack>("landmarks").frames();
+  const MorphableModel& model = invocation.get<ModelData>("model").model;
   const double coordinates = 3.0 * model.vertices();
   const double unknowns = 8.0 + model.identities().size() + model.expressions().size();
   const bool each_frame =
@@ -275,7 +276,7 @@ void add_fitting(OperationTable& table) {
   operation.inputs = {{"landmarks", DataKind::landmarks,
                        "images of a face, .pts files (one of them, a folder, a pattern), or a .csv "
                        "or .json track"},
-                      {"model", DataKind::morphable_model,
+                      {"model", DataKind::model,
                        "model folder with identities and expressions, or eos shape model (.bin)",
                        false, false, true}};
   operation.outputs = {{"out", DataKind::sequence, sequence_outputs()},
@@ -285,8 +286,11 @@ void add_fitting(OperationTable& table) {
                         true, false, ".fit.json"},
                        {"overlay", DataKind::pictures,
                         "folder of the images with mesh and landmarks drawn over them", true},
-                       {"strip", DataKind::picture,
+                       {"strip", DataKind::pictures,
                         "five of them in a row, near enough to judge the fit, .png", true}};
+  operation.inputs.back().identities = true;
+  operation.outputs[2].extensions = {""};
+  operation.outputs[3].extensions = {".png"};
   operation.parameters = fit_parameters();
   operation.examples = {"fit face.png --model sfm/ -o face.obj --strip face_fit.png",
                         "fit track.csv --model sfm/ --smoothness 0.1 -o take/"};

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "fitting/face_images.h"
-#include "toolkit/operations/data.h"
+#include "toolkit/operations/operation.h"
 
 namespace mimetra {
 

@@ -15,11 +15,10 @@ int main() {
 
   const WeightTrack track = samples::parametric_performance();
   const BlendshapeModel head = samples::parametric_head().person();
-  SequenceRead take{.sequence = head.animate(track.weights, track.times).slice(0, 120, 4),
-                    .model_driven = true};
+  FieldSequence take(head.animate(track.weights, track.times).slice(0, 120, 4));
 
   Invocation call;
-  call.inputs["sequence"] = {{"take", take}};
+  call.inputs["sequence"] = {{"take", std::move(take), {.model_driven = true}}};
   call.parameters = Parameters(table.parameters_of(decompose));
   call.parameters.set("k", 10);
   int reports = 0;

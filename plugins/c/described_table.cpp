@@ -39,6 +39,7 @@ const mimetra_port* DescribedTable::described(const Port& port, bool named) {
   made.help = kept(port.help);
   if (port.optional) made.flags |= MIMETRA_OPTIONAL;
   if (port.repeated) made.flags |= MIMETRA_REPEATED;
+  if (port.fields) made.flags |= MIMETRA_WITH_FIELDS;
   if (named) made.flags |= MIMETRA_NAMED;
   return &made;
 }

@@ -186,6 +186,18 @@ mimetra_status call_want(mimetra_call* call, const char* output) noexcept {
   return guarded(context_of(call), [&] { call->want(needed(output, "output")); });
 }
 
+mimetra_status call_write(mimetra_call* call, const char* output, const char* path,
+                          int32_t replace) noexcept {
+  return guarded(context_of(call), [&] {
+    needed(path, "path");
+    if (output) {
+      call->write(output, path, replace != 0);
+    } else {
+      call->write_manifest(path, replace != 0);
+    }
+  });
+}
+
 mimetra_status call_run(mimetra_call* call) noexcept {
   return guarded(context_of(call), [&] { call->run(); });
 }
@@ -270,18 +282,6 @@ mimetra_status job_report(mimetra_job* job, const char* json, const char* summar
                  [&] { job->report(json ? json : "{}", summary ? summary : ""); });
 }
 
-mimetra_status call_write(mimetra_call* call, const char* output, const char* path,
-                          int32_t replace) noexcept {
-  return guarded(context_of(call), [&] {
-    needed(path, "path");
-    if (output) {
-      call->write(output, path, replace != 0);
-    } else {
-      call->write_manifest(path, replace != 0);
-    }
-  });
-}
-
 }  // namespace
 
 mimetra_status make_context(const std::function<std::vector<std::string>(OperationTable&)>& fill,
@@ -334,6 +334,7 @@ const mimetra_interface& toolkit_interface() {
                                                   call_give,
                                                   call_read,
                                                   call_want,
+                                                  call_write,
                                                   call_run,
                                                   call_output_count,
                                                   call_output,
@@ -349,8 +350,7 @@ const mimetra_interface& toolkit_interface() {
                                                   job_log,
                                                   job_fail,
                                                   job_output,
-                                                  job_report,
-                                                  call_write};
+                                                  job_report};
   return functions;
 }
 

@@ -16,17 +16,15 @@ namespace {
 
 /// The sequence of a value that has one; null for others.
 const MeshSequence* sequence_of(const Data& data) {
-  if (const auto* read = std::get_if<SequenceRead>(&data)) return &read->sequence;
-  if (const auto* fields = std::get_if<FieldSequence>(&data)) return &fields->sequence;
-  return nullptr;
+  const auto* shown = std::get_if<FieldSequence>(&data);
+  return shown ? &shown->sequence() : nullptr;
 }
 
 /// Longest side of the rest pose of what has one.
 std::optional<double> extent_of(const Data& data) {
   if (const MeshSequence* sequence = sequence_of(data)) return sequence->extent();
-  if (const auto* model = std::get_if<BlendshapeModel>(&data)) return extent(model->neutral());
   if (const auto* components = std::get_if<Components>(&data)) return extent(components->rest);
-  if (const auto* read = std::get_if<ModelRead>(&data)) return extent(read->model.mean());
+  if (const auto* held = std::get_if<ModelData>(&data)) return extent(held->model.mean());
   return {};
 }
 
@@ -125,7 +123,7 @@ void mimetra_job::output(const std::string& name, const NamedData& value) {
   if (declared == operation_.outputs.end()) {
     throw UsageError("operation '" + operation_.name + "' has no output '" + name + "'");
   }
-  const auto kind = static_cast<DataKind>(value.data.index());
+  const auto kind = kind_of(value.data);
   if (kind != declared->kind) {
     throw UsageError("output '" + name + "': expected the kind '" +
                      std::string(kind_name(declared->kind)) + "', found '" +

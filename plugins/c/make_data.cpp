@@ -98,21 +98,13 @@ ShapeBasis basis_of(GivenArrays& given, const std::string& shapes, const std::st
   return basis;
 }
 
-MorphableModel model_of(GivenArrays& given, const Base& base) {
+MorphableModel shapes_of(GivenArrays& given, const Base& base) {
   Positions neutral = given.positions("neutral");
   auto connectivity = faces_of(given, given.size('N'), base);
   ShapeBasis identities = basis_of(given, "identities", "identity_names", 'I');
   ShapeBasis expressions = basis_of(given, "expressions", "expression_names", 'D');
   return {std::move(connectivity), std::move(neutral), std::move(identities),
           std::move(expressions)};
-}
-
-BlendshapeModel person_of(GivenArrays& given, const Base& base) {
-  if (given.has("identities")) {
-    throw UsageError(given.subject() +
-                     ": a model is one person; make a morphable model of identities");
-  }
-  return model_of(given, base).person();
 }
 
 double scalar_of(GivenArrays& given, const std::string& name, double fallback) {
@@ -172,9 +164,9 @@ Field field_of(GivenArrays& given, const mimetra_array& array) {
   return field;
 }
 
-FieldSequence fields_of(GivenArrays& given, const Base& base) {
-  FieldSequence made{sequence_of(given, base), {}};
-  given.set_size('T', static_cast<int>(made.sequence.triangles().rows()), "the faces");
+FieldSequence shown_sequence_of(GivenArrays& given, const Base& base) {
+  FieldSequence made(sequence_of(given, base));
+  given.set_size('T', static_cast<int>(made.frames->triangles().rows()), "the faces");
   for (const mimetra_array& array : given.all()) {
     if (array.location != MIMETRA_NOWHERE) made.fields.push_back(field_of(given, array));
   }
@@ -196,11 +188,13 @@ Table table_of(GivenArrays& given) {
   return table;
 }
 
-AnimatedModel animated_model_of(GivenArrays& given, const Base& base) {
-  AnimatedModel made{model_of(given, base), {}};
-  made.performance.weights = given.numbers("weights", "F x W");
-  made.performance.names = given.strings("weight_names", "W");
-  if (given.has("times")) made.performance.times = given.vector("times", "F");
+ModelData model_of(GivenArrays& given, const Base& base) {
+  ModelData made{shapes_of(given, base)};
+  if (given.has("weights") || given.has("weight_names")) {
+    made.performance.weights = given.numbers("weights", "F x W");
+    made.performance.names = given.strings("weight_names", "W");
+    if (given.has("times")) made.performance.times = given.vector("times", "F");
+  }
   if (!given.has("landmarks")) return made;
   const std::vector<int> pairs = given.integers("landmarks", "L x 2");
   for (std::size_t i = 0; i < pairs.size(); i += 2) {
@@ -213,18 +207,17 @@ AnimatedModel animated_model_of(GivenArrays& given, const Base& base) {
   return made;
 }
 
-Image picture_of(GivenArrays& given) {
+Pictures picture_of(GivenArrays& given) {
   const std::vector<std::uint8_t> bytes = given.bytes("pixels", "H x W x 3");
   Image image(given.size('W'), given.size('H'));
   for (std::size_t i = 0; i < image.pixels.size(); ++i) {
     image.pixels[i] = {bytes[3 * i], bytes[3 * i + 1], bytes[3 * i + 2]};
   }
-  return image;
+  return Pictures::of(std::move(image));
 }
 
-LandmarksRead landmarks_of(GivenArrays& given) {
-  LandmarksRead made;
-  LandmarkTrack& track = made.track;
+LandmarkTrack landmarks_of(GivenArrays& given) {
+  LandmarkTrack track;
   track.points = given.numbers("points", "F x L x 2", false);
   track.names = given.strings("names", "L");
   if (track.names.empty()) throw IoError(given.subject(), "needs a landmark or more");
@@ -233,31 +226,32 @@ LandmarksRead landmarks_of(GivenArrays& given) {
                     ? given.vector("times", "F")
                     : Eigen::VectorXd::LinSpaced(frames, 0, (frames - 1) / kDefaultFramesPerSecond);
   if (given.has("confidence")) track.confidence = given.vector("confidence", "F");
-  return made;
+  return track;
+}
+
+Document document_of(GivenArrays& given) {
+  std::vector<std::string> text = given.strings("text", "1");
+  return {std::move(text.front())};
 }
 
 Data data_of(mimetra_kind kind, GivenArrays& given, const Base& base) {
   switch (kind) {
     case MIMETRA_SEQUENCE:
-      return SequenceRead{sequence_of(given, base), false, {}, {}};
+      return shown_sequence_of(given, base);
     case MIMETRA_MODEL:
-      return person_of(given, base);
+      return model_of(given, base);
     case MIMETRA_COMPONENTS:
       return components_of(given);
     case MIMETRA_REGIONS:
       return regions_of(given, base);
-    case MIMETRA_FIELDS:
-      return fields_of(given, base);
     case MIMETRA_TABLE:
       return table_of(given);
-    case MIMETRA_ANIMATED_MODEL:
-      return animated_model_of(given, base);
-    case MIMETRA_PICTURE:
-      return picture_of(given);
     case MIMETRA_LANDMARKS:
       return landmarks_of(given);
-    case MIMETRA_MORPHABLE_MODEL:
-      return ModelRead{model_of(given, base), {}};
+    case MIMETRA_PICTURES:
+      return picture_of(given);
+    case MIMETRA_DOCUMENT:
+      return document_of(given);
     default:
       throw UsageError(given.subject() + ": values of the kind '" +
                        std::string(kind_name(kind_of(kind))) + "' cannot be made of arrays");
@@ -273,7 +267,7 @@ Names shown_only(mimetra_kind kind, const GivenArrays& given) {
       if (array.location != MIMETRA_NOWHERE) names.insert(array.name);
     }
   }
-  const bool has_faces = kind != MIMETRA_TABLE && kind != MIMETRA_PICTURE;
+  const bool has_faces = kind != MIMETRA_TABLE && kind != MIMETRA_PICTURES;
   if (has_faces) names.insert(face_names().begin(), face_names().end());
   return names;
 }
@@ -285,65 +279,40 @@ std::string subject_of(mimetra_kind kind, const std::string& name) {
 
 /// What no array shows.
 Base hidden_connectivity(const Data& data) {
-  if (const auto* read = std::get_if<SequenceRead>(&data)) {
-    return read->sequence.shared_connectivity();
+  if (const auto* shown = std::get_if<FieldSequence>(&data)) {
+    return shown->frames->shared_connectivity();
   }
-  if (const auto* fields = std::get_if<FieldSequence>(&data)) {
-    return fields->sequence.shared_connectivity();
-  }
-  if (const auto* model = std::get_if<BlendshapeModel>(&data)) return model->shared_connectivity();
-  if (const auto* read = std::get_if<ModelRead>(&data)) return read->model.shared_connectivity();
-  if (const auto* animated = std::get_if<AnimatedModel>(&data)) {
-    return animated->model.shared_connectivity();
-  }
+  if (const auto* held = std::get_if<ModelData>(&data)) return held->model.shared_connectivity();
   if (const auto* data_of_regions = std::get_if<RegionData>(&data)) {
-    const MeshSequence& mesh = data_of_regions->fields.sequence;
+    const FrameSource& mesh = *data_of_regions->fields.frames;
     return mesh.frames() > 0 ? mesh.shared_connectivity() : data_of_regions->faces;
   }
   return nullptr;
 }
 
 /// Gives a value derived of `base` what no array shows.
-struct KeepHidden {
-  Data& made;
-
-  template <typename Value>
-  Value& as() const {
-    return std::get<Value>(made);
-  }
-
-  void operator()(const SequenceRead& base) const {
-    as<SequenceRead>().model_driven = base.model_driven;
-  }
-  void operator()(const FieldSequence& base) const {
-    as<FieldSequence>().displacement = base.displacement;
-  }
-  void operator()(const ModelRead& base) const {
-    auto& derived = as<ModelRead>();
+void keep_hidden(const NamedData& base, NamedData& made) {
+  if (auto* sequence = std::get_if<FieldSequence>(&made.data)) {
+    made.origin.model_driven = base.origin.model_driven;
+    sequence->displacement = std::get<FieldSequence>(base.data).displacement;
+  } else if (std::holds_alternative<ModelData>(made.data)) {
     // What else its folder holds is about its vertices.
-    const bool same_mesh = derived.model.shared_connectivity() == base.model.shared_connectivity();
-    if (same_mesh) derived.path = base.path;
+    if (hidden_connectivity(made.data) == hidden_connectivity(base.data)) {
+      made.origin.path = base.origin.path;
+    }
+  } else if (auto* components = std::get_if<Components>(&made.data)) {
+    const int count = components->count();
+    components->options = std::get<Components>(base.data).options;
+    components->options.count = count;
+  } else if (auto* track = std::get_if<LandmarkTrack>(&made.data)) {
+    if (track->frames() != std::get<LandmarkTrack>(base.data).frames()) return;
+    made.origin = base.origin;
+  } else if (auto* regions = std::get_if<RegionData>(&made.data)) {
+    const FieldSequence& shown = std::get<RegionData>(base.data).fields;
+    if (regions->faces != shown.frames->shared_connectivity()) return;
+    regions->fields = {shown.frames, fields_of(regions->regions), shown.displacement};
   }
-  void operator()(const Components& base) const {
-    const int count = as<Components>().count();
-    as<Components>().options = base.options;
-    as<Components>().options.count = count;
-  }
-  void operator()(const LandmarksRead& base) const {
-    auto& derived = as<LandmarksRead>();
-    if (derived.track.frames() != base.track.frames()) return;
-    derived.images = base.images;
-    derived.frame_notes = base.frame_notes;
-  }
-  void operator()(const RegionData& base) const {
-    auto& derived = as<RegionData>();
-    const MeshSequence& mesh = base.fields.sequence;
-    if (derived.faces != mesh.shared_connectivity()) return;
-    derived.fields = {mesh, fields_of(derived.regions), base.fields.displacement};
-  }
-  template <typename Other>
-  void operator()(const Other&) const {}
-};
+}
 
 NamedData checked(mimetra_kind kind, const std::string& name, GivenArrays& given,
                   const Base& base) {
@@ -355,8 +324,8 @@ NamedData checked(mimetra_kind kind, const std::string& name, GivenArrays& given
 }  // namespace
 
 DataKind kind_of(mimetra_kind kind) {
-  static_assert(std::variant_size_v<Data> == MIMETRA_PAGE, "mimetra.h lists all kinds");
-  if (kind >= MIMETRA_SEQUENCE && kind <= MIMETRA_PAGE) {
+  static_assert(std::variant_size_v<Data> == MIMETRA_DOCUMENT, "mimetra.h lists all kinds");
+  if (kind >= MIMETRA_SEQUENCE && kind <= MIMETRA_DOCUMENT) {
     return static_cast<DataKind>(kind - MIMETRA_SEQUENCE);
   }
   throw UsageError("the kind " + std::to_string(kind) + " is none of mimetra.h");
@@ -390,7 +359,7 @@ NamedData derived_data(const NamedData& base, const mimetra_array* const* arrays
   all.push_back(nullptr);
   GivenArrays given(subject, all.data());
   NamedData made = checked(kind, base.name, given, connectivity);
-  std::visit(KeepHidden{made.data}, base.data);
+  keep_hidden(base, made);
   return made;
 }
 

@@ -99,17 +99,11 @@ enum {
   MIMETRA_MODEL = 2,
   MIMETRA_COMPONENTS = 3,
   MIMETRA_REGIONS = 4,
-  MIMETRA_FIELDS = 5,
-  MIMETRA_TABLE = 6,
-  MIMETRA_ANIMATED_MODEL = 7,
-  MIMETRA_PICTURE = 8,
-  MIMETRA_LANDMARKS = 9,
-  MIMETRA_MORPHABLE_MODEL = 10,
-  MIMETRA_FIT = 11,
-  MIMETRA_PICTURES = 12,
-  MIMETRA_VIEW = 13,
-  MIMETRA_RUN = 14,
-  MIMETRA_PAGE = 15
+  MIMETRA_TABLE = 5,
+  MIMETRA_LANDMARKS = 6,
+  MIMETRA_FIT = 7,
+  MIMETRA_PICTURES = 8,
+  MIMETRA_DOCUMENT = 9
 };
 
 /* Kinds of parameters, and how their values are written as text. */
@@ -142,8 +136,9 @@ enum { MIMETRA_INFO = 0, MIMETRA_WARNING = 1 };
 /* What an operation may be given and makes: flags of mimetra_port. */
 enum {
   MIMETRA_OPTIONAL = 1,
-  MIMETRA_REPEATED = 2, /* one value or more; an output has one for each of the repeated input */
-  MIMETRA_NAMED = 4     /* the command takes it as --NAME although it is needed */
+  MIMETRA_REPEATED = 2,   /* one value or more; an output has one for each of the repeated input */
+  MIMETRA_NAMED = 4,      /* the command takes it as --NAME although it is needed */
+  MIMETRA_WITH_FIELDS = 8 /* a sequence whose fields matter: files that hold them are written */
 };
 
 /* What a parameter of files applies to: flags of mimetra_parameter. A call takes those of reading
@@ -177,38 +172,36 @@ typedef struct mimetra_array {
  * R regions, D expressions, I identities, W weights. What stands in [brackets] may be left out when
  * a value is made; what stands after a | is only shown.
  *
- *   faces             face_sizes I32 P and corners I32 C, or triangles I32 T x 3;
- *                     both are shown | face_of_triangle I32 T
- *   sequence          positions F x N x 3 (or N x 3), faces, [times F, seconds], [rest N x 3]
- *   model             neutral N x 3, faces, [expressions D x N x 3, expression_names STRING D];
- *                     without expressions it is a mesh
- *   morphable model   the same, [identities I x N x 3, identity_names STRING I]
- *   animated model    a morphable model; weights F x W, weight_names STRING W, [times F],
- *                     [landmarks I32 L x 2: number, vertex]
- *   components        rest N x 3, triangles, displacements K x N x 3, [weights F x K], centers I32
- *                     K (-1: it died), [support K x N], [energies], [scale 1], [d_min 1], [d_max 1]
- *   regions           masks U8 R x N, triangles or faces | centers I32 R, radii R, energies R,
- *                     energy_shares R, vertex_energy N, faces of a mesh that they are shown on, and
- *                     fields: region I32 N (strongest region, -1 outside), region_count I32 N, roi
- *                     I32 N (0/1), in_L I32 T (0/1), ...; centers, radii and energies say nothing
- *                     of regions that were made or read
- *   fields            a sequence's arrays, and any number of fields: N or N x c on vertices, T or
- *                     T x c on triangles, by their location
- *   table             one array R per column; NaN is an empty cell
- *   picture           pixels U8 height x width x 3, sRGB, from the top left
- *   landmarks         points F x L x 2 (pixels, y down, NaN: not seen), names STRING L, [times F],
- *                     [confidence F]
- *   fit               | alpha F x I, beta F x D, identity_names STRING I,
- *                     expression_names STRING D, times F, cameras F x 2 x 4, rms F
- *   pictures, view, run, page
- *                     no arrays: they are there to be saved, or read by an operation
+ *   faces       face_sizes I32 P and corners I32 C, or triangles I32 T x 3; both are shown |
+ *               face_of_triangle I32 T
+ *   sequence    positions F x N x 3 (or N x 3), faces, [times F, seconds], [rest N x 3], and any
+ *               number of fields: N or N x c on vertices, T or T x c on triangles, by
+ *               their location
+ *   model       neutral N x 3, faces, [expressions D x N x 3, expression_names STRING D],
+ *               [identities I x N x 3, identity_names STRING I], and where it performs weights
+ *               F x W, weight_names STRING W, [times F]; [landmarks I32 L x 2: number, vertex].
+ *               Without expressions it is a mesh
+ *   components  rest N x 3, triangles, displacements K x N x 3, [weights F x K], centers I32 K
+ *               (-1: it died), [support K x N], [energies], [scale 1], [d_min 1], [d_max 1]
+ *   regions     masks U8 R x N, triangles or faces | centers I32 R, radii R, energies R,
+ *               energy_shares R, vertex_energy N, faces of a mesh that they are shown on, and
+ *               fields: region I32 N (strongest region, -1 outside), region_count I32 N, roi I32 N
+ *               (0/1), in_L I32 T (0/1), ...; centers, radii and energies say nothing of regions
+ *               that were made or read
+ *   table       one array R per column; NaN is an empty cell
+ *   landmarks   points F x L x 2 (pixels, y down, NaN: not seen), names STRING L, [times F],
+ *               [confidence F]
+ *   fit         | alpha F x I, beta F x D, identity_names STRING I, expression_names STRING D,
+ *               times F, cameras F x 2 x 4, rms F
+ *   pictures    pixels U8 height x width x 3 of one picture, sRGB, from the top left | of several
+ *               pixels_0, pixels_1, ...
+ *   document    text STRING 1: a page, a script
  *
  * Where no type stands, it is F64, and F32 is taken too. Numbers must be finite, but for fields,
  * tables and the points of landmarks. Only fields have a location; two of them may share a name
  * where one is on vertices and one on triangles, and data_array() then gives the first.
  *
- * Tables, pictures, animated models and fits are in no file that can be read: as inputs they are
- * given as values.
+ * Tables, pictures and fits are in no file that can be read: as inputs they are given as values.
  */
 typedef struct mimetra_data mimetra_data;
 
@@ -351,6 +344,14 @@ typedef struct mimetra_interface {
   mimetra_status (*call_read)(mimetra_call* call, const char* input, const char* text);
   /* Asks for an optional output; needed outputs are always made. */
   mimetra_status (*call_want)(mimetra_call* call, const char* output);
+  /* Asks for an output, and for its files: call_run writes it as the command does, by the path's
+   * extension and the call's parameters of writing, with the run's manifest beside or in it. With
+   * NULL as the output, the manifest alone: version, the value of every parameter, the inputs with
+   * hashes of their files, and the report, as JSON ("align" gives motion back that the manifest of
+   * a run of it tells of). What exists is an error unless `replace`, which replaces what an earlier
+   * run wrote. */
+  mimetra_status (*call_write)(mimetra_call* call, const char* output, const char* path,
+                               int32_t replace);
   /* May run again after changes. */
   mimetra_status (*call_run)(mimetra_call* call);
   /* How many values an output has; 0 before a run, and for what was not asked for. */
@@ -389,17 +390,6 @@ typedef struct mimetra_interface {
   mimetra_status (*job_output)(mimetra_job* job, const char* output, const mimetra_data* data);
   /* The result for programs, a JSON object, and for people, lines of text. */
   mimetra_status (*job_report)(mimetra_job* job, const char* json, const char* summary);
-
-  /* -- Calls that write -- */
-
-  /* Asks for an output, and for its files: call_run writes it as the command does, by the path's
-   * extension and the call's parameters of writing, with the run's manifest beside or in it. With
-   * NULL as the output, the manifest alone: version, the value of every parameter, the inputs with
-   * hashes of their files, and the report, as JSON ("align" gives motion back that the manifest of
-   * a run of it tells of). What exists is an error unless `replace`, which replaces what an earlier
-   * run wrote. */
-  mimetra_status (*call_write)(mimetra_call* call, const char* output, const char* path,
-                               int32_t replace);
 } mimetra_interface;
 
 /* True where the library that serves `m` is new enough to have a function. */

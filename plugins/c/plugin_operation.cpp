@@ -71,6 +71,7 @@ Port port_of(const mimetra_port& port, const std::string& what) {
   made.help = line_of(port.help, what + " '" + made.name + "'");
   made.optional = (port.flags & MIMETRA_OPTIONAL) != 0;
   made.repeated = (port.flags & MIMETRA_REPEATED) != 0;
+  made.fields = (port.flags & MIMETRA_WITH_FIELDS) != 0;
   return made;
 }
 
@@ -172,6 +173,7 @@ Operation plugin_operation(const mimetra_operation& described, const std::string
   for_each(described.inputs, [&](const mimetra_port& port) {
     operation.inputs.push_back(port_of<Input>(port, "an input"));
     operation.inputs.back().named = (port.flags & MIMETRA_NAMED) != 0;
+    operation.inputs.back().identities = true;
   });
   for_each(described.outputs, [&](const mimetra_port& port) {
     operation.outputs.push_back(port_of<Output>(port, "an output"));

@@ -111,17 +111,26 @@ void ShownArrays::show_basis(const ShapeBasis& basis, const char* shapes, const 
   add_strings(names, basis.names);
 }
 
-void ShownArrays::show(const BlendshapeModel& model) {
-  add("neutral", MIMETRA_F64, {model.vertices(), 3}, model.neutral().data());
-  show(model.connectivity());
-  show_basis(model.expressions(), "expressions", "expression_names");
-}
-
-void ShownArrays::show(const MorphableModel& model) {
+void ShownArrays::show(const ModelData& data) {
+  const MorphableModel& model = data.model;
   add("neutral", MIMETRA_F64, {model.vertices(), 3}, model.mean().data());
   show(model.connectivity());
   show_basis(model.expressions(), "expressions", "expression_names");
   show_basis(model.identities(), "identities", "identity_names");
+  const WeightTrack& track = data.performance;
+  if (!track.names.empty()) {
+    add_numbers("weights", {track.weights.rows(), track.weights.cols()}, by_rows(track.weights));
+    add_strings("weight_names", track.names);
+    add_vector("times", track.times);
+  }
+  if (data.landmarks.empty()) return;
+  std::vector<std::int32_t> pairs;
+  for (const auto& [landmark, vertex] : data.landmarks) {
+    pairs.push_back(landmark);
+    pairs.push_back(vertex);
+  }
+  add_integers("landmarks", {static_cast<Eigen::Index>(data.landmarks.size()), 2},
+               std::move(pairs));
 }
 
 void ShownArrays::show(const Components& components) {
@@ -163,9 +172,9 @@ void ShownArrays::show(const RegionData& data) {
   add_numbers("energy_shares", {count},
               of_regions(regions, [](const Region& r) { return r.energy_share; }));
   add_vector("vertex_energy", regions.vertex_energy);
-  const bool has_mesh = data.fields.sequence.vertices() > 0;
+  const bool has_mesh = data.fields.frames->vertices() > 0;
   if (has_mesh) {
-    show(data.fields.sequence.connectivity());
+    show(data.fields.frames->connectivity());
   } else if (data.faces) {
     show_triangles(data.faces->triangles);
   }
@@ -188,7 +197,7 @@ void ShownArrays::show(const Field& field) {
 }
 
 void ShownArrays::show(const FieldSequence& fields) {
-  show(fields.sequence);
+  show(fields.sequence());
   for (const Field& field : fields.fields) show(field);
 }
 
@@ -203,28 +212,21 @@ void ShownArrays::show(const Table& table) {
   }
 }
 
-void ShownArrays::show(const AnimatedModel& animated) {
-  show(animated.model);
-  const WeightTrack& track = animated.performance;
-  add_numbers("weights", {track.weights.rows(), track.weights.cols()}, by_rows(track.weights));
-  add_strings("weight_names", track.names);
-  add_vector("times", track.times);
-  std::vector<std::int32_t> pairs;
-  for (const auto& [landmark, vertex] : animated.landmarks) {
-    pairs.push_back(landmark);
-    pairs.push_back(vertex);
-  }
-  add_integers("landmarks", {static_cast<Eigen::Index>(animated.landmarks.size()), 2},
-               std::move(pairs));
-}
-
-void ShownArrays::show(const Image& image) {
+void ShownArrays::show(const Pictures& pictures) {
   static_assert(sizeof(Color) == 3);
-  add("pixels", MIMETRA_U8, {image.height, image.width, 3}, image.pixels.data());
+  for (int i = 0; i < pictures.count; ++i) {
+    const Image& image = images_.emplace_back(pictures.draw(i));
+    const std::string name = pictures.count == 1 ? "pixels" : "pixels_" + std::to_string(i);
+    add(names_.emplace_back(name).c_str(), MIMETRA_U8, {image.height, image.width, 3},
+        image.pixels.data());
+  }
 }
 
-void ShownArrays::show(const LandmarksRead& read) {
-  const LandmarkTrack& track = read.track;
+void ShownArrays::show(const Document& document) {
+  add_strings("text", texts_.emplace_back(1, document.text));
+}
+
+void ShownArrays::show(const LandmarkTrack& track) {
   add("points", MIMETRA_F64, {track.frames(), track.landmarks(), 2}, track.points.data());
   add_strings("names", track.names);
   add_vector("times", track.times);

@@ -28,24 +28,17 @@ class ShownArrays {
  private:
   using Shape = std::initializer_list<Eigen::Index>;
 
-  void show(const SequenceRead& read) { show(read.sequence); }
   void show_triangles(const Triangles& triangles);
-  void show(const BlendshapeModel& model);
+  void show(const ModelData& data);
   void show(const Components& components);
   void show(const RegionData& data);
   void show(const FieldSequence& fields);
   void show(const Table& table);
-  void show(const AnimatedModel& animated);
-  void show(const Image& image);
-  void show(const LandmarksRead& read);
-  void show(const ModelRead& read) { show(read.model); }
+  void show(const LandmarkTrack& track);
   void show(const FittedCoefficients& fit);
-  void show(const Pictures&) {}
-  void show(const RegionView&) {}
-  void show(const RunRead&) {}
-  void show(const Page&) {}
+  void show(const Pictures& pictures);
+  void show(const Document& document);
   void show(const MeshSequence& sequence);
-  void show(const MorphableModel& model);
   void show(const Connectivity& faces);
   void show(const Field& field);
   void show_basis(const ShapeBasis& basis, const char* shapes, const char* names);
@@ -67,6 +60,8 @@ class ShownArrays {
   std::deque<std::vector<std::uint8_t>> bytes_;
   std::deque<std::vector<const char*>> strings_;
   std::deque<std::string> names_;
+  std::deque<std::vector<std::string>> texts_;
+  std::deque<Image> images_;
 };
 
 }  // namespace mimetra

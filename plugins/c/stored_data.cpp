@@ -38,6 +38,7 @@ NamedData loaded_data(const mimetra_context& context, DataKind kind, const std::
   const OperationTable& table = context.table->operations();
   Operation reading;
   reading.inputs = {{"input", kind, ""}};
+  reading.inputs.front().fields = reading.inputs.front().identities = true;
   const Parameters parameters = parameters_of(table.parameters_of(reading), settings);
   LoadedInputs loaded = load_inputs(table, reading, parameters, {{"input", {text}}},
                                     context.progress, context.log, context.threads);
@@ -47,15 +48,16 @@ NamedData loaded_data(const mimetra_context& context, DataKind kind, const std::
 void write_data(const mimetra_context& context, const Data& data, const std::string& path,
                 const char* const* settings) {
   const OperationTable& table = context.table->operations();
-  const auto kind = static_cast<DataKind>(data.index());
   Operation writing;
-  writing.outputs = {{"output", kind, ""}};
+  writing.outputs = {{"output", kind_of(data), ""}};
+  const auto* sequence = std::get_if<FieldSequence>(&data);
+  writing.outputs.front().fields = sequence && !sequence->fields.empty();
   std::vector<Parameter> declared = table.parameters_of(writing);
   declared.push_back(kForce);
   const Parameters parameters = parameters_of(std::move(declared), settings);
   WriteRequest request{path, parameters, parameters.flag("force"), context.progress};
   request.threads = context.threads;
-  table.writer(kind, path).write(data, request);
+  table.writer(writing.outputs.front(), path).write(data, request);
 }
 
 }  // namespace mimetra

@@ -30,9 +30,8 @@ std::string json_of(const Value& value) {
   if (const auto* regions = std::get_if<RegionData>(&data)) return regions_json(regions->regions);
   if (const auto* table = std::get_if<Table>(&data)) return table->json();
   if (const auto* fit = std::get_if<FittedCoefficients>(&data)) return fit_json(*fit);
-  Json json = {{"name", value.named().name},
-               {"kind", kind_name(static_cast<DataKind>(data.index()))},
-               {"arrays", Json::array()}};
+  Json json = {
+      {"name", value.named().name}, {"kind", kind_name(kind_of(data))}, {"arrays", Json::array()}};
   for (const mimetra_array& array : value.arrays().arrays()) {
     const std::vector<std::int64_t> shape(array.shape, array.shape + array.rank);
     json["arrays"].push_back({{"name", array.name}, {"shape", shape}});

@@ -29,11 +29,12 @@ const mimetra_parameter* find_parameter(const mimetra_operation& operation,
   return nullptr;
 }
 
-/// Optional inputs, or outputs but scripts for other programs, which show files not written here.
+/// Optional inputs, or outputs but documents, which show files not written here.
 std::vector<std::string> optional_ports(const mimetra_port* const* ports) {
   std::vector<std::string> names;
   for (; *ports; ++ports) {
-    if (!is_needed(**ports) && (*ports)->kind != MIMETRA_VIEW) names.emplace_back((*ports)->name);
+    if (is_needed(**ports) || (*ports)->kind == MIMETRA_DOCUMENT) continue;
+    names.emplace_back((*ports)->name);
   }
   return names;
 }
@@ -196,11 +197,13 @@ bool is_needed(const mimetra_port& port) {
   return (port.flags & MIMETRA_OPTIONAL) == 0;
 }
 
-const mimetra_port* needed_input(const mimetra_operation& operation,
-                                 const std::vector<mimetra_kind>& kinds) {
+bool has_fields(const mimetra_port& port) {
+  return (port.flags & MIMETRA_WITH_FIELDS) != 0;
+}
+
+const mimetra_port* needed_input(const mimetra_operation& operation, mimetra_kind kind) {
   for (auto input = operation.inputs; *input; ++input) {
-    const bool is_one = std::find(kinds.begin(), kinds.end(), (*input)->kind) != kinds.end();
-    if (is_one && is_needed(**input)) return *input;
+    if ((*input)->kind == kind && is_needed(**input)) return *input;
   }
   return nullptr;
 }
@@ -208,7 +211,6 @@ const mimetra_port* needed_input(const mimetra_operation& operation,
 bool is_shown(const mimetra_port& output) {
   switch (output.kind) {
     case MIMETRA_SEQUENCE:
-    case MIMETRA_FIELDS:
     case MIMETRA_REGIONS:
     case MIMETRA_TABLE:
       return true;

@@ -16,9 +16,11 @@ QString label_of(const std::string& name);
 /// True for an input that must be given, and an output that is always made.
 bool is_needed(const mimetra_port& port);
 
-/// The first input that an operation needs of one of these kinds; null for none.
-const mimetra_port* needed_input(const mimetra_operation& operation,
-                                 const std::vector<mimetra_kind>& kinds);
+/// True for a sequence whose fields matter.
+bool has_fields(const mimetra_port& port);
+
+/// The first input of a kind that an operation needs; null for none.
+const mimetra_port* needed_input(const mimetra_operation& operation, mimetra_kind kind);
 
 /// True for outputs that become layers, what is on them, or lines of the log; others are files.
 bool is_shown(const mimetra_port& output);

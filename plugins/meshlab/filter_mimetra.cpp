@@ -43,10 +43,10 @@ void add_transfer_rows(const mimetra_operation& operation, RichParameterList& ro
 
 /// What layers stand for.
 const mimetra_port* frames_input(const mimetra_operation& operation) {
-  return needed_input(operation, {MIMETRA_SEQUENCE, MIMETRA_FIELDS});
+  return needed_input(operation, MIMETRA_SEQUENCE);
 }
 const mimetra_port* mesh_input(const mimetra_operation& operation) {
-  return needed_input(operation, {MIMETRA_MODEL});
+  return needed_input(operation, MIMETRA_MODEL);
 }
 
 bool begins_with_mesh(const mimetra_operation& operation) {
@@ -57,6 +57,14 @@ bool begins_with_mesh(const mimetra_operation& operation) {
 bool makes(const mimetra_operation& operation, mimetra_kind kind) {
   for (auto output = operation.outputs; *output; ++output) {
     if (is_needed(**output) && (*output)->kind == kind) return true;
+  }
+  return false;
+}
+
+/// True for an operation whose sequence is made for what is shown on it.
+bool makes_fields(const mimetra_operation& operation) {
+  for (auto output = operation.outputs; *output; ++output) {
+    if (is_needed(**output) && has_fields(**output)) return true;
   }
   return false;
 }
@@ -73,7 +81,7 @@ void add_rows_of_layers(const mimetra_operation& operation, RichParameterList& r
     add_input(operation, (*input)->name, instead, rows);
   }
   add_files(operation, rows);
-  if (makes(operation, MIMETRA_FIELDS)) {
+  if (makes_fields(operation)) {
     rows.addParam(RichString(kField, "", kField,
                              "name of the field that becomes the vertex quality; empty for the "
                              "first"));
@@ -95,8 +103,11 @@ QString info_of(const mimetra_operation& operation) {
                 .arg(mesh ? "other " : "");
   }
   if (mesh) info += " The " + QString(mesh->name) + " is the current layer, or a model of files.";
-  if (makes(operation, MIMETRA_SEQUENCE)) info += " Each frame made is a new, hidden layer.";
-  if (makes(operation, MIMETRA_FIELDS)) info += " A field becomes the vertex quality.";
+  if (makes_fields(operation)) {
+    info += " A field becomes the vertex quality.";
+  } else if (makes(operation, MIMETRA_SEQUENCE)) {
+    info += " Each frame made is a new, hidden layer.";
+  }
   return info;
 }
 
@@ -187,7 +198,8 @@ FilterMimetra::Filter FilterMimetra::filter_of(const mimetra_operation& operatio
 FilterMimetra::Filter FilterMimetra::filter_of_layers(const mimetra_operation& operation) {
   int filter_class = Measure;
   int changes = MeshModel::MM_NONE;
-  if (makes(operation, MIMETRA_FIELDS)) {
+  if (makes(operation, MIMETRA_SEQUENCE)) filter_class = Layer;
+  if (makes_fields(operation)) {
     filter_class = Quality | VertexColoring;
     changes = kQualityMask;
   }
@@ -195,7 +207,6 @@ FilterMimetra::Filter FilterMimetra::filter_of_layers(const mimetra_operation& o
     filter_class = Quality | VertexColoring;
     changes = kRegionMask;
   }
-  if (makes(operation, MIMETRA_SEQUENCE)) filter_class = Layer;
   return {"mimetra " + label_of(operation.name),
           &operation,
           info_of(operation),
@@ -316,12 +327,12 @@ void FilterMimetra::run_on_layers(const mimetra_operation& operation, MeshDocume
   for (auto output = operation.outputs; *output; ++output) {
     if (!is_needed(**output) || !is_shown(**output)) continue;
     const Data made = call.output((*output)->name);
-    if ((*output)->kind == MIMETRA_SEQUENCE) {
+    if (has_fields(**output)) {
+      show_fields(document, operation.name, made, given, text_of(rows, kField));
+    } else if ((*output)->kind == MIMETRA_SEQUENCE) {
       const Frames frames = toolkit_->frames_of(made);
       const bool on_given = !given.empty() && have_same_faces(frames, frames_of({given.front()}));
       add_layers(document, operation.name, frames, on_given ? given.front() : nullptr);
-    } else if ((*output)->kind == MIMETRA_FIELDS) {
-      show_fields(document, operation.name, made, given, text_of(rows, kField));
     } else if ((*output)->kind == MIMETRA_REGIONS) {
       const std::vector<double> region = toolkit_->field(made, "region");
       for (MeshModel* layer : given) show_regions(*layer, region);

@@ -10,7 +10,7 @@ namespace mimetra::samples {
 namespace {
 
 Outcome run(const Invocation&) {
-  AnimatedModel sample{parametric_head(), parametric_performance(), head_landmarks()};
+  ModelData sample{parametric_head(), parametric_performance(), head_landmarks()};
   const MorphableModel& model = sample.model;
   Outcome outcome;
   outcome.report = Json{{"vertices", model.vertices()},
@@ -34,7 +34,7 @@ void add_sample(OperationTable& table) {
   operation.name = "sample";
   operation.summary =
       "Write the built-in sample: a parametric head and a performance of 120 frames";
-  operation.outputs = {{"out", DataKind::animated_model, "folder of the model"}};
+  operation.outputs = {{"out", DataKind::model, "folder of the model"}};
   operation.examples = {
       "sample -o head/",
       "transfer head@identity001=1 head@identity002=1 --weights head/performance.csv -o out/"};

@@ -53,7 +53,7 @@ mimetra_status run(const mimetra_interface* m, mimetra_job* job, void*) {
                                  array("corners"), &speed,         &top_speed,
                                  nullptr};
   mimetra_data* made = nullptr;
-  check(m->new_data(context, MIMETRA_FIELDS, m->data_name(sequence), list, &made), m, context);
+  check(m->new_data(context, MIMETRA_SEQUENCE, m->data_name(sequence), list, &made), m, context);
   const std::unique_ptr<mimetra_data, void (*)(mimetra_data*)> owner(made, m->free_data);
   check(m->job_output(job, "out", made), m, context);
   const std::string top = std::to_string(*std::max_element(most.begin(), most.end()));
@@ -62,7 +62,8 @@ mimetra_status run(const mimetra_interface* m, mimetra_job* job, void*) {
 }
 
 const mimetra_port input = {sizeof input, MIMETRA_SEQUENCE, "sequence", "what moves", 0, 0};
-const mimetra_port output = {sizeof output, MIMETRA_FIELDS, "out", "speeds: .pvd or .vtp", 0, 0};
+const mimetra_port output = {sizeof output,          MIMETRA_SEQUENCE,    "out",
+                             "speeds: .pvd or .vtp", MIMETRA_WITH_FIELDS, 0};
 const mimetra_port* const inputs[] = {&input, nullptr};
 const mimetra_port* const outputs[] = {&output, nullptr};
 const mimetra_operation operation = {

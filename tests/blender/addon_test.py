@@ -66,8 +66,16 @@ class Addon(HostTest):
         made = bpy.ops.mimetra.fit.get_rna_type().properties
         for name in ("frames", "fps", "images", "face_model", "min_confidence"):
             self.assertIn(name, made)
-        for name in ("format", "double", "single", "overlay"):
+        for name in ("format", "double", "single"):
             self.assertNotIn(name, made)
+
+    def test_a_model_for_landmarks_is_read(self):
+        fit, transfer = mimetra.operations["fit"], mimetra.operations["transfer"]
+        self.assertIsNone(properties.active_input(fit))
+        self.assertEqual([port.name for port in properties.object_inputs(transfer)],
+                         ["source", "target"])
+        made = bpy.ops.mimetra.fit.get_rna_type().properties
+        self.assertEqual(made["model"].subtype, "FILE_PATH")
 
     def test_the_sidebar_has_a_panel_for_each_operation(self):
         for operation in mimetra.operations.values():

@@ -108,16 +108,20 @@ class Fields(HostTest):
         out = self.path / "fit.npy"
         command("fit", track, "--model", self.head, "--frames", "1:5:2", "-o", out, "--force")
         bpy.ops.mimetra.fit(landmarks=str(track), model=str(self.head), frames="1:5:2",
-                            images=str(images), strip=True)
+                            images=str(images), strip=True, overlay=True)
         fitted = np.load(out)
         for index in range(2):
             self.assert_close(self.shown(bpy.data.objects["fit"], 1 + index), fitted[index])
-        expected = mimetra.fit(track, model=self.head, frames="1:5:2", images=images,
-                               strip=True).strip.pixels
-        strip = bpy.data.images["fit strip"]
-        shown = np.array(strip.pixels[:]).reshape(strip.size[1], strip.size[0], 4)
-        self.assertGreater(len(np.unique(expected)), 2)
-        np.testing.assert_array_equal(np.rint(255 * shown[::-1, :, :3]), expected)
+        drawn = mimetra.fit(track, model=self.head, frames="1:5:2", images=images, strip=True,
+                            overlay=True)
+        self.assertEqual(list(drawn.overlay), ["pixels_0", "pixels_1"])
+        for name, expected in [("fit strip", drawn.strip.pixels),
+                               ("fit overlay 0000", drawn.overlay.pixels_0),
+                               ("fit overlay 0001", drawn.overlay.pixels_1)]:
+            image = bpy.data.images[name]
+            shown = np.array(image.pixels[:]).reshape(image.size[1], image.size[0], 4)
+            self.assertGreater(len(np.unique(expected)), 2, name)
+            np.testing.assert_array_equal(np.rint(255 * shown[::-1, :, :3]), expected, name)
 
     def test_tables_and_summaries_are_text(self):
         bpy.ops.mimetra.evaluate(target="target", k="4,8", out=True)
@@ -166,6 +170,25 @@ class Fields(HostTest):
             for frame, height in ((11, 0), (26, 1), (41, 2)):
                 np.testing.assert_allclose(self.shown(made, frame)[:, 2], height, atol=1e-5)
             bpy.data.objects.remove(made)
+
+    def test_fields_of_a_sequence_are_on_its_object(self):
+        corners = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0]], float)
+        poses = np.stack([corners, 2 * corners])
+        value = mimetra.Sequence(poses, [[0, 1, 2]], on_vertices={"height": [3.0, 4.0, 5.0]})
+        frames = results.Frames(bpy.context.scene, [1, 2], "PC2", str(self.path))
+        made = results.show_sequence(bpy.context, value, None, frames, "shown")
+        heights = [each.value for each in made.data.attributes["mimetra height"].data]
+        self.assertEqual(heights, [3, 4, 5])
+
+    def test_a_model_without_a_performance_is_an_object_with_shape_keys(self):
+        value = mimetra.Model.load(f"{self.head}@identity002=1")
+        frames = results.Frames(bpy.context.scene, [1], "PC2", "//")
+        made = results.show_model(bpy.context, value, frames, "still")
+        self.assertEqual(len(made.data.shape_keys.key_blocks), 13)
+        self.assertIsNone(made.data.shape_keys.animation_data)
+        mesh = results.show_model(bpy.context, mimetra.Model(value.neutral, value.faces), frames,
+                                  "mesh")
+        self.assert_close(self.shown(mesh, 1), value.neutral.astype(np.float32))
 
     def test_the_example_of_the_documents_runs(self):
         text = (pathlib.Path(__file__).parents[2] / "docs" / "blender.md").read_text()

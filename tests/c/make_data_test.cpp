@@ -36,9 +36,13 @@ NamedData made(mimetra_kind kind, const std::vector<mimetra_array>& arrays) {
   return made_data(kind, "it", list_of(arrays).data());
 }
 
+NamedData derived(const NamedData& base, const std::vector<mimetra_array>& changes) {
+  return derived_data(base, list_of(changes).data());
+}
+
 template <typename Value>
 Value derived(const Value& base, const std::vector<mimetra_array>& changes) {
-  return std::get<Value>(derived_data({"it", base}, list_of(changes).data()).data);
+  return std::get<Value>(derived(NamedData{"it", base}, changes).data);
 }
 
 MeshSequence moving_take() {
@@ -68,9 +72,11 @@ TEST(DerivedData, KeepsWhatNoArrayShows) {
   const MeshSequence sequence = moving_take();
   const double times[] = {1, 2};
   const std::vector<mimetra_array> other_times = {array("times", MIMETRA_F64, {2}, times)};
-  EXPECT_TRUE(derived(SequenceRead{sequence, true, {}, {}}, other_times).model_driven);
-  EXPECT_TRUE(derived(FieldSequence{sequence, {}, true}, other_times).displacement);
-  EXPECT_EQ(derived(FieldSequence{sequence, {}, true}, other_times).sequence.times()[1], 2);
+  const FieldSequence moving(sequence, {}, true);
+  const NamedData driven{"it", moving, {.model_driven = true}};
+  EXPECT_TRUE(derived(driven, other_times).origin.model_driven);
+  EXPECT_TRUE(derived(moving, other_times).displacement);
+  EXPECT_EQ(derived(moving, other_times).sequence().times()[1], 2);
 
   const double scale[] = {3};
   const Components scaled = derived(components(), {array("scale", MIMETRA_F64, {1}, scale)});
@@ -79,28 +85,31 @@ TEST(DerivedData, KeepsWhatNoArrayShows) {
 
   const Positions moved = 2 * sequence.frame(0);
   const ShapeBasis none{{}, Eigen::MatrixXd(3 * kVertices, 0)};
-  const ModelRead model{
-      MorphableModel(sequence.shared_connectivity(), sequence.frame(0), none, none), "models/it"};
-  const auto larger = derived(model, {array("neutral", MIMETRA_F64, {kVertices, 3}, moved.data())});
-  EXPECT_EQ(larger.path, "models/it");
-  EXPECT_EQ(larger.model.mean(), moved);
+  const ModelData model{
+      MorphableModel(sequence.shared_connectivity(), sequence.frame(0), none, none)};
+  const NamedData read{"it", model, {.path = "models/it"}};
+  const NamedData larger =
+      derived(read, {array("neutral", MIMETRA_F64, {kVertices, 3}, moved.data())});
+  EXPECT_EQ(larger.origin.path, "models/it");
+  EXPECT_EQ(std::get<ModelData>(larger.data).model.mean(), moved);
 }
 
 TEST(DerivedData, KeepsTheImagesOfAsManyFrames) {
-  LandmarksRead read;
-  read.track.points = Frames::Zero(2, 2);
-  read.track.names = {"nose"};
-  read.track.times = Eigen::Vector2d(0, 1);
-  read.images = {"a.png", "b.png"};
-  read.frame_notes = {"", "dark"};
+  LandmarkTrack track;
+  track.points = Frames::Zero(2, 2);
+  track.names = {"nose"};
+  track.times = Eigen::Vector2d(0, 1);
+  const NamedData read{"it", track, {.images = {"a.png", "b.png"}, .frame_notes = {"", "dark"}}};
   const double points[] = {1, 2, 3, 4, 5, 6};
-  const auto moved = derived(read, {array("points", MIMETRA_F64, {2, 1, 2}, points)});
+  const Origin moved = derived(read, {array("points", MIMETRA_F64, {2, 1, 2}, points)}).origin;
   EXPECT_THAT(moved.images, ElementsAre("a.png", "b.png"));
   EXPECT_THAT(moved.frame_notes, ElementsAre("", "dark"));
   const double times[] = {0, 1, 2};
-  const auto longer = derived(read, {array("points", MIMETRA_F64, {3, 1, 2}, points),
-                                     array("times", MIMETRA_F64, {3}, times)});
+  const Origin longer = derived(read, {array("points", MIMETRA_F64, {3, 1, 2}, points),
+                                       array("times", MIMETRA_F64, {3}, times)})
+                            .origin;
   EXPECT_TRUE(longer.images.empty());
+  EXPECT_TRUE(longer.frame_notes.empty());
 }
 
 TEST(DerivedData, KeepsTheMeshOfRegions) {
@@ -111,7 +120,7 @@ TEST(DerivedData, KeepsTheMeshOfRegions) {
   const mimetra_array two_masks = array("masks", MIMETRA_U8, {2, kVertices}, masks);
   const RegionData two = derived(base, {two_masks});
   EXPECT_EQ(two.regions.regions.size(), 2u);
-  EXPECT_EQ(two.fields.sequence.frames(), 2);
+  EXPECT_EQ(two.fields.sequence().frames(), 2);
   // Its fields are those of the new regions.
   const auto roi = std::ranges::find(two.fields.fields, "roi", &Field::name);
   ASSERT_NE(roi, two.fields.fields.end());
@@ -122,13 +131,12 @@ TEST(DerivedData, KeepsTheMeshOfRegions) {
 
 TEST(DerivedData, TellsFieldsOnVerticesFromThoseOnTriangles) {
   const MeshSequence sequence = moving_take();
-  const FieldSequence base{
+  const FieldSequence base(
       sequence,
       {{"energy", Field::Location::vertices, Eigen::MatrixXd::Ones(kVertices, 1), false},
        {"energy", Field::Location::triangles, Eigen::MatrixXd::Ones(kTriangles, 1), false},
        {"rest", Field::Location::vertices, Eigen::MatrixXd::Ones(kVertices, 3), false},
-       {"corners", Field::Location::vertices, Eigen::MatrixXd::Ones(kVertices, 1), true}},
-      false};
+       {"corners", Field::Location::vertices, Eigen::MatrixXd::Ones(kVertices, 1), true}});
   const double energies[kTriangles] = {5, 5, 5, 5};
   const auto changed =
       derived(base, {array("energy", MIMETRA_F64, {kTriangles}, energies, MIMETRA_ON_TRIANGLES)});
@@ -137,7 +145,7 @@ TEST(DerivedData, TellsFieldsOnVerticesFromThoseOnTriangles) {
     const bool is_changed = field.location == Field::Location::triangles;
     EXPECT_EQ(field.values(0, 0), is_changed ? 5 : 1) << field.name;
   }
-  EXPECT_FALSE(changed.sequence.rest_is_known());
+  EXPECT_FALSE(changed.sequence().rest_is_known());
 }
 
 TEST(DerivedData, TakesComponentsWithoutWeightsAndSupport) {
@@ -156,7 +164,7 @@ TEST(MadeData, HoldsSomething) {
                           const char* message) {
     EXPECT_THAT([&] { made(kind, arrays); }, ThrowsMessage<IoError>(HasSubstr(message)));
   };
-  refuses(MIMETRA_PICTURE, {array("pixels", MIMETRA_U8, {0, 0, 3}, none)}, "with H at least 1");
+  refuses(MIMETRA_PICTURES, {array("pixels", MIMETRA_U8, {0, 0, 3}, none)}, "with H at least 1");
   refuses(MIMETRA_LANDMARKS,
           {array("points", MIMETRA_F64, {0, 1, 2}, none),
            array("names", MIMETRA_STRING, {0}, no_names)},
@@ -168,6 +176,50 @@ TEST(MadeData, HoldsSomething) {
   refuses(MIMETRA_SEQUENCE, {array("positions", MIMETRA_F64, {1, 0, 3}, none)}, "with N at least");
   EXPECT_TRUE(
       std::get<Table>(made(MIMETRA_TABLE, {array("x", MIMETRA_F64, {0}, none)}).data).rows.empty());
+}
+
+TEST(MadeData, IsASequenceWithOrWithoutFields) {
+  const double positions[3 * kVertices] = {};
+  const std::int32_t corners[] = {0, 1, 2};
+  const std::vector<mimetra_array> bare = {
+      array("positions", MIMETRA_F64, {kVertices, 3}, positions),
+      array("triangles", MIMETRA_I32, {1, 3}, corners)};
+  EXPECT_TRUE(std::get<FieldSequence>(made(MIMETRA_SEQUENCE, bare).data).fields.empty());
+  std::vector<mimetra_array> shown = bare;
+  shown.push_back(array("area", MIMETRA_F64, {1}, positions, MIMETRA_ON_TRIANGLES));
+  const NamedData with_fields = made(MIMETRA_SEQUENCE, shown);
+  ASSERT_EQ(std::get<FieldSequence>(with_fields.data).fields.size(), 1u);
+  EXPECT_EQ(std::get<FieldSequence>(with_fields.data).fields.front().name, "area");
+}
+
+TEST(MadeData, IsAModelWithOrWithoutIdentitiesAndAPerformance) {
+  const double numbers[3 * kVertices] = {};
+  const std::int32_t corners[] = {0, 1, 2};
+  const char* const names[] = {"wide"};
+  std::vector<mimetra_array> arrays = {array("neutral", MIMETRA_F64, {kVertices, 3}, numbers),
+                                       array("triangles", MIMETRA_I32, {1, 3}, corners)};
+  EXPECT_EQ(std::get<ModelData>(made(MIMETRA_MODEL, arrays).data).performance.weights.size(), 0);
+  arrays.push_back(array("identities", MIMETRA_F64, {1, kVertices, 3}, numbers));
+  arrays.push_back(array("identity_names", MIMETRA_STRING, {1}, names));
+  arrays.push_back(array("weights", MIMETRA_F64, {2, 1}, numbers));
+  EXPECT_THAT([&] { made(MIMETRA_MODEL, arrays); },
+              ThrowsMessage<UsageError>(HasSubstr("needs the array 'weight_names'")));
+  arrays.push_back(array("weight_names", MIMETRA_STRING, {1}, names));
+  const NamedData model = made(MIMETRA_MODEL, arrays);
+  EXPECT_THAT(std::get<ModelData>(model.data).model.identities().names, ElementsAre("wide"));
+  EXPECT_EQ(std::get<ModelData>(model.data).performance.weights.rows(), 2);
+}
+
+TEST(MadeData, IsOnePictureOrADocument) {
+  const std::uint8_t pixels[] = {1, 2, 3, 4, 5, 6};
+  const NamedData picture =
+      made(MIMETRA_PICTURES, {array("pixels", MIMETRA_U8, {2, 1, 3}, pixels)});
+  const auto& pictures = std::get<Pictures>(picture.data);
+  ASSERT_EQ(pictures.count, 1);
+  EXPECT_EQ(pictures.draw(0).height, 2);
+  const char* const text[] = {"<html>"};
+  const NamedData page = made(MIMETRA_DOCUMENT, {array("text", MIMETRA_STRING, {1}, text)});
+  EXPECT_EQ(std::get<Document>(page.data).text, "<html>");
 }
 
 TEST(MadeData, SaysWhereALocationIsWrong) {

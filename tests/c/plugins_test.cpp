@@ -42,21 +42,20 @@ fs::path broken(const std::string& name) {
   return kPlugins / "broken" / name;
 }
 
-SequenceRead take() {
+MeshSequence take() {
   const test::Shape shape = test::grid(4, 3);
   Frames frames(2, shape.positions.size());
   frames.row(0) = shape.positions.reshaped<Eigen::RowMajor>();
   frames.row(1) = 2 * frames.row(0);
   const int vertices = static_cast<int>(shape.positions.rows());
-  return {
-      MeshSequence(Connectivity::from_triangles(vertices, shape.triangles), frames), false, {}, {}};
+  return {Connectivity::from_triangles(vertices, shape.triangles), frames};
 }
 
 Outcome misbehave(const std::string& how, const Progress& progress = {}) {
   const Loaded loaded({kPlugins / "misbehaving"});
   const Operation& operation = *loaded.table.find("misbehave");
   Invocation invocation;
-  invocation.inputs["sequence"] = {{"take", take()}};
+  invocation.inputs["sequence"] = {{"take", FieldSequence(take())}};
   invocation.parameters = Parameters(loaded.table.parameters_of(operation));
   invocation.parameters.set("how", how);
   invocation.progress = progress;
@@ -73,8 +72,10 @@ TEST(Plugins, AddTheirOperations) {
   EXPECT_EQ(std::get<double>(smooth->parameters[0].fallback), 0.5);
   EXPECT_EQ(smooth->parameters[0].maximum, 1);
   EXPECT_EQ(std::get<std::int64_t>(smooth->parameters[1].fallback), 1);
+  EXPECT_FALSE(smooth->outputs[0].fields);
   ASSERT_NE(loaded.table.find("speed"), nullptr);
-  EXPECT_EQ(loaded.table.find("speed")->outputs[0].kind, DataKind::fields);
+  EXPECT_EQ(loaded.table.find("speed")->outputs[0].kind, DataKind::sequence);
+  EXPECT_TRUE(loaded.table.find("speed")->outputs[0].fields);
 }
 
 TEST(Plugins, InTwoFoldersAreTakenOnce) {
@@ -174,8 +175,8 @@ std::string message_of(const std::string& how) {
 
 TEST(PluginRun, ThatIsSoundGivesItsValue) {
   const Outcome outcome = misbehave("well");
-  const auto& made = std::get<SequenceRead>(outcome.outputs.at("out").front().data);
-  EXPECT_EQ(made.sequence.vertices(), 3);
+  const auto& made = std::get<FieldSequence>(outcome.outputs.at("out").front().data);
+  EXPECT_EQ(made.sequence().vertices(), 3);
   EXPECT_EQ(outcome.report, "{}");
 }
 
@@ -234,12 +235,12 @@ TEST(PluginRun, HasItsRegionsShownOnTheSequenceOfTheirTriangles) {
   frames << 0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0;
   const MeshSequence sequence(Connectivity::from_polygons(4, quad), frames);
   Invocation invocation;
-  invocation.inputs["sequence"] = {{"take", SequenceRead{sequence, false, {}, {}}}};
+  invocation.inputs["sequence"] = {{"take", FieldSequence(sequence)}};
   invocation.parameters = Parameters(loaded.table.parameters_of(spots));
   invocation.wanted["out"];
   const Outcome outcome = spots.run(invocation);
   const auto& made = std::get<RegionData>(outcome.outputs.at("out").front().data);
-  EXPECT_EQ(made.fields.sequence.shared_connectivity(), sequence.shared_connectivity());
+  EXPECT_EQ(made.fields.sequence().shared_connectivity(), sequence.shared_connectivity());
   EXPECT_EQ(made.fields.fields.front().name, "region");
 }
 
@@ -255,27 +256,27 @@ TEST(PluginRun, GetsLengthsInTheUnitOfItsInput) {
 TEST(SmoothSample, MovesVerticesTowardsTheirNeighbours) {
   const Loaded loaded({kPlugins / "samples"});
   const Operation& smooth = *loaded.table.find("smooth");
-  const SequenceRead input = take();
+  const MeshSequence input = take();
   Invocation invocation;
-  invocation.inputs["sequence"] = {{"take", input}};
+  invocation.inputs["sequence"] = {{"take", FieldSequence(input)}};
   invocation.parameters = Parameters(loaded.table.parameters_of(smooth));
   invocation.parameters.set("strength", 1.0);
   invocation.wanted["out"];
   const auto run = [&] {
     const Outcome outcome = smooth.run(invocation);
-    return std::get<SequenceRead>(outcome.outputs.at("out").front().data).sequence;
+    return std::get<FieldSequence>(outcome.outputs.at("out").front().data).sequence();
   };
   const MeshSequence all = run();
   // A plane stays one, and a frame twice as large moves twice as far.
   EXPECT_LT(all.positions().rightCols(1).norm(), 1e-12);
   EXPECT_LT((2 * all.frame(0) - all.frame(1)).norm(), 1e-12);
   // An inner vertex of a regular grid is the mean of its neighbours.
-  EXPECT_LT((all.frame(0).row(5) - input.sequence.frame(0).row(5)).norm(), 1e-12);
-  EXPECT_GT((all.frame(0).row(0) - input.sequence.frame(0).row(0)).norm(), 0.1);
-  EXPECT_EQ(all.times(), input.sequence.times());
-  EXPECT_EQ(all.connectivity().polygons, input.sequence.connectivity().polygons);
+  EXPECT_LT((all.frame(0).row(5) - input.frame(0).row(5)).norm(), 1e-12);
+  EXPECT_GT((all.frame(0).row(0) - input.frame(0).row(0)).norm(), 0.1);
+  EXPECT_EQ(all.times(), input.times());
+  EXPECT_EQ(all.connectivity().polygons, input.connectivity().polygons);
   invocation.parameters.set("strength", 0.0);
-  EXPECT_EQ(run().positions(), input.sequence.positions());
+  EXPECT_EQ(run().positions(), input.positions());
   invocation.progress = [](double) { return false; };
   EXPECT_THROW(run(), Cancelled);
 }

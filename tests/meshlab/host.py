@@ -20,7 +20,8 @@ OPERATIONS = {"Geodesic Support Map": "geodesic", "Regions of Interest": "region
 # Made of the table alone.
 OF_LAYERS = ["mimetra Info", "mimetra Check", "mimetra Align", "mimetra Decompose",
              "mimetra Evaluate", "mimetra Convert"]
-SHOWN = ["sequence", "fields", "regions", "table"]
+SHOWN = ["sequence", "regions", "table"]
+OF_FIELDS = ["speed"]
 MOST_ROWS = 8
 INPUTS = {"regions": ["sequence"], "transfer": ["source", "target"]}
 FIRST = {"regions": ["k", "radius", "region", "coverage"],
@@ -62,7 +63,7 @@ def rows_of_layers(operation):
     files = [input["name"] for input in operation["inputs"] if not input["optional"]]
     made = [output for output in operation.get("outputs", []) if not output["optional"]]
     files += [output["name"] for output in made if output["kind"] not in SHOWN]
-    files += ["Field"] * any(output["kind"] == "fields" for output in made)
+    files += ["Field"] * (operation["name"] in OF_FIELDS)
     own = [parameter for parameter in operation["parameters"] if parameter["name"] not in OF_FILES]
     return [*[(name, "RichString", "") for name in files], *map(row_of, own[:MOST_ROWS]),
             ("Manifest", "RichString", ""), ("options", "RichString", "")]

@@ -34,7 +34,7 @@ class Loading(HostTest):
                             {"kind": None}) for name, operation in operations().items()}
         # MeshLab draws what it shows itself.
         self.assertEqual(of_mimetra | {"render"}, {name for name, each in first.items()
-                                                   if each["kind"] in ["sequence", "fields", "model"]})
+                                                   if each["kind"] in ["sequence", "model"]})
 
     def test_has_a_row_for_every_parameter(self):
         values = {"RichBool": "Bool", "RichInt": "Int", "RichFloat": "Float", "RichEnum": "Enum",

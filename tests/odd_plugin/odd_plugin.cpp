@@ -70,7 +70,7 @@ mimetra_status labels(const mimetra_interface* m, mimetra_job* job, void*) {
   values.front() = -1;
   values.back() = 2000000000;
   return make(
-      m, job, "out", MIMETRA_FIELDS,
+      m, job, "out", MIMETRA_SEQUENCE,
       {*positions, *sizes, *corners,
        array_of("label", MIMETRA_I32, {positions->shape[1]}, values.data(), MIMETRA_ON_VERTICES)});
 }
@@ -85,7 +85,7 @@ mimetra_status other_faces(const mimetra_interface* m, mimetra_job* job, void*) 
   if (status) return status;
   const std::vector<double> values(static_cast<std::size_t>(triangles->shape[0]), 1);
   return make(
-      m, job, "out", MIMETRA_FIELDS,
+      m, job, "out", MIMETRA_SEQUENCE,
       {*positions, *triangles,
        array_of("area", MIMETRA_F64, {triangles->shape[0]}, values.data(), MIMETRA_ON_TRIANGLES)});
 }
@@ -95,7 +95,7 @@ mimetra_status other_vertices(const mimetra_interface* m, mimetra_job* job, void
   const double corners[] = {0, 0, 0, 1, 0, 0, 0, 1, 0};
   const int32_t triangle[] = {0, 1, 2};
   const double values[] = {1, 2, 3};
-  return make(m, job, "out", MIMETRA_FIELDS,
+  return make(m, job, "out", MIMETRA_SEQUENCE,
               {array_of("positions", MIMETRA_F64, {3, 3}, corners),
                array_of("triangles", MIMETRA_I32, {1, 3}, triangle),
                array_of("height", MIMETRA_F64, {3}, values, MIMETRA_ON_VERTICES)});
@@ -176,14 +176,15 @@ std::vector<mimetra_parameter> words() {
 
 const mimetra_plugin* mimetra_get_plugin() {
   static const std::vector<mimetra_port> sequence = {port(MIMETRA_SEQUENCE, "sequence")};
-  static const std::vector<mimetra_port> fields = {port(MIMETRA_FIELDS, "out")};
+  static const std::vector<mimetra_port> fields = {
+      port(MIMETRA_SEQUENCE, "out", MIMETRA_WITH_FIELDS)};
   static const std::vector<mimetra_port> table = {port(MIMETRA_TABLE, "out")};
   static const Described all[] = {
       {"echo",
        echo,
-       {port(MIMETRA_RUN, "run", MIMETRA_OPTIONAL)},
+       {port(MIMETRA_DOCUMENT, "script", MIMETRA_OPTIONAL)},
        {port(MIMETRA_TABLE, "report"), port(MIMETRA_TABLE, "summary", MIMETRA_OPTIONAL),
-        port(MIMETRA_PAGE, "page", MIMETRA_OPTIONAL)},
+        port(MIMETRA_DOCUMENT, "page", MIMETRA_OPTIONAL)},
        words()},
       {"labels", labels, sequence, fields},
       {"other-faces", other_faces, sequence, fields},

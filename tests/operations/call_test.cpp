@@ -47,7 +47,7 @@ class CallOfAnOperation : public testing::Test {
 
   CallRequest align_of(const MeshSequence& sequence) const {
     CallRequest align = request("align");
-    align.given["sequence"] = {{"take", SequenceRead{sequence}}};
+    align.given["sequence"] = {{"take", FieldSequence(sequence)}};
     return align;
   }
 
@@ -60,7 +60,7 @@ class CallOfAnOperation : public testing::Test {
   }
 
   static const MeshSequence& out_of(Call& call) {
-    return std::get<SequenceRead>(call.outcome().outputs.at("out").front().data).sequence;
+    return std::get<FieldSequence>(call.outcome().outputs.at("out").front().data).sequence();
   }
 
   fs::path at(const std::string& name) const { return folder_.path() / name; }
@@ -154,7 +154,7 @@ TEST_F(CallOfAnOperation, LeavesNothingBehindWhereTheOperationFails) {
   operation.run = [](const Invocation&) -> Outcome { throw std::runtime_error("it cannot"); };
   table_.add(operation);
   CallRequest failing = request("failing");
-  failing.given["sequence"] = {{"take", SequenceRead{turning_grid()}}};
+  failing.given["sequence"] = {{"take", FieldSequence(turning_grid())}};
   failing.paths["out"] = at("folder") / "out.npy";
   failing.manifest = at("manifest.json");
   EXPECT_THAT([&] { run(failing); },

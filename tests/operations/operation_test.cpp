@@ -105,7 +105,7 @@ TEST(OperationTable, EveryDefaultIsAValueTheParameterAccepts) {
 TEST(OperationTable, NamesTheKnownExtensionsWhereOneIsUnknown) {
   const OperationTable table = toolkit();
   try {
-    table.writer(DataKind::components, "out.txt");
+    table.writer({"out", DataKind::components, ""}, "out.txt");
     FAIL();
   } catch (const UsageError& error) {
     EXPECT_THAT(error.what(), HasSubstr(".h5"));
@@ -159,10 +159,11 @@ Invocation transfer_of_the_grid(const OperationTable& table) {
   const MeshSequence source = waving_grid();
   Invocation invocation = invocation_of(table, "transfer");
   invocation.parameters.set("k", std::int64_t{2});
-  invocation.inputs["source"] = {{"source", SequenceRead{source, true, {}, {}}}};
+  invocation.inputs["source"] = {{"source", FieldSequence(source), {.model_driven = true}}};
   ShapeBasis none{{}, Eigen::MatrixXd(source.vertices() * 3, 0)};
   invocation.inputs["target"] = {
-      {"target", BlendshapeModel(source.shared_connectivity(), source.rest(), none)}};
+      {"target", ModelData{MorphableModel(
+                     BlendshapeModel(source.shared_connectivity(), source.rest(), none))}}};
   return invocation;
 }
 
@@ -171,7 +172,7 @@ TEST(Operations, RunOnValuesWithoutFiles) {
   const MeshSequence source = waving_grid();
   const Outcome outcome = table.find("transfer")->run(transfer_of_the_grid(table));
   const MeshSequence& result =
-      std::get<SequenceRead>(outcome.outputs.at("out").front().data).sequence;
+      std::get<FieldSequence>(outcome.outputs.at("out").front().data).sequence();
   // The same mesh as target: the source's deformation inside the regions is the target's.
   EXPECT_LT((result.positions() - source.positions()).cwiseAbs().maxCoeff(), 1e-9);
 }
@@ -191,9 +192,9 @@ TEST(Operations, StartFromTheComponentsOfAnEarlierRunAndGiveTheSame) {
     const Outcome again = table.find(name)->run(call);
     const auto positions = [](const Outcome& outcome) {
       const Data& data = outcome.outputs.at("out").front().data;
-      const auto* read = std::get_if<SequenceRead>(&data);
-      return read ? read->sequence.positions()
-                  : Frames(std::get<RegionData>(data).fields.fields.front().values.transpose());
+      const auto* shown = std::get_if<FieldSequence>(&data);
+      return shown ? shown->sequence().positions()
+                   : Frames(std::get<RegionData>(data).fields.fields.front().values.transpose());
     };
     EXPECT_TRUE(positions(again) == positions(first)) << name;
   }
@@ -218,7 +219,7 @@ TEST(Operations, DecomposeTellsTheWeightsOverTime) {
   Invocation invocation = invocation_of(table, "decompose");
   invocation.parameters.set("k", std::int64_t{2});
   const MeshSequence sequence = waving_grid();
-  invocation.inputs["sequence"] = {{"take", SequenceRead{sequence, true, {}, {}}}};
+  invocation.inputs["sequence"] = {{"take", FieldSequence(sequence), {.model_driven = true}}};
   EXPECT_FALSE(table.find("decompose")->run(invocation).outputs.contains("weights-out"));
   invocation.wanted["weights-out"] = {};
   const Outcome outcome = table.find("decompose")->run(invocation);
@@ -241,11 +242,12 @@ TEST(Operations, RefuseATargetWithOtherFaces) {
   std::swap(flipped(5, 0), flipped(5, 1));
   ShapeBasis none{{}, Eigen::MatrixXd(source.vertices() * 3, 0)};
   Invocation invocation = invocation_of(table, "transfer");
-  invocation.inputs["source"].push_back({"source", SequenceRead{source, true, {}, {}}});
+  invocation.inputs["source"].push_back({"source", FieldSequence(source), {.model_driven = true}});
   invocation.inputs["target"].push_back(
-      {"other", BlendshapeModel(std::make_shared<Connectivity>(
-                                    Connectivity::from_triangles(source.vertices(), flipped)),
-                                source.rest(), none)});
+      {"other",
+       ModelData{MorphableModel(BlendshapeModel(
+           std::make_shared<Connectivity>(Connectivity::from_triangles(source.vertices(), flipped)),
+           source.rest(), none))}});
   try {
     table.find("transfer")->run(invocation);
     FAIL();
@@ -263,10 +265,10 @@ TEST(Operations, EvaluateNeverBeatsTheFullTransferOverAllTriangles) {
   basis(10 * 3 + 2, 1) = -2;
   Invocation invocation = invocation_of(table, "evaluate");
   invocation.parameters.set("k", std::vector<std::int64_t>{1, 2});
-  invocation.inputs["source"].push_back({"source", SequenceRead{source, true, {}, {}}});
-  invocation.inputs["target"].push_back(
-      {"target", BlendshapeModel(source.shared_connectivity(), source.rest(),
-                                 ShapeBasis{{"up", "down"}, basis})});
+  invocation.inputs["source"].push_back({"source", FieldSequence(source), {.model_driven = true}});
+  invocation.inputs["target"].push_back({"target", ModelData{MorphableModel(BlendshapeModel(
+                                                       source.shared_connectivity(), source.rest(),
+                                                       ShapeBasis{{"up", "down"}, basis}))}});
   const json rows = json::parse(table.find("evaluate")->run(invocation).report).at("rows");
   ASSERT_EQ(rows.size(), 3u);
   const double full = rows[2].at("de_all");

@@ -33,7 +33,7 @@ class Plugin(HostTest):
         first = {name: next((each for each in operation.get("inputs", []) if not each["optional"]),
                             {"kind": None}) for name, operation in self.operations.items()}
         self.assertEqual({name for name, each in first.items()
-                          if each["kind"] in ["sequence", "fields"]}, {*FILTERS} | LEFT_OUT)
+                          if each["kind"] == "sequence"}, {*FILTERS} | LEFT_OUT)
 
     def test_has_every_parameter_with_its_default_its_range_and_its_help(self):
         for operation, name in FILTERS.items():

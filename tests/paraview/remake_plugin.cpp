@@ -55,7 +55,7 @@ class Remake {
     for (std::int32_t t = 0; t < faces->shape[0]; ++t) indices.push_back(t);
     mimetra_array field = integers("index", indices);
     field.location = MIMETRA_ON_TRIANGLES;
-    return hand_over("out", MIMETRA_FIELDS, {array("positions"), array("times"), faces, &field});
+    return hand_over("out", MIMETRA_SEQUENCE, {array("positions"), array("times"), faces, &field});
   }
 
   /// As many faces, which look the other way, and a field that ParaView's plugin also makes.
@@ -69,7 +69,7 @@ class Remake {
                                            7);
     mimetra_array field = integers("displacement", sevens);
     field.location = MIMETRA_ON_VERTICES;
-    return hand_over("out", MIMETRA_FIELDS,
+    return hand_over("out", MIMETRA_SEQUENCE,
                      {array("positions"), array("times"), array("face_sizes"), &turned, &field});
   }
 
@@ -87,7 +87,7 @@ class Remake {
     positions.shape[0] = times.shape[0] = count;
     positions.values = kept.data();
     times.values = when.data();
-    return hand_over("out", MIMETRA_FIELDS,
+    return hand_over("out", MIMETRA_SEQUENCE,
                      {&positions, &times, array("face_sizes"), array("corners")});
   }
 
@@ -101,7 +101,7 @@ class Remake {
     mimetra_array field = *given;
     field.values = twice.data();
     return hand_over(
-        "out", MIMETRA_FIELDS,
+        "out", MIMETRA_SEQUENCE,
         {array("positions"), array("times"), array("face_sizes"), array("corners"), &field});
   }
 
@@ -134,11 +134,13 @@ mimetra_status follow(const mimetra_interface* m, mimetra_job* job, void*) {
   return m->job_output(job, "out", take);
 }
 
-const mimetra_port fields = {sizeof fields, MIMETRA_FIELDS, "sequence", "a take", 0, 0};
+const mimetra_port fields = {sizeof fields, MIMETRA_SEQUENCE,    "sequence",
+                             "a take",      MIMETRA_WITH_FIELDS, 0};
 const mimetra_port sequence = {sizeof sequence, MIMETRA_SEQUENCE, "sequence", "a take", 0, 0};
 const mimetra_port other = {sizeof other, MIMETRA_SEQUENCE, "other", "the other take", 0, 0};
 const mimetra_port actor = {sizeof actor, MIMETRA_MODEL, "actor", "who follows", 0, 0};
-const mimetra_port asked = {sizeof asked, MIMETRA_FIELDS, "out", "mesh", MIMETRA_OPTIONAL, 0};
+const mimetra_port asked = {
+    sizeof asked, MIMETRA_SEQUENCE, "out", "mesh", MIMETRA_OPTIONAL | MIMETRA_WITH_FIELDS, 0};
 const mimetra_port made = {sizeof made, MIMETRA_SEQUENCE, "out", "mesh", 0, 0};
 const mimetra_port rows = {sizeof rows, MIMETRA_TABLE, "rows", "a table", 0, 0};
 const mimetra_port* const remake_inputs[] = {&fields, nullptr};

@@ -16,15 +16,14 @@ using testing::HasSubstr;
 /// A quad and a triangle; frame f is moved by f along z.
 FieldSequence rising(int frames) {
   FieldSequence fields = test::quad_and_triangle();
-  const MeshSequence& still = fields.sequence;
+  const MeshSequence& still = fields.sequence();
   Frames moved(frames, still.positions().cols());
   for (int f = 0; f < frames; ++f) {
     moved.row(f) = still.positions().row(0);
     for (int v = 0; v < still.vertices(); ++v) moved(f, 3 * v + 2) += f;
   }
-  fields.sequence =
-      MeshSequence(still.shared_connectivity(), moved, Eigen::VectorXd(), still.rest());
-  return fields;
+  return {MeshSequence(still.shared_connectivity(), moved, Eigen::VectorXd(), still.rest()),
+          fields.fields, fields.displacement};
 }
 
 TEST(FilmStrip, ShowsTheFirstAndLastFrameAndThoseBetweenEvenly) {

@@ -81,8 +81,6 @@ class Errors(SampleTest):
     def test_what_only_a_program_with_vtk_can_use_is_no_option(self):
         with self.assertRaisesRegex(TypeError, "unexpected keyword"):
             mimetra.regions(self.arrays, paraview=True)
-        with self.assertRaisesRegex(TypeError, "unexpected keyword"):
-            mimetra.fit("track.csv", model=self.head, overlay=True)
 
     def test_an_unknown_array_is_told_of_beside_those_there_are(self):
         with self.assertRaisesRegex(AttributeError, "no array 'points'; there are positions,"):

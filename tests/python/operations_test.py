@@ -37,6 +37,21 @@ class Operations(SampleTest):
         result = mimetra.transfer(self.arrays, (still.positions[0], still.faces), k=12)
         self.assert_same(result.out.positions, np.load(out))
 
+    def test_a_model_with_identities_stands_for_its_mean_as_a_target(self):
+        out = self.path / "mean.npy"
+        command("transfer", self.take, self.head, "-k", 4, "-o", out)
+        model = mimetra.Model.load(self.head)
+        self.assertIn("identities", model)
+        result = mimetra.transfer(self.arrays, model, k=4)
+        self.assert_same(result.out.positions, np.load(out))
+
+    def test_fields_of_a_sequence_do_not_change_what_looks_at_none(self):
+        shown = mimetra.geodesic(self.arrays, source=[3]).out
+        self.assertTrue(mimetra.operations["geodesic"].outputs[0].fields)
+        self.assertFalse(mimetra.operations["align"].inputs[0].fields)
+        bare = mimetra.Sequence(shown.positions, shown.faces, shown.times, shown.rest)
+        self.assertEqual(mimetra.info(shown).report, mimetra.info(bare).report)
+
     def test_a_list_of_targets_gives_lists(self):
         out = self.path / "results"
         command("transfer", self.take, self.actor, self.head, "--full", "-o", out)

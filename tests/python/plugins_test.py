@@ -19,10 +19,10 @@ class Plugins(unittest.TestCase):
         self.assertEqual(result.summary_['one, "two"'].tolist(), [1.0])
 
     def test_inputs_and_outputs_may_be_of_every_kind(self):
-        (run,) = mimetra.operations["echo"].inputs
-        self.assertIs(run.kind, mimetra.Run)
+        (script,) = mimetra.operations["echo"].inputs
+        self.assertIs(script.kind, mimetra.Document)
         self.assertNotIn("page", inspect.signature(mimetra.echo).parameters)
-        self.assertIn("def echo(*, run: Run | str", stub.text())
+        self.assertIn("def echo(*, script: Document | str", stub.text())
 
 
 if __name__ == "__main__":

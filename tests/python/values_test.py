@@ -58,8 +58,8 @@ class Values(SampleTest):
         self.assert_same(np.array(positions), moved())
 
     def test_fields_on_vertices_and_on_triangles_may_share_a_name(self):
-        fields = mimetra.Fields(moved(), POLYGONS, {"area": np.arange(6.0)},
-                                {"area": [0, 0, 0, 1], "part": [0, 0, 1, 1]})
+        fields = mimetra.Sequence(moved(), POLYGONS, on_vertices={"area": np.arange(6.0)},
+                                  on_triangles={"area": [0, 0, 0, 1], "part": [0, 0, 1, 1]})
         self.assert_same(fields.area, np.arange(6.0))
         changed = fields.derive(part=[2, 2, 3, 3])
         self.assertEqual(changed.part.tolist(), [2, 2, 3, 3])
@@ -79,8 +79,9 @@ class Values(SampleTest):
             pickle.dumps(mimetra.Sequence(moved(), POLYGONS))
 
     def test_fields_stand_on_vertices_or_triangles(self):
-        value = mimetra.Fields(moved(), POLYGONS, {"heat": np.arange(6.0), "part": [0] * 5 + [1]},
-                               {"inside": np.array([True, False, True, False])})
+        value = mimetra.Sequence(
+            moved(), POLYGONS, on_vertices={"heat": np.arange(6.0), "part": [0] * 5 + [1]},
+            on_triangles={"inside": np.array([True, False, True, False])})
         self.assertEqual(value.location("heat"), "vertices")
         self.assertEqual(value.location("inside"), "triangles")
         self.assertIsNone(value.location("positions"))
@@ -93,6 +94,34 @@ class Values(SampleTest):
         model = mimetra.Model(CORNERS, POLYGONS, shapes, ["open", "wide"])
         self.assert_same(model.expressions, shapes)
         self.assertEqual(model.expression_names, ["open", "wide"])
+
+    def test_a_model_may_have_identities_and_a_performance(self):
+        shapes = np.stack([CORNERS, 2 * CORNERS])
+        model = mimetra.Model(CORNERS, POLYGONS, shapes, ["open", "wide"], 3 * shapes,
+                              ["tall", "old"], weights=[[0, 0.5], [1, 0], [0, 1]],
+                              weight_names=["open", "wide"], times=[0, 1, 2],
+                              landmarks=[[31, 4], [8, 5]])
+        self.assert_same(model.identities, 3 * shapes)
+        self.assertEqual(model.identity_names, ["tall", "old"])
+        self.assert_same(model.weights, np.array([[0, 0.5], [1, 0], [0, 1]]))
+        self.assertEqual(model.weight_names, ["open", "wide"])
+        self.assert_same(model.times, np.arange(3.0))
+        self.assertEqual(model.landmarks.tolist(), [[31, 4], [8, 5]])
+        alone = mimetra.Model(CORNERS, POLYGONS)
+        self.assertNotIn("identities", alone)
+        self.assertNotIn("weights", alone)
+
+    def test_a_model_is_loaded_with_its_identities_or_as_one_of_them(self):
+        model = mimetra.Model.load(self.head)
+        person = mimetra.Model.load(f"{self.head}@identity002=1")
+        self.assertNotIn("identities", person)
+        shape = model.identities[model.identity_names.index("identity002")]
+        np.testing.assert_allclose(person.neutral, model.neutral + shape, atol=1e-9)
+
+    def test_pixels_and_text_come_out_as_they_went_in(self):
+        pixels = np.arange(18, dtype=np.uint8).reshape(2, 3, 3)
+        self.assert_same(mimetra.Pictures(pixels).pixels, pixels)
+        self.assertEqual(mimetra.Document("a page").text, ["a page"])
 
     def test_masks_become_regions(self):
         masks = np.zeros((2, 6), bool)

@@ -34,8 +34,9 @@ class Watching(SampleTest):
         sys.setswitchinterval(1e-6)
         try:
             for _ in range(100):
-                fields = mimetra.Fields([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]],
-                                        {f"field {index}": [0, 0, 0] for index in range(60)})
+                fields = mimetra.Sequence(
+                    [[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]],
+                    on_vertices={f"field {index}": [0, 0, 0] for index in range(60)})
                 threads = [threading.Thread(target=look, args=(fields,)) for _ in range(4)]
                 for thread in threads:
                     thread.start()

@@ -67,17 +67,23 @@ inline RunRead run_of(const std::string& operation, const std::string& target,
   for (const Input& input : table.find(operation)->inputs) {
     if (input.optional) continue;
     if (input.kind == DataKind::sequence) {
-      call.inputs[input.name] = {{"takes/bumps", SequenceRead{bumpy_take(), true, {}, {}}}};
+      call.inputs[input.name] = {
+          {"takes/bumps", FieldSequence(bumpy_take()), {.model_driven = true}}};
     } else {
-      call.inputs[input.name] = {{target, bumpy_patch(1.2, size)}};
+      call.inputs[input.name] = {{target, ModelData{MorphableModel(bumpy_patch(1.2, size))}}};
     }
   }
   RunRead run;
   run.record.manifest = "run/mimetra-run.json";
   run.record.operation = operation;
   run.record.arguments = {operation, "takes/bumps", target};
-  run.invocation = std::make_shared<const Invocation>(std::move(call));
+  run.invocation = std::move(call);
   return run;
+}
+
+/// A run as an input.
+inline NamedData named(const RunRead& run) {
+  return {"run", Document{}, {.run = std::make_shared<const RunRead>(run)}};
 }
 
 /// What `report` makes of a run, with the numbers of components `counts` in its table.
@@ -88,14 +94,14 @@ inline Outcome reported(const RunRead& run, const std::vector<std::int64_t>& cou
   Invocation call;
   call.parameters = Parameters(table.parameters_of(report));
   call.parameters.set("k", counts);
-  call.inputs["run"] = {{"run", run}};
+  call.inputs["run"] = {named(run)};
   for (const std::string& picture : pictures) call.wanted[picture] = {};
   call.log = log;
   return report.run(call);
 }
 
 inline std::string page_of(const Outcome& outcome) {
-  return std::get<Page>(outcome.outputs.at("out").front().data).html;
+  return std::get<Document>(outcome.outputs.at("out").front().data).text;
 }
 
 }  // namespace mimetra::test

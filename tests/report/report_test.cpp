@@ -95,8 +95,8 @@ TEST(Report, HasTheRowsThatEvaluateHas) {
   const std::vector<std::int64_t> counts = {2, 3};
   const RunRead run = run_of("evaluate", "actor", {{"k", counts}});
   const OperationTable table = test::full_table();
-  json expected = json::parse(table.find("evaluate")->run(*run.invocation).report).at("rows");
-  const ReportStudy found = study({"run", run}, {2}, {}, {});
+  json expected = json::parse(table.find("evaluate")->run(run.invocation).report).at("rows");
+  const ReportStudy found = study(test::named(run), {2}, {}, {});
   json rows = json::parse(table_of(found.transfer->rows).json()).at("rows");
   ASSERT_EQ(rows.size(), expected.size());
   for (std::size_t i = 0; i < rows.size(); ++i) {
@@ -111,7 +111,7 @@ TEST(Report, HasTheRowsThatEvaluateHas) {
 TEST(Report, ShowsEveryComponentAtWeightOneTheStrongestFirst) {
   // More components than bumps: several share a centre, and so a region.
   const RunRead run = run_of("regions", "", {{"k", std::int64_t{5}}});
-  const ReportStudy found = study({"run", run}, {2}, {}, {});
+  const ReportStudy found = study(test::named(run), {2}, {}, {});
   const Components& components = *found.components;
   const Eigen::VectorXd energy = motion_energy(components);
   const std::vector<int> order = strongest_components(components, 100);
@@ -137,7 +137,7 @@ TEST(Report, ShowsEveryComponentAtWeightOneTheStrongestFirst) {
 
 TEST(Report, ShowsATargetOfAnotherUnitAtTheSourcesSize) {
   const ReportStudy metres =
-      study({"run", run_of("transfer", "actor", {{"k", std::int64_t{3}}}, 1e-3)}, {}, {}, {});
+      study(test::named(run_of("transfer", "actor", {{"k", std::int64_t{3}}}, 1e-3)), {}, {}, {});
   const MeshSequence& shown = metres.transfer->by_regions.sequence;
   EXPECT_NEAR(shown.extent(), metres.sequence.extent(), 1e-9 * shown.extent());
   EXPECT_NEAR(metres.transfer->full.sequence.extent(), shown.extent(), 1e-9 * shown.extent());
@@ -145,14 +145,14 @@ TEST(Report, ShowsATargetOfAnotherUnitAtTheSourcesSize) {
   EXPECT_TRUE(
       holds(report_page(metres, {}, "", {}).html, "The target is shown 833 times its size"));
   const ReportStudy alike =
-      study({"run", run_of("transfer", "actor", {{"k", std::int64_t{3}}}, 0.8)}, {}, {}, {});
+      study(test::named(run_of("transfer", "actor", {{"k", std::int64_t{3}}}, 0.8)), {}, {}, {});
   EXPECT_EQ(alike.transfer->shown_scale, 1);
   EXPECT_FALSE(holds(report_page(alike, {}, "", {}).html, "times its size"));
 }
 
 TEST(Report, KeepsAnyLimit) {
   const ReportStudy found =
-      study({"run", run_of("transfer", "actor", {{"k", std::int64_t{3}}})}, {2}, {}, {});
+      study(test::named(run_of("transfer", "actor", {{"k", std::int64_t{3}}})), {2}, {}, {});
   const std::string viewer(1000, ' ');
   const ReportPage free = report_page(found, {}, viewer, {});
   ASSERT_EQ(free.viewer_frames, 24);
@@ -164,7 +164,7 @@ TEST(Report, KeepsAnyLimit) {
 
 TEST(Report, NamesComponentsAsFilesDo) {
   const ReportStudy found =
-      study({"run", run_of("regions", "", {{"k", std::int64_t{3}}})}, {2}, {}, {});
+      study(test::named(run_of("regions", "", {{"k", std::int64_t{3}}})), {2}, {}, {});
   const std::string page = report_page(found, {}, "", {}).html;
   const Region& first = found.regions.regions.front();
   EXPECT_TRUE(holds(page, "<tr><td>0</td><td>" + std::to_string(first.component) + "</td><td>" +
@@ -175,9 +175,10 @@ TEST(Report, NamesComponentsAsFilesDo) {
 
 TEST(Report, ShowsWeightsWithoutComponents) {
   const RunRead searched = run_of("transfer", "actor", {{"k", std::int64_t{3}}});
-  Invocation call = *searched.invocation;
-  call.inputs["regions"] = {{"rois", RegionData{study({"run", searched}, {}, {}, {}).regions, {}}}};
-  const RunRead given{searched.record, std::make_shared<const Invocation>(std::move(call))};
+  Invocation call = searched.invocation;
+  call.inputs["regions"] = {
+      {"rois", RegionData{study(test::named(searched), {}, {}, {}).regions, {}}}};
+  const RunRead given{searched.record, std::move(call)};
   const std::string page = page_of(reported(given, {2}));
   EXPECT_FALSE(holds(page, "<h2>Components</h2>"));
   EXPECT_TRUE(holds(page, "<h2>Weights</h2>"));
@@ -186,7 +187,8 @@ TEST(Report, ShowsWeightsWithoutComponents) {
 }
 
 TEST(Report, QuotesTheRunForAShell) {
-  ReportStudy found = study({"run", run_of("regions", "", {{"k", std::int64_t{3}}})}, {2}, {}, {});
+  ReportStudy found =
+      study(test::named(run_of("regions", "", {{"k", std::int64_t{3}}})), {2}, {}, {});
   found.run.arguments = {"regions", "my take's.npy", "", "--k=3"};
   EXPECT_TRUE(holds(report_page(found, {}, "", {}).html,
                     "mimetra regions &#39;my take&#39;\\&#39;&#39;s.npy&#39; &#39;&#39; --k=3<"));
@@ -194,7 +196,8 @@ TEST(Report, QuotesTheRunForAShell) {
 
 TEST(Report, GivesItsPicturesAsFilesToo) {
   for (const char* name : {"gallery", "weights-plot", "table-plot"}) {
-    const auto& picture = std::get<Image>(transfer_report().outputs.at(name).front().data);
+    const Image picture =
+        std::get<Pictures>(transfer_report().outputs.at(name).front().data).draw(0);
     EXPECT_GT(picture.width, 200) << name;
     const auto is_dark = [](const Color& color) { return color.green < 128; };
     EXPECT_GT(std::ranges::count_if(picture.pixels, is_dark), 100) << name;
@@ -226,7 +229,7 @@ TEST(Report, TellsWhichInputsHaveChanged) {
 
 TEST(Report, SaysWhyItHasNoViewer) {
   const RunRead run = run_of("transfer", "actor", {{"k", std::int64_t{3}}});
-  const ReportStudy found = study({"run", run}, {3}, {}, {});
+  const ReportStudy found = study(test::named(run), {3}, {}, {});
   const ReportPage page = report_page(found, {}, "", {});
   EXPECT_EQ(page.viewer_frames, 0);
   EXPECT_TRUE(holds(page.html, "No 3D viewer: this mimetra was built without npm."));

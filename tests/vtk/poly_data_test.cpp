@@ -21,7 +21,7 @@ class PolyData : public ::testing::Test {
  protected:
   void SetUp() override {
     set_polygons(*data_, faces());
-    set_positions(*data_, fields_.sequence.frame(1), Precision::double_precision);
+    set_positions(*data_, fields_.sequence().frame(1), Precision::double_precision);
     vtkNew<vtkCellArray> vertices, lines;
     vertices->InsertNextCell({3});
     lines->InsertNextCell({0, 4});
@@ -29,14 +29,14 @@ class PolyData : public ::testing::Test {
     data_->SetLines(lines);
   }
 
-  const Connectivity& faces() const { return fields_.sequence.connectivity(); }
+  const Connectivity& faces() const { return fields_.sequence().connectivity(); }
 
   FieldSequence fields_ = quad_and_triangle();
   vtkNew<vtkPolyData> data_;
 };
 
 TEST_F(PolyData, GivesBackPositionsToTheLastBit) {
-  EXPECT_TRUE(positions_of(*data_, "mesh") == fields_.sequence.frame(1));
+  EXPECT_TRUE(positions_of(*data_, "mesh") == fields_.sequence().frame(1));
 }
 
 TEST_F(PolyData, LeavesCellsOfOtherKindsOut) {
@@ -57,8 +57,8 @@ TEST_F(PolyData, HoldsZeroOnCellsOfOtherKinds) {
 }
 
 TEST_F(PolyData, CarriesTheRestPoseToTheLastBit) {
-  const Positions positions = fields_.sequence.frame(1);
-  const Positions rest = fields_.sequence.rest();
+  const Positions positions = fields_.sequence().frame(1);
+  const Positions rest = fields_.sequence().rest();
   EXPECT_FALSE(rest_of(*data_, positions, "mesh"));
   add_displacement(*data_, positions - rest);
   EXPECT_TRUE(rest_of(*data_, positions, "mesh")->isApprox(rest, 1e-6));  // in single precision
@@ -67,14 +67,14 @@ TEST_F(PolyData, CarriesTheRestPoseToTheLastBit) {
 }
 
 TEST_F(PolyData, HasNoRestPoseWhereAFilterHasTakenVerticesAway) {
-  set_rest(*data_, fields_.sequence.rest());
-  EXPECT_FALSE(rest_of(*data_, fields_.sequence.frame(1).topRows(4), "mesh"));
+  set_rest(*data_, fields_.sequence().rest());
+  EXPECT_FALSE(rest_of(*data_, fields_.sequence().frame(1).topRows(4), "mesh"));
 }
 
 TEST_F(PolyData, TakesTheRestPoseBack) {
-  set_rest(*data_, fields_.sequence.rest());
+  set_rest(*data_, fields_.sequence().rest());
   set_rest(*data_, {});
-  EXPECT_FALSE(rest_of(*data_, fields_.sequence.frame(1), "mesh"));
+  EXPECT_FALSE(rest_of(*data_, fields_.sequence().frame(1), "mesh"));
 }
 
 std::string refusal_of(const std::function<void()>& read) {
@@ -87,9 +87,9 @@ std::string refusal_of(const std::function<void()>& read) {
 }
 
 TEST_F(PolyData, RefusesARestPoseThatIsNotFinite) {
-  const Positions positions = fields_.sequence.frame(1);
+  const Positions positions = fields_.sequence().frame(1);
   const auto read = [&] { rest_of(*data_, positions, "mesh"); };
-  Positions displacement = positions - fields_.sequence.rest();
+  Positions displacement = positions - fields_.sequence().rest();
   displacement(2, 1) = std::numeric_limits<double>::quiet_NaN();
   add_displacement(*data_, displacement);
   EXPECT_EQ(refusal_of(read), "mesh: rest pose: vertex 2 is not finite");

@@ -58,7 +58,7 @@ TEST_F(VtpErrors, AnExistingFolderOfFramesIsRefused) {
 TEST_F(VtpErrors, AnExistingSeriesIsReplacedWhenAsked) {
   write_vtp_series(quad_and_triangle(), in_folder("face.pvd"));
   FieldSequence shorter = quad_and_triangle();
-  shorter.sequence = shorter.sequence.slice(0, 1);
+  shorter.frames = std::make_shared<const MeshSequence>(shorter.sequence().slice(0, 1));
   write_vtp_series(shorter, in_folder("face.pvd"), {.overwrite = true});
   EXPECT_TRUE(std::filesystem::exists(in_folder("face_vtp/face_0000.vtp")));
   EXPECT_FALSE(std::filesystem::exists(in_folder("face_vtp/face_0001.vtp")));

@@ -26,11 +26,11 @@ TEST_F(VtpRead, GivesBackWhatWasWritten) {
   write_vtp_series(written, in_folder("face.pvd"));
   for (const char* name : {"face.pvd", "face.vtp.series"}) {
     const FieldSequence read = read_vtp_series(in_folder(name));
-    EXPECT_TRUE(same_faces(read.sequence.connectivity(), written.sequence.connectivity()));
-    EXPECT_TRUE(read.sequence.positions().isApprox(written.sequence.positions(), kRounding));
-    EXPECT_TRUE(read.sequence.times() == written.sequence.times());
-    ASSERT_TRUE(read.sequence.rest_is_known());
-    EXPECT_TRUE(read.sequence.rest().isApprox(written.sequence.rest(), kRounding));
+    EXPECT_TRUE(same_faces(read.sequence().connectivity(), written.sequence().connectivity()));
+    EXPECT_TRUE(read.sequence().positions().isApprox(written.sequence().positions(), kRounding));
+    EXPECT_TRUE(read.sequence().times() == written.sequence().times());
+    ASSERT_TRUE(read.sequence().rest_is_known());
+    EXPECT_TRUE(read.sequence().rest().isApprox(written.sequence().rest(), kRounding));
     ASSERT_EQ(read.fields.size(), 3u);
     for (std::size_t i = 0; i < 3; ++i) {
       EXPECT_EQ(read.fields[i].name, written.fields[i].name);
@@ -45,7 +45,7 @@ TEST_F(VtpRead, GivesBackWhatWasWritten) {
 TEST_F(VtpRead, KnowsExtensionsInCapitals) {
   write_vtp_series(quad_and_triangle(), in_folder("face.pvd"));
   std::filesystem::rename(in_folder("face.pvd"), in_folder("face.PVD"));
-  EXPECT_EQ(read_vtp_series(in_folder("face.PVD")).sequence.frames(), 3);
+  EXPECT_EQ(read_vtp_series(in_folder("face.PVD")).sequence().frames(), 3);
   EXPECT_EQ(vtp_series_files(in_folder("face.PVD")).size(), 4u);
 }
 
@@ -53,10 +53,10 @@ TEST_F(VtpRead, TakesThePartThatIsAskedFor) {
   const FieldSequence written = quad_and_triangle();
   write_vtp_series(written, in_folder("face.pvd"));
   const auto last = [](int count) { return std::vector<int>{count - 1}; };
-  const MeshSequence read = read_vtp_series(in_folder("face.pvd"), {.selected = last}).sequence;
+  const MeshSequence read = read_vtp_series(in_folder("face.pvd"), {.selected = last}).sequence();
   ASSERT_EQ(read.frames(), 1);
-  EXPECT_TRUE(read.frame(0).isApprox(written.sequence.frame(2), kRounding));
-  EXPECT_EQ(read.times()[0], written.sequence.times()[2]);
+  EXPECT_TRUE(read.frame(0).isApprox(written.sequence().frame(2), kRounding));
+  EXPECT_EQ(read.times()[0], written.sequence().times()[2]);
 }
 
 TEST_F(VtpRead, NamesTheFileThatIsWrong) {
@@ -78,8 +78,8 @@ TEST_F(VtpRead, NamesTheFileThatIsWrong) {
 TEST_F(VtpRead, RefusesAFrameWithOtherFaces) {
   write_vtp_series(quad_and_triangle(), in_folder("face.pvd"));
   FieldSequence other = quad_and_triangle();
-  Frames frame = other.sequence.positions().topRows(1);
-  other.sequence = MeshSequence(Connectivity::from_polygons(5, {{0, 1, 2}, {0, 3}}), frame);
+  Frames frame = other.sequence().positions().topRows(1);
+  other = FieldSequence(MeshSequence(Connectivity::from_polygons(5, {{0, 1, 2}, {0, 3}}), frame));
   other.fields.clear();
   write_vtp_series(other, in_folder("face_vtp/face_0001.vtp"), {.overwrite = true});
   const auto message =

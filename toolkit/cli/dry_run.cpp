@@ -14,16 +14,19 @@ namespace mimetra::cli {
 namespace {
 
 /// "300 frames of 6706 vertices", or what else a value is made of.
-std::string size_of(const Data& data) {
-  const auto frames = [](const FrameSource& sequence) {
-    return std::to_string(sequence.frames()) + " frames of " + std::to_string(sequence.vertices()) +
-           " vertices";
-  };
-  if (const auto* read = std::get_if<SequenceRead>(&data)) return frames(read->frames());
-  if (const auto* fields = std::get_if<FieldSequence>(&data)) return frames(fields->sequence);
-  if (const auto* model = std::get_if<BlendshapeModel>(&data)) {
-    return std::to_string(model->vertices()) + " vertices, " +
-           std::to_string(model->expressions().size()) + " expressions";
+std::string size_of(const NamedData& value) {
+  const Data& data = value.data;
+  if (const auto* sequence = std::get_if<FieldSequence>(&data)) {
+    return std::to_string(sequence->frames->frames()) + " frames of " +
+           std::to_string(sequence->frames->vertices()) + " vertices";
+  }
+  if (const auto* held = std::get_if<ModelData>(&data)) {
+    const MorphableModel& model = held->model;
+    std::string size = std::to_string(model.vertices()) + " vertices, ";
+    if (model.identities().size() > 0) {
+      size += std::to_string(model.identities().size()) + " identities, ";
+    }
+    return size + std::to_string(model.expressions().size()) + " expressions";
   }
   if (const auto* components = std::get_if<Components>(&data)) {
     return std::to_string(components->count()) + " components";
@@ -31,23 +34,18 @@ std::string size_of(const Data& data) {
   if (const auto* regions = std::get_if<RegionData>(&data)) {
     return std::to_string(regions->regions.regions.size()) + " regions";
   }
-  if (const auto* run = std::get_if<RunRead>(&data)) return "a run of " + run->record.operation;
-  if (const auto* read = std::get_if<LandmarksRead>(&data)) {
-    return std::to_string(read->track.frames()) + " frames of " +
-           std::to_string(read->track.landmarks()) + " landmarks";
+  if (const auto* track = std::get_if<LandmarkTrack>(&data)) {
+    return std::to_string(track->frames()) + " frames of " + std::to_string(track->landmarks()) +
+           " landmarks";
   }
-  if (const auto* read = std::get_if<ModelRead>(&data)) {
-    return std::to_string(read->model.vertices()) + " vertices, " +
-           std::to_string(read->model.identities().size()) + " identities, " +
-           std::to_string(read->model.expressions().size()) + " expressions";
-  }
+  if (value.origin.run) return "a run of " + value.origin.run->record.operation;
   return "";
 }
 
 /// True for a sequence whose frames are all in memory.
 bool is_in_memory(const Data& data) {
-  const auto* read = std::get_if<SequenceRead>(&data);
-  return (read && !read->stream) || std::holds_alternative<FieldSequence>(data);
+  const auto* sequence = std::get_if<FieldSequence>(&data);
+  return sequence && sequence->is_in_memory();
 }
 
 }  // namespace
@@ -66,9 +64,9 @@ Outcome planned(const Operation& operation, const Invocation& invocation) {
     for (const NamedData& value : given->second) {
       inputs.push_back({{"input", input.name},
                         {"name", value.name},
-                        {"size", size_of(value.data)},
+                        {"size", size_of(value)},
                         {"in_memory", is_in_memory(value.data)}});
-      text << "  reads   " << value.name << ": " << size_of(value.data)
+      text << "  reads   " << value.name << ": " << size_of(value)
            << (is_in_memory(value.data) ? ", all in memory" : "") << '\n';
     }
   }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -18,9 +19,19 @@ struct Field {
   bool integer = false;
 };
 
-/// A sequence and what is shown on it.
+/// A sequence, in memory or read when it is needed, and what is shown on it.
 struct FieldSequence {
-  MeshSequence sequence;
+  FieldSequence() : FieldSequence(MeshSequence()) {}
+  FieldSequence(std::shared_ptr<const FrameSource> frames, std::vector<Field> fields = {},
+                bool displacement = false);
+  FieldSequence(MeshSequence sequence, std::vector<Field> fields = {}, bool displacement = false);
+
+  /// All frames in memory. Throws std::logic_error for a sequence that is read when it is needed.
+  const MeshSequence& sequence() const;
+  bool is_in_memory() const;
+
+  /// Never null.
+  std::shared_ptr<const FrameSource> frames;
   std::vector<Field> fields;
   /// Also write `displacement` (vector) and `displacement_length` per frame, from the rest pose.
   bool displacement = false;

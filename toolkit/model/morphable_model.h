@@ -15,22 +15,27 @@ class MorphableModel {
   MorphableModel(std::shared_ptr<const Connectivity> connectivity, Positions mean,
                  ShapeBasis identities, ShapeBasis expressions);
 
-  int vertices() const { return static_cast<int>(mean_.rows()); }
-  const Connectivity& connectivity() const { return *connectivity_; }
-  const std::shared_ptr<const Connectivity>& shared_connectivity() const { return connectivity_; }
-  const Positions& mean() const { return mean_; }
+  /// One person: there are no identities.
+  explicit MorphableModel(BlendshapeModel person);
+
+  int vertices() const { return average_.vertices(); }
+  const Connectivity& connectivity() const { return average_.connectivity(); }
+  const std::shared_ptr<const Connectivity>& shared_connectivity() const {
+    return average_.shared_connectivity();
+  }
+  const Positions& mean() const { return average_.neutral(); }
   const ShapeBasis& identities() const { return identities_; }
-  const ShapeBasis& expressions() const { return expressions_; }
+  const ShapeBasis& expressions() const { return average_.expressions(); }
+  /// The person whose neutral is the mean.
+  const BlendshapeModel& average() const { return average_; }
 
   /// The person with identity coefficients `alpha` (one per identity, or empty for the mean).
   /// Throws std::invalid_argument where the count differs.
   BlendshapeModel person(const Eigen::VectorXd& alpha = {}) const;
 
  private:
-  std::shared_ptr<const Connectivity> connectivity_ = std::make_shared<Connectivity>();
-  Positions mean_;
+  BlendshapeModel average_;
   ShapeBasis identities_;
-  ShapeBasis expressions_;
 };
 
 }  // namespace mimetra

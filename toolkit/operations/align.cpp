@@ -57,7 +57,7 @@ BoundParameters<AlignCall> align_parameters() {
 }
 
 Alignment aligned(const Invocation& invocation) {
-  const MeshSequence& sequence = invocation.get<SequenceRead>("sequence").sequence;
+  const MeshSequence& sequence = invocation.sequence("sequence");
   AlignCall call = align_parameters().read(invocation.parameters);
   if (call.undo) {
     std::vector<RigidTransform> motion = read_motion(*call.undo, sequence.frames());
@@ -68,7 +68,6 @@ Alignment aligned(const Invocation& invocation) {
 }
 
 Outcome run_align(const Invocation& invocation) {
-  const SequenceRead& read = invocation.get<SequenceRead>("sequence");
   Alignment alignment = aligned(invocation);
   double degrees = 0, shift = 0;
   for (const RigidTransform& transform : alignment.motion) {
@@ -83,9 +82,8 @@ Outcome run_align(const Invocation& invocation) {
                        .dump();
   outcome.summary = "largest rotation " + readable(degrees) + " degrees, largest translation " +
                     readable(shift) + '\n';
-  SequenceRead result = read;
-  result.sequence = std::move(alignment.sequence);
-  outcome.outputs["out"].push_back({"", std::move(result)});
+  outcome.outputs["out"].push_back(
+      {"", FieldSequence(std::move(alignment.sequence)), invocation.input("sequence").origin});
   return outcome;
 }
 
@@ -102,7 +100,7 @@ Operation align_operation() {
                         "align still/ --undo still/mimetra-run.json -o back/"};
   operation.run = run_align;
   operation.memory = [](const Invocation& invocation) {
-    const MeshSequence& sequence = invocation.get<SequenceRead>("sequence").sequence;
+    const MeshSequence& sequence = invocation.sequence("sequence");
     return static_cast<double>(sequence.positions().size() * sizeof(double));
   };
   return operation;

@@ -15,29 +15,11 @@ namespace {
 constexpr double kReadingShare = 0.3;
 constexpr double kWritingShare = 0.2;
 
-bool has_frames(DataKind kind) {
-  return kind == DataKind::sequence || kind == DataKind::fields;
-}
-
-/// A sequence where it can stand for what is asked for: fields that are none, and the other way
-/// round; otherwise the value itself.
-NamedData as_kind(DataKind kind, NamedData value) {
-  const auto* sequence = std::get_if<SequenceRead>(&value.data);
-  if (sequence && kind == DataKind::fields) {
-    return {value.name, FieldSequence{sequence->sequence, {}}};
-  }
-  const auto* fields = std::get_if<FieldSequence>(&value.data);
-  if (fields && kind == DataKind::sequence) {
-    return {value.name, SequenceRead{fields->sequence, false, {}, {}}};
-  }
-  return value;
-}
-
 }  // namespace
 
 void check_kind(const Operation& operation, const Input& input, const Data& data) {
-  const auto found = static_cast<DataKind>(data.index());
-  if (found == input.kind || (has_frames(found) && has_frames(input.kind))) return;
+  const DataKind found = kind_of(data);
+  if (found == input.kind) return;
   throw UsageError("input '" + input.name + "' of '" + operation.name + "': expected the kind '" +
                    std::string(kind_name(input.kind)) + "', found '" +
                    std::string(kind_name(found)) + "'");
@@ -100,9 +82,9 @@ void Call::check_outputs() const {
   for (const Output& output : request_.operation->outputs) {
     const auto path = path_of(output);
     if (!path) continue;
-    table_.writer(output.kind, *path);
+    table_.writer(output, *path);
     if (!several || !output.repeated) {
-      table_.check_writable(output.kind, *path, request_.overwrite);
+      table_.check_writable(output, *path, request_.overwrite);
     }
   }
   if (request_.manifest) {
@@ -132,13 +114,13 @@ void Call::place_outputs() {
     if (!asked) continue;
     paths_[output.name] = table_.output_paths(output, *asked, names);
     for (const auto& path : paths_[output.name]) {
-      table_.check_writable(output.kind, path, request_.overwrite, finished_.inputs);
+      table_.check_writable(output, path, request_.overwrite, finished_.inputs);
       if (!places.insert(path).second) {
         throw UsageError(path.string() +
                          ": two outputs would be written there; give each a name of its own, and "
                          "run inputs of one name one by one");
       }
-      if (table_.writes_folder(output.kind, path)) folders.insert(path);
+      if (table_.writes_folder(output, path)) folders.insert(path);
     }
   }
   for (const auto& folder : folders) {
@@ -163,7 +145,7 @@ void Call::load() {
   for (const Input& input : request_.operation->inputs) {
     for (NamedData& value : request_.given[input.name]) {
       finished_.given_inputs[input.name].push_back(value.name);
-      given[input.name].push_back(as_kind(input.kind, std::move(value)));
+      given[input.name].push_back(std::move(value));
     }
   }
   request_.given.clear();
@@ -223,9 +205,9 @@ void Call::write_values(const Output& output, const Paths& targets, const std::s
     write.inputs = finished_.inputs;
     // What accompanies another output stands in that one's manifest.
     if (request_.paths.contains(output.name)) {
-      write.extra = {{manifest_name(target, table_.writes_folder(output.kind, target)), manifest}};
+      write.extra = {{manifest_name(target, table_.writes_folder(output, target)), manifest}};
     }
-    table_.writer(output.kind, target).write(made->second[i].data, write);
+    table_.writer(output, target).write(made->second[i].data, write);
   }
 }
 

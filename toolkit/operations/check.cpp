@@ -54,8 +54,8 @@ std::vector<std::string> warnings_of(const FrameSource& sequence, bool moves) {
 }
 
 Outcome run_check(const Invocation& invocation) {
-  const NamedData& input = invocation.inputs.at("sequence").front();
-  const FrameSource& sequence = std::get<SequenceRead>(input.data).frames();
+  const NamedData& input = invocation.input("sequence");
+  const FrameSource& sequence = *std::get<FieldSequence>(input.data).frames;
   const std::vector<std::string> warnings = warnings_of(
       sequence, moves(sequence, {.threads = invocation.threads, .progress = invocation.progress}));
   if (!warnings.empty() && invocation.parameters.flag("strict")) {

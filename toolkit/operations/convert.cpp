@@ -16,15 +16,16 @@ Operation convert_operation() {
   operation.examples = {"convert takes/smile_%04d.obj -o smile.npy",
                         "convert actor@identity003=1.5 --weights take.csv --frames 0:300 -o take/"};
   operation.run = [](const Invocation& invocation) {
-    const SequenceRead& read = invocation.get<SequenceRead>("sequence");
+    const NamedData& input = invocation.input("sequence");
+    const FrameSource& frames = *std::get<FieldSequence>(input.data).frames;
     Outcome outcome;
-    outcome.outputs["out"].push_back({"", read});
-    outcome.report = Json{{"frames", read.frames().frames()},
-                          {"vertices", read.frames().vertices()},
-                          {"faces", read.frames().connectivity().polygons.size()}}
+    outcome.outputs["out"].push_back({"", input.data, input.origin});
+    outcome.report = Json{{"frames", frames.frames()},
+                          {"vertices", frames.vertices()},
+                          {"faces", frames.connectivity().polygons.size()}}
                          .dump();
-    outcome.summary = std::to_string(read.frames().frames()) + " frames of " +
-                      std::to_string(read.frames().vertices()) + " vertices\n";
+    outcome.summary = std::to_string(frames.frames()) + " frames of " +
+                      std::to_string(frames.vertices()) + " vertices\n";
     return outcome;
   };
   return operation;

@@ -20,30 +20,26 @@ std::string_view kind_name(DataKind kind) {
       return "components";
     case DataKind::regions:
       return "regions";
-    case DataKind::fields:
-      return "fields";
     case DataKind::table:
       return "table";
-    case DataKind::animated_model:
-      return "model directory";
-    case DataKind::picture:
-      return "picture";
     case DataKind::landmarks:
       return "landmarks";
-    case DataKind::morphable_model:
-      return "morphable model";
     case DataKind::fit:
       return "fitted coefficients";
     case DataKind::pictures:
       return "pictures";
-    case DataKind::view:
-      return "ParaView script";
-    case DataKind::run:
-      return "run";
-    case DataKind::page:
-      return "page";
+    case DataKind::document:
+      return "document";
   }
   return "";
+}
+
+DataKind kind_of(const Data& data) {
+  return static_cast<DataKind>(data.index());
+}
+
+Pictures Pictures::of(Image image) {
+  return {1, [held = std::make_shared<const Image>(std::move(image))](int) { return *held; }};
 }
 
 std::string Table::csv() const {

@@ -10,13 +10,11 @@
 #include <vector>
 
 #include "toolkit/io/fit_file.h"
-#include "toolkit/io/sequence_file.h"
 #include "toolkit/io/weight_track.h"
 #include "toolkit/mesh/fields.h"
 #include "toolkit/model/landmark_track.h"
 #include "toolkit/model/morphable_model.h"
 #include "toolkit/operations/image.h"
-#include "toolkit/operations/run_file.h"
 #include "toolkit/regions/regions.h"
 #include "toolkit/splocs/decomposition.h"
 
@@ -28,17 +26,11 @@ enum class DataKind {
   model,
   components,
   regions,
-  fields,
   table,
-  animated_model,
-  picture,
   landmarks,
-  morphable_model,
   fit,
   pictures,
-  view,
-  run,
-  page
+  document
 };
 
 /// "sequence", as in the JSON of the operations table.
@@ -52,12 +44,6 @@ struct RegionData {
   std::shared_ptr<const Connectivity> faces = {};
 };
 
-/// How regions that were written are shown.
-struct RegionView {
-  RegionData regions;
-  std::filesystem::path series;  ///< where they are: .pvd or .vtp
-};
-
 /// Rows of numbers under column names; an empty cell is nothing that can be measured.
 struct Table {
   std::vector<std::string> columns;
@@ -68,58 +54,54 @@ struct Table {
   std::string json() const;
 };
 
-/// A model with a performance of it.
-struct AnimatedModel {
+/// A model: one person, or with identities; perhaps with a performance of it.
+struct ModelData {
   MorphableModel model;
-  WeightTrack performance;
+  WeightTrack performance = {};
   /// The model's vertex of each of iBUG's landmarks that it has.
   std::vector<std::pair<int, VertexIndex>> landmarks = {};
 };
 
-/// Pictures over time, each drawn when it is written.
+/// One picture, or several over time, each drawn when it is needed.
 struct Pictures {
   int count = 0;
   std::function<Image(int)> draw;  ///< may be called from several threads
+
+  static Pictures of(Image image);
 };
 
-/// Landmarks, and what was noticed while reading them.
-struct LandmarksRead {
-  LandmarkTrack track;                             ///< with times
-  std::vector<std::filesystem::path> images = {};  ///< that each frame shows (F), or none
-  /// What was noticed in each frame (F, "" for nothing), or none.
-  std::vector<std::string> frame_notes = {};
-  std::vector<std::filesystem::path> files = {};
-  std::vector<std::string> notes = {};
-};
-
-/// A morphable model and where it came from.
-struct ModelRead {
-  MorphableModel model;
-  std::filesystem::path path;  ///< empty for one that was made
-};
-
-struct Invocation;
-
-/// A run that wrote something, ready to be made again.
-struct RunRead {
-  RunRecord record;
-  std::shared_ptr<const Invocation> invocation;  ///< its inputs, read, and its parameters
-};
-
-/// A page for a browser that needs nothing but itself.
-struct Page {
-  std::string html;
+/// Text that stands for itself: a page for a browser, a script.
+struct Document {
+  std::string text;
 };
 
 /// One value of the kind at the same place in DataKind.
-using Data = std::variant<SequenceRead, BlendshapeModel, Components, RegionData, FieldSequence,
-                          Table, AnimatedModel, Image, LandmarksRead, ModelRead, FittedCoefficients,
-                          Pictures, RegionView, RunRead, Page>;
+using Data = std::variant<FieldSequence, ModelData, Components, RegionData, Table, LandmarkTrack,
+                          FittedCoefficients, Pictures, Document>;
+
+DataKind kind_of(const Data& data);
+
+struct RunRead;
+
+/// What was noticed where a value was read or made, beside it.
+struct Origin {
+  /// A model drives the sequence: its rest pose is its neutral.
+  bool model_driven = false;
+  /// Where a model was read; empty for one that was made.
+  std::filesystem::path path = {};
+  /// Images that the frames of landmarks show (F), or none.
+  std::vector<std::filesystem::path> images = {};
+  /// What was noticed in each frame of landmarks (F, "" for nothing), or none.
+  std::vector<std::string> frame_notes = {};
+  /// The run that a manifest tells of.
+  std::shared_ptr<const RunRead> run = {};
+};
 
 /// A value and what it is called in messages and output names.
 struct NamedData {
   std::string name;
   Data data;
+  Origin origin = {};
 };
 
 }  // namespace mimetra

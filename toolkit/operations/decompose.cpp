@@ -38,13 +38,13 @@ Table weight_table(const Components& components, const Eigen::VectorXd& times) {
 }
 
 Outcome run_decompose(const Invocation& invocation) {
-  const SequenceRead& read = invocation.get<SequenceRead>("sequence");
-  DecomposeCall call = decompose_parameters(&read.sequence).read(invocation.parameters);
+  const MeshSequence& sequence = invocation.sequence("sequence");
+  DecomposeCall call = decompose_parameters(&sequence).read(invocation.parameters);
   call.analysis.threads = invocation.threads;
   call.analysis.progress = invocation.progress;
   call.analysis.notes = warnings_of(invocation);
-  const Source still = without_head_motion(
-      read.sequence, described(call.source, invocation.inputs.at("sequence").front()));
+  const Source still =
+      without_head_motion(sequence, described(call.source, invocation.input("sequence")));
   Analysis analysis =
       in_command_terms(invocation.parameters, [&] { return analyse(still, call.analysis); });
   const Components& components = analysis.components;
@@ -94,7 +94,7 @@ Operation decompose_operation() {
                         "decompose take.npy -k 50 --compat splocs2013 -o take.h5"};
   operation.run = run_decompose;
   operation.memory = [](const Invocation& invocation) {
-    return analysis_bytes(invocation, invocation.get<SequenceRead>("sequence"),
+    return analysis_bytes(invocation, invocation.input("sequence"),
                           invocation.parameters.integer("k"));
   };
   return operation;

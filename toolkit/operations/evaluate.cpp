@@ -47,15 +47,16 @@ std::string text_of(const std::vector<EvaluationRow>& rows) {
 }
 
 Outcome run_evaluate(const Invocation& invocation) {
-  const SequenceRead& read = invocation.get<SequenceRead>("source");
-  const NamedData& target = invocation.inputs.at("target").front();
-  EvaluationOptions options = evaluation_parameters(&read.sequence).read(invocation.parameters);
-  options.source = described(options.source, invocation.inputs.at("source").front());
+  const MeshSequence& sequence = invocation.sequence("source");
+  const NamedData& target = invocation.input("target");
+  EvaluationOptions options = evaluation_parameters(&sequence).read(invocation.parameters);
+  options.source = described(options.source, invocation.input("source"));
   options.threads = invocation.threads;
   options.progress = invocation.progress;
   options.notes = warnings_of(invocation);
   const std::vector<EvaluationRow> rows = in_command_terms(invocation.parameters, [&] {
-    return evaluate(read.sequence, {target.name, std::get<BlendshapeModel>(target.data)}, options);
+    return evaluate(sequence, {target.name, std::get<ModelData>(target.data).model.average()},
+                    options);
   });
   const Table table = table_of(rows);
   Outcome outcome;
@@ -67,15 +68,15 @@ Outcome run_evaluate(const Invocation& invocation) {
 
 /// One decomposition after the other, each followed by a transfer.
 double memory_of_evaluate(const Invocation& invocation) {
-  const SequenceRead& read = invocation.get<SequenceRead>("source");
+  const MeshSequence& sequence = invocation.sequence("source");
   EvaluationOptions options = evaluation_parameters().read(invocation.parameters);
   options.solving.threads = invocation.threads;
-  const auto& source = invocation.inputs.at("source").front();
-  const double alignment = alignment_bytes(read.sequence, described(options.source, source));
+  const auto& source = invocation.input("source");
+  const double alignment = alignment_bytes(sequence, described(options.source, source));
   const double analysis =
-      alignment + analysis_bytes(read.sequence, *std::ranges::max_element(options.counts));
-  const auto& target = invocation.get<BlendshapeModel>("target");
-  return std::max(analysis, alignment + solution_bytes(read.sequence, target, options.solving));
+      alignment + analysis_bytes(sequence, *std::ranges::max_element(options.counts));
+  const BlendshapeModel& target = invocation.get<ModelData>("target").model.average();
+  return std::max(analysis, alignment + solution_bytes(sequence, target, options.solving));
 }
 
 }  // namespace

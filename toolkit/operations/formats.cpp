@@ -4,6 +4,7 @@
 #include "toolkit/io/model_file.h"
 #include "toolkit/io/pending_output.h"
 #include "toolkit/io/regions_file.h"
+#include "toolkit/io/sequence_file.h"
 #include "toolkit/io/sequence_format.h"
 #include "toolkit/io/whole_file.h"
 #include "toolkit/mesh/text.h"
@@ -29,7 +30,7 @@ Paths write_sequence_data(const Data& data, const WriteRequest& request) {
   options.inputs = request.inputs;
   options.threads = request.threads;
   options.progress = request.progress;
-  return write_sequence(std::get<SequenceRead>(data).frames(), request.target, options,
+  return write_sequence(*std::get<FieldSequence>(data).frames, request.target, options,
                         request.extra);
 }
 
@@ -50,10 +51,12 @@ std::string mapping_text(const std::vector<std::pair<int, VertexIndex>>& landmar
 }
 
 Paths write_model_data(const Data& data, const WriteRequest& request) {
-  const auto& [model, performance, landmarks] = std::get<AnimatedModel>(data);
+  const auto& [model, performance, landmarks] = std::get<ModelData>(data);
   auto extra = request.extra;
   if (!landmarks.empty()) extra.emplace_back("landmarks68.txt", mapping_text(landmarks));
-  write_model(request.target, model, performance, request.overwrite, extra);
+  const bool performs = !performance.names.empty();
+  write_model(request.target, model, performs ? std::optional(performance) : std::nullopt,
+              request.overwrite, extra);
   return {request.target};
 }
 
@@ -94,7 +97,7 @@ void add_formats(OperationTable& table) {
   table.add(
       Writer{DataKind::sequence, extensions, sequence_writing_parameters(), write_sequence_data});
   table.add(Writer{DataKind::components, {".h5", ".hdf5"}, {}, write_components_data});
-  table.add(Writer{DataKind::animated_model, {""}, {}, write_model_data});
+  table.add(Writer{DataKind::model, {""}, {}, write_model_data});
   table.add(
       Writer{DataKind::regions, {".json"}, {}, [](const Data& data, const WriteRequest& request) {
                return write_text(request, regions_json(std::get<RegionData>(data).regions));

@@ -57,7 +57,7 @@ Eigen::VectorXd nearest(const SurfaceDistances& distances, const std::vector<int
 }
 
 Outcome run_geodesic(const Invocation& invocation) {
-  const MeshSequence& sequence = invocation.get<SequenceRead>("mesh").sequence;
+  const MeshSequence& sequence = invocation.sequence("mesh");
   GeodesicCall call = geodesic_parameters().read(invocation.parameters);
   call.distances.threads = invocation.threads;
   call.distances.notes = warnings_of(invocation);
@@ -79,9 +79,8 @@ Outcome run_geodesic(const Invocation& invocation) {
     }
   }
   Outcome outcome;
-  FieldSequence fields{mesh,
-                       {{"distance", Field::Location::vertices, shown},
-                        {"support", Field::Location::vertices, support}}};
+  FieldSequence fields(mesh, {{"distance", Field::Location::vertices, shown},
+                              {"support", Field::Location::vertices, support}});
   outcome.outputs["out"].push_back({"", std::move(fields)});
   outcome.report =
       Json{{"vertices", mesh.vertices()}, {"reached", reached}, {"farthest", farthest}}.dump();
@@ -97,7 +96,8 @@ Operation geodesic_operation() {
   operation.name = "geodesic";
   operation.summary = "Distances along a mesh from a vertex, and the support map around it";
   operation.inputs = {{"mesh", DataKind::sequence, "mesh, or the first frame of a sequence"}};
-  operation.outputs = {{"out", DataKind::fields, ".vtp with the fields distance and support"}};
+  operation.outputs = {{"out", DataKind::sequence, ".vtp with the fields distance and support"}};
+  operation.outputs.front().fields = true;
   operation.parameters = geodesic_parameters().declared();
   operation.examples = {"geodesic neutral.obj --source 1200 -o nose.vtp",
                         "geodesic neutral.obj --source 1200 --geodesics exact -o exact.vtp"};

@@ -61,7 +61,7 @@ Operation info_operation() {
   operation.inputs.front().streamed = true;
   operation.examples = {"info takes/smile_%04d.obj", "info actor/ --weights take.csv --json"};
   operation.run = [](const Invocation& invocation) {
-    const FrameSource& sequence = invocation.get<SequenceRead>("sequence").frames();
+    const FrameSource& sequence = *invocation.get<FieldSequence>("sequence").frames;
     const MeshReport mesh = inspect(sequence.rest(), sequence.connectivity());
     const double moved =
         motion(sequence, {.threads = invocation.threads, .progress = invocation.progress});

@@ -6,6 +6,8 @@
 #include "toolkit/io/frame_files.h"
 #include "toolkit/io/mesh_file.h"
 #include "toolkit/io/model_file.h"
+#include "toolkit/io/sequence_file.h"
+#include "toolkit/io/whole_file.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/progress.h"
 
@@ -28,24 +30,23 @@ class Loader {
   NamedData load(const Input& input, const std::string& text) {
     switch (input.kind) {
       case DataKind::sequence:
-        return {text, sequence(text, may_stream_ && input.streamed)};
+        return sequence(input, text);
       case DataKind::model:
-        return model(text);
+        return model(text, input.identities);
       case DataKind::components:
         files.push_back(text);
         return {text, read_components(text)};
       case DataKind::regions:
         return {text, regions(text)};
-      case DataKind::fields:
-        return {text, fields(text)};
       case DataKind::landmarks:
-        return {text, landmarks(text)};
-      case DataKind::morphable_model:
+        return landmarks(text);
+      case DataKind::document:
+        if (input.run) return run(text);
         files.push_back(text);
-        return {text, ModelRead{read_model(text, threads_), text}};
-      case DataKind::run:
-        return {text, run(text)};
-      default:
+        return {text, Document{read_file(text)}};
+      case DataKind::table:
+      case DataKind::fit:
+      case DataKind::pictures:
         break;
     }
     throw UsageError(text + ": no file holds a value of the kind '" +
@@ -54,17 +55,11 @@ class Loader {
 
   /// The mesh that region sets are for, if the value has one.
   bool know(const Data& data) {
-    if (const auto* read = std::get_if<SequenceRead>(&data)) {
-      return know(read->frames().vertices(), read->frames().triangles());
+    if (const auto* sequence = std::get_if<FieldSequence>(&data)) {
+      return know(sequence->frames->vertices(), sequence->frames->triangles());
     }
-    if (const auto* fields = std::get_if<FieldSequence>(&data)) {
-      return know(fields->sequence.vertices(), fields->sequence.triangles());
-    }
-    if (const auto* model = std::get_if<BlendshapeModel>(&data)) {
-      return know(model->vertices(), model->connectivity().triangles);
-    }
-    if (const auto* read = std::get_if<ModelRead>(&data)) {
-      return know(read->model.vertices(), read->model.connectivity().triangles);
+    if (const auto* model = std::get_if<ModelData>(&data)) {
+      return know(model->model.vertices(), model->model.connectivity().triangles);
     }
     const auto* components = std::get_if<Components>(&data);
     return components && know(components->vertices(), components->triangles);
@@ -84,13 +79,11 @@ class Loader {
     return read;
   }
 
-  FieldSequence fields(const std::string& text) {
-    if (auto read = with_fields(text)) return std::move(*read);
-    return {sequence(text, false).sequence, {}};
-  }
-
-  SequenceRead sequence(const std::string& text, bool streamed) {
-    if (auto read = with_fields(text)) return {std::move(read->sequence), false, {}, {}};
+  NamedData sequence(const Input& input, const std::string& text) {
+    if (auto read = with_fields(text)) {
+      if (!input.fields) read->fields.clear();
+      return {text, std::move(*read)};
+    }
     SequenceSource source = frames_asked_for();
     const auto path = [this](const char* name) {
       const auto value = parameters_.optional_text(name);
@@ -98,17 +91,21 @@ class Loader {
     };
     source.weights = path("weights");
     source.topology = path("topology");
-    if (!streamed) return noted(read_sequence(text, source));
-    OpenSequence open = open_sequence(text, source);
-    return noted(SequenceRead{{},
-                              open.model_driven,
-                              std::move(open.files),
-                              std::move(open.notes),
-                              std::move(open.frames)});
+    if (may_stream_ && input.streamed) {
+      OpenSequence open = noted(open_sequence(text, source));
+      return {text, FieldSequence(std::move(open.frames)), {.model_driven = open.model_driven}};
+    }
+    SequenceRead read = noted(read_sequence(text, source));
+    return {text, FieldSequence(std::move(read.sequence)), {.model_driven = read.model_driven}};
   }
 
-  LandmarksRead landmarks(const std::string& text) {
-    return noted(table_.landmark_reader().read(text, frames_asked_for(), parameters_));
+  NamedData landmarks(const std::string& text) {
+    LandmarksRead read =
+        noted(table_.landmark_reader().read(text, frames_asked_for(), parameters_));
+    Origin origin;
+    origin.images = std::move(read.images);
+    origin.frame_notes = std::move(read.frame_notes);
+    return {text, std::move(read.track), std::move(origin)};
   }
 
   SequenceSource frames_asked_for() const {
@@ -136,25 +133,31 @@ class Loader {
     return true;
   }
 
-  NamedData model(const std::string& text) {
+  NamedData model(const std::string& text, bool with_identities) {
     const ModelSpec spec = ModelSpec::parse(text);
+    const bool is_person = spec.fit || !spec.identity_text.empty();
+    Origin origin;
+    origin.path = spec.path;
     files.push_back(spec.path);
     if (!std::filesystem::exists(spec.path)) {
       throw IoError(spec.path.string(), "no such file or folder");
     }
     if (spec.fit) files.push_back(*spec.fit);
     if (std::filesystem::is_directory(spec.path) || is_model(spec.path)) {
-      return {spec.name(), read_person(spec, threads_)};
+      const auto read = [&] {
+        return with_identities && !is_person ? read_model(spec.path, threads_)
+                                             : MorphableModel(read_person(spec, threads_));
+      };
+      return {spec.name(), ModelData{read()}, std::move(origin)};
     }
-    if (!spec.identity_text.empty()) {
+    if (is_person) {
       throw MismatchError(text + ": '" + spec.path.string() +
                           "' is one mesh and has no identities");
     }
     TriMesh mesh = read_mesh(spec.path);
-    ShapeBasis none{{}, Eigen::MatrixXd(mesh.positions.size(), 0)};
-    return {spec.name(),
-            BlendshapeModel(std::make_shared<Connectivity>(std::move(mesh.connectivity)),
-                            std::move(mesh.positions), std::move(none))};
+    MorphableModel model(std::make_shared<Connectivity>(std::move(mesh.connectivity)),
+                         std::move(mesh.positions), {}, {});
+    return {spec.name(), ModelData{std::move(model)}, std::move(origin)};
   }
 
   RegionData regions(const std::string& text) {
@@ -163,15 +166,16 @@ class Loader {
     return {table_.region_reader(text).read(text, vertices_, triangles_), {}};
   }
 
-  /// What the run read, read again.
-  RunRead run(const std::string& text) {
-    RunRead read{read_run(text), {}};
+  /// The manifest; and what the run read, read again.
+  NamedData run(const std::string& text) {
+    RunRead read;
+    read.record = read_run(text);
     const Operation* operation = table_.find(read.record.operation);
     if (!operation) {
       throw MismatchError(read.record.manifest.string() + ": a run of '" + read.record.operation +
                           "', which this program does not know");
     }
-    Invocation invocation;
+    Invocation& invocation = read.invocation;
     invocation.parameters = Parameters(table_.parameters_of(*operation));
     for (const auto& [name, value] : read.record.options) {
       const Parameter* parameter = invocation.parameters.find(name);
@@ -189,8 +193,10 @@ class Loader {
     files.insert(files.end(), loaded.files.begin(), loaded.files.end());
     invocation.inputs = std::move(loaded.data);
     invocation.threads = threads_;
-    read.invocation = std::make_shared<const Invocation>(std::move(invocation));
-    return read;
+    Document manifest{read_file(read.record.manifest)};
+    Origin origin;
+    origin.run = std::make_shared<const RunRead>(std::move(read));
+    return {text, std::move(manifest), std::move(origin)};
   }
 
   const OperationTable& table_;

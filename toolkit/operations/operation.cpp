@@ -36,6 +36,17 @@ std::vector<Parameter> frame_parameters() {
            1e6}};
 }
 
+/// Those that the writer can write an output with.
+std::vector<std::string> extensions_of(const Output& output, const Writer& writer) {
+  if (writer.kind != output.kind || (output.fields && !writer.fields)) return {};
+  std::vector<std::string> extensions = writer.extensions;
+  std::erase_if(extensions, [&output](const std::string& extension) {
+    return !output.extensions.empty() &&
+           std::ranges::find(output.extensions, extension) == output.extensions.end();
+  });
+  return extensions;
+}
+
 std::string_view kind_name(ParameterKind kind) {
   switch (kind) {
     case ParameterKind::flag:
@@ -157,10 +168,8 @@ std::vector<Parameter> OperationTable::parameters_of(const Operation& operation)
       }
     }
   };
-  const auto reads_sequence = [](const Input& input) {
-    return input.kind == DataKind::sequence || input.kind == DataKind::fields;
-  };
-  if (std::ranges::any_of(operation.inputs, reads_sequence)) {
+  if (std::ranges::find(operation.inputs, DataKind::sequence, &Input::kind) !=
+      operation.inputs.end()) {
     append(sequence_parameters());
     append(frame_parameters());
   }
@@ -171,52 +180,54 @@ std::vector<Parameter> OperationTable::parameters_of(const Operation& operation)
   }
   for (const Output& output : operation.outputs) {
     for (const Writer& writer : writers_) {
-      if (writer.kind == output.kind) append(writer.parameters);
+      if (!extensions_of(output, writer).empty()) append(writer.parameters);
     }
   }
   return parameters;
 }
 
-const Writer& OperationTable::writer(DataKind kind, const std::filesystem::path& target) const {
+const Writer& OperationTable::writer(const Output& output,
+                                     const std::filesystem::path& target) const {
   const Writer* folder = nullptr;
   std::vector<std::string> known;
   for (const Writer& writer : writers_) {
-    if (writer.kind != kind) continue;
-    if (has_extension(writer.extensions, target)) return writer;
-    for (const std::string& extension : writer.extensions) {
-      if (extension.empty())
+    for (const std::string& extension : extensions_of(output, writer)) {
+      if (extension.empty()) {
         folder = &writer;
-      else
+      } else if (extension == lower_extension(target)) {
+        return writer;
+      } else {
         known.push_back(extension);
+      }
     }
   }
   if (folder) return *folder;
-  if (known.empty()) {
-    throw UsageError(target.string() + ": this program writes no " + std::string(kind_name(kind)));
-  }
-  throw UsageError(target.string() + ": " + std::string(kind_name(kind)) + " can be written as " +
-                   joined(known) + ", not as '" + target.extension().string() + "'");
+  const std::string kind(kind_name(output.kind));
+  if (known.empty()) throw UsageError(target.string() + ": this program writes no " + kind);
+  throw UsageError(target.string() + ": " + kind + " can be written as " + joined(known) +
+                   ", not as '" + target.extension().string() + "'");
 }
 
-bool OperationTable::writes_folder(DataKind kind, const std::filesystem::path& target) const {
-  const std::vector<std::string>& extensions = writer(kind, target).extensions;
+bool OperationTable::writes_folder(const Output& output,
+                                   const std::filesystem::path& target) const {
+  const std::vector<std::string>& extensions = writer(output, target).extensions;
   const bool may = std::ranges::find(extensions, "") != extensions.end();
   return may && (!target.has_extension() || !has_extension(extensions, target));
 }
 
-void OperationTable::check_writable(DataKind kind, const std::filesystem::path& target,
+void OperationTable::check_writable(const Output& output, const std::filesystem::path& target,
                                     bool overwrite,
                                     const std::vector<std::filesystem::path>& inputs) const {
   using Kind = PendingOutput::Kind;
   check_inputs_stay(target, inputs);
-  PendingOutput(target, writes_folder(kind, target) ? Kind::folder : Kind::file, overwrite);
+  PendingOutput(target, writes_folder(output, target) ? Kind::folder : Kind::file, overwrite);
 }
 
 std::vector<std::filesystem::path> OperationTable::output_paths(
     const Output& output, const std::filesystem::path& asked,
     const std::vector<std::string>& names) const {
   if (!output.repeated || names.size() <= 1) return {asked};
-  const bool is_folder = writes_folder(output.kind, asked);
+  const bool is_folder = writes_folder(output, asked);
   std::vector<std::filesystem::path> paths;
   for (const std::string& name : names) {
     const std::string file = asked.stem().string() + '-' + name + asked.extension().string();
@@ -231,7 +242,7 @@ std::filesystem::path OperationTable::companion_path(const Operation& operation,
   const Output& main = *std::ranges::find(operation.outputs, "out", &Output::name);
   std::filesystem::path name = out.lexically_normal();
   if (!name.has_filename()) name = name.parent_path();
-  if (!writes_folder(main.kind, out)) name.replace_extension();
+  if (!writes_folder(main, out)) name.replace_extension();
   return name += companion.companion;
 }
 

@@ -7,10 +7,12 @@
 #include <string>
 #include <vector>
 
+#include "toolkit/io/sequence_options.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/progress.h"
 #include "toolkit/operations/data.h"
 #include "toolkit/operations/parameter.h"
+#include "toolkit/operations/run_file.h"
 
 namespace mimetra {
 
@@ -20,9 +22,12 @@ struct Input {
   DataKind kind;
   std::string help;
   bool optional = false;
-  bool repeated = false;  ///< one or more; only the last positional input
-  bool named = false;     ///< an option although it is needed
-  bool streamed = false;  ///< frames are read when they are needed, not all at once
+  bool repeated = false;    ///< one or more; only the last positional input
+  bool named = false;       ///< an option although it is needed
+  bool fields = false;      ///< a sequence whose fields are looked at
+  bool identities = false;  ///< a model that keeps its identities; otherwise it is one person
+  bool run = false;         ///< the manifest of a run, whose inputs are read too
+  bool streamed = false;    ///< frames are read when they are needed, not all at once
 };
 
 /// Something an operation makes.
@@ -35,6 +40,10 @@ struct Output {
   /// ".fit.json": it is written to NAME.fit.json beside the output `out` where no other path is
   /// asked for.
   std::string companion = {};
+  /// Its fields matter: a sequence that only formats with fields take.
+  bool fields = false;
+  /// The formats that it is written in, where its kind has others too; "" is a folder.
+  std::vector<std::string> extensions = {};
 };
 
 enum class LogLevel { info, warning };
@@ -65,9 +74,21 @@ struct Invocation {
                ? nullptr
                : &std::get<T>(found->second.front().data);
   }
+  /// The first value of an input. Throws std::out_of_range where it has none.
+  const NamedData& input(const std::string& name) const { return inputs.at(name).front(); }
+  /// Its frames, all in memory.
+  const MeshSequence& sequence(const std::string& name) const {
+    return get<FieldSequence>(name).sequence();
+  }
   bool wants(const std::string& output) const { return wanted.contains(output); }
   void warn(const std::string& message) const;
   void info(const std::string& message) const;
+};
+
+/// A run that wrote something, ready to be made again.
+struct RunRead {
+  RunRecord record;
+  Invocation invocation;  ///< its inputs, read, and its parameters
 };
 
 /// What came of it.
@@ -112,6 +133,8 @@ struct Writer {
   std::vector<Parameter> parameters;
   /// Writes atomically; returns the files. Throws OutputError, Cancelled.
   std::function<std::vector<std::filesystem::path>(const Data&, const WriteRequest&)> write;
+  /// A sequence keeps its fields.
+  bool fields = false;
 };
 
 /// A way to read a region set for a mesh, chosen by extension.
@@ -130,6 +153,16 @@ struct FieldReader {
       read;
   /// The files that belong to a path.
   std::function<std::vector<std::filesystem::path>(const std::filesystem::path&)> files;
+};
+
+/// Landmarks, and what was noticed while reading them.
+struct LandmarksRead {
+  LandmarkTrack track;                             ///< with times
+  std::vector<std::filesystem::path> images = {};  ///< that each frame shows (F), or none
+  /// What was noticed in each frame (F, "" for nothing), or none.
+  std::vector<std::string> frame_notes = {};
+  std::vector<std::filesystem::path> files = {};
+  std::vector<std::string> notes = {};
 };
 
 /// The way to read landmarks.
@@ -159,14 +192,14 @@ class OperationTable {
   /// std::invalid_argument where an own one has a name of those, or two of those share a name but
   /// not a kind.
   std::vector<Parameter> parameters_of(const Operation& operation) const;
-  /// The writer of `kind` for a path. Throws UsageError that lists the known extensions.
-  const Writer& writer(DataKind kind, const std::filesystem::path& target) const;
+  /// The writer of an output for a path. Throws UsageError that lists the known extensions.
+  const Writer& writer(const Output& output, const std::filesystem::path& target) const;
   /// True where that writer makes a folder.
-  bool writes_folder(DataKind kind, const std::filesystem::path& target) const;
+  bool writes_folder(const Output& output, const std::filesystem::path& target) const;
   /// Makes and removes what that writer would begin with, so that nobody computes for nothing.
   /// Throws OutputError where it cannot be written, exists and not `overwrite`, or would replace
   /// one of `inputs`.
-  void check_writable(DataKind kind, const std::filesystem::path& target, bool overwrite,
+  void check_writable(const Output& output, const std::filesystem::path& target, bool overwrite,
                       const std::vector<std::filesystem::path>& inputs = {}) const;
   /// Where an output's values go, one for each of `names`: the path asked for where there is one
   /// name; otherwise a folder OUT/NAME each, or OUT-NAME.EXT for files.

@@ -194,14 +194,14 @@ BoundParameters<SolveOptions> solving_parameters() {
 
 SourceOptions described(SourceOptions options, const NamedData& input) {
   options.name = input.name;
-  options.model_driven = std::get<SequenceRead>(input.data).model_driven;
+  options.model_driven = input.origin.model_driven;
   return options;
 }
 
 std::optional<GivenComponents> given_components(const Invocation& invocation) {
   const Components* components = invocation.find<Components>("components");
   if (!components) return {};
-  return GivenComponents{invocation.inputs.at("components").front().name, *components};
+  return GivenComponents{invocation.input("components").name, *components};
 }
 
 Output components_output() {
@@ -213,11 +213,12 @@ bool solves_for_vertices(const Parameters& parameters, const BlendshapeModel& ta
   return solves_for_vertices(target, solving_parameters().read(parameters).space);
 }
 
-double analysis_bytes(const Invocation& invocation, const SequenceRead& read, int count) {
+double analysis_bytes(const Invocation& invocation, const NamedData& source, int count) {
   if (invocation.find<Components>("components")) return 0;
-  SourceOptions options = alignment_parameters().read(invocation.parameters);
-  options.model_driven = read.model_driven;
-  return alignment_bytes(read.sequence, options) + analysis_bytes(read.sequence, count);
+  const SourceOptions options =
+      described(alignment_parameters().read(invocation.parameters), source);
+  const MeshSequence& sequence = std::get<FieldSequence>(source.data).sequence();
+  return alignment_bytes(sequence, options) + analysis_bytes(sequence, count);
 }
 
 Notes warnings_of(const Invocation& invocation) {

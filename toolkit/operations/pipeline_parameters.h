@@ -41,7 +41,7 @@ bool solves_for_vertices(const Parameters& parameters, const BlendshapeModel& ta
 
 /// Bytes of the decomposition of a sequence into `count` components, alignment included; 0 for
 /// components that are given.
-double analysis_bytes(const Invocation& invocation, const SequenceRead& read, int count);
+double analysis_bytes(const Invocation& invocation, const NamedData& source, int count);
 
 /// Notes become warnings that name the options which help.
 Notes warnings_of(const Invocation& invocation);

@@ -2,6 +2,7 @@
 
 #include "toolkit/mesh/errors.h"
 #include "toolkit/operations/json.h"
+#include "toolkit/operations/paraview_view.h"
 #include "toolkit/operations/pipeline_parameters.h"
 #include "toolkit/operations/region_report.h"
 #include "toolkit/operations/toolkit_operations.h"
@@ -32,8 +33,8 @@ BoundParameters<RegionsCall> regions_parameters(const MeshSequence* sequence = n
 
 /// Components given, or those of the sequence without its motion.
 Analysis analysis_of(const Invocation& invocation, const RegionsCall& call) {
-  const NamedData& input = invocation.inputs.at("sequence").front();
-  const MeshSequence& sequence = std::get<SequenceRead>(input.data).sequence;
+  const NamedData& input = invocation.input("sequence");
+  const MeshSequence& sequence = std::get<FieldSequence>(input.data).sequence();
   if (const auto given = given_components(invocation)) {
     return analysis_of(*given, sequence, call.analysis);
   }
@@ -54,14 +55,14 @@ std::filesystem::path series_of(const Invocation& invocation) {
 
 Outcome run_regions(const Invocation& invocation) {
   if (invocation.wants("paraview")) series_of(invocation);
-  const SequenceRead& read = invocation.get<SequenceRead>("sequence");
-  RegionsCall call = regions_parameters(&read.sequence).read(invocation.parameters);
+  const MeshSequence& sequence = invocation.sequence("sequence");
+  RegionsCall call = regions_parameters(&sequence).read(invocation.parameters);
   call.regions.notes = call.analysis.notes = warnings_of(invocation);
   call.analysis.threads = invocation.threads;
   call.analysis.progress = invocation.progress;
   const Components* given = invocation.find<Components>("components");
   if (call.component_fields && given && given->support.size() == 0) {
-    throw MismatchError(invocation.inputs.at("components").front().name +
+    throw MismatchError(invocation.input("components").name +
                         ": holds no support maps, which --component-fields writes; decompose the "
                         "sequence again");
   }
@@ -79,9 +80,11 @@ Outcome run_regions(const Invocation& invocation) {
   json["seconds"] = analysis.seconds;
   outcome.report = json.dump();
   outcome.summary = summary_of(regions);
-  const RegionData shown{regions, {read.sequence, std::move(fields), true}};
+  const RegionData shown{regions, FieldSequence(invocation.get<FieldSequence>("sequence").frames,
+                                                std::move(fields), true)};
   if (invocation.wants("paraview")) {
-    outcome.outputs["paraview"].push_back({"", RegionView{shown, series_of(invocation)}});
+    outcome.outputs["paraview"].push_back(
+        {"", Document{paraview_view(shown, series_of(invocation))}});
   }
   outcome.outputs["out"].push_back({"", shown});
   if (invocation.wants("components-out")) {
@@ -101,14 +104,15 @@ Operation regions_operation() {
       {"components", DataKind::components, "components (.h5) of an earlier decompose", true}};
   operation.outputs = {{"out", DataKind::regions, ".pvd (a time series), .vtp, .json or .csv"},
                        components_output(),
-                       {"paraview", DataKind::view,
+                       {"paraview", DataKind::document,
                         "script (.py) that shows them: paraview --script=VIEW.py", true}};
+  operation.outputs.back().extensions = {".py"};
   operation.parameters = regions_parameters().declared();
   operation.examples = {"regions takes/ -k 30 -o rois/take.pvd --paraview view.py",
                         "regions take.npy --coverage 0.8 --radius 12abs -o rois.json"};
   operation.run = run_regions;
   operation.memory = [](const Invocation& invocation) {
-    return analysis_bytes(invocation, invocation.get<SequenceRead>("sequence"),
+    return analysis_bytes(invocation, invocation.input("sequence"),
                           invocation.parameters.integer("k"));
   };
   return operation;

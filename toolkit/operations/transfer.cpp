@@ -31,7 +31,7 @@ BoundParameters<TransferOptions> transfer_parameters(const MeshSequence* sequenc
 }
 
 const BlendshapeModel& model_of(const NamedData& target) {
-  return std::get<BlendshapeModel>(target.data);
+  return std::get<ModelData>(target.data).model.average();
 }
 
 std::vector<Target> targets_of(const Invocation& invocation) {
@@ -43,12 +43,12 @@ std::vector<Target> targets_of(const Invocation& invocation) {
 }
 
 TransferOptions options_of(const Invocation& invocation) {
-  const NamedData& source = invocation.inputs.at("source").front();
-  TransferOptions options = transfer_parameters(&std::get<SequenceRead>(source.data).sequence)
+  const NamedData& source = invocation.input("source");
+  TransferOptions options = transfer_parameters(&std::get<FieldSequence>(source.data).sequence())
                                 .read(invocation.parameters);
   options.source = described(std::move(options.source), source);
   if (const RegionData* regions = invocation.find<RegionData>("regions")) {
-    options.given = GivenRegions{invocation.inputs.at("regions").front().name, regions->regions};
+    options.given = GivenRegions{invocation.input("regions").name, regions->regions};
   } else if (auto components = given_components(invocation)) {
     options.given = std::move(*components);
   }
@@ -129,7 +129,7 @@ void add_targets(Outcome& outcome, Json& report, const Invocation& invocation,
       outcome.outputs["weights-out"].push_back(weight_table(targets[t], solution));
     }
     outcome.outputs["out"].push_back(
-        {targets[t].name, SequenceRead{std::move(solution.sequence), false, {}, {}}});
+        {targets[t].name, FieldSequence(std::move(solution.sequence))});
   }
   report["targets"] = reports;
 }
@@ -143,17 +143,15 @@ void add_regions(Outcome& outcome, Json& report, const Invocation& invocation,
   outcome.summary = summary_of(*result.regions) + outcome.summary;
   if (!invocation.wants("regions-out")) return;
   outcome.outputs["regions-out"].push_back(
-      {"", RegionData{*result.regions,
-                      {invocation.get<SequenceRead>("source").sequence, fields_of(*result.regions),
-                       true}}});
+      {"", RegionData{*result.regions, FieldSequence(invocation.get<FieldSequence>("source").frames,
+                                                     fields_of(*result.regions), true)}});
 }
 
 Outcome run_transfer(const Invocation& invocation) {
   const Stopwatch stopwatch;
   check_outputs(invocation);
   TransferResult result = in_command_terms(invocation.parameters, [&] {
-    return transfer(invocation.get<SequenceRead>("source").sequence, targets_of(invocation),
-                    options_of(invocation));
+    return transfer(invocation.sequence("source"), targets_of(invocation), options_of(invocation));
   });
   Outcome outcome;
   Json report = Json::object();
@@ -169,17 +167,18 @@ Outcome run_transfer(const Invocation& invocation) {
 
 /// Decomposition, then one target after the other, whose results are kept.
 double memory_of_transfer(const Invocation& invocation) {
-  const SequenceRead& source = invocation.get<SequenceRead>("source");
+  const NamedData& source = invocation.input("source");
+  const MeshSequence& sequence = invocation.sequence("source");
   TransferOptions options = transfer_parameters().read(invocation.parameters);
-  options.source = described(std::move(options.source), invocation.inputs.at("source").front());
+  options.source = described(std::move(options.source), source);
   options.solving.threads = invocation.threads;
   const bool looks_for_regions = !options.full && !invocation.find<RegionData>("regions");
   const double analysis =
       looks_for_regions ? analysis_bytes(invocation, source, options.analysis.decomposition.count)
                         : 0;
-  double solutions = alignment_bytes(source.sequence, options.source);
+  double solutions = alignment_bytes(sequence, options.source);
   for (const NamedData& target : invocation.inputs.at("target")) {
-    solutions += solution_bytes(source.sequence, model_of(target), options.solving);
+    solutions += solution_bytes(sequence, model_of(target), options.solving);
   }
   return std::max(analysis, solutions);
 }

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "toolkit/operations/data.h"
-#include "toolkit/vtk/colors.h"
+#include "toolkit/operations/colors.h"
 
 namespace mimetra {
 

@@ -45,7 +45,7 @@ void check(const std::vector<FieldSequence>& sequences, const StripOptions& opti
 int common_frames(const std::vector<FieldSequence>& sequences, const StripOptions& options) {
   int frames = 1;
   for (std::size_t row = 0; row < sequences.size(); ++row) {
-    const int own = sequences[row].sequence.frames();
+    const int own = sequences[row].sequence().frames();
     if (own == 1 || own == frames) continue;
     if (frames != 1) {
       throw MismatchError(row_name(options, row) + ": " + std::to_string(own) +
@@ -79,7 +79,7 @@ std::vector<int> shown_frames(int frames, const StripOptions& options) {
 }
 
 Positions pose(const FieldSequence& fields, int frame) {
-  return fields.sequence.frame(fields.sequence.frames() == 1 ? 0 : frame);
+  return fields.sequence().frame(fields.sequence().frames() == 1 ? 0 : frame);
 }
 
 /// Values of triangles on their vertices: the largest.
@@ -126,15 +126,15 @@ class RowPainter {
     const FieldSequence& own = sequences[row];
     if (color_ == "displacement") {
       for (const int frame : frames) {
-        values_.push_back(distance(pose(own, frame), own.sequence.rest()));
+        values_.push_back(distance(pose(own, frame), own.sequence().rest()));
       }
     } else if (color_ == "difference") {
       for (const int frame : frames) values_.push_back(difference(frame));
     } else {
       const Field& field = field_of(own, color_, row_name(options, row));
-      values_.assign(frames.size(), vertex_values(field, own.sequence));
+      values_.assign(frames.size(), vertex_values(field, own.sequence()));
       if (is_category(field)) {
-        categories_ = category_colors(whole_numbers(values_.front()), own.sequence.triangles());
+        categories_ = category_colors(whole_numbers(values_.front()), own.sequence().triangles());
       }
     }
   }
@@ -209,10 +209,10 @@ std::vector<std::string> column_titles(const std::vector<FieldSequence>& sequenc
                                        const std::vector<int>& frames,
                                        const StripOptions& options) {
   const auto longest = std::ranges::max_element(
-      sequences, {}, [](const FieldSequence& fields) { return fields.sequence.frames(); });
+      sequences, {}, [](const FieldSequence& fields) { return fields.sequence().frames(); });
   std::vector<std::string> titles;
-  if (longest->sequence.frames() == 1 || options.layout == StripLayout::turntable) return titles;
-  for (const int frame : frames) titles.push_back(time_title(longest->sequence.times()[frame]));
+  if (longest->sequence().frames() == 1 || options.layout == StripLayout::turntable) return titles;
+  for (const int frame : frames) titles.push_back(time_title(longest->sequence().times()[frame]));
   return titles;
 }
 
@@ -233,7 +233,7 @@ Sheet film_strip(const std::vector<FieldSequence>& sequences, const StripOptions
     const RowPainter painter(sequences, options, row, frames);
     TileRow tiles;
     if (!options.titles.empty()) tiles.title = options.titles[row];
-    tiles.connectivity = sequences[row].sequence.shared_connectivity();
+    tiles.connectivity = sequences[row].sequence().shared_connectivity();
     tiles.bar = painter.bar();
     for (std::size_t column = 0; column < frames.size(); ++column) {
       tiles.tiles.push_back({pose(sequences[row], frames[column]),

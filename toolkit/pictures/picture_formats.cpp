@@ -13,7 +13,7 @@ namespace mimetra {
 namespace {
 
 std::vector<std::filesystem::path> write_picture(const Data& data, const WriteRequest& request) {
-  return write_text(request, png_of(std::get<Image>(data)));
+  return write_text(request, png_of(std::get<Pictures>(data).draw(0)));
 }
 
 std::vector<std::filesystem::path> write_pictures(const Data& data, const WriteRequest& request) {
@@ -34,7 +34,7 @@ std::vector<std::filesystem::path> write_pictures(const Data& data, const WriteR
 }  // namespace
 
 void add_pictures(OperationTable& table) {
-  table.add(Writer{DataKind::picture, {".png"}, {}, write_picture});
+  table.add(Writer{DataKind::pictures, {".png"}, {}, write_picture});
   table.add(Writer{DataKind::pictures, {""}, {}, write_pictures});
   table.add(render_operation());
 }

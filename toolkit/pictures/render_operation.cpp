@@ -101,7 +101,7 @@ Outcome run_render(const Invocation& invocation) {
   outcome.summary = std::to_string(image.width) + " x " + std::to_string(image.height) +
                     " pixels, " + std::to_string(sheet.rows.size()) + " rows of " +
                     std::to_string(sheet.rows.front().tiles.size()) + "\n";
-  outcome.outputs["out"].push_back({"", std::move(image)});
+  outcome.outputs["out"].push_back({"", Pictures::of(std::move(image))});
   return outcome;
 }
 
@@ -157,9 +157,11 @@ Operation render_operation() {
   Operation operation;
   operation.name = "render";
   operation.summary = "Draw sequences as rows of pictures: film strip, one frame or turntable";
-  operation.inputs = {{"input", DataKind::fields,
+  operation.inputs = {{"input", DataKind::sequence,
                        "sequences, a row each; .pvd and .vtp with their fields", false, true}};
-  operation.outputs = {{"out", DataKind::picture, ".png"}};
+  operation.inputs.front().fields = true;
+  operation.outputs = {{"out", DataKind::pictures, ".png"}};
+  operation.outputs.front().extensions = {".png"};
   operation.parameters = parameters();
   operation.examples = {
       "render take.npy regions.pvd actor_smile/ --color none,region,none -o strip.png",

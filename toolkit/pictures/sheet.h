@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "toolkit/mesh/tri_mesh.h"
-#include "toolkit/vtk/colors.h"
+#include "toolkit/operations/colors.h"
 
 namespace mimetra {
 

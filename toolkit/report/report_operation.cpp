@@ -31,13 +31,13 @@ ReportView view_of(const Parameters& parameters) {
 
 /// Pictures that a run cannot give are refused before anything is computed.
 void check_pictures(const Invocation& invocation) {
-  const RunRead& run = invocation.get<RunRead>("run");
+  const RunRead& run = *invocation.input("run").origin.run;
   const std::string manifest = run.record.manifest.string();
-  if (invocation.wants("gallery") && run.invocation->find<RegionData>("regions")) {
+  if (invocation.wants("gallery") && run.invocation.find<RegionData>("regions")) {
     throw MismatchError("--gallery: " + manifest +
                         " is a run by given regions, which have no components");
   }
-  if (invocation.wants("table-plot") && !run.invocation->inputs.contains("target")) {
+  if (invocation.wants("table-plot") && !run.invocation.inputs.contains("target")) {
     throw MismatchError("--table-plot: " + manifest + " is a run of " + run.record.operation +
                         ", without a transfer");
   }
@@ -47,7 +47,7 @@ void draw_wanted(Outcome& outcome, const Invocation& invocation, const ReportStu
                  const ReportView& view) {
   constexpr int kGalleryColumns = 6;
   const auto add = [&](const char* output, const auto& picture) {
-    if (invocation.wants(output)) outcome.outputs[output].push_back({"", picture()});
+    if (invocation.wants(output)) outcome.outputs[output].push_back({"", Pictures::of(picture())});
   };
   add("gallery", [&] {
     const Components& components = *study.components;
@@ -69,9 +69,8 @@ void draw_wanted(Outcome& outcome, const Invocation& invocation, const ReportStu
 Outcome run_report(const Invocation& invocation) {
   check_pictures(invocation);
   const ReportView view = view_of(invocation.parameters);
-  const ReportStudy found =
-      study(invocation.inputs.at("run").front(), invocation.parameters.integers("k"),
-            part_of(invocation.progress, 0, 0.6), invocation.log);
+  const ReportStudy found = study(invocation.input("run"), invocation.parameters.integers("k"),
+                                  part_of(invocation.progress, 0, 0.6), invocation.log);
   const std::string_view viewer = viewer_script();
   ReportPage page = report_page(found, view, viewer, part_of(invocation.progress, 0.6, 1));
   if (page.viewer_frames == 0) {
@@ -89,7 +88,7 @@ Outcome run_report(const Invocation& invocation) {
   outcome.summary = readable(static_cast<double>(page.html.size()) / 1e6, 3) + " MB, " +
                     std::to_string(page.viewer_frames) + " of " +
                     std::to_string(found.sequence.frames()) + " frames in the 3D viewer\n";
-  outcome.outputs["out"].push_back({"", Page{std::move(page.html)}});
+  outcome.outputs["out"].push_back({"", Document{std::move(page.html)}});
   return outcome;
 }
 
@@ -106,31 +105,38 @@ double drawing_bytes(int vertices, std::int64_t components) {
 /// The decompositions, one after the other, and what is kept: the source, both transfers, and the
 /// poses of the viewer.
 double memory(const Invocation& invocation) {
-  const Invocation& call = *invocation.get<RunRead>("run").invocation;
-  const auto& read = call.get<SequenceRead>(call.inputs.contains("source") ? "source" : "sequence");
+  const Invocation& call = invocation.input("run").origin.run->invocation;
+  const NamedData& source = call.input(call.inputs.contains("source") ? "source" : "sequence");
+  const MeshSequence& sequence = std::get<FieldSequence>(source.data).sequence();
   const auto& counts = invocation.parameters.integers("k");
   const std::int64_t most =
       std::max<std::int64_t>(main_count(call.parameters), *std::ranges::max_element(counts));
-  const double analysis = drawing_bytes(read.sequence.vertices(), most) +
-                          analysis_bytes(call, read, static_cast<int>(most));
+  const double analysis = drawing_bytes(sequence.vertices(), most) +
+                          analysis_bytes(call, source, static_cast<int>(most));
   if (!call.inputs.contains("target")) return analysis;
   SolveOptions options = solving_parameters().read(call.parameters);
   options.threads = call.threads;
-  return analysis + 3 * solution_bytes(read.sequence, call.get<BlendshapeModel>("target"), options);
+  return analysis +
+         3 * solution_bytes(sequence, call.get<ModelData>("target").model.average(), options);
 }
 
 Operation report_operation() {
   Operation operation;
   operation.name = "report";
   operation.summary = "Show a run as one page for a browser: 3D player, pictures, Table I";
-  operation.inputs = {{"run", DataKind::run,
+  operation.inputs = {{"run", DataKind::document,
                        "what transfer, evaluate or regions wrote, or a folder with such runs"}};
+  operation.inputs.front().run = true;
   operation.outputs = {
-      {"out", DataKind::page, "the page, below 10 MB and complete in itself: .html"},
-      {"gallery", DataKind::picture, "each component at weight 1, .png", true},
-      {"weights-plot", DataKind::picture, "weights over time, .png", true},
-      {"table-plot", DataKind::picture, "error and time against the share of triangles, .png",
+      {"out", DataKind::document, "the page, below 10 MB and complete in itself: .html"},
+      {"gallery", DataKind::pictures, "each component at weight 1, .png", true},
+      {"weights-plot", DataKind::pictures, "weights over time, .png", true},
+      {"table-plot", DataKind::pictures, "error and time against the share of triangles, .png",
        true}};
+  operation.outputs.front().extensions = {".html"};
+  for (Output& output : operation.outputs) {
+    if (output.kind == DataKind::pictures) output.extensions = {".png"};
+  }
   operation.parameters = view_parameters();
   operation.parameters.insert(
       operation.parameters.begin(),
@@ -149,8 +155,8 @@ Operation report_operation() {
 
 void add_report(OperationTable& table) {
   table.add(
-      Writer{DataKind::page, {".html"}, {}, [](const Data& data, const WriteRequest& request) {
-               return write_text(request, std::get<Page>(data).html);
+      Writer{DataKind::document, {".html"}, {}, [](const Data& data, const WriteRequest& request) {
+               return write_text(request, std::get<Document>(data).text);
              }});
   table.add(report_operation());
 }

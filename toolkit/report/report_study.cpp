@@ -20,7 +20,7 @@ std::string short_name(const std::string& name) {
 
 /// The run's call, with its sequence under the name that transfer gives it.
 Invocation call_of(const RunRead& run, std::vector<std::string>& notes) {
-  Invocation call = *run.invocation;
+  Invocation call = run.invocation;
   if (!call.inputs.contains("source")) call.inputs["source"] = call.inputs.at("sequence");
   call.log = [&notes](LogLevel level, const std::string& message) {
     if (level == LogLevel::warning) notes.push_back(message);
@@ -33,7 +33,7 @@ Invocation call_of(const RunRead& run, std::vector<std::string>& notes) {
 const NamedData& target_of(const Invocation& call, const NamedData& run, const Log& log) {
   const std::vector<NamedData>& targets = call.inputs.at("target");
   const std::filesystem::path manifest =
-      absolute(std::get<RunRead>(run.data).record.manifest).lexically_normal();
+      absolute(run.origin.run->record.manifest).lexically_normal();
   const std::string folder = manifest.parent_path().filename().string();
   const std::string file = std::filesystem::path(run.name).stem().string();
   const auto named = std::ranges::find_if(targets, [&](const NamedData& target) {
@@ -52,7 +52,7 @@ const NamedData& target_of(const Invocation& call, const NamedData& run, const L
 class RunSteps {
  public:
   explicit RunSteps(const Invocation& call)
-      : call_(call), read_(call.get<SequenceRead>("source")), source_(source_of(call)) {}
+      : call_(call), sequence_(call.sequence("source")), source_(source_of(call)) {}
 
   const Source& source() const { return source_; }
 
@@ -68,7 +68,7 @@ class RunSteps {
     }
     const auto given = given_components(call_);
     if (!given) return regions_of(main_count(call_.parameters), progress);
-    Analysis analysis = analysis_of(*given, read_.sequence, analysis_options(progress));
+    Analysis analysis = analysis_of(*given, sequence_, analysis_options(progress));
     Regions regions = choose_regions(analysis, region_options());
     return {std::move(regions), std::move(analysis.components), 0};
   }
@@ -105,8 +105,8 @@ class RunSteps {
   }
 
   static Source source_of(const Invocation& call) {
-    const NamedData& input = call.inputs.at("source").front();
-    const MeshSequence& sequence = std::get<SequenceRead>(input.data).sequence;
+    const NamedData& input = call.input("source");
+    const MeshSequence& sequence = call.sequence("source");
     const bool transfers = call.inputs.contains("target");
     BoundParameters<SourceOptions> list = alignment_parameters(&sequence);
     if (transfers) list.add(source_rest_parameters(&sequence));
@@ -117,7 +117,7 @@ class RunSteps {
   }
 
   AnalysisOptions analysis_options(const Progress& progress) const {
-    AnalysisOptions options = analysis_parameters(&read_.sequence).read(call_.parameters);
+    AnalysisOptions options = analysis_parameters(&sequence_).read(call_.parameters);
     options.threads = call_.threads;
     options.notes = warnings_of(call_);
     options.progress = progress;
@@ -131,7 +131,7 @@ class RunSteps {
   }
 
   const Invocation& call_;
-  const SequenceRead& read_;
+  const MeshSequence& sequence_;
   Source source_;
 };
 
@@ -167,14 +167,15 @@ auto apart_from(std::vector<std::string>& notes, const Work& work) {
 ReportedTransfer transferred(const RunSteps& steps, const NamedData& target,
                              const RunSteps::Found& main, const std::vector<std::int64_t>& counts,
                              std::vector<std::string>& notes, const Progress& progress) {
-  const Target to{target.name, std::get<BlendshapeModel>(target.data)};
+  const BlendshapeModel& model = std::get<ModelData>(target.data).model.average();
+  const Target to{target.name, model};
   ReportedTransfer transfer;
   transfer.target = short_name(target.name);
   EvaluatedTransfer full =
       apart_from(notes, [&] { return steps.full(to, part_of(progress, 0, 0.1)); });
   EvaluatedTransfer by_regions = steps.by(main.regions, full, to, part_of(progress, 0.1, 0.2));
   if (by_regions.solution.weights.size() > 0) {
-    transfer.expressions = std::get<BlendshapeModel>(target.data).expressions().names;
+    transfer.expressions = model.expressions().names;
   }
   const EvaluationRow main_row = completed(by_regions.row, main);
   transfer.rows.push_back(main_row);
@@ -220,7 +221,7 @@ int main_count(const Parameters& parameters) {
 
 ReportStudy study(const NamedData& run, const std::vector<std::int64_t>& counts,
                   const Progress& progress, const Log& log) {
-  const RunRead& read = std::get<RunRead>(run.data);
+  const RunRead& read = *run.origin.run;
   ReportStudy result;
   result.run = read.record;
   for (const auto& file : read.record.changed) {
@@ -229,13 +230,14 @@ ReportStudy study(const NamedData& run, const std::vector<std::int64_t>& counts,
                                " was written; the report shows what it gives now");
   }
   const Invocation call = call_of(read, result.notes);
-  result.source = short_name(call.inputs.at("source").front().name);
+  result.source = short_name(call.input("source").name);
   const RunSteps steps(call);
   result.moved_head = !steps.source().motion.empty();
   result.sequence = steps.source().sequence;
   const NamedData* target = call.inputs.contains("target") ? &target_of(call, run, log) : nullptr;
   if (target) {
-    check_target(result.sequence, {target->name, std::get<BlendshapeModel>(target->data)});
+    check_target(result.sequence,
+                 {target->name, std::get<ModelData>(target->data).model.average()});
   }
   const double found_at = target ? 0.3 : 1;
   auto found = steps.regions_as_run(part_of(progress, 0, found_at));

@@ -9,10 +9,10 @@
 #include <vtkZLibDataCompressor.h>
 
 #include "toolkit/mesh/weld.h"
+#include "toolkit/operations/colors.h"
 #include "toolkit/operations/json.h"
 #include "toolkit/pictures/sheet_layout.h"
 #include "toolkit/report/base64.h"
-#include "toolkit/vtk/colors.h"
 
 namespace mimetra {
 

@@ -22,6 +22,13 @@ std::vector<std::filesystem::path> write(const FieldSequence& fields, const Writ
                           [&] { return write_vtp_series(fields, request.target, options); });
 }
 
+/// Throws MismatchError where frames would be left out.
+void check_frame_count(const FrameSource& frames, const std::filesystem::path& target) {
+  if (frames.frames() == 1 || target.extension() != ".vtp") return;
+  throw MismatchError(target.string() + ": holds one frame, and the sequence has " +
+                      std::to_string(frames.frames()) + "; write a .pvd, or take one by --frames");
+}
+
 /// One region: the vertices where the field `roi` is not 0.
 Regions read_regions_from_vtp(const std::filesystem::path& path, int vertices,
                               const Triangles& triangles) {
@@ -51,17 +58,20 @@ void add_vtp(OperationTable& table) {
                    parameters,
                    [](const Data& data, const WriteRequest& request) {
                      const FieldSequence& shown = std::get<RegionData>(data).fields;
-                     if (shown.sequence.frames() > 0) return write(shown, request);
+                     if (shown.frames->frames() > 0) return write(shown, request);
                      throw MismatchError(request.target.string() +
                                          ": the regions come without a mesh to show them on; "
                                          "write .json or .csv");
                    }});
-  table.add(Writer{DataKind::fields,
+  table.add(Writer{DataKind::sequence,
                    {".vtp", ".pvd"},
                    parameters,
                    [](const Data& data, const WriteRequest& request) {
-                     return write(std::get<FieldSequence>(data), request);
-                   }});
+                     const auto& sequence = std::get<FieldSequence>(data);
+                     check_frame_count(*sequence.frames, request.target);
+                     return write(sequence, request);
+                   },
+                   true});
   table.add(RegionReader{{".vtp"}, read_regions_from_vtp});
   const auto read = [](const std::filesystem::path& path, const auto& selected,
                        const Progress& progress) {

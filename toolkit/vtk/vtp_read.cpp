@@ -105,7 +105,7 @@ FieldSequence read_vtp_series(const fs::path& path, const VtpReadOptions& option
   const std::vector<int> chosen =
       options.selected ? options.selected(count) : selected_frames({}, count);
   const FrameFile& first = all[static_cast<std::size_t>(chosen.front())];
-  FieldSequence result;
+  std::vector<Field> fields;
   Connectivity connectivity;
   Frames frames;
   Eigen::VectorXd times(static_cast<Eigen::Index>(chosen.size()));
@@ -118,7 +118,7 @@ FieldSequence read_vtp_series(const fs::path& path, const VtpReadOptions& option
     if (f == 0) {
       connectivity = std::move(own);
       frames.resize(times.size(), positions.size());
-      result.fields = fields_of(*data, connectivity);
+      fields = fields_of(*data, connectivity);
       rest = rest_of(*data, positions, entry.file.string());
     } else if (!same_faces(own, connectivity)) {
       throw MismatchError(entry.file.string() + ": other vertices or faces than " +
@@ -129,9 +129,9 @@ FieldSequence read_vtp_series(const fs::path& path, const VtpReadOptions& option
     report_progress(options.progress,
                     static_cast<double>(f + 1) / static_cast<double>(times.size()));
   }
-  result.sequence =
-      MeshSequence(std::move(connectivity), std::move(frames), std::move(times), std::move(rest));
-  return result;
+  return {
+      MeshSequence(std::move(connectivity), std::move(frames), std::move(times), std::move(rest)),
+      std::move(fields)};
 }
 
 std::vector<fs::path> vtp_series_files(const fs::path& path) {

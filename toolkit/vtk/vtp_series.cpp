@@ -38,8 +38,8 @@ void check(const FieldSequence& fields) {
   }
   for (const Field& field : fields.fields) {
     const Eigen::Index expected = field.location == Field::Location::vertices
-                                      ? fields.sequence.vertices()
-                                      : fields.sequence.triangles().rows();
+                                      ? fields.frames->vertices()
+                                      : fields.frames->triangles().rows();
     if (field.values.rows() != expected || field.values.cols() == 0) {
       throw std::invalid_argument(
           "field '" + field.name + "': " + std::to_string(field.values.rows()) + " x " +
@@ -57,15 +57,16 @@ void check(const FieldSequence& fields) {
 class FrameData {
  public:
   explicit FrameData(const FieldSequence& fields) : fields_(fields) {
-    const Connectivity& connectivity = fields.sequence.connectivity();
+    const Connectivity& connectivity = fields.frames->connectivity();
     set_polygons(*data_, connectivity);
     for (const Field& field : fields.fields) add_field(*data_, field, connectivity);
   }
 
   vtkPolyData& at(int frame) {
-    const PositionsView positions = fields_.sequence.frame(frame);
+    const Frames pose = fields_.frames->read(frame, 1);
+    const PositionsView positions(pose.data(), fields_.frames->vertices(), 3);
     set_positions(*data_, positions, Precision::single_precision);
-    if (fields_.displacement) add_displacement(*data_, positions - fields_.sequence.rest());
+    if (fields_.displacement) add_displacement(*data_, positions - fields_.frames->rest());
     return *data_;
   }
 
@@ -174,7 +175,7 @@ std::string frames_folder(const std::string& name) {
   return name + "_vtp";
 }
 
-std::vector<FrameEntry> entries_of(const MeshSequence& sequence, const std::string& name) {
+std::vector<FrameEntry> entries_of(const FrameSource& sequence, const std::string& name) {
   const int last = sequence.frames() - 1;
   const int digits = std::max(kFewestDigits, static_cast<int>(std::to_string(last).size()));
   std::vector<FrameEntry> entries;
@@ -202,7 +203,7 @@ std::vector<std::filesystem::path> write_all(const FieldSequence& fields,
   const std::string name = target.stem().string();
   const std::filesystem::path beside = target.parent_path();
   const std::filesystem::path series = beside / (name + ".vtp.series");
-  const std::vector<FrameEntry> entries = entries_of(fields.sequence, name);
+  const std::vector<FrameEntry> entries = entries_of(*fields.frames, name);
 
   for (const auto& path : {target, series, beside / frames_folder(name)}) {
     check_inputs_stay(path, options.inputs);
@@ -230,7 +231,7 @@ std::vector<std::filesystem::path> write_all(const FieldSequence& fields,
     write(*data, f + 1);
     pool.give_back(std::move(data));
   };
-  parallel_for(fields.sequence.frames() - 1, options.threads, write_further, options.progress);
+  parallel_for(fields.frames->frames() - 1, options.threads, write_further, options.progress);
   report_progress(options.progress, 1);
   folder.commit();
   series_file.commit();

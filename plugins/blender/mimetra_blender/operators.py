@@ -73,6 +73,11 @@ def _computed(operation, inputs, options):
     return state["result"]
 
 
+def _is_animation(port):
+    """True for sequences that are shown by their poses, not by fields on their source."""
+    return port.kind is mimetra.Sequence and not port.fields
+
+
 class _Run:
     """What all operators share; `_operation` is that of the table. Names without a leading
     underscore are Blender's own: any other may be a parameter's."""
@@ -116,9 +121,9 @@ class _Run:
 
     def _value(self, context, port, subject, frames):
         """Yields the share done; returns the value of an object or a path as an input."""
-        if port.kind is mimetra.Model:
-            return sources.model(subject)
-        if port.kind in (mimetra.Sequence, mimetra.Fields):
+        if port in properties.object_inputs(self._operation):
+            if port.kind is mimetra.Model:
+                return sources.model(subject)
             return (yield from sources.sequence(context, subject, frames))
         text = getattr(self, properties.property_name(port.name))
         path = bpy.path.abspath(text)
@@ -193,16 +198,19 @@ class _Run:
         made = [(port, getattr(result, mimetra.python_name(port.name)))
                 for port in self._operation.outputs]
         made = [(port, value) for port, value in made if value is not None]
-        target = next((objects[mimetra.python_name(port.name)] for port in self._operation.inputs
-                       if port.kind is mimetra.Model), None)
+        target = next((objects.get(mimetra.python_name(port.name))
+                       for port in self._operation.inputs if port.kind is mimetra.Model), None)
         source = context.active_object if properties.active_input(self._operation) else None
         for port, value in made:
-            if source and port.kind in (mimetra.Fields, mimetra.Regions):
+            is_shown_on_source = port.kind in (mimetra.Sequence, mimetra.Regions)
+            if source and is_shown_on_source and not _is_animation(port):
                 results.check_fits(value, source)
         made = [(port, value) for port, value in made if not self._path_of(port)]
         if target and self._show_on_target(made, values, target, frames):
-            made = [each for each in made if each[0].kind is not mimetra.Sequence]
-        for port, value in sorted(made, key=lambda each: each[0].kind is not mimetra.Sequence):
+            made = [each for each in made if not _is_animation(each[0])]
+        made.sort(key=lambda each: (not _is_animation(each[0]),
+                                    each[0].kind is not mimetra.Sequence))
+        for port, value in made:
             self._show_value(context, port, value, source, frames)
         for note in frames.notes:
             self.report({"WARNING"}, note)
@@ -212,7 +220,7 @@ class _Run:
 
     def _show_on_target(self, made, values, target, frames):
         """Shape keys where they can hold the result, else a mesh cache. False for neither."""
-        sequence = next((value for port, value in made if port.kind is mimetra.Sequence), None)
+        sequence = next((value for port, value in made if _is_animation(port)), None)
         if sequence is None or not results.has_faces_of(target, sequence):
             return False
         frames = frames.of(sequence["times"])
@@ -234,20 +242,21 @@ class _Run:
         """One output where no target takes it."""
         name = f"{source.name} {self._operation.name}" if source else self._operation.name
         if port.kind is mimetra.Sequence:
-            results.show_sequence(context, value, source, frames, name)
-        elif port.kind is mimetra.AnimatedModel:
-            results.show_animated_model(context, value, frames, name)
+            if source and not _is_animation(port):
+                results.show_fields(value, source)
+            else:
+                results.show_sequence(context, value, source, frames, name)
+        elif port.kind is mimetra.Model:
+            results.show_model(context, value, frames, name)
         elif port.kind is mimetra.Components:
             results.show_components(context, value, source, frames, name)
-        elif port.kind is mimetra.Picture:
-            results.show_picture(f"{name} {port.name}", value)
+        elif port.kind is mimetra.Pictures:
+            results.show_pictures(f"{name} {port.name}", value)
         elif port.kind is mimetra.Table:
             if not port.optional or getattr(self, properties.property_name(port.name)):
                 results.show_text(f"{name} {port.name}.csv", results.csv_of(value))
-        elif source and port.kind is mimetra.Regions:
-            results.show_regions(value, source)
         elif source:
-            results.show_fields(value, source)
+            results.show_regions(value, source)
 
     def _path_of(self, port):
         """Where an output goes that goes into a file; None for those that are shown."""

@@ -8,9 +8,8 @@ from bpy.props import (BoolProperty, EnumProperty, FloatProperty, IntProperty, P
 from . import mimetra
 
 # What an operation makes and Blender can show; all else goes into files.
-SHOWN = (mimetra.Sequence, mimetra.Fields, mimetra.Regions, mimetra.Table, mimetra.Components,
-         mimetra.AnimatedModel, mimetra.Picture)
-_MESHES = (mimetra.Sequence, mimetra.Fields, mimetra.Model)
+SHOWN = (mimetra.Sequence, mimetra.Model, mimetra.Components, mimetra.Regions, mimetra.Table,
+         mimetra.Pictures)
 _OPEN = 2**31 - 1
 _UNSET = "DEFAULT"  # of choices without one; names of the table have small letters
 # Names that parameters cannot have: of properties below, and of Blender's.
@@ -32,15 +31,22 @@ def _label(each):
     return each.name.replace("-", " ").capitalize() + (f" [{unit}]" if unit else "")
 
 
+def object_inputs(operation):
+    """The inputs that are objects. A model for landmarks is read: it needs identities, which no
+    object has."""
+    with_landmarks = any(port.kind is mimetra.Landmarks for port in operation.inputs)
+    kinds = (mimetra.Sequence,) if with_landmarks else (mimetra.Sequence, mimetra.Model)
+    return [port for port in operation.inputs if port.kind in kinds]
+
+
 def active_input(operation):
-    """The input that is the active object; None where an operation has none of meshes."""
-    return next((port for port in operation.inputs if port.kind in _MESHES and not port.optional),
-                None)
+    """The input that is the active object; None where an operation has none of objects."""
+    return next((port for port in object_inputs(operation) if not port.optional), None)
 
 
 def is_object(operation, port):
     """True for inputs that are other objects."""
-    return port.kind in _MESHES and port is not active_input(operation)
+    return port in object_inputs(operation) and port is not active_input(operation)
 
 
 def is_optional_number(parameter):

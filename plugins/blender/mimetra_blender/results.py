@@ -213,7 +213,8 @@ def has_faces_of(subject, value):
 
 
 def show_sequence(context, value, subject, frames, name):
-    """A sequence as an object with a mesh cache: a copy of `subject` where it has its polygons."""
+    """A sequence as an object with a mesh cache and its fields: a copy of `subject` where it has
+    its polygons."""
     frames = frames.of(value["times"])
     path = write_mesh_cache(value, frames, name)
     if subject and has_faces_of(subject, value):
@@ -221,10 +222,11 @@ def show_sequence(context, value, subject, frames, name):
     else:
         made = _new_object(context, name, value["positions"][0], value.faces, subject)
     play_mesh_cache(made, path, frames)
+    show_fields(value, made)
     return made
 
 
-def show_model(context, name, neutral, faces, shapes, weights, frames, beside=None):
+def _show_shapes(context, name, neutral, faces, shapes, weights, frames, beside=None):
     """An object with shape keys, {name: N x 3}, keyed by weights, {name: F}."""
     made = _new_object(context, name, neutral, faces, beside)
     made.shape_key_add(name="Basis", from_mix=False)
@@ -240,18 +242,22 @@ def show_model(context, name, neutral, faces, shapes, weights, frames, beside=No
     return made
 
 
-def show_animated_model(context, value, frames, name):
-    """A model with its performance, and each of its identities with the same shape keys."""
+def show_model(context, value, frames, name):
+    """A model with its performance, if it has one, and each of its identities with the same shape
+    keys."""
     frames = frames.of(value["times"]) if "times" in value else frames
-    shapes = dict(zip(value["expression_names"], value["expressions"]))
-    weights = {each: column for each, column in zip(value["weight_names"], value["weights"].T)
-               if each in shapes}
-    made = [show_model(context, name, value["neutral"], value.faces, shapes, weights, frames)]
+    shapes, weights = {}, {}
+    if "expressions" in value:
+        shapes = dict(zip(value["expression_names"], value["expressions"]))
+    if "weights" in value:
+        columns = zip(value["weight_names"], value["weights"].T)
+        weights = {each: column for each, column in columns if each in shapes}
+    made = [_show_shapes(context, name, value["neutral"], value.faces, shapes, weights, frames)]
     context.view_layer.update()
     if "identities" in value:
         for identity, shape in zip(value["identity_names"], value["identities"]):
-            made.append(show_model(context, f"{name} {identity}", value["neutral"] + shape,
-                                   value.faces, shapes, {}, frames, made[-1]))
+            made.append(_show_shapes(context, f"{name} {identity}", value["neutral"] + shape,
+                                     value.faces, shapes, {}, frames, made[-1]))
             context.view_layer.update()
     return made[0]
 
@@ -263,7 +269,7 @@ def show_components(context, value, subject, frames, name):
     weights = dict(zip(shapes, value["weights"].T)) if "weights" in value else {}
     faces = sources.faces_of(subject.data) if subject else mimetra.Faces(
         np.full(len(value["triangles"]), 3), value["triangles"].ravel())
-    return show_model(context, name, value["rest"], faces, shapes, weights, frames, subject)
+    return _show_shapes(context, name, value["rest"], faces, shapes, weights, frames, subject)
 
 
 def _shown_fields(value):
@@ -350,9 +356,15 @@ def _show_attribute(mesh, value, name):
     attribute.data.foreach_set(key, values.astype(np.int32 if integer else np.float32).ravel())
 
 
-def show_picture(name, value):
-    """A picture as an image of the file, in place of one of that name."""
-    pixels = value["pixels"]
+def show_pictures(name, value):
+    """Pictures as images of the file; several with their numbers behind the name."""
+    for array in value:
+        _, _, number = array.partition("_")
+        _show_picture(f"{name} {int(number):04}" if number else name, value[array])
+
+
+def _show_picture(name, pixels):
+    """An image of the file in place of one of that name."""
     old = bpy.data.images.get(name)
     if old:
         bpy.data.images.remove(old)

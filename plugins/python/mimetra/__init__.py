@@ -7,15 +7,15 @@
     result.out.positions                                   # F x vertices of the actor x 3
 
 Each operation of the library's table is a function here, those of plugins too: `help(mimetra)`
-lists them, `operations` describes them. Inputs are values (Sequence, Model, ...) or what the
-command takes as text, which is read from files; where a sequence or model is expected, (positions,
-faces) is one. What the library logs goes to logging.getLogger("mimetra"). Functions may be called
-from several threads at once.
+lists them, `operations` describes them. Inputs are values (Sequence, Model, Components, Regions,
+Table, Landmarks, Fit, Pictures, Document) or what the command takes as text, which is read from
+files; where a sequence or model is expected, (positions, faces) is one. What the library logs goes
+to logging.getLogger("mimetra"). Functions may be called from several threads at once.
 """
 
 from ._context import library as _library
-from ._data import (AnimatedModel, Components, Data, Faces, Fields, Fit, Landmarks, Model,
-                    MorphableModel, Page, Picture, Pictures, Regions, Run, Sequence, Table, View)
+from ._data import (Components, Data, Document, Faces, Fit, Landmarks, Model, Pictures, Regions,
+                    Sequence, Table)
 from ._errors import BadInput, Cancelled, Error, Mismatch, OutputError, UsageError
 from ._operations import Operation, Result, all_operations, function_of, python_name
 
@@ -24,10 +24,9 @@ operations = all_operations()
 _functions = {python_name(name): function_of(operation)
               for name, operation in operations.items()}
 __all__ = [
-    "AnimatedModel", "BadInput", "Cancelled", "Components", "Data", "Error", "Faces", "Fields",
-    "Fit", "Landmarks", "Mismatch", "Model", "MorphableModel", "Operation", "OutputError",
-    "Page", "Picture", "Pictures", "Regions", "Result", "Run", "Sequence", "Table", "UsageError",
-    "View", "operations", "run", *_functions]
+    "BadInput", "Cancelled", "Components", "Data", "Document", "Error", "Faces", "Fit",
+    "Landmarks", "Mismatch", "Model", "Operation", "OutputError", "Pictures", "Regions", "Result",
+    "Sequence", "Table", "UsageError", "operations", "run", *_functions]
 
 
 def run(name, /, *inputs, **options):

@@ -14,8 +14,9 @@ _DTYPES = {c.F64: np.float64, c.F32: np.float32, c.I32: np.int32, c.U8: np.uint8
 
 # Arrays that are not of floating-point numbers.
 _KNOWN = {"face_sizes": c.I32, "corners": c.I32, "triangles": c.I32, "centers": c.I32,
-          "masks": c.U8, "pixels": c.U8, "expression_names": c.STRING,
-          "identity_names": c.STRING, "weight_names": c.STRING, "names": c.STRING}
+          "landmarks": c.I32, "masks": c.U8, "pixels": c.U8, "expression_names": c.STRING,
+          "identity_names": c.STRING, "weight_names": c.STRING, "names": c.STRING,
+          "text": c.STRING}
 
 
 class Faces(NamedTuple):
@@ -177,53 +178,41 @@ class Data:
 
 
 class Sequence(Data):
-    """Poses of one mesh: positions F x N x 3, times F (seconds), rest N x 3, faces.
+    """Poses of one mesh: positions F x N x 3, times F (seconds), rest N x 3, faces; and fields:
+    `on_vertices` {name: N or N x c}, `on_triangles` {name: T or T x c}.
 
     `faces` are triangles T x 3, quads P x 4, a list of polygons, or the `.faces` of another value.
     """
 
     kind = c.SEQUENCE
 
-    def __init__(self, positions, faces, times=None, rest=None, name=""):
-        self._make(name, {"positions": positions, **_faces(faces), "times": times, "rest": rest})
+    def __init__(self, positions, faces, times=None, rest=None, on_vertices=None,
+                 on_triangles=None, name=""):
+        fields = [(field, _Field(values, location))
+                  for values_by_name, location in ((on_vertices, c.ON_VERTICES),
+                                                   (on_triangles, c.ON_TRIANGLES))
+                  for field, values in (values_by_name or {}).items()]
+        self._make(name, {"positions": positions, **_faces(faces), "times": times, "rest": rest},
+                   fields=fields)
 
 
 class Model(Data):
     """A mesh with expressions: neutral N x 3, expressions D x N x 3 (displacements), their names.
 
-    Without expressions it is a mesh.
+    It may have identities I x N x 3 (displacements) besides, and perform by weights F x W at times
+    F (seconds). `landmarks` L x 2 are pairs of a landmark's number and its vertex. Without
+    expressions it is a mesh; with identities it stands for its mean where one person is wanted.
     """
 
     kind = c.MODEL
 
-    def __init__(self, neutral, faces, expressions=None, expression_names=None, name=""):
-        self._make(name, {"neutral": neutral, **_faces(faces), "expressions": expressions,
-                          "expression_names": expression_names})
-
-
-class MorphableModel(Data):
-    """A model with identities I x N x 3 besides."""
-
-    kind = c.MORPHABLE_MODEL
-
     def __init__(self, neutral, faces, expressions=None, expression_names=None, identities=None,
-                 identity_names=None, name=""):
-        self._make(name, {"neutral": neutral, **_faces(faces), "expressions": expressions,
-                          "expression_names": expression_names, "identities": identities,
-                          "identity_names": identity_names})
-
-
-class AnimatedModel(Data):
-    """A morphable model with weights F x W over time."""
-
-    kind = c.ANIMATED_MODEL
-
-    def __init__(self, neutral, faces, weights, weight_names, expressions=None,
-                 expression_names=None, identities=None, identity_names=None, times=None, name=""):
+                 identity_names=None, weights=None, weight_names=None, times=None, landmarks=None,
+                 name=""):
         self._make(name, {"neutral": neutral, **_faces(faces), "expressions": expressions,
                           "expression_names": expression_names, "identities": identities,
                           "identity_names": identity_names, "weights": weights,
-                          "weight_names": weight_names, "times": times})
+                          "weight_names": weight_names, "times": times, "landmarks": landmarks})
 
 
 class Components(Data):
@@ -247,22 +236,6 @@ class Regions(Data):
         self._make(name, {"masks": masks, **_faces(faces)})
 
 
-class Fields(Data):
-    """A sequence with fields: `on_vertices` {name: N or N x c}, `on_triangles` {name: T or T x c}.
-    """
-
-    kind = c.FIELDS
-
-    def __init__(self, positions, faces, on_vertices=None, on_triangles=None, times=None, rest=None,
-                 name=""):
-        fields = [(field, _Field(values, location))
-                  for values_by_name, location in ((on_vertices, c.ON_VERTICES),
-                                                   (on_triangles, c.ON_TRIANGLES))
-                  for field, values in (values_by_name or {}).items()]
-        self._make(name, {"positions": positions, **_faces(faces), "times": times, "rest": rest},
-                   fields=fields)
-
-
 class Table(Data):
     """Columns {name: R}; NaN is an empty cell."""
 
@@ -270,15 +243,6 @@ class Table(Data):
 
     def __init__(self, columns, name=""):
         self._make(name, columns, {})
-
-
-class Picture(Data):
-    """Pixels height x width x 3, uint8, sRGB, from the top left."""
-
-    kind = c.PICTURE
-
-    def __init__(self, pixels, name=""):
-        self._make(name, {"pixels": pixels})
 
 
 class Landmarks(Data):
@@ -298,27 +262,23 @@ class Fit(Data):
 
 
 class Pictures(Data):
-    """Pictures over time."""
+    """Pixels height x width x 3, uint8, sRGB, from the top left; of several pictures `pixels_0`,
+    `pixels_1`, ...
+    """
 
     kind = c.PICTURES
 
-
-class View(Data):
-    """A script that shows regions in ParaView."""
-
-    kind = c.VIEW
+    def __init__(self, pixels, name=""):
+        self._make(name, {"pixels": pixels})
 
 
-class Run(Data):
-    """A run of the command, to be read from its manifest."""
+class Document(Data):
+    """A text that stands for itself, such as a page or a script."""
 
-    kind = c.RUN
+    kind = c.DOCUMENT
 
-
-class Page(Data):
-    """A page that shows a run."""
-
-    kind = c.PAGE
+    def __init__(self, text, name=""):
+        self._make(name, {"text": [text]})
 
 
 CLASSES = {each.kind: each for each in Data.__subclasses__()}

@@ -7,13 +7,12 @@ import weakref
 from ctypes import CFUNCTYPE, POINTER, c_char_p, c_double, c_int32, c_int64, c_uint32, c_void_p
 
 VERSION = 1
-SEQUENCE, MODEL, COMPONENTS, REGIONS, FIELDS, TABLE, ANIMATED_MODEL, PICTURE = range(1, 9)
-LANDMARKS, MORPHABLE_MODEL, FIT, PICTURES, VIEW, RUN, PAGE = range(9, 16)
+SEQUENCE, MODEL, COMPONENTS, REGIONS, TABLE, LANDMARKS, FIT, PICTURES, DOCUMENT = range(1, 10)
 FLAG, INTEGER, INTEGER_LIST, NUMBER, LENGTH, CHOICE, TEXT, FILE = range(1, 9)
 F64, F32, I32, U8, STRING = range(1, 6)
 ON_VERTICES, ON_TRIANGLES = 1, 2
 READING, WRITING = 1, 2
-OPTIONAL, REPEATED, NAMED = 1, 2, 4
+OPTIONAL, REPEATED, NAMED, WITH_FIELDS = 1, 2, 4, 8
 WARNING = 1
 
 
@@ -62,12 +61,9 @@ def _function(result, *arguments):
     return CFUNCTYPE(result, *arguments)
 
 
-# For operations that are written in C.
-_OF_JOBS = ("job_context", "job_input", "job_number", "job_text", "job_threads", "job_wants",
-            "job_progress", "job_log", "job_fail", "job_output", "job_report")
-
-
 class Interface(ctypes.Structure):
+    """The table up to the functions for operations that are written in C."""
+
     _fields_ = [
         ("struct_size", c_uint32),
         ("version", c_uint32),
@@ -96,13 +92,12 @@ class Interface(ctypes.Structure):
         ("call_give", _function(c_int32, c_void_p, c_char_p, c_void_p)),
         ("call_read", _function(c_int32, c_void_p, c_char_p, c_char_p)),
         ("call_want", _function(c_int32, c_void_p, c_char_p)),
+        ("call_write", _function(c_int32, c_void_p, c_char_p, c_char_p, c_int32)),
         ("call_run", _function(c_int32, c_void_p)),
         ("call_output_count", _function(c_int32, c_void_p, c_char_p)),
         ("call_output", _function(c_int32, c_void_p, c_char_p, c_int32, _HANDLE)),
         ("call_report", _function(c_char_p, c_void_p)),
         ("call_summary", _function(c_char_p, c_void_p)),
-        *((name, c_void_p) for name in _OF_JOBS),
-        ("call_write", _function(c_int32, c_void_p, c_char_p, c_char_p, c_int32)),
     ]
 
 

@@ -10,7 +10,7 @@ import types
 
 from . import _interface as c
 from ._context import context, library
-from ._data import CLASSES, Data, Model, Page, Pictures, Run, Sequence, View, of_handle, text_of
+from ._data import CLASSES, Data, Document, Model, Sequence, of_handle, text_of
 
 _ANNOTATIONS = {c.FLAG: "bool", c.INTEGER: "int", c.INTEGER_LIST: "Iterable[int]",
                 c.NUMBER: "float", c.LENGTH: "float | str", c.TEXT: "str",
@@ -19,8 +19,6 @@ _KINDS = {c.FLAG: "flag", c.INTEGER: "integer", c.INTEGER_LIST: "list of integer
           c.NUMBER: "number", c.LENGTH: "length", c.CHOICE: "choice", c.TEXT: "text",
           c.FILE: "path"}
 
-# What has no arrays, and is written by programs with VTK only.
-_UNSEEN = (Page, Pictures, Run, View)
 # What a result has besides outputs, and a function besides what the table says.
 _RESERVED = ("report", "summary", "manifest", "force")
 
@@ -35,6 +33,8 @@ class Input:
         self.optional = bool(port.flags & c.OPTIONAL)
         self.repeated = bool(port.flags & c.REPEATED)
         self.named = bool(port.flags & c.NAMED)
+        #: True for a sequence whose fields matter.
+        self.fields = bool(port.flags & c.WITH_FIELDS)
 
 
 class Output(Input):
@@ -77,14 +77,15 @@ class Parameter:
 
 
 class Operation:
-    """An operation as the table declares it, but for what only programs that write can use."""
+    """An operation as the table declares it, but for documents that it makes: they show files that
+    only programs with VTK write."""
 
     def __init__(self, described):
         self.name = described.name.decode()
         self.summary = described.summary.decode()
         self.inputs = [Input(each.contents) for each in c.listed(described.inputs)]
         outputs = [Output(each.contents) for each in c.listed(described.outputs)]
-        self.outputs = [port for port in outputs if port.kind not in _UNSEEN]
+        self.outputs = [port for port in outputs if port.kind is not Document]
         parameters = [each.contents for each in c.listed(described.parameters)]
         self.parameters = [Parameter(each) for each in parameters if each.of_files != c.WRITING]
         #: Those of writing its outputs to files.

@@ -72,7 +72,7 @@ def _value_class(made):
         return lines + ["    ..."]
     texts = []
     for slot in list(inspect.signature(made.__init__).parameters.values())[1:]:
-        kind = {"name": "str", "faces": "ArrayLike | Faces | Iterable[ArrayLike]",
+        kind = {"name": "str", "text": "str", "faces": "ArrayLike | Faces | Iterable[ArrayLike]",
                 "columns": "Mapping[str, ArrayLike]"}.get(slot.name)
         if slot.name.endswith("names"):
             kind = "Iterable[str]"

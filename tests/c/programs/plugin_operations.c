@@ -66,6 +66,13 @@ static void check_speed(const mimetra_interface* m, mimetra_context* context,
   double found = 0;
   for (int v = 0; v < VERTICES; ++v) found = fmax(found, ((const double*)top->values)[v]);
   CHECK(fabs(found - fastest) < 1e-9 * fastest);
+  m->free_call(call);
+  /* Where no fields are looked at, a sequence with fields serves too. */
+  OK(context, m->new_call(context, "smooth", &call));
+  OK(context, m->call_give(call, "sequence", fields));
+  mimetra_data* moved = output_of(m, context, call);
+  CHECK(m->data_kind(moved) == MIMETRA_SEQUENCE);
+  m->free_data(moved);
   m->free_data(fields);
   m->free_call(call);
 }
@@ -83,6 +90,8 @@ int main(void) {
   const mimetra_operation* smooth = m->find_operation(context, "smooth");
   CHECK(smooth && strcmp(smooth->parameters[0]->name, "strength") == 0);
   CHECK(smooth->parameters[0]->maximum == 1 && smooth->parameters[0]->of_files == 0);
+  CHECK(smooth->outputs[0]->flags == 0);
+  CHECK(m->find_operation(context, "speed")->outputs[0]->flags == MIMETRA_WITH_FIELDS);
   mimetra_data* take = take_of(m, context);
   check_smooth(m, context, take);
   check_speed(m, context, take);

@@ -76,18 +76,30 @@ static void check_round_trips(const mimetra_interface* m, mimetra_context* conte
                                  ARRAY(MIMETRA_STRING, 1, "names", names, 2),
                                  ARRAY(MIMETRA_F64, 1, "times", times, FRAMES)};
   const mimetra_array picture[] = {ARRAY(MIMETRA_U8, 3, "pixels", pixels, 2, 3, 3)};
+  const mimetra_array document[] = {ARRAY(MIMETRA_STRING, 1, "text", names, 1)};
   const mimetra_array table[] = {ARRAY(MIMETRA_F64, 1, "mpe", cells, 3)};
-  mimetra_data* values[] = {made_of(m, context, MIMETRA_MODEL, model, 4),
-                            made_of(m, context, MIMETRA_MORPHABLE_MODEL, model, 6),
-                            made_of(m, context, MIMETRA_ANIMATED_MODEL, model, 9),
+  mimetra_array fields[] = {positions_of(&take), triangles_of(&take),
+                            ARRAY(MIMETRA_F64, 2, "normal", shapes, VERTICES, 3),
+                            ARRAY(MIMETRA_I32, 1, "corner", take.triangles, TRIANGLES)};
+  fields[2].location = MIMETRA_ON_VERTICES;
+  fields[3].location = MIMETRA_ON_TRIANGLES;
+  mimetra_data* values[] = {made_of(m, context, MIMETRA_TABLE, table, 1),
+                            made_of(m, context, MIMETRA_MODEL, model, 2),
+                            made_of(m, context, MIMETRA_MODEL, model, 4),
+                            made_of(m, context, MIMETRA_MODEL, model, 6),
+                            made_of(m, context, MIMETRA_MODEL, model, 9),
                             made_of(m, context, MIMETRA_LANDMARKS, track, 3),
-                            made_of(m, context, MIMETRA_PICTURE, picture, 1),
-                            made_of(m, context, MIMETRA_TABLE, table, 1),
+                            made_of(m, context, MIMETRA_PICTURES, picture, 1),
+                            made_of(m, context, MIMETRA_DOCUMENT, document, 1),
+                            made_of(m, context, MIMETRA_SEQUENCE, fields, 4),
                             take_of(m, context)};
   const char* json = NULL;
-  OK(context, m->data_json(context, values[5], &json));
+  OK(context, m->data_json(context, values[0], &json));
   CHECK(strstr(json, "\"mpe\": null"));
-  for (int i = 0; i < 7; ++i) {
+  const mimetra_array* normal = NULL;
+  OK(context, m->data_array(context, values[8], "normal", &normal));
+  CHECK(normal->location == MIMETRA_ON_VERTICES && normal->shape[1] == 3);
+  for (int i = 0; i < 10; ++i) {
     mimetra_data* copy = again(m, context, values[i]);
     m->free_data(copy);
     m->free_data(values[i]);

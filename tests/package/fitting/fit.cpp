@@ -69,8 +69,8 @@ int main(int argc, char** argv) {
   write_bytes(mapping, lines);
 
   Invocation call;
-  call.inputs["landmarks"] = {{"spiral", LandmarksRead{landmarks_of(model)}}};
-  call.inputs["model"] = {{"spiral", ModelRead{model, {}}}};
+  call.inputs["landmarks"] = {{"spiral", landmarks_of(model)}};
+  call.inputs["model"] = {{"spiral", ModelData{model}}};
   call.parameters = Parameters(table.parameters_of(fit));
   call.parameters.set("mapping", mapping.string());
   call.parameters.set("tolerance", 0.0);

@@ -9,5 +9,5 @@ int main() {
   frames << 0, 0, 0, 1, 0, 0, 0, 1, 0;
   const FieldSequence fields{MeshSequence(Connectivity::from_triangles(3, triangle), frames), {}};
   write_vtp_series(fields, "triangle.vtp", {.overwrite = true});
-  return read_vtp_series("triangle.vtp").sequence.positions() == frames ? 0 : 1;
+  return read_vtp_series("triangle.vtp").sequence().positions() == frames ? 0 : 1;
 }

@@ -138,15 +138,12 @@ Proxy generic_proxy(const Operation& operation) {
           std::move(hints)};
 }
 
-bool has_frames(DataKind kind) {
-  return kind == DataKind::sequence || kind == DataKind::fields;
-}
-
 }  // namespace
 
 const Input* piped_input(const Operation& operation) {
   const auto needed = std::ranges::find(operation.inputs, false, &Input::optional);
-  return needed != operation.inputs.end() && has_frames(needed->kind) ? &*needed : nullptr;
+  return needed != operation.inputs.end() && needed->kind == DataKind::sequence ? &*needed
+                                                                                : nullptr;
 }
 
 std::vector<std::string> mesh_inputs(const Operation& operation) {
@@ -161,7 +158,7 @@ std::vector<std::string> mesh_inputs(const Operation& operation) {
 
 std::vector<ShownOutput> shown_outputs(const Operation& operation) {
   std::vector<ShownOutput> shown;
-  const auto mesh = std::ranges::find_if(operation.outputs, has_frames, &Output::kind);
+  const auto mesh = std::ranges::find(operation.outputs, DataKind::sequence, &Output::kind);
   if (mesh != operation.outputs.end()) {
     shown.push_back({ShownOutput::Content::mesh, mesh->name});
   }

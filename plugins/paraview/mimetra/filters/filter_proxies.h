@@ -8,7 +8,7 @@
 namespace mimetra {
 
 /// The input that comes in at a filter's first port: the first one that the operation needs, where
-/// that is a sequence or fields. Null for an operation that begins with something else.
+/// that is a sequence. Null for an operation that begins with something else.
 const Input* piped_input(const Operation& operation);
 
 /// Further inputs that the operation needs and that may come in as a mesh, one at each port after
@@ -23,7 +23,7 @@ struct ShownOutput {
   std::string output = {};  ///< the operation's name for it; none for the report
 };
 
-/// What a filter shows, port after port: the first sequence or fields that the operation makes, and
+/// What a filter shows, port after port: the first sequence that the operation makes, and
 /// its tables; the report of an operation that makes neither.
 std::vector<ShownOutput> shown_outputs(const Operation& operation);
 

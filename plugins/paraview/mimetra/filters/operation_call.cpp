@@ -46,16 +46,13 @@ bool same_model(const BlendshapeModel& a, const BlendshapeModel& b) {
 
 bool same_data(const Data& a, const Data& b) {
   if (a.index() != b.index()) return false;
-  if (const auto* read = std::get_if<SequenceRead>(&a)) {
-    return same_sequence(read->sequence, std::get<SequenceRead>(b).sequence);
-  }
   if (const auto* shown = std::get_if<FieldSequence>(&a)) {
     const auto& other = std::get<FieldSequence>(b);
-    return same_sequence(shown->sequence, other.sequence) &&
+    return same_sequence(shown->sequence(), other.sequence()) &&
            std::ranges::equal(shown->fields, other.fields, same_field);
   }
-  const auto* model = std::get_if<BlendshapeModel>(&a);
-  return model && same_model(*model, std::get<BlendshapeModel>(b));
+  const auto* model = std::get_if<ModelData>(&a);
+  return model && same_model(model->model.average(), std::get<ModelData>(b).model.average());
 }
 
 const Operation& found(const OperationTable& table, const std::string& name) {
@@ -125,8 +122,8 @@ bool OperationCall::set(const std::string& name, const ParameterValue& value) {
   return true;
 }
 
-DataKind OperationCall::input_kind(const std::string& name) const {
-  return std::ranges::find(operation_.inputs, name, &Input::name)->kind;
+bool OperationCall::looks_at_fields(const std::string& input) const {
+  return std::ranges::find(operation_.inputs, input, &Input::name)->fields;
 }
 
 const Data* OperationCall::given(const std::string& input) const {
@@ -137,7 +134,7 @@ const Data* OperationCall::given(const std::string& input) const {
 bool OperationCall::give(const std::string& input, NamedData data) {
   const auto old = given_.find(input);
   if (old != given_.end() && same_data(old->second.data, data.data)) return false;
-  if (std::holds_alternative<SequenceRead>(data.data)) components_.reset();
+  if (std::holds_alternative<FieldSequence>(data.data)) components_.reset();
   given_[input] = std::move(data);
   outcome_.reset();
   return true;

@@ -27,7 +27,8 @@ class OperationCall {
   /// True where it has another value than its default, or a path.
   bool is_set(const std::string& name) const { return values_.contains(name); }
 
-  mimetra::DataKind input_kind(const std::string& name) const;
+  /// True for an input whose fields are looked at.
+  bool looks_at_fields(const std::string& input) const;
   /// What an input was given, or null.
   const mimetra::Data* given(const std::string& input) const;
   /// Gives an input its value. True where it is another one than before.

@@ -46,11 +46,12 @@ std::optional<double> first_time_of(vtkInformation& info) {
   return info.Get(Pipeline::TIME_STEPS())[0];
 }
 
-BlendshapeModel model_of(vtkPolyData& mesh, const std::string& name) {
+ModelData model_of(vtkPolyData& mesh, const std::string& name) {
   Positions positions = positions_of(mesh, name);
   auto connectivity = std::make_shared<Connectivity>(connectivity_of(mesh, name));
   ShapeBasis none{{}, Eigen::MatrixXd(positions.size(), 0)};
-  return {std::move(connectivity), std::move(positions), std::move(none)};
+  return {MorphableModel(
+      BlendshapeModel(std::move(connectivity), std::move(positions), std::move(none)))};
 }
 
 /// Throws std::invalid_argument for data of any time in a range.
@@ -149,8 +150,7 @@ void vtkMimetraFilter::collect(vtkInformation& in, std::optional<double> shown) 
   if (all && collected_ == origin) return;
   collected_.reset();
   if (all) refuse_continuous(in);
-  const bool with_fields = call().input_kind(input_) == DataKind::fields;
-  steps_->begin(all ? times_of(in) : std::vector<double>(), with_fields);
+  steps_->begin(all ? times_of(in) : std::vector<double>(), call().looks_at_fields(input_));
   while (!steps_->complete()) {
     steps_->add(input_at(0, all ? steps_->next_time() : shown));
     if (!show_progress(kReading * steps_->share())) throw Cancelled();

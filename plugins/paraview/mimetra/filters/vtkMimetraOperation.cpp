@@ -24,8 +24,7 @@ vtkStandardNewMacro(vtkMimetraOperation);
 namespace {
 
 const MeshSequence& sequence_of(const Data& data) {
-  const auto* fields = std::get_if<FieldSequence>(&data);
-  return fields ? fields->sequence : std::get<SequenceRead>(data).sequence;
+  return std::get<FieldSequence>(data).sequence();
 }
 
 /// Throws std::runtime_error where nothing was made.
@@ -33,11 +32,6 @@ const Data& made_by(const Outcome& outcome, const std::string& output) {
   const auto made = outcome.outputs.find(output);
   if (made != outcome.outputs.end() && !made->second.empty()) return made->second.front().data;
   throw std::runtime_error("the operation made nothing for its output '" + output + "'");
-}
-
-std::vector<Field> fields_in(const Data& data) {
-  const auto* with_fields = std::get_if<FieldSequence>(&data);
-  return with_fields ? with_fields->fields : std::vector<Field>();
 }
 
 /// On the same faces. What knows no rest pose has the other's.
@@ -112,7 +106,7 @@ void vtkMimetraOperation::show(const Outcome& outcome, vtkPolyData& input, doubl
 void vtkMimetraOperation::prepare_mesh(const Outcome& outcome, vtkPolyData& input) {
   const Data& made = made_by(outcome, shown_outputs(call().operation()).front().output);
   const MeshSequence& sequence = sequence_of(made);
-  std::vector<Field> fields = fields_in(made);
+  std::vector<Field> fields = std::get<FieldSequence>(made).fields;
   if (!same_faces(sequence.connectivity(), connectivity_of(input, "the mesh"))) {
     shown_ = Shown::as_a_mesh_of_its_own;
     make_mesh(*shared_, sequence, fields);
@@ -122,7 +116,7 @@ void vtkMimetraOperation::prepare_mesh(const Outcome& outcome, vtkPolyData& inpu
   const bool same = same_shape(sequence, sequence_of(given));
   shown_ = same ? Shown::on_the_input : Shown::in_another_shape;
   // What was only handed on is the input's own, which may change over time.
-  std::erase_if(fields, [own = fields_in(given)](const Field& field) {
+  std::erase_if(fields, [&own = std::get<FieldSequence>(given).fields](const Field& field) {
     return std::ranges::any_of(own, [&](const Field& each) { return same_field(each, field); });
   });
   make_fields(*shared_, input, fields, sequence.connectivity());

@@ -26,7 +26,7 @@ int vtkMimetraTransfer::FillOutputPortInformation(int port, vtkInformation* info
 }
 
 std::vector<std::string> vtkMimetraTransfer::wanted_outputs(const Invocation& invocation) {
-  const auto& model = invocation.get<BlendshapeModel>("target");
+  const BlendshapeModel& model = invocation.get<ModelData>("target").model.average();
   std::vector<std::string> wanted;
   const bool full = invocation.parameters.flag("full");
   if (!full) wanted.push_back("regions-out");
@@ -47,12 +47,12 @@ void vtkMimetraTransfer::prepare(const Outcome& outcome, vtkPolyData& input) {
   const auto regions = outcome.outputs.find("regions-out");
   if (regions == outcome.outputs.end()) return;
   const FieldSequence& shown = std::get<RegionData>(regions->second.front().data).fields;
-  make_fields(*fields_, shown_mesh(input), shown.fields, shown.sequence.connectivity());
+  make_fields(*fields_, shown_mesh(input), shown.fields, shown.sequence().connectivity());
 }
 
 void vtkMimetraTransfer::show(const Outcome& outcome, vtkPolyData& input, double time,
                               vtkInformationVector* outputs) {
-  const auto& result = std::get<SequenceRead>(outcome.outputs.at("out").front().data).sequence;
+  const auto& result = std::get<FieldSequence>(outcome.outputs.at("out").front().data).sequence();
   vtkPolyData* output = vtkPolyData::GetData(outputs, 0);
   show_frame(*output, shown_mesh(input), result, frame_at(result, time));
   share_fields(*fields_, *output);

@@ -1,4 +1,4 @@
-#include "toolkit/vtk/colors.h"
+#include "toolkit/operations/colors.h"
 
 #include <algorithm>
 #include <array>

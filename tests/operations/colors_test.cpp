@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/shapes.h"
-#include "toolkit/vtk/colors.h"
+#include "toolkit/operations/colors.h"
 
 namespace mimetra {
 namespace {

@@ -1,4 +1,4 @@
-#include "toolkit/vtk/paraview_view.h"
+#include "toolkit/operations/paraview_view.h"
 
 #include <algorithm>
 #include <map>
@@ -6,20 +6,19 @@
 
 #include <nlohmann/json.hpp>
 
-#include "toolkit/vtk/colors.h"
+#include "toolkit/operations/colors.h"
 
 namespace mimetra {
 
 namespace {
 
 /// The colour of each region, by its number; -1 is what none covers.
-std::map<int, Color> colors_of(const RegionView& view) {
-  const std::vector<Field>& fields = view.regions.fields.fields;
+std::map<int, Color> colors_of(const RegionData& regions) {
+  const std::vector<Field>& fields = regions.fields.fields;
   const Field& region = *std::ranges::find(fields, "region", &Field::name);
   std::vector<int> labels;
   for (const double value : region.values.reshaped()) labels.push_back(static_cast<int>(value));
-  const std::vector<Color> colors =
-      category_colors(labels, view.regions.fields.sequence.triangles());
+  const std::vector<Color> colors = category_colors(labels, regions.fields.frames->triangles());
   std::map<int, Color> by_region = {{-1, kClay}};
   for (std::size_t v = 0; v < labels.size(); ++v) by_region.emplace(labels[v], colors[v]);
   return by_region;
@@ -117,11 +116,11 @@ if len(sys.argv) == 2 and sys.argv[1].endswith(".png"):
 
 }  // namespace
 
-std::string paraview_view(const RegionView& view) {
-  const std::string name = view.series.stem().string();
-  return kHead + ("reader = OpenDataFile(" + quoted(view.series.string()) + ")\n") +
-         "RenameSource(" + quoted(name) + ", reader)\n" + kColoring + categories(colors_of(view)) +
-         kLegend + camera(view.regions.fields.sequence.rest()) + kEnd;
+std::string paraview_view(const RegionData& regions, const std::filesystem::path& series) {
+  const std::string name = series.stem().string();
+  return kHead + ("reader = OpenDataFile(" + quoted(series.string()) + ")\n") + "RenameSource(" +
+         quoted(name) + ", reader)\n" + kColoring + categories(colors_of(regions)) + kLegend +
+         camera(regions.fields.frames->rest()) + kEnd;
 }
 
 }  // namespace mimetra
