@@ -1,8 +1,6 @@
 #include "plugins/meshlab/dialog.h"
 
 #include <algorithm>
-#include <array>
-#include <charconv>
 
 #include <QProcess>
 
@@ -35,8 +33,8 @@ const mimetra_parameter* find_parameter(const mimetra_operation& operation,
 std::vector<std::string> optional_ports(const mimetra_port* const* ports) {
   std::vector<std::string> names;
   for (; *ports; ++ports) {
-    const bool is_optional = ((*ports)->flags & MIMETRA_OPTIONAL) != 0;
-    if (is_optional && (*ports)->kind != MIMETRA_DOCUMENT) names.emplace_back((*ports)->name);
+    if (is_needed(**ports) || (*ports)->kind == MIMETRA_DOCUMENT) continue;
+    names.emplace_back((*ports)->name);
   }
   return names;
 }
@@ -59,13 +57,6 @@ std::vector<std::string> option_names(const mimetra_operation& operation,
                              }),
               names.end());
   return names;
-}
-
-/// "source-rest" is "Source rest".
-QString label_of(const std::string& name) {
-  QString label = QString::fromStdString(name).replace('-', ' ');
-  label[0] = label[0].toUpper();
-  return label;
 }
 
 QStringList choices_of(const mimetra_parameter& parameter) {
@@ -117,12 +108,6 @@ void add_row(const mimetra_parameter& parameter, RichParameterList& rows) {
   }
 }
 
-/// The shortest text that is this number: 0.1, where a double of it would be 0.100000001.
-std::string number_text(float value) {
-  std::array<char, 32> text = {};
-  return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value).ptr};
-}
-
 std::string choice_text(const mimetra_parameter& parameter, int index) {
   const QStringList choices = choices_of(parameter);
   if (index < 0 || index >= choices.size()) {
@@ -147,7 +132,7 @@ std::string value_text(const mimetra_parameter& parameter, const RichParameterLi
     case MIMETRA_NUMBER: {
       const float value = rows.getFloat(name);
       if (value == QString::fromStdString(fallback).toFloat()) return {};
-      return number_text(value);
+      return shortest_text(value);
     }
     case MIMETRA_CHOICE:
       text = choice_text(parameter, rows.getEnum(name));
@@ -191,14 +176,55 @@ std::vector<Setting> further_options(const mimetra_operation& operation,
   return options;
 }
 
+/// Outputs that are always made and that are files.
+std::vector<const mimetra_port*> needed_files(const mimetra_operation& operation) {
+  std::vector<const mimetra_port*> files;
+  for (auto output = operation.outputs; *output; ++output) {
+    if (is_needed(**output) && !is_shown(**output)) files.push_back(*output);
+  }
+  return files;
+}
+
 }  // namespace
+
+QString label_of(const std::string& name) {
+  QString label = QString::fromStdString(name).replace('-', ' ');
+  label[0] = label[0].toUpper();
+  return label;
+}
+
+bool is_needed(const mimetra_port& port) {
+  return (port.flags & MIMETRA_OPTIONAL) == 0;
+}
+
+bool has_fields(const mimetra_port& port) {
+  return (port.flags & MIMETRA_WITH_FIELDS) != 0;
+}
+
+const mimetra_port* needed_input(const mimetra_operation& operation, mimetra_kind kind) {
+  for (auto input = operation.inputs; *input; ++input) {
+    if ((*input)->kind == kind && is_needed(**input)) return *input;
+  }
+  return nullptr;
+}
+
+bool is_shown(const mimetra_port& output) {
+  switch (output.kind) {
+    case MIMETRA_SEQUENCE:
+    case MIMETRA_REGIONS:
+    case MIMETRA_TABLE:
+      return true;
+    default:
+      return false;
+  }
+}
 
 void add_input(const mimetra_operation& operation, const std::string& name,
                const std::string& instead, RichParameterList& rows) {
   for (auto input = operation.inputs; *input; ++input) {
     if ((*input)->name != name) continue;
-    const QString help =
-        QString::fromUtf8((*input)->help) + "; empty for " + QString::fromStdString(instead);
+    QString help = QString::fromUtf8((*input)->help);
+    if (!instead.empty()) help += "; empty for " + QString::fromStdString(instead);
     rows.addParam(RichString(QString::fromStdString(name), "", label_of(name), help));
   }
 }
@@ -212,9 +238,19 @@ void add_parameters(const mimetra_operation& operation, const std::vector<std::s
   }
 }
 
-void add_all_parameters(const mimetra_operation& operation, RichParameterList& rows) {
+void add_own_parameters(const mimetra_operation& operation, int most, RichParameterList& rows) {
+  int added = 0;
   for (const mimetra_parameter* parameter : parameters_of(operation)) {
-    if (!parameter->of_files && !rows.hasParameter(parameter->name)) add_row(*parameter, rows);
+    if (parameter->of_files || rows.hasParameter(parameter->name)) continue;
+    if (added++ == most) return;
+    add_row(*parameter, rows);
+  }
+}
+
+void add_files(const mimetra_operation& operation, RichParameterList& rows) {
+  for (const mimetra_port* output : needed_files(operation)) {
+    rows.addParam(RichString(output->name, "", label_of(output->name),
+                             "file to write: " + QString::fromUtf8(output->help)));
   }
 }
 
@@ -249,6 +285,14 @@ Request request_of(const mimetra_operation& operation, const RichParameterList& 
     } else {
       request.outputs.push_back(setting);
     }
+  }
+  for (const mimetra_port* output : needed_files(operation)) {
+    const std::string path = text_of(rows, output->name);
+    if (path.empty()) {
+      throw Failure(std::string(output->name) + ": expected a file to write, " + output->help +
+                    ", found nothing");
+    }
+    request.outputs.push_back({output->name, path});
   }
   return request;
 }

@@ -1,7 +1,9 @@
 #include "plugins/meshlab/layers.h"
 
 #include <algorithm>
+#include <cmath>
 
+#include <vcg/complex/algorithms/update/color.h>
 #include <vcg/complex/append.h>
 
 #include "plugins/meshlab/polygons.h"
@@ -62,6 +64,13 @@ std::size_t first_difference(const Frames& a, const Frames& b) {
   return a.face_sizes.size();
 }
 
+void set_quality(MeshModel& layer, const std::vector<double>& values) {
+  layer.updateDataMask(MeshModel::MM_VERTQUALITY);
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    layer.cm.vert[i].Q() = static_cast<float>(values[i]);
+  }
+}
+
 std::string counted(const std::string& what, std::size_t found, std::size_t expected) {
   return ": " + std::to_string(found) + ' ' + what + ", expected " + std::to_string(expected) +
          " as in ";
@@ -118,11 +127,17 @@ void check_same_faces(const Frames& found, const std::string& found_name, const 
   }
 }
 
-void set_quality(MeshModel& layer, const std::vector<double>& values) {
-  layer.updateDataMask(MeshModel::MM_VERTQUALITY);
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    layer.cm.vert[i].Q() = static_cast<float>(values[i]);
-  }
+bool have_same_faces(const Frames& a, const Frames& b) {
+  return a.vertices == b.vertices && a.face_sizes == b.face_sizes && a.corners == b.corners;
+}
+
+void show_values(MeshModel& layer, const std::vector<double>& values) {
+  std::vector<double> numbers = values;
+  // MeshLab's colours and histograms need numbers.
+  for (double& value : numbers) value = std::isfinite(value) ? value : -1;
+  set_quality(layer, numbers);
+  layer.updateDataMask(MeshModel::MM_VERTCOLOR);
+  vcg::tri::UpdateColor<CMeshO>::PerVertexQualityRamp(layer.cm);
 }
 
 void show_regions(MeshModel& layer, const std::vector<double>& region) {

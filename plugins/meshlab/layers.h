@@ -22,8 +22,11 @@ Frames frames_of(const std::vector<MeshModel*>& layers);
 void check_same_faces(const Frames& found, const std::string& found_name, const Frames& expected,
                       const std::string& expected_name);
 
-/// The values as vertex quality.
-void set_quality(MeshModel& layer, const std::vector<double>& values);
+/// True where both have the same vertices and polygons, in one order.
+bool have_same_faces(const Frames& a, const Frames& b);
+
+/// The values as vertex quality, with its colours; -1 where there is none.
+void show_values(MeshModel& layer, const std::vector<double>& values);
 
 /// Regions as quality, each in a colour of its own; their vertices and the faces at them selected.
 void show_regions(MeshModel& layer, const std::vector<double>& region);

@@ -1,5 +1,9 @@
 #include "plugins/meshlab/toolkit.h"
 
+#include <array>
+#include <charconv>
+#include <cmath>
+
 namespace mimetra_meshlab {
 
 namespace {
@@ -28,7 +32,21 @@ std::vector<T> values_of(const mimetra_array& array) {
   return {values, values + size_of(array)};
 }
 
+template <typename Number>
+std::string shortest(Number value) {
+  std::array<char, 32> text = {};
+  return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value).ptr};
+}
+
 }  // namespace
+
+std::string shortest_text(float value) {
+  return shortest(value);
+}
+
+std::string shortest_text(double value) {
+  return shortest(value);
+}
 
 Toolkit::Toolkit(mimetra_log log, void* user)
     : functions_(mimetra_get_interface(MIMETRA_INTERFACE_VERSION)) {
@@ -42,10 +60,10 @@ Toolkit::~Toolkit() {
   functions_->free_context(context_);
 }
 
-const mimetra_operation& Toolkit::operation(const char* name) const {
-  const mimetra_operation* found = functions_->find_operation(context_, name);
-  if (!found) throw Failure(std::string("mimetra has no operation ") + name);
-  return *found;
+std::vector<const mimetra_operation*> Toolkit::operations() const {
+  std::vector<const mimetra_operation*> all;
+  for (auto each = functions_->operations(context_); *each; ++each) all.push_back(*each);
+  return all;
 }
 
 Data Toolkit::sequence(const std::string& name, const Frames& frames) const {
@@ -85,6 +103,14 @@ Frames Toolkit::frames_of(const Data& data) const {
           values_of<std::int32_t>(array(data, "corners")), positions.shape[0], positions.shape[1]};
 }
 
+std::vector<std::string> Toolkit::vertex_fields(const Data& data) const {
+  std::vector<std::string> names;
+  for (const mimetra_array* each : arrays(data)) {
+    if (each->location == MIMETRA_ON_VERTICES && each->rank == 1) names.emplace_back(each->name);
+  }
+  return names;
+}
+
 std::vector<double> Toolkit::field(const Data& data, const char* name) const {
   const mimetra_array& found = array(data, name);
   if (found.type == MIMETRA_F64) return values_of<double>(found);
@@ -93,8 +119,31 @@ std::vector<double> Toolkit::field(const Data& data, const char* name) const {
   return {values.begin(), values.end()};
 }
 
+std::vector<std::string> Toolkit::lines_of(const Data& table) const {
+  std::vector<std::string> lines(1);
+  const std::vector<const mimetra_array*> columns = arrays(table);
+  for (const mimetra_array* column : columns) {
+    const char* comma = column == columns.front() ? "" : ",";
+    lines.front() += std::string(comma) + column->name;
+    const std::vector<double> values = values_of<double>(*column);
+    lines.resize(values.size() + 1);
+    for (std::size_t row = 0; row < values.size(); ++row) {
+      lines[row + 1] += comma + (std::isnan(values[row]) ? "" : shortest_text(values[row]));
+    }
+  }
+  return lines;
+}
+
 void Toolkit::check(mimetra_status status) const {
   if (status != MIMETRA_OK) throw Failure(functions_->message(context_));
+}
+
+std::vector<const mimetra_array*> Toolkit::arrays(const Data& data) const {
+  const mimetra_array* const* list = nullptr;
+  check(functions_->data_arrays(context_, data.get(), &list));
+  std::vector<const mimetra_array*> all;
+  for (; *list; ++list) all.push_back(*list);
+  return all;
 }
 
 const mimetra_array& Toolkit::array(const Data& data, const char* name) const {
@@ -146,6 +195,11 @@ void Call::want(const char* output) {
   toolkit_.check(toolkit_.functions_->call_want(call_, output));
 }
 
+void Call::write_manifest(const std::string& path) {
+  const std::int32_t replace = 0;
+  toolkit_.check(toolkit_.functions_->call_write(call_, nullptr, path.c_str(), replace));
+}
+
 void Call::run(mimetra_progress progress, void* user) {
   const mimetra_interface& functions = *toolkit_.functions_;
   toolkit_.check(functions.set_progress(toolkit_.context_, progress, user));
@@ -163,7 +217,8 @@ Data Call::output(const char* name) const {
 }
 
 std::string Call::summary() const {
-  return toolkit_.functions_->call_summary(call_);
+  const std::string text = toolkit_.functions_->call_summary(call_);
+  return text.empty() ? toolkit_.functions_->call_report(call_) : text;
 }
 
 }  // namespace mimetra_meshlab

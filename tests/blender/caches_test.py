@@ -93,6 +93,12 @@ class Caches(HostTest):
                         out, "--force")
                 self.assert_moves_like(self.target, np.load(out))
 
+    def test_an_aligned_source_is_a_copy_with_a_mesh_cache(self):
+        out = self.path / "still.npy"
+        command("align", self.take, "--on", "all", "-o", out)
+        bpy.ops.mimetra.align(on="all")
+        self.assert_moves_like(bpy.data.objects["source align"], np.load(out))
+
     def test_a_source_moves_by_any_modifier_that_keeps_its_vertices(self):
         bend = self.source.modifiers.new("bend", "SIMPLE_DEFORM")
         bend.deform_method = "TWIST"

@@ -131,6 +131,11 @@ class Fields(HostTest):
         bpy.ops.mimetra.info()
         self.assertIn("frames      120", bpy.data.texts["mimetra info"].as_string())
 
+    def test_a_check_is_text(self):
+        bpy.ops.mimetra.check()
+        self.assertIn("usable, 120 frames of 4334 vertices",
+                      bpy.data.texts["mimetra check"].as_string())
+
     def test_the_sample_is_a_head_that_performs_and_its_identities(self):
         bpy.ops.mimetra.sample()
         head = bpy.data.objects["sample"]

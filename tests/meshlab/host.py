@@ -17,6 +17,12 @@ FRAMES = "0:120:10"
 SELECTED = 0x20  # of MeshLab's flags of vertices and faces
 OPERATIONS = {"Geodesic Support Map": "geodesic", "Regions of Interest": "regions",
               "Region Transfer": "transfer"}
+# Made of the table alone.
+OF_LAYERS = ["mimetra Info", "mimetra Check", "mimetra Align", "mimetra Decompose",
+             "mimetra Evaluate", "mimetra Convert"]
+SHOWN = ["sequence", "regions", "table"]
+OF_FIELDS = ["speed"]
+MOST_ROWS = 8
 INPUTS = {"regions": ["sequence"], "transfer": ["source", "target"]}
 FIRST = {"regions": ["k", "radius", "region", "coverage"],
          "transfer": ["k", "radius", "coverage", "full", "space", "source-rest"]}
@@ -46,9 +52,28 @@ def text_of(value):
     return "" if value is None else str(value)
 
 
+def operation_of(filter):
+    """What the table holds for a filter."""
+    name = OPERATIONS.get(filter, filter.removeprefix("mimetra ").lower().replace(" ", "-"))
+    return operations()[name]
+
+
+def rows_of_layers(operation):
+    """Paths of what is needed, the choice of a field, parameters, and everything else."""
+    files = [input["name"] for input in operation["inputs"] if not input["optional"]]
+    made = [output for output in operation.get("outputs", []) if not output["optional"]]
+    files += [output["name"] for output in made if output["kind"] not in SHOWN]
+    files += ["Field"] * (operation["name"] in OF_FIELDS)
+    own = [parameter for parameter in operation["parameters"] if parameter["name"] not in OF_FILES]
+    return [*[(name, "RichString", "") for name in files], *map(row_of, own[:MOST_ROWS]),
+            ("Manifest", "RichString", ""), ("options", "RichString", "")]
+
+
 def rows_of(filter):
     """The rows of a filter's dialog as (name, type, default), as the table declares them."""
-    operation = operations()[OPERATIONS[filter]]
+    operation = operation_of(filter)
+    if filter not in OPERATIONS:
+        return rows_of_layers(operation)
     if operation["name"] == "geodesic":
         return [("source", "RichString", ""), ("quality", "RichEnum", "0"),
                 *[row_of(parameter) for parameter in operation["parameters"]
@@ -71,7 +96,7 @@ def row_of(parameter):
 def filter_script(filter, **values):
     """A filter of a script. All rows must be there: MeshLab's assertions fail without."""
     element = ElementTree.Element("filter", name=filter)
-    if filter not in OPERATIONS:
+    if filter not in OPERATIONS and not filter.startswith("mimetra "):
         for name, value in values.items():
             ElementTree.SubElement(element, "Param", name=name, type="RichString", value=value)
         return element
@@ -198,6 +223,17 @@ class HostTest(unittest.TestCase):
         done = self.serve(layers, filters, outputs)
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
         return [Ply(self.path / name) for name, _, _ in outputs]
+
+    def new_layers(self, layers, script, count):
+        """The layers that come after those that were opened."""
+        return self.apply(layers, [script],
+                          [(f"new{i}.ply", len(layers) + i, "") for i in range(count)])
+
+    def log(self, layers, *filters):
+        """What a run that must go well prints."""
+        done = self.serve(layers, filters)
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        return done.stdout
 
     def assert_refused(self, layers, filters, words):
         """The filter fails with these words, and the program goes on to its end."""

@@ -20,13 +20,26 @@ class Loading(HostTest):
     def test_lists_its_filters_with_what_they_do(self):
         for name, words in [("Geodesic Support Map", "selected vertices"),
                             ("Regions of Interest", "visible layers"),
-                            ("Region Transfer", "hidden layer")]:
+                            ("Region Transfer", "hidden layer"),
+                            ("mimetra Align", "new, hidden layer"),
+                            ("mimetra Evaluate", "The target is the current layer"),
+                            ("mimetra Info", "visible layers")]:
             self.assertIn(words, self.sections[name])
+
+    def test_has_a_filter_for_every_operation_that_begins_with_a_mesh(self):
+        of_mimetra = {*OPERATIONS.values()}
+        of_mimetra |= {operation_of(name)["name"] for name in self.sections
+                       if name.startswith("mimetra ")}
+        first = {name: next((each for each in operation.get("inputs", []) if not each["optional"]),
+                            {"kind": None}) for name, operation in operations().items()}
+        # MeshLab draws what it shows itself.
+        self.assertEqual(of_mimetra | {"render"}, {name for name, each in first.items()
+                                                   if each["kind"] in ["sequence", "model"]})
 
     def test_has_a_row_for_every_parameter(self):
         values = {"RichBool": "Bool", "RichInt": "Int", "RichFloat": "Float", "RichEnum": "Enum",
                   "RichString": "String"}
-        for name in OPERATIONS:
+        for name in [*OPERATIONS, *OF_LAYERS]:
             found = re.findall(r"<TR><TD> \\c (\w+)\s+</TD> <TD> (.*?) </TD>", self.sections[name])
             expected = []
             for row, kind, _ in rows_of(name):
@@ -36,14 +49,14 @@ class Loading(HostTest):
             self.assertEqual(found, expected)
 
     def test_lists_everything_else_as_further_options(self):
-        for name in ["Regions of Interest", "Region Transfer"]:
+        for name in ["Regions of Interest", "Region Transfer", *OF_LAYERS]:
             [line] = re.findall(r"Further options </TD> <TD><i> (.*?) -- </i>",
                                 self.sections[name])
-            operation = operations()[OPERATIONS[name]]
+            operation = operation_of(name)
             expected = [input["name"] for input in operation["inputs"] if input["optional"]]
             expected += [parameter["name"] for parameter in operation["parameters"]
                          if parameter["name"] not in {*OF_FILES} - {*READING}]
-            expected += [output["name"] for output in operation["outputs"]
+            expected += [output["name"] for output in operation.get("outputs", [])
                          if output["optional"] and output["name"] != "paraview"]
             rows = [row[0] for row in rows_of(name)]
             self.assertEqual(line.split(": ")[1].split(),

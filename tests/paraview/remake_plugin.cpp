@@ -122,10 +122,23 @@ mimetra_status replace(const mimetra_interface* m, mimetra_job* job, void*) {
   return m->job_output(job, "out", other);
 }
 
+/// Hands on its sequence where the model has as many vertices.
+mimetra_status follow(const mimetra_interface* m, mimetra_job* job, void*) {
+  const mimetra_data* take = m->job_input(job, "sequence", 0);
+  const mimetra_array *positions = nullptr, *neutral = nullptr;
+  m->data_array(m->job_context(job), take, "positions", &positions);
+  m->data_array(m->job_context(job), m->job_input(job, "actor", 0), "neutral", &neutral);
+  if (positions->shape[1] != neutral->shape[0]) {
+    return m->job_fail(job, MIMETRA_MISMATCH, "the actor has other vertices");
+  }
+  return m->job_output(job, "out", take);
+}
+
 const mimetra_port fields = {sizeof fields, MIMETRA_SEQUENCE,    "sequence",
                              "a take",      MIMETRA_WITH_FIELDS, 0};
 const mimetra_port sequence = {sizeof sequence, MIMETRA_SEQUENCE, "sequence", "a take", 0, 0};
 const mimetra_port other = {sizeof other, MIMETRA_SEQUENCE, "other", "the other take", 0, 0};
+const mimetra_port actor = {sizeof actor, MIMETRA_MODEL, "actor", "who follows", 0, 0};
 const mimetra_port asked = {
     sizeof asked, MIMETRA_SEQUENCE, "out", "mesh", MIMETRA_OPTIONAL | MIMETRA_WITH_FIELDS, 0};
 const mimetra_port made = {sizeof made, MIMETRA_SEQUENCE, "out", "mesh", 0, 0};
@@ -133,6 +146,7 @@ const mimetra_port rows = {sizeof rows, MIMETRA_TABLE, "rows", "a table", 0, 0};
 const mimetra_port* const remake_inputs[] = {&fields, nullptr};
 const mimetra_port* const remake_outputs[] = {&asked, &rows, nullptr};
 const mimetra_port* const replace_inputs[] = {&sequence, &other, nullptr};
+const mimetra_port* const follow_inputs[] = {&sequence, &actor, nullptr};
 const mimetra_port* const replace_outputs[] = {&made, nullptr};
 
 const char* const ways[] = {"triangles", "turned",  "halved", "doubled",
@@ -173,12 +187,22 @@ const mimetra_operation replace_operation = {sizeof replace_operation,
                                              nullptr,
                                              replace,
                                              nullptr};
+const mimetra_operation follow_operation = {sizeof follow_operation,
+                                            0,
+                                            "follow",
+                                            "Look at a model",
+                                            follow_inputs,
+                                            replace_outputs,
+                                            nullptr,
+                                            nullptr,
+                                            follow,
+                                            nullptr};
 // It would be called as ParaView's source is.
 const mimetra_operation taken = {
     sizeof taken, 0,       "sequence", "Take another one", replace_inputs, replace_outputs, nullptr,
     nullptr,      replace, nullptr};
-const mimetra_operation* const operations[] = {&remake_operation, &replace_operation, &taken,
-                                               nullptr};
+const mimetra_operation* const operations[] = {&remake_operation, &replace_operation,
+                                               &follow_operation, &taken, nullptr};
 const mimetra_plugin plugin = {sizeof plugin, MIMETRA_INTERFACE_VERSION, "remake", operations};
 
 }  // namespace

@@ -96,6 +96,12 @@ class ThirdPartyOperations(HostTest):
             self.assertEqual(found.GetPointData().HasArray("Normals"), has_normals)
             self.assertEqual(found.GetNumberOfPolys(), 25)
 
+    def test_shows_a_table_beside_the_mesh(self):
+        remake = simple.mimetraRemake(Input=self.source)
+        self.assertGreater(at(remake).GetNumberOfPoints(), 0)
+        self.assertEqual(list(column(at(remake, port=1), "column")), [0])
+        self.assertEqual(remake.SMProxy.GetOutputPortName(1), "Rows")
+
     def test_shows_the_frame_of_the_time(self):
         source = self.series_of("halved", moving())
         for time, frame in [(0, 0), (2, 2), (3, 2)]:
@@ -139,6 +145,15 @@ class ThirdPartyOperations(HostTest):
         mimetra("smooth", self.sample.take, "-o", smooth)
         replace.Other = str(smooth)
         self.assert_same(points(at(replace, 0)), np.load(smooth)[0])
+
+    def test_takes_models_from_the_pipeline_or_from_files(self):
+        source = self.series_of("follow", moving())
+        actor = simple.TrivialProducer()
+        actor.GetClientSideObject().SetOutput(mesh_of(*grid()))
+        follow = simple.mimetraFollow(Input=source, Actor=actor)
+        self.assert_same(points(at(follow, 2)), points(at(source, 2)))
+        follow.ActorFile = str(self.sample.head)
+        self.assert_refused("the actor has other vertices", follow)
 
     def test_stops_where_the_user_aborts(self):
         smooth = simple.mimetraSmooth(Input=self.source)

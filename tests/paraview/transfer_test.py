@@ -137,7 +137,7 @@ class RegionTransfer(HostTest):
         with Messages() as messages:
             shown = at(simple.RegionTransfer(Input=self.source()), 0)
         self.assertEqual(shown.GetNumberOfPoints(), 0)
-        self.assertIn("expected a target: a mesh at the port Target, or a model as Target File",
+        self.assertIn("Target: expected a mesh at the port Target, or a model as Target File",
                       messages.text)
 
 

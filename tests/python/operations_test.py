@@ -81,6 +81,59 @@ class Operations(SampleTest):
         result = mimetra.transfer(self.arrays, self.actor, regions=painted)
         self.assert_same(result.out.positions, np.load(out))
 
+    def test_says_what_a_sequence_is_and_whether_it_can_be_used(self):
+        for found, name in [(mimetra.info(self.arrays), "info"),
+                            (mimetra.check(self.arrays), "check")]:
+            self.assertEqual(found.report, json.loads(command(name, self.take, "--json")))
+            self.assertGreater(len(found.summary), 0)
+
+    def test_aligns_and_gives_the_motion_back(self):
+        out = self.path / "still.npy"
+        command("align", self.take, "--on", "all", "-o", out)
+        still = mimetra.align(self.arrays, on="all").out
+        self.assert_same(still.positions, np.load(out))
+        back = mimetra.align(still, undo=self.path / "still.run.json").out
+        # Both ways there is a product of rounded numbers, some units in the last place each.
+        np.testing.assert_allclose(back.positions, self.arrays.positions, rtol=0,
+                                   atol=1e-12 * np.abs(self.arrays.positions).max())
+
+    def test_converts_to_the_same_frames(self):
+        result = mimetra.convert(self.take)
+        self.assert_same(result.out.positions, self.arrays.positions)
+        self.assertEqual(result.report["frames"], 12)
+
+    def test_evaluates_as_the_command_does(self):
+        out = self.path / "table.csv"
+        command("evaluate", self.take, self.actor, "-k", "3,6", "-o", out)
+        table = mimetra.evaluate(self.arrays, self.actor, k=[3, 6], out=True).out
+        with open(out, newline="") as file:
+            rows = list(csv.DictReader(file))
+        for name in rows[0]:
+            if not name.endswith("_seconds"):
+                self.assert_same(table[name], np.array([float(row[name] or "nan") for row in rows]),
+                                 name)
+
+    def test_fits_as_the_command_does(self):
+        lines = (self.head / "landmarks68.txt").read_text().splitlines()
+        pairs = [tuple(map(int, line.split("="))) for line in lines if line[:1].isdigit()]
+        points = np.full((3, 68, 2), np.nan)
+        for landmark, vertex in pairs:
+            points[:, landmark - 1] = self.arrays.positions[:3, vertex, :2] * [1, -1] + 300
+        track, out = self.path / "track.csv", self.path / "fit.npy"
+        names = ",".join(f"x{landmark},y{landmark}" for landmark in range(68))
+        np.savetxt(track, points.reshape(3, -1), delimiter=",", header=names, comments="",
+                   fmt="%.17g")
+        command("fit", track, "--model", self.head, "-o", out)
+        self.assert_same(mimetra.fit(track, model=self.head).out.positions, np.load(out))
+
+    def test_makes_the_sample(self):
+        sample = mimetra.sample().out
+        model = mimetra.Model.load(self.head)
+        # The command's files of meshes are in single precision.
+        np.testing.assert_array_equal(sample.neutral.astype(np.float32),
+                                      model.neutral.astype(np.float32))
+        self.assertEqual(len(sample.weights), 120)
+
     def test_parameters_are_numbers_text_paths_and_lists(self):
         rest, out = self.path / "rest.ply", self.path / "aligned.npy"
         command("convert", f"{self.head}@identity001=1", "-o", rest)

@@ -1,5 +1,5 @@
 #pragma once
 
 /// Adds to ParaView the operations of mimetra's plugins, which it knows only when it runs: those
-/// that make a sequence or fields of the input's, as filters in the menu mimetra.
+/// that begin with a mesh over time, as filters in the menu mimetra.
 void add_third_party_operations();

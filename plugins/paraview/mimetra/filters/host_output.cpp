@@ -2,13 +2,17 @@
 
 #include <limits>
 
+#include <nlohmann/json.hpp>
+
 #include <vtkCellData.h>
 #include <vtkDoubleArray.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
 #include <vtkPolyData.h>
+#include <vtkStringArray.h>
 #include <vtkTable.h>
 
+#include "toolkit/operations/json.h"
 #include "toolkit/vtk/poly_data.h"
 
 using namespace mimetra;
@@ -86,4 +90,18 @@ void fill(vtkTable& output, const Table& table) {
     }
     output.AddColumn(values);
   }
+}
+
+void fill(vtkTable& output, const std::string& report) {
+  vtkNew<vtkStringArray> names;
+  vtkNew<vtkStringArray> values;
+  names->SetName("name");
+  values->SetName("value");
+  const Json members = Json::parse(report);
+  for (const auto& [name, value] : members.items()) {
+    names->InsertNextValue(name);
+    values->InsertNextValue(value.is_string() ? value.get<std::string>() : value.dump());
+  }
+  output.AddColumn(names);
+  output.AddColumn(values);
 }

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <string>
+
 #include "toolkit/operations/data.h"
 
 class vtkPolyData;
@@ -29,3 +31,6 @@ void share_fields(vtkPolyData& holder, vtkPolyData& output);
 
 /// One column of numbers for each of the table's, "time" as "Time"; an empty cell is NaN.
 void fill(vtkTable& output, const mimetra::Table& table);
+
+/// The members of a JSON object as rows of two columns of text, "name" and "value".
+void fill(vtkTable& output, const std::string& report);

@@ -1,11 +1,13 @@
 #include "plugins/paraview/mimetra/filters/operation_call.h"
 
 #include <algorithm>
+#include <fstream>
+
+#include <nlohmann/json.hpp>
 
 #include "plugins/c/plugins.h"
-#include "plugins/paraview/mimetra/filters/proxy_xml.h"
-#include "toolkit/mesh/progress.h"
-#include "toolkit/operations/loading.h"
+#include "plugins/paraview/mimetra/filters/filter_proxies.h"
+#include "toolkit/operations/json.h"
 #include "toolkit/vtk/vtp_formats.h"
 
 using namespace mimetra;
@@ -44,22 +46,28 @@ bool same_model(const BlendshapeModel& a, const BlendshapeModel& b) {
 
 bool same_data(const Data& a, const Data& b) {
   if (a.index() != b.index()) return false;
-  if (const auto* read = std::get_if<SequenceRead>(&a)) {
-    return same_sequence(read->sequence, std::get<SequenceRead>(b).sequence);
-  }
   if (const auto* shown = std::get_if<FieldSequence>(&a)) {
     const auto& other = std::get<FieldSequence>(b);
-    return same_sequence(shown->sequence, other.sequence) &&
+    return same_sequence(shown->sequence(), other.sequence()) &&
            std::ranges::equal(shown->fields, other.fields, same_field);
   }
-  const auto* model = std::get_if<BlendshapeModel>(&a);
-  return model && same_model(*model, std::get<BlendshapeModel>(b));
+  const auto* model = std::get_if<ModelData>(&a);
+  return model && same_model(model->model.average(), std::get<ModelData>(b).model.average());
 }
 
 const Operation& found(const OperationTable& table, const std::string& name) {
   const Operation* operation = table.find(name);
   if (operation) return *operation;
   throw std::invalid_argument("there is no operation '" + name + "'; is its plugin missing?");
+}
+
+/// What a further run of the operation may replace.
+bool is_manifest_of_operation(const std::string& path, const std::string& operation) {
+  std::ifstream file(path);
+  if (!file) return false;
+  const Json json = Json::parse(file, nullptr, false);
+  return json.is_object() && json.value("program", Json()) == "mimetra" &&
+         json.value("command", Json()) == operation;
 }
 
 constexpr const char* kComponents = "components";
@@ -114,8 +122,8 @@ bool OperationCall::set(const std::string& name, const ParameterValue& value) {
   return true;
 }
 
-DataKind OperationCall::input_kind(const std::string& name) const {
-  return std::ranges::find(operation_.inputs, name, &Input::name)->kind;
+bool OperationCall::looks_at_fields(const std::string& input) const {
+  return std::ranges::find(operation_.inputs, input, &Input::name)->fields;
 }
 
 const Data* OperationCall::given(const std::string& input) const {
@@ -126,7 +134,7 @@ const Data* OperationCall::given(const std::string& input) const {
 bool OperationCall::give(const std::string& input, NamedData data) {
   const auto old = given_.find(input);
   if (old != given_.end() && same_data(old->second.data, data.data)) return false;
-  if (std::holds_alternative<SequenceRead>(data.data)) components_.reset();
+  if (std::holds_alternative<FieldSequence>(data.data)) components_.reset();
   given_[input] = std::move(data);
   outcome_.reset();
   return true;
@@ -146,37 +154,57 @@ Parameters OperationCall::parameters() const {
   return parameters;
 }
 
-Invocation OperationCall::invocation(const Progress& progress, const Log& log) const {
-  Invocation invocation;
-  invocation.parameters = parameters();
-  std::map<std::string, std::vector<NamedData>> given;
-  for (const auto& [name, data] : given_) given[name] = {data};
-  std::map<std::string, std::vector<std::string>> paths;
-  for (const auto& [name, value] : values_) {
-    if (has_input(name)) paths[name] = {to_text(value)};
-  }
-  invocation.inputs =
-      load_inputs(table_, operation_, invocation.parameters, paths, progress, log, 0, given).data;
-  if (components_ && !invocation.inputs.contains(kComponents)) {
-    invocation.inputs[kComponents] = {*components_};
-  }
-  invocation.progress = progress;
-  invocation.log = log;
-  return invocation;
+bool OperationCall::set_manifest(const std::string& path) {
+  if (manifest_ == path) return false;
+  manifest_ = path;
+  outcome_.reset();
+  return true;
 }
 
-const Outcome& OperationCall::run(Invocation invocation, const std::vector<std::string>& wanted) {
+void OperationCall::check_inputs() const {
+  const std::vector<std::string> meshes = mesh_inputs(operation_);
   for (const Input& input : operation_.inputs) {
-    if (input.optional || invocation.inputs.contains(input.name)) continue;
-    throw UsageError(label_of(input.name) + ": expected " + input.help + ", found nothing");
+    const bool has_one = given_.contains(input.name) || values_.contains(input.name);
+    if (input.optional || has_one) continue;
+    const std::string label = label_of(input.name);
+    const bool may_be_mesh = std::ranges::find(meshes, input.name) != meshes.end();
+    throw UsageError(label + ": expected " +
+                     (may_be_mesh
+                          ? "a mesh at the port " + label + ", or a model as " + label + " File"
+                          : input.help) +
+                     ", found nothing");
   }
-  for (const std::string& output : wanted) invocation.wanted[output] = {};
-  for (const Output& output : operation_.outputs) {
-    if (!output.optional) invocation.wanted[output.name] = {};
+}
+
+Call OperationCall::loaded(const Progress& progress, const Log& log) const {
+  check_inputs();
+  CallRequest request;
+  request.operation = &operation_;
+  request.parameters = parameters();
+  for (const auto& [name, data] : given_) request.given[name] = {data};
+  for (const auto& [name, value] : values_) {
+    if (has_input(name)) request.named[name] = {to_text(value)};
   }
-  const bool has_components = invocation.inputs.contains(kComponents);
-  if (has_components) invocation.wanted.erase(kComponentsOut);
-  Outcome outcome = operation_.run(invocation);
+  if (!manifest_.empty()) request.manifest = manifest_;
+  request.overwrite = is_manifest_of_operation(manifest_, operation_.name);
+  request.progress = progress;
+  request.log = log;
+  Call call(table_, std::move(request));
+  call.load();
+  if (components_ && !call.invocation().inputs.contains(kComponents)) {
+    call.give(kComponents, *components_);
+  }
+  return call;
+}
+
+const Outcome& OperationCall::run(Call call, const std::vector<std::string>& wanted) {
+  const bool has_components = call.invocation().inputs.contains(kComponents);
+  for (const std::string& output : wanted) {
+    if (!has_components || output != kComponentsOut) call.want(output);
+  }
+  call.run();
+  call.write();
+  Outcome& outcome = call.outcome();
   for (auto& [name, values] : outcome.outputs) {
     if (!std::holds_alternative<Components>(values.front().data)) continue;
     ++decompositions_;

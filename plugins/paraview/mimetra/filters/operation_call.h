@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "toolkit/mesh/progress.h"
-#include "toolkit/operations/operation.h"
+#include "toolkit/operations/call.h"
 
 /// True where both have one name, place and values; NaN is NaN.
 bool same_field(const mimetra::Field& a, const mimetra::Field& b);
@@ -27,7 +27,8 @@ class OperationCall {
   /// True where it has another value than its default, or a path.
   bool is_set(const std::string& name) const { return values_.contains(name); }
 
-  mimetra::DataKind input_kind(const std::string& name) const;
+  /// True for an input whose fields are looked at.
+  bool looks_at_fields(const std::string& input) const;
   /// What an input was given, or null.
   const mimetra::Data* given(const std::string& input) const;
   /// Gives an input its value. True where it is another one than before.
@@ -35,23 +36,28 @@ class OperationCall {
   /// Takes it back.
   void take_back(const std::string& input);
 
-  /// The inputs given, and those read from files. Throws what the readers throw.
-  mimetra::Invocation invocation(const mimetra::Progress& progress, const mimetra::Log& log) const;
+  /// A file for the manifest of each run; no text for none. True where it is another than before.
+  bool set_manifest(const std::string& path);
+
+  /// The inputs given, and those read from files, ready to run. Throws what the readers throw,
+  /// UsageError without an input that it needs, OutputError for a manifest that cannot be written
+  /// or would replace anything but one of the same operation.
+  mimetra::Call loaded(const mimetra::Progress& progress, const mimetra::Log& log) const;
 
   /// True while what was computed still holds.
   bool is_done() const { return outcome_.has_value(); }
   const mimetra::Outcome& outcome() const { return *outcome_; }
-  /// Runs the operation, for the outputs `wanted` and those that are not optional. What it makes
-  /// as "components-out" is its input `components` from then on. Throws what it throws, and
-  /// UsageError without an input that it needs.
-  const mimetra::Outcome& run(mimetra::Invocation invocation,
-                              const std::vector<std::string>& wanted);
+  /// Runs the operation, for the outputs `wanted` and those that are not optional, and writes the
+  /// manifest. What it makes as "components-out" is its input `components` from then on. Throws
+  /// what it throws.
+  const mimetra::Outcome& run(mimetra::Call call, const std::vector<std::string>& wanted);
 
   /// How often components were computed.
   int decompositions() const { return decompositions_; }
 
  private:
   mimetra::Parameters parameters() const;
+  void check_inputs() const;
   bool has_input(const std::string& name) const;
   bool is_default(const std::string& name, const mimetra::ParameterValue& value) const;
   bool is_of_decomposition(const std::string& name) const;
@@ -60,6 +66,7 @@ class OperationCall {
   mimetra::Operation operation_;
   std::map<std::string, mimetra::ParameterValue> values_;
   std::map<std::string, mimetra::NamedData> given_;
+  std::string manifest_;
   std::optional<mimetra::Outcome> outcome_;
   std::optional<mimetra::NamedData> components_;
   int decompositions_ = 0;

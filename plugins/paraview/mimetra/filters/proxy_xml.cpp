@@ -100,6 +100,11 @@ std::string port_xml(const Port& port, int index, const std::string& help) {
          escaped_for_xml(help) + "</Documentation>\n      </InputProperty>\n";
 }
 
+std::string output_port_xml(const std::string& name, std::size_t index) {
+  return "      <OutputPort" + attribute("name", name) + attribute("index", std::to_string(index)) +
+         "/>\n";
+}
+
 /// A label says what is held where a port has the name alone: Python knows both by their labels.
 std::string label_beside_ports(const Proxy& proxy, const std::string& name,
                                const std::string& held) {
@@ -156,6 +161,9 @@ std::string proxy_xml(const Proxy& proxy) {
   };
   for (const Input& input : operation.inputs) add_advanced(input.name);
   for (const Parameter& parameter : proxy.parameters) add_advanced(parameter.name);
+  for (std::size_t i = 0; i < proxy.outputs.size(); ++i) {
+    xml += output_port_xml(proxy.outputs[i], i);
+  }
   return xml + proxy.further + "      <Hints>" + proxy.hints + "</Hints>\n    </SourceProxy>\n";
 }
 

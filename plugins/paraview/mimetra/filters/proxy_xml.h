@@ -23,7 +23,8 @@ struct Proxy {
   std::string label;
   std::vector<std::string> first;  ///< parameters that are shown at once, in this order
   std::vector<Port> ports;
-  std::string further;  ///< XML of properties that are no parameters, of further outputs
+  std::vector<std::string> outputs;  ///< names of the output ports, where there are several
+  std::string further;               ///< XML of properties that are no parameters
   std::string hints;
 };
 

@@ -67,12 +67,11 @@ void TimeSteps::add(vtkDataObject* data) {
   ++next_;
 }
 
-Data TimeSteps::taken() {
+FieldSequence TimeSteps::taken() {
   const Eigen::VectorXd times =
       Eigen::Map<const Eigen::VectorXd>(times_.data(), static_cast<Eigen::Index>(times_.size()));
   MeshSequence sequence(std::move(connectivity_), std::move(frames_), times, std::move(rest_));
-  if (with_fields_) return FieldSequence{std::move(sequence), std::move(fields_)};
-  return SequenceRead{std::move(sequence), false, {}, {}};
+  return FieldSequence(std::move(sequence), std::move(fields_));
 }
 
 void TimeSteps::expect_counts_of(vtkPolyData& mesh, std::optional<double> time) const {

@@ -25,9 +25,8 @@ class TimeSteps {
   std::optional<double> next_time() const;
   /// Throws IoError, MismatchError and std::invalid_argument that name the time.
   void add(vtkDataObject* data);
-  /// What was collected, which is then forgotten, save its times and counts: a SequenceRead, or a
-  /// FieldSequence with fields.
-  mimetra::Data taken();
+  /// What was collected, which is then forgotten, save its times and counts.
+  mimetra::FieldSequence taken();
 
   /// Throws MismatchError for a mesh at `time` with other numbers of vertices or faces than those
   /// collected.

@@ -29,6 +29,10 @@ void vtkMimetraAlgorithm::SetText(const char* name, const char* value) {
   if (call_->set(name, std::string(value ? value : ""))) Modified();
 }
 
+void vtkMimetraAlgorithm::SetRunFile(const char* path) {
+  if (call_->set_manifest(path ? path : "")) Modified();
+}
+
 int vtkMimetraAlgorithm::GetDecompositions() {
   return call_->decompositions();
 }
@@ -49,9 +53,9 @@ const Outcome& vtkMimetraAlgorithm::outcome(double begin) {
   const mimetra::Progress progress = [this, begin](double share) {
     return show_progress(begin + (1 - begin) * share);
   };
-  Invocation invocation = call_->invocation(progress, log);
-  const std::vector<std::string> wanted = wanted_outputs(invocation);
-  return call_->run(std::move(invocation), wanted);
+  Call loaded = call_->loaded(progress, log);
+  const std::vector<std::string> wanted = wanted_outputs(loaded.invocation());
+  return call_->run(std::move(loaded), wanted);
 }
 
 vtkMimetraAlgorithm::Attempt vtkMimetraAlgorithm::attempt(const std::function<void()>& work) {

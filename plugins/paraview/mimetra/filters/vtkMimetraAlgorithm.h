@@ -25,6 +25,9 @@ class MIMETRAFILTERS_EXPORT vtkMimetraAlgorithm : public vtkPolyDataAlgorithm {
   void SetNumber(const char* name, double value);
   void SetText(const char* name, const char* value);
 
+  /// A file for the manifest of each run, which replaces that of an earlier one; no text for none.
+  void SetRunFile(const char* path);
+
   /// How often components were computed.
   int GetDecompositions();
 
@@ -36,6 +39,7 @@ class MIMETRAFILTERS_EXPORT vtkMimetraAlgorithm : public vtkPolyDataAlgorithm {
   ~vtkMimetraAlgorithm() override;
 
   OperationCall& call() { return *call_; }
+  const OperationCall& call() const { return *call_; }
   /// Takes another operation, with its defaults.
   void set_call(std::unique_ptr<OperationCall> call);
   /// Outputs besides those that are not optional.

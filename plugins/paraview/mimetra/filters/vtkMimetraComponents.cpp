@@ -15,7 +15,7 @@ using namespace mimetra;
 
 vtkStandardNewMacro(vtkMimetraComponents);
 
-vtkMimetraComponents::vtkMimetraComponents() : vtkMimetraFilter("decompose", "sequence") {
+vtkMimetraComponents::vtkMimetraComponents() : vtkMimetraFilter("decompose") {
   SetNumberOfOutputPorts(2);
 }
 

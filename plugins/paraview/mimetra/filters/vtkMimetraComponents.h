@@ -2,7 +2,8 @@
 
 #include "plugins/paraview/mimetra/filters/vtkMimetraFilter.h"
 
-/// Sparse components, each a block that shows it at weight 1, and their weights over time.
+/// Sparse components, each a block that shows it at weight 1, and their weights over time. A class
+/// of its own because components are neither a sequence nor fields: what shows them is made here.
 class MIMETRAFILTERS_EXPORT vtkMimetraComponents : public vtkMimetraFilter {
  public:
   vtkTypeMacro(vtkMimetraComponents, vtkMimetraFilter);

@@ -8,9 +8,11 @@
 #include <vtkPolyData.h>
 #include <vtkStreamingDemandDrivenPipeline.h>
 
+#include "plugins/paraview/mimetra/filters/filter_proxies.h"
 #include "plugins/paraview/mimetra/filters/operation_call.h"
 #include "plugins/paraview/mimetra/filters/time_steps.h"
 #include "toolkit/mesh/errors.h"
+#include "toolkit/vtk/poly_data.h"
 
 using namespace mimetra;
 using Pipeline = vtkStreamingDemandDrivenPipeline;
@@ -38,6 +40,20 @@ std::optional<double> asked_time(vtkInformation& in, vtkInformation& out) {
   return is_asked ? out.Get(Pipeline::UPDATE_TIME_STEP()) : times.front();
 }
 
+/// A model is one mesh: of a series, the first.
+std::optional<double> first_time_of(vtkInformation& info) {
+  if (!info.Has(Pipeline::TIME_STEPS())) return {};
+  return info.Get(Pipeline::TIME_STEPS())[0];
+}
+
+ModelData model_of(vtkPolyData& mesh, const std::string& name) {
+  Positions positions = positions_of(mesh, name);
+  auto connectivity = std::make_shared<Connectivity>(connectivity_of(mesh, name));
+  ShapeBasis none{{}, Eigen::MatrixXd(positions.size(), 0)};
+  return {MorphableModel(
+      BlendshapeModel(std::move(connectivity), std::move(positions), std::move(none)))};
+}
+
 /// Throws std::invalid_argument for data of any time in a range.
 void refuse_continuous(vtkInformation& in) {
   if (in.Has(Pipeline::TIME_STEPS()) || !in.Has(Pipeline::TIME_RANGE())) return;
@@ -53,22 +69,34 @@ constexpr double kReading = 0.3;
 
 }  // namespace
 
-vtkMimetraFilter::vtkMimetraFilter(const char* operation, const char* input, Takes takes)
+vtkMimetraFilter::vtkMimetraFilter(const char* operation, Takes takes)
     : vtkMimetraAlgorithm(std::make_unique<OperationCall>(operation)),
-      input_(input),
       takes_(takes),
-      steps_(std::make_unique<TimeSteps>()) {}
+      steps_(std::make_unique<TimeSteps>()) {
+  name_inputs();
+}
 
 vtkMimetraFilter::~vtkMimetraFilter() = default;
 
-void vtkMimetraFilter::become(std::unique_ptr<OperationCall> call, const std::string& input) {
+void vtkMimetraFilter::become(std::unique_ptr<OperationCall> call) {
+  if (!piped_input(call->operation())) {
+    throw std::invalid_argument(call->operation().name + ": begins with no mesh");
+  }
   set_call(std::move(call));
-  input_ = input;
   collected_.reset();
+  name_inputs();
+}
+
+void vtkMimetraFilter::name_inputs() {
+  input_ = piped_input(call().operation())->name;
+  mesh_ports_.clear();
+  for (const std::string& name : mesh_inputs(call().operation())) mesh_ports_.push_back({name});
+  SetNumberOfInputPorts(1 + static_cast<int>(mesh_ports_.size()));
 }
 
 // What is not a mesh is refused in RequestData, in words that say what to do about it.
-int vtkMimetraFilter::FillInputPortInformation(int, vtkInformation* info) {
+int vtkMimetraFilter::FillInputPortInformation(int port, vtkInformation* info) {
+  if (port > 0) info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1);
   info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkDataObject");
   return 1;
 }
@@ -88,6 +116,15 @@ int vtkMimetraFilter::RequestUpdateExtent(vtkInformation*, vtkInformationVector*
   vtkInformation* in = inputs[0]->GetInformationObject(0);
   const auto time = asked_time(*in, *outputs->GetInformationObject(0));
   if (time) in->Set(Pipeline::UPDATE_TIME_STEP(), *time);
+  for (int port = 1; port < GetNumberOfInputPorts(); ++port) {
+    vtkInformation* mesh = inputs[port]->GetInformationObject(0);
+    if (!mesh) continue;
+    if (const auto first = first_time_of(*mesh)) {
+      mesh->Set(Pipeline::UPDATE_TIME_STEP(), *first);
+    } else {
+      mesh->Remove(Pipeline::UPDATE_TIME_STEP());
+    }
+  }
   return 1;
 }
 
@@ -99,7 +136,7 @@ int vtkMimetraFilter::RequestData(vtkInformation*, vtkInformationVector** inputs
   const Attempt attempted = attempt([&] {
     vtkInformation& in = *inputs[0]->GetInformationObject(0);
     const auto time = asked_time(in, *outputs->GetInformationObject(0));
-    give_further_inputs(inputs);
+    give_meshes(inputs);
     collect(in, time);
     compute_and_show(time, outputs);
   });
@@ -113,8 +150,7 @@ void vtkMimetraFilter::collect(vtkInformation& in, std::optional<double> shown) 
   if (all && collected_ == origin) return;
   collected_.reset();
   if (all) refuse_continuous(in);
-  const bool with_fields = call().input_kind(input_) == DataKind::fields;
-  steps_->begin(all ? times_of(in) : std::vector<double>(), with_fields);
+  steps_->begin(all ? times_of(in) : std::vector<double>(), call().looks_at_fields(input_));
   while (!steps_->complete()) {
     steps_->add(input_at(0, all ? steps_->next_time() : shown));
     if (!show_progress(kReading * steps_->share())) throw Cancelled();
@@ -162,7 +198,32 @@ vtkDataObject* vtkMimetraFilter::input_at(int port, std::optional<double> time) 
   return GetInputDataObject(port, 0);
 }
 
-void vtkMimetraFilter::give_further_inputs(vtkInformationVector**) {}
+void vtkMimetraFilter::give_meshes(vtkInformationVector** inputs) {
+  int port = 0;
+  for (MeshPort& each : mesh_ports_) {
+    ++port;
+    // ParaView asks for a mesh at the port even where the input is a file.
+    const Origin origin = call().is_set(each.input) ? Origin() : origin_of(port);
+    if (each.given == origin) continue;
+    each.given.reset();
+    each.mesh = nullptr;
+    if (origin == Origin()) {
+      call().take_back(each.input);
+    } else {
+      // A copy, because it may be the first input too, which moves on.
+      const std::string name = "the " + each.input;
+      const auto first = first_time_of(*inputs[port]->GetInformationObject(0));
+      each.mesh = vtkSmartPointer<vtkPolyData>::New();
+      each.mesh->ShallowCopy(&mesh_of(input_at(port, first)));
+      call().give(each.input, {name, model_of(*each.mesh, name)});
+    }
+    each.given = origin;
+  }
+}
+
+vtkPolyData* vtkMimetraFilter::mesh_at(int port) const {
+  return mesh_ports_.at(static_cast<std::size_t>(port - 1)).mesh;
+}
 
 bool vtkMimetraFilter::moves(int port) const {
   return port == 0;

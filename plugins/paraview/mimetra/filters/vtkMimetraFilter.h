@@ -4,16 +4,20 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
+
+#include <vtkPolyData.h>
+#include <vtkSmartPointer.h>
 
 #include "plugins/paraview/mimetra/filters/vtkMimetraAlgorithm.h"
 
 class TimeSteps;
 class vtkAlgorithmOutput;
 class vtkDataObject;
-class vtkPolyData;
 
 /// A filter that gives its operation all time steps of its input as one sequence (or, for some, the
-/// one that is shown), and shows what came of it at the time asked for.
+/// one that is shown), and meshes at further ports as models; it shows what came of it at the time
+/// asked for.
 class MIMETRAFILTERS_EXPORT vtkMimetraFilter : public vtkMimetraAlgorithm {
  public:
   vtkTypeMacro(vtkMimetraFilter, vtkMimetraAlgorithm);
@@ -21,11 +25,10 @@ class MIMETRAFILTERS_EXPORT vtkMimetraFilter : public vtkMimetraAlgorithm {
  protected:
   enum class Takes { all_time_steps, shown_time_step };
 
-  /// `input`: the operation's name for what comes in at port 0.
-  vtkMimetraFilter(const char* operation, const char* input, Takes takes = Takes::all_time_steps);
+  explicit vtkMimetraFilter(const char* operation, Takes takes = Takes::all_time_steps);
   ~vtkMimetraFilter() override;
-  /// Takes another operation, with its name for what comes in.
-  void become(std::unique_ptr<OperationCall> call, const std::string& input);
+  /// Takes another operation. Throws std::invalid_argument for one that begins with no mesh.
+  void become(std::unique_ptr<OperationCall> call);
 
   int FillInputPortInformation(int port, vtkInformation* info) override;
   int RequestInformation(vtkInformation* request, vtkInformationVector** inputs,
@@ -37,18 +40,10 @@ class MIMETRAFILTERS_EXPORT vtkMimetraFilter : public vtkMimetraAlgorithm {
 
   /// True where an output has time steps; a table over time has none.
   virtual bool moves(int port) const;
-  /// Where the data at a port come from: other data, save those of another time, have another one.
-  struct Origin {
-    vtkAlgorithmOutput* connection = nullptr;
-    vtkMTimeType changed = 0;
-    bool operator==(const Origin&) const = default;
-  };
-  Origin origin_of(int port);
-  /// What comes in at a port, brought to a time where it has times. Throws IoError where it cannot
-  /// be had.
-  vtkDataObject* input_at(int port, std::optional<double> time);
-  /// Gives the operation what comes in at other ports.
-  virtual void give_further_inputs(vtkInformationVector** inputs);
+  /// The operation's name for what comes in at port 0.
+  const std::string& piped() const { return input_; }
+  /// The mesh that came in at a further port, or null where there is none, or a file instead.
+  vtkPolyData* mesh_at(int port) const;
   /// Makes what stays the same over time; called before the first show() after any change, and
   /// where the input has other cells beside its polygons than before.
   virtual void prepare(const mimetra::Outcome& outcome, vtkPolyData& input);
@@ -57,12 +52,33 @@ class MIMETRAFILTERS_EXPORT vtkMimetraFilter : public vtkMimetraAlgorithm {
                     vtkInformationVector* outputs) = 0;
 
  private:
+  /// Where the data at a port come from: other data, save those of another time, have another one.
+  struct Origin {
+    vtkAlgorithmOutput* connection = nullptr;
+    vtkMTimeType changed = 0;
+    bool operator==(const Origin&) const = default;
+  };
+  /// A further input that may come in as a mesh.
+  struct MeshPort {
+    std::string input;
+    std::optional<Origin> given = {};
+    vtkSmartPointer<vtkPolyData> mesh = {};
+  };
+
+  Origin origin_of(int port);
+  /// What comes in at a port, brought to a time where it has times. Throws IoError where it cannot
+  /// be had.
+  vtkDataObject* input_at(int port, std::optional<double> time);
+  void name_inputs();
+  /// Gives the operation what comes in at further ports.
+  void give_meshes(vtkInformationVector** inputs);
   /// Gives the operation the input's time steps, where they are others than before, or the one that
   /// is shown.
   void collect(vtkInformation& in, std::optional<double> shown);
   void compute_and_show(std::optional<double> time, vtkInformationVector* outputs);
 
   std::string input_;
+  std::vector<MeshPort> mesh_ports_;
   Takes takes_;
   std::unique_ptr<TimeSteps> steps_;
   std::optional<Origin> collected_;

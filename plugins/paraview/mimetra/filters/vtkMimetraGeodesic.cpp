@@ -10,14 +10,12 @@ using namespace mimetra;
 
 vtkStandardNewMacro(vtkMimetraGeodesic);
 
-vtkMimetraGeodesic::vtkMimetraGeodesic()
-    : vtkMimetraFilter("geodesic", "mesh", Takes::shown_time_step) {}
+vtkMimetraGeodesic::vtkMimetraGeodesic() : vtkMimetraFilter("geodesic", Takes::shown_time_step) {}
 
 void vtkMimetraGeodesic::show(const Outcome& outcome, vtkPolyData& input, double,
                               vtkInformationVector* outputs) {
   vtkPolyData* output = vtkPolyData::GetData(outputs);
   output->ShallowCopy(&input);
-  const auto& [sequence, fields, displacement] =
-      std::get<FieldSequence>(outcome.outputs.at("out").front().data);
-  for (const Field& field : fields) add_field(*output, field, sequence.connectivity());
+  const auto& made = std::get<FieldSequence>(outcome.outputs.at("out").front().data);
+  for (const Field& field : made.fields) add_field(*output, field, made.frames->connectivity());
 }

@@ -3,8 +3,12 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include <vtkInformation.h>
 #include <vtkObjectFactory.h>
+#include <vtkOutputWindow.h>
+#include <vtkTable.h>
 
+#include "plugins/paraview/mimetra/filters/filter_proxies.h"
 #include "plugins/paraview/mimetra/filters/host_output.h"
 #include "plugins/paraview/mimetra/filters/operation_call.h"
 #include "plugins/paraview/mimetra/filters/time_steps.h"
@@ -13,27 +17,21 @@
 
 using namespace mimetra;
 
+using Content = ShownOutput::Content;
+
 vtkStandardNewMacro(vtkMimetraOperation);
 
 namespace {
 
-constexpr const char* kOut = "out";
-
 const MeshSequence& sequence_of(const Data& data) {
-  const auto* fields = std::get_if<FieldSequence>(&data);
-  return fields ? fields->sequence : std::get<SequenceRead>(data).sequence;
+  return std::get<FieldSequence>(data).sequence();
 }
 
 /// Throws std::runtime_error where nothing was made.
-const Data& made_by(const Outcome& outcome) {
-  const auto made = outcome.outputs.find(kOut);
+const Data& made_by(const Outcome& outcome, const std::string& output) {
+  const auto made = outcome.outputs.find(output);
   if (made != outcome.outputs.end() && !made->second.empty()) return made->second.front().data;
-  throw std::runtime_error("the operation made nothing for its output 'out'");
-}
-
-std::vector<Field> fields_in(const Data& data) {
-  const auto* with_fields = std::get_if<FieldSequence>(&data);
-  return with_fields ? with_fields->fields : std::vector<Field>();
+  throw std::runtime_error("the operation made nothing for its output '" + output + "'");
 }
 
 /// On the same faces. What knows no rest pose has the other's.
@@ -45,57 +43,100 @@ bool same_shape(const MeshSequence& made, const MeshSequence& given) {
 
 }  // namespace
 
-vtkMimetraOperation::vtkMimetraOperation() : vtkMimetraFilter("convert", "sequence") {}
+vtkMimetraOperation::vtkMimetraOperation() : vtkMimetraFilter("convert") {}
 
 void vtkMimetraOperation::SetOperation(const char* name) {
   attempt([&] {
     auto call = std::make_unique<OperationCall>(name);
     if (call->operation().name == this->call().operation().name) return;
-    const std::string input = call->operation().inputs.front().name;
-    become(std::move(call), input);
+    become(std::move(call));
+    SetNumberOfOutputPorts(static_cast<int>(shown_outputs(this->call().operation()).size()));
+    // They said what the operation before shows.
+    for (int port = 0; port < GetNumberOfOutputPorts(); ++port) {
+      GetOutputPortInformation(port)->Clear();
+    }
     Modified();
   });
 }
 
+int vtkMimetraOperation::FillOutputPortInformation(int port, vtkInformation* info) {
+  info->Set(vtkDataObject::DATA_TYPE_NAME(), moves(port) ? "vtkPolyData" : "vtkTable");
+  return 1;
+}
+
+bool vtkMimetraOperation::moves(int port) const {
+  const auto shown = shown_outputs(call().operation());
+  return shown.at(static_cast<std::size_t>(port)).content == Content::mesh;
+}
+
 std::vector<std::string> vtkMimetraOperation::wanted_outputs(const Invocation&) {
-  // It may be one that the command only makes when asked.
-  return {kOut};
+  // They may be some that the command only makes when asked.
+  std::vector<std::string> wanted;
+  for (const ShownOutput& shown : shown_outputs(call().operation())) {
+    if (shown.content != Content::report) wanted.push_back(shown.output);
+  }
+  return wanted;
 }
 
 void vtkMimetraOperation::prepare(const Outcome& outcome, vtkPolyData& input) {
-  const Data& made = made_by(outcome);
+  const ShownOutput first = shown_outputs(call().operation()).front();
+  if (first.content == Content::mesh) prepare_mesh(outcome, input);
+  if (first.content == Content::report) vtkOutputWindowDisplayText(outcome.summary.c_str());
+}
+
+void vtkMimetraOperation::show(const Outcome& outcome, vtkPolyData& input, double time,
+                               vtkInformationVector* outputs) {
+  int port = 0;
+  for (const ShownOutput& shown : shown_outputs(call().operation())) {
+    switch (shown.content) {
+      case Content::mesh:
+        show_made(outcome, input, time, *vtkPolyData::GetData(outputs, port));
+        break;
+      case Content::table:
+        fill(*vtkTable::GetData(outputs, port), std::get<Table>(made_by(outcome, shown.output)));
+        break;
+      case Content::report:
+        fill(*vtkTable::GetData(outputs, port), outcome.report);
+        break;
+    }
+    ++port;
+  }
+}
+
+void vtkMimetraOperation::prepare_mesh(const Outcome& outcome, vtkPolyData& input) {
+  const Data& made = made_by(outcome, shown_outputs(call().operation()).front().output);
   const MeshSequence& sequence = sequence_of(made);
-  std::vector<Field> fields = fields_in(made);
+  std::vector<Field> fields = std::get<FieldSequence>(made).fields;
   if (!same_faces(sequence.connectivity(), connectivity_of(input, "the mesh"))) {
     shown_ = Shown::as_a_mesh_of_its_own;
     make_mesh(*shared_, sequence, fields);
     return;
   }
-  const Data& given = *call().given(call().operation().inputs.front().name);
+  const Data& given = *call().given(piped());
   const bool same = same_shape(sequence, sequence_of(given));
   shown_ = same ? Shown::on_the_input : Shown::in_another_shape;
   // What was only handed on is the input's own, which may change over time.
-  std::erase_if(fields, [own = fields_in(given)](const Field& field) {
+  std::erase_if(fields, [&own = std::get<FieldSequence>(given).fields](const Field& field) {
     return std::ranges::any_of(own, [&](const Field& each) { return same_field(each, field); });
   });
   make_fields(*shared_, input, fields, sequence.connectivity());
 }
 
-void vtkMimetraOperation::show(const Outcome& outcome, vtkPolyData& input, double time,
-                               vtkInformationVector* outputs) {
-  const MeshSequence& sequence = sequence_of(made_by(outcome));
+void vtkMimetraOperation::show_made(const Outcome& outcome, vtkPolyData& input, double time,
+                                    vtkPolyData& output) {
+  const std::string name = shown_outputs(call().operation()).front().output;
+  const MeshSequence& sequence = sequence_of(made_by(outcome, name));
   const int frame = frame_at(sequence, time);
-  vtkPolyData* output = vtkPolyData::GetData(outputs);
   switch (shown_) {
     case Shown::on_the_input:
-      output->ShallowCopy(&input);
+      output.ShallowCopy(&input);
       break;
     case Shown::in_another_shape:
-      show_frame(*output, input, sequence, frame);
+      show_frame(output, input, sequence, frame);
       break;
     case Shown::as_a_mesh_of_its_own:
-      show_mesh(*output, *shared_, sequence, frame);
+      show_mesh(output, *shared_, sequence, frame);
       return;
   }
-  share_fields(*shared_, *output);
+  share_fields(*shared_, output);
 }

@@ -7,8 +7,9 @@
 
 #include "plugins/paraview/mimetra/filters/vtkMimetraFilter.h"
 
-/// An operation of a plugin: the sequence or the fields that it makes of its input's. What it makes
-/// on the input's own faces is shown with the input's data, anything else as a mesh of its own.
+/// Any operation that begins with a mesh over time and needs no more of ParaView than a call. A
+/// sequence or fields that it makes on the input's own faces are shown with the input's data, on
+/// other faces as a mesh of their own; tables, or the report, as tables.
 class MIMETRAFILTERS_EXPORT vtkMimetraOperation : public vtkMimetraFilter {
  public:
   vtkTypeMacro(vtkMimetraOperation, vtkMimetraFilter);
@@ -19,6 +20,8 @@ class MIMETRAFILTERS_EXPORT vtkMimetraOperation : public vtkMimetraFilter {
 
  protected:
   vtkMimetraOperation();
+  int FillOutputPortInformation(int port, vtkInformation* info) override;
+  bool moves(int port) const override;
   std::vector<std::string> wanted_outputs(const mimetra::Invocation& invocation) override;
   void prepare(const mimetra::Outcome& outcome, vtkPolyData& input) override;
   void show(const mimetra::Outcome& outcome, vtkPolyData& input, double time,
@@ -26,6 +29,10 @@ class MIMETRAFILTERS_EXPORT vtkMimetraOperation : public vtkMimetraFilter {
 
  private:
   enum class Shown { on_the_input, in_another_shape, as_a_mesh_of_its_own };
+
+  void prepare_mesh(const mimetra::Outcome& outcome, vtkPolyData& input);
+  void show_made(const mimetra::Outcome& outcome, vtkPolyData& input, double time,
+                 vtkPolyData& output);
 
   Shown shown_ = Shown::on_the_input;
   vtkNew<vtkPolyData> shared_;  ///< what all time steps share: fields, and faces of its own

@@ -30,7 +30,7 @@ Field mask_of(const Regions& regions, int index) {
 
 }  // namespace
 
-vtkMimetraRegions::vtkMimetraRegions() : vtkMimetraFilter("regions", "sequence") {}
+vtkMimetraRegions::vtkMimetraRegions() : vtkMimetraFilter("regions") {}
 
 std::vector<std::string> vtkMimetraRegions::wanted_outputs(const Invocation&) {
   return {"components-out"};
@@ -42,7 +42,7 @@ void vtkMimetraRegions::prepare(const Outcome& outcome, vtkPolyData& input) {
   const FieldSequence& shown = made.fields;
   std::vector<Field> fields = shown.fields;
   if (DisplayedRegion >= 0) fields.push_back(mask_of(regions, DisplayedRegion));
-  make_fields(*fields_, input, fields, shown.sequence.connectivity());
+  make_fields(*fields_, input, fields, shown.sequence().connectivity());
 }
 
 void vtkMimetraRegions::show(const Outcome& outcome, vtkPolyData& input, double time,
@@ -51,6 +51,6 @@ void vtkMimetraRegions::show(const Outcome& outcome, vtkPolyData& input, double 
   vtkPolyData* output = vtkPolyData::GetData(outputs);
   output->ShallowCopy(&input);
   share_fields(*fields_, *output);
-  const int frame = frame_at(shown.sequence, time);
-  add_displacement(*output, shown.sequence.frame(frame) - shown.sequence.rest());
+  const int frame = frame_at(shown.sequence(), time);
+  add_displacement(*output, shown.sequence().frame(frame) - shown.sequence().rest());
 }

@@ -5,7 +5,8 @@
 
 #include "plugins/paraview/mimetra/filters/vtkMimetraFilter.h"
 
-/// Regions of interest as fields on the input.
+/// Regions of interest as fields on the input. A class of its own because regions are neither a
+/// sequence nor fields, one of them can be picked, and the components are kept while it is another.
 class MIMETRAFILTERS_EXPORT vtkMimetraRegions : public vtkMimetraFilter {
  public:
   vtkTypeMacro(vtkMimetraRegions, vtkMimetraFilter);

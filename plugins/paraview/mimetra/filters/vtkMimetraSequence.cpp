@@ -32,8 +32,8 @@ vtkMimetraSequence::vtkMimetraSequence()
 }
 
 void vtkMimetraSequence::read() {
-  const auto& [sequence, fields, displacement] = sequence_of(outcome());
-  make_mesh(*mesh_, sequence, fields);
+  const FieldSequence& read = sequence_of(outcome());
+  make_mesh(*mesh_, read.sequence(), read.fields);
 }
 
 int vtkMimetraSequence::RequestInformation(vtkInformation*, vtkInformationVector**,
@@ -42,12 +42,12 @@ int vtkMimetraSequence::RequestInformation(vtkInformation*, vtkInformationVector
   if (read_at_ != GetMTime()) attempt([this] { read(); });
   read_at_ = GetMTime();
   vtkInformation* out = outputs->GetInformationObject(0);
-  if (!call().is_done() || sequence_of(call().outcome()).sequence.frames() == 1) {
+  if (!call().is_done() || sequence_of(call().outcome()).sequence().frames() == 1) {
     out->Remove(Pipeline::TIME_STEPS());
     out->Remove(Pipeline::TIME_RANGE());
     return 1;
   }
-  const Eigen::VectorXd& times = sequence_of(call().outcome()).sequence.times();
+  const Eigen::VectorXd& times = sequence_of(call().outcome()).sequence().times();
   const int count = static_cast<int>(times.size());
   const double range[] = {times[0], times[count - 1]};
   out->Set(Pipeline::TIME_STEPS(), times.data(), count);
@@ -58,7 +58,7 @@ int vtkMimetraSequence::RequestInformation(vtkInformation*, vtkInformationVector
 int vtkMimetraSequence::RequestData(vtkInformation*, vtkInformationVector**,
                                     vtkInformationVector* outputs) {
   if (!call().is_done()) return 1;
-  const MeshSequence& sequence = sequence_of(call().outcome()).sequence;
+  const MeshSequence& sequence = sequence_of(call().outcome()).sequence();
   vtkInformation* out = outputs->GetInformationObject(0);
   const bool is_asked = out->Has(Pipeline::UPDATE_TIME_STEP());
   const int frame = is_asked ? frame_at(sequence, out->Get(Pipeline::UPDATE_TIME_STEP())) : 0;
