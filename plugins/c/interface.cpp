@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "plugins/c/call.h"
+#include "plugins/c/call_handle.h"
 #include "plugins/c/context.h"
 #include "plugins/c/job.h"
 #include "plugins/c/make_data.h"

@@ -62,7 +62,7 @@ TEST(MorphableModel, RefusesAnotherNumberOfCoefficients) {
 TEST(MorphableModel, RefusesAMeanOfAnotherVertexCount) {
   EXPECT_THAT(
       [] { MorphableModel(octahedron_connectivity(), Positions::Zero(7, 3), {}, {}); },
-      ThrowsMessage<std::invalid_argument>(HasSubstr("the mean has 7 vertices, expected 6")));
+      ThrowsMessage<std::invalid_argument>(HasSubstr("the neutral has 7 vertices, expected 6")));
 }
 
 TEST(MorphableModel, RefusesABasisOfAnotherVertexCount) {

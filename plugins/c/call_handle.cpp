@@ -1,4 +1,4 @@
-#include "plugins/c/call.h"
+#include "plugins/c/call_handle.h"
 
 #include <algorithm>
 
