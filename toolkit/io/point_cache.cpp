@@ -51,6 +51,8 @@ class CachedFrames : public FrameSource {
   CachedFrames(std::unique_ptr<const PointCache> cache, SequenceHeader header)
       : FrameSource(std::move(header)), cache_(std::move(cache)) {}
 
+  bool is_quick() const override { return true; }
+
  private:
   void read_frames(int first, FramesView poses) const override { cache_->read(first, poses); }
 
