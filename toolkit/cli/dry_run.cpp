@@ -50,6 +50,19 @@ bool is_in_memory(const Data& data) {
   return (read && !read->stream) || std::holds_alternative<FieldSequence>(data);
 }
 
+/// Bytes of the frames of all streamed inputs.
+double streamed_bytes(const Invocation& invocation) {
+  double bytes = 0;
+  for (const auto& [name, values] : invocation.inputs) {
+    for (const NamedData& value : values) {
+      const auto* read = std::get_if<SequenceRead>(&value.data);
+      if (!read || !read->stream) continue;
+      bytes += 3.0 * sizeof(double) * read->stream->frames() * read->stream->vertices();
+    }
+  }
+  return bytes;
+}
+
 }  // namespace
 
 std::string megabytes(double bytes) {
@@ -70,7 +83,10 @@ MemoryUse MemoryUse::of_this_process() {
   return use;
 }
 
-Outcome planned(const Operation& operation, const Invocation& invocation) {
+Outcome planned(const OperationTable& table, const Operation& operation,
+                const Invocation& invocation) {
+  const std::string step = operation.all_frames_for ? operation.all_frames_for(invocation) : "";
+  double computing = operation.memory ? operation.memory(invocation) : 0;
   Json inputs = Json::array(), outputs = Json::array();
   std::ostringstream text;
   text << operation.name << '\n';
@@ -78,22 +94,29 @@ Outcome planned(const Operation& operation, const Invocation& invocation) {
     const auto given = invocation.inputs.find(input.name);
     if (given == invocation.inputs.end()) continue;
     for (const NamedData& value : given->second) {
+      const bool brought = input.streamed && !step.empty();
+      const bool in_memory = brought || is_in_memory(value.data);
       inputs.push_back({{"input", input.name},
                         {"name", value.name},
                         {"size", size_of(value.data)},
-                        {"in_memory", is_in_memory(value.data)}});
+                        {"in_memory", in_memory}});
       text << "  reads   " << value.name << ": " << size_of(value.data)
-           << (is_in_memory(value.data) ? ", all in memory" : "") << '\n';
+           << (in_memory ? ", all in memory" : "") << (brought ? " for " + step : "") << '\n';
     }
   }
-  for (const auto& [name, paths] : invocation.wanted) {
-    for (const auto& path : paths) {
-      outputs.push_back({{"output", name}, {"path", path.string()}});
-      text << "  writes  " << path.string() << '\n';
+  const double streamed = streamed_bytes(invocation);
+  for (const Output& output : operation.outputs) {
+    const auto wanted = invocation.wanted.find(output.name);
+    if (wanted == invocation.wanted.end()) continue;
+    for (const auto& path : wanted->second) {
+      const bool holds = streamed > 0 && table.writer(output.kind, path).holds_frames;
+      if (holds) computing = std::max(computing, streamed);
+      outputs.push_back(
+          {{"output", output.name}, {"path", path.string()}, {"all_frames_in_memory", holds}});
+      text << "  writes  " << path.string() << (holds ? ", with all frames in memory" : "") << '\n';
     }
   }
   const MemoryUse use = MemoryUse::of_this_process();
-  const double computing = operation.memory ? operation.memory(invocation) : 0;
   const double peak = std::max(use.peak, use.now + computing);
   text << "  memory  " << megabytes(peak) << ", of which " << megabytes(use.now)
        << " hold program and inputs\n";

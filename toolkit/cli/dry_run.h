@@ -19,6 +19,7 @@ struct MemoryUse {
 std::string megabytes(double bytes);
 
 /// What a run would do with its inputs once they are read: the outcome of --dry-run.
-Outcome planned(const Operation& operation, const Invocation& invocation);
+Outcome planned(const OperationTable& table, const Operation& operation,
+                const Invocation& invocation);
 
 }  // namespace mimetra::cli

@@ -161,8 +161,8 @@ void write_outputs(const OperationTable& table, const Request& request, const Fi
       write.inputs = run.inputs;
       // What accompanies another output stands in that one's manifest.
       if (request.outputs.contains(output.name)) {
-        write.extra = {
-            {manifest_name(target, table.writes_folder(output.kind, target)), manifest_text}};
+        write.extra.emplace_back(manifest_name(target, table.writes_folder(output.kind, target)),
+                                 manifest_text);
       }
       table.writer(output.kind, target).write(made->second[i].data, write);
     }
@@ -227,7 +227,7 @@ void run_command(const OperationTable& table, const Request& request) {
   invocation.threads = request.threads;
   if (request.dry_run) {
     bar.clear();
-    print_result(request, planned(*request.operation, invocation));
+    print_result(request, planned(table, *request.operation, invocation));
     return;
   }
   const Stopwatch running;

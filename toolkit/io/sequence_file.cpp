@@ -111,6 +111,21 @@ OpenSequence open_sequence(const std::string& text, const SequenceSource& source
   return exists ? open_path(text, source) : open_frames(frames_of_pattern(text), {}, source);
 }
 
+std::shared_ptr<const FrameSource> SequenceRead::shared_frames() const {
+  return stream ? stream : std::make_shared<const MeshSequence>(sequence);
+}
+
+SequenceRead SequenceRead::with_frames(std::shared_ptr<const FrameSource> frames,
+                                       const BlockOptions& options) const {
+  SequenceRead result{{}, model_driven, files, notes, {}};
+  if (stream) {
+    result.stream = std::move(frames);
+  } else {
+    result.sequence = MeshSequence(*frames, options);
+  }
+  return result;
+}
+
 SequenceRead read_sequence(const std::string& text, const SequenceSource& source) {
   OpenSequence open = open_sequence(text, source);
   SequenceRead read{

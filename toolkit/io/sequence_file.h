@@ -21,6 +21,12 @@ struct SequenceRead {
   std::shared_ptr<const FrameSource> stream = {};
 
   const FrameSource& frames() const { return stream ? *stream : sequence; }
+  /// The same, to be kept.
+  std::shared_ptr<const FrameSource> shared_frames() const;
+  /// The same with other frames: in memory where these are, otherwise read when they are needed.
+  /// Throws what reading throws, Cancelled.
+  SequenceRead with_frames(std::shared_ptr<const FrameSource> frames,
+                           const BlockOptions& options = {}) const;
 };
 
 /// Opens `text`: a directory, glob or printf pattern of OBJ/PLY/OFF/STL files in natural order (2

@@ -50,6 +50,8 @@ struct RegionData {
   FieldSequence fields;
   /// Faces of those that were made for a mesh without a sequence, or null.
   std::shared_ptr<const Connectivity> faces = {};
+  /// The frames of a sequence that is not in memory, or null; `fields` then has none.
+  std::shared_ptr<const FrameSource> stream = {};
 };
 
 /// How regions that were written are shown.

@@ -71,11 +71,10 @@ double memory_of_evaluate(const Invocation& invocation) {
   EvaluationOptions options = evaluation_parameters().read(invocation.parameters);
   options.solving.threads = invocation.threads;
   const auto& source = invocation.inputs.at("source").front();
-  const double alignment = alignment_bytes(read.sequence, described(options.source, source));
-  const double analysis =
-      alignment + analysis_bytes(read.sequence, *std::ranges::max_element(options.counts));
+  const double analysis = alignment_bytes(read.sequence, described(options.source, source)) +
+                          analysis_bytes(read.sequence, *std::ranges::max_element(options.counts));
   const auto& target = invocation.get<BlendshapeModel>("target");
-  return std::max(analysis, alignment + solution_bytes(read.sequence, target, options.solving));
+  return std::max(analysis, 2 * solution_bytes(read.sequence, target, options.solving));
 }
 
 }  // namespace

@@ -90,6 +90,8 @@ struct Operation {
   std::function<Outcome(const Invocation&)> run;
   /// Bytes that it takes at its peak besides what it is given; none where that is little.
   std::function<double(const Invocation&)> memory = {};
+  /// The step that has all frames of streamed inputs in memory, "the decomposition"; "" for none.
+  std::function<std::string(const Invocation&)> all_frames_for = {};
 };
 
 /// Where and how a value is written.
@@ -112,6 +114,8 @@ struct Writer {
   std::vector<Parameter> parameters;
   /// Writes atomically; returns the files. Throws OutputError, Cancelled.
   std::function<std::vector<std::filesystem::path>(const Data&, const WriteRequest&)> write;
+  /// Has all frames of a stream in memory meanwhile.
+  bool holds_frames = false;
 };
 
 /// A way to read a region set for a mesh, chosen by extension.

@@ -16,7 +16,7 @@ namespace mimetra {
 
 namespace {
 
-BoundParameters<TransferOptions> transfer_parameters(const MeshSequence* sequence = nullptr) {
+BoundParameters<TransferOptions> transfer_parameters(const FrameSource* sequence = nullptr) {
   using Options = TransferOptions;
   BoundParameters<Options> list;
   return list.add("full", Options::kFull, "use all triangles instead of regions")
@@ -44,7 +44,7 @@ std::vector<Target> targets_of(const Invocation& invocation) {
 
 TransferOptions options_of(const Invocation& invocation) {
   const NamedData& source = invocation.inputs.at("source").front();
-  TransferOptions options = transfer_parameters(&std::get<SequenceRead>(source.data).sequence)
+  TransferOptions options = transfer_parameters(&std::get<SequenceRead>(source.data).frames())
                                 .read(invocation.parameters);
   options.source = described(std::move(options.source), source);
   if (const RegionData* regions = invocation.find<RegionData>("regions")) {
@@ -64,7 +64,7 @@ NamedData weight_table(const NamedData& target, const Solution& solution) {
   const auto& names = model_of(target).expressions().names;
   table.columns.insert(table.columns.end(), names.begin(), names.end());
   for (int f = 0; f < solution.weights.rows(); ++f) {
-    table.rows.push_back({solution.sequence.times()[f]});
+    table.rows.push_back({solution.sequence->times()[f]});
     for (const double weight : solution.weights.row(f)) table.rows.back().push_back(weight);
   }
   return {target.name, std::move(table)};
@@ -128,8 +128,13 @@ void add_targets(Outcome& outcome, Json& report, const Invocation& invocation,
     if (invocation.wants("weights-out") && solution.weights.size() > 0) {
       outcome.outputs["weights-out"].push_back(weight_table(targets[t], solution));
     }
-    outcome.outputs["out"].push_back(
-        {targets[t].name, SequenceRead{std::move(solution.sequence), false, {}, {}}});
+    const SequenceRead& source = invocation.get<SequenceRead>("source");
+    SequenceRead made =
+        source.with_frames(std::move(solution.sequence), {.threads = invocation.threads});
+    made.model_driven = false;
+    made.files.clear();
+    made.notes.clear();
+    outcome.outputs["out"].push_back({targets[t].name, std::move(made)});
   }
   report["targets"] = reports;
 }
@@ -142,17 +147,19 @@ void add_regions(Outcome& outcome, Json& report, const Invocation& invocation,
   report["regions"] = regions;
   outcome.summary = summary_of(*result.regions) + outcome.summary;
   if (!invocation.wants("regions-out")) return;
+  const SequenceRead& source = invocation.get<SequenceRead>("source");
   outcome.outputs["regions-out"].push_back(
       {"", RegionData{*result.regions,
-                      {invocation.get<SequenceRead>("source").sequence, fields_of(*result.regions),
-                       true}}});
+                      {source.sequence, fields_of(*result.regions), true},
+                      {},
+                      source.stream}});
 }
 
 Outcome run_transfer(const Invocation& invocation) {
   const Stopwatch stopwatch;
   check_outputs(invocation);
   TransferResult result = in_command_terms(invocation.parameters, [&] {
-    return transfer(invocation.get<SequenceRead>("source").sequence, targets_of(invocation),
+    return transfer(invocation.get<SequenceRead>("source").frames(), targets_of(invocation),
                     options_of(invocation));
   });
   Outcome outcome;
@@ -167,21 +174,31 @@ Outcome run_transfer(const Invocation& invocation) {
   return outcome;
 }
 
-/// Decomposition, then one target after the other, whose results are kept.
+/// True where the run looks for regions itself.
+bool looks_for_regions(const Invocation& invocation) {
+  return !invocation.parameters.flag("full") && !invocation.find<RegionData>("regions") &&
+         !invocation.find<Components>("components");
+}
+
+/// Decomposition, for which all frames are there, then one target after the other, whose results
+/// are kept.
 double memory_of_transfer(const Invocation& invocation) {
   const SequenceRead& source = invocation.get<SequenceRead>("source");
   TransferOptions options = transfer_parameters().read(invocation.parameters);
   options.source = described(std::move(options.source), invocation.inputs.at("source").front());
   options.solving.threads = invocation.threads;
-  const bool looks_for_regions = !options.full && !invocation.find<RegionData>("regions");
+  const FrameSource& frames = source.frames();
+  const bool decomposes = looks_for_regions(invocation);
+  const double loaded = decomposes && source.stream ? frame_bytes(frames) : 0;
   const double analysis =
-      looks_for_regions ? analysis_bytes(invocation, source, options.analysis.decomposition.count)
-                        : 0;
-  double solutions = alignment_bytes(source.sequence, options.source);
+      decomposes ? analysis_bytes(invocation, source, options.analysis.decomposition.count) : 0;
+  double solutions = decomposes ? 0 : stored_bytes(frames);
   for (const NamedData& target : invocation.inputs.at("target")) {
-    solutions += solution_bytes(source.sequence, model_of(target), options.solving);
+    solutions += solution_bytes(frames, model_of(target), options.solving);
+    // Results of a source in memory are there, too.
+    if (!source.stream) solutions += frame_bytes(frames);
   }
-  return std::max(analysis, solutions);
+  return loaded + std::max(analysis, solutions);
 }
 
 }  // namespace
@@ -197,6 +214,7 @@ Operation transfer_operation() {
       {"components", DataKind::components, "components (.h5) of an earlier decompose", true},
       {"regions", DataKind::regions, "region set: .json, .csv, .txt, or .vtp with the field roi",
        true}};
+  operation.inputs.front().streamed = true;
   operation.outputs = {
       {"out", DataKind::sequence,
        sequence_outputs() + "; with several targets one each, named after it", false, true},
@@ -210,6 +228,9 @@ Operation transfer_operation() {
       "transfer take.npy actor@identity007=2 double/ --full -o results/"};
   operation.run = run_transfer;
   operation.memory = memory_of_transfer;
+  operation.all_frames_for = [](const Invocation& invocation) {
+    return looks_for_regions(invocation) ? "the decomposition" : "";
+  };
   return operation;
 }
 

@@ -116,7 +116,8 @@ double memory(const Invocation& invocation) {
   if (!call.inputs.contains("target")) return analysis;
   SolveOptions options = solving_parameters().read(call.parameters);
   options.threads = call.threads;
-  return analysis + 3 * solution_bytes(read.sequence, call.get<BlendshapeModel>("target"), options);
+  return analysis + 3 * frame_bytes(read.sequence) +
+         3 * solution_bytes(read.sequence, call.get<BlendshapeModel>("target"), options);
 }
 
 Operation report_operation() {

@@ -22,6 +22,13 @@ std::vector<std::filesystem::path> write(const FieldSequence& fields, const Writ
                           [&] { return write_vtp_series(fields, request.target, options); });
 }
 
+/// Regions on their sequence, which is in memory from now on.
+FieldSequence shown_regions(const RegionData& regions, const WriteRequest& request) {
+  FieldSequence shown = regions.fields;
+  if (regions.stream) shown.sequence = MeshSequence(*regions.stream, {.threads = request.threads});
+  return shown;
+}
+
 /// One region: the vertices where the field `roi` is not 0.
 Regions read_regions_from_vtp(const std::filesystem::path& path, int vertices,
                               const Triangles& triangles) {
@@ -50,12 +57,13 @@ void add_vtp(OperationTable& table) {
                    {".pvd", ".vtp"},
                    parameters,
                    [](const Data& data, const WriteRequest& request) {
-                     const FieldSequence& shown = std::get<RegionData>(data).fields;
+                     const FieldSequence shown = shown_regions(std::get<RegionData>(data), request);
                      if (shown.sequence.frames() > 0) return write(shown, request);
                      throw MismatchError(request.target.string() +
                                          ": the regions come without a mesh to show them on; "
                                          "write .json or .csv");
-                   }});
+                   },
+                   true});
   table.add(Writer{DataKind::fields,
                    {".vtp", ".pvd"},
                    parameters,
