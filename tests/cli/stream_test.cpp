@@ -81,7 +81,8 @@ TEST_F(Streamed, TransfersByRegionsHoldNoMoreForMoreFrames) {
 
 TEST_F(Streamed, TransfersKeepFramesInAFolderThatThereMustBe) {
   write_take("long", kLong);
-  const auto result = run("transfer long.npy sheet.ply --full -o a.npy", "TMPDIR=missing");
+  const auto result =
+      run("transfer long.npy sheet.ply --align none --full -o a.npy", "TMPDIR=missing");
   EXPECT_EQ(result.code, 5);
   EXPECT_THAT(result.err, testing::AllOf(HasSubstr("missing: cannot keep the frames"),
                                          HasSubstr("set TMPDIR to a folder")));

@@ -40,7 +40,8 @@ std::string report_with(const Json& report, const std::vector<RigidTransform>& m
   text += "\"motion\":[";
   for (const RigidTransform& transform : motion) text += json_of(transform).dump() + ',';
   if (!motion.empty()) text.pop_back();
-  return text + "]}";
+  text += "]}";
+  return text;
 }
 
 struct AlignCall {

@@ -185,7 +185,6 @@ bool looks_for_regions(const Invocation& invocation) {
 double memory_of_transfer(const Invocation& invocation) {
   const SequenceRead& source = invocation.get<SequenceRead>("source");
   TransferOptions options = transfer_parameters().read(invocation.parameters);
-  options.source = described(std::move(options.source), invocation.inputs.at("source").front());
   options.solving.threads = invocation.threads;
   const FrameSource& frames = source.frames();
   const bool decomposes = looks_for_regions(invocation);

@@ -1,6 +1,5 @@
 #include "toolkit/pipeline/memory.h"
 
-#include <algorithm>
 #include <thread>
 
 #include "toolkit/mesh/frame_store.h"
@@ -23,8 +22,9 @@ constexpr double kLanesPerVertex = 5 * 3 * 16 * kNumber;
 /// Components have so many different centres on their way that their distances are kept.
 constexpr double kCentersPerComponent = 4;
 
+/// What a FrameStore has in memory: more frames are in its file.
 double kept_bytes(double all) {
-  return std::min(all, static_cast<double>(FrameStore::kMemoryBytes));
+  return all > static_cast<double>(FrameStore::kMemoryBytes) ? 0 : all;
 }
 
 }  // namespace
@@ -55,7 +55,7 @@ double solution_bytes(const FrameSource& sequence, const BlendshapeModel& target
   const double vertices = target.vertices(),
                triangles = static_cast<double>(target.triangles().rows());
   // The displacement fields at the vertices that are looked at, those of the result, and its
-  // weights; or what is not in the temporary file of the result.
+  // weights; or factors, and the poses of a short result.
   const double space = solves_for_vertices(target, options.space)
                            ? kFactorsPerVertex * vertices + kept_bytes(frame_bytes(sequence))
                            : kNumber * expressions * (6 * vertices + 2 * sequence.frames());
