@@ -8,6 +8,7 @@
 #include "tests/mesh/captured_performance.h"
 #include "tests/shapes.h"
 #include "tests/shared_data.h"
+#include "tests/streams.h"
 #include "toolkit/mesh/alignment.h"
 #include "toolkit/mesh/errors.h"
 
@@ -266,6 +267,67 @@ TEST(StableAlignment, OfCoincidingVerticesIsFinite) {
   EXPECT_TRUE(rigidly_aligned(point).positions().allFinite());
 }
 
+/// The motion by the same iteration over all frames in memory, step by step.
+std::vector<RigidTransform> literal_stable_motion(const MeshSequence& sequence) {
+  const Eigen::Index vertices = sequence.vertices();
+  const double least_scale = 1e-12 * box_diagonal(sequence.rest());
+  Eigen::VectorXd weights = Eigen::VectorXd::Ones(vertices);
+  std::vector<RigidTransform> motion;
+  double scale = 0;
+  for (int iteration = 0; iteration < 40; ++iteration) {
+    motion.assign(sequence.frames(), {});
+    Eigen::VectorXd squares = Eigen::VectorXd::Zero(vertices);
+    for (int f = 0; f < sequence.frames(); ++f) {
+      const PositionsView frame = sequence.frame(f);
+      if (frame != sequence.rest()) motion[f] = rigid_fit(sequence.rest(), frame, weights);
+      const Eigen::Matrix3d rotation = motion[f].rotation;
+      const Eigen::Vector3d translation = motion[f].translation;
+      for (Eigen::Index v = 0; v < vertices; ++v) {
+        const Eigen::Vector3d point = sequence.rest().row(v);
+        squares[v] +=
+            (rotation.lazyProduct(point) + translation - frame.row(v).transpose()).squaredNorm();
+      }
+    }
+    const Eigen::VectorXd residuals = (squares / sequence.frames()).cwiseSqrt();
+    std::vector<double> sorted(residuals.begin(), residuals.end());
+    std::ranges::sort(sorted);
+    const auto quantile = [&](double share) {
+      return sorted[static_cast<std::size_t>(share * static_cast<double>(vertices - 1))];
+    };
+    const double target = std::max(quantile(0.05), least_scale);
+    const bool settled = scale == least_scale;
+    scale = iteration == 0 ? std::max(target, quantile(0.5))
+                           : std::min(scale, std::max(target, 0.7 * scale));
+    const Eigen::VectorXd next =
+        (1 + (residuals.array() / scale).square()).square().inverse().max(1e-10);
+    if (settled || (next - weights).cwiseAbs().maxCoeff() < 1e-6) break;
+    weights = next;
+  }
+  return motion;
+}
+
+TEST(StableAlignment, OfAStreamIsBitByBitTheOneInMemory) {
+  const MeshSequence moved =
+      with_motion(with_noise(opening_jaw(24), 1e-3), random_motion(24, 40, 0.6));
+  const auto stream = test::streamed(moved);
+  const std::vector<RigidTransform> expected = literal_stable_motion(moved);
+  for (const int threads : {1, 3}) {
+    const std::vector<RigidTransform> found = rigid_motion(*stream, {.threads = threads});
+    ASSERT_EQ(found.size(), expected.size());
+    for (std::size_t f = 0; f < found.size(); ++f) {
+      EXPECT_TRUE(found[f].rotation == expected[f].rotation) << f;
+      EXPECT_TRUE(found[f].translation == expected[f].translation) << f;
+    }
+  }
+  const auto still = without_motion(stream, expected);
+  EXPECT_TRUE(still->read(5, 7) == align(moved).sequence.positions().middleRows(5, 7));
+}
+
+TEST(StableAlignment, OfAStreamThatBreaksThrowsWhatReadingThrows) {
+  EXPECT_THAT([] { rigid_motion(*test::streamed(opening_jaw(24), 13)); },
+              ThrowsMessage<std::runtime_error>("frame 13 is broken"));
+}
+
 TEST(StableAlignment, StopsWhenAskedTo) {
   EXPECT_THROW(align(opening_jaw(2), {.progress = [](double) { return false; }}), Cancelled);
 }
@@ -286,6 +348,21 @@ TEST(Alignment, OfAllVerticesIsTheRigidFitOfEachFrame) {
   for (int f = 1; f < 6; ++f) {
     const RigidTransform fit = rigid_fit(jaw.rest(), jaw.frame(f));
     EXPECT_TRUE(alignment.motion[f].rotation.isApprox(fit.rotation, kRounding));
+  }
+}
+
+TEST(Alignment, OfAStreamIsBitByBitTheOneInMemory) {
+  const MeshSequence moved = with_motion(opening_jaw(8), random_motion(8, 40, 1));
+  const auto stream = test::streamed(moved);
+  const Alignment alignment = align(moved, {.vertices = AlignmentVertices::all});
+  const auto motion = rigid_motion(*stream, {.vertices = AlignmentVertices::all, .threads = 3});
+  const auto still = without_motion(stream, motion);
+  EXPECT_TRUE(MeshSequence(*still).positions() == alignment.sequence.positions());
+  const auto back = with_motion(still, motion);
+  const MeshSequence expected = with_motion(alignment.sequence, alignment.motion);
+  for (int f = 0; f < 8; ++f) {
+    EXPECT_TRUE(back->read(f, 1) == expected.positions().row(f));
+    EXPECT_TRUE(expected.frame(f) == motion[f].apply(alignment.sequence.frame(f)));
   }
 }
 

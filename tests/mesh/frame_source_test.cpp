@@ -115,6 +115,122 @@ TEST(FrameSource, ASequenceInMemoryIsOne) {
   EXPECT_EQ(source.read(4, 2), sequence.positions().middleRows(4, 2));
 }
 
+TEST(FrameSource, InMemoryIsSharedAndNotCopied) {
+  const auto sequence = std::make_shared<const MeshSequence>(Counted(9, 2));
+  const auto rested = with_rest(sequence, Positions::Ones(2, 3));
+  EXPECT_EQ(MeshSequence(*rested).positions().data(), sequence->positions().data());
+  EXPECT_EQ(MeshSequence(*rested).rest(), Positions::Ones(2, 3));
+}
+
+TEST(FrameBlock, IsAViewOfFramesInMemory) {
+  const MeshSequence sequence(Counted(9, 2));
+  const FrameBlock block(sequence, 4, 3);
+  EXPECT_EQ(block.frames(), 3);
+  EXPECT_EQ(block.poses().data(), sequence.positions().row(4).data());
+  EXPECT_EQ(block.frame(2), sequence.frame(6));
+  EXPECT_THROW(FrameBlock(sequence, 8, 2), std::out_of_range);
+}
+
+TEST(FrameBlock, ReadsOtherFrames) {
+  const Counted source(9, 2);
+  const FrameBlock block(source, 4, 3);
+  EXPECT_EQ(block.poses(), source.read(4, 3));
+  EXPECT_EQ(block.frame(1), PositionsView(source.read(5, 1).data(), 2, 3));
+  EXPECT_THROW(FrameBlock(source, 8, 2), std::out_of_range);
+}
+
+TEST(WithRest, ChangesTheRestPoseOnly) {
+  const auto source = std::make_shared<const Counted>(9, 2);
+  const auto rested = with_rest(source, Positions::Ones(2, 3));
+  EXPECT_EQ(rested->rest(), Positions::Ones(2, 3));
+  EXPECT_TRUE(rested->rest_is_known());
+  EXPECT_EQ(rested->times(), source->times());
+  EXPECT_EQ(rested->read(3, 4), source->read(3, 4));
+}
+
+TEST(WithRest, OfNoneIsTheFirstFrameWhichIsNotKnownToBeIt) {
+  const auto source = std::make_shared<const Counted>(9, 1);
+  const auto unknown = with_rest(source, {});
+  EXPECT_EQ(unknown->rest(), Eigen::RowVector3d(0, 1, 2));
+  EXPECT_FALSE(unknown->rest_is_known());
+}
+
+TEST(WithRest, RefusesAnotherNumberOfVertices) {
+  EXPECT_THAT(
+      [] { with_rest(std::make_shared<const Counted>(9, 2), Positions::Ones(3, 3)); },
+      ThrowsMessage<std::invalid_argument>(HasSubstr("the rest pose has 3 vertices, expected 2")));
+}
+
+TEST(SumOverFrames, AddsInTheOrderOfTheFrames) {
+  // Frames of 0.6 MB, so that it takes several blocks. Next to 1e16 every second number is rounded
+  // away: another order gives another sum.
+  const Counted source(31, 25000);
+  const auto added = [](int frame) {
+    if (frame == 7) return 1e16;
+    return frame == 23 ? -1e16 : 1.0 + frame;
+  };
+  double expected = 0;
+  for (int f = 0; f < 31; ++f) expected += added(f);
+  for (const int threads : {1, 3}) {
+    const Eigen::VectorXd sum = sum_over_frames(
+        source, 2, {.threads = threads}, [&](int first, const FrameBlock& block, FramesView rows) {
+          ASSERT_EQ(rows.rows(), block.frames());
+          for (int row = 0; row < block.frames(); ++row) {
+            EXPECT_EQ(block.poses()(row, 0), 1000.0 * (first + row));
+            rows(row, 0) = added(first + row);
+            rows(row, 1) = 1;
+          }
+        });
+    EXPECT_EQ(sum, Eigen::Vector2d(expected, 31));
+  }
+  EXPECT_LE(source.most_bytes(), kBlockBytes);
+}
+
+TEST(SumOverFrames, ThrowsWhatWorkThrows) {
+  const auto work = [](int, const FrameBlock&, FramesView) { throw std::runtime_error("broken"); };
+  EXPECT_THAT([&] { sum_over_frames(Counted(9, 2), 1, {}, work); },
+              ThrowsMessage<std::runtime_error>("broken"));
+}
+
+TEST(SumOverFrames, EndsWhereProgressAsksForIt) {
+  const auto work = [](int, const FrameBlock&, FramesView) {};
+  EXPECT_THROW(
+      sum_over_frames(Counted(9, 2), 1, {.progress = [](double share) { return share < 1; }}, work),
+      Cancelled);
+}
+
+/// Numbers of all sizes, so that every order of adding them gives other digits.
+class Uneven : public FrameSource {
+ public:
+  Uneven(int frames, int vertices)
+      : FrameSource({points(vertices), default_times(frames), Positions::Zero(vertices, 3), true}) {
+  }
+
+ private:
+  void read_frames(int first, FramesView poses) const override {
+    for (Eigen::Index row = 0; row < poses.rows(); ++row) {
+      for (Eigen::Index i = 0; i < poses.cols(); ++i) {
+        const double frame = static_cast<double>(1 + first + row);
+        poses(row, i) = std::sin(frame * (1 + std::sqrt(static_cast<double>(i))));
+      }
+    }
+  }
+};
+
+TEST(MeanPose, OfAStreamIsBitByBitTheOneInMemory) {
+  // One frame, less than a group of four, and several blocks of 0.9 MB frames; 3N is no multiple of
+  // the four numbers that a register holds.
+  for (const auto& [frames, vertices] : {std::pair(1, 5), std::pair(4, 5), std::pair(7, 5),
+                                         std::pair(40, 7), std::pair(22, 37001)}) {
+    const Uneven source(frames, vertices);
+    const Eigen::RowVectorXd expected = source.read(0, frames).colwise().mean();
+    const Positions mean = mean_pose(source);
+    EXPECT_TRUE(Eigen::Map<const Eigen::RowVectorXd>(mean.data(), mean.size()) == expected)
+        << frames;
+    EXPECT_TRUE(mean_pose(MeshSequence(source)) == mean);
+  }
+}
+
 TEST(FrameSource, MotionIsTheRootMeanSquareForEveryNumberOfThreads) {
   const Counted source(130, 3);
   double sum = 0;

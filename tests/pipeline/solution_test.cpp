@@ -31,9 +31,9 @@ TEST_F(SolveTest, LooksForWeightsWhereTheTargetHasExpressions) {
 }
 
 TEST_F(SolveTest, HasTheTargetsNeutralAsRestAndTheSourcesTimes) {
-  const MeshSequence result = solve(source_, {"mesh", mesh_}, some_).sequence;
-  EXPECT_TRUE(result.rest() == mesh_.neutral());
-  EXPECT_TRUE(result.times() == source_.sequence.times());
+  const auto result = solve(source_, {"mesh", mesh_}, some_).sequence;
+  EXPECT_TRUE(result->rest() == mesh_.neutral());
+  EXPECT_TRUE(result->times() == source_.sequence->times());
 }
 
 TEST_F(SolveTest, RefusesWeightsOfATargetWithoutExpressions) {
@@ -45,7 +45,7 @@ TEST_F(SolveTest, RefusesWeightsOfATargetWithoutExpressions) {
 
 TEST_F(SolveTest, RefusesAnAnchorThatTheMeshDoesNotHave) {
   options_.vertex = {.anchor = Anchor::vertex, .anchor_vertex = 81};
-  const auto work = [this] { solve(source_, {"mesh", mesh_}, whole(source_.sequence), options_); };
+  const auto work = [this] { solve(source_, {"mesh", mesh_}, whole(*source_.sequence), options_); };
   EXPECT_EQ(test::topic_of(work), Topic::anchor_vertex);
 }
 
@@ -61,7 +61,7 @@ TEST_F(SolveTest, RefusesAnAnchorWhereFixedVerticesHoldTheMesh) {
 
 TEST_F(SolveTest, TakesAnAnchorWhereNothingIsFixed) {
   options_.vertex.anchor = Anchor::centroid;
-  EXPECT_NO_THROW(solve(source_, {"mesh", mesh_}, whole(source_.sequence), options_));
+  EXPECT_NO_THROW(solve(source_, {"mesh", mesh_}, whole(*source_.sequence), options_));
   options_.vertex.outside = Outside::identity;
   EXPECT_NO_THROW(solve(source_, {"mesh", mesh_}, some_, options_));
 }
@@ -94,20 +94,20 @@ TEST_F(SolveTest, NotesExpressionsThatLookAlike) {
   const BlendshapeModel model(actor_.shared_connectivity(), actor_.neutral(), twins);
   Noted noted;
   options_.notes = noted.sink();
-  solve(source_, {"twins", model}, whole(source_.sequence), options_);
+  solve(source_, {"twins", model}, whole(*source_.sequence), options_);
   EXPECT_TRUE(noted.has(Topic::poor_condition));
 }
 
 TEST_F(SolveTest, NotesARestPoseThatIsNotNeutral) {
-  const MeshSequence performance = source_.sequence;
+  const auto performance = source_.sequence;
   const BlendshapeModel model = test::model_on(test::patch(), 5);
-  const Source wrong{performance, performance.with_rest(model.pose(Eigen::VectorXd::Ones(5))), {}};
+  const Source wrong{performance, with_rest(performance, model.pose(Eigen::VectorXd::Ones(5))), {}};
   Noted noted;
   options_.notes = noted.sink();
-  solve(wrong, {"actor", model}, whole(performance), options_);
+  solve(wrong, {"actor", model}, whole(*performance), options_);
   EXPECT_TRUE(noted.has(Topic::unneutral_rest));
   noted.notes.clear();
-  solve(source_, {"actor", model}, whole(performance), options_);
+  solve(source_, {"actor", model}, whole(*performance), options_);
   EXPECT_FALSE(noted.has(Topic::unneutral_rest));
 }
 

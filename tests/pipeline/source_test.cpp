@@ -8,6 +8,7 @@ namespace mimetra {
 namespace {
 
 using test::bare;
+using test::frames_of;
 using test::nodding;
 using test::Noted;
 using test::take;
@@ -22,7 +23,7 @@ constexpr double kRounding = 1e-13;
 TEST(SourceRestPose, IsByDefaultTheNeutralWhereThatIsKnown) {
   Noted noted;
   const Source source = prepare_source(take(), {.notes = noted.sink()});
-  EXPECT_TRUE(source.sequence.rest() == take().rest());
+  EXPECT_TRUE(source.sequence->rest() == take().rest());
   EXPECT_THAT(noted.notes, IsEmpty());
 }
 
@@ -31,7 +32,7 @@ TEST(SourceRestPose, IsOtherwiseTheFirstFrameWithANote) {
   const MeshSequence sequence = bare(take());
   const Source source = prepare_source(
       sequence, {.name = "smile", .head_motion = HeadMotion::none, .notes = noted.sink()});
-  EXPECT_TRUE(source.sequence.rest() == sequence.frame(0));
+  EXPECT_TRUE(source.sequence->rest() == sequence.frame(0));
   ASSERT_EQ(noted.notes.size(), 1U);
   EXPECT_EQ(noted.notes[0].topic, Topic::unknown_neutral);
   EXPECT_EQ(noted.notes[0].text,
@@ -41,13 +42,13 @@ TEST(SourceRestPose, IsOtherwiseTheFirstFrameWithANote) {
 TEST(SourceRestPose, IsTheOneThatIsAskedFor) {
   const MeshSequence sequence = take();
   const Positions given = 2 * sequence.rest();
-  EXPECT_TRUE(prepare_source(sequence, {.rest = SourceRest::neutral}).sequence.rest() ==
+  EXPECT_TRUE(prepare_source(sequence, {.rest = SourceRest::neutral}).sequence->rest() ==
               sequence.rest());
-  EXPECT_TRUE(prepare_source(sequence, {.rest = SourceRest::first}).sequence.rest() ==
+  EXPECT_TRUE(prepare_source(sequence, {.rest = SourceRest::first}).sequence->rest() ==
               sequence.frame(0));
-  EXPECT_TRUE(prepare_source(sequence, {.rest = SourceRest::mean}).sequence.rest() ==
+  EXPECT_TRUE(prepare_source(sequence, {.rest = SourceRest::mean}).sequence->rest() ==
               mean_pose(sequence));
-  EXPECT_TRUE(prepare_source(sequence, {.rest = given}).sequence.rest() == given);
+  EXPECT_TRUE(prepare_source(sequence, {.rest = given}).sequence->rest() == given);
 }
 
 TEST(SourceRestPose, IsNoNeutralThatNobodyKnows) {
@@ -74,8 +75,8 @@ TEST(HeadMotion, IsLookedForOnlyWhereTheSourceMayHaveSome) {
 TEST(HeadMotion, IsByDefaultTheOneOfWhatMovesLeast) {
   const MeshSequence moved = with_motion(bare(take()), nodding(8));
   const Source source = without_head_motion(moved);
-  EXPECT_TRUE(source.sequence.positions() == align(moved).sequence.positions());
-  EXPECT_TRUE(source.given.positions() == moved.positions());
+  EXPECT_TRUE(frames_of(source.sequence) == align(moved).sequence.positions());
+  EXPECT_TRUE(frames_of(source.given) == moved.positions());
 }
 
 TEST(HeadMotion, IsJudgedByTheSequenceWhateverRestIsAskedFor) {
@@ -88,15 +89,15 @@ TEST(HeadMotion, ThatIsGivenIsTakenOutAndGivenBack) {
   const MeshSequence still = take();
   const MeshSequence moved = with_motion(still, nodding(8));
   const Source source = prepare_source(moved, {.head_motion = nodding(8)});
-  EXPECT_LT((source.sequence.positions() - still.positions()).cwiseAbs().maxCoeff(), kRounding);
-  const MeshSequence back = with_head_motion(source.sequence, source.motion);
-  EXPECT_LT((back.positions() - moved.positions()).cwiseAbs().maxCoeff(), kRounding);
+  EXPECT_LT((frames_of(source.sequence) - still.positions()).cwiseAbs().maxCoeff(), kRounding);
+  const auto back = with_head_motion(source.sequence, source.motion);
+  EXPECT_LT((frames_of(back) - moved.positions()).cwiseAbs().maxCoeff(), kRounding);
 }
 
 TEST(HeadMotion, ThatIsGivenBackLeavesNoNeutral) {
-  const MeshSequence still = take();
-  EXPECT_TRUE(still.rest_is_known());
-  EXPECT_FALSE(with_head_motion(still, nodding(8)).rest_is_known());
+  const auto still = std::make_shared<const MeshSequence>(take());
+  EXPECT_TRUE(still->rest_is_known());
+  EXPECT_FALSE(with_head_motion(still, nodding(8))->rest_is_known());
 }
 
 TEST(HeadMotion, OfAnotherNumberOfFramesIsRefused) {

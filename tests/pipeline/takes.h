@@ -21,6 +21,11 @@ inline MeshSequence bare(const MeshSequence& sequence) {
   return {sequence.shared_connectivity(), sequence.positions(), sequence.times()};
 }
 
+/// All frames (F x 3N).
+inline Frames frames_of(const std::shared_ptr<const FrameSource>& source) {
+  return source->read(0, source->frames());
+}
+
 /// A turn and a shift of the head, larger from frame to frame.
 inline std::vector<RigidTransform> nodding(int frames) {
   std::vector<RigidTransform> motion(frames);

@@ -27,8 +27,8 @@ class TransferTest : public testing::Test {
     return transfer(source_, {{"actor", model}}, options_).targets.front();
   }
 
-  static const Frames& frames_of(const TransferredTarget& target) {
-    return target.solution.sequence.positions();
+  static Frames frames_of(const TransferredTarget& target) {
+    return test::frames_of(target.solution.sequence);
   }
 
   /// The regions, found by hand.
@@ -112,15 +112,15 @@ TEST_F(TransferTest, GivesHeadMotionBackUnlessItIsDropped) {
     options_.head_motion = removed;
     return transfer(moved, {{"actor", actor_}}, options_).targets.front().solution.sequence;
   };
-  const MeshSequence kept = result(RemovedMotion::keep), dropped = result(RemovedMotion::drop);
-  EXPECT_TRUE(kept.positions() == with_motion(dropped, nodding(8)).positions());
-  EXPECT_TRUE(dropped.rest() == actor_.neutral());
-  EXPECT_TRUE(dropped.rest_is_known());
-  EXPECT_FALSE(kept.rest_is_known());
+  const auto kept = result(RemovedMotion::keep), dropped = result(RemovedMotion::drop);
+  EXPECT_TRUE(test::frames_of(kept) == test::frames_of(with_motion(dropped, nodding(8))));
+  EXPECT_TRUE(dropped->rest() == actor_.neutral());
+  EXPECT_TRUE(dropped->rest_is_known());
+  EXPECT_FALSE(kept->rest_is_known());
 }
 
 TEST_F(TransferTest, GivesBackNothingWhereNoneWasLookedFor) {
-  EXPECT_TRUE(to(actor_).solution.sequence.rest_is_known());
+  EXPECT_TRUE(to(actor_).solution.sequence->rest_is_known());
 }
 
 TEST_F(TransferTest, RefusesATargetBeforeAnythingIsComputed) {

@@ -138,9 +138,9 @@ TEST(Report, ShowsEveryComponentAtWeightOneTheStrongestFirst) {
 TEST(Report, ShowsATargetOfAnotherUnitAtTheSourcesSize) {
   const ReportStudy metres =
       study(test::named(run_of("transfer", "actor", {{"k", std::int64_t{3}}}, 1e-3)), {}, {}, {});
-  const MeshSequence& shown = metres.transfer->by_regions.sequence;
+  const MeshSequence& shown = metres.transfer->by_regions;
   EXPECT_NEAR(shown.extent(), metres.sequence.extent(), 1e-9 * shown.extent());
-  EXPECT_NEAR(metres.transfer->full.sequence.extent(), shown.extent(), 1e-9 * shown.extent());
+  EXPECT_NEAR(metres.transfer->full.extent(), shown.extent(), 1e-9 * shown.extent());
   EXPECT_NEAR(metres.transfer->shown_scale, 1000 / 1.2, 1e-6);
   EXPECT_TRUE(
       holds(report_page(metres, {}, "", {}).html, "The target is shown 833 times its size"));

@@ -55,6 +55,8 @@ std::string megabytes(double bytes) {
 }
 
 Outcome planned(const Operation& operation, const Invocation& invocation) {
+  const std::string step = operation.all_frames_for ? operation.all_frames_for(invocation) : "";
+  const double computing = operation.memory ? operation.memory(invocation) : 0;
   Json inputs = Json::array(), outputs = Json::array();
   std::ostringstream text;
   text << operation.name << '\n';
@@ -62,12 +64,14 @@ Outcome planned(const Operation& operation, const Invocation& invocation) {
     const auto given = invocation.inputs.find(input.name);
     if (given == invocation.inputs.end()) continue;
     for (const NamedData& value : given->second) {
+      const bool brought = input.streamed && !step.empty();
+      const bool in_memory = brought || is_in_memory(value.data);
       inputs.push_back({{"input", input.name},
                         {"name", value.name},
                         {"size", size_of(value)},
-                        {"in_memory", is_in_memory(value.data)}});
+                        {"in_memory", in_memory}});
       text << "  reads   " << value.name << ": " << size_of(value)
-           << (is_in_memory(value.data) ? ", all in memory" : "") << '\n';
+           << (in_memory ? ", all in memory" : "") << (brought ? " for " + step : "") << '\n';
     }
   }
   for (const auto& [name, paths] : invocation.wanted) {
@@ -77,7 +81,6 @@ Outcome planned(const Operation& operation, const Invocation& invocation) {
     }
   }
   const MemoryUse use = MemoryUse::of_this_process();
-  const double computing = operation.memory ? operation.memory(invocation) : 0;
   const double peak = std::max(use.peak, use.now + computing);
   text << "  memory  " << megabytes(peak) << ", of which " << megabytes(use.now)
        << " hold program and inputs\n";

@@ -50,7 +50,6 @@ class FolderSink : public FrameSink {
       : header_(header),
         extent_(extent(header.rest)),
         target_(target),
-        extra_(extra),
         extension_('.' + std::string(choice_name(options.format))),
         outputs_(options.overwrite, options.inputs),
         folder_(outputs_.add(target, PendingOutput::Kind::folder)),
@@ -59,6 +58,11 @@ class FolderSink : public FrameSink {
     const auto frames = static_cast<int>(header.times.size());
     for (int frame = 0; frame < frames; ++frame) {
       files_.push_back(target / frame_name(frame, frames, extension_));
+    }
+    // A manifest may have megabytes: it is written and not kept.
+    for (const auto& [name, content] : extra) {
+      write_bytes(folder_ / name, content);
+      files_.push_back(target_ / name);
     }
   }
 
@@ -72,10 +76,6 @@ class FolderSink : public FrameSink {
 
   std::vector<fs::path> commit() override {
     std::vector<fs::path> files = files_;
-    for (const auto& [name, content] : extra_) {
-      write_bytes(folder_ / name, content);
-      files.push_back(target_ / name);
-    }
     const fs::path manifest = target_ / kFolderManifest;
     if (std::ranges::find(files, manifest) == files.end()) files.push_back(manifest);
     // A format without vertices numbers them anew, so that a rest pose in the old order would not
@@ -91,7 +91,6 @@ class FolderSink : public FrameSink {
   SequenceHeader header_;
   double extent_;
   fs::path target_;
-  ExtraFiles extra_;
   std::string extension_;
   PendingOutputs outputs_;
   fs::path folder_;

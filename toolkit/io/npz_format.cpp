@@ -183,13 +183,14 @@ class NpzSink : public FrameSink {
           const ExtraFiles& extra)
       : header_(header),
         target_(target),
-        extra_(extra),
         outputs_(options.overwrite, options.inputs),
         archive_(outputs_.add(target, PendingOutput::Kind::file)),
         scratch_(temporary_beside(target)),
         positions_(begin_npy_cache(scratch_.path, static_cast<std::size_t>(header.times.size()),
                                    static_cast<std::size_t>(header.connectivity->vertices),
-                                   options.single_precision)) {}
+                                   options.single_precision)) {
+    add_extra_beside(outputs_, target_, extra, extra_files_);
+  }
 
   void write(int first, const Frames& poses) override {
     const auto columns = static_cast<std::size_t>(poses.cols());
@@ -213,7 +214,7 @@ class NpzSink : public FrameSink {
     }
     zip.close();
     std::vector<fs::path> files = {target_};
-    add_extra_beside(outputs_, target_, extra_, files);
+    files.insert(files.end(), extra_files_.begin(), extra_files_.end());
     outputs_.commit();
     return files;
   }
@@ -221,7 +222,7 @@ class NpzSink : public FrameSink {
  private:
   SequenceHeader header_;
   fs::path target_;
-  ExtraFiles extra_;
+  std::vector<fs::path> extra_files_;
   PendingOutputs outputs_;
   fs::path archive_;
   ScratchFile scratch_;

@@ -51,6 +51,8 @@ class CachedFrames : public FrameSource {
   CachedFrames(std::unique_ptr<const PointCache> cache, SequenceHeader header)
       : FrameSource(std::move(header)), cache_(std::move(cache)) {}
 
+  bool is_quick() const override { return true; }
+
  private:
   void read_frames(int first, FramesView poses) const override { cache_->read(first, poses); }
 
@@ -93,10 +95,11 @@ class PointCacheSink : public FrameSink {
                  const std::function<PointCacheTarget(const fs::path&)>& begin)
       : header_(header),
         target_(target),
-        extra_(extra),
         outputs_(options.overwrite, options.inputs),
         cache_(begin(outputs_.add(target, PendingOutput::Kind::file))),
-        columns_(3 * static_cast<std::size_t>(header.connectivity->vertices)) {}
+        columns_(3 * static_cast<std::size_t>(header.connectivity->vertices)) {
+    add_extra_beside(outputs_, target_, extra, extra_files_);
+  }
 
   void write(int first, const Frames& poses) override {
     if (cache_.only_single_precision) check_single_precision(poses);
@@ -109,7 +112,7 @@ class PointCacheSink : public FrameSink {
     std::vector<fs::path> files = {target_};
     add_topology_beside(outputs_, target_, header_, files);
     add_rest_beside(outputs_, target_, header_, files);
-    add_extra_beside(outputs_, target_, extra_, files);
+    files.insert(files.end(), extra_files_.begin(), extra_files_.end());
     outputs_.commit();
     return files;
   }
@@ -129,7 +132,7 @@ class PointCacheSink : public FrameSink {
 
   SequenceHeader header_;
   fs::path target_;
-  ExtraFiles extra_;
+  std::vector<fs::path> extra_files_;
   PendingOutputs outputs_;
   PointCacheTarget cache_;
   std::size_t columns_;

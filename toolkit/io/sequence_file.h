@@ -17,10 +17,6 @@ struct SequenceRead {
   bool model_driven = false;
   std::vector<std::filesystem::path> files = {};
   std::vector<std::string> notes = {};
-  /// Where the frames are read when they are needed; `sequence` then has none.
-  std::shared_ptr<const FrameSource> stream = {};
-
-  const FrameSource& frames() const { return stream ? *stream : sequence; }
 };
 
 /// Opens `text`: a directory, glob or printf pattern of OBJ/PLY/OFF/STL files in natural order (2

@@ -72,32 +72,36 @@ class RigidFitter {
   Eigen::Matrix<double, Eigen::Dynamic, 4> moments_;
 };
 
-std::vector<RigidTransform> fit_frames(const MeshSequence& sequence,
-                                       const Eigen::VectorXd& weights) {
-  const RigidFitter rest(sequence.rest(), weights);
-  std::vector<RigidTransform> motion(sequence.frames());
-  for (int f = 0; f < sequence.frames(); ++f) {
-    // A frame that is the rest pose did not move; rounding would say that it nearly did not.
-    if (sequence.frame(f) != sequence.rest()) motion[f] = rest.carry_to(sequence.frame(f));
-  }
+/// What carries `rest` to a frame.
+RigidTransform motion_to(const PositionsView& frame, const Positions& rest,
+                         const RigidFitter& fitter) {
+  // A frame that is the rest pose did not move; rounding would say that it nearly did not.
+  return frame != rest ? fitter.carry_to(frame) : RigidTransform();
+}
+
+std::vector<RigidTransform> fit_frames(const FrameSource& source, const Eigen::VectorXd& weights,
+                                       const BlockOptions& options) {
+  const RigidFitter fitter(source.rest(), weights);
+  std::vector<RigidTransform> motion(source.frames());
+  for_each_run(source, options, [&](int first, int count) {
+    const FrameBlock block(source, first, count);
+    for (int row = 0; row < count; ++row) {
+      motion[first + row] = motion_to(block.frame(row), source.rest(), fitter);
+    }
+  });
   return motion;
 }
 
-/// Root mean square over the frames of each vertex's distance from the moved rest pose (N).
-Eigen::VectorXd residuals(const MeshSequence& sequence, const std::vector<RigidTransform>& motion) {
-  Eigen::VectorXd squares = Eigen::VectorXd::Zero(sequence.vertices());
-  const Positions& rest = sequence.rest();
-  for (int f = 0; f < sequence.frames(); ++f) {
-    const PositionsView frame = sequence.frame(f);
-    const Eigen::Matrix3d rotation = motion[f].rotation;
-    const Eigen::Vector3d translation = motion[f].translation;
-    for (Eigen::Index v = 0; v < rest.rows(); ++v) {
-      const Eigen::Vector3d point = rest.row(v);
-      squares[v] +=
-          (rotation.lazyProduct(point) + translation - frame.row(v).transpose()).squaredNorm();
-    }
+/// Squared distances of each vertex of a frame from the moved rest pose (N).
+void squared_residuals(const PositionsView& frame, const Positions& rest,
+                       const RigidTransform& motion, Eigen::Ref<Eigen::RowVectorXd> squares) {
+  const Eigen::Matrix3d rotation = motion.rotation;
+  const Eigen::Vector3d translation = motion.translation;
+  for (Eigen::Index v = 0; v < rest.rows(); ++v) {
+    const Eigen::Vector3d point = rest.row(v);
+    squares[v] =
+        (rotation.lazyProduct(point) + translation - frame.row(v).transpose()).squaredNorm();
   }
-  return (squares / sequence.frames()).cwiseSqrt();
 }
 
 double quantile(Eigen::VectorXd values, double share) {
@@ -116,9 +120,26 @@ Eigen::VectorXd robust_weights(const Eigen::VectorXd& residuals, double scale) {
 struct StableFit {
   std::vector<RigidTransform> motion;
   Eigen::VectorXd weights;
-  /// Of the last fit (N).
+  /// Root mean square over the frames of each vertex's distance from the moved rest pose (N).
   Eigen::VectorXd residuals;
 };
+
+/// One fit with these weights.
+StableFit weighted_fit(const FrameSource& source, Eigen::VectorXd weights,
+                       const BlockOptions& options) {
+  const RigidFitter fitter(source.rest(), weights);
+  StableFit fit{std::vector<RigidTransform>(source.frames()), std::move(weights), {}};
+  const Eigen::VectorXd squares = sum_over_frames(
+      source, source.vertices(), options, [&](int first, const FrameBlock& block, FramesView rows) {
+        for (int row = 0; row < block.frames(); ++row) {
+          RigidTransform& motion = fit.motion[first + row];
+          motion = motion_to(block.frame(row), source.rest(), fitter);
+          squared_residuals(block.frame(row), source.rest(), motion, rows.row(row));
+        }
+      });
+  fit.residuals = (squares / source.frames()).cwiseSqrt();
+  return fit;
+}
 
 /// Iteratively reweighted least squares over all frames at once: one weight per vertex, because a
 /// vertex that is still in one frame only tells little. It uses nothing but residuals, so that a
@@ -126,15 +147,16 @@ struct StableFit {
 ///
 /// [Geman, McClure. Statistical methods for tomographic image reconstruction. Bull. ISI 52, 1987],
 /// annealed as in [Blake, Zisserman. Visual Reconstruction. MIT Press, 1987]
-StableFit fit_stable(const MeshSequence& sequence, const Progress& progress) {
-  const double least_scale = kLeastScale * box_diagonal(sequence.rest());
+StableFit fit_stable(const FrameSource& source, const BlockOptions& options) {
+  const double least_scale = kLeastScale * box_diagonal(source.rest());
   StableFit fit;
-  fit.weights = Eigen::VectorXd::Ones(sequence.vertices());
+  fit.weights = Eigen::VectorXd::Ones(source.vertices());
   std::optional<double> scale;
   for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
-    report_progress(progress, static_cast<double>(iteration) / kMaxIterations);
-    fit.motion = fit_frames(sequence, fit.weights);
-    fit.residuals = residuals(sequence, fit.motion);
+    const double done = iteration;
+    const Progress progress =
+        part_of(options.progress, done / kMaxIterations, (done + 1) / kMaxIterations);
+    fit = weighted_fit(source, std::move(fit.weights), {options.threads, progress});
     const double target = std::max(quantile(fit.residuals, kStableShare), least_scale);
     if (target == 0) break;  // every vertex is in one place
     const bool settled = scale == least_scale;
@@ -151,25 +173,45 @@ StableFit fit_stable(const MeshSequence& sequence, const Progress& progress) {
 /// Whether the motion can be told from none: its root mean square displacement of the stable
 /// vertices against the standard error of a rigid fit to n points with this residual, whose six
 /// unknowns take sqrt(6 / 3n) of it.
-bool is_significant(const MeshSequence& sequence, const StableFit& fit) {
+bool is_significant(const FrameSource& source, const StableFit& fit) {
   const Eigen::VectorXd shares = fit.weights / fit.weights.sum();
   double squares = 0;
   for (const RigidTransform& transform : fit.motion) {
-    squares +=
-        shares.dot((transform.apply(sequence.rest()) - sequence.rest()).rowwise().squaredNorm());
+    squares += shares.dot((transform.apply(source.rest()) - source.rest()).rowwise().squaredNorm());
   }
-  const double found = std::sqrt(squares / sequence.frames());
+  const double found = std::sqrt(squares / source.frames());
   const double residual = std::sqrt(shares.dot(fit.residuals.cwiseAbs2()));
   const double points = 1 / shares.squaredNorm();
   return found > std::max(kSignificance * residual * std::sqrt(2 / points),
-                          kLeastMotion * box_diagonal(sequence.rest()));
+                          kLeastMotion * box_diagonal(source.rest()));
 }
 
-void check_count(const MeshSequence& sequence, const std::vector<RigidTransform>& motion) {
-  if (static_cast<int>(motion.size()) == sequence.frames()) return;
-  throw MismatchError(std::to_string(motion.size()) + " rigid transforms, expected " +
-                      std::to_string(sequence.frames()) + ", one per frame");
-}
+/// The frames of another source, each moved rigidly.
+class MovedFrames : public FrameSource {
+ public:
+  MovedFrames(std::shared_ptr<const FrameSource> source, std::vector<RigidTransform> motion)
+      : FrameSource(source->header()), source_(std::move(source)), motion_(std::move(motion)) {
+    if (static_cast<int>(motion_.size()) == frames()) return;
+    throw MismatchError(std::to_string(motion_.size()) + " rigid transforms, expected " +
+                        std::to_string(frames()) + ", one per frame");
+  }
+
+  bool is_quick() const override { return source_->is_quick(); }
+
+ private:
+  void read_frames(int first, FramesView poses) const override {
+    source_->read(first, poses);
+    for (Eigen::Index row = 0; row < poses.rows(); ++row) {
+      const RigidTransform& transform = motion_[static_cast<std::size_t>(first + row)];
+      if (transform.is_identity()) continue;
+      Eigen::Map<Positions> pose(poses.row(row).data(), vertices(), 3);
+      pose = transform.apply(pose);
+    }
+  }
+
+  std::shared_ptr<const FrameSource> source_;
+  std::vector<RigidTransform> motion_;
+};
 
 void check_weights(Eigen::Index points, const Eigen::VectorXd& weights) {
   if (weights.size() != points) {
@@ -209,37 +251,46 @@ RigidTransform rigid_fit(const Eigen::Ref<const Positions>& from,
   return RigidFitter(from, weights).carry_to(to);
 }
 
-Alignment align(const MeshSequence& sequence, const AlignmentOptions& options) {
+std::vector<RigidTransform> rigid_motion(const FrameSource& source,
+                                         const AlignmentOptions& options) {
   check_options(options);
-  std::vector<RigidTransform> motion(sequence.frames());
-  if (sequence.vertices() == 0) return align(sequence, std::move(motion));
+  std::vector<RigidTransform> motion(source.frames());
+  if (source.vertices() == 0) return motion;
+  const BlockOptions blocks{options.threads, options.progress};
   if (options.vertices == AlignmentVertices::all) {
-    motion = fit_frames(sequence, Eigen::VectorXd::Ones(sequence.vertices()));
-  } else if (StableFit fit = fit_stable(sequence, options.progress);
-             is_significant(sequence, fit)) {
+    motion = fit_frames(source, Eigen::VectorXd::Ones(source.vertices()), blocks);
+  } else if (StableFit fit = fit_stable(source, blocks); is_significant(source, fit)) {
     motion = std::move(fit.motion);
   }
   report_progress(options.progress, 1);
-  return align(sequence, std::move(motion));
+  return motion;
 }
 
-Alignment align(const MeshSequence& sequence, std::vector<RigidTransform> motion) {
-  check_count(sequence, motion);
+std::shared_ptr<const FrameSource> with_motion(std::shared_ptr<const FrameSource> source,
+                                               std::vector<RigidTransform> motion) {
+  return std::make_shared<const MovedFrames>(std::move(source), std::move(motion));
+}
+
+std::shared_ptr<const FrameSource> without_motion(std::shared_ptr<const FrameSource> source,
+                                                  const std::vector<RigidTransform>& motion) {
   std::vector<RigidTransform> inverse;
   inverse.reserve(motion.size());
   for (const RigidTransform& transform : motion) inverse.push_back(transform.inverse());
-  return {with_motion(sequence, inverse), std::move(motion)};
+  return with_motion(std::move(source), std::move(inverse));
 }
 
-MeshSequence with_motion(const MeshSequence& sequence, const std::vector<RigidTransform>& motion) {
-  check_count(sequence, motion);
-  Frames frames = sequence.positions();
-  for (int f = 0; f < sequence.frames(); ++f) {
-    if (motion[f].is_identity()) continue;
-    Eigen::Map<Positions>(frames.row(f).data(), sequence.vertices(), 3) =
-        motion[f].apply(sequence.frame(f));
-  }
-  return sequence.with_frames(std::move(frames));
+Alignment align(const MeshSequence& sequence, const AlignmentOptions& options) {
+  return align(sequence, rigid_motion(sequence, options));
+}
+
+Alignment align(const MeshSequence& sequence, std::vector<RigidTransform> motion) {
+  const auto still = without_motion(std::make_shared<const MeshSequence>(sequence), motion);
+  return {MeshSequence(*still), std::move(motion)};
+}
+
+MeshSequence with_motion(const MeshSequence& sequence, std::vector<RigidTransform> motion) {
+  return MeshSequence(
+      *with_motion(std::make_shared<const MeshSequence>(sequence), std::move(motion)));
 }
 
 MeshSequence rigidly_aligned(const MeshSequence& sequence) {

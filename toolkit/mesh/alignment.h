@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <string_view>
 #include <vector>
 
@@ -48,11 +49,35 @@ constexpr std::string_view choice_name(AlignmentVertices value) {
 
 struct AlignmentOptions {
   AlignmentVertices vertices = AlignmentVertices::stable;
+  /// 0 for all there are; the result does not depend on it.
+  int threads = 0;
   Progress progress = {};
 
   static constexpr Option kVertices{"vertices", &AlignmentOptions::vertices};
   static constexpr auto declared() { return std::tuple(kVertices); }
 };
+
+/// The rigid motion of each frame relative to the rest pose (F).
+///
+/// `stable` weighs each vertex, over all frames at once, by how little the rigid motion leaves of
+/// it. Where one vertex in twenty or more is still on the head, the motion is exact; a sequence
+/// that was moved rigidly per frame gives the same result, moved as its rest pose was. Where the
+/// motion found is no larger than noise of the still vertices' own size can feign (three standard
+/// errors of the fit), every transform is the identity.
+///
+/// `stable` reads all frames up to 40 times, so that a source that is slow to read should be
+/// stored(). Throws what reading throws, Cancelled.
+std::vector<RigidTransform> rigid_motion(const FrameSource& source,
+                                         const AlignmentOptions& options = {});
+
+/// Frame f becomes motion[f].apply(frame f) when it is read; the rest pose stays as it is. Throws
+/// MismatchError where the count differs from the frames.
+std::shared_ptr<const FrameSource> with_motion(std::shared_ptr<const FrameSource> source,
+                                               std::vector<RigidTransform> motion);
+
+/// The opposite: motion[f] carries frame f of the result to frame f of the source.
+std::shared_ptr<const FrameSource> without_motion(std::shared_ptr<const FrameSource> source,
+                                                  const std::vector<RigidTransform>& motion);
 
 /// A sequence without its rigid motion, and that motion.
 struct Alignment {
@@ -61,21 +86,14 @@ struct Alignment {
   std::vector<RigidTransform> motion;
 };
 
-/// Removes from each frame its rigid motion relative to the rest pose, which stays as it is.
-///
-/// `stable` weighs each vertex, over all frames at once, by how little the rigid motion leaves of
-/// it. Where one vertex in twenty or more is still on the head, the motion is exact; a sequence
-/// that was moved rigidly per frame gives the same result, moved as its rest pose was. Where the
-/// motion found is no larger than noise of the still vertices' own size can feign (three standard
-/// errors of the fit), the result is the input itself, bit by bit, and every transform the
-/// identity. Throws Cancelled.
+/// Removes rigid_motion(sequence) from each frame.
 Alignment align(const MeshSequence& sequence, const AlignmentOptions& options = {});
 
 /// Removes the given motion (F). Throws MismatchError where the count differs from the frames.
 Alignment align(const MeshSequence& sequence, std::vector<RigidTransform> motion);
 
-/// Gives the motion (F) back: frame f becomes motion[f].apply(frame f). Throws MismatchError.
-MeshSequence with_motion(const MeshSequence& sequence, const std::vector<RigidTransform>& motion);
+/// Gives the motion (F) back. Throws MismatchError.
+MeshSequence with_motion(const MeshSequence& sequence, std::vector<RigidTransform> motion);
 
 /// The sequence of align(sequence).
 MeshSequence rigidly_aligned(const MeshSequence& sequence);

@@ -22,4 +22,11 @@ bool FieldSequence::is_in_memory() const {
   return dynamic_cast<const MeshSequence*>(frames.get()) != nullptr;
 }
 
+FieldSequence held_like(const FieldSequence& like, std::shared_ptr<const FrameSource> frames,
+                        const BlockOptions& options) {
+  FieldSequence made(std::move(frames));
+  if (!like.is_in_memory() || made.is_in_memory()) return made;
+  return MeshSequence(*made.frames, options);
+}
+
 }  // namespace mimetra

@@ -37,4 +37,9 @@ struct FieldSequence {
   bool displacement = false;
 };
 
+/// Frames that are held as those of `like` are: in memory, or read when they are needed. Throws
+/// what reading throws, Cancelled.
+FieldSequence held_like(const FieldSequence& like, std::shared_ptr<const FrameSource> frames,
+                        const BlockOptions& options = {});
+
 }  // namespace mimetra

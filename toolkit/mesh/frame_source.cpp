@@ -10,24 +10,19 @@
 namespace mimetra {
 namespace {
 
-void check_run(const FrameSource& source, int first, Eigen::Index count) {
-  if (first >= 0 && count >= 0 && first + count <= source.frames()) return;
-  throw std::out_of_range("frames " + std::to_string(first) + " to " +
-                          std::to_string(first + count - 1) + " of a sequence of " +
-                          std::to_string(source.frames()));
-}
-
 /// Some frames of another source.
 class SelectedFrames : public FrameSource {
  public:
   SelectedFrames(std::shared_ptr<const FrameSource> source, std::vector<int> chosen)
       : FrameSource(source->header()), source_(std::move(source)), chosen_(std::move(chosen)) {
-    for (const int frame : chosen_) check_run(*source_, frame, 1);
+    for (const int frame : chosen_) source_->check_run(frame, 1);
     header_.times = source_->times()(chosen_);
     if (rest_is_known() || chosen_.empty()) return;
     const Frames first = source_->read(chosen_.front(), 1);
     header_.rest = PositionsView(first.data(), vertices(), 3);
   }
+
+  bool is_quick() const override { return source_->is_quick(); }
 
  private:
   /// Neighbours are read together.
@@ -47,15 +42,49 @@ class SelectedFrames : public FrameSource {
   std::vector<int> chosen_;
 };
 
+/// The poses of another source.
+class RestedFrames : public FrameSource {
+ public:
+  RestedFrames(std::shared_ptr<const FrameSource> source, std::optional<Positions> rest)
+      : FrameSource(source->header()), source_(std::move(source)) {
+    header_.rest_is_known = rest.has_value();
+    if (rest) {
+      header_.rest = *std::move(rest);
+    } else if (frames() > 0) {
+      header_.rest = FrameBlock(*source_, 0, 1).frame(0);
+    }
+    if (header_.rest.rows() == vertices()) return;
+    throw std::invalid_argument("the rest pose has " + std::to_string(header_.rest.rows()) +
+                                " vertices, expected " + std::to_string(vertices()) +
+                                " as in the frames");
+  }
+
+  std::shared_ptr<const Frames> in_memory() const override { return source_->in_memory(); }
+  bool is_quick() const override { return source_->is_quick(); }
+
+ private:
+  void read_frames(int first, FramesView poses) const override { source_->read(first, poses); }
+
+  std::shared_ptr<const FrameSource> source_;
+};
+
+/// Frames that fill `bytes`.
+int frames_in(std::size_t bytes, const FrameSource& source) {
+  const std::size_t frame = std::max<std::size_t>(1, 3 * sizeof(double) * source.vertices());
+  return static_cast<int>(std::min<std::size_t>(bytes / frame, 1 << 20));
+}
+
+/// `wanted` frames, where `most` fit. Products of matrices take rows in fours.
+int in_fours(int wanted, int most) {
+  return most < 4 ? std::max(1, wanted) : std::max(4, wanted / 4 * 4);
+}
+
 /// As many as fit a block, but enough blocks for threads to share.
 int frames_in_block(const FrameSource& source) {
   constexpr int kBlocks = 64;
-  const std::size_t frame = std::max<std::size_t>(1, 3 * sizeof(double) * source.vertices());
   // Readers and writers hold a block up to three times more, in their own encodings.
-  const auto most = static_cast<int>(std::min<std::size_t>(kBlockBytes / 4 / frame, 1 << 20));
-  const int wanted = std::min(most, source.frames() / kBlocks + 1);
-  // Products of matrices take rows in fours.
-  return most < 4 ? std::max(1, wanted) : std::max(4, wanted / 4 * 4);
+  const int most = frames_in(kBlockBytes / 4, source);
+  return in_fours(std::min(most, source.frames() / kBlocks + 1), most);
 }
 
 }  // namespace
@@ -65,8 +94,15 @@ Eigen::VectorXd default_times(int frames) {
          kDefaultFramesPerSecond;
 }
 
+void FrameSource::check_run(int first, Eigen::Index count) const {
+  if (first >= 0 && count >= 0 && first + count <= frames()) return;
+  throw std::out_of_range("frames " + std::to_string(first) + " to " +
+                          std::to_string(first + count - 1) + " of a sequence of " +
+                          std::to_string(frames()));
+}
+
 void FrameSource::read(int first, FramesView poses) const {
-  check_run(*this, first, poses.rows());
+  check_run(first, poses.rows());
   if (poses.cols() != 3 * Eigen::Index{vertices()}) {
     throw std::invalid_argument("room for " + std::to_string(poses.cols()) +
                                 " coordinates a frame, expected 3 x " + std::to_string(vertices()) +
@@ -76,15 +112,36 @@ void FrameSource::read(int first, FramesView poses) const {
 }
 
 Frames FrameSource::read(int first, int count) const {
-  check_run(*this, first, count);
+  check_run(first, count);
   Frames poses(count, 3 * Eigen::Index{vertices()});
   read(first, FramesView(poses.data(), poses.rows(), poses.cols()));
   return poses;
 }
 
+FrameBlock::FrameBlock(const FrameSource& source, int first, int count)
+    : poses_(nullptr, 0, 3 * Eigen::Index{source.vertices()}) {
+  const Frames* all = source.in_memory().get();
+  if (all) {
+    source.check_run(first, count);
+  } else {
+    read_ = source.read(first, count);
+  }
+  const double* data = all ? all->data() + first * all->cols() : read_.data();
+  new (&poses_) Eigen::Map<const Frames>(data, count, poses_.cols());
+}
+
+PositionsView FrameBlock::frame(int row) const {
+  return {poses_.data() + row * poses_.cols(), poses_.cols() / 3, 3};
+}
+
 std::shared_ptr<const FrameSource> selected(std::shared_ptr<const FrameSource> source,
                                             std::vector<int> chosen) {
   return std::make_shared<const SelectedFrames>(std::move(source), std::move(chosen));
+}
+
+std::shared_ptr<const FrameSource> with_rest(std::shared_ptr<const FrameSource> source,
+                                             std::optional<Positions> rest) {
+  return std::make_shared<const RestedFrames>(std::move(source), std::move(rest));
 }
 
 void for_each_run(const FrameSource& source, const BlockOptions& options,
@@ -101,6 +158,44 @@ void for_each_block(const FrameSource& source, const BlockOptions& options,
                     const std::function<void(int, const Frames&)>& work) {
   for_each_run(source, options,
                [&](int first, int count) { work(first, source.read(first, count)); });
+}
+
+Eigen::VectorXd sum_over_frames(
+    const FrameSource& source, Eigen::Index size, const BlockOptions& options,
+    const std::function<void(int, const FrameBlock&, FramesView)>& work) {
+  const int most = frames_in(kBlockBytes, source);
+  const int held = in_fours(most, most), at_once = frames_in_block(source);
+  Frames vectors(std::min(held, source.frames()), size);
+  Eigen::VectorXd sum = Eigen::VectorXd::Zero(size);
+  for (int first = 0; first < source.frames(); first += held) {
+    report_progress(options.progress, static_cast<double>(first) / source.frames());
+    const int count = std::min(held, source.frames() - first);
+    parallel_for((count + at_once - 1) / at_once, options.threads, [&](int block) {
+      const int row = block * at_once, rows = std::min(at_once, count - row);
+      const FrameBlock frames(source, first + row, rows);
+      work(first + row, frames, FramesView(vectors.data() + row * size, rows, size));
+    });
+    for (int row = 0; row < count; ++row) sum += vectors.row(row).transpose();
+  }
+  report_progress(options.progress, 1);
+  return sum;
+}
+
+Positions mean_pose(const FrameSource& source) {
+  if (source.frames() == 0) return {};
+  // Eigen's sum of rows takes the first one and adds the others in fours: so does the sum of blocks
+  // of fours that start with the sum so far.
+  const int held = 4 * std::max(1, frames_in(kBlockBytes, source) / 4);
+  Frames rows(1 + std::min(held, source.frames() - 1), 3 * Eigen::Index{source.vertices()});
+  source.read(0, FramesView(rows.data(), 1, rows.cols()));
+  for (int first = 1; first < source.frames(); first += held) {
+    const int count = std::min(held, source.frames() - first);
+    source.read(first, FramesView(rows.row(1).data(), count, rows.cols()));
+    const Eigen::RowVectorXd sum = rows.topRows(1 + count).colwise().sum();
+    rows.row(0) = sum;
+  }
+  rows.row(0) /= source.frames();
+  return PositionsView(rows.data(), source.vertices(), 3);
 }
 
 double motion(const FrameSource& source, const BlockOptions& options) {

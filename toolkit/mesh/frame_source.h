@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "toolkit/mesh/errors.h"
@@ -55,11 +56,19 @@ class FrameSource {
   /// Longest side of the rest pose's bounding box.
   double extent() const { return mimetra::extent(rest()); }
 
+  /// All poses (F x 3N) where they are in memory; null elsewhere.
+  virtual std::shared_ptr<const Frames> in_memory() const { return nullptr; }
+  /// True where reading frames again costs hardly more than copying them: they are in memory, are
+  /// stored as numbers, or follow from a product. Who reads others many times keeps them: stored().
+  virtual bool is_quick() const { return false; }
+
   /// The frames `first` .. first + poses.rows() - 1 (rows x 3N); any run of frames gives the same
   /// numbers. May be called from several threads. Throws std::out_of_range for frames that are not
   /// there, std::invalid_argument unless the rows have 3N columns, and what reading throws.
   void read(int first, FramesView poses) const;
   Frames read(int first, int count) const;
+  /// Throws std::out_of_range unless the frames `first` .. first + count - 1 are there.
+  void check_run(int first, Eigen::Index count) const;
 
  protected:
   FrameSource() = default;
@@ -90,10 +99,34 @@ class FrameSink {
   virtual std::vector<std::filesystem::path> commit() = 0;
 };
 
+/// Some frames of a source: a view where all are in memory, otherwise they are read.
+class FrameBlock {
+ public:
+  /// Throws as FrameSource::read(). \pre the source outlives it
+  FrameBlock(const FrameSource& source, int first, int count);
+  FrameBlock(const FrameBlock&) = delete;
+  FrameBlock& operator=(const FrameBlock&) = delete;
+
+  int frames() const { return static_cast<int>(poses_.rows()); }
+  /// frames() x 3N.
+  const Eigen::Map<const Frames>& poses() const { return poses_; }
+  /// Pose number `row` of the block (N x 3). \pre 0 <= row < frames()
+  PositionsView frame(int row) const;
+
+ private:
+  Frames read_;
+  Eigen::Map<const Frames> poses_;
+};
+
 /// The frames `chosen` of a source, in this order; the rest pose is its own where it is known, else
 /// the first chosen one. Throws std::out_of_range for frames that are not there.
 std::shared_ptr<const FrameSource> selected(std::shared_ptr<const FrameSource> source,
                                             std::vector<int> chosen);
+
+/// The same frames with another rest pose (N x 3); none where nobody knows it, so that the first
+/// frame stands in. Throws std::invalid_argument for another number of vertices.
+std::shared_ptr<const FrameSource> with_rest(std::shared_ptr<const FrameSource> source,
+                                             std::optional<Positions> rest);
 
 struct BlockOptions {
   /// 0 for all there are.
@@ -114,6 +147,17 @@ void for_each_run(const FrameSource& source, const BlockOptions& options,
 /// throw, Cancelled.
 void for_each_block(const FrameSource& source, const BlockOptions& options,
                     const std::function<void(int first, const Frames& poses)>& work);
+
+/// Sum over all frames of one vector each (`size`), added in the order of the frames: the same for
+/// every number of threads. `work` is called from several threads and writes the vectors of a block
+/// that starts with frame `first` (one row a frame). No more of them are held than their frames
+/// fill kBlockBytes. Throws what reading and `work` throw, Cancelled.
+Eigen::VectorXd sum_over_frames(
+    const FrameSource& source, Eigen::Index size, const BlockOptions& options,
+    const std::function<void(int first, const FrameBlock& block, FramesView vectors)>& work);
+
+/// Mean of all frames (N x 3).
+Positions mean_pose(const FrameSource& source);
 
 /// Root mean square over vertices and frames of the distance from the rest pose.
 double motion(const FrameSource& source, const BlockOptions& = {});

@@ -7,10 +7,6 @@
 namespace mimetra {
 namespace {
 
-Positions as_positions(const Eigen::RowVectorXd& row) {
-  return PositionsView(row.data(), row.size() / 3, 3);
-}
-
 void check_frames(const Frames& frames, int vertices) {
   if (frames.rows() < 1) throw std::invalid_argument("a sequence needs at least one frame");
   if (frames.cols() != 3 * static_cast<Eigen::Index>(vertices)) {
@@ -58,7 +54,8 @@ MeshSequence::MeshSequence(std::shared_ptr<const Connectivity> connectivity,
 }
 
 MeshSequence::MeshSequence(const FrameSource& source, const BlockOptions& options)
-    : FrameSource(source) {
+    : FrameSource(source), frames_(source.in_memory()) {
+  if (frames_) return;
   auto all = std::make_shared<Frames>(source.frames(), 3 * Eigen::Index{vertices()});
   for_each_run(source, options, [&](int first, int count) {
     source.read(first, FramesView(all->row(first).data(), count, all->cols()));
@@ -101,11 +98,6 @@ MeshSequence MeshSequence::with_frames(Frames frames) const {
 
 void MeshSequence::read_frames(int first, FramesView poses) const {
   poses = frames_->middleRows(first, poses.rows());
-}
-
-Positions mean_pose(const MeshSequence& sequence) {
-  if (sequence.frames() == 0) return {};
-  return as_positions(sequence.positions().colwise().mean());
 }
 
 }  // namespace mimetra

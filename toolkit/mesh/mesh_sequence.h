@@ -21,13 +21,16 @@ class MeshSequence : public FrameSource {
   /// Shares a connectivity.
   MeshSequence(std::shared_ptr<const Connectivity> connectivity, Frames frames,
                Eigen::VectorXd times = {}, std::optional<Positions> rest = {});
-  /// All frames of `source`. Throws what reading throws, Cancelled.
+  /// All frames of `source`; where they are in memory they are shared. Throws what reading throws,
+  /// Cancelled.
   explicit MeshSequence(const FrameSource& source, const BlockOptions& = {});
 
   /// Positions of frame f (N x 3), a view into this sequence. \pre 0 <= f < frames()
   PositionsView frame(int f) const;
   /// All frames, F x 3N.
   const Frames& positions() const { return *frames_; }
+  std::shared_ptr<const Frames> in_memory() const override { return frames_; }
+  bool is_quick() const override { return true; }
 
   /// Frames first, first + step, ... before `last`. Throws std::invalid_argument unless
   /// 0 <= first < last <= frames() and step >= 1.
@@ -46,8 +49,5 @@ class MeshSequence : public FrameSource {
 
   std::shared_ptr<const Frames> frames_ = std::make_shared<Frames>();
 };
-
-/// Mean of all frames (N x 3).
-Positions mean_pose(const MeshSequence& sequence);
 
 }  // namespace mimetra

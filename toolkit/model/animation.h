@@ -17,6 +17,7 @@ class Animation : public FrameSource {
 
   const BlendshapeModel& model() const { return *model_; }
   const Eigen::MatrixXd& weights() const { return weights_; }
+  bool is_quick() const override { return true; }
 
  private:
   /// The same numbers as those frames of model().animate(weights()).

@@ -5,12 +5,14 @@
 #include <nlohmann/json.hpp>
 
 #include "toolkit/mesh/alignment.h"
+#include "toolkit/mesh/frame_store.h"
 #include "toolkit/mesh/text.h"
 #include "toolkit/operations/bound_parameters.h"
 #include "toolkit/operations/formats.h"
 #include "toolkit/operations/json.h"
 #include "toolkit/operations/parameter_files.h"
 #include "toolkit/operations/toolkit_operations.h"
+#include "toolkit/pipeline/memory.h"
 
 namespace mimetra {
 
@@ -21,19 +23,25 @@ double degrees_of(const RigidTransform& transform) {
   return std::acos(cosine) * 180 / std::numbers::pi;
 }
 
-Json json_of(const std::vector<RigidTransform>& motion) {
-  Json list = Json::array();
-  for (const RigidTransform& transform : motion) {
-    Json rotation = Json::array();
-    for (int row = 0; row < 3; ++row) {
-      for (int column = 0; column < 3; ++column)
-        rotation.push_back(transform.rotation(row, column));
-    }
-    const Eigen::Vector3d& translation = transform.translation;
-    list.push_back({{"rotation", rotation},
-                    {"translation", {translation[0], translation[1], translation[2]}}});
+Json json_of(const RigidTransform& transform) {
+  Json rotation = Json::array();
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 3; ++column) rotation.push_back(transform.rotation(row, column));
   }
-  return list;
+  const Eigen::Vector3d& translation = transform.translation;
+  return {{"rotation", rotation},
+          {"translation", {translation[0], translation[1], translation[2]}}};
+}
+
+/// The report with the motion, whose text is a few times smaller than the values it is made of.
+std::string report_with(const Json& report, const std::vector<RigidTransform>& motion) {
+  std::string text = report.dump();
+  text.back() = ',';
+  text += "\"motion\":[";
+  for (const RigidTransform& transform : motion) text += json_of(transform).dump() + ',';
+  if (!motion.empty()) text.pop_back();
+  text += "]}";
+  return text;
 }
 
 struct AlignCall {
@@ -53,34 +61,52 @@ BoundParameters<AlignCall> align_parameters() {
       .add("undo", AlignCall::kUndo, "manifest of an align run, whose motion is given back");
 }
 
-Alignment aligned(const Invocation& invocation) {
-  const MeshSequence& sequence = invocation.sequence("sequence");
+/// Finding the motion, beside reading the frames to be kept before and to be moved after it.
+constexpr double kFittingFrom = 0.2;
+constexpr double kFittingTo = 0.9;
+
+/// A sequence that moves otherwise, and the motion that makes the difference.
+struct Moved {
+  std::shared_ptr<const FrameSource> frames;
+  std::vector<RigidTransform> motion;
+};
+
+Moved moved(const Invocation& invocation) {
+  std::shared_ptr<const FrameSource> given = invocation.get<FieldSequence>("sequence").frames;
   AlignCall call = align_parameters().read(invocation.parameters);
   if (call.undo) {
-    std::vector<RigidTransform> motion = read_motion(call.undo->string(), sequence.frames());
-    return {with_motion(sequence, motion), std::move(motion)};
+    std::vector<RigidTransform> motion = read_motion(call.undo->string(), given->frames());
+    return {with_motion(given, motion), std::move(motion)};
   }
-  call.alignment.progress = invocation.progress;
-  return align(sequence, call.alignment);
+  given = stored(given, {.threads = invocation.threads,
+                         .progress = part_of(invocation.progress, 0, kFittingFrom)});
+  call.alignment.threads = invocation.threads;
+  call.alignment.progress = part_of(invocation.progress, kFittingFrom, kFittingTo);
+  std::vector<RigidTransform> motion = rigid_motion(*given, call.alignment);
+  return {without_motion(given, motion), std::move(motion)};
 }
 
 Outcome run_align(const Invocation& invocation) {
-  Alignment alignment = aligned(invocation);
+  const NamedData& input = invocation.input("sequence");
+  const Moved result = moved(invocation);
   double degrees = 0, shift = 0;
-  for (const RigidTransform& transform : alignment.motion) {
+  for (const RigidTransform& transform : result.motion) {
     degrees = std::max(degrees, degrees_of(transform));
     shift = std::max(shift, transform.translation.norm());
   }
   Outcome outcome;
-  outcome.report = Json{{"frames", alignment.sequence.frames()},
-                        {"largest_rotation_degrees", degrees},
-                        {"largest_translation", shift},
-                        {"motion", json_of(alignment.motion)}}
-                       .dump();
+  outcome.report = report_with(Json{{"frames", result.frames->frames()},
+                                    {"largest_rotation_degrees", degrees},
+                                    {"largest_translation", shift}},
+                               result.motion);
   outcome.summary = "largest rotation " + readable(degrees) + " degrees, largest translation " +
                     readable(shift) + '\n';
   outcome.outputs["out"].push_back(
-      {"", FieldSequence(std::move(alignment.sequence)), invocation.input("sequence").origin});
+      {"",
+       held_like(std::get<FieldSequence>(input.data), result.frames,
+                 {.threads = invocation.threads,
+                  .progress = part_of(invocation.progress, kFittingTo, 1)}),
+       input.origin});
   return outcome;
 }
 
@@ -91,14 +117,15 @@ Operation align_operation() {
   operation.name = "align";
   operation.summary = "Take the rigid motion out of each frame; the manifest keeps it";
   operation.inputs = {{"sequence", DataKind::sequence, "sequence to align"}};
+  operation.inputs.front().streamed = true;
   operation.outputs = {{"out", DataKind::sequence, sequence_outputs()}};
   operation.parameters = align_parameters().declared();
   operation.examples = {"align takes/ -o still/",
                         "align still/ --undo still/mimetra-run.json -o back/"};
   operation.run = run_align;
   operation.memory = [](const Invocation& invocation) {
-    const MeshSequence& sequence = invocation.sequence("sequence");
-    return static_cast<double>(sequence.positions().size() * sizeof(double));
+    const FieldSequence& sequence = invocation.get<FieldSequence>("sequence");
+    return sequence.is_in_memory() ? frame_bytes(*sequence.frames) : stored_bytes(*sequence.frames);
   };
   return operation;
 }

@@ -189,7 +189,6 @@ const Outcome& Call::run() {
   for (const auto& [name, targets] : paths_) {
     finished_.outputs.insert(finished_.outputs.end(), targets.begin(), targets.end());
   }
-  finished_.report = outcome_.report;
   finished_.peak_memory = MemoryUse::of_this_process().peak;
   return outcome_;
 }
@@ -205,7 +204,8 @@ void Call::write_values(const Output& output, const Paths& targets, const std::s
     write.inputs = finished_.inputs;
     // What accompanies another output stands in that one's manifest.
     if (request_.paths.contains(output.name)) {
-      write.extra = {{manifest_name(target, table_.writes_folder(output, target)), manifest}};
+      write.extra.emplace_back(manifest_name(target, table_.writes_folder(output, target)),
+                               manifest);
     }
     table_.writer(output, target).write(made->second[i].data, write);
   }
@@ -214,7 +214,7 @@ void Call::write_values(const Output& output, const Paths& targets, const std::s
 void Call::write() {
   if (!writes() && !request_.manifest) return;
   const Stopwatch stopwatch;
-  const std::string manifest = mimetra::manifest(finished_);
+  const std::string manifest = mimetra::manifest(finished_, outcome_.report);
   std::size_t count = 0, written = 0;
   for (const auto& [name, targets] : paths_) count += targets.size();
   // Once one output stands, the others follow: an interrupted run leaves all of them or none.

@@ -49,15 +49,15 @@ Outcome run_decompose(const Invocation& invocation) {
       in_command_terms(invocation.parameters, [&] { return analyse(still, call.analysis); });
   const Components& components = analysis.components;
   const DecompositionError error =
-      decomposition_error(still.sequence.with_rest(components.rest), components);
+      decomposition_error(MeshSequence(*still.sequence).with_rest(components.rest), components);
   const auto dead = std::ranges::count(components.centers, -1);
   if (dead > 0) {
     invocation.warn(std::to_string(dead) + " of " + std::to_string(components.count()) +
                     " components died: fewer tell the same");
   }
   Outcome outcome;
-  outcome.report = Json{{"frames", still.sequence.frames()},
-                        {"vertices", still.sequence.vertices()},
+  outcome.report = Json{{"frames", still.sequence->frames()},
+                        {"vertices", still.sequence->vertices()},
                         {"components", components.count() - dead},
                         {"energies", components.energies},
                         {"e_rms", error.rms},
@@ -74,7 +74,7 @@ Outcome run_decompose(const Invocation& invocation) {
                     readable(analysis.seconds) + " s\n";
   if (invocation.wants("weights-out")) {
     outcome.outputs["weights-out"].push_back(
-        {"", weight_table(components, still.sequence.times())});
+        {"", weight_table(components, still.sequence->times())});
   }
   outcome.outputs["out"].push_back({"", std::move(analysis.components)});
   return outcome;

@@ -72,11 +72,10 @@ double memory_of_evaluate(const Invocation& invocation) {
   EvaluationOptions options = evaluation_parameters().read(invocation.parameters);
   options.solving.threads = invocation.threads;
   const auto& source = invocation.input("source");
-  const double alignment = alignment_bytes(sequence, described(options.source, source));
-  const double analysis =
-      alignment + analysis_bytes(sequence, *std::ranges::max_element(options.counts));
+  const double analysis = alignment_bytes(sequence, described(options.source, source)) +
+                          analysis_bytes(sequence, *std::ranges::max_element(options.counts));
   const BlendshapeModel& target = invocation.get<ModelData>("target").model.average();
-  return std::max(analysis, alignment + solution_bytes(sequence, target, options.solving));
+  return std::max(analysis, 2 * solution_bytes(sequence, target, options.solving));
 }
 
 }  // namespace

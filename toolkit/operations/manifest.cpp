@@ -31,7 +31,7 @@ std::vector<std::filesystem::path> files_below(const std::vector<std::filesystem
 
 }  // namespace
 
-std::string manifest(const FinishedRun& run) {
+std::string manifest(const FinishedRun& run, const std::string& report) {
   Json options = Json::object();
   for (const Parameter& parameter : run.parameters.declared()) {
     options[parameter.name] = to_text(run.parameters.value(parameter.name));
@@ -52,7 +52,7 @@ std::string manifest(const FinishedRun& run) {
                {"outputs", outputs},
                {"seconds", {{"read", run.read_seconds}, {"run", run.run_seconds}}},
                {"peak_memory_bytes", run.peak_memory},
-               {"result", Json::parse(run.report)}};
+               {"result", Json::parse(report)}};
   if (!run.given_inputs.empty()) json["given_inputs"] = run.given_inputs;
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
 }

@@ -24,12 +24,11 @@ struct FinishedRun {
   double read_seconds = 0;
   double run_seconds = 0;
   double peak_memory = 0;  ///< bytes
-  std::string report;      ///< the operation's JSON
 };
 
 /// The manifest of a run: versions, arguments, the value of every option, inputs with their hashes,
-/// timings, and the result, as JSON.
-std::string manifest(const FinishedRun& run);
+/// timings, and the result, as JSON. `report` is the operation's JSON.
+std::string manifest(const FinishedRun& run, const std::string& report);
 
 /// Name of the manifest of an output: mimetra-run.json in a folder; NAME.run.json for a file
 /// NAME.EXT, or NAME.EXT.run.json where the former is there and belongs to another output.

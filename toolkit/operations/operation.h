@@ -111,6 +111,8 @@ struct Operation {
   std::function<Outcome(const Invocation&)> run;
   /// Bytes that it takes at its peak besides what it is given; none where that is little.
   std::function<double(const Invocation&)> memory = {};
+  /// The step that has all frames of streamed inputs in memory, "the decomposition"; "" for none.
+  std::function<std::string(const Invocation&)> all_frames_for = {};
 };
 
 /// Where and how a value is written.

@@ -33,7 +33,7 @@ RigidTransform transform_of(const Json& json) {
 
 }  // namespace
 
-Positions read_rest(const std::string& path, const MeshSequence& sequence) {
+Positions read_rest(const std::string& path, const FrameSource& sequence) {
   Positions rest = read_mesh(path).positions;
   if (rest.rows() != sequence.vertices()) {
     throw MismatchError(path + ": " + std::to_string(rest.rows()) + " vertices, expected " +

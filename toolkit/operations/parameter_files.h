@@ -11,7 +11,7 @@ namespace mimetra {
 
 /// Positions of `path` (a mesh file), checked against a sequence's vertex count. Throws IoError,
 /// MismatchError.
-Positions read_rest(const std::string& path, const MeshSequence& sequence);
+Positions read_rest(const std::string& path, const FrameSource& sequence);
 
 /// A motion of `frames` frames as align's manifest keeps it. Throws IoError, MismatchError.
 std::vector<RigidTransform> read_motion(const std::string& path, int frames);

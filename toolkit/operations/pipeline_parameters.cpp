@@ -41,7 +41,7 @@ void apply_anchor(const Parameters& parameters, VertexTransferOptions& options) 
       static_cast<VertexIndex>(std::get<std::int64_t>(parse_value(vertex, text)));
 }
 
-std::function<Positions(const std::string&)> rest_reader(const MeshSequence* sequence) {
+std::function<Positions(const std::string&)> rest_reader(const FrameSource* sequence) {
   return [sequence](const std::string& path) {
     return sequence ? read_rest(path, *sequence) : Positions();
   };
@@ -117,7 +117,7 @@ std::string in_command_terms(Topic topic, const std::string& text) {
 
 }  // namespace
 
-BoundParameters<SourceOptions> alignment_parameters(const MeshSequence* sequence) {
+BoundParameters<SourceOptions> alignment_parameters(const FrameSource* sequence) {
   using Motion = std::vector<RigidTransform>;
   BoundParameters<SourceOptions> list;
   list.add_word_or_file<HeadMotion, Motion>(
@@ -130,7 +130,7 @@ BoundParameters<SourceOptions> alignment_parameters(const MeshSequence* sequence
   return list;
 }
 
-BoundParameters<SourceOptions> source_rest_parameters(const MeshSequence* sequence) {
+BoundParameters<SourceOptions> source_rest_parameters(const FrameSource* sequence) {
   BoundParameters<SourceOptions> list;
   list.add_word_or_file<SourceRest, Positions>(
       "source-rest", SourceOptions::kRest,
@@ -154,7 +154,7 @@ BoundParameters<AnalysisOptions> count_parameters(const AnalysisOptions& default
   return list.add(&AnalysisOptions::decomposition, count);
 }
 
-BoundParameters<AnalysisOptions> analysis_parameters(const MeshSequence* sequence) {
+BoundParameters<AnalysisOptions> analysis_parameters(const FrameSource* sequence) {
   BoundParameters<AnalysisOptions> list;
   list.add_word_or_file<RestPose, Positions>(
           "rest", AnalysisOptions::kRest,
@@ -217,8 +217,8 @@ double analysis_bytes(const Invocation& invocation, const NamedData& source, int
   if (invocation.find<Components>("components")) return 0;
   const SourceOptions options =
       described(alignment_parameters().read(invocation.parameters), source);
-  const MeshSequence& sequence = std::get<FieldSequence>(source.data).sequence();
-  return alignment_bytes(sequence, options) + analysis_bytes(sequence, count);
+  const FrameSource& frames = *std::get<FieldSequence>(source.data).frames;
+  return alignment_bytes(frames, options) + analysis_bytes(frames, count);
 }
 
 Notes warnings_of(const Invocation& invocation) {

@@ -13,15 +13,15 @@ namespace mimetra {
 // `sequence`; without one they are not read, and what they hold is empty.
 
 /// --align.
-BoundParameters<SourceOptions> alignment_parameters(const MeshSequence* sequence = nullptr);
+BoundParameters<SourceOptions> alignment_parameters(const FrameSource* sequence = nullptr);
 /// --source-rest.
-BoundParameters<SourceOptions> source_rest_parameters(const MeshSequence* sequence = nullptr);
+BoundParameters<SourceOptions> source_rest_parameters(const FrameSource* sequence = nullptr);
 /// --geodesics and --weld.
 BoundParameters<DistanceOptions> distance_parameters();
 /// -k, by default as many as the decomposition of `defaults` has.
 BoundParameters<AnalysisOptions> count_parameters(const AnalysisOptions& defaults = {});
 /// All others of a decomposition, the distances' included.
-BoundParameters<AnalysisOptions> analysis_parameters(const MeshSequence* sequence = nullptr);
+BoundParameters<AnalysisOptions> analysis_parameters(const FrameSource* sequence = nullptr);
 /// --radius, --region and --coverage.
 BoundParameters<RegionChoiceOptions> region_parameters();
 /// --space and what belongs to each.

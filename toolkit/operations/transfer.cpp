@@ -16,7 +16,7 @@ namespace mimetra {
 
 namespace {
 
-BoundParameters<TransferOptions> transfer_parameters(const MeshSequence* sequence = nullptr) {
+BoundParameters<TransferOptions> transfer_parameters(const FrameSource* sequence = nullptr) {
   using Options = TransferOptions;
   BoundParameters<Options> list;
   return list.add("full", Options::kFull, "use all triangles instead of regions")
@@ -44,7 +44,7 @@ std::vector<Target> targets_of(const Invocation& invocation) {
 
 TransferOptions options_of(const Invocation& invocation) {
   const NamedData& source = invocation.input("source");
-  TransferOptions options = transfer_parameters(&std::get<FieldSequence>(source.data).sequence())
+  TransferOptions options = transfer_parameters(std::get<FieldSequence>(source.data).frames.get())
                                 .read(invocation.parameters);
   options.source = described(std::move(options.source), source);
   if (const RegionData* regions = invocation.find<RegionData>("regions")) {
@@ -64,7 +64,7 @@ NamedData weight_table(const NamedData& target, const Solution& solution) {
   const auto& names = model_of(target).expressions().names;
   table.columns.insert(table.columns.end(), names.begin(), names.end());
   for (int f = 0; f < solution.weights.rows(); ++f) {
-    table.rows.push_back({solution.sequence.times()[f]});
+    table.rows.push_back({solution.sequence->times()[f]});
     for (const double weight : solution.weights.row(f)) table.rows.back().push_back(weight);
   }
   return {target.name, std::move(table)};
@@ -129,7 +129,9 @@ void add_targets(Outcome& outcome, Json& report, const Invocation& invocation,
       outcome.outputs["weights-out"].push_back(weight_table(targets[t], solution));
     }
     outcome.outputs["out"].push_back(
-        {targets[t].name, FieldSequence(std::move(solution.sequence))});
+        {targets[t].name,
+         held_like(invocation.get<FieldSequence>("source"), std::move(solution.sequence),
+                   {.threads = invocation.threads})});
   }
   report["targets"] = reports;
 }
@@ -151,7 +153,8 @@ Outcome run_transfer(const Invocation& invocation) {
   const Stopwatch stopwatch;
   check_outputs(invocation);
   TransferResult result = in_command_terms(invocation.parameters, [&] {
-    return transfer(invocation.sequence("source"), targets_of(invocation), options_of(invocation));
+    return transfer(*invocation.get<FieldSequence>("source").frames, targets_of(invocation),
+                    options_of(invocation));
   });
   Outcome outcome;
   Json report = Json::object();
@@ -165,22 +168,31 @@ Outcome run_transfer(const Invocation& invocation) {
   return outcome;
 }
 
-/// Decomposition, then one target after the other, whose results are kept.
+/// True where the run looks for regions itself.
+bool looks_for_regions(const Invocation& invocation) {
+  return !invocation.parameters.flag("full") && !invocation.find<RegionData>("regions") &&
+         !invocation.find<Components>("components");
+}
+
+/// Decomposition, for which all frames are there, then one target after the other, whose results
+/// are kept.
 double memory_of_transfer(const Invocation& invocation) {
   const NamedData& source = invocation.input("source");
-  const MeshSequence& sequence = invocation.sequence("source");
+  const FieldSequence& held = invocation.get<FieldSequence>("source");
   TransferOptions options = transfer_parameters().read(invocation.parameters);
-  options.source = described(std::move(options.source), source);
   options.solving.threads = invocation.threads;
-  const bool looks_for_regions = !options.full && !invocation.find<RegionData>("regions");
+  const FrameSource& frames = *held.frames;
+  const bool decomposes = looks_for_regions(invocation);
+  const double loaded = decomposes && !held.is_in_memory() ? frame_bytes(frames) : 0;
   const double analysis =
-      looks_for_regions ? analysis_bytes(invocation, source, options.analysis.decomposition.count)
-                        : 0;
-  double solutions = alignment_bytes(sequence, options.source);
+      decomposes ? analysis_bytes(invocation, source, options.analysis.decomposition.count) : 0;
+  double solutions = decomposes ? 0 : stored_bytes(frames);
   for (const NamedData& target : invocation.inputs.at("target")) {
-    solutions += solution_bytes(sequence, model_of(target), options.solving);
+    solutions += solution_bytes(frames, model_of(target), options.solving);
+    // Results of a source in memory are there, too.
+    if (held.is_in_memory()) solutions += frame_bytes(frames);
   }
-  return std::max(analysis, solutions);
+  return loaded + std::max(analysis, solutions);
 }
 
 }  // namespace
@@ -196,6 +208,7 @@ Operation transfer_operation() {
       {"components", DataKind::components, "components (.h5) of an earlier decompose", true},
       {"regions", DataKind::regions, "region set: .json, .csv, .txt, or .vtp with the field roi",
        true}};
+  operation.inputs.front().streamed = true;
   operation.outputs = {
       {"out", DataKind::sequence,
        sequence_outputs() + "; with several targets one each, named after it", false, true},
@@ -209,6 +222,9 @@ Operation transfer_operation() {
       "transfer take.npy actor@identity007=2 double/ --full -o results/"};
   operation.run = run_transfer;
   operation.memory = memory_of_transfer;
+  operation.all_frames_for = [](const Invocation& invocation) {
+    return looks_for_regions(invocation) ? "the decomposition" : "";
+  };
   return operation;
 }
 

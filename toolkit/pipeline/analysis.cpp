@@ -32,10 +32,10 @@ MeshSequence with_rest_of(const MeshSequence& sequence,
 }
 
 /// Longest side that any single frame's bounding box has: the reference's unit of length.
-double largest_frame_extent(const MeshSequence& sequence) {
+double largest_frame_extent(const FrameSource& sequence) {
   double largest = 0;
   for (int f = 0; f < sequence.frames(); ++f) {
-    largest = std::max(largest, extent(sequence.frame(f)));
+    largest = std::max(largest, extent(FrameBlock(sequence, f, 1).frame(0)));
   }
   return largest;
 }
@@ -94,7 +94,8 @@ SupportRange support_range(const Length& d_min, const Length& d_max, double long
 Analysis analyse(const Source& source, const AnalysisOptions& options) {
   const Stopwatch stopwatch;
   check_options(options);
-  const MeshSequence work = with_rest_of(source.sequence, options.rest);
+  const MeshSequence work =
+      with_rest_of(MeshSequence(*source.sequence, {.threads = options.threads}), options.rest);
   DecompositionOptions decomposition = options.decomposition;
   if (decomposition.count > work.vertices()) {
     throw OptionError(Topic::component_count, std::to_string(decomposition.count) +
@@ -105,7 +106,7 @@ Analysis analyse(const Source& source, const AnalysisOptions& options) {
   SurfaceDistances distances =
       distances_along(work.rest(), work.triangles(), distance_options(options));
   const bool reference = options.compatibility == Compatibility::splocs2013;
-  const double unit = reference ? largest_frame_extent(source.given) : work.extent();
+  const double unit = reference ? largest_frame_extent(*source.given) : work.extent();
   const SupportRange range = support_range(options.d_min, options.d_max, unit);
   decomposition.d_min = range.d_min;
   decomposition.d_max = range.d_max;
@@ -120,7 +121,7 @@ Analysis analyse(const Source& source, const AnalysisOptions& options) {
   return {std::move(components), std::move(distances), stopwatch.seconds()};
 }
 
-Analysis analysis_of(const GivenComponents& given, const MeshSequence& sequence,
+Analysis analysis_of(const GivenComponents& given, const FrameSource& sequence,
                      const AnalysisOptions& options) {
   const Components& components = given.components;
   if (components.weights.size() == 0) {

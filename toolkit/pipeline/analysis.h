@@ -116,8 +116,9 @@ struct Analysis {
   double seconds = 0;
 };
 
-/// Decomposes a source. Notes vertices that are welded at rest and part later. Throws OptionError
-/// (Topic::component_count, Topic::support_range) and what decompose() throws.
+/// Decomposes a source, all frames of which are in memory meanwhile. Notes vertices that are welded
+/// at rest and part later. Throws OptionError (Topic::component_count, Topic::support_range) and
+/// what decompose() throws.
 Analysis analyse(const Source& source, const AnalysisOptions& options = {});
 
 /// Components of an earlier run.
@@ -130,7 +131,7 @@ struct GivenComponents {
 /// The same for components that are known already: of the options only the distances count. Throws
 /// MismatchError where they hold no weights, are of another mesh than the sequence, or all of them
 /// died.
-Analysis analysis_of(const GivenComponents& given, const MeshSequence& sequence,
+Analysis analysis_of(const GivenComponents& given, const FrameSource& sequence,
                      const AnalysisOptions& options = {});
 
 }  // namespace mimetra

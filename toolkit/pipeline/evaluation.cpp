@@ -23,7 +23,8 @@ std::optional<double> percentage_error(double full, double k, double size) {
 EvaluatedTransfer solved(const Source& source, const Target& target, const Selection& selection,
                          const SolveOptions& options) {
   EvaluatedTransfer result{{}, solve(source, target, selection, options), {}};
-  result.error = transfer_error(source.sequence, result.solution.sequence, selection.triangles);
+  result.error = transfer_error(*source.sequence, *result.solution.sequence, selection.triangles,
+                                {.threads = options.threads});
   result.row.triangles = static_cast<int>(selection.triangles.size());
   result.row.de_all = result.error.de_all;
   result.row.de_region = result.error.de_region;
@@ -38,8 +39,8 @@ constexpr double kAnalysisShare = 0.7;
 
 EvaluatedTransfer evaluate_full(const Source& source, const Target& target,
                                 const SolveOptions& options) {
-  EvaluatedTransfer result = solved(source, target, whole(source.sequence), options);
-  result.row.vertices = source.sequence.vertices();
+  EvaluatedTransfer result = solved(source, target, whole(*source.sequence), options);
+  result.row.vertices = source.sequence->vertices();
   result.row.de_region = result.row.de_all;
   return result;
 }
@@ -52,7 +53,7 @@ EvaluatedTransfer evaluate_by(const Regions& regions, const EvaluatedTransfer& f
   row.vertices = regions.vertex_count();
   row.vertex_share = regions.vertex_share();
   row.triangle_share = regions.triangle_share();
-  const double size = result.solution.sequence.extent();
+  const double size = result.solution.sequence->extent();
   row.mpe_all = percentage_error(full.error.de_all, row.de_all, size);
   row.mpe_region =
       percentage_error(mean_over(full.error.per_triangle, regions.triangles), row.de_region, size);
@@ -64,6 +65,7 @@ std::vector<EvaluationRow> evaluate(const MeshSequence& sequence, const Target& 
   check_options(options);
   SourceOptions of_source = options.source;
   of_source.notes = options.notes;
+  of_source.threads = options.threads;
   AnalysisOptions of_analysis = options.analysis;
   of_analysis.threads = options.threads;
   of_analysis.notes = options.notes;
@@ -74,7 +76,7 @@ std::vector<EvaluationRow> evaluate(const MeshSequence& sequence, const Target& 
   of_solving.notes = options.notes;
 
   const Source source = prepare_source(sequence, of_source);
-  check_target(source.sequence, target);
+  check_target(*source.sequence, target);
   const double steps = static_cast<double>(options.counts.size()) + 1;
   of_solving.progress = part_of(options.progress, 0, 1 / steps);
   const EvaluatedTransfer full = evaluate_full(source, target, of_solving);

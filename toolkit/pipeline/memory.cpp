@@ -2,6 +2,8 @@
 
 #include <thread>
 
+#include "toolkit/mesh/frame_store.h"
+
 namespace mimetra {
 
 namespace {
@@ -12,43 +14,54 @@ constexpr double kNumber = sizeof(double);
 /// vertices, where fill-in grows little.
 constexpr double kFactorsPerVertex = 2000;
 
-/// A transfer's constant vectors, and for each thread three rows of sixteen frames a vertex.
+/// A transfer's constant vectors, and for each thread sixteen frames: read, gathered, their sums,
+/// what the sums are solved for, and the result.
 constexpr double kPullPerTriangle = 72;
-constexpr double kLanesPerVertex = 3 * 3 * 16 * kNumber;
+constexpr double kLanesPerVertex = 5 * 3 * 16 * kNumber;
 
 /// Components have so many different centres on their way that their distances are kept.
 constexpr double kCentersPerComponent = 4;
 
-double numbers_of(const MeshSequence& sequence) {
-  return static_cast<double>(sequence.positions().size());
+/// What a FrameStore has in memory: more frames are in its file.
+double kept_bytes(double all) {
+  return all > static_cast<double>(FrameStore::kMemoryBytes) ? 0 : all;
 }
 
 }  // namespace
 
-double alignment_bytes(const MeshSequence& sequence, const SourceOptions& options) {
-  return takes_out_motion(sequence, options) ? kNumber * numbers_of(sequence) : 0;
+double frame_bytes(const FrameSource& sequence) {
+  return kNumber * 3 * sequence.frames() * sequence.vertices();
 }
 
-double analysis_bytes(const MeshSequence& sequence, int count) {
+double stored_bytes(const FrameSource& sequence) {
+  return sequence.is_quick() ? 0 : kept_bytes(frame_bytes(sequence));
+}
+
+double alignment_bytes(const FrameSource& sequence, const SourceOptions& options) {
+  return takes_out_motion(sequence, options) ? frame_bytes(sequence) : 0;
+}
+
+double analysis_bytes(const FrameSource& sequence, int count) {
   const double vertices = sequence.vertices();
-  const double displacements = numbers_of(sequence);
   const double components = 2 * count * 3 * vertices;  // C and the dual variable
   const double maps = (1 + kCentersPerComponent) * count * vertices;
-  return kFactorsPerVertex * vertices + kNumber * (displacements + components + maps);
+  // The displacements are as many numbers as the frames.
+  return kFactorsPerVertex * vertices + frame_bytes(sequence) + kNumber * (components + maps);
 }
 
-double solution_bytes(const MeshSequence& sequence, const BlendshapeModel& target,
+double solution_bytes(const FrameSource& sequence, const BlendshapeModel& target,
                       const SolveOptions& options) {
-  const double result = kNumber * numbers_of(sequence);
   const auto expressions = static_cast<double>(target.expressions().size());
   const double vertices = target.vertices(),
                triangles = static_cast<double>(target.triangles().rows());
-  const double set_up = solves_for_vertices(target, options.space)
-                            ? kFactorsPerVertex * vertices
-                            : kNumber * expressions * 3 * vertices;
+  // The displacement fields at the vertices that are looked at, those of the result, and its
+  // weights; or factors, and the poses of a short result.
+  const double space = solves_for_vertices(target, options.space)
+                           ? kFactorsPerVertex * vertices + kept_bytes(frame_bytes(sequence))
+                           : kNumber * expressions * (6 * vertices + 2 * sequence.frames());
   const double threads =
       options.threads > 0 ? options.threads : std::thread::hardware_concurrency();
-  return result + set_up + kPullPerTriangle * triangles + threads * kLanesPerVertex * vertices;
+  return space + kPullPerTriangle * triangles + threads * kLanesPerVertex * vertices;
 }
 
 }  // namespace mimetra

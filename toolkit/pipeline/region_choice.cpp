@@ -12,7 +12,7 @@ Regions choose_regions(const Analysis& analysis, const RegionChoiceOptions& opti
   return regions;
 }
 
-void check_regions(const GivenRegions& given, const MeshSequence& sequence) {
+void check_regions(const GivenRegions& given, const FrameSource& sequence) {
   const Regions& regions = given.regions;
   const auto triangles = static_cast<int>(sequence.triangles().rows());
   if (regions.vertices != sequence.vertices() || regions.all_triangles != triangles) {
@@ -31,7 +31,7 @@ Selection selection_of(const Regions& regions) {
   return {regions.triangles, regions.inside};
 }
 
-Selection whole(const MeshSequence& sequence) {
+Selection whole(const FrameSource& sequence) {
   return {all_triangles(sequence.triangles()), {}};
 }
 

@@ -31,7 +31,7 @@ struct GivenRegions {
 };
 
 /// Throws MismatchError where they are of another mesh than the sequence, or hold no triangle.
-void check_regions(const GivenRegions& given, const MeshSequence& sequence);
+void check_regions(const GivenRegions& given, const FrameSource& sequence);
 
 /// What a transfer looks at.
 struct Selection {
@@ -41,6 +41,6 @@ struct Selection {
 
 Selection selection_of(const Regions& regions);
 /// All triangles.
-Selection whole(const MeshSequence& sequence);
+Selection whole(const FrameSource& sequence);
 
 }  // namespace mimetra

@@ -1,7 +1,9 @@
 #include "toolkit/pipeline/solution.h"
 
+#include "toolkit/mesh/frame_store.h"
 #include "toolkit/mesh/stopwatch.h"
 #include "toolkit/mesh/text.h"
+#include "toolkit/model/animation.h"
 
 namespace mimetra {
 
@@ -59,10 +61,12 @@ Solution solve_blendshapes(const Source& source, const Target& target, const Sel
   BlendshapeTransferOptions of_space = options.blendshape;
   of_space.threads = options.threads;
   of_space.progress = options.progress;
-  const BlendshapeTransfer transfer(source.sequence.rest(), model, selection.triangles, of_space);
+  const FrameSource& performance = *source.sequence;
+  const BlendshapeTransfer transfer(performance.rest(), model, selection.triangles, of_space);
   Solution solution;
-  solution.weights = transfer.weights(source.sequence);
-  solution.sequence = model.animate(solution.weights, source.sequence.times());
+  solution.weights = transfer.weights(performance);
+  solution.sequence = std::make_shared<const Animation>(
+      std::make_shared<const BlendshapeModel>(model), solution.weights, performance.times());
   solution.seconds = stopwatch.seconds();
   solution.conditions = transfer.conditions();
   solution.degenerate_source_triangles = solution.conditions.degenerate_source_triangles;
@@ -70,7 +74,7 @@ Solution solve_blendshapes(const Source& source, const Target& target, const Sel
   const TargetNotes notes(target, options);
   notes.add(solution.conditions);
   notes.add_degenerate(solution);
-  if (transfer.rest_looks_unneutral(source.sequence, solution.weights)) {
+  if (transfer.rest_looks_unneutral(performance, solution.weights)) {
     notes.add(
         "many expressions want to be negative, so the source's rest pose is likely not its "
         "neutral",
@@ -102,11 +106,15 @@ Solution solve_vertices(const Source& source, const Target& target, const Select
   of_space.threads = options.threads;
   of_space.progress = options.progress;
   check_anchor(of_space, model, selection);
-  const VertexTransfer transfer(source.sequence.rest(), model.neutral(), model.triangles(),
+  const FrameSource& performance = *source.sequence;
+  const VertexTransfer transfer(performance.rest(), model.neutral(), model.triangles(),
                                 selection.triangles, of_space);
+  const auto store = std::make_shared<FrameStore>(
+      SequenceHeader{model.shared_connectivity(), performance.times(), model.neutral(), true});
+  transfer.write_frames(performance, *store);
+  store->commit();
   Solution solution;
-  solution.sequence = MeshSequence(model.shared_connectivity(), transfer.frames(source.sequence),
-                                   source.sequence.times(), model.neutral());
+  solution.sequence = store;
   solution.seconds = stopwatch.seconds();
   solution.degenerate_source_triangles = transfer.degenerate_source_triangles();
   solution.degenerate_target_triangles = transfer.degenerate_target_triangles();
@@ -120,7 +128,7 @@ bool solves_for_vertices(const BlendshapeModel& target, Space space) {
   return space == Space::vertex || target.expressions().size() == 0;
 }
 
-void check_target(const MeshSequence& source, const Target& target) {
+void check_target(const FrameSource& source, const Target& target) {
   const BlendshapeModel& model = target.model;
   if (model.vertices() != source.vertices()) {
     throw MismatchError(target.name + ": " + std::to_string(model.vertices()) +

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <string>
 #include <string_view>
 
@@ -54,19 +55,21 @@ struct SolveOptions {
 
 /// A target's poses that follow a source.
 struct Solution {
-  MeshSequence sequence;    ///< of solve(): without head motion, the rest pose is the neutral
+  /// Of solve(): without head motion, the rest pose is the neutral. Its frames are computed when
+  /// they are read, or stored; it does not need the source or the target any more.
+  std::shared_ptr<const FrameSource> sequence;
   Eigen::MatrixXd weights;  ///< beta, F x D; empty in vertex space
   BlendshapeConditions conditions;
   int degenerate_source_triangles = 0;
   int degenerate_target_triangles = 0;
-  double seconds = 0;  ///< set-up and all frames
+  double seconds = 0;  ///< set-up and the solve of all frames
 };
 
 /// True for the vertex space, and where a target has no expressions to solve for.
 bool solves_for_vertices(const BlendshapeModel& target, Space space);
 
 /// Throws MismatchError unless the target has the source's vertices and faces.
-void check_target(const MeshSequence& source, const Target& target);
+void check_target(const FrameSource& source, const Target& target);
 
 /// Solves on the selected triangles in blendshape or vertex space. Notes, under the target's name,
 /// expressions that the triangles do not or hardly show (Topic::poor_condition where they do not
@@ -74,7 +77,7 @@ void check_target(const MeshSequence& source, const Target& target);
 /// (Topic::unneutral_rest). \pre check_target()
 ///
 /// Throws OptionError (Topic::no_expressions, Topic::anchor_vertex, Topic::held_anchor) and what
-/// BlendshapeTransfer and VertexTransfer throw.
+/// BlendshapeTransfer, VertexTransfer, reading the source and FrameStore throw.
 Solution solve(const Source& source, const Target& target, const Selection& selection,
                const SolveOptions& options = {});
 

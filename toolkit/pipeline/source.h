@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -55,6 +56,9 @@ struct SourceOptions {
   std::optional<std::variant<HeadMotion, std::vector<RigidTransform>>> head_motion = {};
   /// A model drives it: it has no head motion of its own.
   bool model_driven = false;
+  /// 0 for all there are; the result does not depend on it.
+  int threads = 0;
+  Progress progress = {};
   Notes notes = {};
 
   static constexpr Option kRest{"rest", &SourceOptions::rest};
@@ -63,26 +67,34 @@ struct SourceOptions {
 
 /// A sequence whose deformation is looked at.
 struct Source {
-  MeshSequence given;     ///< as it came
-  MeshSequence sequence;  ///< without its head motion; the rest pose is the one that was asked for
-  std::vector<RigidTransform> motion;  ///< of the head (F); empty where none was looked for
+  /// As it came; stored() where reading it again is slow.
+  std::shared_ptr<const FrameSource> given;
+  /// Without its head motion; the rest pose is the one that was asked for.
+  std::shared_ptr<const FrameSource> sequence;
+  /// Of the head (F); empty where none was looked for.
+  std::vector<RigidTransform> motion;
 };
 
 /// True where these options take a head motion out of the sequence.
-bool takes_out_motion(const MeshSequence& sequence, const SourceOptions& options);
+bool takes_out_motion(const FrameSource& sequence, const SourceOptions& options);
 
 /// The sequence without its head motion, its rest pose as it is: `options.rest` is for transfers.
-/// Throws MismatchError where a given motion has another number of frames, Cancelled.
+/// Throws MismatchError where a given motion has another number of frames, what reading throws,
+/// OutputError where frames cannot be stored(), Cancelled.
+Source without_head_motion(std::shared_ptr<const FrameSource> sequence,
+                           const SourceOptions& options = {});
 Source without_head_motion(const MeshSequence& sequence, const SourceOptions& options = {});
 
 /// The source of a transfer: also its rest pose is the one that was asked for. Throws OptionError
 /// (Topic::unknown_neutral) where the neutral is asked for and not known, std::invalid_argument for
 /// a rest pose of another number of vertices.
+Source prepare_source(std::shared_ptr<const FrameSource> sequence,
+                      const SourceOptions& options = {});
 Source prepare_source(const MeshSequence& sequence, const SourceOptions& options = {});
 
 /// A result with the head motion (F) given back to its frames. Its neutral, which has none, is not
 /// its rest pose any more. Throws MismatchError.
-MeshSequence with_head_motion(const MeshSequence& result,
-                              const std::vector<RigidTransform>& motion);
+std::shared_ptr<const FrameSource> with_head_motion(std::shared_ptr<const FrameSource> result,
+                                                    std::vector<RigidTransform> motion);
 
 }  // namespace mimetra

@@ -6,8 +6,11 @@ namespace mimetra {
 
 namespace {
 
-/// The part of the work until there are regions, as progress shows it.
+/// Parts of the work as progress shows them: until head motion is known, and until there are
+/// regions; of each target, until it is solved.
+constexpr double kSourceShare = 0.1;
 constexpr double kRegionShare = 0.4;
+constexpr double kSolveShare = 0.7;
 
 struct Choice {
   Selection selection;
@@ -20,17 +23,17 @@ Analysis analysis_for(const Source& source, const TransferOptions& options) {
   AnalysisOptions of_analysis = options.analysis;
   of_analysis.threads = options.threads;
   of_analysis.notes = options.notes;
-  of_analysis.progress = part_of(options.progress, 0, kRegionShare);
+  of_analysis.progress = part_of(options.progress, kSourceShare, kRegionShare);
   if (const auto* given = std::get_if<GivenComponents>(&options.given)) {
-    return analysis_of(*given, source.sequence, of_analysis);
+    return analysis_of(*given, *source.sequence, of_analysis);
   }
   return analyse(source, of_analysis);
 }
 
 Choice choose(const Source& source, const TransferOptions& options) {
-  if (options.full) return {whole(source.sequence)};
+  if (options.full) return {whole(*source.sequence)};
   if (const auto* given = std::get_if<GivenRegions>(&options.given)) {
-    check_regions(*given, source.sequence);
+    check_regions(*given, *source.sequence);
     return {selection_of(given->regions), given->regions};
   }
   const Stopwatch stopwatch;
@@ -43,15 +46,32 @@ Choice choose(const Source& source, const TransferOptions& options) {
           stopwatch.seconds()};
 }
 
+Source source_of(const FrameSource& sequence, const TransferOptions& options) {
+  // Nothing that is returned keeps it.
+  std::shared_ptr<const FrameSource> given(std::shared_ptr<const FrameSource>(), &sequence);
+  SourceOptions of_source = options.source;
+  of_source.threads = options.threads;
+  of_source.notes = options.notes;
+  of_source.progress = part_of(options.progress, 0, kSourceShare);
+  if (decomposes(options)) {
+    const BlockOptions reading{options.threads, part_of(of_source.progress, 0, 0.5)};
+    of_source.progress = part_of(of_source.progress, 0.5, 1);
+    given = std::make_shared<const MeshSequence>(sequence, reading);
+  }
+  return prepare_source(std::move(given), of_source);
+}
+
 }  // namespace
 
-TransferResult transfer(const MeshSequence& sequence, const std::vector<Target>& targets,
+bool decomposes(const TransferOptions& options) {
+  return !options.full && std::holds_alternative<std::monostate>(options.given);
+}
+
+TransferResult transfer(const FrameSource& sequence, const std::vector<Target>& targets,
                         const TransferOptions& options) {
   check_options(options);
-  SourceOptions of_source = options.source;
-  of_source.notes = options.notes;
-  const Source source = prepare_source(sequence, of_source);
-  for (const Target& target : targets) check_target(source.sequence, target);
+  for (const Target& target : targets) check_target(sequence, target);
+  const Source source = source_of(sequence, options);
   Choice choice = choose(source, options);
   const bool give_back = !source.motion.empty() && options.head_motion == RemovedMotion::keep;
 
@@ -59,15 +79,17 @@ TransferResult transfer(const MeshSequence& sequence, const std::vector<Target>&
   SolveOptions of_solving = options.solving;
   of_solving.threads = options.threads;
   of_solving.notes = options.notes;
-  const double first = choice.regions ? kRegionShare : 0;
+  const double first = choice.regions ? kRegionShare : kSourceShare;
   const auto count = static_cast<double>(targets.size());
   for (std::size_t t = 0; t < targets.size(); ++t) {
-    of_solving.progress =
+    const Progress progress =
         part_of(options.progress, first + (1 - first) * static_cast<double>(t) / count,
                 first + (1 - first) * static_cast<double>(t + 1) / count);
+    of_solving.progress = part_of(progress, 0, kSolveShare);
     Solution solution = solve(source, targets[t], choice.selection, of_solving);
     TransferError error =
-        transfer_error(source.sequence, solution.sequence, choice.selection.triangles);
+        transfer_error(*source.sequence, *solution.sequence, choice.selection.triangles,
+                       {.threads = options.threads, .progress = part_of(progress, kSolveShare, 1)});
     if (give_back) solution.sequence = with_head_motion(solution.sequence, source.motion);
     result.targets.push_back({std::move(solution), std::move(error)});
   }

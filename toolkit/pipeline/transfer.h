@@ -64,14 +64,18 @@ struct TransferResult {
   double region_seconds = 0;               ///< decomposition and choice of regions
 };
 
+/// True where regions are looked for: then all frames are in memory.
+bool decomposes(const TransferOptions& options);
+
 /// The main job: transfers the deformation of a sequence to each of some targets. The rest pose and
 /// the head motion of the source are settled, its regions found, and the target's poses solved for
-/// on their triangles. What depends on the source only is done once.
+/// on their triangles. What depends on the source only is done once. Unless it decomposes(), it
+/// reads the source in blocks, several times, and holds no more of it; the result does not need it.
 ///
 /// Throws what prepare_source(), check_target(), analyse(), analysis_of(), check_regions(),
 /// choose_regions() and solve() throw; Cancelled. A target that does not fit is refused before
 /// anything is computed.
-TransferResult transfer(const MeshSequence& source, const std::vector<Target>& targets,
+TransferResult transfer(const FrameSource& source, const std::vector<Target>& targets,
                         const TransferOptions& options = {});
 
 }  // namespace mimetra

@@ -123,7 +123,7 @@ double memory(const Invocation& invocation) {
   if (!call.inputs.contains("target")) return analysis;
   SolveOptions options = solving_parameters().read(call.parameters);
   options.threads = call.threads;
-  return analysis +
+  return analysis + 3 * frame_bytes(sequence) +
          3 * solution_bytes(sequence, call.get<ModelData>("target").model.average(), options);
 }
 

@@ -229,7 +229,7 @@ ViewerScene scene_of(const ReportStudy& study, const ReportView& view) {
   ViewerScene scene;
   scene.meshes.push_back({"source", study.source, study.sequence});
   if (study.transfer) {
-    scene.meshes.push_back({"target", study.transfer->target, study.transfer->by_regions.sequence});
+    scene.meshes.push_back({"target", study.transfer->target, study.transfer->by_regions});
   }
   const Field region = fields_of(study.regions).front();
   for (const double index : region.values.col(0)) {

@@ -89,10 +89,10 @@ Sheet report_strip(const ReportStudy& study, const ReportView& view, int columns
   };
   if (study.transfer) {
     const ReportedTransfer& transfer = *study.transfer;
-    add(transfer.full.sequence, StripColor::none, "target by all triangles: " + transfer.target);
-    add(transfer.by_regions.sequence, StripColor::none, "target by these regions only");
+    add(transfer.full, StripColor::none, "target by all triangles: " + transfer.target);
+    add(transfer.by_regions, StripColor::none, "target by these regions only");
     // The row above it is the one by regions.
-    add(transfer.full.sequence, StripColor::difference, "distance between the two");
+    add(transfer.full, StripColor::difference, "distance between the two");
   } else {
     add(study.sequence, StripColor::displacement, "distance from the rest pose");
   }
@@ -135,7 +135,7 @@ std::vector<Chart> weight_charts(const ReportStudy& study) {
                                   study.components->weights, columns, names));
   }
   if (study.transfer && !study.transfer->expressions.empty()) {
-    const Eigen::MatrixXd& weights = study.transfer->by_regions.weights;
+    const Eigen::MatrixXd& weights = study.transfer->weights;
     const std::vector<int> columns = strongest_columns(weights);
     std::vector<std::string> names;
     for (const int column : columns) {

@@ -143,7 +143,7 @@ EvaluationRow completed(EvaluationRow row, const RunSteps::Found& found) {
 }
 
 /// 1 where two meshes may well have one unit of length, otherwise what makes their sizes equal.
-double shown_scale(const MeshSequence& source, const MeshSequence& target) {
+double shown_scale(const FrameSource& source, const FrameSource& target) {
   constexpr double kOneUnit = 3;
   const double ratio = source.extent() / target.extent();
   return ratio > kOneUnit || ratio < 1 / kOneUnit ? ratio : 1;
@@ -195,11 +195,12 @@ ReportedTransfer transferred(const RunSteps& steps, const NamedData& target,
   transfer.main_row = static_cast<std::size_t>(
       std::ranges::find(transfer.rows, main_row.k, &EvaluationRow::k) - transfer.rows.begin());
   transfer.rows.push_back(full.row);
-  transfer.full = std::move(full.solution);
-  transfer.by_regions = std::move(by_regions.solution);
-  transfer.shown_scale = shown_scale(steps.source().sequence, transfer.by_regions.sequence);
-  enlarge(transfer.full.sequence, transfer.shown_scale);
-  enlarge(transfer.by_regions.sequence, transfer.shown_scale);
+  transfer.full = MeshSequence(*full.solution.sequence);
+  transfer.by_regions = MeshSequence(*by_regions.solution.sequence);
+  transfer.weights = std::move(by_regions.solution.weights);
+  transfer.shown_scale = shown_scale(*steps.source().sequence, transfer.by_regions);
+  enlarge(transfer.full, transfer.shown_scale);
+  enlarge(transfer.by_regions, transfer.shown_scale);
   return transfer;
 }
 
@@ -232,7 +233,7 @@ ReportStudy study(const NamedData& run, const std::vector<int>& counts, const Pr
   result.source = short_name(call.input("source").name);
   const RunSteps steps(call);
   result.moved_head = !steps.source().motion.empty();
-  result.sequence = steps.source().sequence;
+  result.sequence = MeshSequence(*steps.source().sequence);
   const NamedData* target = call.inputs.contains("target") ? &target_of(call, run, log) : nullptr;
   if (target) {
     check_target(result.sequence,

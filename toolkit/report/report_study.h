@@ -14,12 +14,13 @@ namespace mimetra {
 struct ReportedTransfer {
   std::string target;
   std::vector<std::string> expressions;  ///< of the target, for a solution of weights
-  Solution full;
-  Solution by_regions;
+  MeshSequence full;
+  MeshSequence by_regions;
+  Eigen::MatrixXd weights;          ///< of the one by regions, F x D; empty in vertex space
   std::vector<EvaluationRow> rows;  ///< ascending in K, all triangles last
   std::size_t main_row = 0;         ///< the run's own
   /// How many times larger than it is the target is shown: 1, unless its unit of length seems to be
-  /// another than the source's. The solutions' sequences are enlarged.
+  /// another than the source's. Both sequences are enlarged.
   double shown_scale = 1;
 };
 

@@ -116,8 +116,8 @@ struct BlendshapeTransfer::State {
 
   void judge(const BlendshapeModel& target);
   void set_up(const BlendshapeTransferOptions& given);
-  void check_size(const MeshSequence& performance) const;
-  void smooth(const MeshSequence& performance, const Eigen::MatrixXd& h,
+  void check_size(const FrameSource& performance) const;
+  void smooth(const FrameSource& performance, const Eigen::MatrixXd& h,
               Eigen::MatrixXd& beta) const;
 
   DeformationGradients gradients;
@@ -167,14 +167,14 @@ void BlendshapeTransfer::State::set_up(const BlendshapeTransferOptions& given) {
   system.diagonal().array() += options.ridge * mean_diagonal;
 }
 
-void BlendshapeTransfer::State::check_size(const MeshSequence& performance) const {
+void BlendshapeTransfer::State::check_size(const FrameSource& performance) const {
   if (performance.vertices() == vertices) return;
   throw MismatchError("the performance has " + std::to_string(performance.vertices()) +
                       " vertices, its rest pose " + std::to_string(vertices));
 }
 
 /// Replaces the weights of the single frames by those that are smooth over time.
-void BlendshapeTransfer::State::smooth(const MeshSequence& performance, const Eigen::MatrixXd& h,
+void BlendshapeTransfer::State::smooth(const FrameSource& performance, const Eigen::MatrixXd& h,
                                        Eigen::MatrixXd& beta) const {
   const double mu = smoothness_penalty(options.smoothness, performance.times(), mean_diagonal);
   const Eigen::MatrixXd seen_gram = system(seen, seen);
@@ -196,28 +196,31 @@ BlendshapeTransfer::~BlendshapeTransfer() = default;
 BlendshapeTransfer::BlendshapeTransfer(BlendshapeTransfer&&) noexcept = default;
 BlendshapeTransfer& BlendshapeTransfer::operator=(BlendshapeTransfer&&) noexcept = default;
 
-Eigen::MatrixXd BlendshapeTransfer::weights(const MeshSequence& performance) const {
+Eigen::MatrixXd BlendshapeTransfer::weights(const FrameSource& performance) const {
   const State& state = *state_;
   state.check_size(performance);
   fix_product_blocking();
   const Eigen::VectorXd lower = Eigen::VectorXd::Zero(state.upper.size());
   const double penalty = state.options.sparsity * state.mean_diagonal;
   const int frames = performance.frames();
-  Eigen::MatrixXd beta(frames, lower.size()), h(frames, lower.size());
-  const auto solve_block = [&](int block) {
-    const int first = block * kFramesPerBlock;
+  const bool smooths = state.options.smoothness > 0;
+  Eigen::MatrixXd beta(frames, lower.size()), h(smooths ? frames : 0, lower.size());
+  const auto solve_block = [&](int number) {
+    const int first = number * kFramesPerBlock;
     const int count = std::min(kFramesPerBlock, frames - first);
-    h.middleRows(first, count) =
-        state.right_hand_side(performance.positions().middleRows(first, count)).array() - penalty;
+    const FrameBlock block(performance, first, count);
+    const Eigen::MatrixXd of_block = state.right_hand_side(block.poses()).array() - penalty;
+    if (smooths) h.middleRows(first, count) = of_block;
     Eigen::VectorXd current = lower;
-    for (int f = first; f < first + count; ++f) {
-      current = box_least_squares(state.system, h.row(f).transpose(), lower, state.upper, current);
-      beta.row(f) = current.transpose();
+    for (int row = 0; row < count; ++row) {
+      current = box_least_squares(state.system, of_block.row(row).transpose(), lower, state.upper,
+                                  current);
+      beta.row(first + row) = current.transpose();
     }
   };
   const int blocks = (frames + kFramesPerBlock - 1) / kFramesPerBlock;
   parallel_for(blocks, state.options.threads, solve_block, state.options.progress);
-  if (state.options.smoothness > 0) state.smooth(performance, h, beta);
+  if (smooths) state.smooth(performance, h, beta);
   return beta;
 }
 
@@ -241,7 +244,7 @@ const BlendshapeConditions& BlendshapeTransfer::conditions() const {
   return state_->conditions;
 }
 
-bool BlendshapeTransfer::rest_looks_unneutral(const MeshSequence& performance,
+bool BlendshapeTransfer::rest_looks_unneutral(const FrameSource& performance,
                                               const Eigen::MatrixXd& weights) const {
   const State& state = *state_;
   state.check_size(performance);
@@ -252,14 +255,14 @@ bool BlendshapeTransfer::rest_looks_unneutral(const MeshSequence& performance,
   const Eigen::VectorXd diagonal = state.gram.diagonal();
   const int blocks = (performance.frames() + kFramesPerBlock - 1) / kFramesPerBlock;
   std::vector<Eigen::Index> below(blocks, 0);
-  parallel_for(blocks, state.options.threads, [&](int block) {
-    const int first = block * kFramesPerBlock;
+  parallel_for(blocks, state.options.threads, [&](int number) {
+    const int first = number * kFramesPerBlock;
     const int count = std::min(kFramesPerBlock, performance.frames() - first);
     const auto beta = weights.middleRows(first, count);
-    const Eigen::MatrixXd pull =
-        state.right_hand_side(performance.positions().middleRows(first, count)) - beta * state.gram;
+    const FrameBlock block(performance, first, count);
+    const Eigen::MatrixXd pull = state.right_hand_side(block.poses()) - beta * state.gram;
     for (const Eigen::Index j : state.seen) {
-      below[block] +=
+      below[number] +=
           (beta.col(j).array() == 0 && pull.col(j).array() < kWantedStep * diagonal[j]).count();
     }
   });

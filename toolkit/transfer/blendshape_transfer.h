@@ -63,8 +63,9 @@ class BlendshapeTransfer {
   BlendshapeTransfer(BlendshapeTransfer&&) noexcept;
   BlendshapeTransfer& operator=(BlendshapeTransfer&&) noexcept;
 
-  /// beta for every frame (F x D), each within [0, 1]. Throws MismatchError, Cancelled.
-  Eigen::MatrixXd weights(const MeshSequence& performance) const;
+  /// beta for every frame (F x D), each within [0, 1]. Throws MismatchError, Cancelled, and what
+  /// reading throws, as does rest_looks_unneutral().
+  Eigen::MatrixXd weights(const FrameSource& performance) const;
 
   /// A^T A of eq. 11 over L (D x D).
   const Eigen::MatrixXd& gram() const;
@@ -74,7 +75,7 @@ class BlendshapeTransfer {
 
   /// True where many weights sit at 0 with a multiplier that wants them negative: the source's rest
   /// pose is likely not neutral. `weights` as returned for `performance`.
-  bool rest_looks_unneutral(const MeshSequence& performance, const Eigen::MatrixXd& weights) const;
+  bool rest_looks_unneutral(const FrameSource& performance, const Eigen::MatrixXd& weights) const;
 
  private:
   struct State;

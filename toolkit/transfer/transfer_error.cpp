@@ -62,11 +62,10 @@ class WantedChange {
   std::vector<Edges> factors_;
 };
 
-void check(const MeshSequence& source, const MeshSequence& result,
-           const std::vector<int>& selected) {
+void check(const FrameSource& source, const FrameSource& result, const std::vector<int>& selected) {
   if (source.frames() != result.frames() || source.vertices() != result.vertices() ||
       source.triangles().rows() != result.triangles().rows()) {
-    const auto size = [](const MeshSequence& sequence) {
+    const auto size = [](const FrameSource& sequence) {
       return std::to_string(sequence.frames()) + " frames of " +
              std::to_string(sequence.vertices()) + " vertices and " +
              std::to_string(sequence.triangles().rows()) + " triangles";
@@ -81,56 +80,95 @@ void check(const MeshSequence& source, const MeshSequence& result,
   }
 }
 
-/// Largest displacement of a vertex in no selected triangle.
-double leak_of(const MeshSequence& result, const std::vector<int>& selected) {
+/// The vertices that are in no selected triangle.
+std::vector<VertexIndex> outside_of(const std::vector<int>& selected, const FrameSource& result) {
   std::vector<bool> inside(result.vertices(), false);
   for (const int triangle : selected) {
     for (const VertexIndex vertex : result.triangles().row(triangle)) inside[vertex] = true;
   }
-  double largest = 0;
-  for (int f = 0; f < result.frames(); ++f) {
-    const PositionsView frame = result.frame(f);
-    for (int v = 0; v < result.vertices(); ++v) {
-      if (inside[v]) continue;
-      largest = std::max(largest, (frame.row(v) - result.rest().row(v)).squaredNorm());
-    }
+  std::vector<VertexIndex> outside;
+  for (int v = 0; v < result.vertices(); ++v) {
+    if (!inside[v]) outside.push_back(v);
   }
-  return std::sqrt(largest);
+  return outside;
 }
 
 bool is_flipped(const Edges& wanted, const Edges& found) {
   return wanted.col(0).cross(wanted.col(1)).dot(found.col(0).cross(found.col(1))) < 0;
 }
 
+/// Measures one frame after the other.
+class FrameErrors {
+ public:
+  FrameErrors(const FrameSource& source, const FrameSource& result,
+              const std::vector<int>& selected)
+      : wanted_change_(source.rest(), result.rest(), source.triangles()),
+        triangles_(source.triangles()),
+        rest_(result.rest()),
+        outside_(outside_of(selected, result)) {}
+
+  struct Measured {
+    double sum = 0;   ///< of the squared errors of all triangles
+    double leak = 0;  ///< squared
+    int flipped = 0;
+  };
+
+  /// `squares` are the errors of the triangles (M).
+  Measured operator()(const PositionsView& source, const PositionsView& result,
+                      Eigen::Ref<Eigen::RowVectorXd> squares) const {
+    Measured measured;
+    const std::vector<Edges> wanted = wanted_change_(source);
+    for (int t = 0; t < triangles_.rows(); ++t) {
+      const Edges neutral = edges_of(rest_, triangles_, t);
+      const Edges found = edges_of(result, triangles_, t);
+      const double squared = (wanted[t] - (found - neutral)).squaredNorm();
+      squares[t] = squared;
+      measured.sum += squared;
+      if (is_flipped(neutral + wanted[t], found)) ++measured.flipped;
+    }
+    for (const VertexIndex v : outside_) {
+      measured.leak = std::max(measured.leak, (result.row(v) - rest_.row(v)).squaredNorm());
+    }
+    return measured;
+  }
+
+ private:
+  WantedChange wanted_change_;
+  const Triangles& triangles_;
+  const Positions& rest_;
+  std::vector<VertexIndex> outside_;
+};
+
 }  // namespace
 
-TransferError transfer_error(const MeshSequence& source, const MeshSequence& result,
-                             const std::vector<int>& selected) {
+TransferError transfer_error(const FrameSource& source, const FrameSource& result,
+                             const std::vector<int>& selected, const BlockOptions& options) {
   check(source, result, selected);
-  const Triangles& triangles = source.triangles();
-  const auto count = static_cast<int>(triangles.rows());
-  const WantedChange wanted_change(source.rest(), result.rest(), triangles);
+  const auto count = static_cast<int>(source.triangles().rows());
+  const FrameErrors errors_of(source, result, selected);
+  std::vector<FrameErrors::Measured> frames(source.frames());
   TransferError error;
-  error.per_frame = Eigen::VectorXd::Zero(source.frames());
-  error.per_triangle = Eigen::VectorXd::Zero(count);
+  error.per_triangle = sum_over_frames(
+      source, count, options, [&](int first, const FrameBlock& poses, FramesView squares) {
+        const FrameBlock found(result, first, poses.frames());
+        for (int row = 0; row < poses.frames(); ++row) {
+          frames[first + row] = errors_of(poses.frame(row), found.frame(row), squares.row(row));
+        }
+      });
+  error.per_frame.resize(source.frames());
+  double leak = 0;
   for (int f = 0; f < source.frames(); ++f) {
-    const std::vector<Edges> wanted = wanted_change(source.frame(f));
-    for (int t = 0; t < count; ++t) {
-      const Edges neutral = edges_of(result.rest(), triangles, t);
-      const Edges found = edges_of(result.frame(f), triangles, t);
-      const double squared = (wanted[t] - (found - neutral)).squaredNorm();
-      error.per_triangle[t] += squared;
-      error.per_frame[f] += squared;
-      if (is_flipped(neutral + wanted[t], found)) ++error.flipped;
-    }
+    error.per_frame[f] = frames[f].sum;
+    error.flipped += frames[f].flipped;
+    leak = std::max(leak, frames[f].leak);
   }
+  error.leak = std::sqrt(leak);
   error.per_frame /= std::max(count, 1);
   error.per_triangle /= source.frames();
   error.de_all = error.per_frame.mean();
   for (const int triangle : selected) {
     error.de_region += error.per_triangle[triangle] / double(selected.size());
   }
-  error.leak = leak_of(result, selected);
   return error;
 }
 

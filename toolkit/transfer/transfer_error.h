@@ -25,9 +25,10 @@ struct TransferError {
 /// `result` is the transferred sequence before head motion is given back; its rest pose is the
 /// target's neutral. `source` F frames with its neutral as rest. `selected` = L, rows of the
 /// triangles. Throws MismatchError where sizes differ, std::invalid_argument for a row out of
-/// range. A degenerate source triangle is measured against what stands in for it in the transfer.
-TransferError transfer_error(const MeshSequence& source, const MeshSequence& result,
-                             const std::vector<int>& selected);
+/// range, what reading throws, and Cancelled. A degenerate source triangle is measured against what
+/// stands in for it in the transfer. The result does not depend on the number of threads.
+TransferError transfer_error(const FrameSource& source, const FrameSource& result,
+                             const std::vector<int>& selected, const BlockOptions& options = {});
 
 /// Mean percentage error 100 (full - k) / full, signed: negative is worse than full (eq. 13). 0
 /// where both are equal, also where both are 0.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -128,7 +129,9 @@ struct VertexTransfer::State {
   Row shift_of(const FloatingPiece& piece, const Eigen::Ref<const Frames>& frames,
                const Rows& displacement) const;
   Row motion_of(const FloatingPiece& piece, const Eigen::Ref<const Frames>& frames) const;
-  void solve(const Eigen::Ref<const Frames>& frames, Eigen::Ref<Frames> poses) const;
+  Frames solve(const Eigen::Map<const Frames>& frames) const;
+  void solve_all(const FrameSource& performance,
+                 const std::function<void(int first, const Frames& poses)>& take) const;
   std::array<int, 3> unknowns_of(int triangle) const;
 
   Positions source_rest, target_rest;
@@ -288,15 +291,14 @@ Row VertexTransfer::State::motion_of(const FloatingPiece& piece,
 }
 
 /// Up to kLanes target poses.
-void VertexTransfer::State::solve(const Eigen::Ref<const Frames>& frames,
-                                  Eigen::Ref<Frames> poses) const {
+Frames VertexTransfer::State::solve(const Eigen::Map<const Frames>& frames) const {
   Rows displacement = solver.solve<VertexPull::kWidth>((*pull)(frames));
+  Frames poses = target_rest.reshaped<Eigen::RowMajor>().transpose().replicate(frames.rows(), 1);
   const auto move = [&poses](VertexIndex vertex, const auto& by) {
     for (Eigen::Index lane = 0; lane < poses.rows(); ++lane) {
       for (int c = 0; c < 3; ++c) poses(lane, 3 * vertex + c) += by[c * kLanes + lane];
     }
   };
-  poses.rowwise() = target_rest.reshaped<Eigen::RowMajor>().transpose();
   for (const FloatingPiece& piece : unknowns.floating) {
     const Row shift = shift_of(piece, frames, displacement);
     move(piece.vertices.front(), shift);
@@ -307,6 +309,7 @@ void VertexTransfer::State::solve(const Eigen::Ref<const Frames>& frames,
   for (VertexIndex v = 0; v < target_rest.rows(); ++v) {
     if (unknowns.of_vertex[v] >= 0) move(v, displacement.row(unknowns.of_vertex[v]));
   }
+  return poses;
 }
 
 VertexTransfer::VertexTransfer(const Positions& source_rest, const Positions& target_rest,
@@ -320,22 +323,34 @@ VertexTransfer::~VertexTransfer() = default;
 VertexTransfer::VertexTransfer(VertexTransfer&&) noexcept = default;
 VertexTransfer& VertexTransfer::operator=(VertexTransfer&&) noexcept = default;
 
-Frames VertexTransfer::frames(const MeshSequence& performance) const {
-  const State& state = *state_;
-  const Eigen::Index vertices = state.target_rest.rows();
-  if (performance.vertices() != vertices) {
+/// Calls `take` with the first frame and the poses of every kLanes frames, from several threads.
+void VertexTransfer::State::solve_all(
+    const FrameSource& performance,
+    const std::function<void(int first, const Frames& poses)>& take) const {
+  if (performance.vertices() != target_rest.rows()) {
     throw MismatchError("the performance has " + std::to_string(performance.vertices()) +
-                        " vertices, the target " + std::to_string(vertices));
+                        " vertices, the target " + std::to_string(target_rest.rows()));
   }
-  Frames result(performance.frames(), 3 * vertices);
-  const auto solve_block = [&](int block) {
-    const int first = block * kLanes;
-    const int count = std::min(kLanes, performance.frames() - first);
-    state.solve(performance.positions().middleRows(first, count), result.middleRows(first, count));
+  const auto solve_block = [&](int number) {
+    const int first = number * kLanes;
+    const FrameBlock block(performance, first, std::min(kLanes, performance.frames() - first));
+    take(first, solve(block.poses()));
   };
   const int blocks = (performance.frames() + kLanes - 1) / kLanes;
-  parallel_for(blocks, state.options.threads, solve_block, state.options.progress);
+  parallel_for(blocks, options.threads, solve_block, options.progress);
+}
+
+Frames VertexTransfer::frames(const FrameSource& performance) const {
+  Frames result(performance.frames(), 3 * state_->target_rest.rows());
+  state_->solve_all(performance, [&result](int first, const Frames& poses) {
+    result.middleRows(first, poses.rows()) = poses;
+  });
   return result;
+}
+
+void VertexTransfer::write_frames(const FrameSource& performance, FrameSink& sink) const {
+  state_->solve_all(performance,
+                    [&sink](int first, const Frames& poses) { sink.write(first, poses); });
 }
 
 int VertexTransfer::degenerate_source_triangles() const {

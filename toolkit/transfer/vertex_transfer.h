@@ -69,7 +69,7 @@ struct VertexTransferOptions {
   VertexIndex anchor_vertex = -1;
   /// 0 for all there are; the result does not depend on it.
   int threads = 0;
-  /// Of frames().
+  /// Of frames() and write_frames().
   Progress progress = {};
 
   static constexpr Option kTriangleWeight{"triangle_weight",
@@ -106,8 +106,11 @@ class VertexTransfer {
   VertexTransfer& operator=(VertexTransfer&&) noexcept;
 
   /// Target poses for every frame, F x 3N. Throws MismatchError, Cancelled, std::runtime_error
-  /// where the system cannot be factored.
-  Frames frames(const MeshSequence& performance) const;
+  /// where the system cannot be factored, and what reading throws.
+  Frames frames(const FrameSource& performance) const;
+  /// The same into a sink, up to sixteen frames at a time; to commit is left to the caller. Throws
+  /// what writing throws, too.
+  void write_frames(const FrameSource& performance, FrameSink& sink) const;
 
   int degenerate_source_triangles() const;
   int degenerate_target_triangles() const;

@@ -1,0 +1,123 @@
+#include "toolkit/mesh/frame_store.h"
+
+#include <cerrno>
+#include <cstdlib>
+#include <string>
+#include <system_error>
+
+#include <fcntl.h>
+#include <stdlib.h>
+#include <unistd.h>
+
+#include "toolkit/mesh/errors.h"
+
+namespace mimetra {
+namespace fs = std::filesystem;
+namespace {
+
+[[noreturn]] void fail_to_keep(const fs::path& folder, const std::error_code& reason) {
+  throw OutputError(folder.string(),
+                    "cannot keep the frames of this run for a while: " + reason.message() +
+                        "; set TMPDIR to a folder on a disk with room for them");
+}
+
+std::error_code last_error() {
+  return {errno, std::generic_category()};
+}
+
+fs::path folder_for_temporary_files() {
+  std::error_code error;
+  const fs::path folder = fs::temp_directory_path(error);
+  const char* named = std::getenv("TMPDIR");
+  if (error) fail_to_keep(named ? named : "/tmp", error);
+  return folder;
+}
+
+/// A file without a name.
+int nameless_file(const fs::path& folder) {
+  int descriptor = open(folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, S_IRUSR | S_IWUSR);
+  if (descriptor >= 0) return descriptor;
+  // Not every file system makes files without names.
+  std::string name = (folder / "mimetra-XXXXXX").string();
+  descriptor = mkostemp(name.data(), O_CLOEXEC);
+  if (descriptor < 0) fail_to_keep(folder, last_error());
+  unlink(name.c_str());
+  return descriptor;
+}
+
+/// Calls `transfer` with how many bytes are done until all are; returns false with errno where the
+/// system refuses.
+template <typename Transfer>
+bool transferred(std::size_t bytes, const Transfer& transfer) {
+  for (std::size_t done = 0; done < bytes;) {
+    const ssize_t now = transfer(done);
+    if (now < 0 && errno == EINTR) continue;
+    if (now == 0) errno = EIO;
+    if (now <= 0) return false;
+    done += static_cast<std::size_t>(now);
+  }
+  return true;
+}
+
+off_t offset_of(int frame, Eigen::Index columns, std::size_t byte) {
+  return static_cast<off_t>(sizeof(double) * static_cast<std::size_t>(frame * columns) + byte);
+}
+
+}  // namespace
+
+FrameStore::FrameStore(SequenceHeader header, std::size_t memory_bytes)
+    : FrameSource(std::move(header)) {
+  const Eigen::Index columns = 3 * Eigen::Index{vertices()};
+  if (sizeof(double) * static_cast<std::size_t>(frames() * columns) <= memory_bytes) {
+    memory_ = std::make_shared<Frames>(frames(), columns);
+    return;
+  }
+  folder_ = folder_for_temporary_files();
+  descriptor_ = nameless_file(folder_);
+}
+
+FrameStore::~FrameStore() {
+  if (descriptor_ >= 0) close(descriptor_);
+}
+
+void FrameStore::write(int first, const Frames& poses) {
+  check_run(first, poses.rows());
+  if (memory_) {
+    memory_->middleRows(first, poses.rows()) = poses;
+    return;
+  }
+  const std::size_t bytes = sizeof(double) * static_cast<std::size_t>(poses.size());
+  const auto* from = reinterpret_cast<const char*>(poses.data());
+  const auto write_some = [&](std::size_t done) {
+    return pwrite(descriptor_, from + done, bytes - done, offset_of(first, poses.cols(), done));
+  };
+  if (!transferred(bytes, write_some)) fail_to_keep(folder_, last_error());
+}
+
+void FrameStore::read_frames(int first, FramesView poses) const {
+  if (memory_) {
+    poses = memory_->middleRows(first, poses.rows());
+    return;
+  }
+  const std::size_t bytes = sizeof(double) * static_cast<std::size_t>(poses.size());
+  auto* to = reinterpret_cast<char*>(poses.data());
+  const auto read_some = [&](std::size_t done) {
+    return pread(descriptor_, to + done, bytes - done, offset_of(first, poses.cols(), done));
+  };
+  if (!transferred(bytes, read_some)) {
+    throw IoError(folder_.string(),
+                  "frames that were kept here cannot be read: " + last_error().message());
+  }
+}
+
+std::shared_ptr<const FrameSource> stored(std::shared_ptr<const FrameSource> source,
+                                          const BlockOptions& options) {
+  if (source->is_quick()) return source;
+  auto store = std::make_shared<FrameStore>(source->header());
+  for_each_block(*source, options,
+                 [&](int first, const Frames& poses) { store->write(first, poses); });
+  store->commit();
+  return store;
+}
+
+}  // namespace mimetra
