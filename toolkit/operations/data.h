@@ -43,7 +43,6 @@ struct RegionData {
   /// Faces of those that were made for a mesh without a sequence, or null.
   std::shared_ptr<const Connectivity> faces = {};
 };
-};
 
 /// Rows of numbers under column names; an empty cell is nothing that can be measured.
 struct Table {
