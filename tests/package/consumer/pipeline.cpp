@@ -27,6 +27,7 @@ int main() {
   const BlendshapeModel large(faces, 2 * rest, {{}, Eigen::MatrixXd(3 * kVertices, 0)});
   const TransferResult result =
       transfer(source, {{"large", large}}, {.analysis = {.decomposition = {.count = 1}}});
-  const double lifted = result.targets.front().solution.sequence.frame(3)(14, 2) - 2 * rest(14, 2);
+  const Frames pose = result.targets.front().solution.sequence->read(3, 1);
+  const double lifted = pose(0, 3 * 14 + 2) - 2 * rest(14, 2);
   return result.regions->regions.size() == 1 && std::abs(lifted - 1.2) < 0.3 ? 0 : 1;
 }
