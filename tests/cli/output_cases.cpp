@@ -155,6 +155,12 @@ std::vector<BadInput> request_cases() {
       {"--radius", "0"});
   add("unknown_choice", "convert", "convert head -o x --format fbx", {"--format", "ply, obj"});
   add("unknown_extension", "decompose", "decompose head -o c.txt", {"c.txt", ".h5"});
+  add("unknown_extension", "geodesic", "geodesic head -o d.npy", {"d.npy", ".vtp, .pvd"});
+  add("unknown_extension", "render", "render head -o r.jpg", {"r.jpg", ".png"});
+  add("of_no_output", "transfer_compress", "evaluate " + kSequence + " head --compress small",
+      {"--compress"});
+  all.push_back({"several_frames", "convert_vtp", {}, "convert " + kSequence + " -o x.vtp", 4,
+                 {"x.vtp: holds one frame", "12; write a .pvd"}});
   return all;
 }
 
