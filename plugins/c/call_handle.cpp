@@ -71,13 +71,11 @@ void mimetra_call::want(const std::string& name) {
 
 void mimetra_call::write(const std::string& name, const std::string& path, bool overwrite) {
   want(name);
-  paths_[name] = path;
-  overwrite_ = overwrite_ || overwrite;
+  destinations_[name] = {path, overwrite};
 }
 
 void mimetra_call::write_manifest(const std::string& path, bool overwrite) {
-  manifest_ = path;
-  overwrite_ = overwrite_ || overwrite;
+  manifest_ = Destination{path, overwrite};
 }
 
 CallRequest mimetra_call::request() const {
@@ -90,9 +88,8 @@ CallRequest mimetra_call::request() const {
   }
   request.named = read_;
   request.wanted = wanted_;
-  request.paths = paths_;
+  request.destinations = destinations_;
   request.manifest = manifest_;
-  request.overwrite = overwrite_;
   request.threads = context_.threads;
   request.progress = context_.progress;
   request.log = context_.log;

@@ -47,9 +47,8 @@ struct mimetra_call {
   std::map<std::string, std::vector<std::shared_ptr<const mimetra::Value>>> given_;
   std::map<std::string, std::vector<std::string>> read_;
   std::set<std::string> wanted_;
-  std::map<std::string, std::filesystem::path> paths_;
-  std::optional<std::filesystem::path> manifest_;
-  bool overwrite_ = false;
+  std::map<std::string, mimetra::Destination> destinations_;
+  std::optional<mimetra::Destination> manifest_;
   std::map<std::string, std::vector<std::shared_ptr<const mimetra::Value>>> outputs_;
   std::string report_;
   std::string summary_;

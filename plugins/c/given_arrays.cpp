@@ -261,6 +261,16 @@ std::vector<std::string> GivenArrays::strings(std::string_view name, std::string
   return values;
 }
 
+std::string GivenArrays::text(std::string_view name) {
+  const mimetra_array& array = get(name, "1");
+  if (array.type != MIMETRA_STRING) {
+    throw UsageError(place(name) + "is " + type_name(array.type) + ", expected STRING");
+  }
+  const char* text = *static_cast<const char* const*>(array.values);
+  if (!text || !is_text(text)) throw UsageError(place(name) + "holds no UTF-8");
+  return text;
+}
+
 void GivenArrays::check_all_used(const std::set<std::string, std::less<>>& shown) const {
   for (const mimetra_array& array : arrays_) {
     const std::string_view name = array.name;

@@ -45,6 +45,8 @@ class GivenArrays {
   std::vector<int> integers(std::string_view name, std::string_view shape);
   std::vector<std::uint8_t> bytes(std::string_view name, std::string_view shape);
   std::vector<std::string> strings(std::string_view name, std::string_view shape);
+  /// The only string of an array, of any number of lines.
+  std::string text(std::string_view name);
 
   /// Throws UsageError for an array that nothing asked for, unless it is in `shown`: those that
   /// values of the kind show besides.

@@ -230,8 +230,7 @@ LandmarkTrack landmarks_of(GivenArrays& given) {
 }
 
 Document document_of(GivenArrays& given) {
-  std::vector<std::string> text = given.strings("text", "1");
-  return {std::move(text.front())};
+  return {given.text("text")};
 }
 
 Data data_of(mimetra_kind kind, GivenArrays& given, const Base& base) {

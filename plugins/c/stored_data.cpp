@@ -50,8 +50,6 @@ void write_data(const mimetra_context& context, const Data& data, const std::str
   const OperationTable& table = context.table->operations();
   Operation writing;
   writing.outputs = {{"output", kind_of(data), ""}};
-  const auto* sequence = std::get_if<FieldSequence>(&data);
-  writing.outputs.front().fields = sequence && !sequence->fields.empty();
   std::vector<Parameter> declared = table.parameters_of(writing);
   declared.push_back(kForce);
   const Parameters parameters = parameters_of(std::move(declared), settings);

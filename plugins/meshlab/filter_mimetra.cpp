@@ -373,7 +373,7 @@ Data FilterMimetra::sequence_of(const RichParameterList& rows, const char* input
   const std::string path = text_of(rows, input);
   if (!path.empty()) return toolkit_->load_sequence(path, reading);
   if (!reading.empty()) {
-    throw Failure("further options: " + reading.front() + " speaks of files; name them as the " +
+    throw Failure("further options: " + reading.front() + " is about files; name them as the " +
                   input);
   }
   if (layers.empty()) {
@@ -399,6 +399,11 @@ void FilterMimetra::show_fields(MeshDocument& document, const std::string& name,
   const std::vector<std::string> names = toolkit_->vertex_fields(fields);
   if (field.empty() && names.empty()) throw Failure(name + ": made no numbers on vertices");
   const std::string shown = field.empty() ? names.front() : field;
+  if (std::find(names.begin(), names.end(), shown) == names.end()) {
+    std::string known;
+    for (const std::string& each : names) known += (known.empty() ? "" : ", ") + each;
+    throw Failure("field: expected one of " + known + ", found '" + shown + "'");
+  }
   const std::vector<double> values = toolkit_->field(fields, shown.c_str());
   const Frames frames = toolkit_->frames_of(fields);
   const Frames before = given.empty() ? Frames() : frames_of(given);

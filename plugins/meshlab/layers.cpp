@@ -65,6 +65,10 @@ std::size_t first_difference(const Frames& a, const Frames& b) {
 }
 
 void set_quality(MeshModel& layer, const std::vector<double>& values) {
+  if (values.size() != layer.cm.vert.size()) {
+    throw Failure(label_of(layer) + ": has " + std::to_string(layer.cm.vert.size()) +
+                  " vertices, expected " + std::to_string(values.size()) + " as in the result");
+  }
   layer.updateDataMask(MeshModel::MM_VERTQUALITY);
   for (std::size_t i = 0; i < values.size(); ++i) {
     layer.cm.vert[i].Q() = static_cast<float>(values[i]);

@@ -157,10 +157,20 @@ std::vector<BadInput> request_cases() {
   add("unknown_extension", "decompose", "decompose head -o c.txt", {"c.txt", ".h5"});
   add("unknown_extension", "geodesic", "geodesic head -o d.npy", {"d.npy", ".vtp, .pvd"});
   add("unknown_extension", "render", "render head -o r.jpg", {"r.jpg", ".png"});
-  add("of_no_output", "transfer_compress", "evaluate " + kSequence + " head --compress small",
-      {"--compress"});
-  all.push_back({"several_frames", "convert_vtp", {}, "convert " + kSequence + " -o x.vtp", 4,
+  add("of_no_output", "convert_compress", "convert " + kSequence + " -o x.npy --compress small",
+      {"'compress'", "leave it out"});
+  all.push_back({"several_frames",
+                 "convert_vtp",
+                 {},
+                 "convert " + kSequence + " -o x.vtp",
+                 4,
                  {"x.vtp: holds one frame", "12; write a .pvd"}});
+  all.push_back({"several_frames",
+                 "convert_VTP",
+                 {},
+                 "convert " + kSequence + " -o x.VTP",
+                 4,
+                 {"x.VTP: holds one frame"}});
   return all;
 }
 

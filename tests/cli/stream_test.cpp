@@ -116,6 +116,28 @@ TEST_F(Streamed, RegionsAreShownOnTheirSource) {
   EXPECT_EQ(listing("again_vtp").size(), listing("shown_vtp").size());
 }
 
+TEST_F(Streamed, SeriesForParaViewKeepRestTimesAndFields) {
+  const std::string take = "head --weights take.csv --frames 3:9 ";
+  ASSERT_EQ(run("convert " + take + "-o take.npy").code, 0);
+  ASSERT_EQ(run("convert " + take + "-o take.pvd").code, 0);
+  const json info = json::parse(run("info take.pvd --json").out);
+  EXPECT_EQ(info.at("rest_known"), true);
+  EXPECT_EQ(info.at("frames"), 6);
+  // In single precision, as positions are there.
+  ASSERT_EQ(run("convert take.pvd -o back.npy").code, 0);
+  const Positions rest = read_mesh(folder_ / "take.rest.ply").positions;
+  const Positions back = read_mesh(folder_ / "back.rest.ply").positions;
+  EXPECT_LT((back - rest).cwiseAbs().maxCoeff(), 1e-5 * rest.cwiseAbs().maxCoeff());
+
+  ASSERT_EQ(run("regions head --weights take.csv -k 2 -o shown.pvd").code, 0);
+  for (const std::string operation : {"convert", "align"}) {
+    const std::string out = operation + ".pvd";
+    ASSERT_EQ(run(operation + " shown.pvd -o " + out).code, 0);
+    const auto left_out = run("convert " + out + " -o " + operation + ".npy");
+    EXPECT_THAT(left_out.err, HasSubstr("holds no fields; without region, region_count, roi"));
+  }
+}
+
 TEST_F(Streamed, MeshesGiveTheBytesOfAnArray) {
   ASSERT_EQ(run("convert head --weights take.csv -o take.npy").code, 0);
   ASSERT_EQ(run("convert take.npy --double -o meshes").code, 0);

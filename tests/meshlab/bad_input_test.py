@@ -68,7 +68,7 @@ class BadInput(HostTest):
                 ("rho", "found 'rho'"), ("--signed 1", "found '1'"),
                 ("--compress small", "found '--compress'"), ("--rho", "--rho needs a value"),
                 ("--radius 0.2", "--radius has a row of its own"),
-                ("--fps 30", "fps=30 speaks of files; name them as the sequence")]:
+                ("--fps 30", "fps=30 is about files; name them as the sequence")]:
             with self.subTest(options=options):
                 self.assert_refused(self.take, [filter_script("Regions of Interest",
                                                               options=options)], words)

@@ -72,7 +72,7 @@ class CallOfAnOperation : public testing::Test {
 TEST_F(CallOfAnOperation, GivesMotionBackThatAManifestOfAnotherCallTellsOf) {
   const MeshSequence sequence = turning_grid();
   CallRequest align = align_of(sequence);
-  align.manifest = at("align.json");
+  align.manifest = Destination{at("align.json")};
   Call aligned = run(align);
   const MeshSequence still = out_of(aligned);
   EXPECT_GT((still.positions() - sequence.positions()).cwiseAbs().maxCoeff(), 0.01);
@@ -85,7 +85,7 @@ TEST_F(CallOfAnOperation, GivesMotionBackThatAManifestOfAnotherCallTellsOf) {
 
 TEST_F(CallOfAnOperation, TellsInItsManifestWhatWasGivenAndWhatWasRead) {
   CallRequest align = align_of(turning_grid());
-  align.paths["out"] = at("still.npy");
+  align.destinations["out"] = {at("still.npy")};
   run(align);
   const json written = json::parse(std::ifstream(at("still.run.json")));
   EXPECT_EQ(written["given_inputs"], (json{{"sequence", {"take"}}}));
@@ -96,7 +96,7 @@ TEST_F(CallOfAnOperation, TellsInItsManifestWhatWasGivenAndWhatWasRead) {
 
   CallRequest again = request("align");
   again.named["sequence"] = {at("still.npy").string()};
-  again.manifest = at("again.json");
+  again.manifest = Destination{at("again.json")};
   run(again);
   const json read = json::parse(std::ifstream(at("again.json")));
   EXPECT_EQ(read["named_inputs"], (json{{"sequence", {at("still.npy").string()}}}));
@@ -106,7 +106,7 @@ TEST_F(CallOfAnOperation, TellsInItsManifestWhatWasGivenAndWhatWasRead) {
 
 TEST_F(CallOfAnOperation, WritesWhatItHandsOver) {
   CallRequest align = align_of(turning_grid());
-  align.paths["out"] = at("still.npy");
+  align.destinations["out"] = {at("still.npy")};
   Call call = run(align);
   CallRequest back = request("convert");
   back.named["sequence"] = {at("still.npy").string()};
@@ -130,20 +130,72 @@ TEST_F(CallOfAnOperation, RefusesBeforeAnythingIsRead) {
   CallRequest frames = align_of(turning_grid());
   frames.parameters.set("frames", std::string("0:2"));
   EXPECT_THAT(refusal(frames),
-              testing::ThrowsMessage<UsageError>(HasSubstr("parameter 'frames' speaks of files")));
+              testing::ThrowsMessage<UsageError>(HasSubstr("parameter 'frames' is about files")));
 
   CallRequest format = align_of(turning_grid());
   format.parameters.set("format", std::string("obj"));
   EXPECT_THAT(refusal(format),
-              testing::ThrowsMessage<UsageError>(HasSubstr("parameter 'format' speaks of files")));
+              testing::ThrowsMessage<UsageError>(HasSubstr("parameter 'format' is about files")));
 
   std::ofstream(at("there.json")) << "{}";
   CallRequest manifest = align_of(turning_grid());
-  manifest.manifest = at("there.json");
+  manifest.manifest = Destination{at("there.json")};
   EXPECT_THAT(refusal(manifest),
               testing::ThrowsMessage<OutputError>(HasSubstr("there.json: exists")));
-  manifest.overwrite = true;
-  EXPECT_NO_THROW(refusal(manifest)());
+}
+
+TEST_F(CallOfAnOperation, ReplacesManifestsOfItsOperationThatStandForThemselves) {
+  const auto align_to = [&](const fs::path& manifest, bool overwrite) {
+    CallRequest align = align_of(turning_grid());
+    align.manifest = Destination{manifest, overwrite};
+    return align;
+  };
+  run(align_to(at("align.json"), false));
+  EXPECT_NO_THROW(run(align_to(at("align.json"), true)));
+  CallRequest other = request("info");
+  other.given["sequence"] = {{"take", FieldSequence(turning_grid())}};
+  other.manifest = Destination{at("align.json"), true};
+  EXPECT_THAT([&] { run(other); },
+              testing::ThrowsMessage<OutputError>(HasSubstr("no manifest of a run of 'info'")));
+
+  CallRequest written = align_of(turning_grid());
+  written.destinations["out"] = {at("still.npy")};
+  run(written);
+  EXPECT_THROW(run(align_to(at("still.run.json"), true)), OutputError);
+  EXPECT_THROW(run(align_to(at("still.npy"), true)), OutputError);
+}
+
+TEST_F(CallOfAnOperation, NeverWritesItsManifestOverAnInputOrAnOutput) {
+  run([&] {
+    CallRequest align = align_of(turning_grid());
+    align.manifest = Destination{at("align.json")};
+    return align;
+  }());
+  CallRequest undo = align_of(turning_grid());
+  undo.parameters.set("undo", at("align.json").string());
+  undo.manifest = Destination{at("align.json"), true};
+  EXPECT_THROW(run(undo), OutputError);
+
+  for (const char* place : {"new.npy", "./new.npy", "no/../new.npy"}) {
+    CallRequest align = align_of(turning_grid());
+    align.destinations["out"] = {at("new.npy")};
+    align.manifest = Destination{at(place)};
+    EXPECT_THAT([&] { run(align); }, testing::ThrowsMessage<UsageError>(
+                                         HasSubstr("two outputs would be written there")));
+    EXPECT_FALSE(fs::exists(at("new.npy")));
+  }
+}
+
+TEST_F(CallOfAnOperation, SaysWhichFieldsAFormatLeavesOut) {
+  std::vector<std::string> warnings;
+  CallRequest convert = request("convert");
+  FieldSequence shown(turning_grid(),
+                      {{"speed", Field::Location::vertices, Eigen::VectorXd::Ones(49)}});
+  convert.given["sequence"] = {{"take", shown}};
+  convert.destinations["out"] = {at("take.npy")};
+  convert.log = [&warnings](LogLevel, const std::string& text) { warnings.push_back(text); };
+  run(convert);
+  EXPECT_THAT(warnings, testing::ElementsAre(HasSubstr("holds no fields; without speed")));
 }
 
 TEST_F(CallOfAnOperation, LeavesNothingBehindWhereTheOperationFails) {
@@ -155,8 +207,8 @@ TEST_F(CallOfAnOperation, LeavesNothingBehindWhereTheOperationFails) {
   table_.add(operation);
   CallRequest failing = request("failing");
   failing.given["sequence"] = {{"take", FieldSequence(turning_grid())}};
-  failing.paths["out"] = at("folder") / "out.npy";
-  failing.manifest = at("manifest.json");
+  failing.destinations["out"] = {at("folder") / "out.npy"};
+  failing.manifest = Destination{at("manifest.json")};
   EXPECT_THAT([&] { run(failing); },
               testing::ThrowsMessage<std::runtime_error>(HasSubstr("it cannot")));
   EXPECT_TRUE(fs::is_empty(folder_.path()));
@@ -165,7 +217,7 @@ TEST_F(CallOfAnOperation, LeavesNothingBehindWhereTheOperationFails) {
 TEST_F(CallOfAnOperation, ReportsProgressFromNothingToAll) {
   std::vector<double> shares;
   CallRequest align = align_of(turning_grid());
-  align.paths["out"] = at("still.npy");
+  align.destinations["out"] = {at("still.npy")};
   align.progress = [&shares](double share) {
     shares.push_back(share);
     return true;

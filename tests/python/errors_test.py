@@ -67,15 +67,15 @@ class Errors(SampleTest):
 
     def test_parameters_of_reading_need_an_input_that_is_read(self):
         for name, value in [("frames", "0:2"), ("fps", 25)]:
-            self.assert_fails(mimetra.UsageError, 2, f"parameter '{name}' speaks of files",
+            self.assert_fails(mimetra.UsageError, 2, f"parameter '{name}' is about files",
                               lambda: mimetra.info(self.arrays, **{name: value}))
-        self.assert_fails(mimetra.UsageError, 2, "parameter 'frames' speaks of files",
+        self.assert_fails(mimetra.UsageError, 2, "parameter 'frames' is about files",
                           lambda: mimetra.transfer(self.arrays, self.actor, full=True,
                                                    frames="0:2"))
         self.assertEqual(mimetra.info(self.take, frames="0:2").report["frames"], 2)
 
     def test_parameters_of_writing_need_an_output_that_is_written(self):
-        self.assert_fails(mimetra.UsageError, 2, "parameter 'format' speaks of files",
+        self.assert_fails(mimetra.UsageError, 2, "parameter 'format' is about files",
                           lambda: mimetra.align(self.arrays, format="obj"))
 
     def test_what_only_a_program_with_vtk_can_use_is_no_option(self):

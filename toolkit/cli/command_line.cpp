@@ -105,7 +105,6 @@ Request request_of(const CLI::App& app, const Command& command, const Slots& slo
   for (const Output& output : command.operation->outputs) {
     if (const auto text = slots.value(output.name)) request.outputs[output.name] = *text;
   }
-  request.files = request.parameters.files();
   if (const auto config = slots.value("config")) request.files.push_back(*config);
   if (const auto progress = slots.value("progress")) request.progress = progress_bar(*progress);
   if (const auto threads = slots.value("threads")) request.threads = thread_count(*threads);

@@ -30,7 +30,7 @@ struct Request {
   const Operation* operation = nullptr;
   std::vector<std::string> arguments;  ///< as typed, without the program's name
   Parameters parameters;
-  std::vector<std::string> files;  ///< besides the inputs: of options, and --config
+  std::vector<std::string> files;  ///< besides the inputs and files of options: of --config
   std::map<std::string, std::vector<std::string>> inputs;
   std::map<std::string, std::filesystem::path> outputs;
   bool json = false;

@@ -63,8 +63,9 @@ CallRequest call_of(const Request& request) {
   call.operation = request.operation;
   call.parameters = request.parameters;
   call.named = request.inputs;
-  call.paths = request.outputs;
-  call.overwrite = request.force;
+  for (const auto& [output, path] : request.outputs) {
+    call.destinations[output] = {path, request.force};
+  }
   call.may_stream = true;
   call.threads = request.threads;
   call.arguments = request.arguments;

@@ -101,12 +101,12 @@ Outcome run_align(const Invocation& invocation) {
                                result.motion);
   outcome.summary = "largest rotation " + readable(degrees) + " degrees, largest translation " +
                     readable(shift) + '\n';
-  outcome.outputs["out"].push_back(
-      {"",
-       held_like(std::get<FieldSequence>(input.data), result.frames,
-                 {.threads = invocation.threads,
-                  .progress = part_of(invocation.progress, kFittingTo, 1)}),
-       input.origin});
+  const auto& given = std::get<FieldSequence>(input.data);
+  FieldSequence made = held_like(
+      given, result.frames,
+      {.threads = invocation.threads, .progress = part_of(invocation.progress, kFittingTo, 1)});
+  made.fields = given.fields;
+  outcome.outputs["out"].push_back({"", std::move(made), input.origin});
   return outcome;
 }
 
@@ -117,6 +117,7 @@ Operation align_operation() {
   operation.name = "align";
   operation.summary = "Take the rigid motion out of each frame; the manifest keeps it";
   operation.inputs = {{"sequence", DataKind::sequence, "sequence to align"}};
+  operation.inputs.front().fields = true;
   operation.inputs.front().streamed = true;
   operation.outputs = {{"out", DataKind::sequence, sequence_outputs()}};
   operation.parameters = align_parameters().declared();

@@ -15,6 +15,14 @@ namespace {
 constexpr double kReadingShare = 0.3;
 constexpr double kWritingShare = 0.2;
 
+/// One spelling for each place.
+std::filesystem::path place_of(const std::filesystem::path& path) {
+  std::error_code unreadable;
+  std::filesystem::path place = weakly_canonical(absolute(path), unreadable);
+  if (unreadable) place = absolute(path).lexically_normal();
+  return place.has_filename() ? place : place.parent_path();
+}
+
 }  // namespace
 
 void check_kind(const Operation& operation, const Input& input, const Data& data) {
@@ -32,12 +40,13 @@ Call::Call(const OperationTable& table, CallRequest request)
   check_outputs();
 }
 
-std::optional<std::filesystem::path> Call::path_of(const Output& output) const {
-  const auto asked = request_.paths.find(output.name);
-  if (asked != request_.paths.end()) return asked->second;
-  const auto main = request_.paths.find("out");
-  if (output.companion.empty() || main == request_.paths.end()) return {};
-  return table_.companion_path(*request_.operation, output, main->second);
+std::optional<Destination> Call::destination_of(const Output& output) const {
+  const auto asked = request_.destinations.find(output.name);
+  if (asked != request_.destinations.end()) return asked->second;
+  const auto main = request_.destinations.find("out");
+  if (output.companion.empty() || main == request_.destinations.end()) return {};
+  return Destination{table_.companion_path(*request_.operation, output, main->second.path),
+                     main->second.overwrite};
 }
 
 void Call::check_inputs() const {
@@ -62,14 +71,19 @@ void Call::check_parameters_of_files() const {
   for (const Input& input : request_.operation->inputs) {
     if (request_.named.contains(input.name)) used.inputs.push_back(input);
   }
+  std::vector<Parameter> applying = table_.parameters_of(used);
   for (const Output& output : request_.operation->outputs) {
-    if (path_of(output)) used.outputs.push_back(output);
+    const auto asked = destination_of(output);
+    if (!asked) continue;
+    const auto& writing = table_.writer(output, asked->path).parameters;
+    applying.insert(applying.end(), writing.begin(), writing.end());
   }
-  const Parameters applying(table_.parameters_of(used));
   for (const Parameter& parameter : request_.parameters.declared()) {
-    if (!request_.parameters.is_set(parameter.name) || applying.find(parameter.name)) continue;
+    const bool applies =
+        std::ranges::find(applying, parameter.name, &Parameter::name) != applying.end();
+    if (!request_.parameters.is_set(parameter.name) || applies) continue;
     throw UsageError("parameter '" + parameter.name +
-                     "' speaks of files, and nothing that it applies to is read or written; leave "
+                     "' is about files, and nothing that it applies to is read or written; leave "
                      "it out");
   }
 }
@@ -80,16 +94,27 @@ void Call::check_outputs() const {
   const bool several = std::ranges::any_of(request_.named, is_several) ||
                        std::ranges::any_of(request_.given, is_several);
   for (const Output& output : request_.operation->outputs) {
-    const auto path = path_of(output);
-    if (!path) continue;
-    table_.writer(output, *path);
+    const auto asked = destination_of(output);
+    if (!asked) continue;
+    table_.writer(output, asked->path);
     if (!several || !output.repeated) {
-      table_.check_writable(output, *path, request_.overwrite);
+      table_.check_writable(output, asked->path, asked->overwrite);
     }
   }
-  if (request_.manifest) {
-    PendingOutput(*request_.manifest, PendingOutput::Kind::file, request_.overwrite);
+  if (request_.manifest) check_manifest();
+}
+
+/// Before anything is read: what it would replace is a manifest that stands for itself.
+void Call::check_manifest() const {
+  const auto& [path, overwrite] = *request_.manifest;
+  const bool may_replace =
+      !accompanies_an_output(path) && is_manifest_of_operation(path, request_.operation->name);
+  if (overwrite && std::filesystem::exists(path) && !may_replace) {
+    throw OutputError(path.string(), "exists already, and is no manifest of a run of '" +
+                                         request_.operation->name +
+                                         "' that stands for itself; choose another name");
   }
+  PendingOutput(path, PendingOutput::Kind::file, overwrite);
 }
 
 std::vector<std::string> Call::repeated_names() const {
@@ -106,28 +131,34 @@ std::vector<std::string> Call::repeated_names() const {
 
 /// Where the values of the outputs go, now that names and files of the inputs are known.
 void Call::place_outputs() {
-  if (request_.paths.empty()) return;
   const std::vector<std::string> names = repeated_names();
-  std::set<std::filesystem::path> places, folders;
+  // What people typed, by where it is.
+  std::map<std::filesystem::path, std::filesystem::path> places, folders;
+  const auto claim = [&places](const std::filesystem::path& path) {
+    if (places.emplace(place_of(path), path).second) return;
+    throw UsageError(path.string() +
+                     ": two outputs would be written there; give each a name of its own, and "
+                     "run inputs of one name one by one");
+  };
   for (const Output& output : request_.operation->outputs) {
-    const auto asked = path_of(output);
+    const auto asked = destination_of(output);
     if (!asked) continue;
-    paths_[output.name] = table_.output_paths(output, *asked, names);
+    paths_[output.name] = table_.output_paths(output, asked->path, names);
     for (const auto& path : paths_[output.name]) {
-      table_.check_writable(output, path, request_.overwrite, finished_.inputs);
-      if (!places.insert(path).second) {
-        throw UsageError(path.string() +
-                         ": two outputs would be written there; give each a name of its own, and "
-                         "run inputs of one name one by one");
-      }
-      if (table_.writes_folder(output, path)) folders.insert(path);
+      table_.check_writable(output, path, asked->overwrite, finished_.inputs);
+      claim(path);
+      if (table_.writes_folder(output, path)) folders.emplace(place_of(path), path);
     }
   }
-  for (const auto& folder : folders) {
-    for (const auto& place : places) {
+  if (request_.manifest) {
+    check_inputs_stay(request_.manifest->path, finished_.inputs);
+    claim(request_.manifest->path);
+  }
+  for (const auto& [folder, folder_name] : folders) {
+    for (const auto& [place, name] : places) {
       const auto below = place.lexically_relative(folder);
       if (place == folder || below.empty() || *below.begin() == "..") continue;
-      throw UsageError(place.string() + ": lies in " + folder.string() +
+      throw UsageError(name.string() + ": lies in " + folder_name.string() +
                        ", another output, which a run replaces as a whole; name a place beside it");
     }
   }
@@ -136,7 +167,7 @@ void Call::place_outputs() {
 void Call::load() {
   const Stopwatch stopwatch;
   const double read_until = request_.named.empty() ? 0 : kReadingShare;
-  const double write_from = request_.paths.empty() ? 1 : 1 - kWritingShare;
+  const double write_from = request_.destinations.empty() ? 1 : 1 - kWritingShare;
   finished_.operation = request_.operation->name;
   finished_.parameters = request_.parameters;
   finished_.arguments = std::move(request_.arguments);
@@ -154,6 +185,9 @@ void Call::load() {
                   part_of(request_.progress, 0, read_until), request_.log, request_.threads,
                   std::move(given), request_.may_stream);
   finished_.inputs = std::move(loaded.files);
+  for (const std::filesystem::path file : request_.parameters.files()) {
+    request_.files.push_back(file);
+  }
   for (const auto& file : request_.files) {
     if (std::ranges::find(finished_.inputs, file) == finished_.inputs.end()) {
       finished_.inputs.push_back(file);
@@ -199,16 +233,26 @@ void Call::write_values(const Output& output, const Paths& targets, const std::s
   if (made == outcome_.outputs.end()) return;
   for (std::size_t i = 0; i < made->second.size(); ++i, ++written) {
     const auto& target = targets.at(i);
-    WriteRequest write{target, request_.parameters, request_.overwrite, progress};
+    WriteRequest write{target, request_.parameters, destination_of(output)->overwrite, progress};
     write.threads = request_.threads;
     write.inputs = finished_.inputs;
     // What accompanies another output stands in that one's manifest.
-    if (request_.paths.contains(output.name)) {
+    if (request_.destinations.contains(output.name)) {
       write.extra.emplace_back(manifest_name(target, table_.writes_folder(output, target)),
                                manifest);
     }
-    table_.writer(output, target).write(made->second[i].data, write);
+    const Writer& writer = table_.writer(output, target);
+    note_lost_fields(writer, made->second[i], target);
+    writer.write(made->second[i].data, write);
   }
+}
+
+void Call::note_lost_fields(const Writer& writer, const NamedData& value,
+                            const std::filesystem::path& target) const {
+  const std::string lost = lost_fields(writer, value.data);
+  if (lost.empty() || !request_.log) return;
+  request_.log(LogLevel::warning,
+               target.string() + ": this format holds no fields; without " + lost);
 }
 
 void Call::write() {
@@ -233,7 +277,8 @@ void Call::write() {
       write_values(output, targets->second, manifest, progress, written);
     }
   }
-  if (request_.manifest) write_file(*request_.manifest, manifest, request_.overwrite);
+  if (request_.manifest)
+    write_file(request_.manifest->path, manifest, request_.manifest->overwrite);
   write_seconds_ = stopwatch.seconds();
 }
 

@@ -12,6 +12,13 @@
 
 namespace mimetra {
 
+/// Where something is written.
+struct Destination {
+  std::filesystem::path path;
+  /// Replace what an earlier run wrote.
+  bool overwrite = false;
+};
+
 /// What a host asks of an operation.
 struct CallRequest {
   const Operation* operation = nullptr;
@@ -25,11 +32,10 @@ struct CallRequest {
   /// Optional outputs whose values are asked for; needed ones always are.
   std::set<std::string> wanted = {};
   /// Outputs that are written, and where; with their companions.
-  std::map<std::string, std::filesystem::path> paths = {};
-  /// A file for the manifest, which also accompanies every output that is written.
-  std::optional<std::filesystem::path> manifest = {};
-  /// Replace what an earlier run wrote.
-  bool overwrite = false;
+  std::map<std::string, Destination> destinations = {};
+  /// A file for the manifest, which also accompanies every output that is written. A manifest of
+  /// the same operation may be replaced, unless it accompanies an output.
+  std::optional<Destination> manifest = {};
   /// Frames of streamed inputs may be read when they are needed; otherwise all are in memory.
   bool may_stream = false;
   /// 0 for all there are.
@@ -79,14 +85,17 @@ class Call {
  private:
   using Paths = std::vector<std::filesystem::path>;
 
-  std::optional<std::filesystem::path> path_of(const Output& output) const;
+  std::optional<Destination> destination_of(const Output& output) const;
   void check_inputs() const;
   void check_parameters_of_files() const;
   void check_outputs() const;
+  void check_manifest() const;
   std::vector<std::string> repeated_names() const;
   void place_outputs();
   void write_values(const Output& output, const Paths& targets, const std::string& manifest,
                     const Progress& progress, std::size_t& written) const;
+  void note_lost_fields(const Writer& writer, const NamedData& value,
+                        const std::filesystem::path& target) const;
 
   const OperationTable& table_;
   CallRequest request_;

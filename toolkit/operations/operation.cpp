@@ -119,6 +119,14 @@ void OperationTable::add(Writer writer) {
   writers_.push_back(std::move(writer));
 }
 
+std::string lost_fields(const Writer& writer, const Data& data) {
+  const auto* sequence = std::get_if<FieldSequence>(&data);
+  if (!sequence || writer.fields) return "";
+  std::vector<std::string> names;
+  for (const Field& field : sequence->fields) names.push_back(field.name);
+  return joined(names);
+}
+
 void OperationTable::add(RegionReader reader) {
   region_readers_.push_back(std::move(reader));
 }
@@ -184,7 +192,8 @@ const Writer& OperationTable::writer(const Output& output,
     }
   }
   if (folder) return *folder;
-  const std::string kind(kind_name(output.kind));
+  const std::string kind =
+      std::string(kind_name(output.kind)) + (output.fields ? " with fields" : "");
   if (known.empty()) throw UsageError(target.string() + ": this program writes no " + kind);
   throw UsageError(target.string() + ": " + kind + " can be written as " + joined(known) +
                    ", not as '" + target.extension().string() + "'");

@@ -139,6 +139,9 @@ struct Writer {
   bool fields = false;
 };
 
+/// Names of a sequence's fields that a writer leaves out; "" for none.
+std::string lost_fields(const Writer& writer, const Data& data);
+
 /// A way to read a region set for a mesh, chosen by extension.
 struct RegionReader {
   std::vector<std::string> extensions;

@@ -135,8 +135,7 @@ RunRecord run_of(const fs::path& path) {
     return fs::exists(manifest) && is_of_a_run(manifest) ? parse(manifest) : main_run(path);
   }
   if (!fs::exists(path)) throw IoError(path.string(), "no such file or folder");
-  const std::string name = path.filename().string();
-  if (name.ends_with(kFileManifest) || name == kFolderManifest) return parse(path);
+  if (accompanies_an_output(path)) return parse(path);
   const fs::path manifest = manifest_beside(path);
   if (manifest.empty()) {
     throw IoError(path.string(), "no manifest of a run of mimetra beside it");
@@ -164,6 +163,19 @@ bool is_manifest_of(const fs::path& manifest, const fs::path& output) {
   return std::ranges::any_of(json["outputs"], [&output](const Json& path) {
     return path.is_string() && fs::path(path.get<std::string>()).filename() == output.filename();
   });
+}
+
+bool is_manifest_of_operation(const fs::path& manifest, const std::string& operation) {
+  if (!fs::is_regular_file(manifest)) return false;
+  std::ifstream stream(manifest);
+  const Json json = Json::parse(stream, nullptr, false);
+  return json.is_object() && json.value("program", Json()) == "mimetra" &&
+         json.value("command", Json()) == operation;
+}
+
+bool accompanies_an_output(const fs::path& manifest) {
+  const std::string name = manifest.filename().string();
+  return name.ends_with(kFileManifest) || name == kFolderManifest;
 }
 
 }  // namespace mimetra

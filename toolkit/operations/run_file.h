@@ -31,4 +31,10 @@ RunRecord read_run(const std::filesystem::path& path);
 /// True for the manifest of a run that wrote an output of this file name.
 bool is_manifest_of(const std::filesystem::path& manifest, const std::filesystem::path& output);
 
+/// True for the manifest of a run of that operation.
+bool is_manifest_of_operation(const std::filesystem::path& manifest, const std::string& operation);
+
+/// True for a name that manifests beside an output, or in its folder, have.
+bool accompanies_an_output(const std::filesystem::path& manifest);
+
 }  // namespace mimetra

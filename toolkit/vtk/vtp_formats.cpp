@@ -4,6 +4,7 @@
 
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/progress.h"
+#include "toolkit/mesh/text.h"
 #include "toolkit/operations/bound_parameters.h"
 #include "toolkit/operations/formats.h"
 #include "toolkit/vtk/vtp_series.h"
@@ -30,7 +31,7 @@ std::vector<std::filesystem::path> write(const FieldSequence& fields, const Writ
 
 /// Throws MismatchError where frames would be left out.
 void check_frame_count(const FrameSource& frames, const std::filesystem::path& target) {
-  if (frames.frames() == 1 || target.extension() != ".vtp") return;
+  if (frames.frames() == 1 || lower_extension(target) != ".vtp") return;
   throw MismatchError(target.string() + ": holds one frame, and the sequence has " +
                       std::to_string(frames.frames()) + "; write a .pvd, or take one by --frames");
 }
@@ -72,8 +73,10 @@ void add_vtp(OperationTable& table) {
                    {".vtp", ".pvd"},
                    parameters,
                    [](const Data& data, const WriteRequest& request) {
-                     const auto& sequence = std::get<FieldSequence>(data);
+                     FieldSequence sequence = std::get<FieldSequence>(data);
                      check_frame_count(*sequence.frames, request.target);
+                     // A rest pose is read again from the displacements from it.
+                     if (sequence.frames->rest_is_known()) sequence.displacement = true;
                      return write(sequence, request);
                    },
                    true});

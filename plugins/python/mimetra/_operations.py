@@ -162,9 +162,12 @@ class _Call:
 
     def ask(self, name, wish, force):
         """Asks for an output, or for the manifest (None): True for a value, a path for its files."""
-        if isinstance(wish, (str, os.PathLike)):
+        if isinstance(wish, (str, os.PathLike)) and os.fspath(wish):
             path = os.fspath(wish).encode()
             self.own.check(library.call_write(self.handle, name, path, bool(force)))
+        elif wish is not None and (name is None or not isinstance(wish, bool)):
+            raise TypeError(f"{name.decode() if name else 'manifest'}: expected a path, found"
+                            f" {wish!r}")
         elif wish:
             self.own.check(library.call_want(self.handle, name))
 

@@ -170,7 +170,7 @@ static void check_other_meshes(const mimetra_interface* m, mimetra_context* cont
   FAILS(context, MIMETRA_MISMATCH, "few: regions of a mesh with 81 vertices and 1 triangles",
         m->call_run(call));
   OK(context, m->call_set(call, "frames", "0:2"));
-  FAILS(context, MIMETRA_USAGE, "'frames' speaks of files", m->call_run(call));
+  FAILS(context, MIMETRA_USAGE, "'frames' is about files", m->call_run(call));
   m->free_call(call);
   OK(context, m->new_data(context, MIMETRA_COMPONENTS, "bare", component_arrays, &components));
   OK(context, m->new_call(context, "regions", &call));

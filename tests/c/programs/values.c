@@ -199,7 +199,7 @@ static void check_writing(const mimetra_interface* m, mimetra_context* context) 
   OK(context, m->call_give(call, "sequence", take));
   OK(context, m->call_set(call, "on", "all"));
   OK(context, m->call_set(call, "single", "true"));
-  FAILS(context, MIMETRA_USAGE, "'single' speaks of files", m->call_run(call));
+  FAILS(context, MIMETRA_USAGE, "'single' is about files", m->call_run(call));
   OK(context, m->call_set(call, "single", NULL));
   FAILS(context, MIMETRA_USAGE, "no output 'none'", m->call_write(call, "none", "a.npy", 0));
   OK(context, m->call_write(call, "out", "values_still.npy", 1));

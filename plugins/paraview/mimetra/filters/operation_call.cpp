@@ -1,13 +1,9 @@
 #include "plugins/paraview/mimetra/filters/operation_call.h"
 
 #include <algorithm>
-#include <fstream>
-
-#include <nlohmann/json.hpp>
 
 #include "plugins/c/plugins.h"
 #include "plugins/paraview/mimetra/filters/filter_proxies.h"
-#include "toolkit/operations/json.h"
 #include "toolkit/vtk/vtp_formats.h"
 
 using namespace mimetra;
@@ -59,15 +55,6 @@ const Operation& found(const OperationTable& table, const std::string& name) {
   const Operation* operation = table.find(name);
   if (operation) return *operation;
   throw std::invalid_argument("there is no operation '" + name + "'; is its plugin missing?");
-}
-
-/// What a further run of the operation may replace.
-bool is_manifest_of_operation(const std::string& path, const std::string& operation) {
-  std::ifstream file(path);
-  if (!file) return false;
-  const Json json = Json::parse(file, nullptr, false);
-  return json.is_object() && json.value("program", Json()) == "mimetra" &&
-         json.value("command", Json()) == operation;
 }
 
 constexpr const char* kComponents = "components";
@@ -185,8 +172,7 @@ Call OperationCall::loaded(const Progress& progress, const Log& log) const {
   for (const auto& [name, value] : values_) {
     if (has_input(name)) request.named[name] = {to_text(value)};
   }
-  if (!manifest_.empty()) request.manifest = manifest_;
-  request.overwrite = is_manifest_of_operation(manifest_, operation_.name);
+  if (!manifest_.empty()) request.manifest = Destination{manifest_, true};
   request.progress = progress;
   request.log = log;
   Call call(table_, std::move(request));

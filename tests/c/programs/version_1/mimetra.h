@@ -194,7 +194,7 @@ typedef struct mimetra_array {
  *   fit         | alpha F x I, beta F x D, identity_names STRING I, expression_names STRING D,
  *               times F, cameras F x 2 x 4, rms F
  *   pictures    pixels U8 height x width x 3 of one picture, sRGB, from the top left | of several
- *               pixels_0, pixels_1, ...
+ *               pixels_0, pixels_1, ..., which are drawn when somebody asks for arrays
  *   document    text STRING 1: a page, a script
  *
  * Where no type stands, it is F64, and F32 is taken too. Numbers must be finite, but for fields,
@@ -347,8 +347,8 @@ typedef struct mimetra_interface {
   /* Asks for an output, and for its files: call_run writes it as the command does, by the path's
    * extension and the call's parameters of writing, with the run's manifest beside or in it. With
    * NULL as the output, the manifest alone: version, the value of every parameter, the inputs with
-   * hashes of their files, and the report, as JSON ("align" gives motion back that the manifest of
-   * a run of it tells of). What exists is an error unless `replace`, which replaces what an earlier
+   * hashes of their files, and the report, as JSON ("align" gives the motion back that such a
+   * manifest holds). What exists is an error unless `replace`, which replaces what an earlier
    * run wrote. */
   mimetra_status (*call_write)(mimetra_call* call, const char* output, const char* path,
                                int32_t replace);
