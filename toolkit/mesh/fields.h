@@ -37,8 +37,8 @@ struct FieldSequence {
   bool displacement = false;
 };
 
-/// Other frames in place of those of `like`: in memory where these are, otherwise read when they are
-/// needed, without its fields. Throws what reading throws, Cancelled.
+/// Other frames in place of those of `like`: in memory where these are, otherwise read when they
+/// are needed, without its fields. Throws what reading throws, Cancelled.
 FieldSequence held_like(const FieldSequence& like, std::shared_ptr<const FrameSource> frames,
                         const BlockOptions& options = {});
 
