@@ -79,10 +79,8 @@ Outcome run_geodesic(const Invocation& invocation) {
     }
   }
   Outcome outcome;
-  // Its own shape, not one that it moved away from.
-  FieldSequence fields(MeshSequence(mesh.shared_connectivity(), mesh.positions(), mesh.times()),
-                       {{"distance", Field::Location::vertices, shown},
-                        {"support", Field::Location::vertices, support}});
+  FieldSequence fields(mesh, {{"distance", Field::Location::vertices, shown},
+                              {"support", Field::Location::vertices, support}});
   outcome.outputs["out"].push_back({"", std::move(fields)});
   outcome.report =
       Json{{"vertices", mesh.vertices()}, {"reached", reached}, {"farthest", farthest}}.dump();

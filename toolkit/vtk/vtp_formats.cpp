@@ -36,6 +36,13 @@ void check_frame_count(const FrameSource& frames, const std::filesystem::path& t
                       std::to_string(frames.frames()) + "; write a .pvd, or take one by --frames");
 }
 
+/// True unless the rest pose is the first frame, as readers take it to be.
+bool has_left_its_rest(const FrameSource& frames) {
+  if (!frames.rest_is_known()) return false;
+  const Frames first = frames.read(0, 1);
+  return frames.frames() > 1 || PositionsView(first.data(), frames.vertices(), 3) != frames.rest();
+}
+
 /// One region: the vertices where the field `roi` is not 0.
 Regions read_regions_from_vtp(const std::filesystem::path& path, int vertices,
                               const Triangles& triangles) {
@@ -76,7 +83,7 @@ void add_vtp(OperationTable& table) {
                      FieldSequence sequence = std::get<FieldSequence>(data);
                      check_frame_count(*sequence.frames, request.target);
                      // A rest pose is read again from the displacements from it.
-                     if (sequence.frames->rest_is_known()) sequence.displacement = true;
+                     if (has_left_its_rest(*sequence.frames)) sequence.displacement = true;
                      return write(sequence, request);
                    },
                    true});
