@@ -55,7 +55,10 @@ void write_data(const mimetra_context& context, const Data& data, const std::str
   const Parameters parameters = parameters_of(std::move(declared), settings);
   WriteRequest request{path, parameters, parameters.flag("force"), context.progress};
   request.threads = context.threads;
-  table.writer(writing.outputs.front(), path).write(data, request);
+  const Writer& writer = table.writer(writing.outputs.front(), path);
+  const std::string note = note_on_fields(writer, data, path);
+  if (!note.empty() && context.log) context.log(LogLevel::warning, note);
+  writer.write(data, request);
 }
 
 }  // namespace mimetra

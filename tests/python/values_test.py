@@ -78,6 +78,12 @@ class Values(SampleTest):
         with self.assertRaisesRegex(TypeError, "mimetra.Sequence cannot be pickled; save it"):
             pickle.dumps(mimetra.Sequence(moved(), POLYGONS))
 
+    def test_saving_names_the_fields_that_a_format_leaves_out(self):
+        shown = mimetra.geodesic(self.arrays, source=[3]).out
+        with self.assertLogs("mimetra", "WARNING") as logs:
+            shown.save(self.path / "fields.npy")
+        self.assertIn("holds no fields; without distance, support", logs.output[0])
+
     def test_fields_stand_on_vertices_or_triangles(self):
         value = mimetra.Sequence(
             moved(), POLYGONS, on_vertices={"heat": np.arange(6.0), "part": [0] * 5 + [1]},

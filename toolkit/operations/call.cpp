@@ -242,17 +242,10 @@ void Call::write_values(const Output& output, const Paths& targets, const std::s
                                manifest);
     }
     const Writer& writer = table_.writer(output, target);
-    note_lost_fields(writer, made->second[i], target);
+    const std::string note = note_on_fields(writer, made->second[i].data, target);
+    if (!note.empty() && request_.log) request_.log(LogLevel::warning, note);
     writer.write(made->second[i].data, write);
   }
-}
-
-void Call::note_lost_fields(const Writer& writer, const NamedData& value,
-                            const std::filesystem::path& target) const {
-  const std::string lost = lost_fields(writer, value.data);
-  if (lost.empty() || !request_.log) return;
-  request_.log(LogLevel::warning,
-               target.string() + ": this format holds no fields; without " + lost);
 }
 
 void Call::write() {

@@ -94,8 +94,6 @@ class Call {
   void place_outputs();
   void write_values(const Output& output, const Paths& targets, const std::string& manifest,
                     const Progress& progress, std::size_t& written) const;
-  void note_lost_fields(const Writer& writer, const NamedData& value,
-                        const std::filesystem::path& target) const;
 
   const OperationTable& table_;
   CallRequest request_;

@@ -93,7 +93,7 @@ struct Origin {
   std::vector<std::filesystem::path> images = {};
   /// What was noticed in each frame of landmarks (F, "" for nothing), or none.
   std::vector<std::string> frame_notes = {};
-  /// The run that a manifest tells of.
+  /// The run that wrote a manifest.
   std::shared_ptr<const RunRead> run = {};
 };
 

@@ -119,12 +119,13 @@ void OperationTable::add(Writer writer) {
   writers_.push_back(std::move(writer));
 }
 
-std::string lost_fields(const Writer& writer, const Data& data) {
+std::string note_on_fields(const Writer& writer, const Data& data,
+                           const std::filesystem::path& target) {
   const auto* sequence = std::get_if<FieldSequence>(&data);
-  if (!sequence || writer.fields) return "";
+  if (!sequence || sequence->fields.empty() || writer.fields) return "";
   std::vector<std::string> names;
   for (const Field& field : sequence->fields) names.push_back(field.name);
-  return joined(names);
+  return target.string() + ": this format holds no fields; without " + joined(names);
 }
 
 void OperationTable::add(RegionReader reader) {

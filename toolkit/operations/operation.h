@@ -139,8 +139,9 @@ struct Writer {
   bool fields = false;
 };
 
-/// Names of a sequence's fields that a writer leaves out; "" for none.
-std::string lost_fields(const Writer& writer, const Data& data);
+/// What is to be said of a sequence's fields that a writer leaves out; "" where there are none.
+std::string note_on_fields(const Writer& writer, const Data& data,
+                           const std::filesystem::path& target);
 
 /// A way to read a region set for a mesh, chosen by extension.
 struct RegionReader {
