@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "fitting/fit_pictures.h"
+#include "fitting/image_files.h"
 #include "fitting/landmark_fitter.h"
 #include "fitting/landmark_input.h"
 #include "fitting/landmark_mapping.h"
@@ -17,6 +18,7 @@
 #include "toolkit/operations/bound_parameters.h"
 #include "toolkit/operations/formats.h"
 #include "toolkit/operations/json.h"
+#include "toolkit/operations/sequence_parameters.h"
 
 namespace mimetra {
 
@@ -230,14 +232,37 @@ BoundParameters<LandmarkInputOptions> landmark_parameters() {
       .add(&LandmarkInputOptions::faces, faces);
 }
 
-LandmarkReader landmark_reader() {
-  LandmarkReader reader;
-  reader.parameters = landmark_parameters().declared();
-  reader.read = [](const std::string& text, const SequenceSource& source,
-                   const Parameters& parameters) {
-    return read_landmark_input(text, source, landmark_parameters().read(parameters));
+ReadValue read_landmark_data(const std::string& text, const ReadRequest& request) {
+  SequenceSource source = frame_parameters().read(request.parameters);
+  source.threads = request.threads;
+  source.progress = request.progress;
+  LandmarksRead read =
+      read_landmark_input(text, source, landmark_parameters().read(request.parameters));
+  Origin origin;
+  origin.images = std::move(read.images);
+  origin.frame_notes = std::move(read.frame_notes);
+  return {{text, std::move(read.track), std::move(origin)},
+          std::move(read.files),
+          std::move(read.notes)};
+}
+
+void add_landmark_formats(OperationTable& table) {
+  std::vector<Parameter> reading = frame_parameters().declared();
+  for (Parameter& parameter : landmark_parameters().declared()) {
+    reading.push_back(std::move(parameter));
+  }
+  const auto add = [&](std::string name, std::vector<std::string> extensions) {
+    table.add(Format{.name = std::move(name),
+                     .kind = DataKind::landmarks,
+                     .extensions = std::move(extensions),
+                     .reading = reading,
+                     .read = read_landmark_data});
   };
-  return reader;
+  add("image of a face", image_extensions());
+  add("points of iBUG", {".pts"});
+  add("track of OpenFace, or a row for each frame", {".csv"});
+  add("track of frames and their points", {".json"});
+  add("folder of images or of .pts files", {Format::kFolder});
 }
 
 /// The sequence, and the person whose expressions are copied; with one identity for all frames also
@@ -260,21 +285,19 @@ void add_fitting(OperationTable& table) {
   Operation operation;
   operation.name = "fit";
   operation.summary = "Fit a morphable face model to 2D landmarks: a sequence in correspondence";
-  operation.inputs = {{"landmarks", DataKind::landmarks,
-                       "images of a face, .pts files (one of them, a folder, a pattern), or a .csv "
-                       "or .json track"},
-                      {"model", DataKind::model,
-                       "model folder with identities and expressions, or eos shape model (.bin)",
-                       false, false, true}};
-  operation.outputs = {{"out", DataKind::sequence, sequence_outputs()},
-                       {"fit-out", DataKind::fit,
-                        "coefficients and cameras, .json (default: NAME.fit.json beside OUT), for "
-                        "MODEL@NAME.fit.json",
-                        true, false, ".fit.json"},
-                       {"overlay", DataKind::pictures,
-                        "folder of the images with mesh and landmarks drawn over them", true},
-                       {"strip", DataKind::pictures,
-                        "five of them in a row, near enough to judge the fit, .png", true}};
+  operation.inputs = {
+      {"landmarks", DataKind::landmarks,
+       "images of a face, or landmarks that were found: one file, a track, a folder, a "
+       "pattern"},
+      {"model", DataKind::model, "model with identities and expressions", false, false, true}};
+  operation.outputs = {
+      {"out", DataKind::sequence, "the fitted sequence"},
+      {"fit-out", DataKind::fit,
+       "coefficients and cameras, for MODEL@NAME.fit.json (default: NAME.fit.json beside "
+       "OUT)",
+       true, false, ".fit.json"},
+      {"overlay", DataKind::pictures, "the images with mesh and landmarks drawn over them", true},
+      {"strip", DataKind::pictures, "five of them in a row, near enough to judge the fit", true}};
   operation.inputs.back().identities = true;
   operation.outputs[2].extensions = {""};
   operation.outputs[3].extensions = {".png"};
@@ -283,7 +306,7 @@ void add_fitting(OperationTable& table) {
                         "fit track.csv --model sfm/ --smoothness 0.1 -o take/"};
   operation.run = run;
   operation.memory = memory;
-  table.add(landmark_reader());
+  add_landmark_formats(table);
   table.add(std::move(operation));
 }
 

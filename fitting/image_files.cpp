@@ -62,9 +62,13 @@ void paste(const Image& source, int left, Image& target) {
 
 }  // namespace
 
+std::vector<std::string> image_extensions() {
+  return {".png", ".jpg", ".jpeg"};
+}
+
 bool is_image(const std::filesystem::path& path) {
-  constexpr std::array kExtensions = {".png", ".jpg", ".jpeg"};
-  return std::ranges::find(kExtensions, lower_extension(path)) != kExtensions.end();
+  const std::vector<std::string> known = image_extensions();
+  return std::ranges::find(known, lower_extension(path)) != known.end();
 }
 
 std::vector<std::filesystem::path> image_files(const std::string& text) {

@@ -8,6 +8,9 @@
 
 namespace mimetra {
 
+/// Those of images that can be read, in lower case.
+std::vector<std::string> image_extensions();
+
 /// True for NAME.png, NAME.jpg and NAME.jpeg in any case.
 bool is_image(const std::filesystem::path& path);
 

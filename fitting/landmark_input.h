@@ -1,10 +1,13 @@
 #pragma once
 
+#include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "fitting/face_images.h"
-#include "toolkit/operations/operation.h"
+#include "toolkit/io/sequence_options.h"
+#include "toolkit/model/landmark_track.h"
 
 namespace mimetra {
 
@@ -16,6 +19,16 @@ struct LandmarkInputOptions {
   std::optional<std::string> images = {};
 
   static constexpr Option kImages{"images", &LandmarkInputOptions::images};
+};
+
+/// Landmarks, and what was noticed while reading them.
+struct LandmarksRead {
+  LandmarkTrack track;                             ///< with times
+  std::vector<std::filesystem::path> images = {};  ///< that each frame shows (F), or none
+  /// What was noticed in each frame (F, "" for nothing), or none.
+  std::vector<std::string> frame_notes = {};
+  std::vector<std::filesystem::path> files = {};
+  std::vector<std::string> notes = {};
 };
 
 /// Reads the landmarks of a clip: one .pts, .csv or .json file, a folder or pattern of .pts files,

@@ -11,6 +11,9 @@ DescribedTable::DescribedTable(const std::function<void(OperationTable&)>& fill)
   for (const Operation& operation : table_.operations()) describe(operation);
   for (const mimetra_operation& operation : operations_) list_.push_back(&operation);
   list_.push_back(nullptr);
+  for (const Format& format : table_.formats()) describe(format);
+  for (const mimetra_format& format : formats_) format_list_.push_back(&format);
+  format_list_.push_back(nullptr);
 }
 
 const mimetra_operation* DescribedTable::find(const std::string& name) const {
@@ -31,12 +34,13 @@ const char* const* DescribedTable::kept(const std::vector<std::string>& texts) {
 }
 
 template <typename Port>
-const mimetra_port* DescribedTable::described(const Port& port, bool named) {
+const mimetra_port* DescribedTable::described(const Port& port, const std::string& help,
+                                              bool named) {
   mimetra_port& made = ports_.emplace_back();
   made.struct_size = sizeof made;
   made.kind = static_cast<mimetra_kind>(port.kind) + MIMETRA_SEQUENCE;
   made.name = kept(port.name);
-  made.help = kept(port.help);
+  made.help = kept(help);
   if (port.optional) made.flags |= MIMETRA_OPTIONAL;
   if (port.repeated) made.flags |= MIMETRA_REPEATED;
   if (port.fields) made.flags |= MIMETRA_WITH_FIELDS;
@@ -63,33 +67,58 @@ const mimetra_parameter* DescribedTable::described(const Parameter& parameter,
   return &made;
 }
 
+/// Ends with NULL.
+const mimetra_parameter* const* DescribedTable::described(const std::vector<Parameter>& all,
+                                                          const std::vector<Parameter>& reading,
+                                                          const std::vector<Parameter>& writing) {
+  const auto is_in = [](const std::vector<Parameter>& list, const Parameter& parameter) {
+    return std::ranges::find(list, parameter.name, &Parameter::name) != list.end();
+  };
+  std::vector<const mimetra_parameter*>& list = parameter_lists_.emplace_back();
+  for (const Parameter& parameter : all) {
+    std::uint32_t of_files = 0;
+    if (is_in(reading, parameter)) of_files |= MIMETRA_READING;
+    if (is_in(writing, parameter)) of_files |= MIMETRA_WRITING;
+    list.push_back(described(parameter, of_files));
+  }
+  list.push_back(nullptr);
+  return list.data();
+}
+
+void DescribedTable::describe(const Format& format) {
+  mimetra_format& made = formats_.emplace_back();
+  made.struct_size = sizeof made;
+  made.kind = static_cast<mimetra_kind>(format.kind) + MIMETRA_SEQUENCE;
+  made.name = kept(format.name);
+  made.extensions = kept(format.extensions);
+  made.parameters = described(format.options(), format.reading, format.writing);
+  if (format.fields) made.flags |= MIMETRA_WITH_FIELDS;
+  if (format.read) made.use |= MIMETRA_READING;
+  if (format.write) made.use |= MIMETRA_WRITING;
+}
+
 void DescribedTable::describe(const Operation& operation) {
   mimetra_operation& made = operations_.emplace_back();
   made.struct_size = sizeof made;
   made.name = kept(operation.name);
   made.summary = kept(operation.summary);
   std::vector<const mimetra_port*>& inputs = port_lists_.emplace_back();
-  for (const Input& input : operation.inputs) inputs.push_back(described(input, input.named));
+  for (const Input& input : operation.inputs) {
+    inputs.push_back(described(input, table_.help(input), input.named));
+  }
   inputs.push_back(nullptr);
   made.inputs = inputs.data();
   std::vector<const mimetra_port*>& outputs = port_lists_.emplace_back();
-  for (const Output& output : operation.outputs) outputs.push_back(described(output, false));
+  for (const Output& output : operation.outputs) {
+    outputs.push_back(described(output, table_.help(output), false));
+  }
   outputs.push_back(nullptr);
   made.outputs = outputs.data();
-  std::vector<const mimetra_parameter*>& parameters = parameter_lists_.emplace_back();
   Operation reading, writing;
   reading.inputs = operation.inputs;
   writing.outputs = operation.outputs;
-  const Parameters of_reading(table_.parameters_of(reading));
-  const Parameters of_writing(table_.parameters_of(writing));
-  for (const Parameter& parameter : table_.parameters_of(operation)) {
-    std::uint32_t of_files = 0;
-    if (of_reading.find(parameter.name)) of_files |= MIMETRA_READING;
-    if (of_writing.find(parameter.name)) of_files |= MIMETRA_WRITING;
-    parameters.push_back(described(parameter, of_files));
-  }
-  parameters.push_back(nullptr);
-  made.parameters = parameters.data();
+  made.parameters = described(table_.parameters_of(operation), table_.parameters_of(reading),
+                              table_.parameters_of(writing));
   made.examples = kept(operation.examples);
 }
 

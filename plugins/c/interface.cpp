@@ -70,6 +70,11 @@ const mimetra_operation* find_operation(const mimetra_context* context, const ch
   return context && name ? context->table->find(name) : nullptr;
 }
 
+const mimetra_format* const* formats(const mimetra_context* context) noexcept {
+  static const mimetra_format* const none = nullptr;
+  return context ? context->table->formats() : &none;
+}
+
 mimetra_status operations_json(mimetra_context* context, const char** json) noexcept {
   if (json) *json = nullptr;
   return guarded(context, [&] { *needed(json, "json") = context->table->json().c_str(); });
@@ -350,7 +355,8 @@ const mimetra_interface& toolkit_interface() {
                                                   job_log,
                                                   job_fail,
                                                   job_output,
-                                                  job_report};
+                                                  job_report,
+                                                  formats};
   return functions;
 }
 

@@ -261,6 +261,28 @@ typedef struct mimetra_operation {
   void* user;                  /* handed to run */
 } mimetra_operation;
 
+/*
+ * A format of files: how one kind of value is read and written. Of a plugin, read and write run as
+ * an operation does, with a job of their own: job_text(job, "path") is the file. read hands the
+ * value over by job_output(job, "value", data); write is given it by job_input(job, "value", 0),
+ * and its path is a name of its own, which becomes the one asked for when write has returned
+ * MIMETRA_OK. Names of parameters are free, but for "path" and those that mimetra_operation lists.
+ */
+typedef struct mimetra_format {
+  uint32_t struct_size;
+  mimetra_kind kind;
+  const char* name;              /* one line: "PC2 point cache" */
+  const char* const* extensions; /* ".pc2"; of the toolkit also "": a folder, a pattern, a name with
+                                  * '@', and "*": any file. A plugin's are a dot and small letters,
+                                  * digits, '_' or '-', and no other format's of the kind */
+  const mimetra_parameter* const* parameters; /* each with of_files */
+  mimetra_run read;                           /* NULL where it is not read, or only described */
+  mimetra_run write;                          /* NULL where it is not written, or only described */
+  void* user;                                 /* handed to both */
+  uint32_t flags;                             /* MIMETRA_WITH_FIELDS: a sequence keeps its fields */
+  uint32_t use; /* MIMETRA_READING | MIMETRA_WRITING: what it is for, where it is described */
+} mimetra_format;
+
 /* An operation table with its plugins, settings, and the last error. */
 typedef struct mimetra_context mimetra_context;
 
@@ -390,6 +412,11 @@ typedef struct mimetra_interface {
   mimetra_status (*job_output)(mimetra_job* job, const char* output, const mimetra_data* data);
   /* The result for programs, a JSON object, and for people, lines of text. */
   mimetra_status (*job_report)(mimetra_job* job, const char* json, const char* summary);
+
+  /* -- What there is, once more -- */
+
+  /* All formats of files, the toolkit's and those of plugins; a list that ends with NULL. */
+  const mimetra_format* const* (*formats)(const mimetra_context* context);
 } mimetra_interface;
 
 /* True where the library that serves `m` is new enough to have a function. */
@@ -401,10 +428,10 @@ typedef const mimetra_interface* (*mimetra_get_interface_function)(uint32_t vers
 /* The table of a version, or NULL for one that this library does not serve. Its only symbol. */
 MIMETRA_EXPORT const mimetra_interface* mimetra_get_interface(uint32_t version);
 
-/* ---- Third-party operations ----------------------------------------------------------------- */
+/* ---- Third-party operations and formats ----------------------------------------------------- */
 
 /*
- * A plugin is a shared library with one function, which describes its operations:
+ * A plugin is a shared library with one function, which describes its operations and formats:
  *
  *   MIMETRA_EXPORT const mimetra_plugin* mimetra_get_plugin(void) { return &plugin; }
  *
@@ -424,6 +451,7 @@ typedef struct mimetra_plugin {
   uint32_t version; /* MIMETRA_INTERFACE_VERSION */
   const char* name; /* for messages */
   const mimetra_operation* const* operations;
+  const mimetra_format* const* formats; /* NULL for none */
 } mimetra_plugin;
 
 typedef const mimetra_plugin* (*mimetra_get_plugin_function)(void);

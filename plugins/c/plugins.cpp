@@ -9,6 +9,7 @@
 #include <dlfcn.h>
 
 #include "plugins/c/failure.h"
+#include "plugins/c/plugin_format.h"
 #include "plugins/c/plugin_operation.h"
 #include "plugins/c/utf8.h"
 #include "plugins/c/whole_struct.h"
@@ -104,6 +105,9 @@ std::vector<std::string> add_plugins(OperationTable& table, const std::vector<fs
   const auto add = [&](const fs::path& file) {
     const mimetra_plugin plugin = loaded(file);
     if (!toolkit) toolkit = std::make_shared<const DescribedTable>(add_toolkit);
+    for (auto list = plugin.formats; list && *list; ++list) {
+      attempt(file, [&] { table.add(plugin_format(whole(**list), plugin.name, toolkit)); });
+    }
     for (auto list = plugin.operations; list && *list; ++list) {
       attempt(file, [&] { table.add(plugin_operation(whole(**list), plugin.name, toolkit)); });
     }

@@ -39,7 +39,7 @@ NamedData loaded_data(const mimetra_context& context, DataKind kind, const std::
   Operation reading;
   reading.inputs = {{"input", kind, ""}};
   reading.inputs.front().fields = reading.inputs.front().identities = true;
-  const Parameters parameters = parameters_of(table.parameters_of(reading), settings);
+  const Parameters parameters = parameters_of(table.reader(kind, text).reading, settings);
   LoadedInputs loaded = load_inputs(table, reading, parameters, {{"input", {text}}},
                                     context.progress, context.log, context.threads);
   return std::move(loaded.data.at("input").front());
@@ -48,17 +48,15 @@ NamedData loaded_data(const mimetra_context& context, DataKind kind, const std::
 void write_data(const mimetra_context& context, const Data& data, const std::string& path,
                 const char* const* settings) {
   const OperationTable& table = context.table->operations();
-  Operation writing;
-  writing.outputs = {{"output", kind_of(data), ""}};
-  std::vector<Parameter> declared = table.parameters_of(writing);
+  const Format& format = table.writer({"output", kind_of(data), ""}, path);
+  std::vector<Parameter> declared = format.writing;
   declared.push_back(kForce);
   const Parameters parameters = parameters_of(std::move(declared), settings);
   WriteRequest request{path, parameters, parameters.flag("force"), context.progress};
   request.threads = context.threads;
-  const Writer& writer = table.writer(writing.outputs.front(), path);
-  const std::string note = note_on_fields(writer, data, path);
+  const std::string note = note_on_fields(format, data, path);
   if (!note.empty() && context.log) context.log(LogLevel::warning, note);
-  writer.write(data, request);
+  format.write(data, request);
 }
 
 }  // namespace mimetra

@@ -72,7 +72,7 @@ static const mimetra_operation operation = {
     .examples = (const char* const[]){"smooth take.npy --strength 0.3 -o smoothed.npy", NULL},
     .run = run};
 static const mimetra_plugin plugin = {SIZE(plugin), MIMETRA_INTERFACE_VERSION, "smooth sample",
-                                      (const mimetra_operation* const[]){&operation, NULL}};
+                                      (const mimetra_operation* const[]){&operation, NULL}, NULL};
 
 MIMETRA_EXPORT const mimetra_plugin* mimetra_get_plugin(void) {
   return &plugin;

@@ -62,16 +62,16 @@ mimetra_status run(const mimetra_interface* m, mimetra_job* job, void*) {
 }
 
 const mimetra_port input = {sizeof input, MIMETRA_SEQUENCE, "sequence", "what moves", 0, 0};
-const mimetra_port output = {sizeof output,          MIMETRA_SEQUENCE,    "out",
-                             "speeds: .pvd or .vtp", MIMETRA_WITH_FIELDS, 0};
+const mimetra_port output = {
+    sizeof output, MIMETRA_SEQUENCE, "out", "the mesh with its speeds", MIMETRA_WITH_FIELDS, 0};
 const mimetra_port* const inputs[] = {&input, nullptr};
 const mimetra_port* const outputs[] = {&output, nullptr};
 const mimetra_operation operation = {
     sizeof operation, 0,   "speed", "Show how fast each vertex moves", inputs, outputs, nullptr,
     nullptr,          run, nullptr};
 const mimetra_operation* const operations[] = {&operation, nullptr};
-const mimetra_plugin plugin = {sizeof plugin, MIMETRA_INTERFACE_VERSION, "speed sample",
-                               operations};
+const mimetra_plugin plugin = {sizeof plugin, MIMETRA_INTERFACE_VERSION, "speed sample", operations,
+                               nullptr};
 
 }  // namespace
 

@@ -21,7 +21,7 @@ mimetra_status run(const mimetra_interface*, mimetra_job*, void*) {
 }
 
 [[maybe_unused]] mimetra_plugin plugin_of(const mimetra_operation* const* operations) {
-  return {sizeof(mimetra_plugin), MIMETRA_INTERFACE_VERSION, "broken", operations};
+  return {sizeof(mimetra_plugin), MIMETRA_INTERFACE_VERSION, "broken", operations, nullptr};
 }
 
 }  // namespace

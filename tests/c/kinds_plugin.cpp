@@ -91,7 +91,8 @@ const mimetra_operation all[] = {{kSize, 0, "spots", "Makes regions", spots_inpu
                                  {kSize, 0, "each", "Takes several", each_inputs, each_outputs,
                                   nullptr, nullptr, each, nullptr}};
 const mimetra_operation* const operations[] = {&all[0], &all[1], &all[2], &all[3], nullptr};
-const mimetra_plugin plugin = {sizeof plugin, MIMETRA_INTERFACE_VERSION, "kinds", operations};
+const mimetra_plugin plugin = {sizeof plugin, MIMETRA_INTERFACE_VERSION, "kinds", operations,
+                               nullptr};
 
 }  // namespace
 

@@ -65,11 +65,26 @@ TEST(Layout, OfOperation) {
 }
 
 TEST(Layout, OfPlugin) {
-  EXPECT_EQ(sizeof(mimetra_plugin), 24u);
+  EXPECT_EQ(sizeof(mimetra_plugin), 32u);
   EXPECT_EQ(offsetof(mimetra_plugin, struct_size), 0u);
   EXPECT_EQ(offsetof(mimetra_plugin, version), 4u);
   EXPECT_EQ(offsetof(mimetra_plugin, name), 8u);
   EXPECT_EQ(offsetof(mimetra_plugin, operations), 16u);
+  EXPECT_EQ(offsetof(mimetra_plugin, formats), 24u);
+}
+
+TEST(Layout, OfFormat) {
+  EXPECT_EQ(sizeof(mimetra_format), 64u);
+  EXPECT_EQ(offsetof(mimetra_format, struct_size), 0u);
+  EXPECT_EQ(offsetof(mimetra_format, kind), 4u);
+  EXPECT_EQ(offsetof(mimetra_format, name), 8u);
+  EXPECT_EQ(offsetof(mimetra_format, extensions), 16u);
+  EXPECT_EQ(offsetof(mimetra_format, parameters), 24u);
+  EXPECT_EQ(offsetof(mimetra_format, read), 32u);
+  EXPECT_EQ(offsetof(mimetra_format, write), 40u);
+  EXPECT_EQ(offsetof(mimetra_format, user), 48u);
+  EXPECT_EQ(offsetof(mimetra_format, flags), 56u);
+  EXPECT_EQ(offsetof(mimetra_format, use), 60u);
 }
 
 TEST(Layout, OfInterface) {
@@ -122,6 +137,7 @@ TEST(Layout, OfInterface) {
   FOLLOWS(job_fail);
   FOLLOWS(job_output);
   FOLLOWS(job_report);
+  FOLLOWS(formats);
 #undef FOLLOWS
   EXPECT_EQ(sizeof(mimetra_interface), offset);
 }

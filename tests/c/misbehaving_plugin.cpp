@@ -83,7 +83,8 @@ const mimetra_operation operation = {
     sizeof operation, 0,   "misbehave", "Does what is wrong", inputs, outputs, parameters,
     nullptr,          run, nullptr};
 const mimetra_operation* const operations[] = {&operation, nullptr};
-const mimetra_plugin plugin = {sizeof plugin, MIMETRA_INTERFACE_VERSION, "misbehaving", operations};
+const mimetra_plugin plugin = {sizeof plugin, MIMETRA_INTERFACE_VERSION, "misbehaving", operations,
+                               nullptr};
 
 }  // namespace
 

@@ -138,5 +138,30 @@ TEST_F(PluginCommand, IsNotHarmedByBrokenPlugins) {
   EXPECT_THAT(unknown.err, AllOf(HasSubstr("is for version 2"), HasSubstr("no command")));
 }
 
+TEST_F(PluginCommand, ReadsAndWritesAFormatOfAPlugin) {
+  EXPECT_THAT(run_with("samples", "formats").out, HasSubstr("Medit mesh of one frame"));
+  EXPECT_THAT(run_with("samples", "convert --help").out, HasSubstr(".mesh"));
+  auto result = run_with("samples", "convert head -o face.mesh");
+  EXPECT_EQ(result.code, 0) << result.err;
+  result = run_with("samples", "convert face.mesh -o back.npy");
+  EXPECT_EQ(result.code, 0) << result.err;
+  ASSERT_EQ(run("convert head -o straight.npy").code, 0);
+  EXPECT_EQ(text_of(folder_ / "back.npy"), text_of(folder_ / "straight.npy"));
+  EXPECT_EQ(run_with("samples", "info face.mesh").code, 0);
+  EXPECT_EQ(run("info face.mesh").code, 3);
+}
+
+TEST_F(PluginCommand, SaysWhichFileAFormatOfAPluginCouldNotReadOrWrite) {
+  write("cut.mesh", "MeshVersionFormatted 2\nDimension 3\nVertices\n4\n0 0 0 0\n");
+  const auto before = listing();
+  auto result = run_with("samples", "info cut.mesh");
+  EXPECT_EQ(result.code, 3);
+  EXPECT_THAT(result.err, AllOf(HasSubstr("cut.mesh"), HasSubstr("ends in its Vertices")));
+  result = run_with("samples", "convert head --weights take.csv -o take.mesh");
+  EXPECT_EQ(result.code, 4);
+  EXPECT_THAT(result.err, AllOf(HasSubstr("take.mesh"), HasSubstr("holds one frame")));
+  EXPECT_EQ(listing(), before);
+}
+
 }  // namespace
 }  // namespace mimetra

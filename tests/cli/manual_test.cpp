@@ -54,6 +54,22 @@ TEST_F(Manual, ReferenceInTheDocumentsIsUpToDate) {
       << "mimetra manual --format markdown > docs/commands.md";
 }
 
+TEST_F(Manual, FormatsInTheDocumentsAreUpToDate) {
+  EXPECT_EQ(run("formats --markdown").out, text_of(test::source_folder() / "docs/formats.md"))
+      << "mimetra formats --markdown > docs/formats.md";
+}
+
+TEST_F(Manual, CompletionOffersFilesThatAnInputCanBeReadFrom) {
+  ASSERT_EQ(run("completion --shell bash > completion.bash").code, 0);
+  for (const char* name : {"set.json", "set two.csv", "set.vtp", "set.npy", "set.h5"})
+    write(name, "");
+  std::filesystem::create_directory(folder_ / "sets");
+  EXPECT_EQ(offered("mimetra transfer --regions se"), "set.json set two.csv set.vtp sets\n");
+  EXPECT_EQ(offered("mimetra transfer --components se"), "set.h5 sets\n");
+  EXPECT_EQ(offered("mimetra transfer --regions-out se"), "set.json set two.csv set.vtp sets\n");
+  EXPECT_THAT(offered("mimetra transfer -o se"), HasSubstr("set.npy"));
+}
+
 TEST_F(Manual, CompletionOffersCommandsOptionsChoicesAndFiles) {
   ASSERT_EQ(run("completion --shell bash > completion.bash").code, 0);
   EXPECT_EQ(offered("mimetra trans"), "transfer\n");

@@ -199,6 +199,6 @@ const mimetra_plugin* mimetra_get_plugin() {
     return operations;
   }();
   static const mimetra_plugin plugin = {sizeof plugin, MIMETRA_INTERFACE_VERSION, "odd",
-                                        list.data()};
+                                        list.data(), nullptr};
   return &plugin;
 }

@@ -51,12 +51,14 @@ TEST(OperationTable, RefusesANameThatIsTaken) {
 
 TEST(OperationTable, RefusesAParameterThatMeansTwoThings) {
   OperationTable table = toolkit();
-  Writer writer;
-  writer.kind = DataKind::components;
-  writer.extensions = {".x"};
-  writer.parameters = {{"rho", ParameterKind::text, {}, "another rho"}};
-  table.add(writer);
-  EXPECT_THAT([&] { table.parameters_of(*table.find("decompose")); },
+  Format format;
+  format.kind = DataKind::components;
+  format.extensions = {".x"};
+  format.writing = {{"rho", ParameterKind::text, {}, "another rho"}};
+  format.write = [](const Data&, const WriteRequest&) {
+    return std::vector<std::filesystem::path>();
+  };
+  EXPECT_THAT([&] { table.add(format); },
               testing::ThrowsMessage<std::invalid_argument>(HasSubstr("'rho' means two things")));
 }
 
@@ -148,10 +150,6 @@ TEST(OutputPaths, PutACompanionBesideTheMainOutput) {
   EXPECT_EQ(path("d/take.v2/"), "d/take.v2.fit.json");
   EXPECT_EQ(path("d/take.npy"), "d/take.fit.json");
   EXPECT_EQ(path("./one.obj"), "one.fit.json");
-}
-
-TEST(OperationTable, KnowsNoLandmarksWithoutTheModuleThatReadsThem) {
-  EXPECT_THROW(toolkit().landmark_reader(), std::logic_error);
 }
 
 /// The waving grid onto itself, by two regions.

@@ -203,7 +203,8 @@ const mimetra_operation taken = {
     nullptr,      replace, nullptr};
 const mimetra_operation* const operations[] = {&remake_operation, &replace_operation,
                                                &follow_operation, &taken, nullptr};
-const mimetra_plugin plugin = {sizeof plugin, MIMETRA_INTERFACE_VERSION, "remake", operations};
+const mimetra_plugin plugin = {sizeof plugin, MIMETRA_INTERFACE_VERSION, "remake", operations,
+                               nullptr};
 
 }  // namespace
 

@@ -24,10 +24,10 @@ class SolveTest : public testing::Test {
 };
 
 TEST_F(SolveTest, LooksForWeightsWhereTheTargetHasExpressions) {
-  EXPECT_EQ(solve(source_, {"actor", actor_}, some_).weights.cols(), 5);
-  EXPECT_EQ(solve(source_, {"mesh", mesh_}, some_).weights.size(), 0);
+  EXPECT_EQ(solve(source_, {"actor", actor_}, some_).weights().cols(), 5);
+  EXPECT_EQ(solve(source_, {"mesh", mesh_}, some_).weights().size(), 0);
   options_.space = Space::vertex;
-  EXPECT_EQ(solve(source_, {"actor", actor_}, some_, options_).weights.size(), 0);
+  EXPECT_EQ(solve(source_, {"actor", actor_}, some_, options_).weights().size(), 0);
 }
 
 TEST_F(SolveTest, HasTheTargetsNeutralAsRestAndTheSourcesTimes) {

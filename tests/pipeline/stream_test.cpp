@@ -47,7 +47,7 @@ class StreamedTransferTest : public testing::Test {
       EXPECT_TRUE(one.sequence->read(17, 5) == other.sequence->read(17, 5)) << t;
       EXPECT_TRUE(one.sequence->rest() == other.sequence->rest()) << t;
       EXPECT_EQ(one.sequence->rest_is_known(), other.sequence->rest_is_known()) << t;
-      EXPECT_TRUE(one.weights == other.weights) << t;
+      EXPECT_TRUE(one.weights() == other.weights()) << t;
       const TransferError &error = found.targets[t].error, &right = expected.targets[t].error;
       EXPECT_EQ(error.de_all, right.de_all) << t;
       EXPECT_EQ(error.de_region, right.de_region) << t;

@@ -48,7 +48,7 @@ TEST_F(TransferTest, IsItsPartsDoneByHand) {
   const BlendshapeTransfer by_hand(source_.rest(), actor_, regions.triangles);
   const Eigen::MatrixXd weights = by_hand.weights(source_);
   const MeshSequence expected = actor_.animate(weights, source_.times());
-  EXPECT_TRUE(result.targets.front().solution.weights == weights);
+  EXPECT_TRUE(result.targets.front().solution.weights() == weights);
   EXPECT_TRUE(frames_of(result.targets.front()) == expected.positions());
   EXPECT_EQ(result.targets.front().error.de_all,
             transfer_error(source_, expected, regions.triangles).de_all);
@@ -74,7 +74,7 @@ TEST_F(TransferTest, ByAllTrianglesHasNoRegions) {
   EXPECT_FALSE(result.regions);
   EXPECT_FALSE(result.components);
   const BlendshapeTransfer by_hand(source_.rest(), actor_, all_triangles(source_.triangles()));
-  EXPECT_TRUE(result.targets.front().solution.weights == by_hand.weights(source_));
+  EXPECT_TRUE(result.targets.front().solution.weights() == by_hand.weights(source_));
 }
 
 TEST_F(TransferTest, ByRegionsThatAreGivenDecomposesNothing) {

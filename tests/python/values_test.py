@@ -78,6 +78,15 @@ class Values(SampleTest):
         with self.assertRaisesRegex(TypeError, "mimetra.Sequence cannot be pickled; save it"):
             pickle.dumps(mimetra.Sequence(moved(), POLYGONS))
 
+    def test_formats_are_those_that_values_are_saved_in(self):
+        formats = {ending: each for each in mimetra.formats for ending in each.extensions
+                   if each.kind is mimetra.Sequence}
+        self.assertTrue(formats[".npy"].read and formats[".npy"].written)
+        self.assertIn("single", formats[".npy"].options)
+        self.assertNotIn("format", formats[".npy"].options)
+        with self.assertRaisesRegex(mimetra.UsageError, "format=obj"):
+            mimetra.Sequence(moved(), POLYGONS).save(self.path / "take.npy", format="obj")
+
     def test_saving_names_the_fields_that_a_format_leaves_out(self):
         shown = mimetra.geodesic(self.arrays, source=[3]).out
         with self.assertLogs("mimetra", "WARNING") as logs:

@@ -46,14 +46,24 @@ std::string value_name(ParameterKind kind) {
   return "";
 }
 
-CommandOption option_of(const Input& input) {
-  const std::string value = input.optional ? "FILE" : upper(input.name);
-  return {input.name, {"--" + input.name}, value, input.help, {}, true, !input.optional};
+/// None where a path may end in anything.
+std::vector<std::string> endings_of(std::vector<std::string> extensions) {
+  const auto is_ending = [](const std::string& extension) { return extension.starts_with('.'); };
+  return std::ranges::all_of(extensions, is_ending) ? extensions : std::vector<std::string>();
 }
 
-CommandOption option_of(const Output& output) {
-  CommandOption option{output.name, {"--" + output.name}, upper(output.name), output.help, {},
-                       true};
+CommandOption option_of(const OperationTable& table, const Input& input) {
+  CommandOption option{input.name, {"--" + input.name}, upper(input.name), input.help, {}, true};
+  if (input.optional) option.value = "FILE";
+  option.endings = endings_of(table.extensions(input));
+  option.required = !input.optional;
+  return option;
+}
+
+CommandOption option_of(const OperationTable& table, const Output& output) {
+  CommandOption option{
+      output.name, {"--" + output.name}, upper(output.name), table.help(output), {}, true};
+  option.endings = endings_of(table.extensions(output));
   if (output.name == "out") option.forms.insert(option.forms.begin(), "-o");
   option.required = !output.optional;
   return option;
@@ -95,12 +105,15 @@ std::vector<Command> commands_of(const OperationTable& table) {
   std::vector<Command> commands;
   for (const Operation& operation : table.operations()) {
     Command command{&operation, table.parameters_of(operation), {}, {}};
-    for (const Output& output : operation.outputs) command.options.push_back(option_of(output));
-    for (const Input& input : operation.inputs) {
+    for (const Output& output : operation.outputs) {
+      command.options.push_back(option_of(table, output));
+    }
+    for (Input input : operation.inputs) {
+      input.help = table.help(input);
       if (input.optional || input.named)
-        command.options.push_back(option_of(input));
+        command.options.push_back(option_of(table, input));
       else
-        command.positionals.push_back(input);
+        command.positionals.push_back(std::move(input));
     }
     for (const Parameter& parameter : command.parameters) {
       command.options.push_back(option_of(parameter));

@@ -15,6 +15,8 @@ struct CommandOption {
   std::string help;                ///< with unit, choices and default
   std::vector<std::string> choices = {};
   bool takes_file = false;
+  /// What the names of its files end in, ".json"; none where folders and others are taken too.
+  std::vector<std::string> endings = {};
   bool required = false;
   bool common = false;  ///< every command has it
 

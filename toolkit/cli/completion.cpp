@@ -53,6 +53,8 @@ std::string zsh_argument(const CommandOption& option) {
     if (option.takes_file && !option.choices.empty()) {
       rest +=
           "{_alternative \"word:word:(" + joined(option.choices, " ") + ")\" \"file:file:_files\"}";
+    } else if (!option.endings.empty()) {
+      rest += "_files -g \"*(" + joined(option.endings, "|") + ")\"";
     } else if (option.takes_file) {
       rest += "_files";
     } else if (!option.choices.empty()) {
@@ -105,6 +107,16 @@ Operation completion_operation(const OperationTable& table) {
 
 }  // namespace
 
+namespace {
+
+/// What files a value may be: "no", "yes", or what their names end in.
+std::string bash_files(const CommandOption& option) {
+  if (!option.takes_file) return "no";
+  return option.endings.empty() ? "yes" : joined(option.endings, " ");
+}
+
+}  // namespace
+
 std::string bash_completion(const std::vector<Command>& commands) {
   std::vector<std::string> names;
   std::string options, values;
@@ -117,7 +129,7 @@ std::string bash_completion(const std::vector<Command>& commands) {
       for (const std::string& form : option.forms) {
         // The space is escaped because patterns of `case` are words.
         values += "    " + name + "\\ " + form + ") words='" + joined(option.choices, " ") +
-                  "'; files=" + (option.takes_file ? "yes" : "no") + " ;;\n";
+                  "'; files='" + bash_files(option) + "' ;;\n";
       }
     }
   }
@@ -136,7 +148,7 @@ std::string bash_completion(const std::vector<Command>& commands) {
          values +
          "    *) files=any ;;\n"
          "  esac\n"
-         "  if [ $files = any ]; then\n"
+         "  if [ \"$files\" = any ]; then\n"
          "    case \"$current\" in -*)\n"
          "    files=no\n"
          "    case \"${COMP_WORDS[1]}\" in\n" +
@@ -144,12 +156,19 @@ std::string bash_completion(const std::vector<Command>& commands) {
          "    esac ;;\n"
          "    esac\n"
          "  fi\n"
-         "  local IFS=$'\\n'\n"
+         "  local -a endings=($files)\n"
+         "  local ending IFS=$'\\n'\n"
          "  COMPREPLY=($(compgen -W \"${words// /$IFS}\" -- \"$current\"))\n"
-         "  if [ $files != no ]; then\n"
-         "    COMPREPLY+=($(compgen -f -- \"$current\"))\n"
-         "    compopt -o filenames 2>/dev/null\n"
-         "  fi\n"
+         "  case \"$files\" in\n"
+         "    no) return ;;\n"
+         "    yes | any) COMPREPLY+=($(compgen -f -- \"$current\")) ;;\n"
+         "    *)\n"
+         "      for ending in \"${endings[@]}\"; do\n"
+         "        COMPREPLY+=($(compgen -f -X \"!*$ending\" -- \"$current\"))\n"
+         "      done\n"
+         "      COMPREPLY+=($(compgen -d -- \"$current\")) ;;\n"
+         "  esac\n"
+         "  compopt -o filenames 2>/dev/null\n"
          "}\n"
          "complete -F _mimetra mimetra\n";
 }
@@ -186,6 +205,16 @@ std::string zsh_completion(const std::vector<Command>& commands) {
          "_mimetra \"$@\"\n";
 }
 
+namespace {
+
+std::string fish_files(const CommandOption& option) {
+  if (!option.takes_file) return " -x";
+  if (option.endings.empty()) return " -r -F";
+  return " -x -a '(__fish_complete_suffix " + joined(option.endings, " ") + ")'";
+}
+
+}  // namespace
+
 std::string fish_completion(const std::vector<Command>& commands) {
   std::string text = "# Completion of mimetra for fish.\n";
   for (const Command& command : commands) {
@@ -200,7 +229,7 @@ std::string fish_completion(const std::vector<Command>& commands) {
       for (const std::string& form : option.forms) {
         text += form.starts_with("--") ? " -l " + form.substr(2) : " -s " + form.substr(1);
       }
-      if (!option.is_flag()) text += option.takes_file ? " -r -F" : " -x";
+      if (!option.is_flag()) text += fish_files(option);
       if (!option.choices.empty()) text += " -a " + in_fish_quotes(joined(option.choices, " "));
       text += " -d " + in_fish_quotes(option.help) + "\n";
     }

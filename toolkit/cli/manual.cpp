@@ -2,8 +2,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include "toolkit/io/sequence_format.h"
-#include "toolkit/mesh/text.h"
 #include "toolkit/operations/json.h"
 
 namespace mimetra::cli {
@@ -174,14 +172,7 @@ std::string reference_page(const std::vector<Command>& commands) {
     text += "```\n";
   }
   text += "\n## Common options\n" + table_of(common_options(commands), true);
-  text +=
-      "\n## Formats of sequences\n\nEach is read and written. Folders and patterns are of mesh "
-      "files.\n\n"
-      "| format | extension | faces and rest pose |\n| --- | --- | --- |\n";
-  for (const SequenceFormat& format : sequence_formats()) {
-    text += "| " + format.name + " | " + joined(format.extensions) + " | " +
-            (format.has_companions ? "in files beside it where it has none" : "in it") + " |\n";
-  }
+  text += "\n## Formats\n\n[formats.md](formats.md) lists all that is read and written.\n";
   text += "\n## Exit codes\n\n| code | |\n| --- | --- |\n";
   for (const ExitCodeLine& line : kExitCodes) {
     text += std::string("| ") + line.code + " | " + line.meaning + " |\n";

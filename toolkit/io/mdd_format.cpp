@@ -75,7 +75,8 @@ std::unique_ptr<FrameSink> begin_mdd(const SequenceHeader& header, const fs::pat
 }  // namespace
 
 SequenceFormat mdd_format() {
-  return {"MDD point cache", {".mdd"}, true, open_mdd, begin_mdd};
+  return {"MDD point cache", {".mdd"}, true, SequenceFormat::Precision::single,
+          open_mdd,          begin_mdd};
 }
 
 }  // namespace mimetra

@@ -61,7 +61,9 @@ std::unique_ptr<FrameSink> begin_mesh(const SequenceHeader& header, const fs::pa
 }  // namespace
 
 SequenceFormat mesh_format() {
-  return {"mesh", mesh_extensions(), false, open_mesh, begin_mesh};
+  return {
+      "mesh of one frame", mesh_extensions(), false, SequenceFormat::Precision::single_or_double,
+      open_mesh,           begin_mesh};
 }
 
 }  // namespace mimetra

@@ -28,7 +28,7 @@ int vertices_of(const fs::path& path, const NpyHeader& header) {
   return counted(path, header.shape[header.shape.size() - 2]);
 }
 
-/// What an array starts with; all of its header in version 1.
+/// What an array starts with; all of its header but for very long ones.
 std::string beginning_of(const InputBytes& file) {
   constexpr std::size_t kMost = 1 << 17;
   std::string bytes(std::min(file.size(), kMost), '\0');
@@ -92,7 +92,7 @@ std::unique_ptr<const PointCache> open_npy_cache(const fs::path& path) {
 std::unique_ptr<const PointCache> open_npy_cache(const std::string& name,
                                                  std::unique_ptr<const InputBytes> bytes) {
   const std::string beginning = beginning_of(*bytes);
-  if (npy_version(beginning) == 1) {
+  if (holds_npy_header(beginning)) {
     const NpyHeader header = read_npy_header(name, beginning);
     check_frames_header(name, header);
     if (!header.fortran_order) {
@@ -116,7 +116,8 @@ PointCacheTarget begin_npy_cache(const fs::path& path, std::size_t frames, std::
 }
 
 SequenceFormat npy_format() {
-  return {"NumPy array", {".npy"}, true, open_npy, begin_npy};
+  return {"NumPy array", {".npy"}, true, SequenceFormat::Precision::double_or_single,
+          open_npy,      begin_npy};
 }
 
 }  // namespace mimetra

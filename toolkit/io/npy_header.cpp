@@ -92,8 +92,14 @@ std::string shape_text(const std::vector<std::size_t>& shape) {
   return text.empty() ? "a single number" : text;
 }
 
-int npy_version(std::string_view bytes) {
-  return bytes.size() > kVersionAt ? static_cast<unsigned char>(bytes[kVersionAt]) : 0;
+bool holds_npy_header(std::string_view bytes) {
+  try {
+    std::size_t data = 0;
+    dictionary("", bytes, data);
+    return true;
+  } catch (const IoError&) {
+    return false;
+  }
 }
 
 NpyHeader read_npy_header(const std::string& path, std::string_view bytes) {

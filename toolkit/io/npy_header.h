@@ -21,8 +21,8 @@ struct NpyHeader {
 
 /// "4 x 5 x 3".
 std::string shape_text(const std::vector<std::size_t>& shape);
-/// The version that the first bytes of a file name; 0 where they are too few.
-int npy_version(std::string_view bytes);
+/// True where the first bytes of a file hold all of its header.
+bool holds_npy_header(std::string_view bytes);
 /// From the first bytes of a file. Throws IoError that names `path`.
 NpyHeader read_npy_header(const std::string& path, std::string_view bytes);
 /// Number of values, which the file holds exactly: found before memory is asked for. Throws

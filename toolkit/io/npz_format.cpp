@@ -237,7 +237,8 @@ std::unique_ptr<FrameSink> begin_npz(const SequenceHeader& header, const fs::pat
 }  // namespace
 
 SequenceFormat npz_format() {
-  return {"NumPy archive", {".npz"}, true, open_npz, begin_npz};
+  return {"NumPy archive", {".npz"}, true, SequenceFormat::Precision::double_or_single,
+          open_npz,        begin_npz};
 }
 
 }  // namespace mimetra

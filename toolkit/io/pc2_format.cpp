@@ -77,7 +77,8 @@ std::unique_ptr<FrameSink> begin_pc2(const SequenceHeader& header, const fs::pat
 }  // namespace
 
 SequenceFormat pc2_format() {
-  return {"PC2 point cache", {".pc2"}, true, open_pc2, begin_pc2};
+  return {"PC2 point cache", {".pc2"}, true, SequenceFormat::Precision::single,
+          open_pc2,          begin_pc2};
 }
 
 }  // namespace mimetra

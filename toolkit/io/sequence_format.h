@@ -18,6 +18,9 @@ struct SequenceFormat {
   std::vector<std::string> extensions;
   /// True where faces and rest pose stand in files beside it.
   bool has_companions = false;
+  /// What positions are written in, and what they may be written in by option.
+  enum class Precision { single, single_or_double, double_or_single };
+  Precision precision;
   OpenSequence (*open)(const std::filesystem::path&, const SequenceSource&);
   std::unique_ptr<FrameSink> (*begin)(const SequenceHeader&, const std::filesystem::path& target,
                                       const SequenceWriteOptions&, const ExtraFiles&);

@@ -119,7 +119,7 @@ Operation align_operation() {
   operation.inputs = {{"sequence", DataKind::sequence, "sequence to align"}};
   operation.inputs.front().fields = true;
   operation.inputs.front().streamed = true;
-  operation.outputs = {{"out", DataKind::sequence, sequence_outputs()}};
+  operation.outputs = {{"out", DataKind::sequence, "the new sequence"}};
   operation.parameters = align_parameters().declared();
   operation.examples = {"align takes/ -o still/",
                         "align still/ --undo still/mimetra-run.json -o back/"};

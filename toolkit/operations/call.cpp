@@ -66,16 +66,19 @@ void Call::check_inputs() const {
 
 /// They would be ignored.
 void Call::check_parameters_of_files() const {
-  Operation used;
-  used.parameters = request_.operation->parameters;
+  std::vector<Parameter> applying = request_.operation->parameters;
   for (const Input& input : request_.operation->inputs) {
-    if (request_.named.contains(input.name)) used.inputs.push_back(input);
+    const auto named = request_.named.find(input.name);
+    if (input.run || named == request_.named.end()) continue;
+    for (const std::string& text : named->second) {
+      const auto& reading = table_.reader(input.kind, text).reading;
+      applying.insert(applying.end(), reading.begin(), reading.end());
+    }
   }
-  std::vector<Parameter> applying = table_.parameters_of(used);
   for (const Output& output : request_.operation->outputs) {
     const auto asked = destination_of(output);
     if (!asked) continue;
-    const auto& writing = table_.writer(output, asked->path).parameters;
+    const auto& writing = table_.writer(output, asked->path).writing;
     applying.insert(applying.end(), writing.begin(), writing.end());
   }
   for (const Parameter& parameter : request_.parameters.declared()) {
@@ -241,10 +244,10 @@ void Call::write_values(const Output& output, const Paths& targets, const std::s
       write.extra.emplace_back(manifest_name(target, table_.writes_folder(output, target)),
                                manifest);
     }
-    const Writer& writer = table_.writer(output, target);
-    const std::string note = note_on_fields(writer, made->second[i].data, target);
+    const Format& format = table_.writer(output, target);
+    const std::string note = note_on_fields(format, made->second[i].data, target);
     if (!note.empty() && request_.log) request_.log(LogLevel::warning, note);
-    writer.write(made->second[i].data, write);
+    format.write(made->second[i].data, write);
   }
 }
 

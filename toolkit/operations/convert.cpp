@@ -12,7 +12,7 @@ Operation convert_operation() {
   operation.summary = "Write a sequence in another format; vertex order and faces stay as they are";
   operation.inputs = {{"sequence", DataKind::sequence, "sequence to convert"}};
   operation.inputs.front().streamed = operation.inputs.front().fields = true;
-  operation.outputs = {{"out", DataKind::sequence, sequence_outputs()}};
+  operation.outputs = {{"out", DataKind::sequence, "the new sequence"}};
   operation.examples = {"convert takes/smile_%04d.obj -o smile.npy",
                         "convert actor@identity003=1.5 --weights take.csv --frames 0:300 -o take/"};
   operation.run = [](const Invocation& invocation) {

@@ -87,8 +87,8 @@ Operation decompose_operation() {
   operation.name = "decompose";
   operation.summary = "Sparse localized deformation components of a sequence";
   operation.inputs = {{"sequence", DataKind::sequence, "sequence to decompose"}};
-  operation.outputs = {{"out", DataKind::components, ".h5"},
-                       {"weights-out", DataKind::table, "weights over time: .csv or .json", true}};
+  operation.outputs = {{"out", DataKind::components, "the components"},
+                       {"weights-out", DataKind::table, "weights over time", true}};
   operation.parameters = decompose_parameters().declared();
   operation.examples = {"decompose takes/ -k 30 -o take.h5",
                         "decompose take.npy -k 50 --compat splocs2013 -o take.h5"};

@@ -87,7 +87,7 @@ Operation evaluate_operation() {
   operation.inputs = {
       {"source", DataKind::sequence, "sequence whose deformation is transferred"},
       {"target", DataKind::model, "model (MODEL or MODEL@identity=1.5) or mesh that receives it"}};
-  operation.outputs = {{"out", DataKind::table, "the table: .csv or .json", true}};
+  operation.outputs = {{"out", DataKind::table, "the table", true}};
   operation.parameters = evaluation_parameters().declared();
   operation.examples = {"evaluate take.npy actor/ -k 10,30,40",
                         "evaluate takes/ actor@identity007=2 -k 10,20,30,40,50 -o table.csv"};

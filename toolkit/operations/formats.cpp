@@ -1,13 +1,14 @@
 #include "toolkit/operations/formats.h"
 
 #include "toolkit/io/components_file.h"
+#include "toolkit/io/mesh_file.h"
 #include "toolkit/io/model_file.h"
 #include "toolkit/io/pending_output.h"
 #include "toolkit/io/regions_file.h"
 #include "toolkit/io/sequence_file.h"
 #include "toolkit/io/sequence_format.h"
 #include "toolkit/io/whole_file.h"
-#include "toolkit/mesh/text.h"
+#include "toolkit/mesh/errors.h"
 #include "toolkit/operations/sequence_parameters.h"
 
 namespace mimetra {
@@ -16,8 +17,25 @@ using Paths = std::vector<std::filesystem::path>;
 
 namespace {
 
-Paths write_sequence_data(const Data& data, const WriteRequest& request) {
-  SequenceWriteOptions options = sequence_writing_parameters().read(request.parameters);
+ReadValue read_sequence_data(const std::string& text, const ReadRequest& request) {
+  SequenceSource source = sequence_parameters().read(request.parameters);
+  source.threads = request.threads;
+  source.progress = request.progress;
+  const auto value_of = [&text](FieldSequence sequence, auto& read) -> ReadValue {
+    return {{text, std::move(sequence), {.model_driven = read.model_driven}},
+            std::move(read.files),
+            std::move(read.notes)};
+  };
+  if (request.may_stream) {
+    OpenSequence open = open_sequence(text, source);
+    return value_of(FieldSequence(std::move(open.frames)), open);
+  }
+  SequenceRead read = read_sequence(text, source);
+  return value_of(FieldSequence(std::move(read.sequence)), read);
+}
+
+Paths write_sequence_data(const Data& data, const WriteRequest& request,
+                          SequenceWriteOptions options) {
   options.overwrite = request.overwrite;
   options.inputs = request.inputs;
   options.threads = request.threads;
@@ -26,11 +44,48 @@ Paths write_sequence_data(const Data& data, const WriteRequest& request) {
                         request.extra);
 }
 
+ReadValue read_components_data(const std::string& text, const ReadRequest&) {
+  return {{text, read_components(text)}, {text}};
+}
+
 Paths write_components_data(const Data& data, const WriteRequest& request) {
   return write_with_extra(request, [&]() -> Paths {
     write_components(request.target, std::get<Components>(data), request.overwrite);
     return {request.target};
   });
+}
+
+/// One mesh as a model without expressions.
+MorphableModel model_of_mesh(const std::filesystem::path& path) {
+  TriMesh mesh = read_mesh(path);
+  return {std::make_shared<Connectivity>(std::move(mesh.connectivity)),
+          std::move(mesh.positions),
+          {},
+          {}};
+}
+
+MorphableModel model_of(const ModelSpec& spec, const ReadRequest& request) {
+  const bool is_person = spec.fit || !spec.identity_text.empty();
+  if (request.identities && !is_person && !is_mesh_extension(spec.path.extension().string())) {
+    return read_model(spec.path, request.threads);
+  }
+  if (!std::filesystem::exists(spec.path)) {
+    throw IoError(spec.path.string(), "no such file or folder");
+  }
+  if (std::filesystem::is_directory(spec.path) || is_model(spec.path)) {
+    return MorphableModel(read_person(spec, request.threads));
+  }
+  if (!is_person) return model_of_mesh(spec.path);
+  throw MismatchError(spec.name() + ": '" + spec.path.string() +
+                      "' is one mesh and has no identities");
+}
+
+ReadValue read_model_data(const std::string& text, const ReadRequest& request) {
+  const ModelSpec spec = ModelSpec::parse(text);
+  ReadValue read{{spec.name(), ModelData{model_of(spec, request)}, {.path = spec.path}},
+                 {spec.path}};
+  if (spec.fit) read.files.push_back(*spec.fit);
+  return read;
 }
 
 /// As `fit` reads it.
@@ -50,6 +105,79 @@ Paths write_model_data(const Data& data, const WriteRequest& request) {
   write_model(request.target, model, performs ? std::optional(performance) : std::nullopt,
               request.overwrite, extra);
   return {request.target};
+}
+
+ReadValue read_regions_data(const std::string& text, const ReadRequest& request) {
+  return {{text, RegionData{read_regions(text, request.vertices, *request.triangles), {}}}, {text}};
+}
+
+ReadValue read_fit_data(const std::string& text, const ReadRequest&) {
+  return {{text, read_fit(text)}, {text}};
+}
+
+ReadValue read_document(const std::string& text, const ReadRequest&) {
+  return {{text, Document{read_file(text)}}, {text}};
+}
+
+/// A format of text, which `text_of` makes of a value.
+template <typename Value>
+std::function<Paths(const Data&, const WriteRequest&)> writer_of(
+    std::string (*text_of)(const Value&)) {
+  return [text_of](const Data& data, const WriteRequest& request) {
+    return write_text(request, text_of(std::get<Value>(data)));
+  };
+}
+
+BoundParameters<SequenceWriteOptions> writing_parameters(SequenceFormat::Precision precision) {
+  switch (precision) {
+    case SequenceFormat::Precision::single:
+      return BoundParameters<SequenceWriteOptions>();
+    case SequenceFormat::Precision::single_or_double:
+      return mesh_writing_parameters();
+    case SequenceFormat::Precision::double_or_single:
+      return array_writing_parameters();
+  }
+  return BoundParameters<SequenceWriteOptions>();
+}
+
+void add_sequence_formats(OperationTable& table) {
+  const auto add = [&table](std::string name, std::vector<std::string> extensions,
+                            const BoundParameters<SequenceWriteOptions>& writing) {
+    table.add(Format{.name = std::move(name),
+                     .kind = DataKind::sequence,
+                     .extensions = std::move(extensions),
+                     .reading = sequence_parameters().declared(),
+                     .read = read_sequence_data,
+                     .writing = writing.declared(),
+                     .write = [writing](const Data& data, const WriteRequest& request) {
+                       return write_sequence_data(data, request, writing.read(request.parameters));
+                     }});
+  };
+  for (const SequenceFormat& format : sequence_formats()) {
+    add(format.name, format.extensions, writing_parameters(format.precision));
+  }
+  add("folder of meshes", {Format::kFolder}, folder_writing_parameters());
+  table.add(Format{.name = "eos model, by weights",
+                   .kind = DataKind::sequence,
+                   .extensions = {".bin"},
+                   .reading = sequence_parameters().declared(),
+                   .read = read_sequence_data});
+}
+
+void add_model_formats(OperationTable& table) {
+  table.add(Format{.name = "folder of shapes",
+                   .kind = DataKind::model,
+                   .extensions = {Format::kFolder},
+                   .read = read_model_data,
+                   .write = write_model_data});
+  table.add(Format{.name = "eos shape model",
+                   .kind = DataKind::model,
+                   .extensions = {".bin"},
+                   .read = read_model_data});
+  table.add(Format{.name = "mesh without expressions",
+                   .kind = DataKind::model,
+                   .extensions = mesh_extensions(),
+                   .read = read_model_data});
 }
 
 }  // namespace
@@ -75,41 +203,51 @@ Paths write_text(const WriteRequest& request, const std::string& text) {
   });
 }
 
-std::vector<std::string> sequence_files() {
-  return sequence_extensions();
-}
-
-std::string sequence_outputs() {
-  return joined(sequence_extensions()) + " (one frame in a mesh file), or a folder of meshes";
+Paths write_document(const Data& document, const WriteRequest& request) {
+  return write_text(request, std::get<Document>(document).text);
 }
 
 void add_formats(OperationTable& table) {
-  std::vector<std::string> extensions = sequence_extensions();
-  extensions.emplace_back();  // a folder
-  table.add(Writer{DataKind::sequence, extensions, sequence_writing_parameters().declared(),
-                   write_sequence_data});
-  table.add(Writer{DataKind::components, {".h5", ".hdf5"}, {}, write_components_data});
-  table.add(Writer{DataKind::model, {""}, {}, write_model_data});
-  table.add(
-      Writer{DataKind::regions, {".json"}, {}, [](const Data& data, const WriteRequest& request) {
-               return write_text(request, regions_json(std::get<RegionData>(data).regions));
-             }});
-  table.add(
-      Writer{DataKind::regions, {".csv"}, {}, [](const Data& data, const WriteRequest& request) {
-               return write_text(request, regions_csv(std::get<RegionData>(data).regions));
-             }});
-  table.add(
-      Writer{DataKind::table, {".csv"}, {}, [](const Data& data, const WriteRequest& request) {
-               return write_text(request, std::get<Table>(data).csv());
-             }});
-  table.add(
-      Writer{DataKind::table, {".json"}, {}, [](const Data& data, const WriteRequest& request) {
-               return write_text(request, std::get<Table>(data).json());
-             }});
-  table.add(Writer{DataKind::fit, {".json"}, {}, [](const Data& data, const WriteRequest& request) {
-                     return write_text(request, fit_json(std::get<FittedCoefficients>(data)));
-                   }});
-  table.add(RegionReader{{".json", ".csv", ".txt"}, read_regions});
+  add_sequence_formats(table);
+  add_model_formats(table);
+  table.add(Format{.name = "SPLOCS components (HDF5)",
+                   .kind = DataKind::components,
+                   .extensions = {".h5", ".hdf5"},
+                   .read = read_components_data,
+                   .write = write_components_data});
+  table.add(Format{.name = "region set",
+                   .kind = DataKind::regions,
+                   .extensions = {".json"},
+                   .read = read_regions_data,
+                   .write = writer_of<RegionData>(
+                       [](const RegionData& data) { return regions_json(data.regions); })});
+  table.add(Format{.name = "vertices and their regions",
+                   .kind = DataKind::regions,
+                   .extensions = {".csv"},
+                   .read = read_regions_data,
+                   .write = writer_of<RegionData>(
+                       [](const RegionData& data) { return regions_csv(data.regions); })});
+  table.add(Format{.name = "list of vertices, or mask",
+                   .kind = DataKind::regions,
+                   .extensions = {".txt"},
+                   .read = read_regions_data});
+  table.add(Format{.name = "comma-separated values",
+                   .kind = DataKind::table,
+                   .extensions = {".csv"},
+                   .write = writer_of<Table>([](const Table& values) { return values.csv(); })});
+  table.add(Format{.name = "rows as JSON",
+                   .kind = DataKind::table,
+                   .extensions = {".json"},
+                   .write = writer_of<Table>([](const Table& values) { return values.json(); })});
+  table.add(Format{.name = "coefficients and cameras",
+                   .kind = DataKind::fit,
+                   .extensions = {".json"},
+                   .read = read_fit_data,
+                   .write = writer_of<FittedCoefficients>(fit_json)});
+  table.add(Format{.name = "text",
+                   .kind = DataKind::document,
+                   .extensions = {Format::kAnyFile},
+                   .read = read_document});
 }
 
 }  // namespace mimetra

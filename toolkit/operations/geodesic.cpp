@@ -96,7 +96,8 @@ Operation geodesic_operation() {
   operation.name = "geodesic";
   operation.summary = "Distances along a mesh from a vertex, and the support map around it";
   operation.inputs = {{"mesh", DataKind::sequence, "mesh, or the first frame of a sequence"}};
-  operation.outputs = {{"out", DataKind::sequence, ".vtp with the fields distance and support"}};
+  operation.outputs = {
+      {"out", DataKind::sequence, "the mesh with the fields distance and support"}};
   operation.outputs.front().fields = true;
   operation.parameters = geodesic_parameters().declared();
   operation.examples = {"geodesic neutral.obj --source 1200 -o nose.vtp",

@@ -1,7 +1,10 @@
 #include "toolkit/operations/listing.h"
 
+#include <algorithm>
+
 #include <nlohmann/json.hpp>
 
+#include "toolkit/mesh/text.h"
 #include "toolkit/operations/json.h"
 
 namespace mimetra {
@@ -21,6 +24,87 @@ std::string listing(const OperationTable& table) {
   return text;
 }
 
+/// Formats in the order of their kinds.
+std::vector<Format> by_kind(const OperationTable& table) {
+  std::vector<Format> formats = table.formats();
+  std::ranges::stable_sort(formats, {}, &Format::kind);
+  return formats;
+}
+
+std::vector<std::string> option_words(const std::vector<Parameter>& parameters) {
+  std::vector<std::string> words;
+  for (const Parameter& parameter : parameters) words.push_back(parameter.option());
+  return words;
+}
+
+std::string formats_as_markdown(const OperationTable& table) {
+  std::string text =
+      "# Formats\n\nMade by `mimetra formats --markdown` from the table of formats.\n";
+  const DataKind* kind = nullptr;
+  const std::vector<Format> formats = by_kind(table);
+  for (const Format& format : formats) {
+    if (!kind || *kind != format.kind) {
+      text += "\n## " + std::string(kind_name(format.kind)) +
+              "\n\n| name ends in | format | read | written | options |\n"
+              "| --- | --- | --- | --- | --- |\n";
+    }
+    kind = &format.kind;
+    const std::string options = joined(option_words(format.options()), "` `");
+    text += "| " + listed_extensions(format.extensions) + " | " + format.name + " | " +
+            (format.read ? "yes" : "") + " | " + (format.write ? "yes" : "") + " | " +
+            (options.empty() ? "" : '`' + options + '`') + " |\n";
+  }
+  return text;
+}
+
+/// A line each: what names end in, in a column of its own, and what it is.
+std::string formats_as_text(const OperationTable& table) {
+  std::string text;
+  const DataKind* kind = nullptr;
+  const std::vector<Format> formats = by_kind(table);
+  for (const Format& format : formats) {
+    if (!kind || *kind != format.kind) text += std::string(kind_name(format.kind)) + '\n';
+    kind = &format.kind;
+    const char* use = !format.write ? " (read)" : !format.read ? " (written)" : "";
+    std::string names = listed_extensions(format.extensions);
+    names.resize(std::max<std::size_t>(names.size(), 26), ' ');
+    text += "  " + names + "  " + format.name + use + '\n';
+  }
+  return text;
+}
+
+Json formats_as_json(const OperationTable& table) {
+  Json list = Json::array();
+  for (const Format& format : by_kind(table)) {
+    std::vector<std::string> reading, writing;
+    for (const Parameter& parameter : format.reading) reading.push_back(parameter.name);
+    for (const Parameter& parameter : format.writing) writing.push_back(parameter.name);
+    list.push_back({{"name", format.name},
+                    {"kind", kind_name(format.kind)},
+                    {"extensions", format.extensions},
+                    {"read", bool(format.read)},
+                    {"written", bool(format.write)},
+                    {"reading", reading},
+                    {"writing", writing}});
+  }
+  return list;
+}
+
+Operation formats_operation(const OperationTable& table) {
+  Operation operation;
+  operation.name = "formats";
+  operation.summary = "Every format that is read or written";
+  operation.parameters = {{"markdown", ParameterKind::flag, false, "as a page of Markdown"}};
+  operation.examples = {"formats", "formats --markdown > formats.md"};
+  operation.run = [&table](const Invocation& invocation) {
+    const bool markdown = invocation.parameters.flag("markdown");
+    return Outcome{{},
+                   Json{{"formats", formats_as_json(table)}}.dump(),
+                   markdown ? formats_as_markdown(table) : formats_as_text(table)};
+  };
+  return operation;
+}
+
 }  // namespace
 
 void add_listing(OperationTable& table) {
@@ -32,6 +116,7 @@ void add_listing(OperationTable& table) {
     return Outcome{{}, Json{{"operations", Json::parse(table.json())}}.dump(), listing(table)};
   };
   table.add(std::move(operation));
+  table.add(formats_operation(table));
 }
 
 }  // namespace mimetra

@@ -4,8 +4,8 @@
 
 namespace mimetra {
 
-/// Adds the operation `operations`, which lists the table it is in. The table must outlive the
-/// call.
+/// Adds the operations `operations` and `formats`, which list the table they are in. The table must
+/// outlive the call.
 void add_listing(OperationTable& table);
 
 }  // namespace mimetra

@@ -2,16 +2,10 @@
 
 #include <algorithm>
 
-#include "toolkit/io/components_file.h"
-#include "toolkit/io/frame_files.h"
-#include "toolkit/io/mesh_file.h"
-#include "toolkit/io/mesh_formats.h"
 #include "toolkit/io/model_file.h"
-#include "toolkit/io/sequence_file.h"
 #include "toolkit/io/whole_file.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/progress.h"
-#include "toolkit/operations/sequence_parameters.h"
 
 namespace mimetra {
 
@@ -30,29 +24,24 @@ class Loader {
         may_stream_(may_stream) {}
 
   NamedData load(const Input& input, const std::string& text) {
-    switch (input.kind) {
-      case DataKind::sequence:
-        return sequence(input, text);
-      case DataKind::model:
-        return model(text, input.identities);
-      case DataKind::components:
-        files.push_back(text);
-        return {text, read_components(text)};
-      case DataKind::regions:
-        return {text, regions(text)};
-      case DataKind::landmarks:
-        return landmarks(text);
-      case DataKind::document:
-        if (input.run) return run(text);
-        files.push_back(text);
-        return {text, Document{read_file(text)}};
-      case DataKind::table:
-      case DataKind::fit:
-      case DataKind::pictures:
-        break;
+    if (input.run) return run(text);
+    const Format& format = table_.reader(input.kind, text);
+    if (input.kind == DataKind::regions && vertices_ == 0) {
+      throw UsageError(text + ": regions speak of a mesh, and no input has one");
     }
-    throw UsageError(text + ": no file holds a value of the kind '" +
-                     std::string(kind_name(input.kind)) + "'");
+    ReadValue read = format.read(text, {.parameters = parameters_,
+                                        .fields = input.fields,
+                                        .identities = input.identities,
+                                        .may_stream = may_stream_ && input.streamed,
+                                        .vertices = vertices_,
+                                        .triangles = &triangles_,
+                                        .progress = progress_,
+                                        .threads = threads_});
+    for (const std::string& note : read.notes) {
+      if (log_) log_(LogLevel::warning, note);
+    }
+    files.insert(files.end(), read.files.begin(), read.files.end());
+    return std::move(read.value);
   }
 
   /// The mesh that region sets are for, if the value has one.
@@ -70,94 +59,10 @@ class Loader {
   std::vector<std::filesystem::path> files;
 
  private:
-  /// A sequence in a format that also holds fields; none where another reader is needed.
-  std::optional<FieldSequence> with_fields(const std::string& text) {
-    const FieldReader* reader = table_.field_reader(text);
-    if (!reader) return {};
-    const auto frames = frame_parameters().read(parameters_).frames;
-    const auto selected = [&frames](int count) { return selected_frames(frames, count); };
-    FieldSequence read = reader->read(text, selected, progress_);
-    for (const auto& file : reader->files(text)) files.push_back(file);
-    return read;
-  }
-
-  NamedData sequence(const Input& input, const std::string& text) {
-    if (auto read = with_fields(text)) {
-      if (!input.fields) read->fields.clear();
-      return {text, std::move(*read)};
-    }
-    const SequenceSource source = source_by(sequence_parameters());
-    if (may_stream_ && input.streamed) {
-      OpenSequence open = noted(open_sequence(text, source));
-      return {text, FieldSequence(std::move(open.frames)), {.model_driven = open.model_driven}};
-    }
-    SequenceRead read = noted(read_sequence(text, source));
-    return {text, FieldSequence(std::move(read.sequence)), {.model_driven = read.model_driven}};
-  }
-
-  NamedData landmarks(const std::string& text) {
-    LandmarksRead read =
-        noted(table_.landmark_reader().read(text, source_by(frame_parameters()), parameters_));
-    Origin origin;
-    origin.images = std::move(read.images);
-    origin.frame_notes = std::move(read.frame_notes);
-    return {text, std::move(read.track), std::move(origin)};
-  }
-
-  SequenceSource source_by(const BoundParameters<SequenceSource>& list) const {
-    SequenceSource source = list.read(parameters_);
-    source.threads = threads_;
-    source.progress = progress_;
-    return source;
-  }
-
-  /// Logs the notes of what was read, and keeps its files for the manifest.
-  template <typename Read>
-  Read noted(Read read) {
-    for (const std::string& note : read.notes) {
-      if (log_) log_(LogLevel::warning, note);
-    }
-    files.insert(files.end(), read.files.begin(), read.files.end());
-    return read;
-  }
-
   bool know(int vertices, const Triangles& triangles) {
     vertices_ = vertices;
     triangles_ = triangles;
     return true;
-  }
-
-  NamedData model(const std::string& text, bool with_identities) {
-    const ModelSpec spec = ModelSpec::parse(text);
-    const bool is_person = spec.fit || !spec.identity_text.empty();
-    Origin origin;
-    origin.path = spec.path;
-    files.push_back(spec.path);
-    if (spec.fit) files.push_back(*spec.fit);
-    if (with_identities && !is_person && !is_mesh_extension(spec.path.extension().string())) {
-      return {spec.name(), ModelData{read_model(spec.path, threads_)}, std::move(origin)};
-    }
-    if (!std::filesystem::exists(spec.path)) {
-      throw IoError(spec.path.string(), "no such file or folder");
-    }
-    if (std::filesystem::is_directory(spec.path) || is_model(spec.path)) {
-      return {spec.name(), ModelData{MorphableModel(read_person(spec, threads_))},
-              std::move(origin)};
-    }
-    if (is_person) {
-      throw MismatchError(text + ": '" + spec.path.string() +
-                          "' is one mesh and has no identities");
-    }
-    TriMesh mesh = read_mesh(spec.path);
-    MorphableModel model(std::make_shared<Connectivity>(std::move(mesh.connectivity)),
-                         std::move(mesh.positions), {}, {});
-    return {spec.name(), ModelData{std::move(model)}, std::move(origin)};
-  }
-
-  RegionData regions(const std::string& text) {
-    if (vertices_ == 0) throw UsageError(text + ": regions speak of a mesh, and no input has one");
-    files.push_back(text);
-    return {table_.region_reader(text).read(text, vertices_, triangles_), {}};
   }
 
   /// The manifest; and what the run read, read again.

@@ -9,25 +9,27 @@
 #include "toolkit/io/pending_output.h"
 #include "toolkit/mesh/text.h"
 #include "toolkit/operations/json.h"
-#include "toolkit/operations/sequence_parameters.h"
 
 namespace mimetra {
 
 namespace {
 
-bool has_extension(const std::vector<std::string>& extensions, const std::filesystem::path& path) {
-  return std::ranges::find(extensions, lower_extension(path)) != extensions.end();
-}
-
-/// Those that the writer can write an output with.
-std::vector<std::string> extensions_of(const Output& output, const Writer& writer) {
-  if (writer.kind != output.kind || (output.fields && !writer.fields)) return {};
-  std::vector<std::string> extensions = writer.extensions;
+/// Those that the format can write an output with.
+std::vector<std::string> extensions_of(const Output& output, const Format& format) {
+  const bool fits = format.write && format.kind == output.kind && (format.fields || !output.fields);
+  if (!fits) return {};
+  std::vector<std::string> extensions = format.extensions;
   std::erase_if(extensions, [&output](const std::string& extension) {
     return !output.extensions.empty() &&
            std::ranges::find(output.extensions, extension) == output.extensions.end();
   });
   return extensions;
+}
+
+/// "what it is: .json or .csv".
+std::string with_formats(const std::string& help, const std::vector<std::string>& extensions) {
+  if (extensions.empty()) return help;
+  return (help.empty() ? help : help + ": ") + listed_extensions(extensions);
 }
 
 std::string_view kind_name(ParameterKind kind) {
@@ -75,18 +77,18 @@ Json json_of(const Parameter& parameter) {
   return json;
 }
 
-Json json_of(const Input& input) {
+Json json_of(const Input& input, const std::string& help) {
   return {{"name", input.name},         {"kind", kind_name(input.kind)},
           {"optional", input.optional}, {"repeated", input.repeated},
-          {"named", input.named},       {"help", input.help}};
+          {"named", input.named},       {"help", help}};
 }
 
-Json json_of(const Output& output) {
+Json json_of(const Output& output, const std::string& help) {
   return {{"name", output.name},
           {"kind", kind_name(output.kind)},
           {"optional", output.optional},
           {"repeated", output.repeated},
-          {"help", output.help}};
+          {"help", help}};
 }
 
 }  // namespace
@@ -99,10 +101,7 @@ void Invocation::info(const std::string& message) const {
   if (log) log(LogLevel::info, message);
 }
 
-void OperationTable::add(Operation operation) {
-  if (find(operation.name)) {
-    throw std::invalid_argument("there is an operation '" + operation.name + "' already");
-  }
+void OperationTable::check_names(const Operation& operation) const {
   std::set<std::string> names;
   const auto claim = [&](const std::string& name) {
     if (names.insert(name).second) return;
@@ -112,37 +111,38 @@ void OperationTable::add(Operation operation) {
   for (const Input& input : operation.inputs) claim(input.name);
   for (const Output& output : operation.outputs) claim(output.name);
   for (const Parameter& parameter : parameters_of(operation)) claim(parameter.name);
+}
+
+void OperationTable::add(Operation operation) {
+  if (find(operation.name)) {
+    throw std::invalid_argument("there is an operation '" + operation.name + "' already");
+  }
+  check_names(operation);
   operations_.push_back(std::move(operation));
 }
 
-void OperationTable::add(Writer writer) {
-  writers_.push_back(std::move(writer));
-}
-
-std::string note_on_fields(const Writer& writer, const Data& data,
-                           const std::filesystem::path& target) {
-  const auto* sequence = std::get_if<FieldSequence>(&data);
-  if (!sequence || sequence->fields.empty() || writer.fields) return "";
-  std::vector<std::string> names;
-  for (const Field& field : sequence->fields) names.push_back(field.name);
-  return target.string() + ": this format holds no fields; without " + joined(names);
-}
-
-void OperationTable::add(RegionReader reader) {
-  region_readers_.push_back(std::move(reader));
-}
-
-void OperationTable::add(FieldReader reader) {
-  field_readers_.push_back(std::move(reader));
+void OperationTable::add(Format format) {
+  for (const Format& known : formats_) {
+    const bool clashes =
+        known.kind == format.kind && ((known.read && format.read) || (known.write && format.write));
+    for (const std::string& extension : format.extensions) {
+      if (!clashes || !known.has(extension)) continue;
+      throw std::invalid_argument("format '" + format.name + "': '" + extension + "' is that of '" +
+                                  known.name + "' already");
+    }
+  }
+  formats_.push_back(std::move(format));
+  try {
+    for (const Operation& operation : operations_) check_names(operation);
+  } catch (...) {
+    formats_.pop_back();
+    throw;
+  }
 }
 
 const Operation* OperationTable::find(const std::string& name) const {
   const auto found = std::ranges::find(operations_, name, &Operation::name);
   return found == operations_.end() ? nullptr : &*found;
-}
-
-void OperationTable::add(LandmarkReader reader) {
-  landmark_reader_ = std::move(reader);
 }
 
 std::vector<Parameter> OperationTable::parameters_of(const Operation& operation) const {
@@ -160,51 +160,91 @@ std::vector<Parameter> OperationTable::parameters_of(const Operation& operation)
       }
     }
   };
-  if (std::ranges::find(operation.inputs, DataKind::sequence, &Input::kind) !=
-      operation.inputs.end()) {
-    append(sequence_parameters().declared());
-  }
-  if (std::ranges::find(operation.inputs, DataKind::landmarks, &Input::kind) !=
-      operation.inputs.end()) {
-    append(frame_parameters().declared());
-    if (landmark_reader_) append(landmark_reader_->parameters);
+  for (const Input& input : operation.inputs) {
+    for (const Format& format : formats_) {
+      if (format.read && format.kind == input.kind) append(format.reading);
+    }
   }
   for (const Output& output : operation.outputs) {
-    for (const Writer& writer : writers_) {
-      if (!extensions_of(output, writer).empty()) append(writer.parameters);
+    for (const Format& format : formats_) {
+      if (!extensions_of(output, format).empty()) append(format.writing);
     }
   }
   return parameters;
 }
 
-const Writer& OperationTable::writer(const Output& output,
-                                     const std::filesystem::path& target) const {
-  const Writer* folder = nullptr;
+const Format& OperationTable::reader(DataKind kind, const std::string& text) const {
+  const std::string extension = lower_extension(text);
+  const Format *folder = nullptr, *any_file = nullptr;
   std::vector<std::string> known;
-  for (const Writer& writer : writers_) {
-    for (const std::string& extension : extensions_of(output, writer)) {
-      if (extension.empty()) {
-        folder = &writer;
+  for (const Format& format : formats_) {
+    if (!format.read || format.kind != kind) continue;
+    if (!extension.empty() && format.has(extension)) return format;
+    if (format.has(Format::kFolder)) folder = &format;
+    if (format.has(Format::kAnyFile)) any_file = &format;
+    known.insert(known.end(), format.extensions.begin(), format.extensions.end());
+  }
+  const std::string name(kind_name(kind));
+  if (known.empty()) throw UsageError(text + ": no file holds a value of the kind '" + name + "'");
+  if (any_file) return *any_file;
+  const std::string expected = name + " can be read from " + listed_extensions(known);
+  std::error_code unreadable;
+  if (!folder) throw UsageError(text + ": " + expected);
+  if (!std::filesystem::is_regular_file(text, unreadable)) return *folder;
+  throw IoError(text, expected + ", not from '" + extension + "'");
+}
+
+const Format& OperationTable::writer(const Output& output,
+                                     const std::filesystem::path& target) const {
+  const Format* folder = nullptr;
+  std::vector<std::string> known;
+  for (const Format& format : formats_) {
+    for (const std::string& extension : extensions_of(output, format)) {
+      if (extension == Format::kFolder) {
+        folder = &format;
       } else if (extension == lower_extension(target)) {
-        return writer;
-      } else {
-        known.push_back(extension);
+        return format;
       }
+      known.push_back(extension);
     }
   }
   if (folder) return *folder;
   const std::string kind =
       std::string(kind_name(output.kind)) + (output.fields ? " with fields" : "");
   if (known.empty()) throw UsageError(target.string() + ": this program writes no " + kind);
-  throw UsageError(target.string() + ": " + kind + " can be written as " + joined(known) +
-                   ", not as '" + target.extension().string() + "'");
+  throw UsageError(target.string() + ": " + kind + " can be written as " +
+                   listed_extensions(known) + ", not as '" + target.extension().string() + "'");
+}
+
+std::vector<std::string> OperationTable::extensions(const Input& input) const {
+  std::vector<std::string> extensions;
+  for (const Format& format : formats_) {
+    if (!format.read || format.kind != input.kind || input.run) continue;
+    extensions.insert(extensions.end(), format.extensions.begin(), format.extensions.end());
+  }
+  return extensions;
+}
+
+std::vector<std::string> OperationTable::extensions(const Output& output) const {
+  std::vector<std::string> extensions;
+  for (const Format& format : formats_) {
+    const std::vector<std::string> more = extensions_of(output, format);
+    extensions.insert(extensions.end(), more.begin(), more.end());
+  }
+  return extensions;
+}
+
+std::string OperationTable::help(const Input& input) const {
+  return with_formats(input.help, extensions(input));
+}
+
+std::string OperationTable::help(const Output& output) const {
+  return with_formats(output.help, extensions(output));
 }
 
 bool OperationTable::writes_folder(const Output& output,
                                    const std::filesystem::path& target) const {
-  const std::vector<std::string>& extensions = writer(output, target).extensions;
-  const bool may = std::ranges::find(extensions, "") != extensions.end();
-  return may && (!target.has_extension() || !has_extension(extensions, target));
+  return writer(output, target).has(Format::kFolder);
 }
 
 void OperationTable::check_writable(const Output& output, const std::filesystem::path& target,
@@ -238,33 +278,14 @@ std::filesystem::path OperationTable::companion_path(const Operation& operation,
   return name += companion.companion;
 }
 
-const RegionReader& OperationTable::region_reader(const std::filesystem::path& path) const {
-  std::vector<std::string> known;
-  for (const RegionReader& reader : region_readers_) {
-    if (has_extension(reader.extensions, path)) return reader;
-    known.insert(known.end(), reader.extensions.begin(), reader.extensions.end());
-  }
-  throw UsageError(path.string() + ": regions can be read from " + joined(known));
-}
-
-const FieldReader* OperationTable::field_reader(const std::filesystem::path& path) const {
-  const auto found = std::ranges::find_if(field_readers_, [&path](const FieldReader& reader) {
-    return has_extension(reader.extensions, path);
-  });
-  return found == field_readers_.end() ? nullptr : &*found;
-}
-
-const LandmarkReader& OperationTable::landmark_reader() const {
-  if (!landmark_reader_) throw std::logic_error("no module that reads landmarks was added");
-  return *landmark_reader_;
-}
-
 std::string OperationTable::json() const {
   Json list = Json::array();
   for (const Operation& operation : operations_) {
     Json json = {{"name", operation.name}, {"summary", operation.summary}};
-    for (const Input& input : operation.inputs) json["inputs"].push_back(json_of(input));
-    for (const Output& output : operation.outputs) json["outputs"].push_back(json_of(output));
+    for (const Input& input : operation.inputs)
+      json["inputs"].push_back(json_of(input, help(input)));
+    for (const Output& output : operation.outputs)
+      json["outputs"].push_back(json_of(output, help(output)));
     for (const Parameter& parameter : parameters_of(operation)) {
       json["parameters"].push_back(json_of(parameter));
     }

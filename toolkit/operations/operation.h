@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "toolkit/io/sequence_options.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/progress.h"
 #include "toolkit/operations/data.h"
+#include "toolkit/operations/format.h"
 #include "toolkit/operations/parameter.h"
 #include "toolkit/operations/run_file.h"
 
@@ -115,92 +115,36 @@ struct Operation {
   std::function<std::string(const Invocation&)> all_frames_for = {};
 };
 
-/// Where and how a value is written.
-struct WriteRequest {
-  std::filesystem::path target;
-  const Parameters& parameters;
-  bool overwrite = false;
-  Progress progress = {};
-  /// Files and folders that were read for it, which must stay.
-  std::vector<std::filesystem::path> inputs = {};
-  /// Further files (name, content) that appear together with the output.
-  std::vector<std::pair<std::string, std::string>> extra = {};
-  int threads = 0;  ///< 0 for all there are; what is written does not depend on it
-};
-
-/// A way to write one kind of data, chosen by extension; the extension "" stands for a folder.
-struct Writer {
-  DataKind kind;
-  std::vector<std::string> extensions;
-  std::vector<Parameter> parameters;
-  /// Writes atomically; returns the files. Throws OutputError, Cancelled.
-  std::function<std::vector<std::filesystem::path>(const Data&, const WriteRequest&)> write;
-  /// A sequence keeps its fields.
-  bool fields = false;
-};
-
-/// What is to be said of a sequence's fields that a writer leaves out; "" where there are none.
-std::string note_on_fields(const Writer& writer, const Data& data,
-                           const std::filesystem::path& target);
-
-/// A way to read a region set for a mesh, chosen by extension.
-struct RegionReader {
-  std::vector<std::string> extensions;
-  std::function<Regions(const std::filesystem::path&, int vertices, const Triangles&)> read;
-};
-
-/// A way to read a sequence with its fields, chosen by extension.
-struct FieldReader {
-  std::vector<std::string> extensions;
-  /// Reads the frames that `selected` chooses from their number.
-  std::function<FieldSequence(const std::filesystem::path&,
-                              const std::function<std::vector<int>(int count)>& selected,
-                              const Progress&)>
-      read;
-  /// The files that belong to a path.
-  std::function<std::vector<std::filesystem::path>(const std::filesystem::path&)> files;
-};
-
-/// Landmarks, and what was noticed while reading them.
-struct LandmarksRead {
-  LandmarkTrack track;                             ///< with times
-  std::vector<std::filesystem::path> images = {};  ///< that each frame shows (F), or none
-  /// What was noticed in each frame (F, "" for nothing), or none.
-  std::vector<std::string> frame_notes = {};
-  std::vector<std::filesystem::path> files = {};
-  std::vector<std::string> notes = {};
-};
-
-/// The way to read landmarks.
-struct LandmarkReader {
-  std::vector<Parameter> parameters;
-  /// `source` says which frames, and the times of those that have none.
-  std::function<LandmarksRead(const std::string& text, const SequenceSource& source,
-                              const Parameters&)>
-      read;
-};
-
 /// All operations and formats of a program; built by its main function and passed down.
 class OperationTable {
  public:
   /// Throws std::invalid_argument for a name that is taken, or that two of the operation's inputs,
   /// outputs and parameters (with those of its files) have.
   void add(Operation operation);
-  void add(Writer writer);
-  void add(RegionReader reader);
-  void add(FieldReader reader);
-  void add(LandmarkReader reader);
+  /// Throws std::invalid_argument for an extension that its kind is read or written by already, and
+  /// for an option that means something else in an operation.
+  void add(Format format);
 
   const std::vector<Operation>& operations() const { return operations_; }
+  const std::vector<Format>& formats() const { return formats_; }
   const Operation* find(const std::string& name) const;
 
   /// The operation's own parameters, those of reading its inputs and of writing its outputs. Throws
   /// std::invalid_argument where an own one has a name of those, or two of those share a name but
   /// not a kind.
   std::vector<Parameter> parameters_of(const Operation& operation) const;
-  /// The writer of an output for a path. Throws UsageError that lists the known extensions.
-  const Writer& writer(const Output& output, const std::filesystem::path& target) const;
-  /// True where that writer makes a folder.
+  /// The format that a value of a kind is read from. Throws UsageError, and IoError for a file
+  /// whose extension no format of the kind has; both list those that are known.
+  const Format& reader(DataKind kind, const std::string& text) const;
+  /// The format that an output is written in. Throws UsageError that lists the known extensions.
+  const Format& writer(const Output& output, const std::filesystem::path& target) const;
+  /// Those of the formats that an input is read from or an output written in, as in Format.
+  std::vector<std::string> extensions(const Input& input) const;
+  std::vector<std::string> extensions(const Output& output) const;
+  /// What an input or output is, for people: its help, and these extensions.
+  std::string help(const Input& input) const;
+  std::string help(const Output& output) const;
+  /// True where that format is a folder.
   bool writes_folder(const Output& output, const std::filesystem::path& target) const;
   /// Makes and removes what that writer would begin with, so that nobody computes for nothing.
   /// Throws OutputError where it cannot be written, exists and not `overwrite`, or would replace
@@ -215,22 +159,14 @@ class OperationTable {
   /// Where a companion goes, given the path of the output `out`.
   std::filesystem::path companion_path(const Operation& operation, const Output& companion,
                                        const std::filesystem::path& out) const;
-  /// Throws UsageError that lists the known extensions.
-  const RegionReader& region_reader(const std::filesystem::path& path) const;
-  /// Null where no reader has the extension: then it is a sequence that io reads.
-  const FieldReader* field_reader(const std::filesystem::path& path) const;
-  /// Throws std::logic_error where no module has added one.
-  const LandmarkReader& landmark_reader() const;
-
   /// The table as a JSON array: name, summary, inputs, outputs, parameters, examples.
   std::string json() const;
 
  private:
+  void check_names(const Operation& operation) const;
+
   std::vector<Operation> operations_;
-  std::vector<Writer> writers_;
-  std::vector<RegionReader> region_readers_;
-  std::vector<FieldReader> field_readers_;
-  std::optional<LandmarkReader> landmark_reader_;
+  std::vector<Format> formats_;
 };
 
 /// The operations of the toolkit (info, check, align, geodesic, decompose, regions, transfer,

@@ -206,7 +206,7 @@ std::optional<GivenComponents> given_components(const Invocation& invocation) {
 
 Output components_output() {
   return {"components-out", DataKind::components,
-          "the components (.h5), for later runs with --components", true};
+          "the components, for later runs with --components", true};
 }
 
 bool solves_for_vertices(const Parameters& parameters, const BlendshapeModel& target) {

@@ -103,11 +103,11 @@ Operation regions_operation() {
   operation.summary = "Regions of interest of a sequence, as fields for ParaView";
   operation.inputs = {
       {"sequence", DataKind::sequence, "sequence whose moving regions are looked for"},
-      {"components", DataKind::components, "components (.h5) of an earlier decompose", true}};
-  operation.outputs = {{"out", DataKind::regions, ".pvd (a time series), .vtp, .json or .csv"},
+      {"components", DataKind::components, "components of an earlier decompose", true}};
+  operation.outputs = {{"out", DataKind::regions, "the regions, as .pvd over time"},
                        components_output(),
                        {"paraview", DataKind::document,
-                        "script (.py) that shows them: paraview --script=VIEW.py", true}};
+                        "script that shows them by paraview --script=VIEW.py", true}};
   operation.outputs.back().extensions = {".py"};
   operation.parameters = regions_parameters().declared();
   operation.examples = {"regions takes/ -k 30 -o rois/take.pvd --paraview view.py",

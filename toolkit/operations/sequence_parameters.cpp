@@ -2,11 +2,14 @@
 
 namespace mimetra {
 
-BoundParameters<SequenceSource> frame_parameters() {
+BoundParameters<SequenceSource> choice_of_frames() {
   BoundParameters<SequenceSource> list;
-  return list
-      .add("frames", SequenceSource::kFrames, "part A:B:STEP of the frames, 0-based, B excluded")
-      .add("fps", SequenceSource::kFps, "frame rate of formats without times");
+  return list.add("frames", SequenceSource::kFrames,
+                  "part A:B:STEP of the frames, 0-based, B excluded");
+}
+
+BoundParameters<SequenceSource> frame_parameters() {
+  return choice_of_frames().add("fps", SequenceSource::kFps, "frame rate of formats without times");
 }
 
 BoundParameters<SequenceSource> sequence_parameters() {
@@ -17,11 +20,22 @@ BoundParameters<SequenceSource> sequence_parameters() {
       .add(frame_parameters());
 }
 
-BoundParameters<SequenceWriteOptions> sequence_writing_parameters() {
+BoundParameters<SequenceWriteOptions> mesh_writing_parameters() {
+  BoundParameters<SequenceWriteOptions> list;
+  return list.add("double", SequenceWriteOptions::kDoublePrecision,
+                  "double precision in mesh files");
+}
+
+BoundParameters<SequenceWriteOptions> array_writing_parameters() {
+  BoundParameters<SequenceWriteOptions> list;
+  return list.add("single", SequenceWriteOptions::kSinglePrecision,
+                  "single precision in .npy and .npz");
+}
+
+BoundParameters<SequenceWriteOptions> folder_writing_parameters() {
   BoundParameters<SequenceWriteOptions> list;
   return list.add("format", SequenceWriteOptions::kFormat, "format of frames in a folder")
-      .add("double", SequenceWriteOptions::kDoublePrecision, "double precision in mesh files")
-      .add("single", SequenceWriteOptions::kSinglePrecision, "single precision in .npy and .npz");
+      .add(mesh_writing_parameters());
 }
 
 }  // namespace mimetra

@@ -7,11 +7,14 @@ namespace mimetra {
 
 // The options of io as parameters of what reads and writes sequences.
 
-/// --frames and --fps, of all that has frames.
+/// --frames, of all that has some; with --fps, of all that has no times.
+BoundParameters<SequenceSource> choice_of_frames();
 BoundParameters<SequenceSource> frame_parameters();
 /// All that a sequence is read by: --weights, --topology, --frames and --fps.
 BoundParameters<SequenceSource> sequence_parameters();
-/// --format, --double and --single.
-BoundParameters<SequenceWriteOptions> sequence_writing_parameters();
+/// --double of mesh files, --single of arrays, and --format of folders, which have --double too.
+BoundParameters<SequenceWriteOptions> mesh_writing_parameters();
+BoundParameters<SequenceWriteOptions> array_writing_parameters();
+BoundParameters<SequenceWriteOptions> folder_writing_parameters();
 
 }  // namespace mimetra

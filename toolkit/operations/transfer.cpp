@@ -63,9 +63,9 @@ NamedData weight_table(const NamedData& target, const Solution& solution) {
   table.columns = {"time"};
   const auto& names = model_of(target).expressions().names;
   table.columns.insert(table.columns.end(), names.begin(), names.end());
-  for (int f = 0; f < solution.weights.rows(); ++f) {
+  for (int f = 0; f < solution.weights().rows(); ++f) {
     table.rows.push_back({solution.sequence->times()[f]});
-    for (const double weight : solution.weights.row(f)) table.rows.back().push_back(weight);
+    for (const double weight : solution.weights().row(f)) table.rows.back().push_back(weight);
   }
   return {target.name, std::move(table)};
 }
@@ -77,7 +77,7 @@ Json report_of(const NamedData& target, const TransferredTarget& transferred) {
                {"seconds", solution.seconds}};
   json["degenerate_source_triangles"] = solution.degenerate_source_triangles;
   json["degenerate_target_triangles"] = solution.degenerate_target_triangles;
-  if (solution.weights.size() > 0) {
+  if (solution.weights().size() > 0) {
     json["condition"] = solution.conditions.condition;
     json["unseen"] = solution.conditions.unseen;
     json["weakly_seen"] = solution.conditions.weakly_seen;
@@ -125,7 +125,7 @@ void add_targets(Outcome& outcome, Json& report, const Invocation& invocation,
     }
     outcome.summary += summary_of(targets[t], transferred);
     Solution& solution = transferred.solution;
-    if (invocation.wants("weights-out") && solution.weights.size() > 0) {
+    if (invocation.wants("weights-out") && solution.weights().size() > 0) {
       outcome.outputs["weights-out"].push_back(weight_table(targets[t], solution));
     }
     outcome.outputs["out"].push_back(
@@ -205,17 +205,15 @@ Operation transfer_operation() {
       {"source", DataKind::sequence, "sequence whose deformation is transferred"},
       {"target", DataKind::model, "model (MODEL or MODEL@identity=1.5) or mesh that receives it",
        false, true},
-      {"components", DataKind::components, "components (.h5) of an earlier decompose", true},
-      {"regions", DataKind::regions, "region set: .json, .csv, .txt, or .vtp with the field roi",
-       true}};
+      {"components", DataKind::components, "components of an earlier decompose", true},
+      {"regions", DataKind::regions, "region set, in .vtp the field roi", true}};
   operation.inputs.front().streamed = true;
   operation.outputs = {
-      {"out", DataKind::sequence,
-       sequence_outputs() + "; with several targets one each, named after it", false, true},
-      {"regions-out", DataKind::regions, "regions: .pvd (a time series), .vtp, .json or .csv",
-       true},
+      {"out", DataKind::sequence, "the new sequence, with several targets one each, named after it",
+       false, true},
+      {"regions-out", DataKind::regions, "the regions, as .pvd over time", true},
       components_output(),
-      {"weights-out", DataKind::table, "blendshape weights: .csv or .json", true, true}};
+      {"weights-out", DataKind::table, "blendshape weights", true, true}};
   operation.parameters = transfer_parameters().declared();
   operation.examples = {
       "transfer takes/smile_%04d.obj actor/ -k 30 -o actor_smile/ --regions-out rois/smile.pvd",

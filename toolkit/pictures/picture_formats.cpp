@@ -34,8 +34,14 @@ std::vector<std::filesystem::path> write_pictures(const Data& data, const WriteR
 }  // namespace
 
 void add_pictures(OperationTable& table) {
-  table.add(Writer{DataKind::pictures, {".png"}, {}, write_picture});
-  table.add(Writer{DataKind::pictures, {""}, {}, write_pictures});
+  table.add(Format{.name = "picture",
+                   .kind = DataKind::pictures,
+                   .extensions = {".png"},
+                   .write = write_picture});
+  table.add(Format{.name = "folder of pictures",
+                   .kind = DataKind::pictures,
+                   .extensions = {Format::kFolder},
+                   .write = write_pictures});
   table.add(render_operation());
 }
 

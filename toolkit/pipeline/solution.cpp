@@ -64,9 +64,10 @@ Solution solve_blendshapes(const Source& source, const Target& target, const Sel
   const FrameSource& performance = *source.sequence;
   const BlendshapeTransfer transfer(performance.rest(), model, selection.triangles, of_space);
   Solution solution;
-  solution.weights = transfer.weights(performance);
-  solution.sequence = std::make_shared<const Animation>(
-      std::make_shared<const BlendshapeModel>(model), solution.weights, performance.times());
+  solution.animation =
+      std::make_shared<const Animation>(std::make_shared<const BlendshapeModel>(model),
+                                        transfer.weights(performance), performance.times());
+  solution.sequence = solution.animation;
   solution.seconds = stopwatch.seconds();
   solution.conditions = transfer.conditions();
   solution.degenerate_source_triangles = solution.conditions.degenerate_source_triangles;
@@ -74,7 +75,7 @@ Solution solve_blendshapes(const Source& source, const Target& target, const Sel
   const TargetNotes notes(target, options);
   notes.add(solution.conditions);
   notes.add_degenerate(solution);
-  if (transfer.rest_looks_unneutral(performance, solution.weights)) {
+  if (transfer.rest_looks_unneutral(performance, solution.weights())) {
     notes.add(
         "many expressions want to be negative, so the source's rest pose is likely not its "
         "neutral",
@@ -123,6 +124,11 @@ Solution solve_vertices(const Source& source, const Target& target, const Select
 }
 
 }  // namespace
+
+const Eigen::MatrixXd& Solution::weights() const {
+  static const Eigen::MatrixXd none;
+  return animation ? animation->weights() : none;
+}
 
 bool solves_for_vertices(const BlendshapeModel& target, Space space) {
   return space == Space::vertex || target.expressions().size() == 0;

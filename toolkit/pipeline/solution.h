@@ -5,6 +5,7 @@
 #include <string>
 #include <string_view>
 
+#include "toolkit/model/animation.h"
 #include "toolkit/pipeline/region_choice.h"
 #include "toolkit/transfer/blendshape_transfer.h"
 #include "toolkit/transfer/vertex_transfer.h"
@@ -58,11 +59,15 @@ struct Solution {
   /// Of solve(): without head motion, the rest pose is the neutral. Its frames are computed when
   /// they are read, or stored; it does not need the source or the target any more.
   std::shared_ptr<const FrameSource> sequence;
-  Eigen::MatrixXd weights;  ///< beta, F x D; empty in vertex space
+  /// The same where weights drive it; null in vertex space.
+  std::shared_ptr<const Animation> animation;
   BlendshapeConditions conditions;
   int degenerate_source_triangles = 0;
   int degenerate_target_triangles = 0;
   double seconds = 0;  ///< set-up and the solve of all frames
+
+  /// beta, F x D; empty in vertex space.
+  const Eigen::MatrixXd& weights() const;
 };
 
 /// True for the vertex space, and where a target has no expressions to solve for.

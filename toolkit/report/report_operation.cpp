@@ -135,11 +135,10 @@ Operation report_operation() {
                        "what transfer, evaluate or regions wrote, or a folder with such runs"}};
   operation.inputs.front().run = true;
   operation.outputs = {
-      {"out", DataKind::document, "the page, below 10 MB and complete in itself: .html"},
-      {"gallery", DataKind::pictures, "each component at weight 1, .png", true},
-      {"weights-plot", DataKind::pictures, "weights over time, .png", true},
-      {"table-plot", DataKind::pictures, "error and time against the share of triangles, .png",
-       true}};
+      {"out", DataKind::document, "the page, below 10 MB and complete in itself"},
+      {"gallery", DataKind::pictures, "each component at weight 1", true},
+      {"weights-plot", DataKind::pictures, "weights over time", true},
+      {"table-plot", DataKind::pictures, "error and time against the share of triangles", true}};
   operation.outputs.front().extensions = {".html"};
   for (Output& output : operation.outputs) {
     if (output.kind == DataKind::pictures) output.extensions = {".png"};
@@ -155,10 +154,10 @@ Operation report_operation() {
 }  // namespace
 
 void add_report(OperationTable& table) {
-  table.add(
-      Writer{DataKind::document, {".html"}, {}, [](const Data& data, const WriteRequest& request) {
-               return write_text(request, std::get<Document>(data).text);
-             }});
+  table.add(Format{.name = "page for a browser",
+                   .kind = DataKind::document,
+                   .extensions = {".html"},
+                   .write = write_document});
   table.add(report_operation());
 }
 

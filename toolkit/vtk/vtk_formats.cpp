@@ -7,10 +7,10 @@ namespace mimetra {
 
 void add_vtk(OperationTable& table) {
   add_vtp(table);
-  table.add(
-      Writer{DataKind::document, {".py"}, {}, [](const Data& data, const WriteRequest& request) {
-               return write_text(request, std::get<Document>(data).text);
-             }});
+  table.add(Format{.name = "script for ParaView",
+                   .kind = DataKind::document,
+                   .extensions = {".py"},
+                   .write = write_document});
 }
 
 }  // namespace mimetra

@@ -2,11 +2,13 @@
 
 #include <cmath>
 
+#include "toolkit/io/frame_files.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/progress.h"
 #include "toolkit/mesh/text.h"
 #include "toolkit/operations/bound_parameters.h"
 #include "toolkit/operations/formats.h"
+#include "toolkit/operations/sequence_parameters.h"
 #include "toolkit/vtk/vtp_series.h"
 
 namespace mimetra {
@@ -43,9 +45,33 @@ bool has_left_its_rest(const FrameSource& frames) {
   return frames.frames() > 1 || PositionsView(first.data(), frames.vertices(), 3) != frames.rest();
 }
 
+std::vector<std::filesystem::path> write_sequence_data(const Data& data,
+                                                       const WriteRequest& request) {
+  FieldSequence sequence = std::get<FieldSequence>(data);
+  check_frame_count(*sequence.frames, request.target);
+  // A rest pose is read again from the displacements from it.
+  if (has_left_its_rest(*sequence.frames)) sequence.displacement = true;
+  return write(sequence, request);
+}
+
+ReadValue read_sequence_data(const std::string& text, const ReadRequest& request) {
+  const auto frames = choice_of_frames().read(request.parameters).frames;
+  const auto selected = [&frames](int count) { return selected_frames(frames, count); };
+  FieldSequence read = read_vtp_series(text, {.selected = selected, .progress = request.progress});
+  if (!request.fields) read.fields.clear();
+  return {{text, std::move(read)}, vtp_series_files(text)};
+}
+
+std::vector<std::filesystem::path> write_region_data(const Data& data,
+                                                     const WriteRequest& request) {
+  const FieldSequence& shown = std::get<RegionData>(data).fields;
+  if (shown.frames->frames() > 0) return write(shown, request);
+  throw MismatchError(request.target.string() +
+                      ": the regions come without a mesh to show them on; write .json or .csv");
+}
+
 /// One region: the vertices where the field `roi` is not 0.
-Regions read_regions_from_vtp(const std::filesystem::path& path, int vertices,
-                              const Triangles& triangles) {
+Regions region_of_vtp(const std::filesystem::path& path, int vertices, const Triangles& triangles) {
   const Eigen::MatrixXd mask = read_vtp_field(path, "roi");
   if (mask.rows() != vertices) {
     throw MismatchError(path.string() + ": " + std::to_string(mask.rows()) +
@@ -62,37 +88,45 @@ Regions read_regions_from_vtp(const std::filesystem::path& path, int vertices,
   return regions_from_vertices(vertices, triangles, {inside});
 }
 
+ReadValue read_region_data(const std::string& text, const ReadRequest& request) {
+  return {{text, RegionData{region_of_vtp(text, request.vertices, *request.triangles), {}}},
+          {text}};
+}
+
 }  // namespace
 
 void add_vtp(OperationTable& table) {
-  const std::vector<Parameter> parameters = vtp_parameters().declared();
-  table.add(Writer{DataKind::regions,
-                   {".pvd", ".vtp"},
-                   parameters,
-                   [](const Data& data, const WriteRequest& request) {
-                     const FieldSequence& shown = std::get<RegionData>(data).fields;
-                     if (shown.frames->frames() > 0) return write(shown, request);
-                     throw MismatchError(request.target.string() +
-                                         ": the regions come without a mesh to show them on; "
-                                         "write .json or .csv");
-                   }});
-  table.add(Writer{DataKind::sequence,
-                   {".vtp", ".pvd"},
-                   parameters,
-                   [](const Data& data, const WriteRequest& request) {
-                     FieldSequence sequence = std::get<FieldSequence>(data);
-                     check_frame_count(*sequence.frames, request.target);
-                     // A rest pose is read again from the displacements from it.
-                     if (has_left_its_rest(*sequence.frames)) sequence.displacement = true;
-                     return write(sequence, request);
-                   },
-                   true});
-  table.add(RegionReader{{".vtp"}, read_regions_from_vtp});
-  const auto read = [](const std::filesystem::path& path, const auto& selected,
-                       const Progress& progress) {
-    return read_vtp_series(path, {.selected = selected, .progress = progress});
-  };
-  table.add(FieldReader{{".pvd", ".vtp", ".series"}, read, vtp_series_files});
+  const std::vector<Parameter> reading = choice_of_frames().declared();
+  const std::vector<Parameter> writing = vtp_parameters().declared();
+  Format series{.name = "ParaView time series",
+                .kind = DataKind::sequence,
+                .extensions = {".pvd"},
+                .reading = reading,
+                .read = read_sequence_data,
+                .writing = writing,
+                .write = write_sequence_data,
+                .fields = true};
+  table.add(series);
+  series.name = "VTK mesh of one frame";
+  series.extensions = {".vtp"};
+  table.add(series);
+  table.add(Format{.name = "list of .vtp files",
+                   .kind = DataKind::sequence,
+                   .extensions = {".series"},
+                   .reading = reading,
+                   .read = read_sequence_data,
+                   .fields = true});
+  table.add(Format{.name = "ParaView time series with region fields",
+                   .kind = DataKind::regions,
+                   .extensions = {".pvd"},
+                   .writing = writing,
+                   .write = write_region_data});
+  table.add(Format{.name = "VTK mesh with region fields",
+                   .kind = DataKind::regions,
+                   .extensions = {".vtp"},
+                   .read = read_region_data,
+                   .writing = writing,
+                   .write = write_region_data});
 }
 
 }  // namespace mimetra

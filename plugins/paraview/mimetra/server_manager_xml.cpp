@@ -8,7 +8,6 @@
 
 #include "plugins/paraview/mimetra/filters/filter_proxies.h"
 #include "plugins/paraview/mimetra/filters/reading.h"
-#include "toolkit/operations/formats.h"
 #include "toolkit/operations/operation.h"
 
 using namespace mimetra;
@@ -20,18 +19,22 @@ const std::string kTimes =
     "        <TimeStepsInformationHelper/>\n      </DoubleVectorProperty>\n";
 
 /// "npy off": the formats that ParaView has no reader of its own for.
-std::string file_extensions() {
+std::string file_extensions(const OperationTable& table) {
   const std::set<std::string> own = {".obj", ".ply", ".stl"};
   std::string words;
-  for (const std::string& extension : sequence_files()) {
-    if (own.contains(extension)) continue;
-    words += (words.empty() ? "" : " ") + extension.substr(1);
+  for (const Format& format : table.formats()) {
+    if (!format.read || format.kind != DataKind::sequence) continue;
+    for (const std::string& extension : format.extensions) {
+      if (own.contains(extension) || extension == Format::kFolder) continue;
+      words += (words.empty() ? "" : " ") + extension.substr(1);
+    }
   }
   return words;
 }
 
 Proxy sequence_proxy(const OperationTable& table) {
-  const Operation operation = reading_operation();
+  Operation operation = reading_operation();
+  operation.inputs.front().help = table.help(operation.inputs.front());
   return {operation,
           table.parameters_of(operation),
           "vtkMimetraSequence",
@@ -44,7 +47,7 @@ Proxy sequence_proxy(const OperationTable& table) {
           "<ShowInMenu category=\"mimetra\"/>"
           "<DefaultFileNameProperty name=\"FileName\"/>"
           "<ReaderFactory extensions=\"" +
-              file_extensions() + "\" file_description=\"Mesh sequences (mimetra)\"/>"};
+              file_extensions(table) + "\" file_description=\"Mesh sequences (mimetra)\"/>"};
 }
 
 }  // namespace

@@ -7,26 +7,29 @@
     result.out.positions                                   # F x vertices of the actor x 3
 
 Each operation of the library's table is a function here, those of plugins too: `help(mimetra)`
-lists them, `operations` describes them. Inputs are values (Sequence, Model, Components, Regions,
-Table, Landmarks, Fit, Pictures, Document) or what the command takes as text, which is read from
-files; where a sequence or model is expected, (positions, faces) is one. What the library logs goes
-to logging.getLogger("mimetra"). Functions may be called from several threads at once.
+lists them, `operations` describes them, and `formats` the files that they read and write. Inputs
+are values (Sequence, Model, Components, Regions, Table, Landmarks, Fit, Pictures, Document) or what
+the command takes as text, which is read from files; where a sequence or model is expected,
+(positions, faces) is one. What the library logs goes to logging.getLogger("mimetra"). Functions may
+be called from several threads at once.
 """
 
 from ._context import library as _library
 from ._data import (Components, Data, Document, Faces, Fit, Landmarks, Model, Pictures, Regions,
                     Sequence, Table)
 from ._errors import BadInput, Cancelled, Error, Mismatch, OutputError, UsageError
-from ._operations import Operation, Result, all_operations, function_of, python_name
+from ._operations import (Format, Operation, Result, all_formats, all_operations, function_of,
+                          python_name)
 
 __version__ = _library.toolkit_version.decode()
 operations = all_operations()
+formats = all_formats()
 _functions = {python_name(name): function_of(operation)
               for name, operation in operations.items()}
 __all__ = [
-    "BadInput", "Cancelled", "Components", "Data", "Document", "Error", "Faces", "Fit",
+    "BadInput", "Cancelled", "Components", "Data", "Document", "Error", "Faces", "Fit", "Format",
     "Landmarks", "Mismatch", "Model", "Operation", "OutputError", "Pictures", "Regions", "Result",
-    "Sequence", "Table", "UsageError", "operations", "run", *_functions]
+    "Sequence", "Table", "UsageError", "formats", "operations", "run", *_functions]
 
 
 def run(name, /, *inputs, **options):

@@ -48,6 +48,9 @@ class Context:
     def operations(self):
         return [each.contents for each in c.listed(library.operations(self.handle))]
 
+    def formats(self):
+        return [each.contents for each in c.listed(library.formats(self.handle))]
+
     @contextlib.contextmanager
     def watched(self, progress=None, threads=None):
         """Calls `progress(share)`, which may answer False to cancel, as long as the block lasts.

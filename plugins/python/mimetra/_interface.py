@@ -49,6 +49,13 @@ class Operation(Struct):
                 ("run", c_void_p), ("user", c_void_p)]
 
 
+class Format(Struct):
+    _fields_ = [("struct_size", c_uint32), ("kind", c_int32), ("name", c_char_p),
+                ("extensions", POINTER(c_char_p)), ("parameters", POINTER(POINTER(Parameter))),
+                ("read", c_void_p), ("write", c_void_p), ("user", c_void_p),
+                ("flags", c_uint32), ("use", c_uint32)]
+
+
 Progress = CFUNCTYPE(c_int32, c_double, c_void_p)
 Log = CFUNCTYPE(None, c_int32, c_char_p, c_void_p)
 
@@ -62,7 +69,7 @@ def _function(result, *arguments):
 
 
 class Interface(ctypes.Structure):
-    """The table up to the functions for operations that are written in C."""
+    """The table; the functions for operations that are written in C are not called from here."""
 
     _fields_ = [
         ("struct_size", c_uint32),
@@ -98,6 +105,10 @@ class Interface(ctypes.Structure):
         ("call_output", _function(c_int32, c_void_p, c_char_p, c_int32, _HANDLE)),
         ("call_report", _function(c_char_p, c_void_p)),
         ("call_summary", _function(c_char_p, c_void_p)),
+        *[(name, c_void_p) for name in (
+            "job_context", "job_input", "job_number", "job_text", "job_threads", "job_wants",
+            "job_progress", "job_log", "job_fail", "job_output", "job_report")],
+        ("formats", _function(POINTER(POINTER(Format)), c_void_p)),
     ]
 
 

@@ -289,3 +289,22 @@ def function_of(operation):
 def all_operations():
     """The operations of the table, by name."""
     return {described.name.decode(): Operation(described) for described in context().operations()}
+
+
+class Format:
+    """A format of files: the `kind` of value that it holds, as a class, what names of its files end
+    in ("" stands for a folder, a pattern and the like, "*" for any file), whether it is `read` and
+    `written`, and the names of its `options`."""
+
+    def __init__(self, described):
+        self.name = described.name.decode()
+        self.kind = CLASSES[described.kind]
+        self.extensions = [text.decode() for text in c.listed(described.extensions)]
+        self.read = bool(described.use & c.READING)
+        self.written = bool(described.use & c.WRITING)
+        self.options = [each.contents.name.decode() for each in c.listed(described.parameters)]
+
+
+def all_formats():
+    """The formats of the table, in its order."""
+    return [Format(described) for described in context().formats()]

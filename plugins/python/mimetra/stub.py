@@ -15,10 +15,19 @@ from numpy.typing import ArrayLike
 
 __version__: str
 operations: dict[str, Operation]
+formats: list[Format]
 
 class Faces(NamedTuple):
     sizes: ndarray
     corners: ndarray
+
+class Format:
+    name: str
+    kind: type[Data]
+    extensions: list[str]
+    read: bool
+    written: bool
+    options: list[str]
 
 class Operation:
     name: str

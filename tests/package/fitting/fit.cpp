@@ -54,7 +54,9 @@ int main(int argc, char** argv) {
   add_fitting(table);
   if (argc > 1) {
     try {
-      table.landmark_reader().read(argv[1], {}, Parameters(table.landmark_reader().parameters));
+      const Format& format = table.reader(DataKind::landmarks, argv[1]);
+      const Parameters parameters(format.reading);
+      format.read(argv[1], {.parameters = parameters});
     } catch (const IoError& error) {
       std::cerr << error.what() << '\n';
       return 3;

@@ -1,0 +1,98 @@
+// The table of formats: which one a path is read or written by, and how they are listed.
+
+#include <filesystem>
+#include <fstream>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/temporary_folder.h"
+#include "toolkit/mesh/errors.h"
+#include "toolkit/operations/operation.h"
+
+namespace mimetra {
+namespace {
+
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::Not;
+using testing::ThrowsMessage;
+
+OperationTable toolkit() {
+  OperationTable table;
+  add_toolkit(table);
+  return table;
+}
+
+/// Of regions, read and written.
+Format format_of(const std::string& extension) {
+  Format format{.name = "mine", .kind = DataKind::regions, .extensions = {extension}};
+  format.read = [](const std::string& text, const ReadRequest&) -> ReadValue {
+    return {{text, RegionData()}};
+  };
+  format.write = [](const Data&, const WriteRequest&) {
+    return std::vector<std::filesystem::path>();
+  };
+  return format;
+}
+
+TEST(FormatTable, ChoosesTheReaderByExtensionInAnyCase) {
+  const OperationTable table = toolkit();
+  const auto name = [&](DataKind kind, const char* text) { return table.reader(kind, text).name; };
+  EXPECT_EQ(name(DataKind::sequence, "take.NPY"), "NumPy array");
+  EXPECT_EQ(name(DataKind::sequence, "take.v2/"), "folder of meshes");
+  EXPECT_EQ(name(DataKind::sequence, "take_%04d.obj"), "mesh of one frame");
+  EXPECT_EQ(name(DataKind::sequence, "actor@id=1.5"), "folder of meshes");
+  EXPECT_EQ(name(DataKind::model, "actor@id=1.5"), "folder of shapes");
+  EXPECT_EQ(name(DataKind::model, "sfm_shape.bin"), "eos shape model");
+  EXPECT_EQ(name(DataKind::document, "any.thing"), "text");
+}
+
+TEST(FormatTable, ListsWhatItKnowsWhereNothingReadsAFile) {
+  const OperationTable table = toolkit();
+  const test::TemporaryFolder folder;
+  const std::string file = folder.path() / "take.fbx";
+  std::ofstream(file) << "text\n";
+  EXPECT_THAT(
+      [&] { table.reader(DataKind::sequence, file); },
+      ThrowsMessage<IoError>(AllOf(HasSubstr("take.fbx"), HasSubstr(".npy, .npz"),
+                                   HasSubstr(" or a folder"), HasSubstr("not from '.fbx'"))));
+  EXPECT_THAT([&] { table.reader(DataKind::components, "take.npy"); },
+              ThrowsMessage<UsageError>(HasSubstr("components can be read from .h5 or .hdf5")));
+  EXPECT_THAT([&] { table.reader(DataKind::table, "take.csv"); },
+              ThrowsMessage<UsageError>(HasSubstr("no file holds a value of the kind 'table'")));
+}
+
+TEST(FormatTable, RefusesAnExtensionThatItsKindHasAlready) {
+  OperationTable table = toolkit();
+  EXPECT_THAT([&] { table.add(format_of(".csv")); },
+              ThrowsMessage<std::invalid_argument>(
+                  HasSubstr("'.csv' is that of 'vertices and their regions' already")));
+  // Beside a format that is only read, one that is only written.
+  Format written = format_of(".txt");
+  EXPECT_THROW(table.add(written), std::invalid_argument);
+  written.read = {};
+  EXPECT_NO_THROW(table.add(written));
+}
+
+TEST(FormatTable, IsWhatHelpAndMessagesOfAnOutputSay) {
+  OperationTable table = toolkit();
+  const auto help = [&table] { return table.help(table.find("regions")->outputs.front()); };
+  const auto help_of_input = [&table] { return table.help(table.find("transfer")->inputs.back()); };
+  EXPECT_THAT(help(), Not(HasSubstr(".mine")));
+  table.add(format_of(".mine"));
+  EXPECT_THAT(help(), AllOf(HasSubstr("the regions"), HasSubstr(": .json, .csv or .mine")));
+  EXPECT_THAT(help_of_input(), HasSubstr(": .json, .csv, .txt or .mine"));
+  EXPECT_THAT([&] { table.writer(table.find("regions")->outputs.front(), "a.xyz"); },
+              ThrowsMessage<UsageError>(HasSubstr(".json, .csv or .mine, not as '.xyz'")));
+}
+
+TEST(FormatTable, PutsFoldersLastInLists) {
+  EXPECT_EQ(listed_extensions({".a", "", ".b", ".a"}), ".a, .b or a folder");
+  EXPECT_EQ(listed_extensions({"*"}), "any file");
+  EXPECT_EQ(listed_extensions({".a"}), ".a");
+}
+
+}  // namespace
+}  // namespace mimetra

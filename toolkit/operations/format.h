@@ -1,0 +1,87 @@
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "toolkit/mesh/progress.h"
+#include "toolkit/operations/data.h"
+#include "toolkit/operations/parameter.h"
+
+namespace mimetra {
+
+/// How a value is read.
+struct ReadRequest {
+  /// With those of the format.
+  const Parameters& parameters;
+  /// A sequence with its fields; a model that keeps its identities, otherwise it is one person.
+  bool fields = false;
+  bool identities = false;
+  /// A sequence may read its frames later.
+  bool may_stream = false;
+  /// The mesh that a region set is for.
+  int vertices = 0;
+  const Triangles* triangles = nullptr;
+  Progress progress = {};
+  int threads = 0;  ///< 0 for all there are; what is read does not depend on it
+};
+
+/// A value, and what was noticed while reading it.
+struct ReadValue {
+  NamedData value;
+  /// All that was read, for the manifest.
+  std::vector<std::filesystem::path> files = {};
+  std::vector<std::string> notes = {};
+};
+
+/// Where and how a value is written.
+struct WriteRequest {
+  std::filesystem::path target;
+  const Parameters& parameters;
+  bool overwrite = false;
+  Progress progress = {};
+  /// Files and folders that were read for it, which must stay.
+  std::vector<std::filesystem::path> inputs = {};
+  /// Further files (name, content) that appear together with the output.
+  std::vector<std::pair<std::string, std::string>> extra = {};
+  int threads = 0;  ///< 0 for all there are; what is written does not depend on it
+};
+
+/// A way to read and to write one kind of value, declared once: what is read and written, and every
+/// list of formats, comes from it.
+struct Format {
+  /// What is not a file has no extension: a folder, a pattern, MODEL@identity=1.5.
+  static constexpr auto kFolder = "";
+  static constexpr auto kAnyFile = "*";
+
+  std::string name;  ///< "PC2 point cache"
+  DataKind kind;
+  /// In lower case, such as ".pc2"; or kFolder alone; or kAnyFile alone.
+  std::vector<std::string> extensions;
+  /// Options of reading.
+  std::vector<Parameter> reading = {};
+  /// Throws IoError, MismatchError, Cancelled; not set where it is not read.
+  std::function<ReadValue(const std::string& text, const ReadRequest&)> read = {};
+  /// Options of writing.
+  std::vector<Parameter> writing = {};
+  /// Writes atomically; returns the files. Throws OutputError, MismatchError, Cancelled; not set
+  /// where it is not written.
+  std::function<std::vector<std::filesystem::path>(const Data&, const WriteRequest&)> write = {};
+  /// A sequence keeps its fields.
+  bool fields = false;
+
+  bool has(const std::string& extension) const;
+  /// Those of reading and of writing, each once.
+  std::vector<Parameter> options() const;
+};
+
+/// ".json, .csv or a folder": what formats are called in messages and help.
+std::string listed_extensions(std::vector<std::string> extensions);
+
+/// What is to be said of a sequence's fields that a format leaves out; "" where there are none.
+std::string note_on_fields(const Format& format, const Data& data,
+                           const std::filesystem::path& target);
+
+}  // namespace mimetra
