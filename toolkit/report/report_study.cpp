@@ -174,7 +174,7 @@ ReportedTransfer transferred(const RunSteps& steps, const NamedData& target,
   EvaluatedTransfer full =
       apart_from(notes, [&] { return steps.full(to, part_of(progress, 0, 0.1)); });
   EvaluatedTransfer by_regions = steps.by(main.regions, full, to, part_of(progress, 0.1, 0.2));
-  if (by_regions.solution.weights.size() > 0) {
+  if (by_regions.solution.weights().size() > 0) {
     transfer.expressions = model.expressions().names;
   }
   const EvaluationRow main_row = completed(by_regions.row, main);
@@ -197,7 +197,7 @@ ReportedTransfer transferred(const RunSteps& steps, const NamedData& target,
   transfer.rows.push_back(full.row);
   transfer.full = MeshSequence(*full.solution.sequence);
   transfer.by_regions = MeshSequence(*by_regions.solution.sequence);
-  transfer.weights = std::move(by_regions.solution.weights);
+  transfer.weights = by_regions.solution.weights();
   transfer.shown_scale = shown_scale(*steps.source().sequence, transfer.by_regions);
   enlarge(transfer.full, transfer.shown_scale);
   enlarge(transfer.by_regions, transfer.shown_scale);
