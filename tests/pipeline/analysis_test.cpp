@@ -21,10 +21,10 @@ AnalysisOptions three_components() {
   return {.decomposition = {.count = 3}};
 }
 
-TEST(Analysis, IsTheDecompositionFromTheFirstFrame) {
+TEST(Analysis, IsTheDecompositionFromTheRestPoseOfTheSource) {
   const MeshSequence sequence = take();
   const Analysis analysis = analyse(source_of(sequence), three_components());
-  const Components expected = decompose(sequence.with_rest(sequence.frame(0)), {.count = 3});
+  const Components expected = decompose(sequence, {.count = 3});
   EXPECT_TRUE(analysis.components.displacements == expected.displacements);
   EXPECT_TRUE(analysis.components.weights == expected.weights);
 }
@@ -34,13 +34,25 @@ TEST(Analysis, HasTheRestPoseThatIsAskedFor) {
   AnalysisOptions options = three_components();
   options.rest = RestPose::mean;
   EXPECT_TRUE(analyse(source_of(sequence), options).components.rest == mean_pose(sequence));
-  options.rest = sequence.rest();
-  EXPECT_TRUE(analyse(source_of(sequence), options).components.rest == sequence.rest());
+  options.rest = RestPose::first;
+  EXPECT_TRUE(analyse(source_of(sequence), options).components.rest == sequence.frame(0));
+  options.rest = 2 * sequence.rest();
+  EXPECT_TRUE(analyse(source_of(sequence), options).components.rest == 2 * sequence.rest());
+}
+
+TEST(Analysis, AlignsARestPoseThatIsTurnedAgainstTheSource) {
+  const MeshSequence sequence = take();
+  std::vector<RigidTransform> motion = test::nodding(8);
+  const Source source = prepare_source(with_motion(sequence, motion), {.head_motion = motion});
+  AnalysisOptions options = three_components();
+  options.rest = motion.back().apply(sequence.rest());
+  EXPECT_LT((analyse(source, options).components.rest - sequence.rest()).cwiseAbs().maxCoeff(),
+            1e-12);
 }
 
 TEST(Analysis, TakesLengthsAsSharesOrAsTheyAre) {
   const MeshSequence sequence = take();
-  const double side = extent(sequence.frame(0));
+  const double side = sequence.extent();
   AnalysisOptions shares = three_components(), absolute = three_components();
   shares.d_min = Length::share(0.25);
   shares.d_max = Length::share(0.5);
@@ -65,6 +77,7 @@ TEST(Analysis, MeasuresAsTheReferenceDoesWhereItIsToBeCompatible) {
   EXPECT_EQ(components.d_max, 0.7 * largest);
   EXPECT_EQ(static_cast<int>(components.energies.size()), options.decomposition.iterations);
   EXPECT_EQ(components.options.sign_rule, SignRule::literal);
+  EXPECT_TRUE(components.rest == sequence.frame(0));
 }
 
 TEST(Analysis, MeasuresTheReferencesUnitBeforeHeadMotionIsTakenOut) {

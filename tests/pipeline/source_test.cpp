@@ -70,11 +70,57 @@ TEST(HeadMotion, IsLookedForOnlyWhereTheSourceMayHaveSome) {
   EXPECT_TRUE(takes_out_motion(bare(take()), {}));
   EXPECT_TRUE(takes_out_motion(take(), {.head_motion = HeadMotion::all}));
   EXPECT_FALSE(takes_out_motion(bare(take()), {.head_motion = HeadMotion::none}));
+  // Whoever gives the neutral knows it.
+  EXPECT_FALSE(takes_out_motion(bare(take()), {.rest = take().rest()}));
+  EXPECT_TRUE(takes_out_motion(bare(take()), {.rest = SourceRest::mean}));
+}
+
+TEST(HeadMotion, IsSaidWithItsReasonAndSize) {
+  Noted noted;
+  const MeshSequence moved = with_motion(bare(take()), nodding(8));
+  const Source source = prepare_source(moved, {.name = "nod", .notes = noted.sink()});
+  EXPECT_EQ(source.head_motion.how, "stable");
+  EXPECT_EQ(source.head_motion.why, "the neutral is not known");
+  // From the first frame to the last, which nods by 0.7 radians; expressions move the fit a bit.
+  EXPECT_NEAR(source.head_motion.angle, 0.7 * 180 / EIGEN_PI, 5);
+  ASSERT_EQ(noted.notes.size(), 2U);
+  EXPECT_THAT(noted.notes[1].text, HasSubstr("nod: a head motion of up to"));
+  EXPECT_EQ(prepare_source(take()).head_motion.why, "the neutral is known");
+  EXPECT_EQ(prepare_source(take(), {.head_motion = HeadMotion::all}).head_motion.how, "all");
+}
+
+TEST(HeadMotion, ThatIsNotTakenOutIsNotedWhereTheHeadTurns) {
+  Noted noted;
+  const MeshSequence moved = with_motion(bare(take()), nodding(8));
+  prepare_source(moved, {.rest = take().rest(), .notes = noted.sink()});
+  EXPECT_TRUE(noted.has(Topic::turning_head));
+  noted.notes.clear();
+  prepare_source(bare(take()), {.rest = take().rest(), .notes = noted.sink()});
+  prepare_source(moved,
+                 {.rest = take().rest(), .head_motion = HeadMotion::none, .notes = noted.sink()});
+  EXPECT_FALSE(noted.has(Topic::turning_head));
+}
+
+TEST(HeadMotion, IsMeasuredFromTheRestPoseThatIsGiven) {
+  const RigidTransform turn = nodding(4).back();
+  const MeshSequence still = take();
+  const Positions turned = turn.apply(still.rest());
+  const Source source =
+      prepare_source(bare(still), {.rest = turned, .head_motion = HeadMotion::stable});
+  // The frames stand as the given rest pose does.
+  Positions expected = turn.apply(Positions(still.frame(3)));
+  EXPECT_LT((FrameBlock(*source.sequence, 3, 1).frame(0) - expected).cwiseAbs().maxCoeff(), 0.1);
+}
+
+TEST(HeadMotion, IsTakenOutBeforeAMeanIsTaken) {
+  const MeshSequence moved = with_motion(bare(take()), nodding(8));
+  const Source source = prepare_source(moved, {.rest = SourceRest::mean});
+  EXPECT_TRUE(source.sequence->rest() == mean_pose(align(moved).sequence));
 }
 
 TEST(HeadMotion, IsByDefaultTheOneOfWhatMovesLeast) {
   const MeshSequence moved = with_motion(bare(take()), nodding(8));
-  const Source source = without_head_motion(moved);
+  const Source source = prepare_source(moved);
   EXPECT_TRUE(frames_of(source.sequence) == align(moved).sequence.positions());
   EXPECT_TRUE(frames_of(source.given) == moved.positions());
 }

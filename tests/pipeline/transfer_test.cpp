@@ -27,14 +27,19 @@ class TransferTest : public testing::Test {
     return transfer(source_, {{"actor", model}}, options_).targets.front();
   }
 
+  /// The source where the target stands.
+  std::shared_ptr<const FrameSource> placed() const {
+    return carried(std::make_shared<const MeshSequence>(source_),
+                   similarity_fit(source_.rest(), actor_.neutral()));
+  }
+
   static Frames frames_of(const TransferredTarget& target) {
     return test::frames_of(target.solution.sequence);
   }
 
   /// The regions, found by hand.
   Regions regions() const {
-    const MeshSequence sequence = source_.with_rest(source_.frame(0));
-    return find_regions(decompose(sequence, {.count = 4}), {.radius = 0.3 * sequence.extent()});
+    return find_regions(decompose(source_, {.count = 4}), {.radius = 0.3 * source_.extent()});
   }
 };
 
@@ -45,20 +50,20 @@ TEST_F(TransferTest, IsItsPartsDoneByHand) {
   EXPECT_EQ(result.regions->triangles, regions.triangles);
   EXPECT_EQ(result.components->count(), 4);
 
-  const BlendshapeTransfer by_hand(source_.rest(), actor_, regions.triangles);
-  const Eigen::MatrixXd weights = by_hand.weights(source_);
+  const BlendshapeTransfer by_hand(placed()->rest(), actor_, regions.triangles);
+  const Eigen::MatrixXd weights = by_hand.weights(*placed());
   const MeshSequence expected = actor_.animate(weights, source_.times());
   EXPECT_TRUE(result.targets.front().solution.weights() == weights);
   EXPECT_TRUE(frames_of(result.targets.front()) == expected.positions());
   EXPECT_EQ(result.targets.front().error.de_all,
-            transfer_error(source_, expected, regions.triangles).de_all);
+            transfer_error(*placed(), expected, regions.triangles).de_all);
 }
 
 TEST_F(TransferTest, SolvesForTheVerticesInsideTheRegionsOfAMesh) {
   const Regions regions = this->regions();
-  const VertexTransfer by_hand(source_.rest(), mesh_.neutral(), mesh_.triangles(),
+  const VertexTransfer by_hand(placed()->rest(), mesh_.neutral(), mesh_.triangles(),
                                regions.triangles, {.inside = regions.inside});
-  EXPECT_TRUE(frames_of(to(mesh_)) == by_hand.frames(source_));
+  EXPECT_TRUE(frames_of(to(mesh_)) == by_hand.frames(*placed()));
 }
 
 TEST_F(TransferTest, OntoItselfReturnsTheSource) {
@@ -73,8 +78,8 @@ TEST_F(TransferTest, ByAllTrianglesHasNoRegions) {
   const TransferResult result = transfer(source_, {{"actor", actor_}}, options_);
   EXPECT_FALSE(result.regions);
   EXPECT_FALSE(result.components);
-  const BlendshapeTransfer by_hand(source_.rest(), actor_, all_triangles(source_.triangles()));
-  EXPECT_TRUE(result.targets.front().solution.weights() == by_hand.weights(source_));
+  const BlendshapeTransfer by_hand(placed()->rest(), actor_, all_triangles(source_.triangles()));
+  EXPECT_TRUE(result.targets.front().solution.weights() == by_hand.weights(*placed()));
 }
 
 TEST_F(TransferTest, ByRegionsThatAreGivenDecomposesNothing) {
@@ -113,7 +118,10 @@ TEST_F(TransferTest, GivesHeadMotionBackUnlessItIsDropped) {
     return transfer(moved, {{"actor", actor_}}, options_).targets.front().solution.sequence;
   };
   const auto kept = result(RemovedMotion::keep), dropped = result(RemovedMotion::drop);
-  EXPECT_TRUE(test::frames_of(kept) == test::frames_of(with_motion(dropped, nodding(8))));
+  const Similarity similarity = similarity_fit(source_.rest(), actor_.neutral());
+  std::vector<RigidTransform> carried = nodding(8);
+  for (RigidTransform& motion : carried) motion = similarity.carry(motion);
+  EXPECT_TRUE(test::frames_of(kept) == test::frames_of(with_motion(dropped, carried)));
   EXPECT_TRUE(dropped->rest() == actor_.neutral());
   EXPECT_TRUE(dropped->rest_is_known());
   EXPECT_FALSE(kept->rest_is_known());

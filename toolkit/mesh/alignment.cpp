@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -232,6 +233,11 @@ Positions RigidTransform::apply(const Eigen::Ref<const Positions>& positions) co
 
 RigidTransform RigidTransform::inverse() const {
   return {rotation.transpose(), -(rotation.transpose() * translation)};
+}
+
+double RigidTransform::angle() const {
+  const double cosine = std::clamp((rotation.trace() - 1) / 2, -1.0, 1.0);
+  return std::acos(cosine) * 180 / std::numbers::pi;
 }
 
 bool RigidTransform::is_identity() const {

@@ -18,6 +18,8 @@ struct RigidTransform {
 
   Positions apply(const Eigen::Ref<const Positions>& positions) const;
   RigidTransform inverse() const;
+  /// Of the rotation; degrees, 0 to 180.
+  double angle() const;
   bool is_identity() const;
 };
 

@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include <nlohmann/json.hpp>
 
@@ -17,11 +16,6 @@
 namespace mimetra {
 
 namespace {
-
-double degrees_of(const RigidTransform& transform) {
-  const double cosine = std::clamp((transform.rotation.trace() - 1) / 2, -1.0, 1.0);
-  return std::acos(cosine) * 180 / std::numbers::pi;
-}
 
 Json json_of(const RigidTransform& transform) {
   Json rotation = Json::array();
@@ -91,7 +85,7 @@ Outcome run_align(const Invocation& invocation) {
   const Moved result = moved(invocation);
   double degrees = 0, shift = 0;
   for (const RigidTransform& transform : result.motion) {
-    degrees = std::max(degrees, degrees_of(transform));
+    degrees = std::max(degrees, transform.angle());
     shift = std::max(shift, transform.translation.norm());
   }
   Outcome outcome;

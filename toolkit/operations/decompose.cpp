@@ -19,7 +19,8 @@ struct DecomposeCall {
 BoundParameters<DecomposeCall> decompose_parameters(const MeshSequence* sequence = nullptr) {
   BoundParameters<DecomposeCall> list;
   return list.add(&DecomposeCall::analysis, count_parameters(DecomposeCall{}.analysis))
-      .add(&DecomposeCall::analysis, analysis_parameters(sequence))
+      .add(&DecomposeCall::analysis, analysis_parameters())
+      .add(&DecomposeCall::source, rest_parameters(sequence))
       .add(&DecomposeCall::source, alignment_parameters(sequence));
 }
 
@@ -43,10 +44,14 @@ Outcome run_decompose(const Invocation& invocation) {
   call.analysis.threads = invocation.threads;
   call.analysis.progress = invocation.progress;
   call.analysis.notes = warnings_of(invocation);
-  const Source still =
-      without_head_motion(sequence, described(call.source, invocation.input("sequence")));
-  Analysis analysis =
-      in_command_terms(invocation.parameters, [&] { return analyse(still, call.analysis); });
+  call.source = described(std::move(call.source), invocation.input("sequence"));
+  call.source.notes = call.analysis.notes;
+  call.source.threads = invocation.threads;
+  const auto [still, analysis] = in_command_terms(invocation.parameters, [&] {
+    Source source = prepare_source(sequence, call.source);
+    Analysis found = analyse(source, call.analysis);
+    return std::pair(std::move(source), std::move(found));
+  });
   const Components& components = analysis.components;
   const DecompositionError error =
       decomposition_error(MeshSequence(*still.sequence).with_rest(components.rest), components);
@@ -65,6 +70,7 @@ Outcome run_decompose(const Invocation& invocation) {
                         {"kg", error.kg},
                         {"sparsity", error.sparsity},
                         {"centers", components.centers},
+                        {"head_motion", json_of(still.head_motion)},
                         {"seconds", analysis.seconds}}
                        .dump();
   outcome.summary = std::to_string(components.count() - dead) + " components, RMS error " +
@@ -76,7 +82,7 @@ Outcome run_decompose(const Invocation& invocation) {
     outcome.outputs["weights-out"].push_back(
         {"", weight_table(components, still.sequence->times())});
   }
-  outcome.outputs["out"].push_back({"", std::move(analysis.components)});
+  outcome.outputs["out"].push_back({"", analysis.components});
   return outcome;
 }
 

@@ -18,7 +18,8 @@ BoundParameters<EvaluationOptions> evaluation_parameters(const MeshSequence* seq
   BoundParameters<Options> list;
   return list.add(&Options::regions, region_parameters())
       .add("k", Options::kCounts, "numbers of components, one row each")
-      .add(&Options::analysis, analysis_parameters(sequence))
+      .add(&Options::analysis, analysis_rest_parameters(sequence))
+      .add(&Options::analysis, analysis_parameters())
       .add(&Options::source, alignment_parameters(sequence))
       .add(&Options::source, source_rest_parameters(sequence))
       .add(&Options::solving, solving_parameters());

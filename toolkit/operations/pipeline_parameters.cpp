@@ -1,5 +1,7 @@
 #include "toolkit/operations/pipeline_parameters.h"
 
+#include <nlohmann/json.hpp>
+
 #include "toolkit/operations/parameter_files.h"
 #include "toolkit/pipeline/memory.h"
 
@@ -91,7 +93,8 @@ BoundParameters<VertexTransferOptions> vertex_parameters() {
 }
 
 /// A text of the pipeline, and how the command helps it.
-std::string in_command_terms(Topic topic, const std::string& text) {
+std::string in_command_terms(Topic topic, const std::string& text, const Parameters& parameters) {
+  const std::string rest_option = parameters.find("source-rest") ? "--source-rest" : "--rest";
   switch (topic) {
     case Topic::other:
     case Topic::support_range:
@@ -100,9 +103,13 @@ std::string in_command_terms(Topic topic, const std::string& text) {
       return text + ", use --weld none to keep them apart";
     case Topic::unknown_neutral:
     case Topic::unneutral_rest:
-      return text + "; give it with --source-rest FILE";
+      return text + "; give it with " + rest_option + " FILE";
+    case Topic::turning_head:
+      return text + "; --align stable takes it out, --align none keeps it";
     case Topic::poor_condition:
       return text + "; take more regions (-k, --radius) or --full";
+    case Topic::undetermined_axes:
+      return text + "; use --axes none";
     case Topic::component_count:
       return "-k: " + text;
     case Topic::no_expressions:
@@ -139,6 +146,24 @@ BoundParameters<SourceOptions> source_rest_parameters(const FrameSource* sequenc
   return list;
 }
 
+BoundParameters<SourceOptions> rest_parameters(const FrameSource* sequence) {
+  BoundParameters<SourceOptions> list;
+  list.add_word_or_file<SourceRest, Positions>(
+      "rest", SourceOptions::kRest,
+      "rest pose; default the neutral where it is known, else the first frame",
+      rest_reader(sequence));
+  return list;
+}
+
+BoundParameters<AnalysisOptions> analysis_rest_parameters(const FrameSource* sequence) {
+  BoundParameters<AnalysisOptions> list;
+  list.add_word_or_file<RestPose, Positions>(
+      "rest", AnalysisOptions::kRest,
+      "rest pose of the decomposition: a frame, the mean, or a mesh; default that of the source",
+      rest_reader(sequence));
+  return list;
+}
+
 BoundParameters<DistanceOptions> distance_parameters() {
   BoundParameters<DistanceOptions> list;
   list.add("geodesics", DistanceOptions::kMethod, "how distances are computed")
@@ -154,12 +179,9 @@ BoundParameters<AnalysisOptions> count_parameters(const AnalysisOptions& default
   return list.add(&AnalysisOptions::decomposition, count);
 }
 
-BoundParameters<AnalysisOptions> analysis_parameters(const FrameSource* sequence) {
+BoundParameters<AnalysisOptions> analysis_parameters() {
   BoundParameters<AnalysisOptions> list;
-  list.add_word_or_file<RestPose, Positions>(
-          "rest", AnalysisOptions::kRest,
-          "rest pose of the decomposition: a frame, the mean, or a mesh", rest_reader(sequence))
-      .add("d-min", AnalysisOptions::kMinimum,
+  list.add("d-min", AnalysisOptions::kMinimum,
            "geodesic distance up to which sparsity costs nothing")
       .add("d-max", AnalysisOptions::kMaximum, "geodesic distance from which it costs all")
       .add(&AnalysisOptions::decomposition, decomposition_parameters())
@@ -187,6 +209,8 @@ BoundParameters<SolveOptions> solving_parameters() {
   list.add("space", SolveOptions::kSpace,
            "solve for blendshape weights or vertices; auto: weights where the target has "
            "expressions")
+      .add("axes", SolveOptions::kAxes,
+           "fit: the source is turned as its rest pose is to the target's; none: it is not")
       .add(&SolveOptions::blendshape, blendshape_parameters())
       .add(&SolveOptions::vertex, vertex_parameters());
   return list;
@@ -213,6 +237,13 @@ bool solves_for_vertices(const Parameters& parameters, const BlendshapeModel& ta
   return solves_for_vertices(target, solving_parameters().read(parameters).space);
 }
 
+Json json_of(const HeadMotionTaken& motion) {
+  return {{"align", motion.how},
+          {"reason", motion.why},
+          {"largest_rotation_degrees", motion.angle},
+          {"largest_translation", motion.shift}};
+}
+
 double analysis_bytes(const Invocation& invocation, const NamedData& source, int count) {
   if (invocation.find<Components>("components")) return 0;
   const SourceOptions options =
@@ -222,12 +253,13 @@ double analysis_bytes(const Invocation& invocation, const NamedData& source, int
 }
 
 Notes warnings_of(const Invocation& invocation) {
-  return
-      [&invocation](const Note& note) { invocation.warn(in_command_terms(note.topic, note.text)); };
+  return [&invocation](const Note& note) {
+    invocation.warn(in_command_terms(note.topic, note.text, invocation.parameters));
+  };
 }
 
 void refuse(const OptionError& error, const Parameters& parameters) {
-  const std::string text = in_command_terms(error.topic(), error.what());
+  const std::string text = in_command_terms(error.topic(), error.what(), parameters);
   switch (error.topic()) {
     case Topic::support_range:
       throw UsageError("--d-min: expected less than --d-max, found " + parameters.text("d-min") +

@@ -2,7 +2,10 @@
 
 #include <string>
 
+#include <nlohmann/json_fwd.hpp>
+
 #include "toolkit/operations/bound_parameters.h"
+#include "toolkit/operations/json.h"
 #include "toolkit/operations/operation.h"
 #include "toolkit/pipeline/evaluation.h"
 #include "toolkit/pipeline/transfer.h"
@@ -14,14 +17,17 @@ namespace mimetra {
 
 /// --align.
 BoundParameters<SourceOptions> alignment_parameters(const FrameSource* sequence = nullptr);
-/// --source-rest.
+/// --source-rest of a transfer, and --rest of its decomposition.
 BoundParameters<SourceOptions> source_rest_parameters(const FrameSource* sequence = nullptr);
+BoundParameters<AnalysisOptions> analysis_rest_parameters(const FrameSource* sequence = nullptr);
+/// --rest of a sequence that is decomposed.
+BoundParameters<SourceOptions> rest_parameters(const FrameSource* sequence = nullptr);
 /// --geodesics and --weld.
 BoundParameters<DistanceOptions> distance_parameters();
 /// -k, by default as many as the decomposition of `defaults` has.
 BoundParameters<AnalysisOptions> count_parameters(const AnalysisOptions& defaults = {});
-/// All others of a decomposition, the distances' included.
-BoundParameters<AnalysisOptions> analysis_parameters(const FrameSource* sequence = nullptr);
+/// All others of a decomposition but for its rest pose, the distances' included.
+BoundParameters<AnalysisOptions> analysis_parameters();
 /// --radius, --region and --coverage.
 BoundParameters<RegionChoiceOptions> region_parameters();
 /// --space and what belongs to each.
@@ -35,6 +41,9 @@ std::optional<GivenComponents> given_components(const Invocation& invocation);
 
 /// The output `components-out` of operations that decompose on the way to something else.
 Output components_output();
+
+/// What was done about head motion, for reports.
+Json json_of(const HeadMotionTaken& motion);
 
 /// True for the vertex space of --space, and where a target has no expressions to solve for.
 bool solves_for_vertices(const Parameters& parameters, const BlendshapeModel& target);

@@ -28,18 +28,29 @@ BoundParameters<RegionsCall> regions_parameters(const MeshSequence* sequence = n
       .add("component-fields", RegionsCall::kComponentFields,
            "also write support_k and component_k of each region")
       .add(&RegionsCall::analysis, count_parameters())
-      .add(&RegionsCall::analysis, analysis_parameters(sequence))
+      .add(&RegionsCall::analysis, analysis_parameters())
+      .add(&RegionsCall::source, rest_parameters(sequence))
       .add(&RegionsCall::source, alignment_parameters(sequence));
 }
 
+struct Found {
+  Analysis analysis;
+  /// None where components are given.
+  std::optional<HeadMotionTaken> head_motion = {};
+};
+
 /// Components given, or those of the sequence without its motion.
-Analysis analysis_of(const Invocation& invocation, const RegionsCall& call) {
+Found analysis_of(const Invocation& invocation, const RegionsCall& call) {
   const NamedData& input = invocation.input("sequence");
   const MeshSequence& sequence = std::get<FieldSequence>(input.data).sequence();
   if (const auto given = given_components(invocation)) {
-    return analysis_of(*given, sequence, call.analysis);
+    return {analysis_of(*given, sequence, call.analysis)};
   }
-  return analyse(without_head_motion(sequence, described(call.source, input)), call.analysis);
+  SourceOptions options = described(call.source, input);
+  options.notes = call.analysis.notes;
+  options.threads = invocation.threads;
+  const Source source = prepare_source(sequence, options);
+  return {analyse(source, call.analysis), source.head_motion};
 }
 
 /// What the script for ParaView opens: the main output.
@@ -68,8 +79,9 @@ Outcome run_regions(const Invocation& invocation) {
                         ": holds no support maps, which --component-fields writes; decompose the "
                         "sequence again");
   }
-  const Analysis analysis =
+  const Found found =
       in_command_terms(invocation.parameters, [&] { return analysis_of(invocation, call); });
+  const Analysis& analysis = found.analysis;
   const Regions regions = choose_regions(analysis, call.regions);
   std::vector<Field> fields = fields_of(regions);
   if (call.component_fields) {
@@ -79,6 +91,7 @@ Outcome run_regions(const Invocation& invocation) {
   }
   Outcome outcome;
   Json json = report_of(regions);
+  if (found.head_motion) json["head_motion"] = json_of(*found.head_motion);
   json["seconds"] = analysis.seconds;
   outcome.report = json.dump();
   outcome.summary = summary_of(regions);

@@ -24,7 +24,8 @@ BoundParameters<TransferOptions> transfer_parameters(const FrameSource* sequence
            "give the motion that --align took out back to the target, or drop it")
       .add(&Options::regions, region_parameters())
       .add(&Options::analysis, count_parameters())
-      .add(&Options::analysis, analysis_parameters(sequence))
+      .add(&Options::analysis, analysis_rest_parameters(sequence))
+      .add(&Options::analysis, analysis_parameters())
       .add(&Options::source, alignment_parameters(sequence))
       .add(&Options::source, source_rest_parameters(sequence))
       .add(&Options::solving, solving_parameters());
@@ -71,10 +72,13 @@ NamedData weight_table(const NamedData& target, const Solution& solution) {
 }
 
 Json report_of(const NamedData& target, const TransferredTarget& transferred) {
-  const auto& [solution, error] = transferred;
+  const auto& [solution, similarity, error] = transferred;
   Json json = {{"name", target.name},          {"output", nullptr},  {"de_all", error.de_all},
                {"de_region", error.de_region}, {"leak", error.leak}, {"flipped", error.flipped},
                {"seconds", solution.seconds}};
+  json["axes"] = {{"angle", similarity.angle()},
+                  {"scale", similarity.scale},
+                  {"mirrored", similarity.mirrors()}};
   json["degenerate_source_triangles"] = solution.degenerate_source_triangles;
   json["degenerate_target_triangles"] = solution.degenerate_target_triangles;
   if (solution.weights().size() > 0) {
@@ -86,7 +90,7 @@ Json report_of(const NamedData& target, const TransferredTarget& transferred) {
 }
 
 std::string summary_of(const NamedData& target, const TransferredTarget& transferred) {
-  const auto& [solution, error] = transferred;
+  const auto& [solution, similarity, error] = transferred;
   return target.name + ": DE " + readable(error.de_all) + " over all triangles, " +
          readable(error.de_region) + " over the regions; leak " + readable(error.leak) + ", " +
          std::to_string(error.flipped) + " flipped triangles; " + readable(solution.seconds) +
@@ -163,6 +167,7 @@ Outcome run_transfer(const Invocation& invocation) {
   if (invocation.wants("components-out")) {
     outcome.outputs["components-out"].push_back({"", std::move(*result.components)});
   }
+  report["head_motion"] = json_of(result.head_motion);
   report["seconds"] = stopwatch.seconds();
   outcome.report = report.dump();
   return outcome;

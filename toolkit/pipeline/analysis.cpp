@@ -19,10 +19,24 @@ Weld weld_of(const Positions& positions, Welding welding) {
   return Weld::none(static_cast<int>(positions.rows()));
 }
 
-MeshSequence with_rest_of(const MeshSequence& sequence,
-                          const std::variant<RestPose, Positions>& rest) {
-  if (const auto* given = std::get_if<Positions>(&rest)) return sequence.with_rest(*given);
-  switch (std::get<RestPose>(rest)) {
+/// The rest pose that was made for frames with head motion, where that was taken out.
+Positions aligned(const Positions& rest, const Source& source) {
+  if (source.motion.empty()) return rest;
+  return rigid_fit(rest, source.sequence->rest()).apply(rest);
+}
+
+/// The source in memory, with the rest pose of the decomposition.
+MeshSequence work_of(const Source& source, const AnalysisOptions& options) {
+  const MeshSequence sequence(*source.sequence, {.threads = options.threads});
+  const bool reference = options.compatibility == Compatibility::splocs2013;
+  if (!options.rest) {
+    return reference && !source.rest_is_given ? sequence.with_rest(sequence.frame(0)) : sequence;
+  }
+  if (const auto* given = std::get_if<Positions>(&*options.rest)) {
+    return sequence.with_rest(given->rows() == sequence.vertices() ? aligned(*given, source)
+                                                                   : *given);
+  }
+  switch (std::get<RestPose>(*options.rest)) {
     case RestPose::first:
       return sequence.with_rest(sequence.frame(0));
     case RestPose::mean:
@@ -94,8 +108,7 @@ SupportRange support_range(const Length& d_min, const Length& d_max, double long
 Analysis analyse(const Source& source, const AnalysisOptions& options) {
   const Stopwatch stopwatch;
   check_options(options);
-  const MeshSequence work =
-      with_rest_of(MeshSequence(*source.sequence, {.threads = options.threads}), options.rest);
+  const MeshSequence work = work_of(source, options);
   DecompositionOptions decomposition = options.decomposition;
   if (decomposition.count > work.vertices()) {
     throw OptionError(Topic::component_count, std::to_string(decomposition.count) +

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -70,7 +71,8 @@ constexpr std::string_view choice_name(RestPose value) {
 enum class Compatibility {
   none,
   /// The reference implementation to the letter: lengths are shares of the longest side that any
-  /// single frame has, signs are decided as there, and all iterations run.
+  /// single frame has, signs are decided as there, all iterations run, and the rest pose is the
+  /// first frame unless one is asked for.
   splocs2013
 };
 
@@ -86,8 +88,8 @@ constexpr std::string_view choice_name(Compatibility value) {
 }
 
 struct AnalysisOptions {
-  /// A frame, the mean of all, or a given pose (N x 3).
-  std::variant<RestPose, Positions> rest = RestPose::first;
+  /// A frame, the mean of all, or a given pose (N x 3); by default the source's.
+  std::optional<std::variant<RestPose, Positions>> rest = {};
   /// Distance up to which sparsity costs nothing, and from which it costs all.
   Length d_min = Length::share(DecompositionOptions::kMinimumShare);
   Length d_max = Length::share(DecompositionOptions::kMaximumShare);

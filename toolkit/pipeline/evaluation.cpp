@@ -22,9 +22,10 @@ std::optional<double> percentage_error(double full, double k, double size) {
 
 EvaluatedTransfer solved(const Source& source, const Target& target, const Selection& selection,
                          const SolveOptions& options) {
-  EvaluatedTransfer result{{}, solve(source, target, selection, options), {}};
-  result.error = transfer_error(*source.sequence, *result.solution.sequence, selection.triangles,
-                                {.threads = options.threads});
+  const PlacedSource placed = placed_at(target, source, options);
+  EvaluatedTransfer result{{}, solve(placed.source, target, selection, options), {}};
+  result.error = transfer_error(*placed.source.sequence, *result.solution.sequence,
+                                selection.triangles, {.threads = options.threads});
   result.row.triangles = static_cast<int>(selection.triangles.size());
   result.row.de_all = result.error.de_all;
   result.row.de_region = result.error.de_region;

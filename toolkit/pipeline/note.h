@@ -11,15 +11,17 @@ namespace mimetra {
 /// command names its options.
 enum class Topic {
   other,
-  parting_vertices,  ///< vertices that are welded at rest do not stay together
-  unknown_neutral,   ///< of the source
-  unneutral_rest,    ///< the source's rest pose is likely not its neutral
-  poor_condition,    ///< the regions hardly tell the target's expressions apart
-  component_count,   ///< more than the mesh can have
-  support_range,     ///< d_min is not below d_max
-  no_expressions,    ///< of the target, where weights are asked for
-  anchor_vertex,     ///< one that the mesh does not have
-  held_anchor        ///< an anchor where fixed vertices hold the mesh
+  parting_vertices,   ///< vertices that are welded at rest do not stay together
+  unknown_neutral,    ///< of the source
+  turning_head,       ///< the source's head turns, and that was not taken out
+  unneutral_rest,     ///< the source's rest pose is likely not its neutral
+  poor_condition,     ///< the regions hardly tell the target's expressions apart
+  undetermined_axes,  ///< the rest poses leave open how source and target are turned
+  component_count,    ///< more than the mesh can have
+  support_range,      ///< d_min is not below d_max
+  no_expressions,     ///< of the target, where weights are asked for
+  anchor_vertex,      ///< one that the mesh does not have
+  held_anchor         ///< an anchor where fixed vertices hold the mesh
 };
 
 /// What the user of a computation should know of it.

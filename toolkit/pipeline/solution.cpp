@@ -123,6 +123,36 @@ Solution solve_vertices(const Source& source, const Target& target, const Select
   return solution;
 }
 
+/// Vertices that triangles use, ascending.
+std::vector<VertexIndex> used_vertices(const BlendshapeModel& model) {
+  std::vector<bool> used(model.vertices(), false);
+  for (const VertexIndex vertex : model.triangles().reshaped()) used[vertex] = true;
+  std::vector<VertexIndex> vertices;
+  for (VertexIndex v = 0; v < model.vertices(); ++v) {
+    if (used[v]) vertices.push_back(v);
+  }
+  return vertices;
+}
+
+Similarity similarity_between(const Positions& rest, const Target& target,
+                              const SolveOptions& options) {
+  const BlendshapeModel& model = target.model;
+  if (rest == model.neutral()) return {};
+  const std::vector<VertexIndex> used = used_vertices(model);
+  const Positions from = rest(used, Eigen::all), to = model.neutral()(used, Eigen::all);
+  switch (options.axes) {
+    case Axes::fit:
+      try {
+        return similarity_fit(from, to);
+      } catch (const MismatchError& error) {
+        throw OptionError(Topic::undetermined_axes, target.name + ": " + error.what());
+      }
+    case Axes::none:
+      break;
+  }
+  return scaling_fit(from, to);
+}
+
 }  // namespace
 
 const Eigen::MatrixXd& Solution::weights() const {
@@ -146,6 +176,16 @@ void check_target(const FrameSource& source, const Target& target) {
     throw MismatchError(target.name + ": face " + std::to_string(face) +
                         " is not the source's; source and target need the same faces");
   }
+}
+
+PlacedSource placed_at(const Target& target, const Source& source, const SolveOptions& options) {
+  PlacedSource placed{source, similarity_between(source.sequence->rest(), target, options)};
+  placed.source.sequence = carried(source.sequence, placed.similarity);
+  for (RigidTransform& motion : placed.source.motion) motion = placed.similarity.carry(motion);
+  if (placed.similarity.mirrors()) {
+    note(options.notes, target.name + ": is the source's mirror image; its motion is mirrored too");
+  }
+  return placed;
 }
 
 Solution solve(const Source& source, const Target& target, const Selection& selection,

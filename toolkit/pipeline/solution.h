@@ -5,6 +5,7 @@
 #include <string>
 #include <string_view>
 
+#include "toolkit/mesh/similarity.h"
 #include "toolkit/model/animation.h"
 #include "toolkit/pipeline/region_choice.h"
 #include "toolkit/transfer/blendshape_transfer.h"
@@ -32,6 +33,23 @@ constexpr std::string_view choice_name(Space value) {
   return {};
 }
 
+/// How the source's rest pose is turned to the target's, whose axes may be others.
+enum class Axes {
+  fit,  ///< by the similarity that fits best
+  none  ///< not at all; the paper's deformation gradients
+};
+
+/// As people choose it.
+constexpr std::string_view choice_name(Axes value) {
+  switch (value) {
+    case Axes::fit:
+      return "fit";
+    case Axes::none:
+      return "none";
+  }
+  return {};
+}
+
 /// Who receives the deformation: a model, or a mesh, which is a model without expressions. It
 /// refers to the model.
 struct Target {
@@ -42,6 +60,7 @@ struct Target {
 
 struct SolveOptions {
   Space space = Space::automatic;
+  Axes axes = Axes::fit;
   /// Of each space; their threads and progress, and the vertices inside, are those of the solve.
   BlendshapeTransferOptions blendshape = {};
   VertexTransferOptions vertex = {};
@@ -51,8 +70,25 @@ struct SolveOptions {
   Notes notes = {};
 
   static constexpr Option kSpace{"space", &SolveOptions::space};
-  static constexpr auto declared() { return std::tuple(kSpace); }
+  static constexpr Option kAxes{"axes", &SolveOptions::axes};
+  static constexpr auto declared() { return std::tuple(kSpace, kAxes); }
 };
+
+/// A source as it looks where the target is.
+struct PlacedSource {
+  /// Its frames, rest pose and head motion, carried there; `given` is not.
+  Source source;
+  /// From the source's rest pose to the target's.
+  Similarity similarity;
+};
+
+/// Carries the source by the similarity from its rest pose to the target's neutral, over the
+/// vertices that triangles use, so that unit, place and axes are the target's; bit by bit the
+/// source itself where both are equal. With Axes::none it is not turned. Notes a mirrored target
+/// under its name. Throws OptionError (Topic::undetermined_axes) where the rest poses leave the
+/// rotation open. \pre check_target()
+PlacedSource placed_at(const Target& target, const Source& source,
+                       const SolveOptions& options = {});
 
 /// A target's poses that follow a source.
 struct Solution {
@@ -79,7 +115,7 @@ void check_target(const FrameSource& source, const Target& target);
 /// Solves on the selected triangles in blendshape or vertex space. Notes, under the target's name,
 /// expressions that the triangles do not or hardly show (Topic::poor_condition where they do not
 /// tell them apart), triangles without area, and a source whose rest pose does not look neutral
-/// (Topic::unneutral_rest). \pre check_target()
+/// (Topic::unneutral_rest). \pre check_target(); the source is placed_at() the target
 ///
 /// Throws OptionError (Topic::no_expressions, Topic::anchor_vertex, Topic::held_anchor) and what
 /// BlendshapeTransfer, VertexTransfer, reading the source and FrameStore throw.

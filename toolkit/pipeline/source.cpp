@@ -1,6 +1,9 @@
 #include "toolkit/pipeline/source.h"
 
+#include <algorithm>
+
 #include "toolkit/mesh/frame_store.h"
+#include "toolkit/mesh/text.h"
 
 namespace mimetra {
 
@@ -12,10 +15,24 @@ using Shared = std::shared_ptr<const FrameSource>;
 /// Keeping the frames of a source that is slow to read, as a part of its progress.
 constexpr double kStoringShare = 0.3;
 
-Motion motion_of(const FrameSource& sequence, const SourceOptions& options) {
-  if (options.head_motion) return *options.head_motion;
-  const bool still = options.model_driven || sequence.rest_is_known() || sequence.frames() == 1;
-  return still ? HeadMotion::none : HeadMotion::stable;
+/// A head that turns by more than that, in degrees, is no matter of a moving jaw, which reads as
+/// two.
+constexpr double kTurning = 10;
+
+/// What is to be taken out, and why.
+struct MotionChoice {
+  Motion motion;
+  std::string_view reason;
+  bool is_asked = false;
+};
+
+MotionChoice motion_of(const FrameSource& sequence, const SourceOptions& options) {
+  if (options.head_motion) return {*options.head_motion, "it was asked for", true};
+  if (options.model_driven) return {HeadMotion::none, "a model drives the sequence"};
+  if (sequence.frames() == 1) return {HeadMotion::none, "there is one frame"};
+  const bool is_given = options.rest && std::holds_alternative<Positions>(*options.rest);
+  if (is_given || sequence.rest_is_known()) return {HeadMotion::none, "the neutral is known"};
+  return {HeadMotion::stable, "the neutral is not known"};
 }
 
 bool takes_out(const Motion& motion) {
@@ -64,14 +81,45 @@ Shared with_asked_rest(Shared sequence, const SourceOptions& options) {
   return with_rest(sequence, mean_pose(*sequence));
 }
 
-/// `sequence` are the frames of `given` with the rest pose that counts.
-Source made_of(Shared given, Shared sequence, const Motion& motion, const SourceOptions& options) {
-  Source source{std::move(given), std::move(sequence), {}};
-  source.motion = motion_in(
-      *source.sequence, motion,
-      {.threads = options.threads, .progress = part_of(options.progress, kStoringShare, 1)});
-  if (takes_out(motion)) source.sequence = without_motion(source.sequence, source.motion);
-  return source;
+std::string_view name_of(const Motion& motion) {
+  const auto* fitted = std::get_if<HeadMotion>(&motion);
+  return fitted ? choice_name(*fitted) : "given";
+}
+
+/// The largest motion of all frames.
+HeadMotionTaken taken(const MotionChoice& choice, const Source& source) {
+  HeadMotionTaken taken{name_of(choice.motion), choice.reason};
+  const Eigen::Vector3d center = source.sequence->rest().colwise().mean();
+  for (const RigidTransform& transform : source.motion) {
+    taken.angle = std::max(taken.angle, transform.angle());
+    const Eigen::Vector3d there = transform.rotation * center + transform.translation;
+    taken.shift = std::max(taken.shift, (there - center).norm());
+  }
+  return taken;
+}
+
+/// Says what nobody asked for: that motion was taken out, or that the head turns and it was not.
+void note_motion(const MotionChoice& choice, const Source& source, const SourceOptions& options) {
+  if (choice.is_asked || options.model_driven || source.sequence->frames() == 1) return;
+  if (takes_out(choice.motion)) {
+    const HeadMotionTaken& motion = source.head_motion;
+    if (motion.angle == 0 && motion.shift == 0) return;
+    note(options.notes, options.name + ": a head motion of up to " + readable(motion.angle, 2) +
+                            " degrees and " + readable(motion.shift, 2) + " is taken out, as " +
+                            std::string(choice.reason));
+    return;
+  }
+  double angle = 0;
+  for (const RigidTransform& transform : rigid_motion(
+           *source.sequence, {.vertices = AlignmentVertices::all, .threads = options.threads})) {
+    angle = std::max(angle, transform.angle());
+  }
+  if (angle < kTurning) return;
+  note(options.notes,
+       options.name + ": the head turns by up to " + readable(angle, 2) +
+           " degrees against the rest pose, which counts as deformation, as " +
+           std::string(choice.reason),
+       Topic::turning_head);
 }
 
 Shared kept(Shared sequence, const SourceOptions& options) {
@@ -79,27 +127,34 @@ Shared kept(Shared sequence, const SourceOptions& options) {
                                       .progress = part_of(options.progress, 0, kStoringShare)});
 }
 
+bool is_mean(const SourceOptions& options) {
+  const auto* word = options.rest ? std::get_if<SourceRest>(&*options.rest) : nullptr;
+  return word && *word == SourceRest::mean;
+}
+
 }  // namespace
 
 bool takes_out_motion(const FrameSource& sequence, const SourceOptions& options) {
-  return takes_out(motion_of(sequence, options));
-}
-
-Source without_head_motion(Shared sequence, const SourceOptions& options) {
-  const Motion motion = motion_of(*sequence, options);
-  const Shared given = kept(std::move(sequence), options);
-  return made_of(given, given, motion, options);
-}
-
-Source without_head_motion(const MeshSequence& sequence, const SourceOptions& options) {
-  return without_head_motion(std::make_shared<const MeshSequence>(sequence), options);
+  return takes_out(motion_of(sequence, options).motion);
 }
 
 Source prepare_source(Shared sequence, const SourceOptions& options) {
   // Whether the head moves is judged by what is known of the sequence itself.
-  const Motion motion = motion_of(*sequence, options);
-  const Shared given = kept(std::move(sequence), options);
-  return made_of(given, with_asked_rest(given, options), motion, options);
+  const MotionChoice choice = motion_of(*sequence, options);
+  Source source;
+  source.given = kept(std::move(sequence), options);
+  source.sequence = is_mean(options) ? source.given : with_asked_rest(source.given, options);
+  source.rest_is_given = options.rest.has_value();
+  source.motion = motion_in(
+      *source.sequence, choice.motion,
+      {.threads = options.threads, .progress = part_of(options.progress, kStoringShare, 1)});
+  source.head_motion = taken(choice, source);
+  note_motion(choice, source, options);
+  if (takes_out(choice.motion)) {
+    source.sequence = without_motion(source.sequence, source.motion);
+  }
+  if (is_mean(options)) source.sequence = with_rest(source.sequence, mean_pose(*source.sequence));
+  return source;
 }
 
 Source prepare_source(const MeshSequence& sequence, const SourceOptions& options) {

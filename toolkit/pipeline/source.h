@@ -51,8 +51,8 @@ struct SourceOptions {
   /// frame, with a note.
   std::optional<std::variant<SourceRest, Positions>> rest = {};
   /// Or the motion itself: head_motion[f] carries frame f without it to frame f (F). By default
-  /// none for one frame, and where the neutral is known or a model drives the source; otherwise
-  /// stable.
+  /// none for one frame, and where the neutral is known, as the sequence's own or as `rest`, or a
+  /// model drives the source; otherwise stable.
   std::optional<std::variant<HeadMotion, std::vector<RigidTransform>>> head_motion = {};
   /// A model drives it: it has no head motion of its own.
   bool model_driven = false;
@@ -65,6 +65,17 @@ struct SourceOptions {
   static constexpr Option kHeadMotion{"head_motion", &SourceOptions::head_motion};
 };
 
+/// What was done about a source's head motion.
+struct HeadMotionTaken {
+  /// "stable", "all", "none", or "given".
+  std::string_view how = choice_name(HeadMotion::none);
+  /// "the neutral is known", say.
+  std::string_view why = {};
+  /// The largest of all frames; degrees, and how far the rest pose's centre goes.
+  double angle = 0;
+  double shift = 0;
+};
+
 /// A sequence whose deformation is looked at.
 struct Source {
   /// As it came; stored() where reading it again is slow.
@@ -73,21 +84,23 @@ struct Source {
   std::shared_ptr<const FrameSource> sequence;
   /// Of the head (F); empty where none was looked for.
   std::vector<RigidTransform> motion;
+  HeadMotionTaken head_motion = {};
+  /// The rest pose was asked for.
+  bool rest_is_given = false;
 };
 
 /// True where these options take a head motion out of the sequence.
 bool takes_out_motion(const FrameSource& sequence, const SourceOptions& options);
 
-/// The sequence without its head motion, its rest pose as it is: `options.rest` is for transfers.
-/// Throws MismatchError where a given motion has another number of frames, what reading throws,
-/// OutputError where frames cannot be stored(), Cancelled.
-Source without_head_motion(std::shared_ptr<const FrameSource> sequence,
-                           const SourceOptions& options = {});
-Source without_head_motion(const MeshSequence& sequence, const SourceOptions& options = {});
-
-/// The source of a transfer: also its rest pose is the one that was asked for. Throws OptionError
-/// (Topic::unknown_neutral) where the neutral is asked for and not known, std::invalid_argument for
-/// a rest pose of another number of vertices.
+/// The sequence with the rest pose that was asked for, to which its frames are aligned; the mean is
+/// that of the aligned frames. Notes a first frame that stands in for the neutral
+/// (Topic::unknown_neutral), a motion that nobody asked to take out, and a head that turns although
+/// none was (Topic::turning_head).
+///
+/// Throws OptionError (Topic::unknown_neutral) where the neutral is asked for and not known,
+/// std::invalid_argument for a rest pose of another number of vertices, MismatchError where a given
+/// motion has another number of frames, what reading throws, OutputError where frames cannot be
+/// stored(), Cancelled.
 Source prepare_source(std::shared_ptr<const FrameSource> sequence,
                       const SourceOptions& options = {});
 Source prepare_source(const MeshSequence& sequence, const SourceOptions& options = {});

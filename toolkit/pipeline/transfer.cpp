@@ -86,13 +86,15 @@ TransferResult transfer(const FrameSource& sequence, const std::vector<Target>& 
         part_of(options.progress, first + (1 - first) * static_cast<double>(t) / count,
                 first + (1 - first) * static_cast<double>(t + 1) / count);
     of_solving.progress = part_of(progress, 0, kSolveShare);
-    Solution solution = solve(source, targets[t], choice.selection, of_solving);
+    const PlacedSource placed = placed_at(targets[t], source, of_solving);
+    Solution solution = solve(placed.source, targets[t], choice.selection, of_solving);
     TransferError error =
-        transfer_error(*source.sequence, *solution.sequence, choice.selection.triangles,
+        transfer_error(*placed.source.sequence, *solution.sequence, choice.selection.triangles,
                        {.threads = options.threads, .progress = part_of(progress, kSolveShare, 1)});
-    if (give_back) solution.sequence = with_head_motion(solution.sequence, source.motion);
-    result.targets.push_back({std::move(solution), std::move(error)});
+    if (give_back) solution.sequence = with_head_motion(solution.sequence, placed.source.motion);
+    result.targets.push_back({std::move(solution), placed.similarity, std::move(error)});
   }
+  result.head_motion = source.head_motion;
   result.regions = std::move(choice.regions);
   result.components = std::move(choice.components);
   result.region_seconds = choice.seconds;

@@ -53,6 +53,8 @@ struct TransferredTarget {
   /// Its sequence has the source's head motion where that was taken out and is kept; its neutral is
   /// then not its rest pose.
   Solution solution;
+  /// From the source's rest pose to the target's.
+  Similarity similarity;
   /// Before head motion was given back.
   TransferError error;
 };
@@ -61,6 +63,7 @@ struct TransferResult {
   std::vector<TransferredTarget> targets;  ///< in the order of the targets
   std::optional<Regions> regions;          ///< none for all triangles
   std::optional<Components> components;    ///< that the regions come from
+  HeadMotionTaken head_motion;             ///< of the source
   double region_seconds = 0;               ///< decomposition and choice of regions
 };
 

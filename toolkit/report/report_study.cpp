@@ -109,15 +109,16 @@ class RunSteps {
     const MeshSequence& sequence = call.sequence("source");
     const bool transfers = call.inputs.contains("target");
     BoundParameters<SourceOptions> list = alignment_parameters(&sequence);
-    if (transfers) list.add(source_rest_parameters(&sequence));
+    list.add(transfers ? source_rest_parameters(&sequence) : rest_parameters(&sequence));
     SourceOptions options = described(list.read(call.parameters), input);
     options.notes = warnings_of(call);
-    if (!transfers) return without_head_motion(sequence, options);
     return in_command_terms(call.parameters, [&] { return prepare_source(sequence, options); });
   }
 
   AnalysisOptions analysis_options(const Progress& progress) const {
-    AnalysisOptions options = analysis_parameters(&sequence_).read(call_.parameters);
+    BoundParameters<AnalysisOptions> list = analysis_parameters();
+    if (call_.inputs.contains("target")) list.add(analysis_rest_parameters(&sequence_));
+    AnalysisOptions options = list.read(call_.parameters);
     options.threads = call_.threads;
     options.notes = warnings_of(call_);
     options.progress = progress;

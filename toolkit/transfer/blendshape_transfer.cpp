@@ -91,7 +91,7 @@ Eigen::VectorXd full_diagonal(const BlendshapeModel& target) {
 
 int degenerate_triangles(const BlendshapeModel& target, const std::vector<int>& selected) {
   return static_cast<int>(std::ranges::count_if(selected, [&target](int triangle) {
-    return !has_usable_frame(target.neutral(), target.triangles(), triangle);
+    return quality_of(target.neutral(), target.triangles(), triangle) < kDegenerateQuality;
   }));
 }
 

@@ -1,8 +1,13 @@
 #include "toolkit/transfer/deformation_gradients.h"
 
+#include <algorithm>
 #include <cmath>
+#include <map>
+#include <optional>
+#include <set>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
@@ -29,20 +34,110 @@ Eigen::Matrix3d triangle_frame(const Eigen::Ref<const Positions>& positions,
                         positions.row(corners[2]));
 }
 
-bool has_usable_frame(const Eigen::Ref<const Positions>& positions, const Triangles& triangles,
-                      int triangle) {
+double own_share(double quality) {
+  if (!(quality >= kDegenerateQuality)) return 0;
+  const double share = std::min(1.0, quality / kSoundQuality);
+  return share * share;
+}
+
+double quality_of(const Eigen::Ref<const Positions>& positions, const Triangles& triangles,
+                  int triangle) {
   const auto corners = triangles.row(triangle);
   return triangle_quality(positions.row(corners[0]), positions.row(corners[1]),
-                          positions.row(corners[2])) >= kDegenerateQuality;
+                          positions.row(corners[2]));
 }
+
+namespace {
+
+/// Length of the longest edge that two triangles share; 0 for none.
+double shared_edge(const Positions& rest, const Triangles& triangles, int one, int other) {
+  double longest = 0;
+  for (int i = 0; i < 3; ++i) {
+    const VertexIndex a = triangles(one, i), b = triangles(one, (i + 1) % 3);
+    const auto corners = triangles.row(other).array();
+    if ((corners == a).any() && (corners == b).any()) {
+      longest = std::max(longest, (rest.row(a) - rest.row(b)).norm());
+    }
+  }
+  return longest;
+}
+
+/// Finds what stands in for slivers.
+class StandIns {
+ public:
+  using Parts = std::vector<DeformationGradients::Part>;
+
+  StandIns(const Positions& rest, const Triangles& triangles)
+      : rest_(rest),
+        triangles_(triangles),
+        neighbors_(triangle_neighbors(static_cast<int>(rest.rows()), triangles)) {}
+
+  /// The parts of a sliver's gradient, ring by ring.
+  Parts parts_of(int sliver) const {
+    const double own = share_of(sliver);
+    Parts parts;
+    if (own > 0) parts.push_back({sliver, own});
+    std::set<int> seen = {sliver};
+    std::map<int, double> ring = {{sliver, 1}};
+    Parts around;
+    double found = 0;
+    while (!ring.empty() && found < 1 - kNegligible && seen.size() < kMostTriangles) {
+      ring = next_ring(ring, seen);
+      for (auto& [triangle, amount] : ring) {
+        const double taken = amount * share_of(triangle);
+        if (taken > 0) around.push_back({triangle, taken});
+        found += taken;
+        amount -= taken;
+      }
+    }
+    for (const auto& [triangle, taken] : around) {
+      parts.push_back({triangle, (1 - own) * taken / std::max(found, kScarce)});
+    }
+    return parts;
+  }
+
+ private:
+  /// Enough of what is asked for.
+  static constexpr double kNegligible = 1e-6;
+  /// Below so much soundness around a sliver, the identity takes part.
+  static constexpr double kScarce = 1e-3;
+  static constexpr std::size_t kMostTriangles = 256;
+
+  double share_of(int triangle) const { return own_share(quality_of(rest_, triangles_, triangle)); }
+
+  /// What the triangles of a ring hand on to those that were not seen yet.
+  std::map<int, double> next_ring(const std::map<int, double>& ring, std::set<int>& seen) const {
+    std::map<int, double> next;
+    for (const auto& [triangle, amount] : ring) {
+      std::vector<std::pair<int, double>> edges;
+      double sum = 0;
+      for (const int neighbor : neighbors_[triangle]) {
+        if (seen.contains(neighbor)) continue;
+        edges.emplace_back(neighbor, shared_edge(rest_, triangles_, triangle, neighbor));
+        sum += edges.back().second;
+      }
+      for (const auto& [neighbor, edge] : edges) {
+        next[neighbor] += amount * (sum > 0 ? edge / sum : 1 / double(edges.size()));
+      }
+    }
+    for (const auto& [triangle, amount] : next) seen.insert(triangle);
+    return next;
+  }
+
+  const Positions& rest_;
+  const Triangles& triangles_;
+  std::vector<std::vector<int>> neighbors_;
+};
+
+}  // namespace
 
 DeformationGradients::DeformationGradients(const Positions& rest, const Triangles& triangles,
                                            std::vector<int> selected)
     : triangles_(triangles),
       selected_(std::move(selected)),
-      sources_(selected_.size()),
+      parts_(selected_.size()),
       inverse_frames_(triangles.rows(), Eigen::Matrix3d::Identity()) {
-  std::vector<std::vector<int>> neighbors;
+  std::optional<StandIns> stand_ins;
   for (std::size_t s = 0; s < selected_.size(); ++s) {
     const int triangle = selected_[s];
     if (triangle < 0 || triangle >= triangles.rows()) {
@@ -50,19 +145,16 @@ DeformationGradients::DeformationGradients(const Positions& rest, const Triangle
                                   " is selected, expected 0 to " +
                                   std::to_string(triangles.rows() - 1));
     }
-    if (has_usable_frame(rest, triangles, triangle)) {
-      sources_[s] = {triangle};
+    const double own = own_share(quality_of(rest, triangles, triangle));
+    if (own == 1) {
+      parts_[s] = {{triangle, 1}};
     } else {
-      ++replaced_;
-      if (neighbors.empty()) {
-        neighbors = triangle_neighbors(static_cast<int>(rest.rows()), triangles);
-      }
-      for (const int neighbor : neighbors[triangle]) {
-        if (has_usable_frame(rest, triangles, neighbor)) sources_[s].push_back(neighbor);
-      }
+      if (own < 0.5) ++replaced_;
+      if (!stand_ins) stand_ins.emplace(rest, triangles);
+      parts_[s] = stand_ins->parts_of(triangle);
     }
-    for (const int source : sources_[s]) {
-      inverse_frames_[source] = triangle_frame(rest, triangles, source).inverse();
+    for (const Part& part : parts_[s]) {
+      inverse_frames_[part.triangle] = triangle_frame(rest, triangles, part.triangle).inverse();
     }
   }
 }
@@ -72,14 +164,13 @@ Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor> DeformationGradients::
   Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor> gradients(3 * selected_.size(), 3);
   for (std::size_t s = 0; s < selected_.size(); ++s) {
     Eigen::Matrix3d gradient = Eigen::Matrix3d::Zero();
-    for (const int source : sources_[s]) {
-      gradient += triangle_frame(frame, triangles_, source) * inverse_frames_[source];
+    double rest = 1;
+    for (const Part& part : parts_[s]) {
+      gradient += part.share * triangle_frame(frame, triangles_, part.triangle) *
+                  inverse_frames_[part.triangle];
+      rest -= part.share;
     }
-    if (sources_[s].empty()) {
-      gradient.setIdentity();
-    } else {
-      gradient /= static_cast<double>(sources_[s].size());
-    }
+    gradient.diagonal().array() += rest;
     gradients.middleRows<3>(static_cast<Eigen::Index>(3 * s)) = gradient;
   }
   return gradients;

@@ -16,16 +16,26 @@ Eigen::Matrix3d triangle_frame(const Eigen::Vector3d& a, const Eigen::Vector3d& 
 Eigen::Matrix3d triangle_frame(const Eigen::Ref<const Positions>& positions,
                                const Triangles& triangles, int triangle);
 
-/// False for a triangle of quality below kDegenerateQuality, whose frame has no usable inverse.
-bool has_usable_frame(const Eigen::Ref<const Positions>& positions, const Triangles& triangles,
-                      int triangle);
+/// Triangles of this quality (triangle_quality()) and above are sound: valid faces go down to 2e-2.
+/// Below, what a frame's noise makes of a gradient grows as 1 / quality.
+constexpr double kSoundQuality = 2e-2;
+
+/// How much of its own gradient a triangle of a source keeps: all of it from kSoundQuality on,
+/// below with the square of the quality, so that noise fades out with the triangle; nothing below
+/// kDegenerateQuality.
+double own_share(double quality);
+
+/// The quality of row `triangle` of `triangles` at `positions`.
+double quality_of(const Eigen::Ref<const Positions>& positions, const Triangles& triangles,
+                  int triangle);
 
 /// The deformation gradients Q_i = U~_i U_i^-1 of a source (eq. 9): which triangles are usable, and
 /// what stands in for the others.
 ///
-/// A triangle of the rest pose with quality below kDegenerateQuality would give a gradient that
-/// grows without bound. It takes the mean of its usable neighbours' gradients instead, or the
-/// identity where it has none.
+/// A sliver of the rest pose keeps own_share() of its gradient. The rest comes from the triangles
+/// around it: it goes to the neighbours in proportion to the edges that they share, each takes as
+/// much as it is sound, and the remainder goes on to the next ring. What finds no sound triangle is
+/// the identity.
 class DeformationGradients {
  public:
   /// `triangles` M x 3; `selected` (L) are rows of it. Throws std::invalid_argument for a row out
@@ -38,19 +48,25 @@ class DeformationGradients {
       const Eigen::Ref<const Positions>& frame) const;
 
   const std::vector<int>& selected() const { return selected_; }
-  /// Selected triangles whose gradient is a stand-in.
+  /// Selected triangles that keep less than half of their own gradient.
   int replaced() const { return replaced_; }
 
-  /// Triangles whose gradients are averaged for the selected triangle number s: itself as a rule,
-  /// its usable neighbours where it is degenerate, none where the identity stands in.
-  const std::vector<int>& sources(int s) const { return sources_[s]; }
-  /// U_i^-1 of a triangle that is among the sources of a selected one.
+  /// A triangle and how much of its gradient is taken.
+  struct Part {
+    int triangle;
+    double share;
+  };
+
+  /// What the gradient of the selected triangle number s is made of: itself as a rule. What the
+  /// shares lack of 1 is the identity's.
+  const std::vector<Part>& parts(int s) const { return parts_[s]; }
+  /// U_i^-1 of a triangle that is a part of a selected one's gradient.
   const Eigen::Matrix3d& inverse_frame(int triangle) const { return inverse_frames_[triangle]; }
 
  private:
   Triangles triangles_;
   std::vector<int> selected_;
-  std::vector<std::vector<int>> sources_;
+  std::vector<std::vector<Part>> parts_;
   std::vector<Eigen::Matrix3d> inverse_frames_;  // of every triangle; the identity where unused
   int replaced_ = 0;
 };

@@ -17,7 +17,7 @@ namespace mimetra {
 namespace {
 
 /// What the source's gradients make of the target's edges: (Q_i - I) V_i is the sum over the source
-/// triangles s of (U~_s - U_s) T_is with the constant T_is = U_s^-1 V_i / (their number).
+/// triangles s of (U~_s - U_s) T_is with the constant T_is = U_s^-1 V_i times the share of s.
 class WantedChange {
  public:
   WantedChange(const Positions& source_rest, const Positions& target_rest,
@@ -26,9 +26,9 @@ class WantedChange {
         gradients_(source_rest, triangles, all_triangles(triangles)),
         rest_frames_(frames(source_rest)) {
     for (int t = 0; t < triangles.rows(); ++t) {
-      for (const int source : gradients_.sources(t)) {
-        factors_.push_back(gradients_.inverse_frame(source) * edges_of(target_rest, triangles, t) /
-                           double(gradients_.sources(t).size()));
+      for (const auto& [source, share] : gradients_.parts(t)) {
+        factors_.push_back(share * gradients_.inverse_frame(source) *
+                           edges_of(target_rest, triangles, t));
       }
     }
   }
@@ -40,8 +40,8 @@ class WantedChange {
     std::vector<Edges> wanted(change.size(), Edges::Zero());
     auto factor = factors_.begin();
     for (std::size_t t = 0; t < wanted.size(); ++t) {
-      for (const int source : gradients_.sources(static_cast<int>(t))) {
-        wanted[t] += change[source] * *factor++;
+      for (const auto& part : gradients_.parts(static_cast<int>(t))) {
+        wanted[t] += change[part.triangle] * *factor++;
       }
     }
     return wanted;

@@ -52,11 +52,9 @@ VertexPull::VertexPull(const Positions& rest, const Triangles& triangles,
   for (std::size_t s = 0; s < vectors.size(); ++s) {
     if (vectors[s].isZero(0)) continue;
     const int triangle = gradients.selected()[s];
-    const std::vector<int>& sources = gradients.sources(static_cast<int>(s));
-    for (const int source : sources) {
-      terms_.push_back(
-          {slots_of(source), slots_of(triangle),
-           gradients.inverse_frame(source) * vectors[s] / static_cast<double>(sources.size())});
+    for (const auto& [source, share] : gradients.parts(static_cast<int>(s))) {
+      terms_.push_back({slots_of(source), slots_of(triangle),
+                        share * gradients.inverse_frame(source) * vectors[s]});
     }
   }
   const Rows at_rest = sums(gather(Eigen::Map<const Frames>(rest.data(), 1, rest.size())));

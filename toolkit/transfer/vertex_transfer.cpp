@@ -43,6 +43,13 @@ HatGradients hat_gradients(const Positions& rest, const Triangles& triangles, in
   return gradients;
 }
 
+/// How much a triangle of the target counts. Its stiffness grows as 1 / quality^2 and its normal
+/// loses its sense: from sound to degenerate it fades out faster than that, without a jump.
+double target_share(double quality) {
+  const double share = own_share(quality);
+  return share * share;
+}
+
 double area(const Positions& rest, const Triangles& triangles, int triangle) {
   const Eigen::Matrix3d frame = triangle_frame(rest, triangles, triangle);
   return frame.col(0).cross(frame.col(1)).norm() / 2;
@@ -172,10 +179,10 @@ void VertexTransfer::State::weigh() {
   for (int t = 0; t < triangles.rows(); ++t) {
     if (in_l[t]) weights[t] = 1;
     if (weights[t] == 0) continue;
-    if (!has_usable_frame(target_rest, triangles, t)) {
-      weights[t] = 0;
-      ++degenerate_target;
-    } else if (options.triangle_weight == TriangleWeight::area) {
+    const double share = target_share(quality_of(target_rest, triangles, t));
+    if (share < 0.5) ++degenerate_target;
+    weights[t] *= share;
+    if (options.triangle_weight == TriangleWeight::area) {
       weights[t] *= area(target_rest, triangles, t);
     }
   }
