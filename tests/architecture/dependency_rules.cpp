@@ -48,9 +48,9 @@ const std::vector<ThirdParty>& third_parties() {
 }
 
 /// Headers of the operating system and of C. Those of C++ have no dot.
-constexpr std::array<std::string_view, 11> kSystemHeaders = {
-    "unistd.h",  "fcntl.h",  "poll.h",   "glob.h",   "dlfcn.h", "sys/",
-    "windows.h", "stddef.h", "stdint.h", "stdlib.h", "string.h"};
+constexpr std::array<std::string_view, 12> kSystemHeaders = {
+    "unistd.h",  "fcntl.h",  "poll.h",   "glob.h",  "dlfcn.h",  "sys/",
+    "windows.h", "stddef.h", "stdint.h", "stdio.h", "stdlib.h", "string.h"};
 
 bool contains(const std::vector<std::string>& list, std::string_view item) {
   return std::find(list.begin(), list.end(), item) != list.end();

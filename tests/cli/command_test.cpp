@@ -200,7 +200,7 @@ TEST_F(Command, OperationsListsEveryCommand) {
   EXPECT_EQ(names,
             (std::set<std::string>{"info", "check", "align", "geodesic", "decompose", "regions",
                                    "transfer", "evaluate", "convert", "fit", "render", "report",
-                                   "sample", "operations", "completion", "manual"}));
+                                   "sample", "operations", "formats", "completion", "manual"}));
 }
 
 TEST_F(Command, SampleIsAModelWithAPerformance) {

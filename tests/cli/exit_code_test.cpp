@@ -93,10 +93,17 @@ TEST_F(ExitCode, Is4ForRegionsWithoutATriangle) {
   }
 }
 
-TEST_F(ExitCode, Is4ForAFileThatNoInputNeeds) {
+TEST_F(ExitCode, Is2ForAnOptionThatNoFormatOfTheRunTakes) {
   ASSERT_EQ(run("regions head --weights take.csv -k 2 -o r.pvd").code, 0);
-  expect_failure("info r.pvd --weights take.csv", 4, "no input is a model");
-  expect_failure("info r.pvd --topology head/neutral.ply", 4, "no input is an array");
+  expect_failure("info r.pvd --weights take.csv", 2, "'weights' is about files (CSV of blendshape");
+  expect_failure("info r.pvd --topology head/neutral.ply", 2, "'topology' is about files");
+  expect_failure("info r.pvd --fps 30", 2, "'fps' is about files");
+  expect_failure("convert r.pvd -o r.npy --format obj", 2, "'format' is about files");
+}
+
+TEST_F(ExitCode, Is4ForAFileThatNoInputNeeds) {
+  expect_failure("info head --weights take.csv --topology head/neutral.ply", 4,
+                 "no input is an array");
 }
 
 TEST_F(ExitCode, Is4ForAnAnchorThatTheMeshDoesNotHave) {

@@ -117,7 +117,7 @@ void add_points(std::vector<BadInput>& all) {
   add("empty_folder", {{"p/readme.txt", ""}}, "p", 3, {"p: holds no .pts file and no image"});
   add("nothing_matches", {}, "p_%03d.pts", 3, {"p_%03d.pts: matches no .pts file"});
   add("other_extension", {{"p.txt", points(10, "10")}}, "p.txt", 3,
-      {"expected .pts, .csv or .json"});
+      {"landmarks can be read from .png", ".pts, .csv, .json or a folder"});
   add("beyond_the_last", {{"p/1.pts", points(10, "10")}}, "p --frames 0:2", 4, {"has 1 frame"});
   add("beside_images", {{"p/1.pts", points(10, "10")}, {"p/1.png", "not read"}}, "p", 0,
       {"\"rms_px\""});
@@ -225,7 +225,7 @@ void add_requests(std::vector<BadInput>& all) {
   add("no_noise", "t.csv --model head -o o --sigma 0", 2, {"--sigma"});
   add("frames_beyond", "t.csv --model head -o o --frames 5:", 4, {"2 frames"});
   add("missing_model", "t.csv --model no -o o", 3, {"no: does not exist"});
-  add("no_model", "t.csv --model t.csv -o o", 3, {"t.csv: is no model"});
+  add("no_model", "t.csv --model t.csv -o o", 3, {"t.csv: model can be read from .bin"});
   add("several_frames_into_a_mesh", "t.csv --model head -o o.obj", 4, {"2 frames"});
   add("overlay_without_images", "t.csv --model head -o o --overlay v", 2,
       {"--overlay: t.csv has no images", "--images"});

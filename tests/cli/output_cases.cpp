@@ -155,7 +155,7 @@ std::vector<BadInput> request_cases() {
       {"--radius", "0"});
   add("unknown_choice", "convert", "convert head -o x --format fbx", {"--format", "ply, obj"});
   add("unknown_extension", "decompose", "decompose head -o c.txt", {"c.txt", ".h5"});
-  add("unknown_extension", "geodesic", "geodesic head -o d.npy", {"d.npy", ".vtp, .pvd"});
+  add("unknown_extension", "geodesic", "geodesic head -o d.npy", {"d.npy", ".pvd or .vtp"});
   add("unknown_extension", "render", "render head -o r.jpg", {"r.jpg", ".png"});
   add("of_no_output", "convert_compress", "convert " + kSequence + " -o x.npy --compress small",
       {"'compress'", "leave it out"});

@@ -128,7 +128,7 @@ std::vector<BadInput> sequence_cases() {
                  file("take.fbx", "x"),
                  "info take.fbx",
                  3,
-                 {"take.fbx", "expected a folder"}});
+                 {"take.fbx", ".npz, .pc2, .mdd", " or a folder"}});
   all.push_back({"frames_beyond_the_end",
                  "frames",
                  take("obj", {}),

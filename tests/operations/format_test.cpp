@@ -19,7 +19,7 @@ using testing::HasSubstr;
 using testing::Not;
 using testing::ThrowsMessage;
 
-OperationTable toolkit() {
+OperationTable toolkit_table() {
   OperationTable table;
   add_toolkit(table);
   return table;
@@ -38,7 +38,7 @@ Format format_of(const std::string& extension) {
 }
 
 TEST(FormatTable, ChoosesTheReaderByExtensionInAnyCase) {
-  const OperationTable table = toolkit();
+  const OperationTable table = toolkit_table();
   const auto name = [&](DataKind kind, const char* text) { return table.reader(kind, text).name; };
   EXPECT_EQ(name(DataKind::sequence, "take.NPY"), "NumPy array");
   EXPECT_EQ(name(DataKind::sequence, "take.v2/"), "folder of meshes");
@@ -50,7 +50,7 @@ TEST(FormatTable, ChoosesTheReaderByExtensionInAnyCase) {
 }
 
 TEST(FormatTable, ListsWhatItKnowsWhereNothingReadsAFile) {
-  const OperationTable table = toolkit();
+  const OperationTable table = toolkit_table();
   const test::TemporaryFolder folder;
   const std::string file = folder.path() / "take.fbx";
   std::ofstream(file) << "text\n";
@@ -65,7 +65,7 @@ TEST(FormatTable, ListsWhatItKnowsWhereNothingReadsAFile) {
 }
 
 TEST(FormatTable, RefusesAnExtensionThatItsKindHasAlready) {
-  OperationTable table = toolkit();
+  OperationTable table = toolkit_table();
   EXPECT_THAT([&] { table.add(format_of(".csv")); },
               ThrowsMessage<std::invalid_argument>(
                   HasSubstr("'.csv' is that of 'vertices and their regions' already")));
@@ -77,7 +77,7 @@ TEST(FormatTable, RefusesAnExtensionThatItsKindHasAlready) {
 }
 
 TEST(FormatTable, IsWhatHelpAndMessagesOfAnOutputSay) {
-  OperationTable table = toolkit();
+  OperationTable table = toolkit_table();
   const auto help = [&table] { return table.help(table.find("regions")->outputs.front()); };
   const auto help_of_input = [&table] { return table.help(table.find("transfer")->inputs.back()); };
   EXPECT_THAT(help(), Not(HasSubstr(".mine")));

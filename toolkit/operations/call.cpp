@@ -85,8 +85,8 @@ void Call::check_parameters_of_files() const {
     const bool applies =
         std::ranges::find(applying, parameter.name, &Parameter::name) != applying.end();
     if (!request_.parameters.is_set(parameter.name) || applies) continue;
-    throw UsageError("parameter '" + parameter.name +
-                     "' is about files, and nothing that it applies to is read or written; leave "
+    throw UsageError("parameter '" + parameter.name + "' is about files (" + parameter.help +
+                     "), and nothing that it applies to is read or written; leave "
                      "it out");
   }
 }
