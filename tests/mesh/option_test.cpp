@@ -69,7 +69,12 @@ TEST(Option, OfAnEnumIsOneOfItsValues) {
 }
 
 TEST(Option, OfALengthIsNotBelowZero) {
-  expect_refusal({.side = Length::share(-0.1)}, "side is -0.1; it must be at least 0");
+  expect_refusal({.side = Length::share(-0.1)}, "side is -0.1; it must be from 0 to 1");
+  expect_refusal({.side = Length::of(-0.1)}, "side is -0.1; it must be at least 0");
+}
+
+TEST(Option, OfALengthIsNoShareAboveOne) {
+  expect_refusal({.side = Length::share(12)}, "side is 12; it must be from 0 to 1");
 }
 
 TEST(Length, IsAShareOfTheLongestSideOrAsItIs) {

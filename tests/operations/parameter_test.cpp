@@ -43,6 +43,14 @@ constexpr std::string_view choice_name(Fruit value) {
   return {};
 }
 
+TEST(Parameter, IsNoShareAboveOne) {
+  EXPECT_EQ(parse_value(kRadius, "1"), ParameterValue("1"));
+  EXPECT_EQ(parse_value(kRadius, "12abs"), ParameterValue("12abs"));
+  EXPECT_EQ(message_of(kRadius, "12"),
+            "--radius: expected a share of the longest side, up to 1, as in 0.1, or a length as in "
+            "12abs, found '12'");
+}
+
 TEST(Parameter, OfAnEnumTakesEachOfItsValuesByName) {
   const Parameter parameter = choice_parameter("fruit", Fruit::pear, "what is picked");
   EXPECT_THAT(parameter.choices, testing::ElementsAre("apple", "pear", "plum"));

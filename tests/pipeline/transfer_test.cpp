@@ -103,6 +103,23 @@ TEST_F(TransferTest, ToManyTargetsIsTheOneToEach) {
   EXPECT_TRUE(frames_of(both.targets[1]) == frames_of(to(mesh_)));
 }
 
+TEST_F(TransferTest, SaysWhereTheResultIsNotUsable) {
+  test::Noted noted;
+  options_.notes = noted.sink();
+  options_.full = true;
+  to(mesh_);
+  EXPECT_TRUE(noted.notes.empty());
+  // Few triangles whose surroundings are held where they are.
+  options_.full = false;
+  options_.given = GivenRegions{
+      "rois", regions_from_vertices(actor_.vertices(), actor_.triangles(), {{10, 11, 12}})};
+  const TransferredTarget torn = to(mesh_);
+  EXPECT_GT(missed_share(torn.error), 0.5);
+  ASSERT_TRUE(noted.has(Topic::poor_condition));
+  EXPECT_THAT(noted.notes.back().text, HasSubstr("actor: the result may not be usable: "));
+  EXPECT_THAT(noted.notes.back().text, HasSubstr("% of the deformation is missing"));
+}
+
 TEST_F(TransferTest, DoesNotDependOnTheNumberOfThreads) {
   options_.threads = 1;
   const TransferredTarget one = to(actor_);

@@ -128,5 +128,17 @@ TEST(MeanPercentageError, IsZeroWhereBothAreEqual) {
   EXPECT_EQ(mean_percentage_error(0, 0), 0);
 }
 
+TEST(TransferError, SaysWhichShareOfTheDeformationIsMissing) {
+  const BlendshapeModel model = test::model_on(test::patch(), 3);
+  const MeshSequence source = model.animate(test::random_weights(3, 3));
+  const std::vector<int> all = all_triangles(source.triangles());
+  EXPECT_LT(missed_share(transfer_error(source, source, all)), 1e-20);
+  const MeshSequence still = model.animate(Eigen::MatrixXd::Zero(3, 3));
+  const TransferError error = transfer_error(source, still, all);
+  EXPECT_NEAR(missed_share(error), 1, 1e-12);
+  EXPECT_EQ(flipped_share(error), error.flipped / (3.0 * double(all.size())));
+  EXPECT_EQ(missed_share(transfer_error(still, still, all)), 0);
+}
+
 }  // namespace
 }  // namespace mimetra

@@ -2,10 +2,14 @@
 
 namespace mimetra {
 
-/// A length that may depend on the mesh: a share of its longest side, or in the unit of its file.
+/// A length that may depend on the mesh: a share of its longest side, up to kLargestShare, or in
+/// the unit of its file.
 struct Length {
   double value = 0;  ///< >= 0
   bool absolute = false;
+
+  /// A share that is larger is a length whose unit was forgotten.
+  static constexpr double kLargestShare = 1;
 
   static constexpr Length share(double of_longest_side) { return {of_longest_side, false}; }
   static constexpr Length of(double length) { return {length, true}; }

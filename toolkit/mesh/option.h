@@ -51,8 +51,9 @@ void check_option(const Options& options, const Option<Options, Value>& option) 
     if (!choice_name(value).empty()) return;
     throw std::invalid_argument(std::string(option.name) + ": no such choice");
   } else if constexpr (std::is_same_v<Value, Length>) {
-    check_number(option.name, {option.range.minimum.value_or(0), option.range.maximum},
-                 value.value);
+    Range range = {option.range.minimum.value_or(0), option.range.maximum};
+    if (!value.absolute) range.maximum = range.maximum.value_or(Length::kLargestShare);
+    check_number(option.name, range, value.value);
   } else if constexpr (std::is_same_v<Value, std::optional<double>>) {
     if (value) check_number(option.name, option.range, *value);
   } else if constexpr (std::is_same_v<Value, std::vector<int>>) {

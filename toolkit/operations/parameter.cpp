@@ -60,7 +60,7 @@ std::string expected_text(const Parameter& parameter) {
     case ParameterKind::number:
       return "a number" + suffix;
     case ParameterKind::length:
-      return "a share of the longest side as in 0.1, or a length as in 12abs" +
+      return "a share of the longest side, up to 1, as in 0.1, or a length as in 12abs" +
              (range.empty() ? range : ", " + range);
     case ParameterKind::choice: {
       std::string list;
@@ -95,6 +95,7 @@ std::optional<Length> parse_length(std::string_view text) {
   if (absolute) text.remove_suffix(kAbsolute.size());
   const auto number = parse_number<double>(text);
   if (!number || !std::isfinite(*number) || *number < 0) return {};
+  if (!absolute && *number > Length::kLargestShare) return {};
   return Length{*number, absolute};
 }
 

@@ -76,6 +76,7 @@ Json report_of(const NamedData& target, const TransferredTarget& transferred) {
   Json json = {{"name", target.name},          {"output", nullptr},  {"de_all", error.de_all},
                {"de_region", error.de_region}, {"leak", error.leak}, {"flipped", error.flipped},
                {"seconds", solution.seconds}};
+  json["missed"] = missed_share(error);
   json["axes"] = {{"angle", similarity.angle()},
                   {"scale", similarity.scale},
                   {"mirrored", similarity.mirrors()}};

@@ -75,6 +75,9 @@ bool decomposes(const TransferOptions& options);
 /// on their triangles. What depends on the source only is done once. Unless it decomposes(), it
 /// reads the source in blocks, several times, and holds no more of it; the result does not need it.
 ///
+/// Notes a result that is likely not usable, because much of the deformation is missing or many
+/// triangles are flipped (Topic::poor_condition where there are regions).
+///
 /// Throws what prepare_source(), check_target(), analyse(), analysis_of(), check_regions(),
 /// choose_regions() and solve() throw; Cancelled. A target that does not fit is refused before
 /// anything is computed.

@@ -108,8 +108,9 @@ class FrameErrors {
         outside_(outside_of(selected, result)) {}
 
   struct Measured {
-    double sum = 0;   ///< of the squared errors of all triangles
-    double leak = 0;  ///< squared
+    double sum = 0;    ///< of the squared errors of all triangles
+    double still = 0;  ///< of those at rest
+    double leak = 0;   ///< squared
     int flipped = 0;
   };
 
@@ -124,6 +125,7 @@ class FrameErrors {
       const double squared = (wanted[t] - (found - neutral)).squaredNorm();
       squares[t] = squared;
       measured.sum += squared;
+      measured.still += wanted[t].squaredNorm();
       if (is_flipped(neutral + wanted[t], found)) ++measured.flipped;
     }
     for (const VertexIndex v : outside_) {
@@ -160,16 +162,27 @@ TransferError transfer_error(const FrameSource& source, const FrameSource& resul
   for (int f = 0; f < source.frames(); ++f) {
     error.per_frame[f] = frames[f].sum;
     error.flipped += frames[f].flipped;
+    error.de_still += frames[f].still;
     leak = std::max(leak, frames[f].leak);
   }
   error.leak = std::sqrt(leak);
   error.per_frame /= std::max(count, 1);
   error.per_triangle /= source.frames();
   error.de_all = error.per_frame.mean();
+  error.de_still /= static_cast<double>(std::max(count, 1)) * source.frames();
   for (const int triangle : selected) {
     error.de_region += error.per_triangle[triangle] / double(selected.size());
   }
   return error;
+}
+
+double flipped_share(const TransferError& error) {
+  const double all = static_cast<double>(error.per_triangle.size() * error.per_frame.size());
+  return all > 0 ? error.flipped / all : 0;
+}
+
+double missed_share(const TransferError& error) {
+  return error.de_still > 0 ? error.de_all / error.de_still : 0;
 }
 
 double mean_percentage_error(double full, double k) {

@@ -12,6 +12,9 @@ struct TransferError {
   /// (eq. 12), unit of length squared.
   double de_all = 0;
   double de_region = 0;
+  /// What DE over all triangles is of a result that stays at rest: the deformation that is asked
+  /// for.
+  double de_still = 0;
   Eigen::VectorXd per_frame;     ///< mean over all triangles (F)
   Eigen::VectorXd per_triangle;  ///< mean over frames (M)
   /// Largest displacement from the target's rest of a vertex in no triangle of L, over all frames;
@@ -29,6 +32,13 @@ struct TransferError {
 /// stands in for it in the transfer. The result does not depend on the number of threads.
 TransferError transfer_error(const FrameSource& source, const FrameSource& result,
                              const std::vector<int>& selected, const BlockOptions& options = {});
+
+/// Flipped triangles of all in all frames.
+double flipped_share(const TransferError& error);
+
+/// The share of the deformation, by DE over all triangles, that the result lacks: 0 is exact, 1 is
+/// no better than none. 0 where none is asked for.
+double missed_share(const TransferError& error);
 
 /// Mean percentage error 100 (full - k) / full, signed: negative is worse than full (eq. 13). 0
 /// where both are equal, also where both are 0.
