@@ -75,6 +75,7 @@ Json report_of(const NamedData& target, const TransferredTarget& transferred) {
   Json json = {{"name", target.name},          {"output", nullptr},  {"de_all", error.de_all},
                {"de_region", error.de_region}, {"leak", error.leak}, {"flipped", error.flipped},
                {"seconds", solution.seconds}};
+  json["collapsed_triangles"] = solution.collapsed_triangles;
   json["degenerate_source_triangles"] = solution.degenerate_source_triangles;
   json["degenerate_target_triangles"] = solution.degenerate_target_triangles;
   if (solution.weights().size() > 0) {
