@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 
 #include "tests/pipeline/takes.h"
+#include "tests/streams.h"
+#include "tests/transfer/seamed_face.h"
 
 namespace mimetra {
 namespace {
@@ -109,6 +111,77 @@ TEST_F(SolveTest, NotesARestPoseThatIsNotNeutral) {
   noted.notes.clear();
   solve(source_, {"actor", model}, whole(*performance), options_);
   EXPECT_FALSE(noted.has(Topic::unneutral_rest));
+}
+
+/// A face with a seam, in vertex space.
+class SeamedSolveTest : public testing::Test {
+ protected:
+  static constexpr int kFrames = 20;
+
+  const test::SeamedFace face_;
+  const MeshSequence take_ =
+      face_.with_copies(test::SeamedFace::talking(face_.whole, kFrames, kFrames - 3));
+  const test::Shape target_ = face_.with_copies(face_.bent());
+
+  static BlendshapeModel mesh(const test::Shape& shape) {
+    return {test::connectivity_of(shape),
+            shape.positions,
+            {{}, Eigen::MatrixXd(shape.positions.size(), 0)}};
+  }
+
+  void expect_closed(const std::shared_ptr<const FrameSource>& result) const {
+    const Frames frames = test::frames_of(result);
+    for (std::size_t v = 0; v < face_.original.size(); ++v) {
+      EXPECT_EQ(frames.middleCols<3>(3 * v), frames.middleCols<3>(3 * face_.original[v])) << v;
+    }
+    EXPECT_GT((frames.row(0) - frames.row(1)).norm(), 0.1);
+  }
+};
+
+TEST_F(SeamedSolveTest, LeavesNoGap) {
+  const BlendshapeModel target = mesh(target_);
+  const Source source = prepare_source(take_);
+  expect_closed(solve(source, {"mesh", target}, whole(take_)).sequence);
+  const Regions regions = regions_from_vertices(94, face_.triangles, {{40, 41, 82, 83, 88, 89}});
+  expect_closed(solve(source, {"mesh", target}, selection_of(regions)).sequence);
+}
+
+TEST_F(SeamedSolveTest, LeavesNoGapWhereTheHeadMoves) {
+  const BlendshapeModel target = mesh(target_);
+  const MeshSequence moved = with_motion(test::bare(take_), test::nodding(kFrames));
+  for (const RemovedMotion removed : choices<RemovedMotion>()) {
+    TransferOptions options{.full = true, .head_motion = removed};
+    options.source.head_motion = test::nodding(kFrames);
+    expect_closed(transfer(moved, {{"mesh", target}}, options).targets[0].solution.sequence);
+  }
+}
+
+TEST_F(SeamedSolveTest, IsTheSameOfAStreamByAnyNumberOfThreads) {
+  const BlendshapeModel target = mesh(target_);
+  const Selection all = whole(take_);
+  const Frames expected =
+      test::frames_of(solve(prepare_source(take_), {"mesh", target}, all).sequence);
+  for (const int threads : {1, 3}) {
+    const Source source = prepare_source(test::streamed(take_));
+    const Solution found = solve(source, {"mesh", target}, all, {.threads = threads});
+    EXPECT_TRUE(test::frames_of(found.sequence) == expected) << threads;
+  }
+}
+
+TEST_F(SeamedSolveTest, NotesAndCountsTrianglesThatCollapse) {
+  test::Shape stitched{target_.positions, Triangles(face_.triangles.rows() + 1, 3)};
+  stitched.triangles << face_.triangles, Eigen::RowVector3i(13, 85, 22);
+  const BlendshapeModel target = mesh(stitched);
+  const MeshSequence take(target.shared_connectivity(), take_.positions(), {}, take_.rest());
+  Noted noted;
+  const Solution found =
+      solve(prepare_source(take), {"mesh", target}, whole(take), {.notes = noted.sink()});
+  EXPECT_EQ(found.collapsed_triangles, 1);
+  EXPECT_EQ(found.degenerate_source_triangles, 0);
+  EXPECT_EQ(found.degenerate_target_triangles, 0);
+  ASSERT_EQ(noted.notes.size(), 1);
+  EXPECT_EQ(noted.notes[0].text,
+            "mesh: 1 triangles between vertices that a seam makes one take no part");
 }
 
 }  // namespace

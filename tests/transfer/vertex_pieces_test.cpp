@@ -26,16 +26,16 @@ Triangles bow_tie_and_triangle() {
 }
 
 TEST(VertexUnknowns, TakeTrianglesThatShareOneVertexAsOnePiece) {
-  const VertexUnknowns unknowns =
-      number_unknowns(bow_tie_and_triangle(), {1, 1, 1}, std::vector<bool>(8, false));
+  const VertexUnknowns unknowns = number_unknowns(bow_tie_and_triangle(), {1, 1, 1},
+                                                  std::vector<bool>(8, false), Weld::none(8));
   ASSERT_EQ(unknowns.floating.size(), 2);
   EXPECT_THAT(unknowns.floating[0].vertices, ElementsAre(0, 1, 2, 3, 4));
   EXPECT_THAT(unknowns.floating[1].vertices, ElementsAre(5, 6, 7));
 }
 
 TEST(VertexUnknowns, PinTheLowestVertexOfAFloatingPiece) {
-  const VertexUnknowns unknowns =
-      number_unknowns(bow_tie_and_triangle(), {1, 1, 1}, std::vector<bool>(8, false));
+  const VertexUnknowns unknowns = number_unknowns(bow_tie_and_triangle(), {1, 1, 1},
+                                                  std::vector<bool>(8, false), Weld::none(8));
   EXPECT_THAT(unknowns.of_vertex, ElementsAre(-1, 0, 1, 2, 3, -1, 4, 5));
   EXPECT_EQ(unknowns.count, 6);
 }
@@ -43,7 +43,8 @@ TEST(VertexUnknowns, PinTheLowestVertexOfAFloatingPiece) {
 TEST(VertexUnknowns, NeedNoPinWhereAFixedVertexHoldsThePiece) {
   std::vector<bool> fixed(8, false);
   fixed[2] = true;
-  const VertexUnknowns unknowns = number_unknowns(bow_tie_and_triangle(), {1, 1, 1}, fixed);
+  const VertexUnknowns unknowns =
+      number_unknowns(bow_tie_and_triangle(), {1, 1, 1}, fixed, Weld::none(8));
   EXPECT_THAT(unknowns.of_vertex, ElementsAre(0, 1, -1, 2, 3, -1, 4, 5));
   EXPECT_TRUE(unknowns.some_held);
 }
@@ -51,7 +52,8 @@ TEST(VertexUnknowns, NeedNoPinWhereAFixedVertexHoldsThePiece) {
 TEST(VertexUnknowns, AreNotConnectedByTrianglesWithoutWeight) {
   std::vector<bool> fixed(8, false);
   fixed[3] = fixed[4] = true;
-  const VertexUnknowns unknowns = number_unknowns(bow_tie_and_triangle(), {1, 0, 1}, fixed);
+  const VertexUnknowns unknowns =
+      number_unknowns(bow_tie_and_triangle(), {1, 0, 1}, fixed, Weld::none(8));
   ASSERT_EQ(unknowns.floating.size(), 2);
   EXPECT_THAT(unknowns.floating[0].vertices, ElementsAre(0, 1, 2));
   EXPECT_FALSE(unknowns.some_held);

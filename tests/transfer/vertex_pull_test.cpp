@@ -98,6 +98,21 @@ TEST(VertexPull, PutsEachVertexWhereItIsWanted) {
   EXPECT_EQ(some.row(0).norm(), 0);
 }
 
+TEST(VertexPull, AddsWhatGoesToOneRow) {
+  const Shape shape = patch();
+  const MeshSequence take = test::shaken(shape, 2, 0.2);
+  const DeformationGradients gradients(shape.positions, shape.triangles, {30});
+  const std::vector<Edges> vectors = random_vectors(1);
+  const auto pulled = [&](const std::vector<int>& rows) {
+    return VertexPull(shape.positions, shape.triangles, gradients, vectors, rows)(take.positions());
+  };
+  const VertexPull::Rows all = pulled(every_vertex(81));
+  const int one = shape.triangles(30, 0), other = shape.triangles(30, 2);
+  std::vector<int> rows(81, -1);
+  rows[one] = rows[other] = 0;
+  EXPECT_EQ(pulled(rows).row(0), (all.row(one) + all.row(other)).eval());
+}
+
 TEST(VertexPull, OfTheRestPoseIsExactlyZeroInEveryLane) {
   Shape shape = patch();
   shape.positions.rowwise() += Eigen::RowVector3d(1e5, 3, -1e5);

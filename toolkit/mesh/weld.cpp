@@ -1,4 +1,6 @@
 #include <algorithm>
+#include <atomic>
+#include <iterator>
 #include <numeric>
 #include <stdexcept>
 #include <string>
@@ -21,6 +23,14 @@ void check_finite(const Positions& positions) {
       throw std::invalid_argument("vertex " + std::to_string(vertex) + " is not finite");
     }
   }
+}
+
+std::vector<VertexIndex> welded_vertices(const Weld& weld) {
+  std::vector<VertexIndex> welded;
+  for (VertexIndex vertex = 0; vertex < static_cast<int>(weld.representative.size()); ++vertex) {
+    if (weld.representative[vertex] != vertex) welded.push_back(vertex);
+  }
+  return welded;
 }
 
 }  // namespace
@@ -48,29 +58,83 @@ Weld Weld::exact(const Positions& positions) {
   return weld;
 }
 
+void Weld::check(const Positions& positions) const {
+  const auto vertices = static_cast<VertexIndex>(representative.size());
+  if (vertices != positions.rows()) {
+    throw std::invalid_argument("a weld of " + std::to_string(vertices) + " vertices for " +
+                                std::to_string(positions.rows()));
+  }
+  for (VertexIndex vertex = 0; vertex < vertices; ++vertex) {
+    const VertexIndex first = representative[vertex];
+    if (first == vertex) continue;
+    const std::string what =
+        "vertex " + std::to_string(vertex) + " is welded to " + std::to_string(first);
+    if (first < 0 || first > vertex || representative[first] != first) {
+      throw std::invalid_argument(what + ", expected the lowest one that it is welded to");
+    }
+    if (positions.row(vertex) != positions.row(first)) {
+      throw std::invalid_argument(what + ", which is at another place");
+    }
+  }
+}
+
 Triangles Weld::welded(const Triangles& triangles) const {
   return triangles.unaryExpr([this](VertexIndex vertex) { return representative.at(vertex); });
 }
 
-std::vector<VertexIndex> parting_vertices(const MeshSequence& sequence, const Weld& weld,
-                                          double tolerance) {
+std::vector<VertexIndex> parting_vertices(const FrameSource& sequence, const Weld& weld,
+                                          double tolerance, const BlockOptions& options) {
   if (static_cast<int>(weld.representative.size()) != sequence.vertices()) {
     throw std::invalid_argument("a weld of " + std::to_string(weld.representative.size()) +
                                 " vertices for a sequence of " +
                                 std::to_string(sequence.vertices()));
   }
-  std::vector<VertexIndex> parting;
-  for (VertexIndex vertex = 0; vertex < sequence.vertices(); ++vertex) {
-    const VertexIndex first = weld.representative[vertex];
-    if (first == vertex) continue;
-    for (int f = 0; f < sequence.frames(); ++f) {
-      const auto frame = sequence.frame(f);
-      if ((frame.row(vertex) - frame.row(first)).norm() <= tolerance) continue;
-      parting.push_back(vertex);
-      break;
+  const std::vector<VertexIndex> welded = welded_vertices(weld);
+  if (welded.empty()) return {};
+  std::vector<std::atomic<bool>> parts(weld.representative.size());
+  for_each_run(sequence, options, [&](int first, int count) {
+    const FrameBlock block(sequence, first, count);
+    for (int row = 0; row < count; ++row) {
+      const PositionsView frame = block.frame(row);
+      for (const VertexIndex vertex : welded) {
+        const VertexIndex lowest = weld.representative[vertex];
+        // Not-a-number parts, too.
+        if ((frame.row(vertex) - frame.row(lowest)).norm() <= tolerance) continue;
+        parts[vertex].store(true, std::memory_order_relaxed);
+      }
     }
-  }
+  });
+  std::vector<VertexIndex> parting;
+  std::ranges::copy_if(welded, std::back_inserter(parting),
+                       [&parts](VertexIndex vertex) { return parts[vertex].load(); });
   return parting;
+}
+
+Weld staying_together(const FrameSource& sequence, const Weld& weld, double tolerance,
+                      const BlockOptions& options) {
+  Weld staying = weld, tested = weld;
+  double done = 0;
+  do {
+    // Nobody knows how often something parts: each time, half of the progress that is left.
+    const double next = (1 + done) / 2;
+    const auto parting = parting_vertices(sequence, tested, tolerance,
+                                          {options.threads, part_of(options.progress, done, next)});
+    done = next;
+    Weld left = Weld::none(sequence.vertices());
+    std::vector<VertexIndex> lowest_left(weld.representative.size(), -1);
+    for (const VertexIndex vertex : parting) {
+      VertexIndex& lowest = lowest_left[tested.representative[vertex]];
+      if (lowest < 0) {
+        lowest = vertex;
+        --staying.count;
+      } else {
+        ++left.count;
+      }
+      staying.representative[vertex] = left.representative[vertex] = lowest;
+    }
+    tested = std::move(left);
+  } while (tested.count > 0);
+  return staying;
 }
 
 }  // namespace mimetra

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "toolkit/mesh/mesh_sequence.h"
+#include "toolkit/mesh/frame_source.h"
 
 namespace mimetra {
 
@@ -19,13 +19,25 @@ struct Weld {
   /// std::invalid_argument that names a vertex which is not finite.
   static Weld exact(const Positions& positions);
 
+  /// Throws std::invalid_argument unless there is one representative for each of `positions` (N x
+  /// 3), which is at the same place, its own representative, and not above its vertex.
+  void check(const Positions& positions) const;
+
   /// The same triangles on representatives, M x 3.
   Triangles welded(const Triangles& triangles) const;
 };
 
-/// Vertices welded in the rest pose that part in some frame by more than `tolerance` (length).
-/// Throws std::invalid_argument where the weld is of another vertex count.
-std::vector<VertexIndex> parting_vertices(const MeshSequence& sequence, const Weld& weld,
-                                          double tolerance);
+/// Vertices that are farther than `tolerance` (length) from their representative in some frame,
+/// ascending. Frames are read in blocks, and not at all where nothing is welded. Throws
+/// std::invalid_argument where the weld is of another vertex count; what reading throws, Cancelled.
+std::vector<VertexIndex> parting_vertices(const FrameSource& sequence, const Weld& weld,
+                                          double tolerance, const BlockOptions& = {});
+
+/// Splits what parts: every vertex of the result stays within `tolerance` (length) of its
+/// representative in all frames. Those of one place that part from the lowest are welded to the
+/// lowest of them, unless they part from it in turn, and so on; where nothing parts, the frames are
+/// read once. Throws as parting_vertices().
+Weld staying_together(const FrameSource& sequence, const Weld& weld, double tolerance,
+                      const BlockOptions& = {});
 
 }  // namespace mimetra

@@ -80,6 +80,7 @@ Json report_of(const NamedData& target, const TransferredTarget& transferred) {
   json["axes"] = {{"angle", similarity.angle()},
                   {"scale", similarity.scale},
                   {"mirrored", similarity.mirrors()}};
+  json["collapsed_triangles"] = solution.collapsed_triangles;
   json["degenerate_source_triangles"] = solution.degenerate_source_triangles;
   json["degenerate_target_triangles"] = solution.degenerate_target_triangles;
   if (solution.weights().size() > 0) {

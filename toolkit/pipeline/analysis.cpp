@@ -61,7 +61,8 @@ constexpr double kPartingShare = 1e-4;
 void note_parting(const MeshSequence& sequence, const AnalysisOptions& options) {
   if (options.distances.welding == Welding::none) return;
   const auto parting =
-      parting_vertices(sequence, Weld::exact(sequence.rest()), kPartingShare * sequence.extent());
+      parting_vertices(sequence, Weld::exact(sequence.rest()), kPartingShare * sequence.extent(),
+                       {.threads = options.threads});
   if (parting.empty()) return;
   note(options.notes,
        std::to_string(parting.size()) +

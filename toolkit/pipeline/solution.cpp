@@ -4,6 +4,7 @@
 #include "toolkit/mesh/stopwatch.h"
 #include "toolkit/mesh/text.h"
 #include "toolkit/model/animation.h"
+#include "toolkit/transfer/seams.h"
 
 namespace mimetra {
 
@@ -11,6 +12,9 @@ namespace {
 
 /// Beyond this the weights are hardly determined by the regions.
 constexpr double kPoorCondition = 1e5;
+
+/// Looking for seams, which reads every frame, as a part of a solve's progress.
+constexpr double kSeamShare = 0.2;
 
 /// Notes of a target.
 class TargetNotes {
@@ -39,6 +43,10 @@ class TargetNotes {
   }
 
   void add_degenerate(const Solution& solution) const {
+    if (solution.collapsed_triangles > 0) {
+      add(std::to_string(solution.collapsed_triangles) +
+          " triangles between vertices that a seam makes one take no part");
+    }
     if (solution.degenerate_source_triangles > 0) {
       add(std::to_string(solution.degenerate_source_triangles) +
           " degenerate triangles of the source take their neighbours' deformation");
@@ -105,9 +113,12 @@ Solution solve_vertices(const Source& source, const Target& target, const Select
   VertexTransferOptions of_space = options.vertex;
   of_space.inside = selection.inside;
   of_space.threads = options.threads;
-  of_space.progress = options.progress;
   check_anchor(of_space, model, selection);
   const FrameSource& performance = *source.sequence;
+  of_space.weld = closed_seams(
+      performance, model.neutral(),
+      {.threads = options.threads, .progress = part_of(options.progress, 0, kSeamShare)});
+  of_space.progress = part_of(options.progress, kSeamShare, 1);
   const VertexTransfer transfer(performance.rest(), model.neutral(), model.triangles(),
                                 selection.triangles, of_space);
   const auto store = std::make_shared<FrameStore>(
@@ -117,6 +128,7 @@ Solution solve_vertices(const Source& source, const Target& target, const Select
   Solution solution;
   solution.sequence = store;
   solution.seconds = stopwatch.seconds();
+  solution.collapsed_triangles = transfer.collapsed_triangles();
   solution.degenerate_source_triangles = transfer.degenerate_source_triangles();
   solution.degenerate_target_triangles = transfer.degenerate_target_triangles();
   TargetNotes(target, options).add_degenerate(solution);

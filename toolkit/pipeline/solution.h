@@ -61,7 +61,8 @@ struct Target {
 struct SolveOptions {
   Space space = Space::automatic;
   Axes axes = Axes::fit;
-  /// Of each space; their threads and progress, and the vertices inside, are those of the solve.
+  /// Of each space; their threads and progress, the vertices inside and those that are one are
+  /// those of the solve.
   BlendshapeTransferOptions blendshape = {};
   VertexTransferOptions vertex = {};
   /// 0 for all there are; the result does not depend on it.
@@ -98,6 +99,9 @@ struct Solution {
   /// The same where weights drive it; null in vertex space.
   std::shared_ptr<const Animation> animation;
   BlendshapeConditions conditions;
+  /// Between vertices that are one, in vertex space: they take no part, and are none of the
+  /// degenerate ones.
+  int collapsed_triangles = 0;
   int degenerate_source_triangles = 0;
   int degenerate_target_triangles = 0;
   double seconds = 0;  ///< set-up and the solve of all frames
@@ -112,13 +116,14 @@ bool solves_for_vertices(const BlendshapeModel& target, Space space);
 /// Throws MismatchError unless the target has the source's vertices and faces.
 void check_target(const FrameSource& source, const Target& target);
 
-/// Solves on the selected triangles in blendshape or vertex space. Notes, under the target's name,
-/// expressions that the triangles do not or hardly show (Topic::poor_condition where they do not
-/// tell them apart), triangles without area, and a source whose rest pose does not look neutral
-/// (Topic::unneutral_rest). \pre check_target(); the source is placed_at() the target
+/// Solves on the selected triangles in blendshape or vertex space; in vertex space closed_seams()
+/// stay closed. Notes, under the target's name, expressions that the triangles do not or hardly
+/// show (Topic::poor_condition where they do not tell them apart), triangles without area or that a
+/// seam collapses, and a source whose rest pose does not look neutral (Topic::unneutral_rest). \pre
+/// check_target(); the source is placed_at() the target
 ///
 /// Throws OptionError (Topic::no_expressions, Topic::anchor_vertex, Topic::held_anchor) and what
-/// BlendshapeTransfer, VertexTransfer, reading the source and FrameStore throw.
+/// BlendshapeTransfer, closed_seams(), VertexTransfer, reading the source and FrameStore throw.
 Solution solve(const Source& source, const Target& target, const Selection& selection,
                const SolveOptions& options = {});
 

@@ -120,7 +120,7 @@ VertexPull::Rows VertexPull::operator()(const Eigen::Ref<const Frames>& frames) 
     const int row = row_of_vertex_[vertices_[slot]];
     if (row < 0) continue;
     for (int c = 0; c < 3; ++c) {
-      result.row(row).segment<kLanes>(c * kLanes).array() =
+      result.row(row).segment<kLanes>(c * kLanes).array() +=
           all.row(slot).segment<kLanes>(c * kLanes).array() - at_rest_(slot, c);
     }
   }

@@ -24,7 +24,7 @@ class VertexPull {
 
   /// `rest` N x 3, of the source; `gradients` are those of `triangles` (M x 3) at `rest`. `vectors`
   /// holds, for each selected triangle a b c, x_ib and x_ic; x_ia = -x_ib - x_ic. `row_of_vertex`
-  /// (N) says where a vertex' sum goes; -1 for nowhere.
+  /// (N) says where a vertex' sum goes; -1 for nowhere. Sums that go to one row are added.
   VertexPull(const Positions& rest, const Triangles& triangles,
              const DeformationGradients& gradients, const std::vector<Edges>& vectors,
              std::vector<int> row_of_vertex);

@@ -106,6 +106,17 @@ void check(const Positions& source_rest, const Positions& target_rest, const Tri
                                 std::to_string(target_rest.rows() - 1));
   }
   check_options(options, target_rest.rows());
+  if (options.weld.representative.empty()) return;
+  options.weld.check(source_rest);
+  options.weld.check(target_rest);
+}
+
+/// With an entry of the weld for each vertex, and as the anchor the lowest of those that are one.
+VertexTransferOptions completed(VertexTransferOptions options, Eigen::Index vertices) {
+  std::vector<VertexIndex>& one = options.weld.representative;
+  if (one.empty()) options.weld = Weld::none(static_cast<int>(vertices));
+  if (options.anchor == Anchor::vertex) options.anchor_vertex = one[options.anchor_vertex];
+  return options;
 }
 
 std::vector<bool> mask_of(const std::vector<int>& selected, Eigen::Index triangles) {
@@ -123,6 +134,9 @@ std::vector<bool> mask_of(const std::vector<int>& selected, Eigen::Index triangl
 ///   sum_w (sum_i w_i g_iv . g_iw) d_w = sum_i w_i (Q_i - I) g_iv,
 /// one N x N matrix for x, y and z. With Q_i - I = (U~_i - U_i) U_i^-1 a frame needs only the
 /// constant vectors U_i^-1 g_iv. Only differences occur: where the mesh lies does not matter.
+///
+/// Vertices that are one share d: their rows and columns add up. At rest the corners of a triangle
+/// are where those of the welded one are, so that g_iv and U_i are the same for both.
 struct VertexTransfer::State {
   State(const Positions& source, const Positions& target, const Triangles& triangles,
         const std::vector<int>& selected, const VertexTransferOptions& options);
@@ -140,16 +154,18 @@ struct VertexTransfer::State {
   void solve_all(const FrameSource& performance,
                  const std::function<void(int first, const Frames& poses)>& take) const;
   std::array<int, 3> unknowns_of(int triangle) const;
+  bool collapses(int triangle) const;
 
   Positions source_rest, target_rest;
-  Triangles triangles;
   VertexTransferOptions options;
+  Triangles triangles, welded;  // as given, and on the lowest of vertices that are one
   std::vector<bool> in_l;       // of each triangle
   std::vector<double> weights;  // of each triangle; 0 where it takes no part
   std::vector<bool> fixed;      // of each vertex
   VertexUnknowns unknowns;      // numbered as they are eliminated
   geodesic::SparseFactor solver;
   std::optional<VertexPull> pull;
+  int collapsed = 0;
   int degenerate_source = 0;
   int degenerate_target = 0;
 };
@@ -157,13 +173,20 @@ struct VertexTransfer::State {
 VertexTransfer::State::State(const Positions& source, const Positions& target,
                              const Triangles& faces, const std::vector<int>& selected,
                              const VertexTransferOptions& given)
-    : source_rest(source), target_rest(target), triangles(faces), options(given) {
-  const DeformationGradients gradients(source_rest, triangles, selected);
+    : source_rest(source),
+      target_rest(target),
+      options(completed(given, target.rows())),
+      triangles(faces),
+      welded(options.weld.welded(faces)) {
+  // Only to find neighbours across seams: at rest both are the same.
+  const DeformationGradients gradients(source_rest, welded, selected);
   in_l = mask_of(selected, triangles.rows());
-  degenerate_source = gradients.replaced();
+  // Those that collapse have no area in the source's rest pose either.
+  degenerate_source = gradients.replaced() - static_cast<int>(std::ranges::count_if(
+                                                 selected, [this](int t) { return collapses(t); }));
   weigh();
   fix();
-  unknowns = number_unknowns(triangles, weights, fixed);
+  unknowns = number_unknowns(triangles, weights, fixed, options.weld);
   if (options.anchor && unknowns.some_held) {
     throw std::invalid_argument(
         "an anchor was given, but fixed vertices hold the mesh in place already; let the vertices "
@@ -179,6 +202,11 @@ void VertexTransfer::State::weigh() {
   for (int t = 0; t < triangles.rows(); ++t) {
     if (in_l[t]) weights[t] = 1;
     if (weights[t] == 0) continue;
+    if (collapses(t)) {
+      weights[t] = 0;
+      ++collapsed;
+      continue;
+    }
     const double share = target_share(quality_of(target_rest, triangles, t));
     if (share < 0.5) ++degenerate_target;
     weights[t] *= share;
@@ -189,21 +217,42 @@ void VertexTransfer::State::weigh() {
 }
 
 /// Fixes vertices outside, and those that no triangle determines.
+///
+/// Of vertices that are one, all are fixed where one is outside: it must stay, and the others with
+/// it, or the seam would tear at the regions' border. All move where one is determined by a
+/// triangle: the other side of a seam may have none in L, or none with area. So it is for the one
+/// vertex of a mesh without duplicates.
 void VertexTransfer::State::fix() {
-  std::vector<bool> movable(target_rest.rows(), true);
+  const std::vector<VertexIndex>& one = options.weld.representative;
+  std::vector<bool> movable(target_rest.rows(), true), determined(target_rest.rows(), false);
   if (options.outside == Outside::fixed && !options.inside.empty()) {
-    movable = options.inside;
+    for (std::size_t v = 0; v < one.size(); ++v) {
+      if (!options.inside[v]) movable[one[v]] = false;
+    }
   } else if (options.outside == Outside::fixed) {
     for (int t = 0; t < triangles.rows(); ++t) {
-      if (in_l[t]) continue;
-      for (const VertexIndex vertex : triangles.row(t)) movable[vertex] = false;
+      if (in_l[t] || collapses(t)) continue;
+      for (const VertexIndex vertex : welded.row(t)) movable[vertex] = false;
     }
   }
-  fixed.assign(target_rest.rows(), true);
   for (int t = 0; t < triangles.rows(); ++t) {
     if (weights[t] == 0) continue;
-    for (const VertexIndex vertex : triangles.row(t)) fixed[vertex] = !movable[vertex];
+    for (const VertexIndex vertex : welded.row(t)) determined[vertex] = true;
   }
+  fixed.resize(one.size());
+  for (std::size_t v = 0; v < one.size(); ++v) fixed[v] = !movable[one[v]] || !determined[one[v]];
+}
+
+/// True where two vertices of a triangle are one.
+bool VertexTransfer::State::collapses(int triangle) const {
+  for (const int a : {0, 1, 2}) {
+    const int b = (a + 1) % 3;
+    if (triangles(triangle, a) != triangles(triangle, b) &&
+        welded(triangle, a) == welded(triangle, b)) {
+      return true;
+    }
+  }
+  return false;
 }
 
 std::array<int, 3> VertexTransfer::State::unknowns_of(int triangle) const {
@@ -226,7 +275,7 @@ Triplets VertexTransfer::State::stiffness() const {
 /// have to drop out together: without them even the rest pose would move.
 void VertexTransfer::State::add_smoothness(Triplets& entries) const {
   const bool by_area = options.triangle_weight == TriangleWeight::area;
-  const auto neighbors = triangle_neighbors(static_cast<int>(target_rest.rows()), triangles);
+  const auto neighbors = triangle_neighbors(static_cast<int>(target_rest.rows()), welded);
   for (int t = 0; t < triangles.rows(); ++t) {
     for (const int other : neighbors[t]) {
       if (other < t || (in_l[t] && in_l[other]) || weights[t] == 0 || weights[other] == 0) continue;
@@ -308,7 +357,7 @@ Frames VertexTransfer::State::solve(const Eigen::Map<const Frames>& frames) cons
   };
   for (const FloatingPiece& piece : unknowns.floating) {
     const Row shift = shift_of(piece, frames, displacement);
-    move(piece.vertices.front(), shift);
+    for (const VertexIndex v : piece.pin) move(v, shift);
     for (const VertexIndex v : piece.vertices) {
       if (unknowns.of_vertex[v] >= 0) displacement.row(unknowns.of_vertex[v]) += shift;
     }
@@ -360,6 +409,9 @@ void VertexTransfer::write_frames(const FrameSource& performance, FrameSink& sin
                     [&sink](int first, const Frames& poses) { sink.write(first, poses); });
 }
 
+int VertexTransfer::collapsed_triangles() const {
+  return state_->collapsed;
+}
 int VertexTransfer::degenerate_source_triangles() const {
   return state_->degenerate_source;
 }

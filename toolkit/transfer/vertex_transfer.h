@@ -9,6 +9,7 @@
 #include "toolkit/mesh/mesh_sequence.h"
 #include "toolkit/mesh/option.h"
 #include "toolkit/mesh/progress.h"
+#include "toolkit/mesh/weld.h"
 
 namespace mimetra {
 
@@ -58,6 +59,9 @@ struct VertexTransferOptions {
   /// Vertices that Outside::fixed lets move (N): those inside the regions. By default the vertices
   /// all of whose triangles are in L.
   std::vector<bool> inside = {};
+  /// Vertices that are one point of the surface and move as one (N), such as closed_seams(); by
+  /// default none are. Where one of them is fixed, all are.
+  Weld weld = {};
   /// Weight of triangles outside L for Outside::identity, relative to those inside.
   double outside_weight = 0.1;
   /// Weight of squared differences of displacement gradients across edges of triangles outside L.
@@ -92,12 +96,16 @@ struct VertexTransferOptions {
 /// explicit: one pin per connected piece of the weighted triangles that holds no fixed vertex (two
 /// triangles that share one vertex are one piece), and a translation afterwards.
 ///
+/// Vertices that are one (VertexTransferOptions::weld) are one unknown of the system: the result is
+/// that of the mesh without duplicates, though each triangle has its own corners' gradient.
+///
 /// [Sumner, Popovic. Deformation Transfer for Triangle Meshes. ACM TOG 23(3), 2004]
 class VertexTransfer {
  public:
   /// `source_rest`, `target_rest` N x 3; `selected` are rows of `triangles` (M x 3). Throws
   /// MismatchError where vertex counts differ, std::invalid_argument for options out of range, an
-  /// explicit anchor where vertices are fixed, or an index out of range.
+  /// explicit anchor where vertices are fixed, an index out of range, or vertices that are one but
+  /// lie apart in a rest pose.
   VertexTransfer(const Positions& source_rest, const Positions& target_rest,
                  const Triangles& triangles, std::vector<int> selected,
                  const VertexTransferOptions& = {});
@@ -112,6 +120,9 @@ class VertexTransfer {
   /// what writing throws, too.
   void write_frames(const FrameSource& performance, FrameSink& sink) const;
 
+  /// Triangles of which two corners are one vertex: they take no part, and are none of the
+  /// degenerate ones.
+  int collapsed_triangles() const;
   int degenerate_source_triangles() const;
   int degenerate_target_triangles() const;
   /// Vertices that stay exactly at the target's rest pose (N).

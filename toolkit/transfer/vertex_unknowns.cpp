@@ -1,17 +1,15 @@
 #include "toolkit/transfer/vertex_unknowns.h"
 
 #include <algorithm>
-#include <numeric>
 
 namespace mimetra {
 
 namespace {
 
 /// Lowest vertex of each vertex's piece.
-std::vector<VertexIndex> pieces(int vertices, const Triangles& triangles,
-                                const std::vector<double>& weights) {
-  std::vector<VertexIndex> parent(vertices);
-  std::iota(parent.begin(), parent.end(), 0);
+std::vector<VertexIndex> pieces(const Triangles& triangles, const std::vector<double>& weights,
+                                const Weld& weld) {
+  std::vector<VertexIndex> parent = weld.representative;
   const auto root = [&parent](VertexIndex v) {
     while (parent[v] != v) v = parent[v] = parent[parent[v]];
     return v;
@@ -23,17 +21,17 @@ std::vector<VertexIndex> pieces(int vertices, const Triangles& triangles,
       parent[high] = low;
     }
   }
-  std::vector<VertexIndex> piece(vertices);
-  for (VertexIndex v = 0; v < vertices; ++v) piece[v] = root(v);
+  std::vector<VertexIndex> piece(parent.size());
+  for (std::size_t v = 0; v < piece.size(); ++v) piece[v] = root(static_cast<VertexIndex>(v));
   return piece;
 }
 
 }  // namespace
 
 VertexUnknowns number_unknowns(const Triangles& triangles, const std::vector<double>& weights,
-                               const std::vector<bool>& fixed) {
+                               const std::vector<bool>& fixed, const Weld& weld) {
   const auto vertices = static_cast<int>(fixed.size());
-  const std::vector<VertexIndex> piece = pieces(vertices, triangles, weights);
+  const std::vector<VertexIndex> piece = pieces(triangles, weights, weld);
   std::vector<bool> held(vertices, false);
   for (VertexIndex v = 0; v < vertices; ++v) {
     if (fixed[v]) held[piece[v]] = true;
@@ -43,17 +41,21 @@ VertexUnknowns number_unknowns(const Triangles& triangles, const std::vector<dou
   std::vector<int> floating(vertices, -1);
   for (VertexIndex v = 0; v < vertices; ++v) {
     if (fixed[v]) continue;
-    const VertexIndex lowest = piece[v];
+    const VertexIndex lowest = piece[v], one = weld.representative[v];
     if (!held[lowest]) {
       if (v == lowest) {
         floating[v] = static_cast<int>(unknowns.floating.size());
         unknowns.floating.emplace_back();
       }
-      unknowns.floating[floating[lowest]].vertices.push_back(v);
-      if (v == lowest) continue;
+      FloatingPiece& floats = unknowns.floating[floating[lowest]];
+      if (v == one) floats.vertices.push_back(v);
+      if (one == lowest) {
+        floats.pin.push_back(v);
+        continue;
+      }
     }
     unknowns.some_held |= held[lowest];
-    unknowns.of_vertex[v] = unknowns.count++;
+    unknowns.of_vertex[v] = v == one ? unknowns.count++ : unknowns.of_vertex[one];
   }
   return unknowns;
 }

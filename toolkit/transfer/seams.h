@@ -1,0 +1,23 @@
+#pragma once
+
+#include "toolkit/mesh/weld.h"
+
+namespace mimetra {
+
+/// Vertices of a source farther apart than this share of its longest side have parted: well above
+/// the rounding of single precision, well below what one sees.
+constexpr double kPartedShare = 1e-6;
+
+/// Which vertices are one point of a surface that a source and a target of its connectivity share:
+/// the two sides of a UV seam, but not lips that open. They are at the same place in both rest
+/// poses, exactly, and in every frame of the source within kPartedShare of the lowest of them.
+/// Vertices that are at one place and no longer together later are split as by staying_together().
+/// Those of no triangle, or at a place where no triangle of the target has area, are left alone.
+///
+/// `target_rest` N x 3. Frames are read in blocks, and only where vertices coincide at rest. Throws
+/// MismatchError for another number of vertices, std::invalid_argument that names a vertex of a
+/// rest pose which is not finite; what reading throws, Cancelled.
+Weld closed_seams(const FrameSource& source, const Positions& target_rest,
+                  const BlockOptions& = {});
+
+}  // namespace mimetra
