@@ -109,6 +109,10 @@ TEST_F(SolveTest, NotesARestPoseThatIsNotNeutral) {
   solve(wrong, {"actor", model}, whole(*performance), options_);
   EXPECT_TRUE(noted.has(Topic::unneutral_rest));
   noted.notes.clear();
+  Source known = wrong;
+  known.neutral_is_known = true;
+  solve(known, {"actor", model}, whole(*performance), options_);
+  EXPECT_FALSE(noted.has(Topic::unneutral_rest));
   solve(source_, {"actor", model}, whole(*performance), options_);
   EXPECT_FALSE(noted.has(Topic::unneutral_rest));
 }

@@ -83,7 +83,10 @@ Solution solve_blendshapes(const Source& source, const Target& target, const Sel
   const TargetNotes notes(target, options);
   notes.add(solution.conditions);
   notes.add_degenerate(solution);
-  if (transfer.rest_looks_unneutral(performance, solution.weights())) {
+  // Another face's expressions are never quite the source's: with an exact neutral, too, some want
+  // to be negative.
+  const bool may_be_wrong = !source.neutral_is_known;
+  if (may_be_wrong && transfer.rest_looks_unneutral(performance, solution.weights())) {
     notes.add(
         "many expressions want to be negative, so the source's rest pose is likely not its "
         "neutral",

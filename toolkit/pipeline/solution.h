@@ -119,8 +119,8 @@ void check_target(const FrameSource& source, const Target& target);
 /// Solves on the selected triangles in blendshape or vertex space; in vertex space closed_seams()
 /// stay closed. Notes, under the target's name, expressions that the triangles do not or hardly
 /// show (Topic::poor_condition where they do not tell them apart), triangles without area or that a
-/// seam collapses, and a source whose rest pose does not look neutral (Topic::unneutral_rest). \pre
-/// check_target(); the source is placed_at() the target
+/// seam collapses, and a source whose neutral is not known and whose rest pose does not look like
+/// it (Topic::unneutral_rest). \pre check_target(); the source is placed_at() the target
 ///
 /// Throws OptionError (Topic::no_expressions, Topic::anchor_vertex, Topic::held_anchor) and what
 /// BlendshapeTransfer, closed_seams(), VertexTransfer, reading the source and FrameStore throw.

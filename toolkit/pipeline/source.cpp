@@ -127,6 +127,13 @@ Shared kept(Shared sequence, const SourceOptions& options) {
                                       .progress = part_of(options.progress, 0, kStoringShare)});
 }
 
+/// True for a shape that was given, and for the sequence's own where none was asked for.
+bool knows_neutral(const FrameSource& sequence, const SourceOptions& options) {
+  if (!options.rest) return sequence.rest_is_known();
+  const auto* word = std::get_if<SourceRest>(&*options.rest);
+  return !word || *word == SourceRest::neutral;
+}
+
 bool is_mean(const SourceOptions& options) {
   const auto* word = options.rest ? std::get_if<SourceRest>(&*options.rest) : nullptr;
   return word && *word == SourceRest::mean;
@@ -145,6 +152,7 @@ Source prepare_source(Shared sequence, const SourceOptions& options) {
   source.given = kept(std::move(sequence), options);
   source.sequence = is_mean(options) ? source.given : with_asked_rest(source.given, options);
   source.rest_is_given = options.rest.has_value();
+  source.neutral_is_known = knows_neutral(*source.given, options);
   source.motion = motion_in(
       *source.sequence, choice.motion,
       {.threads = options.threads, .progress = part_of(options.progress, kStoringShare, 1)});

@@ -87,6 +87,8 @@ struct Source {
   HeadMotionTaken head_motion = {};
   /// The rest pose was asked for.
   bool rest_is_given = false;
+  /// The rest pose is the neutral, as whoever gave or kept it knows.
+  bool neutral_is_known = false;
 };
 
 /// True where these options take a head motion out of the sequence.
