@@ -105,6 +105,32 @@ TEST(Analysis, RefusesASupportMapThatDoesNotRise) {
   EXPECT_EQ(test::topic_of([&] { analyse(source_of(take()), options); }), Topic::support_range);
 }
 
+/// The first frame of a take, moving by so many of its longest sides.
+MeshSequence nearly_still(double share) {
+  const MeshSequence sequence = take();
+  Frames frames = sequence.positions().row(0).replicate(sequence.frames(), 1);
+  for (int f = 1; f < sequence.frames(); ++f) frames(f, 3 * f) += share * sequence.extent();
+  return bare(sequence.with_frames(std::move(frames)));
+}
+
+TEST(Analysis, RefusesRoundingNoise) {
+  EXPECT_THAT([] { analyse(source_of(nearly_still(1e-9)), three_components()); },
+              ThrowsMessage<MismatchError>(HasSubstr("nothing moves: all 8 frames")));
+  EXPECT_NO_THROW(analyse(source_of(nearly_still(1e-5)), three_components()));
+}
+
+TEST(Analysis, RefusesAHeadThatOnlyTurns) {
+  const MeshSequence turning = with_motion(nearly_still(0), test::nodding(8));
+  const Source source = prepare_source(turning, {.head_motion = HeadMotion::all});
+  // What is left are the alignment's last digits: the frames are not equal.
+  EXPECT_GT((test::frames_of(source.sequence).row(7) - test::frames_of(source.sequence).row(0))
+                .cwiseAbs()
+                .maxCoeff(),
+            0);
+  EXPECT_THAT([&] { analyse(source, three_components()); },
+              ThrowsMessage<MismatchError>(HasSubstr("nothing moves")));
+}
+
 /// Two triangles whose vertices 1 and 3 lie at one place in the first frame, and part.
 MeshSequence parting() {
   Positions rest(4, 3);

@@ -48,6 +48,15 @@ TEST_F(EvaluationTest, ByAllTrianglesHasTheLeastErrorOverThem) {
   EXPECT_LE(*rows[0].mpe_all, 0);
 }
 
+TEST_F(EvaluationTest, RefusesASourceThatDoesNotMove) {
+  const MeshSequence still = source_.with_frames(source_.positions().row(0).replicate(8, 1));
+  EXPECT_THAT(
+      [&] {
+        evaluate(still, {"actor", actor_}, options_);
+      },
+      ThrowsMessage<MismatchError>(HasSubstr("nothing moves: all 8 frames")));
+}
+
 TEST_F(EvaluationTest, RefusesACountBelowOne) {
   options_.counts = {3, 0};
   EXPECT_THAT(

@@ -59,6 +59,17 @@ TEST_F(TransferTest, IsItsPartsDoneByHand) {
             transfer_error(*placed(), expected, regions.triangles).de_all);
 }
 
+TEST_F(TransferTest, NeedsMotionOnlyWhereItDecomposes) {
+  const MeshSequence still = source_.with_frames(source_.positions().row(0).replicate(8, 1));
+  EXPECT_THAT(
+      [&] {
+        transfer(still, {{"actor", actor_}}, options_);
+      },
+      ThrowsMessage<MismatchError>(HasSubstr("nothing moves: all 8 frames")));
+  options_.full = true;
+  EXPECT_NO_THROW(transfer(still, {{"actor", actor_}}, options_));
+}
+
 TEST_F(TransferTest, SolvesForTheVerticesInsideTheRegionsOfAMesh) {
   const Regions regions = this->regions();
   const VertexTransfer by_hand(placed()->rest(), mesh_.neutral(), mesh_.triangles(),

@@ -10,6 +10,7 @@
 namespace mimetra::test {
 namespace {
 
+using testing::AllOf;
 using testing::HasSubstr;
 using testing::ThrowsMessage;
 
@@ -88,12 +89,57 @@ TEST(DecompositionInput, RefusesOneFrame) {
               ThrowsMessage<MismatchError>(HasSubstr("one frame")));
 }
 
-TEST(DecompositionInput, RefusesASequenceThatDoesNotMove) {
+/// A grid of which vertex 7 moves: in frame f by `weights`[f] of its longest side, 3.
+MeshSequence twitching(const Eigen::VectorXd& weights) {
   const Shape shape = grid(4, 3);
-  const MeshSequence still =
-      synthesised(shape, Eigen::MatrixXd::Zero(3, 1), Frames::Zero(1, shape.positions.size()));
-  EXPECT_THAT([&] { decompose(still, grid_options(still, 1)); },
-              ThrowsMessage<MismatchError>(HasSubstr("nothing moves")));
+  Frames field = Frames::Zero(1, shape.positions.size());
+  field(0, 3 * 7 + 2) = 3;
+  return synthesised(shape, weights, field);
+}
+
+MeshSequence twitching(double share) {
+  return twitching(Eigen::Vector3d(0, share, 0));
+}
+
+auto decomposing(const MeshSequence& sequence) {
+  return [sequence] { return decompose(sequence, grid_options(sequence, 1)); };
+}
+
+TEST(DecompositionInput, RefusesASequenceThatDoesNotMove) {
+  EXPECT_THAT(decomposing(twitching(0)),
+              ThrowsMessage<MismatchError>(HasSubstr("nothing moves: all 3 frames are the rest "
+                                                     "pose; expected motion above 1e-06 of its "
+                                                     "longest side")));
+}
+
+TEST(DecompositionInput, RefusesRoundingNoiseAndSaysHowLargeItIs) {
+  EXPECT_THAT(decomposing(twitching(1e-9)),
+              ThrowsMessage<MismatchError>(
+                  AllOf(HasSubstr("nothing moves: all 3 frames are the rest pose to 3e-09, 1e-09 "
+                                  "of its longest side"),
+                        HasSubstr("give frames that deform"))));
+}
+
+TEST(DecompositionInput, IsRefusedUpToTheLeastMotion) {
+  EXPECT_THROW(decomposing(twitching(0.99 * kLeastMotion))(), MismatchError);
+  EXPECT_NO_THROW(decomposing(twitching(1.01 * kLeastMotion))());
+}
+
+TEST(DecompositionInput, MayMoveLittle) {
+  const Components components = decomposing(twitching(1e-5))();
+  EXPECT_EQ(components.centers, std::vector<VertexIndex>{7});
+}
+
+TEST(DecompositionInput, MovesWhereItsFramesAreEqualAndNotTheRestPose) {
+  EXPECT_NO_THROW(decomposing(twitching(Eigen::Vector2d(1e-5, 1e-5)))());
+}
+
+TEST(DecompositionInput, WithoutExtentMovesByAnyAmount) {
+  Frames frames = Frames::Zero(2, 6);
+  const MeshSequence still(Connectivity::from_triangles(2, Triangles(0, 3)), frames);
+  EXPECT_THROW(decomposing(still)(), MismatchError);
+  frames(1, 4) = 1e-9;
+  EXPECT_NO_THROW(decomposing(still.with_frames(frames))());
 }
 
 TEST(DecompositionInput, NamesTheFrameWithABadCoordinate) {

@@ -4,9 +4,11 @@
 
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/inspection.h"
+#include "toolkit/mesh/text.h"
 #include "toolkit/operations/bound_parameters.h"
 #include "toolkit/operations/json.h"
 #include "toolkit/operations/toolkit_operations.h"
+#include "toolkit/splocs/decomposition_options.h"
 
 namespace mimetra {
 
@@ -29,13 +31,17 @@ std::string counted(std::size_t count, const std::string& what, int first) {
   return std::to_string(count) + " " + what + ", the first is " + std::to_string(first);
 }
 
-/// Whether any frame differs from the first. Reads all of them.
+/// Whether any frame differs from the first by what a decomposition takes for motion. Reads all of
+/// them.
 bool moves(const FrameSource& sequence, const BlockOptions& options) {
   const Frames first = sequence.read(0, 1);
+  const double least = kLeastMotion * extent(PositionsView(first.data(), sequence.vertices(), 3));
   std::atomic<bool> differs = false;
   for_each_block(sequence, options, [&](int, const Frames& poses) {
     for (Eigen::Index row = 0; row < poses.rows(); ++row) {
-      if (poses.row(row) != first) differs = true;
+      const Eigen::RowVectorXd way = poses.row(row) - first.row(0);
+      const PositionsView of_vertices(way.data(), sequence.vertices(), 3);
+      if (of_vertices.rowwise().squaredNorm().maxCoeff() > least * least) differs = true;
     }
   });
   return differs;
@@ -61,7 +67,7 @@ std::vector<std::string> warnings_of(const FrameSource& sequence, bool moves) {
   }
   if (sequence.frames() > 1 && !moves) {
     warnings.push_back("nothing moves: all " + std::to_string(sequence.frames()) +
-                       " frames are equal");
+                       " frames are equal to " + readable(kLeastMotion) + " of their longest side");
   }
   return warnings;
 }

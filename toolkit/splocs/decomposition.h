@@ -32,8 +32,8 @@ struct Components {
 /// Every product with X is with K columns (P = X C^T, W^T X); the residual is never formed. The
 /// result is the same for every number of threads. The rest pose is the sequence's.
 ///
-/// Throws MismatchError where count > 3N, where there is one frame only, or nothing moves;
-/// std::invalid_argument for options out of range; Cancelled.
+/// Throws MismatchError where count > 3N, where there is one frame only, or nothing moves by more
+/// than kLeastMotion; std::invalid_argument for options out of range; Cancelled.
 ///
 /// [Neumann et al. Sparse Localized Deformation Components. ACM TOG 32(6), 2013], eq. 1 to 9;
 /// Region-based deformation transfer, eq. 6 and 7.

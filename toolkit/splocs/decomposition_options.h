@@ -28,6 +28,10 @@ constexpr std::string_view choice_name(IterationPrecision value) {
   return {};
 }
 
+/// Displacements from the rest pose, as a share of its longest side, up to which nothing moves:
+/// what the rounding of float32 files (6e-8 of their coordinates) and of rigid alignment leaves.
+constexpr double kLeastMotion = 1e-6;
+
 struct DecompositionOptions {
   /// K, at most 3N.
   int count = 50;

@@ -1,19 +1,23 @@
 #include "toolkit/splocs/motion.h"
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <string>
 
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/parallel.h"
+#include "toolkit/mesh/text.h"
 
 namespace mimetra {
 namespace {
 
-/// Mean of one frame's displacement coordinates, and the sum of squared differences from it.
+/// Mean of one frame's displacement coordinates, the sum of squared differences from it, and the
+/// length of the longest displacement.
 struct FrameSpread {
   double mean = 0;
   double squares = 0;
+  double furthest = 0;
 };
 
 std::vector<FrameSpread> spreads(const MeshSequence& sequence, int threads) {
@@ -22,7 +26,9 @@ std::vector<FrameSpread> spreads(const MeshSequence& sequence, int threads) {
   parallel_for(sequence.frames(), threads, [&](int f) {
     const Eigen::RowVectorXd displacement = sequence.positions().row(f) - rest;
     const double mean = displacement.mean();
-    spreads[f] = {mean, (displacement.array() - mean).square().sum()};
+    const PositionsView of_vertices(displacement.data(), sequence.vertices(), 3);
+    spreads[f] = {mean, (displacement.array() - mean).square().sum(),
+                  std::sqrt(of_vertices.rowwise().squaredNorm().maxCoeff())};
   });
   return spreads;
 }
@@ -36,6 +42,22 @@ void require_finite(const MeshSequence& sequence, const std::vector<FrameSpread>
         (overflow ? " is so far from the rest pose that its energy is not a finite number"
                   : " has a coordinate that is not a finite number"));
   }
+}
+
+/// \pre finite spreads
+void require_motion(const MeshSequence& sequence, const std::vector<FrameSpread>& spreads) {
+  const double furthest = std::ranges::max(spreads, {}, &FrameSpread::furthest).furthest;
+  const double size = sequence.extent();
+  if (furthest > kLeastMotion * size) return;
+  std::string found =
+      "nothing moves: all " + std::to_string(sequence.frames()) + " frames are the rest pose";
+  if (furthest > 0) {
+    found +=
+        " to " + readable(furthest) + ", " + readable(furthest / size) + " of its longest side";
+  }
+  throw MismatchError(found + "; expected motion above " + readable(kLeastMotion) +
+                      " of its longest side, " + readable(size) +
+                      ": give frames that deform (head motion that is taken out is none)");
 }
 
 VertexBlocks<double> scaled_blocks(const MeshSequence& sequence, double scale, int threads) {
@@ -56,6 +78,7 @@ VertexBlocks<double> scaled_blocks(const MeshSequence& sequence, double scale, i
 Motion scaled_motion(const MeshSequence& sequence, int threads) {
   const std::vector<FrameSpread> of_frames = spreads(sequence, threads);
   require_finite(sequence, of_frames);
+  require_motion(sequence, of_frames);
   const auto coordinates = static_cast<double>(sequence.rest().size());
   const auto all = coordinates * sequence.frames();
   double mean = 0;
@@ -67,7 +90,7 @@ Motion scaled_motion(const MeshSequence& sequence, int threads) {
   const double scale = std::sqrt(squares / all);
   if (scale == 0) {
     throw MismatchError("nothing moves: all " + std::to_string(sequence.frames()) +
-                        " frames are the rest pose");
+                        " frames are the rest pose, shifted by one amount along x, y and z");
   }
   const double norm2 = (squares + all * mean * mean) / scale / scale;
   if (!std::isfinite(norm2)) {

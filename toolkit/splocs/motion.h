@@ -1,5 +1,6 @@
 #pragma once
 
+#include "toolkit/splocs/decomposition_options.h"
 #include "toolkit/splocs/vertex_blocks.h"
 
 namespace mimetra {
@@ -11,8 +12,9 @@ struct Motion {
   double norm2 = 0;        ///< ||X||_F^2
 };
 
-/// Throws MismatchError where nothing moves, std::invalid_argument that names the first frame with
-/// a coordinate that is not finite.
+/// Throws MismatchError where no vertex is further than kLeastMotion of the longest side from the
+/// rest pose in any frame, std::invalid_argument that names the first frame with a coordinate that
+/// is not finite.
 Motion scaled_motion(const MeshSequence& sequence, int threads);
 
 }  // namespace mimetra
