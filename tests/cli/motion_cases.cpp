@@ -35,10 +35,13 @@ std::string with_sequence(const std::string& arguments, const std::string& seque
 
 /// One BadInput for each operation; `says` is what those that need motion answer.
 void add_to_all(std::vector<BadInput>& all, const std::string& kind, const std::string& sequence,
-                const std::function<void(const fs::path&)>& make, const std::string& says) {
+                const std::function<void(const fs::path&)>& make, const std::string& says,
+                const std::string& where_motion_is_needed = "") {
   for (const Request& request : requests()) {
     const int code = request.needs_motion ? 4 : 0;
-    all.push_back({kind, request.operation, make, with_sequence(request.arguments, sequence), code,
+    const std::string options = request.needs_motion ? where_motion_is_needed : "";
+    all.push_back({kind, request.operation, make,
+                   with_sequence(request.arguments, sequence) + options, code,
                    request.needs_motion ? std::vector{says} : std::vector<std::string>{"{"}});
   }
 }
@@ -104,8 +107,8 @@ std::vector<BadInput> motion_cases() {
   add_to_all(all, "no_motion", "head --weights still.csv", file("still.csv", still),
              "nothing moves");
   const std::string same = "left,right,top\n0.5,0.5,0\n0.5,0.5,0\n0.5,0.5,0\n";
-  add_to_all(all, "identical_frames", "head --weights same.csv --rest first",
-             file("same.csv", same), "nothing moves");
+  add_to_all(all, "identical_frames", "head --weights same.csv", file("same.csv", same),
+             "nothing moves", " --rest first");
   const std::string noise = "left,right,top\n0,0,0\n1e-9,0,0\n0,1e-9,-1e-9\n";
   add_to_all(all, "rounding_noise", "head --weights noise.csv", file("noise.csv", noise),
              "nothing moves");
