@@ -309,11 +309,14 @@ TEST(CommandTerms, AreAddedToNotes) {
   std::vector<std::string> warnings;
   Invocation call;
   call.log = [&warnings](LogLevel, const std::string& text) { warnings.push_back(text); };
-  note(warnings_of(call), "take: its neutral is not known", Topic::unknown_neutral);
+  const std::string unknown = "take: its neutral is not known";
+  note(warnings_of(call), unknown, Topic::unknown_neutral);
   note(warnings_of(call), "plain");
-  EXPECT_THAT(
-      warnings,
-      ElementsAre("take: its neutral is not known; give it with --source-rest FILE", "plain"));
+  // By the option that the operation has.
+  call.parameters = Parameters(source_rest_parameters().declared());
+  note(warnings_of(call), unknown, Topic::unknown_neutral);
+  EXPECT_THAT(warnings, ElementsAre(unknown + "; give it with --rest FILE", "plain",
+                                    unknown + "; give it with --source-rest FILE"));
 }
 
 }  // namespace

@@ -49,7 +49,8 @@ TEST_F(EvaluationTest, ByAllTrianglesHasTheLeastErrorOverThem) {
 }
 
 TEST_F(EvaluationTest, RefusesASourceThatDoesNotMove) {
-  const MeshSequence still = source_.with_frames(source_.positions().row(0).replicate(8, 1));
+  const Frames at_rest = source_.rest().reshaped<Eigen::RowMajor>().transpose().replicate(8, 1);
+  const MeshSequence still = source_.with_frames(at_rest);
   EXPECT_THAT(
       [&] {
         evaluate(still, {"actor", actor_}, options_);

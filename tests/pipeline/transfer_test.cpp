@@ -60,7 +60,8 @@ TEST_F(TransferTest, IsItsPartsDoneByHand) {
 }
 
 TEST_F(TransferTest, NeedsMotionOnlyWhereItDecomposes) {
-  const MeshSequence still = source_.with_frames(source_.positions().row(0).replicate(8, 1));
+  const Frames at_rest = source_.rest().reshaped<Eigen::RowMajor>().transpose().replicate(8, 1);
+  const MeshSequence still = source_.with_frames(at_rest);
   EXPECT_THAT(
       [&] {
         transfer(still, {{"actor", actor_}}, options_);
