@@ -77,7 +77,7 @@ class Operations(HostTest):
 
     def test_decompose_asks_for_a_file(self):
         self.assert_refused(self.take, [filter_script("mimetra Decompose", k=6)],
-                            "out: expected a file to write, .h5, found nothing")
+                            "out: expected a file to write, the components: .h5 or .hdf5, found nothing")
 
     def test_evaluate_measures_the_transfer_to_the_current_layer(self):
         out, expected = self.path / "table.csv", self.path / "expected.csv"
