@@ -138,7 +138,6 @@ Format plugin_format(const mimetra_format& described, const std::string& plugin,
   format.fields = (described.flags & MIMETRA_WITH_FIELDS) != 0;
   Operation operation;
   operation.name = format.name;
-
   if (described.read) {
     operation.parameters = format.reading;
     operation.outputs = {{kValue, format.kind, ""}};

@@ -100,10 +100,9 @@ std::vector<BadInput> geometry_cases() {
   add("decompose", "decompose" + odd + " -k 3 -o c.h5 --json",
       {"\"vertices\": 226", "2 triangles without area"});
   add("regions", "regions" + odd + " -k 3 -o r.pvd --json", {"no region", "vertex 225"});
-  add("transfer", "transfer" + odd + " odd --full -o x.npy --json",
-      {"2 degenerate triangles of the source"});
+  add("transfer", "transfer" + odd + " odd --full -o x.npy --json", {"2 slivers of the source"});
   add("transfer_vertex", "transfer" + odd + " odd --full --space vertex -o x.npy --json",
-      {"2 degenerate triangles of the target"});
+      {"2 slivers of the target"});
   add("evaluate", "evaluate" + odd + " odd -k 3 --json", {"\"rows\""});
   add("convert", "convert" + odd + " -o x --format obj --json", {"\"vertices\": 226"});
   add_targets(all);

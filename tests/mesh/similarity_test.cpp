@@ -42,6 +42,15 @@ TEST(Similarity, IsFoundWhateverItIs) {
   }
 }
 
+TEST(Similarity, KeepsVerticesAtOnePlaceTogether) {
+  // Of different parity and far apart, so that nothing depends on how rows are grouped.
+  Positions points = random_points(37, 8);
+  for (const int row : {5, 18, 36}) points.row(row) = points.row(2);
+  const Similarity there = similarity_fit(points, moved(points, 0.01, some_rotation(), {7, 8, 9}));
+  const Positions carried = there.apply(points);
+  for (const int row : {5, 18, 36}) EXPECT_TRUE(carried.row(row) == carried.row(2)) << row;
+}
+
 TEST(Similarity, IsBitByBitTheIdentityForEqualPoints) {
   const Positions points = random_points(10, 2);
   const Similarity found = similarity_fit(points, points);

@@ -210,7 +210,9 @@ namespace {
 std::string fish_files(const CommandOption& option) {
   if (!option.takes_file) return " -x";
   if (option.endings.empty()) return " -r -F";
-  return " -x -a '(__fish_complete_suffix " + joined(option.endings, " ") + ")'";
+  // Of one ending: what further arguments mean depends on the version of fish.
+  return " -x -a '(__fish_complete_suffix " + joined(option.endings, "; __fish_complete_suffix ") +
+         ")'";
 }
 
 }  // namespace

@@ -47,7 +47,7 @@ Outcome run_decompose(const Invocation& invocation) {
   call.source = described(std::move(call.source), invocation.input("sequence"));
   call.source.notes = call.analysis.notes;
   call.source.threads = invocation.threads;
-  const auto [still, analysis] = in_command_terms(invocation.parameters, [&] {
+  auto [still, analysis] = in_command_terms(invocation.parameters, [&] {
     Source source = prepare_source(sequence, call.source);
     Analysis found = analyse(source, call.analysis);
     return std::pair(std::move(source), std::move(found));
@@ -82,7 +82,7 @@ Outcome run_decompose(const Invocation& invocation) {
     outcome.outputs["weights-out"].push_back(
         {"", weight_table(components, still.sequence->times())});
   }
-  outcome.outputs["out"].push_back({"", analysis.components});
+  outcome.outputs["out"].push_back({"", std::move(analysis.components)});
   return outcome;
 }
 

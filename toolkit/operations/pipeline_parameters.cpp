@@ -49,6 +49,16 @@ std::function<Positions(const std::string&)> rest_reader(const FrameSource* sequ
   };
 }
 
+BoundParameters<SourceOptions> rest_named(const std::string& name, const std::string& what,
+                                          const FrameSource* sequence) {
+  BoundParameters<SourceOptions> list;
+  list.add_word_or_file<SourceRest, Positions>(
+      name, SourceOptions::kRest,
+      what + "; default the neutral where it is known, else the first frame",
+      rest_reader(sequence));
+  return list;
+}
+
 BoundParameters<DecompositionOptions> decomposition_parameters() {
   using Options = DecompositionOptions;
   BoundParameters<Options> list;
@@ -138,21 +148,11 @@ BoundParameters<SourceOptions> alignment_parameters(const FrameSource* sequence)
 }
 
 BoundParameters<SourceOptions> source_rest_parameters(const FrameSource* sequence) {
-  BoundParameters<SourceOptions> list;
-  list.add_word_or_file<SourceRest, Positions>(
-      "source-rest", SourceOptions::kRest,
-      "source's undeformed shape; default the neutral where it is known, else the first frame",
-      rest_reader(sequence));
-  return list;
+  return rest_named("source-rest", "source's undeformed shape", sequence);
 }
 
 BoundParameters<SourceOptions> rest_parameters(const FrameSource* sequence) {
-  BoundParameters<SourceOptions> list;
-  list.add_word_or_file<SourceRest, Positions>(
-      "rest", SourceOptions::kRest,
-      "rest pose; default the neutral where it is known, else the first frame",
-      rest_reader(sequence));
-  return list;
+  return rest_named("rest", "rest pose", sequence);
 }
 
 BoundParameters<AnalysisOptions> analysis_rest_parameters(const FrameSource* sequence) {

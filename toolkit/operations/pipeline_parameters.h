@@ -2,8 +2,6 @@
 
 #include <string>
 
-#include <nlohmann/json_fwd.hpp>
-
 #include "toolkit/operations/bound_parameters.h"
 #include "toolkit/operations/json.h"
 #include "toolkit/operations/operation.h"

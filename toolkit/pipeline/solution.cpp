@@ -49,11 +49,12 @@ class TargetNotes {
     }
     if (solution.degenerate_source_triangles > 0) {
       add(std::to_string(solution.degenerate_source_triangles) +
-          " degenerate triangles of the source take their neighbours' deformation");
+          " slivers of the source, triangles of hardly any area, take their neighbours' "
+          "deformation");
     }
     if (solution.degenerate_target_triangles > 0) {
       add(std::to_string(solution.degenerate_target_triangles) +
-          " degenerate triangles of the target");
+          " slivers of the target, triangles of hardly any area");
     }
   }
 

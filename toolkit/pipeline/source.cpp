@@ -78,7 +78,7 @@ Shared with_asked_rest(Shared sequence, const SourceOptions& options) {
     case SourceRest::mean:
       break;
   }
-  return with_rest(sequence, mean_pose(*sequence));
+  return sequence;  // the mean is that of the aligned frames
 }
 
 std::string_view name_of(const Motion& motion) {
@@ -150,7 +150,7 @@ Source prepare_source(Shared sequence, const SourceOptions& options) {
   const MotionChoice choice = motion_of(*sequence, options);
   Source source;
   source.given = kept(std::move(sequence), options);
-  source.sequence = is_mean(options) ? source.given : with_asked_rest(source.given, options);
+  source.sequence = with_asked_rest(source.given, options);
   source.rest_is_given = options.rest.has_value();
   source.neutral_is_known = knows_neutral(*source.given, options);
   source.motion = motion_in(
