@@ -32,7 +32,7 @@ int main(int argc, char** argv) {
   const BlendshapeModel actor = own_files ? read_blendshapes(argv[2]) : built_in_actor();
 
   const Components components = decompose(performance, {.count = 10});
-  const Regions regions = find_regions(components, {.radius = 0.1 * performance.extent()});
+  const Regions regions = find_regions(components, {.radius = 0.1 * performance.diameter()});
   const BlendshapeTransfer transfer(performance.rest(), actor, regions.triangles);
   const Eigen::MatrixXd beta = transfer.weights(performance);
   const MeshSequence result = actor.animate(beta, performance.times());

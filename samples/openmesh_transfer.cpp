@@ -38,7 +38,7 @@ int main() {
       painted({head.person(Eigen::Vector4d(0, 1, 0, 0)).neutral(), head.connectivity()});
 
   const Components components = decompose(performance.slice(0, 120, 4), {.count = 10});
-  const Regions regions = find_regions(components, {.radius = 0.1 * performance.extent()});
+  const Regions regions = find_regions(components, {.radius = 0.1 * performance.diameter()});
   const TriMesh target = from_openmesh(character);
   const VertexTransfer transfer(performance.rest(), target.positions, target.connectivity.triangles,
                                 regions.triangles, {.inside = regions.inside});

@@ -25,7 +25,7 @@ int main(int argc, char** argv) {
   const char* target = own_files ? argv[2] : "regions.pvd";
 
   const Components components = decompose(performance, {.count = 10});
-  const Regions regions = find_regions(components, {.radius = 0.1 * performance.extent()});
+  const Regions regions = find_regions(components, {.radius = 0.1 * performance.diameter()});
   const auto files =
       write_vtp_series({performance, fields_of(regions)}, target, {.overwrite = !own_files});
 

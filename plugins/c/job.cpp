@@ -22,9 +22,9 @@ const MeshSequence* sequence_of(const Data& data) {
 
 /// Longest side of the rest pose of what has one.
 std::optional<double> extent_of(const Data& data) {
-  if (const MeshSequence* sequence = sequence_of(data)) return sequence->extent();
-  if (const auto* components = std::get_if<Components>(&data)) return extent(components->rest);
-  if (const auto* held = std::get_if<ModelData>(&data)) return extent(held->model.mean());
+  if (const MeshSequence* sequence = sequence_of(data)) return sequence->diameter();
+  if (const auto* components = std::get_if<Components>(&data)) return diameter(components->rest);
+  if (const auto* held = std::get_if<ModelData>(&data)) return diameter(held->model.mean());
   return {};
 }
 

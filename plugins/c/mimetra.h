@@ -113,7 +113,7 @@ enum {
   MIMETRA_INTEGER = 2,      /* "30", of 32 bits */
   MIMETRA_INTEGER_LIST = 3, /* "10,30,40" */
   MIMETRA_NUMBER = 4,       /* "0.5" */
-  MIMETRA_LENGTH = 5,       /* "0.1" of the longest side of the rest pose's box, or "12abs" */
+  MIMETRA_LENGTH = 5,       /* "0.1" of the rest pose's diameter, or "12abs" */
   MIMETRA_CHOICE = 6,       /* one of the choices */
   MIMETRA_TEXT = 7,
   MIMETRA_FILE = 8 /* a path, or one of the choices */

@@ -69,7 +69,7 @@ QString help_of(const mimetra_parameter& parameter) {
   QString help = QString::fromUtf8(parameter.help);
   if (parameter.unit) help += QString(" (%1)").arg(parameter.unit);
   if (parameter.kind == MIMETRA_LENGTH) {
-    help += "; a share of the rest pose's longest side as in 0.1, or a length as in 12abs";
+    help += "; a share of the rest pose's diameter as in 0.1, or a length as in 12abs";
   }
   if (parameter.kind == MIMETRA_FILE && parameter.choices) {
     help += "; a file, or one of " + choices_of(parameter).join(' ');

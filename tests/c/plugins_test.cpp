@@ -249,8 +249,8 @@ TEST(PluginRun, GetsNothingForNamesThatItDidNotDeclare) {
 }
 
 TEST(PluginRun, GetsLengthsInTheUnitOfItsInput) {
-  // Half of the longest side, which is 3.
-  EXPECT_EQ(misbehave("radius").report, "{\"radius\": 1.500000}");
+  // Half of the diameter of a grid of 3 by 2.
+  EXPECT_EQ(misbehave("radius").report, "{\"radius\": 1.802776}");
 }
 
 TEST(SmoothSample, MovesVerticesTowardsTheirNeighbours) {

@@ -44,7 +44,7 @@ TEST_F(TwoVideos, BecomeTheSourcesExpressionsOnTheTargetsFaceInThreeCommands) {
   const SequenceRead result = read_sequence((folder_ / "out.npy").string());
   const test::SequenceDistance error = test::distance_between(result.sequence, videos.truth());
   // As in the library's test of this case.
-  const double pixel = videos.truth().extent() / test::kFacePixels;
+  const double pixel = videos.truth().diameter() / test::kFacePixels;
   EXPECT_LT(error.expression, pixel);
   EXPECT_LT(error.face, 2 * pixel);
 

@@ -44,7 +44,7 @@ std::vector<test::SequenceDistance> transfer_errors(const test::TwoVideos& video
   const FittedPerson source = fitted(videos, videos.source);
   const FittedPerson target = fitted(videos, videos.target);
   const MeshSequence truth = videos.truth();
-  const double unit = truth.extent();
+  const double unit = truth.diameter();
   std::cout << "K     share of triangles  face %  expression %  (motion "
             << 100 * motion(truth) / unit << " %)\n";
   std::vector<test::SequenceDistance> errors;
@@ -93,7 +93,7 @@ const std::vector<int> kCounts = {0, 10, 30, 40};
 double distance_of_mean(const test::TwoVideos& videos) {
   const Positions neutral = videos.model.person(videos.target_alpha).neutral();
   const double distance =
-      (neutral - videos.model.mean()).rowwise().norm().mean() / videos.truth().extent();
+      (neutral - videos.model.mean()).rowwise().norm().mean() / videos.truth().diameter();
   std::cout << "mean face " << 100 * distance << " %\n";
   return distance;
 }

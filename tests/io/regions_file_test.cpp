@@ -30,7 +30,10 @@ TEST_F(RegionsFile, JsonComesBackAfterWriting) {
   regions.regions[1].radius = std::numeric_limits<double>::infinity();
   regions.regions[1].energy_share = 0.375;
   regions.energy_share = 0.875;
+  regions.regions.back().added_for = "smile";
   const Regions found = read("r.json", regions_json(regions));
+  EXPECT_EQ(found.regions.back().added_for, "smile");
+  EXPECT_EQ(found.regions.front().added_for, "");
   ASSERT_EQ(found.regions.size(), 2u);
   EXPECT_EQ(found.regions[0].vertices, regions.regions[0].vertices);
   EXPECT_EQ(found.regions[0].center, 2);

@@ -47,7 +47,7 @@ TEST(Parameter, IsNoShareAboveOne) {
   EXPECT_EQ(parse_value(kRadius, "1"), ParameterValue("1"));
   EXPECT_EQ(parse_value(kRadius, "12abs"), ParameterValue("12abs"));
   EXPECT_EQ(message_of(kRadius, "12"),
-            "--radius: expected a share of the longest side, up to 1, as in 0.1, or a length as in "
+            "--radius: expected a share of the diameter, up to 1, as in 0.1, or a length as in "
             "12abs, found '12'");
 }
 

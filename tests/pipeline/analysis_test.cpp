@@ -52,7 +52,7 @@ TEST(Analysis, AlignsARestPoseThatIsTurnedAgainstTheSource) {
 
 TEST(Analysis, TakesLengthsAsSharesOrAsTheyAre) {
   const MeshSequence sequence = take();
-  const double side = sequence.extent();
+  const double side = sequence.diameter();
   AnalysisOptions shares = three_components(), absolute = three_components();
   shares.d_min = Length::share(0.25);
   shares.d_max = Length::share(0.5);
@@ -77,6 +77,7 @@ TEST(Analysis, MeasuresAsTheReferenceDoesWhereItIsToBeCompatible) {
   EXPECT_EQ(components.d_max, 0.7 * largest);
   EXPECT_EQ(static_cast<int>(components.energies.size()), options.decomposition.iterations);
   EXPECT_EQ(components.options.sign_rule, SignRule::literal);
+  EXPECT_EQ(components.options.scale, MotionScale::standard_deviation);
   EXPECT_TRUE(components.rest == sequence.frame(0));
 }
 
@@ -105,11 +106,11 @@ TEST(Analysis, RefusesASupportMapThatDoesNotRise) {
   EXPECT_EQ(test::topic_of([&] { analyse(source_of(take()), options); }), Topic::support_range);
 }
 
-/// The first frame of a take, moving by so many of its longest sides.
+/// The first frame of a take, moving by so many of its diameters.
 MeshSequence nearly_still(double share) {
   const MeshSequence sequence = take();
   Frames frames = sequence.positions().row(0).replicate(sequence.frames(), 1);
-  for (int f = 1; f < sequence.frames(); ++f) frames(f, 3 * f) += share * sequence.extent();
+  for (int f = 1; f < sequence.frames(); ++f) frames(f, 3 * f) += share * sequence.diameter();
   return bare(sequence.with_frames(std::move(frames)));
 }
 

@@ -41,6 +41,22 @@ TEST_F(EvaluationTest, IsTheErrorOfTheTransferByTheSameRegions) {
             transfer(source_, {{"actor", actor_}}, options).targets[0].error.de_all);
 }
 
+TEST_F(EvaluationTest, StatesTheRadiusOfTheRegions) {
+  const auto rows = evaluate(source_, {"actor", actor_}, options_);
+  EXPECT_EQ(rows[0].radius, 0.2 * source_.diameter());
+  EXPECT_FALSE(rows.back().radius);
+}
+
+TEST_F(EvaluationTest, CompletesRegionsThatLeaveExpressionsUnseen) {
+  options_.counts = {1};
+  options_.regions = {.radius = Length::share(0.05), .completion = {.limit = 1}};
+  const auto completed = evaluate(source_, {"actor", actor_}, options_);
+  options_.regions.completion.share = 0;
+  const auto as_found = evaluate(source_, {"actor", actor_}, options_);
+  EXPECT_GT(completed[0].triangles, as_found[0].triangles);
+  EXPECT_GT(*completed[0].mpe_all, *as_found[0].mpe_all);
+}
+
 TEST_F(EvaluationTest, ByAllTrianglesHasTheLeastErrorOverThem) {
   const auto rows = evaluate(source_, {"actor", actor_}, options_);
   for (const EvaluationRow& row : rows) EXPECT_GE(row.de_all, rows.back().de_all);

@@ -82,7 +82,7 @@ class PlacedSourceTest : public testing::Test {
     return transfer(source.of(source_), {{"actor", target}}, options_).targets.front();
   }
 
-  double size() const { return extent(actor_.neutral()); }
+  double size() const { return diameter(actor_.neutral()); }
 };
 
 TEST_F(PlacedSourceTest, FollowsItsUnitPlaceAndAxesInBothSpaces) {

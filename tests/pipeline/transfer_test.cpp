@@ -39,7 +39,7 @@ class TransferTest : public testing::Test {
 
   /// The regions, found by hand.
   Regions regions() const {
-    return find_regions(decompose(source_, {.count = 4}), {.radius = 0.3 * source_.extent()});
+    return find_regions(decompose(source_, {.count = 4}), {.radius = 0.3 * source_.diameter()});
   }
 };
 
@@ -130,6 +130,67 @@ TEST_F(TransferTest, SaysWhereTheResultIsNotUsable) {
   ASSERT_TRUE(noted.has(Topic::poor_condition));
   EXPECT_THAT(noted.notes.back().text, HasSubstr("actor: the result may not be usable: "));
   EXPECT_THAT(noted.notes.back().text, HasSubstr("% of the deformation is missing"));
+}
+
+/// Regions that show little of most expressions.
+GivenRegions a_corner(const BlendshapeModel& model) {
+  return {"rois", regions_from_vertices(model.vertices(), model.triangles(), {{10, 11, 12}})};
+}
+
+TEST_F(TransferTest, CompletesRegionsThatLeaveExpressionsUnseen) {
+  test::Noted noted;
+  options_.notes = noted.sink();
+  options_.given = a_corner(actor_);
+  options_.regions.completion.limit = 1;
+  const TransferResult result = transfer(source_, {{"actor", actor_}}, options_);
+  const TransferredTarget& target = result.targets.front();
+  ASSERT_TRUE(target.regions);
+  EXPECT_GT(target.regions->regions.size(), 1U);
+  EXPECT_EQ(result.regions->triangles, target.regions->triangles);
+  EXPECT_TRUE(target.solution.conditions.weakly_seen.empty());
+  EXPECT_LT(missed_share(target.error), 0.1);
+  ASSERT_TRUE(noted.has(Topic::completed_regions));
+  EXPECT_THAT(noted.notes.front().text, HasSubstr("were added to the regions, which hardly see"));
+
+  options_.regions.completion.share = 0;
+  const TransferredTarget as_given = to(actor_);
+  EXPECT_EQ(as_given.regions->regions.size(), 1U);
+  EXPECT_GT(as_given.error.de_all, target.error.de_all);
+}
+
+TEST_F(TransferTest, SaysWhereRegionsCannotBeCompleted) {
+  test::Noted noted;
+  options_.notes = noted.sink();
+  options_.given = a_corner(actor_);
+  options_.regions.completion.limit = 0;
+  to(actor_);
+  EXPECT_TRUE(noted.has(Topic::completion_limit));
+}
+
+TEST_F(TransferTest, CompletesRegionsForEachTargetByItself) {
+  options_.given = a_corner(actor_);
+  const BlendshapeModel other = test::model_on(test::patch(), 3);
+  const TransferResult both =
+      transfer(source_, {{"actor", actor_}, {"other", other}, {"mesh", mesh_}}, options_);
+  EXPECT_TRUE(frames_of(both.targets[0]) == frames_of(to(actor_)));
+  EXPECT_TRUE(frames_of(both.targets[1]) == frames_of(to(other)));
+  EXPECT_EQ(both.targets[2].regions->regions.size(), 1U);
+  // All of them together.
+  for (const TransferredTarget& target : both.targets) {
+    EXPECT_TRUE(std::ranges::includes(both.regions->triangles, target.regions->triangles));
+  }
+}
+
+TEST_F(TransferTest, SumsOverTwoEdgesWhereItIsToBeAsThePaper) {
+  options_.full = true;
+  options_.analysis.compatibility = Compatibility::paper;
+  const BlendshapeTransfer by_hand(placed()->rest(), actor_, all_triangles(source_.triangles()),
+                                   {.edges = EdgeSum::two});
+  const TransferredTarget target = to(actor_);
+  EXPECT_TRUE(target.solution.weights() == by_hand.weights(*placed()));
+  EXPECT_EQ(
+      target.error.de_all,
+      transfer_error(*placed(), *target.solution.sequence, {}, {.edges = EdgeSum::two}).de_all);
 }
 
 TEST_F(TransferTest, DoesNotDependOnTheNumberOfThreads) {

@@ -86,7 +86,7 @@ TEST_F(FacecapRegions, HoldBothSidesOfEverySeam) {
   ASSERT_GT(weld.count, 0);
   int on_seams = 0;
   // The seams lie at the back of the head: discs of the default radius do not reach them.
-  const Regions wide = find_regions(components_, {.radius = 0.5 * extent(components_.rest)});
+  const Regions wide = find_regions(components_, {.radius = 0.5 * diameter(components_.rest)});
   for (const Region& region : wide.regions) {
     const std::set<VertexIndex> held(region.vertices.begin(), region.vertices.end());
     for (int v = 0; v < regions_.vertices; ++v) {

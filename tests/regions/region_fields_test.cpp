@@ -44,6 +44,33 @@ TEST(RoiField, IsTheUnion) {
   }
 }
 
+TEST(AddedField, MarksWhatIsInAddedRegionsOnly) {
+  Overlapping discs;
+  EXPECT_EQ(fields_of(discs.regions).size(), 4u);
+  Region disc;
+  disc.center = at(9, 2);
+  disc.vertices = {at(4, 2), at(9, 2)};
+  disc.added_for = "smile";
+  const Regions more = with_added(discs.regions, {disc}, discs.components.triangles);
+  const Field added = named(fields_of(more), "added");
+  EXPECT_EQ(added.values(at(9, 2)), 1);
+  EXPECT_EQ(added.values(at(4, 2)), 0);
+  EXPECT_EQ(added.values.sum(), 1);
+}
+
+TEST(AddedRegions, AreBehindTheOthersAndBelongToTheUnion) {
+  const Overlapping discs;
+  Region disc;
+  disc.vertices = {at(9, 2)};
+  disc.added_for = "smile";
+  const Regions more = with_added(discs.regions, {disc}, discs.components.triangles);
+  ASSERT_EQ(more.regions.size(), 3u);
+  EXPECT_EQ(more.regions.back().added_for, "smile");
+  EXPECT_TRUE(more.inside[at(9, 2)]);
+  EXPECT_EQ(more.vertex_count(), discs.regions.vertex_count() + 1);
+  EXPECT_GT(more.triangles.size(), discs.regions.triangles.size());
+}
+
 TEST(InLField, IsOneOnTheTrianglesOfL) {
   const Overlapping discs;
   const Field in_L = named(fields_of(discs.regions), "in_L");

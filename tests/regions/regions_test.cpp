@@ -177,11 +177,12 @@ TEST(Regions, HoldTheirCenterWhereItReachesNothing) {
   EXPECT_THAT(find_regions(components, options).regions[0].vertices, ElementsAre(at(2, 2)));
 }
 
-TEST(Regions, RadiusDefaultsToATenthOfTheLongestSide) {
+TEST(Regions, RadiusDefaultsToATenthOfTheDiameter) {
   const Components components = lifted({at(2, 2)}, {1});
   RegionOptions options = disc_of(components, 1);
   options.radius.reset();
-  EXPECT_DOUBLE_EQ(find_regions(components, options).regions[0].radius, 1.1);
+  EXPECT_DOUBLE_EQ(find_regions(components, options).regions[0].radius,
+                   0.1 * diameter(components.rest));
 }
 
 TEST(SupportRegions, AreTheFewestVerticesWith95PercentOfTheEnergy) {

@@ -89,11 +89,11 @@ TEST(DecompositionInput, RefusesOneFrame) {
               ThrowsMessage<MismatchError>(HasSubstr("one frame")));
 }
 
-/// A grid of which vertex 7 moves: in frame f by `weights`[f] of its longest side, 3.
+/// A grid of which vertex 7 moves: in frame f by `weights`[f] of its diameter.
 MeshSequence twitching(const Eigen::VectorXd& weights) {
   const Shape shape = grid(4, 3);
   Frames field = Frames::Zero(1, shape.positions.size());
-  field(0, 3 * 7 + 2) = 3;
+  field(0, 3 * 7 + 2) = diameter(shape.positions);
   return synthesised(shape, weights, field);
 }
 
@@ -109,15 +109,15 @@ TEST(DecompositionInput, RefusesASequenceThatDoesNotMove) {
   EXPECT_THAT(decomposing(twitching(0)),
               ThrowsMessage<MismatchError>(HasSubstr("nothing moves: all 3 frames are the rest "
                                                      "pose; expected motion above 1e-06 of its "
-                                                     "longest side")));
+                                                     "diameter")));
 }
 
 TEST(DecompositionInput, RefusesRoundingNoiseAndSaysHowLargeItIs) {
   EXPECT_THAT(decomposing(twitching(1e-9)),
-              ThrowsMessage<MismatchError>(
-                  AllOf(HasSubstr("nothing moves: all 3 frames are the rest pose to 3e-09, 1e-09 "
-                                  "of its longest side"),
-                        HasSubstr("give frames that deform"))));
+              ThrowsMessage<MismatchError>(AllOf(
+                  HasSubstr("nothing moves: all 3 frames are the rest pose to 3.606e-09, 1e-09 "
+                            "of its diameter"),
+                  HasSubstr("give frames that deform"))));
 }
 
 TEST(DecompositionInput, IsRefusedUpToTheLeastMotion) {

@@ -25,7 +25,8 @@ double relative_difference(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
 LiteralProblem literal_problem(const MeshSequence& sequence, const DecompositionOptions& options) {
   const Eigen::Map<const Eigen::RowVectorXd> rest(sequence.rest().data(), sequence.rest().size());
   Eigen::MatrixXd X = sequence.positions().rowwise() - rest;
-  X /= std::sqrt((X.array() - X.mean()).square().sum() / static_cast<double>(X.size()));
+  const double mean = options.scale == MotionScale::standard_deviation ? X.mean() : 0;
+  X /= std::sqrt((X.array() - mean).square().mean());
   return {.X = X,
           .count = options.count,
           .sparsity = options.sparsity,
@@ -65,6 +66,7 @@ TEST(Decomposition, IsTheLiteralAlgorithmWithTheLiteralSignRule) {
   const MeshSequence sequence = restless_grid();
   DecompositionOptions options = grid_options(sequence, 6);
   options.sign_rule = SignRule::literal;
+  options.scale = MotionScale::standard_deviation;
   expect_literal(sequence, options);
 }
 
@@ -310,16 +312,15 @@ TEST(Decomposition, IsTheSameInEveryRun) {
   EXPECT_EQ(a.weights, b.weights);
 }
 
-TEST(Decomposition, LengthsDefaultToSharesOfTheLongestSide) {
+TEST(Decomposition, LengthsDefaultToSharesOfTheDiameter) {
   const Bumps bumps;
   const MeshSequence sequence = bumps.sequence();
   DecompositionOptions options = grid_options(sequence, 3);
   options.d_min.reset();
   options.d_max.reset();
   const Components components = decompose(sequence, options);
-  // The grid is 29 long.
-  EXPECT_DOUBLE_EQ(components.d_min, 2.9);
-  EXPECT_DOUBLE_EQ(components.d_max, 20.3);
+  EXPECT_EQ(components.d_min, 0.1 * sequence.diameter());
+  EXPECT_EQ(components.d_max, 0.7 * sequence.diameter());
 }
 
 TEST(Decomposition, ProgressRisesToOne) {

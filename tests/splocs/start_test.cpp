@@ -86,6 +86,8 @@ TEST(GreedyStart, StopsWhereNothingIsLeft) {
 
 TEST(StrongestVertex, IsTheLowestOfEquals) {
   EXPECT_EQ(strongest_vertex(Eigen::Vector4d(1, 3, 3, 2)), 1);
+  EXPECT_EQ(strongest_vertex(Eigen::Vector4d(1, 3, 3 * (1 + 1e-12), 2)), 1);
+  EXPECT_EQ(strongest_vertex(Eigen::Vector4d(1, 3, 3 * (1 + 1e-8), 2)), 2);
 }
 
 TEST(StrongestVertex, IsNoneWhereNothingMoves) {

@@ -40,16 +40,29 @@ TEST(ScaledMotion, IsTheDisplacementOverItsStandardDeviation) {
   const Frames frames = sequence.positions().array() + 1000;
   const Frames X = frames.rowwise() - rest;
   const double deviation = std::sqrt((X.array() - X.mean()).square().mean());
-  const Motion motion = scaled_motion(sequence.with_frames(frames), 2);
+  const Motion motion =
+      scaled_motion(sequence.with_frames(frames), MotionScale::standard_deviation, 2);
   // Rounding of a mean of 1000 and of coordinates that lost three digits to it.
   EXPECT_NEAR(motion.scale / deviation, 1, 1e-12);
   EXPECT_LT((motion.X.frames() - X / deviation).norm(), 1e-12 * X.norm() / deviation);
   EXPECT_NEAR(motion.norm2 * deviation * deviation / X.squaredNorm(), 1, 1e-12);
 }
 
+TEST(ScaledMotion, IsTheDisplacementOverItsRootMeanSquare) {
+  const MeshSequence sequence = restless_grid(30, 20, 6);
+  const Eigen::Map<const Eigen::RowVectorXd> rest(sequence.rest().data(), sequence.rest().size());
+  const Frames X = sequence.positions().rowwise() - rest;
+  const double rms = std::sqrt(X.array().square().mean());
+  const Motion motion = scaled_motion(sequence, MotionScale::root_mean_square, 2);
+  EXPECT_NEAR(motion.scale / rms, 1, 1e-12);
+  EXPECT_LT((motion.X.frames() - X / rms).norm(), 1e-12 * X.norm() / rms);
+  EXPECT_NEAR(motion.norm2 / static_cast<double>(X.size()), 1, 1e-12);
+}
+
 TEST(ScaledMotion, RefusesMotionWhoseEnergyIsNoNumber) {
   const MeshSequence sequence = restless_grid(4, 3, 5);
-  EXPECT_THROW(scaled_motion(sequence.with_frames(sequence.positions() * 1e200), 1),
+  EXPECT_THROW(scaled_motion(sequence.with_frames(sequence.positions() * 1e200),
+                             MotionScale::root_mean_square, 1),
                std::invalid_argument);
 }
 

@@ -59,10 +59,13 @@ class BlendshapeOracle : public testing::Test {
 // stays far below 1e-9.
 constexpr double kSame = 1e-9;
 
+const BlendshapeTransferOptions kAsThePaper{.edges = EdgeSum::two};
+
 TEST_F(BlendshapeOracle, AgreesOverAllTriangles) {
   const BlendshapeModel model = target();
   const MeshSequence performance = source(model);
-  const BlendshapeTransfer transfer(performance.rest(), model, all_triangles(model.triangles()));
+  const BlendshapeTransfer transfer(performance.rest(), model, all_triangles(model.triangles()),
+                                    kAsThePaper);
   EXPECT_LT(
       (transfer.weights(performance) - rows_of("beta_all_triangles.npy")).lpNorm<Eigen::Infinity>(),
       kSame);
@@ -71,7 +74,7 @@ TEST_F(BlendshapeOracle, AgreesOverAllTriangles) {
 TEST_F(BlendshapeOracle, AgreesOverARegion) {
   const BlendshapeModel model = target();
   const MeshSequence performance = source(model);
-  const BlendshapeTransfer transfer(performance.rest(), model, region(model));
+  const BlendshapeTransfer transfer(performance.rest(), model, region(model), kAsThePaper);
   EXPECT_LT((transfer.weights(performance) - rows_of("beta_region.npy")).lpNorm<Eigen::Infinity>(),
             kSame);
 }
@@ -79,7 +82,8 @@ TEST_F(BlendshapeOracle, AgreesOverARegion) {
 TEST_F(BlendshapeOracle, AgreesWithoutTheBox) {
   const BlendshapeModel model = target();
   const MeshSequence performance = source(model);
-  const BlendshapeTransfer transfer(performance.rest(), model, all_triangles(model.triangles()));
+  const BlendshapeTransfer transfer(performance.rest(), model, all_triangles(model.triangles()),
+                                    kAsThePaper);
   const Eigen::LDLT<Eigen::MatrixXd> factor(transfer.gram());
   const Frames expected = rows_of("beta_unconstrained_all.npy");
   for (int f = 0; f < performance.frames(); ++f) {

@@ -62,7 +62,8 @@ class SeamTest : public testing::Test {
     const Frames found = VertexTransfer(take_.rest(), target_.positions, face_.triangles, selected,
                                         welded(std::move(options)))
                              .frames(take_);
-    EXPECT_LT((found - expected).lpNorm<Eigen::Infinity>(), kSameSolve * extent(target_.positions));
+    EXPECT_LT((found - expected).lpNorm<Eigen::Infinity>(),
+              kSameSolve * diameter(target_.positions));
     EXPECT_GT((found.row(0) - found.row(kOpen)).norm(), 0.1);
   }
 
@@ -89,7 +90,7 @@ TEST_F(SeamTest, WeldsLipsThatNeverOpen) {
 }
 
 TEST_F(SeamTest, WeldsWithinTheToleranceInEveryFrame) {
-  const double parted = kPartedShare * take_.extent();
+  const double parted = kPartedShare * take_.diameter();
   Frames poses = take_.positions();
   poses.col(3 * 84) = poses.col(3 * face_.original[84]).array() + 0.9 * parted;
   poses(3, 3 * 85) += 1.1 * parted;
@@ -148,7 +149,7 @@ TEST_F(SeamTest, StaysClosedInEveryFrame) {
 
 TEST_F(SeamTest, StaysClosedWhereTheSourcesIsNotQuite) {
   Frames poses = take_.positions();
-  poses.col(3 * 90).array() += 0.9 * kPartedShare * take_.extent();
+  poses.col(3 * 90).array() += 0.9 * kPartedShare * take_.diameter();
   const MeshSequence take = take_.with_frames(poses);
   VertexTransferOptions options;
   options.weld = closed_seams(take, target_.positions);
@@ -241,7 +242,7 @@ TEST(SeamOfADegenerateTriangle, TakesTheNeighboursBeyondIt) {
   EXPECT_EQ(expected.degenerate_source_triangles(), 1);
   EXPECT_LT((transfer.frames(take) - face.with_copies(expected.frames(whole_take)))
                 .lpNorm<Eigen::Infinity>(),
-            kSameSolve * extent(target));
+            kSameSolve * diameter(target));
 }
 
 TEST_F(SeamTest, AtTheRegionsBorderStaysWhereOneSideIsOutside) {

@@ -69,7 +69,7 @@ class Slivers : public testing::TestWithParam<bool> {
       model_on(fine_patch(0), kExpressions).animate(0.5 * random_weights(2, kExpressions));
   const BlendshapeModel actor_ = model_on(fine_patch(0.2), kExpressions);
   const Triangles& triangles_ = actor_.triangles();
-  const double size_ = extent(actor_.neutral());
+  const double size_ = diameter(actor_.neutral());
 
   /// The source with some vertices slid in its rest pose and its frames.
   MeshSequence with_slides(const std::vector<Slide>& slides, double left) const {

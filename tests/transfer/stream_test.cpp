@@ -80,7 +80,7 @@ TEST_F(StreamedPerformance, ThatBreaksThrowsWhatReadingThrows) {
 }
 
 TEST_F(StreamedPerformance, IsNotMeasuredFurtherThanProgressAllows) {
-  const BlockOptions options{.progress = [](double share) { return share < 1; }};
+  const TransferErrorOptions options{.progress = [](double share) { return share < 1; }};
   EXPECT_THROW(transfer_error(stream_, stream_, selected_, options), Cancelled);
 }
 

@@ -53,6 +53,7 @@ void read_details(const std::string& path, const Json& entry, int vertices, Regi
   region.radius = radius_of(entry);
   region.energy = entry.value("energy", region.energy);
   region.energy_share = entry.value("energy_share", region.energy_share);
+  region.added_for = entry.value("added_for", region.added_for);
 }
 
 /// Regions of another mesh would fit by chance where their vertices are few.
@@ -155,8 +156,9 @@ std::string regions_json(const Regions& regions) {
                     {"center", region.center},
                     {"radius", region.radius},
                     {"energy", region.energy},
-                    {"energy_share", region.energy_share},
-                    {"vertices", region.vertices}});
+                    {"energy_share", region.energy_share}});
+    if (!region.added_for.empty()) list.back()["added_for"] = region.added_for;
+    list.back()["vertices"] = region.vertices;
   }
   return Json{{"regions", list},
               {"mesh_vertices", regions.vertices},

@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "toolkit/mesh/diameter.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/progress.h"
 #include "toolkit/mesh/tri_mesh.h"
@@ -53,8 +54,8 @@ class FrameSource {
   /// N x 3; where nobody knows it, it is the first frame.
   const Positions& rest() const { return header_.rest; }
   bool rest_is_known() const { return header_.rest_is_known; }
-  /// Longest side of the rest pose's bounding box.
-  double extent() const { return mimetra::extent(rest()); }
+  /// Largest distance between two vertices of the rest pose.
+  double diameter() const { return mimetra::diameter(rest()); }
 
   /// All poses (F x 3N) where they are in memory; null elsewhere.
   virtual std::shared_ptr<const Frames> in_memory() const { return nullptr; }

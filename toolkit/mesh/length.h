@@ -2,8 +2,8 @@
 
 namespace mimetra {
 
-/// A length that may depend on the mesh: a share of its longest side, up to kLargestShare, or in
-/// the unit of its file.
+/// A length that may depend on the mesh: a share of its diameter, up to kLargestShare, or in the
+/// unit of its file.
 struct Length {
   double value = 0;  ///< >= 0
   bool absolute = false;
@@ -11,11 +11,11 @@ struct Length {
   /// A share that is larger is a length whose unit was forgotten.
   static constexpr double kLargestShare = 1;
 
-  static constexpr Length share(double of_longest_side) { return {of_longest_side, false}; }
+  static constexpr Length share(double of_diameter) { return {of_diameter, false}; }
   static constexpr Length of(double length) { return {length, true}; }
 
-  /// In the unit of a mesh whose longest side is `longest_side`.
-  constexpr double in(double longest_side) const { return absolute ? value : value * longest_side; }
+  /// In the unit of a mesh of this diameter().
+  constexpr double in(double diameter) const { return absolute ? value : value * diameter; }
 };
 
 }  // namespace mimetra

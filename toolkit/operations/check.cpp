@@ -35,7 +35,7 @@ std::string counted(std::size_t count, const std::string& what, int first) {
 /// them.
 bool moves(const FrameSource& sequence, const BlockOptions& options) {
   const Frames first = sequence.read(0, 1);
-  const double least = kLeastMotion * extent(PositionsView(first.data(), sequence.vertices(), 3));
+  const double least = kLeastMotion * diameter(PositionsView(first.data(), sequence.vertices(), 3));
   std::atomic<bool> differs = false;
   for_each_block(sequence, options, [&](int, const Frames& poses) {
     for (Eigen::Index row = 0; row < poses.rows(); ++row) {
@@ -67,7 +67,7 @@ std::vector<std::string> warnings_of(const FrameSource& sequence, bool moves) {
   }
   if (sequence.frames() > 1 && !moves) {
     warnings.push_back("nothing moves: all " + std::to_string(sequence.frames()) +
-                       " frames are equal to " + readable(kLeastMotion) + " of their longest side");
+                       " frames are equal to " + readable(kLeastMotion) + " of their diameter");
   }
   return warnings;
 }

@@ -17,6 +17,7 @@ BoundParameters<EvaluationOptions> evaluation_parameters(const MeshSequence* seq
   using Options = EvaluationOptions;
   BoundParameters<Options> list;
   return list.add(&Options::regions, region_parameters())
+      .add(&Options::regions, completion_parameters())
       .add("k", Options::kCounts, "numbers of components, one row each")
       .add(&Options::analysis, analysis_rest_parameters(sequence))
       .add(&Options::analysis, analysis_parameters())
@@ -27,7 +28,8 @@ BoundParameters<EvaluationOptions> evaluation_parameters(const MeshSequence* seq
 
 std::string text_of(const std::vector<EvaluationRow>& rows) {
   std::string text =
-      "   K  vertices  triangles   share       DE all   MPE all      DE in L  MPE in L  regions s"
+      "   K  vertices  triangles   share    radius       DE all   MPE all      DE in L  MPE in L  "
+      "regions s"
       "  transfer s\n";
   const auto cell = [](const std::optional<double>& value, const char* format, int width) {
     char buffer[32] = "-";
@@ -39,10 +41,10 @@ std::string text_of(const std::vector<EvaluationRow>& rows) {
   for (const EvaluationRow& row : rows) {
     text += row.k ? cell(*row.k, "%.0f", 4) : "full";
     text += cell(row.vertices, "%.0f", 10) + cell(row.triangles, "%.0f", 11) +
-            cell(100 * row.triangle_share, "%.1f %%", 8) + cell(row.de_all, "%.6g", 13) +
-            cell(row.mpe_all, "%.3f", 10) + cell(row.de_region, "%.6g", 13) +
-            cell(row.mpe_region, "%.3f", 10) + cell(row.decompose_seconds, "%.3f", 11) +
-            cell(row.transfer_seconds, "%.3f", 12) + '\n';
+            cell(100 * row.triangle_share, "%.1f %%", 8) + cell(row.radius, "%.4g", 10) +
+            cell(row.de_all, "%.6g", 13) + cell(row.mpe_all, "%.3f", 10) +
+            cell(row.de_region, "%.6g", 13) + cell(row.mpe_region, "%.3f", 10) +
+            cell(row.decompose_seconds, "%.3f", 11) + cell(row.transfer_seconds, "%.3f", 12) + '\n';
   }
   return text;
 }

@@ -62,8 +62,9 @@ Outcome run_geodesic(const Invocation& invocation) {
   call.distances.threads = invocation.threads;
   call.distances.notes = warnings_of(invocation);
   const MeshSequence mesh = sequence.slice(0, 1).with_rest(sequence.frame(0));
-  const SupportRange range = in_command_terms(
-      invocation.parameters, [&] { return support_range(call.d_min, call.d_max, mesh.extent()); });
+  const SupportRange range = in_command_terms(invocation.parameters, [&] {
+    return support_range(call.d_min, call.d_max, mesh.diameter());
+  });
   const SurfaceDistances distances = distances_along(mesh.rest(), mesh.triangles(), call.distances);
   const Eigen::VectorXd distance = nearest(distances, call.sources, mesh.vertices());
   const Eigen::VectorXd support = geodesic::support_map(distance, range.d_min, range.d_max);

@@ -60,7 +60,7 @@ std::string expected_text(const Parameter& parameter) {
     case ParameterKind::number:
       return "a number" + suffix;
     case ParameterKind::length:
-      return "a share of the longest side, up to 1, as in 0.1, or a length as in 12abs" +
+      return "a share of the diameter, up to 1, as in 0.1, or a length as in 12abs" +
              (range.empty() ? range : ", " + range);
     case ParameterKind::choice: {
       std::string list;

@@ -28,7 +28,7 @@ enum class ParameterKind {
   integer,       ///< std::int64_t
   integer_list,  ///< std::vector<std::int64_t>, "10,30,40"
   number,        ///< double
-  length,        ///< std::string: "0.1" of the rest pose's longest side, or "12abs"
+  length,        ///< std::string: "0.1" of the rest pose's diameter, or "12abs"
   choice,        ///< std::string, one of `choices`
   text,          ///< std::string
   file           ///< std::string, a path, or one of `choices`

@@ -118,6 +118,10 @@ std::string in_command_terms(Topic topic, const std::string& text, const Paramet
       return text + "; --align stable takes it out, --align none keeps it";
     case Topic::poor_condition:
       return text + "; take more regions (-k, --radius) or --full";
+    case Topic::completed_regions:
+      return text + "; --complete 0 leaves them as they are";
+    case Topic::completion_limit:
+      return text + "; take more regions (-k, --radius), a larger --complete-limit or --full";
     case Topic::undetermined_axes:
       return text + "; use --axes none";
     case Topic::component_count:
@@ -186,7 +190,8 @@ BoundParameters<AnalysisOptions> analysis_parameters() {
       .add("d-max", AnalysisOptions::kMaximum, "geodesic distance from which it costs all")
       .add(&AnalysisOptions::decomposition, decomposition_parameters())
       .add("compat", AnalysisOptions::kCompatibility,
-           "splocs2013: follow the reference implementation to the letter")
+           "splocs2013: follow the reference implementation to the letter; paper: also sum eq. 10 "
+           "and 12 over two edges of each triangle")
       .add(&AnalysisOptions::distances, distance_parameters());
   return list;
 }
@@ -202,6 +207,18 @@ BoundParameters<RegionChoiceOptions> region_parameters() {
   list.add("radius", RegionChoiceOptions::kRadius, "geodesic radius of a region")
       .add(&RegionChoiceOptions::regions, regions);
   return list;
+}
+
+BoundParameters<RegionChoiceOptions> completion_parameters() {
+  BoundParameters<CompletionOptions> completion;
+  completion
+      .add("complete", CompletionOptions::kShare,
+           "add discs to the regions until this share of each expression's motion is in them; 0 "
+           "adds none")
+      .add("complete-limit", CompletionOptions::kLimit,
+           "share of the triangles that --complete may add");
+  BoundParameters<RegionChoiceOptions> list;
+  return list.add(&RegionChoiceOptions::completion, completion);
 }
 
 BoundParameters<SolveOptions> solving_parameters() {

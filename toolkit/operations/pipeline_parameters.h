@@ -28,6 +28,7 @@ BoundParameters<AnalysisOptions> count_parameters(const AnalysisOptions& default
 BoundParameters<AnalysisOptions> analysis_parameters();
 /// --radius, --region and --coverage.
 BoundParameters<RegionChoiceOptions> region_parameters();
+BoundParameters<RegionChoiceOptions> completion_parameters();
 /// --space and what belongs to each.
 BoundParameters<SolveOptions> solving_parameters();
 

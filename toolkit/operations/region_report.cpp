@@ -6,15 +6,31 @@
 
 namespace mimetra {
 
-Json report_of(const Regions& regions) {
+namespace {
+
+Json report_of(const Region& region) {
+  Json json = {{"center", region.center},
+               {"radius", region.radius},
+               {"vertices", region.vertices.size()},
+               {"energy_share", region.energy_share},
+               {"component", region.component}};
+  if (!region.added_for.empty()) json["added_for"] = region.added_for;
+  return json;
+}
+
+}  // namespace
+
+Json added_regions(const Regions& regions) {
   Json list = Json::array();
   for (const Region& region : regions.regions) {
-    list.push_back({{"center", region.center},
-                    {"radius", region.radius},
-                    {"vertices", region.vertices.size()},
-                    {"energy_share", region.energy_share},
-                    {"component", region.component}});
+    if (!region.added_for.empty()) list.push_back(report_of(region));
   }
+  return list;
+}
+
+Json report_of(const Regions& regions) {
+  Json list = Json::array();
+  for (const Region& region : regions.regions) list.push_back(report_of(region));
   return {{"regions", list},
           {"vertices", regions.vertex_count()},
           {"triangles", regions.triangles.size()},

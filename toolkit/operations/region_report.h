@@ -11,5 +11,7 @@ namespace mimetra {
 Json report_of(const Regions& regions);
 /// The same for people, one line.
 std::string summary_of(const Regions& regions);
+/// Those of the regions that were added for a target's expressions.
+Json added_regions(const Regions& regions);
 
 }  // namespace mimetra

@@ -23,6 +23,7 @@ BoundParameters<TransferOptions> transfer_parameters(const FrameSource* sequence
       .add("head-motion", Options::kHeadMotion,
            "give the motion that --align took out back to the target, or drop it")
       .add(&Options::regions, region_parameters())
+      .add(&Options::regions, completion_parameters())
       .add(&Options::analysis, count_parameters())
       .add(&Options::analysis, analysis_rest_parameters(sequence))
       .add(&Options::analysis, analysis_parameters())
@@ -72,7 +73,7 @@ NamedData weight_table(const NamedData& target, const Solution& solution) {
 }
 
 Json report_of(const NamedData& target, const TransferredTarget& transferred) {
-  const auto& [solution, similarity, error] = transferred;
+  const auto& [solution, regions, similarity, error] = transferred;
   Json json = {{"name", target.name},          {"output", nullptr},  {"de_all", error.de_all},
                {"de_region", error.de_region}, {"leak", error.leak}, {"flipped", error.flipped},
                {"seconds", solution.seconds}};
@@ -83,6 +84,10 @@ Json report_of(const NamedData& target, const TransferredTarget& transferred) {
   json["collapsed_triangles"] = solution.collapsed_triangles;
   json["degenerate_source_triangles"] = solution.degenerate_source_triangles;
   json["degenerate_target_triangles"] = solution.degenerate_target_triangles;
+  if (regions) {
+    json["triangle_share"] = regions->triangle_share();
+    json["added_regions"] = added_regions(*regions);
+  }
   if (solution.weights().size() > 0) {
     json["condition"] = solution.conditions.condition;
     json["unseen"] = solution.conditions.unseen;
@@ -92,7 +97,7 @@ Json report_of(const NamedData& target, const TransferredTarget& transferred) {
 }
 
 std::string summary_of(const NamedData& target, const TransferredTarget& transferred) {
-  const auto& [solution, similarity, error] = transferred;
+  const auto& [solution, regions, similarity, error] = transferred;
   return target.name + ": DE " + readable(error.de_all) + " over all triangles, " +
          readable(error.de_region) + " over the regions; leak " + readable(error.leak) + ", " +
          std::to_string(error.flipped) + " flipped triangles; " + readable(solution.seconds) +

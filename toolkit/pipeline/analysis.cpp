@@ -28,7 +28,7 @@ Positions aligned(const Positions& rest, const Source& source) {
 /// The source in memory, with the rest pose of the decomposition.
 MeshSequence work_of(const Source& source, const AnalysisOptions& options) {
   const MeshSequence sequence(*source.sequence, {.threads = options.threads});
-  const bool reference = options.compatibility == Compatibility::splocs2013;
+  const bool reference = options.compatibility != Compatibility::none;
   if (!options.rest) {
     return reference && !source.rest_is_given ? sequence.with_rest(sequence.frame(0)) : sequence;
   }
@@ -54,14 +54,14 @@ double largest_frame_extent(const FrameSource& sequence) {
   return largest;
 }
 
-/// Vertices that were welded at rest and part by more than this share of the longest side are
+/// Vertices that were welded at rest and part by more than this share of the diameter are
 /// reported: well above float32 rounding, well below what one sees.
 constexpr double kPartingShare = 1e-4;
 
 void note_parting(const MeshSequence& sequence, const AnalysisOptions& options) {
   if (options.distances.welding == Welding::none) return;
   const auto parting =
-      parting_vertices(sequence, Weld::exact(sequence.rest()), kPartingShare * sequence.extent(),
+      parting_vertices(sequence, Weld::exact(sequence.rest()), kPartingShare * sequence.diameter(),
                        {.threads = options.threads});
   if (parting.empty()) return;
   note(options.notes,
@@ -98,8 +98,8 @@ SurfaceDistances distances_along(const Positions& rest, const Triangles& triangl
   return distances;
 }
 
-SupportRange support_range(const Length& d_min, const Length& d_max, double longest_side) {
-  const SupportRange range = {d_min.in(longest_side), d_max.in(longest_side)};
+SupportRange support_range(const Length& d_min, const Length& d_max, double diameter) {
+  const SupportRange range = {d_min.in(diameter), d_max.in(diameter)};
   if (range.d_min < range.d_max) return range;
   throw OptionError(Topic::support_range, "d_min: expected less than d_max, found " +
                                               readable(range.d_min) + " and " +
@@ -119,14 +119,15 @@ Analysis analyse(const Source& source, const AnalysisOptions& options) {
   note_parting(work, options);
   SurfaceDistances distances =
       distances_along(work.rest(), work.triangles(), distance_options(options));
-  const bool reference = options.compatibility == Compatibility::splocs2013;
-  const double unit = reference ? largest_frame_extent(*source.given) : work.extent();
+  const bool reference = options.compatibility != Compatibility::none;
+  const double unit = reference ? largest_frame_extent(*source.given) : work.diameter();
   const SupportRange range = support_range(options.d_min, options.d_max, unit);
   decomposition.d_min = range.d_min;
   decomposition.d_max = range.d_max;
   if (reference) {
     decomposition.tolerance = 0;
     decomposition.sign_rule = SignRule::literal;
+    decomposition.scale = MotionScale::standard_deviation;
   }
   decomposition.distances = distances;
   decomposition.threads = options.threads;

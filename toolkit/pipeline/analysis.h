@@ -50,9 +50,9 @@ struct SupportRange {
   double d_max;
 };
 
-/// For a mesh whose longest side is `longest_side`. Throws OptionError (Topic::support_range)
-/// unless d_min is below d_max.
-SupportRange support_range(const Length& d_min, const Length& d_max, double longest_side);
+/// For a mesh of this diameter(). Throws OptionError (Topic::support_range) unless d_min is below
+/// d_max.
+SupportRange support_range(const Length& d_min, const Length& d_max, double diameter);
 
 /// The rest pose of a decomposition.
 enum class RestPose { first, mean };
@@ -71,9 +71,11 @@ constexpr std::string_view choice_name(RestPose value) {
 enum class Compatibility {
   none,
   /// The reference implementation to the letter: lengths are shares of the longest side that any
-  /// single frame has, signs are decided as there, all iterations run, and the rest pose is the
-  /// first frame unless one is asked for.
-  splocs2013
+  /// single frame has, X is divided by its standard deviation, signs are decided as there, all
+  /// iterations run, and the rest pose is the first frame unless one is asked for.
+  splocs2013,
+  /// The same, and eq. 10 and 12 sum over two edges of each triangle as they are written.
+  paper
 };
 
 /// As people choose it.
@@ -83,6 +85,8 @@ constexpr std::string_view choice_name(Compatibility value) {
       return "none";
     case Compatibility::splocs2013:
       return "splocs2013";
+    case Compatibility::paper:
+      return "paper";
   }
   return {};
 }

@@ -1,6 +1,7 @@
 #include "toolkit/pipeline/evaluation.h"
 
 #include "toolkit/mesh/stopwatch.h"
+#include "toolkit/pipeline/region_completer.h"
 
 namespace mimetra {
 
@@ -24,8 +25,9 @@ EvaluatedTransfer solved(const Source& source, const Target& target, const Selec
                          const SolveOptions& options) {
   const PlacedSource placed = placed_at(target, source, options);
   EvaluatedTransfer result{{}, solve(placed.source, target, selection, options), {}};
-  result.error = transfer_error(*placed.source.sequence, *result.solution.sequence,
-                                selection.triangles, {.threads = options.threads});
+  result.error =
+      transfer_error(*placed.source.sequence, *result.solution.sequence, selection.triangles,
+                     {.edges = options.edges, .threads = options.threads});
   result.row.triangles = static_cast<int>(selection.triangles.size());
   result.row.de_all = result.error.de_all;
   result.row.de_region = result.error.de_region;
@@ -35,6 +37,17 @@ EvaluatedTransfer solved(const Source& source, const Target& target, const Selec
 
 /// The work of one decomposition in a row; the rest is its transfer.
 constexpr double kAnalysisShare = 0.7;
+
+/// Of all regions of the source; none where they differ.
+std::optional<double> common_radius(const Regions& regions) {
+  std::optional<double> radius;
+  for (const Region& region : regions.regions) {
+    if (!region.added_for.empty()) continue;
+    if (radius && *radius != region.radius) return {};
+    radius = region.radius;
+  }
+  return radius;
+}
 
 }  // namespace
 
@@ -54,7 +67,8 @@ EvaluatedTransfer evaluate_by(const Regions& regions, const EvaluatedTransfer& f
   row.vertices = regions.vertex_count();
   row.vertex_share = regions.vertex_share();
   row.triangle_share = regions.triangle_share();
-  const double size = result.solution.sequence->extent();
+  row.radius = common_radius(regions);
+  const double size = result.solution.sequence->diameter();
   row.mpe_all = percentage_error(full.error.de_all, row.de_all, size);
   row.mpe_region =
       percentage_error(mean_over(full.error.per_triangle, regions.triangles), row.de_region, size);
@@ -75,6 +89,7 @@ std::vector<EvaluationRow> evaluate(const MeshSequence& sequence, const Target& 
   SolveOptions of_solving = options.solving;
   of_solving.threads = options.threads;
   of_solving.notes = options.notes;
+  of_solving.edges = edge_sum(options.analysis.compatibility);
 
   const Source source = prepare_source(sequence, of_source);
   check_target(*source.sequence, target);
@@ -82,13 +97,16 @@ std::vector<EvaluationRow> evaluate(const MeshSequence& sequence, const Target& 
   of_solving.progress = part_of(options.progress, 0, 1 / steps);
   const EvaluatedTransfer full = evaluate_full(source, target, of_solving);
   std::vector<EvaluationRow> rows;
+  std::optional<RegionCompleter> completion;
   for (const int k : options.counts) {
     const double done = static_cast<double>(rows.size()) + 1;
     const Progress progress = part_of(options.progress, done / steps, (done + 1) / steps);
     const Stopwatch stopwatch;
     of_analysis.decomposition.count = k;
     of_analysis.progress = part_of(progress, 0, kAnalysisShare);
-    const Regions regions = choose_regions(analyse(source, of_analysis), of_regions);
+    const Analysis analysis = analyse(source, of_analysis);
+    if (!completion) completion.emplace(analysis, of_regions);
+    const Regions regions = (*completion)(choose_regions(analysis, of_regions), target, of_solving);
     const double seconds = stopwatch.seconds();
     of_solving.progress = part_of(progress, kAnalysisShare, 1);
     rows.push_back(evaluate_by(regions, full, source, target, of_solving).row);

@@ -15,6 +15,8 @@ struct EvaluationRow {
   int triangles = 0;
   double vertex_share = 1;
   double triangle_share = 1;
+  /// Of the source's regions, length; none for the full transfer, and where they differ.
+  std::optional<double> radius;
   double de_all = 0;
   double de_region = 0;
   std::optional<double> mpe_all;  ///< percent; none for the full transfer, or where it is exact

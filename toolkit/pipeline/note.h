@@ -16,6 +16,8 @@ enum class Topic {
   turning_head,       ///< the source's head turns, and that was not taken out
   unneutral_rest,     ///< the source's rest pose is likely not its neutral
   poor_condition,     ///< the regions hardly tell the target's expressions apart
+  completed_regions,  ///< discs were added to the regions for a target's expressions
+  completion_limit,   ///< as many as may be, and it was not enough
   undetermined_axes,  ///< the rest poses leave open how source and target are turned
   component_count,    ///< more than the mesh can have
   support_range,      ///< d_min is not below d_max

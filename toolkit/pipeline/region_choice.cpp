@@ -1,11 +1,13 @@
 #include "toolkit/pipeline/region_choice.h"
 
+#include "toolkit/mesh/diameter.h"
+
 namespace mimetra {
 
 Regions choose_regions(const Analysis& analysis, const RegionChoiceOptions& options) {
   check_options(options);
   RegionOptions of_search = options.regions;
-  of_search.radius = options.radius.in(extent(analysis.components.rest));
+  of_search.radius = options.radius.in(diameter(analysis.components.rest));
   of_search.distances = analysis.distances;
   Regions regions = find_regions(analysis.components, of_search);
   for (const std::string& text : regions.notes) note(options.notes, text);

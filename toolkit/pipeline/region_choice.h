@@ -4,6 +4,7 @@
 
 #include "toolkit/pipeline/analysis.h"
 #include "toolkit/regions/regions.h"
+#include "toolkit/transfer/region_completion.h"
 
 namespace mimetra {
 
@@ -13,6 +14,8 @@ struct RegionChoiceOptions {
   Length radius = Length::share(RegionOptions::kRadiusShare);
   /// Its radius and distances are those of the choice.
   RegionOptions regions = {};
+  /// Of the regions for a target with expressions; its edges are those of the solve.
+  CompletionOptions completion = {};
   Notes notes = {};
 
   static constexpr Option kRadius{"radius", &RegionChoiceOptions::radius, {.minimum = 1e-9}};

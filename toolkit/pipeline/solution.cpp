@@ -10,9 +10,6 @@ namespace mimetra {
 
 namespace {
 
-/// Beyond this the weights are hardly determined by the regions.
-constexpr double kPoorCondition = 1e5;
-
 /// Looking for seams, which reads every frame, as a part of a solve's progress.
 constexpr double kSeamShare = 0.2;
 
@@ -70,6 +67,7 @@ Solution solve_blendshapes(const Source& source, const Target& target, const Sel
   BlendshapeTransferOptions of_space = options.blendshape;
   of_space.threads = options.threads;
   of_space.progress = options.progress;
+  of_space.edges = options.edges;
   const FrameSource& performance = *source.sequence;
   const BlendshapeTransfer transfer(performance.rest(), model, selection.triangles, of_space);
   Solution solution;
@@ -170,6 +168,10 @@ Similarity similarity_between(const Positions& rest, const Target& target,
 }
 
 }  // namespace
+
+EdgeSum edge_sum(Compatibility compatibility) {
+  return compatibility == Compatibility::paper ? EdgeSum::two : EdgeSum::all;
+}
 
 const Eigen::MatrixXd& Solution::weights() const {
   static const Eigen::MatrixXd none;

@@ -61,8 +61,10 @@ struct Target {
 struct SolveOptions {
   Space space = Space::automatic;
   Axes axes = Axes::fit;
-  /// Of each space; their threads and progress, the vertices inside and those that are one are
-  /// those of the solve.
+  /// Of eq. 10 and 12.
+  EdgeSum edges = EdgeSum::all;
+  /// Of each space; their threads and progress, edges, the vertices inside and those that are one
+  /// are those of the solve.
   BlendshapeTransferOptions blendshape = {};
   VertexTransferOptions vertex = {};
   /// 0 for all there are; the result does not depend on it.
@@ -74,6 +76,9 @@ struct SolveOptions {
   static constexpr Option kAxes{"axes", &SolveOptions::axes};
   static constexpr auto declared() { return std::tuple(kSpace, kAxes); }
 };
+
+/// What eq. 10 and 12 sum over.
+EdgeSum edge_sum(Compatibility compatibility);
 
 /// A source as it looks where the target is.
 struct PlacedSource {

@@ -1,7 +1,10 @@
 #include "toolkit/pipeline/transfer.h"
 
+#include <algorithm>
+
 #include "toolkit/mesh/stopwatch.h"
 #include "toolkit/mesh/text.h"
+#include "toolkit/pipeline/region_completer.h"
 
 namespace mimetra {
 
@@ -14,8 +17,8 @@ constexpr double kRegionShare = 0.4;
 constexpr double kSolveShare = 0.7;
 
 struct Choice {
-  Selection selection;
   std::optional<Regions> regions = {};
+  std::optional<RegionCompleter> completion = {};
   std::optional<Components> components = {};
   double seconds = 0;
 };
@@ -32,18 +35,23 @@ Analysis analysis_for(const Source& source, const TransferOptions& options) {
 }
 
 Choice choose(const Source& source, const TransferOptions& options) {
-  if (options.full) return {whole(*source.sequence)};
+  if (options.full) return {};
+  RegionChoiceOptions of_regions = options.regions;
+  of_regions.notes = options.notes;
   if (const auto* given = std::get_if<GivenRegions>(&options.given)) {
-    check_regions(*given, *source.sequence);
-    return {selection_of(given->regions), given->regions};
+    const FrameSource& sequence = *source.sequence;
+    check_regions(*given, sequence);
+    DistanceOptions distances = options.analysis.distances;
+    distances.threads = options.threads;
+    distances.notes = options.notes;
+    return {given->regions,
+            RegionCompleter(sequence.rest(), sequence.triangles(), of_regions, distances)};
   }
   const Stopwatch stopwatch;
   Analysis analysis = analysis_for(source, options);
-  RegionChoiceOptions of_regions = options.regions;
-  of_regions.notes = options.notes;
   Regions regions = choose_regions(analysis, of_regions);
-  Selection selection = selection_of(regions);
-  return {std::move(selection), std::move(regions), std::move(analysis.components),
+  RegionCompleter completion(analysis, of_regions);
+  return {std::move(regions), std::move(completion), std::move(analysis.components),
           stopwatch.seconds()};
 }
 
@@ -60,6 +68,17 @@ Source source_of(const FrameSource& sequence, const TransferOptions& options) {
     given = std::make_shared<const MeshSequence>(sequence, reading);
   }
   return prepare_source(std::move(given), of_source);
+}
+
+/// The discs of `completed` that `regions` lack.
+void take_over(const Regions& completed, Regions& regions, const Triangles& triangles) {
+  std::vector<Region> added;
+  for (const Region& region : completed.regions) {
+    const bool is_known =
+        std::ranges::find(regions.regions, region.center, &Region::center) != regions.regions.end();
+    if (!region.added_for.empty() && !is_known) added.push_back(region);
+  }
+  regions = with_added(regions, std::move(added), triangles);
 }
 
 /// Sound results miss 0.1 to 4 % of the deformation and flip 1 to 5 triangles of 100 000; results
@@ -108,6 +127,7 @@ TransferResult transfer(const FrameSource& sequence, const std::vector<Target>& 
   SolveOptions of_solving = options.solving;
   of_solving.threads = options.threads;
   of_solving.notes = options.notes;
+  of_solving.edges = edge_sum(options.analysis.compatibility);
   const double first = choice.regions ? kRegionShare : kSourceShare;
   const auto count = static_cast<double>(targets.size());
   for (std::size_t t = 0; t < targets.size(); ++t) {
@@ -116,16 +136,25 @@ TransferResult transfer(const FrameSource& sequence, const std::vector<Target>& 
                 first + (1 - first) * static_cast<double>(t + 1) / count);
     of_solving.progress = part_of(progress, 0, kSolveShare);
     const PlacedSource placed = placed_at(targets[t], source, of_solving);
-    Solution solution = solve(placed.source, targets[t], choice.selection, of_solving);
+    std::optional<Regions> regions;
+    if (choice.regions) regions = (*choice.completion)(*choice.regions, targets[t], of_solving);
+    const Selection selection = regions ? selection_of(*regions) : whole(*placed.source.sequence);
+    Solution solution = solve(placed.source, targets[t], selection, of_solving);
     TransferError error =
-        transfer_error(*placed.source.sequence, *solution.sequence, choice.selection.triangles,
-                       {.threads = options.threads, .progress = part_of(progress, kSolveShare, 1)});
+        transfer_error(*placed.source.sequence, *solution.sequence, selection.triangles,
+                       {.edges = of_solving.edges,
+                        .threads = options.threads,
+                        .progress = part_of(progress, kSolveShare, 1)});
     note_usability(targets[t], error, options);
     if (give_back) solution.sequence = with_head_motion(solution.sequence, placed.source.motion);
-    result.targets.push_back({std::move(solution), placed.similarity, std::move(error)});
+    result.targets.push_back(
+        {std::move(solution), std::move(regions), placed.similarity, std::move(error)});
   }
   result.head_motion = source.head_motion;
   result.regions = std::move(choice.regions);
+  for (const TransferredTarget& target : result.targets) {
+    if (target.regions) take_over(*target.regions, *result.regions, sequence.triangles());
+  }
   result.components = std::move(choice.components);
   result.region_seconds = choice.seconds;
   return result;

@@ -53,6 +53,8 @@ struct TransferredTarget {
   /// Its sequence has the source's head motion where that was taken out and is kept; its neutral is
   /// then not its rest pose.
   Solution solution;
+  /// Those of the source, completed for this target; none for all triangles.
+  std::optional<Regions> regions;
   /// From the source's rest pose to the target's.
   Similarity similarity;
   /// Before head motion was given back.
@@ -61,10 +63,11 @@ struct TransferredTarget {
 
 struct TransferResult {
   std::vector<TransferredTarget> targets;  ///< in the order of the targets
-  std::optional<Regions> regions;          ///< none for all triangles
-  std::optional<Components> components;    ///< that the regions come from
-  HeadMotionTaken head_motion;             ///< of the source
-  double region_seconds = 0;               ///< decomposition and choice of regions
+  /// Of the source, and what was added for any of the targets; none for all triangles.
+  std::optional<Regions> regions;
+  std::optional<Components> components;  ///< that the regions come from
+  HeadMotionTaken head_motion;           ///< of the source
+  double region_seconds = 0;             ///< decomposition and choice of regions
 };
 
 /// True where regions are looked for: then all frames are in memory.

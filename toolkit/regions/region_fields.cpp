@@ -14,18 +14,26 @@ Field integer_field(std::string name, Field::Location location, Eigen::VectorXd 
 std::vector<Field> fields_of(const Regions& regions) {
   Eigen::VectorXd strongest = Eigen::VectorXd::Constant(regions.vertices, -1);
   Eigen::VectorXd count = Eigen::VectorXd::Zero(regions.vertices);
+  Eigen::VectorXd added = Eigen::VectorXd::Zero(regions.vertices);
   for (std::size_t k = 0; k < regions.regions.size(); ++k) {
     for (const VertexIndex v : regions.regions[k].vertices) {
-      if (count[v] == 0) strongest[v] = static_cast<double>(k);
+      if (count[v] == 0) {
+        strongest[v] = static_cast<double>(k);
+        added[v] = regions.regions[k].added_for.empty() ? 0 : 1;
+      }
       count[v] += 1;
     }
   }
   Eigen::VectorXd in_L = Eigen::VectorXd::Zero(regions.all_triangles);
   for (const int t : regions.triangles) in_L[t] = 1;
-  return {integer_field("region", Field::Location::vertices, strongest),
-          integer_field("region_count", Field::Location::vertices, count),
-          integer_field("roi", Field::Location::vertices, count.cwiseMin(1)),
-          integer_field("in_L", Field::Location::triangles, in_L)};
+  std::vector<Field> fields = {integer_field("region", Field::Location::vertices, strongest),
+                               integer_field("region_count", Field::Location::vertices, count),
+                               integer_field("roi", Field::Location::vertices, count.cwiseMin(1)),
+                               integer_field("in_L", Field::Location::triangles, in_L)};
+  if (!added.isZero(0)) {
+    fields.push_back(integer_field("added", Field::Location::vertices, added));
+  }
+  return fields;
 }
 
 std::vector<Field> component_fields(const Components& components, const Regions& regions) {

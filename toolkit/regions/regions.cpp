@@ -2,12 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numeric>
 #include <stdexcept>
 #include <string>
 #include <utility>
 
+#include "toolkit/mesh/diameter.h"
 #include "toolkit/mesh/errors.h"
+#include "toolkit/mesh/near_tie.h"
 #include "toolkit/mesh/text.h"
 
 namespace mimetra {
@@ -105,7 +108,7 @@ std::vector<VertexIndex> disc(const Site& site, double radius) {
   std::vector<VertexIndex> vertices;
   for (VertexIndex v = 0; v < site.distances.size(); ++v) {
     // A centre on no triangle has no distances, not even to itself.
-    if (site.distances[v] <= radius || v == site.center) vertices.push_back(v);
+    if (site.distances[v] <= (1 + kNearTie) * radius || v == site.center) vertices.push_back(v);
   }
   return vertices;
 }
@@ -136,18 +139,22 @@ double farthest(const Site& site, const std::vector<VertexIndex>& vertices) {
 }
 
 /// The vertices of a site's region; its share of the energy is not known here.
-Region region_around(const Site& site, const Components& components, const RegionOptions& options) {
+Region region_around(const Site& site, const Components& components, RegionShape shape,
+                     double radius) {
   Region region;
   region.component = site.components.front();
   region.center = site.center;
   region.energy = site.energy;
-  if (options.shape == RegionShape::support) {
-    region.vertices = energetic_vertices(site, energy_on_vertices(components, site.components));
-    region.radius = farthest(site, region.vertices);
-  } else {
-    region.radius = options.radius.value_or(RegionOptions::kRadiusShare * extent(components.rest));
-    region.vertices = disc(site, region.radius);
+  switch (shape) {
+    case RegionShape::disc:
+      region.radius = radius;
+      region.vertices = disc(site, radius);
+      return region;
+    case RegionShape::support:
+      break;
   }
+  region.vertices = energetic_vertices(site, energy_on_vertices(components, site.components));
+  region.radius = farthest(site, region.vertices);
   return region;
 }
 
@@ -239,8 +246,10 @@ Regions find_regions(const Components& components, const RegionOptions& options)
   regions.vertex_energy = energy_on_vertices(components, all);
   const double total = regions.vertex_energy.sum();
   if (total > 0) regions.vertex_energy /= total;
+  const double radius =
+      options.radius ? *options.radius : RegionOptions::kRadiusShare * diameter(components.rest);
   for (const Site& site : sites) {
-    regions.regions.push_back(region_around(site, components, options));
+    regions.regions.push_back(region_around(site, components, options.shape, radius));
   }
   complete(regions, components.triangles);
   if (options.coverage) cover(regions, *options.coverage, components.triangles);
@@ -255,6 +264,15 @@ Regions strongest(const Regions& regions, int count, const Triangles& triangles)
   if (count < static_cast<int>(first.regions.size())) first.regions.resize(count);
   complete(first, triangles);
   return first;
+}
+
+Regions with_added(const Regions& regions, std::vector<Region> added, const Triangles& triangles) {
+  if (added.empty()) return regions;
+  Regions result = regions;
+  std::ranges::move(added, std::back_inserter(result.regions));
+  complete(result, triangles);
+  if (result.vertex_energy.size() == 0) result.energy_share = regions.energy_share;
+  return result;
 }
 
 Regions regions_from_vertices(int vertices, const Triangles& triangles,

@@ -30,7 +30,7 @@ constexpr std::string_view choice_name(RegionShape value) {
 
 struct RegionOptions {
   RegionShape shape = RegionShape::disc;
-  /// Radius of a disc, length > 0; by default this share of the rest pose's longest side.
+  /// Radius of a disc, length > 0; by default this share of the rest pose's diameter().
   static constexpr double kRadiusShare = 0.1;
   std::optional<double> radius = {};
   /// Take the strongest components until the union holds this share of the motion energy; without
@@ -55,6 +55,8 @@ struct Region {
   std::vector<VertexIndex> vertices;  ///< ascending
   double energy = 0;                  ///< motion energy |w_k|^2 |c_k|^2 of its component(s)
   double energy_share = 0;            ///< share of all motion energy on its vertices
+  /// The target's expression that it was added for; empty for the source's own.
+  std::string added_for = {};
 };
 
 /// Regions in the order of their component's motion energy, and the triangles they take part in.
@@ -91,6 +93,10 @@ Regions find_regions(const Components& components, const RegionOptions& options 
 /// count < 1.
 Regions strongest(const Regions& regions, int count, const Triangles& triangles);
 
+/// The regions and further ones behind them, of which vertices, centre, radius and what they were
+/// added for are known.
+Regions with_added(const Regions& regions, std::vector<Region> added, const Triangles& triangles);
+
 /// One region per entry from vertex lists. Throws MismatchError that names the first vertex
 /// outside 0 .. vertices - 1.
 Regions regions_from_vertices(int vertices, const Triangles& triangles,
@@ -100,7 +106,8 @@ Regions regions_from_vertices(int vertices, const Triangles& triangles,
 std::vector<int> all_triangles(const Triangles& triangles);
 
 /// Fields `region` (index of the strongest region, -1 outside), `region_count`, `roi` (0/1) on
-/// vertices and `in_L` on triangles.
+/// vertices and `in_L` on triangles; `added` (1 in added regions only) on vertices where there are
+/// any.
 std::vector<Field> fields_of(const Regions& regions);
 
 /// `support_k` (support map) and `component_k` (displacement vectors, unit of the mesh) of the

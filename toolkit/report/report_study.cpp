@@ -6,6 +6,7 @@
 
 #include "toolkit/mesh/stopwatch.h"
 #include "toolkit/operations/pipeline_parameters.h"
+#include "toolkit/pipeline/region_completer.h"
 
 namespace mimetra {
 
@@ -52,7 +53,10 @@ const NamedData& target_of(const Invocation& call, const NamedData& run, const L
 class RunSteps {
  public:
   explicit RunSteps(const Invocation& call)
-      : call_(call), sequence_(call.sequence("source")), source_(source_of(call)) {}
+      : call_(call),
+        sequence_(call.sequence("source")),
+        source_(source_of(call)),
+        completion_(completion_of(call, source_)) {}
 
   const Source& source() const { return source_; }
 
@@ -88,6 +92,10 @@ class RunSteps {
         call_.parameters, [&] { return evaluate_full(source_, target, solve_options(progress)); });
   }
 
+  Regions completed(const Regions& regions, const Target& target) {
+    return completion_(regions, target, solve_options({}));
+  }
+
   EvaluatedTransfer by(const Regions& regions, const EvaluatedTransfer& full, const Target& target,
                        const Progress& progress) const {
     return in_command_terms(call_.parameters, [&] {
@@ -101,7 +109,20 @@ class RunSteps {
     options.threads = call_.threads;
     options.progress = progress;
     options.notes = warnings_of(call_);
+    options.edges = edge_sum(analysis_parameters().read(call_.parameters).compatibility);
     return options;
+  }
+
+  static RegionCompleter completion_of(const Invocation& call, const Source& source) {
+    RegionChoiceOptions options;
+    if (call.inputs.contains("target")) {
+      BoundParameters<RegionChoiceOptions> list = region_parameters();
+      options = list.add(completion_parameters()).read(call.parameters);
+    }
+    options.notes = warnings_of(call);
+    DistanceOptions distances = distance_parameters().read(call.parameters);
+    distances.threads = call.threads;
+    return {source.sequence->rest(), source.sequence->triangles(), options, distances};
   }
 
   static Source source_of(const Invocation& call) {
@@ -134,6 +155,7 @@ class RunSteps {
   const Invocation& call_;
   const MeshSequence& sequence_;
   Source source_;
+  RegionCompleter completion_;
 };
 
 EvaluationRow completed(EvaluationRow row, const RunSteps::Found& found) {
@@ -146,7 +168,7 @@ EvaluationRow completed(EvaluationRow row, const RunSteps::Found& found) {
 /// 1 where two meshes may well have one unit of length, otherwise what makes their sizes equal.
 double shown_scale(const FrameSource& source, const FrameSource& target) {
   constexpr double kOneUnit = 3;
-  const double ratio = source.extent() / target.extent();
+  const double ratio = source.diameter() / target.diameter();
   return ratio > kOneUnit || ratio < 1 / kOneUnit ? ratio : 1;
 }
 
@@ -165,15 +187,16 @@ auto apart_from(std::vector<std::string>& notes, const Work& work) {
   return result;
 }
 
-ReportedTransfer transferred(const RunSteps& steps, const NamedData& target,
-                             const RunSteps::Found& main, const std::vector<int>& counts,
-                             std::vector<std::string>& notes, const Progress& progress) {
+ReportedTransfer transferred(RunSteps& steps, const NamedData& target, RunSteps::Found& main,
+                             const std::vector<int>& counts, std::vector<std::string>& notes,
+                             const Progress& progress) {
   const BlendshapeModel& model = std::get<ModelData>(target.data).model.average();
   const Target to{target.name, model};
   ReportedTransfer transfer;
   transfer.target = short_name(target.name);
   EvaluatedTransfer full =
       apart_from(notes, [&] { return steps.full(to, part_of(progress, 0, 0.1)); });
+  main.regions = steps.completed(main.regions, to);
   EvaluatedTransfer by_regions = steps.by(main.regions, full, to, part_of(progress, 0.1, 0.2));
   if (by_regions.solution.weights().size() > 0) {
     transfer.expressions = model.expressions().names;
@@ -188,7 +211,8 @@ ReportedTransfer transferred(const RunSteps& steps, const NamedData& target,
     done += each;
     if (k == main_row.k || k > main.regions.vertices) continue;
     transfer.rows.push_back(apart_from(notes, [&] {
-      const auto found = steps.regions_of(k, part_of(part, 0, 0.7));
+      auto found = steps.regions_of(k, part_of(part, 0, 0.7));
+      found.regions = steps.completed(found.regions, to);
       return completed(steps.by(found.regions, full, to, part_of(part, 0.7, 1)).row, found);
     }));
   }
@@ -232,7 +256,7 @@ ReportStudy study(const NamedData& run, const std::vector<int>& counts, const Pr
   }
   const Invocation call = call_of(read, result.notes);
   result.source = short_name(call.input("source").name);
-  const RunSteps steps(call);
+  RunSteps steps(call);
   result.moved_head = !steps.source().motion.empty();
   result.sequence = MeshSequence(*steps.source().sequence);
   const NamedData* target = call.inputs.contains("target") ? &target_of(call, run, log) : nullptr;

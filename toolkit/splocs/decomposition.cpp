@@ -138,14 +138,14 @@ Components decompose(const MeshSequence& sequence, const DecompositionOptions& o
   Components result;
   result.rest = sequence.rest();
   result.triangles = sequence.triangles();
-  result.d_min = options.d_min.value_or(DecompositionOptions::kMinimumShare * sequence.extent());
-  result.d_max = options.d_max.value_or(DecompositionOptions::kMaximumShare * sequence.extent());
+  result.d_min = options.d_min.value_or(DecompositionOptions::kMinimumShare * sequence.diameter());
+  result.d_max = options.d_max.value_or(DecompositionOptions::kMaximumShare * sequence.diameter());
   require_valid(result.d_min, result.d_max);
   result.options = options;
   result.options.distances = nullptr;
   result.options.progress = nullptr;
 
-  Motion motion = scaled_motion(sequence, options.threads);
+  Motion motion = scaled_motion(sequence, options.scale, options.threads);
   result.scale = motion.scale;
   const DistanceFunction distances =
       options.distances ? options.distances

@@ -16,8 +16,8 @@ struct Components {
   Eigen::MatrixXd weights;           ///< W, F x K, each column's maximum is 1 (or the column is 0)
   std::vector<VertexIndex> centers;  ///< vertex that component k moves most (K); -1 where it died
   Eigen::MatrixXd support;           ///< support map of component k in the last iteration, K x N
-  std::vector<double> energies;      ///< after each iteration, for X scaled to standard deviation 1
-  double scale = 1;                  ///< standard deviation of X, in units of the mesh
+  std::vector<double> energies;      ///< after each iteration, for the scaled X
+  double scale = 1;                  ///< what X was divided by, in units of the mesh
   double d_min = 0;                  ///< as used, lengths
   double d_max = 0;
   DecompositionOptions options;  ///< as given, but without the caller's functions
@@ -27,7 +27,8 @@ struct Components {
 };
 
 /// Minimises ||X - W C||_F^2 + sum_k sum_i Lambda_ki |c_k^(i)| subject to W >= 0 and max of each
-/// column of W = 1, for X = frames - rest (F x 3N), divided by its standard deviation.
+/// column of W = 1, for X = frames - rest (F x 3N), divided by its
+/// root mean square (MotionScale).
 ///
 /// Every product with X is with K columns (P = X C^T, W^T X); the residual is never formed. The
 /// result is the same for every number of threads. The rest pose is the sequence's.

@@ -28,7 +28,13 @@ constexpr std::string_view choice_name(IterationPrecision value) {
   return {};
 }
 
-/// Displacements from the rest pose, as a share of its longest side, up to which nothing moves:
+/// What X is divided by.
+enum class MotionScale {
+  root_mean_square,   ///< of the displacements' coordinates: turning the mesh does not change it
+  standard_deviation  ///< of them (reference, 2013)
+};
+
+/// Displacements from the rest pose, as a share of its diameter, up to which nothing moves:
 /// what the rounding of float32 files (6e-8 of their coordinates) and of rigid alignment leaves.
 constexpr double kLeastMotion = 1e-6;
 
@@ -36,11 +42,12 @@ struct DecompositionOptions {
   /// K, at most 3N.
   int count = 50;
   /// Support map: 0 up to d_min, 1 from d_max. Lengths; by default these shares of the rest pose's
-  /// longest side.
+  /// diameter().
   static constexpr double kMinimumShare = 0.1, kMaximumShare = 0.7;
   std::optional<double> d_min = {};
   std::optional<double> d_max = {};
-  /// Weight lambda of the sparsity term, for X scaled to standard deviation 1.
+  MotionScale scale = MotionScale::root_mean_square;
+  /// Weight lambda of the sparsity term, for the scaled X.
   double sparsity = 2;
   /// Penalty rho of ADMM.
   double rho = 10;

@@ -47,17 +47,27 @@ void require_finite(const MeshSequence& sequence, const std::vector<FrameSpread>
 /// \pre finite spreads
 void require_motion(const MeshSequence& sequence, const std::vector<FrameSpread>& spreads) {
   const double furthest = std::ranges::max(spreads, {}, &FrameSpread::furthest).furthest;
-  const double size = sequence.extent();
+  const double size = sequence.diameter();
   if (furthest > kLeastMotion * size) return;
   std::string found =
       "nothing moves: all " + std::to_string(sequence.frames()) + " frames are the rest pose";
   if (furthest > 0) {
-    found +=
-        " to " + readable(furthest) + ", " + readable(furthest / size) + " of its longest side";
+    found += " to " + readable(furthest) + ", " + readable(furthest / size) + " of its diameter";
   }
   throw MismatchError(found + "; expected motion above " + readable(kLeastMotion) +
-                      " of its longest side, " + readable(size) +
+                      " of its diameter, " + readable(size) +
                       ": give frames that deform (head motion that is taken out is none)");
+}
+
+/// Of displacement coordinates with this mean and variance.
+double scale_of(MotionScale unit, double mean, double variance) {
+  switch (unit) {
+    case MotionScale::root_mean_square:
+      return std::sqrt(variance + mean * mean);
+    case MotionScale::standard_deviation:
+      break;
+  }
+  return std::sqrt(variance);
 }
 
 VertexBlocks<double> scaled_blocks(const MeshSequence& sequence, double scale, int threads) {
@@ -75,24 +85,24 @@ VertexBlocks<double> scaled_blocks(const MeshSequence& sequence, double scale, i
 
 }  // namespace
 
-Motion scaled_motion(const MeshSequence& sequence, int threads) {
+Motion scaled_motion(const MeshSequence& sequence, MotionScale unit, int threads) {
   const std::vector<FrameSpread> of_frames = spreads(sequence, threads);
   require_finite(sequence, of_frames);
   require_motion(sequence, of_frames);
   const auto coordinates = static_cast<double>(sequence.rest().size());
-  const auto all = coordinates * sequence.frames();
   double mean = 0;
   for (const FrameSpread& spread : of_frames) mean += spread.mean / sequence.frames();
   double squares = 0;
   for (const FrameSpread& spread : of_frames) {
     squares += spread.squares + coordinates * (spread.mean - mean) * (spread.mean - mean);
   }
-  const double scale = std::sqrt(squares / all);
+  const double variance = squares / coordinates / sequence.frames();
+  const double scale = scale_of(unit, mean, variance);
   if (scale == 0) {
     throw MismatchError("nothing moves: all " + std::to_string(sequence.frames()) +
                         " frames are the rest pose, shifted by one amount along x, y and z");
   }
-  const double norm2 = (squares + all * mean * mean) / scale / scale;
+  const double norm2 = coordinates * sequence.frames() * ((variance + mean * mean) / scale / scale);
   if (!std::isfinite(norm2)) {
     throw std::invalid_argument(
         "the frames are so far from the rest pose that their energy is not a finite number");

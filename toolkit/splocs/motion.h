@@ -5,16 +5,16 @@
 
 namespace mimetra {
 
-/// A sequence's displacements from its rest pose, divided by their standard deviation.
+/// A sequence's displacements from its rest pose, divided by their scale.
 struct Motion {
   VertexBlocks<double> X;  ///< F x 3N
-  double scale = 1;        ///< the standard deviation, in units of the mesh
+  double scale = 1;        ///< in units of the mesh
   double norm2 = 0;        ///< ||X||_F^2
 };
 
-/// Throws MismatchError where no vertex is further than kLeastMotion of the longest side from the
+/// Throws MismatchError where no vertex is further than kLeastMotion of the diameter from the
 /// rest pose in any frame, std::invalid_argument that names the first frame with a coordinate that
 /// is not finite.
-Motion scaled_motion(const MeshSequence& sequence, int threads);
+Motion scaled_motion(const MeshSequence& sequence, MotionScale scale, int threads);
 
 }  // namespace mimetra

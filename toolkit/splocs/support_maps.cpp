@@ -1,23 +1,22 @@
 #include "toolkit/splocs/support_maps.h"
 
+#include <algorithm>
 #include <stdexcept>
 #include <string>
 #include <utility>
 
 #include "geodesic/support_map.h"
+#include "toolkit/mesh/near_tie.h"
 
 namespace mimetra {
 
 VertexIndex strongest_vertex(const Eigen::Ref<const Eigen::VectorXd>& energies) {
-  VertexIndex strongest = -1;
-  double largest = 0;
-  for (VertexIndex v = 0; v < energies.size(); ++v) {
-    if (energies[v] > largest) {
-      largest = energies[v];
-      strongest = v;
-    }
-  }
-  return strongest;
+  const double largest = energies.size() > 0 ? energies.maxCoeff() : 0;
+  if (!(largest > 0)) return -1;
+  const double as_large = (1 - kNearTie) * largest;
+  return static_cast<VertexIndex>(
+      std::ranges::find_if(energies, [as_large](double x) { return x >= as_large; }) -
+      energies.begin());
 }
 
 Eigen::VectorXd vertex_energies(const Eigen::Ref<const Eigen::RowVectorXd>& component) {

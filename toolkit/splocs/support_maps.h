@@ -9,8 +9,8 @@
 
 namespace mimetra {
 
-/// Vertex (of N) where the entry of `energies` (N) is largest, the lowest of equals; -1 where no
-/// entry is above zero.
+/// Vertex (of N) where the entry of `energies` (N) is largest, the lowest of those that tie
+/// (kNearTie); -1 where no entry is above zero.
 VertexIndex strongest_vertex(const Eigen::Ref<const Eigen::VectorXd>& energies);
 
 /// Squared length of each vertex's displacement in one component (3N): N.

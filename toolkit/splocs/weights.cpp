@@ -3,7 +3,7 @@
 namespace mimetra {
 namespace {
 
-// |C_k|^2 up to which a component counts as zero, for X scaled to standard deviation 1: the value
+// |C_k|^2 up to which a component counts as zero, for the scaled X: the value
 // of the reference implementation.
 constexpr double kNoEnergy = 1e-8;
 

@@ -1,10 +1,8 @@
 #include "toolkit/transfer/blendshape_transfer.h"
 
 #include <algorithm>
-#include <functional>
 #include <limits>
 #include <numeric>
-#include <span>
 #include <stdexcept>
 
 #include <Eigen/Eigenvalues>
@@ -17,7 +15,7 @@
 #include "toolkit/model/smooth_weights.h"
 #include "toolkit/regions/regions.h"
 #include "toolkit/transfer/deformation_gradients.h"
-#include "toolkit/transfer/edges.h"
+#include "toolkit/transfer/expression_edges.h"
 #include "toolkit/transfer/right_hand_side.h"
 
 namespace mimetra {
@@ -42,53 +40,6 @@ constexpr double kWeaklySeenShare = 0.05;
 constexpr double kWantedStep = -0.02;
 constexpr double kUnneutralShare = 0.05;
 
-/// Rows of A at a time: so many triangles' edges of every expression stay in cache.
-constexpr std::size_t kTrianglesPerBlock = 256;
-
-/// Rows of A in eq. 11: edges of the displacement fields, six a triangle.
-Eigen::MatrixXd edge_rows(const BlendshapeModel& target, std::span<const int> triangles) {
-  const Eigen::MatrixXd& basis = target.expressions().displacements;
-  Eigen::MatrixXd rows(6 * triangles.size(), basis.cols());
-  for (Eigen::Index j = 0; j < basis.cols(); ++j) {
-    const PositionsView field(basis.col(j).data(), target.vertices(), 3);
-    Eigen::Map<Eigen::Matrix<double, 6, Eigen::Dynamic>> column(rows.col(j).data(), 6,
-                                                                Eigen::Index(triangles.size()));
-    for (std::size_t i = 0; i < triangles.size(); ++i) {
-      column.col(Eigen::Index(i)) = edges_of(field, target.triangles(), triangles[i]).reshaped();
-    }
-  }
-  return rows;
-}
-
-/// Calls `work` with the rows of A of some triangles after the other.
-void for_edge_rows(const BlendshapeModel& target, const std::vector<int>& triangles,
-                   const std::function<void(const Eigen::MatrixXd&)>& work) {
-  for (std::size_t first = 0; first < triangles.size(); first += kTrianglesPerBlock) {
-    const std::size_t size = std::min(kTrianglesPerBlock, triangles.size() - first);
-    work(edge_rows(target, std::span(triangles).subspan(first, size)));
-  }
-}
-
-/// A^T A of eq. 11.
-Eigen::MatrixXd gram_matrix(const BlendshapeModel& target, const std::vector<int>& selected) {
-  const Eigen::Index d = target.expressions().size();
-  Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(d, d);
-  for_edge_rows(target, selected, [&gram](const Eigen::MatrixXd& rows) {
-    gram.selfadjointView<Eigen::Lower>().rankUpdate(rows.transpose());
-  });
-  return gram.selfadjointView<Eigen::Lower>();
-}
-
-/// Diagonal of the Gram matrix over all triangles: how much each expression moves anywhere.
-Eigen::VectorXd full_diagonal(const BlendshapeModel& target) {
-  Eigen::VectorXd diagonal = Eigen::VectorXd::Zero(target.expressions().size());
-  for_edge_rows(target, all_triangles(target.triangles()),
-                [&diagonal](const Eigen::MatrixXd& rows) {
-                  diagonal += rows.colwise().squaredNorm().transpose();
-                });
-  return diagonal;
-}
-
 int degenerate_triangles(const BlendshapeModel& target, const std::vector<int>& selected) {
   return static_cast<int>(std::ranges::count_if(selected, [&target](int triangle) {
     return quality_of(target.neutral(), target.triangles(), triangle) < kDegenerateQuality;
@@ -108,14 +59,16 @@ void check(const Positions& source_rest, const BlendshapeModel& target,
 }  // namespace
 
 struct BlendshapeTransfer::State {
-  State(const Positions& source_rest, const BlendshapeModel& target, std::vector<int> selected)
+  State(const Positions& source_rest, const BlendshapeModel& target, std::vector<int> selected,
+        const BlendshapeTransferOptions& given)
       : gradients(source_rest, target.triangles(), std::move(selected)),
-        gram(gram_matrix(target, gradients.selected())),
-        right_hand_side(source_rest, gradients, target),
-        vertices(target.vertices()) {}
+        gram(gram_matrix(target, gradients.selected(), given.edges)),
+        right_hand_side(source_rest, gradients, target, given.edges),
+        vertices(target.vertices()),
+        options(given) {}
 
   void judge(const BlendshapeModel& target);
-  void set_up(const BlendshapeTransferOptions& given);
+  void set_up();
   void check_size(const FrameSource& performance) const;
   void smooth(const FrameSource& performance, const Eigen::MatrixXd& h,
               Eigen::MatrixXd& beta) const;
@@ -134,7 +87,8 @@ struct BlendshapeTransfer::State {
 
 /// Which expressions L sees, and how well it tells them apart.
 void BlendshapeTransfer::State::judge(const BlendshapeModel& target) {
-  const Eigen::VectorXd full = full_diagonal(target);
+  const Eigen::VectorXd full =
+      gram_diagonal(target, all_triangles(target.triangles()), options.edges);
   const std::vector<std::string>& names = target.expressions().names;
   upper = Eigen::VectorXd::Zero(gram.rows());
   for (Eigen::Index j = 0; j < gram.rows(); ++j) {
@@ -160,8 +114,7 @@ void BlendshapeTransfer::State::judge(const BlendshapeModel& target) {
   conditions.degenerate_target_triangles = degenerate_triangles(target, gradients.selected());
 }
 
-void BlendshapeTransfer::State::set_up(const BlendshapeTransferOptions& given) {
-  options = given;
+void BlendshapeTransfer::State::set_up() {
   mean_diagonal = gram.diagonal()(seen).mean();
   system = gram;
   system.diagonal().array() += options.ridge * mean_diagonal;
@@ -187,9 +140,9 @@ BlendshapeTransfer::BlendshapeTransfer(const Positions& source_rest, const Blend
                                        const BlendshapeTransferOptions& options) {
   check(source_rest, target, options);
   fix_product_blocking();
-  state_ = std::make_unique<State>(source_rest, target, std::move(triangles));
+  state_ = std::make_unique<State>(source_rest, target, std::move(triangles), options);
   state_->judge(target);
-  state_->set_up(options);
+  state_->set_up();
 }
 
 BlendshapeTransfer::~BlendshapeTransfer() = default;

@@ -8,10 +8,12 @@
 #include "toolkit/mesh/option.h"
 #include "toolkit/mesh/progress.h"
 #include "toolkit/model/blendshape_model.h"
+#include "toolkit/transfer/edges.h"
 
 namespace mimetra {
 
 struct BlendshapeTransferOptions {
+  EdgeSum edges = EdgeSum::all;
   /// Weight of |beta|^2, as a share of the Gram matrix' mean diagonal over the columns that L
   /// sees.
   double ridge = 0;
@@ -33,6 +35,9 @@ struct BlendshapeTransferOptions {
   static constexpr auto declared() { return std::tuple(kRidge, kSparsity, kSmoothness); }
 };
 
+/// Condition number of G_L above which regions hardly determine the weights.
+constexpr double kPoorCondition = 1e5;
+
 /// What the chosen triangles show of the target's expressions.
 struct BlendshapeConditions {
   /// Columns with no motion in L: their weight is 0 in every frame.
@@ -46,7 +51,8 @@ struct BlendshapeConditions {
 };
 
 /// Blendshape weights of a target that follow a source's deformation gradients on triangles L:
-/// minimise over 0 <= beta <= 1 of sum_{i in L} ||Q_i V_i - V~_i(beta)||_F^2 (eq. 10, 11).
+/// minimise over 0 <= beta <= 1 of sum_{i in L} ||Q_i V_i - V~_i(beta)||^2 (eq. 10, 11), a sum over
+/// edges (EdgeSum).
 ///
 /// The constructor forms the Gram matrix. A frame costs one pass over the triangles of L, which
 /// gathers their gradients at the vertices, one product with the displacement fields there, and a

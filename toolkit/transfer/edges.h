@@ -1,5 +1,7 @@
 #pragma once
 
+#include <numbers>
+
 #include "toolkit/mesh/tri_mesh.h"
 
 namespace mimetra {
@@ -14,6 +16,35 @@ inline Edges edges_of(const Eigen::Ref<const Positions>& positions, const Triang
   edges.col(0) = (positions.row(corners[1]) - positions.row(corners[0])).transpose();
   edges.col(1) = (positions.row(corners[2]) - positions.row(corners[0])).transpose();
   return edges;
+}
+
+/// Over which edges of a triangle eq. 10 and 12 sum squares.
+enum class EdgeSum {
+  all,  ///< all three, times 2/3: the mean over the corners that a triangle can be written from
+  two   ///< b - a and c - a: the paper's, which depends on the corner that is written first
+};
+
+/// The 2 x 2 matrix G by which the sum of squares of a change D of the edges is tr(D G D^T).
+inline Eigen::Matrix2d edge_product(EdgeSum sum) {
+  switch (sum) {
+    case EdgeSum::all:
+      return Eigen::Matrix2d{{4.0 / 3, -2.0 / 3}, {-2.0 / 3, 4.0 / 3}};
+    case EdgeSum::two:
+      break;
+  }
+  return Eigen::Matrix2d::Identity();
+}
+
+/// The lower triangular L of G = L L^T: squares of D L add up to the sum.
+inline Eigen::Matrix2d edge_factor(EdgeSum sum) {
+  constexpr double kRoot3 = std::numbers::sqrt3;
+  switch (sum) {
+    case EdgeSum::all:
+      return Eigen::Matrix2d{{2 / kRoot3, 0}, {-1 / kRoot3, 1}};
+    case EdgeSum::two:
+      break;
+  }
+  return Eigen::Matrix2d::Identity();
 }
 
 }  // namespace mimetra

@@ -8,11 +8,14 @@ namespace mimetra {
 
 namespace {
 
-std::vector<Edges> neutral_edges(const BlendshapeModel& target, const std::vector<int>& selected) {
+/// V_i G of the selected triangles.
+std::vector<Edges> neutral_edges(const BlendshapeModel& target, const std::vector<int>& selected,
+                                 EdgeSum sum) {
+  const Eigen::Matrix2d product = edge_product(sum);
   std::vector<Edges> edges;
   edges.reserve(selected.size());
   for (const int triangle : selected) {
-    edges.push_back(edges_of(target.neutral(), target.triangles(), triangle));
+    edges.push_back(edges_of(target.neutral(), target.triangles(), triangle).lazyProduct(product));
   }
   return edges;
 }
@@ -44,8 +47,8 @@ Eigen::MatrixXd rows_at(const Eigen::MatrixXd& basis, const std::vector<int>& ro
 }  // namespace
 
 RightHandSide::RightHandSide(const Positions& rest, const DeformationGradients& gradients,
-                             const BlendshapeModel& target)
-    : pull_(rest, target.triangles(), gradients, neutral_edges(target, gradients.selected()),
+                             const BlendshapeModel& target, EdgeSum sum)
+    : pull_(rest, target.triangles(), gradients, neutral_edges(target, gradients.selected(), sum),
             numbered_vertices(target, gradients.selected())),
       basis_(rows_at(target.expressions().displacements,
                      numbered_vertices(target, gradients.selected()))) {}

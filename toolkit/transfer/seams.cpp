@@ -47,7 +47,7 @@ Weld closed_seams(const FrameSource& source, const Positions& target_rest,
     together.representative[v] = lowest.try_emplace(places, v).first->second;
     if (together.representative[v] != v) ++together.count;
   }
-  return staying_together(source, together, kPartedShare * source.extent(), options);
+  return staying_together(source, together, kPartedShare * source.diameter(), options);
 }
 
 }  // namespace mimetra

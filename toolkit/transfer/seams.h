@@ -4,7 +4,7 @@
 
 namespace mimetra {
 
-/// Vertices of a source farther apart than this share of its longest side have parted: well above
+/// Vertices of a source farther apart than this share of its diameter have parted: well above
 /// the rounding of single precision, well below what one sees.
 constexpr double kPartedShare = 1e-6;
 

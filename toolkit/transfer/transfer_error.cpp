@@ -101,8 +101,9 @@ bool is_flipped(const Edges& wanted, const Edges& found) {
 class FrameErrors {
  public:
   FrameErrors(const FrameSource& source, const FrameSource& result,
-              const std::vector<int>& selected)
-      : wanted_change_(source.rest(), result.rest(), source.triangles()),
+              const std::vector<int>& selected, EdgeSum edges)
+      : factor_(edge_factor(edges)),
+        wanted_change_(source.rest(), result.rest(), source.triangles()),
         triangles_(source.triangles()),
         rest_(result.rest()),
         outside_(outside_of(selected, result)) {}
@@ -122,10 +123,10 @@ class FrameErrors {
     for (int t = 0; t < triangles_.rows(); ++t) {
       const Edges neutral = edges_of(rest_, triangles_, t);
       const Edges found = edges_of(result, triangles_, t);
-      const double squared = (wanted[t] - (found - neutral)).squaredNorm();
+      const double squared = sum_of_squares(wanted[t] - (found - neutral));
       squares[t] = squared;
       measured.sum += squared;
-      measured.still += wanted[t].squaredNorm();
+      measured.still += sum_of_squares(wanted[t]);
       if (is_flipped(neutral + wanted[t], found)) ++measured.flipped;
     }
     for (const VertexIndex v : outside_) {
@@ -135,6 +136,11 @@ class FrameErrors {
   }
 
  private:
+  double sum_of_squares(const Edges& change) const {
+    return change.lazyProduct(factor_).squaredNorm();
+  }
+
+  Eigen::Matrix2d factor_;
   WantedChange wanted_change_;
   const Triangles& triangles_;
   const Positions& rest_;
@@ -144,14 +150,16 @@ class FrameErrors {
 }  // namespace
 
 TransferError transfer_error(const FrameSource& source, const FrameSource& result,
-                             const std::vector<int>& selected, const BlockOptions& options) {
+                             const std::vector<int>& selected,
+                             const TransferErrorOptions& options) {
   check(source, result, selected);
   const auto count = static_cast<int>(source.triangles().rows());
-  const FrameErrors errors_of(source, result, selected);
+  const FrameErrors errors_of(source, result, selected, options.edges);
   std::vector<FrameErrors::Measured> frames(source.frames());
   TransferError error;
   error.per_triangle = sum_over_frames(
-      source, count, options, [&](int first, const FrameBlock& poses, FramesView squares) {
+      source, count, {options.threads, options.progress},
+      [&](int first, const FrameBlock& poses, FramesView squares) {
         const FrameBlock found(result, first, poses.frames());
         for (int row = 0; row < poses.frames(); ++row) {
           frames[first + row] = errors_of(poses.frame(row), found.frame(row), squares.row(row));

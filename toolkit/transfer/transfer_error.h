@@ -3,13 +3,14 @@
 #include <vector>
 
 #include "toolkit/mesh/mesh_sequence.h"
+#include "toolkit/transfer/edges.h"
 
 namespace mimetra {
 
 /// How far a transferred sequence is from the source's deformation.
 struct TransferError {
-  /// DE over all triangles and over L: mean over frames and triangles of ||Q_i V_i - V~_i||_F^2
-  /// (eq. 12), unit of length squared.
+  /// DE over all triangles and over L: mean over frames and triangles of ||Q_i V_i - V~_i||^2 (eq.
+  /// 12), a sum over edges (EdgeSum), unit of length squared.
   double de_all = 0;
   double de_region = 0;
   /// What DE over all triangles is of a result that stays at rest: the deformation that is asked
@@ -25,13 +26,21 @@ struct TransferError {
   int flipped = 0;
 };
 
+struct TransferErrorOptions {
+  EdgeSum edges = EdgeSum::all;
+  /// 0 for all there are; the result does not depend on it.
+  int threads = 0;
+  Progress progress = {};
+};
+
 /// `result` is the transferred sequence before head motion is given back; its rest pose is the
 /// target's neutral. `source` F frames with its neutral as rest. `selected` = L, rows of the
 /// triangles. Throws MismatchError where sizes differ, std::invalid_argument for a row out of
 /// range, what reading throws, and Cancelled. A degenerate source triangle is measured against what
 /// stands in for it in the transfer. The result does not depend on the number of threads.
 TransferError transfer_error(const FrameSource& source, const FrameSource& result,
-                             const std::vector<int>& selected, const BlockOptions& options = {});
+                             const std::vector<int>& selected,
+                             const TransferErrorOptions& options = {});
 
 /// Flipped triangles of all in all frames.
 double flipped_share(const TransferError& error);

@@ -83,7 +83,7 @@ def _choice(parameter, common):
 
 
 def _length(parameter, common):
-    """A share of the longest side; the switch beside it makes it a length of the mesh."""
+    """A share of the diameter; the switch beside it makes it a length of the mesh."""
     return FloatProperty(default=_share(parameter.default), min=max(parameter.minimum or 0, 0),
                          soft_max=1, precision=3, **common)
 

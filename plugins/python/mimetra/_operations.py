@@ -70,7 +70,7 @@ class Parameter:
         if self.minimum is not None or self.maximum is not None:
             notes.append(_range(self.minimum, self.maximum))
         if self.kind == "length":
-            notes.append("a share of the longest side, or text such as '12abs'")
+            notes.append("a share of the diameter, or text such as '12abs'")
         if self.unit:
             notes.append(f"[{self.unit}]")
         return "; ".join(notes)

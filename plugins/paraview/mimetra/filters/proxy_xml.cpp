@@ -61,7 +61,7 @@ std::string help_of(const Parameter& parameter) {
   std::string help = parameter.help;
   if (!parameter.unit.empty()) help += " (" + parameter.unit + ")";
   if (parameter.kind == ParameterKind::length) {
-    help += "; a share of the rest pose's longest side as in 0.1, or a length as in 12abs";
+    help += "; a share of the rest pose's diameter as in 0.1, or a length as in 12abs";
   }
   const bool is_file = parameter.kind == ParameterKind::file;
   const bool optional = std::holds_alternative<std::monostate>(parameter.fallback);

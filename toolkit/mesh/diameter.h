@@ -1,0 +1,14 @@
+#pragma once
+
+#include "toolkit/mesh/tri_mesh.h"
+
+namespace mimetra {
+
+/// The largest distance between two of the positions (N x 3): a size that does not change where a
+/// mesh is turned or its vertices are renumbered. To rounding; points with a coordinate that is not
+/// finite do not count. 0 for fewer than two.
+///
+/// Branch and bound over pairs of balls around halves of the points: close to N log N.
+double diameter(const Eigen::Ref<const Positions>& positions);
+
+}  // namespace mimetra

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <optional>
+
+#include "toolkit/pipeline/solution.h"
+#include "toolkit/transfer/region_completion.h"
+
+namespace mimetra {
+
+/// Completes regions of one source for several targets: discs of half their radius are added until
+/// they see every expression of a target.
+class RegionCompleter {
+ public:
+  /// `rest` N x 3 and `triangles` of the source. `distances` along them are made when they are
+  /// needed first, unless they are known.
+  RegionCompleter(Positions rest, Triangles triangles, const RegionChoiceOptions& options,
+                  const DistanceOptions& distances);
+  RegionCompleter(const Analysis& analysis, const RegionChoiceOptions& options);
+
+  /// The regions themselves where a target is solved for vertices. Notes, under the target's name,
+  /// what was added (Topic::completed_regions). Throws what completed() throws.
+  Regions operator()(const Regions& regions, const Target& target, const SolveOptions& options);
+
+ private:
+  Positions rest_;
+  Triangles triangles_;
+  RegionChoiceOptions options_;
+  DistanceFunction distances_;
+  std::optional<DiscSearch> search_;
+};
+
+}  // namespace mimetra

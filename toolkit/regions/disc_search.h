@@ -1,0 +1,50 @@
+#pragma once
+
+#include <map>
+#include <vector>
+
+#include "toolkit/splocs/surface_distances.h"
+
+namespace mimetra {
+
+/// Vertices within a geodesic radius of a centre, and the triangles that they take part in.
+struct Disc {
+  VertexIndex center = -1;
+  std::vector<VertexIndex> vertices;  ///< ascending
+  std::vector<int> triangles;         ///< with a vertex in the disc, ascending
+};
+
+/// Looks for discs of one radius that hold much of a quantity on the triangles. Centres are
+/// compared that are a quarter of the radius apart from each other; a disc is measured along the
+/// surface only where the ball around its centre, which holds more, could still win.
+class DiscSearch {
+ public:
+  /// `positions` N x 3, `triangles` M x 3; distances along them. `radius` > 0, length.
+  DiscSearch(Positions positions, Triangles triangles, DistanceFunction distances, double radius);
+
+  double radius() const { return radius_; }
+  /// The disc with the largest sum of `amounts` (M, >= 0) over its triangles; without a centre
+  /// where all are 0. Throws what the distances throw.
+  Disc best(const Eigen::VectorXd& amounts);
+
+ private:
+  /// A centre, and what the ball around it holds.
+  struct Candidate {
+    VertexIndex center;
+    double bound;
+  };
+
+  std::vector<Candidate> candidates(const Eigen::VectorXd& amounts) const;
+  /// Measured for all of them together where they are new.
+  void measure(std::span<const Candidate> some);
+  std::vector<int> triangles_at(const std::vector<VertexIndex>& vertices) const;
+
+  Positions positions_;
+  Triangles triangles_;
+  DistanceFunction distances_;
+  double radius_;
+  std::vector<std::vector<int>> triangles_of_vertex_;
+  std::map<VertexIndex, Disc> discs_;  // those measured so far
+};
+
+}  // namespace mimetra
