@@ -233,6 +233,39 @@ TEST_F(TransferTest, RefusesATargetBeforeAnythingIsComputed) {
   EXPECT_EQ(reports, 0);
 }
 
+/// A sheet of quads; of the other, each begins at another corner, which is the same face.
+Connectivity quads(int first) {
+  Polygons polygons;
+  for (int row = 0; row < 8; ++row) {
+    for (int column = 0; column < 8; ++column) {
+      const int at = 9 * row + column;
+      const std::vector<int> corners = {at, at + 1, at + 10, at + 9};
+      for (int c = 0; c < 4; ++c) polygons.corners.push_back(corners[(c + first + at % 2) % 4]);
+      polygons.offsets.push_back(static_cast<int>(polygons.corners.size()));
+    }
+  }
+  return Connectivity::from_polygons(81, std::move(polygons));
+}
+
+TEST_F(TransferTest, CutsQuadsThatBeginAtAnotherCornerAsTheSourceDoes) {
+  const auto of_source = std::make_shared<Connectivity>(quads(0));
+  const auto rolled = std::make_shared<Connectivity>(quads(1));
+  ASSERT_NE(of_source->triangles, rolled->triangles);
+  const MeshSequence source(of_source, source_.positions(), source_.times(), source_.rest());
+  for (const BlendshapeModel& target : {actor_, mesh_}) {
+    const BlendshapeModel alike(of_source, target.neutral(), target.expressions());
+    const BlendshapeModel other(rolled, target.neutral(), target.expressions());
+    const auto onto = [&](const BlendshapeModel& model) {
+      return transfer(source, {{"actor", model}}, options_).targets.front();
+    };
+    const TransferredTarget result = onto(other), expected = onto(alike);
+    EXPECT_TRUE(frames_of(result) == frames_of(expected));
+    EXPECT_EQ(result.error.de_all, expected.error.de_all);
+    // The polygons are written as the target has them.
+    EXPECT_EQ(result.solution.sequence->connectivity().polygons, rolled->polygons);
+  }
+}
+
 TEST_F(TransferTest, RefusesRegionsOfAnotherMesh) {
   Regions regions = this->regions();
   regions.all_triangles = 7;

@@ -75,7 +75,7 @@ EvaluatedTransfer evaluate_by(const Regions& regions, const EvaluatedTransfer& f
   return result;
 }
 
-std::vector<EvaluationRow> evaluate(const MeshSequence& sequence, const Target& target,
+std::vector<EvaluationRow> evaluate(const MeshSequence& sequence, const Target& given,
                                     const EvaluationOptions& options) {
   check_options(options);
   SourceOptions of_source = options.source;
@@ -92,7 +92,8 @@ std::vector<EvaluationRow> evaluate(const MeshSequence& sequence, const Target& 
   of_solving.edges = edge_sum(options.analysis.compatibility);
 
   const Source source = prepare_source(sequence, of_source);
-  check_target(*source.sequence, target);
+  const MatchedTarget matched(*source.sequence, given);
+  const Target& target = *matched;
   const double steps = static_cast<double>(options.counts.size()) + 1;
   of_solving.progress = part_of(options.progress, 0, 1 / steps);
   const EvaluatedTransfer full = evaluate_full(source, target, of_solving);

@@ -32,11 +32,12 @@ struct EvaluatedTransfer {
   TransferError error;
 };
 
-/// The transfer by all triangles. \pre check_target() Throws as solve().
+/// The transfer by all triangles. \pre a MatchedTarget. Throws as solve().
 EvaluatedTransfer evaluate_full(const Source& source, const Target& target,
                                 const SolveOptions& options = {});
 
-/// The transfer by regions, beside the one by all triangles. \pre check_target() Throws as solve().
+/// The transfer by regions, beside the one by all triangles. \pre a MatchedTarget. Throws as
+/// solve().
 EvaluatedTransfer evaluate_by(const Regions& regions, const EvaluatedTransfer& full,
                               const Source& source, const Target& target,
                               const SolveOptions& options = {});
@@ -60,7 +61,7 @@ struct EvaluationOptions {
 };
 
 /// The paper's Table I: a row for each number of components, and one by all triangles, which is the
-/// last. Throws what prepare_source(), check_target(), analyse() and solve() throw.
+/// last. Throws what prepare_source(), MatchedTarget(), analyse() and solve() throw.
 std::vector<EvaluationRow> evaluate(const MeshSequence& source, const Target& target,
                                     const EvaluationOptions& options = {});
 

@@ -182,18 +182,26 @@ bool solves_for_vertices(const BlendshapeModel& target, Space space) {
   return space == Space::vertex || target.expressions().size() == 0;
 }
 
-void check_target(const FrameSource& source, const Target& target) {
-  const BlendshapeModel& model = target.model;
+MatchedTarget::MatchedTarget(const FrameSource& source, Target target)
+    : target_(std::move(target)) {
+  const BlendshapeModel& model = target_.model;
   if (model.vertices() != source.vertices()) {
-    throw MismatchError(target.name + ": " + std::to_string(model.vertices()) +
+    throw MismatchError(target_.name + ": " + std::to_string(model.vertices()) +
                         " vertices, expected " + std::to_string(source.vertices()) +
                         " as in the source");
   }
   const int face = first_different_face(source.connectivity(), model.connectivity());
   if (face >= 0) {
-    throw MismatchError(target.name + ": face " + std::to_string(face) +
+    throw MismatchError(target_.name + ": face " + std::to_string(face) +
                         " is not the source's; source and target need the same faces");
   }
+  if (model.triangles() == source.triangles()) return;
+  auto connectivity = std::make_shared<Connectivity>(model.connectivity());
+  connectivity->triangles = source.triangles();
+  connectivity->polygon_of_triangle = source.connectivity().polygon_of_triangle;
+  own_ = std::make_unique<BlendshapeModel>(std::move(connectivity), model.neutral(),
+                                           model.expressions());
+  target_.model = *own_;
 }
 
 PlacedSource placed_at(const Target& target, const Source& source, const SolveOptions& options) {

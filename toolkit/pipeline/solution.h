@@ -92,7 +92,7 @@ struct PlacedSource {
 /// vertices that triangles use, so that unit, place and axes are the target's; bit by bit the
 /// source itself where both are equal. With Axes::none it is not turned. Notes a mirrored target
 /// under its name. Throws OptionError (Topic::undetermined_axes) where the rest poses leave the
-/// rotation open. \pre check_target()
+/// rotation open. \pre a MatchedTarget
 PlacedSource placed_at(const Target& target, const Source& source,
                        const SolveOptions& options = {});
 
@@ -118,14 +118,25 @@ struct Solution {
 /// True for the vertex space, and where a target has no expressions to solve for.
 bool solves_for_vertices(const BlendshapeModel& target, Space space);
 
-/// Throws MismatchError unless the target has the source's vertices and faces.
-void check_target(const FrameSource& source, const Target& target);
+/// A target on the triangles of a source: polygons that the target's file begins at another corner
+/// are cut along the source's diagonals.
+class MatchedTarget {
+ public:
+  /// Throws MismatchError unless the target has the source's vertices and faces.
+  MatchedTarget(const FrameSource& source, Target target);
+
+  const Target& operator*() const { return target_; }
+
+ private:
+  std::unique_ptr<const BlendshapeModel> own_;  // null where the triangles are the same
+  Target target_;
+};
 
 /// Solves on the selected triangles in blendshape or vertex space; in vertex space closed_seams()
 /// stay closed. Notes, under the target's name, expressions that the triangles do not or hardly
 /// show (Topic::poor_condition where they do not tell them apart), triangles without area or that a
 /// seam collapses, and a source whose neutral is not known and whose rest pose does not look like
-/// it (Topic::unneutral_rest). \pre check_target(); the source is placed_at() the target
+/// it (Topic::unneutral_rest). \pre the target is a MatchedTarget, the source is placed_at() it
 ///
 /// Throws OptionError (Topic::no_expressions, Topic::anchor_vertex, Topic::held_anchor) and what
 /// BlendshapeTransfer, closed_seams(), VertexTransfer, reading the source and FrameStore throw.

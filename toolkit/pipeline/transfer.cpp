@@ -115,10 +115,11 @@ bool decomposes(const TransferOptions& options) {
   return !options.full && std::holds_alternative<std::monostate>(options.given);
 }
 
-TransferResult transfer(const FrameSource& sequence, const std::vector<Target>& targets,
+TransferResult transfer(const FrameSource& sequence, const std::vector<Target>& given,
                         const TransferOptions& options) {
   check_options(options);
-  for (const Target& target : targets) check_target(sequence, target);
+  std::vector<MatchedTarget> targets;
+  for (const Target& target : given) targets.emplace_back(sequence, target);
   const Source source = source_of(sequence, options);
   Choice choice = choose(source, options);
   const bool give_back = !source.motion.empty() && options.head_motion == RemovedMotion::keep;
@@ -135,25 +136,26 @@ TransferResult transfer(const FrameSource& sequence, const std::vector<Target>& 
         part_of(options.progress, first + (1 - first) * static_cast<double>(t) / count,
                 first + (1 - first) * static_cast<double>(t + 1) / count);
     of_solving.progress = part_of(progress, 0, kSolveShare);
-    const PlacedSource placed = placed_at(targets[t], source, of_solving);
+    const Target& target = *targets[t];
+    const PlacedSource placed = placed_at(target, source, of_solving);
     std::optional<Regions> regions;
-    if (choice.regions) regions = (*choice.completion)(*choice.regions, targets[t], of_solving);
+    if (choice.regions) regions = (*choice.completion)(*choice.regions, target, of_solving);
     const Selection selection = regions ? selection_of(*regions) : whole(*placed.source.sequence);
-    Solution solution = solve(placed.source, targets[t], selection, of_solving);
+    Solution solution = solve(placed.source, target, selection, of_solving);
     TransferError error =
         transfer_error(*placed.source.sequence, *solution.sequence, selection.triangles,
                        {.edges = of_solving.edges,
                         .threads = options.threads,
                         .progress = part_of(progress, kSolveShare, 1)});
-    note_usability(targets[t], error, options);
+    note_usability(target, error, options);
     if (give_back) solution.sequence = with_head_motion(solution.sequence, placed.source.motion);
     result.targets.push_back(
         {std::move(solution), std::move(regions), placed.similarity, std::move(error)});
   }
   result.head_motion = source.head_motion;
   result.regions = std::move(choice.regions);
-  for (const TransferredTarget& target : result.targets) {
-    if (target.regions) take_over(*target.regions, *result.regions, sequence.triangles());
+  for (const TransferredTarget& each : result.targets) {
+    if (each.regions) take_over(*each.regions, *result.regions, sequence.triangles());
   }
   result.components = std::move(choice.components);
   result.region_seconds = choice.seconds;

@@ -81,7 +81,7 @@ bool decomposes(const TransferOptions& options);
 /// Notes a result that is likely not usable, because much of the deformation is missing or many
 /// triangles are flipped (Topic::poor_condition where there are regions).
 ///
-/// Throws what prepare_source(), check_target(), analyse(), analysis_of(), check_regions(),
+/// Throws what prepare_source(), MatchedTarget(), analyse(), analysis_of(), check_regions(),
 /// choose_regions() and solve() throw; Cancelled. A target that does not fit is refused before
 /// anything is computed.
 TransferResult transfer(const FrameSource& source, const std::vector<Target>& targets,

@@ -187,13 +187,12 @@ auto apart_from(std::vector<std::string>& notes, const Work& work) {
   return result;
 }
 
-ReportedTransfer transferred(RunSteps& steps, const NamedData& target, RunSteps::Found& main,
+ReportedTransfer transferred(RunSteps& steps, const Target& to, RunSteps::Found& main,
                              const std::vector<int>& counts, std::vector<std::string>& notes,
                              const Progress& progress) {
-  const BlendshapeModel& model = std::get<ModelData>(target.data).model.average();
-  const Target to{target.name, model};
+  const BlendshapeModel& model = to.model;
   ReportedTransfer transfer;
-  transfer.target = short_name(target.name);
+  transfer.target = short_name(to.name);
   EvaluatedTransfer full =
       apart_from(notes, [&] { return steps.full(to, part_of(progress, 0, 0.1)); });
   main.regions = steps.completed(main.regions, to);
@@ -260,14 +259,15 @@ ReportStudy study(const NamedData& run, const std::vector<int>& counts, const Pr
   result.moved_head = !steps.source().motion.empty();
   result.sequence = MeshSequence(*steps.source().sequence);
   const NamedData* target = call.inputs.contains("target") ? &target_of(call, run, log) : nullptr;
+  std::optional<MatchedTarget> matched;
   if (target) {
-    check_target(result.sequence,
-                 {target->name, std::get<ModelData>(target->data).model.average()});
+    matched.emplace(result.sequence,
+                    Target{target->name, std::get<ModelData>(target->data).model.average()});
   }
   const double found_at = target ? 0.3 : 1;
   auto found = steps.regions_as_run(part_of(progress, 0, found_at));
   if (target) {
-    result.transfer = transferred(steps, *target, found, all_counts(counts, call.parameters),
+    result.transfer = transferred(steps, **matched, found, all_counts(counts, call.parameters),
                                   result.notes, part_of(progress, found_at, 1));
   }
   result.regions = std::move(found.regions);
