@@ -68,13 +68,18 @@ OpenSequence open_driven(const ModelSpec& spec, const SequenceSource& source) {
   }
   if (source.weights) open.files.push_back(*source.weights);
   const fs::path& driver = open.files.back();
-  const WeightTrack track = source.weights ? read_weights(driver) : read_fit(driver).performance();
+  WeightTrack track = source.weights ? read_weights(driver) : read_fit(driver).performance();
   const auto frames = static_cast<int>(track.weights.rows());
   const std::vector<int> chosen = selected_frames(source.frames, frames);
   const std::vector<std::string>& expressions = person->expressions().names;
   open.notes = match_notes(driver, spec.path, match_weights(track, expressions));
-  Eigen::MatrixXd weights = weights_of(driver, track, expressions)(chosen, Eigen::all);
   const Eigen::VectorXd times = track.times.size() > 0 ? track.times : frame_times(frames, source);
+  // There may be many frames: no more than one copy of what is not needed again.
+  if (static_cast<int>(chosen.size()) < frames) {
+    track.weights = Eigen::MatrixXd(track.weights(chosen, Eigen::all));
+  }
+  Eigen::MatrixXd weights = weights_of(driver, track, expressions);
+  track.weights.resize(0, 0);
   open.frames =
       std::make_shared<const Animation>(std::move(person), std::move(weights), times(chosen));
   return open;
