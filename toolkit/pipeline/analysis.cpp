@@ -3,7 +3,10 @@
 #include <algorithm>
 
 #include "toolkit/mesh/stopwatch.h"
+#include "toolkit/mesh/surface_parts.h"
 #include "toolkit/mesh/text.h"
+#include "toolkit/pipeline/cutout.h"
+#include "toolkit/splocs/support_maps.h"
 
 namespace mimetra {
 
@@ -78,7 +81,55 @@ DistanceOptions distance_options(const AnalysisOptions& options) {
   return distances;
 }
 
+void check_inside(const std::vector<bool>& inside, int vertices) {
+  if (inside.empty()) return;
+  if (static_cast<int>(inside.size()) != vertices) {
+    throw std::invalid_argument("inside: " + std::to_string(inside.size()) +
+                                " vertices, expected " + std::to_string(vertices));
+  }
+  if (std::ranges::find(inside, true) == inside.end()) {
+    throw OptionError(Topic::no_vertex_inside, "no vertex is left where regions may lie");
+  }
+}
+
+Components decomposed_inside(const MeshSequence& work, const std::vector<bool>& inside,
+                             DecompositionOptions options) {
+  if (inside.empty()) return decompose(work, options);
+  const Cutout cutout(inside);
+  options.distances = cutout.of(options.distances);
+  if (options.center_weights.size() > 0) {
+    options.center_weights = cutout.of(options.center_weights);
+  }
+  return cutout.put_back(decompose(cutout.of(work), options), work);
+}
+
+/// Components whose centres are inside; one that moves nothing there has none.
+Components centered_inside(Components components, const std::vector<bool>& inside) {
+  if (inside.empty()) return components;
+  Eigen::VectorXd weights(components.vertices());
+  for (VertexIndex v = 0; v < weights.size(); ++v) weights[v] = inside[v];
+  for (int k = 0; k < components.count(); ++k) {
+    VertexIndex& center = components.centers[k];
+    if (center < 0 || inside[center]) continue;
+    center = strongest_vertex(vertex_energies(components.displacements.row(k)), weights);
+  }
+  return components;
+}
+
 }  // namespace
+
+Eigen::VectorXd part_weights(const Positions& rest, const Triangles& triangles,
+                             const std::vector<bool>& inside, Welding welding) {
+  const SurfaceParts parts = surface_parts(rest, triangles, weld_of(rest, welding));
+  const Eigen::VectorXd areas = vertex_areas(rest, triangles);
+  Eigen::VectorXd of_parts = Eigen::VectorXd::Zero(parts.count());
+  for (VertexIndex v = 0; v < areas.size(); ++v) {
+    if (inside.empty() || inside[v]) of_parts[parts.of_vertex[v]] += areas[v];
+  }
+  const double largest = of_parts.maxCoeff();
+  if (!(largest > 0)) return {};
+  return (of_parts / largest)(parts.of_vertex);
+}
 
 SurfaceDistances distances_along(const Positions& rest, const Triangles& triangles,
                                  const DistanceOptions& options) {
@@ -116,6 +167,7 @@ Analysis analyse(const Source& source, const AnalysisOptions& options) {
                                                   " components asked for, the mesh has " +
                                                   std::to_string(work.vertices()) + " vertices");
   }
+  check_inside(options.inside, work.vertices());
   note_parting(work, options);
   SurfaceDistances distances =
       distances_along(work.rest(), work.triangles(), distance_options(options));
@@ -128,11 +180,15 @@ Analysis analyse(const Source& source, const AnalysisOptions& options) {
     decomposition.tolerance = 0;
     decomposition.sign_rule = SignRule::literal;
   }
+  if (!reference) {
+    decomposition.center_weights = part_weights(work.rest(), work.triangles(), options.inside,
+                                                options.distances.welding);
+  }
   decomposition.distances = distances;
   decomposition.threads = options.threads;
   decomposition.progress = options.progress;
-  Components components = decompose(work, decomposition);
-  return {std::move(components), std::move(distances), stopwatch.seconds()};
+  Components components = decomposed_inside(work, options.inside, decomposition);
+  return {std::move(components), std::move(distances), options.inside, stopwatch.seconds()};
 }
 
 Analysis analysis_of(const GivenComponents& given, const FrameSource& sequence,
@@ -155,7 +211,8 @@ Analysis analysis_of(const GivenComponents& given, const FrameSource& sequence,
   }
   SurfaceDistances distances =
       distances_along(components.rest, components.triangles, distance_options(options));
-  return {components, std::move(distances), 0};
+  check_inside(options.inside, components.vertices());
+  return {centered_inside(components, options.inside), std::move(distances), options.inside, 0};
 }
 
 }  // namespace mimetra

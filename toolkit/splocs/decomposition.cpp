@@ -38,6 +38,14 @@ void require_valid(double d_min, double d_max) {
               "; 0 <= d_min < d_max is needed");
 }
 
+void require_valid(const Eigen::VectorXd& center_weights, int vertices) {
+  const bool sound = center_weights.size() == vertices && center_weights.allFinite() &&
+                     center_weights.minCoeff() >= 0 && center_weights.maxCoeff() > 0;
+  require(center_weights.size() == 0 || sound,
+          "center_weights: one finite weight for each of " + std::to_string(vertices) +
+              " vertices is needed, none below 0 and one above");
+}
+
 void require_decomposable(const MeshSequence& sequence, int count) {
   const int coordinates = 3 * sequence.vertices();
   if (count > coordinates) {
@@ -119,7 +127,8 @@ void iterate(Components& result, Motion motion, Start start, SupportMaps support
 /// them zero it tells nothing, and both are cleared.
 void finish(Components& result) {
   for (int k = 0; k < result.count(); ++k) {
-    const VertexIndex center = strongest_vertex(vertex_energies(result.displacements.row(k)));
+    const VertexIndex center = strongest_vertex(vertex_energies(result.displacements.row(k)),
+                                                result.options.center_weights);
     const bool alive = center >= 0 && !result.weights.col(k).isZero(0);
     result.centers.push_back(alive ? center : -1);
     if (alive) continue;
@@ -134,6 +143,7 @@ void finish(Components& result) {
 Components decompose(const MeshSequence& sequence, const DecompositionOptions& options) {
   require_valid(options);
   require_decomposable(sequence, options.count);
+  require_valid(options.center_weights, sequence.vertices());
   fix_product_blocking();
   Components result;
   result.rest = sequence.rest();
@@ -157,7 +167,7 @@ Components decompose(const MeshSequence& sequence, const DecompositionOptions& o
   of_start.progress = part_of(options.progress, 0, kStartShare);
   Start start = greedy_start(motion.X, support, of_start);
   iterate(result, std::move(motion), std::move(start),
-          SupportMaps(support, options.count, sequence.vertices()),
+          SupportMaps(support, options.count, sequence.vertices(), options.center_weights),
           part_of(options.progress, kStartShare, 1));
   finish(result);
   report_progress(options.progress, 1);

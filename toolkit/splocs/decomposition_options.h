@@ -58,6 +58,9 @@ struct DecompositionOptions {
   /// The start is in double precision in any case; single moves components by about 1e-6 of
   /// themselves.
   IterationPrecision precision = IterationPrecision::double_precision;
+  /// How much the motion of each vertex counts where a component's centre is chosen (N, >= 0): a
+  /// centre is where weight times squared motion is largest. Empty: all alike, as in the paper.
+  Eigen::VectorXd center_weights = {};
   /// Distances along the rest pose; by default SurfaceDistances of its exactly welded vertices.
   DistanceFunction distances = {};
   /// 0 for all there are; the result does not depend on it.

@@ -8,12 +8,14 @@
 
 namespace mimetra {
 
-VertexIndex strongest_vertex(const Eigen::Ref<const Eigen::VectorXd>& energies) {
+VertexIndex strongest_vertex(const Eigen::Ref<const Eigen::VectorXd>& energies,
+                             const Eigen::VectorXd& weights) {
   VertexIndex strongest = -1;
   double largest = 0;
   for (VertexIndex v = 0; v < energies.size(); ++v) {
-    if (energies[v] > largest) {
-      largest = energies[v];
+    const double energy = weights.size() > 0 ? weights[v] * energies[v] : energies[v];
+    if (energy > largest) {
+      largest = energy;
       strongest = v;
     }
   }
@@ -40,8 +42,10 @@ SupportFunction support_function(DistanceFunction distances, int vertices, doubl
   };
 }
 
-SupportMaps::SupportMaps(SupportFunction support, int components, int vertices)
+SupportMaps::SupportMaps(SupportFunction support, int components, int vertices,
+                         Eigen::VectorXd center_weights)
     : support_(std::move(support)),
+      center_weights_(std::move(center_weights)),
       centers_(components, -1),
       maps_(Frames::Ones(components, vertices)) {}
 
@@ -55,7 +59,7 @@ void SupportMaps::follow(const VertexBlocks<Scalar>& components) {
       energies.segment(components.first(b), components.size(b)) =
           components.by_vertex(components[b], k).rowwise().squaredNorm().template cast<double>();
     }
-    const VertexIndex center = strongest_vertex(energies);
+    const VertexIndex center = strongest_vertex(energies, center_weights_);
     if (center < 0 || center == centers_[k]) continue;
     centers_[k] = center;
     moved.push_back(k);
