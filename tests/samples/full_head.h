@@ -110,8 +110,7 @@ inline FullHead full_head(const BlendshapeModel& face, const Eigen::MatrixXd& we
     }
   };
   const auto placed = [&](Shape part) {
-    part.positions =
-        (places.millimetre * part.positions).rowwise() + places.mouth.transpose();
+    part.positions = (places.millimetre * part.positions).rowwise() + places.mouth.transpose();
     return part;
   };
   for (const bool lower : {false, true}) {

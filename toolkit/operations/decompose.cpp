@@ -16,10 +16,11 @@ struct DecomposeCall {
   SourceOptions source = {};
 };
 
-BoundParameters<DecomposeCall> decompose_parameters(const MeshSequence* sequence = nullptr) {
+BoundParameters<DecomposeCall> decompose_parameters(const FieldSequence* fields = nullptr) {
+  const FrameSource* sequence = fields ? fields->frames.get() : nullptr;
   BoundParameters<DecomposeCall> list;
   return list.add(&DecomposeCall::analysis, count_parameters(DecomposeCall{}.analysis))
-      .add(&DecomposeCall::analysis, analysis_parameters())
+      .add(&DecomposeCall::analysis, analysis_parameters(fields))
       .add(&DecomposeCall::source, rest_parameters(sequence))
       .add(&DecomposeCall::source, alignment_parameters(sequence));
 }
@@ -40,7 +41,8 @@ Table weight_table(const Components& components, const Eigen::VectorXd& times) {
 
 Outcome run_decompose(const Invocation& invocation) {
   const MeshSequence& sequence = invocation.sequence("sequence");
-  DecomposeCall call = decompose_parameters(&sequence).read(invocation.parameters);
+  DecomposeCall call =
+      decompose_parameters(&invocation.get<FieldSequence>("sequence")).read(invocation.parameters);
   call.analysis.threads = invocation.threads;
   call.analysis.progress = invocation.progress;
   call.analysis.notes = warnings_of(invocation);
@@ -93,6 +95,7 @@ Operation decompose_operation() {
   operation.name = "decompose";
   operation.summary = "Sparse localized deformation components of a sequence";
   operation.inputs = {{"sequence", DataKind::sequence, "sequence to decompose"}};
+  operation.inputs.front().fields = true;
   operation.outputs = {{"out", DataKind::components, "the components"},
                        {"weights-out", DataKind::table, "weights over time", true}};
   operation.parameters = decompose_parameters().declared();

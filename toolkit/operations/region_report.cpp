@@ -13,7 +13,9 @@ Json report_of(const Regions& regions) {
                     {"radius", region.radius},
                     {"vertices", region.vertices.size()},
                     {"energy_share", region.energy_share},
-                    {"component", region.component}});
+                    {"component", region.component},
+                    {"surface_component", region.surface_part},
+                    {"surface_share", region.surface_share}});
   }
   return {{"regions", list},
           {"vertices", regions.vertex_count()},

@@ -1,6 +1,8 @@
 #include "toolkit/pipeline/analysis.h"
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 
 #include "toolkit/mesh/stopwatch.h"
 #include "toolkit/mesh/surface_parts.h"
@@ -97,9 +99,7 @@ Components decomposed_inside(const MeshSequence& work, const std::vector<bool>& 
   if (inside.empty()) return decompose(work, options);
   const Cutout cutout(inside);
   options.distances = cutout.of(options.distances);
-  if (options.center_weights.size() > 0) {
-    options.center_weights = cutout.of(options.center_weights);
-  }
+  if (!options.parts.empty()) options.parts.of_vertex = cutout.of(options.parts.of_vertex);
   return cutout.put_back(decompose(cutout.of(work), options), work);
 }
 
@@ -118,17 +118,18 @@ Components centered_inside(Components components, const std::vector<bool>& insid
 
 }  // namespace
 
-Eigen::VectorXd part_weights(const Positions& rest, const Triangles& triangles,
-                             const std::vector<bool>& inside, Welding welding) {
+PartWeights part_weights(const Positions& rest, const Triangles& triangles,
+                         const std::vector<bool>& inside, Welding welding) {
   const SurfaceParts parts = surface_parts(rest, triangles, weld_of(rest, welding));
   const Eigen::VectorXd areas = vertex_areas(rest, triangles);
-  Eigen::VectorXd of_parts = Eigen::VectorXd::Zero(parts.count());
+  std::vector<double> of_parts(parts.count(), 0);
   for (VertexIndex v = 0; v < areas.size(); ++v) {
     if (inside.empty() || inside[v]) of_parts[parts.of_vertex[v]] += areas[v];
   }
-  const double largest = of_parts.maxCoeff();
-  if (!(largest > 0)) return {};
-  return (of_parts / largest)(parts.of_vertex);
+  const double largest = std::ranges::max(of_parts);
+  if (parts.count() == 1 || !(largest > 0)) return {};
+  for (double& area : of_parts) area /= largest;
+  return {parts.of_vertex, of_parts};
 }
 
 SurfaceDistances distances_along(const Positions& rest, const Triangles& triangles,
@@ -157,6 +158,21 @@ SupportRange support_range(const Length& d_min, const Length& d_max, double long
                                               readable(range.d_max));
 }
 
+int component_count(const FrameSource& sequence, const AnalysisOptions& options) {
+  const int asked = options.decomposition.count;
+  if (options.compatibility == Compatibility::splocs2013) return asked;
+  const double reach = options.d_min.in(sequence.extent());
+  const double disc = std::numbers::pi * reach * reach;
+  const SurfaceParts parts = surface_parts(sequence.rest(), sequence.triangles());
+  double discs = 0;
+  for (const double area : parts.areas) discs += std::max(1.0, std::ceil(area / disc));
+  double most = std::min(discs * sequence.frames(), 3.0 * sequence.vertices());
+  if (!options.inside.empty()) {
+    most = std::min(most, static_cast<double>(std::ranges::count(options.inside, true)));
+  }
+  return most < asked ? std::max(1, static_cast<int>(most)) : asked;
+}
+
 Analysis analyse(const Source& source, const AnalysisOptions& options) {
   const Stopwatch stopwatch;
   check_options(options);
@@ -166,6 +182,13 @@ Analysis analyse(const Source& source, const AnalysisOptions& options) {
     throw OptionError(Topic::component_count, std::to_string(decomposition.count) +
                                                   " components asked for, the mesh has " +
                                                   std::to_string(work.vertices()) + " vertices");
+  }
+  decomposition.count = component_count(work, options);
+  if (decomposition.count < options.decomposition.count) {
+    note(options.notes, "K = " + std::to_string(options.decomposition.count) + ": " +
+                            std::to_string(work.frames()) + " frames tell at most " +
+                            std::to_string(decomposition.count) +
+                            " components of this surface apart; so many are taken");
   }
   check_inside(options.inside, work.vertices());
   note_parting(work, options);
@@ -181,8 +204,8 @@ Analysis analyse(const Source& source, const AnalysisOptions& options) {
     decomposition.sign_rule = SignRule::literal;
   }
   if (!reference) {
-    decomposition.center_weights = part_weights(work.rest(), work.triangles(), options.inside,
-                                                options.distances.welding);
+    decomposition.parts =
+        part_weights(work.rest(), work.triangles(), options.inside, options.distances.welding);
   }
   decomposition.distances = distances;
   decomposition.threads = options.threads;

@@ -97,7 +97,7 @@ struct AnalysisOptions {
   /// Where components and regions may lie (N), empty for everywhere. What the other vertices do
   /// changes nothing: components are zero there, and no centre or region lies there.
   std::vector<bool> inside = {};
-  /// Its lengths, distances, centre weights, threads and progress are those of the analysis, and its
+  /// Its lengths, distances, part weights, threads and progress are those of the analysis, and its
   /// sign rule and tolerance those of the compatibility where there is one.
   DecompositionOptions decomposition = {.count = 30};
   /// Its threads and notes are those of the analysis.
@@ -123,18 +123,23 @@ struct Analysis {
   double seconds = 0;
 };
 
-/// Weights of a decomposition's centres: the area of the connected part of the surface that each
-/// vertex lies on, of which only vertices `inside` (N, or empty) count, as a share of the largest
-/// (N). What moves a tooth then counts as little as a tooth is of the skin, however dense its mesh.
-/// Empty where nothing has area.
-Eigen::VectorXd part_weights(const Positions& rest, const Triangles& triangles,
-                             const std::vector<bool>& inside = {},
-                             Welding welding = Welding::exact);
+/// Connected parts of a surface, each weighing its area as a share of the largest part's, of which
+/// only vertices `inside` (N, or empty) count: what moves a tooth counts as little as a tooth is of
+/// the skin, however dense its mesh. Empty where there is one part, or nothing has area.
+PartWeights part_weights(const Positions& rest, const Triangles& triangles,
+                         const std::vector<bool>& inside = {}, Welding welding = Welding::exact);
+
+/// How many of the components asked for are made. Within d_min of its centre a component may move
+/// everything, so that F frames tell F components apart there; of the surface there are so many
+/// such discs. More components would die, or repeat others. A compatibility takes what is asked
+/// for.
+int component_count(const FrameSource& sequence, const AnalysisOptions& options);
 
 /// Decomposes a source, all frames of which are in memory meanwhile; but for a compatibility that
-/// decides otherwise, centres are chosen by part_weights(). Notes vertices that are welded at rest
-/// and part later. Throws OptionError (Topic::component_count, Topic::support_range,
-/// Topic::no_vertex_inside) and what decompose() throws.
+/// decides otherwise, its parts count by part_weights(). Notes vertices that are welded at rest
+/// and part later, and where fewer components are made than were asked for. Throws OptionError
+/// (Topic::component_count, Topic::support_range, Topic::no_vertex_inside) and what decompose()
+/// throws.
 Analysis analyse(const Source& source, const AnalysisOptions& options = {});
 
 /// Components of an earlier run.

@@ -32,8 +32,9 @@ MeshSequence Cutout::of(const MeshSequence& whole) const {
       triangles.push_back(t);
     }
   }
-  const Triangles kept = whole.triangles()(triangles, Eigen::all).unaryExpr(
-      [this](VertexIndex v) { return position_[v]; });
+  const Triangles kept = whole.triangles()(triangles, Eigen::all).unaryExpr([this](VertexIndex v) {
+    return position_[v];
+  });
   return {Connectivity::from_triangles(vertices(), kept), gathered(whole.positions(), kept_),
           whole.times(), Positions(whole.rest()(kept_, Eigen::all))};
 }
@@ -46,13 +47,15 @@ DistanceFunction Cutout::of(DistanceFunction distances) const {
   };
 }
 
-Eigen::VectorXd Cutout::of(const Eigen::VectorXd& values) const {
-  return values(kept_);
+std::vector<int> Cutout::of(const std::vector<int>& values) const {
+  std::vector<int> kept;
+  for (const VertexIndex v : kept_) kept.push_back(values[v]);
+  return kept;
 }
 
 Components Cutout::put_back(Components components, const MeshSequence& whole) const {
-  const Frames displacements =
-      std::exchange(components.displacements, Frames::Zero(components.count(), whole.rest().size()));
+  const Frames displacements = std::exchange(components.displacements,
+                                             Frames::Zero(components.count(), whole.rest().size()));
   const Eigen::MatrixXd support = std::exchange(
       components.support, Eigen::MatrixXd::Ones(components.count(), whole.vertices()));
   for (std::size_t i = 0; i < kept_.size(); ++i) {
@@ -64,7 +67,7 @@ Components Cutout::put_back(Components components, const MeshSequence& whole) co
   }
   components.rest = whole.rest();
   components.triangles = whole.triangles();
-  components.options.center_weights = {};
+  components.options.parts = {};
   return components;
 }
 

@@ -19,7 +19,7 @@ class Cutout {
   /// Distances between kept vertices, of `distances` between all of them.
   DistanceFunction of(DistanceFunction distances) const;
   /// The kept entries (n) of one value a vertex (N).
-  Eigen::VectorXd of(const Eigen::VectorXd& values) const;
+  std::vector<int> of(const std::vector<int>& values) const;
   /// Components of the kept vertices as components of the whole mesh: zero outside, where the
   /// support maps are 1.
   Components put_back(Components components, const MeshSequence& whole) const;

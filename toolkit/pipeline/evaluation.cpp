@@ -88,11 +88,12 @@ std::vector<EvaluationRow> evaluate(const MeshSequence& sequence, const Target& 
     const Stopwatch stopwatch;
     of_analysis.decomposition.count = k;
     of_analysis.progress = part_of(progress, 0, kAnalysisShare);
-    const Regions regions = choose_regions(analyse(source, of_analysis), of_regions);
+    const Analysis analysis = analyse(source, of_analysis);
+    const Regions regions = choose_regions(analysis, of_regions);
     const double seconds = stopwatch.seconds();
     of_solving.progress = part_of(progress, kAnalysisShare, 1);
     rows.push_back(evaluate_by(regions, full, source, target, of_solving).row);
-    rows.back().k = k;
+    rows.back().k = analysis.components.count();
     rows.back().decompose_seconds = seconds;
   }
   rows.push_back(full.row);

@@ -116,7 +116,8 @@ class RunSteps {
   }
 
   AnalysisOptions analysis_options(const Progress& progress) const {
-    BoundParameters<AnalysisOptions> list = analysis_parameters();
+    BoundParameters<AnalysisOptions> list =
+        analysis_parameters(&call_.get<FieldSequence>("source"));
     if (call_.inputs.contains("target")) list.add(analysis_rest_parameters(&sequence_));
     AnalysisOptions options = list.read(call_.parameters);
     options.threads = call_.threads;

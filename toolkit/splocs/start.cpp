@@ -32,7 +32,8 @@ class Residual {
       : X_(X),
         start_{{}, {options.count, X.vertices()}, Eigen::MatrixXd::Zero(X.rows(), options.count)},
         energies_(X.vertices()),
-        center_weights_(options.center_weights),
+        parts_(options.parts),
+        center_weights_(parts_.of_vertices()),
         threads_(options.threads) {
     parallel_for(X.count(), threads_, [this](int b) {
       start_.components[b] = start_.components.zero_block(b);
@@ -65,8 +66,13 @@ class Residual {
     return residual;
   }
 
-  /// Adds the component that the weights `w` explain best where `support` is below 1.
-  void explain(VertexIndex center, const Eigen::VectorXd& w, const Eigen::VectorXd& support) {
+  /// Adds the component that the weights `w` explain best where `support` is below 1, and on other
+  /// parts of the surface as far as they count for less than the largest.
+  void explain(VertexIndex center, const Eigen::VectorXd& w, Eigen::VectorXd support) {
+    for (std::size_t v = 0; v < parts_.of_vertex.size(); ++v) {
+      const int part = parts_.of_vertex[v];
+      if (part != parts_.of_vertex[center]) support[v] = parts_.weights[part];
+    }
     const int k = size();
     const double ww = w.squaredNorm();
     const Eigen::VectorXd overlap = start_.weights.leftCols(k).transpose() * w;
@@ -94,7 +100,8 @@ class Residual {
   const VertexBlocks<double>& X_;
   Start start_;
   Eigen::VectorXd energies_;
-  const Eigen::VectorXd& center_weights_;
+  const PartWeights& parts_;
+  Eigen::VectorXd center_weights_;
   int threads_;
   double nothing_left_ = 0;
 };

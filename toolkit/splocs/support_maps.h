@@ -28,7 +28,7 @@ SupportFunction support_function(DistanceFunction distances, int vertices, doubl
 /// The support maps of K components, which follow their components' strongest vertices.
 class SupportMaps {
  public:
-  /// `center_weights` as in DecompositionOptions.
+  /// `center_weights` as of strongest_vertex().
   SupportMaps(SupportFunction support, int components, int vertices,
               Eigen::VectorXd center_weights);
 
