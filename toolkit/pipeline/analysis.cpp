@@ -183,6 +183,7 @@ Analysis analyse(const Source& source, const AnalysisOptions& options) {
                                                   " components asked for, the mesh has " +
                                                   std::to_string(work.vertices()) + " vertices");
   }
+  check_inside(options.inside, work.vertices());
   decomposition.count = component_count(work, options);
   if (decomposition.count < options.decomposition.count) {
     note(options.notes, "K = " + std::to_string(options.decomposition.count) + ": " +
@@ -190,7 +191,6 @@ Analysis analyse(const Source& source, const AnalysisOptions& options) {
                             std::to_string(decomposition.count) +
                             " components of this surface apart; so many are taken");
   }
-  check_inside(options.inside, work.vertices());
   note_parting(work, options);
   SurfaceDistances distances =
       distances_along(work.rest(), work.triangles(), distance_options(options));
