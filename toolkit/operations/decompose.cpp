@@ -39,6 +39,16 @@ Table weight_table(const Components& components, const Eigen::VectorXd& times) {
   return table;
 }
 
+/// The sequence as far as it was decomposed: vertices that are not `inside` stay at rest.
+MeshSequence moving_inside(const MeshSequence& sequence, const std::vector<bool>& inside) {
+  if (inside.empty()) return sequence;
+  Frames frames = sequence.positions();
+  for (VertexIndex v = 0; v < sequence.vertices(); ++v) {
+    if (!inside[v]) frames.middleCols(3 * v, 3).rowwise() = sequence.rest().row(v);
+  }
+  return sequence.with_frames(std::move(frames));
+}
+
 Outcome run_decompose(const Invocation& invocation) {
   const MeshSequence& sequence = invocation.sequence("sequence");
   DecomposeCall call =
@@ -55,8 +65,9 @@ Outcome run_decompose(const Invocation& invocation) {
     return std::pair(std::move(source), std::move(found));
   });
   const Components& components = analysis.components;
-  const DecompositionError error =
-      decomposition_error(MeshSequence(*still.sequence).with_rest(components.rest), components);
+  const DecompositionError error = decomposition_error(
+      moving_inside(MeshSequence(*still.sequence).with_rest(components.rest), analysis.inside),
+      components);
   const auto dead = std::ranges::count(components.centers, -1);
   if (dead > 0) {
     invocation.warn(std::to_string(dead) + " of " + std::to_string(components.count()) +

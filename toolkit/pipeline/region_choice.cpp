@@ -19,11 +19,11 @@ void note_small_parts(Regions& regions, const Notes& notes) {
   }
   if (count == 0) return;
   const bool one = count == 1;
-  regions.notes.push_back(
-      std::to_string(count) + " of " + std::to_string(regions.regions.size()) +
-      (one ? " regions lies" : " regions lie") + " on connected parts of less than " +
-      readable(100 * kSmallPart) + " % of the surface: component " +
-      joined(words_of({parts.begin(), parts.end()}), ", ", " and "));
+  regions.notes.push_back(std::to_string(count) + " of " + std::to_string(regions.regions.size()) +
+                          (one ? " regions lies" : " regions lie") +
+                          " on connected parts of less than " + readable(100 * kSmallPart) +
+                          " % of the surface: component " +
+                          joined(words_of({parts.begin(), parts.end()}), ", ", " and "));
   note(notes, regions.notes.back(), Topic::small_parts);
 }
 

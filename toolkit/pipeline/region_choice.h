@@ -19,8 +19,8 @@ struct RegionChoiceOptions {
   static constexpr auto declared() { return std::tuple(kRadius); }
 };
 
-/// Connected parts of a smaller share of the surface are hardly what a face's regions are meant for:
-/// single teeth, lashes.
+/// Connected parts of a smaller share of the surface are hardly what a face's regions are meant
+/// for: single teeth, lashes.
 constexpr double kSmallPart = 0.02;
 
 /// Regions of an analysis; what find_regions() notes is noted, and regions whose centres lie on a

@@ -226,8 +226,7 @@ Eigen::VectorXd motion_energy(const Components& components) {
 
 Regions find_regions(const Components& components, const RegionOptions& options) {
   require_valid(options);
-  if (!options.inside.empty() &&
-      static_cast<int>(options.inside.size()) != components.vertices()) {
+  if (!options.inside.empty() && static_cast<int>(options.inside.size()) != components.vertices()) {
     throw std::invalid_argument("inside: " + std::to_string(options.inside.size()) +
                                 " vertices, expected " + std::to_string(components.vertices()));
   }

@@ -57,8 +57,8 @@ struct Region {
   std::vector<VertexIndex> vertices;  ///< ascending
   double energy = 0;                  ///< motion energy |w_k|^2 |c_k|^2 of its component(s)
   double energy_share = 0;            ///< share of all motion energy on its vertices
-  /// Connected part of the surface that the centre lies on, 0 for the largest, and that part's share
-  /// of the area; -1 for a region that was read.
+  /// Connected part of the surface that the centre lies on, 0 for the largest, and that part's
+  /// share of the area; -1 for a region that was read.
   int surface_part = -1;
   double surface_share = 0;
 };
