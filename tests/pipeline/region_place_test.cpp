@@ -15,7 +15,7 @@ using testing::Each;
 using testing::HasSubstr;
 using testing::ThrowsMessage;
 
-Source source_of(const MeshSequence& sequence) {
+Source still_source(const MeshSequence& sequence) {
   return prepare_source(sequence, {.head_motion = HeadMotion::none});
 }
 
@@ -31,14 +31,14 @@ AnalysisOptions in_first_half() {
 }
 
 TEST(RegionPlace, HoldsAllCentresAndDisplacements) {
-  const Components components = analyse(source_of(take()), in_first_half()).components;
+  const Components components = analyse(still_source(take()), in_first_half()).components;
   EXPECT_THAT(components.centers, Each(testing::Lt(40)));
   EXPECT_TRUE(components.displacements.rightCols(3 * 41).isZero(0));
   EXPECT_FALSE(components.displacements.leftCols(3 * 40).isZero(0));
 }
 
 TEST(RegionPlace, HoldsAllRegions) {
-  const Analysis analysis = analyse(source_of(take()), in_first_half());
+  const Analysis analysis = analyse(still_source(take()), in_first_half());
   for (const Region& region : choose_regions(analysis).regions) {
     EXPECT_THAT(region.vertices, Each(testing::Lt(40)));
   }
@@ -48,9 +48,9 @@ TEST(RegionPlace, IsNotTouchedByWhatMovesOutside) {
   const MeshSequence sequence = take();
   Frames frames = sequence.positions();
   frames.rightCols(3 * 41) += Frames::Random(frames.rows(), 3 * 41);
-  const Components one = analyse(source_of(sequence), in_first_half()).components;
+  const Components one = analyse(still_source(sequence), in_first_half()).components;
   const Components other =
-      analyse(source_of(sequence.with_frames(frames)), in_first_half()).components;
+      analyse(still_source(sequence.with_frames(frames)), in_first_half()).components;
   EXPECT_TRUE(one.displacements == other.displacements);
   EXPECT_TRUE(one.weights == other.weights);
 }
@@ -58,16 +58,16 @@ TEST(RegionPlace, IsNotTouchedByWhatMovesOutside) {
 TEST(RegionPlace, IsEverywhereWhereItHoldsAllVertices) {
   const MeshSequence sequence = take();
   AnalysisOptions options{.decomposition = {.count = 3}};
-  const Components expected = analyse(source_of(sequence), options).components;
+  const Components expected = analyse(still_source(sequence), options).components;
   options.inside.assign(81, true);
-  EXPECT_TRUE(analyse(source_of(sequence), options).components.displacements ==
+  EXPECT_TRUE(analyse(still_source(sequence), options).components.displacements ==
               expected.displacements);
 }
 
 TEST(RegionPlace, MovesTheCentresOfGivenComponents) {
   const MeshSequence sequence = take();
   const GivenComponents given{
-      "take.h5", analyse(source_of(sequence), {.decomposition = {.count = 5}}).components};
+      "take.h5", analyse(still_source(sequence), {.decomposition = {.count = 5}}).components};
   ASSERT_THAT(given.components.centers, testing::Contains(testing::Ge(40)));
   const Analysis analysis = analysis_of(given, sequence, in_first_half());
   EXPECT_THAT(analysis.components.centers, Each(testing::Lt(40)));
@@ -76,9 +76,10 @@ TEST(RegionPlace, MovesTheCentresOfGivenComponents) {
 TEST(RegionPlace, IsRefusedWithoutVertices) {
   AnalysisOptions options = in_first_half();
   options.inside.assign(81, false);
-  EXPECT_EQ(test::topic_of([&] { analyse(source_of(take()), options); }), Topic::no_vertex_inside);
+  EXPECT_EQ(test::topic_of([&] { analyse(still_source(take()), options); }),
+            Topic::no_vertex_inside);
   options.inside.resize(80);
-  EXPECT_THAT([&] { analyse(source_of(take()), options); },
+  EXPECT_THAT([&] { analyse(still_source(take()), options); },
               ThrowsMessage<std::invalid_argument>(HasSubstr("80 vertices, expected 81")));
 }
 
@@ -104,7 +105,7 @@ MeshSequence plate_and_ball() {
 
 TEST(SmallParts, AreNotedWhereRegionsLieOnThem) {
   Noted noted;
-  const Source source = source_of(plate_and_ball());
+  const Source source = still_source(plate_and_ball());
   AnalysisOptions options{.compatibility = Compatibility::splocs2013,
                           .decomposition = {.count = 2}};
   const Regions regions = choose_regions(analyse(source, options), {.notes = noted.sink()});
@@ -132,7 +133,7 @@ TEST(PartWeights, AreSharesOfTheLargestPart) {
 }
 
 TEST(PartWeights, KeepCentresOffASmallPart) {
-  const Source source = source_of(plate_and_ball());
+  const Source source = still_source(plate_and_ball());
   const Components components = analyse(source, {.decomposition = {.count = 1}}).components;
   EXPECT_LT(components.centers[0], 441);
 }
@@ -143,7 +144,7 @@ TEST(ComponentCount, IsBoundedByWhatFramesTell) {
                           .d_max = Length::share(1),
                           .decomposition = {.count = 60},
                           .notes = noted.sink()};
-  const Source source = source_of(take());
+  const Source source = still_source(take());
   const Components components = analyse(source, options).components;
   // One disc of d_min holds the patch, and there are 8 frames.
   EXPECT_EQ(components.count(), 8);
