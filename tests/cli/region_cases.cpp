@@ -91,10 +91,26 @@ void add_vtp(RegionCases& cases) {
   cases.add("vtp", "all_zero", vtp(225, "roi", "0"), 4, {"no triangle"});
 }
 
+/// What --only and --without name; the file is a list of vertices.
+void add_places(RegionCases& cases) {
+  const auto add = [&cases](const std::string& kind, const std::string& options, int code,
+                            std::vector<std::string> says) {
+    cases.all.push_back({kind, "place", file("set.txt", "225\n"),
+                         "transfer head --weights take.csv head -o x.npy " + options, code,
+                         std::move(says)});
+  };
+  add("unknown_component", "--only component:7", 4, {"component '7'", "there are 0"});
+  add("unknown_group", "--without group:lips", 4, {"group 'lips'", "has none"});
+  add("index_out_of_range", "--only set.txt", 4, {"set.txt", "vertex 225", "0 to 224"});
+  add("nowhere", "--without component:0", 4, {"--only, --without", "no vertex is left"});
+  add("without_regions", "--only component:0 --full", 2, {"--only", "--full"});
+}
+
 }  // namespace
 
 std::vector<BadInput> region_cases() {
   RegionCases cases;
+  add_places(cases);
   for (const std::string extension : {"json", "csv", "txt", "vtp"}) {
     cases.add(extension, "missing", std::function<void(const fs::path&)>(), 3, {"no such file"});
     cases.add(extension, "empty", "", 3, {});

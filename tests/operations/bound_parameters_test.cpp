@@ -297,6 +297,7 @@ std::string refusal_of(Topic topic) {
 
 TEST(CommandTerms, NameTheOptionThatHelps) {
   EXPECT_EQ(refusal_of(Topic::component_count), "-k: something");
+  EXPECT_EQ(refusal_of(Topic::no_vertex_inside), "--only, --without: something");
   EXPECT_EQ(refusal_of(Topic::no_expressions), "something; use --space vertex");
   EXPECT_EQ(refusal_of(Topic::support_range),
             "--d-min: expected less than --d-max, found 0.1 and 0.7");

@@ -84,6 +84,50 @@ TEST(GreedyStart, StopsWhereNothingIsLeft) {
   EXPECT_TRUE(start.weights.rightCols(2).isZero(0));
 }
 
+TEST(GreedyStart, LetsASmallPartGoWithAnother) {
+  // The bumps as three parts that no way joins; the second moves with the first.
+  Bumps bumps;
+  bumps.W.col(1) = bumps.W.col(0);
+  const auto vertices = static_cast<int>(bumps.shape.positions.rows());
+  DecompositionOptions options;
+  options.count = 3;
+  options.parts.weights = {1, 0.001, 0.5};
+  for (int v = 0; v < vertices; ++v) {
+    const double x = bumps.shape.positions(v, 0);
+    options.parts.of_vertex.push_back(x < 10 ? 0 : x < 20 ? 1 : 2);
+  }
+  const VertexBlocks<double> X(Frames(bumps.W * bumps.C));
+  const Start start = greedy_start(X, around_one_bump(bumps), options);
+  EXPECT_EQ(options.parts.of_vertex[start.centers[0]], 0);
+  EXPECT_EQ(options.parts.of_vertex[start.centers[1]], 2);
+  // All but a thousandth of the second part's motion is told by the first component.
+  const Frames whole = bumps.C.row(1), told = start.components.frames().row(0);
+  for (int v = 0; v < vertices; ++v) {
+    if (options.parts.of_vertex[v] != 1) continue;
+    EXPECT_NEAR((told - 0.999 * whole).middleCols(3 * v, 3).norm(), 0, 1e-12);
+  }
+}
+
+TEST(GreedyStart, TakesPartsOfFullWeightAsThePaperDoes) {
+  const Bumps bumps;
+  DecompositionOptions options, weighted;
+  options.count = weighted.count = 3;
+  weighted.parts.weights = {1, 1};
+  for (int v = 0; v < bumps.shape.positions.rows(); ++v) {
+    weighted.parts.of_vertex.push_back(bumps.shape.positions(v, 0) < 10 ? 0 : 1);
+  }
+  const VertexBlocks<double> X(Frames(bumps.W * bumps.C));
+  const Start one = greedy_start(X, around_one_bump(bumps), options);
+  const Start other = greedy_start(X, around_one_bump(bumps), weighted);
+  EXPECT_EQ(one.centers, other.centers);
+  EXPECT_TRUE(one.components.frames() == other.components.frames());
+}
+
+TEST(StrongestVertex, IsWhereWeightTimesEnergyIsLargest) {
+  EXPECT_EQ(strongest_vertex(Eigen::Vector4d(1, 3, 3, 2), Eigen::Vector4d(0, 0.5, 0, 1)), 3);
+  EXPECT_EQ(strongest_vertex(Eigen::Vector4d(1, 3, 3, 2), Eigen::Vector4d::Zero()), -1);
+}
+
 TEST(StrongestVertex, IsTheLowestOfEquals) {
   EXPECT_EQ(strongest_vertex(Eigen::Vector4d(1, 3, 3, 2)), 1);
   EXPECT_EQ(strongest_vertex(Eigen::Vector4d(1, 3, 3 * (1 + 1e-12), 2)), 1);

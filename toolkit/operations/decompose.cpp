@@ -16,10 +16,11 @@ struct DecomposeCall {
   SourceOptions source = {};
 };
 
-BoundParameters<DecomposeCall> decompose_parameters(const MeshSequence* sequence = nullptr) {
+BoundParameters<DecomposeCall> decompose_parameters(const FieldSequence* fields = nullptr) {
+  const FrameSource* sequence = fields ? fields->frames.get() : nullptr;
   BoundParameters<DecomposeCall> list;
   return list.add(&DecomposeCall::analysis, count_parameters(DecomposeCall{}.analysis))
-      .add(&DecomposeCall::analysis, analysis_parameters())
+      .add(&DecomposeCall::analysis, analysis_parameters(fields))
       .add(&DecomposeCall::source, rest_parameters(sequence))
       .add(&DecomposeCall::source, alignment_parameters(sequence));
 }
@@ -38,9 +39,20 @@ Table weight_table(const Components& components, const Eigen::VectorXd& times) {
   return table;
 }
 
+/// The sequence as far as it was decomposed: vertices that are not `inside` stay at rest.
+MeshSequence moving_inside(const MeshSequence& sequence, const std::vector<bool>& inside) {
+  if (inside.empty()) return sequence;
+  Frames frames = sequence.positions();
+  for (VertexIndex v = 0; v < sequence.vertices(); ++v) {
+    if (!inside[v]) frames.middleCols(3 * v, 3).rowwise() = sequence.rest().row(v);
+  }
+  return sequence.with_frames(std::move(frames));
+}
+
 Outcome run_decompose(const Invocation& invocation) {
   const MeshSequence& sequence = invocation.sequence("sequence");
-  DecomposeCall call = decompose_parameters(&sequence).read(invocation.parameters);
+  DecomposeCall call =
+      decompose_parameters(&invocation.get<FieldSequence>("sequence")).read(invocation.parameters);
   call.analysis.threads = invocation.threads;
   call.analysis.progress = invocation.progress;
   call.analysis.notes = warnings_of(invocation);
@@ -53,8 +65,9 @@ Outcome run_decompose(const Invocation& invocation) {
     return std::pair(std::move(source), std::move(found));
   });
   const Components& components = analysis.components;
-  const DecompositionError error =
-      decomposition_error(MeshSequence(*still.sequence).with_rest(components.rest), components);
+  const DecompositionError error = decomposition_error(
+      moving_inside(MeshSequence(*still.sequence).with_rest(components.rest), analysis.inside),
+      components);
   const auto dead = std::ranges::count(components.centers, -1);
   if (dead > 0) {
     invocation.warn(std::to_string(dead) + " of " + std::to_string(components.count()) +
@@ -93,6 +106,7 @@ Operation decompose_operation() {
   operation.name = "decompose";
   operation.summary = "Sparse localized deformation components of a sequence";
   operation.inputs = {{"sequence", DataKind::sequence, "sequence to decompose"}};
+  operation.inputs.front().fields = true;
   operation.outputs = {{"out", DataKind::components, "the components"},
                        {"weights-out", DataKind::table, "weights over time", true}};
   operation.parameters = decompose_parameters().declared();

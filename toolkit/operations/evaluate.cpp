@@ -13,14 +13,15 @@ namespace mimetra {
 
 namespace {
 
-BoundParameters<EvaluationOptions> evaluation_parameters(const MeshSequence* sequence = nullptr) {
+BoundParameters<EvaluationOptions> evaluation_parameters(const FieldSequence* source = nullptr) {
   using Options = EvaluationOptions;
+  const FrameSource* sequence = source ? source->frames.get() : nullptr;
   BoundParameters<Options> list;
   return list.add(&Options::regions, region_parameters())
       .add(&Options::regions, completion_parameters())
       .add("k", Options::kCounts, "numbers of components, one row each")
       .add(&Options::analysis, analysis_rest_parameters(sequence))
-      .add(&Options::analysis, analysis_parameters())
+      .add(&Options::analysis, analysis_parameters(source))
       .add(&Options::source, alignment_parameters(sequence))
       .add(&Options::source, source_rest_parameters(sequence))
       .add(&Options::solving, solving_parameters());
@@ -52,7 +53,8 @@ std::string text_of(const std::vector<EvaluationRow>& rows) {
 Outcome run_evaluate(const Invocation& invocation) {
   const MeshSequence& sequence = invocation.sequence("source");
   const NamedData& target = invocation.input("target");
-  EvaluationOptions options = evaluation_parameters(&sequence).read(invocation.parameters);
+  EvaluationOptions options =
+      evaluation_parameters(&invocation.get<FieldSequence>("source")).read(invocation.parameters);
   options.source = described(options.source, invocation.input("source"));
   options.threads = invocation.threads;
   options.progress = invocation.progress;
@@ -74,9 +76,8 @@ double memory_of_evaluate(const Invocation& invocation) {
   const MeshSequence& sequence = invocation.sequence("source");
   EvaluationOptions options = evaluation_parameters().read(invocation.parameters);
   options.solving.threads = invocation.threads;
-  const auto& source = invocation.input("source");
-  const double analysis = alignment_bytes(sequence, described(options.source, source)) +
-                          analysis_bytes(sequence, *std::ranges::max_element(options.counts));
+  const double analysis = analysis_bytes(invocation, invocation.input("source"),
+                                         *std::ranges::max_element(options.counts));
   const BlendshapeModel& target = invocation.get<ModelData>("target").model.average();
   return std::max(analysis, 2 * solution_bytes(sequence, target, options.solving));
 }
@@ -90,6 +91,7 @@ Operation evaluate_operation() {
   operation.inputs = {
       {"source", DataKind::sequence, "sequence whose deformation is transferred"},
       {"target", DataKind::model, "model (MODEL or MODEL@identity=1.5) or mesh that receives it"}};
+  operation.inputs.front().fields = true;
   operation.outputs = {{"out", DataKind::table, "the table", true}};
   operation.parameters = evaluation_parameters().declared();
   operation.examples = {"evaluate take.npy actor/ -k 10,30,40",

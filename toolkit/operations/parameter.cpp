@@ -239,8 +239,12 @@ std::vector<std::string> Parameters::files() const {
     const Parameter& parameter = *find(name);
     const auto* path = std::get_if<std::string>(&value);
     if (parameter.kind != ParameterKind::file || !path) continue;
-    const auto& words = parameter.choices;
-    if (std::ranges::find(words, *path) == words.end()) paths.push_back(*path);
+    const bool is_word = std::ranges::any_of(parameter.choices, [&](const std::string& word) {
+      const std::size_t colon = word.find(':');
+      return colon == std::string::npos ? word == *path
+                                        : path->starts_with(word.substr(0, colon + 1));
+    });
+    if (!is_word) paths.push_back(*path);
   }
   return paths;
 }

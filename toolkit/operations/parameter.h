@@ -31,7 +31,7 @@ enum class ParameterKind {
   length,        ///< std::string: "0.1" of the rest pose's diameter, or "12abs"
   choice,        ///< std::string, one of `choices`
   text,          ///< std::string
-  file           ///< std::string, a path, or one of `choices`
+  file  ///< std::string, a path, or one of `choices`; "group:NAME" stands for all "group:..."
 };
 
 /// One parameter of an operation: what option parser, help, and the dialogs of hosts are made of.

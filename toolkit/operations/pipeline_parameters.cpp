@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "toolkit/operations/parameter_files.h"
+#include "toolkit/operations/vertex_sets.h"
 #include "toolkit/pipeline/memory.h"
 
 namespace mimetra {
@@ -77,6 +78,31 @@ BoundParameters<DecompositionOptions> decomposition_parameters() {
   return list;
 }
 
+/// Vertices where regions may lie, named by `options` of one name; not read without a sequence.
+BoundParameters<AnalysisOptions> place_parameters(const FieldSequence* sequence) {
+  const auto bound = [sequence](const std::string& name, bool wanted) {
+    return [sequence, name, wanted](const Parameters& parameters, AnalysisOptions& options) {
+      const auto text = parameters.optional_text(name);
+      if (!sequence || !text) return;
+      const std::vector<bool> named = named_vertices(*text, *sequence);
+      if (options.inside.empty()) options.inside.assign(named.size(), true);
+      for (std::size_t v = 0; v < named.size(); ++v) {
+        if (named[v] != wanted) options.inside[v] = false;
+      }
+    };
+  };
+  BoundParameters<AnalysisOptions> list;
+  list.add(vertex_set_parameter(
+               "only",
+               "where components and regions may lie: connected components by size (0 is the "
+               "largest, info lists them), OBJ groups or materials, vertices where a field is not "
+               "zero (all: several between commas), or a vertex list"),
+           bound("only", true))
+      .add(vertex_set_parameter("without", "where none may lie, named as for --only"),
+           bound("without", false));
+  return list;
+}
+
 BoundParameters<BlendshapeTransferOptions> blendshape_parameters() {
   using Options = BlendshapeTransferOptions;
   BoundParameters<Options> list;
@@ -126,6 +152,11 @@ std::string in_command_terms(Topic topic, const std::string& text, const Paramet
       return text + "; use --axes none";
     case Topic::component_count:
       return "-k: " + text;
+    case Topic::no_vertex_inside:
+      return "--only, --without: " + text;
+    case Topic::small_parts:
+      return text +
+             "; --only component:0 keeps to the largest, --without component:N leaves some out";
     case Topic::no_expressions:
       return text + "; use --space vertex";
     case Topic::anchor_vertex:
@@ -183,7 +214,7 @@ BoundParameters<AnalysisOptions> count_parameters(const AnalysisOptions& default
   return list.add(&AnalysisOptions::decomposition, count);
 }
 
-BoundParameters<AnalysisOptions> analysis_parameters() {
+BoundParameters<AnalysisOptions> analysis_parameters(const FieldSequence* sequence) {
   BoundParameters<AnalysisOptions> list;
   list.add("d-min", AnalysisOptions::kMinimum,
            "geodesic distance up to which sparsity costs nothing")
@@ -192,7 +223,8 @@ BoundParameters<AnalysisOptions> analysis_parameters() {
       .add("compat", AnalysisOptions::kCompatibility,
            "splocs2013: follow the reference implementation to the letter; paper: also sum eq. 10 "
            "and 12 over two edges of each triangle")
-      .add(&AnalysisOptions::distances, distance_parameters());
+      .add(&AnalysisOptions::distances, distance_parameters())
+      .add(place_parameters(sequence));
   return list;
 }
 
@@ -266,7 +298,10 @@ double analysis_bytes(const Invocation& invocation, const NamedData& source, int
   const SourceOptions options =
       described(alignment_parameters().read(invocation.parameters), source);
   const FrameSource& frames = *std::get<FieldSequence>(source.data).frames;
-  return alignment_bytes(frames, options) + analysis_bytes(frames, count);
+  AnalysisOptions analysis = analysis_parameters().read(invocation.parameters);
+  analysis.decomposition.count = count;
+  return alignment_bytes(frames, options) +
+         analysis_bytes(frames, component_count(frames, analysis));
 }
 
 Notes warnings_of(const Invocation& invocation) {

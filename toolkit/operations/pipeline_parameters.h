@@ -24,8 +24,9 @@ BoundParameters<SourceOptions> rest_parameters(const FrameSource* sequence = nul
 BoundParameters<DistanceOptions> distance_parameters();
 /// -k, by default as many as the decomposition of `defaults` has.
 BoundParameters<AnalysisOptions> count_parameters(const AnalysisOptions& defaults = {});
-/// All others of a decomposition but for its rest pose, the distances' included.
-BoundParameters<AnalysisOptions> analysis_parameters();
+/// All others of a decomposition but for its rest pose, the distances' included, with --only and
+/// --without, which name vertices of `sequence`.
+BoundParameters<AnalysisOptions> analysis_parameters(const FieldSequence* sequence = nullptr);
 /// --radius, --region and --coverage.
 BoundParameters<RegionChoiceOptions> region_parameters();
 BoundParameters<RegionChoiceOptions> completion_parameters();
@@ -47,8 +48,8 @@ Json json_of(const HeadMotionTaken& motion);
 /// True for the vertex space of --space, and where a target has no expressions to solve for.
 bool solves_for_vertices(const Parameters& parameters, const BlendshapeModel& target);
 
-/// Bytes of the decomposition of a sequence into `count` components, alignment included; 0 for
-/// components that are given.
+/// Bytes of the decomposition of a sequence, of which `count` components are asked for, alignment
+/// included; 0 for components that are given.
 double analysis_bytes(const Invocation& invocation, const NamedData& source, int count);
 
 /// Notes become warnings that name the options which help.

@@ -13,7 +13,9 @@ Json report_of(const Region& region) {
                {"radius", region.radius},
                {"vertices", region.vertices.size()},
                {"energy_share", region.energy_share},
-               {"component", region.component}};
+               {"component", region.component},
+               {"surface_component", region.surface_part},
+               {"surface_share", region.surface_share}};
   if (!region.added_for.empty()) json["added_for"] = region.added_for;
   return json;
 }

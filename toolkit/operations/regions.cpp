@@ -22,13 +22,14 @@ struct RegionsCall {
   static constexpr Option kComponentFields{"component_fields", &RegionsCall::component_fields};
 };
 
-BoundParameters<RegionsCall> regions_parameters(const MeshSequence* sequence = nullptr) {
+BoundParameters<RegionsCall> regions_parameters(const FieldSequence* fields = nullptr) {
+  const FrameSource* sequence = fields ? fields->frames.get() : nullptr;
   BoundParameters<RegionsCall> list;
   return list.add(&RegionsCall::regions, region_parameters())
       .add("component-fields", RegionsCall::kComponentFields,
            "also write support_k and component_k of each region")
       .add(&RegionsCall::analysis, count_parameters())
-      .add(&RegionsCall::analysis, analysis_parameters())
+      .add(&RegionsCall::analysis, analysis_parameters(fields))
       .add(&RegionsCall::source, rest_parameters(sequence))
       .add(&RegionsCall::source, alignment_parameters(sequence));
 }
@@ -68,8 +69,8 @@ std::filesystem::path series_of(const Invocation& invocation) {
 
 Outcome run_regions(const Invocation& invocation) {
   if (invocation.wants("paraview")) series_of(invocation);
-  const MeshSequence& sequence = invocation.sequence("sequence");
-  RegionsCall call = regions_parameters(&sequence).read(invocation.parameters);
+  RegionsCall call =
+      regions_parameters(&invocation.get<FieldSequence>("sequence")).read(invocation.parameters);
   call.regions.notes = call.analysis.notes = warnings_of(invocation);
   call.analysis.threads = invocation.threads;
   call.analysis.progress = invocation.progress;
@@ -117,6 +118,7 @@ Operation regions_operation() {
   operation.inputs = {
       {"sequence", DataKind::sequence, "sequence whose moving regions are looked for"},
       {"components", DataKind::components, "components of an earlier decompose", true}};
+  operation.inputs.front().fields = true;
   operation.outputs = {{"out", DataKind::regions, "the regions, as .pvd over time"},
                        components_output(),
                        {"paraview", DataKind::document,

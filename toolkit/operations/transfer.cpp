@@ -16,8 +16,9 @@ namespace mimetra {
 
 namespace {
 
-BoundParameters<TransferOptions> transfer_parameters(const FrameSource* sequence = nullptr) {
+BoundParameters<TransferOptions> transfer_parameters(const FieldSequence* source = nullptr) {
   using Options = TransferOptions;
+  const FrameSource* sequence = source ? source->frames.get() : nullptr;
   BoundParameters<Options> list;
   return list.add("full", Options::kFull, "use all triangles instead of regions")
       .add("head-motion", Options::kHeadMotion,
@@ -26,7 +27,7 @@ BoundParameters<TransferOptions> transfer_parameters(const FrameSource* sequence
       .add(&Options::regions, completion_parameters())
       .add(&Options::analysis, count_parameters())
       .add(&Options::analysis, analysis_rest_parameters(sequence))
-      .add(&Options::analysis, analysis_parameters())
+      .add(&Options::analysis, analysis_parameters(source))
       .add(&Options::source, alignment_parameters(sequence))
       .add(&Options::source, source_rest_parameters(sequence))
       .add(&Options::solving, solving_parameters());
@@ -46,8 +47,8 @@ std::vector<Target> targets_of(const Invocation& invocation) {
 
 TransferOptions options_of(const Invocation& invocation) {
   const NamedData& source = invocation.input("source");
-  TransferOptions options = transfer_parameters(std::get<FieldSequence>(source.data).frames.get())
-                                .read(invocation.parameters);
+  TransferOptions options =
+      transfer_parameters(&std::get<FieldSequence>(source.data)).read(invocation.parameters);
   options.source = described(std::move(options.source), source);
   if (const RegionData* regions = invocation.find<RegionData>("regions")) {
     options.given = GivenRegions{invocation.input("regions").name, regions->regions};
@@ -110,8 +111,13 @@ void check_outputs(const Invocation& invocation) {
   if (invocation.wants("regions-out") && options.full) {
     throw UsageError("--regions-out: there are no regions with --full");
   }
-  const bool decomposes = !options.full && !invocation.find<RegionData>("regions");
-  if (invocation.wants("components-out") && !decomposes) {
+  const bool chooses = !options.full && !invocation.find<RegionData>("regions");
+  for (const std::string name : {"only", "without"}) {
+    if (!chooses && invocation.parameters.is_set(name)) {
+      throw UsageError("--" + name + ": no regions are looked for with --full or --regions");
+    }
+  }
+  if (invocation.wants("components-out") && !chooses) {
     throw UsageError("--components-out: there are no components with --full or --regions");
   }
   if (!invocation.wants("weights-out")) return;
@@ -219,7 +225,7 @@ Operation transfer_operation() {
        false, true},
       {"components", DataKind::components, "components of an earlier decompose", true},
       {"regions", DataKind::regions, "region set, in .vtp the field roi", true}};
-  operation.inputs.front().streamed = true;
+  operation.inputs.front().streamed = operation.inputs.front().fields = true;
   operation.outputs = {
       {"out", DataKind::sequence, "the new sequence, with several targets one each, named after it",
        false, true},

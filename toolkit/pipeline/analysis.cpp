@@ -1,9 +1,14 @@
 #include "toolkit/pipeline/analysis.h"
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 
 #include "toolkit/mesh/stopwatch.h"
+#include "toolkit/mesh/surface_parts.h"
 #include "toolkit/mesh/text.h"
+#include "toolkit/pipeline/cutout.h"
+#include "toolkit/splocs/support_maps.h"
 
 namespace mimetra {
 
@@ -78,7 +83,54 @@ DistanceOptions distance_options(const AnalysisOptions& options) {
   return distances;
 }
 
+void check_inside(const std::vector<bool>& inside, int vertices) {
+  if (inside.empty()) return;
+  if (static_cast<int>(inside.size()) != vertices) {
+    throw std::invalid_argument("inside: " + std::to_string(inside.size()) +
+                                " vertices, expected " + std::to_string(vertices));
+  }
+  if (std::ranges::find(inside, true) == inside.end()) {
+    throw OptionError(Topic::no_vertex_inside, "no vertex is left where regions may lie");
+  }
+}
+
+Components decomposed_inside(const MeshSequence& work, const std::vector<bool>& inside,
+                             DecompositionOptions options) {
+  if (inside.empty()) return decompose(work, options);
+  const Cutout cutout(inside);
+  options.distances = cutout.of(options.distances);
+  if (!options.parts.empty()) options.parts.of_vertex = cutout.of(options.parts.of_vertex);
+  return cutout.put_back(decompose(cutout.of(work), options), work);
+}
+
+/// Components whose centres are inside; one that moves nothing there has none.
+Components centered_inside(Components components, const std::vector<bool>& inside) {
+  if (inside.empty()) return components;
+  Eigen::VectorXd weights(components.vertices());
+  for (VertexIndex v = 0; v < weights.size(); ++v) weights[v] = inside[v];
+  for (int k = 0; k < components.count(); ++k) {
+    VertexIndex& center = components.centers[k];
+    if (center < 0 || inside[center]) continue;
+    center = strongest_vertex(vertex_energies(components.displacements.row(k)), weights);
+  }
+  return components;
+}
+
 }  // namespace
+
+PartWeights part_weights(const Positions& rest, const Triangles& triangles,
+                         const std::vector<bool>& inside, Welding welding) {
+  const SurfaceParts parts = surface_parts(rest, triangles, weld_of(rest, welding));
+  const Eigen::VectorXd areas = vertex_areas(rest, triangles);
+  std::vector<double> of_parts(parts.count(), 0);
+  for (VertexIndex v = 0; v < areas.size(); ++v) {
+    if (inside.empty() || inside[v]) of_parts[parts.of_vertex[v]] += areas[v];
+  }
+  const double largest = std::ranges::max(of_parts);
+  if (parts.count() == 1 || !(largest > 0)) return {};
+  for (double& area : of_parts) area /= largest;
+  return {parts.of_vertex, of_parts};
+}
 
 SurfaceDistances distances_along(const Positions& rest, const Triangles& triangles,
                                  const DistanceOptions& options) {
@@ -106,6 +158,21 @@ SupportRange support_range(const Length& d_min, const Length& d_max, double diam
                                               readable(range.d_max));
 }
 
+int component_count(const FrameSource& sequence, const AnalysisOptions& options) {
+  const int asked = options.decomposition.count;
+  if (options.compatibility != Compatibility::none) return asked;
+  const double reach = options.d_min.in(sequence.diameter());
+  const double disc = std::numbers::pi * reach * reach;
+  const SurfaceParts parts = surface_parts(sequence.rest(), sequence.triangles());
+  double discs = 0;
+  for (const double area : parts.areas) discs += std::max(1.0, std::ceil(area / disc));
+  double most = std::min(discs * sequence.frames(), 3.0 * sequence.vertices());
+  if (!options.inside.empty()) {
+    most = std::min(most, static_cast<double>(std::ranges::count(options.inside, true)));
+  }
+  return most < asked ? std::max(1, static_cast<int>(most)) : asked;
+}
+
 Analysis analyse(const Source& source, const AnalysisOptions& options) {
   const Stopwatch stopwatch;
   check_options(options);
@@ -115,6 +182,14 @@ Analysis analyse(const Source& source, const AnalysisOptions& options) {
     throw OptionError(Topic::component_count, std::to_string(decomposition.count) +
                                                   " components asked for, the mesh has " +
                                                   std::to_string(work.vertices()) + " vertices");
+  }
+  check_inside(options.inside, work.vertices());
+  decomposition.count = component_count(work, options);
+  if (decomposition.count < options.decomposition.count) {
+    note(options.notes, "K = " + std::to_string(options.decomposition.count) + ": " +
+                            std::to_string(work.frames()) + " frames tell at most " +
+                            std::to_string(decomposition.count) +
+                            " components of this surface apart; so many are taken");
   }
   note_parting(work, options);
   SurfaceDistances distances =
@@ -129,11 +204,15 @@ Analysis analyse(const Source& source, const AnalysisOptions& options) {
     decomposition.sign_rule = SignRule::literal;
     decomposition.scale = MotionScale::standard_deviation;
   }
+  if (!reference) {
+    decomposition.parts =
+        part_weights(work.rest(), work.triangles(), options.inside, options.distances.welding);
+  }
   decomposition.distances = distances;
   decomposition.threads = options.threads;
   decomposition.progress = options.progress;
-  Components components = decompose(work, decomposition);
-  return {std::move(components), std::move(distances), stopwatch.seconds()};
+  Components components = decomposed_inside(work, options.inside, decomposition);
+  return {std::move(components), std::move(distances), options.inside, stopwatch.seconds()};
 }
 
 Analysis analysis_of(const GivenComponents& given, const FrameSource& sequence,
@@ -156,7 +235,8 @@ Analysis analysis_of(const GivenComponents& given, const FrameSource& sequence,
   }
   SurfaceDistances distances =
       distances_along(components.rest, components.triangles, distance_options(options));
-  return {components, std::move(distances), 0};
+  check_inside(options.inside, components.vertices());
+  return {centered_inside(components, options.inside), std::move(distances), options.inside, 0};
 }
 
 }  // namespace mimetra

@@ -72,7 +72,8 @@ enum class Compatibility {
   none,
   /// The reference implementation to the letter: lengths are shares of the longest side that any
   /// single frame has, X is divided by its standard deviation, signs are decided as there, all
-  /// iterations run, and the rest pose is the first frame unless one is asked for.
+  /// iterations run, and the rest pose is the first frame unless one is asked for. All
+  /// vertices count alike, whatever part they lie on.
   splocs2013,
   /// The same, and eq. 10 and 12 sum over two edges of each triangle as they are written.
   paper
@@ -98,8 +99,11 @@ struct AnalysisOptions {
   Length d_min = Length::share(DecompositionOptions::kMinimumShare);
   Length d_max = Length::share(DecompositionOptions::kMaximumShare);
   Compatibility compatibility = Compatibility::none;
-  /// Its lengths, distances, threads and progress are those of the analysis, and its sign rule and
-  /// tolerance those of the compatibility where there is one.
+  /// Where components and regions may lie (N), empty for everywhere. What the other vertices do
+  /// changes nothing: components are zero there, and no centre or region lies there.
+  std::vector<bool> inside = {};
+  /// Its lengths, distances, part weights, threads and progress are those of the analysis, and its
+  /// sign rule and tolerance those of the compatibility where there is one.
   DecompositionOptions decomposition = {.count = 30};
   /// Its threads and notes are those of the analysis.
   DistanceOptions distances = {};
@@ -115,16 +119,32 @@ struct AnalysisOptions {
   static constexpr auto declared() { return std::tuple(kMinimum, kMaximum, kCompatibility); }
 };
 
-/// Components of a sequence, and the distances along their rest pose.
+/// Components of a sequence, the distances along their rest pose, and where regions may lie (N, or
+/// empty).
 struct Analysis {
   Components components;
   SurfaceDistances distances;
+  std::vector<bool> inside = {};
   double seconds = 0;
 };
 
-/// Decomposes a source, all frames of which are in memory meanwhile. Notes vertices that are welded
-/// at rest and part later. Throws OptionError (Topic::component_count, Topic::support_range) and
-/// what decompose() throws.
+/// Connected parts of a surface, each weighing its area as a share of the largest part's, of which
+/// only vertices `inside` (N, or empty) count: what moves a tooth counts as little as a tooth is of
+/// the skin, however dense its mesh. Empty where there is one part, or nothing has area.
+PartWeights part_weights(const Positions& rest, const Triangles& triangles,
+                         const std::vector<bool>& inside = {}, Welding welding = Welding::exact);
+
+/// How many of the components asked for are made. Within d_min of its centre a component may move
+/// everything, so that F frames tell F components apart there; of the surface there are so many
+/// such discs. More components would die, or repeat others. A compatibility takes what is asked
+/// for.
+int component_count(const FrameSource& sequence, const AnalysisOptions& options);
+
+/// Decomposes a source, all frames of which are in memory meanwhile; but for a compatibility that
+/// decides otherwise, its parts count by part_weights(). Notes vertices that are welded at rest
+/// and part later, and where fewer components are made than were asked for. Throws OptionError
+/// (Topic::component_count, Topic::support_range, Topic::no_vertex_inside) and what decompose()
+/// throws.
 Analysis analyse(const Source& source, const AnalysisOptions& options = {});
 
 /// Components of an earlier run.
@@ -134,7 +154,8 @@ struct GivenComponents {
   Components components;
 };
 
-/// The same for components that are known already: of the options only the distances count. Throws
+/// The same for components that are known already: of the options only the distances count, and
+/// where regions may lie, which moves the centres outside to the strongest vertices inside. Throws
 /// MismatchError where they hold no weights, are of another mesh than the sequence, or all of them
 /// died.
 Analysis analysis_of(const GivenComponents& given, const FrameSource& sequence,

@@ -111,7 +111,7 @@ std::vector<EvaluationRow> evaluate(const MeshSequence& sequence, const Target& 
     const double seconds = stopwatch.seconds();
     of_solving.progress = part_of(progress, kAnalysisShare, 1);
     rows.push_back(evaluate_by(regions, full, source, target, of_solving).row);
-    rows.back().k = k;
+    rows.back().k = analysis.components.count();
     rows.back().decompose_seconds = seconds;
   }
   rows.push_back(full.row);

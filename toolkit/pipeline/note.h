@@ -20,6 +20,8 @@ enum class Topic {
   completion_limit,   ///< as many as may be, and it was not enough
   undetermined_axes,  ///< the rest poses leave open how source and target are turned
   component_count,    ///< more than the mesh can have
+  no_vertex_inside,   ///< where regions may lie
+  small_parts,        ///< regions lie on small connected parts of the surface
   support_range,      ///< d_min is not below d_max
   no_expressions,     ///< of the target, where weights are asked for
   anchor_vertex,      ///< one that the mesh does not have

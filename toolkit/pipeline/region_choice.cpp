@@ -1,16 +1,44 @@
 #include "toolkit/pipeline/region_choice.h"
 
+#include <set>
+
 #include "toolkit/mesh/diameter.h"
+#include "toolkit/mesh/text.h"
 
 namespace mimetra {
+
+namespace {
+
+/// Notes regions on parts of less than kSmallPart of the surface, also in the regions' own notes.
+void note_small_parts(Regions& regions, const Notes& notes) {
+  int count = 0;
+  std::set<int> parts;
+  for (const Region& region : regions.regions) {
+    if (region.surface_part < 0 || region.surface_share >= kSmallPart) continue;
+    ++count;
+    parts.insert(region.surface_part);
+  }
+  if (count == 0) return;
+  const bool one = count == 1;
+  regions.notes.push_back(std::to_string(count) + " of " + std::to_string(regions.regions.size()) +
+                          (one ? " regions lies" : " regions lie") +
+                          " on connected parts of less than " + readable(100 * kSmallPart) +
+                          " % of the surface: component " +
+                          joined(words_of({parts.begin(), parts.end()}), ", ", " and "));
+  note(notes, regions.notes.back(), Topic::small_parts);
+}
+
+}  // namespace
 
 Regions choose_regions(const Analysis& analysis, const RegionChoiceOptions& options) {
   check_options(options);
   RegionOptions of_search = options.regions;
   of_search.radius = options.radius.in(diameter(analysis.components.rest));
   of_search.distances = analysis.distances;
+  of_search.inside = analysis.inside;
   Regions regions = find_regions(analysis.components, of_search);
   for (const std::string& text : regions.notes) note(options.notes, text);
+  note_small_parts(regions, options.notes);
   return regions;
 }
 

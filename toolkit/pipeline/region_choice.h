@@ -22,7 +22,12 @@ struct RegionChoiceOptions {
   static constexpr auto declared() { return std::tuple(kRadius); }
 };
 
-/// Regions of an analysis; what find_regions() notes is noted. Throws std::invalid_argument for
+/// Connected parts of a smaller share of the surface are hardly what a face's regions are meant
+/// for: single teeth, lashes.
+constexpr double kSmallPart = 0.02;
+
+/// Regions of an analysis; what find_regions() notes is noted, and regions whose centres lie on a
+/// small part of the surface (Topic::small_parts). Throws std::invalid_argument for
 /// options out of range.
 Regions choose_regions(const Analysis& analysis, const RegionChoiceOptions& options = {});
 

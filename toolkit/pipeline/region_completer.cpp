@@ -38,16 +38,22 @@ std::vector<std::string> reasons(const CompletedRegions& completed) {
 
 RegionCompleter::RegionCompleter(Positions rest, Triangles triangles,
                                  const RegionChoiceOptions& options,
-                                 const DistanceOptions& distances)
+                                 const AnalysisOptions& analysis)
     : rest_(std::move(rest)),
       triangles_(std::move(triangles)),
       options_(options),
-      distances_(distances_when_needed(rest_, triangles_, distances)) {}
+      inside_(analysis.inside) {
+  DistanceOptions distances = analysis.distances;
+  distances.threads = analysis.threads;
+  distances.notes = analysis.notes;
+  distances_ = distances_when_needed(rest_, triangles_, distances);
+}
 
 RegionCompleter::RegionCompleter(const Analysis& analysis, const RegionChoiceOptions& options)
     : rest_(analysis.components.rest),
       triangles_(analysis.components.triangles),
       options_(options),
+      inside_(analysis.inside),
       distances_(analysis.distances) {}
 
 Regions RegionCompleter::operator()(const Regions& regions, const Target& target,
@@ -59,6 +65,7 @@ Regions RegionCompleter::operator()(const Regions& regions, const Target& target
   }
   CompletionOptions of_completion = options_.completion;
   of_completion.edges = options.edges;
+  of_completion.inside = inside_;
   CompletedRegions completed = mimetra::completed(regions, target.model, *search_, of_completion);
   if (completed.added > 0) {
     const double share = completed.regions.triangle_share() - regions.triangle_share();

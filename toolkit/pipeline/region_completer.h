@@ -11,10 +11,10 @@ namespace mimetra {
 /// they see every expression of a target.
 class RegionCompleter {
  public:
-  /// `rest` N x 3 and `triangles` of the source. `distances` along them are made when they are
-  /// needed first, unless they are known.
+  /// `rest` N x 3 and `triangles` of the source. Distances along them are made, as the options of
+  /// the analysis say, when they are needed first.
   RegionCompleter(Positions rest, Triangles triangles, const RegionChoiceOptions& options,
-                  const DistanceOptions& distances);
+                  const AnalysisOptions& analysis);
   RegionCompleter(const Analysis& analysis, const RegionChoiceOptions& options);
 
   /// The regions themselves where a target is solved for vertices. Notes, under the target's name,
@@ -25,6 +25,7 @@ class RegionCompleter {
   Positions rest_;
   Triangles triangles_;
   RegionChoiceOptions options_;
+  std::vector<bool> inside_;  // where discs may lie, or empty
   DistanceFunction distances_;
   std::optional<DiscSearch> search_;
 };

@@ -41,11 +41,11 @@ Choice choose(const Source& source, const TransferOptions& options) {
   if (const auto* given = std::get_if<GivenRegions>(&options.given)) {
     const FrameSource& sequence = *source.sequence;
     check_regions(*given, sequence);
-    DistanceOptions distances = options.analysis.distances;
-    distances.threads = options.threads;
-    distances.notes = options.notes;
+    AnalysisOptions of_analysis = options.analysis;
+    of_analysis.threads = options.threads;
+    of_analysis.notes = options.notes;
     return {given->regions,
-            RegionCompleter(sequence.rest(), sequence.triangles(), of_regions, distances)};
+            RegionCompleter(sequence.rest(), sequence.triangles(), of_regions, of_analysis)};
   }
   const Stopwatch stopwatch;
   Analysis analysis = analysis_for(source, options);

@@ -11,6 +11,7 @@
 #include "toolkit/mesh/diameter.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/near_tie.h"
+#include "toolkit/mesh/surface_parts.h"
 #include "toolkit/mesh/text.h"
 
 namespace mimetra {
@@ -232,6 +233,10 @@ Eigen::VectorXd motion_energy(const Components& components) {
 
 Regions find_regions(const Components& components, const RegionOptions& options) {
   require_valid(options);
+  if (!options.inside.empty() && static_cast<int>(options.inside.size()) != components.vertices()) {
+    throw std::invalid_argument("inside: " + std::to_string(options.inside.size()) +
+                                " vertices, expected " + std::to_string(components.vertices()));
+  }
   const DistanceFunction distances =
       options.distances
           ? options.distances
@@ -246,10 +251,17 @@ Regions find_regions(const Components& components, const RegionOptions& options)
   regions.vertex_energy = energy_on_vertices(components, all);
   const double total = regions.vertex_energy.sum();
   if (total > 0) regions.vertex_energy /= total;
+  const SurfaceParts parts = surface_parts(components.rest, components.triangles);
   const double radius =
       options.radius ? *options.radius : RegionOptions::kRadiusShare * diameter(components.rest);
   for (const Site& site : sites) {
-    regions.regions.push_back(region_around(site, components, options.shape, radius));
+    Region region = region_around(site, components, options.shape, radius);
+    if (!options.inside.empty()) {
+      std::erase_if(region.vertices, [&](VertexIndex v) { return !options.inside[v]; });
+    }
+    region.surface_part = parts.of_vertex[site.center];
+    region.surface_share = parts.share(region.surface_part);
+    regions.regions.push_back(std::move(region));
   }
   complete(regions, components.triangles);
   if (options.coverage) cover(regions, *options.coverage, components.triangles);

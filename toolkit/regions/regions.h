@@ -36,6 +36,8 @@ struct RegionOptions {
   /// Take the strongest components until the union holds this share of the motion energy; without
   /// it, all components.
   std::optional<double> coverage = {};
+  /// Where regions may lie (N), empty for everywhere: they hold no other vertex.
+  std::vector<bool> inside = {};
   /// Distances along the rest pose; by default SurfaceDistances of its exactly welded vertices.
   DistanceFunction distances = {};
   /// For those default distances; 0 for all there are. The result does not depend on it.
@@ -55,6 +57,10 @@ struct Region {
   std::vector<VertexIndex> vertices;  ///< ascending
   double energy = 0;                  ///< motion energy |w_k|^2 |c_k|^2 of its component(s)
   double energy_share = 0;            ///< share of all motion energy on its vertices
+  /// Connected part of the surface that the centre lies on, 0 for the largest, and that part's
+  /// share of the area; -1 for a region that was read.
+  int surface_part = -1;
+  double surface_share = 0;
   /// The target's expression that it was added for; empty for the source's own.
   std::string added_for = {};
 };
@@ -86,7 +92,7 @@ Eigen::VectorXd motion_energy(const Components& components);
 /// Region k = the vertices within the radius of the centre of component k. Ordered by motion
 /// energy; components with the same centre (also across a welded seam) are merged. A vertex that no
 /// way along the surface reaches is in no region. Throws std::invalid_argument for options out of
-/// range.
+/// range, and for a number of vertices `inside` that is not the mesh's.
 Regions find_regions(const Components& components, const RegionOptions& options = {});
 
 /// The first `count` regions only (all, where there are fewer). Throws std::invalid_argument where

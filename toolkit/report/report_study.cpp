@@ -120,9 +120,10 @@ class RunSteps {
       options = list.add(completion_parameters()).read(call.parameters);
     }
     options.notes = warnings_of(call);
-    DistanceOptions distances = distance_parameters().read(call.parameters);
-    distances.threads = call.threads;
-    return {source.sequence->rest(), source.sequence->triangles(), options, distances};
+    AnalysisOptions analysis =
+        analysis_parameters(&call.get<FieldSequence>("source")).read(call.parameters);
+    analysis.threads = call.threads;
+    return {source.sequence->rest(), source.sequence->triangles(), options, analysis};
   }
 
   static Source source_of(const Invocation& call) {
@@ -137,7 +138,8 @@ class RunSteps {
   }
 
   AnalysisOptions analysis_options(const Progress& progress) const {
-    BoundParameters<AnalysisOptions> list = analysis_parameters();
+    BoundParameters<AnalysisOptions> list =
+        analysis_parameters(&call_.get<FieldSequence>("source"));
     if (call_.inputs.contains("target")) list.add(analysis_rest_parameters(&sequence_));
     AnalysisOptions options = list.read(call_.parameters);
     options.threads = call_.threads;

@@ -38,6 +38,18 @@ void require_valid(double d_min, double d_max) {
               "; 0 <= d_min < d_max is needed");
 }
 
+void require_valid(const PartWeights& parts, int vertices) {
+  if (parts.empty()) return;
+  require(static_cast<int>(parts.of_vertex.size()) == vertices,
+          "parts: " + std::to_string(parts.of_vertex.size()) + " vertices, expected " +
+              std::to_string(vertices));
+  const auto count = static_cast<int>(parts.weights.size());
+  require(std::ranges::all_of(parts.of_vertex, [&](int p) { return 0 <= p && p < count; }),
+          "parts: each vertex must be on one of " + std::to_string(count));
+  require(std::ranges::all_of(parts.weights, [](double w) { return 0 <= w && w <= 1; }),
+          "parts: weights must be from 0 to 1");
+}
+
 void require_decomposable(const MeshSequence& sequence, int count) {
   const int coordinates = 3 * sequence.vertices();
   if (count > coordinates) {
@@ -119,7 +131,8 @@ void iterate(Components& result, Motion motion, Start start, SupportMaps support
 /// them zero it tells nothing, and both are cleared.
 void finish(Components& result) {
   for (int k = 0; k < result.count(); ++k) {
-    const VertexIndex center = strongest_vertex(vertex_energies(result.displacements.row(k)));
+    const VertexIndex center = strongest_vertex(vertex_energies(result.displacements.row(k)),
+                                                result.options.parts.of_vertices());
     const bool alive = center >= 0 && !result.weights.col(k).isZero(0);
     result.centers.push_back(alive ? center : -1);
     if (alive) continue;
@@ -131,9 +144,16 @@ void finish(Components& result) {
 
 }  // namespace
 
+Eigen::VectorXd PartWeights::of_vertices() const {
+  Eigen::VectorXd result(static_cast<Eigen::Index>(of_vertex.size()));
+  for (Eigen::Index v = 0; v < result.size(); ++v) result[v] = weights[of_vertex[v]];
+  return result;
+}
+
 Components decompose(const MeshSequence& sequence, const DecompositionOptions& options) {
   require_valid(options);
   require_decomposable(sequence, options.count);
+  require_valid(options.parts, sequence.vertices());
   fix_product_blocking();
   Components result;
   result.rest = sequence.rest();
@@ -157,7 +177,7 @@ Components decompose(const MeshSequence& sequence, const DecompositionOptions& o
   of_start.progress = part_of(options.progress, 0, kStartShare);
   Start start = greedy_start(motion.X, support, of_start);
   iterate(result, std::move(motion), std::move(start),
-          SupportMaps(support, options.count, sequence.vertices()),
+          SupportMaps(support, options.count, sequence.vertices(), options.parts.of_vertices()),
           part_of(options.progress, kStartShare, 1));
   finish(result);
   report_progress(options.progress, 1);

@@ -38,6 +38,19 @@ enum class MotionScale {
 /// what the rounding of float32 files (6e-8 of their coordinates) and of rigid alignment leaves.
 constexpr double kLeastMotion = 1e-6;
 
+/// How much each connected part of a surface counts, from 0 to 1: a component's centre is where
+/// weight times squared motion is largest, and the start lets each component move the parts that no
+/// way leads to by 1 - weight of what its weights explain there, where the paper lets it move
+/// nothing. A tooth then goes with the components of the jaw and needs none of its own.
+struct PartWeights {
+  std::vector<int> of_vertex = {};   ///< part of each vertex (N), or empty: one part
+  std::vector<double> weights = {};  ///< of each part, 1 for the largest
+
+  bool empty() const { return of_vertex.empty(); }
+  /// Of each vertex (N), or empty.
+  Eigen::VectorXd of_vertices() const;
+};
+
 struct DecompositionOptions {
   /// K, at most 3N.
   int count = 50;
@@ -65,6 +78,8 @@ struct DecompositionOptions {
   /// The start is in double precision in any case; single moves components by about 1e-6 of
   /// themselves.
   IterationPrecision precision = IterationPrecision::double_precision;
+  /// The connected parts of the surface and what they count; by default all alike, as in the paper.
+  PartWeights parts = {};
   /// Distances along the rest pose; by default SurfaceDistances of its exactly welded vertices.
   DistanceFunction distances = {};
   /// 0 for all there are; the result does not depend on it.

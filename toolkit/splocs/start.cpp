@@ -28,12 +28,14 @@ Eigen::VectorXd sums_over_axes(const Eigen::RowVectorXd& columns) {
 /// X - W C at the start: kept as X and the components so far, never as a matrix.
 class Residual {
  public:
-  Residual(const VertexBlocks<double>& X, int count, int threads)
+  Residual(const VertexBlocks<double>& X, const DecompositionOptions& options)
       : X_(X),
-        start_{{}, {count, X.vertices()}, Eigen::MatrixXd::Zero(X.rows(), count)},
+        start_{{}, {options.count, X.vertices()}, Eigen::MatrixXd::Zero(X.rows(), options.count)},
         energies_(X.vertices()),
-        threads_(threads) {
-    parallel_for(X.count(), threads, [this](int b) {
+        parts_(options.parts),
+        center_weights_(parts_.of_vertices()),
+        threads_(options.threads) {
+    parallel_for(X.count(), threads_, [this](int b) {
       start_.components[b] = start_.components.zero_block(b);
       Eigen::RowVectorXd squares = Eigen::RowVectorXd::Zero(X_[b].cols());
       for (const auto& frame : X_[b].rowwise()) squares += frame.cwiseAbs2();
@@ -42,10 +44,10 @@ class Residual {
     nothing_left_ = kNothingLeft * energies_.maxCoeff();
   }
 
-  /// The vertex with the largest residual energy, or -1 where nothing is left.
+  /// The vertex with the largest residual energy, weighted, or -1 where nothing is left.
   VertexIndex strongest() {
     for (;;) {
-      const VertexIndex v = strongest_vertex(energies_);
+      const VertexIndex v = strongest_vertex(energies_, center_weights_);
       if (v < 0 || energies_[v] <= nothing_left_) return -1;
       // The energies carry the rounding of their updates, relative to what the vertex moved at
       // first: near the end only the residual itself tells whether it is really the largest.
@@ -64,8 +66,13 @@ class Residual {
     return residual;
   }
 
-  /// Adds the component that the weights `w` explain best where `support` is below 1.
-  void explain(VertexIndex center, const Eigen::VectorXd& w, const Eigen::VectorXd& support) {
+  /// Adds the component that the weights `w` explain best where `support` is below 1, and on other
+  /// parts of the surface as far as they count for less than the largest.
+  void explain(VertexIndex center, const Eigen::VectorXd& w, Eigen::VectorXd support) {
+    for (std::size_t v = 0; v < parts_.of_vertex.size(); ++v) {
+      const int part = parts_.of_vertex[v];
+      if (part != parts_.of_vertex[center]) support[v] = parts_.weights[part];
+    }
     const int k = size();
     const double ww = w.squaredNorm();
     const Eigen::VectorXd overlap = start_.weights.leftCols(k).transpose() * w;
@@ -93,6 +100,8 @@ class Residual {
   const VertexBlocks<double>& X_;
   Start start_;
   Eigen::VectorXd energies_;
+  const PartWeights& parts_;
+  Eigen::VectorXd center_weights_;
   int threads_;
   double nothing_left_ = 0;
 };
@@ -127,7 +136,7 @@ Eigen::VectorXd oriented_weights(const Eigen::VectorXd& w, SignRule rule, bool n
 
 Start greedy_start(const VertexBlocks<double>& X, const SupportFunction& support,
                    const DecompositionOptions& options) {
-  Residual residual(X, options.count, options.threads);
+  Residual residual(X, options);
   for (int k = 0; k < options.count; ++k) {
     report_progress(options.progress, static_cast<double>(k) / options.count);
     const VertexIndex center = residual.strongest();

@@ -14,7 +14,8 @@ struct Start {
   Eigen::MatrixXd weights;           ///< W, F x K, feasible; zero where none was left
 };
 
-/// Greedy start, options.count times: the vertex that the earlier components explain least, the
+/// Greedy start, options.count times: the vertex that the earlier components explain least (as
+/// options.parts weighs it), the
 /// strongest direction of its residual, and what its weights explain around it. X is F x 3N.
 ///
 /// [Neumann et al. Sparse Localized Deformation Components. ACM TOG 32(6), 2013], section 4.2

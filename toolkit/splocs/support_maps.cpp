@@ -10,13 +10,16 @@
 
 namespace mimetra {
 
-VertexIndex strongest_vertex(const Eigen::Ref<const Eigen::VectorXd>& energies) {
-  const double largest = energies.size() > 0 ? energies.maxCoeff() : 0;
+VertexIndex strongest_vertex(const Eigen::Ref<const Eigen::VectorXd>& energies,
+                             const Eigen::VectorXd& weights) {
+  const Eigen::VectorXd weighted =
+      weights.size() > 0 ? energies.cwiseProduct(weights) : Eigen::VectorXd(energies);
+  const double largest = weighted.size() > 0 ? weighted.maxCoeff() : 0;
   if (!(largest > 0)) return -1;
   const double as_large = (1 - kNearTie) * largest;
   return static_cast<VertexIndex>(
-      std::ranges::find_if(energies, [as_large](double x) { return x >= as_large; }) -
-      energies.begin());
+      std::ranges::find_if(weighted, [as_large](double x) { return x >= as_large; }) -
+      weighted.begin());
 }
 
 Eigen::VectorXd vertex_energies(const Eigen::Ref<const Eigen::RowVectorXd>& component) {
@@ -39,8 +42,10 @@ SupportFunction support_function(DistanceFunction distances, int vertices, doubl
   };
 }
 
-SupportMaps::SupportMaps(SupportFunction support, int components, int vertices)
+SupportMaps::SupportMaps(SupportFunction support, int components, int vertices,
+                         Eigen::VectorXd center_weights)
     : support_(std::move(support)),
+      center_weights_(std::move(center_weights)),
       centers_(components, -1),
       maps_(Frames::Ones(components, vertices)) {}
 
@@ -54,7 +59,7 @@ void SupportMaps::follow(const VertexBlocks<Scalar>& components) {
       energies.segment(components.first(b), components.size(b)) =
           components.by_vertex(components[b], k).rowwise().squaredNorm().template cast<double>();
     }
-    const VertexIndex center = strongest_vertex(energies);
+    const VertexIndex center = strongest_vertex(energies, center_weights_);
     if (center < 0 || center == centers_[k]) continue;
     centers_[k] = center;
     moved.push_back(k);

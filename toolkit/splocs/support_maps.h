@@ -9,9 +9,11 @@
 
 namespace mimetra {
 
-/// Vertex (of N) where the entry of `energies` (N) is largest, the lowest of those that tie
-/// (kNearTie); -1 where no entry is above zero.
-VertexIndex strongest_vertex(const Eigen::Ref<const Eigen::VectorXd>& energies);
+/// Vertex (of N) where the entry of `energies` (N) is largest, each times its entry of `weights`
+/// (N, or empty for ones), the lowest of those that tie (kNearTie); -1 where no product
+/// is above zero.
+VertexIndex strongest_vertex(const Eigen::Ref<const Eigen::VectorXd>& energies,
+                             const Eigen::VectorXd& weights = {});
 
 /// Squared length of each vertex's displacement in one component (3N): N.
 Eigen::VectorXd vertex_energies(const Eigen::Ref<const Eigen::RowVectorXd>& component);
@@ -27,7 +29,9 @@ SupportFunction support_function(DistanceFunction distances, int vertices, doubl
 /// The support maps of K components, which follow their components' strongest vertices.
 class SupportMaps {
  public:
-  SupportMaps(SupportFunction support, int components, int vertices);
+  /// `center_weights` as of strongest_vertex().
+  SupportMaps(SupportFunction support, int components, int vertices,
+              Eigen::VectorXd center_weights);
 
   /// Moves each map to the strongest vertex of its component, row k of `components` (K x 3N). A
   /// component that is zero keeps its map.
@@ -39,6 +43,7 @@ class SupportMaps {
 
  private:
   SupportFunction support_;
+  Eigen::VectorXd center_weights_;
   std::vector<VertexIndex> centers_;
   Frames maps_;
 };

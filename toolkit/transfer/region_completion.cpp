@@ -25,13 +25,19 @@ struct Unseen {
 /// What some triangles show of a target's expressions.
 class View {
  public:
-  View(const BlendshapeModel& target, const Regions& regions, EdgeSum edges)
+  /// `open` are the triangles that discs may hold.
+  View(const BlendshapeModel& target, const Regions& regions, const std::vector<int>& open,
+       EdgeSum edges)
       : target_(target),
         edges_(edges),
-        all_(gram_matrix(target, all_triangles(target.triangles()), edges)),
-        seen_(gram_matrix(target, regions.triangles, edges)),
-        is_seen_(target.triangles().rows(), false) {
-    for (const int triangle : regions.triangles) is_seen_[triangle] = true;
+        all_(gram_matrix(target, open, edges)),
+        is_seen_(target.triangles().rows(), true) {
+    for (const int triangle : open) is_seen_[triangle] = false;
+    std::vector<int> seen;
+    std::ranges::copy_if(regions.triangles, std::back_inserter(seen),
+                         [this](int triangle) { return !is_seen_[triangle]; });
+    seen_ = gram_matrix(target, seen, edges);
+    for (const int triangle : seen) is_seen_[triangle] = true;
     for (Eigen::Index j = 0; j < all_.rows(); ++j) {
       if (all_(j, j) > 0) moving_.push_back(j);
     }
@@ -99,11 +105,25 @@ class View {
 
   const BlendshapeModel& target_;
   EdgeSum edges_;
-  Eigen::MatrixXd all_, seen_;  // A^T A of eq. 11 (D x D)
-  std::vector<bool> is_seen_;
+  Eigen::MatrixXd all_, seen_;        // A^T A of eq. 11 (D x D)
+  std::vector<bool> is_seen_;         // or cannot be
   std::vector<Eigen::Index> moving_;  // expressions that move anything
   bool can_be_told_apart_ = false;    // by all triangles
 };
+
+bool is_inside(const std::vector<bool>& inside, VertexIndex vertex) {
+  return inside.empty() || inside[vertex];
+}
+
+/// Triangles with a vertex inside.
+std::vector<int> open_triangles(const Triangles& triangles, const std::vector<bool>& inside) {
+  std::vector<int> open = all_triangles(triangles);
+  std::erase_if(open, [&](int t) {
+    return !is_inside(inside, triangles(t, 0)) && !is_inside(inside, triangles(t, 1)) &&
+           !is_inside(inside, triangles(t, 2));
+  });
+  return open;
+}
 
 }  // namespace
 
@@ -113,7 +133,7 @@ CompletedRegions completed(const Regions& regions, const BlendshapeModel& target
   CompletedRegions result{regions};
   if (options.share == 0) return result;
   fix_product_blocking();
-  View view(target, regions, options.edges);
+  View view(target, regions, open_triangles(target.triangles(), options.inside), options.edges);
   double room = options.limit * static_cast<double>(regions.all_triangles);
   std::vector<Region> discs;
   while (const auto unseen = view.least_seen(options.share)) {
@@ -127,6 +147,7 @@ CompletedRegions completed(const Regions& regions, const BlendshapeModel& target
     region.center = disc.center;
     region.radius = search.radius();
     region.vertices = disc.vertices;
+    std::erase_if(region.vertices, [&](VertexIndex v) { return !is_inside(options.inside, v); });
     region.added_for = unseen->name;
   }
   result.added = static_cast<int>(discs.size());

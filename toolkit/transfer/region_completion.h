@@ -10,10 +10,13 @@ struct CompletionOptions {
   /// Share of each expression's motion G_jj (eq. 11) that the regions are to see; 0 leaves them as
   /// they are. With 0.05, K = 10 regions of a real capture miss 8 to 18 % of the full transfer's
   /// error on other heads, with 0.25 below 6 %.
-  double share = 0.25;
+  double share = 0.3;
   /// Share of the mesh's triangles that may be added.
   double limit = 0.25;
   EdgeSum edges = EdgeSum::all;
+  /// Where discs may lie (N), empty for everywhere: they hold no other vertex, and of an expression
+  /// only what it moves there counts.
+  std::vector<bool> inside = {};
 
   static constexpr Option kShare{
       "share", &CompletionOptions::share, {.minimum = 0, .maximum = 0.95}};
