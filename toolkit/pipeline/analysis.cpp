@@ -125,8 +125,11 @@ Analysis analyse(const Source& source, const AnalysisOptions& options) {
   decomposition.d_min = range.d_min;
   decomposition.d_max = range.d_max;
   if (reference) {
+    decomposition.iterations =
+        decomposition.iterations.value_or(DecompositionOptions::kReferenceIterations);
     decomposition.tolerance = 0;
     decomposition.sign_rule = SignRule::literal;
+    decomposition.returned = ReturnedIterate::last;
   }
   decomposition.distances = distances;
   decomposition.threads = options.threads;

@@ -71,8 +71,9 @@ constexpr std::string_view choice_name(RestPose value) {
 enum class Compatibility {
   none,
   /// The reference implementation to the letter: lengths are shares of the longest side that any
-  /// single frame has, signs are decided as there, all iterations run, and the rest pose is the
-  /// first frame unless one is asked for.
+  /// single frame has, signs are decided as there, ten iterations run unless another number is
+  /// asked for, all of them, the last is returned, and the rest pose is the first frame unless one
+  /// is asked for.
   splocs2013
 };
 
@@ -94,8 +95,8 @@ struct AnalysisOptions {
   Length d_min = Length::share(DecompositionOptions::kMinimumShare);
   Length d_max = Length::share(DecompositionOptions::kMaximumShare);
   Compatibility compatibility = Compatibility::none;
-  /// Its lengths, distances, threads and progress are those of the analysis, and its sign rule and
-  /// tolerance those of the compatibility where there is one.
+  /// Its lengths, distances, threads and progress are those of the analysis, and its sign rule,
+  /// tolerance and returned iterate those of the compatibility where there is one.
   DecompositionOptions decomposition = {.count = 30};
   /// Its threads and notes are those of the analysis.
   DistanceOptions distances = {};

@@ -34,7 +34,7 @@ EvaluatedTransfer solved(const Source& source, const Target& target, const Selec
 }
 
 /// The work of one decomposition in a row; the rest is its transfer.
-constexpr double kAnalysisShare = 0.7;
+constexpr double kAnalysisShare = 0.9;
 
 }  // namespace
 
@@ -88,12 +88,14 @@ std::vector<EvaluationRow> evaluate(const MeshSequence& sequence, const Target& 
     const Stopwatch stopwatch;
     of_analysis.decomposition.count = k;
     of_analysis.progress = part_of(progress, 0, kAnalysisShare);
-    const Regions regions = choose_regions(analyse(source, of_analysis), of_regions);
+    const Analysis analysis = analyse(source, of_analysis);
+    const Regions regions = choose_regions(analysis, of_regions);
     const double seconds = stopwatch.seconds();
     of_solving.progress = part_of(progress, kAnalysisShare, 1);
     rows.push_back(evaluate_by(regions, full, source, target, of_solving).row);
     rows.back().k = k;
     rows.back().decompose_seconds = seconds;
+    rows.back().converged = analysis.components.converged;
   }
   rows.push_back(full.row);
   return rows;
