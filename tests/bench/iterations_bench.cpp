@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <ctime>
 
 #include "toolkit/pictures/chart.h"
 #include "toolkit/pipeline/evaluation.h"
@@ -11,17 +12,18 @@ namespace {
 
 /// A measure of the curves: its axis, and its value.
 struct Measure {
-  std::string label;
+  ChartAxis axis;
   std::optional<double> (*value)(const IterationPoint&);
 };
 
 const std::vector<Measure>& measures() {
   using Point = IterationPoint;
   static const std::vector<Measure> all = {
-      {"energy (% of 10 iterations')", [](const Point& p) { return std::optional(p.energy); }},
-      {"DE above the full transfer's (%)", [](const Point& p) { return p.excess; }},
-      {"triangles in regions (%)", [](const Point& p) { return std::optional(p.share); }},
-      {"time to find regions (s)", [](const Point& p) { return std::optional(p.seconds); }}};
+      {{"energy (%)"}, [](const Point& p) { return std::optional(p.energy); }},
+      {{"DE above full (%)", ChartScale::logarithmic}, [](const Point& p) { return p.excess; }},
+      {{"triangles (%)"}, [](const Point& p) { return std::optional(p.share); }},
+      {{"processor time (s)", ChartScale::logarithmic},
+       [](const Point& p) { return std::optional(p.seconds); }}};
   return all;
 }
 
@@ -53,13 +55,14 @@ Chart chart_of(const std::vector<IterationCurve>& curves, const std::string& sub
   Chart chart;
   chart.title = subject;
   chart.x = {"iterations", ChartScale::logarithmic};
-  chart.y = {measure.label};
+  chart.y = measure.axis;
   for (const IterationCurve& curve : curves) {
     if (curve.subject != subject) continue;
     ChartSeries series{"K = " + std::to_string(curve.components), {}, {}};
     for (const IterationPoint& point : curve.points) {
       const auto value = measure.value(point);
-      if (!value || (!series.x.empty() && series.x.back() == point.ran)) continue;
+      const bool is_shown = value && (measure.axis.scale == ChartScale::linear || *value > 0);
+      if (!is_shown || (!series.x.empty() && series.x.back() == point.ran)) continue;
       series.x.push_back(point.ran);
       series.y.push_back(*value);
     }
@@ -92,16 +95,18 @@ std::vector<IterationCurve> iteration_curves(const Subject& subject, bool quick)
     double first_energy = 0;
     for (const int allowed : iterations) {
       AnalysisOptions options{.decomposition = {.count = count, .iterations = allowed}};
+      const std::clock_t start = std::clock();
       const Analysis analysis = analyse(source, options);
-      const Components& components = analysis.components;
       const Regions regions = choose_regions(analysis);
+      const double seconds = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
+      const Components& components = analysis.components;
       const EvaluationRow row = evaluate_by(regions, full, source, target).row;
       const double energy = components.energies.at(components.iteration - 1);
       if (curve.points.empty()) first_energy = energy;
       curve.points.push_back({allowed, static_cast<int>(components.energies.size()),
                               *components.converged, 100 * energy / first_energy,
                               row.mpe_all ? std::optional(-*row.mpe_all) : std::nullopt,
-                              100 * row.triangle_share, analysis.seconds});
+                              100 * row.triangle_share, seconds});
       std::fprintf(stderr, "  %s, K %d, %d iterations: %s\n", subject.name.c_str(), count, allowed,
                    cell_of(curve.points.back()).c_str());
     }
@@ -125,13 +130,20 @@ std::string table_of(const std::vector<IterationCurve>& curves) {
 }
 
 Image picture_of(const std::vector<IterationCurve>& curves) {
-  const ChartSize size{.width = 440, .height = 330, .letters = 15};
+  ChartSize size{.width = 440, .height = 230, .letters = 17};
   std::vector<Image> rows;
   for (const Measure& measure : measures()) {
     std::vector<Chart> charts;
+    const bool is_first = &measure == &measures().front(), is_last = &measure == &measures().back();
     for (const std::string& subject : subjects_of(curves)) {
       charts.push_back(chart_of(curves, subject, measure));
+      // Columns are named at the top, lines and iterations at the bottom.
+      if (!is_first) charts.back().title.clear();
+      if (!is_last) charts.back().x.label.clear();
+      charts.back().legend = is_last;
     }
+    constexpr int kLegend = 100;
+    if (is_last) size.height += kLegend;
     rows.push_back(draw(charts, size));
   }
   return below_each_other(rows);

@@ -18,7 +18,7 @@ struct IterationPoint {
   std::optional<double>
       excess;          ///< DE above the full transfer's, percent; none where that is exact
   double share = 0;    ///< of the triangles that regions hold, percent
-  double seconds = 0;  ///< of decomposition and regions
+  double seconds = 0;  ///< of the processor, all threads, for decomposition and regions
 };
 
 /// What more iterations give for one subject and number of components.

@@ -169,7 +169,7 @@ vtkSmartPointer<vtkChartXY> chart_item(const Chart& chart, int letters) {
            letters);
   set_axis(*shown->GetAxis(vtkAxis::LEFT), chart.y, range_of(chart, chart.y, &ChartSeries::y),
            letters);
-  shown->SetShowLegend(true);
+  shown->SetShowLegend(chart.legend);
   vtkChartLegend& legend = *shown->GetLegend();
   legend.SetInline(false);  // below the axes, where no curve runs
   legend.SetHorizontalAlignment(vtkChartLegend::CENTER);
