@@ -91,10 +91,11 @@ std::vector<double> even_ticks(const Range& range) {
 
 /// Decades, and where these are few also multiples of them; values, not logarithms.
 std::vector<double> decade_ticks(const Range& range) {
-  constexpr double kManyDecades = 2.2, kOneDecade = 1;
+  constexpr double kManyDecades = 2.2, kOneDecade = 1, kHalfDecade = 0.5;
   const std::vector<int> factors = range.length() > kManyDecades ? std::vector{1}
-                                   : range.length() > kOneDecade
-                                       ? std::vector{1, 2, 5}
+                                   : range.length() > kOneDecade ? std::vector{1, 2, 5}
+                                   : range.length() > kHalfDecade
+                                       ? std::vector{1, 2, 3, 5, 7}
                                        : std::vector{1, 2, 3, 4, 5, 6, 7, 8, 9};
   std::vector<double> ticks;
   for (double exponent = std::floor(range.first); exponent <= range.last; ++exponent) {

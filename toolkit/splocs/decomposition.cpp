@@ -111,7 +111,10 @@ void alternate(Components& result, double X_norm2, const VertexBlocks<Scalar>& X
     // What the best so far is, the next iteration overwrites.
     if (options.returned == ReturnedIterate::best && iteration > 0 &&
         best_of(energies) == iteration - 1) {
-      best = {W, components.C, support.maps()};
+      // One by one, into the memory of the last copy.
+      best.W = W;
+      best.C = components.C;
+      best.maps = support.maps();
     }
     W = updated_weights(std::move(W), P, components.H, options.nonnegative);
     const UpdateWeights weights{basis ? Eigen::MatrixXd(basis->Q.transpose() * W) : W,
