@@ -17,6 +17,8 @@ void set_option(Value& value, double number) {
     value = {static_cast<int>(number)};
   } else if constexpr (std::is_same_v<Value, bool> || NamedChoice<Value>) {
     FAIL() << "has no range";
+  } else if constexpr (std::is_same_v<Value, std::optional<int>>) {
+    value = static_cast<int>(number);
   } else {
     value = static_cast<Value>(number);
   }
@@ -25,7 +27,8 @@ void set_option(Value& value, double number) {
 /// The next value out of the range at an end of it.
 template <typename Value>
 double beyond(double end, double direction) {
-  const bool whole = std::is_same_v<Value, int> || std::is_same_v<Value, std::vector<int>>;
+  const bool whole = std::is_same_v<Value, int> || std::is_same_v<Value, std::optional<int>> ||
+                     std::is_same_v<Value, std::vector<int>>;
   return whole ? end + std::copysign(1, direction) : std::nextafter(end, direction);
 }
 

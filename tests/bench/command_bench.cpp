@@ -73,10 +73,11 @@ std::vector<Row> transfer_command_rows(const Subject& subject, int count, const 
                             {kGroup, "  measures errors", size, {}},
                             {kGroup, "  starts, hashes and writes", size, {}}};
   for (int i = 0; i < repetitions(settings); ++i) {
-    const ProcessResult run = run_or_throw(
-        {mimetra, "transfer", source, target, "-k", std::to_string(count), "--tolerance", "0", "-o",
-         out, "--regions-out", regions / "roi.pvd", "--force", "--quiet"},
-        scratch);
+    const ProcessResult run =
+        run_or_throw({mimetra, "transfer", source, target, "-k", std::to_string(count),
+                      "--tolerance", "0", "--iterations", std::to_string(kIterations), "-o", out,
+                      "--regions-out", regions / "roi.pvd", "--force", "--quiet"},
+                     scratch);
     whole.seconds.push_back(run.seconds);
     whole.peak_bytes = std::max(whole.peak_bytes, run.peak_bytes);
     const Split split = split_of(out / "mimetra-run.json", run.seconds);
@@ -104,7 +105,7 @@ Row decompose_command_row(const Subject& subject, int count, const fs::path& mim
   for (int i = 0; i < repetitions(settings); ++i) {
     const ProcessResult run =
         run_or_throw({mimetra, "decompose", source, "-k", std::to_string(count), "--tolerance", "0",
-                      "-o", out, "--force", "--quiet"},
+                      "--iterations", std::to_string(kIterations), "-o", out, "--force", "--quiet"},
                      scratch);
     row.seconds.push_back(run.seconds);
     row.peak_bytes = std::max(row.peak_bytes, run.peak_bytes);

@@ -1,12 +1,15 @@
-// usage: mimetra_bench OUT [--quick]
+// usage: mimetra_bench OUT [--quick] [--iterations]
 // Times kernels and whole commands; writes OUT/bench.json and OUT/growth.png, and a table to
-// stdout.
+// stdout. With --iterations instead what more iterations of the decomposition give: the picture
+// OUT/iterations.png, and a table to stdout.
 
 #include <algorithm>
 #include <cstdio>
 #include <exception>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
+#include <set>
 #include <stdexcept>
 
 #include "tests/bench/blocking_bench.h"
@@ -15,6 +18,7 @@
 #include "tests/bench/geodesic_bench.h"
 #include "tests/bench/growth.h"
 #include "tests/bench/io_bench.h"
+#include "tests/bench/iterations_bench.h"
 #include "tests/bench/numpy_bench.h"
 #include "tests/bench/report.h"
 #include "tests/bench/splocs_bench.h"
@@ -30,6 +34,12 @@ namespace fs = std::filesystem;
 constexpr int kFrames = 100;
 constexpr int kSources = 40;
 constexpr int kComponents = 30;
+
+void write_text(const fs::path& path, const std::string& text) {
+  std::ofstream file(path, std::ios::binary);
+  file << text;
+  if (!file.flush()) throw std::runtime_error(path.string() + ": not written");
+}
 
 /// A folder for what commands read and write, gone at the end.
 class Scratch {
@@ -200,9 +210,7 @@ class Run {
       charts.push_back(chart_of(part, "time against " + part.front().against));
       results_.growths.insert(results_.growths.end(), part.begin(), part.end());
     }
-    std::ofstream file(out_ / "growth.png", std::ios::binary);
-    file << png_of(draw(charts, {.width = 640, .height = 720}));
-    if (!file.flush()) throw std::runtime_error((out_ / "growth.png").string() + ": not written");
+    write_text(out_ / "growth.png", png_of(draw(charts, {.width = 640, .height = 720})));
   }
 
   fs::path out_;
@@ -216,24 +224,42 @@ void run(const fs::path& out, bool quick) {
   suite.measure_faces();
   suite.measure_growth();
   const Results results = std::move(suite).finish();
-  std::ofstream file(out / "bench.json", std::ios::binary);
-  file << json_of(results);
-  if (!file.flush()) throw std::runtime_error((out / "bench.json").string() + ": not written");
+  write_text(out / "bench.json", json_of(results));
   std::printf("%s\nwritten: %s, %s\n", table_of(results).c_str(), (out / "bench.json").c_str(),
               (out / "growth.png").c_str());
+}
+
+/// Real faces where they are, or the built-in head.
+void run_iterations(const fs::path& out, bool quick) {
+  std::vector<Subject> subjects;
+  if (!quick) {
+    constexpr int kTalking = 300;
+    for (auto& found : {surrey(), ict(kTalking), bent_facecap()}) {
+      if (found) subjects.push_back(*found);
+    }
+  }
+  if (subjects.empty()) subjects.push_back(head(0, quick ? 10 : kFrames));
+  std::vector<IterationCurve> curves;
+  for (const Subject& subject : subjects) {
+    std::ranges::move(iteration_curves(subject, quick), std::back_inserter(curves));
+  }
+  write_text(out / "iterations.png", png_of(picture_of(curves)));
+  std::printf("%s\nwritten: %s\n", table_of(curves).c_str(), (out / "iterations.png").c_str());
 }
 
 }  // namespace
 }  // namespace mimetra::bench
 
 int main(int argc, char** argv) {
-  const bool quick = argc == 3 && std::string(argv[2]) == "--quick";
-  if (argc < 2 || (argc > 2 && !quick)) {
-    std::fprintf(stderr, "usage: mimetra_bench OUT [--quick]\n");
+  const std::set<std::string> modes(argv + std::min(argc, 2), argv + argc);
+  const bool quick = modes.contains("--quick"), iterations = modes.contains("--iterations");
+  if (argc < 2 || modes.size() != std::size_t{quick} + std::size_t{iterations}) {
+    std::fprintf(stderr, "usage: mimetra_bench OUT [--quick] [--iterations]\n");
     return 2;
   }
   try {
-    mimetra::bench::run(std::filesystem::absolute(argv[1]), quick);
+    const auto run = iterations ? mimetra::bench::run_iterations : mimetra::bench::run;
+    run(std::filesystem::absolute(argv[1]), quick);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "mimetra_bench: %s\n", error.what());
     return 1;

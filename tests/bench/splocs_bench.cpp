@@ -10,7 +10,6 @@ namespace mimetra::bench {
 namespace {
 
 constexpr const char* kGroup = "decomposition";
-constexpr int kIterations = 10;
 constexpr int kAdmmSteps = 10;
 
 double motion_bytes(double frames, double vertices) {

@@ -14,11 +14,14 @@ constexpr const char* kStart = "decomposition start";
 constexpr const char* kWeightStep = "weight step";
 constexpr const char* kAdmm = "ADMM, 10 steps";
 
-/// The decomposition that is timed: K components, all 10 iterations, distances known in advance.
+/// Of each decomposition that is timed.
+constexpr int kIterations = DecompositionOptions::kReferenceIterations;
+
+/// The decomposition that is timed: K components, kIterations, distances known in advance.
 /// Distances are computed here, by a first run.
 DecompositionOptions prepared_options(const MeshSequence& sequence, int count);
 
-/// Products of the start, 10 iterations of 10 ADMM steps, and what keeps them going.
+/// Products of the start, kIterations of 10 ADMM steps, and what keeps them going.
 Work decomposition_work(double frames, double vertices, double count, const Machine& machine);
 
 Row decomposition_row(const std::string& name, const MeshSequence& sequence, int count,

@@ -85,6 +85,25 @@ std::optional<Subject> captured(const std::string& name, const std::string& mode
                  read_blendshapes(folder.string() + target), folder.string() + target};
 }
 
+/// Stretched, and bent forwards above and below.
+Positions bent(const Positions& positions) {
+  Positions result = positions;
+  result.col(0) = 0.9 * positions.col(0) + 0.002 * positions.col(1).cwiseAbs2();
+  result.col(1) = 1.25 * positions.col(1);
+  return result;
+}
+
+BlendshapeModel bent(const BlendshapeModel& model) {
+  const Positions neutral = bent(model.neutral());
+  ShapeBasis expressions = model.expressions();
+  for (auto field : expressions.displacements.colwise()) {
+    const PositionsView displacement(field.data(), model.vertices(), 3);
+    const Positions moved = bent(model.neutral() + displacement) - neutral;
+    field = Eigen::Map<const Eigen::VectorXd>(moved.data(), moved.size());
+  }
+  return {model.shared_connectivity(), neutral, std::move(expressions)};
+}
+
 }  // namespace
 
 Subject head(int splits, int frames) {
@@ -108,6 +127,15 @@ std::optional<Subject> surrey() {
 std::optional<Subject> ict(int frames) {
   return captured("ICT", "ict-face", "@identity003=1.5", "@identity007=2", "talking-60fps-1200.csv",
                   frames);
+}
+
+std::optional<Subject> bent_facecap() {
+  const auto folder = test::shared_path("data/facecap");
+  if (!std::filesystem::exists(folder)) return {};
+  const BlendshapeModel actor = read_blendshapes(folder.string());
+  const Eigen::MatrixXd beta =
+      weights_for(read_weights(folder / "weights.csv"), actor.expressions().names);
+  return Subject{"facecap", actor.animate(beta), bent(actor)};
 }
 
 Subject first_frames(const Subject& subject, int frames) {

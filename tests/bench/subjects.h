@@ -25,6 +25,8 @@ Subject head(int splits, int frames);
 std::optional<Subject> surrey();         ///< 100 frames x 3448, 6 expressions
 std::optional<Subject> ict(int frames);  ///< x 6706, 53 expressions; at most 1200 frames
 
+std::optional<Subject> bent_facecap();  ///< 335 frames x 2694, 52 expressions; onto itself bent
+
 /// The first frames.
 Subject first_frames(const Subject& subject, int frames);
 

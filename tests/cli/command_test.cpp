@@ -105,12 +105,30 @@ TEST_F(Command, DecomposeWritesComponentsThatRegionsReads) {
   EXPECT_EQ(report.at("frames"), 12);
   EXPECT_EQ(report.at("components"), 3);
   EXPECT_FALSE(report.at("energies").empty());
+  EXPECT_TRUE(report.at("converged").is_boolean());
+  EXPECT_GE(report.at("iteration"), 1);
+  EXPECT_LE(report.at("iteration"), report.at("energies").size());
   const auto regions = run("regions head --weights take.csv --components c.h5 -o r.json --json");
   ASSERT_EQ(regions.code, 0) << regions.err;
   const json found = json::parse(regions.out);
   EXPECT_EQ(found.at("regions").size(), 3u);
+  EXPECT_EQ(found.at("converged"), report.at("converged"));
   EXPECT_GT(found.at("vertex_share").get<double>(), 0);
   EXPECT_LT(found.at("vertex_share").get<double>(), 1);
+}
+
+TEST_F(Command, DecomposeSaysInWordsThatItHasNotConverged) {
+  const auto result = run("decompose head --weights take.csv -k 3 --iterations 2 -o c.h5");
+  EXPECT_THAT(result.out + result.err, HasSubstr("2 iterations, not converged"));
+}
+
+TEST_F(Command, DecomposeAsTheReferenceRunsTenIterations) {
+  const auto result =
+      run("decompose head --weights take.csv -k 3 --compat splocs2013 -o c.h5 --json");
+  ASSERT_EQ(result.code, 0) << result.err;
+  const json report = json::parse(result.out);
+  EXPECT_EQ(report.at("energies").size(), 10u);
+  EXPECT_EQ(report.at("iteration"), 10);
 }
 
 TEST_F(Command, TransferLeavesItsComponentsForALaterRun) {

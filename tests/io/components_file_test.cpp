@@ -59,6 +59,43 @@ TEST(ComponentsFile, ComesBackEqualAfterWriting) {
   EXPECT_EQ(found.options.basis_tolerance, 1e-3);
 }
 
+TEST(ComponentsFile, KeepsWhetherTheEnergyConvergedAndWhoseStateItHolds) {
+  const test::TemporaryFolder folder;
+  Components written = small_components();
+  written.options.iterations = 17;
+  written.options.returned = ReturnedIterate::last;
+  written.iteration = 2;
+  for (const bool converged : {false, true}) {
+    written.converged = converged;
+    const auto file = folder / (converged ? "yes.h5" : "no.h5");
+    write_components(file, written, false);
+    const Components found = read_components(file);
+    EXPECT_EQ(found.converged, converged);
+    EXPECT_EQ(found.iteration, 2);
+    EXPECT_EQ(found.options.iterations, 17);
+    EXPECT_EQ(found.options.returned, ReturnedIterate::last);
+  }
+}
+
+TEST(ComponentsFile, ThatSaysNothingOfConvergenceLeavesItUnknown) {
+  const test::TemporaryFolder folder;
+  write_components(folder / "c.h5", small_components(), false);
+  const Components found = read_components(folder / "c.h5");
+  EXPECT_EQ(found.converged, std::nullopt);
+  EXPECT_EQ(found.iteration, 0);
+  EXPECT_EQ(found.options.iterations, std::nullopt);
+}
+
+TEST(ComponentsFile, OfAnIterationThatDidNotRunIsAnError) {
+  const test::TemporaryFolder folder;
+  Components components = small_components();
+  components.iteration = 4;
+  write_components(folder / "c.h5", components, false);
+  EXPECT_THAT([&] { read_components(folder / "c.h5"); },
+              testing::ThrowsMessage<IoError>(
+                  testing::HasSubstr("attribute 'iteration' is 4, of 3 'energies'")));
+}
+
 TEST(ComponentsFile, IsTheSameBytesEveryTime) {
   const test::TemporaryFolder folder;
   const Components components = small_components();

@@ -201,7 +201,7 @@ void expect_same_limits(const BoundParameters<Options>& list, const std::string&
   const auto declared = list.declared();
   const auto parameter = std::ranges::find(declared, name, &Parameter::name);
   ASSERT_NE(parameter, declared.end()) << name;
-  constexpr bool kWhole = std::is_same_v<Value, int>;
+  constexpr bool kWhole = std::is_same_v<Value, int> || std::is_same_v<Value, std::optional<int>>;
   const auto check = [&](double end, double direction) {
     Options options;
     options.*option.member = static_cast<Value>(end);

@@ -92,6 +92,17 @@ TEST(Chart, LeavesOutMarksWhereNoneAreAskedFor) {
   EXPECT_LT(drawn(), with_mark);
 }
 
+TEST(Chart, HasMoreSpaceForItsCurveWithoutALegend) {
+  Chart chart = chart_of({1, 2, 3}, {1, 2, 3}, ChartScale::linear);
+  const auto lowest = [](const Image& image) {
+    const std::vector<double> heights = red_heights(image);
+    return *std::ranges::max_element(heights);
+  };
+  const double above_legend = lowest(draw({chart}));
+  chart.legend = false;
+  EXPECT_GT(lowest(draw({chart})), above_legend);
+}
+
 TEST(Chart, ShowsOnePointAlone) {
   for (const ChartScale scale : {ChartScale::linear, ChartScale::logarithmic}) {
     const std::vector<double> heights = red_heights(draw({chart_of({4}, {4}, scale)}));

@@ -75,10 +75,25 @@ TEST(Analysis, MeasuresAsTheReferenceDoesWhereItIsToBeCompatible) {
   options.decomposition.tolerance = 1;
   const Components components = analyse(source_of(sequence), options).components;
   EXPECT_EQ(components.d_max, 0.7 * largest);
-  EXPECT_EQ(static_cast<int>(components.energies.size()), options.decomposition.iterations);
+  EXPECT_EQ(components.energies.size(), 10U);
+  EXPECT_EQ(components.iteration, 10);
   EXPECT_EQ(components.options.sign_rule, SignRule::literal);
   EXPECT_EQ(components.options.scale, MotionScale::standard_deviation);
   EXPECT_TRUE(components.rest == sequence.frame(0));
+}
+
+TEST(Analysis, RunsAsManyIterationsAsAreAskedForWithTheReferenceToo) {
+  AnalysisOptions options = three_components();
+  options.compatibility = Compatibility::splocs2013;
+  options.decomposition.iterations = 4;
+  EXPECT_EQ(analyse(source_of(take()), options).components.energies.size(), 4U);
+}
+
+TEST(Analysis, RunsMoreIterationsThanTheReferenceOfItself) {
+  AnalysisOptions options = three_components();
+  options.decomposition.tolerance = 0;
+  EXPECT_EQ(analyse(source_of(take()), options).components.energies.size(),
+            std::size_t{DecompositionOptions::kUsualIterations});
 }
 
 TEST(Analysis, MeasuresTheReferencesUnitBeforeHeadMotionIsTakenOut) {

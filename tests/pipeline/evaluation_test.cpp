@@ -27,6 +27,8 @@ TEST_F(EvaluationTest, HasARowForEachCountAndOneByAllTriangles) {
   EXPECT_FALSE(rows[2].k);
   EXPECT_FALSE(rows[2].mpe_all);
   EXPECT_EQ(rows[2].triangles, source_.triangles().rows());
+  EXPECT_TRUE(rows[0].converged);
+  EXPECT_FALSE(rows[2].converged);
 }
 
 TEST_F(EvaluationTest, IsTheErrorOfTheTransferByTheSameRegions) {

@@ -31,7 +31,7 @@ LiteralProblem literal_problem(const MeshSequence& sequence, const Decomposition
           .count = options.count,
           .sparsity = options.sparsity,
           .rho = options.rho,
-          .iterations = options.iterations,
+          .iterations = *options.iterations,
           .admm_iterations = options.admm_iterations,
           .nonnegative = options.nonnegative,
           .literal_sign = options.sign_rule == SignRule::literal,
@@ -44,7 +44,8 @@ LiteralProblem literal_problem(const MeshSequence& sequence, const Decomposition
 /// Both decompositions after every number of iterations up to the options'.
 void expect_literal(const MeshSequence& sequence, DecompositionOptions options) {
   const LiteralResult literal = literal_decomposition(literal_problem(sequence, options));
-  const int iterations = options.iterations;
+  const int iterations = *options.iterations;
+  options.returned = ReturnedIterate::last;
   for (int done = 1; done <= iterations; ++done) {
     options.iterations = done;
     const Components components = decompose(sequence, options);
@@ -236,24 +237,107 @@ TEST(Decomposition, FollowsAnotherOrderOfVertices) {
   for (int k = 0; k < 6; ++k) EXPECT_EQ(from[b.centers[k]], a.centers[k]);
 }
 
-TEST(Decomposition, StopsWhenTheEnergyChangesByLessThanTheTolerance) {
+/// How many changes of the energy in a row, up to iteration `last` (from 0), are small.
+int small_changes(const std::vector<double>& energies, int last, double tolerance) {
+  int count = 0;
+  for (int i = last; i > 0; --i, ++count) {
+    if (std::abs(energies[i - 1] - energies[i]) > tolerance * energies[i - 1]) break;
+  }
+  return count;
+}
+
+TEST(Decomposition, EndsAtTheThirdSmallChangeOfTheEnergyInARow) {
+  bool a_small_change_was_not_the_end = false;
+  for (const unsigned seed : {7, 8, 9, 10, 11, 12}) {
+    const MeshSequence sequence = restless_grid(14, 9, 20, seed);
+    DecompositionOptions options = grid_options(sequence, 4);
+    options.iterations = 1000;
+    options.tolerance = 1e-3;
+    const Components components = decompose(sequence, options);
+    const auto last = static_cast<int>(components.energies.size()) - 1;
+    ASSERT_LT(last, 999);
+    EXPECT_EQ(components.converged, true);
+    EXPECT_EQ(small_changes(components.energies, last, options.tolerance), 3);
+    for (int i = 1; i < last; ++i) {
+      const int count = small_changes(components.energies, i, options.tolerance);
+      EXPECT_LT(count, 3) << i << " of seed " << seed;
+      if (count > 0 && i + 3 <= last && small_changes(components.energies, i + 1, 1e-3) == 0) {
+        a_small_change_was_not_the_end = true;
+      }
+    }
+  }
+  EXPECT_TRUE(a_small_change_was_not_the_end);
+}
+
+TEST(Decomposition, HasNotConvergedWhereIterationsRunOut) {
   const MeshSequence sequence = restless_grid();
   DecompositionOptions options = grid_options(sequence, 4);
-  options.iterations = 1000;
-  options.tolerance = 1e-3;
-  const std::vector<double> energies = decompose(sequence, options).energies;
-  ASSERT_LT(energies.size(), 1000u);
-  const auto change = [&energies](std::size_t i) {
-    return std::abs(energies[i - 1] - energies[i]) / energies[i - 1];
-  };
-  EXPECT_LE(change(energies.size() - 1), options.tolerance);
-  for (std::size_t i = 1; i + 1 < energies.size(); ++i) EXPECT_GT(change(i), options.tolerance);
+  options.tolerance = 1e-12;
+  const Components components = decompose(sequence, options);
+  EXPECT_EQ(components.energies.size(), 10u);
+  EXPECT_EQ(components.converged, false);
 }
 
 TEST(Decomposition, RunsAllIterationsWithoutATolerance) {
   const Bumps bumps;
   const MeshSequence sequence = bumps.sequence();
-  EXPECT_EQ(decompose(sequence, grid_options(sequence, 3)).energies.size(), 10u);
+  const Components components = decompose(sequence, grid_options(sequence, 3));
+  EXPECT_EQ(components.energies.size(), 10u);
+  // The bumps are found at once: it has converged by the usual tolerance.
+  EXPECT_EQ(components.converged, true);
+}
+
+TEST(Decomposition, RunsTheUsualNumberOfIterationsUnlessAskedForAnother) {
+  const MeshSequence sequence = restless_grid();
+  DecompositionOptions options = grid_options(sequence, 4);
+  options.iterations.reset();
+  const Components components = decompose(sequence, options);
+  EXPECT_EQ(components.energies.size(), std::size_t{DecompositionOptions::kUsualIterations});
+  EXPECT_EQ(components.options.iterations, DecompositionOptions::kUsualIterations);
+}
+
+/// The energy of what a decomposition returned, from its definition.
+double energy_of(const Components& components, const MeshSequence& sequence,
+                 const DecompositionOptions& options) {
+  const Frames C = components.displacements / components.scale;
+  double energy = (literal_problem(sequence, options).X - components.weights * C).squaredNorm();
+  for (int k = 0; k < components.count(); ++k) {
+    const Eigen::VectorXd lengths = vertex_energies(C.row(k)).cwiseSqrt();
+    energy += options.sparsity * components.support.row(k).dot(lengths);
+  }
+  return energy;
+}
+
+TEST(Decomposition, ReturnsTheIterateOfLeastEnergy) {
+  int rising = 0;
+  for (unsigned seed = 0; seed < 30; ++seed) {
+    const MeshSequence sequence = restless_grid(9, 7, 10, seed);
+    DecompositionOptions options = grid_options(sequence, 2 + static_cast<int>(seed) % 5);
+    // Narrow support maps, which move far when a centre does.
+    options.d_max = 3;
+    options.iterations = 5 + static_cast<int>(seed);
+    options.tolerance = seed % 2 == 0 ? 1e-4 : 0;
+    const Components components = decompose(sequence, options);
+    const double least = *std::ranges::min_element(components.energies);
+    ASSERT_GE(components.iteration, 1);
+    EXPECT_LE(components.energies.at(components.iteration - 1), least * (1 + options.tolerance));
+    EXPECT_NEAR(energy_of(components, sequence, options) / least, 1, kRounding) << seed;
+    rising += components.energies.back() > least;
+  }
+  EXPECT_GT(rising, 0) << "no energy rose: the test says nothing";
+}
+
+TEST(Decomposition, ReturnsTheLastIterateWhereItIsAskedFor) {
+  for (unsigned seed = 0; seed < 30; ++seed) {
+    const MeshSequence sequence = restless_grid(9, 7, 10, seed);
+    DecompositionOptions options = grid_options(sequence, 2 + static_cast<int>(seed) % 5);
+    options.d_max = 3;
+    options.returned = ReturnedIterate::last;
+    const Components components = decompose(sequence, options);
+    EXPECT_EQ(components.iteration, 10);
+    EXPECT_NEAR(energy_of(components, sequence, options) / components.energies.back(), 1,
+                kRounding);
+  }
 }
 
 TEST(Decomposition, AsksForDistancesOnlyWhereACenterMoves) {
@@ -334,6 +418,25 @@ TEST(Decomposition, ProgressRisesToOne) {
   decompose(sequence, options);
   EXPECT_TRUE(std::ranges::is_sorted(shares));
   EXPECT_EQ(shares.front(), 0);
+  EXPECT_EQ(shares.back(), 1);
+}
+
+TEST(Decomposition, ProgressPromisesNoMoreThanIsDoneAndIsAllDoneWhereItConvergesEarly) {
+  const Bumps bumps;
+  const MeshSequence sequence = bumps.sequence();
+  DecompositionOptions options = grid_options(sequence, 3);
+  options.iterations = 1000;
+  options.tolerance = 1e-3;
+  std::vector<double> shares;
+  options.progress = [&shares](double share) {
+    shares.push_back(share);
+    return true;
+  };
+  const std::size_t ran = decompose(sequence, options).energies.size();
+  ASSERT_LT(ran, 20u);
+  EXPECT_TRUE(std::ranges::is_sorted(shares));
+  // The start is worth some iterations, and 980 of 1000 have not run.
+  EXPECT_LT(shares.at(shares.size() - 2), 0.1);
   EXPECT_EQ(shares.back(), 1);
 }
 

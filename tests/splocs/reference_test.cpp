@@ -48,6 +48,7 @@ class ReferenceDecomposition : public testing::Test {
     options_.tolerance = 0;
     options_.sign_rule = SignRule::literal;
     options_.scale = MotionScale::standard_deviation;
+    options_.returned = ReturnedIterate::last;
     // A vertex that the reference never visited has no distances here: at() throws.
     from_vertex_ = [of_vertex](VertexIndex source) { return of_vertex.at(source); };
     options_.distances = one_by_one(from_vertex_);

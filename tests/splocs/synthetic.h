@@ -64,9 +64,10 @@ struct Bumps {
 };
 
 /// A flat grid on which overlapping bumps and a little noise move to and fro.
-inline MeshSequence restless_grid(int columns = 14, int rows = 9, int frames = 20) {
+inline MeshSequence restless_grid(int columns = 14, int rows = 9, int frames = 20,
+                                  unsigned seed = 7) {
   const Shape shape = grid(columns, rows);
-  std::mt19937 random(7);
+  std::mt19937 random(seed);
   // Not std::normal_distribution: its values are the library's choice.
   const auto uniform = [&random] { return random() / 2147483648.0 - 1; };
   const int bumps = 5;
@@ -91,6 +92,7 @@ inline DecompositionOptions grid_options(const MeshSequence& sequence, int count
   options.count = count;
   options.d_min = 1;
   options.d_max = 6;
+  options.iterations = 10;
   options.tolerance = 0;
   options.distances = one_by_one(straight_distances(sequence.rest()));
   return options;

@@ -170,8 +170,10 @@ class Reader {
     return values;
   }
 
+  bool has_attribute(const char* name) const { return H5Aexists(file_, name) > 0; }
+
   double attribute(const char* name, double otherwise) const {
-    if (H5Aexists(file_, name) <= 0) return otherwise;
+    if (!has_attribute(name)) return otherwise;
     const Handle attribute(H5Aopen(file_, name, H5P_DEFAULT), H5Aclose);
     const Handle space(H5Aget_space(attribute), H5Sclose);
     double value = otherwise;
@@ -220,13 +222,19 @@ void write_options(Writer& writer, const Components& components) {
   writer.attribute("d_max", components.d_max);
   writer.attribute("sparsity", options.sparsity);
   writer.attribute("rho", options.rho);
-  writer.attribute("iterations", options.iterations);
+  if (options.iterations) writer.attribute("iterations", *options.iterations);
   writer.attribute("admm_iterations", options.admm_iterations);
   writer.attribute("tolerance", options.tolerance);
   writer.attribute("nonnegative", options.nonnegative);
   writer.attribute("single_precision", options.precision == IterationPrecision::single_precision);
   writer.attribute("basis_tolerance", options.basis_tolerance);
   writer.attribute("literal_sign_rule", options.sign_rule == SignRule::literal);
+  writer.attribute("last_iterate", options.returned == ReturnedIterate::last);
+}
+
+void write_convergence(Writer& writer, const Components& components) {
+  if (components.iteration > 0) writer.attribute("iteration", components.iteration);
+  if (components.converged) writer.attribute("converged", *components.converged);
 }
 
 void read_options(const Reader& reader, Components& components) {
@@ -237,7 +245,9 @@ void read_options(const Reader& reader, Components& components) {
   options.count = components.count();
   options.sparsity = reader.attribute("sparsity", options.sparsity);
   options.rho = reader.attribute("rho", options.rho);
-  options.iterations = reader.whole_attribute("iterations", options.iterations);
+  if (reader.has_attribute("iterations")) {
+    options.iterations = reader.whole_attribute("iterations", 0);
+  }
   options.admm_iterations = reader.whole_attribute("admm_iterations", options.admm_iterations);
   options.tolerance = reader.attribute("tolerance", options.tolerance);
   options.nonnegative = reader.attribute("nonnegative", options.nonnegative) != 0;
@@ -247,6 +257,19 @@ void read_options(const Reader& reader, Components& components) {
   options.basis_tolerance = reader.attribute("basis_tolerance", options.basis_tolerance);
   options.sign_rule =
       reader.attribute("literal_sign_rule", 0) != 0 ? SignRule::literal : SignRule::amplitude;
+  if (reader.attribute("last_iterate", false) != 0) options.returned = ReturnedIterate::last;
+}
+
+/// Older files and those of the reference say nothing of it.
+void read_convergence(const Reader& reader, Components& components) {
+  components.iteration = reader.whole_attribute("iteration", 0);
+  if (components.iteration > static_cast<int>(components.energies.size())) {
+    reader.fail("attribute 'iteration' is " + std::to_string(components.iteration) + ", of " +
+                std::to_string(components.energies.size()) + " 'energies'");
+  }
+  if (reader.has_attribute("converged")) {
+    components.converged = reader.attribute("converged", 0) != 0;
+  }
 }
 
 /// The vertex that each component moves most; -1 where it moves none.
@@ -345,6 +368,7 @@ void write_components(const std::filesystem::path& path, const Components& compo
     if (!components.centers.empty()) writer.write("centers", column_of(components.centers));
     if (!components.energies.empty()) writer.write("energies", column_of(components.energies));
     write_options(writer, components);
+    write_convergence(writer, components);
     write_bytes(pending.path(), writer.bytes());
   }
   pending.commit();
@@ -370,6 +394,7 @@ Components read_components(const std::filesystem::path& path) {
   read_components_of(reader, components);
   read_optional_parts(reader, components);
   read_options(reader, components);
+  read_convergence(reader, components);
   return components;
 }
 

@@ -54,7 +54,8 @@ void check_option(const Options& options, const Option<Options, Value>& option) 
     Range range = {option.range.minimum.value_or(0), option.range.maximum};
     if (!value.absolute) range.maximum = range.maximum.value_or(Length::kLargestShare);
     check_number(option.name, range, value.value);
-  } else if constexpr (std::is_same_v<Value, std::optional<double>>) {
+  } else if constexpr (std::is_same_v<Value, std::optional<double>> ||
+                       std::is_same_v<Value, std::optional<int>>) {
     if (value) check_number(option.name, option.range, *value);
   } else if constexpr (std::is_same_v<Value, std::vector<int>>) {
     for (const int number : value) check_number(option.name, option.range, number);

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "toolkit/mesh/text.h"
+#include "toolkit/operations/convergence_report.h"
 #include "toolkit/operations/json.h"
 #include "toolkit/operations/pipeline_parameters.h"
 #include "toolkit/operations/toolkit_operations.h"
@@ -74,23 +75,24 @@ Outcome run_decompose(const Invocation& invocation) {
                     " components died: fewer tell the same");
   }
   Outcome outcome;
-  outcome.report = Json{{"frames", still.sequence->frames()},
-                        {"vertices", still.sequence->vertices()},
-                        {"components", components.count() - dead},
-                        {"energies", components.energies},
-                        {"e_rms", error.rms},
-                        {"e_rms_relative", error.relative_rms},
-                        {"kg", error.kg},
-                        {"sparsity", error.sparsity},
-                        {"centers", components.centers},
-                        {"head_motion", json_of(still.head_motion)},
-                        {"seconds", analysis.seconds}}
-                       .dump();
+  Json report = {{"frames", still.sequence->frames()},
+                 {"vertices", still.sequence->vertices()},
+                 {"components", components.count() - dead},
+                 {"energies", components.energies},
+                 {"e_rms", error.rms},
+                 {"e_rms_relative", error.relative_rms},
+                 {"kg", error.kg},
+                 {"sparsity", error.sparsity},
+                 {"centers", components.centers},
+                 {"head_motion", json_of(still.head_motion)},
+                 {"seconds", analysis.seconds}};
+  add_convergence(report, components);
+  outcome.report = report.dump();
   outcome.summary = std::to_string(components.count() - dead) + " components, RMS error " +
                     readable(error.rms) + " (" + readable(100 * error.relative_rms) +
                     " % of the box diagonal), KG error " + readable(error.kg) + " %, " +
                     percent(error.sparsity) + " of the displacements are zero, " +
-                    readable(analysis.seconds) + " s\n";
+                    convergence_text(components) + ", " + readable(analysis.seconds) + " s\n";
   if (invocation.wants("weights-out")) {
     outcome.outputs["weights-out"].push_back(
         {"", weight_table(components, still.sequence->times())});

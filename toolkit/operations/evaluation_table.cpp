@@ -5,13 +5,15 @@ namespace mimetra {
 Table table_of(const std::vector<EvaluationRow>& rows) {
   Table table;
   table.columns = {
-      "k",      "vertices",  "triangles", "vertex_share", "triangle_share",    "radius",
-      "de_all", "de_region", "mpe_all",   "mpe_region",   "decompose_seconds", "transfer_seconds"};
+      "k",        "vertices",  "triangles", "vertex_share", "triangle_share",    "radius",
+      "de_all",   "de_region", "mpe_all",   "mpe_region",   "decompose_seconds", "transfer_seconds",
+      "converged"};
   for (const EvaluationRow& row : rows) {
     table.rows.push_back({row.k ? std::optional<double>(*row.k) : std::nullopt,
                           double(row.vertices), double(row.triangles), row.vertex_share,
                           row.triangle_share, row.radius, row.de_all, row.de_region, row.mpe_all,
-                          row.mpe_region, row.decompose_seconds, row.transfer_seconds});
+                          row.mpe_region, row.decompose_seconds, row.transfer_seconds,
+                          row.converged ? std::optional<double>(*row.converged) : std::nullopt});
   }
   return table;
 }

@@ -65,10 +65,13 @@ BoundParameters<DecompositionOptions> decomposition_parameters() {
   BoundParameters<Options> list;
   list.add("sparsity", Options::kSparsity, "weight lambda of the sparsity term")
       .add("rho", Options::kRho, "penalty of ADMM")
-      .add("iterations", Options::kIterations, "outer iterations at most")
+      .add("iterations", Options::kIterations,
+           "outer iterations at most; default " + std::to_string(Options::kUsualIterations) +
+               ", with --compat " + std::to_string(Options::kReferenceIterations))
       .add("admm-iterations", Options::kAdmmIterations, "ADMM steps in each")
       .add("tolerance", Options::kTolerance,
-           "stop when the energy changes by less than this share; 0 runs all iterations")
+           "stop when the energy changes by at most this share three times in a row; 0 runs all "
+           "iterations")
       .add_opposite("signed", Options::kNonnegative, "allow negative weights")
       .add("precision", Options::kPrecision,
            "of the iterations; single moves components by about 1e-6 of themselves")

@@ -2,6 +2,7 @@
 
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/text.h"
+#include "toolkit/operations/convergence_report.h"
 #include "toolkit/operations/json.h"
 #include "toolkit/operations/paraview_view.h"
 #include "toolkit/operations/pipeline_parameters.h"
@@ -93,6 +94,7 @@ Outcome run_regions(const Invocation& invocation) {
   Outcome outcome;
   Json json = report_of(regions);
   if (found.head_motion) json["head_motion"] = json_of(*found.head_motion);
+  add_convergence(json, analysis.components);
   json["seconds"] = analysis.seconds;
   outcome.report = json.dump();
   outcome.summary = summary_of(regions);

@@ -5,6 +5,7 @@
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/stopwatch.h"
 #include "toolkit/mesh/text.h"
+#include "toolkit/operations/convergence_report.h"
 #include "toolkit/operations/formats.h"
 #include "toolkit/operations/json.h"
 #include "toolkit/operations/pipeline_parameters.h"
@@ -157,6 +158,7 @@ void add_regions(Outcome& outcome, Json& report, const Invocation& invocation,
                  const TransferResult& result) {
   if (!result.regions) return;
   Json regions = report_of(*result.regions);
+  if (result.components) add_convergence(regions, *result.components);
   regions["seconds"] = result.region_seconds;
   report["regions"] = regions;
   outcome.summary = summary_of(*result.regions) + outcome.summary;

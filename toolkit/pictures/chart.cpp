@@ -91,10 +91,11 @@ std::vector<double> even_ticks(const Range& range) {
 
 /// Decades, and where these are few also multiples of them; values, not logarithms.
 std::vector<double> decade_ticks(const Range& range) {
-  constexpr double kManyDecades = 2.2, kOneDecade = 1;
+  constexpr double kManyDecades = 2.2, kOneDecade = 1, kHalfDecade = 0.5;
   const std::vector<int> factors = range.length() > kManyDecades ? std::vector{1}
-                                   : range.length() > kOneDecade
-                                       ? std::vector{1, 2, 5}
+                                   : range.length() > kOneDecade ? std::vector{1, 2, 5}
+                                   : range.length() > kHalfDecade
+                                       ? std::vector{1, 2, 3, 5, 7}
                                        : std::vector{1, 2, 3, 4, 5, 6, 7, 8, 9};
   std::vector<double> ticks;
   for (double exponent = std::floor(range.first); exponent <= range.last; ++exponent) {
@@ -169,7 +170,7 @@ vtkSmartPointer<vtkChartXY> chart_item(const Chart& chart, int letters) {
            letters);
   set_axis(*shown->GetAxis(vtkAxis::LEFT), chart.y, range_of(chart, chart.y, &ChartSeries::y),
            letters);
-  shown->SetShowLegend(true);
+  shown->SetShowLegend(chart.legend);
   vtkChartLegend& legend = *shown->GetLegend();
   legend.SetInline(false);  // below the axes, where no curve runs
   legend.SetHorizontalAlignment(vtkChartLegend::CENTER);

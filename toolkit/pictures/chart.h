@@ -31,6 +31,7 @@ struct Chart {
   ChartAxis x;
   ChartAxis y;
   std::vector<ChartSeries> series;
+  bool legend = true;  ///< below the axes
 };
 
 struct ChartSize {
@@ -39,11 +40,11 @@ struct ChartSize {
   int letters = 0;   ///< height of letters, pixels; 0 for what suits the height
 };
 
-/// Draws charts in a row, each with its title, axes and, below them, its legend. Throws
-/// std::invalid_argument for no chart, a chart without points, a series whose x and y differ in
-/// number, a number that the scale cannot show (not finite, or not positive on a logarithmic one),
-/// and a picture larger than kLargestPicture or smaller than charts may be; std::runtime_error
-/// where there is no OpenGL.
+/// Draws charts in a row, each with its title, axes and, below them, its legend where it has one.
+/// Throws std::invalid_argument for no chart, a chart without points, a series whose x and y differ
+/// in number, a number that the scale cannot show (not finite, or not positive on a logarithmic
+/// one), and a picture larger than kLargestPicture or smaller than charts may be;
+/// std::runtime_error where there is no OpenGL.
 Image draw(const std::vector<Chart>& row, const ChartSize& size = {});
 
 }  // namespace mimetra

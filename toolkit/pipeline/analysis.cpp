@@ -200,11 +200,13 @@ Analysis analyse(const Source& source, const AnalysisOptions& options) {
   decomposition.d_min = range.d_min;
   decomposition.d_max = range.d_max;
   if (reference) {
+    decomposition.iterations =
+        decomposition.iterations.value_or(DecompositionOptions::kReferenceIterations);
     decomposition.tolerance = 0;
     decomposition.sign_rule = SignRule::literal;
     decomposition.scale = MotionScale::standard_deviation;
-  }
-  if (!reference) {
+    decomposition.returned = ReturnedIterate::last;
+  } else {
     decomposition.parts =
         part_weights(work.rest(), work.triangles(), options.inside, options.distances.welding);
   }

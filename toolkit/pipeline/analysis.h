@@ -71,9 +71,10 @@ constexpr std::string_view choice_name(RestPose value) {
 enum class Compatibility {
   none,
   /// The reference implementation to the letter: lengths are shares of the longest side that any
-  /// single frame has, X is divided by its standard deviation, signs are decided as there, all
-  /// iterations run, and the rest pose is the first frame unless one is asked for. All
-  /// vertices count alike, whatever part they lie on.
+  /// single frame has, X is divided by its standard deviation, signs are decided as there, ten
+  /// iterations run unless another number is asked for, all of them, the last is returned, and the
+  /// rest pose is the first frame unless one is asked for. All vertices count alike, whatever part
+  /// they lie on.
   splocs2013,
   /// The same, and eq. 10 and 12 sum over two edges of each triangle as they are written.
   paper
@@ -103,7 +104,8 @@ struct AnalysisOptions {
   /// changes nothing: components are zero there, and no centre or region lies there.
   std::vector<bool> inside = {};
   /// Its lengths, distances, part weights, threads and progress are those of the analysis, and its
-  /// sign rule and tolerance those of the compatibility where there is one.
+  /// sign rule, scale, tolerance and returned iterate those of the compatibility where there is
+  /// one.
   DecompositionOptions decomposition = {.count = 30};
   /// Its threads and notes are those of the analysis.
   DistanceOptions distances = {};

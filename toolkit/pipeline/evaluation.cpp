@@ -36,7 +36,7 @@ EvaluatedTransfer solved(const Source& source, const Target& target, const Selec
 }
 
 /// The work of one decomposition in a row; the rest is its transfer.
-constexpr double kAnalysisShare = 0.7;
+constexpr double kAnalysisShare = 0.9;
 
 /// Of all regions of the source; none where they differ.
 std::optional<double> common_radius(const Regions& regions) {
@@ -113,6 +113,7 @@ std::vector<EvaluationRow> evaluate(const MeshSequence& sequence, const Target& 
     rows.push_back(evaluate_by(regions, full, source, target, of_solving).row);
     rows.back().k = analysis.components.count();
     rows.back().decompose_seconds = seconds;
+    rows.back().converged = analysis.components.converged;
   }
   rows.push_back(full.row);
   return rows;

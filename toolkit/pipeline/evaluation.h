@@ -23,6 +23,7 @@ struct EvaluationRow {
   std::optional<double> mpe_region;
   std::optional<double> decompose_seconds;
   double transfer_seconds = 0;
+  std::optional<bool> converged = {};  ///< the decomposition; none where there was none
 };
 
 /// A transfer, and how far it is from the source's deformation.

@@ -43,8 +43,8 @@ double alignment_bytes(const FrameSource& sequence, const SourceOptions& options
 
 double analysis_bytes(const FrameSource& sequence, int count) {
   const double vertices = sequence.vertices();
-  const double components = 2 * count * 3 * vertices;  // C and the dual variable
-  const double maps = (1 + kCentersPerComponent) * count * vertices;
+  const double components = 3 * count * 3 * vertices;  // C, the best so far, the dual variable
+  const double maps = (2 + kCentersPerComponent) * count * vertices;
   // The displacements are as many numbers as the frames.
   return kFactorsPerVertex * vertices + frame_bytes(sequence) + kNumber * (components + maps);
 }

@@ -13,7 +13,7 @@ namespace {
 /// Parts of the work as progress shows them: until head motion is known, and until there are
 /// regions; of each target, until it is solved.
 constexpr double kSourceShare = 0.1;
-constexpr double kRegionShare = 0.4;
+constexpr double kRegionShare = 0.7;
 constexpr double kSolveShare = 0.7;
 
 struct Choice {

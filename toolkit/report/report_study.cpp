@@ -163,6 +163,7 @@ class RunSteps {
 EvaluationRow completed(EvaluationRow row, const RunSteps::Found& found) {
   if (!found.components) return row;
   row.k = found.components->count();
+  row.converged = found.components->converged;
   if (found.seconds > 0) row.decompose_seconds = found.seconds;
   return row;
 }

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "toolkit/mesh/errors.h"
+#include "toolkit/mesh/near_tie.h"
 #include "toolkit/mesh/product_blocking.h"
 #include "toolkit/mesh/progress.h"
 #include "toolkit/splocs/component_update.h"
@@ -19,8 +20,12 @@
 namespace mimetra {
 namespace {
 
-// Share of the work that the start takes, distances included: for the caller's progress.
-constexpr double kStartShare = 0.4;
+// The start takes about as long as so many iterations: for the caller's progress.
+constexpr double kStartIterations = 5;
+
+// Changes of the energy that must be small in a row. One alone is no convergence: on a face with
+// K = 40 it came at iteration 65, and the energy fell on when support maps moved.
+constexpr int kSmallChanges = 3;
 
 void require(bool condition, const std::string& message) {
   if (!condition) throw std::invalid_argument(message);
@@ -74,8 +79,35 @@ double energy(double X_norm2, const Eigen::MatrixXd& W, const Eigen::MatrixXd& g
   return std::max(0.0, X_norm2 - 2 * mixed + square) + penalty;
 }
 
-/// Alternates between weights and components; fills displacements, weights, support and energies.
-/// `X` are the motion's frames, or their coordinates in `basis` where there is one.
+bool has_converged(const std::vector<double>& energies, double tolerance) {
+  const auto count = static_cast<int>(energies.size());
+  if (count <= kSmallChanges) return false;
+  for (int i = count - kSmallChanges; i < count; ++i) {
+    if (std::abs(energies[i - 1] - energies[i]) > tolerance * energies[i - 1]) return false;
+  }
+  return true;
+}
+
+/// Place of the least energy, the first of those that tie.
+int best_of(const std::vector<double>& energies) {
+  int best = 0;
+  for (int i = 1; i < static_cast<int>(energies.size()); ++i) {
+    if (energies[i] < (1 - kNearTie) * energies[best]) best = i;
+  }
+  return best;
+}
+
+/// What is returned of an iteration.
+template <typename Scalar>
+struct Iterate {
+  Eigen::MatrixXd W;
+  VertexBlocks<Scalar> C;
+  Frames maps;
+};
+
+/// Alternates between weights and components; fills displacements, weights and support of the
+/// iterate that the options want, energies and what they say. `X` are the motion's frames, or their
+/// coordinates in `basis` where there is one.
 template <typename Scalar>
 void alternate(Components& result, double X_norm2, const VertexBlocks<Scalar>& X,
                const std::optional<TimeBasis>& basis, Start start, SupportMaps support,
@@ -89,23 +121,36 @@ void alternate(Components& result, double X_norm2, const VertexBlocks<Scalar>& X
   ComponentUpdate<Scalar> components =
       initial_components(X, std::move(start.components).template cast<Scalar>(), options.threads);
   Eigen::MatrixXd P = over_frames(components.P);
-  for (int iteration = 0; iteration < options.iterations; ++iteration) {
-    report_progress(progress, static_cast<double>(iteration) / options.iterations);
+  std::vector<double>& energies = result.energies;
+  Iterate<Scalar> best;
+  for (int iteration = 0; iteration < *options.iterations; ++iteration) {
+    report_progress(progress, static_cast<double>(iteration) / *options.iterations);
+    // What the best so far is, the next iteration overwrites.
+    if (options.returned == ReturnedIterate::best && iteration > 0 &&
+        best_of(energies) == iteration - 1) {
+      // One by one, into the memory of the last copy.
+      best.W = W;
+      best.C = components.C;
+      best.maps = support.maps();
+    }
     W = updated_weights(std::move(W), P, components.H, options.nonnegative);
     const UpdateWeights weights{basis ? Eigen::MatrixXd(basis->Q.transpose() * W) : W,
                                 W.transpose() * W};
     support.follow(components.C);
     components = updated_components(X, weights, support.maps(), std::move(components), admm);
     P = over_frames(components.P);
-    result.energies.push_back(
-        energy(X_norm2, W, weights.gram, P, components.H, components.penalty));
-    if (iteration == 0 || options.tolerance == 0) continue;
-    const double last = result.energies[iteration - 1];
-    if (std::abs(last - result.energies[iteration]) <= options.tolerance * last) break;
+    energies.push_back(energy(X_norm2, W, weights.gram, P, components.H, components.penalty));
+    if (options.tolerance > 0 && has_converged(energies, options.tolerance)) break;
   }
-  result.displacements = components.C.frames();
-  result.weights = std::move(W);
-  result.support = support.maps();
+  result.converged = has_converged(
+      energies, options.tolerance > 0 ? options.tolerance : DecompositionOptions::kUsualTolerance);
+  const auto last = static_cast<int>(energies.size()) - 1;
+  const int returned = options.returned == ReturnedIterate::best ? best_of(energies) : last;
+  result.iteration = returned + 1;
+  if (returned == last) best = {std::move(W), std::move(components.C), support.maps()};
+  result.displacements = best.C.frames();
+  result.weights = std::move(best.W);
+  result.support = std::move(best.maps);
 }
 
 /// The motion in the precision and the basis that the options want, from the start on.
@@ -162,6 +207,7 @@ Components decompose(const MeshSequence& sequence, const DecompositionOptions& o
   result.d_max = options.d_max.value_or(DecompositionOptions::kMaximumShare * sequence.diameter());
   require_valid(result.d_min, result.d_max);
   result.options = options;
+  result.options.iterations = options.iterations.value_or(DecompositionOptions::kUsualIterations);
   result.options.distances = nullptr;
   result.options.progress = nullptr;
 
@@ -174,11 +220,12 @@ Components decompose(const MeshSequence& sequence, const DecompositionOptions& o
   const SupportFunction support =
       support_function(distances, sequence.vertices(), result.d_min, result.d_max);
   DecompositionOptions of_start = options;
-  of_start.progress = part_of(options.progress, 0, kStartShare);
+  const double start_share = kStartIterations / (kStartIterations + *result.options.iterations);
+  of_start.progress = part_of(options.progress, 0, start_share);
   Start start = greedy_start(motion.X, support, of_start);
   iterate(result, std::move(motion), std::move(start),
           SupportMaps(support, options.count, sequence.vertices(), options.parts.of_vertices()),
-          part_of(options.progress, kStartShare, 1));
+          part_of(options.progress, start_share, 1));
   finish(result);
   report_progress(options.progress, 1);
   return result;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "toolkit/mesh/errors.h"
@@ -15,10 +16,12 @@ struct Components {
   Frames displacements;              ///< C, K x 3N, unit of the mesh
   Eigen::MatrixXd weights;           ///< W, F x K, each column's maximum is 1 (or the column is 0)
   std::vector<VertexIndex> centers;  ///< vertex that component k moves most (K); -1 where it died
-  Eigen::MatrixXd support;           ///< support map of component k in the last iteration, K x N
+  Eigen::MatrixXd support;           ///< support map of component k in that iteration, K x N
   std::vector<double> energies;      ///< after each iteration, for the scaled X
-  double scale = 1;                  ///< what X was divided by, in units of the mesh
-  double d_min = 0;                  ///< as used, lengths
+  int iteration = 0;  ///< whose state this is, from 1 to as many as ran; 0 where it is not known
+  std::optional<bool> converged = {};  ///< the energy has; none where it is not known
+  double scale = 1;                    ///< what X was divided by, in units of the mesh
+  double d_min = 0;                    ///< as used, lengths
   double d_max = 0;
   DecompositionOptions options;  ///< as given, but without the caller's functions
 
@@ -29,6 +32,9 @@ struct Components {
 /// Minimises ||X - W C||_F^2 + sum_k sum_i Lambda_ki |c_k^(i)| subject to W >= 0 and max of each
 /// column of W = 1, for X = frames - rest (F x 3N), divided by its
 /// root mean square (MotionScale).
+///
+/// It ends when the energy has converged, at the latest after as many iterations as there may be,
+/// and returns the iterate of least energy unless the options want the last.
 ///
 /// Every product with X is with K columns (P = X C^T, W^T X); the residual is never formed. The
 /// result is the same for every number of threads. The rest pose is the sequence's.

@@ -14,6 +14,13 @@ enum class SignRule {
   literal     ///< by the norms of the projections, each divided by its maximum (reference, 2013)
 };
 
+/// The iterate that a decomposition returns. Support maps follow their components, so that the
+/// energy can rise from one to the next.
+enum class ReturnedIterate {
+  best,  ///< of least energy, the first of equals: one more copy of C, W and the support maps
+  last   ///< whatever its energy (reference, 2013)
+};
+
 /// Of the numbers that a decomposition iterates on.
 enum class IterationPrecision { double_precision, single_precision };
 
@@ -64,14 +71,21 @@ struct DecompositionOptions {
   double sparsity = 2;
   /// Penalty rho of ADMM.
   double rho = 10;
-  /// Outer iterations at most, and ADMM steps in each.
-  int iterations = 10;
+  /// Outer iterations at most, by default kUsualIterations.
+  std::optional<int> iterations = {};
+  /// How many that are: where the energy's curve has flattened (docs/accuracy.md), and as many as
+  /// the reference runs.
+  static constexpr int kUsualIterations = 30, kReferenceIterations = 10;
+  /// ADMM steps in each.
   int admm_iterations = 10;
-  /// Stop when the energy changes by less than this share of itself; 0 runs all iterations.
-  double tolerance = 1e-4;
+  /// The energy has converged when it changes by at most this share of itself in three iterations
+  /// in a row, which ends them; 0 runs all, and says of kUsualTolerance whether it has.
+  static constexpr double kUsualTolerance = 1e-4;
+  double tolerance = kUsualTolerance;
   /// Keep weights >= 0; otherwise they are signed, with max |w| = 1.
   bool nonnegative = true;
   SignRule sign_rule = SignRule::amplitude;
+  ReturnedIterate returned = ReturnedIterate::best;
   /// Iterate on the motion's coordinates in as few poses over time as keep its Frobenius norm up to
   /// this share, at least 1e-6; 0 iterates on all frames. The start always does.
   double basis_tolerance = 0;
