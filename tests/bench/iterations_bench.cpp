@@ -6,6 +6,7 @@
 
 #include "toolkit/pictures/chart.h"
 #include "toolkit/pipeline/evaluation.h"
+#include "toolkit/pipeline/region_completer.h"
 
 namespace mimetra::bench {
 namespace {
@@ -97,7 +98,7 @@ std::vector<IterationCurve> iteration_curves(const Subject& subject, bool quick)
       AnalysisOptions options{.decomposition = {.count = count, .iterations = allowed}};
       const std::clock_t start = std::clock();
       const Analysis analysis = analyse(source, options);
-      const Regions regions = choose_regions(analysis);
+      const Regions regions = RegionCompleter(analysis, {})(choose_regions(analysis), target, {});
       const double seconds = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
       const Components& components = analysis.components;
       const EvaluationRow row = evaluate_by(regions, full, source, target).row;

@@ -1,4 +1,5 @@
 #include "toolkit/splocs/start.h"
+#include "toolkit/splocs/vertex_energies.h"
 
 #include <gmock/gmock.h>
 

@@ -8,7 +8,7 @@
 #include "toolkit/mesh/surface_parts.h"
 #include "toolkit/mesh/text.h"
 #include "toolkit/pipeline/cutout.h"
-#include "toolkit/splocs/support_maps.h"
+#include "toolkit/splocs/vertex_energies.h"
 
 namespace mimetra {
 

@@ -15,6 +15,7 @@
 #include "toolkit/splocs/start.h"
 #include "toolkit/splocs/support_maps.h"
 #include "toolkit/splocs/time_basis.h"
+#include "toolkit/splocs/vertex_energies.h"
 #include "toolkit/splocs/weights.h"
 
 namespace mimetra {

@@ -8,7 +8,7 @@
 #include <string>
 
 #include "toolkit/mesh/errors.h"
-#include "toolkit/splocs/support_maps.h"
+#include "toolkit/splocs/vertex_energies.h"
 
 namespace mimetra {
 namespace {

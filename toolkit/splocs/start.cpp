@@ -7,6 +7,7 @@
 
 #include "toolkit/mesh/parallel.h"
 #include "toolkit/mesh/progress.h"
+#include "toolkit/splocs/vertex_energies.h"
 #include "toolkit/splocs/weights.h"
 
 namespace mimetra {

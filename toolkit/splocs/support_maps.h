@@ -9,15 +9,6 @@
 
 namespace mimetra {
 
-/// Vertex (of N) where the entry of `energies` (N) is largest, each times its entry of `weights`
-/// (N, or empty for ones), the lowest of those that tie (kNearTie); -1 where no product
-/// is above zero.
-VertexIndex strongest_vertex(const Eigen::Ref<const Eigen::VectorXd>& energies,
-                             const Eigen::VectorXd& weights = {});
-
-/// Squared length of each vertex's displacement in one component (3N): N.
-Eigen::VectorXd vertex_energies(const Eigen::Ref<const Eigen::RowVectorXd>& component);
-
 /// Support maps around some vertices (S), N x S.
 using SupportFunction = std::function<Eigen::MatrixXd(std::span<const VertexIndex>)>;
 
