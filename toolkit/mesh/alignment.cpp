@@ -1,11 +1,14 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 #include <optional>
 #include <stdexcept>
 #include <string>
 #include <utility>
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <Eigen/SVD>
 
@@ -38,13 +41,8 @@ constexpr double kLeastScale = 1e-12;
 constexpr double kLeastMotion = 1e-9;
 /// Motion within so many standard errors of the fit is noise.
 constexpr double kSignificance = 3;
-
-Eigen::Matrix3d nearest_rotation(const Eigen::Matrix3d& cross_covariance) {
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(cross_covariance,
-                                              Eigen::ComputeFullU | Eigen::ComputeFullV);
-  const double sign = (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0 ? -1 : 1;
-  return svd.matrixU() * Eigen::Vector3d(1, 1, sign).asDiagonal() * svd.matrixV().transpose();
-}
+/// The fit, beside the one pass that judges it, as a part of its progress.
+constexpr double kFitShare = 0.9;
 
 /// One weighted set of points, to be carried to many others.
 class RigidFitter {
@@ -187,6 +185,63 @@ bool is_significant(const FrameSource& source, const StableFit& fit) {
                           kLeastMotion * box_diagonal(source.rest()));
 }
 
+using Halves = std::array<Eigen::VectorXd, 2>;
+
+/// Weights of the vertices before and behind the middle of all weight along `heights`; none
+/// elsewhere.
+Halves halves_along(const Eigen::VectorXd& heights, const Eigen::VectorXd& weights) {
+  std::vector<Eigen::Index> order(heights.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::ranges::stable_sort(order, {}, [&heights](Eigen::Index v) { return heights[v]; });
+  Halves halves = {Eigen::VectorXd::Zero(weights.size()), Eigen::VectorXd::Zero(weights.size())};
+  const double middle = weights.sum() / 2;
+  double sum = 0;
+  for (const Eigen::Index v : order) {
+    halves[sum < middle ? 0 : 1][v] = weights[v];
+    sum += weights[v];
+  }
+  return halves;
+}
+
+/// What carries the rest pose, told by each half of the weight across each principal axis.
+std::vector<std::array<RigidFitter, 2>> fitters_of_halves(const Positions& rest,
+                                                          const Eigen::VectorXd& weights) {
+  const Eigen::VectorXd shares = weights / weights.sum();
+  const Eigen::RowVector3d center = shares.transpose() * rest;
+  const Positions centered = rest.rowwise() - center;
+  const Eigen::Matrix3d moments = centered.transpose() * shares.asDiagonal() * centered;
+  const Eigen::Matrix3d axes =
+      Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(moments).eigenvectors();
+  std::vector<std::array<RigidFitter, 2>> fitters;
+  for (int axis = 0; axis < 3; ++axis) {
+    const Halves halves = halves_along(centered * axes.col(axis), weights);
+    fitters.push_back({RigidFitter(rest, halves[0]), RigidFitter(rest, halves[1])});
+  }
+  return fitters;
+}
+
+/// Fewer determine no rotation in each half.
+constexpr int kLeastVertices = 6;
+
+double disagreement_of_halves(const FrameSource& source, const Eigen::VectorXd& weights,
+                              const BlockOptions& options) {
+  if (source.vertices() < kLeastVertices) return 0;
+  const auto fitters = fitters_of_halves(source.rest(), weights);
+  const Eigen::VectorXd squares =
+      sum_over_frames(source, 3, options, [&](int, const FrameBlock& block, FramesView rows) {
+        for (int row = 0; row < block.frames(); ++row) {
+          for (int axis = 0; axis < 3; ++axis) {
+            const auto rotation = [&](int half) {
+              return motion_to(block.frame(row), source.rest(), fitters[axis][half]).rotation;
+            };
+            const RigidTransform difference{rotation(0).transpose() * rotation(1)};
+            rows(row, axis) = difference.angle() * difference.angle();
+          }
+        }
+      });
+  return std::sqrt(squares.maxCoeff() / source.frames());
+}
+
 /// The frames of another source, each moved rigidly.
 class MovedFrames : public FrameSource {
  public:
@@ -225,6 +280,13 @@ void check_weights(Eigen::Index points, const Eigen::VectorXd& weights) {
 }
 
 }  // namespace
+
+Eigen::Matrix3d nearest_rotation(const Eigen::Matrix3d& cross_covariance) {
+  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(cross_covariance,
+                                              Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const double sign = (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0 ? -1 : 1;
+  return svd.matrixU() * Eigen::Vector3d(1, 1, sign).asDiagonal() * svd.matrixV().transpose();
+}
 
 Positions RigidTransform::apply(const Eigen::Ref<const Positions>& positions) const {
   if (is_identity()) return positions;  // bit by bit
@@ -265,11 +327,24 @@ std::vector<RigidTransform> rigid_motion(const FrameSource& source,
   const BlockOptions blocks{options.threads, options.progress};
   if (options.vertices == AlignmentVertices::all) {
     motion = fit_frames(source, Eigen::VectorXd::Ones(source.vertices()), blocks);
-  } else if (StableFit fit = fit_stable(source, blocks); is_significant(source, fit)) {
-    motion = std::move(fit.motion);
+  } else {
+    motion = stable_motion(source, options).motion;
   }
   report_progress(options.progress, 1);
   return motion;
+}
+
+StableMotion stable_motion(const FrameSource& source, const AlignmentOptions& options) {
+  check_options(options);
+  StableMotion stable{std::vector<RigidTransform>(source.frames())};
+  if (source.vertices() == 0) return stable;
+  StableFit fit = fit_stable(source, {options.threads, part_of(options.progress, 0, kFitShare)});
+  if (is_significant(source, fit)) stable.motion = std::move(fit.motion);
+  stable.stillest = quantile(fit.residuals, kStableShare);
+  stable.disagreement = disagreement_of_halves(
+      source, fit.weights, {options.threads, part_of(options.progress, kFitShare, 1)});
+  report_progress(options.progress, 1);
+  return stable;
 }
 
 std::shared_ptr<const FrameSource> with_motion(std::shared_ptr<const FrameSource> source,

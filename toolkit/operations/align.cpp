@@ -63,6 +63,8 @@ constexpr double kFittingTo = 0.9;
 struct Moved {
   std::shared_ptr<const FrameSource> frames;
   std::vector<RigidTransform> motion;
+  /// Of the stillest vertices, where those told it; degrees.
+  std::optional<double> disagreement = {};
 };
 
 Moved moved(const Invocation& invocation) {
@@ -76,8 +78,12 @@ Moved moved(const Invocation& invocation) {
                          .progress = part_of(invocation.progress, 0, kFittingFrom)});
   call.alignment.threads = invocation.threads;
   call.alignment.progress = part_of(invocation.progress, kFittingFrom, kFittingTo);
-  std::vector<RigidTransform> motion = rigid_motion(*given, call.alignment);
-  return {without_motion(given, motion), std::move(motion)};
+  if (call.alignment.vertices == AlignmentVertices::all) {
+    std::vector<RigidTransform> motion = rigid_motion(*given, call.alignment);
+    return {without_motion(given, motion), std::move(motion)};
+  }
+  StableMotion stable = stable_motion(*given, call.alignment);
+  return {without_motion(given, stable.motion), std::move(stable.motion), stable.disagreement};
 }
 
 Outcome run_align(const Invocation& invocation) {
@@ -88,11 +94,23 @@ Outcome run_align(const Invocation& invocation) {
     degrees = std::max(degrees, transform.angle());
     shift = std::max(shift, transform.translation.norm());
   }
+  Json report = {{"frames", result.frames->frames()},
+                 {"largest_rotation_degrees", degrees},
+                 {"largest_translation", shift}};
+  if (result.disagreement) {
+    report["disagreement_degrees"] = *result.disagreement;
+    report["uncertain"] = *result.disagreement > kUncertainDisagreement;
+    if (*result.disagreement > kUncertainDisagreement) {
+      invocation.warn(input.name +
+                      ": no vertex is still enough to tell the head's motion: the stillest "
+                      "disagree by " +
+                      readable(*result.disagreement, 2) +
+                      " degrees; transfer --align joint finds it together with a target's "
+                      "expressions");
+    }
+  }
   Outcome outcome;
-  outcome.report = report_with(Json{{"frames", result.frames->frames()},
-                                    {"largest_rotation_degrees", degrees},
-                                    {"largest_translation", shift}},
-                               result.motion);
+  outcome.report = report_with(report, result.motion);
   outcome.summary = "largest rotation " + readable(degrees) + " degrees, largest translation " +
                     readable(shift) + '\n';
   const auto& given = std::get<FieldSequence>(input.data);

@@ -145,6 +145,14 @@ std::string in_command_terms(Topic topic, const std::string& text, const Paramet
       return text + "; give it with " + rest_option + " FILE";
     case Topic::turning_head:
       return text + "; --align stable takes it out, --align none keeps it";
+    case Topic::uncertain_motion:
+      return text + (parameters.find("axes") ? "; --align joint finds it together with a target's "
+                                               "expressions, --align none takes none out"
+                                             : "; --align none takes none out");
+    case Topic::joint_motion:
+      return text + "; --align stable takes the stillest vertices, --align none takes none out";
+    case Topic::no_joint_motion:
+      return text + "; use --align stable";
     case Topic::poor_condition:
       return text + "; take more regions (-k, --radius) or --full";
     case Topic::completed_regions:
@@ -177,8 +185,9 @@ BoundParameters<SourceOptions> alignment_parameters(const FrameSource* sequence)
   BoundParameters<SourceOptions> list;
   list.add_word_or_file<HeadMotion, Motion>(
       "align", SourceOptions::kHeadMotion,
-      "head motion to take out first: fitted on what moves least, on all vertices, none, or "
-      "as an align run's manifest tells; default none where the neutral is known, else stable",
+      "head motion to take out first: fitted on what moves least, on all vertices, together with a "
+      "target's expressions, none, or as an align run's manifest tells; default none where the "
+      "neutral is known, else stable, or joint where no vertex is still and that predicts better",
       [sequence](const std::string& path) {
         return sequence ? read_motion(path, sequence->frames()) : Motion();
       });
@@ -290,10 +299,19 @@ bool solves_for_vertices(const Parameters& parameters, const BlendshapeModel& ta
 }
 
 Json json_of(const HeadMotionTaken& motion) {
-  return {{"align", motion.how},
-          {"reason", motion.why},
-          {"largest_rotation_degrees", motion.angle},
-          {"largest_translation", motion.shift}};
+  Json json = {{"align", motion.how},
+               {"reason", motion.why},
+               {"largest_rotation_degrees", motion.angle},
+               {"largest_translation", motion.shift}};
+  if (motion.stillest) json["stillest_vertices_share_of_size"] = *motion.stillest;
+  if (motion.disagreement) {
+    json["disagreement_degrees"] = *motion.disagreement;
+    json["uncertain"] = motion.is_uncertain();
+  }
+  if (motion.held_out) {
+    json["held_out"] = {{"stable", motion.held_out->stable}, {"joint", motion.held_out->joint}};
+  }
+  return json;
 }
 
 double analysis_bytes(const Invocation& invocation, const NamedData& source, int count) {

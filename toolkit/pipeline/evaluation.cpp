@@ -1,6 +1,7 @@
 #include "toolkit/pipeline/evaluation.h"
 
 #include "toolkit/mesh/stopwatch.h"
+#include "toolkit/pipeline/joint_motion.h"
 #include "toolkit/pipeline/region_completer.h"
 
 namespace mimetra {
@@ -91,9 +92,10 @@ std::vector<EvaluationRow> evaluate(const MeshSequence& sequence, const Target& 
   of_solving.notes = options.notes;
   of_solving.edges = edge_sum(options.analysis.compatibility);
 
-  const Source source = prepare_source(sequence, of_source);
-  const MatchedTarget matched(*source.sequence, given);
+  const MatchedTarget matched(sequence, given);
   const Target& target = *matched;
+  of_source.joint = joint_search({target}, of_solving);
+  const Source source = prepare_source(sequence, of_source);
   const double steps = static_cast<double>(options.counts.size()) + 1;
   of_solving.progress = part_of(options.progress, 0, 1 / steps);
   const EvaluatedTransfer full = evaluate_full(source, target, of_solving);

@@ -14,6 +14,9 @@ enum class Topic {
   parting_vertices,   ///< vertices that are welded at rest do not stay together
   unknown_neutral,    ///< of the source
   turning_head,       ///< the source's head turns, and that was not taken out
+  uncertain_motion,   ///< no vertex of the source is still enough to tell its head motion
+  joint_motion,       ///< its head motion was found together with a target's expressions
+  no_joint_motion,    ///< that was asked for, and there are no expressions
   unneutral_rest,     ///< the source's rest pose is likely not its neutral
   poor_condition,     ///< the regions hardly tell the target's expressions apart
   completed_regions,  ///< discs were added to the regions for a target's expressions

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -29,7 +30,12 @@ constexpr std::string_view choice_name(SourceRest value) {
 }
 
 /// What the head's motion is found on; `none` looks for none.
-enum class HeadMotion { stable, all, none };
+enum class HeadMotion {
+  stable,  ///< the vertices that move least
+  all,     ///< all vertices
+  joint,   ///< found together with a target's expressions
+  none
+};
 
 /// As people choose it.
 constexpr std::string_view choice_name(HeadMotion value) {
@@ -38,11 +44,33 @@ constexpr std::string_view choice_name(HeadMotion value) {
       return "stable";
     case HeadMotion::all:
       return "all";
+    case HeadMotion::joint:
+      return "joint";
     case HeadMotion::none:
       return "none";
   }
   return {};
 }
+
+/// How far a motion, with the expressions that it leaves, is from vertices that were held out of
+/// its fit: root mean square over vertices and frames, as a share of the diameter.
+struct HeldOutErrors {
+  double stable = 0;
+  double joint = 0;
+};
+
+/// A head motion that was found together with a target's expressions (F).
+struct JointMotion {
+  std::vector<RigidTransform> motion;
+  /// None where no part of the mesh can be held out.
+  std::optional<HeldOutErrors> held_out = {};
+};
+
+struct Source;
+
+/// Finds it, from a source whose frames still have the motion that its `motion` says, as
+/// HeadMotion::stable found it.
+using JointSearch = std::function<JointMotion(const Source&)>;
 
 struct SourceOptions {
   /// In notes and errors.
@@ -56,6 +84,9 @@ struct SourceOptions {
   std::optional<std::variant<HeadMotion, std::vector<RigidTransform>>> head_motion = {};
   /// A model drives it: it has no head motion of its own.
   bool model_driven = false;
+  /// For HeadMotion::joint, and where nobody asked for anything and no vertex is still enough:
+  /// the joint motion is then taken if it predicts vertices that were held out twice as well.
+  JointSearch joint = {};
   /// 0 for all there are; the result does not depend on it.
   int threads = 0;
   Progress progress = {};
@@ -67,13 +98,22 @@ struct SourceOptions {
 
 /// What was done about a source's head motion.
 struct HeadMotionTaken {
-  /// "stable", "all", "none", or "given".
+  /// "stable", "all", "joint", "none", or "given".
   std::string_view how = choice_name(HeadMotion::none);
   /// "the neutral is known", say.
   std::string_view why = {};
   /// The largest of all frames; degrees, and how far the rest pose's centre goes.
   double angle = 0;
   double shift = 0;
+  /// Where stable was looked for: how far one vertex in twenty moves at most, as a share of the
+  /// diameter, and by how many degrees halves of the stillest vertices disagree (StableMotion).
+  std::optional<double> stillest = {};
+  std::optional<double> disagreement = {};
+  /// Where the joint motion was looked for.
+  std::optional<HeldOutErrors> held_out = {};
+
+  /// No vertex is still enough to tell the motion.
+  bool is_uncertain() const { return disagreement && *disagreement > kUncertainDisagreement; }
 };
 
 /// A sequence whose deformation is looked at.
@@ -96,10 +136,12 @@ bool takes_out_motion(const FrameSource& sequence, const SourceOptions& options)
 
 /// The sequence with the rest pose that was asked for, to which its frames are aligned; the mean is
 /// that of the aligned frames. Notes a first frame that stands in for the neutral
-/// (Topic::unknown_neutral), a motion that nobody asked to take out, and a head that turns although
-/// none was (Topic::turning_head).
+/// (Topic::unknown_neutral), a motion that nobody asked to take out, a head that turns although
+/// none was (Topic::turning_head), one whose motion no vertex is still enough to tell
+/// (Topic::uncertain_motion), and a joint motion that nobody asked for (Topic::joint_motion).
 ///
-/// Throws OptionError (Topic::unknown_neutral) where the neutral is asked for and not known,
+/// Throws OptionError (Topic::unknown_neutral) where the neutral is asked for and not known, and
+/// (Topic::no_joint_motion) where HeadMotion::joint is and options.joint is empty,
 /// std::invalid_argument for a rest pose of another number of vertices, MismatchError where a given
 /// motion has another number of frames, what reading throws, OutputError where frames cannot be
 /// stored(), Cancelled.

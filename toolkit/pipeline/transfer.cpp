@@ -4,6 +4,7 @@
 
 #include "toolkit/mesh/stopwatch.h"
 #include "toolkit/mesh/text.h"
+#include "toolkit/pipeline/joint_motion.h"
 #include "toolkit/pipeline/region_completer.h"
 
 namespace mimetra {
@@ -55,13 +56,15 @@ Choice choose(const Source& source, const TransferOptions& options) {
           stopwatch.seconds()};
 }
 
-Source source_of(const FrameSource& sequence, const TransferOptions& options) {
+Source source_of(const FrameSource& sequence, const std::vector<Target>& targets,
+                 const TransferOptions& options, const SolveOptions& of_solving) {
   // Nothing that is returned keeps it.
   std::shared_ptr<const FrameSource> given(std::shared_ptr<const FrameSource>(), &sequence);
   SourceOptions of_source = options.source;
   of_source.threads = options.threads;
   of_source.notes = options.notes;
   of_source.progress = part_of(options.progress, 0, kSourceShare);
+  of_source.joint = joint_search(targets, of_solving);
   if (decomposes(options)) {
     const BlockOptions reading{options.threads, part_of(of_source.progress, 0, 0.5)};
     of_source.progress = part_of(of_source.progress, 0.5, 1);
@@ -118,17 +121,20 @@ bool decomposes(const TransferOptions& options) {
 TransferResult transfer(const FrameSource& sequence, const std::vector<Target>& given,
                         const TransferOptions& options) {
   check_options(options);
-  std::vector<MatchedTarget> targets;
-  for (const Target& target : given) targets.emplace_back(sequence, target);
-  const Source source = source_of(sequence, options);
-  Choice choice = choose(source, options);
-  const bool give_back = !source.motion.empty() && options.head_motion == RemovedMotion::keep;
-
-  TransferResult result;
+  std::vector<MatchedTarget> matched;
+  std::vector<Target> targets;
+  for (const Target& target : given) {
+    targets.push_back(*matched.emplace_back(sequence, target));
+  }
   SolveOptions of_solving = options.solving;
   of_solving.threads = options.threads;
   of_solving.notes = options.notes;
   of_solving.edges = edge_sum(options.analysis.compatibility);
+  const Source source = source_of(sequence, targets, options, of_solving);
+  Choice choice = choose(source, options);
+  const bool give_back = !source.motion.empty() && options.head_motion == RemovedMotion::keep;
+
+  TransferResult result;
   const double first = choice.regions ? kRegionShare : kSourceShare;
   const auto count = static_cast<double>(targets.size());
   for (std::size_t t = 0; t < targets.size(); ++t) {
@@ -136,7 +142,7 @@ TransferResult transfer(const FrameSource& sequence, const std::vector<Target>& 
         part_of(options.progress, first + (1 - first) * static_cast<double>(t) / count,
                 first + (1 - first) * static_cast<double>(t + 1) / count);
     of_solving.progress = part_of(progress, 0, kSolveShare);
-    const Target& target = *targets[t];
+    const Target& target = targets[t];
     const PlacedSource placed = placed_at(target, source, of_solving);
     std::optional<Regions> regions;
     if (choice.regions) regions = (*choice.completion)(*choice.regions, target, of_solving);

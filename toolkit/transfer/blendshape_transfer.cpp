@@ -26,10 +26,6 @@ namespace {
 /// only: blocks do not depend on each other.
 constexpr int kFramesPerBlock = RightHandSide::kLanes;
 
-/// A column whose motion in L is below 1e-5 of its motion anywhere (squared here) does not move
-/// there: that is what is left of zeros in single precision files.
-constexpr double kUnseenShare = 1e-10;
-
 /// Below this share of a column's energy the regions tell little about it.
 constexpr double kWeaklySeenShare = 0.05;
 
@@ -92,7 +88,7 @@ void BlendshapeTransfer::State::judge(const BlendshapeModel& target) {
   const std::vector<std::string>& names = target.expressions().names;
   upper = Eigen::VectorXd::Zero(gram.rows());
   for (Eigen::Index j = 0; j < gram.rows(); ++j) {
-    if (gram(j, j) <= kUnseenShare * full[j]) {
+    if (!moves_there(gram(j, j), full[j])) {
       conditions.unseen.push_back(names[j]);
       continue;
     }

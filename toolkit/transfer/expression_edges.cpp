@@ -8,6 +8,10 @@ namespace {
 
 constexpr std::size_t kTrianglesPerBlock = 256;
 
+/// A column whose motion in L is below 1e-5 of its motion anywhere (squared here) does not move
+/// there: that is what is left of zeros in single precision files.
+constexpr double kUnseenShare = 1e-10;
+
 }  // namespace
 
 Eigen::MatrixXd edge_rows(const BlendshapeModel& target, std::span<const int> triangles,
@@ -52,6 +56,10 @@ Eigen::VectorXd gram_diagonal(const BlendshapeModel& target, std::span<const int
     diagonal += rows.colwise().squaredNorm().transpose();
   });
   return diagonal;
+}
+
+bool moves_there(double part, double all) {
+  return part > kUnseenShare * all;
 }
 
 Eigen::VectorXd motion_of_triangles(const BlendshapeModel& target,

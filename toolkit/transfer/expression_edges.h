@@ -26,6 +26,10 @@ Eigen::MatrixXd gram_matrix(const BlendshapeModel& target, std::span<const int> 
 Eigen::VectorXd gram_diagonal(const BlendshapeModel& target, std::span<const int> triangles,
                               EdgeSum sum);
 
+/// True for an expression that moves on some triangles, where `part` of its gram_diagonal() of
+/// `all` triangles is: what zeros in single precision files leave is no motion.
+bool moves_there(double part, double all);
+
 /// How much a field of displacements (3N) moves each of all triangles (M): the squares of its
 /// edges.
 Eigen::VectorXd motion_of_triangles(const BlendshapeModel& target,

@@ -44,6 +44,37 @@ Eigen::MatrixXd rows_at(const Eigen::MatrixXd& basis, const std::vector<int>& ro
   return basis(rows, Eigen::all);
 }
 
+/// The neutral from its centre and the displacement fields at those vertices, three columns each.
+Eigen::MatrixXd fields_at(const BlendshapeModel& target, const std::vector<int>& row_of_vertex) {
+  const Eigen::MatrixXd rows = rows_at(target.expressions().displacements, row_of_vertex);
+  const Eigen::Index vertices = rows.rows() / 3;
+  Eigen::MatrixXd fields(vertices, 3 * (rows.cols() + 1));
+  for (std::size_t v = 0; v < row_of_vertex.size(); ++v) {
+    if (row_of_vertex[v] < 0) continue;
+    fields.row(row_of_vertex[v]).head<3>() = target.neutral().row(static_cast<Eigen::Index>(v));
+  }
+  const Eigen::RowVector3d center = fields.leftCols<3>().colwise().mean();
+  fields.leftCols<3>().rowwise() -= center;
+  for (Eigen::Index j = 0; j < rows.cols(); ++j) {
+    fields.middleCols<3>(3 * (j + 1)) =
+        Eigen::Map<const Positions>(rows.col(j).data(), vertices, 3);
+  }
+  return fields;
+}
+
+/// The sums of V_i G themselves: what identities pull.
+Positions pull_at_rest(const BlendshapeModel& target, const std::vector<int>& selected,
+                       const std::vector<Edges>& vectors, const std::vector<int>& row_of_vertex) {
+  Positions pull = Positions::Zero(std::ranges::max(row_of_vertex) + 1, 3);
+  for (std::size_t s = 0; s < selected.size(); ++s) {
+    const auto corners = target.triangles().row(selected[s]);
+    pull.row(row_of_vertex[corners[0]]) -= vectors[s].rowwise().sum().transpose();
+    pull.row(row_of_vertex[corners[1]]) += vectors[s].col(0).transpose();
+    pull.row(row_of_vertex[corners[2]]) += vectors[s].col(1).transpose();
+  }
+  return pull;
+}
+
 }  // namespace
 
 RightHandSide::RightHandSide(const Positions& rest, const DeformationGradients& gradients,
@@ -59,6 +90,29 @@ Eigen::MatrixXd RightHandSide::operator()(const Eigen::Ref<const Frames>& frames
   const Eigen::Map<const Lanes> sums(pull.data(), 3 * pull.rows(), kLanes);
   const Eigen::MatrixXd h = sums.transpose() * basis_;
   return h.topRows(frames.rows());
+}
+
+RotationMoments::RotationMoments(const Positions& rest, const DeformationGradients& gradients,
+                                 const BlendshapeModel& target, EdgeSum sum)
+    : pull_(rest, target.triangles(), gradients, neutral_edges(target, gradients.selected(), sum),
+            numbered_vertices(target, gradients.selected())),
+      fields_(fields_at(target, numbered_vertices(target, gradients.selected()))) {
+  const std::vector<int>& selected = gradients.selected();
+  at_rest_ = pull_at_rest(target, selected, neutral_edges(target, selected, sum),
+                          numbered_vertices(target, selected))
+                 .transpose() *
+             fields_;
+}
+
+std::vector<RotationMoments::Moments> RotationMoments::operator()(
+    const Eigen::Ref<const Frames>& frames) const {
+  const VertexPull::Rows pull = pull_(frames);
+  const Eigen::MatrixXd products = pull.transpose() * fields_;
+  std::vector<Moments> moments(frames.rows(), Moments(3, fields_.cols()));
+  for (Eigen::Index row = 0; row < frames.rows(); ++row) {
+    for (int c = 0; c < 3; ++c) moments[row].row(c) = products.row(c * kLanes + row);
+  }
+  return moments;
 }
 
 }  // namespace mimetra

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <vector>
+
 #include "toolkit/model/blendshape_model.h"
 #include "toolkit/transfer/vertex_pull.h"
 
@@ -26,6 +28,32 @@ class RightHandSide {
  private:
   VertexPull pull_;
   Eigen::MatrixXd basis_;  // displacements of the selected triangles' vertices
+};
+
+/// What eq. 10 needs of frames whose head turns by rotations that are not known yet.
+///
+/// With p_v the sums that VertexPull gathers, x_0 the neutral from its centre and x_k the field of
+/// expression k: M_k = sum_v p_v x_kv^T (3 x 3). Turning all gradients by R^T turns p_v, so that
+/// A^T b and the rotation that fits best follow from the M_k, without another pass over the mesh.
+class RotationMoments {
+ public:
+  static constexpr int kLanes = VertexPull::kLanes;
+  /// M_0 M_1 ... M_D side by side.
+  using Moments = Eigen::Matrix<double, 3, Eigen::Dynamic>;
+
+  /// As RightHandSide.
+  RotationMoments(const Positions& rest, const DeformationGradients& gradients,
+                  const BlendshapeModel& target, EdgeSum sum);
+
+  /// Of each frame, less those of the rest pose. \pre as RightHandSide
+  std::vector<Moments> operator()(const Eigen::Ref<const Frames>& frames) const;
+  /// Of the rest pose.
+  const Moments& at_rest() const { return at_rest_; }
+
+ private:
+  VertexPull pull_;
+  Eigen::MatrixXd fields_;  // x_0 x_1 ... at the selected triangles' vertices, three columns each
+  Moments at_rest_;
 };
 
 }  // namespace mimetra

@@ -1,0 +1,151 @@
+#include "toolkit/pipeline/joint_motion.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "toolkit/regions/regions.h"
+#include "toolkit/transfer/joint_fit.h"
+
+namespace mimetra {
+
+namespace {
+
+/// So many frames tell which motion predicts better; the work does not grow beyond.
+constexpr int kJudgedFrames = 50;
+/// Larger patches than these leave too little of a face, smaller ones are told by what is around
+/// them.
+constexpr int kPatches = 8;
+
+/// The number of the patch that each vertex is in: of centres that lie as far from each other as
+/// can be, the nearest.
+std::vector<int> patches_of(const Positions& rest) {
+  std::vector<int> patch(rest.rows(), 0);
+  const Eigen::RowVector3d middle = rest.colwise().mean();
+  Eigen::VectorXd nearest =
+      Eigen::VectorXd::Constant(rest.rows(), std::numeric_limits<double>::infinity());
+  Eigen::Index center = 0;
+  (rest.rowwise() - middle).rowwise().squaredNorm().maxCoeff(&center);
+  for (int p = 0; p < kPatches; ++p) {
+    const Eigen::VectorXd distances =
+        (rest.rowwise() - rest.row(center).eval()).rowwise().squaredNorm();
+    for (Eigen::Index v = 0; v < rest.rows(); ++v) {
+      if (distances[v] >= nearest[v]) continue;
+      nearest[v] = distances[v];
+      patch[v] = p;
+    }
+    nearest.maxCoeff(&center);
+  }
+  return patch;
+}
+
+/// Some frames, evenly over time, in memory.
+MeshSequence judged_frames(const std::shared_ptr<const FrameSource>& sequence) {
+  const int count = std::min(sequence->frames(), kJudgedFrames);
+  std::vector<int> chosen(count);
+  for (int k = 0; k < count; ++k) chosen[k] = k * sequence->frames() / count;
+  return MeshSequence(*selected(sequence, chosen)).with_rest(sequence->rest());
+}
+
+/// A part of the vertices, in memory, without triangles.
+MeshSequence part_of_vertices(const MeshSequence& sequence,
+                              const std::vector<Eigen::Index>& vertices) {
+  Connectivity points;
+  points.vertices = static_cast<int>(vertices.size());
+  Frames frames(sequence.frames(), 3 * vertices.size());
+  for (int f = 0; f < sequence.frames(); ++f) {
+    const Positions pose = sequence.frame(f)(vertices, Eigen::all);
+    frames.row(f) = Eigen::Map<const Eigen::RowVectorXd>(pose.data(), pose.size());
+  }
+  return {points, std::move(frames), sequence.times(), sequence.rest()(vertices, Eigen::all)};
+}
+
+/// Sum over frames and vertices of squared distances to what is predicted.
+double squared_error(const MeshSequence& sequence, const BlendshapeModel& target,
+                     const HeadAndExpressions& found, const std::vector<Eigen::Index>& vertices) {
+  const Positions rest = sequence.rest()(vertices, Eigen::all);
+  double sum = 0;
+  for (int f = 0; f < sequence.frames(); ++f) {
+    const Eigen::VectorXd field =
+        target.expressions().displacements * found.weights.row(f).transpose();
+    const PositionsView moved(field.data(), target.vertices(), 3);
+    const Positions predicted = found.motion[f].apply(rest + moved(vertices, Eigen::all));
+    sum += (predicted - Positions(sequence.frame(f)(vertices, Eigen::all))).squaredNorm();
+  }
+  return sum;
+}
+
+std::vector<int> triangles_outside(const Triangles& triangles, const std::vector<int>& patch,
+                                   int held_out) {
+  std::vector<int> outside;
+  for (int t = 0; t < triangles.rows(); ++t) {
+    const auto is_held = [&](VertexIndex vertex) { return patch[vertex] == held_out; };
+    if (std::ranges::none_of(triangles.row(t), is_held)) outside.push_back(t);
+  }
+  return outside;
+}
+
+/// Both errors as a share of the diameter; none where there is no patch to hold out.
+std::optional<HeldOutErrors> held_out_errors(const std::shared_ptr<const FrameSource>& placed,
+                                             const BlendshapeModel& target,
+                                             const SolveOptions& options) {
+  const MeshSequence sequence = judged_frames(placed);
+  const std::vector<int> patch = patches_of(sequence.rest());
+  HeldOutErrors sums;
+  Eigen::Index points = 0;
+  for (int p = 0; p < kPatches; ++p) {
+    std::vector<Eigen::Index> held, others;
+    for (int v = 0; v < sequence.vertices(); ++v) (patch[v] == p ? held : others).push_back(v);
+    const std::vector<int> triangles = triangles_outside(target.triangles(), patch, p);
+    if (held.empty() || triangles.empty()) continue;
+    const std::vector<RigidTransform> stable =
+        rigid_motion(part_of_vertices(sequence, others), {.threads = options.threads});
+    JointFitOptions joint{.edges = options.edges, .threads = options.threads};
+    JointFitOptions fixed = joint;
+    fixed.iterations = 0;
+    const auto error = [&](const JointFitOptions& how) {
+      const JointFit fit(sequence.rest(), target, triangles, how);
+      return squared_error(sequence, target, fit(sequence, stable), held);
+    };
+    sums.stable += error(fixed);
+    sums.joint += error(joint);
+    points += static_cast<Eigen::Index>(held.size());
+  }
+  if (points == 0) return {};
+  const double count = static_cast<double>(points * sequence.frames());
+  const double size = sequence.diameter();
+  return HeldOutErrors{std::sqrt(sums.stable / count) / size, std::sqrt(sums.joint / count) / size};
+}
+
+Similarity inverse(const Similarity& similarity) {
+  return {1 / similarity.scale, similarity.rotation.transpose(), similarity.to, similarity.from};
+}
+
+JointMotion joint_motion(const Source& source, const Target& target, const SolveOptions& options) {
+  const PlacedSource placed = placed_at(target, source, options);
+  const FrameSource& sequence = *placed.source.sequence;
+  const BlendshapeModel& model = target.model;
+  const JointFit fit(sequence.rest(), model, all_triangles(model.triangles()),
+                     {.edges = options.edges, .threads = options.threads});
+  JointMotion joint{fit(sequence, placed.source.motion).motion,
+                    held_out_errors(placed.source.sequence, model, options)};
+  const Similarity back = inverse(placed.similarity);
+  for (RigidTransform& motion : joint.motion) motion = back.carry(motion);
+  return joint;
+}
+
+}  // namespace
+
+JointSearch joint_search(const std::vector<Target>& targets, const SolveOptions& options) {
+  const auto found = std::ranges::find_if_not(targets, [&options](const Target& target) {
+    return solves_for_vertices(target.model, options.space);
+  });
+  if (found == targets.end()) return {};
+  SolveOptions silent = options;
+  silent.notes = {};
+  return [target = *found, silent](const Source& source) {
+    return joint_motion(source, target, silent);
+  };
+}
+
+}  // namespace mimetra
