@@ -56,6 +56,16 @@ TEST(SurfaceDistances, PassAcrossASeamThatIsWelded) {
   }
 }
 
+TEST(SurfaceDistances, AreTheSameWhereTheyAreNotKept) {
+  const Shape sheet = grid(9, 5);
+  const SurfaceDistances distances(sheet.positions, sheet.triangles, Weld::none(45));
+  const std::vector<VertexIndex> sources = {3, 17, 3, 44};
+  const Eigen::MatrixXd once = distances.once(sources);
+  EXPECT_EQ(distances.computed(), 0);
+  EXPECT_TRUE(once == distances(sources));
+  EXPECT_THROW(distances.once(std::vector<VertexIndex>{45}), std::out_of_range);
+}
+
 TEST(SurfaceDistances, StopAtASeamThatIsNotWelded) {
   const CutGrid cut = cut_grid(9, 5, 4);
   const SurfaceDistances distances(cut.shape.positions, cut.shape.triangles,

@@ -19,7 +19,7 @@ DistanceFunction distances_when_needed(const Positions& rest, const Triangles& t
   return [=, made = std::make_shared<std::optional<SurfaceDistances>>()](
              std::span<const VertexIndex> sources) {
     if (!*made) *made = distances_along(rest, triangles, options);
-    return (**made)(sources);
+    return (**made).once(sources);
   };
 }
 
@@ -54,7 +54,9 @@ RegionCompleter::RegionCompleter(const Analysis& analysis, const RegionChoiceOpt
       triangles_(analysis.components.triangles),
       options_(options),
       inside_(analysis.inside),
-      distances_(analysis.distances) {}
+      distances_([distances = analysis.distances](std::span<const VertexIndex> sources) {
+        return distances.once(sources);
+      }) {}
 
 Regions RegionCompleter::operator()(const Regions& regions, const Target& target,
                                     const SolveOptions& options) {

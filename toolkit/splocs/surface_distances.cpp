@@ -65,7 +65,8 @@ DistanceFunction one_by_one(std::function<Eigen::VectorXd(VertexIndex)> distance
 
 struct SurfaceDistances::State {
   VertexIndex representative(VertexIndex source) const;
-  void compute(const std::vector<VertexIndex>& sources);
+  std::vector<VertexIndex> representatives(std::span<const VertexIndex> sources) const;
+  Eigen::MatrixXd computed(std::span<const VertexIndex> sources) const;
 
   Weld weld;
   Geodesics geodesics;
@@ -83,18 +84,25 @@ VertexIndex SurfaceDistances::State::representative(VertexIndex source) const {
   return weld.representative[source];
 }
 
-/// Distances from representatives that are not known yet.
-void SurfaceDistances::State::compute(const std::vector<VertexIndex>& sources) {
+std::vector<VertexIndex> SurfaceDistances::State::representatives(
+    std::span<const VertexIndex> sources) const {
+  std::vector<VertexIndex> places;
+  for (const VertexIndex source : sources) places.push_back(representative(source));
+  return places;
+}
+
+/// Distances from representatives.
+Eigen::MatrixXd SurfaceDistances::State::computed(std::span<const VertexIndex> sources) const {
   const int group = geodesics.group;
   const auto count = static_cast<int>(sources.size());
-  std::vector<Eigen::MatrixXd> found((count + group - 1) / group);
-  parallel_for(static_cast<int>(found.size()), threads, [&](int i) {
-    const int first = i * group;
-    const auto part = std::span(sources).subspan(first, std::min(group, count - first));
+  Eigen::MatrixXd found(static_cast<Eigen::Index>(weld.representative.size()), count);
+  parallel_for((count + group - 1) / group, threads, [&](int i) {
+    const int first = i * group, size = std::min(group, count - first);
     // Every vertex takes the distance of the one that stands for it.
-    found[i] = geodesics.distances(part)(weld.representative, Eigen::all);
+    found.middleCols(first, size) =
+        geodesics.distances(sources.subspan(first, size))(weld.representative, Eigen::all);
   });
-  for (int i = 0; i < count; ++i) known[sources[i]] = found[i / group].col(i % group);
+  return found;
 }
 
 SurfaceDistances::SurfaceDistances(const Positions& positions, const Triangles& triangles,
@@ -112,8 +120,7 @@ SurfaceDistances::SurfaceDistances(const Positions& positions, const Triangles& 
 }
 
 Eigen::MatrixXd SurfaceDistances::operator()(std::span<const VertexIndex> sources) const {
-  std::vector<VertexIndex> places;
-  for (const VertexIndex source : sources) places.push_back(state_->representative(source));
+  const std::vector<VertexIndex> places = state_->representatives(sources);
   const std::lock_guard lock(state_->mutex);
   std::vector<VertexIndex> missing;
   for (const VertexIndex place : places) {
@@ -121,13 +128,20 @@ Eigen::MatrixXd SurfaceDistances::operator()(std::span<const VertexIndex> source
   }
   std::ranges::sort(missing);
   missing.erase(std::ranges::unique(missing).begin(), missing.end());
-  state_->compute(missing);
+  const Eigen::MatrixXd found = state_->computed(missing);
+  for (std::size_t i = 0; i < missing.size(); ++i) {
+    state_->known[missing[i]] = found.col(static_cast<Eigen::Index>(i));
+  }
   Eigen::MatrixXd result(static_cast<Eigen::Index>(state_->weld.representative.size()),
                          static_cast<Eigen::Index>(sources.size()));
   for (std::size_t i = 0; i < places.size(); ++i) {
     result.col(static_cast<Eigen::Index>(i)) = state_->known.at(places[i]);
   }
   return result;
+}
+
+Eigen::MatrixXd SurfaceDistances::once(std::span<const VertexIndex> sources) const {
+  return state_->computed(state_->representatives(sources));
 }
 
 Eigen::VectorXd SurfaceDistances::operator()(VertexIndex source) const {

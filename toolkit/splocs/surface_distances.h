@@ -44,6 +44,8 @@ class SurfaceDistances {
   /// Distances from each of `sources` (N x S). What is not known yet is computed for several of
   /// them at once. Safe to call from several threads. Throws std::out_of_range.
   Eigen::MatrixXd operator()(std::span<const VertexIndex> sources) const;
+  /// The same, computed anew and not kept: for who asks for many and keeps less of each.
+  Eigen::MatrixXd once(std::span<const VertexIndex> sources) const;
   /// Distances from `source` (N).
   Eigen::VectorXd operator()(VertexIndex source) const;
 
