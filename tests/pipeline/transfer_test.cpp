@@ -303,5 +303,33 @@ TEST_F(TransferTest, ChecksItsRangesBeforeItComputes) {
   EXPECT_THAT([&] { to(actor_); }, ThrowsMessage<std::invalid_argument>(HasSubstr("rho is 0")));
 }
 
+TEST_F(TransferTest, FindsHeadMotionTogetherWithTheExpressionsWhereverTheTargetStands) {
+  const BlendshapeModel model = test::model_on(test::patch(), 5);
+  const Eigen::Matrix3d turn =
+      Eigen::AngleAxisd(1, Eigen::Vector3d(1, 2, 2).normalized()).toRotationMatrix();
+  ShapeBasis basis = model.expressions();
+  for (int j = 0; j < basis.size(); ++j) {
+    for (int v = 0; v < model.vertices(); ++v) {
+      basis.displacements.col(j).segment<3>(3 * v).applyOnTheLeft(10 * turn);
+    }
+  }
+  const Positions neutral =
+      (10 * model.neutral() * turn.transpose()).rowwise() + Eigen::RowVector3d(5, -7, 2);
+  const BlendshapeModel elsewhere(model.shared_connectivity(), neutral, basis);
+  const Eigen::MatrixXd weights = test::random_weights(8, 5);
+  options_ = {.full = true, .head_motion = RemovedMotion::drop};
+  options_.source = {.rest = model.neutral(), .head_motion = HeadMotion::joint};
+  const TransferResult result = transfer(bare(with_motion(model.animate(weights), nodding(8))),
+                                         {{"actor", elsewhere}}, options_);
+  EXPECT_LT((result.targets[0].solution.weights() - weights).cwiseAbs().maxCoeff(), 1e-7);
+  EXPECT_NEAR(result.head_motion.angle, nodding(8).back().angle(), 1e-5);
+  EXPECT_TRUE(result.head_motion.held_out);
+}
+
+TEST_F(TransferTest, FindsNoJointHeadMotionForVertices) {
+  options_.source.head_motion = HeadMotion::joint;
+  EXPECT_EQ(test::topic_of([&] { to(mesh_); }), Topic::no_joint_motion);
+}
+
 }  // namespace
 }  // namespace mimetra

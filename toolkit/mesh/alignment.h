@@ -89,10 +89,11 @@ struct StableMotion {
   double disagreement = 0;
 };
 
-/// Above this disagreement, in degrees, no vertex is still enough to tell the head's motion. Halves
-/// of what is still on real heads disagree by up to 0.01, with noise of 0.1 % of the size by 0.25
-/// and of 0.3 % by 0.4; on a face that moves everywhere by 1.5 to 2.5.
-constexpr double kUncertainDisagreement = 0.6;
+/// Above this disagreement, in degrees, no vertex is still enough to tell the head's motion. Where
+/// vertices are still, halves disagree by up to 0.03 with noise of 0.1 % of the size, and by 0.24
+/// where they are few; on faces that move everywhere by 0.5 and more, and the motion is then wrong
+/// by 0.2 to 1.6.
+constexpr double kUncertainDisagreement = 0.35;
 
 /// rigid_motion() with AlignmentVertices::stable. `options` but for the vertices. Throws the same.
 StableMotion stable_motion(const FrameSource& source, const AlignmentOptions& options = {});
