@@ -20,8 +20,8 @@ const MeshSequence* sequence_of(const Data& data) {
   return shown ? &shown->sequence() : nullptr;
 }
 
-/// Longest side of the rest pose of what has one.
-std::optional<double> extent_of(const Data& data) {
+/// Diameter of the rest pose of what has one.
+std::optional<double> diameter_of(const Data& data) {
   if (const MeshSequence* sequence = sequence_of(data)) return sequence->diameter();
   if (const auto* components = std::get_if<Components>(&data)) return diameter(components->rest);
   if (const auto* held = std::get_if<ModelData>(&data)) return diameter(held->model.mean());
@@ -73,8 +73,8 @@ double mimetra_job::number_of(const std::string& name) const {
   if (!has_length) return kNone;
   for (const Input& input : operation_.inputs) {
     const mimetra_data* data = this->input(input.name, 0);
-    const auto side = data ? extent_of(data->value->named().data) : std::nullopt;
-    if (side) return invocation_.parameters.length(name).in(*side);
+    const auto diameter = data ? diameter_of(data->value->named().data) : std::nullopt;
+    if (diameter) return invocation_.parameters.length(name).in(*diameter);
   }
   return kNone;
 }

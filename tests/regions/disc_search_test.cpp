@@ -91,6 +91,22 @@ TEST_F(DiscSearchTest, IsTheSameOnATurnedMesh) {
   EXPECT_EQ(found.vertices, disc.vertices);
 }
 
+TEST_F(DiscSearchTest, HoldsOnlyWhatIsInside) {
+  std::vector<bool> inside(shape_.positions.rows());
+  for (VertexIndex v = 0; v < shape_.positions.rows(); ++v) inside[v] = shape_.positions(v, 0) < 4;
+  DiscSearch search(shape_.positions, shape_.triangles, distances_, 2.5, inside);
+  for (unsigned seed = 1; seed <= 8; ++seed) {
+    const Disc disc = search.best(random_amounts(seed));
+    ASSERT_FALSE(disc.vertices.empty());
+    EXPECT_TRUE(inside[disc.center]);
+    for (const VertexIndex v : disc.vertices) EXPECT_TRUE(inside[v]);
+    for (const int t : disc.triangles) {
+      const auto corners = shape_.triangles.row(t);
+      EXPECT_TRUE(inside[corners[0]] || inside[corners[1]] || inside[corners[2]]);
+    }
+  }
+}
+
 TEST_F(DiscSearchTest, FindsNoDiscWhereThereIsNothing) {
   const Disc disc = search(2.5).best(Eigen::VectorXd::Zero(shape_.triangles.rows()));
   EXPECT_EQ(disc.center, -1);

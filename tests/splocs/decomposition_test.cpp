@@ -10,6 +10,7 @@
 #include "tests/splocs/synthetic.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/splocs/start.h"
+#include "toolkit/splocs/vertex_energies.h"
 
 namespace mimetra::test {
 namespace {

@@ -57,7 +57,7 @@ TEST(SurfaceDistances, PassAcrossASeamThatIsWelded) {
 }
 
 TEST(SurfaceDistances, AreTheSameWhereTheyAreNotKept) {
-  const Shape sheet = grid(9, 5);
+  const Shape sheet = test::grid(9, 5);
   const SurfaceDistances distances(sheet.positions, sheet.triangles, Weld::none(45));
   const std::vector<VertexIndex> sources = {3, 17, 3, 44};
   const Eigen::MatrixXd once = distances.once(sources);

@@ -229,6 +229,7 @@ void write_options(Writer& writer, const Components& components) {
   writer.attribute("single_precision", options.precision == IterationPrecision::single_precision);
   writer.attribute("basis_tolerance", options.basis_tolerance);
   writer.attribute("literal_sign_rule", options.sign_rule == SignRule::literal);
+  writer.attribute("standard_deviation", options.scale == MotionScale::standard_deviation);
   writer.attribute("last_iterate", options.returned == ReturnedIterate::last);
 }
 
@@ -257,6 +258,9 @@ void read_options(const Reader& reader, Components& components) {
   options.basis_tolerance = reader.attribute("basis_tolerance", options.basis_tolerance);
   options.sign_rule =
       reader.attribute("literal_sign_rule", 0) != 0 ? SignRule::literal : SignRule::amplitude;
+  if (reader.attribute("standard_deviation", false) != 0) {
+    options.scale = MotionScale::standard_deviation;
+  }
   if (reader.attribute("last_iterate", false) != 0) options.returned = ReturnedIterate::last;
 }
 

@@ -13,9 +13,11 @@ Json report_of(const Region& region) {
                {"radius", region.radius},
                {"vertices", region.vertices.size()},
                {"energy_share", region.energy_share},
-               {"component", region.component},
-               {"surface_component", region.surface_part},
-               {"surface_share", region.surface_share}};
+               {"component", region.component}};
+  if (region.surface_part >= 0) {
+    json["surface_component"] = region.surface_part;
+    json["surface_share"] = region.surface_share;
+  }
   if (!region.added_for.empty()) json["added_for"] = region.added_for;
   return json;
 }

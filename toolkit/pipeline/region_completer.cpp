@@ -63,11 +63,10 @@ Regions RegionCompleter::operator()(const Regions& regions, const Target& target
   if (solves_for_vertices(target.model, options.space)) return regions;
   if (!search_) {
     search_.emplace(rest_, triangles_, distances_,
-                    kAddedRadius * options_.radius.in(diameter(rest_)));
+                    kAddedRadius * options_.radius.in(diameter(rest_)), inside_);
   }
   CompletionOptions of_completion = options_.completion;
   of_completion.edges = options.edges;
-  of_completion.inside = inside_;
   CompletedRegions completed = mimetra::completed(regions, target.model, *search_, of_completion);
   if (completed.added > 0) {
     const double share = completed.regions.triangle_share() - regions.triangle_share();

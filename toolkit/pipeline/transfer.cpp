@@ -77,8 +77,9 @@ Source source_of(const FrameSource& sequence, const std::vector<Target>& targets
 void take_over(const Regions& completed, Regions& regions, const Triangles& triangles) {
   std::vector<Region> added;
   for (const Region& region : completed.regions) {
-    const bool is_known =
-        std::ranges::find(regions.regions, region.center, &Region::center) != regions.regions.end();
+    const bool is_known = std::ranges::any_of(regions.regions, [&region](const Region& other) {
+      return other.center == region.center && other.vertices == region.vertices;
+    });
     if (!region.added_for.empty() && !is_known) added.push_back(region);
   }
   regions = with_added(regions, std::move(added), triangles);

@@ -114,11 +114,12 @@ class TriangleSum {
 }  // namespace
 
 DiscSearch::DiscSearch(Positions positions, Triangles triangles, DistanceFunction distances,
-                       double radius)
+                       double radius, std::vector<bool> inside)
     : positions_(std::move(positions)),
       triangles_(std::move(triangles)),
       distances_(std::move(distances)),
       radius_(radius),
+      inside_(std::move(inside)),
       triangles_of_vertex_(positions_.rows()) {
   for (int t = 0; t < triangles_.rows(); ++t) {
     for (const VertexIndex v : triangles_.row(t)) triangles_of_vertex_[v].push_back(t);
@@ -128,7 +129,9 @@ DiscSearch::DiscSearch(Positions positions, Triangles triangles, DistanceFunctio
 std::vector<DiscSearch::Candidate> DiscSearch::candidates(const Eigen::VectorXd& amounts) const {
   Eigen::VectorXd at_vertex = Eigen::VectorXd::Zero(positions_.rows());
   for (int t = 0; t < triangles_.rows(); ++t) {
-    for (const VertexIndex v : triangles_.row(t)) at_vertex[v] += amounts[t];
+    for (const VertexIndex v : triangles_.row(t)) {
+      if (is_inside(v)) at_vertex[v] += amounts[t];
+    }
   }
   const auto distance = [this](VertexIndex a, VertexIndex b) {
     return (positions_.row(a) - positions_.row(b)).norm();
@@ -180,7 +183,8 @@ void DiscSearch::measure(std::span<const Candidate> some) {
     disc.center = unknown[i];
     for (int v = 0; v < positions_.rows(); ++v) {
       const double distance = distances(v, static_cast<Eigen::Index>(i));
-      if (distance <= (1 + kNearTie) * radius_ || v == disc.center) disc.vertices.push_back(v);
+      const bool is_near = distance <= (1 + kNearTie) * radius_ || v == disc.center;
+      if (is_near && is_inside(v)) disc.vertices.push_back(v);
     }
     disc.triangles = triangles_at(disc.vertices);
   }

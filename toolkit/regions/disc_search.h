@@ -19,10 +19,13 @@ struct Disc {
 /// surface only where the ball around its centre, which holds more, could still win.
 class DiscSearch {
  public:
-  /// `positions` N x 3, `triangles` M x 3; distances along them. `radius` > 0, length.
-  DiscSearch(Positions positions, Triangles triangles, DistanceFunction distances, double radius);
+  /// `positions` N x 3, `triangles` M x 3; distances along them. `radius` > 0, length. `inside` (N,
+  /// empty for all): vertices that discs may hold.
+  DiscSearch(Positions positions, Triangles triangles, DistanceFunction distances, double radius,
+             std::vector<bool> inside = {});
 
   double radius() const { return radius_; }
+  bool is_inside(VertexIndex vertex) const { return inside_.empty() || inside_[vertex]; }
   /// The disc with the largest sum of `amounts` (M, >= 0) over its triangles; without a centre
   /// where all are 0. Throws what the distances throw.
   Disc best(const Eigen::VectorXd& amounts);
@@ -43,6 +46,7 @@ class DiscSearch {
   Triangles triangles_;
   DistanceFunction distances_;
   double radius_;
+  std::vector<bool> inside_;
   std::vector<std::vector<int>> triangles_of_vertex_;
   std::map<VertexIndex, Disc> discs_;  // those measured so far
 };

@@ -6,6 +6,7 @@
 
 #include "toolkit/mesh/stopwatch.h"
 #include "toolkit/operations/pipeline_parameters.h"
+#include "toolkit/pipeline/joint_motion.h"
 #include "toolkit/pipeline/region_completer.h"
 
 namespace mimetra {
@@ -55,26 +56,32 @@ class RunSteps {
   explicit RunSteps(const Invocation& call)
       : call_(call),
         sequence_(call.sequence("source")),
-        source_(source_of(call)),
-        completion_(completion_of(call, source_)) {}
+        targets_(targets_of(call)),
+        source_(source_of(call, targets_)) {}
 
   const Source& source() const { return source_; }
+  /// One of the targets of the call, on the source's triangles.
+  const Target& matched(const NamedData& target) const {
+    return *targets_.at(&target - call_.inputs.at("target").data());
+  }
 
   struct Found {
     Regions regions;
-    std::optional<Components> components;
+    RegionCompleter completer;
+    std::optional<Components> components = {};
     double seconds = 0;
   };
 
   Found regions_as_run(const Progress& progress) const {
     if (const RegionData* given = call_.find<RegionData>("regions")) {
-      return {given->regions, {}, 0};
+      const FrameSource& source = *source_.sequence;
+      return {given->regions, RegionCompleter(source.rest(), source.triangles(), region_options(),
+                                              analysis_options({}))};
     }
     const auto given = given_components(call_);
     if (!given) return regions_of(main_count(call_.parameters), progress);
     Analysis analysis = analysis_of(*given, sequence_, analysis_options(progress));
-    Regions regions = choose_regions(analysis, region_options());
-    return {std::move(regions), std::move(analysis.components), 0};
+    return found_by(std::move(analysis), 0);
   }
 
   Found regions_of(int count, const Progress& progress) const {
@@ -83,58 +90,65 @@ class RunSteps {
     options.decomposition.count = count;
     Analysis analysis =
         in_command_terms(call_.parameters, [&] { return analyse(source_, options); });
-    Regions regions = choose_regions(analysis, region_options());
-    return {std::move(regions), std::move(analysis.components), stopwatch.seconds()};
+    return found_by(std::move(analysis), stopwatch.seconds());
   }
 
   EvaluatedTransfer full(const Target& target, const Progress& progress) const {
-    return in_command_terms(
-        call_.parameters, [&] { return evaluate_full(source_, target, solve_options(progress)); });
+    return in_command_terms(call_.parameters, [&] {
+      return evaluate_full(source_, target, solve_options(call_, progress));
+    });
   }
 
-  Regions completed(const Regions& regions, const Target& target) {
-    return completion_(regions, target, solve_options({}));
+  Regions completed(Found& found, const Target& target) const {
+    return found.completer(found.regions, target, solve_options(call_, {}));
   }
 
   EvaluatedTransfer by(const Regions& regions, const EvaluatedTransfer& full, const Target& target,
                        const Progress& progress) const {
     return in_command_terms(call_.parameters, [&] {
-      return evaluate_by(regions, full, source_, target, solve_options(progress));
+      return evaluate_by(regions, full, source_, target, solve_options(call_, progress));
     });
   }
 
  private:
-  SolveOptions solve_options(const Progress& progress) const {
-    SolveOptions options = solving_parameters().read(call_.parameters);
-    options.threads = call_.threads;
+  static SolveOptions solve_options(const Invocation& call, const Progress& progress) {
+    SolveOptions options = solving_parameters().read(call.parameters);
+    options.threads = call.threads;
     options.progress = progress;
-    options.notes = warnings_of(call_);
-    options.edges = edge_sum(analysis_parameters().read(call_.parameters).compatibility);
+    options.notes = warnings_of(call);
+    options.edges = edge_sum(analysis_parameters().read(call.parameters).compatibility);
     return options;
   }
 
-  static RegionCompleter completion_of(const Invocation& call, const Source& source) {
-    RegionChoiceOptions options;
-    if (call.inputs.contains("target")) {
-      BoundParameters<RegionChoiceOptions> list = region_parameters();
-      options = list.add(completion_parameters()).read(call.parameters);
+  static std::vector<MatchedTarget> targets_of(const Invocation& call) {
+    std::vector<MatchedTarget> targets;
+    if (!call.inputs.contains("target")) return targets;
+    for (const NamedData& target : call.inputs.at("target")) {
+      targets.emplace_back(call.sequence("source"),
+                           Target{target.name, std::get<ModelData>(target.data).model.average()});
     }
-    options.notes = warnings_of(call);
-    AnalysisOptions analysis =
-        analysis_parameters(&call.get<FieldSequence>("source")).read(call.parameters);
-    analysis.threads = call.threads;
-    return {source.sequence->rest(), source.sequence->triangles(), options, analysis};
+    return targets;
   }
 
-  static Source source_of(const Invocation& call) {
+  static Source source_of(const Invocation& call, const std::vector<MatchedTarget>& targets) {
     const NamedData& input = call.input("source");
     const MeshSequence& sequence = call.sequence("source");
-    const bool transfers = call.inputs.contains("target");
     BoundParameters<SourceOptions> list = alignment_parameters(&sequence);
-    list.add(transfers ? source_rest_parameters(&sequence) : rest_parameters(&sequence));
+    list.add(targets.empty() ? rest_parameters(&sequence) : source_rest_parameters(&sequence));
     SourceOptions options = described(list.read(call.parameters), input);
     options.notes = warnings_of(call);
+    if (!targets.empty()) {
+      std::vector<Target> all;
+      for (const MatchedTarget& target : targets) all.push_back(*target);
+      options.joint = joint_search(all, solve_options(call, {}));
+    }
     return in_command_terms(call.parameters, [&] { return prepare_source(sequence, options); });
+  }
+
+  Found found_by(Analysis analysis, double seconds) const {
+    Regions regions = choose_regions(analysis, region_options());
+    RegionCompleter completer(analysis, region_options());
+    return {std::move(regions), std::move(completer), std::move(analysis.components), seconds};
   }
 
   AnalysisOptions analysis_options(const Progress& progress) const {
@@ -149,15 +163,17 @@ class RunSteps {
   }
 
   RegionChoiceOptions region_options() const {
-    RegionChoiceOptions options = region_parameters().read(call_.parameters);
+    BoundParameters<RegionChoiceOptions> list = region_parameters();
+    if (!targets_.empty()) list.add(completion_parameters());
+    RegionChoiceOptions options = list.read(call_.parameters);
     options.notes = warnings_of(call_);
     return options;
   }
 
   const Invocation& call_;
   const MeshSequence& sequence_;
+  std::vector<MatchedTarget> targets_;
   Source source_;
-  RegionCompleter completion_;
 };
 
 EvaluationRow completed(EvaluationRow row, const RunSteps::Found& found) {
@@ -190,7 +206,7 @@ auto apart_from(std::vector<std::string>& notes, const Work& work) {
   return result;
 }
 
-ReportedTransfer transferred(RunSteps& steps, const Target& to, RunSteps::Found& main,
+ReportedTransfer transferred(const RunSteps& steps, const Target& to, RunSteps::Found& main,
                              const std::vector<int>& counts, std::vector<std::string>& notes,
                              const Progress& progress) {
   const BlendshapeModel& model = to.model;
@@ -198,7 +214,7 @@ ReportedTransfer transferred(RunSteps& steps, const Target& to, RunSteps::Found&
   transfer.target = short_name(to.name);
   EvaluatedTransfer full =
       apart_from(notes, [&] { return steps.full(to, part_of(progress, 0, 0.1)); });
-  main.regions = steps.completed(main.regions, to);
+  main.regions = steps.completed(main, to);
   EvaluatedTransfer by_regions = steps.by(main.regions, full, to, part_of(progress, 0.1, 0.2));
   if (by_regions.solution.weights().size() > 0) {
     transfer.expressions = model.expressions().names;
@@ -214,7 +230,7 @@ ReportedTransfer transferred(RunSteps& steps, const Target& to, RunSteps::Found&
     if (k == main_row.k || k > main.regions.vertices) continue;
     transfer.rows.push_back(apart_from(notes, [&] {
       auto found = steps.regions_of(k, part_of(part, 0, 0.7));
-      found.regions = steps.completed(found.regions, to);
+      found.regions = steps.completed(found, to);
       return completed(steps.by(found.regions, full, to, part_of(part, 0.7, 1)).row, found);
     }));
   }
@@ -258,20 +274,16 @@ ReportStudy study(const NamedData& run, const std::vector<int>& counts, const Pr
   }
   const Invocation call = call_of(read, result.notes);
   result.source = short_name(call.input("source").name);
-  RunSteps steps(call);
+  const RunSteps steps(call);
   result.moved_head = !steps.source().motion.empty();
   result.sequence = MeshSequence(*steps.source().sequence);
   const NamedData* target = call.inputs.contains("target") ? &target_of(call, run, log) : nullptr;
-  std::optional<MatchedTarget> matched;
-  if (target) {
-    matched.emplace(result.sequence,
-                    Target{target->name, std::get<ModelData>(target->data).model.average()});
-  }
   const double found_at = target ? 0.3 : 1;
   auto found = steps.regions_as_run(part_of(progress, 0, found_at));
   if (target) {
-    result.transfer = transferred(steps, **matched, found, all_counts(counts, call.parameters),
-                                  result.notes, part_of(progress, found_at, 1));
+    result.transfer =
+        transferred(steps, steps.matched(*target), found, all_counts(counts, call.parameters),
+                    result.notes, part_of(progress, found_at, 1));
   }
   result.regions = std::move(found.regions);
   result.components = std::move(found.components);

@@ -38,8 +38,9 @@ class View {
                          [this](int triangle) { return !is_seen_[triangle]; });
     seen_ = gram_matrix(target, seen, edges);
     for (const int triangle : seen) is_seen_[triangle] = true;
+    const double most = all_.diagonal().maxCoeff();
     for (Eigen::Index j = 0; j < all_.rows(); ++j) {
-      if (all_(j, j) > 0) moving_.push_back(j);
+      if (moves_there(all_(j, j), most)) moving_.push_back(j);
     }
     can_be_told_apart_ = !moving_.empty() && tells_apart(directions(all_).eigenvalues());
   }
@@ -98,6 +99,7 @@ class View {
     if (tells_apart(seen.eigenvalues())) return {};
     const Eigen::VectorXd combination = seen.eigenvectors().col(0);
     const double moves = combination.dot(all_(moving_, moving_) * combination);
+    if (!moves_there(moves, all_.diagonal().maxCoeff())) return {};
     if (!can_be_told_apart_ && seen.eigenvalues()[0] >= share * moves) return {};
     return Unseen{displacements()(Eigen::all, moving_) * combination,
                   "a combination of expressions"};
@@ -111,16 +113,12 @@ class View {
   bool can_be_told_apart_ = false;    // by all triangles
 };
 
-bool is_inside(const std::vector<bool>& inside, VertexIndex vertex) {
-  return inside.empty() || inside[vertex];
-}
-
-/// Triangles with a vertex inside.
-std::vector<int> open_triangles(const Triangles& triangles, const std::vector<bool>& inside) {
+/// Triangles with a vertex that discs may hold.
+std::vector<int> open_triangles(const Triangles& triangles, const DiscSearch& search) {
   std::vector<int> open = all_triangles(triangles);
   std::erase_if(open, [&](int t) {
-    return !is_inside(inside, triangles(t, 0)) && !is_inside(inside, triangles(t, 1)) &&
-           !is_inside(inside, triangles(t, 2));
+    return std::ranges::none_of(triangles.row(t),
+                                [&](VertexIndex v) { return search.is_inside(v); });
   });
   return open;
 }
@@ -133,7 +131,7 @@ CompletedRegions completed(const Regions& regions, const BlendshapeModel& target
   CompletedRegions result{regions};
   if (options.share == 0) return result;
   fix_product_blocking();
-  View view(target, regions, open_triangles(target.triangles(), options.inside), options.edges);
+  View view(target, regions, open_triangles(target.triangles(), search), options.edges);
   double room = options.limit * static_cast<double>(regions.all_triangles);
   std::vector<Region> discs;
   while (const auto unseen = view.least_seen(options.share)) {
@@ -147,7 +145,6 @@ CompletedRegions completed(const Regions& regions, const BlendshapeModel& target
     region.center = disc.center;
     region.radius = search.radius();
     region.vertices = disc.vertices;
-    std::erase_if(region.vertices, [&](VertexIndex v) { return !is_inside(options.inside, v); });
     region.added_for = unseen->name;
   }
   result.added = static_cast<int>(discs.size());

@@ -14,9 +14,6 @@ struct CompletionOptions {
   /// Share of the mesh's triangles that may be added.
   double limit = 0.25;
   EdgeSum edges = EdgeSum::all;
-  /// Where discs may lie (N), empty for everywhere: they hold no other vertex, and of an expression
-  /// only what it moves there counts.
-  std::vector<bool> inside = {};
 
   static constexpr Option kShare{
       "share", &CompletionOptions::share, {.minimum = 0, .maximum = 0.95}};
@@ -35,8 +32,9 @@ struct CompletedRegions {
 /// Adds discs to regions of a source until they see each of the target's expressions, and tell them
 /// apart (condition number of G_L up to kPoorCondition): the one that holds most of what is unseen
 /// of the expression that is seen least, then of the combination that is. Expressions that move
-/// nothing are passed over. Throws std::invalid_argument for options out of range, and what the
-/// search throws. \pre the regions, the target and the search are of one connectivity
+/// nothing are passed over; of the others counts what they move where discs may lie. Throws
+/// std::invalid_argument for options out of range, and what the search throws. \pre the regions,
+/// the target and the search are of one connectivity
 CompletedRegions completed(const Regions& regions, const BlendshapeModel& target,
                            DiscSearch& search, const CompletionOptions& options = {});
 

@@ -109,8 +109,8 @@ def _properties_of(parameter, options):
         return {name: _choice(parameter, common)}
     if parameter.kind == "length":
         switch = BoolProperty(name="Absolute", options=options,
-                              description="In the unit of the mesh, not as a share of its longest"
-                                          " side")
+                              description="In the unit of the mesh, not as a share of its"
+                                          " diameter")
         return {name: _length(parameter, common), f"{name}_absolute": switch}
     if parameter.kind in ("integer", "number"):
         return {name: _number(parameter, common)}
