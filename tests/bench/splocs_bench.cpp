@@ -45,13 +45,13 @@ struct Kernels {
   Frames maps;
 
   Kernels(const MeshSequence& sequence, int count)
-      : X(scaled_motion(sequence, 0).X),
+      : X(scaled_motion(sequence, MotionScale::root_mean_square, 0).X),
         options(prepared_options(sequence, count)),
         support(support_function(options.distances, sequence.vertices(), 0.1 * sequence.diameter(),
                                  0.7 * sequence.diameter())),
         start(greedy_start(X, support, options)),
         products(initial_components(X, start.components, 0)) {
-    SupportMaps followed(support, count, sequence.vertices());
+    SupportMaps followed(support, count, sequence.vertices(), {});
     followed.follow(products.C);
     maps = followed.maps();
   }
