@@ -61,7 +61,7 @@ class RightHandSides {
         of_frames_(
             subject.performance.rest(),
             DeformationGradients(subject.performance.rest(), subject.target.triangles(), triangles),
-            subject.target) {}
+            subject.target, EdgeSum::all) {}
 
   Eigen::MatrixXd operator()() const {
     Eigen::MatrixXd h(frames_.rows(), expressions_);
