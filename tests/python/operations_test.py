@@ -49,6 +49,7 @@ class Operations(SampleTest):
         shown = mimetra.geodesic(self.arrays, source=[3]).out
         self.assertTrue(mimetra.operations["geodesic"].outputs[0].fields)
         self.assertFalse(mimetra.operations["info"].inputs[0].fields)
+        self.assertTrue(mimetra.operations["decompose"].inputs[0].fields)
         bare = mimetra.Sequence(shown.positions, shown.faces, shown.times, shown.rest)
         self.assertEqual(mimetra.info(shown).report, mimetra.info(bare).report)
 

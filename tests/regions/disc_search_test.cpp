@@ -43,6 +43,15 @@ class DiscSearchTest : public testing::Test {
     return sum;
   }
 
+  /// By the disc around any vertex.
+  double most_held(double radius, const Eigen::VectorXd& amounts) const {
+    double most = 0;
+    for (VertexIndex v = 0; v < shape_.positions.rows(); ++v) {
+      most = std::max(most, held(v, radius, amounts));
+    }
+    return most;
+  }
+
   test::Shape shape_ = test::grid(14, 11);
   DistanceFunction distances_;
 };
@@ -52,10 +61,7 @@ TEST_F(DiscSearchTest, FindsTheDiscThatHoldsMost) {
   const double radius = 2.5;
   for (unsigned seed = 1; seed <= 8; ++seed) {
     const Eigen::VectorXd amounts = random_amounts(seed);
-    double most = 0;
-    for (VertexIndex v = 0; v < shape_.positions.rows(); ++v) {
-      most = std::max(most, held(v, radius, amounts));
-    }
+    const double most = most_held(radius, amounts);
     DiscSearch search = this->search(radius);
     const Disc disc = search.best(amounts);
     EXPECT_NEAR(held(disc.center, radius, amounts), most, 1e-9 * most);
@@ -70,10 +76,7 @@ TEST_F(DiscSearchTest, ComesCloseWhereItComparesFewCentres) {
   const double radius = 5;
   for (unsigned seed = 1; seed <= 4; ++seed) {
     const Eigen::VectorXd amounts = random_amounts(seed);
-    double most = 0;
-    for (VertexIndex v = 0; v < shape_.positions.rows(); ++v) {
-      most = std::max(most, held(v, radius, amounts));
-    }
+    const double most = most_held(radius, amounts);
     EXPECT_GT(amounts(search(radius).best(amounts).triangles).sum(), 0.8 * most);
   }
 }

@@ -17,7 +17,7 @@ int main(void) {
   const mimetra_operation* decompose = m->find_operation(context, "decompose");
   CHECK(decompose && decompose->struct_size >= sizeof *decompose && !decompose->run);
   CHECK(decompose->inputs[0]->kind == MIMETRA_SEQUENCE);
-  CHECK(!(decompose->inputs[0]->flags & (MIMETRA_OPTIONAL | MIMETRA_REPEATED)));
+  CHECK(decompose->inputs[0]->flags == MIMETRA_WITH_FIELDS);
   CHECK(decompose->outputs[0]->kind == MIMETRA_COMPONENTS);
   const mimetra_parameter* const* parameter = decompose->parameters;
   while (*parameter && strcmp((*parameter)->name, "k") != 0) ++parameter;
