@@ -20,6 +20,11 @@ std::string lower_case(std::string text) {
   return text;
 }
 
+std::string upper_case(std::string text) {
+  for (char& c : text) c = static_cast<char>(c >= 'a' && c <= 'z' ? c - 'a' + 'A' : c);
+  return text;
+}
+
 std::string lower_extension(const std::filesystem::path& path) {
   return lower_case(path.extension().string());
 }

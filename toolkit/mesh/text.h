@@ -17,6 +17,9 @@ inline bool is_digit(char c) {
 /// A to Z become a to z.
 std::string lower_case(std::string text);
 
+/// a to z become A to Z.
+std::string upper_case(std::string text);
+
 /// ".ply" for NAME.PLY.
 std::string lower_extension(const std::filesystem::path& path);
 
