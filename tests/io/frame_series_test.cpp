@@ -79,7 +79,7 @@ TEST_F(FolderOfFrames, TakesAllFilesWhereMostAreOfNoSeries) {
 
 TEST_F(FolderOfFrames, NamesMissingNumbers) {
   write_frames({0, 1, 3, 4, 8});
-  EXPECT_THAT(series().notes, ElementsAre(HasSubstr("no file has the numbers 2, 5 to 7")));
+  EXPECT_THAT(series().notes, ElementsAre(HasSubstr("no file has these numbers: 2, 5 to 7")));
   EXPECT_EQ(series().frames.size(), 5u);
 }
 

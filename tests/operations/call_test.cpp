@@ -227,7 +227,7 @@ TEST_F(CallOfAnOperation, ChecksWhatReadingNoticed) {
   Call call(table_, check);
   call.load();
   call.run();
-  EXPECT_THAT(warnings, testing::ElementsAre(HasSubstr("the numbers 2 to 3")));
+  EXPECT_THAT(warnings, testing::ElementsAre(HasSubstr("these numbers: 2 to 3")));
   EXPECT_EQ(json::parse(call.outcome().report).at("warnings"), warnings);
   check.parameters.set("strict", true);
   Call strict(table_, check);

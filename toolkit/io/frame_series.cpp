@@ -83,7 +83,7 @@ std::vector<std::string> missing_numbers(const std::vector<fs::path>& frames) {
 void note_missing(FrameSeries& found, const std::string& name) {
   const std::vector<std::string> missing = missing_numbers(found.frames);
   if (missing.empty()) return;
-  found.notes.push_back(name + ": no file has the numbers " + listed(missing) +
+  found.notes.push_back(name + ": no file has these numbers: " + listed(missing) +
                         "; the frames follow each other without a pause");
 }
 

@@ -77,6 +77,18 @@ std::optional<fs::path> neutral_of(const fs::path& folder) {
   return {};
 }
 
+/// A shape is called as its file without the extension.
+void check_names(const std::vector<fs::path>& files) {
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      if (files[i].stem() != files[j].stem()) continue;
+      throw IoError(files[i].string(), "is a second shape named '" + files[i].stem().string() +
+                                           "', beside " + files[j].filename().string() +
+                                           "; rename or remove one of them");
+    }
+  }
+}
+
 /// Where the parts of a model are.
 struct Parts {
   std::optional<fs::path> neutral;
@@ -114,6 +126,9 @@ Parts parts_of(const fs::path& folder) {
   Parts parts;
   parts.neutral = neutral_of(folder);
   if (parts.neutral) {
+    std::vector<fs::path> neutrals = meshes_in(folder);
+    std::erase_if(neutrals, [](const fs::path& file) { return file.stem() != "neutral"; });
+    check_names(neutrals);
     for (const char* name : {"expressions", "targets"}) {
       if (!parts.expressions && fs::is_directory(folder / name, unreadable)) {
         parts.expressions = folder / name;
@@ -137,6 +152,7 @@ ShapeBasis read_shapes(const fs::path& folder, const MeshFileReader& neutral, in
     basis.names.push_back(file.stem().string());
   }
   check_links(files);
+  check_names(files);
   if (files.empty()) throw IoError(folder.string(), "holds no .obj, .ply, .off or .stl file");
   const Positions& mean = neutral.mesh().positions;
   basis.displacements.resize(mean.size(), static_cast<Eigen::Index>(files.size()));
