@@ -87,6 +87,13 @@ void append_integer(std::string& text, long long value) {
   text.append(digits.data(), put_shortest(digits.data(), value));
 }
 
+bool fits_single_precision(const TextureCoordinates& texture) {
+  return std::ranges::all_of(texture.coordinates, [](const Eigen::Vector2d& uv) {
+    const double farthest = uv.cwiseAbs().maxCoeff();
+    return farthest <= kLargestSingle || !std::isfinite(farthest);
+  });
+}
+
 std::string position_lines(std::string_view before, const PositionsView& positions,
                            bool double_precision) {
   const std::size_t longest = before.size() + 3 * (kMostDigits + 1);
