@@ -2,6 +2,7 @@
 
 #include "toolkit/operations/formats.h"
 #include "toolkit/operations/json.h"
+#include "toolkit/operations/times_text.h"
 #include "toolkit/operations/toolkit_operations.h"
 
 namespace mimetra {
@@ -22,10 +23,12 @@ Operation convert_operation() {
     outcome.outputs["out"].push_back({"", input.data, input.origin});
     outcome.report = Json{{"frames", frames.frames()},
                           {"vertices", frames.vertices()},
-                          {"faces", frames.connectivity().polygons.size()}}
+                          {"faces", frames.connectivity().polygons.size()},
+                          {"seconds", seconds(frames)},
+                          {"times_known", frames.times_are_known()}}
                          .dump();
     outcome.summary = std::to_string(frames.frames()) + " frames of " +
-                      std::to_string(frames.vertices()) + " vertices\n";
+                      std::to_string(frames.vertices()) + " vertices, " + times_text(frames) + '\n';
     return outcome;
   };
   return operation;
