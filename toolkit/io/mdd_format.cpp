@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "toolkit/io/bytes.h"
+#include "toolkit/io/mesh_file.h"
 #include "toolkit/io/point_cache.h"
 #include "toolkit/io/sequence_format.h"
 #include "toolkit/io/sequence_parts.h"
@@ -77,8 +78,13 @@ std::unique_ptr<FrameSink> begin_mdd(const SequenceHeader& header, const fs::pat
 }  // namespace
 
 SequenceFormat mdd_format() {
-  return {"MDD point cache", {".mdd"}, true, SequenceFormat::Precision::single,
-          open_mdd,          begin_mdd};
+  return {"MDD point cache",
+          {".mdd"},
+          true,
+          SequenceFormat::Precision::single,
+          open_mdd,
+          begin_mdd,
+          parts_held_by(MeshFormat::ply)};
 }
 
 }  // namespace mimetra

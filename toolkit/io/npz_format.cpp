@@ -193,6 +193,7 @@ class NpzSink : public FrameSink {
   }
 
   void write(int first, const Frames& poses) override {
+    if (positions_.positions.bytes == sizeof(float)) check_single_range(target_, first, poses);
     const auto columns = static_cast<std::size_t>(poses.cols());
     positions_.positions.write(*positions_.file, columns * static_cast<std::size_t>(first),
                                {poses.data(), static_cast<std::size_t>(poses.size())});
@@ -239,8 +240,13 @@ std::unique_ptr<FrameSink> begin_npz(const SequenceHeader& header, const fs::pat
 }  // namespace
 
 SequenceFormat npz_format() {
-  return {"NumPy archive", {".npz"}, true, SequenceFormat::Precision::double_or_single,
-          open_npz,        begin_npz};
+  return {"NumPy archive",
+          {".npz"},
+          true,
+          SequenceFormat::Precision::double_or_single,
+          open_npz,
+          begin_npz,
+          {.polygons = true}};
 }
 
 }  // namespace mimetra

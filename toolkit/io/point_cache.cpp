@@ -108,6 +108,7 @@ class PointCacheSink : public FrameSink {
   }
 
   void write(int first, const Frames& poses) override {
+    if (cache_.positions.bytes == sizeof(float)) check_single_range(target_, first, poses);
     if (cache_.only_single_precision) check_single_precision(poses);
     cache_.positions.write(*cache_.file, columns_ * static_cast<std::size_t>(first),
                            {poses.data(), static_cast<std::size_t>(poses.size())});

@@ -1,6 +1,7 @@
 #include "toolkit/io/sequence_file.h"
 
 #include "toolkit/io/fit_file.h"
+#include "toolkit/io/foreign_files.h"
 #include "toolkit/io/frame_files.h"
 #include "toolkit/io/frame_sequence.h"
 #include "toolkit/io/model_file.h"
@@ -60,6 +61,12 @@ OpenSequence open_driven(const ModelSpec& spec, const SequenceSource& source) {
   open.model_driven = true;
   open.files = {spec.path};
   auto person = std::make_shared<const BlendshapeModel>(read_person(spec, source.threads));
+  if (const auto others = meshes_beside_model(spec.path); !others.empty()) {
+    open.notes.push_back(spec.path.string() + ": is read as a model; " +
+                         std::to_string(others.size()) + " other mesh files in it, from " +
+                         others.front().filename().string() +
+                         " on, are no part of it; name frames by a pattern");
+  }
   if (spec.fit) open.files.push_back(*spec.fit);
   if (!source.weights && !spec.fit) {
     open.frames = neutral_of(*person, source);
@@ -71,7 +78,8 @@ OpenSequence open_driven(const ModelSpec& spec, const SequenceSource& source) {
   const auto frames = static_cast<int>(track.weights.rows());
   const std::vector<int> chosen = selected_frames(source.frames, frames);
   const std::vector<std::string>& expressions = person->expressions().names;
-  open.notes = match_notes(driver, spec.path, match_weights(track, expressions));
+  const auto notes = match_notes(driver, spec.path, match_weights(track, expressions));
+  open.notes.insert(open.notes.end(), notes.begin(), notes.end());
   std::optional<Eigen::VectorXd> of_track;
   if (track.times.size() > 0) of_track = track.times;
   const FrameTimes times = frame_times(driver.string(), frames, std::move(of_track), source);
@@ -96,8 +104,10 @@ void check_undriven(const std::string& text, const SequenceSource& source) {
 OpenSequence open_path(const fs::path& path, const SequenceSource& source) {
   if (fs::is_directory(path)) return open_frames(frames_of_folder(path), path, source);
   if (const SequenceFormat* format = sequence_format(path)) return format->open(path, source);
-  throw IoError(path.string(), "is no sequence; expected a folder, " +
-                                   joined(sequence_extensions()) + " or a model");
+  const std::string found = foreign_file(path);
+  throw IoError(path.string(), found.empty() ? "is no sequence; expected a folder, " +
+                                                   joined(sequence_extensions()) + " or a model"
+                                             : "is " + found);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "toolkit/io/held_parts.h"
 #include "toolkit/io/sequence_options.h"
 
 namespace mimetra {
@@ -24,6 +25,8 @@ struct SequenceFormat {
   OpenSequence (*open)(const std::filesystem::path&, const SequenceSource&);
   std::unique_ptr<FrameSink> (*begin)(const SequenceHeader&, const std::filesystem::path& target,
                                       const SequenceWriteOptions&, const ExtraFiles&);
+  /// What its files and those beside them have a place for: what they have none for is said.
+  HeldParts holds = {};
 };
 
 /// All formats, in the order in which lists have them.

@@ -146,7 +146,16 @@ void add_extra_beside(PendingOutputs& outputs, const fs::path& target, const Ext
 bool needs_double(const PositionsView& poses, double extent) {
   constexpr double kRounding = 6e-8;     // of float32, relative
   constexpr double kMostRounded = 1e-5;  // of the longest side: well below what one sees
-  return kRounding * poses.cwiseAbs().maxCoeff() > kMostRounded * extent;
+  const double farthest = poses.cwiseAbs().maxCoeff();
+  return farthest > kLargestSingle || kRounding * farthest > kMostRounded * extent;
+}
+
+void check_single_range(const fs::path& target, int first, const Frames& poses) {
+  Eigen::Index row = 0, column = 0;
+  const double farthest = poses.cwiseAbs().maxCoeff(&row, &column);
+  if (farthest <= kLargestSingle) return;
+  throw MismatchError(target.string() + ": frame " + std::to_string(first + row) + ": " +
+                      beyond_single(column / 3, farthest));
 }
 
 }  // namespace mimetra

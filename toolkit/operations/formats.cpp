@@ -142,21 +142,29 @@ BoundParameters<SequenceWriteOptions> writing_parameters(SequenceFormat::Precisi
 
 void add_sequence_formats(OperationTable& table) {
   const auto add = [&table](std::string name, std::vector<std::string> extensions,
-                            const BoundParameters<SequenceWriteOptions>& writing) {
+                            const BoundParameters<SequenceWriteOptions>& writing,
+                            std::function<HeldParts(const Parameters&)> holds) {
     table.add(Format{.name = std::move(name),
                      .kind = DataKind::sequence,
                      .extensions = std::move(extensions),
                      .reading = sequence_parameters().declared(),
                      .read = read_sequence_data,
                      .writing = writing.declared(),
-                     .write = [writing](const Data& data, const WriteRequest& request) {
-                       return write_sequence_data(data, request, writing.read(request.parameters));
-                     }});
+                     .write =
+                         [writing](const Data& data, const WriteRequest& request) {
+                           return write_sequence_data(data, request,
+                                                      writing.read(request.parameters));
+                         },
+                     .holds = std::move(holds)});
   };
   for (const SequenceFormat& format : sequence_formats()) {
-    add(format.name, format.extensions, writing_parameters(format.precision));
+    add(format.name, format.extensions, writing_parameters(format.precision),
+        [held = format.holds](const Parameters&) { return held; });
   }
-  add("folder of meshes", {Format::kFolder}, folder_writing_parameters());
+  add("folder of meshes", {Format::kFolder}, folder_writing_parameters(),
+      [](const Parameters& options) {
+        return parts_held_by(folder_writing_parameters().read(options).format);
+      });
   table.add(Format{.name = "eos model, by weights",
                    .kind = DataKind::sequence,
                    .extensions = {".bin"},

@@ -106,7 +106,8 @@ void add_vtp(OperationTable& table) {
                 .read = read_sequence_data,
                 .writing = writing,
                 .write = write_sequence_data,
-                .fields = true};
+                .fields = true,
+                .holds = [](const Parameters&) { return HeldParts{.polygons = true}; }};
   table.add(series);
   series.name = "VTK mesh of one frame";
   series.extensions = {".vtp"};
