@@ -12,6 +12,7 @@ namespace mimetra {
 
 /// What follows a sequence's name in the names of the files beside it that belong to it.
 inline constexpr const char* kRestSuffix = ".rest.ply";
+inline constexpr const char* kTimesSuffix = ".times.csv";
 inline constexpr const char* kTopologySuffix = ".topology.ply";
 
 /// True for text with `*`, `?` or `%04d` that names files only by way of a pattern.

@@ -1,6 +1,7 @@
 #include "toolkit/io/frame_sequence.h"
 
 #include <algorithm>
+#include <optional>
 #include <span>
 
 #include "toolkit/io/frame_files.h"
@@ -43,6 +44,33 @@ class FrameFiles : public FrameSource {
   std::unique_ptr<const MeshFileReader> reader_;
   std::vector<fs::path> files_;
 };
+
+/// The frames of the folder that a pattern takes some of; none for files of several folders.
+std::vector<fs::path> all_beside(const std::vector<fs::path>& files, const fs::path& home) {
+  const auto is_elsewhere = [&home](const fs::path& file) {
+    return fs::absolute(file).lexically_normal().parent_path() != home;
+  };
+  if (std::ranges::any_of(files, is_elsewhere)) return {};
+  return frames_of_pattern((home / "*").string() + files.front().extension().string()).files;
+}
+
+/// Those of a folder, also where a pattern takes some of its frames.
+std::optional<Eigen::VectorXd> known_times(const std::vector<fs::path>& files,
+                                           const fs::path& folder, std::vector<fs::path>& read) {
+  if (!folder.empty()) return times_beside(folder, static_cast<int>(files.size()), read);
+  const fs::path home = fs::absolute(files.front()).lexically_normal().parent_path();
+  if (files.size() < 2 || !fs::exists(beside(home, kTimesSuffix))) return std::nullopt;
+  const std::vector<fs::path> all = all_beside(files, home);
+  if (all.empty()) return std::nullopt;
+  const auto of_all = times_beside(home, static_cast<int>(all.size()), read);
+  Eigen::VectorXd times(static_cast<Eigen::Index>(files.size()));
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    const auto found = std::ranges::find(all, files[i].filename(), &fs::path::filename);
+    if (found == all.end()) return std::nullopt;
+    times[static_cast<Eigen::Index>(i)] = (*of_all)[found - all.begin()];
+  }
+  return times;
+}
 
 class FolderSink : public FrameSink {
  public:
@@ -89,6 +117,7 @@ class FolderSink : public FrameSink {
     SequenceHeader kept = header_;
     kept.rest_is_known = kept.rest_is_known && mesh_codec(extension_)->read;
     add_rest_beside(outputs_, target_, kept, files);
+    add_times_beside(outputs_, target_, header_, files);
     outputs_.commit();
     return files;
   }
@@ -121,7 +150,11 @@ OpenSequence open_frames(const FrameSeries& series, const fs::path& folder,
   auto reader = std::make_unique<const MeshFileReader>(names_vertices ? frames[0] : files[0]);
   SequenceHeader header;
   header.connectivity = std::make_shared<const Connectivity>(reader->mesh().connectivity);
-  header.times = frame_times(static_cast<int>(files.size()), source)(chosen);
+  const FrameTimes times =
+      frame_times(folder.empty() ? files.front().parent_path().string() : folder.string(),
+                  static_cast<int>(files.size()), known_times(files, folder, open.files), source);
+  header.times = times.seconds(chosen);
+  header.times_are_known = times.are_known;
   std::optional<Positions> rest;
   if (!folder.empty()) rest = rest_beside(folder, *reader, open.files);
   if (!rest && series.rest) {

@@ -60,8 +60,10 @@ PointCacheTarget begin_mdd_file(const SequenceHeader& header, const fs::path& pa
   for (const double time : header.times) {
     append_bytes_of(head, static_cast<float>(time), std::endian::big);
   }
-  PointCacheTarget target{
-      std::make_unique<OutputFile>(path), {head.size(), sizeof(float), std::endian::big}, true};
+  PointCacheTarget target{std::make_unique<OutputFile>(path),
+                          {head.size(), sizeof(float), std::endian::big},
+                          true,
+                          true};
   target.file->write({head});
   return target;
 }

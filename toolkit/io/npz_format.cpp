@@ -206,8 +206,10 @@ class NpzSink : public FrameSink {
     ZipWriter zip(archive_);
     zip.add_file(name(kPositionNames), scratch_.path);
     zip.add(name(kFaceNames), npy_bytes(*header_.connectivity));
-    zip.add(name(kTimeNames), npy_bytes<double>("<f8", {count(header_.times.size())},
-                                                {header_.times.begin(), header_.times.end()}));
+    if (header_.times_are_known) {
+      zip.add(name(kTimeNames), npy_bytes<double>("<f8", {count(header_.times.size())},
+                                                  {header_.times.begin(), header_.times.end()}));
+    }
     if (header_.rest_is_known) {
       const double* rest = header_.rest.data();
       zip.add(name(kRestNames), npy_bytes<double>("<f8", {count(header_.rest.rows()), 3},

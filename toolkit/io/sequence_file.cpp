@@ -43,9 +43,8 @@ std::vector<std::string> match_notes(const fs::path& weights, const fs::path& mo
 std::shared_ptr<const FrameSource> neutral_of(const BlendshapeModel& person,
                                               const SequenceSource& source) {
   selected_frames(source.frames, 1);
-  return std::make_shared<const MeshSequence>(person.shared_connectivity(),
-                                              as_row(person.neutral()), frame_times(1, source),
-                                              person.neutral());
+  return std::make_shared<const MeshSequence>(
+      person.shared_connectivity(), as_row(person.neutral()), Eigen::VectorXd(), person.neutral());
 }
 
 Eigen::MatrixXd weights_of(const fs::path& path, const WeightTrack& track,
@@ -81,15 +80,17 @@ OpenSequence open_driven(const ModelSpec& spec, const SequenceSource& source) {
   const std::vector<std::string>& expressions = person->expressions().names;
   const auto notes = match_notes(driver, spec.path, match_weights(track, expressions));
   open.notes.insert(open.notes.end(), notes.begin(), notes.end());
-  const Eigen::VectorXd times = track.times.size() > 0 ? track.times : frame_times(frames, source);
+  std::optional<Eigen::VectorXd> of_track;
+  if (track.times.size() > 0) of_track = track.times;
+  const FrameTimes times = frame_times(driver.string(), frames, std::move(of_track), source);
   // There may be many frames: no more than one copy of what is not needed again.
   if (static_cast<int>(chosen.size()) < frames) {
     track.weights = Eigen::MatrixXd(track.weights(chosen, Eigen::all));
   }
   Eigen::MatrixXd weights = weights_of(driver, track, expressions);
   track.weights.resize(0, 0);
-  open.frames =
-      std::make_shared<const Animation>(std::move(person), std::move(weights), times(chosen));
+  open.frames = std::make_shared<const Animation>(std::move(person), std::move(weights),
+                                                  times.seconds(chosen), times.are_known);
   return open;
 }
 

@@ -5,6 +5,7 @@
 #include "toolkit/operations/bound_parameters.h"
 #include "toolkit/operations/formats.h"
 #include "toolkit/operations/json.h"
+#include "toolkit/operations/times_text.h"
 #include "toolkit/operations/toolkit_operations.h"
 
 namespace mimetra {
@@ -40,11 +41,14 @@ Outcome run_convert(const Invocation& invocation) {
   outcome.report = Json{{"frames", made.frames->frames()},
                         {"vertices", made.frames->vertices()},
                         {"faces", made.frames->connectivity().polygons.size()},
+                        {"seconds", seconds(*made.frames)},
+                        {"times_known", made.frames->times_are_known()},
                         {"scale", change.scale},
                         {"up", choice_name(change.up)}}
                        .dump();
   outcome.summary = std::to_string(made.frames->frames()) + " frames of " +
-                    std::to_string(made.frames->vertices()) + " vertices" + said(change) + '\n';
+                    std::to_string(made.frames->vertices()) + " vertices, " + times_text(*made.frames) +
+                    said(change) + '\n';
   outcome.outputs["out"].push_back({"", std::move(made), input.origin});
   return outcome;
 }
