@@ -23,7 +23,7 @@ BoundParameters<UnitChange> convert_parameters() {
 std::string said(const UnitChange& change) {
   std::string text;
   if (change.scale != 1) text += ", positions times " + readable(change.scale);
-  if (change.up != UpAxis::keep) text += ", turned " + std::string(choice_name(change.up));
+  if (change.up != UpTurn::keep) text += ", turned " + std::string(choice_name(change.up));
   return text;
 }
 
@@ -47,8 +47,8 @@ Outcome run_convert(const Invocation& invocation) {
                         {"up", choice_name(change.up)}}
                        .dump();
   outcome.summary = std::to_string(made.frames->frames()) + " frames of " +
-                    std::to_string(made.frames->vertices()) + " vertices, " + times_text(*made.frames) +
-                    said(change) + '\n';
+                    std::to_string(made.frames->vertices()) + " vertices, " +
+                    times_text(*made.frames) + said(change) + '\n';
   outcome.outputs["out"].push_back({"", std::move(made), input.origin});
   return outcome;
 }
