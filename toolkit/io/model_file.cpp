@@ -10,6 +10,7 @@
 #include "toolkit/io/fit_file.h"
 #include "toolkit/io/mesh_file.h"
 #include "toolkit/io/pending_output.h"
+#include "toolkit/io/scene.h"
 #include "toolkit/io/whole_file.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/parallel.h"
@@ -265,6 +266,7 @@ std::string ModelSpec::name() const {
 MorphableModel read_model(const fs::path& path, int threads) {
   std::error_code unreadable;
   if (!fs::exists(path, unreadable)) throw IoError(path.string(), "does not exist");
+  if (is_scene_file(path)) return MorphableModel(*read_scene(path).model);
   const Parts parts = parts_of(path);
   if (parts.shape) {
     if (!parts.expressions) {
@@ -315,6 +317,7 @@ BlendshapeModel read_blendshapes(const std::string& text) {
 
 bool is_model(const fs::path& path) {
   std::error_code unreadable;
+  if (is_scene_file(path)) return true;
   if (!fs::is_directory(path, unreadable)) return path.extension() == ".bin" && is_eos_shape(path);
   return fs::exists(path / "model.json", unreadable) || neutral_of(path).has_value() ||
          (eos_expressions_of(path) && eos_shape_of(path));

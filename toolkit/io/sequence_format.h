@@ -9,6 +9,8 @@
 
 namespace mimetra {
 
+class Animation;
+
 /// A format of files that hold a sequence, declared once: readers, writers, and every list of
 /// formats come from it.
 struct SequenceFormat {
@@ -24,6 +26,11 @@ struct SequenceFormat {
   OpenSequence (*open)(const std::filesystem::path&, const SequenceSource&);
   std::unique_ptr<FrameSink> (*begin)(const SequenceHeader&, const std::filesystem::path& target,
                                       const SequenceWriteOptions&, const ExtraFiles&);
+  /// Writes a model and its weights as such; null where only poses are written.
+  std::vector<std::filesystem::path> (*write_animation)(const Animation&,
+                                                        const std::filesystem::path& target,
+                                                        const SequenceWriteOptions&,
+                                                        const ExtraFiles&) = nullptr;
 };
 
 /// All formats, in the order in which lists have them.

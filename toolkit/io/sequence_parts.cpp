@@ -93,4 +93,13 @@ bool needs_double(const PositionsView& poses, double extent) {
   return kRounding * poses.cwiseAbs().maxCoeff() > kMostRounded * extent;
 }
 
+void check_single_precision(const fs::path& target, const PositionsView& poses, double extent) {
+  if (!needs_double(poses, extent)) return;
+  throw MismatchError(target.string() + ": " + target.extension().string() +
+                      " holds single precision only, which would round motion that one sees: "
+                      "the mesh lies " +
+                      readable(poses.cwiseAbs().maxCoeff() / extent, 2) +
+                      " times its size from the origin; move it, or write .npy");
+}
+
 }  // namespace mimetra

@@ -40,4 +40,8 @@ void add_extra_beside(PendingOutputs& outputs, const std::filesystem::path& targ
 /// whose longest side is `extent`.
 bool needs_double(const PositionsView& poses, double extent);
 
+/// Throws MismatchError for these, of a `target` that holds single precision only.
+void check_single_precision(const std::filesystem::path& target, const PositionsView& poses,
+                            double extent);
+
 }  // namespace mimetra

@@ -1,0 +1,12 @@
+#include "toolkit/io/driven_model.h"
+#include "toolkit/io/gltf_write.h"
+#include "toolkit/io/sequence_format.h"
+
+namespace mimetra {
+
+SequenceFormat gltf_format() {
+  return {"glTF 2.0", {".glb", ".gltf"}, false,     SequenceFormat::Precision::single,
+          open_scene, begin_gltf,        write_gltf};
+}
+
+}  // namespace mimetra
