@@ -81,7 +81,12 @@ OpenSequence open_scene(const fs::path& path, const SequenceSource& source) {
   Scene scene = read_scene(path);
   const auto frames = static_cast<int>(scene.weights.rows());
   OpenSequence open;
-  if (source.weights || frames == 0) {
+  if (scene.frames && !source.weights) {
+    open.frames = scene.frames;
+    if (source.frames) {
+      open.frames = selected(scene.frames, selected_frames(source.frames, scene.frames->frames()));
+    }
+  } else if (source.weights || frames == 0) {
     open = drive(scene.model, path, source);
   } else {
     const std::vector<int> chosen = selected_frames(source.frames, frames);
@@ -97,7 +102,9 @@ OpenSequence open_scene(const fs::path& path, const SequenceSource& source) {
   }
   open.files = scene.files;
   if (source.weights) open.files.push_back(*source.weights);
-  open.notes.insert(open.notes.begin(), scene.notes.begin(), scene.notes.end());
+  std::vector<std::string>& notes = scene.notes;
+  notes.insert(notes.end(), scene.motion_notes.begin(), scene.motion_notes.end());
+  open.notes.insert(open.notes.begin(), notes.begin(), notes.end());
   return open;
 }
 

@@ -104,8 +104,10 @@ class GltfReader {
       if (document_.nodes[placed.node].mesh) add_parts(placed, parts);
     }
     note_moved_nodes();
+    motion_notes_.swap(notes_);
     note(left_out_, "primitives that are no triangles are left out");
     Scene scene = joined_scene(document_.path, std::move(parts), document_.file_bytes);
+    scene.motion_notes = std::move(motion_notes_);
     scene.rest_is_known = document_.rest_is_known;
     scene.files = document_.files;
     std::vector<std::string> notes = document_.notes;
@@ -458,7 +460,7 @@ class GltfReader {
   std::vector<std::shared_ptr<const WeightCurve>> curves_;
   std::set<std::size_t> moved_, joints_;
   std::set<std::string> left_out_;
-  std::vector<std::string> notes_;
+  std::vector<std::string> notes_, motion_notes_;
 };
 
 }  // namespace

@@ -231,14 +231,14 @@ bool is_scene_file(const fs::path& path) {
   const std::string extension = lower_extension(path);
   std::error_code unreadable;
   if (fs::is_directory(path, unreadable)) return false;
-  for (const char* known : {".glb", ".gltf"}) {
+  for (const char* known : {".glb", ".gltf", ".usda", ".usd", ".usdc", ".usdz"}) {
     if (extension == known) return true;
   }
   return false;
 }
 
 Scene read_scene(const fs::path& path) {
-  return read_gltf(path);
+  return lower_extension(path).starts_with(".usd") ? read_usd(path) : read_gltf(path);
 }
 
 }  // namespace mimetra

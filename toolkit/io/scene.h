@@ -57,6 +57,8 @@ struct Scene {
   bool rest_is_known = true;
   std::vector<std::filesystem::path> files = {};
   std::vector<std::string> notes = {};
+  /// What was left out of its movement: of no interest for its shapes.
+  std::vector<std::string> motion_notes = {};
 };
 
 /// Throws IoError where `vertices` in `poses` poses would take far more memory than a file of
@@ -78,5 +80,6 @@ Scene read_scene(const std::filesystem::path& path);
 
 /// Readers of formats, each in the file of its name.
 Scene read_gltf(const std::filesystem::path& path);
+Scene read_usd(const std::filesystem::path& path);
 
 }  // namespace mimetra

@@ -52,7 +52,7 @@ OpenSequence open_path(const fs::path& path, const SequenceSource& source) {
 OpenSequence open_sequence(const std::string& text, const SequenceSource& source) {
   check_options(source);
   const bool exists = is_there(text);
-  if (exists && is_scene_file(text)) return open_path(text, source);
+  if (exists && is_scene_file(text)) return open_scene(text, source);
   if (exists && is_model(text)) return open_driven(ModelSpec{text, {}, {}}, source);
   if (!exists && !is_frame_pattern(text) && text.find('@') != std::string::npos) {
     const ModelSpec spec = ModelSpec::parse(text);

@@ -6,11 +6,13 @@
 namespace mimetra {
 
 // Each in the file of its name.
-SequenceFormat gltf_format(), mdd_format(), mesh_format(), npy_format(), npz_format(), pc2_format();
+SequenceFormat gltf_format(), mdd_format(), mesh_format(), npy_format(), npz_format(), pc2_format(),
+    usd_format();
 
 const std::vector<SequenceFormat>& sequence_formats() {
   static const std::vector<SequenceFormat> formats = {npy_format(), npz_format(),  pc2_format(),
-                                                      mdd_format(), gltf_format(), mesh_format()};
+                                                      mdd_format(), gltf_format(), usd_format(),
+                                                      mesh_format()};
   return formats;
 }
 

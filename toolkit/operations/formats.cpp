@@ -195,6 +195,10 @@ void add_model_formats(OperationTable& table) {
                    .extensions = {".glb", ".gltf"},
                    .read = read_model_data,
                    .write = write_gltf_data});
+  table.add(Format{.name = "USD text",
+                   .kind = DataKind::model,
+                   .extensions = {".usda"},
+                   .read = read_model_data});
   table.add(Format{.name = "mesh without expressions",
                    .kind = DataKind::model,
                    .extensions = mesh_extensions(),
