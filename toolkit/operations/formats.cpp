@@ -156,6 +156,9 @@ BoundParameters<SequenceWriteOptions> writing_parameters(SequenceFormat::Precisi
   return BoundParameters<SequenceWriteOptions>();
 }
 
+/// Listed because the reader says of the others how they become text.
+constexpr auto kUsdOfAnyKind = "USD, of which only text is read";
+
 void add_sequence_formats(OperationTable& table) {
   const auto add = [&table](std::string name, std::vector<std::string> extensions,
                             const BoundParameters<SequenceWriteOptions>& writing) {
@@ -173,6 +176,11 @@ void add_sequence_formats(OperationTable& table) {
     add(format.name, format.extensions, writing_parameters(format.precision));
   }
   add("folder of meshes", {Format::kFolder}, folder_writing_parameters());
+  table.add(Format{.name = kUsdOfAnyKind,
+                   .kind = DataKind::sequence,
+                   .extensions = {".usd", ".usdc", ".usdz"},
+                   .reading = sequence_parameters().declared(),
+                   .read = read_sequence_data});
   table.add(Format{.name = "eos model, by weights",
                    .kind = DataKind::sequence,
                    .extensions = {".bin"},
@@ -198,6 +206,10 @@ void add_model_formats(OperationTable& table) {
   table.add(Format{.name = "USD text",
                    .kind = DataKind::model,
                    .extensions = {".usda"},
+                   .read = read_model_data});
+  table.add(Format{.name = kUsdOfAnyKind,
+                   .kind = DataKind::model,
+                   .extensions = {".usd", ".usdc", ".usdz"},
                    .read = read_model_data});
   table.add(Format{.name = "mesh without expressions",
                    .kind = DataKind::model,
