@@ -1,5 +1,7 @@
 #include <array>
+#include <cstdint>
 #include <limits>
+#include <string_view>
 
 #include <gmock/gmock.h>
 #include <meshoptimizer.h>
@@ -548,6 +550,33 @@ TEST_F(GltfFiles, TextThatEndsEarlyIsAnError) {
 TEST_F(GltfFiles, NestingHasAnEnd) {
   const std::string deep(200000, '[');
   EXPECT_THAT(error(R"({"asset":{"version":"2.0"},"extras":)" + deep), HasSubstr("nested deeper"));
+}
+
+/// Whatever bytes are changed, the file is read, or refused by an error that names it.
+TEST_F(GltfFiles, NoChangedByteDoesHarm) {
+  GltfBuilder gltf = two_nodes(plain());
+  gltf.animate(0, {0, 1}, {0, 1});
+  const std::string sound = gltf.glb();
+  std::uint32_t random = 1;
+  const auto next = [&random](std::size_t below) {
+    random = 1664525 * random + 1013904223;  // Numerical Recipes
+    return static_cast<std::size_t>(random >> 8) % below;
+  };
+  constexpr std::string_view kTelling = "0123456789-.,:[]{}()\"e ";
+  for (int trial = 0; trial < 3000; ++trial) {
+    std::string bytes = sound;
+    for (std::size_t change = next(4) + 1; change > 0; --change) {
+      const bool is_text = next(2) == 0;
+      bytes[next(bytes.size())] =
+          is_text ? kTelling[next(kTelling.size())] : static_cast<char>(next(256));
+    }
+    write_bytes(file_, bytes);
+    try {
+      read_sequence(file_.string());
+    } catch (const IoError& error) {
+      EXPECT_THAT(error.what(), HasSubstr(file_.filename().string()));
+    }
+  }
 }
 
 /// Each way in which one value of a sound file is wrong, and what is said of it.

@@ -1,4 +1,6 @@
 #include <cmath>
+#include <cstdint>
+#include <string_view>
 #include <tuple>
 
 #include <gmock/gmock.h>
@@ -305,6 +307,31 @@ TEST_F(UsdFiles, EveryTruncatedPrefixIsAnError) {
   // The last line break may be missing.
   for (std::size_t bytes = 0; bytes + 1 < whole.size(); ++bytes) {
     EXPECT_THAT(error(whole.substr(0, bytes)), HasSubstr("a.usda")) << bytes;
+  }
+}
+
+/// Whatever bytes are changed, the file is read, or refused by an error that names it.
+TEST_F(UsdFiles, NoChangedByteDoesHarm) {
+  const std::string sound = smiling(".timeSamples = { 0: [0, 0], 5: [0, 1] }");
+  std::uint32_t random = 1;
+  const auto next = [&random](std::size_t below) {
+    random = 1664525 * random + 1013904223;  // Numerical Recipes
+    return static_cast<std::size_t>(random >> 8) % below;
+  };
+  constexpr std::string_view kTelling = "0123456789-.,:[]{}()\"e ";
+  for (int trial = 0; trial < 3000; ++trial) {
+    std::string bytes = sound;
+    for (std::size_t change = next(4) + 1; change > 0; --change) {
+      const bool is_text = next(2) == 0;
+      bytes[next(bytes.size())] =
+          is_text ? kTelling[next(kTelling.size())] : static_cast<char>(next(256));
+    }
+    write_bytes(file_, bytes);
+    try {
+      read_sequence(file_.string());
+    } catch (const IoError& error) {
+      EXPECT_THAT(error.what(), HasSubstr(file_.filename().string()));
+    }
   }
 }
 

@@ -111,6 +111,14 @@ class GltfValue {
     if (!json_->is_string()) fail("expected text");
     return json_->get<std::string>();
   }
+  /// The same as a name, which may be copied many times.
+  std::string name() const {
+    constexpr std::size_t kLongest = 1000;
+    std::string text = this->text();
+    if (text.size() > kLongest) fail("is a name of " + std::to_string(text.size()) + " bytes");
+    return text;
+  }
+  std::string name_or_nothing() const { return has("name") ? at("name").name() : std::string(); }
   std::string text_or(const char* name, const std::string& fallback) const {
     return has(name) ? at(name).text() : fallback;
   }
@@ -344,12 +352,12 @@ GltfPrimitive gltf_primitive(const GltfValue& value, const GltfDocument& documen
 std::vector<std::string> target_names(const GltfValue& value) {
   std::vector<std::string> names;
   if (!value.has("extras") || !value.at("extras").has("targetNames")) return names;
-  for (const GltfValue& name : value.at("extras").list("targetNames")) names.push_back(name.text());
+  for (const GltfValue& name : value.at("extras").list("targetNames")) names.push_back(name.name());
   return names;
 }
 
 GltfMesh gltf_mesh(const GltfValue& value, const GltfDocument& document, std::size_t materials) {
-  GltfMesh mesh{value.text_or("name", ""), {}, target_names(value), value.numbers("weights")};
+  GltfMesh mesh{value.name_or_nothing(), {}, target_names(value), value.numbers("weights")};
   for (const GltfValue& item : value.at("primitives").items()) {
     mesh.primitives.push_back(gltf_primitive(item, document, materials));
     if (mesh.target_names.empty()) mesh.target_names = target_names(item);
@@ -377,7 +385,7 @@ Eigen::Matrix4d gltf_transform(const GltfValue& value) {
 
 GltfNode gltf_node(const GltfValue& value, const GltfDocument& document, std::size_t nodes,
                    std::size_t skins) {
-  GltfNode node{value.text_or("name", ""),
+  GltfNode node{value.name_or_nothing(),
                 {},
                 value.maybe_index("mesh", document.meshes.size()),
                 value.maybe_index("skin", skins),
@@ -396,7 +404,7 @@ GltfSkin gltf_skin(const GltfValue& value, const GltfDocument& document) {
 }
 
 GltfMaterial gltf_material(const GltfValue& value) {
-  GltfMaterial material{value.text_or("name", ""), Eigen::Matrix<double, 2, 3>::Identity()};
+  GltfMaterial material{value.name_or_nothing(), Eigen::Matrix<double, 2, 3>::Identity()};
   if (!value.has("pbrMetallicRoughness")) return material;
   const GltfValue surface = value.at("pbrMetallicRoughness");
   if (!surface.has("baseColorTexture")) return material;
@@ -411,7 +419,7 @@ GltfMaterial gltf_material(const GltfValue& value) {
 }
 
 GltfAnimation gltf_animation(const GltfValue& value, const GltfDocument& document) {
-  GltfAnimation animation{value.text_or("name", ""), {}};
+  GltfAnimation animation{value.name_or_nothing(), {}};
   const std::vector<GltfValue> samplers = value.at("samplers").items();
   for (const GltfValue& channel : value.at("channels").items()) {
     const GltfValue target = channel.at("target");
@@ -478,11 +486,6 @@ void read_gltf_buffers(const GltfValue& root, const std::optional<std::string_vi
 }
 
 }  // namespace
-
-bool GltfPrimitive::has_vertices_of(const GltfPrimitive& other) const {
-  return !draco && !other.draco && positions == other.positions && texture == other.texture &&
-         joints == other.joints && weights == other.weights && targets == other.targets;
-}
 
 GltfDocument read_gltf_document(const fs::path& path) {
   GltfDocument document;

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Core>
@@ -65,8 +66,10 @@ struct GltfPrimitive {
   std::optional<GltfDraco> draco;
   bool polygons;  ///< triangles that share their first corner are one polygon [FB_ngon_encoding]
 
-  /// True where both are faces on the same vertices.
-  bool has_vertices_of(const GltfPrimitive& other) const;
+  /// Equal for primitives that are faces on the same vertices.
+  using Vertices =
+      std::pair<std::array<std::optional<std::size_t>, 4>, std::vector<std::optional<std::size_t>>>;
+  Vertices vertices() const { return {{positions, texture, joints, weights}, targets}; }
 };
 
 struct GltfMesh {

@@ -5,8 +5,10 @@
 namespace mimetra {
 
 SequenceFormat gltf_format() {
-  return {"glTF 2.0", {".glb", ".gltf"}, false,     SequenceFormat::Precision::single,
-          open_scene, begin_gltf,        write_gltf};
+  SequenceFormat format{"glTF 2.0", {".glb", ".gltf"}, false, SequenceFormat::Precision::single,
+                        open_scene, begin_gltf};
+  format.write_animation = write_gltf;
+  return format;
 }
 
 }  // namespace mimetra

@@ -2,6 +2,7 @@
 #include <array>
 #include <map>
 #include <set>
+#include <string_view>
 
 #include <Eigen/LU>
 
@@ -18,7 +19,7 @@ namespace {
 /// A node with a mesh, or a joint, and where it stands.
 struct PlacedNode {
   std::size_t node;
-  std::string name;
+  std::string_view name;  ///< its own, else that of the nearest node above; in the document
   Eigen::Matrix4d world;
 };
 
@@ -26,7 +27,7 @@ struct PlacedNode {
 std::vector<PlacedNode> placed_nodes(const GltfDocument& document) {
   std::vector<PlacedNode> placed, open;
   for (auto root = document.roots.rbegin(); root != document.roots.rend(); ++root) {
-    open.push_back({*root, "", Eigen::Matrix4d::Identity()});
+    open.push_back({*root, {}, Eigen::Matrix4d::Identity()});
   }
   std::vector<bool> met(document.nodes.size(), false);
   while (!open.empty()) {
@@ -214,23 +215,25 @@ class GltfReader {
     return curve;
   }
 
+  static std::string shown_name(const PlacedNode& placed) {
+    return "'" + std::string(placed.name) + "'";
+  }
+
   void add_parts(const PlacedNode& placed, std::vector<ScenePart>& parts) {
     const GltfMesh& mesh = mesh_at(placed.node);
-    const std::string& own = document_.nodes[placed.node].name;
-    std::string name = !own.empty() ? own : !mesh.name.empty() ? mesh.name : placed.name;
+    const bool is_named = !document_.nodes[placed.node].name.empty() || mesh.name.empty();
+    std::string name(is_named ? placed.name : mesh.name);
     if (name.empty()) name = number_name("mesh_", *document_.nodes[placed.node].mesh);
     // Primitives may share vertices, and are then one part.
-    std::vector<std::pair<const GltfPrimitive*, std::size_t>> made;
+    std::map<GltfPrimitive::Vertices, std::size_t> made;
     for (const GltfPrimitive& primitive : mesh.primitives) {
       constexpr int kFirstOfFaces = 4;
       if (primitive.mode < kFirstOfFaces || !primitive.positions) {
         left_out_.insert("'" + name + "'");
         continue;
       }
-      const auto same = std::ranges::find_if(
-          made, [&](const auto& other) { return other.first->has_vertices_of(primitive); });
-      if (same == made.end()) {
-        made.emplace_back(&primitive, parts.size());
+      const auto [same, is_new] = made.emplace(primitive.vertices(), parts.size());
+      if (is_new || primitive.draco) {
         parts.push_back(part_of(placed, name, mesh, primitive));
       } else {
         add_faces(primitive, placed, parts[same->second]);
@@ -313,7 +316,7 @@ class GltfReader {
     const Frames which = values_.read(*primitive.joints, 4, vertices);
     const Frames weights = values_.read(*primitive.weights, 4, vertices);
     if (primitive.more_joints) {
-      fail("'" + placed.name + "'", "vertices hang on more than four joints, which is not read");
+      fail(shown_name(placed), "vertices hang on more than four joints, which is not read");
     }
     Frames blended(vertices, 12);
     for (Eigen::Index v = 0; v < vertices; ++v) {
@@ -322,14 +325,14 @@ class GltfReader {
       for (int k = 0; k < 4; ++k) {
         if (weights(v, k) == 0) continue;
         if (which(v, k) < 0 || which(v, k) >= static_cast<double>(joints.size())) {
-          fail("'" + placed.name + "'", "vertex " + std::to_string(v) + " hangs on joint " +
-                                            readable(which(v, k)) + " of " +
-                                            std::to_string(joints.size()));
+          fail(shown_name(placed), "vertex " + std::to_string(v) + " hangs on joint " +
+                                       readable(which(v, k)) + " of " +
+                                       std::to_string(joints.size()));
         }
         blend += weights(v, k) * joints[static_cast<std::size_t>(which(v, k))];
         sum += weights(v, k);
       }
-      if (sum <= 0) fail("'" + placed.name + "'", "a vertex hangs on no joint");
+      if (sum <= 0) fail(shown_name(placed), "a vertex hangs on no joint");
       // Weights that are stored in a byte do not quite add up to 1.
       const Eigen::Matrix<double, 3, 4> transform = blend.topRows<3>() / sum;
       blended.row(v) = Eigen::Map<const Eigen::RowVectorXd>(transform.data(), transform.size());

@@ -39,18 +39,18 @@ class ExpressionList {
  public:
   void add(std::size_t part, const std::string& part_name, int target, const std::string& name,
            const Eigen::VectorXd& weights) {
-    std::vector<std::size_t>& known = by_name_[name];
-    for (const std::size_t index : known) {
+    Namesakes& namesakes = by_name_[name];
+    for (const std::size_t index : namesakes.expressions) {
       JoinedExpression& expression = expressions[index];
       // Two of one name in one mesh are two.
       if (expression.from.back().first == part || expression.weights != weights) continue;
       expression.from.emplace_back(part, target);
       return;
     }
-    known.push_back(expressions.size());
+    namesakes.expressions.push_back(expressions.size());
     std::string free = name;
-    for (int number = 2; !names_.insert(free).second; ++number) {
-      free = name + '_' + std::to_string(number);
+    for (; !names_.insert(free).second; ++namesakes.next) {
+      free = name + '_' + std::to_string(namesakes.next);
     }
     if (free != name) renamed.push_back("'" + name + "' of '" + part_name + "' is '" + free + "'");
     expressions.push_back({free, weights, {{part, target}}});
@@ -60,15 +60,27 @@ class ExpressionList {
   std::vector<std::string> renamed;
 
  private:
-  std::map<std::string, std::vector<std::size_t>> by_name_;
+  struct Namesakes {
+    std::vector<std::size_t> expressions;
+    int next = 2;  ///< the number of the next one that is not the same
+  };
+
+  std::map<std::string, Namesakes> by_name_;
   std::set<std::string> names_;
 };
 
-Eigen::VectorXd all_keys(const std::vector<ScenePart>& parts) {
-  std::set<double> times;
+/// Many parts may share one.
+std::set<const WeightCurve*> all_curves(const std::vector<ScenePart>& parts) {
+  std::set<const WeightCurve*> curves;
   for (const ScenePart& part : parts) {
-    if (part.weights) times.insert(part.weights->times.begin(), part.weights->times.end());
+    if (part.weights) curves.insert(part.weights.get());
   }
+  return curves;
+}
+
+Eigen::VectorXd all_keys(const std::set<const WeightCurve*>& curves) {
+  std::set<double> times;
+  for (const WeightCurve* curve : curves) times.insert(curve->times.begin(), curve->times.end());
   Eigen::VectorXd all(static_cast<Eigen::Index>(times.size()));
   std::copy(times.begin(), times.end(), all.begin());
   return all;
@@ -176,12 +188,14 @@ Scene joined_scene(const std::string& path, std::vector<ScenePart> parts, std::s
   for (const ScenePart& part : parts) {
     vertices += part.positions.rows();
     targets += static_cast<double>(part.targets.size());
-    if (!part.weights) continue;
-    check_times(path + ": weights of '" + part.name + "'", part.weights->times);
-    still = still && part.weights->values.isZero(0);
+  }
+  const std::set<const WeightCurve*> curves = all_curves(parts);
+  for (const WeightCurve* curve : curves) {
+    check_times(path + ": an animation of weights", curve->times);
+    still = still && curve->values.isZero(0);
   }
   Scene scene;
-  const Eigen::VectorXd times = all_keys(parts);
+  const Eigen::VectorXd times = all_keys(curves);
   const int frames = times.size() > 0 ? static_cast<int>(times.size()) : still ? 0 : 1;
   check_scene_size(path, targets / 3, frames, file_bytes);
   ExpressionList list;

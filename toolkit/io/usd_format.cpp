@@ -267,8 +267,10 @@ std::vector<fs::path> write_usd(const Animation& animation, const fs::path& targ
 }  // namespace
 
 SequenceFormat usd_format() {
-  return {"USD text", {".usda"}, false,    SequenceFormat::Precision::single,
-          open_scene, begin_usd, write_usd};
+  SequenceFormat format{"USD text", {".usda"}, false, SequenceFormat::Precision::single,
+                        open_scene, begin_usd};
+  format.write_animation = write_usd;
+  return format;
 }
 
 }  // namespace mimetra

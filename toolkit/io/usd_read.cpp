@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <numbers>
 #include <set>
 
@@ -397,6 +398,9 @@ class UsdReader {
     const std::size_t rows = std::max<std::size_t>(1, times.size());
     check_scene_size(path_, static_cast<double>(names.size()) / 3, static_cast<double>(rows),
                      bytes_);
+    std::map<std::string, std::size_t> column;
+    for (const std::string& name : driven->value.words) column.emplace(name, column.size());
+    if (column.size() != driven->value.words.size()) fail(driven->line, "a name stands twice");
     curve->values = Eigen::MatrixXd::Zero(Eigen::Index(rows), Eigen::Index(names.size()));
     for (std::size_t row = 0; row < rows; ++row) {
       const std::vector<double>& given =
@@ -406,10 +410,9 @@ class UsdReader {
                                 std::to_string(driven->value.words.size()) + " blendshapes");
       }
       for (std::size_t j = 0; j < names.size(); ++j) {
-        const auto column = std::ranges::find(driven->value.words, names[j]);
-        if (column == driven->value.words.end()) continue;
-        curve->values(Eigen::Index(row), Eigen::Index(j)) =
-            given[static_cast<std::size_t>(column - driven->value.words.begin())];
+        const auto found = column.find(names[j]);
+        if (found == column.end()) continue;
+        curve->values(Eigen::Index(row), Eigen::Index(j)) = given[found->second];
       }
     }
     curve->times /= rate_;
