@@ -11,6 +11,7 @@
 #include "toolkit/io/frame_series.h"
 #include "toolkit/io/mesh_file.h"
 #include "toolkit/io/pending_output.h"
+#include "toolkit/io/scene.h"
 #include "toolkit/io/whole_file.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/parallel.h"
@@ -300,6 +301,7 @@ std::vector<fs::path> meshes_beside_model(const fs::path& path) {
 MorphableModel read_model(const fs::path& path, int threads) {
   std::error_code unreadable;
   if (!fs::exists(path, unreadable)) throw IoError(path.string(), "does not exist");
+  if (is_scene_file(path)) return MorphableModel(*read_scene(path).model);
   const Parts parts = parts_of(path);
   if (parts.shape) {
     if (!parts.expressions) {
@@ -350,6 +352,7 @@ BlendshapeModel read_blendshapes(const std::string& text) {
 
 bool is_model(const fs::path& path) {
   std::error_code unreadable;
+  if (is_scene_file(path)) return true;
   if (!fs::is_directory(path, unreadable)) return path.extension() == ".bin" && is_eos_shape(path);
   if (fs::exists(path / "model.json", unreadable)) return true;
   if (!neutral_of(path)) return eos_expressions_of(path) && eos_shape_of(path);
