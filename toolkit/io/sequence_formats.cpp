@@ -6,11 +6,12 @@
 namespace mimetra {
 
 // Each in the file of its name.
-SequenceFormat mdd_format(), mesh_format(), npy_format(), npz_format(), pc2_format();
+SequenceFormat mdd_format(), mesh_format(), npy_format(), npz_format(), pc2_format(),
+    splocs_format();
 
 const std::vector<SequenceFormat>& sequence_formats() {
-  static const std::vector<SequenceFormat> formats = {npy_format(), npz_format(), pc2_format(),
-                                                      mdd_format(), mesh_format()};
+  static const std::vector<SequenceFormat> formats = {npy_format(), npz_format(),    pc2_format(),
+                                                      mdd_format(), splocs_format(), mesh_format()};
   return formats;
 }
 
