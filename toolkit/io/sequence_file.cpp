@@ -69,10 +69,14 @@ OpenSequence open_driven(const ModelSpec& spec, const SequenceSource& source) {
   if (source.weights) open.files.push_back(*source.weights);
   const fs::path& driver = open.files.back();
   WeightTrack track = source.weights ? read_weights(driver) : read_fit(driver).performance();
+  for (const std::string& note : track.notes) {
+    open.notes.push_back(driver.string() + ": " + note);
+  }
   const auto frames = static_cast<int>(track.weights.rows());
   const std::vector<int> chosen = selected_frames(source.frames, frames);
   const std::vector<std::string>& expressions = person->expressions().names;
-  open.notes = match_notes(driver, spec.path, match_weights(track, expressions));
+  const auto unmatched = match_notes(driver, spec.path, match_weights(track, expressions));
+  open.notes.insert(open.notes.end(), unmatched.begin(), unmatched.end());
   const Eigen::VectorXd times = track.times.size() > 0 ? track.times : frame_times(frames, source);
   // There may be many frames: no more than one copy of what is not needed again.
   if (static_cast<int>(chosen.size()) < frames) {
