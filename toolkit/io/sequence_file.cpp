@@ -60,6 +60,7 @@ OpenSequence open_driven(const ModelSpec& spec, const SequenceSource& source) {
   OpenSequence open;
   open.model_driven = true;
   open.files = {spec.path};
+  open.notes = spec.notes();
   auto person = std::make_shared<const BlendshapeModel>(read_person(spec, source.threads));
   if (spec.fit) open.files.push_back(*spec.fit);
   if (!source.weights && !spec.fit) {

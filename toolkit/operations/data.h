@@ -93,6 +93,8 @@ struct Origin {
   std::vector<std::filesystem::path> images = {};
   /// What was noticed in each frame of landmarks (F, "" for nothing), or none.
   std::vector<std::string> frame_notes = {};
+  /// What was noticed in all of it, and said, when it was read.
+  std::vector<std::string> notes = {};
   /// The run that wrote a manifest.
   std::shared_ptr<const RunRead> run = {};
 };

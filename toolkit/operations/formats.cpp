@@ -109,7 +109,8 @@ MorphableModel model_of(const ModelSpec& spec, const ReadRequest& request) {
 ReadValue read_model_data(const std::string& text, const ReadRequest& request) {
   const ModelSpec spec = ModelSpec::parse(text);
   ReadValue read{{spec.name(), ModelData{model_of(spec, request)}, {.path = spec.path}},
-                 {spec.path}};
+                 {spec.path},
+                 spec.notes()};
   if (spec.fit) read.files.push_back(*spec.fit);
   return read;
 }
