@@ -34,6 +34,8 @@ OpenSequence open_driven(const ModelSpec& spec, const SequenceSource& source) {
     open = drive(std::move(person), spec.path, source);
     open.files.insert(open.files.begin() + 1, *spec.fit);
   }
+  const std::vector<std::string> of_spec = spec.notes();
+  open.notes.insert(open.notes.begin(), of_spec.begin(), of_spec.end());
   if (const auto others = meshes_beside_model(spec.path); !others.empty()) {
     open.notes.push_back(spec.path.string() + ": is read as a model; " +
                          std::to_string(others.size()) + " other mesh files in it, from " +
