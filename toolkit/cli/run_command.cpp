@@ -75,7 +75,7 @@ CallRequest call_of(const Request& request) {
 
 void print_result(const Request& request, const Outcome& outcome) {
   if (request.json) {
-    std::cout << Json::parse(outcome.report).dump(2) << '\n';
+    std::cout << json_text(Json::parse(outcome.report), 2) << '\n';
   } else if (!request.quiet) {
     std::cout << outcome.summary;
   }

@@ -20,10 +20,9 @@ Operation convert_operation() {
     const FrameSource& frames = *std::get<FieldSequence>(input.data).frames;
     Outcome outcome;
     outcome.outputs["out"].push_back({"", input.data, input.origin});
-    outcome.report = Json{{"frames", frames.frames()},
-                          {"vertices", frames.vertices()},
-                          {"faces", frames.connectivity().polygons.size()}}
-                         .dump();
+    outcome.report = json_text(Json{{"frames", frames.frames()},
+                                    {"vertices", frames.vertices()},
+                                    {"faces", frames.connectivity().polygons.size()}});
     outcome.summary = std::to_string(frames.frames()) + " frames of " +
                       std::to_string(frames.vertices()) + " vertices\n";
     return outcome;
