@@ -32,9 +32,8 @@ std::vector<std::string> match_notes(const fs::path& weights, const fs::path& mo
 std::shared_ptr<const FrameSource> resting(const BlendshapeModel& person,
                                            const SequenceSource& source) {
   selected_frames(source.frames, 1);
-  return std::make_shared<const MeshSequence>(person.shared_connectivity(),
-                                              as_row(person.neutral()), Eigen::VectorXd(),
-                                              person.neutral());
+  return std::make_shared<const MeshSequence>(
+      person.shared_connectivity(), as_row(person.neutral()), Eigen::VectorXd(), person.neutral());
 }
 
 Eigen::MatrixXd weights_of(const fs::path& path, const WeightTrack& track,

@@ -9,6 +9,7 @@
 #include "toolkit/io/eos.h"
 #include "toolkit/io/fit_file.h"
 #include "toolkit/io/frame_series.h"
+#include "toolkit/io/json_text.h"
 #include "toolkit/io/mesh_file.h"
 #include "toolkit/io/pending_output.h"
 #include "toolkit/io/scene.h"
@@ -101,14 +102,14 @@ struct Parts {
 Parts parts_from_json(const fs::path& file) {
   Parts parts;
   try {
-    const auto json = nlohmann::json::parse(read_file(file));
+    const Json json = read_json(file, "a JSON object of paths");
     if (!json.is_object()) throw IoError(file.string(), "expected a JSON object of paths");
     const auto entry = [&](const char* name) -> std::optional<fs::path> {
       if (!json.contains(name)) return {};
       return file.parent_path() / json.at(name).get<std::string>();
     };
     parts = {entry("neutral"), entry("shape"), entry("expressions"), entry("identities")};
-  } catch (const nlohmann::json::exception& error) {
+  } catch (const Json::exception& error) {
     throw IoError(file.string(), std::string("expected a JSON object of paths: ") + error.what());
   }
   if (!parts.neutral && !parts.shape) {

@@ -28,8 +28,8 @@ OpenSequence open_driven(const ModelSpec& spec, const SequenceSource& source) {
   if (!spec.fit) {
     open = drive(std::move(person), spec.path, source);
   } else if (!source.weights) {
-    open = drive(std::move(person), spec.path, source, *spec.fit,
-                 read_fit(*spec.fit).performance());
+    open =
+        drive(std::move(person), spec.path, source, *spec.fit, read_fit(*spec.fit).performance());
   } else {
     open = drive(std::move(person), spec.path, source);
     open.files.insert(open.files.begin() + 1, *spec.fit);

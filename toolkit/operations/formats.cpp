@@ -287,7 +287,8 @@ void add_formats(OperationTable& table) {
                    .extensions = {".vtkhdf"},
                    .writing = mesh_writing_parameters().declared(),
                    .write = write_vtkhdf_sequence,
-                   .fields = true});
+                   .fields = true,
+                   .holds = [](const Parameters&) { return HeldParts{.polygons = true}; }});
   table.add(Format{.name = "VTKHDF over time with region fields",
                    .kind = DataKind::regions,
                    .extensions = {".vtkhdf"},
