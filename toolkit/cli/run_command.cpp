@@ -78,7 +78,7 @@ void print_result(const Request& request, const Outcome& outcome,
   if (request.json) {
     Json report = Json::parse(outcome.report);
     if (!warnings.empty() && !report.contains("warnings")) report["warnings"] = warnings;
-    std::cout << report.dump(2) << '\n';
+    std::cout << json_text(report, 2) << '\n';
   } else if (!request.quiet) {
     std::cout << outcome.summary;
   }

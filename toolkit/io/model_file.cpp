@@ -9,8 +9,10 @@
 #include "toolkit/io/eos.h"
 #include "toolkit/io/fit_file.h"
 #include "toolkit/io/frame_series.h"
+#include "toolkit/io/json_text.h"
 #include "toolkit/io/mesh_file.h"
 #include "toolkit/io/pending_output.h"
+#include "toolkit/io/scene.h"
 #include "toolkit/io/whole_file.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/parallel.h"
@@ -100,14 +102,14 @@ struct Parts {
 Parts parts_from_json(const fs::path& file) {
   Parts parts;
   try {
-    const auto json = nlohmann::json::parse(read_file(file));
+    const Json json = read_json(file, "a JSON object of paths");
     if (!json.is_object()) throw IoError(file.string(), "expected a JSON object of paths");
     const auto entry = [&](const char* name) -> std::optional<fs::path> {
       if (!json.contains(name)) return {};
       return file.parent_path() / json.at(name).get<std::string>();
     };
     parts = {entry("neutral"), entry("shape"), entry("expressions"), entry("identities")};
-  } catch (const nlohmann::json::exception& error) {
+  } catch (const Json::exception& error) {
     throw IoError(file.string(), std::string("expected a JSON object of paths: ") + error.what());
   }
   if (!parts.neutral && !parts.shape) {
@@ -275,6 +277,18 @@ ModelSpec ModelSpec::parse(const std::string& text) {
   return spec;
 }
 
+std::vector<std::string> ModelSpec::notes() const {
+  // Standard deviations, or shares of an identity.
+  constexpr double kMostUsual = 10;
+  std::vector<std::string> notes;
+  for (const auto& [identity_name, coefficient] : identity) {
+    if (std::abs(coefficient) <= kMostUsual) continue;
+    notes.push_back(path.string() + ": " + identity_name + " is " + readable(coefficient) +
+                    ", expected about -3 to 3");
+  }
+  return notes;
+}
+
 std::string ModelSpec::name() const {
   // "." and "ict-face/" are named after their folder too.
   fs::path last = fs::absolute(path).lexically_normal();
@@ -300,6 +314,7 @@ std::vector<fs::path> meshes_beside_model(const fs::path& path) {
 MorphableModel read_model(const fs::path& path, int threads) {
   std::error_code unreadable;
   if (!fs::exists(path, unreadable)) throw IoError(path.string(), "does not exist");
+  if (is_scene_file(path)) return MorphableModel(*read_scene(path).model);
   const Parts parts = parts_of(path);
   if (parts.shape) {
     if (!parts.expressions) {
@@ -350,6 +365,7 @@ BlendshapeModel read_blendshapes(const std::string& text) {
 
 bool is_model(const fs::path& path) {
   std::error_code unreadable;
+  if (is_scene_file(path)) return true;
   if (!fs::is_directory(path, unreadable)) return path.extension() == ".bin" && is_eos_shape(path);
   if (fs::exists(path / "model.json", unreadable)) return true;
   if (!neutral_of(path)) return eos_expressions_of(path) && eos_shape_of(path);

@@ -109,7 +109,10 @@ class PointCacheSink : public FrameSink {
 
   void write(int first, const Frames& poses) override {
     if (cache_.positions.bytes == sizeof(float)) check_single_range(target_, first, poses);
-    if (cache_.only_single_precision) check_single_precision(poses);
+    if (cache_.only_single_precision) {
+      check_single_precision(target_, PositionsView(poses.data(), poses.size() / 3, 3),
+                             extent(header_.rest));
+    }
     cache_.positions.write(*cache_.file, columns_ * static_cast<std::size_t>(first),
                            {poses.data(), static_cast<std::size_t>(poses.size())});
   }
@@ -126,18 +129,6 @@ class PointCacheSink : public FrameSink {
   }
 
  private:
-  /// Rounding would spoil motion without a word.
-  void check_single_precision(const Frames& poses) const {
-    const PositionsView points(poses.data(), poses.size() / 3, 3);
-    const double longest = extent(header_.rest);
-    if (!needs_double(points, longest)) return;
-    throw MismatchError(target_.string() + ": " + target_.extension().string() +
-                        " holds single precision only, which would round motion that one sees: "
-                        "the mesh lies " +
-                        readable(points.cwiseAbs().maxCoeff() / longest, 2) +
-                        " times its size from the origin; move it, or write .npy");
-  }
-
   SequenceHeader header_;
   fs::path target_;
   std::vector<fs::path> extra_files_;

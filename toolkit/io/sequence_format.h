@@ -10,6 +10,8 @@
 
 namespace mimetra {
 
+class Animation;
+
 /// A format of files that hold a sequence, declared once: readers, writers, and every list of
 /// formats come from it.
 struct SequenceFormat {
@@ -27,6 +29,11 @@ struct SequenceFormat {
                                       const SequenceWriteOptions&, const ExtraFiles&);
   /// What its files and those beside them have a place for: what they have none for is said.
   HeldParts holds = {};
+  /// Writes a model and its weights as such; null where only poses are written.
+  std::vector<std::filesystem::path> (*write_animation)(const Animation&,
+                                                        const std::filesystem::path& target,
+                                                        const SequenceWriteOptions&,
+                                                        const ExtraFiles&) = nullptr;
 };
 
 /// All formats, in the order in which lists have them.

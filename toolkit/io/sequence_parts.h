@@ -58,5 +58,8 @@ bool needs_double(const PositionsView& poses, double extent);
 /// Throws MismatchError that names frame and vertex where single precision would make a coordinate
 /// infinite. `poses` are the frames from `first` on.
 void check_single_range(const std::filesystem::path& target, int first, const Frames& poses);
+/// Throws MismatchError for these, of a `target` that holds single precision only.
+void check_single_precision(const std::filesystem::path& target, const PositionsView& poses,
+                            double extent);
 
 }  // namespace mimetra

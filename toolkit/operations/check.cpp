@@ -88,7 +88,7 @@ Outcome run_check(const Invocation& invocation) {
   }
   for (const std::string& warning : found) invocation.warn(input.name + ": " + warning);
   return {{},
-          Json{{"usable", true}, {"warnings", warnings}}.dump(),
+          json_text(Json{{"usable", true}, {"warnings", warnings}}),
           input.name + ": usable, " + std::to_string(sequence.frames()) + " frames of " +
               std::to_string(sequence.vertices()) + " vertices" +
               (warnings.empty() ? "\n" : ", " + std::to_string(warnings.size()) + " warnings\n")};

@@ -38,14 +38,13 @@ Outcome run_convert(const Invocation& invocation) {
     made.fields = given.fields;
   }
   Outcome outcome;
-  outcome.report = Json{{"frames", made.frames->frames()},
-                        {"vertices", made.frames->vertices()},
-                        {"faces", made.frames->connectivity().polygons.size()},
-                        {"seconds", seconds(*made.frames)},
-                        {"times_known", made.frames->times_are_known()},
-                        {"scale", change.scale},
-                        {"up", choice_name(change.up)}}
-                       .dump();
+  outcome.report = json_text(Json{{"frames", made.frames->frames()},
+                                  {"vertices", made.frames->vertices()},
+                                  {"faces", made.frames->connectivity().polygons.size()},
+                                  {"seconds", seconds(*made.frames)},
+                                  {"times_known", made.frames->times_are_known()},
+                                  {"scale", change.scale},
+                                  {"up", choice_name(change.up)}});
   outcome.summary = std::to_string(made.frames->frames()) + " frames of " +
                     std::to_string(made.frames->vertices()) + " vertices, " +
                     times_text(*made.frames) + said(change) + '\n';

@@ -68,7 +68,7 @@ Outcome run_evaluate(const Invocation& invocation) {
   });
   const Table table = table_of(rows);
   Outcome outcome;
-  outcome.report = Json::parse(table.json()).dump();
+  outcome.report = json_text(Json::parse(table.json()));
   outcome.summary = text_of(rows);
   outcome.outputs["out"].push_back({"", table});
   return outcome;

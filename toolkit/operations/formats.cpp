@@ -1,12 +1,15 @@
 #include "toolkit/operations/formats.h"
 
 #include "toolkit/io/components_file.h"
+#include "toolkit/io/gltf_write.h"
 #include "toolkit/io/mesh_file.h"
 #include "toolkit/io/model_file.h"
 #include "toolkit/io/pending_output.h"
 #include "toolkit/io/regions_file.h"
+#include "toolkit/io/scene.h"
 #include "toolkit/io/sequence_file.h"
 #include "toolkit/io/sequence_format.h"
+#include "toolkit/io/vtkhdf_file.h"
 #include "toolkit/io/whole_file.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/operations/sequence_parameters.h"
@@ -42,6 +45,31 @@ Paths write_sequence_data(const Data& data, const WriteRequest& request,
   options.progress = request.progress;
   return write_sequence(*std::get<FieldSequence>(data).frames, request.target, options,
                         request.extra);
+}
+
+SequenceWriteOptions vtkhdf_options(const WriteRequest& request) {
+  SequenceWriteOptions options = mesh_writing_parameters().read(request.parameters);
+  options.overwrite = request.overwrite;
+  options.inputs = request.inputs;
+  options.threads = request.threads;
+  options.progress = request.progress;
+  return options;
+}
+
+Paths write_vtkhdf_sequence(const Data& data, const WriteRequest& request) {
+  FieldSequence sequence = std::get<FieldSequence>(data);
+  // The rest pose is the positions without these.
+  if (sequence.frames->rest_is_known()) sequence.displacement = true;
+  return write_vtkhdf(sequence, request.target, vtkhdf_options(request), request.extra);
+}
+
+Paths write_vtkhdf_regions(const Data& data, const WriteRequest& request) {
+  const FieldSequence& shown = std::get<RegionData>(data).fields;
+  if (shown.frames->frames() == 0) {
+    throw MismatchError(request.target.string() +
+                        ": the regions come without a mesh to show them on; write .json or .csv");
+  }
+  return write_vtkhdf(shown, request.target, vtkhdf_options(request), request.extra);
 }
 
 ReadValue read_components_data(const std::string& text, const ReadRequest&) {
@@ -82,8 +110,15 @@ MorphableModel model_of(const ModelSpec& spec, const ReadRequest& request) {
 
 ReadValue read_model_data(const std::string& text, const ReadRequest& request) {
   const ModelSpec spec = ModelSpec::parse(text);
+  if (is_scene_file(spec.path) && !spec.fit && spec.identity_text.empty()) {
+    Scene scene = read_scene(spec.path);
+    return {{spec.name(), ModelData{MorphableModel(*scene.model)}, {.path = spec.path}},
+            std::move(scene.files),
+            std::move(scene.notes)};
+  }
   ReadValue read{{spec.name(), ModelData{model_of(spec, request)}, {.path = spec.path}},
-                 {spec.path}};
+                 {spec.path},
+                 spec.notes()};
   if (spec.fit) read.files.push_back(*spec.fit);
   return read;
 }
@@ -105,6 +140,14 @@ Paths write_model_data(const Data& data, const WriteRequest& request) {
   write_model(request.target, model, performs ? std::optional(performance) : std::nullopt,
               request.overwrite, extra);
   return {request.target};
+}
+
+Paths write_gltf_data(const Data& data, const WriteRequest& request) {
+  const auto& [model, performance, landmarks] = std::get<ModelData>(data);
+  SequenceWriteOptions options;
+  options.overwrite = request.overwrite;
+  options.inputs = request.inputs;
+  return write_gltf_model(model, performance, request.target, options, request.extra);
 }
 
 ReadValue read_regions_data(const std::string& text, const ReadRequest& request) {
@@ -140,6 +183,9 @@ BoundParameters<SequenceWriteOptions> writing_parameters(SequenceFormat::Precisi
   return BoundParameters<SequenceWriteOptions>();
 }
 
+/// Listed because the reader says of the others how they become text.
+constexpr auto kUsdOfAnyKind = "USD, of which only text is read";
+
 void add_sequence_formats(OperationTable& table) {
   const auto add = [&table](std::string name, std::vector<std::string> extensions,
                             const BoundParameters<SequenceWriteOptions>& writing,
@@ -165,6 +211,11 @@ void add_sequence_formats(OperationTable& table) {
       [](const Parameters& options) {
         return parts_held_by(folder_writing_parameters().read(options).format);
       });
+  table.add(Format{.name = kUsdOfAnyKind,
+                   .kind = DataKind::sequence,
+                   .extensions = {".usd", ".usdc", ".usdz"},
+                   .reading = sequence_parameters().declared(),
+                   .read = read_sequence_data});
   table.add(Format{.name = "eos model, by weights",
                    .kind = DataKind::sequence,
                    .extensions = {".bin"},
@@ -181,6 +232,19 @@ void add_model_formats(OperationTable& table) {
   table.add(Format{.name = "eos shape model",
                    .kind = DataKind::model,
                    .extensions = {".bin"},
+                   .read = read_model_data});
+  table.add(Format{.name = "glTF 2.0",
+                   .kind = DataKind::model,
+                   .extensions = {".glb", ".gltf"},
+                   .read = read_model_data,
+                   .write = write_gltf_data});
+  table.add(Format{.name = "USD text",
+                   .kind = DataKind::model,
+                   .extensions = {".usda"},
+                   .read = read_model_data});
+  table.add(Format{.name = kUsdOfAnyKind,
+                   .kind = DataKind::model,
+                   .extensions = {".usd", ".usdc", ".usdz"},
                    .read = read_model_data});
   table.add(Format{.name = "mesh without expressions",
                    .kind = DataKind::model,
@@ -218,6 +282,18 @@ Paths write_document(const Data& document, const WriteRequest& request) {
 void add_formats(OperationTable& table) {
   add_sequence_formats(table);
   add_model_formats(table);
+  table.add(Format{.name = "VTKHDF over time",
+                   .kind = DataKind::sequence,
+                   .extensions = {".vtkhdf"},
+                   .writing = mesh_writing_parameters().declared(),
+                   .write = write_vtkhdf_sequence,
+                   .fields = true,
+                   .holds = [](const Parameters&) { return HeldParts{.polygons = true}; }});
+  table.add(Format{.name = "VTKHDF over time with region fields",
+                   .kind = DataKind::regions,
+                   .extensions = {".vtkhdf"},
+                   .writing = mesh_writing_parameters().declared(),
+                   .write = write_vtkhdf_regions});
   table.add(Format{.name = "SPLOCS components (HDF5)",
                    .kind = DataKind::components,
                    .extensions = {".h5", ".hdf5"},

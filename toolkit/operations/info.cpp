@@ -89,7 +89,7 @@ Operation info_operation() {
     const double moved =
         motion(sequence, {.threads = invocation.threads, .progress = invocation.progress});
     return Outcome{{},
-                   report_of(sequence, mesh, parts, moved).dump(),
+                   json_text(report_of(sequence, mesh, parts, moved)),
                    summary_of(sequence, mesh, parts, moved)};
   };
   return operation;

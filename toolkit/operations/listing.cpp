@@ -114,7 +114,7 @@ Operation formats_operation(const OperationTable& table) {
   operation.run = [&table](const Invocation& invocation) {
     const bool markdown = invocation.parameters.flag("markdown");
     return Outcome{{},
-                   Json{{"formats", formats_as_json(table)}}.dump(),
+                   json_text(Json{{"formats", formats_as_json(table)}}),
                    markdown ? formats_as_markdown(table) : formats_as_text(table)};
   };
   return operation;
@@ -128,7 +128,7 @@ void add_listing(OperationTable& table) {
   operation.summary = "Every operation and its parameters";
   operation.examples = {"operations", "operations --json"};
   operation.run = [&table](const Invocation&) {
-    return Outcome{{}, Json{{"operations", Json::parse(table.json())}}.dump(), listing(table)};
+    return Outcome{{}, json_text(Json{{"operations", Json::parse(table.json())}}), listing(table)};
   };
   table.add(std::move(operation));
   table.add(formats_operation(table));

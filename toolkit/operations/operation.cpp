@@ -295,7 +295,7 @@ std::string OperationTable::json() const {
     json["examples"] = operation.examples;
     list.push_back(json);
   }
-  return list.dump(2);
+  return json_text(list, 2);
 }
 
 }  // namespace mimetra
