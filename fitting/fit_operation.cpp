@@ -196,7 +196,7 @@ Outcome run(const Invocation& invocation) {
                  {"mapped_landmarks", mapped.vertices.size()},
                  {"unseen_frames", summary.unseen}};
   report.update(Json::parse(fit_json(fit)));
-  outcome.report = report.dump();
+  outcome.report = json_text(report);
   outcome.summary =
       std::to_string(fit.frames()) + " frames, " + std::to_string(mapped.vertices.size()) + " of " +
       std::to_string(track.landmarks()) + " landmarks mapped: RMS " + readable(summary.rms) +

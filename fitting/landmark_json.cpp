@@ -5,33 +5,24 @@
 #include <nlohmann/json.hpp>
 
 #include "fitting/landmark_formats.h"
-#include "toolkit/io/text_cursor.h"
-#include "toolkit/io/whole_file.h"
+#include "toolkit/io/json_text.h"
 #include "toolkit/mesh/errors.h"
 
 namespace mimetra {
 
 namespace {
 
-using nlohmann::json;
-
 class JsonReader {
  public:
-  explicit JsonReader(const std::filesystem::path& path) : path_(path.string()) {
-    const std::string bytes = read_file(path);
-    try {
-      root_ = json::parse(without_byte_order_mark(bytes));
-    } catch (const json::exception& error) {
-      throw IoError(path_, std::string("is not JSON: ") + error.what());
-    }
-  }
+  explicit JsonReader(const std::filesystem::path& path)
+      : path_(path.string()), root_(read_json(path)) {}
 
   LandmarkTrack read() {
     if (!root_.is_object()) fail("/", "expected an object with \"frames\" or \"points\"");
     if (!root_.contains("frames")) {
       read_frame(root_, "");
     } else {
-      const json& frames = root_["frames"];
+      const Json& frames = root_["frames"];
       if (!frames.is_array() || frames.empty()) fail("/frames", "expected a list of frames");
       for (std::size_t f = 0; f < frames.size(); ++f) {
         read_frame(frames[f], "/frames/" + std::to_string(f));
@@ -45,18 +36,18 @@ class JsonReader {
     throw IoError(path_, place + ": " + message);
   }
 
-  double number(const json& value, const std::string& place) const {
+  double number(const Json& value, const std::string& place) const {
     if (!value.is_number() || !std::isfinite(value.get<double>())) {
       fail(place, "expected a finite number");
     }
     return value.get<double>();
   }
 
-  void read_frame(const json& frame, const std::string& place) {
+  void read_frame(const Json& frame, const std::string& place) {
     if (!frame.is_object() || !frame.contains("points") || !frame["points"].is_array()) {
       fail(place + "/points", "expected a list of points [x, y]");
     }
-    const json& points = frame["points"];
+    const Json& points = frame["points"];
     if (frames_ == 0) landmarks_ = points.size();
     if (landmarks_ == 0 || points.size() != landmarks_) {
       fail(place + "/points", std::to_string(points.size()) + " points, expected " +
@@ -79,24 +70,24 @@ class JsonReader {
     ++frames_;
   }
 
-  void read_point(const json& point, const std::string& place) {
+  void read_point(const Json& point, const std::string& place) {
     if (point.is_null()) {
       points_.insert(points_.end(), 2, std::numeric_limits<double>::quiet_NaN());
       return;
     }
     if (!point.is_array() || point.size() != 2) fail(place, "expected [x, y] or null");
-    for (const json& value : point) points_.push_back(number(value, place));
+    for (const Json& value : point) points_.push_back(number(value, place));
   }
 
   std::vector<std::string> names() const {
     if (!root_.contains("names")) return numbered_names(landmarks_);
-    const json& list = root_["names"];
+    const Json& list = root_["names"];
     if (!list.is_array() || list.size() != landmarks_) {
       fail("/names", "expected a list of " + std::to_string(landmarks_) + " names");
     }
     std::vector<std::string> names;
     std::set<std::string> seen;
-    for (const json& name : list) {
+    for (const Json& name : list) {
       if (!name.is_string()) fail("/names", "expected strings");
       names.push_back(name.get<std::string>());
       if (!seen.insert(names.back()).second) {
@@ -124,7 +115,7 @@ class JsonReader {
   }
 
   std::string path_;
-  json root_;
+  Json root_;
   std::size_t landmarks_ = 0, frames_ = 0;
   std::vector<double> points_, times_, confidences_;
 };

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "plugins/c/utf8.h"
+#include "toolkit/io/json_text.h"
 #include "toolkit/mesh/errors.h"
 
 using namespace mimetra;
@@ -138,8 +139,12 @@ void mimetra_job::output(const std::string& name, const NamedData& value) {
 }
 
 void mimetra_job::report(const std::string& json, const std::string& summary) {
-  if (!nlohmann::json::accept(json) || !nlohmann::json::parse(json).is_object()) {
-    throw UsageError("the report is no JSON object: " + printable(json));
+  try {
+    if (!parse_json("the report", json).is_object()) {
+      throw UsageError("the report is no JSON object: " + printable(json));
+    }
+  } catch (const IoError& error) {
+    throw UsageError(printable(error.what()));
   }
   if (!is_text(summary)) throw UsageError("the summary is no UTF-8: " + printable(summary));
   outcome_.report = json;

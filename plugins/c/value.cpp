@@ -36,7 +36,7 @@ std::string json_of(const Value& value) {
     const std::vector<std::int64_t> shape(array.shape, array.shape + array.rank);
     json["arrays"].push_back({{"name", array.name}, {"shape", shape}});
   }
-  return json.dump();
+  return json_text(json);
 }
 
 }  // namespace mimetra

@@ -13,11 +13,10 @@ Outcome run(const Invocation&) {
   ModelData sample{parametric_head(), parametric_performance(), head_landmarks()};
   const MorphableModel& model = sample.model;
   Outcome outcome;
-  outcome.report = Json{{"vertices", model.vertices()},
-                        {"expressions", model.expressions().names},
-                        {"identities", model.identities().names},
-                        {"frames", sample.performance.weights.rows()}}
-                       .dump();
+  outcome.report = json_text(Json{{"vertices", model.vertices()},
+                                  {"expressions", model.expressions().names},
+                                  {"identities", model.identities().names},
+                                  {"frames", sample.performance.weights.rows()}});
   outcome.summary = "a head of " + std::to_string(model.vertices()) + " vertices with " +
                     std::to_string(model.expressions().size()) + " expressions and " +
                     std::to_string(model.identities().size()) +

@@ -217,7 +217,7 @@ TEST(PluginRun, HandsBackNothingThatCannotBe) {
   EXPECT_THAT(message_of<UsageError>("name"), HasSubstr("needs the array 'positions'"));
   EXPECT_THAT(message_of<UsageError>("kind"), HasSubstr("expected the kind 'table'"));
   EXPECT_THAT(message_of<UsageError>("null"), HasSubstr("is NULL"));
-  EXPECT_THAT(message_of<UsageError>("report"), HasSubstr("no JSON object"));
+  EXPECT_THAT(message_of<UsageError>("report"), HasSubstr("the report: expected JSON: line 1"));
   EXPECT_THAT(message_of<UsageError>("no-utf8"), HasSubstr("the summary is no UTF-8: ??"));
   EXPECT_THAT(message_of<MismatchError>("fail-in-no-utf8"), HasSubstr("misbehave: ?!"));
   EXPECT_THAT(message_of<std::runtime_error>("twice"), HasSubstr("made 2 values"));

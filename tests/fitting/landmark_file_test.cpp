@@ -136,7 +136,7 @@ TEST_F(Landmarks, OfAJsonFileMayBeOneFrame) {
 }
 
 TEST_F(Landmarks, OfABrokenJsonFileNameTheElement) {
-  EXPECT_THAT(message("a.json", "{"), HasSubstr("is not JSON"));
+  EXPECT_THAT(message("a.json", "{"), HasSubstr("expected JSON"));
   EXPECT_THAT(message("a.json", "[]"), HasSubstr("expected an object with \"frames\""));
   EXPECT_THAT(message("a.json", "{}"), HasSubstr("/points: expected a list of points"));
   EXPECT_THAT(message("a.json", R"({"points": []})"), HasSubstr("/points: 0 points"));

@@ -100,7 +100,7 @@ Operation completion_operation(const OperationTable& table) {
   operation.run = [&table](const Invocation& invocation) {
     const std::vector<Command> commands = commands_of(table);
     const std::string script = script_for(invocation.parameters.choice<Shell>("shell"), commands);
-    return Outcome{{}, Json{{"script", script}}.dump(), script};
+    return Outcome{{}, json_text(Json{{"script", script}}), script};
   };
   return operation;
 }

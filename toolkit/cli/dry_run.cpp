@@ -85,11 +85,10 @@ Outcome planned(const Operation& operation, const Invocation& invocation) {
   text << "  memory  " << megabytes(peak) << ", of which " << megabytes(use.now)
        << " hold program and inputs\n";
   return {{},
-          Json{{"operation", operation.name},
-               {"inputs", inputs},
-               {"outputs", outputs},
-               {"memory_bytes", peak}}
-              .dump(),
+          json_text(Json{{"operation", operation.name},
+                         {"inputs", inputs},
+                         {"outputs", outputs},
+                         {"memory_bytes", peak}}),
           text.str()};
 }
 

@@ -122,7 +122,7 @@ Operation manual_operation(const OperationTable& table) {
   operation.run = [&table](const Invocation& invocation) {
     const std::string page =
         page_in(invocation.parameters.choice<ManualFormat>("format"), commands_of(table));
-    return Outcome{{}, Json{{"page", page}}.dump(), page};
+    return Outcome{{}, json_text(Json{{"page", page}}), page};
   };
   return operation;
 }

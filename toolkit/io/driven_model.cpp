@@ -32,9 +32,8 @@ std::vector<std::string> match_notes(const fs::path& weights, const fs::path& mo
 std::shared_ptr<const FrameSource> resting(const BlendshapeModel& person,
                                            const SequenceSource& source) {
   selected_frames(source.frames, 1);
-  return std::make_shared<const MeshSequence>(person.shared_connectivity(),
-                                              as_row(person.neutral()), frame_times(1, source),
-                                              person.neutral());
+  return std::make_shared<const MeshSequence>(
+      person.shared_connectivity(), as_row(person.neutral()), Eigen::VectorXd(), person.neutral());
 }
 
 Eigen::MatrixXd weights_of(const fs::path& path, const WeightTrack& track,
@@ -64,16 +63,20 @@ OpenSequence drive(std::shared_ptr<const BlendshapeModel> model, const fs::path&
   const auto frames = static_cast<int>(track.weights.rows());
   const std::vector<int> chosen = selected_frames(source.frames, frames);
   const std::vector<std::string>& expressions = model->expressions().names;
-  open.notes = match_notes(driver, path, match_weights(track, expressions));
-  const Eigen::VectorXd times = track.times.size() > 0 ? track.times : frame_times(frames, source);
+  for (const std::string& note : track.notes) open.notes.push_back(driver.string() + ": " + note);
+  const auto unmatched = match_notes(driver, path, match_weights(track, expressions));
+  open.notes.insert(open.notes.end(), unmatched.begin(), unmatched.end());
+  std::optional<Eigen::VectorXd> of_track;
+  if (track.times.size() > 0) of_track = track.times;
+  const FrameTimes times = frame_times(driver.string(), frames, std::move(of_track), source);
   // There may be many frames: no more than one copy of what is not needed again.
   if (static_cast<int>(chosen.size()) < frames) {
     track.weights = Eigen::MatrixXd(track.weights(chosen, Eigen::all));
   }
   Eigen::MatrixXd weights = weights_of(driver, track, expressions);
   track.weights.resize(0, 0);
-  open.frames =
-      std::make_shared<const Animation>(std::move(model), std::move(weights), times(chosen));
+  open.frames = std::make_shared<const Animation>(std::move(model), std::move(weights),
+                                                  times.seconds(chosen), times.are_known);
   return open;
 }
 
@@ -82,6 +85,7 @@ OpenSequence open_scene(const fs::path& path, const SequenceSource& source) {
   const auto frames = static_cast<int>(scene.weights.rows());
   OpenSequence open;
   if (scene.frames && !source.weights) {
+    check_rate(path.string(), scene.frames->known_times(), source);
     open.frames = scene.frames;
     if (source.frames) {
       open.frames = selected(scene.frames, selected_frames(source.frames, scene.frames->frames()));
@@ -90,11 +94,13 @@ OpenSequence open_scene(const fs::path& path, const SequenceSource& source) {
     open = drive(scene.model, path, source);
   } else {
     const std::vector<int> chosen = selected_frames(source.frames, frames);
-    const Eigen::VectorXd times =
-        scene.times.size() > 0 ? scene.times : frame_times(frames, source);
+    std::optional<Eigen::VectorXd> of_scene;
+    if (scene.times.size() > 0) of_scene = scene.times;
+    const FrameTimes times = frame_times(path.string(), frames, std::move(of_scene), source);
     open.model_driven = true;
     open.frames = std::make_shared<const Animation>(
-        scene.model, Eigen::MatrixXd(scene.weights(chosen, Eigen::all)), times(chosen));
+        scene.model, Eigen::MatrixXd(scene.weights(chosen, Eigen::all)), times.seconds(chosen),
+        times.are_known);
   }
   if (!scene.rest_is_known && !source.weights) {
     open.frames = with_rest(open.frames, std::nullopt);

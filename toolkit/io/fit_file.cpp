@@ -6,15 +6,12 @@
 
 #include <nlohmann/json.hpp>
 
-#include "toolkit/io/text_cursor.h"
-#include "toolkit/io/whole_file.h"
+#include "toolkit/io/json_text.h"
 #include "toolkit/mesh/errors.h"
 
 namespace mimetra {
 
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 template <typename Row>
 Json numbers_of(const Row& row) {
@@ -26,14 +23,8 @@ Json numbers_of(const Row& row) {
 /// Values of a parsed file, each with its place in it for messages.
 class FitReader {
  public:
-  explicit FitReader(const std::filesystem::path& path) : path_(path.string()) {
-    const std::string bytes = read_file(path);
-    try {
-      root_ = Json::parse(without_byte_order_mark(bytes));
-    } catch (const Json::exception& error) {
-      throw IoError(path_, std::string("is not JSON: ") + error.what());
-    }
-  }
+  explicit FitReader(const std::filesystem::path& path)
+      : path_(path.string()), root_(read_json(path)) {}
 
   FittedCoefficients read() {
     if (!root_.is_object()) fail("/", "expected the object that `mimetra fit` writes");
@@ -163,8 +154,10 @@ std::string fit_json(const FittedCoefficients& fit) {
     }
     frames.push_back(std::move(frame));
   }
-  return Json{{"identities", fit.identities}, {"expressions", fit.expressions}, {"frames", frames}}
-             .dump(1) +
+  return json_text(Json{{"identities", fit.identities},
+                        {"expressions", fit.expressions},
+                        {"frames", frames}},
+                   1) +
          '\n';
 }
 

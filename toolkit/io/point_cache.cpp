@@ -81,11 +81,17 @@ void add_parts_beside(const PointCache& cache, const SequenceSource& source, Poi
 }
 
 /// Frames keep the time they have in the whole sequence, whichever part is taken.
-Eigen::VectorXd times_of(const PointCache& cache, const SequenceSource& source) {
-  if (cache.times().size() > 0) return cache.times();
-  const double frame = 1 / source.fps.value_or(kDefaultFramesPerSecond);
-  return (cache.start() * frame + cache.step() * frame_times(cache.frames(), source).array())
-      .matrix();
+FrameTimes times_of(const PointCache& cache, const SequenceSource& source,
+                    std::optional<Eigen::VectorXd> known, std::vector<fs::path>& files) {
+  if (!known && cache.times().size() > 0) known = cache.times();
+  if (!known) known = times_beside(files.front(), cache.frames(), files);
+  const bool by_rate = !known;
+  FrameTimes times = frame_times(files.front().string(), cache.frames(), std::move(known), source);
+  if (by_rate) {
+    const double frame = 1 / source.fps.value_or(kDefaultFramesPerSecond);
+    times.seconds = cache.start() * frame + cache.step() * times.seconds.array();
+  }
+  return times;
 }
 
 class PointCacheSink : public FrameSink {
@@ -102,6 +108,7 @@ class PointCacheSink : public FrameSink {
   }
 
   void write(int first, const Frames& poses) override {
+    if (cache_.positions.bytes == sizeof(float)) check_single_range(target_, first, poses);
     if (cache_.only_single_precision) {
       check_single_precision(target_, PositionsView(poses.data(), poses.size() / 3, 3),
                              extent(header_.rest));
@@ -115,6 +122,7 @@ class PointCacheSink : public FrameSink {
     std::vector<fs::path> files = {target_};
     add_topology_beside(outputs_, target_, header_, files);
     add_rest_beside(outputs_, target_, header_, files);
+    if (!cache_.holds_times) add_times_beside(outputs_, target_, header_, files);
     files.insert(files.end(), extra_files_.begin(), extra_files_.end());
     outputs_.commit();
     return files;
@@ -198,7 +206,9 @@ OpenSequence open_point_cache(std::unique_ptr<const PointCache> cache, const Seq
   if (!parts.faces) add_parts_beside(*cache, source, parts, open.files);
   SequenceHeader header;
   header.connectivity = std::move(parts.faces);
-  header.times = parts.times ? *parts.times : times_of(*cache, source);
+  FrameTimes times = times_of(*cache, source, std::move(parts.times), open.files);
+  header.times = std::move(times.seconds);
+  header.times_are_known = times.are_known;
   header.rest_is_known = parts.rest.has_value();
   const std::vector<int> chosen = selected_frames(source.frames, cache->frames());
   // Frames that nobody asks for are not read.

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <limits>
 #include <map>
+#include <utility>
 
 #include <nlohmann/json.hpp>
 
+#include "toolkit/io/json_text.h"
 #include "toolkit/io/text_cursor.h"
 #include "toolkit/io/whole_file.h"
 #include "toolkit/mesh/errors.h"
@@ -15,8 +17,9 @@ namespace mimetra {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
 using Lists = std::vector<std::vector<VertexIndex>>;
+
+constexpr const char* kJsonForm = R"({"regions": [{"vertices": [...]}]})";
 
 /// A vertex of a mesh of `vertices`. Checked before it is narrowed: 2^32 is not vertex 0.
 VertexIndex vertex_of(const std::string& path, long long number, int vertices) {
@@ -27,11 +30,12 @@ VertexIndex vertex_of(const std::string& path, long long number, int vertices) {
 
 std::vector<VertexIndex> vertices_of(const std::string& path, const Json& entry, int vertices) {
   const Json& list = entry.is_object() ? entry.at("vertices") : entry;
-  if (!list.is_array()) throw IoError(path, "expected a list of vertices, found " + list.dump());
+  if (!list.is_array())
+    throw IoError(path, "expected a list of vertices, found " + short_text(list));
   std::vector<VertexIndex> result;
   for (const Json& number : list) {
     if (!number.is_number_integer()) {
-      throw IoError(path, "expected a vertex index, found " + number.dump());
+      throw IoError(path, "expected a vertex index, found " + short_text(number));
     }
     result.push_back(vertex_of(path, number.get<long long>(), vertices));
   }
@@ -45,11 +49,21 @@ double radius_of(const Json& entry) {
   return radius.is_null() ? std::numeric_limits<double>::infinity() : radius.get<double>();
 }
 
+/// A number with a fraction or beyond all integers is not cut to one.
+long long integer_of(const std::string& path, const Json& entry, const char* key,
+                     long long fallback) {
+  const Json value = entry.value(key, Json(fallback));
+  if (value.is_number_integer()) return value.get<long long>();
+  throw IoError(path,
+                std::string("\"") + key + "\": expected an integer, found " + short_text(value));
+}
+
 void read_details(const std::string& path, const Json& entry, int vertices, Region& region) {
   if (!entry.is_object()) return;
-  const auto center = entry.value("center", -1LL);
+  const long long center = integer_of(path, entry, "center", -1);
   if (center != -1) region.center = vertex_of(path, center, vertices);
-  region.component = entry.value("component", region.component);
+  const long long component = integer_of(path, entry, "component", region.component);
+  if (std::in_range<int>(component)) region.component = static_cast<int>(component);
   region.radius = radius_of(entry);
   region.energy = entry.value("energy", region.energy);
   region.energy_share = entry.value("energy_share", region.energy_share);
@@ -58,16 +72,16 @@ void read_details(const std::string& path, const Json& entry, int vertices, Regi
 
 /// Regions of another mesh would fit by chance where their vertices are few.
 void check_mesh(const std::string& path, const Json& json, int vertices) {
-  const auto stated = json.value("mesh_vertices", static_cast<long long>(vertices));
+  const long long stated = integer_of(path, json, "mesh_vertices", vertices);
   if (stated == vertices) return;
   throw MismatchError(path + ": regions of a mesh of " + std::to_string(stated) +
                       " vertices, expected " + std::to_string(vertices));
 }
 
-Regions read_json(const std::string& path, const std::string& text, int vertices,
-                  const Triangles& triangles) {
+Regions regions_of_json(const std::string& path, const std::string& text, int vertices,
+                        const Triangles& triangles) {
   try {
-    const Json json = Json::parse(text);
+    const Json json = parse_json(path, text, kJsonForm);
     if (json.is_object()) check_mesh(path, json, vertices);
     const Json& entries = json.is_object() ? json.at("regions") : json;
     if (!entries.is_array()) throw IoError(path, "expected a list of regions");
@@ -81,8 +95,7 @@ Regions read_json(const std::string& path, const std::string& text, int vertices
     if (json.is_object()) regions.energy_share = json.value("energy_share", regions.energy_share);
     return regions;
   } catch (const Json::exception& error) {
-    throw IoError(path,
-                  std::string("expected {\"regions\": [{\"vertices\": [...]}]}: ") + error.what());
+    throw IoError(path, std::string("expected ") + kJsonForm + ": " + error.what());
   }
 }
 
@@ -140,7 +153,7 @@ Lists read_list(const std::string& path, const std::string& text, int vertices) 
 Regions read_regions(const std::filesystem::path& path, int vertices, const Triangles& triangles) {
   const std::string name = path.string(), extension = lower_extension(path);
   const std::string text = read_file(path);
-  if (extension == ".json") return read_json(name, text, vertices, triangles);
+  if (extension == ".json") return regions_of_json(name, text, vertices, triangles);
   if (extension == ".csv")
     return regions_from_vertices(vertices, triangles, read_csv(name, text, vertices));
   if (extension == ".txt") {
@@ -160,14 +173,14 @@ std::string regions_json(const Regions& regions) {
     if (!region.added_for.empty()) list.back()["added_for"] = region.added_for;
     list.back()["vertices"] = region.vertices;
   }
-  return Json{{"regions", list},
-              {"mesh_vertices", regions.vertices},
-              {"vertices", regions.vertex_count()},
-              {"triangles", regions.triangles},
-              {"vertex_share", regions.vertex_share()},
-              {"triangle_share", regions.triangle_share()},
-              {"energy_share", regions.energy_share}}
-             .dump(1) +
+  return json_text(Json{{"regions", list},
+                        {"mesh_vertices", regions.vertices},
+                        {"vertices", regions.vertex_count()},
+                        {"triangles", regions.triangles},
+                        {"vertex_share", regions.vertex_share()},
+                        {"triangle_share", regions.triangle_share()},
+                        {"energy_share", regions.energy_share}},
+                   1) +
          '\n';
 }
 

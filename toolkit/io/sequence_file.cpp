@@ -2,6 +2,7 @@
 
 #include "toolkit/io/driven_model.h"
 #include "toolkit/io/fit_file.h"
+#include "toolkit/io/foreign_files.h"
 #include "toolkit/io/frame_files.h"
 #include "toolkit/io/frame_sequence.h"
 #include "toolkit/io/model_file.h"
@@ -23,13 +24,24 @@ bool is_there(const fs::path& path) {
 
 OpenSequence open_driven(const ModelSpec& spec, const SequenceSource& source) {
   auto person = std::make_shared<const BlendshapeModel>(read_person(spec, source.threads));
-  if (!spec.fit) return drive(std::move(person), spec.path, source);
-  if (!source.weights) {
-    return drive(std::move(person), spec.path, source, *spec.fit,
-                 read_fit(*spec.fit).performance());
+  OpenSequence open;
+  if (!spec.fit) {
+    open = drive(std::move(person), spec.path, source);
+  } else if (!source.weights) {
+    open =
+        drive(std::move(person), spec.path, source, *spec.fit, read_fit(*spec.fit).performance());
+  } else {
+    open = drive(std::move(person), spec.path, source);
+    open.files.insert(open.files.begin() + 1, *spec.fit);
   }
-  OpenSequence open = drive(std::move(person), spec.path, source);
-  open.files.insert(open.files.begin() + 1, *spec.fit);
+  const std::vector<std::string> of_spec = spec.notes();
+  open.notes.insert(open.notes.begin(), of_spec.begin(), of_spec.end());
+  if (const auto others = meshes_beside_model(spec.path); !others.empty()) {
+    open.notes.push_back(spec.path.string() + ": is read as a model; " +
+                         std::to_string(others.size()) + " other mesh files in it, from " +
+                         others.front().filename().string() +
+                         " on, are no part of it; name frames by a pattern");
+  }
   return open;
 }
 
@@ -43,8 +55,10 @@ void check_undriven(const std::string& text, const SequenceSource& source) {
 OpenSequence open_path(const fs::path& path, const SequenceSource& source) {
   if (fs::is_directory(path)) return open_frames(frames_of_folder(path), path, source);
   if (const SequenceFormat* format = sequence_format(path)) return format->open(path, source);
-  throw IoError(path.string(), "is no sequence; expected a folder, " +
-                                   joined(sequence_extensions()) + " or a model");
+  const std::string found = foreign_file(path);
+  throw IoError(path.string(), found.empty() ? "is no sequence; expected a folder, " +
+                                                   joined(sequence_extensions()) + " or a model"
+                                             : "is " + found);
 }
 
 }  // namespace

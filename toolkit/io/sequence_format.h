@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "toolkit/io/held_parts.h"
 #include "toolkit/io/sequence_options.h"
 
 namespace mimetra {
@@ -26,6 +27,8 @@ struct SequenceFormat {
   OpenSequence (*open)(const std::filesystem::path&, const SequenceSource&);
   std::unique_ptr<FrameSink> (*begin)(const SequenceHeader&, const std::filesystem::path& target,
                                       const SequenceWriteOptions&, const ExtraFiles&);
+  /// What its files and those beside them have a place for: what they have none for is said.
+  HeldParts holds = {};
   /// Writes a model and its weights as such; null where only poses are written.
   std::vector<std::filesystem::path> (*write_animation)(const Animation&,
                                                         const std::filesystem::path& target,

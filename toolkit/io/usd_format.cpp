@@ -269,6 +269,7 @@ std::vector<fs::path> write_usd(const Animation& animation, const fs::path& targ
 SequenceFormat usd_format() {
   SequenceFormat format{"USD text", {".usda"}, false, SequenceFormat::Precision::single,
                         open_scene, begin_usd};
+  format.holds = {.polygons = true, .texture = HeldParts::Texture::corners};
   format.write_animation = write_usd;
   return format;
 }

@@ -29,10 +29,10 @@ Json json_of(const RigidTransform& transform) {
 
 /// The report with the motion, whose text is a few times smaller than the values it is made of.
 std::string report_with(const Json& report, const std::vector<RigidTransform>& motion) {
-  std::string text = report.dump();
+  std::string text = json_text(report);
   text.back() = ',';
   text += "\"motion\":[";
-  for (const RigidTransform& transform : motion) text += json_of(transform).dump() + ',';
+  for (const RigidTransform& transform : motion) text += json_text(json_of(transform)) + ',';
   if (!motion.empty()) text.pop_back();
   text += "]}";
   return text;

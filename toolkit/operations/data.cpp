@@ -67,7 +67,7 @@ std::string Table::json() const {
     }
     list.push_back(entry);
   }
-  return Json{{"rows", list}}.dump(2) + '\n';
+  return json_text(Json{{"rows", list}}, 2) + '\n';
 }
 
 }  // namespace mimetra

@@ -87,7 +87,7 @@ Outcome run_decompose(const Invocation& invocation) {
                  {"head_motion", json_of(still.head_motion)},
                  {"seconds", analysis.seconds}};
   add_convergence(report, components);
-  outcome.report = report.dump();
+  outcome.report = json_text(report);
   outcome.summary = std::to_string(components.count() - dead) + " components, RMS error " +
                     readable(error.rms) + " (" + readable(100 * error.relative_rms) +
                     " % of the box diagonal), KG error " + readable(error.kg) + " %, " +

@@ -9,6 +9,7 @@
 #include "toolkit/io/scene.h"
 #include "toolkit/io/sequence_file.h"
 #include "toolkit/io/sequence_format.h"
+#include "toolkit/io/vtkhdf_file.h"
 #include "toolkit/io/whole_file.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/operations/sequence_parameters.h"
@@ -44,6 +45,31 @@ Paths write_sequence_data(const Data& data, const WriteRequest& request,
   options.progress = request.progress;
   return write_sequence(*std::get<FieldSequence>(data).frames, request.target, options,
                         request.extra);
+}
+
+SequenceWriteOptions vtkhdf_options(const WriteRequest& request) {
+  SequenceWriteOptions options = mesh_writing_parameters().read(request.parameters);
+  options.overwrite = request.overwrite;
+  options.inputs = request.inputs;
+  options.threads = request.threads;
+  options.progress = request.progress;
+  return options;
+}
+
+Paths write_vtkhdf_sequence(const Data& data, const WriteRequest& request) {
+  FieldSequence sequence = std::get<FieldSequence>(data);
+  // The rest pose is the positions without these.
+  if (sequence.frames->rest_is_known()) sequence.displacement = true;
+  return write_vtkhdf(sequence, request.target, vtkhdf_options(request), request.extra);
+}
+
+Paths write_vtkhdf_regions(const Data& data, const WriteRequest& request) {
+  const FieldSequence& shown = std::get<RegionData>(data).fields;
+  if (shown.frames->frames() == 0) {
+    throw MismatchError(request.target.string() +
+                        ": the regions come without a mesh to show them on; write .json or .csv");
+  }
+  return write_vtkhdf(shown, request.target, vtkhdf_options(request), request.extra);
 }
 
 ReadValue read_components_data(const std::string& text, const ReadRequest&) {
@@ -91,7 +117,8 @@ ReadValue read_model_data(const std::string& text, const ReadRequest& request) {
             std::move(scene.notes)};
   }
   ReadValue read{{spec.name(), ModelData{model_of(spec, request)}, {.path = spec.path}},
-                 {spec.path}};
+                 {spec.path},
+                 spec.notes()};
   if (spec.fit) read.files.push_back(*spec.fit);
   return read;
 }
@@ -161,21 +188,29 @@ constexpr auto kUsdOfAnyKind = "USD, of which only text is read";
 
 void add_sequence_formats(OperationTable& table) {
   const auto add = [&table](std::string name, std::vector<std::string> extensions,
-                            const BoundParameters<SequenceWriteOptions>& writing) {
+                            const BoundParameters<SequenceWriteOptions>& writing,
+                            std::function<HeldParts(const Parameters&)> holds) {
     table.add(Format{.name = std::move(name),
                      .kind = DataKind::sequence,
                      .extensions = std::move(extensions),
                      .reading = sequence_parameters().declared(),
                      .read = read_sequence_data,
                      .writing = writing.declared(),
-                     .write = [writing](const Data& data, const WriteRequest& request) {
-                       return write_sequence_data(data, request, writing.read(request.parameters));
-                     }});
+                     .write =
+                         [writing](const Data& data, const WriteRequest& request) {
+                           return write_sequence_data(data, request,
+                                                      writing.read(request.parameters));
+                         },
+                     .holds = std::move(holds)});
   };
   for (const SequenceFormat& format : sequence_formats()) {
-    add(format.name, format.extensions, writing_parameters(format.precision));
+    add(format.name, format.extensions, writing_parameters(format.precision),
+        [held = format.holds](const Parameters&) { return held; });
   }
-  add("folder of meshes", {Format::kFolder}, folder_writing_parameters());
+  add("folder of meshes", {Format::kFolder}, folder_writing_parameters(),
+      [](const Parameters& options) {
+        return parts_held_by(folder_writing_parameters().read(options).format);
+      });
   table.add(Format{.name = kUsdOfAnyKind,
                    .kind = DataKind::sequence,
                    .extensions = {".usd", ".usdc", ".usdz"},
@@ -247,6 +282,18 @@ Paths write_document(const Data& document, const WriteRequest& request) {
 void add_formats(OperationTable& table) {
   add_sequence_formats(table);
   add_model_formats(table);
+  table.add(Format{.name = "VTKHDF over time",
+                   .kind = DataKind::sequence,
+                   .extensions = {".vtkhdf"},
+                   .writing = mesh_writing_parameters().declared(),
+                   .write = write_vtkhdf_sequence,
+                   .fields = true,
+                   .holds = [](const Parameters&) { return HeldParts{.polygons = true}; }});
+  table.add(Format{.name = "VTKHDF over time with region fields",
+                   .kind = DataKind::regions,
+                   .extensions = {".vtkhdf"},
+                   .writing = mesh_writing_parameters().declared(),
+                   .write = write_vtkhdf_regions});
   table.add(Format{.name = "SPLOCS components (HDF5)",
                    .kind = DataKind::components,
                    .extensions = {".h5", ".hdf5"},

@@ -84,7 +84,7 @@ Outcome run_geodesic(const Invocation& invocation) {
                               {"support", Field::Location::vertices, support}});
   outcome.outputs["out"].push_back({"", std::move(fields)});
   outcome.report =
-      Json{{"vertices", mesh.vertices()}, {"reached", reached}, {"farthest", farthest}}.dump();
+      json_text(Json{{"vertices", mesh.vertices()}, {"reached", reached}, {"farthest", farthest}});
   outcome.summary = std::to_string(reached) + " of " + std::to_string(mesh.vertices()) +
                     " vertices reached, the farthest at " + readable(farthest) + '\n';
   return outcome;

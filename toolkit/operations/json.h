@@ -1,10 +1,4 @@
 #pragma once
 
-#include <nlohmann/json_fwd.hpp>
-
-namespace mimetra {
-
-/// JSON with its keys in the order they were added.
-using Json = nlohmann::ordered_json;
-
-}  // namespace mimetra
+/// What an operation reports is JSON.
+#include "toolkit/io/json_text.h"

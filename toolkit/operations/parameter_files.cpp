@@ -4,7 +4,6 @@
 #include <nlohmann/json.hpp>
 
 #include "toolkit/io/mesh_file.h"
-#include "toolkit/io/whole_file.h"
 #include "toolkit/operations/json.h"
 
 namespace mimetra {
@@ -45,7 +44,7 @@ Positions read_rest(const std::string& path, const FrameSource& sequence) {
 std::vector<RigidTransform> read_motion(const std::string& path, int frames) {
   std::vector<RigidTransform> motion;
   try {
-    const Json json = Json::parse(read_file(path));
+    const Json json = read_json(path, "the manifest of an align run with result.motion");
     for (const Json& entry : json.at("result").at("motion")) motion.push_back(transform_of(entry));
   } catch (const Json::exception&) {
     throw IoError(path, "expected the manifest of an align run with result.motion");

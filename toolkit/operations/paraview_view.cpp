@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "toolkit/operations/colors.h"
+#include "toolkit/operations/json.h"
 
 namespace mimetra {
 
@@ -26,7 +27,7 @@ std::map<int, Color> colors_of(const RegionData& regions) {
 
 /// A string of Python: JSON's escapes are Python's, save those of characters beyond 16 bits.
 std::string quoted(const std::string& text) {
-  return nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+  return json_text(text);
 }
 
 std::string list_of(const Eigen::RowVector3d& point) {

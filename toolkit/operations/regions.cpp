@@ -96,7 +96,7 @@ Outcome run_regions(const Invocation& invocation) {
   if (found.head_motion) json["head_motion"] = json_of(*found.head_motion);
   add_convergence(json, analysis.components);
   json["seconds"] = analysis.seconds;
-  outcome.report = json.dump();
+  outcome.report = json_text(json);
   outcome.summary = summary_of(regions);
   const RegionData shown{regions, FieldSequence(invocation.get<FieldSequence>("sequence").frames,
                                                 std::move(fields), true)};

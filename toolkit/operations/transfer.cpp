@@ -184,7 +184,7 @@ Outcome run_transfer(const Invocation& invocation) {
   }
   report["head_motion"] = json_of(result.head_motion);
   report["seconds"] = stopwatch.seconds();
-  outcome.report = report.dump();
+  outcome.report = json_text(report);
   return outcome;
 }
 

@@ -91,12 +91,11 @@ Outcome run_render(const Invocation& invocation) {
     bars.push_back(row.bar ? Json{{"minimum", row.bar->minimum}, {"maximum", row.bar->maximum}}
                            : Json(nullptr));
   }
-  outcome.report = Json{
-      {"width", image.width},
-      {"height", image.height},
-      {"rows", sheet.rows.size()},
-      {"columns", sheet.rows.front().tiles.size()},
-      {"ranges", bars}}.dump();
+  outcome.report = json_text(Json{{"width", image.width},
+                                  {"height", image.height},
+                                  {"rows", sheet.rows.size()},
+                                  {"columns", sheet.rows.front().tiles.size()},
+                                  {"ranges", bars}});
   outcome.summary = std::to_string(image.width) + " x " + std::to_string(image.height) +
                     " pixels, " + std::to_string(sheet.rows.size()) + " rows of " +
                     std::to_string(sheet.rows.front().tiles.size()) + "\n";

@@ -93,7 +93,7 @@ Outcome run_report(const Invocation& invocation) {
                  {"frames", found.sequence.frames()},
                  {"viewer_frames", page.viewer_frames}};
   if (found.transfer) report.update(Json::parse(table_of(found.transfer->rows).json()));
-  outcome.report = report.dump();
+  outcome.report = json_text(report);
   outcome.summary = readable(static_cast<double>(page.html.size()) / 1e6, 3) + " MB, " +
                     std::to_string(page.viewer_frames) + " of " +
                     std::to_string(found.sequence.frames()) + " frames in the 3D viewer\n";

@@ -148,7 +148,7 @@ Json still_part(const ViewerScene& scene) {
 
 /// JSON that may stand in a script element.
 std::string script_text(const Json& json) {
-  std::string text = json.dump(-1, ' ', true, Json::error_handler_t::replace);
+  std::string text = json_text(json);
   for (std::size_t i = 0; (i = text.find('<', i)) != std::string::npos;) {
     text.replace(i, 1, "\\u003c");
   }

@@ -12,6 +12,7 @@
 #include <nlohmann/json.hpp>
 
 #include "toolkit/io/frame_files.h"
+#include "toolkit/io/json_text.h"
 #include "toolkit/io/whole_file.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/progress.h"
@@ -77,12 +78,12 @@ std::vector<FrameFile> entries_of_pvd(const fs::path& path) {
 std::vector<FrameFile> entries_of_series(const fs::path& path) {
   std::vector<FrameFile> entries;
   try {
-    const auto series = nlohmann::json::parse(read_file(path));
+    const Json series = read_json(path, "JSON with a list `files` of name and time");
     for (const auto& entry : series.at("files")) {
       entries.push_back({path.parent_path() / entry.at("name").get<std::string>(),
                          entry.at("time").get<double>()});
     }
-  } catch (const nlohmann::json::exception&) {
+  } catch (const Json::exception&) {
     throw IoError(path.string(), "expected JSON with a list `files` of name and time");
   }
   return entries;
@@ -134,6 +135,7 @@ FieldSequence read_vtp_series(const fs::path& path, const VtpReadOptions& option
     report_progress(options.progress,
                     static_cast<double>(f + 1) / static_cast<double>(times.size()));
   }
+  if (lower_extension(path) == ".vtp") times.resize(0);
   return {
       MeshSequence(std::move(connectivity), std::move(frames), std::move(times), std::move(rest)),
       std::move(fields)};

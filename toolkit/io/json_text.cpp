@@ -1,0 +1,114 @@
+#include "toolkit/io/json_text.h"
+
+#include <set>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "toolkit/io/text_cursor.h"
+#include "toolkit/io/whole_file.h"
+#include "toolkit/mesh/errors.h"
+
+namespace mimetra {
+
+namespace {
+
+constexpr std::size_t kLongestJson = std::size_t{512} << 20;
+/// Values are copied and written by functions that call themselves for each level.
+constexpr std::size_t kDeepestJson = 100;
+/// Each key is compared with those before it.
+constexpr std::size_t kMostKeys = 10000;
+constexpr std::size_t kLongestMessage = 160;
+
+/// Follows a parser, and throws std::runtime_error for what it would let pass.
+class Guard {
+ public:
+  bool operator()(Json::parse_event_t event, const Json& value) {
+    using Event = Json::parse_event_t;
+    if (event == Event::key || event == Event::value) check_text(value);
+    if (event == Event::key) add_key(value.get_ref<const std::string&>());
+    if (event == Event::object_start || event == Event::array_start) {
+      keys_.emplace_back();
+      if (keys_.size() > kDeepestJson) {
+        throw std::runtime_error("nested deeper than " + std::to_string(kDeepestJson) + " levels");
+      }
+    }
+    if (event == Event::object_end || event == Event::array_end) keys_.pop_back();
+    return true;
+  }
+
+ private:
+  static void check_text(const Json& value) {
+    if (!value.is_string()) return;
+    const auto& text = value.get_ref<const std::string&>();
+    const auto zero = text.find('\0');
+    if (zero == std::string::npos) return;
+    throw std::runtime_error("'" + text.substr(0, zero) + "' goes on with a zero byte");
+  }
+
+  void add_key(const std::string& key) {
+    std::set<std::string>& keys = keys_.back();
+    if (!keys.insert(key).second) {
+      throw std::runtime_error("the key '" + key + "' occurs twice in an object");
+    }
+    if (keys.size() > kMostKeys) {
+      throw std::runtime_error("an object has more than " + std::to_string(kMostKeys) + " keys");
+    }
+  }
+
+  std::vector<std::set<std::string>> keys_;
+};
+
+/// "[json.exception.parse_error.101] parse error at line 1, column 8: ..." from "line" on.
+std::string without_codes(const std::string& message) {
+  const auto line = message.find("line ");
+  const auto bracket = message.find("] ");
+  if (line != std::string::npos) return message.substr(line, kLongestMessage);
+  return message.substr(bracket == std::string::npos ? 0 : bracket + 2, kLongestMessage);
+}
+
+}  // namespace
+
+Json parse_json(const std::string& path, std::string_view text, const std::string& expected) {
+  const auto fail = [&](const std::string& found) -> Json {
+    throw IoError(path, "expected " + expected + ": " + found);
+  };
+  if (text.size() > kLongestJson) {
+    return fail("is longer than " + std::to_string(kLongestJson >> 20) + " MB");
+  }
+  try {
+    return Json::parse(without_byte_order_mark(text),
+                       [guard = Guard()](int, Json::parse_event_t event, Json& value) mutable {
+                         return guard(event, value);
+                       });
+  } catch (const Json::exception& error) {
+    return fail(without_codes(error.what()));
+  } catch (const std::runtime_error& error) {
+    return fail(error.what());
+  }
+}
+
+Json read_json(const std::filesystem::path& path, const std::string& expected) {
+  return parse_json(path.string(), read_file(path), expected);
+}
+
+std::optional<Json> read_json_if_any(const std::filesystem::path& path) {
+  try {
+    return read_json(path);
+  } catch (const IoError&) {
+    return {};
+  }
+}
+
+std::string json_text(const Json& json, int indent) {
+  return json.dump(indent, ' ', false, Json::error_handler_t::replace);
+}
+
+std::string short_text(const Json& json) {
+  constexpr std::size_t kLongest = 40;
+  if (json.is_structured()) return json.is_array() ? "a list" : "an object";
+  const std::string text = json_text(json);
+  return text.size() > kLongest ? text.substr(0, kLongest) + "..." : text;
+}
+
+}  // namespace mimetra
