@@ -117,7 +117,9 @@ LandmarkTrack taken_from(LandmarkTrack track, const std::vector<int>& frames) {
 }
 
 /// Frames keep the time they have in the whole clip, whichever part is taken.
-void set_times(LandmarkTrack& track, const std::vector<int>& frames, const SequenceSource& source) {
+void set_times(LandmarkTrack& track, const std::string& text, const std::vector<int>& frames,
+               const SequenceSource& source) {
+  check_rate(text, track.times, source);
   if (track.times.size() > 0) return;
   track.times.resize(track.frames());
   for (int f = 0; f < track.frames(); ++f) {
@@ -203,7 +205,7 @@ LandmarksRead read_landmark_input(const std::string& text, const SequenceSource&
     drop_doubtful(read, text, options.faces.min_confidence);
     note_others(read, text, input);
   }
-  set_times(read.track, selected, source);
+  set_times(read.track, text, selected, source);
   report_progress(source.progress, 1);
   return read;
 }

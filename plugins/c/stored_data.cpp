@@ -54,8 +54,9 @@ void write_data(const mimetra_context& context, const Data& data, const std::str
   const Parameters parameters = parameters_of(std::move(declared), settings);
   WriteRequest request{path, parameters, parameters.flag("force"), context.progress};
   request.threads = context.threads;
-  const std::string note = note_on_fields(format, data, path);
-  if (!note.empty() && context.log) context.log(LogLevel::warning, note);
+  for (const std::string& note : notes_on_losses(format, data, request)) {
+    if (context.log) context.log(LogLevel::warning, note);
+  }
   format.write(data, request);
 }
 

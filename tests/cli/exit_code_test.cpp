@@ -29,6 +29,15 @@ TEST_F(ExitCode, Is2ForAnUnknownOptionAndSuggestsTheNearest) {
                  "did you mean '--radius'?");
 }
 
+TEST_F(ExitCode, Is2ForAPatternWithoutQuotesWhichIsNamed) {
+  run("convert head --weights take.csv --frames 0:5 -o f/ --format obj");
+  for (const std::string line :
+       {"info f/*.obj", "convert f/*.obj -o g/", "transfer f/*.obj head -o x"}) {
+    expect_failure(line, 2, "got 5 files, f/frame_0000.obj to f/frame_0004.obj");
+    expect_failure(line, 2, "write 'f/*.obj' in quotes");
+  }
+}
+
 TEST_F(ExitCode, Is2ForAValueThatIsWrongWhateverTheData) {
   expect_failure("decompose head --weights take.csv -k 0 -o c.h5", 2, "-k: expected");
   expect_failure("decompose head --weights take.csv --d-min 0.8 -o c.h5", 2, "--d-min");

@@ -228,6 +228,19 @@ void expect_the_ply_triangle(const TriMesh& mesh) {
   EXPECT_THAT(mesh.connectivity.polygons.corners, ElementsAre(2, 0, 1));
 }
 
+TEST(Obj, IndexBeyondAnIntIsAnError) {
+  const std::string vertices = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+  for (const std::string index : {"2147483647", "2147483648", "4294967297", "-2147483649"}) {
+    EXPECT_THAT(error_of(".obj", vertices + "f 1 2 " + index + "\n"), HasSubstr("vertex")) << index;
+    EXPECT_THAT(error_of(".obj", vertices + "vt 0 0\nf 1/1 2/1 3/" + index + "\n"),
+                HasSubstr("texture coordinate"))
+        << index;
+  }
+  const auto overflow = test::shared_path("data/hostile/obj_overflow.obj");
+  MIMETRA_SKIP_WITHOUT(overflow);
+  EXPECT_THROW(read_mesh(overflow), IoError);
+}
+
 TEST(Ply, ReadsAnyPropertiesInEitherByteOrder) {
   expect_the_ply_triangle(read_text(".ply", binary_ply(false)));
   expect_the_ply_triangle(read_text(".ply", binary_ply(true)));

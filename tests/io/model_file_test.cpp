@@ -126,7 +126,14 @@ TEST_F(Model, WithTwoShapesOfOneNameIsAnError) {
   std::filesystem::create_directory(folder_ / "targets");
   write("targets/smile.obj", mesh);
   write("targets/smile.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
-  EXPECT_THROW(read_model(folder_.path()), IoError);
+  const auto refusal = [this] {
+    return test::message_of<IoError>([this] { read_model(folder_.path()); });
+  };
+  EXPECT_THAT(refusal(),
+              testing::HasSubstr("smile.off: is a second shape named 'smile', beside smile.obj"));
+  std::filesystem::remove(folder_ / "targets/smile.off");
+  write("neutral.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
+  EXPECT_THAT(refusal(), testing::HasSubstr("a second shape named 'neutral'"));
 }
 
 TEST_F(Model, IsAFolderWithANeutralAndNeverAFile) {

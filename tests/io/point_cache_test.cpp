@@ -1,5 +1,6 @@
 #include <bit>
 #include <cstdint>
+#include <fstream>
 #include <limits>
 
 #include <gmock/gmock.h>
@@ -216,6 +217,35 @@ TEST_F(PointCaches, ReadOnlyTheFramesThatAreAskedFor) {
   bytes.replace(32, 4, infinite).replace(32 + 4 * 18, 4, infinite);
   write_bytes(folder_ / "a.pc2", bytes);
   EXPECT_EQ(read("a.pc2", {.frames = "2:3"}).frame(0), octahedron_pose(2));
+}
+
+/// A file that takes no room on disk: only its header and its last frame are written.
+TEST(PointCache, OfMoreThanFourGigabytesIsReadToItsEnd) {
+  const TemporaryFolder folder;
+  constexpr int kVertices = 20000, kFrames = 20000;
+  constexpr std::size_t kFrameBytes = 3 * sizeof(float) * kVertices;
+  Triangles faces(1, 3);
+  faces << 0, 1, 2;
+  write_mesh(folder / "take.topology.ply",
+             {Positions::Zero(kVertices, 3), Connectivity::from_triangles(kVertices, faces)});
+  std::string head("POINTCACHE2\0", 12);
+  for (const std::int32_t value : {1, kVertices}) head += bytes_in(kLittle, value);
+  for (const float value : {0.f, 1.f}) head += bytes_in(kLittle, value);
+  head += bytes_in(kLittle, std::int32_t{kFrames});
+  write_bytes(folder / "take.pc2", head);
+  std::error_code error;
+  std::filesystem::resize_file(folder / "take.pc2", head.size() + kFrames * kFrameBytes, error);
+  if (error) GTEST_SKIP() << "no sparse files here: " << error.message();
+  {
+    std::fstream file(folder / "take.pc2", std::ios::in | std::ios::out | std::ios::binary);
+    file.seekp(static_cast<std::streamoff>(head.size() + kFrames * kFrameBytes - sizeof(float)));
+    const std::string last = bytes_in(kLittle, 7.f);
+    file.write(last.data(), static_cast<std::streamsize>(last.size()));
+  }
+  const auto open = open_sequence(folder / "take.pc2");
+  EXPECT_EQ(open.frames->frames(), kFrames);
+  EXPECT_EQ(open.frames->read(kFrames - 1, 1)(0, 3 * kVertices - 1), 7);
+  EXPECT_EQ(open.frames->read(kFrames / 2, 1).cwiseAbs().maxCoeff(), 0);
 }
 
 }  // namespace

@@ -198,6 +198,43 @@ TEST_F(CallOfAnOperation, SaysWhichFieldsAFormatLeavesOut) {
   EXPECT_THAT(warnings, testing::ElementsAre(HasSubstr("holds no fields; without speed")));
 }
 
+TEST_F(CallOfAnOperation, ConvertsUnitsAndAxesAndSaysSo) {
+  CallRequest convert = request("convert");
+  convert.given["sequence"] = {{"take", FieldSequence(turning_grid())}};
+  convert.parameters.set("scale", 0.5);
+  convert.parameters.set("up", std::string("y-to-z"));
+  convert.destinations["out"] = {at("take.npz")};
+  Call call = run(convert);
+  EXPECT_THAT(call.outcome().summary, HasSubstr("positions times 0.5, turned y-to-z"));
+  const json report = json::parse(call.outcome().report);
+  EXPECT_EQ(report.at("scale"), 0.5);
+  EXPECT_EQ(report.at("up"), "y-to-z");
+  const Positions given = turning_grid().frame(3), made = out_of(call).frame(3);
+  EXPECT_EQ(made.col(0), 0.5 * given.col(0));
+  EXPECT_EQ(made.col(1), -0.5 * given.col(2));
+  EXPECT_EQ(made.col(2), 0.5 * given.col(1));
+}
+
+TEST_F(CallOfAnOperation, ChecksWhatReadingNoticed) {
+  for (const int number : {0, 1, 4}) {
+    std::ofstream(at("f_" + std::to_string(number) + ".obj"))
+        << "v 0 0 0\nv 1 0 0\nv 0 " << number + 1 << " 0\nf 1 2 3\n";
+  }
+  std::vector<std::string> warnings;
+  CallRequest check = request("check");
+  check.named["sequence"] = {folder_.path().string()};
+  check.log = [&warnings](LogLevel, const std::string& text) { warnings.push_back(text); };
+  Call call(table_, check);
+  call.load();
+  call.run();
+  EXPECT_THAT(warnings, testing::ElementsAre(HasSubstr("these numbers: 2 to 3")));
+  EXPECT_EQ(json::parse(call.outcome().report).at("warnings"), warnings);
+  check.parameters.set("strict", true);
+  Call strict(table_, check);
+  strict.load();
+  EXPECT_THROW(strict.run(), MismatchError);
+}
+
 TEST_F(CallOfAnOperation, LeavesNothingBehindWhereTheOperationFails) {
   Operation operation;
   operation.name = "failing";

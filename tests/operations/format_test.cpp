@@ -42,7 +42,7 @@ TEST(FormatTable, ChoosesTheReaderByExtensionInAnyCase) {
   const auto name = [&](DataKind kind, const char* text) { return table.reader(kind, text).name; };
   EXPECT_EQ(name(DataKind::sequence, "take.NPY"), "NumPy array");
   EXPECT_EQ(name(DataKind::sequence, "take.v2/"), "folder of meshes");
-  EXPECT_EQ(name(DataKind::sequence, "take_%04d.obj"), "mesh of one frame");
+  EXPECT_EQ(name(DataKind::sequence, "take_%04d.obj"), "OBJ mesh of one frame");
   EXPECT_EQ(name(DataKind::sequence, "actor@id=1.5"), "folder of meshes");
   EXPECT_EQ(name(DataKind::model, "actor@id=1.5"), "folder of shapes");
   EXPECT_EQ(name(DataKind::model, "sfm_shape.bin"), "eos shape model");
@@ -54,10 +54,15 @@ TEST(FormatTable, ListsWhatItKnowsWhereNothingReadsAFile) {
   const test::TemporaryFolder folder;
   const std::string file = folder.path() / "take.fbx";
   std::ofstream(file) << "text\n";
-  EXPECT_THAT(
-      [&] { table.reader(DataKind::sequence, file); },
-      ThrowsMessage<IoError>(AllOf(HasSubstr("take.fbx"), HasSubstr(".npy, .npz"),
-                                   HasSubstr(" or a folder"), HasSubstr("not from '.fbx'"))));
+  EXPECT_THAT([&] { table.reader(DataKind::sequence, file); },
+              ThrowsMessage<IoError>(AllOf(HasSubstr("take.fbx: is an FBX scene; export it as OBJ"),
+                                           HasSubstr(".npy, .npz"), HasSubstr(" or a folder"),
+                                           HasSubstr("not from '.fbx'"))));
+  const std::string video = folder.path() / "take.MP4";
+  std::ofstream(video) << "text\n";
+  EXPECT_THAT([&] { table.reader(DataKind::sequence, video); },
+              ThrowsMessage<IoError>(
+                  AllOf(HasSubstr("is a video; 'ffmpeg -i VIDEO"), HasSubstr("not from '.mp4'"))));
   EXPECT_THAT([&] { table.reader(DataKind::components, "take.npy"); },
               ThrowsMessage<UsageError>(HasSubstr("components can be read from .h5 or .hdf5")));
   EXPECT_THAT([&] { table.reader(DataKind::table, "take.csv"); },

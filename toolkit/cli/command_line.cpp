@@ -7,6 +7,8 @@
 
 #include "toolkit/cli/command.h"
 #include "toolkit/cli/suggestion.h"
+#include "toolkit/io/frame_series.h"
+#include "toolkit/io/mesh_formats.h"
 #include "toolkit/mesh/text.h"
 #include "toolkit/operations/option_file.h"
 
@@ -126,6 +128,35 @@ std::vector<std::string> option_names(const CLI::App& command) {
   return names;
 }
 
+/// What is wrong with many files of one kind in one folder, which a shell has put in place of a
+/// pattern without quotes; "" where there are fewer than three, or, unless the line was `refused`,
+/// they are not of one series with the first input.
+std::string unquoted_pattern(const std::vector<std::string>& arguments, bool refused) {
+  std::vector<std::filesystem::path> files;
+  std::error_code missing;
+  for (std::size_t i = 1; i < arguments.size(); ++i) {
+    const std::filesystem::path path = arguments[i];
+    const bool is_mesh = is_mesh_extension(path.extension().string());
+    if (!is_mesh || !std::filesystem::is_regular_file(path, missing)) {
+      if (files.empty() && !refused) return {};  // the first input is something else
+      continue;
+    }
+    const bool fits = files.empty() || (path.parent_path() == files.front().parent_path() &&
+                                        path.extension() == files.front().extension());
+    const bool is_one_series = !series_name(path).empty() &&
+                               (files.empty() || series_name(path) == series_name(files.front()));
+    if (fits && (refused || is_one_series)) files.push_back(path);
+  }
+  if (files.size() < 3) return {};
+  const auto pattern = files.front().parent_path() / ("*" + files.front().extension().string());
+  return "got " + std::to_string(files.size()) + " files, " + files.front().string() + " to " +
+         files.back().string() +
+         ", where one sequence is expected: a shell puts them in place of a pattern without "
+         "quotes; "
+         "write '" +
+         pattern.string() + "' in quotes, or name the folder";
+}
+
 /// The message for what CLI11 refuses, with a suggestion for an unknown word.
 std::string explained(const CLI::App& app, const std::vector<std::string>& arguments,
                       const CLI::ParseError& error) {
@@ -146,6 +177,9 @@ std::string explained(const CLI::App& app, const std::vector<std::string>& argum
     return first + ": no option '" + name + "'" +
            (nearest.empty() ? "; mimetra " + first + " --help lists them"
                             : "; did you mean '" + nearest + "'?");
+  }
+  if (const std::string mistake = unquoted_pattern(arguments, true); !mistake.empty()) {
+    return first + ": " + mistake;
   }
   return first + ": " + error.what();
 }
@@ -180,6 +214,9 @@ ParsedLine parse_command_line(const OperationTable& table,
       ParsedLine line;
       line.request = request_of(*sub, command, *slots);
       line.request->arguments = arguments;
+      if (const std::string mistake = unquoted_pattern(arguments, false); !mistake.empty()) {
+        throw UsageError(command.operation->name + ": " + mistake);
+      }
       return line;
     }
     ++slots;

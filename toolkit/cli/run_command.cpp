@@ -73,9 +73,12 @@ CallRequest call_of(const Request& request) {
   return call;
 }
 
-void print_result(const Request& request, const Outcome& outcome) {
+void print_result(const Request& request, const Outcome& outcome,
+                  const std::vector<std::string>& warnings) {
   if (request.json) {
-    std::cout << json_text(Json::parse(outcome.report), 2) << '\n';
+    Json report = Json::parse(outcome.report);
+    if (!warnings.empty() && !report.contains("warnings")) report["warnings"] = warnings;
+    std::cout << json_text(report, 2) << '\n';
   } else if (!request.quiet) {
     std::cout << outcome.summary;
   }
@@ -100,25 +103,28 @@ void run_command(const OperationTable& table, const Request& request) {
   Bar bar("mimetra " + request.operation->name, shows_bar(request));
   CallRequest asked = call_of(request);
   asked.progress = [&bar](double share) { return bar.update(share); };
-  asked.log = [&bar](LogLevel level, const std::string& message) {
+  std::vector<std::string> warnings;
+  asked.log = [&bar, &warnings](LogLevel level, const std::string& message) {
     bar.clear();
-    if (level == LogLevel::warning)
+    if (level == LogLevel::warning) {
       spdlog::warn(message);
-    else
+      warnings.push_back(message);
+    } else {
       spdlog::info(message);
+    }
   };
   Call call(table, std::move(asked));
   call.load();
   if (request.dry_run) {
     bar.clear();
-    print_result(request, planned(*request.operation, call.invocation()));
+    print_result(request, planned(*request.operation, call.invocation()), warnings);
     return;
   }
   call.run();
   call.write();
   bar.clear();
   if (call.writes() && !request.quiet) std::cerr << cost(call);
-  print_result(request, call.outcome());
+  print_result(request, call.outcome(), warnings);
 }
 
 }  // namespace mimetra::cli

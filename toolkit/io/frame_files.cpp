@@ -37,18 +37,31 @@ std::optional<NumberField> number_field(const std::string& name) {
   return NumberField{begin, at + 1, width};
 }
 
-/// True where printf would write `name` for some number.
-bool matches(const std::string& name, const std::string& pattern, const NumberField& field) {
-  const std::string before = pattern.substr(0, field.begin);
-  const std::string after = pattern.substr(field.end);
+/// The digits between `before` and `after` in a name that has nothing else between them; else "".
+std::string digits_between(const std::string& name, const std::string& before,
+                           const std::string& after) {
   if (name.size() <= before.size() + after.size() || !name.starts_with(before) ||
       !name.ends_with(after)) {
-    return false;
+    return {};
   }
-  const std::string digits = name.substr(before.size(), name.size() - before.size() - after.size());
+  std::string digits = name.substr(before.size(), name.size() - before.size() - after.size());
+  return std::ranges::all_of(digits, is_digit) ? digits : std::string();
+}
+
+/// True where printf would write `name` for some number.
+bool matches(const std::string& name, const std::string& pattern, const NumberField& field) {
+  const std::string digits =
+      digits_between(name, pattern.substr(0, field.begin), pattern.substr(field.end));
   const bool padded = digits.size() > 1 && digits[0] == '0';
-  return std::all_of(digits.begin(), digits.end(), is_digit) && digits.size() >= field.width &&
+  return !digits.empty() && digits.size() >= field.width &&
          (!padded || digits.size() == field.width);
+}
+
+/// A link that leads nowhere was meant for a file: whoever reads it says what it is.
+bool is_file_or_dangling(const fs::path& path) {
+  std::error_code error;
+  return fs::is_regular_file(path, error) ||
+         (fs::is_symlink(path, error) && !fs::exists(path, error));
 }
 
 std::vector<fs::path> files_in(const fs::path& folder) {
@@ -57,8 +70,7 @@ std::vector<fs::path> files_in(const fs::path& folder) {
   for (fs::directory_iterator entry(folder.empty() ? "." : folder, error), end;
        !error && entry != end; entry.increment(error)) {
     const bool hidden = entry->path().filename().string().starts_with('.');
-    std::error_code dangling;  // a link that leads nowhere is not a file
-    if (!hidden && entry->is_regular_file(dangling)) {
+    if (!hidden && is_file_or_dangling(entry->path())) {
       files.push_back(folder / entry->path().filename());
     }
   }
@@ -88,8 +100,7 @@ std::vector<fs::path> files_of_glob(const std::string& pattern) {
   glob_t found = {};
   if (glob(escaped.c_str(), GLOB_NOSORT | GLOB_NOESCAPE, nullptr, &found) == 0) {
     for (std::size_t i = 0; i < found.gl_pathc; ++i) {
-      std::error_code dangling;
-      if (fs::is_regular_file(found.gl_pathv[i], dangling)) files.emplace_back(found.gl_pathv[i]);
+      if (is_file_or_dangling(found.gl_pathv[i])) files.emplace_back(found.gl_pathv[i]);
     }
   }
   globfree(&found);
@@ -116,14 +127,19 @@ std::vector<fs::path> files_of_pattern(const std::string& pattern) {
   return is_glob || !field ? files_of_glob(pattern) : files_of_printf(pattern, *field);
 }
 
-/// Only mesh files, of one format, in natural order.
-std::vector<fs::path> sorted_frames(std::vector<fs::path> files, const std::string& name,
-                                    const std::string& where) {
+/// Only mesh files, in natural order. Throws IoError where there is none.
+std::vector<fs::path> mesh_files(std::vector<fs::path> files, const std::string& name,
+                                 const std::string& nothing) {
   std::erase_if(files, [&](const fs::path& file) {
     return !is_mesh_extension(file.extension().string()) || is_companion(file, name);
   });
-  if (files.empty()) throw IoError(name, where + " no OBJ, PLY, OFF or STL file");
+  if (files.empty()) throw IoError(name, nothing);
   sort_naturally(files);
+  return files;
+}
+
+void check_one_format(const std::vector<fs::path>& files, const std::string& name,
+                      const std::string& where) {
   for (const fs::path& file : files) {
     if (lower_extension(file) == lower_extension(files[0])) continue;
     throw IoError(name, where + " files of several formats, " + files[0].filename().string() +
@@ -131,7 +147,33 @@ std::vector<fs::path> sorted_frames(std::vector<fs::path> files, const std::stri
                             "; choose one with a pattern such as '*" +
                             files[0].extension().string() + "'");
   }
-  return files;
+}
+
+/// What to say of a pattern that matches nothing: a `%04d` for files that are not padded, or the
+/// other way round, is named.
+std::string no_match(const std::string& pattern) {
+  const std::string nothing = "matches no OBJ, PLY, OFF or STL file";
+  const fs::path path(pattern);
+  const std::string name = path.filename().string();
+  const auto field = number_field(name);
+  if (!field) return nothing;
+  std::error_code missing;
+  const fs::path folder = path.has_parent_path() ? path.parent_path() : ".";
+  if (!fs::is_directory(folder, missing)) return nothing;
+  std::vector<fs::path> near = files_in(path.parent_path());
+  const std::string before = name.substr(0, field->begin), after = name.substr(field->end);
+  std::erase_if(near, [&](const fs::path& file) {
+    return digits_between(file.filename().string(), before, after).empty();
+  });
+  if (near.empty()) return nothing;
+  sort_naturally(near);
+  const std::string first = near.front().filename().string();
+  const std::string digits = digits_between(first, before, after);
+  const bool padded = digits.size() > 1 && digits[0] == '0';
+  const std::string fitting =
+      before + (padded ? "%0" + std::to_string(digits.size()) + "d" : "%d") + after;
+  return nothing + ", but there is " + first + ": write '" +
+         (path.has_parent_path() ? (path.parent_path() / fitting).string() : fitting) + "'";
 }
 
 struct FrameRange {
@@ -182,12 +224,21 @@ std::vector<fs::path> files_named(const std::string& text) {
   return files;
 }
 
-std::vector<fs::path> frames_of_pattern(const std::string& pattern) {
-  return sorted_frames(files_of_pattern(pattern), pattern, "matches");
+FrameSeries frames_of_pattern(const std::string& pattern) {
+  std::vector<fs::path> files = files_of_pattern(pattern);
+  const std::string nothing =
+      files.empty() ? no_match(pattern) : "matches no OBJ, PLY, OFF or STL file";
+  FrameSeries found = series_of_pattern(mesh_files(std::move(files), pattern, nothing), pattern);
+  check_one_format(found.frames, pattern, "matches");
+  return found;
 }
 
-std::vector<fs::path> frames_of_folder(const fs::path& folder) {
-  return sorted_frames(files_in(folder), folder.string(), "holds");
+FrameSeries frames_of_folder(const fs::path& folder) {
+  const std::string name = folder.string();
+  FrameSeries found = series_in_folder(
+      mesh_files(files_in(folder), name, "holds no OBJ, PLY, OFF or STL file"), folder);
+  check_one_format(found.frames, name, "holds");
+  return found;
 }
 
 std::vector<int> selected_frames(const std::optional<std::string>& range, int frames) {

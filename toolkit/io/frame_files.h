@@ -5,11 +5,14 @@
 #include <string>
 #include <vector>
 
+#include "toolkit/io/frame_series.h"
+
 /// Which files and which frames a sequence's name means.
 namespace mimetra {
 
 /// What follows a sequence's name in the names of the files beside it that belong to it.
 inline constexpr const char* kRestSuffix = ".rest.ply";
+inline constexpr const char* kTimesSuffix = ".times.csv";
 inline constexpr const char* kTopologySuffix = ".topology.ply";
 
 /// True for text with `*`, `?` or `%04d` that names files only by way of a pattern.
@@ -20,13 +23,15 @@ bool is_frame_pattern(const std::string& text);
 std::vector<std::filesystem::path> files_named(const std::string& text);
 
 /// The mesh files that a glob or printf pattern matches, in natural order. Throws IoError where
-/// there is none or they are of several formats. Rest poses and topologies of other sequences are
-/// no frames, unless the pattern asks for them by their suffix.
-std::vector<std::filesystem::path> frames_of_pattern(const std::string& pattern);
+/// there is none, they are of several formats, two have one number, or one is a link that leads
+/// nowhere. Rest poses and topologies of other sequences are no frames, unless the pattern asks for
+/// them by their suffix.
+FrameSeries frames_of_pattern(const std::string& pattern);
 
 /// The mesh files of a folder, hidden ones and those that belong to other sequences left out, in
-/// natural order. Throws as frames_of_pattern.
-std::vector<std::filesystem::path> frames_of_folder(const std::filesystem::path& folder);
+/// natural order; `neutral.*` and strangers to the numbered ones are no frames. Throws as
+/// frames_of_pattern.
+FrameSeries frames_of_folder(const std::filesystem::path& folder);
 
 /// Indices of the frames that `range` ("A:B:STEP") takes of `frames`; all without one. Throws
 /// std::invalid_argument for what is not a range, MismatchError for one beyond the last frame.

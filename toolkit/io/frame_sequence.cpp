@@ -1,9 +1,11 @@
 #include "toolkit/io/frame_sequence.h"
 
 #include <algorithm>
+#include <optional>
 #include <span>
 
 #include "toolkit/io/frame_files.h"
+#include "toolkit/io/material_library.h"
 #include "toolkit/io/mesh_codecs.h"
 #include "toolkit/io/mesh_file.h"
 #include "toolkit/io/sequence_parts.h"
@@ -43,10 +45,38 @@ class FrameFiles : public FrameSource {
   std::vector<fs::path> files_;
 };
 
+/// The frames of the folder that a pattern takes some of; none for files of several folders.
+std::vector<fs::path> all_beside(const std::vector<fs::path>& files, const fs::path& home) {
+  const auto is_elsewhere = [&home](const fs::path& file) {
+    return fs::absolute(file).lexically_normal().parent_path() != home;
+  };
+  if (std::ranges::any_of(files, is_elsewhere)) return {};
+  return frames_of_pattern((home / "*").string() + files.front().extension().string()).files;
+}
+
+/// Those of a folder, also where a pattern takes some of its frames.
+std::optional<Eigen::VectorXd> known_times(const std::vector<fs::path>& files,
+                                           const fs::path& folder, std::vector<fs::path>& read) {
+  if (!folder.empty()) return times_beside(folder, static_cast<int>(files.size()), read);
+  const fs::path home = fs::absolute(files.front()).lexically_normal().parent_path();
+  if (files.size() < 2 || !fs::exists(beside(home, kTimesSuffix))) return std::nullopt;
+  const std::vector<fs::path> all = all_beside(files, home);
+  if (all.empty()) return std::nullopt;
+  const auto of_all = times_beside(home, static_cast<int>(all.size()), read);
+  Eigen::VectorXd times(static_cast<Eigen::Index>(files.size()));
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    const auto found = std::ranges::find(all, files[i].filename(), &fs::path::filename);
+    if (found == all.end()) return std::nullopt;
+    times[static_cast<Eigen::Index>(i)] = (*of_all)[found - all.begin()];
+  }
+  return times;
+}
+
 class FolderSink : public FrameSink {
  public:
   FolderSink(const SequenceHeader& header, const fs::path& target,
-             const SequenceWriteOptions& options, const ExtraFiles& extra)
+             const SequenceWriteOptions& options, const ExtraFiles& extra,
+             const WrittenMaterials& materials)
       : header_(header),
         extent_(extent(header.rest)),
         target_(target),
@@ -58,6 +88,10 @@ class FolderSink : public FrameSink {
     const auto frames = static_cast<int>(header.times.size());
     for (int frame = 0; frame < frames; ++frame) {
       files_.push_back(target / frame_name(frame, frames, extension_));
+    }
+    if (materials.text) {
+      write_bytes(folder_ / materials.name, *materials.text);
+      files_.push_back(target_ / materials.name);
     }
     // A manifest may have megabytes: it is written and not kept.
     for (const auto& [name, content] : extra) {
@@ -83,6 +117,7 @@ class FolderSink : public FrameSink {
     SequenceHeader kept = header_;
     kept.rest_is_known = kept.rest_is_known && mesh_codec(extension_)->read;
     add_rest_beside(outputs_, target_, kept, files);
+    add_times_beside(outputs_, target_, header_, files);
     outputs_.commit();
     return files;
   }
@@ -102,10 +137,12 @@ class FolderSink : public FrameSink {
 
 }  // namespace
 
-OpenSequence open_frames(const std::vector<fs::path>& files, const fs::path& folder,
+OpenSequence open_frames(const FrameSeries& series, const fs::path& folder,
                          const SequenceSource& source) {
+  const std::vector<fs::path>& files = series.frames;
   const std::vector<int> chosen = selected_frames(source.frames, static_cast<int>(files.size()));
   OpenSequence open;
+  open.notes = series.notes;
   for (const int frame : chosen) open.files.push_back(files[static_cast<std::size_t>(frame)]);
   std::vector<fs::path> frames = open.files;
   // Where files name no vertices, the first frame says which corners are one, asked for or not.
@@ -113,12 +150,20 @@ OpenSequence open_frames(const std::vector<fs::path>& files, const fs::path& fol
   auto reader = std::make_unique<const MeshFileReader>(names_vertices ? frames[0] : files[0]);
   SequenceHeader header;
   header.connectivity = std::make_shared<const Connectivity>(reader->mesh().connectivity);
-  header.times = frame_times(static_cast<int>(files.size()), source)(chosen);
-  if (!folder.empty()) {
-    if (auto rest = rest_beside(folder, *reader, open.files)) {
-      header.rest = *std::move(rest);
-      header.rest_is_known = true;
-    }
+  const FrameTimes times =
+      frame_times(folder.empty() ? files.front().parent_path().string() : folder.string(),
+                  static_cast<int>(files.size()), known_times(files, folder, open.files), source);
+  header.times = times.seconds(chosen);
+  header.times_are_known = times.are_known;
+  std::optional<Positions> rest;
+  if (!folder.empty()) rest = rest_beside(folder, *reader, open.files);
+  if (!rest && series.rest) {
+    rest = reader->read(*series.rest);
+    open.files.push_back(*series.rest);
+  }
+  if (rest) {
+    header.rest = *std::move(rest);
+    header.rest_is_known = true;
   }
   open.frames =
       std::make_shared<const FrameFiles>(std::move(reader), std::move(frames), std::move(header));
@@ -128,7 +173,14 @@ OpenSequence open_frames(const std::vector<fs::path>& files, const fs::path& fol
 std::unique_ptr<FrameSink> begin_folder(const SequenceHeader& header, const fs::path& target,
                                         const SequenceWriteOptions& options,
                                         const ExtraFiles& extra) {
-  return std::make_unique<FolderSink>(header, target, options, extra);
+  if (options.format != MeshFormat::obj || !header.connectivity->materials) {
+    return std::make_unique<FolderSink>(header, target, options, extra, WrittenMaterials());
+  }
+  const WrittenMaterials materials = materials_in_folder(*header.connectivity, target);
+  SequenceHeader named = header;
+  named.connectivity =
+      std::make_shared<const Connectivity>(with_library(*header.connectivity, materials.name));
+  return std::make_unique<FolderSink>(named, target, options, extra, materials);
 }
 
 }  // namespace mimetra

@@ -4,15 +4,17 @@
 #include <memory>
 #include <vector>
 
+#include "toolkit/io/frame_series.h"
 #include "toolkit/io/sequence_options.h"
 
 /// Sequences with a mesh file for each frame. Internal to sequence_file.h.
 namespace mimetra {
 
-/// The part of `files` that `source` takes. `folder` is where a rest pose may lie beside; empty for
-/// patterns and single files. Throws IoError, MismatchError.
-OpenSequence open_frames(const std::vector<std::filesystem::path>& files,
-                         const std::filesystem::path& folder, const SequenceSource& source);
+/// The part of `series` that `source` takes. `folder` is where a rest pose may lie beside, which
+/// comes before the series' own; empty for patterns and single files. Throws IoError,
+/// MismatchError.
+OpenSequence open_frames(const FrameSeries& series, const std::filesystem::path& folder,
+                         const SequenceSource& source);
 
 /// A folder of numbered files. Throws OutputError.
 std::unique_ptr<FrameSink> begin_folder(const SequenceHeader& header,

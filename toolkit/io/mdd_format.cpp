@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "toolkit/io/bytes.h"
+#include "toolkit/io/mesh_file.h"
 #include "toolkit/io/point_cache.h"
 #include "toolkit/io/sequence_format.h"
 #include "toolkit/io/sequence_parts.h"
@@ -59,8 +60,10 @@ PointCacheTarget begin_mdd_file(const SequenceHeader& header, const fs::path& pa
   for (const double time : header.times) {
     append_bytes_of(head, static_cast<float>(time), std::endian::big);
   }
-  PointCacheTarget target{
-      std::make_unique<OutputFile>(path), {head.size(), sizeof(float), std::endian::big}, true};
+  PointCacheTarget target{std::make_unique<OutputFile>(path),
+                          {head.size(), sizeof(float), std::endian::big},
+                          true,
+                          true};
   target.file->write({head});
   return target;
 }
@@ -75,8 +78,13 @@ std::unique_ptr<FrameSink> begin_mdd(const SequenceHeader& header, const fs::pat
 }  // namespace
 
 SequenceFormat mdd_format() {
-  return {"MDD point cache", {".mdd"}, true, SequenceFormat::Precision::single,
-          open_mdd,          begin_mdd};
+  return {"MDD point cache",
+          {".mdd"},
+          true,
+          SequenceFormat::Precision::single,
+          open_mdd,
+          begin_mdd,
+          parts_held_by(MeshFormat::ply)};
 }
 
 }  // namespace mimetra

@@ -8,10 +8,23 @@
 namespace mimetra {
 namespace {
 
-constexpr std::array kCodecs = {MeshCodec{MeshFormat::obj, read_obj, obj_layout, obj_frame},
-                                MeshCodec{MeshFormat::ply, read_ply, ply_layout, ply_frame},
-                                MeshCodec{MeshFormat::off, read_off, off_layout, off_frame},
-                                MeshCodec{MeshFormat::stl, nullptr, nullptr, stl_frame}};
+using Texture = HeldParts::Texture;
+
+constexpr std::array kCodecs = {
+    MeshCodec{MeshFormat::obj,
+              read_obj,
+              obj_layout,
+              obj_frame,
+              {.polygons = true, .texture = Texture::corners, .groups = true}},
+    MeshCodec{MeshFormat::ply,
+              read_ply,
+              ply_layout,
+              ply_frame,
+              {.polygons = true, .texture = Texture::corners}},
+    MeshCodec{MeshFormat::off, read_off, off_layout, off_frame, {.polygons = true}},
+    // A rest pose in the old order would not fit.
+    MeshCodec{
+        MeshFormat::stl, nullptr, nullptr, stl_frame, {.rest = false, .vertex_order = false}}};
 
 }  // namespace
 
@@ -22,6 +35,10 @@ std::string MeshCodec::extension() const {
 const MeshCodec* mesh_codec(const std::string& extension) {
   const auto found = std::ranges::find(kCodecs, lower_case(extension), &MeshCodec::extension);
   return found == kCodecs.end() ? nullptr : &*found;
+}
+
+HeldParts parts_held_by(MeshFormat format) {
+  return std::ranges::find(kCodecs, format, &MeshCodec::format)->holds;
 }
 
 }  // namespace mimetra

@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "toolkit/io/held_parts.h"
 #include "toolkit/io/mesh_formats.h"
 #include "toolkit/io/mesh_layout.h"
 #include "toolkit/mesh/tri_mesh.h"
@@ -20,6 +21,8 @@ struct MeshContent {
   Polygons polygons;
   TextureCoordinates texture;
   std::vector<FaceGroup> groups;
+  /// What follows each `mtllib`.
+  std::vector<std::string> libraries;
   /// Line of each face in a text file; empty where lines mean nothing.
   std::vector<int> face_lines;
   /// How the format counts vertices, for messages: 1 for OBJ.
@@ -57,6 +60,8 @@ struct MeshCodec {
   /// nothing in common.
   std::unique_ptr<const MeshLayout> (*layout)(std::string first, std::size_t vertices);
   MeshFrame (*frame)(const Connectivity& connectivity, bool double_precision);
+  /// In its files; a rest pose stands beside them.
+  HeldParts holds;
 
   /// ".ply".
   std::string extension() const;

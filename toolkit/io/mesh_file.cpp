@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
+#include "toolkit/io/material_library.h"
 #include "toolkit/io/mesh_codecs.h"
 #include "toolkit/io/mesh_layout.h"
 #include "toolkit/io/whole_file.h"
@@ -49,6 +51,13 @@ std::string face_name(const MeshContent& content, int face) {
 
 void check_faces(const std::string& path, const MeshContent& content) {
   const Polygons& polygons = content.polygons;
+  // Vertices, triangles and corners are counted by ints.
+  constexpr std::size_t kMost = std::numeric_limits<int>::max() / 3;
+  if (content.coordinates.size() / 3 > kMost || polygons.corners.size() > kMost) {
+    throw IoError(path, "has " + std::to_string(content.coordinates.size() / 3) + " vertices and " +
+                            std::to_string(polygons.corners.size()) +
+                            " corners of faces, expected at most " + std::to_string(kMost));
+  }
   const auto vertices = static_cast<int>(content.coordinates.size() / 3);
   if (polygons.size() == 0) throw IoError(path, "has no faces");
   for (int face = 0; face < polygons.size(); ++face) {
@@ -78,6 +87,11 @@ MeshContent read_checked(const fs::path& path, std::string_view bytes) {
 std::vector<double> read_checked_corners(const fs::path& path, std::string_view bytes) {
   std::vector<double> corners = read_stl_corners(path.string(), bytes);
   if (corners.empty()) throw IoError(path.string(), "has no faces");
+  constexpr std::size_t kMost = std::numeric_limits<int>::max() / 3;
+  if (corners.size() / 3 > kMost) {
+    throw IoError(path.string(), "has " + std::to_string(corners.size() / 9) +
+                                     " triangles, expected at most " + std::to_string(kMost / 3));
+  }
   check_finite(path.string(), corners, "corner", 0);
   return corners;
 }
@@ -188,6 +202,7 @@ TriMesh read_mesh(const fs::path& path, std::string_view bytes) {
                                                   std::move(content.polygons));
   if (!content.texture.coordinates.empty()) mesh.connectivity.texture = std::move(content.texture);
   mesh.connectivity.groups = std::move(content.groups);
+  mesh.connectivity.materials = read_materials(path, content.libraries);
   return mesh;
 }
 

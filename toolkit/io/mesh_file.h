@@ -1,10 +1,12 @@
 #pragma once
 
 #include <filesystem>
+#include <limits>
 #include <memory>
 #include <span>
 #include <string>
 
+#include "toolkit/io/held_parts.h"
 #include "toolkit/io/mesh_formats.h"
 #include "toolkit/mesh/tri_mesh.h"
 
@@ -50,6 +52,9 @@ class MeshFileReader {
   std::unique_ptr<const MeshLayout> layout_;
 };
 
+/// What a folder of files in a format has a place for.
+HeldParts parts_held_by(MeshFormat format);
+
 struct MeshWriteOptions {
   /// Coordinates in double precision: binary doubles in PLY, the shortest digits that read back
   /// equal in text formats; float otherwise. STL knows float only.
@@ -60,12 +65,17 @@ struct MeshWriteOptions {
 };
 
 /// Writes one mesh by its extension with its own polygons: .obj (with texture coordinates and
-/// groups), .ply (binary little endian), .off, .stl (binary, triangles). Throws OutputError. Not
-/// atomic: see PendingOutput.
+/// groups), .ply (binary little endian), .off, .stl (binary, triangles). Throws OutputError,
+/// MismatchError for what the precision cannot hold. Not atomic: see PendingOutput.
 void write_mesh(const std::filesystem::path& path, const PositionsView& positions,
                 const Connectivity& connectivity, const MeshWriteOptions& = {});
 void write_mesh(const std::filesystem::path& path, const TriMesh& mesh,
                 const MeshWriteOptions& = {});
+
+/// The largest number of single precision.
+constexpr double kLargestSingle = std::numeric_limits<float>::max();
+/// "vertex 7 is at 1e+39, ...": what is wrong with a coordinate beyond it.
+std::string beyond_single(Eigen::Index vertex, double coordinate);
 
 /// Writes poses of one mesh, each to a file of its own. What the files have in common is made once.
 /// Files may be written from several threads.
@@ -77,12 +87,14 @@ class MeshFileWriter {
                  bool double_precision = false);
   ~MeshFileWriter();
 
-  /// Writes what write_mesh() writes. Throws OutputError; std::invalid_argument unless `positions`
-  /// are as many as the connectivity's vertices.
+  /// Writes what write_mesh() writes. Throws OutputError; MismatchError that names a vertex whose
+  /// coordinate single precision would make infinite; std::invalid_argument unless `positions` are
+  /// as many as the connectivity's vertices.
   void write(const std::filesystem::path& path, const PositionsView& positions) const;
 
  private:
   int vertices_;
+  bool single_precision_;
   std::unique_ptr<const MeshFrame> frame_;
 };
 

@@ -1,15 +1,18 @@
 #include "toolkit/io/frame_sequence.h"
+#include "toolkit/io/material_library.h"
 #include "toolkit/io/mesh_file.h"
 #include "toolkit/io/sequence_format.h"
 #include "toolkit/io/sequence_parts.h"
+#include "toolkit/io/whole_file.h"
 #include "toolkit/mesh/errors.h"
+#include "toolkit/mesh/text.h"
 
 namespace mimetra {
 namespace fs = std::filesystem;
 namespace {
 
 OpenSequence open_mesh(const fs::path& path, const SequenceSource& source) {
-  return open_frames({path}, {}, source);
+  return open_frames({{path}}, {}, source);
 }
 
 class MeshSink : public FrameSink {
@@ -21,7 +24,17 @@ class MeshSink : public FrameSink {
         extra_(extra),
         double_precision_(options.double_precision),
         outputs_(options.overwrite, options.inputs),
-        path_(outputs_.add(target, PendingOutput::Kind::file)) {}
+        path_(outputs_.add(target, PendingOutput::Kind::file)) {
+    if (lower_extension(target) != ".obj" || !header.connectivity->materials) return;
+    const WrittenMaterials materials = materials_beside(*header.connectivity, target);
+    header_.connectivity =
+        std::make_shared<const Connectivity>(with_library(*header.connectivity, materials.name));
+    if (materials.text) {
+      library_ = target.parent_path() / materials.name;
+      write_bytes(outputs_.add(library_, PendingOutput::Kind::file, PendingOutputs::Existing::same),
+                  *materials.text);
+    }
+  }
 
   void write(int, const Frames& poses) override {
     const PositionsView pose(poses.data(), header_.connectivity->vertices, 3);
@@ -33,6 +46,7 @@ class MeshSink : public FrameSink {
 
   std::vector<fs::path> commit() override {
     std::vector<fs::path> files = {target_};
+    if (!library_.empty()) files.push_back(library_);
     add_extra_beside(outputs_, target_, extra_, files);
     outputs_.commit();
     return files;
@@ -45,6 +59,8 @@ class MeshSink : public FrameSink {
   bool double_precision_;
   PendingOutputs outputs_;
   fs::path path_;
+  /// Of its materials; empty where none is written.
+  fs::path library_;
 };
 
 std::unique_ptr<FrameSink> begin_mesh(const SequenceHeader& header, const fs::path& target,
@@ -60,10 +76,17 @@ std::unique_ptr<FrameSink> begin_mesh(const SequenceHeader& header, const fs::pa
 
 }  // namespace
 
-SequenceFormat mesh_format() {
-  return {
-      "mesh of one frame", mesh_extensions(), false, SequenceFormat::Precision::single_or_double,
-      open_mesh,           begin_mesh};
+SequenceFormat mesh_format(MeshFormat format) {
+  const std::string name(choice_name(format));
+  HeldParts holds = parts_held_by(format);
+  holds.rest = false;
+  return {upper_case(name) + " mesh of one frame",
+          {'.' + name},
+          false,
+          SequenceFormat::Precision::single_or_double,
+          open_mesh,
+          begin_mesh,
+          holds};
 }
 
 }  // namespace mimetra

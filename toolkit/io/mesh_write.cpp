@@ -1,11 +1,13 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <cmath>
 #include <stdexcept>
 
 #include "toolkit/io/binary_file.h"
 #include "toolkit/io/mesh_codecs.h"
 #include "toolkit/io/mesh_file.h"
+#include "toolkit/io/temporary_name.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/text.h"
 
@@ -23,7 +25,8 @@ char* put_shortest(char* text, Number value) {
 
 MeshFileWriter::MeshFileWriter(const Connectivity& connectivity, const std::string& extension,
                                bool double_precision)
-    : vertices_(connectivity.vertices) {
+    : vertices_(connectivity.vertices),
+      single_precision_(!double_precision || lower_case(extension) == ".stl") {
   const MeshCodec* codec = mesh_codec(extension);
   if (!codec) throw std::invalid_argument(unknown_mesh_extension(lower_case(extension)));
   frame_ = std::make_unique<const MeshFrame>(codec->frame(connectivity, double_precision));
@@ -31,10 +34,22 @@ MeshFileWriter::MeshFileWriter(const Connectivity& connectivity, const std::stri
 
 MeshFileWriter::~MeshFileWriter() = default;
 
+std::string beyond_single(Eigen::Index vertex, double coordinate) {
+  return "vertex " + std::to_string(vertex) + " is at " + readable(coordinate) +
+         ", and single precision ends at " + readable(kLargestSingle) +
+         "; write double precision (.npy without --single, or .ply with --double), or scale it";
+}
+
 void MeshFileWriter::write(const fs::path& path, const PositionsView& positions) const {
   if (positions.rows() != vertices_) {
     throw std::invalid_argument(std::to_string(positions.rows()) + " positions, expected " +
                                 std::to_string(vertices_) + " as the faces have");
+  }
+  Eigen::Index vertex = 0, axis = 0;
+  const double farthest = vertices_ == 0 ? 0 : positions.cwiseAbs().maxCoeff(&vertex, &axis);
+  // What is infinite already stays so.
+  if (single_precision_ && farthest > kLargestSingle && std::isfinite(farthest)) {
+    throw MismatchError(committed_name(path).string() + ": " + beyond_single(vertex, farthest));
   }
   const std::string between = frame_->positions(positions);
   OutputFile file(path);

@@ -8,9 +8,11 @@
 
 #include "toolkit/io/eos.h"
 #include "toolkit/io/fit_file.h"
+#include "toolkit/io/frame_series.h"
 #include "toolkit/io/json_text.h"
 #include "toolkit/io/mesh_file.h"
 #include "toolkit/io/pending_output.h"
+#include "toolkit/io/scene.h"
 #include "toolkit/io/whole_file.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/parallel.h"
@@ -22,15 +24,17 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Regular files of a folder in natural order; none where it is not a folder.
+/// Regular files of a folder in natural order, and links that lead nowhere, which reading refuses;
+/// none where it is not a folder.
 std::vector<fs::path> sorted_files_in(const fs::path& folder) {
   std::vector<fs::path> files;
   std::error_code error;
   for (fs::directory_iterator entry(folder, error), end; !error && entry != end;
        entry.increment(error)) {
     const bool hidden = entry->path().filename().string().starts_with('.');
-    std::error_code dangling;  // a link that leads nowhere is not a file
-    if (!hidden && entry->is_regular_file(dangling)) files.push_back(entry->path());
+    std::error_code missing;
+    const bool is_dangling = entry->is_symlink(missing) && !entry->exists(missing);
+    if (!hidden && (is_dangling || entry->is_regular_file(missing))) files.push_back(entry->path());
   }
   std::ranges::sort(files, [](const fs::path& a, const fs::path& b) {
     return natural_less(a.filename().string(), b.filename().string());
@@ -61,11 +65,30 @@ std::optional<fs::path> eos_expressions_of(const fs::path& folder) {
   return file_like(folder, "expression_blendshapes", ".bin");
 }
 
+std::vector<fs::path> meshes_in(const fs::path& folder) {
+  std::vector<fs::path> files = sorted_files_in(folder);
+  std::erase_if(files,
+                [](const fs::path& file) { return !is_mesh_extension(file.extension().string()); });
+  return files;
+}
+
 std::optional<fs::path> neutral_of(const fs::path& folder) {
   for (const fs::path& file : sorted_files_in(folder)) {
     if (file.stem() == "neutral" && is_mesh_extension(file.extension().string())) return file;
   }
   return {};
+}
+
+/// A shape is called as its file without the extension.
+void check_names(const std::vector<fs::path>& files) {
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      if (files[i].stem() != files[j].stem()) continue;
+      throw IoError(files[i].string(), "is a second shape named '" + files[i].stem().string() +
+                                           "', beside " + files[j].filename().string() +
+                                           "; rename or remove one of them");
+    }
+  }
 }
 
 /// Where the parts of a model are.
@@ -105,6 +128,9 @@ Parts parts_of(const fs::path& folder) {
   Parts parts;
   parts.neutral = neutral_of(folder);
   if (parts.neutral) {
+    std::vector<fs::path> neutrals = meshes_in(folder);
+    std::erase_if(neutrals, [](const fs::path& file) { return file.stem() != "neutral"; });
+    check_names(neutrals);
     for (const char* name : {"expressions", "targets"}) {
       if (!parts.expressions && fs::is_directory(folder / name, unreadable)) {
         parts.expressions = folder / name;
@@ -123,11 +149,12 @@ Parts parts_of(const fs::path& folder) {
 ShapeBasis read_shapes(const fs::path& folder, const MeshFileReader& neutral, int threads) {
   ShapeBasis basis;
   std::vector<fs::path> files;
-  for (const fs::path& file : sorted_files_in(folder)) {
-    if (!is_mesh_extension(file.extension().string())) continue;
+  for (const fs::path& file : meshes_in(folder)) {
     files.push_back(file);
     basis.names.push_back(file.stem().string());
   }
+  check_links(files);
+  check_names(files);
   if (files.empty()) throw IoError(folder.string(), "holds no .obj, .ply, .off or .stl file");
   const Positions& mean = neutral.mesh().positions;
   basis.displacements.resize(mean.size(), static_cast<Eigen::Index>(files.size()));
@@ -263,9 +290,19 @@ std::string ModelSpec::name() const {
   return stem + '@' + fitted.string();
 }
 
+std::vector<fs::path> meshes_beside_model(const fs::path& path) {
+  std::error_code unreadable;
+  const bool is_named_by_parts = !fs::exists(path / "model.json", unreadable) && neutral_of(path);
+  if (!is_named_by_parts) return {};
+  std::vector<fs::path> files = meshes_in(path);
+  std::erase_if(files, [](const fs::path& file) { return file.stem() == "neutral"; });
+  return files;
+}
+
 MorphableModel read_model(const fs::path& path, int threads) {
   std::error_code unreadable;
   if (!fs::exists(path, unreadable)) throw IoError(path.string(), "does not exist");
+  if (is_scene_file(path)) return MorphableModel(*read_scene(path).model);
   const Parts parts = parts_of(path);
   if (parts.shape) {
     if (!parts.expressions) {
@@ -316,9 +353,13 @@ BlendshapeModel read_blendshapes(const std::string& text) {
 
 bool is_model(const fs::path& path) {
   std::error_code unreadable;
+  if (is_scene_file(path)) return true;
   if (!fs::is_directory(path, unreadable)) return path.extension() == ".bin" && is_eos_shape(path);
-  return fs::exists(path / "model.json", unreadable) || neutral_of(path).has_value() ||
-         (eos_expressions_of(path) && eos_shape_of(path));
+  if (fs::exists(path / "model.json", unreadable)) return true;
+  if (!neutral_of(path)) return eos_expressions_of(path) && eos_shape_of(path);
+  const auto holds = [&](const char* part) { return fs::is_directory(path / part, unreadable); };
+  return holds("expressions") || holds("targets") || holds("identities") ||
+         meshes_in(path).size() == 1;
 }
 
 void write_model(const fs::path& folder, const MorphableModel& model,

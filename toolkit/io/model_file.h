@@ -48,8 +48,12 @@ BlendshapeModel read_person(const ModelSpec& spec, int threads = 0);
 BlendshapeModel read_blendshapes(const std::string& text);
 
 /// True for a directory that looks like something read_model reads, and for an eos shape model;
-/// another file is not a model.
+/// another file is not a model. A directory of `neutral.*` and other meshes without expressions or
+/// identities is a sequence with its rest pose.
 bool is_model(const std::filesystem::path& path);
+
+/// Mesh files in a model's folder that are no part of it, such as frames, in natural order.
+std::vector<std::filesystem::path> meshes_beside_model(const std::filesystem::path& path);
 
 /// Writes a model directory: neutral.ply, expressions/NAME.ply, identities/NAME.ply (absolute
 /// shapes, double precision), and `performance.csv` when there is a track. `extra` are further

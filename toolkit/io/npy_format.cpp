@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "toolkit/io/mesh_file.h"
 #include "toolkit/io/npy_cache.h"
 #include "toolkit/io/npy_header.h"
 #include "toolkit/io/npy_values.h"
@@ -116,8 +117,13 @@ PointCacheTarget begin_npy_cache(const fs::path& path, std::size_t frames, std::
 }
 
 SequenceFormat npy_format() {
-  return {"NumPy array", {".npy"}, true, SequenceFormat::Precision::double_or_single,
-          open_npy,      begin_npy};
+  return {"NumPy array",
+          {".npy"},
+          true,
+          SequenceFormat::Precision::double_or_single,
+          open_npy,
+          begin_npy,
+          parts_held_by(MeshFormat::ply)};
 }
 
 }  // namespace mimetra

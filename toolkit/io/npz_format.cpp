@@ -193,6 +193,7 @@ class NpzSink : public FrameSink {
   }
 
   void write(int first, const Frames& poses) override {
+    if (positions_.positions.bytes == sizeof(float)) check_single_range(target_, first, poses);
     const auto columns = static_cast<std::size_t>(poses.cols());
     positions_.positions.write(*positions_.file, columns * static_cast<std::size_t>(first),
                                {poses.data(), static_cast<std::size_t>(poses.size())});
@@ -205,8 +206,10 @@ class NpzSink : public FrameSink {
     ZipWriter zip(archive_);
     zip.add_file(name(kPositionNames), scratch_.path);
     zip.add(name(kFaceNames), npy_bytes(*header_.connectivity));
-    zip.add(name(kTimeNames), npy_bytes<double>("<f8", {count(header_.times.size())},
-                                                {header_.times.begin(), header_.times.end()}));
+    if (header_.times_are_known) {
+      zip.add(name(kTimeNames), npy_bytes<double>("<f8", {count(header_.times.size())},
+                                                  {header_.times.begin(), header_.times.end()}));
+    }
     if (header_.rest_is_known) {
       const double* rest = header_.rest.data();
       zip.add(name(kRestNames), npy_bytes<double>("<f8", {count(header_.rest.rows()), 3},
@@ -237,8 +240,13 @@ std::unique_ptr<FrameSink> begin_npz(const SequenceHeader& header, const fs::pat
 }  // namespace
 
 SequenceFormat npz_format() {
-  return {"NumPy archive", {".npz"}, true, SequenceFormat::Precision::double_or_single,
-          open_npz,        begin_npz};
+  return {"NumPy archive",
+          {".npz"},
+          true,
+          SequenceFormat::Precision::double_or_single,
+          open_npz,
+          begin_npz,
+          {.polygons = true}};
 }
 
 }  // namespace mimetra

@@ -12,7 +12,8 @@ int resolved(const TextCursor& cursor, std::string_view digits, std::size_t so_f
   const long long index = cursor.integer(digits, what);
   if (index == 0) cursor.fail(std::string("index 0 for ") + what + ", expected 1 or more");
   const long long from_zero = index > 0 ? index - 1 : static_cast<long long>(so_far) + index;
-  if (from_zero < 0 || from_zero > INT_MAX) {
+  // Messages count from one.
+  if (from_zero < 0 || from_zero >= INT_MAX) {
     cursor.fail("index " + std::to_string(index) + " for " + what + ", found " +
                 std::to_string(so_far) + " of them so far");
   }
@@ -37,6 +38,8 @@ class ObjReader {
         read_face();
       } else if (keyword == "g" || keyword == "o" || keyword == "usemtl" || keyword == "s") {
         read_group(keyword);
+      } else if (keyword == "mtllib") {
+        read_library();
       } else {
         check_keyword(keyword);
       }
@@ -91,6 +94,14 @@ class ObjReader {
       statement.append(" ").append(name);
     }
     content_.groups.push_back({content_.polygons.size(), std::move(statement)});
+  }
+
+  void read_library() {
+    std::string names;
+    for (std::string_view name = cursor_.word(); !name.empty(); name = cursor_.word()) {
+      names.append(names.empty() ? "" : " ").append(name);
+    }
+    if (!names.empty()) content_.libraries.push_back(std::move(names));
   }
 
   /// Indices may point forward, so that their upper bound is known only at the end.

@@ -1,6 +1,7 @@
 #include <cmath>
 
 #include "toolkit/io/bytes.h"
+#include "toolkit/io/mesh_file.h"
 #include "toolkit/io/point_cache.h"
 #include "toolkit/io/sequence_format.h"
 #include "toolkit/mesh/errors.h"
@@ -77,8 +78,13 @@ std::unique_ptr<FrameSink> begin_pc2(const SequenceHeader& header, const fs::pat
 }  // namespace
 
 SequenceFormat pc2_format() {
-  return {"PC2 point cache", {".pc2"}, true, SequenceFormat::Precision::single,
-          open_pc2,          begin_pc2};
+  return {"PC2 point cache",
+          {".pc2"},
+          true,
+          SequenceFormat::Precision::single,
+          open_pc2,
+          begin_pc2,
+          parts_held_by(MeshFormat::ply)};
 }
 
 }  // namespace mimetra

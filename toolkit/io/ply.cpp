@@ -2,6 +2,8 @@
 #include <array>
 #include <climits>
 #include <cmath>
+#include <map>
+#include <optional>
 #include <utility>
 
 #include "toolkit/io/bytes.h"
@@ -132,32 +134,66 @@ void skip_element(PlyBody& body, const PlyElement& element) {
   }
 }
 
-/// Axis of each property, or -1.
-std::vector<int> axes_of(const PlyBody& body, const PlyElement& element) {
-  std::vector<int> axes;
+/// What a property of a vertex is: an axis 0 to 2, or a texture coordinate.
+constexpr int kFirstTexture = 3;
+constexpr int kNothing = -1;
+
+std::size_t index_of(const PlyElement& element, std::string_view name) {
+  const auto found = std::ranges::find_if(element.properties, [name](const PlyProperty& property) {
+    return property.name == name && !property.is_list;
+  });
+  return static_cast<std::size_t>(found - element.properties.begin());
+}
+
+/// The role of each property of a vertex.
+std::vector<int> roles_of(const PlyBody& body, const PlyElement& element) {
+  const std::size_t properties = element.properties.size();
+  std::vector<int> roles(properties, kNothing);
   std::array<int, 3> found = {0, 0, 0};
-  for (const PlyProperty& property : element.properties) {
+  for (std::size_t i = 0; i < properties; ++i) {
+    const PlyProperty& property = element.properties[i];
     const std::size_t axis = std::string_view("xyz").find(property.name);
     const bool is_axis = property.name.size() == 1 && axis < 3 && !property.is_list;
-    axes.push_back(is_axis ? static_cast<int>(axis) : -1);
-    if (is_axis) ++found[axis];
+    if (is_axis) {
+      roles[i] = static_cast<int>(axis);
+      ++found[axis];
+    }
   }
   if (found != std::array<int, 3>{1, 1, 1}) {
     body.fail(element, "expected the properties x, y and z once each");
   }
-  return axes;
+  // As Blender, MeshLab and CloudCompare call them.
+  using Names = std::array<std::string_view, 2>;
+  for (const Names& names : {Names{"s", "t"}, {"u", "v"}, {"texture_u", "texture_v"}}) {
+    const std::size_t u = index_of(element, names[0]), v = index_of(element, names[1]);
+    if (u == properties || v == properties) continue;
+    roles[u] = kFirstTexture;
+    roles[v] = kFirstTexture + 1;
+    break;
+  }
+  return roles;
 }
 
 void read_vertices(PlyBody& body, const PlyElement& element, MeshContent& content) {
-  const std::vector<int> axes = axes_of(body, element);
+  std::vector<int> roles = roles_of(body, element);
+  // Faces that stand before the vertices may have brought theirs.
+  if (!content.texture.corners.empty()) {
+    std::ranges::replace_if(
+        roles, [](int role) { return role >= kFirstTexture; }, kNothing);
+  }
+  const bool is_textured = std::ranges::find(roles, kFirstTexture) != roles.end();
   content.coordinates.resize(3 * element.count);
+  if (is_textured) content.texture.coordinates.resize(element.count);
   for (std::size_t vertex = 0; vertex < element.count; ++vertex) {
     body.set_element("vertex", vertex);
-    for (std::size_t i = 0; i < axes.size(); ++i) {
-      if (axes[i] < 0) {
+    for (std::size_t i = 0; i < roles.size(); ++i) {
+      if (roles[i] == kNothing) {
         skip(body, element.properties[i]);
+      } else if (roles[i] < kFirstTexture) {
+        content.coordinates[3 * vertex + static_cast<std::size_t>(roles[i])] =
+            body.value(element.properties[i].type);
       } else {
-        content.coordinates[3 * vertex + static_cast<std::size_t>(axes[i])] =
+        content.texture.coordinates[vertex][roles[i] - kFirstTexture] =
             body.value(element.properties[i].type);
       }
     }
@@ -180,19 +216,60 @@ bool lists_vertices(const PlyProperty& property) {
   return property.is_list && (property.name == "vertex_indices" || property.name == "vertex_index");
 }
 
+/// MeshLab's list of two numbers for each corner.
+bool lists_texture(const PlyProperty& property) {
+  return property.is_list && property.name == "texcoord";
+}
+
+/// Texture coordinates of corners, where equal ones are one.
+class CornerTexture {
+ public:
+  explicit CornerTexture(TextureCoordinates& texture) : texture_(texture) { texture_ = {}; }
+
+  /// Of the next face; `numbers` are two for each corner, or there are none that fit.
+  void add(const std::vector<double>& numbers, std::size_t corners) {
+    const bool fits =
+        numbers.size() == 2 * corners &&
+        std::ranges::all_of(numbers, [](double value) { return std::isfinite(value); });
+    for (std::size_t corner = 0; corner < corners; ++corner) {
+      texture_.corners.push_back(fits ? index_of({numbers[2 * corner], numbers[2 * corner + 1]})
+                                      : -1);
+    }
+  }
+
+ private:
+  int index_of(std::pair<double, double> value) {
+    const auto [entry, is_new] =
+        index_.try_emplace(value, static_cast<int>(texture_.coordinates.size()));
+    if (is_new) texture_.coordinates.emplace_back(value.first, value.second);
+    return entry->second;
+  }
+
+  TextureCoordinates& texture_;
+  std::map<std::pair<double, double>, int> index_;
+};
+
 void read_faces(PlyBody& body, const PlyElement& element, MeshContent& content) {
-  if (std::count_if(element.properties.begin(), element.properties.end(), lists_vertices) != 1) {
+  if (std::ranges::count_if(element.properties, lists_vertices) != 1) {
     body.fail(element, "expected one list named vertex_indices or vertex_index");
   }
+  std::optional<CornerTexture> texture;
+  if (std::ranges::any_of(element.properties, lists_texture)) texture.emplace(content.texture);
+  std::vector<double> numbers;
   for (std::size_t face = 0; face < element.count; ++face) {
     body.set_element("face", face);
+    const std::size_t corners_before = content.polygons.corners.size();
     for (const PlyProperty& property : element.properties) {
       if (lists_vertices(property)) {
         read_corners(body, property, content.polygons);
+      } else if (lists_texture(property)) {
+        numbers.resize(list_length(body, property));
+        for (double& number : numbers) number = body.value(property.type);
       } else {
         skip(body, property);
       }
     }
+    if (texture) texture->add(numbers, content.polygons.corners.size() - corners_before);
   }
 }
 
@@ -214,6 +291,10 @@ MeshContent read_ply(const std::string& path, std::string_view bytes) {
     }
   }
   body.expect_end();
+  // Those of vertices.
+  if (!content.texture.coordinates.empty() && content.texture.corners.empty()) {
+    content.texture.corners = content.polygons.corners;
+  }
   return content;
 }
 

@@ -1,23 +1,49 @@
+#include <algorithm>
+
 #include "toolkit/io/bytes.h"
 #include "toolkit/io/mesh_codecs.h"
 
 namespace mimetra {
 namespace {
 
-/// A byte counts the corners, as every reader expects, unless some polygon has too many.
-bool bytes_suffice(const Polygons& polygons) {
+/// Texture coordinates stand on vertices where each has one of its own number, else on corners.
+bool is_textured_by_vertex(const Connectivity& connectivity) {
+  const TextureCoordinates& texture = connectivity.texture;
+  return static_cast<int>(texture.coordinates.size()) == connectivity.vertices &&
+         texture.corners == connectivity.polygons.corners;
+}
+
+bool is_textured_by_corner(const Connectivity& connectivity) {
+  return !connectivity.texture.coordinates.empty() && !is_textured_by_vertex(connectivity);
+}
+
+/// A byte counts the corners, as every reader expects, unless some polygon has too many: two
+/// numbers stand for each corner with a texture.
+bool bytes_suffice(const Connectivity& connectivity) {
+  const Polygons& polygons = connectivity.polygons;
+  const int most = is_textured_by_corner(connectivity) ? 255 / 2 : 255;
   for (int face = 0; face < polygons.size(); ++face) {
-    if (polygons.offsets[face + 1] - polygons.offsets[face] > 255) return false;
+    if (polygons.offsets[face + 1] - polygons.offsets[face] > most) return false;
   }
   return true;
 }
 
-std::string header(int vertices, const Polygons& polygons, bool double_precision) {
+std::string header(const Connectivity& connectivity, bool double_precision) {
   const std::string scalar = double_precision ? "double" : "float";
-  return "ply\nformat binary_little_endian 1.0\nelement vertex " + std::to_string(vertices) +
-         "\nproperty " + scalar + " x\nproperty " + scalar + " y\nproperty " + scalar +
-         " z\nelement face " + std::to_string(polygons.size()) + "\nproperty list " +
-         (bytes_suffice(polygons) ? "uchar" : "uint") + " int vertex_indices\nend_header\n";
+  const std::string count = bytes_suffice(connectivity) ? "uchar" : "uint";
+  std::string text = "ply\nformat binary_little_endian 1.0\nelement vertex " +
+                     std::to_string(connectivity.vertices) + '\n';
+  for (const char* axis : {"x", "y", "z"}) text += "property " + scalar + ' ' + axis + '\n';
+  if (is_textured_by_vertex(connectivity)) {
+    for (const char* axis : {"s", "t"}) text += "property " + scalar + ' ' + axis + '\n';
+  }
+  text += "element face " + std::to_string(connectivity.polygons.size()) + "\nproperty list " +
+          count + " int vertex_indices\n";
+  // As MeshLab has them.
+  if (is_textured_by_corner(connectivity)) {
+    text += "property list " + count + ' ' + scalar + " texcoord\n";
+  }
+  return text + "end_header\n";
 }
 
 template <typename Scalar>
@@ -32,29 +58,73 @@ std::string position_bytes(const PositionsView& positions) {
   return bytes;
 }
 
-template <typename Count>
-void append_faces(std::string& bytes, const Polygons& polygons) {
+/// x y z s t of each vertex.
+template <typename Scalar>
+std::string textured_bytes(const PositionsView& positions,
+                           const std::vector<Eigen::Vector2d>& texture) {
+  std::string bytes(5 * sizeof(Scalar) * texture.size(), '\0');
+  char* at = bytes.data();
+  const auto put = [&at](double value) {
+    put_little_endian(at, static_cast<Scalar>(value));
+    at += sizeof(Scalar);
+  };
+  for (Eigen::Index vertex = 0; vertex < positions.rows(); ++vertex) {
+    for (int axis = 0; axis < 3; ++axis) put(positions(vertex, axis));
+    for (const double value : texture[static_cast<std::size_t>(vertex)]) put(value);
+  }
+  return bytes;
+}
+
+/// The list of a face has two numbers for each corner, or none where a corner has no texture.
+template <typename Count, typename Scalar>
+void append_texture(std::string& bytes, const TextureCoordinates& texture, int first, int last) {
+  const auto begin = texture.corners.begin();
+  const bool is_whole = std::all_of(begin + first, begin + last, [](int at) { return at >= 0; });
+  append_little_endian(bytes, static_cast<Count>(is_whole ? 2 * (last - first) : 0));
+  for (int corner = first; is_whole && corner < last; ++corner) {
+    for (const double value : texture.coordinates[static_cast<std::size_t>(begin[corner])]) {
+      append_little_endian(bytes, static_cast<Scalar>(value));
+    }
+  }
+}
+
+template <typename Count, typename Scalar>
+std::string face_bytes(const Connectivity& connectivity) {
+  const Polygons& polygons = connectivity.polygons;
+  const bool textured = is_textured_by_corner(connectivity);
+  std::string bytes;
   for (int face = 0; face < polygons.size(); ++face) {
     const int first = polygons.offsets[face], last = polygons.offsets[face + 1];
     append_little_endian(bytes, static_cast<Count>(last - first));
     for (int corner = first; corner < last; ++corner) {
       append_little_endian(bytes, static_cast<std::int32_t>(polygons.corners[corner]));
     }
+    if (textured) append_texture<Count, Scalar>(bytes, connectivity.texture, first, last);
   }
+  return bytes;
+}
+
+template <typename Scalar>
+MeshFrame frame(const Connectivity& connectivity, std::string before) {
+  MeshFrame result;
+  result.before = std::move(before);
+  result.after = bytes_suffice(connectivity) ? face_bytes<std::uint8_t, Scalar>(connectivity)
+                                             : face_bytes<std::uint32_t, Scalar>(connectivity);
+  result.positions = position_bytes<Scalar>;
+  if (is_textured_by_vertex(connectivity)) {
+    result.positions = [texture = connectivity.texture.coordinates](const PositionsView& poses) {
+      return textured_bytes<Scalar>(poses, texture);
+    };
+  }
+  return result;
 }
 
 }  // namespace
 
 MeshFrame ply_frame(const Connectivity& connectivity, bool double_precision) {
-  const Polygons& polygons = connectivity.polygons;
-  std::string after;
-  if (bytes_suffice(polygons)) {
-    append_faces<std::uint8_t>(after, polygons);
-  } else {
-    append_faces<std::uint32_t>(after, polygons);
-  }
-  return {header(connectivity.vertices, polygons, double_precision), std::move(after),
-          double_precision ? position_bytes<double> : position_bytes<float>};
+  std::string before = header(connectivity, double_precision);
+  return double_precision ? frame<double>(connectivity, std::move(before))
+                          : frame<float>(connectivity, std::move(before));
 }
 
 }  // namespace mimetra

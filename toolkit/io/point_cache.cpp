@@ -81,11 +81,17 @@ void add_parts_beside(const PointCache& cache, const SequenceSource& source, Poi
 }
 
 /// Frames keep the time they have in the whole sequence, whichever part is taken.
-Eigen::VectorXd times_of(const PointCache& cache, const SequenceSource& source) {
-  if (cache.times().size() > 0) return cache.times();
-  const double frame = 1 / source.fps.value_or(kDefaultFramesPerSecond);
-  return (cache.start() * frame + cache.step() * frame_times(cache.frames(), source).array())
-      .matrix();
+FrameTimes times_of(const PointCache& cache, const SequenceSource& source,
+                    std::optional<Eigen::VectorXd> known, std::vector<fs::path>& files) {
+  if (!known && cache.times().size() > 0) known = cache.times();
+  if (!known) known = times_beside(files.front(), cache.frames(), files);
+  const bool by_rate = !known;
+  FrameTimes times = frame_times(files.front().string(), cache.frames(), std::move(known), source);
+  if (by_rate) {
+    const double frame = 1 / source.fps.value_or(kDefaultFramesPerSecond);
+    times.seconds = cache.start() * frame + cache.step() * times.seconds.array();
+  }
+  return times;
 }
 
 class PointCacheSink : public FrameSink {
@@ -102,7 +108,11 @@ class PointCacheSink : public FrameSink {
   }
 
   void write(int first, const Frames& poses) override {
-    if (cache_.only_single_precision) check_single_precision(poses);
+    if (cache_.positions.bytes == sizeof(float)) check_single_range(target_, first, poses);
+    if (cache_.only_single_precision) {
+      check_single_precision(target_, PositionsView(poses.data(), poses.size() / 3, 3),
+                             extent(header_.rest));
+    }
     cache_.positions.write(*cache_.file, columns_ * static_cast<std::size_t>(first),
                            {poses.data(), static_cast<std::size_t>(poses.size())});
   }
@@ -112,24 +122,13 @@ class PointCacheSink : public FrameSink {
     std::vector<fs::path> files = {target_};
     add_topology_beside(outputs_, target_, header_, files);
     add_rest_beside(outputs_, target_, header_, files);
+    if (!cache_.holds_times) add_times_beside(outputs_, target_, header_, files);
     files.insert(files.end(), extra_files_.begin(), extra_files_.end());
     outputs_.commit();
     return files;
   }
 
  private:
-  /// Rounding would spoil motion without a word.
-  void check_single_precision(const Frames& poses) const {
-    const PositionsView points(poses.data(), poses.size() / 3, 3);
-    const double longest = extent(header_.rest);
-    if (!needs_double(points, longest)) return;
-    throw MismatchError(target_.string() + ": " + target_.extension().string() +
-                        " holds single precision only, which would round motion that one sees: "
-                        "the mesh lies " +
-                        readable(points.cwiseAbs().maxCoeff() / longest, 2) +
-                        " times its size from the origin; move it, or write .npy");
-  }
-
   SequenceHeader header_;
   fs::path target_;
   std::vector<fs::path> extra_files_;
@@ -207,7 +206,9 @@ OpenSequence open_point_cache(std::unique_ptr<const PointCache> cache, const Seq
   if (!parts.faces) add_parts_beside(*cache, source, parts, open.files);
   SequenceHeader header;
   header.connectivity = std::move(parts.faces);
-  header.times = parts.times ? *parts.times : times_of(*cache, source);
+  FrameTimes times = times_of(*cache, source, std::move(parts.times), open.files);
+  header.times = std::move(times.seconds);
+  header.times_are_known = times.are_known;
   header.rest_is_known = parts.rest.has_value();
   const std::vector<int> chosen = selected_frames(source.frames, cache->frames());
   // Frames that nobody asks for are not read.

@@ -100,9 +100,12 @@ struct PointCacheTarget {
   StoredFloats positions;
   /// True where the format has no other: poses that it would round too much are refused.
   bool only_single_precision = false;
+  /// Otherwise they go to NAME.times.csv.
+  bool holds_times = false;
 };
 
-/// Writes a cache, with NAME.topology.ply and, where it is known, NAME.rest.ply beside it. `begin`
+/// Writes a cache, with NAME.topology.ply and, where they are known, NAME.rest.ply and
+/// NAME.times.csv beside it. `begin`
 /// makes the file at a path. Throws OutputError; MismatchError for poses that lie too far from the
 /// origin for the format's precision.
 std::unique_ptr<FrameSink> write_point_cache(

@@ -1,15 +1,16 @@
 #include "toolkit/io/sequence_file.h"
 
+#include "toolkit/io/driven_model.h"
 #include "toolkit/io/fit_file.h"
+#include "toolkit/io/foreign_files.h"
 #include "toolkit/io/frame_files.h"
 #include "toolkit/io/frame_sequence.h"
 #include "toolkit/io/model_file.h"
+#include "toolkit/io/scene.h"
 #include "toolkit/io/sequence_format.h"
-#include "toolkit/io/sequence_parts.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/progress.h"
 #include "toolkit/mesh/text.h"
-#include "toolkit/model/animation.h"
 
 namespace mimetra {
 namespace fs = std::filesystem;
@@ -21,67 +22,24 @@ bool is_there(const fs::path& path) {
   return fs::exists(path, unreadable);
 }
 
-Eigen::Map<const Eigen::RowVectorXd> as_row(const Positions& positions) {
-  return {positions.data(), positions.size()};
-}
-
-std::vector<std::string> match_notes(const fs::path& weights, const fs::path& model,
-                                     const WeightMatch& match) {
-  std::vector<std::string> notes;
-  if (!match.unmatched_columns.empty()) {
-    notes.push_back(weights.string() +
-                    ": columns that drive no expression: " + listed(match.unmatched_columns));
-  }
-  if (!match.undriven_expressions.empty()) {
-    notes.push_back(model.string() +
-                    ": expressions that no column drives: " + listed(match.undriven_expressions));
-  }
-  return notes;
-}
-
-std::shared_ptr<const FrameSource> neutral_of(const BlendshapeModel& person,
-                                              const SequenceSource& source) {
-  selected_frames(source.frames, 1);
-  return std::make_shared<const MeshSequence>(person.shared_connectivity(),
-                                              as_row(person.neutral()), frame_times(1, source),
-                                              person.neutral());
-}
-
-Eigen::MatrixXd weights_of(const fs::path& path, const WeightTrack& track,
-                           const std::vector<std::string>& expressions) {
-  try {
-    return weights_for(track, expressions);
-  } catch (const MismatchError& error) {
-    throw MismatchError(path.string() + ": " + error.what());
-  }
-}
-
 OpenSequence open_driven(const ModelSpec& spec, const SequenceSource& source) {
-  OpenSequence open;
-  open.model_driven = true;
-  open.files = {spec.path};
   auto person = std::make_shared<const BlendshapeModel>(read_person(spec, source.threads));
-  if (spec.fit) open.files.push_back(*spec.fit);
-  if (!source.weights && !spec.fit) {
-    open.frames = neutral_of(*person, source);
-    return open;
+  OpenSequence open;
+  if (!spec.fit) {
+    open = drive(std::move(person), spec.path, source);
+  } else if (!source.weights) {
+    open = drive(std::move(person), spec.path, source, *spec.fit,
+                 read_fit(*spec.fit).performance());
+  } else {
+    open = drive(std::move(person), spec.path, source);
+    open.files.insert(open.files.begin() + 1, *spec.fit);
   }
-  if (source.weights) open.files.push_back(*source.weights);
-  const fs::path& driver = open.files.back();
-  WeightTrack track = source.weights ? read_weights(driver) : read_fit(driver).performance();
-  const auto frames = static_cast<int>(track.weights.rows());
-  const std::vector<int> chosen = selected_frames(source.frames, frames);
-  const std::vector<std::string>& expressions = person->expressions().names;
-  open.notes = match_notes(driver, spec.path, match_weights(track, expressions));
-  const Eigen::VectorXd times = track.times.size() > 0 ? track.times : frame_times(frames, source);
-  // There may be many frames: no more than one copy of what is not needed again.
-  if (static_cast<int>(chosen.size()) < frames) {
-    track.weights = Eigen::MatrixXd(track.weights(chosen, Eigen::all));
+  if (const auto others = meshes_beside_model(spec.path); !others.empty()) {
+    open.notes.push_back(spec.path.string() + ": is read as a model; " +
+                         std::to_string(others.size()) + " other mesh files in it, from " +
+                         others.front().filename().string() +
+                         " on, are no part of it; name frames by a pattern");
   }
-  Eigen::MatrixXd weights = weights_of(driver, track, expressions);
-  track.weights.resize(0, 0);
-  open.frames =
-      std::make_shared<const Animation>(std::move(person), std::move(weights), times(chosen));
   return open;
 }
 
@@ -95,8 +53,10 @@ void check_undriven(const std::string& text, const SequenceSource& source) {
 OpenSequence open_path(const fs::path& path, const SequenceSource& source) {
   if (fs::is_directory(path)) return open_frames(frames_of_folder(path), path, source);
   if (const SequenceFormat* format = sequence_format(path)) return format->open(path, source);
-  throw IoError(path.string(), "is no sequence; expected a folder, " +
-                                   joined(sequence_extensions()) + " or a model");
+  const std::string found = foreign_file(path);
+  throw IoError(path.string(), found.empty() ? "is no sequence; expected a folder, " +
+                                                   joined(sequence_extensions()) + " or a model"
+                                             : "is " + found);
 }
 
 }  // namespace
@@ -104,6 +64,7 @@ OpenSequence open_path(const fs::path& path, const SequenceSource& source) {
 OpenSequence open_sequence(const std::string& text, const SequenceSource& source) {
   check_options(source);
   const bool exists = is_there(text);
+  if (exists && is_scene_file(text)) return open_scene(text, source);
   if (exists && is_model(text)) return open_driven(ModelSpec{text, {}, {}}, source);
   if (!exists && !is_frame_pattern(text) && text.find('@') != std::string::npos) {
     const ModelSpec spec = ModelSpec::parse(text);

@@ -5,9 +5,12 @@
 #include <string>
 #include <vector>
 
+#include "toolkit/io/held_parts.h"
 #include "toolkit/io/sequence_options.h"
 
 namespace mimetra {
+
+class Animation;
 
 /// A format of files that hold a sequence, declared once: readers, writers, and every list of
 /// formats come from it.
@@ -24,6 +27,13 @@ struct SequenceFormat {
   OpenSequence (*open)(const std::filesystem::path&, const SequenceSource&);
   std::unique_ptr<FrameSink> (*begin)(const SequenceHeader&, const std::filesystem::path& target,
                                       const SequenceWriteOptions&, const ExtraFiles&);
+  /// What its files and those beside them have a place for: what they have none for is said.
+  HeldParts holds = {};
+  /// Writes a model and its weights as such; null where only poses are written.
+  std::vector<std::filesystem::path> (*write_animation)(const Animation&,
+                                                        const std::filesystem::path& target,
+                                                        const SequenceWriteOptions&,
+                                                        const ExtraFiles&) = nullptr;
 };
 
 /// All formats, in the order in which lists have them.

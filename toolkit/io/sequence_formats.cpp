@@ -6,11 +6,20 @@
 namespace mimetra {
 
 // Each in the file of its name.
-SequenceFormat mdd_format(), mesh_format(), npy_format(), npz_format(), pc2_format();
+SequenceFormat gltf_format(), mdd_format(), npy_format(), npz_format(), pc2_format(), usd_format();
+SequenceFormat mesh_format(MeshFormat format);
 
 const std::vector<SequenceFormat>& sequence_formats() {
-  static const std::vector<SequenceFormat> formats = {npy_format(), npz_format(), pc2_format(),
-                                                      mdd_format(), mesh_format()};
+  static const std::vector<SequenceFormat> formats = {npy_format(),
+                                                      npz_format(),
+                                                      pc2_format(),
+                                                      mdd_format(),
+                                                      gltf_format(),
+                                                      usd_format(),
+                                                      mesh_format(MeshFormat::ply),
+                                                      mesh_format(MeshFormat::obj),
+                                                      mesh_format(MeshFormat::off),
+                                                      mesh_format(MeshFormat::stl)};
   return formats;
 }
 

@@ -37,6 +37,11 @@ struct SequenceSource {
   static constexpr auto declared() { return std::tuple(kFps); }
 };
 
+/// Throws std::invalid_argument where `source` has a frame rate for `name`, whose frames have times
+/// of their own (F).
+void check_rate(const std::string& name, const Eigen::VectorXd& times,
+                const SequenceSource& source);
+
 /// A sequence whose poses are read when they are needed, and what was noticed while opening it.
 struct OpenSequence {
   std::shared_ptr<const FrameSource> frames;

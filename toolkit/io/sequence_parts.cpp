@@ -3,7 +3,9 @@
 #include <cmath>
 #include <string>
 
+#include "toolkit/io/csv.h"
 #include "toolkit/io/frame_files.h"
+#include "toolkit/io/mesh_codecs.h"
 #include "toolkit/io/mesh_file.h"
 #include "toolkit/io/whole_file.h"
 #include "toolkit/mesh/errors.h"
@@ -12,6 +14,9 @@
 namespace mimetra {
 namespace fs = std::filesystem;
 namespace {
+
+/// Of NAME.times.csv, in seconds.
+constexpr std::string_view kTimeColumn = "time";
 
 /// A file that only mimetra reads: it holds what the program held.
 void add_pose(PendingOutputs& outputs, const fs::path& target, const SequenceHeader& header,
@@ -29,11 +34,23 @@ bool stands(const fs::path& path) {
 
 }  // namespace
 
-Eigen::VectorXd frame_times(int frames, const SequenceSource& source) {
-  const double fps = source.fps.value_or(kDefaultFramesPerSecond);
-  Eigen::VectorXd times(frames);
-  for (Eigen::Index i = 0; i < times.size(); ++i) times[i] = static_cast<double>(i) / fps;
-  return times;
+void check_rate(const std::string& name, const Eigen::VectorXd& times,
+                const SequenceSource& source) {
+  if (!source.fps || times.size() == 0) return;
+  throw std::invalid_argument(name + ": its " + std::to_string(times.size()) +
+                              " frames have times of their own, " + readable(times[0]) + " to " +
+                              readable(times[times.size() - 1]) +
+                              " s, and --fps is for what has none; leave it out");
+}
+
+FrameTimes frame_times(const std::string& name, int frames, std::optional<Eigen::VectorXd> known,
+                       const SequenceSource& source) {
+  if (!known) {
+    const double fps = source.fps.value_or(kDefaultFramesPerSecond);
+    return {Eigen::VectorXd::LinSpaced(frames, 0, frames - 1) / fps, source.fps.has_value()};
+  }
+  check_rate(name, *known, source);
+  return {*std::move(known), true};
 }
 
 void check_times(const std::string& name, const Eigen::VectorXd& times) {
@@ -62,6 +79,29 @@ std::optional<Positions> rest_beside(const fs::path& sequence, const MeshFileRea
   return reader.read(rest);
 }
 
+std::optional<Eigen::VectorXd> times_beside(const fs::path& sequence, int frames,
+                                            std::vector<fs::path>& files) {
+  const fs::path path = beside(sequence, kTimesSuffix);
+  if (!stands(path)) return std::nullopt;
+  CsvReader csv(path);
+  if (csv.names() != std::vector<std::string_view>{kTimeColumn}) {
+    csv.fail("expected one column, '" + std::string(kTimeColumn) + "'");
+  }
+  std::vector<double> seconds;
+  while (csv.next_row()) seconds.push_back(csv.number(0));
+  Eigen::VectorXd times =
+      Eigen::Map<const Eigen::VectorXd>(seconds.data(), static_cast<Eigen::Index>(seconds.size()));
+  check_times(path.string(), times);
+  if (times.size() != frames) {
+    throw MismatchError(path.string() + ": " + std::to_string(times.size()) +
+                        " times, expected one for each of the " + std::to_string(frames) +
+                        " frames of " + sequence.string() +
+                        "; mend it, or remove it where it is of other frames");
+  }
+  files.push_back(path);
+  return times;
+}
+
 void add_topology_beside(PendingOutputs& outputs, const fs::path& sequence,
                          const SequenceHeader& header, std::vector<fs::path>& files) {
   add_pose(outputs, beside(sequence, kTopologySuffix), header, files);
@@ -77,6 +117,22 @@ void add_rest_beside(PendingOutputs& outputs, const fs::path& sequence,
   }
 }
 
+void add_times_beside(PendingOutputs& outputs, const fs::path& sequence,
+                      const SequenceHeader& header, std::vector<fs::path>& files) {
+  const fs::path target = beside(sequence, kTimesSuffix);
+  if (!header.times_are_known) {
+    outputs.add_stale(target);
+    return;
+  }
+  std::string text = std::string(kTimeColumn) + '\n';
+  for (const double time : header.times) {
+    append_number(text, time, true);
+    text += '\n';
+  }
+  write_bytes(outputs.add(target, PendingOutput::Kind::file, PendingOutputs::Existing::same), text);
+  files.push_back(target);
+}
+
 void add_extra_beside(PendingOutputs& outputs, const fs::path& target, const ExtraFiles& extra,
                       std::vector<fs::path>& files) {
   for (const auto& [name, content] : extra) {
@@ -90,7 +146,25 @@ void add_extra_beside(PendingOutputs& outputs, const fs::path& target, const Ext
 bool needs_double(const PositionsView& poses, double extent) {
   constexpr double kRounding = 6e-8;     // of float32, relative
   constexpr double kMostRounded = 1e-5;  // of the longest side: well below what one sees
-  return kRounding * poses.cwiseAbs().maxCoeff() > kMostRounded * extent;
+  const double farthest = poses.cwiseAbs().maxCoeff();
+  return farthest > kLargestSingle || kRounding * farthest > kMostRounded * extent;
+}
+
+void check_single_range(const fs::path& target, int first, const Frames& poses) {
+  Eigen::Index row = 0, column = 0;
+  const double farthest = poses.cwiseAbs().maxCoeff(&row, &column);
+  if (farthest <= kLargestSingle) return;
+  throw MismatchError(target.string() + ": frame " + std::to_string(first + row) + ": " +
+                      beyond_single(column / 3, farthest));
+}
+
+void check_single_precision(const fs::path& target, const PositionsView& poses, double extent) {
+  if (!needs_double(poses, extent)) return;
+  throw MismatchError(target.string() + ": " + target.extension().string() +
+                      " holds single precision only, which would round motion that one sees: "
+                      "the mesh lies " +
+                      readable(poses.cwiseAbs().maxCoeff() / extent, 2) +
+                      " times its size from the origin; move it, or write .npy");
 }
 
 }  // namespace mimetra

@@ -12,8 +12,16 @@
 /// What formats of sequences have in common. Internal to them.
 namespace mimetra {
 
-/// Times of `frames` frames without any, by `source.fps` (F).
-Eigen::VectorXd frame_times(int frames, const SequenceSource& source);
+/// Seconds of the frames of a sequence (F), and whether anybody gave them.
+struct FrameTimes {
+  Eigen::VectorXd seconds;
+  bool are_known;
+};
+
+/// Those of `name`, whose own are `known`; where it has none, they follow from `source.fps`. Throws
+/// std::invalid_argument where it has some and `source.fps` says others.
+FrameTimes frame_times(const std::string& name, int frames, std::optional<Eigen::VectorXd> known,
+                       const SequenceSource& source);
 
 /// Throws IoError that names `name` and the first frame whose time is not finite, or not later than
 /// the one before.
@@ -27,17 +35,31 @@ std::optional<Positions> rest_beside(const std::filesystem::path& sequence,
                                      const MeshFileReader& reader,
                                      std::vector<std::filesystem::path>& files);
 
-/// Add to an output, and to the list of its files, what belongs beside it: faces; the rest pose
-/// where it is known (otherwise an old one goes); further files.
+/// The times beside a sequence of `frames` frames, whose file is added to `files`; none where there
+/// is none. Throws IoError, MismatchError for another number.
+std::optional<Eigen::VectorXd> times_beside(const std::filesystem::path& sequence, int frames,
+                                            std::vector<std::filesystem::path>& files);
+
+/// Add to an output, and to the list of its files, what belongs beside it: faces; the rest pose and
+/// the times where they are known (otherwise old ones go); further files.
 void add_topology_beside(PendingOutputs& outputs, const std::filesystem::path& sequence,
                          const SequenceHeader& header, std::vector<std::filesystem::path>& files);
 void add_rest_beside(PendingOutputs& outputs, const std::filesystem::path& sequence,
                      const SequenceHeader& header, std::vector<std::filesystem::path>& files);
+void add_times_beside(PendingOutputs& outputs, const std::filesystem::path& sequence,
+                      const SequenceHeader& header, std::vector<std::filesystem::path>& files);
 void add_extra_beside(PendingOutputs& outputs, const std::filesystem::path& target,
                       const ExtraFiles& extra, std::vector<std::filesystem::path>& files);
 
-/// True where single precision would round motion away: `poses` lie far from the origin for a mesh
-/// whose longest side is `extent`.
+/// True where single precision would round motion away, or cannot hold a coordinate: `poses` lie
+/// far from the origin for a mesh whose longest side is `extent`.
 bool needs_double(const PositionsView& poses, double extent);
+
+/// Throws MismatchError that names frame and vertex where single precision would make a coordinate
+/// infinite. `poses` are the frames from `first` on.
+void check_single_range(const std::filesystem::path& target, int first, const Frames& poses);
+/// Throws MismatchError for these, of a `target` that holds single precision only.
+void check_single_precision(const std::filesystem::path& target, const PositionsView& poses,
+                            double extent);
 
 }  // namespace mimetra

@@ -5,6 +5,7 @@
 #include "toolkit/io/sequence_format.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/progress.h"
+#include "toolkit/model/animation.h"
 
 namespace mimetra {
 namespace fs = std::filesystem;
@@ -20,6 +21,13 @@ std::unique_ptr<FrameSink> begin_sequence(const SequenceHeader& header, const fs
 
 std::vector<fs::path> write_sequence(const FrameSource& sequence, const fs::path& target,
                                      const SequenceWriteOptions& options, const ExtraFiles& extra) {
+  if (const auto* animation = dynamic_cast<const Animation*>(&sequence)) {
+    const SequenceFormat* format = sequence_format(target);
+    if (format && format->write_animation && animation->model().expressions().size() > 0) {
+      check_options(options);
+      return format->write_animation(*animation, target, options, extra);
+    }
+  }
   const auto sink = begin_sequence(sequence.header(), target, options, extra);
   report_progress(options.progress, 0);
   for_each_block(sequence, {.threads = options.threads, .progress = options.progress},

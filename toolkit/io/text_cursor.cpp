@@ -1,7 +1,7 @@
 #include "toolkit/io/text_cursor.h"
 
 #include <algorithm>
-#include <cstdlib>
+#include <limits>
 
 #include "toolkit/mesh/errors.h"
 
@@ -23,6 +23,26 @@ std::string quoted(std::string_view word) {
 std::string_view without_plus(std::string_view word) {
   const bool plus = word.size() > 1 && word[0] == '+' && word[1] != '-';
   return plus ? word.substr(1) : word;
+}
+
+/// True for digits of a number that is too large for a double, false for one that is too small.
+bool is_large(std::string_view digits) {
+  const std::size_t exponent_at = std::min(digits.find_first_of("eE"), digits.size());
+  long long magnitude = 0;  // how many digits stand before the point of the number without exponent
+  bool is_behind_point = false, is_zero = true;
+  for (const char c : digits.substr(0, exponent_at)) {
+    if (c == '.') is_behind_point = true;
+    if (c < '0' || c > '9') continue;
+    is_zero = is_zero && c == '0';
+    if (!is_behind_point && !is_zero) ++magnitude;
+    if (is_behind_point && is_zero) --magnitude;
+  }
+  if (exponent_at == digits.size()) return magnitude > 0;
+  const std::string_view exponent = without_plus(digits.substr(exponent_at + 1));
+  int power = 0;
+  const char* end = exponent.data() + exponent.size();
+  if (std::from_chars(exponent.data(), end, power).ec != std::errc()) return exponent[0] != '-';
+  return magnitude + power > 0;
 }
 
 }  // namespace
@@ -105,7 +125,8 @@ double TextCursor::number(std::string_view word, std::string_view what) const {
   }
   // Too small is 0, too large infinite, which whoever asked for the number refuses.
   if (error == std::errc::result_out_of_range) {
-    return std::strtod(std::string(digits).c_str(), nullptr);
+    const double magnitude = is_large(digits) ? std::numeric_limits<double>::infinity() : 0;
+    return digits[0] == '-' ? -magnitude : magnitude;
   }
   return value;
 }

@@ -33,6 +33,8 @@ struct SequenceHeader {
   /// N x 3; the first frame where nobody knows it.
   Positions rest = {};
   bool rest_is_known = false;
+  /// False where nobody gave them, so that they follow from kDefaultFramesPerSecond.
+  bool times_are_known = false;
 };
 
 /// One mesh that moves, whose poses are read when they are needed: one connectivity, F poses, their
@@ -51,6 +53,11 @@ class FrameSource {
   const Triangles& triangles() const { return header_.connectivity->triangles; }
   /// Seconds (F).
   const Eigen::VectorXd& times() const { return header_.times; }
+  bool times_are_known() const { return header_.times_are_known; }
+  /// times(), or none where nobody knows them: what the constructors of sequences take.
+  Eigen::VectorXd known_times() const {
+    return times_are_known() ? header_.times : Eigen::VectorXd();
+  }
   /// N x 3; where nobody knows it, it is the first frame.
   const Positions& rest() const { return header_.rest; }
   bool rest_is_known() const { return header_.rest_is_known; }

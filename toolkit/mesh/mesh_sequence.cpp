@@ -44,7 +44,8 @@ MeshSequence::MeshSequence(std::shared_ptr<const Connectivity> connectivity,
   if (!header_.connectivity) throw std::invalid_argument("a sequence needs a connectivity");
   check_frames(*frames_, vertices());
   const auto count = static_cast<int>(frames_->rows());
-  if (header_.times.size() == 0) header_.times = default_times(count);
+  header_.times_are_known = header_.times.size() > 0;
+  if (!times_are_known()) header_.times = default_times(count);
   if (this->frames() != count) {
     throw std::invalid_argument(std::to_string(this->frames()) + " times for " +
                                 std::to_string(count) + " frames");
@@ -77,12 +78,14 @@ MeshSequence MeshSequence::slice(int first, int last, int step) const {
   const auto chosen = Eigen::seq(first, last - 1, step);
   std::optional<Positions> rest;
   if (rest_is_known()) rest = this->rest();
-  return {shared_connectivity(), Frames((*frames_)(chosen, Eigen::all)), times()(chosen),
-          std::move(rest)};
+  MeshSequence part(shared_connectivity(), Frames((*frames_)(chosen, Eigen::all)), times()(chosen),
+                    std::move(rest));
+  part.header_.times_are_known = times_are_known();
+  return part;
 }
 
 MeshSequence MeshSequence::with_rest(Positions rest) const {
-  return {shared_connectivity(), frames_, times(), std::move(rest)};
+  return {shared_connectivity(), frames_, known_times(), std::move(rest)};
 }
 
 MeshSequence MeshSequence::with_frames(Frames frames) const {

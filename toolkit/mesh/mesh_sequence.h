@@ -14,7 +14,7 @@ namespace mimetra {
 class MeshSequence : public FrameSource {
  public:
   MeshSequence() = default;
-  /// `frames` F x 3N with F >= 1; `times` F, in seconds, or empty for kDefaultFramesPerSecond;
+  /// `frames` F x 3N with F >= 1; `times` F, in seconds, or empty where nobody knows them;
   /// `rest` N x 3 where it is known. Throws std::invalid_argument where sizes disagree.
   MeshSequence(Connectivity connectivity, Frames frames, Eigen::VectorXd times = {},
                std::optional<Positions> rest = {});

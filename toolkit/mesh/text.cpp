@@ -1,6 +1,8 @@
 #include "toolkit/mesh/text.h"
 
-#include <cstdio>
+#include <algorithm>
+#include <array>
+#include <charconv>
 
 namespace mimetra {
 namespace {
@@ -13,10 +15,24 @@ std::string_view number_run(const std::string& text, std::size_t& at) {
   return std::string_view(text).substr(first, at - first);
 }
 
+/// As printf writes it, but with a decimal point in every locale.
+std::string number_text(double value, std::chars_format format, int precision) {
+  std::array<char, 400> text;  // a double in fixed notation has up to 309 digits before the point
+  const auto end =
+      std::to_chars(text.data(), text.data() + text.size(), value, format, std::min(precision, 64))
+          .ptr;
+  return {text.data(), end};
+}
+
 }  // namespace
 
 std::string lower_case(std::string text) {
   for (char& c : text) c = static_cast<char>(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c);
+  return text;
+}
+
+std::string upper_case(std::string text) {
+  for (char& c : text) c = static_cast<char>(c >= 'a' && c <= 'z' ? c - 'a' + 'A' : c);
   return text;
 }
 
@@ -70,15 +86,15 @@ std::vector<std::string> words_of(const std::vector<int>& numbers) {
 }
 
 std::string readable(double value, int digits) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.*g", digits, value);
-  return text;
+  return number_text(value, std::chars_format::general, digits);
+}
+
+std::string fixed(double value, int decimals) {
+  return number_text(value, std::chars_format::fixed, decimals);
 }
 
 std::string percent(double share) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.1f %%", 100 * share);
-  return text;
+  return fixed(100 * share, 1) + " %";
 }
 
 }  // namespace mimetra

@@ -17,6 +17,9 @@ inline bool is_digit(char c) {
 /// A to Z become a to z.
 std::string lower_case(std::string text);
 
+/// a to z become A to Z.
+std::string upper_case(std::string text);
+
 /// ".ply" for NAME.PLY.
 std::string lower_extension(const std::filesystem::path& path);
 
@@ -34,8 +37,11 @@ std::string listed(const std::vector<std::string>& words, std::size_t most = 8);
 /// 0, 5, 17 as words.
 std::vector<std::string> words_of(const std::vector<int>& numbers);
 
-/// `value` with `digits` significant digits.
+/// `value` with `digits` significant digits; with a decimal point in every locale.
 std::string readable(double value, int digits = 4);
+
+/// `value` with `decimals` digits after the point, in every locale.
+std::string fixed(double value, int decimals);
 
 /// A share as a percentage: 0.1234 is "12.3 %".
 std::string percent(double share);

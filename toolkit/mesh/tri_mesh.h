@@ -1,5 +1,7 @@
 #pragma once
 
+#include <filesystem>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -36,6 +38,19 @@ struct FaceGroup {
   std::string statement;
 };
 
+/// A file of materials, as it was read.
+struct MaterialLibrary {
+  std::filesystem::path path;
+  std::string text;
+};
+
+/// The materials that an OBJ file names, kept for writing it back.
+struct Materials {
+  std::vector<MaterialLibrary> libraries;
+  /// Names of libraries that are not there.
+  std::vector<std::string> missing;
+};
+
 /// Which vertices form which faces. The triangles are what mimetra computes on; the polygons are
 /// what the user's file holds and what is written back. Polygon fans keep the polygon's first
 /// corner.
@@ -47,6 +62,8 @@ struct Connectivity {
   std::vector<int> polygon_of_triangle;
   TextureCoordinates texture;
   std::vector<FaceGroup> groups;
+  /// Null where nothing names materials.
+  std::shared_ptr<const Materials> materials = {};
 
   /// Triangulates each polygon as a fan. Throws std::invalid_argument that names the first polygon
   /// with fewer than three corners or with an index outside 0 .. vertices - 1.

@@ -8,24 +8,25 @@ namespace mimetra {
 namespace {
 
 SequenceHeader header_of(const BlendshapeModel& model, const Eigen::MatrixXd& weights,
-                         Eigen::VectorXd times) {
+                         Eigen::VectorXd times, bool times_are_known) {
   if (weights.cols() != model.expressions().size()) {
     throw std::invalid_argument(std::to_string(weights.cols()) + " weights for a model of " +
                                 std::to_string(model.expressions().size()) + " expressions");
   }
+  times_are_known = times_are_known && times.size() > 0;
   if (times.size() == 0) times = default_times(static_cast<int>(weights.rows()));
   if (times.size() != weights.rows()) {
     throw std::invalid_argument(std::to_string(times.size()) + " times for " +
                                 std::to_string(weights.rows()) + " frames");
   }
-  return {model.shared_connectivity(), std::move(times), model.neutral(), true};
+  return {model.shared_connectivity(), std::move(times), model.neutral(), true, times_are_known};
 }
 
 }  // namespace
 
 Animation::Animation(std::shared_ptr<const BlendshapeModel> model, Eigen::MatrixXd weights,
-                     Eigen::VectorXd times)
-    : FrameSource(header_of(*model, weights, std::move(times))),
+                     Eigen::VectorXd times, bool times_are_known)
+    : FrameSource(header_of(*model, weights, std::move(times), times_are_known)),
       model_(std::move(model)),
       weights_(std::move(weights)) {}
 

@@ -10,10 +10,10 @@ namespace mimetra {
 /// A model driven by weights; poses are computed when they are read. The rest pose is the neutral.
 class Animation : public FrameSource {
  public:
-  /// `weights` F x D; `times` F in seconds, or empty for kDefaultFramesPerSecond. Throws
-  /// std::invalid_argument where sizes disagree.
+  /// `weights` F x D; `times` F in seconds, or empty where nobody knows them, as is also said of
+  /// those that only tell frames apart. Throws std::invalid_argument where sizes disagree.
   Animation(std::shared_ptr<const BlendshapeModel> model, Eigen::MatrixXd weights,
-            Eigen::VectorXd times = {});
+            Eigen::VectorXd times = {}, bool times_are_known = true);
 
   const BlendshapeModel& model() const { return *model_; }
   const Eigen::MatrixXd& weights() const { return weights_; }

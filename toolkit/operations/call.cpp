@@ -245,8 +245,9 @@ void Call::write_values(const Output& output, const Paths& targets, const std::s
                                manifest);
     }
     const Format& format = table_.writer(output, target);
-    const std::string note = note_on_fields(format, made->second[i].data, target);
-    if (!note.empty() && request_.log) request_.log(LogLevel::warning, note);
+    for (const std::string& note : notes_on_losses(format, made->second[i].data, write)) {
+      if (request_.log) request_.log(LogLevel::warning, note);
+    }
     format.write(made->second[i].data, write);
   }
 }

@@ -75,15 +75,18 @@ std::vector<std::string> warnings_of(const FrameSource& sequence, bool moves) {
 Outcome run_check(const Invocation& invocation) {
   const NamedData& input = invocation.input("sequence");
   const FrameSource& sequence = *std::get<FieldSequence>(input.data).frames;
-  const std::vector<std::string> warnings = warnings_of(
+  const std::vector<std::string> found = warnings_of(
       sequence, moves(sequence, {.threads = invocation.threads, .progress = invocation.progress}));
+  // What reading said is not said again.
+  std::vector<std::string> warnings = input.origin.notes;
+  warnings.insert(warnings.end(), found.begin(), found.end());
   if (!warnings.empty() && check_parameters().read(invocation.parameters).strict) {
     throw MismatchError(input.name + ": " + warnings.front() +
                         (warnings.size() > 1
                              ? "; and " + std::to_string(warnings.size() - 1) + " more warnings"
                              : ""));
   }
-  for (const std::string& warning : warnings) invocation.warn(input.name + ": " + warning);
+  for (const std::string& warning : found) invocation.warn(input.name + ": " + warning);
   return {{},
           json_text(Json{{"usable", true}, {"warnings", warnings}}),
           input.name + ": usable, " + std::to_string(sequence.frames()) + " frames of " +

@@ -93,6 +93,8 @@ struct Origin {
   std::vector<std::filesystem::path> images = {};
   /// What was noticed in each frame of landmarks (F, "" for nothing), or none.
   std::vector<std::string> frame_notes = {};
+  /// What was noticed while it was read, which was said by then.
+  std::vector<std::string> notes = {};
   /// The run that wrote a manifest.
   std::shared_ptr<const RunRead> run = {};
 };

@@ -1,8 +1,8 @@
 #include <algorithm>
-#include <cstdio>
 
 #include <nlohmann/json.hpp>
 
+#include "toolkit/mesh/text.h"
 #include "toolkit/operations/evaluation_table.h"
 #include "toolkit/operations/json.h"
 #include "toolkit/operations/pipeline_parameters.h"
@@ -32,20 +32,23 @@ std::string text_of(const std::vector<EvaluationRow>& rows) {
       "   K  vertices  triangles   share    radius       DE all   MPE all      DE in L  MPE in L  "
       "regions s"
       "  transfer s\n";
-  const auto cell = [](const std::optional<double>& value, const char* format, int width) {
-    char buffer[32] = "-";
-    if (value) std::snprintf(buffer, sizeof buffer, format, *value);
-    const std::string content = buffer;
+  const auto cell = [](const std::string& content, int width) {
     return std::string(std::max<std::size_t>(width, content.size()) - content.size(), ' ') +
            content;
   };
+  const auto decimals = [&cell](const std::optional<double>& value, int count, int width) {
+    return cell(value ? fixed(*value, count) : "-", width);
+  };
+  const auto digits = [&cell](const std::optional<double>& value, int count, int width) {
+    return cell(value ? readable(*value, count) : "-", width);
+  };
   for (const EvaluationRow& row : rows) {
-    text += row.k ? cell(*row.k, "%.0f", 4) : "full";
-    text += cell(row.vertices, "%.0f", 10) + cell(row.triangles, "%.0f", 11) +
-            cell(100 * row.triangle_share, "%.1f %%", 8) + cell(row.radius, "%.4g", 10) +
-            cell(row.de_all, "%.6g", 13) + cell(row.mpe_all, "%.3f", 10) +
-            cell(row.de_region, "%.6g", 13) + cell(row.mpe_region, "%.3f", 10) +
-            cell(row.decompose_seconds, "%.3f", 11) + cell(row.transfer_seconds, "%.3f", 12) + '\n';
+    text += row.k ? cell(std::to_string(*row.k), 4) : "full";
+    text += decimals(row.vertices, 0, 10) + decimals(row.triangles, 0, 11) +
+            cell(percent(row.triangle_share), 8) + digits(row.radius, 4, 10) +
+            digits(row.de_all, 6, 13) + decimals(row.mpe_all, 3, 10) +
+            digits(row.de_region, 6, 13) + decimals(row.mpe_region, 3, 10) +
+            decimals(row.decompose_seconds, 3, 11) + decimals(row.transfer_seconds, 3, 12) + '\n';
   }
   return text;
 }

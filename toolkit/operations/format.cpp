@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "toolkit/io/material_library.h"
 #include "toolkit/mesh/text.h"
 
 namespace mimetra {
@@ -37,13 +38,32 @@ std::string listed_extensions(std::vector<std::string> extensions) {
   return joined(words, ", ", " or ");
 }
 
-std::string note_on_fields(const Format& format, const Data& data,
-                           const std::filesystem::path& target) {
+std::vector<std::string> notes_on_losses(const Format& format, const Data& data,
+                                         const WriteRequest& request) {
   const auto* sequence = std::get_if<FieldSequence>(&data);
-  if (!sequence || sequence->fields.empty() || format.fields) return "";
-  std::vector<std::string> names;
-  for (const Field& field : sequence->fields) names.push_back(field.name);
-  return target.string() + ": this format holds no fields; without " + joined(names);
+  if (!sequence) return {};
+  std::vector<std::string> notes;
+  if (!sequence->fields.empty() && !format.fields) {
+    std::vector<std::string> names;
+    for (const Field& field : sequence->fields) names.push_back(field.name);
+    notes.push_back(request.target.string() + ": this format holds no fields; without " +
+                    joined(names));
+  }
+  if (!format.holds) return notes;
+  const HeldParts held = format.holds(request.parameters);
+  const auto lost = parts_left_out(held, *sequence->frames);
+  if (!lost.empty()) {
+    notes.push_back(request.target.string() + ": this format holds no " +
+                    joined(lost, ", ", " or ") + "; written without");
+  }
+  if (held.groups) {
+    const Connectivity& connectivity = sequence->frames->connectivity();
+    const bool is_folder = format.has(Format::kFolder);
+    const WrittenMaterials materials = is_folder ? materials_in_folder(connectivity, request.target)
+                                                 : materials_beside(connectivity, request.target);
+    notes.insert(notes.end(), materials.notes.begin(), materials.notes.end());
+  }
+  return notes;
 }
 
 }  // namespace mimetra

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "toolkit/io/held_parts.h"
 #include "toolkit/mesh/progress.h"
 #include "toolkit/operations/data.h"
 #include "toolkit/operations/parameter.h"
@@ -71,6 +72,9 @@ struct Format {
   std::function<std::vector<std::filesystem::path>(const Data&, const WriteRequest&)> write = {};
   /// A sequence keeps its fields.
   bool fields = false;
+  /// What else of a sequence its files have a place for, with these options; where it is not set
+  /// nothing is said.
+  std::function<HeldParts(const Parameters&)> holds = {};
 
   bool has(const std::string& extension) const;
   /// Those of reading and of writing, each once.
@@ -80,8 +84,9 @@ struct Format {
 /// ".json, .csv or a folder": what formats are called in messages and help.
 std::string listed_extensions(std::vector<std::string> extensions);
 
-/// What is to be said of a sequence's fields that a format leaves out; "" where there are none.
-std::string note_on_fields(const Format& format, const Data& data,
-                           const std::filesystem::path& target);
+/// What is to be said of all that a format leaves out of a sequence, such as "out.stl: this format
+/// holds no texture coordinates or order of vertices; written without". None where it holds all.
+std::vector<std::string> notes_on_losses(const Format& format, const Data& data,
+                                         const WriteRequest& request);
 
 }  // namespace mimetra

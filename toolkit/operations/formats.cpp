@@ -1,10 +1,12 @@
 #include "toolkit/operations/formats.h"
 
 #include "toolkit/io/components_file.h"
+#include "toolkit/io/gltf_write.h"
 #include "toolkit/io/mesh_file.h"
 #include "toolkit/io/model_file.h"
 #include "toolkit/io/pending_output.h"
 #include "toolkit/io/regions_file.h"
+#include "toolkit/io/scene.h"
 #include "toolkit/io/sequence_file.h"
 #include "toolkit/io/sequence_format.h"
 #include "toolkit/io/whole_file.h"
@@ -82,6 +84,12 @@ MorphableModel model_of(const ModelSpec& spec, const ReadRequest& request) {
 
 ReadValue read_model_data(const std::string& text, const ReadRequest& request) {
   const ModelSpec spec = ModelSpec::parse(text);
+  if (is_scene_file(spec.path) && !spec.fit && spec.identity_text.empty()) {
+    Scene scene = read_scene(spec.path);
+    return {{spec.name(), ModelData{MorphableModel(*scene.model)}, {.path = spec.path}},
+            std::move(scene.files),
+            std::move(scene.notes)};
+  }
   ReadValue read{{spec.name(), ModelData{model_of(spec, request)}, {.path = spec.path}},
                  {spec.path}};
   if (spec.fit) read.files.push_back(*spec.fit);
@@ -105,6 +113,14 @@ Paths write_model_data(const Data& data, const WriteRequest& request) {
   write_model(request.target, model, performs ? std::optional(performance) : std::nullopt,
               request.overwrite, extra);
   return {request.target};
+}
+
+Paths write_gltf_data(const Data& data, const WriteRequest& request) {
+  const auto& [model, performance, landmarks] = std::get<ModelData>(data);
+  SequenceWriteOptions options;
+  options.overwrite = request.overwrite;
+  options.inputs = request.inputs;
+  return write_gltf_model(model, performance, request.target, options, request.extra);
 }
 
 ReadValue read_regions_data(const std::string& text, const ReadRequest& request) {
@@ -140,23 +156,39 @@ BoundParameters<SequenceWriteOptions> writing_parameters(SequenceFormat::Precisi
   return BoundParameters<SequenceWriteOptions>();
 }
 
+/// Listed because the reader says of the others how they become text.
+constexpr auto kUsdOfAnyKind = "USD, of which only text is read";
+
 void add_sequence_formats(OperationTable& table) {
   const auto add = [&table](std::string name, std::vector<std::string> extensions,
-                            const BoundParameters<SequenceWriteOptions>& writing) {
+                            const BoundParameters<SequenceWriteOptions>& writing,
+                            std::function<HeldParts(const Parameters&)> holds) {
     table.add(Format{.name = std::move(name),
                      .kind = DataKind::sequence,
                      .extensions = std::move(extensions),
                      .reading = sequence_parameters().declared(),
                      .read = read_sequence_data,
                      .writing = writing.declared(),
-                     .write = [writing](const Data& data, const WriteRequest& request) {
-                       return write_sequence_data(data, request, writing.read(request.parameters));
-                     }});
+                     .write =
+                         [writing](const Data& data, const WriteRequest& request) {
+                           return write_sequence_data(data, request,
+                                                      writing.read(request.parameters));
+                         },
+                     .holds = std::move(holds)});
   };
   for (const SequenceFormat& format : sequence_formats()) {
-    add(format.name, format.extensions, writing_parameters(format.precision));
+    add(format.name, format.extensions, writing_parameters(format.precision),
+        [held = format.holds](const Parameters&) { return held; });
   }
-  add("folder of meshes", {Format::kFolder}, folder_writing_parameters());
+  add("folder of meshes", {Format::kFolder}, folder_writing_parameters(),
+      [](const Parameters& options) {
+        return parts_held_by(folder_writing_parameters().read(options).format);
+      });
+  table.add(Format{.name = kUsdOfAnyKind,
+                   .kind = DataKind::sequence,
+                   .extensions = {".usd", ".usdc", ".usdz"},
+                   .reading = sequence_parameters().declared(),
+                   .read = read_sequence_data});
   table.add(Format{.name = "eos model, by weights",
                    .kind = DataKind::sequence,
                    .extensions = {".bin"},
@@ -173,6 +205,19 @@ void add_model_formats(OperationTable& table) {
   table.add(Format{.name = "eos shape model",
                    .kind = DataKind::model,
                    .extensions = {".bin"},
+                   .read = read_model_data});
+  table.add(Format{.name = "glTF 2.0",
+                   .kind = DataKind::model,
+                   .extensions = {".glb", ".gltf"},
+                   .read = read_model_data,
+                   .write = write_gltf_data});
+  table.add(Format{.name = "USD text",
+                   .kind = DataKind::model,
+                   .extensions = {".usda"},
+                   .read = read_model_data});
+  table.add(Format{.name = kUsdOfAnyKind,
+                   .kind = DataKind::model,
+                   .extensions = {".usd", ".usdc", ".usdz"},
                    .read = read_model_data});
   table.add(Format{.name = "mesh without expressions",
                    .kind = DataKind::model,

@@ -6,6 +6,7 @@
 #include "toolkit/mesh/surface_parts.h"
 #include "toolkit/mesh/text.h"
 #include "toolkit/operations/json.h"
+#include "toolkit/operations/times_text.h"
 #include "toolkit/operations/toolkit_operations.h"
 
 namespace mimetra {
@@ -32,7 +33,6 @@ std::string shares_of(const SurfaceParts& parts) {
 
 Json report_of(const FrameSource& sequence, const MeshReport& mesh, const SurfaceParts& parts,
                double motion) {
-  const Eigen::VectorXd& times = sequence.times();
   return {{"frames", sequence.frames()},
           {"vertices", mesh.vertices},
           {"faces", mesh.faces},
@@ -49,15 +49,14 @@ Json report_of(const FrameSource& sequence, const MeshReport& mesh, const Surfac
           {"extent", {mesh.extent[0], mesh.extent[1], mesh.extent[2]}},
           {"motion", motion},
           {"rest_known", sequence.rest_is_known()},
-          {"seconds", times[times.size() - 1] - times[0]}};
+          {"times_known", sequence.times_are_known()},
+          {"seconds", seconds(sequence)}};
 }
 
 std::string summary_of(const FrameSource& sequence, const MeshReport& mesh,
                        const SurfaceParts& parts, double motion) {
   std::ostringstream text;
-  const Eigen::VectorXd& times = sequence.times();
-  text << "frames      " << sequence.frames() << " (" << readable(times[0]) << " to "
-       << readable(times[times.size() - 1]) << " s)\n"
+  text << "frames      " << sequence.frames() << " (" << times_text(sequence) << ")\n"
        << "vertices    " << mesh.vertices << ", " << mesh.welded_vertices
        << " of them at the place of another\n"
        << "faces       " << mesh.faces << " (" << mesh.triangles << " triangles)\n"

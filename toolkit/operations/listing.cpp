@@ -37,6 +37,14 @@ std::vector<std::string> option_words(const std::vector<Parameter>& parameters) 
   return words;
 }
 
+/// What files have a place for where no option says otherwise; "" where nobody knows.
+std::string held_by(const Format& format) {
+  if (!format.write) return "";
+  std::string words = format.holds ? description(format.holds(Parameters(format.writing))) : "";
+  if (format.fields) words += words.empty() ? "fields" : ", fields";
+  return words;
+}
+
 std::string formats_as_markdown(const OperationTable& table) {
   std::string text =
       "# Formats\n\nMade by `mimetra formats --markdown` from the table of formats.\n";
@@ -45,14 +53,14 @@ std::string formats_as_markdown(const OperationTable& table) {
   for (const Format& format : formats) {
     if (!kind || *kind != format.kind) {
       text += "\n## " + std::string(kind_name(format.kind)) +
-              "\n\n| name ends in | format | read | written | options |\n"
-              "| --- | --- | --- | --- | --- |\n";
+              "\n\n| name ends in | format | read | written | holds | options |\n"
+              "| --- | --- | --- | --- | --- | --- |\n";
     }
     kind = &format.kind;
     const std::string options = joined(option_words(format.options()), "` `");
     text += "| " + listed_extensions(format.extensions) + " | " + format.name + " | " +
             (format.read ? "yes" : "") + " | " + (format.write ? "yes" : "") + " | " +
-            (options.empty() ? "" : '`' + options + '`') + " |\n";
+            held_by(format) + " | " + (options.empty() ? "" : '`' + options + '`') + " |\n";
   }
   return text;
 }
@@ -84,6 +92,7 @@ Json formats_as_json(const OperationTable& table) {
                     {"extensions", format.extensions},
                     {"read", bool(format.read)},
                     {"written", bool(format.write)},
+                    {"holds", held_by(format)},
                     {"reading", reading},
                     {"writing", writing}});
   }

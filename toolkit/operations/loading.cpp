@@ -41,6 +41,7 @@ class Loader {
       if (log_) log_(LogLevel::warning, note);
     }
     files.insert(files.end(), read.files.begin(), read.files.end());
+    read.value.origin.notes = std::move(read.notes);
     return std::move(read.value);
   }
 

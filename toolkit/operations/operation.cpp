@@ -6,6 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "toolkit/io/foreign_files.h"
 #include "toolkit/io/pending_output.h"
 #include "toolkit/mesh/text.h"
 #include "toolkit/operations/json.h"
@@ -191,7 +192,9 @@ const Format& OperationTable::reader(DataKind kind, const std::string& text) con
   std::error_code unreadable;
   if (!folder) throw UsageError(text + ": " + expected);
   if (!std::filesystem::is_regular_file(text, unreadable)) return *folder;
-  throw IoError(text, expected + ", not from '" + extension + "'");
+  const std::string found = foreign_file(text);
+  throw IoError(text, (found.empty() ? "" : "is " + found + ". ") + expected + ", not from '" +
+                          extension + "'");
 }
 
 const Format& OperationTable::writer(const Output& output,

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <stdexcept>
 
@@ -22,6 +21,7 @@
 #include <vtkTable.h>
 #include <vtkTextProperty.h>
 
+#include "toolkit/mesh/text.h"
 #include "toolkit/pictures/offscreen_window.h"
 #include "toolkit/pictures/picture.h"
 #include "toolkit/vtk/silent_vtk.h"
@@ -109,9 +109,8 @@ std::vector<double> decade_ticks(const Range& range) {
 }
 
 std::string tick_label(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.6g", value);
-  return text;
+  constexpr int kDigits = 6;
+  return readable(value, kDigits);
 }
 
 void set_text(vtkTextProperty& look, int size, bool bold) {

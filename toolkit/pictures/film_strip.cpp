@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <stdexcept>
 
@@ -218,9 +217,7 @@ class RowPainter {
 };
 
 std::string time_title(double seconds) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.2f s", seconds);
-  return text;
+  return fixed(seconds, 2) + " s";
 }
 
 double turn_of(const StripOptions& options, std::size_t column) {

@@ -36,7 +36,7 @@ MeshSequence Cutout::of(const MeshSequence& whole) const {
     return position_[v];
   });
   return {Connectivity::from_triangles(vertices(), kept), gathered(whole.positions(), kept_),
-          whole.times(), Positions(whole.rest()(kept_, Eigen::all))};
+          whole.known_times(), Positions(whole.rest()(kept_, Eigen::all))};
 }
 
 DistanceFunction Cutout::of(DistanceFunction distances) const {

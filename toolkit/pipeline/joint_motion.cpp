@@ -57,7 +57,7 @@ MeshSequence part_of_vertices(const MeshSequence& sequence,
     const Positions pose = sequence.frame(f)(vertices, Eigen::all);
     frames.row(f) = Eigen::Map<const Eigen::RowVectorXd>(pose.data(), pose.size());
   }
-  return {points, std::move(frames), sequence.times(), sequence.rest()(vertices, Eigen::all)};
+  return {points, std::move(frames), sequence.known_times(), sequence.rest()(vertices, Eigen::all)};
 }
 
 /// Sum over frames and vertices of squared distances to what is predicted.

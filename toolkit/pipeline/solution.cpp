@@ -73,7 +73,7 @@ Solution solve_blendshapes(const Source& source, const Target& target, const Sel
   Solution solution;
   solution.animation =
       std::make_shared<const Animation>(std::make_shared<const BlendshapeModel>(model),
-                                        transfer.weights(performance), performance.times());
+                                        transfer.weights(performance), performance.known_times());
   solution.sequence = solution.animation;
   solution.seconds = stopwatch.seconds();
   solution.conditions = transfer.conditions();
@@ -124,7 +124,8 @@ Solution solve_vertices(const Source& source, const Target& target, const Select
   const VertexTransfer transfer(performance.rest(), model.neutral(), model.triangles(),
                                 selection.triangles, of_space);
   const auto store = std::make_shared<FrameStore>(
-      SequenceHeader{model.shared_connectivity(), performance.times(), model.neutral(), true});
+      SequenceHeader{model.shared_connectivity(), performance.times(), model.neutral(), true,
+                     performance.times_are_known()});
   transfer.write_frames(performance, *store);
   store->commit();
   Solution solution;

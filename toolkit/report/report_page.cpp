@@ -64,9 +64,7 @@ std::string number(const std::optional<double>& value, int digits = 3) {
 
 /// `value` with its sign and two decimals: what is worse than full is negative.
 std::string signed_percent(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%+.2f", value);
-  return text;
+  return (std::signbit(value) ? "" : "+") + fixed(value, 2);
 }
 
 /// For a POSIX shell.

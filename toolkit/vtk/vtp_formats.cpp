@@ -55,9 +55,10 @@ std::vector<std::filesystem::path> write_sequence_data(const Data& data,
 }
 
 ReadValue read_sequence_data(const std::string& text, const ReadRequest& request) {
-  const auto frames = choice_of_frames().read(request.parameters).frames;
-  const auto selected = [&frames](int count) { return selected_frames(frames, count); };
+  const SequenceSource source = frame_parameters().read(request.parameters);
+  const auto selected = [&](int count) { return selected_frames(source.frames, count); };
   FieldSequence read = read_vtp_series(text, {.selected = selected, .progress = request.progress});
+  check_rate(text, read.frames->known_times(), source);
   if (!request.fields) read.fields.clear();
   return {{text, std::move(read)}, vtp_series_files(text)};
 }
@@ -96,7 +97,7 @@ ReadValue read_region_data(const std::string& text, const ReadRequest& request) 
 }  // namespace
 
 void add_vtp(OperationTable& table) {
-  const std::vector<Parameter> reading = choice_of_frames().declared();
+  const std::vector<Parameter> reading = frame_parameters().declared();
   const std::vector<Parameter> writing = vtp_parameters().declared();
   Format series{.name = "ParaView time series",
                 .kind = DataKind::sequence,
@@ -105,7 +106,8 @@ void add_vtp(OperationTable& table) {
                 .read = read_sequence_data,
                 .writing = writing,
                 .write = write_sequence_data,
-                .fields = true};
+                .fields = true,
+                .holds = [](const Parameters&) { return HeldParts{.polygons = true}; }};
   table.add(series);
   series.name = "VTK mesh of one frame";
   series.extensions = {".vtp"};

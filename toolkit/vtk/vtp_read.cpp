@@ -135,6 +135,7 @@ FieldSequence read_vtp_series(const fs::path& path, const VtpReadOptions& option
     report_progress(options.progress,
                     static_cast<double>(f + 1) / static_cast<double>(times.size()));
   }
+  if (lower_extension(path) == ".vtp") times.resize(0);
   return {
       MeshSequence(std::move(connectivity), std::move(frames), std::move(times), std::move(rest)),
       std::move(fields)};

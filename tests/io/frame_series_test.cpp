@@ -1,0 +1,135 @@
+// Folders that hold more, less or other than the frames of one sequence.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/temporary_folder.h"
+#include "toolkit/io/frame_files.h"
+#include "toolkit/io/model_file.h"
+#include "toolkit/io/sequence_file.h"
+#include "toolkit/io/whole_file.h"
+#include "toolkit/mesh/errors.h"
+
+namespace mimetra {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+class FolderOfFrames : public testing::Test {
+ protected:
+  /// A triangle whose last corner is at height `y`.
+  void write(const std::string& name, double y = 1) {
+    write_bytes(folder_ / name, "v 0 0 0\nv 1 0 0\nv 0 " + std::to_string(y) + " 0\nf 1 2 3\n");
+  }
+  void write_frames(std::initializer_list<int> numbers) {
+    for (const int number : numbers) write("f_" + std::to_string(number) + ".obj", number + 1);
+  }
+  FrameSeries series() const { return frames_of_folder(folder_.path()); }
+  std::string refusal() const {
+    return test::message_of<IoError>([this] { frames_of_folder(folder_.path()); });
+  }
+
+  test::TemporaryFolder folder_;
+};
+
+TEST_F(FolderOfFrames, TakesANeutralForTheRestPose) {
+  write_frames({0, 1, 2});
+  write("Neutral.obj", 7);
+  EXPECT_FALSE(is_model(folder_.path()));
+  const OpenSequence open = open_sequence(folder_.path());
+  EXPECT_EQ(open.frames->frames(), 3);
+  EXPECT_TRUE(open.frames->rest_is_known());
+  EXPECT_EQ(open.frames->rest()(2, 1), 7);
+  EXPECT_THAT(open.notes, ElementsAre(AllOf(HasSubstr("Neutral.obj"), HasSubstr("rest pose"))));
+}
+
+TEST_F(FolderOfFrames, IsAModelWithExpressionsWhateverElseItHolds) {
+  write_frames({0, 1, 2});
+  write("neutral.obj", 7);
+  fs::create_directory(folder_ / "expressions");
+  write("expressions/smile.obj", 8);
+  EXPECT_TRUE(is_model(folder_.path()));
+  const OpenSequence open = open_sequence(folder_.path());
+  EXPECT_EQ(open.frames->frames(), 1);
+  EXPECT_THAT(open.notes, ElementsAre(AllOf(HasSubstr("read as a model"), HasSubstr("3 other"),
+                                            HasSubstr("f_0.obj"))));
+}
+
+TEST_F(FolderOfFrames, LeavesStrangersOutAndNamesThem) {
+  write_frames({0, 1, 2});
+  write("smile.obj");
+  EXPECT_EQ(series().frames.size(), 3u);
+  EXPECT_THAT(series().notes,
+              ElementsAre(HasSubstr("smile.obj is left out of the 3 frames f_*.obj")));
+  // A pattern says that it is meant.
+  const FrameSeries asked = frames_of_pattern((folder_ / "*.obj").string());
+  EXPECT_EQ(asked.frames.size(), 4u);
+  EXPECT_THAT(asked.notes, ElementsAre(HasSubstr("smile.obj is a frame too")));
+}
+
+TEST_F(FolderOfFrames, TakesAllFilesWhereMostAreOfNoSeries) {
+  for (const char* name : {"happy.obj", "sad.obj", "au_1.obj", "au_2.obj"}) write(name);
+  EXPECT_EQ(series().frames.size(), 4u);
+  EXPECT_THAT(series().notes, IsEmpty());
+}
+
+TEST_F(FolderOfFrames, NamesMissingNumbers) {
+  write_frames({0, 1, 3, 4, 8});
+  EXPECT_THAT(series().notes, ElementsAre(HasSubstr("no file has these numbers: 2, 5 to 7")));
+  EXPECT_EQ(series().frames.size(), 5u);
+}
+
+TEST_F(FolderOfFrames, MayCountInSteps) {
+  write_frames({10, 20, 30, 40});
+  EXPECT_THAT(series().notes, IsEmpty());
+}
+
+TEST_F(FolderOfFrames, RefusesTwoFilesOfOneNumber) {
+  write_frames({0, 1, 2});
+  write("f_01.obj");
+  EXPECT_THAT(refusal(), AllOf(HasSubstr("f_01.obj"), HasSubstr("f_1.obj"), HasSubstr("number")));
+}
+
+TEST_F(FolderOfFrames, RefusesFramesOfTwoFormats) {
+  write_frames({0, 1, 2});
+  write_bytes(folder_ / "f_3.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
+  EXPECT_THAT(refusal(), HasSubstr("several formats"));
+}
+
+TEST_F(FolderOfFrames, RefusesALinkThatLeadsNowhere) {
+  write_frames({0, 1});
+  fs::create_symlink("gone.obj", folder_ / "f_2.obj");
+  EXPECT_THAT(refusal(), AllOf(HasSubstr("f_2.obj"), HasSubstr("leads nowhere, to gone.obj")));
+  const std::string pattern = (folder_ / "f_%d.obj").string();
+  EXPECT_THAT(test::message_of<IoError>([&] { frames_of_pattern(pattern); }),
+              HasSubstr("leads nowhere"));
+}
+
+TEST_F(FolderOfFrames, OfAModelRefusesALinkThatLeadsNowhereToo) {
+  write("neutral.obj");
+  fs::create_directory(folder_ / "expressions");
+  write("expressions/smile.obj", 8);
+  fs::create_symlink("gone.obj", folder_ / "expressions/jawOpen.obj");
+  EXPECT_THAT(test::message_of<IoError>([this] { read_model(folder_.path()); }),
+              AllOf(HasSubstr("jawOpen.obj"), HasSubstr("leads nowhere")));
+}
+
+TEST_F(FolderOfFrames, PatternThatMatchesNothingNamesTheOneThatFits) {
+  write_frames({1, 2});
+  const auto refused = [this](const std::string& name) {
+    return test::message_of<IoError>([&] { frames_of_pattern((folder_ / name).string()); });
+  };
+  EXPECT_THAT(refused("f_%04d.obj"),
+              HasSubstr("there is f_1.obj: write '" + (folder_ / "f_%d.obj").string() + "'"));
+  fs::rename(folder_ / "f_1.obj", folder_ / "f_0001.obj");
+  fs::rename(folder_ / "f_2.obj", folder_ / "f_0002.obj");
+  EXPECT_THAT(refused("f_%d.obj"), HasSubstr("f_%04d.obj'"));
+  EXPECT_THAT(refused("g_%d.obj"), testing::EndsWith("STL file"));
+}
+
+}  // namespace
+}  // namespace mimetra

@@ -1,0 +1,76 @@
+// Numbers that are finite in double and infinite in single precision.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/shapes.h"
+#include "tests/shared_data.h"
+#include "tests/temporary_folder.h"
+#include "toolkit/io/mesh_file.h"
+#include "toolkit/io/sequence_file.h"
+#include "toolkit/mesh/errors.h"
+#include "toolkit/mesh/mesh_sequence.h"
+
+namespace mimetra {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+
+/// Two frames of a grid, in the second of which vertex 7 is far beyond single precision.
+MeshSequence leaping_grid() {
+  const test::Shape shape = test::grid(4, 4);
+  Frames frames(2, shape.positions.size());
+  frames.rowwise() = Eigen::Map<const Eigen::RowVectorXd>(shape.positions.data(), frames.cols());
+  frames(1, 3 * 7 + 2) = -1e39;
+  return {Connectivity::from_triangles(16, shape.triangles), frames};
+}
+
+TEST(SinglePrecision, IsLeftForDoubleInMeshFilesThatHaveIt) {
+  const test::TemporaryFolder folder;
+  for (const MeshFormat format : {MeshFormat::ply, MeshFormat::obj, MeshFormat::off}) {
+    const auto place = folder / std::string(choice_name(format));
+    write_sequence(leaping_grid(), place, {.format = format});
+    EXPECT_EQ(read_sequence(place).sequence.positions(), leaping_grid().positions());
+  }
+}
+
+TEST(SinglePrecision, RefusesWhatItCannotHoldAndNamesFrameAndVertex) {
+  const auto refusal = [](const std::string& name, const SequenceWriteOptions& options = {}) {
+    const test::TemporaryFolder folder;
+    std::string message = test::message_of<MismatchError>(
+        [&] { write_sequence(leaping_grid(), folder / name, options); });
+    EXPECT_TRUE(folder.names().empty());
+    return message;
+  };
+  const auto names_it =
+      AllOf(HasSubstr("frame 1: vertex 7 is at 1e+39"), HasSubstr("write double"));
+  EXPECT_THAT(refusal("take.pc2"), names_it);
+  EXPECT_THAT(refusal("take.mdd"), names_it);
+  EXPECT_THAT(refusal("take.npy", {.single_precision = true}), names_it);
+  EXPECT_THAT(refusal("take.npz", {.single_precision = true}), names_it);
+  EXPECT_THAT(refusal("take", {.format = MeshFormat::stl}),
+              HasSubstr("take/frame_0001.stl: vertex 7 is at 1e+39"));
+}
+
+TEST(SinglePrecision, OfOneMeshIsRefusedWhereNobodyAskedForMore) {
+  const test::TemporaryFolder folder;
+  const MeshSequence sequence = leaping_grid();
+  for (const char* name : {"a.ply", "a.obj", "a.off", "a.stl"}) {
+    EXPECT_THROW(write_mesh(folder / name, sequence.frame(1), sequence.connectivity()),
+                 MismatchError)
+        << name;
+  }
+}
+
+TEST(SinglePrecision, IsNotWhatTheFileThatDidHarmIsWrittenIn) {
+  const auto huge = test::shared_path("data/hostile/huge.obj");
+  MIMETRA_SKIP_WITHOUT(huge);
+  const test::TemporaryFolder folder;
+  const auto read = read_sequence(huge.string());
+  write_sequence(read.sequence, folder / "out.ply");
+  EXPECT_EQ(read_mesh(folder / "out.ply").positions, read.sequence.frame(0));
+}
+
+}  // namespace
+}  // namespace mimetra

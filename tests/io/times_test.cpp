@@ -1,0 +1,138 @@
+#include <gmock/gmock.h>
+
+#include "tests/shapes.h"
+#include "tests/temporary_folder.h"
+#include "toolkit/io/sequence_file.h"
+#include "toolkit/io/whole_file.h"
+#include "toolkit/mesh/errors.h"
+
+namespace mimetra {
+namespace {
+
+namespace fs = std::filesystem;
+using test::message_of;
+using test::TemporaryFolder;
+using testing::HasSubstr;
+
+/// Neither start, rate nor regularity could be guessed.
+const Eigen::Vector4d kTimes{0.25, 0.3, 0.5, 1.0 / 3 + 1};
+
+MeshSequence four_frames(const Eigen::VectorXd& times) {
+  const TriMesh mesh = test::mesh_of(test::grid(2, 2));
+  Frames poses(4, mesh.positions.size());
+  for (int f = 0; f < 4; ++f) {
+    const Positions pose = mesh.positions.array() + f;
+    poses.row(f) = Eigen::Map<const Eigen::RowVectorXd>(pose.data(), pose.size());
+  }
+  return {mesh.connectivity, std::move(poses), times};
+}
+
+/// Written under a name and read again.
+class Times : public testing::TestWithParam<std::string> {
+ protected:
+  fs::path target() const { return folder_ / GetParam(); }
+  fs::path beside() const { return folder_ / "take.times.csv"; }
+
+  TemporaryFolder folder_;
+};
+
+TEST_P(Times, AreKeptWhateverTheyAre) {
+  write_sequence(four_frames(kTimes), target());
+  const MeshSequence read = read_sequence(target().string()).sequence;
+  EXPECT_TRUE(read.times_are_known());
+  // .mdd has them in single precision.
+  const double rounding = GetParam() == "take.mdd" ? 1e-7 : 0;
+  EXPECT_LE((read.times() - kTimes).cwiseAbs().maxCoeff(), rounding);
+}
+
+TEST_P(Times, OfAPartAreThoseOfItsFrames) {
+  write_sequence(four_frames(kTimes), target());
+  const MeshSequence read = read_sequence(target().string(), {.frames = "1::2"}).sequence;
+  ASSERT_EQ(read.frames(), 2);
+  EXPECT_NEAR(read.times()[1], kTimes[3], 1e-7);
+  EXPECT_TRUE(read.times_are_known());
+}
+
+TEST_P(Times, AreNotReplacedByAFrameRate) {
+  write_sequence(four_frames(kTimes), target());
+  EXPECT_THROW(read_sequence(target().string(), {.fps = 25}), std::invalid_argument);
+  EXPECT_THAT(message_of<std::exception>([this] { read_sequence(target().string(), {.fps = 25}); }),
+              HasSubstr("its 4 frames have times of their own, 0.25 to 1.333 s"));
+}
+
+INSTANTIATE_TEST_SUITE_P(Formats, Times,
+                         testing::Values("take", "take.npy", "take.npz", "take.pc2", "take.mdd"),
+                         [](const auto& format) {
+                           std::string name = format.param;
+                           std::ranges::replace(name, '.', '_');
+                           return name;
+                         });
+
+/// Formats that need not have times.
+class UnknownTimes : public Times {};
+
+TEST_P(UnknownTimes, StayUnknown) {
+  write_sequence(four_frames({}), target());
+  const MeshSequence read = read_sequence(target().string()).sequence;
+  EXPECT_FALSE(read.times_are_known());
+  EXPECT_FALSE(fs::exists(beside()));
+}
+
+TEST_P(UnknownTimes, AreGivenByAFrameRate) {
+  write_sequence(four_frames({}), target());
+  const MeshSequence read = read_sequence(target().string(), {.fps = 25}).sequence;
+  EXPECT_TRUE(read.times_are_known());
+  EXPECT_NEAR(read.times()[3], 3 / 25.0, 1e-15);
+}
+
+TEST_P(UnknownTimes, TakeTheTimesOfAnEarlierOutputAway) {
+  write_sequence(four_frames(kTimes), target());
+  write_sequence(four_frames({}), target(), {.overwrite = true});
+  EXPECT_FALSE(read_sequence(target().string()).sequence.times_are_known());
+}
+
+INSTANTIATE_TEST_SUITE_P(Formats, UnknownTimes,
+                         testing::Values("take", "take.npy", "take.npz", "take.pc2"),
+                         [](const auto& format) {
+                           std::string name = format.param;
+                           std::ranges::replace(name, '.', '_');
+                           return name;
+                         });
+
+class TimesBeside : public testing::Test {
+ protected:
+  MeshSequence read(const std::string& name) const {
+    return read_sequence((folder_ / name).string()).sequence;
+  }
+  void write_times(const std::string& text) const { write_bytes(folder_ / "take.times.csv", text); }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(TimesBeside, AreFoundForAPatternOfTheFolder) {
+  write_sequence(four_frames(kTimes), folder_ / "take");
+  EXPECT_EQ(read("take/frame_%04d.ply").times(), kTimes);
+  EXPECT_EQ(read("take/*2.ply").times()[0], 0);  // one mesh, no part of a sequence
+  ASSERT_EQ(read("take/frame_000?.ply").times(), kTimes);
+}
+
+TEST_F(TimesBeside, OfAnotherNumberOfFramesAreRefused) {
+  write_sequence(four_frames(kTimes), folder_ / "take");
+  write_times("time\n0\n1\n2\n");
+  EXPECT_THROW(read("take"), MismatchError);
+  EXPECT_THAT(message_of<std::exception>([this] { read("take"); }),
+              HasSubstr("take.times.csv: 3 times, expected one for each of the 4 frames of"));
+}
+
+TEST_F(TimesBeside, ThatFallOrAreNoTimesAreRefused) {
+  write_sequence(four_frames(kTimes), folder_ / "take");
+  write_times("time\n0\n1\n1\n2\n");
+  EXPECT_THAT(message_of<std::exception>([this] { read("take"); }),
+              HasSubstr("frame 2 is at 1 s, expected times"));
+  write_times("when\n0\n1\n2\n3\n");
+  EXPECT_THAT(message_of<std::exception>([this] { read("take"); }),
+              HasSubstr("expected one column, 'time'"));
+}
+
+}  // namespace
+}  // namespace mimetra

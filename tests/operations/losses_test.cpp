@@ -1,0 +1,75 @@
+// What a format has no place for is said where something is written in it.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/shapes.h"
+#include "toolkit/operations/operation.h"
+
+namespace mimetra {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+/// Two quads of two groups and materials, numbered backwards, and a frame in which they have moved.
+/// The texture has a seam where it is asked for.
+FieldSequence quads(bool seam) {
+  Connectivity faces =
+      Connectivity::from_polygons(6, Polygons{{5, 4, 1, 2, 4, 3, 0, 1}, {0, 4, 8}});
+  faces.texture.coordinates = {{0, 0}, {1, 0}, {1, 1}, {0, 1}, {0.5, 0}};
+  faces.texture.corners = {0, 1, 2, 3, 1, 0, 0, 2};
+  if (seam) faces.texture.corners[4] = 4;
+  faces.groups = {{0, "g lips"}, {1, "usemtl skin"}};
+  Positions rest(6, 3);
+  rest << 0, 0, 0, 1, 0, 0, 2, 0, 0, 0, 1, 0, 1, 1, 0, 2, 1, 0;
+  Frames frames(2, 18);
+  frames.rowwise() = Eigen::Map<const Eigen::RowVectorXd>(rest.data(), 18);
+  frames.array() += 1;
+  return FieldSequence(MeshSequence(std::move(faces), std::move(frames), {}, rest));
+}
+
+std::vector<std::string> notes_on(const FieldSequence& sequence, const std::string& target,
+                                  const std::string& folder_format = "") {
+  OperationTable table;
+  add_toolkit(table);
+  const Format& format = table.writer({"out", DataKind::sequence, ""}, target);
+  Parameters parameters(format.writing);
+  if (!folder_format.empty()) parameters.set("format", folder_format);
+  return notes_on_losses(format, sequence, {.target = target, .parameters = parameters});
+}
+
+TEST(Losses, AreNamedInOneLine) {
+  EXPECT_THAT(
+      notes_on(quads(false), "take.stl"),
+      ElementsAre("take.stl: this format holds no faces of more than three corners, texture "
+                  "coordinates, groups, materials, rest pose or order of vertices; written "
+                  "without"));
+  EXPECT_THAT(notes_on(quads(false), "take.off"),
+              ElementsAre(HasSubstr("holds no texture coordinates, groups, materials or rest")));
+}
+
+TEST(Losses, OfAFolderAreThoseOfItsFiles) {
+  EXPECT_THAT(notes_on(quads(true), "take/", "obj"), IsEmpty());
+  EXPECT_THAT(notes_on(quads(true), "take/", "off"), ElementsAre(HasSubstr("texture")));
+  EXPECT_THAT(notes_on(quads(true), "take/"), ElementsAre(HasSubstr("no groups or materials;")));
+}
+
+TEST(Losses, AreNoneWhereTheOnlyFrameIsTheRestPoseAndNumbersAreKept) {
+  Connectivity faces = Connectivity::from_triangles(3, (Triangles(1, 3) << 0, 1, 2).finished());
+  const Positions triangle = test::grid(3, 3).positions.bottomRows(3);
+  const Frames frames = Eigen::Map<const Eigen::RowVectorXd>(triangle.data(), 9);
+  const FieldSequence sequence(MeshSequence(std::move(faces), frames, {}, triangle));
+  EXPECT_THAT(notes_on(sequence, "neutral.stl"), IsEmpty());
+}
+
+TEST(Losses, OfTextureCoordinatesAreNoneWhereOneForEachVertexDoes) {
+  const HeldParts held{.polygons = true, .texture = HeldParts::Texture::vertices, .groups = true};
+  EXPECT_THAT(parts_left_out(held, *quads(false).frames), IsEmpty());
+  EXPECT_THAT(parts_left_out(held, *quads(true).frames),
+              ElementsAre("several texture coordinates at a vertex"));
+}
+
+}  // namespace
+}  // namespace mimetra

@@ -1,0 +1,68 @@
+#include "toolkit/io/draco_mesh.h"
+
+#include <new>
+
+#include <draco/compression/decode.h>
+#include <draco/mesh/mesh.h>
+
+#include "toolkit/io/scene.h"
+#include "toolkit/mesh/errors.h"
+
+namespace mimetra {
+namespace {
+
+Frames draco_values(const draco::Mesh& mesh, const draco::PointAttribute& attribute,
+                    int components) {
+  Frames values(mesh.num_points(), components);
+  float element[4] = {};
+  for (draco::PointIndex point(0); point < mesh.num_points(); ++point) {
+    const bool is_there = attribute.ConvertValue<float>(attribute.mapped_index(point),
+                                                        static_cast<int8_t>(components), element);
+    for (int c = 0; c < components; ++c) {
+      values(point.value(), c) = is_there ? static_cast<double>(element[c]) : 0;
+    }
+  }
+  return values;
+}
+
+DracoMesh draco_parts(const std::string& path, const std::string& what, const draco::Mesh& mesh,
+                      const GltfDraco& draco) {
+  const auto attribute = [&mesh](std::optional<int> id) {
+    return id ? mesh.GetAttributeByUniqueId(static_cast<uint32_t>(*id)) : nullptr;
+  };
+  const auto* positions = attribute(draco.positions);
+  if (!positions) throw IoError(path, what + ": its compressed mesh has no positions");
+  DracoMesh parts{Triangles(mesh.num_faces(), 3), draco_values(mesh, *positions, 3), {}};
+  for (draco::FaceIndex face(0); face < mesh.num_faces(); ++face) {
+    for (int corner = 0; corner < 3; ++corner) {
+      const auto point = mesh.face(face)[static_cast<std::size_t>(corner)].value();
+      if (point >= mesh.num_points()) throw IoError(path, what + ": a face has no such vertex");
+      parts.triangles(face.value(), corner) = static_cast<int>(point);
+    }
+  }
+  if (!parts.positions.allFinite()) throw IoError(path, what + ": a position is not finite");
+  if (const auto* texture = attribute(draco.texture)) {
+    parts.texture = draco_values(mesh, *texture, 2);
+  }
+  return parts;
+}
+
+}  // namespace
+
+DracoMesh decode_draco(const std::string& path, const std::string& what, const GltfDraco& draco,
+                       std::string_view bytes) {
+  draco::DecoderBuffer buffer;
+  buffer.Init(bytes.data(), bytes.size());
+  draco::Decoder decoder;
+  try {
+    auto mesh = decoder.DecodeMeshFromBuffer(&buffer);
+    if (!mesh.ok()) {
+      throw IoError(path, what + " cannot be decompressed: " + mesh.status().error_msg_string());
+    }
+    return draco_parts(path, what, *mesh.value(), draco);
+  } catch (const std::bad_alloc&) {
+    throw IoError(path, what + " cannot be decompressed: its counts are larger than memory");
+  }
+}
+
+}  // namespace mimetra

@@ -1,0 +1,116 @@
+#include "toolkit/io/driven_model.h"
+
+#include "toolkit/io/frame_files.h"
+#include "toolkit/io/scene.h"
+#include "toolkit/io/sequence_parts.h"
+#include "toolkit/mesh/errors.h"
+#include "toolkit/mesh/text.h"
+#include "toolkit/model/animation.h"
+
+namespace mimetra {
+namespace fs = std::filesystem;
+namespace {
+
+Eigen::Map<const Eigen::RowVectorXd> as_row(const Positions& positions) {
+  return {positions.data(), positions.size()};
+}
+
+std::vector<std::string> match_notes(const fs::path& weights, const fs::path& model,
+                                     const WeightMatch& match) {
+  std::vector<std::string> notes;
+  if (!match.unmatched_columns.empty()) {
+    notes.push_back(weights.string() +
+                    ": columns that drive no expression: " + listed(match.unmatched_columns));
+  }
+  if (!match.undriven_expressions.empty()) {
+    notes.push_back(model.string() +
+                    ": expressions that no column drives: " + listed(match.undriven_expressions));
+  }
+  return notes;
+}
+
+std::shared_ptr<const FrameSource> resting(const BlendshapeModel& person,
+                                           const SequenceSource& source) {
+  selected_frames(source.frames, 1);
+  return std::make_shared<const MeshSequence>(person.shared_connectivity(),
+                                              as_row(person.neutral()), Eigen::VectorXd(),
+                                              person.neutral());
+}
+
+Eigen::MatrixXd weights_of(const fs::path& path, const WeightTrack& track,
+                           const std::vector<std::string>& expressions) {
+  try {
+    return weights_for(track, expressions);
+  } catch (const MismatchError& error) {
+    throw MismatchError(path.string() + ": " + error.what());
+  }
+}
+
+}  // namespace
+
+OpenSequence drive(std::shared_ptr<const BlendshapeModel> model, const fs::path& path,
+                   const SequenceSource& source) {
+  if (source.weights) {
+    return drive(std::move(model), path, source, *source.weights, read_weights(*source.weights));
+  }
+  return {resting(*model, source), true, {path}, {}};
+}
+
+OpenSequence drive(std::shared_ptr<const BlendshapeModel> model, const fs::path& path,
+                   const SequenceSource& source, const fs::path& driver, WeightTrack track) {
+  OpenSequence open;
+  open.model_driven = true;
+  open.files = {path, driver};
+  const auto frames = static_cast<int>(track.weights.rows());
+  const std::vector<int> chosen = selected_frames(source.frames, frames);
+  const std::vector<std::string>& expressions = model->expressions().names;
+  open.notes = match_notes(driver, path, match_weights(track, expressions));
+  std::optional<Eigen::VectorXd> of_track;
+  if (track.times.size() > 0) of_track = track.times;
+  const FrameTimes times = frame_times(driver.string(), frames, std::move(of_track), source);
+  // There may be many frames: no more than one copy of what is not needed again.
+  if (static_cast<int>(chosen.size()) < frames) {
+    track.weights = Eigen::MatrixXd(track.weights(chosen, Eigen::all));
+  }
+  Eigen::MatrixXd weights = weights_of(driver, track, expressions);
+  track.weights.resize(0, 0);
+  open.frames = std::make_shared<const Animation>(std::move(model), std::move(weights),
+                                                  times.seconds(chosen), times.are_known);
+  return open;
+}
+
+OpenSequence open_scene(const fs::path& path, const SequenceSource& source) {
+  Scene scene = read_scene(path);
+  const auto frames = static_cast<int>(scene.weights.rows());
+  OpenSequence open;
+  if (scene.frames && !source.weights) {
+    check_rate(path.string(), scene.frames->known_times(), source);
+    open.frames = scene.frames;
+    if (source.frames) {
+      open.frames = selected(scene.frames, selected_frames(source.frames, scene.frames->frames()));
+    }
+  } else if (source.weights || frames == 0) {
+    open = drive(scene.model, path, source);
+  } else {
+    const std::vector<int> chosen = selected_frames(source.frames, frames);
+    std::optional<Eigen::VectorXd> of_scene;
+    if (scene.times.size() > 0) of_scene = scene.times;
+    const FrameTimes times = frame_times(path.string(), frames, std::move(of_scene), source);
+    open.model_driven = true;
+    open.frames = std::make_shared<const Animation>(
+        scene.model, Eigen::MatrixXd(scene.weights(chosen, Eigen::all)), times.seconds(chosen),
+        times.are_known);
+  }
+  if (!scene.rest_is_known && !source.weights) {
+    open.frames = with_rest(open.frames, std::nullopt);
+    open.model_driven = false;
+  }
+  open.files = scene.files;
+  if (source.weights) open.files.push_back(*source.weights);
+  std::vector<std::string>& notes = scene.notes;
+  notes.insert(notes.end(), scene.motion_notes.begin(), scene.motion_notes.end());
+  open.notes.insert(open.notes.begin(), notes.begin(), notes.end());
+  return open;
+}
+
+}  // namespace mimetra

@@ -1,0 +1,184 @@
+#include "toolkit/io/frame_series.h"
+
+#include <algorithm>
+#include <charconv>
+#include <map>
+
+#include "toolkit/mesh/errors.h"
+#include "toolkit/mesh/text.h"
+
+namespace mimetra {
+namespace fs = std::filesystem;
+namespace {
+
+/// "smile_0012.v.OBJ" is number 12 of the series "smile_*.v.obj".
+struct NumberedName {
+  std::string series;  ///< empty for a name without a number
+  long long number = 0;
+};
+
+NumberedName numbered(const fs::path& file) {
+  const std::string stem = file.stem().string();
+  const auto last = std::ranges::find_if(stem.rbegin(), stem.rend(), is_digit).base();
+  if (last == stem.begin()) return {};
+  auto first = last;
+  while (first != stem.begin() && is_digit(first[-1])) --first;
+  NumberedName name{std::string(stem.begin(), first) + '*' + std::string(last, stem.end()) +
+                    lower_extension(file)};
+  const auto error = std::from_chars(&*first, &*first + (last - first), name.number).ec;
+  return error == std::errc() ? name : NumberedName();  // a number of that size counts nothing
+}
+
+std::string place_of(const fs::path& folder) {
+  const std::string text = folder.string();
+  return text.empty() || text.back() == '/' ? text : text + '/';
+}
+
+/// Two files of one number, such as frame_1.obj and frame_01.obj.
+void check_numbers(const std::vector<fs::path>& frames) {
+  std::map<std::pair<std::string, long long>, fs::path> known;
+  for (const fs::path& frame : frames) {
+    const auto [series, number] = numbered(frame);
+    if (series.empty()) continue;
+    const auto [first, is_new] = known.try_emplace({series, number}, frame);
+    if (is_new) continue;
+    throw IoError(frame.string(), "has the number of " + first->second.filename().string() + ", " +
+                                      std::to_string(number) +
+                                      "; remove one of them, or name the frames by a pattern such "
+                                      "as 'frame_%04d" +
+                                      frame.extension().string() + "'");
+  }
+}
+
+/// "7", or "12 to 15".
+std::string run_of(long long first, long long last) {
+  const std::string text = std::to_string(first);
+  return first == last ? text : text + " to " + std::to_string(last);
+}
+
+/// Numbers between those of one series that no file has. Files may count by any step.
+std::vector<std::string> missing_numbers(const std::vector<fs::path>& frames) {
+  std::vector<long long> numbers;
+  const std::string series = numbered(frames.front()).series;
+  for (const fs::path& frame : frames) {
+    const NumberedName name = numbered(frame);
+    if (name.series.empty() || name.series != series) return {};
+    numbers.push_back(name.number);
+  }
+  std::ranges::sort(numbers);
+  long long step = 0;
+  for (std::size_t i = 1; i < numbers.size(); ++i) {
+    const long long way = numbers[i] - numbers[i - 1];
+    step = step == 0 ? way : std::min(step, way);
+  }
+  std::vector<std::string> missing;
+  for (std::size_t i = 1; i < numbers.size(); ++i) {
+    if (numbers[i] - numbers[i - 1] == step) continue;
+    missing.push_back(
+        run_of(numbers[i - 1] + step, std::max(numbers[i - 1] + step, numbers[i] - step)));
+  }
+  return missing;
+}
+
+void note_missing(FrameSeries& found, const std::string& name) {
+  const std::vector<std::string> missing = missing_numbers(found.frames);
+  if (missing.empty()) return;
+  found.notes.push_back(name + ": no file has these numbers: " + listed(missing) +
+                        "; the frames follow each other without a pause");
+}
+
+/// The series that more than half of the files are of; empty where there is none, or it is one
+/// file.
+std::string main_series(const std::vector<fs::path>& files) {
+  std::map<std::string, std::size_t> sizes;
+  for (const fs::path& file : files) ++sizes[numbered(file).series];
+  for (const auto& [series, size] : sizes) {
+    if (!series.empty() && size > 1 && 2 * size > files.size()) return series;
+  }
+  return {};
+}
+
+std::string names_of(const std::vector<fs::path>& files) {
+  std::vector<std::string> names;
+  for (const fs::path& file : files) names.push_back(file.filename().string());
+  return listed(names, 4);
+}
+
+/// Moves the files that are not of `series` out of `files`; not those of another format, which
+/// leave open what is meant.
+std::vector<fs::path> strangers_in(std::vector<fs::path>& files, const std::string& series) {
+  std::vector<fs::path> strangers;
+  if (series.empty()) return strangers;
+  const std::string extension = lower_extension(series);
+  std::erase_if(files, [&](const fs::path& file) {
+    if (numbered(file).series == series || lower_extension(file) != extension) return false;
+    strangers.push_back(file);
+    return true;
+  });
+  return strangers;
+}
+
+}  // namespace
+
+FrameSeries series_in_folder(std::vector<fs::path> files, const fs::path& folder) {
+  FrameSeries found;
+  const auto is_neutral = [](const fs::path& file) {
+    return lower_case(file.stem().string()) == "neutral";
+  };
+  if (std::ranges::count_if(files, is_neutral) == 1 && files.size() > 1) {
+    const auto neutral = std::ranges::find_if(files, is_neutral);
+    found.rest = *neutral;
+    files.erase(neutral);
+  }
+  const std::string series = main_series(files);
+  const std::vector<fs::path> strangers = strangers_in(files, series);
+  if (!strangers.empty()) {
+    found.notes.push_back(place_of(folder) + ": " + names_of(strangers) +
+                          (strangers.size() == 1 ? " is" : " are") + " left out of the " +
+                          std::to_string(files.size()) + " frames " + series +
+                          "; name files by a pattern to take them");
+  }
+  found.frames = std::move(files);
+  if (found.rest) {
+    found.notes.push_back(found.rest->string() + ": is taken for the rest pose of the other " +
+                          std::to_string(found.frames.size()) +
+                          " files, and is no frame; name files by a pattern to take it for one");
+  }
+  check_links(found.frames);
+  check_numbers(found.frames);
+  note_missing(found, place_of(folder));
+  return found;
+}
+
+FrameSeries series_of_pattern(std::vector<fs::path> files, const std::string& pattern) {
+  FrameSeries found{std::move(files)};
+  check_links(found.frames);
+  check_numbers(found.frames);
+  std::vector<fs::path> numbered_frames = found.frames;
+  const std::vector<fs::path> strangers =
+      strangers_in(numbered_frames, main_series(numbered_frames));
+  if (!strangers.empty()) {
+    found.notes.push_back(pattern + ": " + names_of(strangers) +
+                          (strangers.size() == 1 ? " is a frame" : " are frames") +
+                          " too, as the pattern says, beside " +
+                          std::to_string(numbered_frames.size()) + " of one series");
+  }
+  note_missing(found, pattern);
+  return found;
+}
+
+std::string series_name(const fs::path& file) {
+  return numbered(file).series;
+}
+
+void check_links(const std::vector<fs::path>& files) {
+  for (const fs::path& file : files) {
+    std::error_code error;
+    if (fs::exists(file, error) || !fs::is_symlink(file, error)) continue;
+    throw IoError(file.string(), "is a link that leads nowhere, to " +
+                                     fs::read_symlink(file, error).string() +
+                                     "; mend it, or remove it where the frame is not meant");
+  }
+}
+
+}  // namespace mimetra

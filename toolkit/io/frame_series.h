@@ -1,0 +1,36 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+/// Which files are frames, and what is odd about them.
+namespace mimetra {
+
+/// The frames of a sequence of mesh files, in natural order.
+struct FrameSeries {
+  std::vector<std::filesystem::path> frames;
+  /// A file `neutral.*` among the frames of a folder; none where it is the only file.
+  std::optional<std::filesystem::path> rest = {};
+  /// Files that are left out, numbers that are missing.
+  std::vector<std::string> notes = {};
+};
+
+/// Takes `neutral.*` out of the files of a folder as the rest pose, and files that are not of the
+/// numbered series that most of the files are of. Throws IoError where two frames have one number,
+/// or one is a link that leads nowhere.
+FrameSeries series_in_folder(std::vector<std::filesystem::path> files,
+                             const std::filesystem::path& folder);
+
+/// All `files` are frames. Throws as series_in_folder.
+FrameSeries series_of_pattern(std::vector<std::filesystem::path> files, const std::string& pattern);
+
+/// What numbered files have in common, "smile_*.obj" for smile_0012.OBJ; "" for one without a
+/// number.
+std::string series_name(const std::filesystem::path& file);
+
+/// Throws IoError for a link that leads nowhere.
+void check_links(const std::vector<std::filesystem::path>& files);
+
+}  // namespace mimetra

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+namespace mimetra {
+
+struct GltfBuffer {
+  std::string bytes;
+  std::optional<std::filesystem::path> file;  ///< none for bytes that stand in the glTF file itself
+};
+
+/// The buffer that `uri` of the glTF file `path` names: base64 data, or a file in the folder of
+/// `path`. Throws IoError, also for what lies elsewhere.
+GltfBuffer read_gltf_buffer(const std::string& path, const std::string& uri);
+
+}  // namespace mimetra

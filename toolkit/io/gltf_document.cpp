@@ -1,0 +1,524 @@
+#include "toolkit/io/gltf_document.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <Eigen/Geometry>
+#include <nlohmann/json.hpp>
+
+#include "toolkit/io/bytes.h"
+#include "toolkit/io/gltf_buffers.h"
+#include "toolkit/io/whole_file.h"
+#include "toolkit/mesh/errors.h"
+#include "toolkit/mesh/text.h"
+
+namespace mimetra {
+namespace fs = std::filesystem;
+namespace {
+
+using GltfJson = nlohmann::json;
+
+/// One value of the file, and where it stands, for messages: "accessors[3].sparse".
+class GltfValue {
+ public:
+  GltfValue(const std::string& path, std::string where, const GltfJson& json)
+      : path_(&path), where_(std::move(where)), json_(&json) {}
+
+  [[noreturn]] void fail(const std::string& message) const {
+    throw IoError(*path_, (where_.empty() ? "its JSON" : where_) + ": " + message);
+  }
+
+  bool has(const char* name) const { return json_->is_object() && json_->contains(name); }
+
+  GltfValue at(const char* name) const {
+    const auto found = object().find(name);
+    if (found == json_->end()) fail(std::string("has no '") + name + "'");
+    return {*path_, where_.empty() ? name : where_ + '.' + name, *found};
+  }
+
+  /// The values of an array; none where it is not there.
+  std::vector<GltfValue> list(const char* name) const {
+    if (object().find(name) == json_->end()) return {};
+    return at(name).items();
+  }
+
+  std::vector<GltfValue> items() const {
+    if (!json_->is_array()) fail("expected an array");
+    std::vector<GltfValue> items;
+    items.reserve(json_->size());
+    for (const GltfJson& item : *json_) {
+      items.emplace_back(*path_, where_ + '[' + std::to_string(items.size()) + ']', item);
+    }
+    return items;
+  }
+
+  std::size_t count() const {
+    // As far as every number of JSON is exact, which is far beyond any file.
+    constexpr double kMost = 9007199254740992.;
+    const double value = number();
+    if (value < 0 || value > kMost || value != std::floor(value)) {
+      fail("is " + readable(value, 8) + ", expected a count");
+    }
+    return static_cast<std::size_t>(value);
+  }
+  std::size_t count(const char* name) const { return at(name).count(); }
+  std::size_t count_or(const char* name, std::size_t fallback) const {
+    return has(name) ? count(name) : fallback;
+  }
+
+  /// The number of something that there are `size` of.
+  std::size_t index(std::size_t size) const {
+    const std::size_t value = count();
+    if (value >= size) {
+      fail("is " + std::to_string(value) + ", but there are " + std::to_string(size));
+    }
+    return value;
+  }
+  std::size_t index(const char* name, std::size_t size) const { return at(name).index(size); }
+  std::optional<std::size_t> maybe_index(const char* name, std::size_t size) const {
+    if (!has(name)) return std::nullopt;
+    return index(name, size);
+  }
+
+  double number() const {
+    if (!json_->is_number()) fail("expected a number");
+    const double value = json_->get<double>();
+    if (!std::isfinite(value)) fail("is not finite");
+    return value;
+  }
+
+  template <std::size_t size>
+  std::array<double, size> numbers_or(const char* name, std::array<double, size> values) const {
+    if (!has(name)) return values;
+    const GltfValue given = at(name);
+    const std::vector<GltfValue> items = given.items();
+    if (items.size() != size) {
+      given.fail("has " + std::to_string(items.size()) + " numbers, expected " +
+                 std::to_string(size));
+    }
+    for (std::size_t i = 0; i < size; ++i) values[i] = items[i].number();
+    return values;
+  }
+
+  std::vector<double> numbers(const char* name) const {
+    std::vector<double> values;
+    for (const GltfValue& item : list(name)) values.push_back(item.number());
+    return values;
+  }
+
+  std::string text() const {
+    if (!json_->is_string()) fail("expected text");
+    return json_->get<std::string>();
+  }
+  /// The same as a name, which may be copied many times.
+  std::string name() const {
+    constexpr std::size_t kLongest = 1000;
+    std::string text = this->text();
+    if (text.size() > kLongest) fail("is a name of " + std::to_string(text.size()) + " bytes");
+    return text;
+  }
+  std::string name_or_nothing() const { return has("name") ? at("name").name() : std::string(); }
+  std::string text_or(const char* name, const std::string& fallback) const {
+    return has(name) ? at(name).text() : fallback;
+  }
+
+  bool flag(const char* name) const {
+    if (!has(name)) return false;
+    const GltfValue value = at(name);
+    if (!value.json_->is_boolean()) value.fail("expected true or false");
+    return value.json_->get<bool>();
+  }
+
+  std::optional<GltfValue> extension(const char* name) const {
+    if (!has("extensions") || !at("extensions").has(name)) return std::nullopt;
+    return at("extensions").at(name);
+  }
+
+ private:
+  const GltfJson& object() const {
+    if (!json_->is_object()) fail("expected an object");
+    return *json_;
+  }
+
+  const std::string* path_;
+  std::string where_;
+  const GltfJson* json_;
+};
+
+/// Extensions without which a file cannot be understood, and which are, or which say nothing of
+/// where surfaces are.
+bool is_known_extension(const std::string& extension) {
+  static const std::vector<std::string> known = {
+      "KHR_mesh_quantization",     "EXT_meshopt_compression", "KHR_texture_transform",
+      "FB_ngon_encoding",          "KHR_texture_basisu",      "EXT_texture_webp",
+      "EXT_texture_avif",          "MSFT_texture_dds",        "KHR_lights_punctual",
+      "KHR_draco_mesh_compression"};
+  return extension.starts_with("KHR_materials_") ||
+         std::find(known.begin(), known.end(), extension) != known.end();
+}
+
+/// The two chunks of a .glb; a .gltf is all JSON.
+struct GltfChunks {
+  std::string_view json;
+  std::optional<std::string_view> binary;
+};
+
+std::uint32_t gltf_word(std::string_view bytes, std::size_t at) {
+  return number_at<std::uint32_t>(bytes.data() + at, std::endian::little);
+}
+
+GltfChunks gltf_chunks(const std::string& path, std::string_view bytes) {
+  constexpr std::string_view kMagic = "glTF";
+  constexpr std::size_t kHeader = 12, kChunkHeader = 8;
+  constexpr std::uint32_t kJson = 0x4e4f534a, kBinary = 0x004e4942;
+  if (!bytes.starts_with(kMagic)) return {bytes, std::nullopt};
+  if (bytes.size() < kHeader) throw IoError(path, "is truncated in its header");
+  if (gltf_word(bytes, 4) != 2) {
+    throw IoError(
+        path, "is glTF " + std::to_string(gltf_word(bytes, 4)) + ", and only version 2 is read");
+  }
+  const std::size_t length = gltf_word(bytes, 8);
+  if (length > bytes.size()) {
+    throw IoError(path, "is truncated: " + std::to_string(bytes.size()) + " bytes, expected " +
+                            std::to_string(length));
+  }
+  GltfChunks chunks;
+  for (std::size_t at = kHeader; at < length;) {
+    if (length - at < kChunkHeader) throw IoError(path, "ends within the header of a chunk");
+    const std::size_t size = gltf_word(bytes, at);
+    const std::uint32_t type = gltf_word(bytes, at + 4);
+    at += kChunkHeader;
+    if (size > length - at) throw IoError(path, "a chunk is longer than the file");
+    if (chunks.json.empty() && type != kJson) throw IoError(path, "does not start with JSON");
+    if (type == kJson && chunks.json.empty()) chunks.json = bytes.substr(at, size);
+    if (type == kBinary && !chunks.binary) chunks.binary = bytes.substr(at, size);
+    at += size;
+  }
+  if (chunks.json.empty()) throw IoError(path, "holds no JSON");
+  return chunks;
+}
+
+/// Throws IoError where brackets nest deeper than any exporter's: readers follow them as deep as
+/// their stack goes.
+void check_gltf_depth(const std::string& path, std::string_view text) {
+  constexpr int kDeepest = 100;
+  int depth = 0;
+  bool quoted = false;
+  for (std::size_t at = 0; at < text.size(); ++at) {
+    const char c = text[at];
+    if (quoted) {
+      if (c == '\\') ++at;
+      quoted = c != '"';
+    } else if (c == '"') {
+      quoted = true;
+    } else if (c == '[' || c == '{') {
+      if (++depth <= kDeepest) continue;
+      throw IoError(path, "byte " + std::to_string(at) + " of its JSON: nested deeper than " +
+                              std::to_string(kDeepest) + " levels");
+    } else if (c == ']' || c == '}') {
+      --depth;
+    }
+  }
+}
+
+GltfJson gltf_json(const std::string& path, std::string_view text) {
+  if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);
+  check_gltf_depth(path, text);
+  try {
+    return GltfJson::parse(text);
+  } catch (const GltfJson::exception& error) {
+    throw IoError(path, std::string("its JSON cannot be read: ") + error.what());
+  }
+}
+
+void check_asset(const GltfValue& root) {
+  const std::string version = root.at("asset").text_or("version", "");
+  if (!version.starts_with("2.")) root.fail("is glTF " + version + ", and only 2.0 is read");
+  for (const GltfValue& item : root.list("extensionsRequired")) {
+    if (is_known_extension(item.text())) continue;
+    root.fail("needs the extension " + item.text() + ", which is not read; export without it");
+  }
+}
+
+int gltf_components(const GltfValue& accessor) {
+  static const std::vector<std::pair<std::string, int>> kinds = {
+      {"SCALAR", 1}, {"VEC2", 2}, {"VEC3", 3}, {"VEC4", 4}, {"MAT2", 4}, {"MAT3", 9}, {"MAT4", 16}};
+  const std::string type = accessor.at("type").text();
+  for (const auto& [name, components] : kinds) {
+    if (name == type) return components;
+  }
+  accessor.fail("has type '" + type + "'");
+}
+
+int component_type_of(const GltfValue& value) {
+  const std::size_t type = value.count("componentType");
+  const bool known = type >= 5120 && type <= 5126 && type != 5124;
+  if (!known) value.fail("has component type " + std::to_string(type));
+  return static_cast<int>(type);
+}
+
+GltfCompression gltf_compression(const GltfValue& value, std::size_t buffers) {
+  GltfCompression compression{value.index("buffer", buffers), value.count_or("byteOffset", 0),
+                              value.count("byteLength"),      value.count("byteStride"),
+                              value.count("count"),           GltfCompression::Mode::attributes,
+                              GltfCompression::Filter::none};
+  const std::string mode = value.at("mode").text(), filter = value.text_or("filter", "NONE");
+  if (mode == "TRIANGLES") {
+    compression.mode = GltfCompression::Mode::triangles;
+  } else if (mode == "INDICES") {
+    compression.mode = GltfCompression::Mode::indices;
+  } else if (mode != "ATTRIBUTES") {
+    value.fail("has mode '" + mode + "'");
+  }
+  if (filter == "OCTAHEDRAL") {
+    compression.filter = GltfCompression::Filter::octahedral;
+  } else if (filter == "QUATERNION") {
+    compression.filter = GltfCompression::Filter::quaternion;
+  } else if (filter == "EXPONENTIAL") {
+    compression.filter = GltfCompression::Filter::exponential;
+  } else if (filter != "NONE") {
+    value.fail("has filter '" + filter + "'");
+  }
+  return compression;
+}
+
+GltfView gltf_view(const GltfValue& value, std::size_t buffers) {
+  GltfView view{value.index("buffer", buffers),
+                value.count_or("byteOffset", 0),
+                value.count("byteLength"),
+                value.count_or("byteStride", 0),
+                {}};
+  if (const auto extension = value.extension("EXT_meshopt_compression")) {
+    view.compression = gltf_compression(*extension, buffers);
+  }
+  return view;
+}
+
+GltfPlace gltf_place(const GltfValue& value, std::size_t views) {
+  return {value.index("bufferView", views), value.count_or("byteOffset", 0)};
+}
+
+GltfAccessor gltf_accessor(const GltfValue& value, std::size_t views) {
+  GltfAccessor accessor{{},
+                        value.count("count"),
+                        component_type_of(value),
+                        gltf_components(value),
+                        value.flag("normalized"),
+                        {}};
+  if (accessor.count == 0) value.fail("has no elements");
+  if (value.has("bufferView")) accessor.place = gltf_place(value, views);
+  if (value.has("sparse")) {
+    const GltfValue sparse = value.at("sparse");
+    accessor.sparse =
+        GltfSparse{sparse.count("count"), gltf_place(sparse.at("indices"), views),
+                   gltf_place(sparse.at("values"), views), component_type_of(sparse.at("indices"))};
+    if (accessor.sparse->count > accessor.count) sparse.fail("replaces more than there is");
+  }
+  return accessor;
+}
+
+GltfPrimitive gltf_primitive(const GltfValue& value, const GltfDocument& document,
+                             std::size_t materials) {
+  const std::size_t accessors = document.accessors.size();
+  GltfPrimitive primitive{};
+  const std::size_t mode = value.count_or("mode", 4);
+  if (mode > 6) value.fail("has mode " + std::to_string(mode));
+  primitive.mode = static_cast<int>(mode);
+  const GltfValue attributes = value.at("attributes");
+  primitive.positions = attributes.maybe_index("POSITION", accessors);
+  primitive.texture = attributes.maybe_index("TEXCOORD_0", accessors);
+  primitive.joints = attributes.maybe_index("JOINTS_0", accessors);
+  primitive.weights = attributes.maybe_index("WEIGHTS_0", accessors);
+  primitive.more_joints = attributes.has("JOINTS_1");
+  primitive.indices = value.maybe_index("indices", accessors);
+  primitive.material = value.maybe_index("material", materials);
+  for (const GltfValue& target : value.list("targets")) {
+    primitive.targets.push_back(target.maybe_index("POSITION", accessors));
+  }
+  primitive.polygons = value.extension("FB_ngon_encoding").has_value();
+  if (const auto draco = value.extension("KHR_draco_mesh_compression")) {
+    const GltfValue ids = draco->at("attributes");
+    const auto id = [&ids](const char* name) -> std::optional<int> {
+      if (!ids.has(name)) return std::nullopt;
+      return static_cast<int>(ids.at(name).index(std::numeric_limits<int>::max()));
+    };
+    primitive.draco = GltfDraco{draco->index("bufferView", document.views.size()), id("POSITION"),
+                                id("TEXCOORD_0")};
+  }
+  return primitive;
+}
+
+std::vector<std::string> target_names(const GltfValue& value) {
+  std::vector<std::string> names;
+  if (!value.has("extras") || !value.at("extras").has("targetNames")) return names;
+  for (const GltfValue& name : value.at("extras").list("targetNames")) names.push_back(name.name());
+  return names;
+}
+
+GltfMesh gltf_mesh(const GltfValue& value, const GltfDocument& document, std::size_t materials) {
+  GltfMesh mesh{value.name_or_nothing(), {}, target_names(value), value.numbers("weights")};
+  for (const GltfValue& item : value.at("primitives").items()) {
+    mesh.primitives.push_back(gltf_primitive(item, document, materials));
+    if (mesh.target_names.empty()) mesh.target_names = target_names(item);
+  }
+  return mesh;
+}
+
+Eigen::Matrix4d gltf_transform(const GltfValue& value) {
+  if (value.has("matrix")) {
+    const auto columns = value.numbers_or<16>("matrix", {});
+    return Eigen::Map<const Eigen::Matrix4d>(columns.data());
+  }
+  const auto move = value.numbers_or<3>("translation", {0, 0, 0});
+  const auto turn = value.numbers_or<4>("rotation", {0, 0, 0, 1});
+  const auto scale = value.numbers_or<3>("scale", {1, 1, 1});
+  Eigen::Quaterniond rotation(turn[3], turn[0], turn[1], turn[2]);
+  if (rotation.norm() == 0) value.fail("has no rotation of length 1");
+  rotation.normalize();
+  Eigen::Affine3d transform = Eigen::Affine3d::Identity();
+  transform.translate(Eigen::Vector3d(move[0], move[1], move[2]));
+  transform.rotate(rotation);
+  transform.scale(Eigen::Vector3d(scale[0], scale[1], scale[2]));
+  return transform.matrix();
+}
+
+GltfNode gltf_node(const GltfValue& value, const GltfDocument& document, std::size_t nodes,
+                   std::size_t skins) {
+  GltfNode node{value.name_or_nothing(),
+                {},
+                value.maybe_index("mesh", document.meshes.size()),
+                value.maybe_index("skin", skins),
+                gltf_transform(value),
+                value.numbers("weights")};
+  for (const GltfValue& child : value.list("children")) node.children.push_back(child.index(nodes));
+  return node;
+}
+
+GltfSkin gltf_skin(const GltfValue& value, const GltfDocument& document) {
+  GltfSkin skin{{}, value.maybe_index("inverseBindMatrices", document.accessors.size())};
+  for (const GltfValue& joint : value.at("joints").items()) {
+    skin.joints.push_back(joint.index(document.nodes.size()));
+  }
+  return skin;
+}
+
+GltfMaterial gltf_material(const GltfValue& value) {
+  GltfMaterial material{value.name_or_nothing(), Eigen::Matrix<double, 2, 3>::Identity()};
+  if (!value.has("pbrMetallicRoughness")) return material;
+  const GltfValue surface = value.at("pbrMetallicRoughness");
+  if (!surface.has("baseColorTexture")) return material;
+  const auto transform = surface.at("baseColorTexture").extension("KHR_texture_transform");
+  if (!transform) return material;
+  const auto offset = transform->numbers_or<2>("offset", {0, 0});
+  const auto scale = transform->numbers_or<2>("scale", {1, 1});
+  const double angle = transform->has("rotation") ? transform->at("rotation").number() : 0;
+  const double c = std::cos(angle), s = std::sin(angle);
+  material.texture << c * scale[0], s * scale[1], offset[0], -s * scale[0], c * scale[1], offset[1];
+  return material;
+}
+
+GltfAnimation gltf_animation(const GltfValue& value, const GltfDocument& document) {
+  GltfAnimation animation{value.name_or_nothing(), {}};
+  const std::vector<GltfValue> samplers = value.at("samplers").items();
+  for (const GltfValue& channel : value.at("channels").items()) {
+    const GltfValue target = channel.at("target");
+    if (!target.has("node")) continue;  // what an extension moves is no part of the face
+    const std::string path = target.at("path").text();
+    const GltfValue& sampler = samplers[channel.index("sampler", samplers.size())];
+    const std::size_t accessors = document.accessors.size();
+    animation.channels.push_back({target.index("node", document.nodes.size()), path == "weights",
+                                  sampler.index("input", accessors),
+                                  sampler.index("output", accessors),
+                                  sampler.text_or("interpolation", "LINEAR")});
+  }
+  return animation;
+}
+
+/// The nodes at the top of the scene that is shown.
+std::vector<std::size_t> gltf_roots(const GltfValue& root, GltfDocument& document) {
+  const std::vector<GltfValue> scenes = root.list("scenes");
+  std::vector<std::size_t> roots;
+  if (scenes.empty()) {
+    std::vector<bool> is_child(document.nodes.size(), false);
+    for (const GltfNode& node : document.nodes) {
+      for (const std::size_t child : node.children) is_child[child] = true;
+    }
+    for (std::size_t n = 0; n < is_child.size(); ++n) {
+      if (!is_child[n]) roots.push_back(n);
+    }
+    return roots;
+  }
+  const std::size_t shown = root.has("scene") ? root.index("scene", scenes.size()) : 0;
+  if (scenes.size() > 1) {
+    document.notes.push_back(document.path + ": scene " + std::to_string(shown) + " of " +
+                             std::to_string(scenes.size()) + " is read");
+  }
+  for (const GltfValue& node : scenes[shown].list("nodes")) {
+    roots.push_back(node.index(document.nodes.size()));
+  }
+  return roots;
+}
+
+void read_gltf_buffers(const GltfValue& root, const std::optional<std::string_view>& binary,
+                       GltfDocument& document) {
+  for (const GltfValue& buffer : root.list("buffers")) {
+    const std::size_t bytes = buffer.count("byteLength");
+    std::string content;
+    const bool stands_for_another = buffer.extension("EXT_meshopt_compression").has_value();
+    if (buffer.has("uri")) {
+      GltfBuffer read = read_gltf_buffer(document.path, buffer.at("uri").text());
+      if (read.file) document.files.push_back(*read.file);
+      content = std::move(read.bytes);
+    } else if (document.buffers.empty() && binary && !stands_for_another) {
+      content = std::string(*binary);
+    } else if (!stands_for_another) {
+      buffer.fail("has no 'uri'");
+    }
+    if (content.size() < bytes && !stands_for_another) {
+      buffer.fail("is truncated: " + std::to_string(content.size()) + " bytes, expected " +
+                  std::to_string(bytes));
+    }
+    if (content.size() > bytes) content.resize(bytes);
+    document.file_bytes += content.size();
+    document.buffers.push_back(std::move(content));
+  }
+}
+
+}  // namespace
+
+GltfDocument read_gltf_document(const fs::path& path) {
+  GltfDocument document;
+  document.path = path.string();
+  document.files.push_back(path);
+  const std::string bytes = read_file(path);
+  document.file_bytes = bytes.size();
+  const GltfChunks chunks = gltf_chunks(document.path, bytes);
+  const GltfJson json = gltf_json(document.path, chunks.json);
+  const GltfValue root(document.path, "", json);
+  check_asset(root);
+  read_gltf_buffers(root, chunks.binary, document);
+  const auto fill = [&root](auto& list, const char* name, const auto& made) {
+    for (const GltfValue& value : root.list(name)) list.push_back(made(value));
+  };
+  const std::size_t skins = root.list("skins").size(), materials = root.list("materials").size();
+  const std::size_t nodes = root.list("nodes").size();
+  fill(document.views, "bufferViews",
+       [&](const GltfValue& value) { return gltf_view(value, document.buffers.size()); });
+  fill(document.accessors, "accessors",
+       [&](const GltfValue& value) { return gltf_accessor(value, document.views.size()); });
+  fill(document.materials, "materials", gltf_material);
+  fill(document.meshes, "meshes",
+       [&](const GltfValue& value) { return gltf_mesh(value, document, materials); });
+  fill(document.nodes, "nodes",
+       [&](const GltfValue& value) { return gltf_node(value, document, nodes, skins); });
+  fill(document.skins, "skins", [&](const GltfValue& value) { return gltf_skin(value, document); });
+  fill(document.animations, "animations",
+       [&](const GltfValue& value) { return gltf_animation(value, document); });
+  document.roots = gltf_roots(root, document);
+  const GltfValue asset = root.at("asset");
+  document.rest_is_known = !(asset.has("extras") && asset.at("extras").flag("restIsFirstFrame"));
+  return document;
+}
+
+}  // namespace mimetra

@@ -1,0 +1,136 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <Eigen/Core>
+
+/// What a glTF file says, as it says it. Internal to the format.
+///
+/// [Khronos. glTF 2.0 Specification. 2021]
+namespace mimetra {
+
+/// A view whose bytes are compressed. [EXT_meshopt_compression]
+struct GltfCompression {
+  enum class Mode { attributes, triangles, indices };
+  enum class Filter { none, octahedral, quaternion, exponential };
+
+  std::size_t buffer, offset, bytes, stride, count;
+  Mode mode;
+  Filter filter;
+};
+
+struct GltfView {
+  std::size_t buffer, offset, bytes;
+  std::size_t stride;  ///< 0 for numbers that stand close together
+  std::optional<GltfCompression> compression;
+};
+
+/// Where numbers start.
+struct GltfPlace {
+  std::size_t view, offset;
+};
+
+/// Elements that replace others.
+struct GltfSparse {
+  std::size_t count;
+  GltfPlace indices, values;
+  int index_type;
+};
+
+struct GltfAccessor {
+  std::optional<GltfPlace> place;  ///< zeros without one
+  std::size_t count;
+  int type;        ///< of a component: 5120 and so on
+  int components;  ///< of an element
+  bool normalized;
+  std::optional<GltfSparse> sparse;
+};
+
+/// [KHR_draco_mesh_compression]
+struct GltfDraco {
+  std::size_t view;
+  std::optional<int> positions, texture;
+};
+
+struct GltfPrimitive {
+  int mode;
+  std::optional<std::size_t> positions, texture, indices, joints, weights, material;
+  bool more_joints;  ///< more than four of a vertex
+  std::vector<std::optional<std::size_t>> targets;
+  std::optional<GltfDraco> draco;
+  bool polygons;  ///< triangles that share their first corner are one polygon [FB_ngon_encoding]
+
+  /// Equal for primitives that are faces on the same vertices.
+  using Vertices =
+      std::pair<std::array<std::optional<std::size_t>, 4>, std::vector<std::optional<std::size_t>>>;
+  Vertices vertices() const { return {{positions, texture, joints, weights}, targets}; }
+};
+
+struct GltfMesh {
+  std::string name;
+  std::vector<GltfPrimitive> primitives;
+  std::vector<std::string> target_names;
+  std::vector<double> weights;
+};
+
+struct GltfNode {
+  std::string name;
+  std::vector<std::size_t> children;
+  std::optional<std::size_t> mesh, skin;
+  Eigen::Matrix4d local;
+  std::vector<double> weights;
+};
+
+struct GltfSkin {
+  std::vector<std::size_t> joints;
+  std::optional<std::size_t> inverse_bind;
+};
+
+struct GltfMaterial {
+  std::string name;
+  /// From stored to shown coordinates of its base colour. [KHR_texture_transform]
+  Eigen::Matrix<double, 2, 3> texture;
+};
+
+struct GltfChannel {
+  std::size_t node;
+  bool drives_weights;  ///< otherwise it moves the node
+  std::size_t times, values;
+  std::string interpolation;
+};
+
+struct GltfAnimation {
+  std::string name;
+  std::vector<GltfChannel> channels;
+};
+
+struct GltfDocument {
+  std::string path;
+  std::vector<std::filesystem::path> files;
+  std::size_t file_bytes = 0;
+  /// Bytes of each buffer; none of one that only stands for what is decompressed.
+  std::vector<std::string> buffers;
+  std::vector<GltfView> views;
+  std::vector<GltfAccessor> accessors;
+  std::vector<GltfMesh> meshes;
+  std::vector<GltfNode> nodes;
+  std::vector<GltfSkin> skins;
+  std::vector<GltfMaterial> materials;
+  std::vector<GltfAnimation> animations;
+  std::vector<std::size_t> roots;
+  /// False where the file says that its rest pose is only the first frame.
+  bool rest_is_known = true;
+  std::vector<std::string> notes;
+};
+
+/// Reads a .glb or .gltf with its buffers, which must lie in the file's own folder. Indices of
+/// everything but vertices are sound. Throws IoError.
+GltfDocument read_gltf_document(const std::filesystem::path& path);
+
+}  // namespace mimetra

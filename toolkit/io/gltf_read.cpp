@@ -1,0 +1,475 @@
+#include <algorithm>
+#include <array>
+#include <map>
+#include <set>
+#include <string_view>
+
+#include <Eigen/LU>
+
+#include "toolkit/io/draco_mesh.h"
+#include "toolkit/io/gltf_values.h"
+#include "toolkit/io/scene.h"
+#include "toolkit/mesh/errors.h"
+#include "toolkit/mesh/text.h"
+
+namespace mimetra {
+namespace fs = std::filesystem;
+namespace {
+
+/// A node with a mesh, or a joint, and where it stands.
+struct PlacedNode {
+  std::size_t node;
+  std::string_view name;  ///< its own, else that of the nearest node above; in the document
+  Eigen::Matrix4d world;
+};
+
+/// Nodes of a scene, depth first in the file's order. Throws IoError for one that is met twice.
+std::vector<PlacedNode> placed_nodes(const GltfDocument& document) {
+  std::vector<PlacedNode> placed, open;
+  for (auto root = document.roots.rbegin(); root != document.roots.rend(); ++root) {
+    open.push_back({*root, {}, Eigen::Matrix4d::Identity()});
+  }
+  std::vector<bool> met(document.nodes.size(), false);
+  while (!open.empty()) {
+    PlacedNode here = std::move(open.back());
+    open.pop_back();
+    if (met[here.node]) {
+      throw IoError(document.path, "nodes[" + std::to_string(here.node) +
+                                       "] is met twice; nodes must form a tree");
+    }
+    met[here.node] = true;
+    const GltfNode& node = document.nodes[here.node];
+    here.world *= node.local;
+    if (!node.name.empty()) here.name = node.name;
+    for (auto child = node.children.rbegin(); child != node.children.rend(); ++child) {
+      open.push_back({*child, here.name, here.world});
+    }
+    placed.push_back(std::move(here));
+  }
+  return placed;
+}
+
+/// A transform of each vertex: one of a node, or one blended of joints.
+class Placement {
+ public:
+  explicit Placement(const Eigen::Matrix4d& world) : all_(world.topRows<3>()) {}
+  /// A row of 12 numbers for each vertex, 3 x 4 column by column.
+  explicit Placement(Frames blended) : blended_(std::move(blended)) {}
+
+  bool mirrors() const {
+    return blended_.rows() == 0 ? all_.leftCols<3>().determinant() < 0
+                                : of(0).leftCols<3>().determinant() < 0;
+  }
+
+  /// `points` in place, or as directions. \pre there is a transform for each of them
+  void apply(Positions& points, bool directions) const {
+    for (Eigen::Index v = 0; v < points.rows(); ++v) {
+      const Transform transform = of(v);
+      Eigen::Vector3d moved = transform.leftCols<3>() * points.row(v).transpose();
+      if (!directions) moved += transform.col(3);
+      points.row(v) = moved;
+    }
+  }
+
+ private:
+  using Transform = Eigen::Matrix<double, 3, 4>;
+
+  Transform of(Eigen::Index vertex) const {
+    if (blended_.rows() == 0) return all_;
+    return Eigen::Map<const Transform>(blended_.row(vertex).data());
+  }
+
+  Transform all_ = Transform::Zero();
+  Frames blended_;
+};
+
+std::string number_name(const char* stem, std::size_t number) {
+  std::string digits = std::to_string(number);
+  return stem + std::string(3 - std::min<std::size_t>(3, digits.size()), '0') + digits;
+}
+
+/// Makes the parts of a scene.
+class GltfReader {
+ public:
+  explicit GltfReader(const fs::path& path)
+      : document_(read_gltf_document(path)), values_(document_), placed_(placed_nodes(document_)) {
+    curves_.resize(document_.nodes.size());
+    for (const PlacedNode& node : placed_) worlds_.emplace(node.node, node.world);
+  }
+
+  Scene read() {
+    check_size();
+    read_animations();
+    std::vector<ScenePart> parts;
+    for (const PlacedNode& placed : placed_) {
+      if (document_.nodes[placed.node].mesh) add_parts(placed, parts);
+    }
+    note_moved_nodes();
+    motion_notes_.swap(notes_);
+    note(left_out_, "primitives that are no triangles are left out");
+    Scene scene = joined_scene(document_.path, std::move(parts), document_.file_bytes);
+    scene.motion_notes = std::move(motion_notes_);
+    scene.rest_is_known = document_.rest_is_known;
+    scene.files = document_.files;
+    std::vector<std::string> notes = document_.notes;
+    notes.insert(notes.end(), notes_.begin(), notes_.end());
+    notes.insert(notes.end(), scene.notes.begin(), scene.notes.end());
+    scene.notes = std::move(notes);
+    return scene;
+  }
+
+ private:
+  void note(const std::set<std::string>& names, const std::string& text) {
+    if (names.empty()) return;
+    const std::vector<std::string> words(names.begin(), names.end());
+    notes_.push_back(document_.path + ": " + text + ": " + listed(words));
+  }
+
+  [[noreturn]] void fail(const std::string& what, const std::string& message) const {
+    throw IoError(document_.path, what + ": " + message);
+  }
+
+  const GltfMesh& mesh_at(std::size_t node) const {
+    return document_.meshes[*document_.nodes[node].mesh];
+  }
+
+  /// Before anything is made of the counts.
+  void check_size() const {
+    double vertices = 0;
+    std::size_t targets = 0;
+    for (const PlacedNode& placed : placed_) {
+      if (!document_.nodes[placed.node].mesh) continue;
+      for (const GltfPrimitive& primitive : mesh_at(placed.node).primitives) {
+        if (primitive.positions) {
+          vertices += static_cast<double>(document_.accessors[*primitive.positions].count);
+        }
+        targets = std::max(targets, primitive.targets.size());
+      }
+    }
+    check_scene_size(document_.path, vertices, static_cast<double>(targets) + 1,
+                     document_.file_bytes);
+  }
+
+  /// The weights of each node, by the first animation that has some of it.
+  void read_animations() {
+    std::set<std::string> further;
+    for (const GltfAnimation& animation : document_.animations) {
+      for (const GltfChannel& channel : animation.channels) {
+        if (!channel.drives_weights) {
+          moved_.insert(channel.node);
+        } else if (curves_[channel.node]) {
+          further.insert("'" + animation.name + "'");
+        } else if (document_.nodes[channel.node].mesh) {
+          curves_[channel.node] = curve_of(channel, targets_of(mesh_at(channel.node)));
+        }
+      }
+    }
+    note(further, "weights that an earlier animation drives too are left out of the animations");
+  }
+
+  static std::size_t targets_of(const GltfMesh& mesh) {
+    std::size_t targets = 0;
+    for (const GltfPrimitive& primitive : mesh.primitives) {
+      targets = std::max(targets, primitive.targets.size());
+    }
+    return targets;
+  }
+
+  std::shared_ptr<const WeightCurve> curve_of(const GltfChannel& channel, std::size_t targets) {
+    if (targets == 0) return nullptr;
+    WeightCurve curve;
+    const Frames keys = values_.read(channel.times, 1);
+    const Eigen::Index count = keys.rows(), columns = static_cast<Eigen::Index>(targets);
+    const bool is_cubic = channel.interpolation == "CUBICSPLINE";
+    const Frames values = values_.read(channel.values, 1, count * columns * (is_cubic ? 3 : 1));
+    using Rows = Eigen::Map<const Frames, 0, Eigen::OuterStride<>>;
+    const auto rows = [&](Eigen::Index first) -> Eigen::MatrixXd {
+      return Rows(values.data() + first * columns, count, columns,
+                  Eigen::OuterStride<>(columns * (is_cubic ? 3 : 1)));
+    };
+    curve.times = keys.col(0);
+    curve.values = rows(is_cubic ? 1 : 0);
+    if (is_cubic) {
+      curve.between = WeightCurve::Between::cubic;
+      curve.slopes_in = rows(0);
+      curve.slopes_out = rows(2);
+    } else if (channel.interpolation == "STEP") {
+      curve.between = WeightCurve::Between::step;
+    } else if (channel.interpolation != "LINEAR") {
+      fail("an animation", "has interpolation '" + channel.interpolation + "'");
+    }
+    return std::make_shared<const WeightCurve>(std::move(curve));
+  }
+
+  /// Weights of a node's mesh: over time, or those that stay.
+  std::shared_ptr<const WeightCurve> weights_of(std::size_t node) const {
+    if (curves_[node]) return curves_[node];
+    const std::vector<double>& own = document_.nodes[node].weights;
+    const std::vector<double>& still = own.empty() ? mesh_at(node).weights : own;
+    auto curve = std::make_shared<WeightCurve>();
+    const auto columns = static_cast<Eigen::Index>(targets_of(mesh_at(node)));
+    curve->values = Eigen::MatrixXd::Zero(1, columns);
+    for (Eigen::Index j = 0; j < std::min(columns, Eigen::Index(still.size())); ++j) {
+      curve->values(0, j) = still[static_cast<std::size_t>(j)];
+    }
+    return curve;
+  }
+
+  static std::string shown_name(const PlacedNode& placed) {
+    return "'" + std::string(placed.name) + "'";
+  }
+
+  void add_parts(const PlacedNode& placed, std::vector<ScenePart>& parts) {
+    const GltfMesh& mesh = mesh_at(placed.node);
+    const bool is_named = !document_.nodes[placed.node].name.empty() || mesh.name.empty();
+    std::string name(is_named ? placed.name : mesh.name);
+    if (name.empty()) name = number_name("mesh_", *document_.nodes[placed.node].mesh);
+    // Primitives may share vertices, and are then one part.
+    std::map<GltfPrimitive::Vertices, std::size_t> made;
+    for (const GltfPrimitive& primitive : mesh.primitives) {
+      constexpr int kFirstOfFaces = 4;
+      if (primitive.mode < kFirstOfFaces || !primitive.positions) {
+        left_out_.insert("'" + name + "'");
+        continue;
+      }
+      const auto [same, is_new] = made.emplace(primitive.vertices(), parts.size());
+      if (is_new || primitive.draco) {
+        parts.push_back(part_of(placed, name, mesh, primitive));
+      } else {
+        add_faces(primitive, placed, parts[same->second]);
+      }
+    }
+  }
+
+  ScenePart part_of(const PlacedNode& placed, const std::string& name, const GltfMesh& mesh,
+                    const GltfPrimitive& primitive) {
+    ScenePart part;
+    part.name = name;
+    std::optional<DracoMesh> draco;
+    if (primitive.draco) {
+      draco = decode_draco(document_.path, "'" + name + "'", *primitive.draco,
+                           values_.bytes(primitive.draco->view));
+      part.positions = draco->positions;
+    } else {
+      part.positions = values_.read(*primitive.positions, 3);
+    }
+    const Eigen::Index vertices = part.positions.rows();
+    const Placement placement = placement_of(placed, primitive, vertices);
+    placement.apply(part.positions, false);
+    for (std::size_t j = 0; j < primitive.targets.size(); ++j) {
+      const bool is_named = j < mesh.target_names.size() && !mesh.target_names[j].empty();
+      SceneTarget target{is_named ? mesh.target_names[j] : number_name("target_", j),
+                         Positions::Zero(vertices, 3)};
+      if (primitive.targets[j]) {
+        target.displacements = values_.read(*primitive.targets[j], 3, vertices);
+        placement.apply(target.displacements, true);
+      }
+      part.targets.push_back(std::move(target));
+    }
+    part.weights = weights_of(placed.node);
+    if (draco && draco->texture) {
+      part.texture.coordinates = shown(*draco->texture);
+    } else if (!draco && primitive.texture) {
+      part.texture.coordinates = shown(texture_of(primitive, vertices));
+    }
+    if (draco) {
+      add_group(primitive, part);
+      append_triangles({draco->triangles.data(), draco->triangles.data() + draco->triangles.size()},
+                       primitive, placement.mirrors(), part);
+    } else {
+      add_faces(primitive, placement.mirrors(), part);
+    }
+    return part;
+  }
+
+  /// From the file's upper left corner to the lower left one.
+  static std::vector<Eigen::Vector2d> shown(const Frames& stored) {
+    std::vector<Eigen::Vector2d> coordinates;
+    coordinates.reserve(static_cast<std::size_t>(stored.rows()));
+    for (Eigen::Index v = 0; v < stored.rows(); ++v) {
+      coordinates.emplace_back(stored(v, 0), 1 - stored(v, 1));
+    }
+    return coordinates;
+  }
+
+  Frames texture_of(const GltfPrimitive& primitive, Eigen::Index vertices) {
+    Frames texture = values_.read(*primitive.texture, 2, vertices);
+    const GltfAccessor& accessor = document_.accessors[*primitive.texture];
+    constexpr int kFloat = 5126;
+    // Integers that only the material's transform brings to texture coordinates.
+    if (accessor.type == kFloat || accessor.normalized || !primitive.material) return texture;
+    const auto& transform = document_.materials[*primitive.material].texture;
+    texture =
+        ((texture * transform.leftCols<2>().transpose()).rowwise() + transform.col(2).transpose())
+            .eval();
+    return texture;
+  }
+
+  Placement placement_of(const PlacedNode& placed, const GltfPrimitive& primitive,
+                         Eigen::Index vertices) {
+    const auto& skin = document_.nodes[placed.node].skin;
+    if (!skin || !primitive.joints || !primitive.weights || primitive.draco) {
+      return Placement(placed.world);
+    }
+    const std::vector<Eigen::Matrix4d> joints = joints_of(document_.skins[*skin]);
+    for (const std::size_t joint : document_.skins[*skin].joints) joints_.insert(joint);
+    const Frames which = values_.read(*primitive.joints, 4, vertices);
+    const Frames weights = values_.read(*primitive.weights, 4, vertices);
+    if (primitive.more_joints) {
+      fail(shown_name(placed), "vertices hang on more than four joints, which is not read");
+    }
+    Frames blended(vertices, 12);
+    for (Eigen::Index v = 0; v < vertices; ++v) {
+      Eigen::Matrix4d blend = Eigen::Matrix4d::Zero();
+      double sum = 0;
+      for (int k = 0; k < 4; ++k) {
+        if (weights(v, k) == 0) continue;
+        if (which(v, k) < 0 || which(v, k) >= static_cast<double>(joints.size())) {
+          fail(shown_name(placed), "vertex " + std::to_string(v) + " hangs on joint " +
+                                       readable(which(v, k)) + " of " +
+                                       std::to_string(joints.size()));
+        }
+        blend += weights(v, k) * joints[static_cast<std::size_t>(which(v, k))];
+        sum += weights(v, k);
+      }
+      if (sum <= 0) fail(shown_name(placed), "a vertex hangs on no joint");
+      // Weights that are stored in a byte do not quite add up to 1.
+      const Eigen::Matrix<double, 3, 4> transform = blend.topRows<3>() / sum;
+      blended.row(v) = Eigen::Map<const Eigen::RowVectorXd>(transform.data(), transform.size());
+    }
+    return Placement(std::move(blended));
+  }
+
+  /// From the vertices as they are stored to where each joint holds them.
+  std::vector<Eigen::Matrix4d> joints_of(const GltfSkin& skin) {
+    std::vector<Eigen::Matrix4d> joints;
+    Frames inverse;
+    if (skin.inverse_bind) inverse = values_.read(*skin.inverse_bind, 16);
+    if (skin.inverse_bind && inverse.rows() < static_cast<Eigen::Index>(skin.joints.size())) {
+      fail("a skin", "has fewer matrices than joints");
+    }
+    for (std::size_t j = 0; j < skin.joints.size(); ++j) {
+      const auto world = worlds_.find(skin.joints[j]);
+      if (world == worlds_.end()) {
+        fail("a skin", "its joint nodes[" + std::to_string(skin.joints[j]) + "] is in no scene");
+      }
+      joints.push_back(world->second);
+      if (!skin.inverse_bind) continue;
+      joints.back() *=
+          Eigen::Map<const Eigen::Matrix4d>(inverse.row(static_cast<Eigen::Index>(j)).data());
+    }
+    return joints;
+  }
+
+  void add_faces(const GltfPrimitive& primitive, const PlacedNode& placed, ScenePart& part) {
+    add_faces(primitive, placement_of(placed, primitive, part.positions.rows()).mirrors(), part);
+  }
+
+  void add_faces(const GltfPrimitive& primitive, bool mirrored, ScenePart& part) {
+    const Eigen::Index vertices = part.positions.rows();
+    std::vector<int> corners;
+    if (primitive.indices) {
+      corners = values_.indices(*primitive.indices, vertices);
+    } else {
+      for (int v = 0; v < vertices; ++v) corners.push_back(v);
+    }
+    add_group(primitive, part);
+    append_triangles(triangles_of(primitive.mode, corners, part.name), primitive, mirrored, part);
+  }
+
+  void add_group(const GltfPrimitive& primitive, ScenePart& part) const {
+    if (!primitive.material) return;
+    const std::string& name = document_.materials[*primitive.material].name;
+    part.groups.push_back({part.polygons.size(),
+                           name.empty() ? number_name("material_", *primitive.material) : name});
+  }
+
+  /// Corners of triangles, one after the other. [glTF 2.0, 3.7.2.1]
+  std::vector<int> triangles_of(int mode, const std::vector<int>& corners,
+                                const std::string& name) const {
+    constexpr int kTriangles = 4, kStrip = 5;
+    if (mode == kTriangles) {
+      if (corners.size() % 3 == 0) return corners;
+      fail("'" + name + "'", std::to_string(corners.size()) + " corners make no triangles");
+    }
+    std::vector<int> triangles;
+    for (std::size_t i = 0; i + 2 < corners.size(); ++i) {
+      const std::size_t odd = i % 2;
+      const std::array<std::size_t, 3> at = mode == kStrip
+                                                ? std::array{i, i + 1 + odd, i + 2 - odd}
+                                                : std::array{i + 1, i + 2, std::size_t{0}};
+      for (const std::size_t corner : at) triangles.push_back(corners[corner]);
+    }
+    return triangles;
+  }
+
+  /// Triangles, or the polygons that they are fans of.
+  static void append_triangles(const std::vector<int>& corners, const GltfPrimitive& primitive,
+                               bool mirrored, ScenePart& part) {
+    Polygons& polygons = part.polygons;
+    const std::size_t first = polygons.corners.size();
+    int last_start = -1;
+    for (std::size_t t = 0; t + 2 < corners.size(); t += 3) {
+      const int start = corners[t];
+      if (primitive.polygons && start == last_start && polygons.corners.back() == corners[t + 1]) {
+        polygons.corners.push_back(corners[t + 2]);
+        polygons.offsets.back() += 1;
+        continue;
+      }
+      polygons.corners.insert(polygons.corners.end(), &corners[t], &corners[t] + 3);
+      polygons.offsets.push_back(static_cast<int>(polygons.corners.size()));
+      last_start = start;
+    }
+    if (mirrored) {
+      for (std::size_t face = polygons.offsets.size() - 1; face > 0; --face) {
+        const auto begin = static_cast<std::size_t>(polygons.offsets[face - 1]);
+        if (begin < first) break;
+        // The first corner stays, and with it the triangles.
+        std::reverse(polygons.corners.begin() + static_cast<std::ptrdiff_t>(begin) + 1,
+                     polygons.corners.begin() + polygons.offsets[face]);
+      }
+    }
+    if (part.texture.coordinates.empty()) return;
+    // Each vertex has coordinates of its own.
+    part.texture.corners.insert(part.texture.corners.end(),
+                                polygons.corners.begin() + static_cast<std::ptrdiff_t>(first),
+                                polygons.corners.end());
+  }
+
+  /// Animated nodes that hold meshes, or joints that hold their vertices.
+  void note_moved_nodes() {
+    std::vector<bool> moves_face(document_.nodes.size(), false);
+    for (auto placed = placed_.rbegin(); placed != placed_.rend(); ++placed) {
+      const GltfNode& node = document_.nodes[placed->node];
+      bool holds = node.mesh.has_value() || joints_.contains(placed->node);
+      for (const std::size_t child : node.children) holds = holds || moves_face[child];
+      moves_face[placed->node] = holds;
+    }
+    std::set<std::string> names;
+    for (const std::size_t node : moved_) {
+      if (!moves_face[node]) continue;
+      const std::string& name = document_.nodes[node].name;
+      names.insert("'" + (name.empty() ? "nodes[" + std::to_string(node) + ']' : name) + "'");
+    }
+    note(names,
+         "the movement of nodes is left out, every frame has them as they stand at rest (head "
+         "motion, eyes)");
+  }
+
+  GltfDocument document_;
+  GltfValues values_;
+  std::vector<PlacedNode> placed_;
+  std::map<std::size_t, Eigen::Matrix4d> worlds_;
+  std::vector<std::shared_ptr<const WeightCurve>> curves_;
+  std::set<std::size_t> moved_, joints_;
+  std::set<std::string> left_out_;
+  std::vector<std::string> notes_, motion_notes_;
+};
+
+}  // namespace
+
+Scene read_gltf(const fs::path& path) {
+  return GltfReader(path).read();
+}
+
+}  // namespace mimetra

@@ -1,0 +1,195 @@
+#include "toolkit/io/gltf_values.h"
+
+#include <limits>
+
+#include "toolkit/io/bytes.h"
+#include "toolkit/io/meshopt_codec.h"
+#include "toolkit/io/scene.h"
+#include "toolkit/mesh/errors.h"
+
+namespace mimetra {
+namespace {
+
+// Types of components.
+constexpr int kGltfByte = 5120, kGltfUnsignedByte = 5121, kGltfShort = 5122,
+              kGltfUnsignedShort = 5123, kGltfUnsignedInt = 5125, kGltfFloat = 5126;
+
+std::size_t gltf_bytes(int type) {
+  if (type == kGltfByte || type == kGltfUnsignedByte) return 1;
+  return type == kGltfShort || type == kGltfUnsignedShort ? 2 : 4;
+}
+
+double gltf_number(const char* at, int type) {
+  constexpr auto kOrder = std::endian::little;
+  switch (type) {
+    case kGltfByte:
+      return number_at<std::int8_t>(at, kOrder);
+    case kGltfUnsignedByte:
+      return number_at<std::uint8_t>(at, kOrder);
+    case kGltfShort:
+      return number_at<std::int16_t>(at, kOrder);
+    case kGltfUnsignedShort:
+      return number_at<std::uint16_t>(at, kOrder);
+    case kGltfUnsignedInt:
+      return number_at<std::uint32_t>(at, kOrder);
+    default:
+      return number_at<float>(at, kOrder);
+  }
+}
+
+/// What 1 is stored as in normalised integers. [glTF 2.0, 3.11]
+double gltf_one(int type) {
+  switch (type) {
+    case kGltfByte:
+      return 127;
+    case kGltfUnsignedByte:
+      return 255;
+    case kGltfShort:
+      return 32767;
+    case kGltfUnsignedShort:
+      return 65535;
+    default:
+      return 1;
+  }
+}
+
+bool is_unsigned(int type) {
+  return type == kGltfUnsignedByte || type == kGltfUnsignedShort || type == kGltfUnsignedInt;
+}
+
+std::string accessor_name(std::size_t accessor) {
+  return "accessors[" + std::to_string(accessor) + ']';
+}
+
+}  // namespace
+
+void GltfValues::fail(const std::string& what, const std::string& message) const {
+  throw IoError(document_.path, what + ": " + message);
+}
+
+std::string_view GltfValues::bytes(std::size_t view) {
+  const std::string what = "bufferViews[" + std::to_string(view) + ']';
+  const GltfView& stored = document_.views[view];
+  const auto part = [&](std::size_t buffer, std::size_t offset, std::size_t size) {
+    const std::string_view all = document_.buffers[buffer];
+    if (offset > all.size() || size > all.size() - offset) {
+      fail(what, "ends at byte " + std::to_string(offset) + " + " + std::to_string(size) +
+                     " of a buffer of " + std::to_string(all.size()));
+    }
+    return all.substr(offset, size);
+  };
+  if (!stored.compression) return part(stored.buffer, stored.offset, stored.bytes);
+  const GltfCompression& compression = *stored.compression;
+  auto [known, is_new] = decompressed_.try_emplace(view);
+  if (is_new) {
+    known->second = decompressed(document_.path, what, compression,
+                                 part(compression.buffer, compression.offset, compression.bytes));
+    decompressed_bytes_ += known->second.size();
+    // Many views of the same bytes.
+    check_scene_size(document_.path, static_cast<double>(decompressed_bytes_) / 24, 1,
+                     document_.file_bytes);
+  }
+  if (known->second.size() < stored.bytes) {
+    fail(what, "holds " + std::to_string(known->second.size()) + " bytes, expected " +
+                   std::to_string(stored.bytes));
+  }
+  return std::string_view(known->second).substr(0, stored.bytes);
+}
+
+Frames GltfValues::stored(const std::string& what, const GltfPlace& place, Eigen::Index count,
+                          int components, int type) {
+  const std::string_view all = bytes(place.view);
+  const std::size_t size = gltf_bytes(type), element = static_cast<std::size_t>(components) * size;
+  const std::size_t given = document_.views[place.view].stride;
+  const std::size_t stride = given > 0 ? given : element;
+  if (stride < element) {
+    fail(what, "elements of " + std::to_string(element) + " bytes stand " + std::to_string(stride) +
+                   " apart");
+  }
+  const std::size_t held = all.size() - std::min(all.size(), place.offset);
+  if (held < element || (held - element) / stride < static_cast<std::size_t>(count - 1)) {
+    fail(what, "its " + std::to_string(count) + " elements do not lie within bufferViews[" +
+                   std::to_string(place.view) + "] of " + std::to_string(all.size()) + " bytes");
+  }
+  Frames values(count, components);
+  const char* at = all.data() + place.offset;
+  for (Eigen::Index i = 0; i < count; ++i, at += stride) {
+    for (int c = 0; c < components; ++c) {
+      values(i, c) = gltf_number(at + static_cast<std::size_t>(c) * size, type);
+    }
+    if (i + 1 == count) break;
+  }
+  return values;
+}
+
+void GltfValues::replace_sparse(const std::string& what, const GltfAccessor& accessor,
+                                Frames& values) {
+  const GltfSparse& sparse = *accessor.sparse;
+  if (sparse.count == 0) return;
+  if (!is_unsigned(sparse.index_type)) fail(what, "its sparse indices are no counts");
+  const auto count = static_cast<Eigen::Index>(sparse.count);
+  const Frames places = stored(what + ".sparse", sparse.indices, count, 1, sparse.index_type);
+  const Frames given =
+      stored(what + ".sparse", sparse.values, count, accessor.components, accessor.type);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const double place = places(i, 0);
+    if (place >= static_cast<double>(values.rows())) {
+      fail(what, "replaces element " + std::to_string(static_cast<std::size_t>(place)) + " of " +
+                     std::to_string(values.rows()));
+    }
+    values.row(static_cast<Eigen::Index>(place)) = given.row(i);
+  }
+}
+
+Frames GltfValues::read(std::size_t index, int components) {
+  const GltfAccessor& accessor = document_.accessors[index];
+  const std::string what = accessor_name(index);
+  if (accessor.components != components) {
+    fail(what, "has " + std::to_string(accessor.components) + " numbers an element, expected " +
+                   std::to_string(components));
+  }
+  constexpr std::size_t kMost = std::numeric_limits<int>::max() / 16;
+  if (accessor.count > kMost) fail(what, "has " + std::to_string(accessor.count) + " elements");
+  const auto count = static_cast<Eigen::Index>(accessor.count);
+  Frames values;
+  if (accessor.place) {
+    values = stored(what, *accessor.place, count, components, accessor.type);
+  } else if (accessor.count > document_.file_bytes) {
+    fail(what, std::to_string(accessor.count) + " elements of which the file holds nothing");
+  } else {
+    values = Frames::Zero(count, components);
+  }
+  if (accessor.sparse) replace_sparse(what, accessor, values);
+  if (accessor.normalized) values = (values / gltf_one(accessor.type)).cwiseMax(-1);
+  if (!values.allFinite()) fail(what, "holds a number that is not finite");
+  return values;
+}
+
+Frames GltfValues::read(std::size_t accessor, int components, Eigen::Index count) {
+  const std::size_t held = document_.accessors[accessor].count;
+  if (held != static_cast<std::size_t>(count)) {
+    fail(accessor_name(accessor),
+         "has " + std::to_string(held) + " elements, expected " + std::to_string(count));
+  }
+  return read(accessor, components);
+}
+
+std::vector<int> GltfValues::indices(std::size_t index, Eigen::Index size) {
+  const GltfAccessor& accessor = document_.accessors[index];
+  if (!is_unsigned(accessor.type) || accessor.normalized) {
+    fail(accessor_name(index), "holds no indices");
+  }
+  const Frames values = read(index, 1);
+  std::vector<int> indices;
+  indices.reserve(static_cast<std::size_t>(values.rows()));
+  for (const double value : values.reshaped<Eigen::RowMajor>()) {
+    if (value >= static_cast<double>(size)) {
+      fail(accessor_name(index), "names vertex " + std::to_string(static_cast<std::size_t>(value)) +
+                                     ", expected 0 to " + std::to_string(size - 1));
+    }
+    indices.push_back(static_cast<int>(value));
+  }
+  return indices;
+}
+
+}  // namespace mimetra

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <map>
+#include <string>
+#include <string_view>
+
+#include "toolkit/io/gltf_document.h"
+#include "toolkit/mesh/frame_source.h"
+
+namespace mimetra {
+
+/// The numbers that a glTF file's accessors describe. Views are decompressed when they are needed.
+/// Throws IoError for what does not lie in its buffer.
+class GltfValues {
+ public:
+  /// Keeps a reference.
+  explicit GltfValues(const GltfDocument& document) : document_(document) {}
+
+  /// count x components, integers scaled as they are normalised. Throws IoError unless they are
+  /// `components` each, and for what is not finite.
+  Frames read(std::size_t accessor, int components);
+  /// The same of `count` elements.
+  Frames read(std::size_t accessor, int components, Eigen::Index count);
+  /// Indices below `size`.
+  std::vector<int> indices(std::size_t accessor, Eigen::Index size);
+  /// Bytes of a view.
+  std::string_view bytes(std::size_t view);
+
+ private:
+  /// Elements of `type` that stand one after the other from `place` on.
+  Frames stored(const std::string& what, const GltfPlace& place, Eigen::Index count, int components,
+                int type);
+  void replace_sparse(const std::string& what, const GltfAccessor& accessor, Frames& values);
+  [[noreturn]] void fail(const std::string& what, const std::string& message) const;
+
+  const GltfDocument& document_;
+  std::map<std::size_t, std::string> decompressed_;
+  std::size_t decompressed_bytes_ = 0;
+};
+
+}  // namespace mimetra

@@ -1,0 +1,82 @@
+#include "toolkit/io/held_parts.h"
+
+#include <algorithm>
+#include <string_view>
+
+#include "toolkit/mesh/text.h"
+#include "toolkit/mesh/texture.h"
+#include "toolkit/mesh/weld.h"
+
+namespace mimetra {
+namespace {
+
+bool has_polygons(const Connectivity& connectivity) {
+  return connectivity.triangles.rows() > connectivity.polygons.size();
+}
+
+bool has_statement(const Connectivity& connectivity, std::string_view keyword) {
+  return std::ranges::any_of(connectivity.groups, [keyword](const FaceGroup& group) {
+    return group.statement.starts_with(keyword) && group.statement.size() > keyword.size() &&
+           group.statement[keyword.size()] == ' ';
+  });
+}
+
+/// True where numbering the places of corners by their first use gives every vertex its number.
+bool is_numbered_by_use(const FrameSource& sequence) {
+  int vertices = 0;
+  for (const VertexIndex vertex : sequence.triangles().reshaped<Eigen::RowMajor>()) {
+    if (vertex > vertices) return false;
+    if (vertex == vertices) ++vertices;
+  }
+  return vertices == sequence.vertices() && Weld::exact(sequence.rest()).count == 0;
+}
+
+bool is_its_only_frame(const FrameSource& sequence) {
+  return sequence.frames() == 1 &&
+         FrameBlock(sequence, 0, 1).frame(0) ==
+             PositionsView(sequence.rest().data(), sequence.vertices(), 3);
+}
+
+void add_lost_texture(std::vector<std::string>& lost, HeldParts::Texture held,
+                      const Connectivity& connectivity) {
+  if (connectivity.texture.coordinates.empty() || held == HeldParts::Texture::corners) return;
+  if (held == HeldParts::Texture::none) {
+    lost.emplace_back("texture coordinates");
+  } else if (!texture_of_vertices(connectivity)) {
+    lost.emplace_back("several texture coordinates at a vertex");
+  }
+}
+
+}  // namespace
+
+std::string description(const HeldParts& held) {
+  std::vector<std::string> words = {held.polygons ? "polygons" : "triangles"};
+  if (held.texture == HeldParts::Texture::vertices) words.emplace_back("UVs of vertices");
+  if (held.texture == HeldParts::Texture::corners) words.emplace_back("UVs");
+  if (held.groups) words.emplace_back("groups and materials");
+  if (held.rest) words.emplace_back("rest pose");
+  if (!held.vertex_order) words.emplace_back("no order of vertices");
+  return joined(words);
+}
+
+std::vector<std::string> parts_left_out(const HeldParts& held, const FrameSource& sequence) {
+  const Connectivity& connectivity = sequence.connectivity();
+  std::vector<std::string> lost;
+  if (!held.polygons && has_polygons(connectivity)) {
+    lost.emplace_back("faces of more than three corners");
+  }
+  add_lost_texture(lost, held.texture, connectivity);
+  if (!held.groups) {
+    if (has_statement(connectivity, "g") || has_statement(connectivity, "o")) {
+      lost.emplace_back("groups");
+    }
+    if (has_statement(connectivity, "usemtl")) lost.emplace_back("materials");
+  }
+  if (!held.rest && sequence.rest_is_known() && !is_its_only_frame(sequence)) {
+    lost.emplace_back("rest pose");
+  }
+  if (!held.vertex_order && !is_numbered_by_use(sequence)) lost.emplace_back("order of vertices");
+  return lost;
+}
+
+}  // namespace mimetra

@@ -1,0 +1,85 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "toolkit/model/blendshape_model.h"
+
+/// Files of a whole scene, such as glTF and USD: meshes with morph targets and their weights over
+/// time. Internal to their formats.
+namespace mimetra {
+
+/// Weights of the targets of one part over time: keys, and what lies between them.
+struct WeightCurve {
+  enum class Between { step, linear, cubic };
+
+  Between between = Between::linear;
+  Eigen::VectorXd times;   ///< of the keys (K), rising
+  Eigen::MatrixXd values;  ///< K x targets; one row without times for weights that stay
+  /// Slopes before and after each key, K x targets, of cubic curves.
+  Eigen::MatrixXd slopes_in, slopes_out;
+
+  /// The weights at a time; those of the nearest key outside of the keys. \pre there is a row
+  Eigen::RowVectorXd at(double time) const;
+};
+
+/// Displacements of a part that one weight drives.
+struct SceneTarget {
+  std::string name;
+  Positions displacements;  ///< N x 3
+};
+
+/// One mesh of a scene, where the scene puts it.
+struct ScenePart {
+  std::string name;
+  Positions positions;  ///< N x 3
+  Polygons polygons;
+  TextureCoordinates texture;
+  /// Names of materials, each from its first polygon on.
+  std::vector<FaceGroup> groups;
+  std::vector<SceneTarget> targets;
+  /// A column for each target, or more; null for weights of 0.
+  std::shared_ptr<const WeightCurve> weights = {};
+};
+
+/// A face and what it performs.
+struct Scene {
+  std::shared_ptr<const BlendshapeModel> model;
+  /// Weights of its expressions (F x D) and their seconds (F); no frames where nothing is driven.
+  Eigen::MatrixXd weights = {};
+  Eigen::VectorXd times = {};
+  /// Frames that no weights drive, instead of those.
+  std::shared_ptr<const FrameSource> frames = {};
+  /// False where the model's neutral only stands in for a rest pose that nobody knows.
+  bool rest_is_known = true;
+  std::vector<std::filesystem::path> files = {};
+  std::vector<std::string> notes = {};
+  /// What was left out of its movement: of no interest for its shapes.
+  std::vector<std::string> motion_notes = {};
+};
+
+/// Throws IoError where `vertices` in `poses` poses would take far more memory than a file of
+/// `file_bytes` can mean.
+void check_scene_size(const std::string& path, double vertices, double poses,
+                      std::size_t file_bytes);
+
+/// One model of all parts, one after the other. Targets of equal names are one expression where
+/// their weights are equal at all times; frames are at the keys of all curves. Throws IoError where
+/// there is no part, a face has a bad index, a key's time does not rise, or all of them would take
+/// more memory than a file of `file_bytes` can mean.
+Scene joined_scene(const std::string& path, std::vector<ScenePart> parts, std::size_t file_bytes);
+
+/// True for the extension of a scene's file, also one that is only refused by what it is.
+bool is_scene_file(const std::filesystem::path& path);
+
+/// Reads a scene. Throws IoError.
+Scene read_scene(const std::filesystem::path& path);
+
+/// Readers of formats, each in the file of its name.
+Scene read_gltf(const std::filesystem::path& path);
+Scene read_usd(const std::filesystem::path& path);
+
+}  // namespace mimetra

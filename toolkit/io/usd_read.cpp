@@ -1,0 +1,558 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numbers>
+#include <set>
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+
+#include "toolkit/io/scene.h"
+#include "toolkit/io/sequence_parts.h"
+#include "toolkit/io/usd_text.h"
+#include "toolkit/io/whole_file.h"
+#include "toolkit/mesh/errors.h"
+#include "toolkit/mesh/text.h"
+
+namespace mimetra {
+namespace fs = std::filesystem;
+namespace {
+
+/// A prim and those that it stands in, the innermost last.
+using UsdStack = std::vector<const UsdPrim*>;
+
+const UsdProperty* usd_property(const UsdPrim& prim, const std::string& name) {
+  const auto found = prim.properties.find(name);
+  return found == prim.properties.end() ? nullptr : &found->second;
+}
+
+/// The numbers of a property at a time: the nearest sample's outside of them, and a straight line
+/// between two of them. Its own value where it has no samples, or where no time is asked for.
+std::vector<double> numbers_at(const UsdProperty& property, std::optional<double> time) {
+  const auto& samples = property.samples;
+  if (samples.empty() || (!time && property.has_value)) return property.value.numbers;
+  if (!time) return samples.front().second.numbers;
+  const auto after =
+      std::ranges::upper_bound(samples, *time, {}, &std::pair<double, UsdValue>::first);
+  if (after == samples.begin()) return after->second.numbers;
+  const auto& [from, start] = *std::prev(after);
+  if (after == samples.end() || from == *time ||
+      after->second.numbers.size() != start.numbers.size()) {
+    return start.numbers;
+  }
+  const double share = (*time - from) / (after->first - from);
+  std::vector<double> between = start.numbers;
+  for (std::size_t i = 0; i < between.size(); ++i) {
+    between[i] += share * (after->second.numbers[i] - between[i]);
+  }
+  return between;
+}
+
+Eigen::Map<const Positions> as_points(const std::vector<double>& numbers) {
+  return {numbers.data(), static_cast<Eigen::Index>(numbers.size() / 3), 3};
+}
+
+/// A mesh of the layer, where it stands, and what moves it.
+struct UsdMesh {
+  const UsdPrim* prim;
+  UsdStack stack;
+  ScenePart part;
+  /// Time codes at which it is told by other than weights.
+  std::set<double> codes = {};
+  bool rest_is_known = true;
+};
+
+class UsdReader {
+ public:
+  UsdReader(const fs::path& path, std::string text)
+      : path_(path.string()), bytes_(text.size()), layer_(parse_usd(path_, text)) {
+    rate_ = setting("timeCodesPerSecond", setting("framesPerSecond", 24));
+    if (!(rate_ > 0)) throw IoError(path_, "has " + readable(rate_) + " time codes per second");
+  }
+
+  Scene read() {
+    for (const UsdPrim& prim : layer_.prims) visit(prim, {});
+    for (UsdMesh& mesh : meshes_) fill(mesh);
+    const bool is_baked =
+        std::ranges::any_of(meshes_, [](const UsdMesh& mesh) { return !mesh.codes.empty(); });
+    std::vector<ScenePart> parts;
+    for (const UsdMesh& mesh : meshes_) {
+      parts.push_back(mesh.part);
+      if (is_baked) parts.back().weights = nullptr;
+    }
+    Scene scene = joined_scene(path_, std::move(parts), bytes_);
+    if (is_baked) bake(scene);
+    scene.files = {path_};
+    scene.notes.insert(scene.notes.begin(), notes_.begin(), notes_.end());
+    if (!left_out_.empty()) {
+      scene.notes.push_back(path_ +
+                            ": is left out: " + listed({left_out_.begin(), left_out_.end()}));
+    }
+    return scene;
+  }
+
+ private:
+  [[noreturn]] void fail(int line, const std::string& message) const {
+    throw IoError(path_, "line " + std::to_string(line) + ": " + message);
+  }
+
+  double setting(const std::string& name, double fallback) const {
+    const auto found = layer_.metadata.find(name);
+    if (found == layer_.metadata.end() || found->second.numbers.empty()) return fallback;
+    return found->second.numbers.front();
+  }
+
+  static bool is_word(const UsdPrim& prim, const std::string& name, const std::string& word) {
+    const UsdProperty* property = usd_property(prim, name);
+    return property && !property->value.words.empty() && property->value.words.front() == word;
+  }
+
+  void visit(const UsdPrim& prim, UsdStack stack) {
+    // What only adds to another layer, or is only a pattern for others.
+    if (prim.specifier != "def") return;
+    const auto active = prim.metadata.find("active");
+    if (active != prim.metadata.end() && active->second.words == std::vector<std::string>{"false"})
+      return;
+    const std::string shown = prim.type + " '" + prim.name + "'";
+    if (prim.type == "PointInstancer") fail(prim.line, shown + ": instances are not read");
+    static const std::set<std::string> shapes = {
+        "Sphere", "Cube",   "Cone",        "Cylinder",   "Capsule",       "Plane",  "BasisCurves",
+        "Points", "Volume", "NurbsCurves", "NurbsPatch", "HermiteCurves", "TetMesh"};
+    if (shapes.contains(prim.type)) left_out_.insert(shown);
+    stack.push_back(&prim);
+    if (prim.type == "SkelAnimation") animations_.emplace_back(path_of(stack), &prim);
+    const bool is_hidden = is_word(prim, "visibility", "invisible") ||
+                           is_word(prim, "purpose", "guide") || is_word(prim, "purpose", "proxy");
+    if (is_hidden) {
+      left_out_.insert(shown + ", which is not shown");
+      return;
+    }
+    if (prim.type == "Mesh") {
+      if (!usd_property(prim, "points")) fail(prim.line, shown + " has no points");
+      meshes_.push_back({&prim, stack, {}});
+    }
+    for (const UsdPrim& child : prim.children) visit(child, stack);
+  }
+
+  static std::string path_of(const UsdStack& stack) {
+    std::string path;
+    for (const UsdPrim* prim : stack) path += '/' + prim->name;
+    return path;
+  }
+
+  const UsdProperty& needed(const UsdPrim& prim, const std::string& name) const {
+    const UsdProperty* property = usd_property(prim, name);
+    if (!property) fail(prim.line, prim.type + " '" + prim.name + "' has no " + name);
+    return *property;
+  }
+
+  std::vector<int> counts_of(const UsdPrim& prim, const std::string& name) const {
+    const UsdProperty& property = needed(prim, name);
+    for (const auto& [time, value] : property.samples) {
+      if (value.numbers == property.samples.front().second.numbers) continue;
+      fail(property.line, name + " change over time, which is not read");
+    }
+    return integers(property, name);
+  }
+
+  std::vector<int> integers(const UsdProperty& property, const std::string& name) const {
+    std::vector<int> values;
+    for (const double number : numbers_at(property, std::nullopt)) {
+      if (number != std::floor(number) || number < 0 || number > std::numeric_limits<int>::max()) {
+        fail(property.line, name + ": " + readable(number, 12) + " is no count");
+      }
+      values.push_back(static_cast<int>(number));
+    }
+    return values;
+  }
+
+  /// Numbers of `property` at a time, of which there must be three for each vertex.
+  Positions points_at(const UsdProperty& property, std::optional<double> time,
+                      Eigen::Index vertices) const {
+    const std::vector<double> numbers = numbers_at(property, time);
+    if (vertices < 0 ? numbers.size() % 3 != 0 || numbers.empty()
+                     : static_cast<Eigen::Index>(numbers.size()) != 3 * vertices) {
+      fail(property.line,
+           std::to_string(numbers.size()) + " numbers, expected " +
+               (vertices < 0 ? "x, y and z of each point" : std::to_string(3 * vertices)));
+    }
+    return as_points(numbers);
+  }
+
+  void fill(UsdMesh& mesh) {
+    const UsdPrim& prim = *mesh.prim;
+    ScenePart& part = mesh.part;
+    part.name = prim.name;
+    const UsdProperty& points = needed(prim, "points");
+    part.positions = points_at(points, std::nullopt, -1);
+    fill_faces(prim, part);
+    for (const auto& [time, value] : points.samples) mesh.codes.insert(time);
+    mesh.rest_is_known = points.samples.empty() || points.has_value;
+    for (const UsdPrim* parent : mesh.stack) {
+      for (const auto& [name, property] : parent->properties) {
+        if (!name.starts_with("xformOp:")) continue;
+        for (const auto& [time, value] : property.samples) mesh.codes.insert(time);
+        mesh.rest_is_known = mesh.rest_is_known && (property.samples.empty() || property.has_value);
+      }
+    }
+    const Eigen::Matrix4d world = world_at(mesh.stack, std::nullopt);
+    if (world.topLeftCorner<3, 3>().determinant() < 0) reverse(part);
+    place(part.positions, world, true);
+    fill_targets(mesh, world);
+  }
+
+  static void place(Positions& points, const Eigen::Matrix4d& world, bool moved) {
+    points = (points * world.topLeftCorner<3, 3>().transpose()).eval();
+    if (moved) points.rowwise() += world.topRightCorner<3, 1>().transpose();
+  }
+
+  /// Turns the faces, each with the coordinates of its corners.
+  static void reverse(ScenePart& part) {
+    for (int face = 0; face < part.polygons.size(); ++face) {
+      const auto begin = part.polygons.offsets[static_cast<std::size_t>(face)];
+      const auto end = part.polygons.offsets[static_cast<std::size_t>(face) + 1];
+      std::reverse(part.polygons.corners.begin() + begin + 1, part.polygons.corners.begin() + end);
+      if (part.texture.corners.empty()) continue;
+      std::reverse(part.texture.corners.begin() + begin + 1, part.texture.corners.begin() + end);
+    }
+  }
+
+  void fill_faces(const UsdPrim& prim, ScenePart& part) const {
+    part.polygons.corners = counts_of(prim, "faceVertexIndices");
+    std::size_t all = 0;
+    const UsdProperty& counts = needed(prim, "faceVertexCounts");
+    for (const int count : counts_of(prim, "faceVertexCounts")) {
+      all += static_cast<std::size_t>(count);
+      if (all > part.polygons.corners.size()) break;
+      part.polygons.offsets.push_back(static_cast<int>(all));
+    }
+    if (all != part.polygons.corners.size()) {
+      fail(counts.line, "the faces have other corners than the " +
+                            std::to_string(part.polygons.corners.size()) + " that are named");
+    }
+    for (const int corner : part.polygons.corners) {
+      if (corner < part.positions.rows()) continue;
+      fail(needed(prim, "faceVertexIndices").line, "a face uses point " + std::to_string(corner) +
+                                                       " of " +
+                                                       std::to_string(part.positions.rows()));
+    }
+    fill_texture(prim, part);
+    if (is_word(prim, "orientation", "leftHanded")) reverse(part);
+  }
+
+  /// `primvars:st`, or the first that has the type of texture coordinates.
+  static std::string texture_name(const UsdPrim& prim) {
+    if (usd_property(prim, "primvars:st")) return "primvars:st";
+    for (const auto& [name, property] : prim.properties) {
+      if (name.starts_with("primvars:") && property.type.starts_with("texCoord2")) return name;
+    }
+    return {};
+  }
+
+  void fill_texture(const UsdPrim& prim, ScenePart& part) const {
+    const std::string name = texture_name(prim);
+    if (name.empty()) return;
+    const UsdProperty& texture = *usd_property(prim, name);
+    const std::vector<double> numbers = numbers_at(texture, std::nullopt);
+    if (numbers.size() % 2 != 0) fail(texture.line, "a texture coordinate has no v");
+    const std::size_t corners = part.polygons.corners.size();
+    const bool by_corner = texture.interpolation == "faceVarying";
+    if (!by_corner && texture.interpolation != "vertex" && texture.interpolation != "varying") {
+      return;  // one for a whole face, or for the mesh
+    }
+    const std::size_t wanted =
+        by_corner ? corners : static_cast<std::size_t>(part.positions.rows());
+    std::vector<int> index;
+    if (const UsdProperty* indices = usd_property(prim, name + ":indices")) {
+      index = integers(*indices, name + ":indices");
+    } else {
+      for (std::size_t i = 0; i < numbers.size() / 2; ++i) index.push_back(static_cast<int>(i));
+    }
+    if (index.size() != wanted) {
+      fail(texture.line, std::to_string(index.size()) + " texture coordinates, expected " +
+                             std::to_string(wanted));
+    }
+    for (const int i : index) {
+      if (static_cast<std::size_t>(i) >= numbers.size() / 2) {
+        fail(texture.line, "there is no texture coordinate " + std::to_string(i));
+      }
+    }
+    for (std::size_t i = 0; i < numbers.size(); i += 2) {
+      part.texture.coordinates.emplace_back(numbers[i], numbers[i + 1]);
+    }
+    for (std::size_t corner = 0; corner < corners; ++corner) {
+      const auto vertex = static_cast<std::size_t>(part.polygons.corners[corner]);
+      part.texture.corners.push_back(index[by_corner ? corner : vertex]);
+    }
+  }
+
+  void fill_targets(UsdMesh& mesh, const Eigen::Matrix4d& world) {
+    const UsdProperty* names = usd_property(*mesh.prim, "skel:blendShapes");
+    const UsdProperty* paths = usd_property(*mesh.prim, "skel:blendShapeTargets");
+    if (usd_property(*mesh.prim, "primvars:skel:jointIndices")) {
+      left_out_.insert("the skeleton of '" + mesh.prim->name + "': it stands as it is bound");
+    }
+    if (!names || !paths) return;
+    if (names->value.words.size() != paths->value.words.size()) {
+      fail(names->line, std::to_string(names->value.words.size()) + " names of blendshapes for " +
+                            std::to_string(paths->value.words.size()) + " of them");
+    }
+    const Eigen::Index vertices = mesh.part.positions.rows();
+    check_scene_size(path_, static_cast<double>(vertices),
+                     static_cast<double>(names->value.words.size()) + 1, bytes_);
+    for (std::size_t j = 0; j < names->value.words.size(); ++j) {
+      const UsdPrim* shape = prim_at(paths->value.words[j], mesh.stack);
+      if (!shape || shape->type != "BlendShape") {
+        fail(paths->line, "there is no BlendShape <" + paths->value.words[j] + ">");
+      }
+      SceneTarget target{names->value.words[j], displacements_of(*shape, vertices)};
+      place(target.displacements, world, false);
+      mesh.part.targets.push_back(std::move(target));
+    }
+    mesh.part.weights = weights_of(mesh, names->value.words);
+  }
+
+  /// The prim of a path, from the root of the layer or, without a slash before it, from the mesh.
+  const UsdPrim* prim_at(const std::string& path, const UsdStack& stack) const {
+    const bool is_absolute = path.starts_with('/');
+    const std::vector<UsdPrim>* children = is_absolute ? &layer_.prims : &stack.back()->children;
+    const UsdPrim* prim = nullptr;
+    for (std::size_t at = is_absolute ? 1 : 0; at <= path.size();) {
+      const std::size_t slash = std::min(path.find('/', at), path.size());
+      const std::string name = path.substr(at, slash - at);
+      const auto found = std::ranges::find(*children, name, &UsdPrim::name);
+      if (found == children->end()) return nullptr;
+      prim = &*found;
+      children = &prim->children;
+      at = slash + 1;
+    }
+    return prim;
+  }
+
+  Positions displacements_of(const UsdPrim& shape, Eigen::Index vertices) const {
+    for (const auto& [name, property] : shape.properties) {
+      if (!name.starts_with("inbetweens:")) continue;
+      fail(property.line, "'" + name + "': shapes in between are not read");
+    }
+    const UsdProperty& offsets = needed(shape, "offsets");
+    const UsdProperty* indices = usd_property(shape, "pointIndices");
+    if (!indices) return points_at(offsets, std::nullopt, vertices);
+    const std::vector<int> points = integers(*indices, "pointIndices");
+    const Positions given =
+        points_at(offsets, std::nullopt, static_cast<Eigen::Index>(points.size()));
+    Positions displacements = Positions::Zero(vertices, 3);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      if (points[i] >= vertices) {
+        fail(indices->line,
+             "point " + std::to_string(points[i]) + " of " + std::to_string(vertices));
+      }
+      displacements.row(points[i]) = given.row(static_cast<Eigen::Index>(i));
+    }
+    return displacements;
+  }
+
+  /// The animation that the mesh or its skeleton names, itself or by what they stand in; where
+  /// nobody names any, the only one.
+  const UsdPrim* animation_of(const UsdMesh& mesh) {
+    for (auto prim = mesh.stack.rbegin(); prim != mesh.stack.rend(); ++prim) {
+      std::vector<const UsdPrim*> naming = {*prim};
+      const UsdProperty* skeleton = usd_property(**prim, "skel:skeleton");
+      if (skeleton && !skeleton->value.words.empty()) {
+        naming.push_back(prim_at(skeleton->value.words.front(), mesh.stack));
+      }
+      for (const UsdPrim* owner : naming) {
+        const UsdProperty* source = owner ? usd_property(*owner, "skel:animationSource") : nullptr;
+        if (!source || source->value.words.empty()) continue;
+        const UsdPrim* animation = prim_at(source->value.words.front(), mesh.stack);
+        if (animation) return animation;
+        fail(source->line, "there is no SkelAnimation <" + source->value.words.front() + ">");
+      }
+    }
+    if (animations_.empty()) return nullptr;
+    if (animations_.size() > 1) {
+      notes_.push_back(path_ + ": '" + mesh.prim->name + "' names none of its " +
+                       std::to_string(animations_.size()) + " animations; " +
+                       animations_.front().first + " drives it");
+    }
+    return animations_.front().second;
+  }
+
+  std::shared_ptr<const WeightCurve> weights_of(const UsdMesh& mesh,
+                                                const std::vector<std::string>& names) {
+    const UsdPrim* animation = animation_of(mesh);
+    if (!animation) return nullptr;
+    const UsdProperty* weights = usd_property(*animation, "blendShapeWeights");
+    const UsdProperty* driven = usd_property(*animation, "blendShapes");
+    for (const char* moved : {"rotations", "translations", "scales"}) {
+      const UsdProperty* joints = usd_property(*animation, moved);
+      if (joints && joints->samples.size() > 1) {
+        left_out_.insert("the movement of joints of '" + animation->name + "'");
+      }
+    }
+    if (!weights || !driven) return nullptr;
+    std::vector<double> times;
+    for (const auto& [time, value] : weights->samples) times.push_back(time);
+    auto curve = std::make_shared<WeightCurve>();
+    curve->times = Eigen::Map<const Eigen::VectorXd>(times.data(), Eigen::Index(times.size()));
+    const std::size_t rows = std::max<std::size_t>(1, times.size());
+    check_scene_size(path_, static_cast<double>(names.size()) / 3, static_cast<double>(rows),
+                     bytes_);
+    std::map<std::string, std::size_t> column;
+    for (const std::string& name : driven->value.words) column.emplace(name, column.size());
+    if (column.size() != driven->value.words.size()) fail(driven->line, "a name stands twice");
+    curve->values = Eigen::MatrixXd::Zero(Eigen::Index(rows), Eigen::Index(names.size()));
+    for (std::size_t row = 0; row < rows; ++row) {
+      const std::vector<double>& given =
+          times.empty() ? weights->value.numbers : weights->samples[row].second.numbers;
+      if (given.size() != driven->value.words.size()) {
+        fail(weights->line, std::to_string(given.size()) + " weights for " +
+                                std::to_string(driven->value.words.size()) + " blendshapes");
+      }
+      for (std::size_t j = 0; j < names.size(); ++j) {
+        const auto found = column.find(names[j]);
+        if (found == column.end()) continue;
+        curve->values(Eigen::Index(row), Eigen::Index(j)) = given[found->second];
+      }
+    }
+    curve->times /= rate_;
+    return curve;
+  }
+
+  Eigen::Matrix4d world_at(const UsdStack& stack, std::optional<double> code) const {
+    Eigen::Matrix4d world = Eigen::Matrix4d::Identity();
+    for (const UsdPrim* prim : stack) {
+      const UsdProperty* order = usd_property(*prim, "xformOpOrder");
+      if (!order) continue;
+      for (const std::string& name : order->value.words) {
+        if (name == "!resetXformStack!") {
+          world.setIdentity();
+          continue;
+        }
+        constexpr std::string_view kInverse = "!invert!";
+        const bool inverse = name.starts_with(kInverse);
+        const std::string own = inverse ? name.substr(kInverse.size()) : name;
+        const UsdProperty* operation = usd_property(*prim, own);
+        if (!operation) fail(order->line, "there is no '" + own + "'");
+        const Eigen::Matrix4d step = step_of(own, *operation, code);
+        if (inverse && step.determinant() == 0) fail(operation->line, "has no inverse");
+        world *= inverse ? Eigen::Matrix4d(step.inverse()) : step;
+      }
+    }
+    return world;
+  }
+
+  /// A step of a prim's transform. [UsdGeomXformOp]
+  Eigen::Matrix4d step_of(const std::string& name, const UsdProperty& operation,
+                          std::optional<double> code) const {
+    const std::string kind = name.substr(8, name.find(':', 8) - 8);
+    const std::vector<double> numbers = numbers_at(operation, code);
+    const auto need = [&](std::size_t count) {
+      if (numbers.size() == count) return;
+      fail(operation.line, "'" + name + "' has " + std::to_string(numbers.size()) +
+                               " numbers, expected " + std::to_string(count));
+    };
+    Eigen::Affine3d step = Eigen::Affine3d::Identity();
+    const auto turn = [&step](char axis, double degrees) {
+      step.prerotate(
+          Eigen::AngleAxisd(degrees * std::numbers::pi / 180, Eigen::Vector3d::Unit(axis - 'X')));
+    };
+    if (kind == "transform") {
+      need(16);
+      return Eigen::Map<const Eigen::Matrix4d>(numbers.data());  // its rows are our columns
+    }
+    if (kind == "translate" || kind == "scale") {
+      need(3);
+      const Eigen::Vector3d xyz(numbers[0], numbers[1], numbers[2]);
+      if (kind == "scale") return step.scale(xyz).matrix();
+      return step.translate(xyz).matrix();
+    }
+    if (kind == "orient") {
+      need(4);
+      const Eigen::Quaterniond turned(numbers[0], numbers[1], numbers[2], numbers[3]);
+      if (turned.norm() == 0) fail(operation.line, "'" + name + "' is no rotation");
+      return step.rotate(turned.normalized()).matrix();
+    }
+    const std::string axes = kind.starts_with("rotate") ? kind.substr(6) : "";
+    const bool known = (axes.size() == 1 || axes.size() == 3) &&
+                       axes.find_first_not_of("XYZ") == std::string::npos;
+    if (!known) fail(operation.line, "'" + name + "' is not read; use a matrix");
+    need(axes.size());
+    for (const char axis : axes) turn(axis, numbers[axes.size() == 1 ? 0 : axis - 'X']);
+    return step.matrix();
+  }
+
+  /// Frames of points and transforms that are told over time, with the weights on top.
+  void bake(Scene& scene) const {
+    std::set<double> codes;
+    bool rest_is_known = true;
+    for (const UsdMesh& mesh : meshes_) {
+      codes.insert(mesh.codes.begin(), mesh.codes.end());
+      rest_is_known = rest_is_known && mesh.rest_is_known;
+      if (!mesh.part.weights) continue;
+      for (const double time : mesh.part.weights->times) codes.insert(time * rate_);
+    }
+    const auto frames = static_cast<Eigen::Index>(codes.size());
+    check_scene_size(path_, scene.model->vertices(), static_cast<double>(frames), bytes_);
+    Frames poses(frames, 3 * scene.model->vertices());
+    Eigen::VectorXd times(frames);
+    Eigen::Index frame = 0;
+    for (const double code : codes) {
+      Eigen::Index at = 0;
+      for (const UsdMesh& mesh : meshes_) {
+        const Positions points = pose_at(mesh, code);
+        poses.row(frame).segment(at, points.size()) =
+            Eigen::Map<const Eigen::RowVectorXd>(points.data(), points.size());
+        at += points.size();
+      }
+      times[frame++] = code / rate_;
+    }
+    check_times(path_, times);
+    std::optional<Positions> rest;
+    if (rest_is_known) rest = scene.model->neutral();
+    scene.frames = std::make_shared<const MeshSequence>(
+        scene.model->shared_connectivity(), std::move(poses), std::move(times), std::move(rest));
+  }
+
+  Positions pose_at(const UsdMesh& mesh, double code) const {
+    const UsdProperty& points = needed(*mesh.prim, "points");
+    const Eigen::Index vertices = mesh.part.positions.rows();
+    Positions pose = points_at(points, code, vertices);
+    const Eigen::Matrix4d world = world_at(mesh.stack, code);
+    place(pose, world, true);
+    if (!mesh.part.weights) return pose;
+    // Targets stand as at rest: they turn with the mesh.
+    const Eigen::Matrix4d rest = world_at(mesh.stack, std::nullopt);
+    const Eigen::Matrix3d turned =
+        world.topLeftCorner<3, 3>() * rest.topLeftCorner<3, 3>().inverse();
+    const Eigen::RowVectorXd weights = mesh.part.weights->at(code / rate_);
+    for (std::size_t j = 0; j < mesh.part.targets.size(); ++j) {
+      const double weight = weights[Eigen::Index(j)];
+      if (weight == 0) continue;
+      pose += weight * (mesh.part.targets[j].displacements * turned.transpose());
+    }
+    return pose;
+  }
+
+  std::string path_;
+  std::size_t bytes_;
+  UsdLayer layer_;
+  double rate_;
+  std::vector<UsdMesh> meshes_;
+  std::vector<std::pair<std::string, const UsdPrim*>> animations_;
+  std::set<std::string> left_out_;
+  std::vector<std::string> notes_;
+};
+
+}  // namespace
+
+Scene read_usd(const fs::path& path) {
+  std::string text = read_file(path);
+  const std::string remedy = ", which is not read; export .usda, the text form (usdcat " +
+                             path.filename().string() + " -o NAME.usda)";
+  if (text.starts_with("PXR-USDC")) throw IoError(path.string(), "is binary USD" + remedy);
+  if (text.starts_with("PK")) throw IoError(path.string(), "is a package of USD" + remedy);
+  return UsdReader(path, std::move(text)).read();
+}
+
+}  // namespace mimetra

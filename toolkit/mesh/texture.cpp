@@ -1,0 +1,23 @@
+#include "toolkit/mesh/texture.h"
+
+namespace mimetra {
+
+std::optional<std::vector<Eigen::Vector2d>> texture_of_vertices(const Connectivity& connectivity) {
+  const TextureCoordinates& texture = connectivity.texture;
+  if (texture.coordinates.empty()) return std::nullopt;
+  const auto vertices = static_cast<std::size_t>(connectivity.vertices);
+  std::vector<Eigen::Vector2d> of_vertices(vertices, Eigen::Vector2d::Zero());
+  std::vector<char> is_known(vertices, 0);
+  for (std::size_t corner = 0; corner < texture.corners.size(); ++corner) {
+    if (texture.corners[corner] < 0) continue;
+    const auto vertex = static_cast<std::size_t>(connectivity.polygons.corners[corner]);
+    const Eigen::Vector2d& found =
+        texture.coordinates[static_cast<std::size_t>(texture.corners[corner])];
+    if (is_known[vertex] && of_vertices[vertex] != found) return std::nullopt;
+    of_vertices[vertex] = found;
+    is_known[vertex] = 1;
+  }
+  return of_vertices;
+}
+
+}  // namespace mimetra

@@ -1,0 +1,15 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "toolkit/mesh/tri_mesh.h"
+
+namespace mimetra {
+
+/// The texture coordinates of each vertex (N), where all corners at a vertex have equal ones;
+/// vertices at no such corner have 0. None where a vertex has several, as at the seams of a
+/// texture, or the mesh has no texture coordinates.
+std::optional<std::vector<Eigen::Vector2d>> texture_of_vertices(const Connectivity& connectivity);
+
+}  // namespace mimetra
