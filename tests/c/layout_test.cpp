@@ -179,7 +179,7 @@ TEST(Library, ShowsOneSymbol) {
 
 TEST(Library, NeedsNoVtk) {
   const auto needed = lines_of("ldd " MIMETRA_C_LIBRARY);
-  EXPECT_THAT(needed, testing::Contains(testing::HasSubstr("libhdf5")));
+  EXPECT_THAT(needed, testing::Contains(testing::HasSubstr("libzip")));
   EXPECT_THAT(needed, testing::Not(testing::Contains(testing::HasSubstr("libvtk"))));
 }
 

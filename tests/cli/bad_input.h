@@ -29,6 +29,7 @@ struct BadInput {
 std::vector<BadInput> mesh_cases();
 std::vector<BadInput> sequence_cases();
 std::vector<BadInput> array_cases();
+std::vector<BadInput> hdf5_cases();
 std::vector<BadInput> model_cases();
 std::vector<BadInput> weight_cases();
 std::vector<BadInput> eos_cases();

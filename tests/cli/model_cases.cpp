@@ -113,6 +113,29 @@ std::vector<BadInput> weight_cases() {
       {"\"frames\": 2", "drive no expression: smile", "no column drives: right, top"});
   add("windows_lines_and_bom", "\xEF\xBB\xBFtime,left,right,top\r\n0,0,0,0\r\n1,1,0,0\r\n", 0,
       {"\"frames\": 2"});
+  add("json_in_a_csv", "[{\"left\": 1}]", 3, {"holds JSON", "call it .json"});
+  add("percent", "time,left,right,top\n0,0,50,0\n1,100,20,80\n", 0,
+      {"\"frames\": 2", "look like percent", "divide them by 100"});
+  add("timecode_that_repeats", "Timecode,left\n01:00:00:01,0\n01:00:00:01,1\n", 3,
+      {"line 3", "01:00:00:01 is not later"});
+  add("no_timecode", "Timecode,left\nlater,0\n", 3, {"line 2", "HH:MM:SS:FF", "'later'"});
+  add("timecodes_of_one_second", "Timecode,left,right,top\n1:0:0:1,0,0,0\n1:0:0:2,1,0,0\n", 0,
+      {"\"frames\": 2", "--fps"});
+  const auto add_json = [&all](const std::string& kind, const std::string& text, int code,
+                               std::vector<std::string> says) {
+    if (code != 0) says.push_back("w.json");
+    all.push_back({kind, "weights_json", file("w.json", text), "info head --weights w.json --json",
+                   code, std::move(says)});
+  };
+  add_json("whole", R"([{"left": 1, "right": 0, "top": 0}])", 0, {"\"frames\": 1"});
+  add_json("empty", "", 3, {"is empty"});
+  add_json("truncated", R"([{"left": 1)", 3, {"is not JSON"});
+  add_json("other_type", "time,left\n0,1\n", 3, {"is not JSON", "call it .csv"});
+  add_json("nested_deeply", std::string(100000, '['), 3, {"nested too deeply"});
+  add_json("ragged_rows", R"({"names": ["left"], "weights": [[1, 2]]})", 3,
+           {"weights/0", "2 weights, expected 1"});
+  add_json("not_a_number", R"([{"left": null}])", 3, {"row 0", "'left'", "finite"});
+  add_json("no_name_known", R"([{"smile": 1}])", 4, {"smile", "left"});
   add("all_zero", "time,left,right,top\n0,0,0,0\n1,0,0,0\n", 0, {"\"motion\": 0"});
   return all;
 }

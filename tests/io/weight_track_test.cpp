@@ -1,3 +1,4 @@
+#include <cstdio>
 #include <fstream>
 
 #include <gmock/gmock.h>
@@ -45,6 +46,173 @@ TEST_F(Weights, MayHaveAByteOrderMarkCarriageReturnsAndLiveLinkColumns) {
   EXPECT_THAT(track.names, ElementsAre("JawOpen"));
   EXPECT_EQ(track.weights(0, 0), 0.5);
   EXPECT_EQ(track.times.size(), 0);
+}
+
+/// Rows with these timecodes.
+std::string coded(const std::vector<std::string>& codes) {
+  std::string text = "Timecode,BlendShapeCount,EyeBlinkLeft,HeadYaw\n";
+  for (const std::string& code : codes) text += code + ",61,0.5,0.25\n";
+  return text;
+}
+
+/// `count` timecodes from a second of the day on, `step` frames apart, at `rate` frames a second.
+std::vector<std::string> codes_from(int second, int count, double rate, double step,
+                                    double first = 0) {
+  std::vector<std::string> codes;
+  for (int i = 0; i < count; ++i) {
+    const double frames = first + step * i;
+    const int passed = static_cast<int>(frames / rate), at = (second + passed) % 86400;
+    char text[40];
+    std::snprintf(text, sizeof text, "%02d:%02d:%02d:%06.3f", at / 3600, at / 60 % 60, at % 60,
+                  frames - passed * rate);
+    codes.push_back(text);
+  }
+  return codes;
+}
+
+TEST_F(Weights, OfLiveLinkHaveTheTimesOfTheirTimecodes) {
+  // 51 s of 60 frames, with the fraction of a frame at which the capture began.
+  const WeightTrack track = read(coded(codes_from(3600 * 10, 3061, 60, 1, 27.679)));
+  ASSERT_EQ(track.times.size(), 3061);
+  EXPECT_EQ(track.times[0], 0);
+  // Fractions have three digits.
+  EXPECT_NEAR(track.times[3060], 51, 1e-4);
+  EXPECT_NEAR(track.times[1], 1.0 / 60, 1e-4);
+  EXPECT_THAT(track.names, ElementsAre("EyeBlinkLeft", "HeadYaw"));
+  EXPECT_TRUE(track.notes.empty());
+}
+
+TEST_F(Weights, FindTheRateOfTheirTimecodes) {
+  for (const double rate : {24.0, 25.0, 30.0, 50.0, 60.0, 120.0}) {
+    for (const double step : {0.5, 1.0, 2.0}) {
+      const WeightTrack track = read(coded(codes_from(17, 300, rate, step)));
+      ASSERT_EQ(track.times.size(), 300) << rate;
+      EXPECT_NEAR(track.times[299], 299 * step / rate, 1e-4) << rate << ", steps of " << step;
+    }
+  }
+}
+
+TEST_F(Weights, WithFramesLostKeepTheirTimes) {
+  std::vector<std::string> codes = codes_from(100, 600, 30, 1);
+  for (int lost = 0; lost < 40; ++lost) codes.erase(codes.begin() + 13 * lost + 5);
+  const WeightTrack track = read(coded(codes));
+  ASSERT_EQ(track.times.size(), 560);
+  EXPECT_NEAR(track.times[559], 599 / 30.0, 1e-9);
+}
+
+TEST_F(Weights, MayPassMidnight) {
+  const WeightTrack track = read(coded(codes_from(86398, 300, 60, 1)));
+  EXPECT_NEAR(track.times[299], 299 / 60.0, 1e-4);
+}
+
+TEST_F(Weights, WhoseFrameNumbersAreDroppedAreAsMuchSlower) {
+  // 29.97 frames a second: after 00:00:59;29 comes 00:01:00;02.
+  std::vector<std::string> codes;
+  for (const char* code : {"00:00:58;29", "00:00:59;00", "00:00:59;01"}) codes.push_back(code);
+  for (int frame = 2; frame < 30; ++frame) {
+    codes.push_back("00:00:59;" + std::string(frame < 10 ? "0" : "") + std::to_string(frame));
+  }
+  codes.push_back("00:01:00;02");
+  const WeightTrack track = read(coded(codes));
+  ASSERT_EQ(track.times.size(), 32);
+  EXPECT_NEAR(track.times[31], 31 * 1001 / 30000.0, 1e-12);
+}
+
+TEST_F(Weights, WithinOneSecondSayThatNothingTellsTheirRate) {
+  const WeightTrack track = read(coded({"10:00:00:01", "10:00:00:02", "10:00:00:03"}));
+  EXPECT_EQ(track.times.size(), 0);
+  EXPECT_THAT(track.notes, ElementsAre(HasSubstr("give it by --fps")));
+}
+
+TEST_F(Weights, WithTimecodesThatRepeatOrFallBackNameTheLine) {
+  EXPECT_THAT(message_of(coded({"10:00:00:01", "10:00:00:02", "10:00:00:02"})),
+              HasSubstr("line 4: the timecode 10:00:00:02 is not later than the one before"));
+  EXPECT_THAT(message_of(coded({"10:00:01:01", "10:00:00:02"})), HasSubstr("line 3"));
+  for (const char* code : {"10:00:00", "25:00:00:01", "a", "", "10:61:00:01", "10:00:00:01x"}) {
+    EXPECT_THAT(message_of(coded({code})), HasSubstr("line 2: expected a timecode HH:MM:SS:FF"));
+  }
+}
+
+TEST_F(Weights, ThatLookLikePercentOrAreFarOffAreNoted) {
+  EXPECT_THAT(read("jawOpen,smile\n0,55\n87,12\n").notes,
+              ElementsAre(testing::AllOf(HasSubstr("look like percent"), HasSubstr("87"))));
+  std::string mostly_usual = "jawOpen,smile\n0.5,0\n99,0\n";
+  for (int row = 0; row < 50; ++row) mostly_usual += "0.25,1\n";
+  EXPECT_THAT(read(mostly_usual).notes,
+              ElementsAre("the weight of 'jawOpen' is 99 in frame 1, expected 0 to 1"));
+  EXPECT_THAT(read("a\n1.5\n-1\n").notes, testing::IsEmpty());
+}
+
+class WeightsJson : public Weights {
+ protected:
+  WeightTrack read(const std::string& content) {
+    std::ofstream(folder_ / "w.json", std::ios::binary) << content;
+    return read_weights(folder_ / "w.json");
+  }
+  std::string message_of(const std::string& content) {
+    return test::message_of<IoError>([&] { read(content); });
+  }
+};
+
+TEST_F(WeightsJson, OfEveryShapeAreTheSame) {
+  for (
+      const char* text :
+      {R"({"rows": [{"time": 0, "smile": 0.25, "blink": 0}, {"time": 0.5, "blink": 1, "smile": 1}]})",
+       R"([{"time": 0, "smile": 0.25, "blink": 0}, {"time": 0.5, "smile": 1, "blink": 1}])",
+       R"([{"time": 0, "weights": {"smile": 0.25, "blink": 0}},
+            {"time": 0.5, "weights": {"smile": 1, "blink": 1}}])",
+       R"({"names": ["smile", "blink"], "weights": [[0.25, 0], [1, 1]], "times": [0, 0.5]})",
+       R"({"names": ["smile", "blink"], "weights": [[0.25, 0], [1, 1]], "fps": 2})",
+       R"({"exportFps": 2, "trackPath": "a.wav", "numPoses": 2, "numFrames": 2,
+            "facsNames": ["smile", "blink"], "weightMat": [[0.25, 0], [1, 1]]})"}) {
+    const WeightTrack track = read("\xEF\xBB\xBF" + std::string(text));
+    EXPECT_THAT(track.names, ElementsAre("smile", "blink")) << text;
+    EXPECT_EQ(track.weights, (Eigen::Matrix2d() << 0.25, 0, 1, 1).finished()) << text;
+    EXPECT_EQ(track.times, Eigen::Vector2d(0, 0.5)) << text;
+  }
+}
+
+TEST_F(WeightsJson, WithoutTimesHaveNone) {
+  EXPECT_EQ(read(R"([{"smile": 0.25}, {"smile": 1}])").times.size(), 0);
+}
+
+TEST_F(WeightsJson, OfAFitAreItsExpressions) {
+  const WeightTrack track = read(
+      R"({"identities": [], "expressions": ["smile"], "frames": [{"time": 0, "rms_px": 1,
+      "landmarks": 68, "iterations": 1, "alpha": [], "beta": [0.5],
+      "camera": [[1, 0, 0, 0], [0, 1, 0, 0]]}]})");
+  EXPECT_THAT(track.names, ElementsAre("smile"));
+  EXPECT_EQ(track.weights(0, 0), 0.5);
+}
+
+TEST_F(WeightsJson, ErrorsNameThePlaceAndWhatWasFound) {
+  EXPECT_THAT(message_of(""), HasSubstr("is empty"));
+  EXPECT_THAT(message_of("{\"rows\": ["), HasSubstr("is not JSON"));
+  EXPECT_THAT(message_of("time,smile\n0,1\n"), HasSubstr("call it .csv"));
+  EXPECT_THAT(message_of("{}"), HasSubstr("holds no weights"));
+  EXPECT_THAT(message_of("[]"), HasSubstr("expected a list of rows"));
+  EXPECT_THAT(message_of("[1]"), HasSubstr("row 0: expected an object"));
+  EXPECT_THAT(message_of(R"([{"a": null}])"), HasSubstr("row 0, 'a': expected a finite number"));
+  EXPECT_THAT(message_of(R"([{"a": 1}, {"b": 1}])"), HasSubstr("row 1: 'b' is no name"));
+  EXPECT_THAT(message_of(R"([{"a": 1, "b": 1}, {"b": 1}])"), HasSubstr("row 1: 1 weights"));
+  EXPECT_THAT(message_of(R"([{"a": 1, "time": 1}, {"a": 1, "time": 1}])"),
+              HasSubstr("times do not ascend"));
+  EXPECT_THAT(message_of(R"([{"a": 1, "time": 1}, {"a": 1}])"), HasSubstr("row 1: has no time"));
+  EXPECT_THAT(message_of(R"({"names": ["a"], "weights": [[1, 2]]})"),
+              HasSubstr("weights/0: 2 weights, expected 1"));
+  EXPECT_THAT(message_of(R"({"names": ["a", "a"], "weights": [[1, 2]]})"),
+              HasSubstr("'a' occurs twice"));
+  EXPECT_THAT(message_of(R"({"names": ["a"], "weights": [[1]], "fps": 0})"),
+              HasSubstr("fps: expected more than 0"));
+}
+
+TEST_F(WeightsJson, NestedDeeplyAreAnError) {
+  EXPECT_THAT(message_of(std::string(3000000, '[')), HasSubstr("nested too deeply"));
+}
+
+TEST_F(Weights, ThatAreJsonAreNoCsv) {
+  EXPECT_THAT(message_of("{\"names\": [\"a\"]}"), HasSubstr("holds JSON"));
+  EXPECT_THAT(message_of("[\n{\"a\": 1}]"), HasSubstr("call it .json"));
 }
 
 TEST_F(Weights, ErrorsNameLineColumnAndWhatWasFound) {

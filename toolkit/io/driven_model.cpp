@@ -32,9 +32,8 @@ std::vector<std::string> match_notes(const fs::path& weights, const fs::path& mo
 std::shared_ptr<const FrameSource> resting(const BlendshapeModel& person,
                                            const SequenceSource& source) {
   selected_frames(source.frames, 1);
-  return std::make_shared<const MeshSequence>(person.shared_connectivity(),
-                                              as_row(person.neutral()), Eigen::VectorXd(),
-                                              person.neutral());
+  return std::make_shared<const MeshSequence>(
+      person.shared_connectivity(), as_row(person.neutral()), Eigen::VectorXd(), person.neutral());
 }
 
 Eigen::MatrixXd weights_of(const fs::path& path, const WeightTrack& track,
@@ -64,7 +63,9 @@ OpenSequence drive(std::shared_ptr<const BlendshapeModel> model, const fs::path&
   const auto frames = static_cast<int>(track.weights.rows());
   const std::vector<int> chosen = selected_frames(source.frames, frames);
   const std::vector<std::string>& expressions = model->expressions().names;
-  open.notes = match_notes(driver, path, match_weights(track, expressions));
+  for (const std::string& note : track.notes) open.notes.push_back(driver.string() + ": " + note);
+  const auto unmatched = match_notes(driver, path, match_weights(track, expressions));
+  open.notes.insert(open.notes.end(), unmatched.begin(), unmatched.end());
   std::optional<Eigen::VectorXd> of_track;
   if (track.times.size() > 0) of_track = track.times;
   const FrameTimes times = frame_times(driver.string(), frames, std::move(of_track), source);

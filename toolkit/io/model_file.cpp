@@ -277,6 +277,18 @@ ModelSpec ModelSpec::parse(const std::string& text) {
   return spec;
 }
 
+std::vector<std::string> ModelSpec::notes() const {
+  // Standard deviations, or shares of an identity.
+  constexpr double kMostUsual = 10;
+  std::vector<std::string> notes;
+  for (const auto& [identity_name, coefficient] : identity) {
+    if (std::abs(coefficient) <= kMostUsual) continue;
+    notes.push_back(path.string() + ": " + identity_name + " is " + readable(coefficient) +
+                    ", expected about -3 to 3");
+  }
+  return notes;
+}
+
 std::string ModelSpec::name() const {
   // "." and "ict-face/" are named after their folder too.
   fs::path last = fs::absolute(path).lexically_normal();

@@ -28,6 +28,8 @@ struct ModelSpec {
   /// `ict-face@identity007=2`, without folders; a file without its extension; `sfm@target` for
   /// `sfm@out/target.fit.json`.
   std::string name() const;
+  /// What is to be said of coefficients that nobody means.
+  std::vector<std::string> notes() const;
 };
 
 /// Reads a directory with `neutral.*` and `targets/` or `expressions/`, and optionally

@@ -28,12 +28,14 @@ OpenSequence open_driven(const ModelSpec& spec, const SequenceSource& source) {
   if (!spec.fit) {
     open = drive(std::move(person), spec.path, source);
   } else if (!source.weights) {
-    open = drive(std::move(person), spec.path, source, *spec.fit,
-                 read_fit(*spec.fit).performance());
+    open =
+        drive(std::move(person), spec.path, source, *spec.fit, read_fit(*spec.fit).performance());
   } else {
     open = drive(std::move(person), spec.path, source);
     open.files.insert(open.files.begin() + 1, *spec.fit);
   }
+  const std::vector<std::string> of_spec = spec.notes();
+  open.notes.insert(open.notes.begin(), of_spec.begin(), of_spec.end());
   if (const auto others = meshes_beside_model(spec.path); !others.empty()) {
     open.notes.push_back(spec.path.string() + ": is read as a model; " +
                          std::to_string(others.size()) + " other mesh files in it, from " +

@@ -6,7 +6,8 @@
 namespace mimetra {
 
 // Each in the file of its name.
-SequenceFormat gltf_format(), mdd_format(), npy_format(), npz_format(), pc2_format(), usd_format();
+SequenceFormat gltf_format(), mdd_format(), npy_format(), npz_format(), pc2_format(),
+    splocs_format(), usd_format();
 SequenceFormat mesh_format(MeshFormat format);
 
 const std::vector<SequenceFormat>& sequence_formats() {
@@ -14,6 +15,7 @@ const std::vector<SequenceFormat>& sequence_formats() {
                                                       npz_format(),
                                                       pc2_format(),
                                                       mdd_format(),
+                                                      splocs_format(),
                                                       gltf_format(),
                                                       usd_format(),
                                                       mesh_format(MeshFormat::ply),

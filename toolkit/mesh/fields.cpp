@@ -1,5 +1,6 @@
 #include "toolkit/mesh/fields.h"
 
+#include <limits>
 #include <stdexcept>
 
 namespace mimetra {
@@ -20,6 +21,16 @@ const MeshSequence& FieldSequence::sequence() const {
 
 bool FieldSequence::is_in_memory() const {
   return dynamic_cast<const MeshSequence*>(frames.get()) != nullptr;
+}
+
+Eigen::MatrixXd on_polygons(const Eigen::MatrixXd& on_triangles, const Connectivity& connectivity) {
+  Eigen::MatrixXd values = Eigen::MatrixXd::Constant(
+      connectivity.polygons.size(), on_triangles.cols(), -std::numeric_limits<double>::infinity());
+  for (Eigen::Index t = 0; t < on_triangles.rows(); ++t) {
+    const int polygon = connectivity.polygon_of_triangle[static_cast<std::size_t>(t)];
+    values.row(polygon) = values.row(polygon).cwiseMax(on_triangles.row(t));
+  }
+  return values;
 }
 
 FieldSequence held_like(const FieldSequence& like, std::shared_ptr<const FrameSource> frames,

@@ -37,6 +37,9 @@ struct FieldSequence {
   bool displacement = false;
 };
 
+/// Values of the polygons: the largest of their triangles' (M x c) in each component.
+Eigen::MatrixXd on_polygons(const Eigen::MatrixXd& on_triangles, const Connectivity& connectivity);
+
 /// Other frames in place of those of `like`: in memory where these are, otherwise read when they
 /// are needed, without its fields. Throws what reading throws, Cancelled.
 FieldSequence held_like(const FieldSequence& like, std::shared_ptr<const FrameSource> frames,

@@ -9,6 +9,7 @@
 #include "toolkit/io/scene.h"
 #include "toolkit/io/sequence_file.h"
 #include "toolkit/io/sequence_format.h"
+#include "toolkit/io/vtkhdf_file.h"
 #include "toolkit/io/whole_file.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/operations/sequence_parameters.h"
@@ -44,6 +45,31 @@ Paths write_sequence_data(const Data& data, const WriteRequest& request,
   options.progress = request.progress;
   return write_sequence(*std::get<FieldSequence>(data).frames, request.target, options,
                         request.extra);
+}
+
+SequenceWriteOptions vtkhdf_options(const WriteRequest& request) {
+  SequenceWriteOptions options = mesh_writing_parameters().read(request.parameters);
+  options.overwrite = request.overwrite;
+  options.inputs = request.inputs;
+  options.threads = request.threads;
+  options.progress = request.progress;
+  return options;
+}
+
+Paths write_vtkhdf_sequence(const Data& data, const WriteRequest& request) {
+  FieldSequence sequence = std::get<FieldSequence>(data);
+  // The rest pose is the positions without these.
+  if (sequence.frames->rest_is_known()) sequence.displacement = true;
+  return write_vtkhdf(sequence, request.target, vtkhdf_options(request), request.extra);
+}
+
+Paths write_vtkhdf_regions(const Data& data, const WriteRequest& request) {
+  const FieldSequence& shown = std::get<RegionData>(data).fields;
+  if (shown.frames->frames() == 0) {
+    throw MismatchError(request.target.string() +
+                        ": the regions come without a mesh to show them on; write .json or .csv");
+  }
+  return write_vtkhdf(shown, request.target, vtkhdf_options(request), request.extra);
 }
 
 ReadValue read_components_data(const std::string& text, const ReadRequest&) {
@@ -91,7 +117,8 @@ ReadValue read_model_data(const std::string& text, const ReadRequest& request) {
             std::move(scene.notes)};
   }
   ReadValue read{{spec.name(), ModelData{model_of(spec, request)}, {.path = spec.path}},
-                 {spec.path}};
+                 {spec.path},
+                 spec.notes()};
   if (spec.fit) read.files.push_back(*spec.fit);
   return read;
 }
@@ -255,6 +282,18 @@ Paths write_document(const Data& document, const WriteRequest& request) {
 void add_formats(OperationTable& table) {
   add_sequence_formats(table);
   add_model_formats(table);
+  table.add(Format{.name = "VTKHDF over time",
+                   .kind = DataKind::sequence,
+                   .extensions = {".vtkhdf"},
+                   .writing = mesh_writing_parameters().declared(),
+                   .write = write_vtkhdf_sequence,
+                   .fields = true,
+                   .holds = [](const Parameters&) { return HeldParts{.polygons = true}; }});
+  table.add(Format{.name = "VTKHDF over time with region fields",
+                   .kind = DataKind::regions,
+                   .extensions = {".vtkhdf"},
+                   .writing = mesh_writing_parameters().declared(),
+                   .write = write_vtkhdf_regions});
   table.add(Format{.name = "SPLOCS components (HDF5)",
                    .kind = DataKind::components,
                    .extensions = {".h5", ".hdf5"},

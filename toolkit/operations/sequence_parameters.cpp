@@ -15,7 +15,8 @@ BoundParameters<SequenceSource> frame_parameters() {
 BoundParameters<SequenceSource> sequence_parameters() {
   BoundParameters<SequenceSource> list;
   return list
-      .add("weights", SequenceSource::kWeights, "CSV of blendshape weights that drive a model")
+      .add("weights", SequenceSource::kWeights,
+           "CSV or JSON of blendshape weights that drive a model")
       .add("topology", SequenceSource::kTopology, "mesh with the faces of a file that holds none")
       .add(frame_parameters());
 }

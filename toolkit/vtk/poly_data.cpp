@@ -85,17 +85,6 @@ Eigen::Index cells_before_polygons(vtkPolyData& data) {
   return data.GetNumberOfVerts() + data.GetNumberOfLines();
 }
 
-/// Values of the polygons: the largest of their triangles' in each component.
-Eigen::MatrixXd on_polygons(const Eigen::MatrixXd& on_triangles, const Connectivity& connectivity) {
-  Eigen::MatrixXd values = Eigen::MatrixXd::Constant(
-      connectivity.polygons.size(), on_triangles.cols(), -std::numeric_limits<double>::infinity());
-  for (Eigen::Index t = 0; t < on_triangles.rows(); ++t) {
-    const int polygon = connectivity.polygon_of_triangle[static_cast<std::size_t>(t)];
-    values.row(polygon) = values.row(polygon).cwiseMax(on_triangles.row(t));
-  }
-  return values;
-}
-
 /// Values of the polygons on all cells.
 Eigen::MatrixXd on_cells(vtkPolyData& data, const Eigen::MatrixXd& on_polygons) {
   Eigen::MatrixXd values = Eigen::MatrixXd::Zero(data.GetNumberOfCells(), on_polygons.cols());

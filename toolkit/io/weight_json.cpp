@@ -1,0 +1,199 @@
+#include "toolkit/io/weight_json.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+
+#include <nlohmann/json.hpp>
+
+#include "toolkit/io/fit_file.h"
+#include "toolkit/io/text_cursor.h"
+#include "toolkit/io/whole_file.h"
+#include "toolkit/mesh/errors.h"
+#include "toolkit/mesh/text.h"
+
+namespace mimetra {
+namespace {
+
+using Value = nlohmann::ordered_json;
+
+// The keys of files in use: ours, Audio2Face's export for ARKit, and plain ones.
+const std::vector<std::string> kNames = {"names", "facsNames", "blendShapeNames", "blendshapes"};
+const std::vector<std::string> kMatrix = {"weights", "weightMat"};
+const std::vector<std::string> kRate = {"fps", "exportFps"};
+const std::vector<std::string> kRows = {"rows", "frames"};
+
+Value parsed(const std::filesystem::path& path) {
+  constexpr int kDeepest = 100;
+  const std::string bytes = read_file(path);
+  const std::string_view text = without_byte_order_mark(bytes);
+  const auto first = text.find_first_not_of(" \t\r\n");
+  if (first == std::string_view::npos) throw IoError(path.string(), "is empty; expected weights");
+  if (text[first] != '{' && text[first] != '[') {
+    throw IoError(path.string(),
+                  "is not JSON; where it holds comma-separated values, call it .csv");
+  }
+  try {
+    return Value::parse(text, [&path](int depth, Value::parse_event_t, const Value&) {
+      if (depth > kDeepest) throw IoError(path.string(), "is nested too deeply for weights");
+      return true;
+    });
+  } catch (const Value::exception& error) {
+    throw IoError(path.string(), std::string("is not JSON: ") + error.what());
+  }
+}
+
+class WeightJson {
+ public:
+  explicit WeightJson(const std::filesystem::path& path)
+      : path_(path.string()), root_(parsed(path)) {}
+
+  /// What `mimetra fit` wrote.
+  bool is_fit() const { return member(root_, {"expressions"}) && member(root_, {"frames"}); }
+
+  WeightTrack read() {
+    const Value* names = member(root_, kNames);
+    const Value* matrix = member(root_, kMatrix);
+    if (names && matrix) {
+      read_matrix(*names, *matrix);
+    } else if (const Value* rows = root_.is_array() ? &root_ : member(root_, kRows)) {
+      read_rows(*rows);
+    } else {
+      throw IoError(path_, "holds no weights; expected names and weights, or rows of them");
+    }
+    return std::move(track_);
+  }
+
+ private:
+  [[noreturn]] void fail(const std::string& place, const std::string& message) const {
+    throw IoError(path_, place + ": " + message);
+  }
+
+  /// Null where an object has none of these.
+  static const Value* member(const Value& object, const std::vector<std::string>& keys) {
+    for (const std::string& key : keys) {
+      const auto found = object.is_object() ? object.find(key) : object.end();
+      if (object.is_object() && found != object.end()) return &*found;
+    }
+    return nullptr;
+  }
+
+  double number(const Value& value, const std::string& place) const {
+    if (value.is_number() && std::isfinite(value.get<double>())) return value.get<double>();
+    fail(place, "expected a finite number");
+  }
+
+  void add_name(const std::string& name, const std::string& place) {
+    if (name.empty()) fail(place, "expected a name, found ''");
+    const auto index = static_cast<Eigen::Index>(track_.names.size());
+    if (!columns_.emplace(name, index).second) fail(place, "the name '" + name + "' occurs twice");
+    track_.names.push_back(name);
+  }
+
+  void read_matrix(const Value& names, const Value& matrix) {
+    if (!names.is_array() || names.empty()) fail("names", "expected a list of names");
+    for (const Value& name : names) {
+      if (!name.is_string()) fail("names", "expected strings");
+      add_name(name.get<std::string>(), "names");
+    }
+    if (!matrix.is_array() || matrix.empty()) fail("weights", "expected a list of rows");
+    track_.weights.resize(static_cast<Eigen::Index>(matrix.size()),
+                          static_cast<Eigen::Index>(names.size()));
+    for (std::size_t f = 0; f < matrix.size(); ++f) {
+      const std::string place = "weights/" + std::to_string(f);
+      const Value& row = matrix[f];
+      if (!row.is_array() || row.size() != names.size()) {
+        fail(place, (row.is_array() ? std::to_string(row.size()) + " weights" : "no list") +
+                        ", expected " + std::to_string(names.size()) + ", one for each name");
+      }
+      for (std::size_t j = 0; j < row.size(); ++j) {
+        track_.weights(static_cast<Eigen::Index>(f), static_cast<Eigen::Index>(j)) =
+            number(row[j], place + "/" + std::to_string(j));
+      }
+    }
+    read_times();
+  }
+
+  void read_times() {
+    const Eigen::Index frames = track_.weights.rows();
+    if (const Value* times = member(root_, {"times"})) {
+      if (!times->is_array() || static_cast<Eigen::Index>(times->size()) != frames) {
+        fail("times", "expected " + std::to_string(frames) + " numbers, one for each row");
+      }
+      track_.times.resize(frames);
+      for (Eigen::Index f = 0; f < frames; ++f) {
+        set_time(f, number((*times)[static_cast<std::size_t>(f)], "times/" + std::to_string(f)),
+                 "times/" + std::to_string(f));
+      }
+    } else if (const Value* rate = member(root_, kRate)) {
+      const double fps = number(*rate, "fps");
+      if (!(fps > 0)) fail("fps", "expected more than 0, found " + readable(fps));
+      track_.times = Eigen::VectorXd::LinSpaced(frames, 0, static_cast<double>(frames - 1)) / fps;
+    }
+  }
+
+  void set_time(Eigen::Index frame, double time, const std::string& place) {
+    if (frame > 0 && time <= track_.times[frame - 1]) fail(place, "times do not ascend");
+    track_.times[frame] = time;
+  }
+
+  /// Objects whose keys are the names of weights, those of the first row; or have them in an object
+  /// "weights".
+  void read_rows(const Value& rows) {
+    if (!rows.is_array() || rows.empty()) fail("rows", "expected a list of rows");
+    const auto frames = static_cast<Eigen::Index>(rows.size());
+    const bool timed = member(rows.front(), {"time"}) != nullptr;
+    if (timed) track_.times.resize(frames);
+    for (Eigen::Index f = 0; f < frames; ++f) {
+      const std::string place = "row " + std::to_string(f);
+      const Value& row = rows[static_cast<std::size_t>(f)];
+      if (!row.is_object()) fail(place, "expected an object of names and weights");
+      const Value* nested = member(row, {"weights"});
+      const Value& weights = nested && nested->is_object() ? *nested : row;
+      const Value* time = member(row, {"time"});
+      if ((time != nullptr) != timed)
+        fail(place, timed ? "has no time" : "has a time, others none");
+      if (time) set_time(f, number(*time, place + ", time"), place);
+      read_row(weights, f, frames, place);
+    }
+  }
+
+  void read_row(const Value& row, Eigen::Index frame, Eigen::Index frames,
+                const std::string& place) {
+    const auto is_weight = [](const std::string& key) { return key != "time" && key != "frame"; };
+    if (frame == 0) {
+      for (const auto& [key, value] : row.items()) {
+        if (is_weight(key)) add_name(key, place);
+      }
+      if (track_.names.empty()) fail(place, "holds no weights");
+      track_.weights.resize(frames, static_cast<Eigen::Index>(track_.names.size()));
+    }
+    Eigen::Index found = 0;
+    for (const auto& [key, value] : row.items()) {
+      if (!is_weight(key)) continue;
+      const auto column = columns_.find(key);
+      if (column == columns_.end()) fail(place, "'" + key + "' is no name of the first row");
+      track_.weights(frame, column->second) = number(value, place + ", '" + key + "'");
+      ++found;
+    }
+    if (found != track_.weights.cols()) {
+      fail(place, std::to_string(found) + " weights, expected " +
+                      std::to_string(track_.weights.cols()) + " as in the first row");
+    }
+  }
+
+  std::string path_;
+  Value root_;
+  WeightTrack track_;
+  std::map<std::string, Eigen::Index> columns_;
+};
+
+}  // namespace
+
+WeightTrack read_weights_json(const std::filesystem::path& path) {
+  WeightJson json(path);
+  return json.is_fit() ? read_fit(path).performance() : json.read();
+}
+
+}  // namespace mimetra
