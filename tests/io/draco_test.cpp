@@ -2,6 +2,7 @@
 
 #include <draco/compression/encode.h>
 #include <draco/mesh/triangle_soup_mesh_builder.h>
+#include <Eigen/LU>
 #include <gmock/gmock.h>
 
 #include "tests/io/gltf_builder.h"

@@ -23,7 +23,7 @@ class MeshSink : public FrameSink {
         target_(target),
         extra_(extra),
         double_precision_(options.double_precision),
-        outputs_(options.overwrite, options.inputs),
+        outputs_(options.overwrite, options.inputs, options.together),
         path_(outputs_.add(target, PendingOutput::Kind::file)) {
     if (lower_extension(target) != ".obj" || !header.connectivity->materials) return;
     const WrittenMaterials materials = materials_beside(*header.connectivity, target);

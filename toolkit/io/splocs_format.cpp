@@ -222,7 +222,7 @@ class SplocsSink : public FrameSink {
   SplocsSink(const SequenceHeader& header, const fs::path& target,
              const SequenceWriteOptions& options, const ExtraFiles& extra)
       : target_(target),
-        outputs_(options.overwrite, options.inputs),
+        outputs_(options.overwrite, options.inputs, options.together),
         file_(outputs_.add(target, PendingOutput::Kind::file)),
         columns_(3 * static_cast<std::size_t>(header.connectivity->vertices)) {
     const bool single = options.single_precision;

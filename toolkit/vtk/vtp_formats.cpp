@@ -25,6 +25,7 @@ std::vector<std::filesystem::path> write(const FieldSequence& fields, const Writ
   VtpOptions options = vtp_parameters().read(request.parameters);
   options.overwrite = request.overwrite;
   options.inputs = request.inputs;
+  options.together = request.together;
   options.threads = request.threads;
   options.progress = request.progress;
   return write_with_extra(request,
