@@ -121,7 +121,7 @@ TEST_F(Weights, WhoseFrameNumbersAreDroppedAreAsMuchSlower) {
 TEST_F(Weights, WithinOneSecondSayThatNothingTellsTheirRate) {
   const WeightTrack track = read(coded({"10:00:00:01", "10:00:00:02", "10:00:00:03"}));
   EXPECT_EQ(track.times.size(), 0);
-  EXPECT_THAT(track.notes, ElementsAre(HasSubstr("give it by --fps")));
+  EXPECT_THAT(track.notes, ElementsAre(HasSubstr("give it by option 'fps'")));
 }
 
 TEST_F(Weights, WithTimecodesThatRepeatOrFallBackNameTheLine) {

@@ -14,6 +14,7 @@
 #include "toolkit/cli/run_command.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/operations/listing.h"
+#include "toolkit/operations/option_words.h"
 
 #ifdef MIMETRA_HAS_VTK
 #include "toolkit/pictures/picture_formats.h"
@@ -94,7 +95,7 @@ int run(const std::vector<std::string>& arguments) {
 }
 
 int fail(int code, const std::exception& error) {
-  spdlog::error(error.what());
+  spdlog::error(mimetra::with_options_spelled(error.what(), mimetra::spelled_for_command));
   return code;
 }
 

@@ -495,7 +495,7 @@ std::unique_ptr<FrameSink> begin_gltf(const SequenceHeader& header, const fs::pa
     throw MismatchError(target.string() + ": " + std::to_string(header.times.size()) +
                         " frames that no model drives would be as many morph targets, expected " +
                         std::to_string(kMostGltfFrames) +
-                        " at most; write .pc2, .npz or .pvd, or a part with --frames");
+                        " at most; write .pc2, .npz or .pvd, or a part with option 'frames'");
   }
   return std::make_unique<GltfFrames>(header, target, options, extra);
 }

@@ -69,7 +69,7 @@ std::unique_ptr<FrameSink> begin_mesh(const SequenceHeader& header, const fs::pa
   if (header.times.size() != 1) {
     throw MismatchError(target.string() + ": one mesh file cannot hold " +
                         std::to_string(header.times.size()) +
-                        " frames; name a folder, a .npy file, or one frame with --frames");
+                        " frames; name a folder, a .npy file, or one frame with option 'frames'");
   }
   return std::make_unique<MeshSink>(header, target, options, extra);
 }

@@ -28,7 +28,7 @@ fs::path without_trailing_slash(fs::path path) {
   return path.has_filename() ? path : path.parent_path();
 }
 
-constexpr const char* kExistsAlready = "exists already; use --force to replace it";
+constexpr const char* kExistsAlready = "exists already; use option 'overwrite' to replace it";
 
 /// Without links, dots and a slash at the end, as far as the file system tells.
 fs::path place_of(const fs::path& path) {
@@ -80,7 +80,7 @@ void check_replaceable(const fs::path& target, const fs::path& folder) {
   for (const fs::path& other : others) quoted_names.push_back("'" + other.string() + "'");
   throw OutputError(target.string(),
                     "holds " + listed(quoted_names, 3) +
-                        ", which no manifest of an earlier run lists; --force replaces nothing "
+                        ", which no manifest of an earlier run lists; option 'overwrite' replaces nothing "
                         "else: move what is yours, or choose another name");
 }
 
