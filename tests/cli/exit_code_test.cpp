@@ -104,9 +104,11 @@ TEST_F(ExitCode, Is4ForRegionsWithoutATriangle) {
 
 TEST_F(ExitCode, Is2ForAnOptionThatNoFormatOfTheRunTakes) {
   ASSERT_EQ(run("regions head --weights take.csv -k 2 -o r.pvd").code, 0);
-  expect_failure("info r.pvd --weights take.csv", 2, "'weights' is about files (CSV of blendshape");
+  expect_failure("info r.pvd --weights take.csv", 2, "'weights' is about files");
   expect_failure("info r.pvd --topology head/neutral.ply", 2, "'topology' is about files");
-  expect_failure("info r.pvd --fps 30", 2, "'fps' is about files");
+  expect_failure("info r.pvd --fps 30", 2,
+                 "r.pvd: its 12 frames have times of their own, 0 to 0.44 s, and --fps is for what "
+                 "has none");
   expect_failure("convert r.pvd -o r.npy --format obj", 2, "'format' is about files");
 }
 

@@ -20,27 +20,47 @@ constexpr std::size_t kDeepestJson = 100;
 constexpr std::size_t kMostKeys = 10000;
 constexpr std::size_t kLongestMessage = 160;
 
-/// Follows a parser, and throws std::runtime_error for what it would let pass.
-class Guard {
+/// Reads along before a value is made, and throws std::runtime_error for what the parser would let
+/// pass. (Its own callback looks through the whole list for each object in it.)
+class Guard : public nlohmann::json_sax<Json> {
  public:
-  bool operator()(Json::parse_event_t event, const Json& value) {
-    using Event = Json::parse_event_t;
-    if (event == Event::key || event == Event::value) check_text(value);
-    if (event == Event::key) add_key(value.get_ref<const std::string&>());
-    if (event == Event::object_start || event == Event::array_start) {
-      keys_.emplace_back();
-      if (keys_.size() > kDeepestJson) {
-        throw std::runtime_error("nested deeper than " + std::to_string(kDeepestJson) + " levels");
-      }
-    }
-    if (event == Event::object_end || event == Event::array_end) keys_.pop_back();
+  bool null() override { return true; }
+  bool boolean(bool) override { return true; }
+  bool number_integer(number_integer_t) override { return true; }
+  bool number_unsigned(number_unsigned_t) override { return true; }
+  bool number_float(number_float_t, const string_t&) override { return true; }
+  bool binary(binary_t&) override { return true; }
+  bool string(string_t& text) override {
+    check_text(text);
     return true;
+  }
+  bool key(string_t& name) override {
+    check_text(name);
+    add_key(name);
+    return true;
+  }
+  bool start_object(std::size_t) override { return open(); }
+  bool start_array(std::size_t) override { return open(); }
+  bool end_object() override { return close(); }
+  bool end_array() override { return close(); }
+  /// The parser says it again.
+  bool parse_error(std::size_t, const std::string&, const Json::exception&) override {
+    return false;
   }
 
  private:
-  static void check_text(const Json& value) {
-    if (!value.is_string()) return;
-    const auto& text = value.get_ref<const std::string&>();
+  bool open() {
+    keys_.emplace_back();
+    if (keys_.size() <= kDeepestJson) return true;
+    throw std::runtime_error("nested deeper than " + std::to_string(kDeepestJson) + " levels");
+  }
+
+  bool close() {
+    keys_.pop_back();
+    return true;
+  }
+
+  static void check_text(const std::string& text) {
     const auto zero = text.find('\0');
     if (zero == std::string::npos) return;
     throw std::runtime_error("'" + text.substr(0, zero) + "' goes on with a zero byte");
@@ -77,10 +97,10 @@ Json parse_json(const std::string& path, std::string_view text, const std::strin
     return fail("is longer than " + std::to_string(kLongestJson >> 20) + " MB");
   }
   try {
-    return Json::parse(without_byte_order_mark(text),
-                       [guard = Guard()](int, Json::parse_event_t event, Json& value) mutable {
-                         return guard(event, value);
-                       });
+    const std::string_view json = without_byte_order_mark(text);
+    Guard guard;
+    Json::sax_parse(json, &guard);
+    return Json::parse(json);
   } catch (const Json::exception& error) {
     return fail(without_codes(error.what()));
   } catch (const std::runtime_error& error) {

@@ -373,7 +373,7 @@ void PendingOutputs::check_inputs_stay() const {
 
 void check_inputs_stay(const fs::path& output, const std::vector<fs::path>& inputs) {
   const std::string harm = harm_to(inputs, output);
-  if (!harm.empty()) throw OutputError(output.string(), harm);
+  if (!harm.empty()) throw OutputError(without_trailing_slash(output).string(), harm);
 }
 
 void write_file(const fs::path& target, std::string_view content, bool overwrite,
