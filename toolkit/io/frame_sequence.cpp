@@ -51,7 +51,7 @@ std::vector<fs::path> all_beside(const std::vector<fs::path>& files, const fs::p
     return fs::absolute(file).lexically_normal().parent_path() != home;
   };
   if (std::ranges::any_of(files, is_elsewhere)) return {};
-  return frames_of_pattern((home / "*").string() + files.front().extension().string()).files;
+  return frames_of_pattern((home / "*").string() + files.front().extension().string()).frames;
 }
 
 /// Those of a folder, also where a pattern takes some of its frames.
