@@ -47,6 +47,8 @@ TEST(SinglePrecision, RefusesWhatItCannotHoldAndNamesFrameAndVertex) {
       AllOf(HasSubstr("frame 1: vertex 7 is at 1e+39"), HasSubstr("write double"));
   EXPECT_THAT(refusal("take.pc2"), names_it);
   EXPECT_THAT(refusal("take.mdd"), names_it);
+  EXPECT_THAT(refusal("take.glb"), names_it);
+  EXPECT_THAT(refusal("take.usda"), names_it);
   EXPECT_THAT(refusal("take.npy", {.single_precision = true}), names_it);
   EXPECT_THAT(refusal("take.npz", {.single_precision = true}), names_it);
   EXPECT_THAT(refusal("take", {.format = MeshFormat::stl}),

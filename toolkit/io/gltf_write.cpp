@@ -461,6 +461,7 @@ class GltfFrames : public FrameSink {
         file_(plan_of_frames(header), target, options, extra) {}
 
   void write(int first, const Frames& poses) override {
+    check_single_range(target_, first, poses);
     for (Eigen::Index row = 0; row < poses.rows(); ++row) {
       const PositionsView pose(poses.row(row).data(), poses.cols() / 3, 3);
       check_single_precision(target_, pose, longest_);

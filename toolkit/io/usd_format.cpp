@@ -164,6 +164,7 @@ class UsdFrames : public FrameSink {
   }
 
   void write(int first, const Frames& poses) override {
+    check_single_range(target_, first, poses);
     check_single_precision(target_, {poses.data(), poses.size() / 3, 3}, longest_);
     std::string text;
     for (Eigen::Index row = 0; row < poses.rows(); ++row) {

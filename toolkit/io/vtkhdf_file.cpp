@@ -157,7 +157,7 @@ Layout layout_of(const FieldSequence& sequence, const SequenceWriteOptions& opti
 }
 
 void write_steps(const FieldSequence& sequence, const Layout& layout, const OutputFile& file,
-                 const SequenceWriteOptions& options) {
+                 const fs::path& target, const SequenceWriteOptions& options) {
   const FrameSource& frames = *sequence.frames;
   const auto vertices = static_cast<std::size_t>(frames.vertices());
   const StepValues points = layout.values_of(kPoints, 3 * vertices);
@@ -173,6 +173,9 @@ void write_steps(const FieldSequence& sequence, const Layout& layout, const Outp
   };
   for_each_block(frames, {.threads = options.threads, .progress = options.progress},
                  [&](int first, const Frames& poses) {
+                   if (layout.number_bytes == sizeof(float)) {
+                     check_single_range(target, first, poses);
+                   }
                    points.write(file, first, poses);
                    if (sequence.displacement) write_displacements(first, poses);
                  });
@@ -190,7 +193,7 @@ std::vector<fs::path> write_vtkhdf(const FieldSequence& sequence, const fs::path
   Layout layout = layout_of(sequence, options);
   report_progress(options.progress, 0);
   file.write({layout.image.image()});
-  write_steps(sequence, layout, file, options);
+  write_steps(sequence, layout, file, target, options);
   file.close();
   std::vector<fs::path> files = {target};
   add_extra_beside(outputs, target, extra, files);
