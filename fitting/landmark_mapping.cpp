@@ -107,7 +107,8 @@ fs::path find_landmark_mapping(const fs::path& model) {
                     ? "holds no landmark mapping; expected ibug_to_*.txt or "
                       "landmarks68.txt, or name a mapping with option 'mapping'"
                     : "holds several landmark mappings, such as " + found[0].filename().string() +
-                          " and " + found[1].filename().string() + "; name one with option 'mapping'");
+                          " and " + found[1].filename().string() +
+                          "; name one with option 'mapping'");
 }
 
 MappedLandmarks map_landmarks(const LandmarkTrack& track, const LandmarkMapping& mapping) {

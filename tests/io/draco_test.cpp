@@ -2,7 +2,6 @@
 
 #include <draco/compression/encode.h>
 #include <draco/mesh/triangle_soup_mesh_builder.h>
-#include <Eigen/LU>
 #include <gmock/gmock.h>
 #include <Eigen/LU>
 

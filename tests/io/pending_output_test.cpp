@@ -78,8 +78,9 @@ TEST(PendingOutput, TrailingSlashNamesTheSameFolder) {
 TEST(PendingOutput, RefusesAnExistingTarget) {
   const TemporaryFolder folder;
   write_bytes(folder / "out.txt", "old");
-  EXPECT_EQ(message_of<OutputError>([&] { PendingOutput(folder / "out.txt", Kind::file, false); }),
-            (folder / "out.txt").string() + ": exists already; use option 'overwrite' to replace it");
+  EXPECT_EQ(
+      message_of<OutputError>([&] { PendingOutput(folder / "out.txt", Kind::file, false); }),
+      (folder / "out.txt").string() + ": exists already; use option 'overwrite' to replace it");
   EXPECT_EQ(read_file(folder / "out.txt"), "old");
 }
 
@@ -190,7 +191,8 @@ TEST_P(ForeignFile, KeepsAFolderFromBeingReplaced) {
   GetParam().make(folder / "out");
   EXPECT_EQ(message_of<OutputError>([&] { write_folder(folder / "out", "new"); }),
             (folder / "out").string() + ": holds " + GetParam().named +
-                ", which no manifest of an earlier run lists; option 'overwrite' replaces nothing else: move "
+                ", which no manifest of an earlier run lists; option 'overwrite' replaces nothing "
+                "else: move "
                 "what is yours, or choose another name");
   EXPECT_EQ(read_file(folder / "out/frame_0000.ply"), "old");
   EXPECT_THAT(folder.names(), ElementsAre("out"));

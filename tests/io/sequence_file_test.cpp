@@ -282,8 +282,9 @@ TEST(WriteSequence, OverwritingRemovesAStaleRestPose) {
 TEST(WriteSequence, RefusesAnExistingTargetAndAForeignRestPose) {
   const TemporaryFolder folder;
   write_bytes(folder / "s.rest.ply", "somebody else's");
-  EXPECT_EQ(message_of<OutputError>([&] { write_sequence(octahedra(2), folder / "s.npy"); }),
-            (folder / "s.rest.ply").string() + ": exists already; use option 'overwrite' to replace it");
+  EXPECT_EQ(
+      message_of<OutputError>([&] { write_sequence(octahedra(2), folder / "s.npy"); }),
+      (folder / "s.rest.ply").string() + ": exists already; use option 'overwrite' to replace it");
   EXPECT_THAT(folder.names(), ElementsAre("s.rest.ply"));
   fs::create_directory(folder / "t");
   EXPECT_THROW(write_sequence(octahedra(2), folder / "t"), OutputError);

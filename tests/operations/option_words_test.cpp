@@ -21,7 +21,8 @@ TEST(OptionWords, AreThoseOfTheHost) {
   EXPECT_EQ(library("take more regions (-k, --radius) or --full"),
             "take more regions (option 'k', option 'radius') or option 'full'");
   EXPECT_EQ(library("--source-rest: vertex 3"), "option 'source-rest': vertex 3");
-  EXPECT_EQ(library("use --force; write -o NAME"), "use option 'overwrite'; write option 'out' NAME");
+  EXPECT_EQ(library("use --force; write -o NAME"),
+            "use option 'overwrite'; write option 'out' NAME");
 }
 
 TEST(OptionWords, AreNotSeenInOtherText) {

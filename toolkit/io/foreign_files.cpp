@@ -18,7 +18,8 @@ constexpr std::string_view kVideo =
 constexpr std::string_view kImage = "; 'mimetra fit' makes a sequence of images";
 constexpr std::string_view kUnpack = "; unpack it first";
 constexpr std::string_view kWeights =
-    "; as blendshape weights it drives a model: name the model, with option 'weights' and this file";
+    "; as blendshape weights it drives a model: name the model, with option 'weights' and this "
+    "file";
 
 struct Kind {
   std::string_view extensions;  ///< each between blanks

@@ -44,8 +44,8 @@ struct MeshFrame {
   std::function<std::string(const PositionsView&)> positions;
 };
 
-/// Coordinates are floats unless `double_precision` or a texture needs more, in STL always. No reference to the
-/// connectivity is kept.
+/// Coordinates are floats unless `double_precision` or a texture needs more, in STL always. No
+/// reference to the connectivity is kept.
 MeshFrame obj_frame(const Connectivity& connectivity, bool double_precision);
 MeshFrame ply_frame(const Connectivity& connectivity, bool double_precision);
 MeshFrame off_frame(const Connectivity& connectivity, bool double_precision);

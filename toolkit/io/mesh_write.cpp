@@ -37,7 +37,8 @@ MeshFileWriter::~MeshFileWriter() = default;
 std::string beyond_single(Eigen::Index vertex, double coordinate) {
   return "vertex " + std::to_string(vertex) + " is at " + readable(coordinate) +
          ", and single precision ends at " + readable(kLargestSingle) +
-         "; write double precision (.npy without option 'single', or .ply with option 'double'), or scale it";
+         "; write double precision (.npy without option 'single', or .ply with option 'double'), "
+         "or scale it";
 }
 
 void MeshFileWriter::write(const fs::path& path, const PositionsView& positions) const {

@@ -78,10 +78,11 @@ void check_replaceable(const fs::path& target, const fs::path& folder) {
   if (others.empty()) return;
   std::vector<std::string> quoted_names;
   for (const fs::path& other : others) quoted_names.push_back("'" + other.string() + "'");
-  throw OutputError(target.string(),
-                    "holds " + listed(quoted_names, 3) +
-                        ", which no manifest of an earlier run lists; option 'overwrite' replaces nothing "
-                        "else: move what is yours, or choose another name");
+  throw OutputError(
+      target.string(),
+      "holds " + listed(quoted_names, 3) +
+          ", which no manifest of an earlier run lists; option 'overwrite' replaces nothing "
+          "else: move what is yours, or choose another name");
 }
 
 /// Renames in one step: `flags` RENAME_EXCHANGE changes the two names, RENAME_NOREPLACE replaces

@@ -6,7 +6,8 @@
 namespace mimetra {
 
 /// A message in a host's words: what it says of options, "option 'overwrite'" as the libraries say
-/// or "--source-rest" and "-k" as operations do, as `spelled` has it, given the name without dashes.
+/// or "--source-rest" and "-k" as operations do, as `spelled` has it, given the name without
+/// dashes.
 std::string with_options_spelled(const std::string& message,
                                  const std::function<std::string(const std::string&)>& spelled);
 

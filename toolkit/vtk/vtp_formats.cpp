@@ -36,7 +36,8 @@ std::vector<std::filesystem::path> write(const FieldSequence& fields, const Writ
 void check_frame_count(const FrameSource& frames, const std::filesystem::path& target) {
   if (frames.frames() == 1 || lower_extension(target) != ".vtp") return;
   throw MismatchError(target.string() + ": holds one frame, and the sequence has " +
-                      std::to_string(frames.frames()) + "; write a .pvd, or take one by option 'frames'");
+                      std::to_string(frames.frames()) +
+                      "; write a .pvd, or take one by option 'frames'");
 }
 
 /// True unless the rest pose is the first frame, as readers take it to be.

@@ -14,9 +14,8 @@ namespace {
 
 /// Options as the dialogs label them.
 std::string in_its_words(const std::string& message) {
-  return with_options_spelled(message, [](const std::string& option) {
-    return "'" + label_of(option) + "'";
-  });
+  return with_options_spelled(
+      message, [](const std::string& option) { return "'" + label_of(option) + "'"; });
 }
 
 }  // namespace
