@@ -9,7 +9,7 @@
 #include "samples/head/head.h"
 #include "tests/test_folders.h"
 #include "toolkit/io/model_file.h"
-#include "toolkit/io/weight_track.h"
+#include "toolkit/io/weight_file.h"
 
 namespace mimetra::bench {
 namespace {

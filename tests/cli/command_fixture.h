@@ -16,6 +16,7 @@
 #include "tests/shapes.h"
 #include "toolkit/io/model_file.h"
 #include "toolkit/io/sequence_file.h"
+#include "toolkit/io/weight_file.h"
 
 namespace mimetra::test {
 

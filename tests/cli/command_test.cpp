@@ -4,6 +4,7 @@
 #include "tests/cli/command_fixture.h"
 #include "toolkit/io/array_file.h"
 #include "toolkit/io/mesh_file.h"
+#include "toolkit/io/weight_file.h"
 
 namespace mimetra {
 namespace {

@@ -8,6 +8,7 @@
 #include <gmock/gmock.h>
 
 #include "tests/cli/command_fixture.h"
+#include "toolkit/io/weight_file.h"
 
 namespace mimetra {
 namespace {

@@ -9,7 +9,7 @@
 #include "samples/head/head.h"
 #include "tests/shared_data.h"
 #include "toolkit/io/model_file.h"
-#include "toolkit/io/weight_track.h"
+#include "toolkit/io/weight_file.h"
 #include "toolkit/regions/regions.h"
 #include "toolkit/splocs/decomposition.h"
 #include "toolkit/transfer/blendshape_transfer.h"

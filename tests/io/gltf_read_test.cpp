@@ -17,6 +17,7 @@
 #include "toolkit/io/meshopt_codec.h"
 #include "toolkit/io/model_file.h"
 #include "toolkit/io/sequence_file.h"
+#include "toolkit/io/weight_file.h"
 #include "toolkit/io/whole_file.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/model/animation.h"

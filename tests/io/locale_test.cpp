@@ -8,7 +8,7 @@
 #include "tests/temporary_folder.h"
 #include "toolkit/io/mesh_file.h"
 #include "toolkit/io/text_cursor.h"
-#include "toolkit/io/weight_track.h"
+#include "toolkit/io/weight_file.h"
 #include "toolkit/io/whole_file.h"
 #include "toolkit/mesh/text.h"
 

@@ -10,6 +10,7 @@
 #include "tests/shared_data.h"
 #include "tests/temporary_folder.h"
 #include "toolkit/io/model_file.h"
+#include "toolkit/io/weight_file.h"
 #include "toolkit/io/whole_file.h"
 #include "toolkit/mesh/errors.h"
 

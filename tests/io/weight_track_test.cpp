@@ -6,7 +6,7 @@
 
 #include "tests/shared_data.h"
 #include "tests/temporary_folder.h"
-#include "toolkit/io/weight_track.h"
+#include "toolkit/io/weight_file.h"
 #include "toolkit/mesh/errors.h"
 
 namespace mimetra {

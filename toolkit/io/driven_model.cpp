@@ -3,6 +3,7 @@
 #include "toolkit/io/frame_files.h"
 #include "toolkit/io/scene.h"
 #include "toolkit/io/sequence_parts.h"
+#include "toolkit/io/weight_file.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/text.h"
 #include "toolkit/model/animation.h"

@@ -3,11 +3,12 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "toolkit/io/hdf5_file.h"
+#include "toolkit/io/hdf5_bytes.h"
 
 /// The parts that HDF5 files are made of. Internal to their reader.
 namespace mimetra {
@@ -74,11 +75,5 @@ std::optional<Hdf5Type> hdf5_type(const Hdf5Bytes& file, std::string_view messag
 
 /// Stored numbers as doubles. \pre as many are there as `values` has place for
 void decode_hdf5(const Hdf5Type& type, const char* stored, std::span<double> values);
-
-/// The rows of `shape` as the layout and filter messages say. Throws IoError.
-std::shared_ptr<const Hdf5Dataset::Storage> hdf5_storage(const Hdf5Dataset& dataset,
-                                                         std::shared_ptr<const Hdf5Bytes> file,
-                                                         const Hdf5Message& layout,
-                                                         const Hdf5Message* filters);
 
 }  // namespace mimetra

@@ -11,7 +11,7 @@
 #include <string_view>
 #include <vector>
 
-#include "toolkit/io/binary_file.h"
+#include "toolkit/io/hdf5_bytes.h"
 
 /// HDF5 files, read without HDF5's library: that one crashes on damaged files, follows what a file
 /// says into other files, and loads plugins. Here nothing but the file itself is read, and every
@@ -21,59 +21,6 @@
 ///
 /// [The HDF Group. HDF5 File Format Specification, version 3.0]
 namespace mimetra {
-
-/// The bytes of such a file.
-class Hdf5Bytes {
- public:
-  /// Throws IoError for what is no HDF5 file.
-  explicit Hdf5Bytes(const std::filesystem::path& path);
-
-  const std::string& path() const { return path_; }
-  std::uint64_t size() const { return file_.size(); }
-  bool holds(std::uint64_t address, std::uint64_t bytes) const {
-    return address <= size() && bytes <= size() - address;
-  }
-  /// Throw IoError where the file does not hold them.
-  void read(std::uint64_t address, char* to, std::size_t bytes) const;
-  std::string at(std::uint64_t address, std::uint64_t bytes) const;
-
-  [[noreturn]] void fail(const std::string& message) const;
-  [[noreturn]] void fail_damaged(const std::string& what) const;
-
- private:
-  std::string path_;
-  InputFile file_;
-};
-
-/// What an object's header says of it: its shape, its type, an attribute.
-struct Hdf5Message {
-  enum Type : unsigned {
-    dataspace = 0x1,
-    link_info = 0x2,
-    datatype = 0x3,
-    link = 0x6,
-    external_files = 0x7,
-    layout = 0x8,
-    filters = 0xb,
-    attribute = 0xc,
-    continuation = 0x10,
-    symbol_table = 0x11,
-    attribute_info = 0x15
-  };
-
-  unsigned type = 0;
-  /// True where the file has it in another place.
-  bool is_shared = false;
-  std::string body;
-};
-
-/// How a file stores numbers.
-struct Hdf5Type {
-  bool is_real = true;
-  bool is_signed = true;
-  std::size_t bytes = 8;
-  std::endian order = std::endian::little;
-};
 
 /// An array of numbers in a file, of which parts are read.
 class Hdf5Dataset {
@@ -144,5 +91,11 @@ class Hdf5File {
   /// None for what is not one number.
   std::map<std::string, std::optional<double>> attributes_;
 };
+
+/// The rows of `shape` as the layout and filter messages say. Throws IoError.
+std::shared_ptr<const Hdf5Dataset::Storage> hdf5_storage(const Hdf5Dataset& dataset,
+                                                         std::shared_ptr<const Hdf5Bytes> file,
+                                                         const Hdf5Message& layout,
+                                                         const Hdf5Message* filters);
 
 }  // namespace mimetra

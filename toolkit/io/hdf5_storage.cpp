@@ -6,6 +6,7 @@
 #include <zlib.h>
 
 #include "toolkit/io/hdf5_fields.h"
+#include "toolkit/io/hdf5_file.h"
 
 namespace mimetra {
 namespace {

@@ -13,6 +13,7 @@
 #include "toolkit/io/mesh_file.h"
 #include "toolkit/io/pending_output.h"
 #include "toolkit/io/scene.h"
+#include "toolkit/io/weight_file.h"
 #include "toolkit/io/whole_file.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/parallel.h"

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <filesystem>
+
+#include "toolkit/io/weight_track.h"
+
+namespace mimetra {
+
+/// Reads weights. An ARKit / Live Link Face style CSV has a header of names and one row a frame;
+/// columns `time` (seconds), `frame`, `Timecode` and `BlendShapeCount` are not weights. Timecodes
+/// give times from 0 on, at the rate that their frames are counted by. A byte-order mark and CRLF
+/// are accepted.
+///
+/// NAME.json holds rows of objects ([{"time": 0, "jawOpen": 0.5}], or these as "rows" or "frames"),
+/// or "names" and "weights" (F x names) with "times" or "fps", by Audio2Face's keys too, or is what
+/// `mimetra fit` wrote.
+///
+/// Throws IoError that names line and column for ragged rows (decimal commas make some), another
+/// separator, what is not a finite number, times that do not ascend, duplicate names, JSON in a CSV
+/// and the other way round.
+WeightTrack read_weights(const std::filesystem::path& path);
+
+/// Writes `time` and one column per name, the shortest digits that read back equal. Throws
+/// OutputError; std::invalid_argument where names, times and weights differ in number.
+void write_weights(const std::filesystem::path& path, const WeightTrack& track, bool overwrite);
+
+}  // namespace mimetra
