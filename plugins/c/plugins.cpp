@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include <dlfcn.h>
+#include <sys/stat.h>
 
 #include "plugins/c/failure.h"
 #include "plugins/c/plugin_format.h"
@@ -33,11 +34,12 @@ fs::path this_binary() {
 fs::path folder_of_installation() {
   // From the program in bin, or a library in lib or a host's folder below it.
   constexpr int kLevels = 5;
-  fs::path folder = this_binary().parent_path();
+  const fs::path binary = this_binary();
+  fs::path folder = binary.parent_path();
   for (int level = 0; level < kLevels && folder.has_relative_path(); ++level) {
     std::error_code error;
     const fs::path plugins = folder / MIMETRA_PLUGIN_FOLDER;
-    if (fs::is_directory(plugins, error)) return plugins;
+    if (fs::is_directory(plugins, error) && is_of_installation(plugins, binary)) return plugins;
     folder = folder.parent_path();
   }
   return {};
@@ -76,6 +78,13 @@ mimetra_plugin loaded(const fs::path& file) {
 }
 
 }  // namespace
+
+bool is_of_installation(const fs::path& folder, const fs::path& binary) {
+  struct stat of_folder = {}, of_binary = {};
+  if (stat(folder.c_str(), &of_folder) != 0 || stat(binary.c_str(), &of_binary) != 0) return false;
+  const bool is_own = of_folder.st_uid == 0 || of_folder.st_uid == of_binary.st_uid;
+  return is_own && (of_folder.st_mode & S_IWOTH) == 0;
+}
 
 std::vector<fs::path> plugin_folders() {
   std::vector<fs::path> folders;

@@ -37,6 +37,18 @@ struct Loaded {
 
 const fs::path kPlugins = MIMETRA_TEST_PLUGINS;
 
+TEST(PluginFolders, ThatOthersMayWriteToAreOfNoInstallation) {
+  const test::TemporaryFolder folder;
+  const fs::path plugins = folder / "lib/mimetra/plugins", binary = folder / "mimetra";
+  fs::create_directories(plugins);
+  std::ofstream(binary) << "program";
+  fs::permissions(plugins, fs::perms(0755));
+  EXPECT_TRUE(is_of_installation(plugins, binary));
+  fs::permissions(plugins, fs::perms(0777));
+  EXPECT_FALSE(is_of_installation(plugins, binary));
+  EXPECT_FALSE(is_of_installation(folder / "none", binary));
+}
+
 /// A folder that holds one of the broken plugins.
 fs::path broken(const std::string& name) {
   return kPlugins / "broken" / name;

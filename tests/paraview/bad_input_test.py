@@ -112,19 +112,19 @@ class BadInput(HostTest):
 
     def test_more_components_than_vertices(self):
         self.assert_refused(self.series_of("good", moving()),
-                            "-k: 37 components asked for, the mesh has 36 vertices",
+                            "'K': 37 components asked for, the mesh has 36 vertices",
                             ["RegionsofInterest", "SparseComponents"], K=37)
 
     def test_a_value_out_of_its_range(self):
         self.assert_refused(self.series_of("range", moving()),
-                            "--coverage: expected a number from 1e-09 to 1, found '7'",
+                            "'Coverage': expected a number from 1e-09 to 1, found '7'",
                             ["RegionsofInterest"], Coverage="7")
         self.assert_refused(self.series_of("length", moving()), "found 'wide'",
                             ["RegionsofInterest"], Radius="wide")
 
     def test_a_source_vertex_that_the_mesh_does_not_have(self):
         self.assert_refused(self.source_of(mesh_of(*grid())),
-                            "--source: vertex 36, the mesh has 36 (0-based)", ["GeodesicDistance"],
+                            "'Source': vertex 36, the mesh has 36 (0-based)", ["GeodesicDistance"],
                             Source="36")
 
     def test_a_target_with_other_vertices(self):

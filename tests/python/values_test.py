@@ -164,7 +164,7 @@ class Values(SampleTest):
         self.assert_same(mimetra.Sequence.load(path).positions, self.arrays.positions)
         part = mimetra.Sequence.load(path, frames="2:8:3", fps=10)
         self.assert_same(part.positions, self.arrays.positions[2:8:3])
-        with self.assertRaisesRegex(mimetra.OutputError, "saved.npy: exists already"):
+        with self.assertRaisesRegex(mimetra.OutputError, "saved.npy: exists already; use force to"):
             self.arrays.save(path)
         self.arrays.save(path, force=True, single=True)
         np.testing.assert_allclose(mimetra.Sequence.load(path).positions, self.arrays.positions,

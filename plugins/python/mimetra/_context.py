@@ -31,7 +31,9 @@ def _log(level, text, _):
 
 def in_python(message):
     """A message with options as functions take them."""
-    return re.sub("option '([a-z-]+)'", lambda found: found[1].replace("-", "_"), message)
+    def spelled(option):
+        return "force" if option[1] == "overwrite" else option[1].replace("-", "_")
+    return re.sub("option '([a-z-]+)'", spelled, message)
 
 
 class Context:
