@@ -111,7 +111,7 @@ static void check_calls(const mimetra_interface* m, mimetra_context* context) {
   CHECK(call == NULL);
   OK(context, m->new_call(context, "regions", &call));
   FAILS(context, MIMETRA_USAGE, "no parameter 'kk'", m->call_set(call, "kk", "3"));
-  FAILS(context, MIMETRA_USAGE, "-k: expected a whole number", m->call_set(call, "k", "0"));
+  FAILS(context, MIMETRA_USAGE, "option 'k': expected a whole number", m->call_set(call, "k", "0"));
   FAILS(context, MIMETRA_USAGE, "no input 'source'", m->call_give(call, "source", take));
   FAILS(context, MIMETRA_USAGE, "expected the kind 'components', found 'sequence'",
         m->call_give(call, "components", take));
