@@ -162,8 +162,11 @@ class Values(SampleTest):
         path = self.path / "saved.npy"
         self.arrays.save(path)
         self.assert_same(mimetra.Sequence.load(path).positions, self.arrays.positions)
-        part = mimetra.Sequence.load(path, frames="2:8:3", fps=10)
+        part = mimetra.Sequence.load(path, frames="2:8:3")
         self.assert_same(part.positions, self.arrays.positions[2:8:3])
+        self.assert_same(part["times"], self.arrays["times"][2:8:3])
+        with self.assertRaisesRegex(mimetra.UsageError, "have times of their own.* and fps is for"):
+            mimetra.Sequence.load(path, fps=10)
         with self.assertRaisesRegex(mimetra.OutputError, "saved.npy: exists already; use force to"):
             self.arrays.save(path)
         self.arrays.save(path, force=True, single=True)

@@ -26,7 +26,7 @@ static void check_smooth(const mimetra_interface* m, mimetra_context* context,
   mimetra_call* call = NULL;
   OK(context, m->new_call(context, "smooth", &call));
   OK(context, m->call_give(call, "sequence", take));
-  FAILS(context, MIMETRA_USAGE, "--strength: expected a number from 0 to 1",
+  FAILS(context, MIMETRA_USAGE, "option 'strength': expected a number from 0 to 1",
         m->call_set(call, "strength", "2"));
   OK(context, m->call_set(call, "strength", "0"));
   mimetra_data* same = output_of(m, context, call);
