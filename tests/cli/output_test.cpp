@@ -47,8 +47,8 @@ TEST_F(Output, ManifestHashesTheFilesOfOptions) {
 }
 
 TEST_F(Output, OfATargetWithAFractionalIdentityIsNamedWhole) {
-  ASSERT_EQ(run("transfer head --weights take.csv head@wide=0.5 head@wide=1.5 -k 2 -o out.v2").code,
-            0);
+  ASSERT_EQ(
+      run("transfer head --weights take.csv head@wide=0.5 head@wide=1.5 -k 2 -o out.v2/").code, 0);
   EXPECT_EQ(listing("out.v2"), (std::set<std::string>{"head@wide=0.5", "head@wide=0.5.rest.ply",
                                                       "head@wide=1.5", "head@wide=1.5.rest.ply"}));
   EXPECT_TRUE(listing("out.v2/head@wide=0.5").contains("mimetra-run.json"));

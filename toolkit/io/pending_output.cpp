@@ -4,6 +4,7 @@
 #include <cerrno>
 #include <chrono>
 #include <cstdio>
+#include <new>
 #include <set>
 #include <system_error>
 #include <thread>
@@ -117,6 +118,16 @@ std::error_code put(const fs::path& temporary, const fs::path& target) {
   }
   fs::rename(temporary, target, error);
   return error;
+}
+
+/// Whatever happens: there is nothing more to be done.
+void remove_quietly(const fs::path& path) noexcept {
+  try {
+    std::error_code ignored;
+    fs::remove_all(path, ignored);
+  } catch (const std::bad_alloc&) {
+    return;
+  }
 }
 
 /// Keeps other runs from committing in the same folders, where the file system can do that.
@@ -237,8 +248,7 @@ void PendingOutput::give_place_back() noexcept {
 }
 
 void PendingOutput::keep_place() noexcept {
-  std::error_code ignored;
-  if (stage_ == Stage::stands_for_another) fs::remove_all(temporary_, ignored);
+  if (stage_ == Stage::stands_for_another) remove_quietly(temporary_);
   stage_ = Stage::kept;
 }
 
@@ -249,8 +259,8 @@ void PendingOutput::commit() {
 }
 
 void PendingOutput::discard() noexcept {
+  if (!temporary_.empty()) remove_quietly(temporary_);
   std::error_code ignored;
-  if (!temporary_.empty()) fs::remove_all(temporary_, ignored);
   // Removing fails, as it should, where somebody else has put something.
   for (auto parent = created_parents_.rbegin(); parent != created_parents_.rend(); ++parent) {
     fs::remove(*parent, ignored);

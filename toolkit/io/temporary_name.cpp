@@ -53,7 +53,9 @@ fs::path make_temporary_beside(const fs::path& target, OutputKind kind, std::err
     reason = make(path, kind);
   }
   error = std::error_code(reason, std::generic_category());
-  return reason == 0 ? path : fs::path();
+  // Not copied: what was made must not be forgotten where memory ends.
+  if (error) path.clear();
+  return path;
 }
 
 fs::path committed_name(const fs::path& path) {
