@@ -89,7 +89,7 @@ class BadInput(HostTest):
 
     def test_a_vertex_that_is_not_there(self):
         self.assert_refused([self.one], [filter_script("Geodesic Support Map", source="4")],
-                            "--source: vertex 4, the mesh has 4 (0-based)")
+                            "option 'source': vertex 4, the mesh has 4 (0-based)")
 
 
 if __name__ == "__main__":

@@ -14,7 +14,15 @@ class MimetraSequence(HostTest):
         return times
 
     def test_reads_an_array_with_its_times(self):
-        source = simple.mimetraSequence(FileName=str(self.sample.take), Fps="25")
+        times = self.assert_frames(simple.mimetraSequence(FileName=str(self.sample.take)),
+                                   np.load(self.sample.take))
+        np.testing.assert_allclose(times, np.arange(12) / 3)
+
+    def test_gives_times_to_an_array_that_has_none(self):
+        bare = self.sample / "bare.npy"
+        np.save(bare, np.load(self.sample.take))
+        source = simple.mimetraSequence(FileName=str(bare), Fps="25",
+                                        Topology=str(self.sample / "take.topology.ply"))
         times = self.assert_frames(source, np.load(self.sample.take))
         np.testing.assert_allclose(times, np.arange(12) / 25)
 
