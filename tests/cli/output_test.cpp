@@ -49,8 +49,10 @@ TEST_F(Output, ManifestHashesTheFilesOfOptions) {
 TEST_F(Output, OfATargetWithAFractionalIdentityIsNamedWhole) {
   ASSERT_EQ(
       run("transfer head --weights take.csv head@wide=0.5 head@wide=1.5 -k 2 -o out.v2/").code, 0);
-  EXPECT_EQ(listing("out.v2"), (std::set<std::string>{"head@wide=0.5", "head@wide=0.5.rest.ply",
-                                                      "head@wide=1.5", "head@wide=1.5.rest.ply"}));
+  EXPECT_EQ(listing("out.v2"),
+            (std::set<std::string>{"head@wide=0.5", "head@wide=0.5.rest.ply",
+                                   "head@wide=0.5.times.csv", "head@wide=1.5",
+                                   "head@wide=1.5.rest.ply", "head@wide=1.5.times.csv"}));
   EXPECT_TRUE(listing("out.v2/head@wide=0.5").contains("mimetra-run.json"));
 }
 
