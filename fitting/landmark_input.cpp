@@ -77,10 +77,10 @@ void note_others(LandmarksRead& read, const std::string& text, const LandmarkFil
 /// Options that change nothing are mistakes.
 void check_needed(const std::string& text, bool images, const LandmarkInputOptions& options) {
   if (images && options.images) {
-    throw MismatchError("--images: " + text + " are images themselves");
+    throw MismatchError("option 'images': " + text + " are images themselves");
   }
   if (!images && options.faces.model) {
-    throw MismatchError("--face-model: " + text + " are landmarks already");
+    throw MismatchError("option 'face-model': " + text + " are landmarks already");
   }
 }
 

@@ -105,9 +105,9 @@ fs::path find_landmark_mapping(const fs::path& model) {
   throw IoError(folder.empty() ? "." : folder.string(),
                 found.empty()
                     ? "holds no landmark mapping; expected ibug_to_*.txt or "
-                      "landmarks68.txt, or name a mapping with --mapping"
+                      "landmarks68.txt, or name a mapping with option 'mapping'"
                     : "holds several landmark mappings, such as " + found[0].filename().string() +
-                          " and " + found[1].filename().string() + "; name one with --mapping");
+                          " and " + found[1].filename().string() + "; name one with option 'mapping'");
 }
 
 MappedLandmarks map_landmarks(const LandmarkTrack& track, const LandmarkMapping& mapping) {

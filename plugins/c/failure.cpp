@@ -3,11 +3,14 @@
 #include <new>
 
 #include "toolkit/mesh/errors.h"
+#include "toolkit/operations/option_words.h"
 #include "toolkit/operations/parameter.h"
 
 namespace mimetra {
 
-Failure failure_of(const std::exception_ptr& error) {
+namespace {
+
+Failure in_own_words(const std::exception_ptr& error) {
   try {
     std::rethrow_exception(error);
   } catch (const MismatchError& mismatch) {
@@ -27,6 +30,14 @@ Failure failure_of(const std::exception_ptr& error) {
   } catch (...) {
     return {MIMETRA_FAILED, "something that is no std::exception was thrown"};
   }
+}
+
+}  // namespace
+
+Failure failure_of(const std::exception_ptr& error) {
+  Failure failure = in_own_words(error);
+  failure.message = with_options_spelled(failure.message, spelled_for_library);
+  return failure;
 }
 
 void throw_failure(mimetra_status status, const std::string& subject, const std::string& message) {

@@ -9,6 +9,7 @@
 #include "plugins/c/make_data.h"
 #include "plugins/c/stored_data.h"
 #include "plugins/c/value.h"
+#include "toolkit/operations/option_words.h"
 
 namespace mimetra {
 
@@ -300,7 +301,8 @@ mimetra_status make_context(const std::function<std::vector<std::string>(Operati
         [&](OperationTable& table) { problems = fill(table); });
     if (log) {
       made->log = [log, user](LogLevel level, const std::string& text) {
-        log(level == LogLevel::info ? MIMETRA_INFO : MIMETRA_WARNING, text.c_str(), user);
+        log(level == LogLevel::info ? MIMETRA_INFO : MIMETRA_WARNING,
+            with_options_spelled(text, spelled_for_library).c_str(), user);
       };
       for (const std::string& problem : problems) made->log(LogLevel::warning, problem);
     }

@@ -94,17 +94,18 @@ std::vector<fs::path> write_by(PluginFunction function, const Operation& operati
   check_inputs_stay(request.target, request.inputs);
   function.subject = request.target.string() + " (" + function.subject + ")";
   return write_with_extra(request, [&]() -> std::vector<fs::path> {
-    PendingOutput file(request.target, PendingOutput::Kind::file, request.overwrite);
-    Invocation invocation = invocation_of(file.path(), operation.parameters, request.parameters,
+    PendingOutputs outputs(request.overwrite, request.inputs, request.together);
+    const fs::path file = outputs.add(request.target, PendingOutput::Kind::file);
+    Invocation invocation = invocation_of(file, operation.parameters, request.parameters,
                                           request.progress, request.threads);
     invocation.inputs[kValue] = {{request.target.stem().string(), in_memory(data, request)}};
     function(operation, invocation);
     std::error_code unreadable;
-    const auto bytes = fs::file_size(file.path(), unreadable);
+    const auto bytes = fs::file_size(file, unreadable);
     if (unreadable || bytes == 0) {
       throw OutputError(function.subject, "wrote nothing");
     }
-    file.commit();
+    outputs.commit();
     return {request.target};
   });
 }

@@ -129,9 +129,9 @@ std::vector<BadInput> weight_cases() {
   };
   add_json("whole", R"([{"left": 1, "right": 0, "top": 0}])", 0, {"\"frames\": 1"});
   add_json("empty", "", 3, {"is empty"});
-  add_json("truncated", R"([{"left": 1)", 3, {"is not JSON"});
+  add_json("truncated", R"([{"left": 1)", 3, {"weights as JSON", "line 1"});
   add_json("other_type", "time,left\n0,1\n", 3, {"is not JSON", "call it .csv"});
-  add_json("nested_deeply", std::string(100000, '['), 3, {"nested too deeply"});
+  add_json("nested_deeply", std::string(100000, '['), 3, {"nested deeper than 100"});
   add_json("ragged_rows", R"({"names": ["left"], "weights": [[1, 2]]})", 3,
            {"weights/0", "2 weights, expected 1"});
   add_json("not_a_number", R"([{"left": null}])", 3, {"row 0", "'left'", "finite"});

@@ -88,6 +88,53 @@ void add_stray_files(std::vector<BadInput>& all) {
                  "info take",
                  3,
                  {"take", "several formats", "pattern"}});
+  all.push_back({"neutral_among_frames",
+                 "frames_obj",
+                 with("neutral.obj", bytes_of(square(), "obj")),
+                 "check take --json",
+                 0,
+                 {"neutral.obj: is taken for the rest pose of the other 3 files"}});
+  RawMesh other = square();
+  other.faces.pop_back();
+  all.push_back({"neutral_of_other_faces",
+                 "frames_obj",
+                 with("neutral.obj", bytes_of(other, "obj")),
+                 "info take",
+                 4,
+                 {"neutral.obj", "1 faces, expected 2"}});
+  all.push_back({"stranger_of_other_faces",
+                 "frames_obj",
+                 with("teeth.obj", bytes_of(other, "obj")),
+                 "check take --json",
+                 0,
+                 {"teeth.obj is left out of the 3 frames f*.obj"}});
+  all.push_back({"missing_number",
+                 "frames_obj",
+                 with("f5.obj", bytes_of(square(), "obj")),
+                 "check take --json",
+                 0,
+                 {"no file has these numbers: 3 to 4"}});
+  all.push_back({"two_files_of_one_number",
+                 "frames_obj",
+                 with("f02.obj", bytes_of(square(), "obj")),
+                 "info take",
+                 3,
+                 {"take/f", "has the number of f", ", 2;"}});
+  all.push_back({"link_that_leads_nowhere",
+                 "frames_obj",
+                 [](const fs::path& folder) {
+                   take("obj", {})(folder);
+                   fs::create_symlink("gone.obj", folder / "take/f3.obj");
+                 },
+                 "info take",
+                 3,
+                 {"take/f3.obj", "leads nowhere, to gone.obj"}});
+  all.push_back({"padded_pattern_for_unpadded_files",
+                 "frames_obj",
+                 take("obj", {}),
+                 "info take/f%04d.obj",
+                 3,
+                 {"there is f0.obj: write 'take/f%d.obj'"}});
   all.push_back({"rest_of_other_faces",
                  "frames_obj",
                  [](const fs::path& folder) {
@@ -129,6 +176,24 @@ std::vector<BadInput> sequence_cases() {
                  "info take.fbx",
                  3,
                  {"take.fbx", ".npz, .pc2, .mdd", " or a folder"}});
+  all.push_back({"video",
+                 "frames",
+                 file("take.mp4", "x"),
+                 "info take.mp4",
+                 3,
+                 {"take.mp4: is a video", "mimetra fit images/"}});
+  all.push_back({"beyond_single_precision",
+                 "frames",
+                 file("huge.obj", "v 0 0 0\nv 1e39 0 0\nv 0 1e39 0\nf 1 2 3\n"),
+                 "convert huge.obj -o huge.stl",
+                 4,
+                 {"huge.stl: vertex 1 is at 1e+39", "double precision"}});
+  all.push_back({"index_beyond_an_int",
+                 "frames",
+                 file("far.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 2147483648\n"),
+                 "info far.obj",
+                 3,
+                 {"far.obj: line 4: index 2147483648"}});
   all.push_back({"frames_beyond_the_end",
                  "frames",
                  take("obj", {}),

@@ -41,7 +41,7 @@ struct StoredModel {
   }
 };
 
-class FaceModel : public testing::Test {
+class StoredFaceModel : public testing::Test {
  protected:
   void write(const StoredModel& model) { write_bytes(path(), model.bytes()); }
   std::string refusal_of(const std::function<void(StoredModel&)>& change) {
@@ -54,13 +54,13 @@ class FaceModel : public testing::Test {
   test::TemporaryFolder folder_;
 };
 
-TEST_F(FaceModel, ThatIsWholeIsTaken) {
+TEST_F(StoredFaceModel, ThatIsWholeIsTaken) {
   write({});
   EXPECT_NO_THROW(FaceFinder{path()});
 }
 
 /// dlib would read and write where nothing is.
-TEST_F(FaceModel, WhoseNumbersPointNowhereIsRefused) {
+TEST_F(StoredFaceModel, WhoseNumbersPointNowhereIsRefused) {
   EXPECT_THAT(refusal_of([](StoredModel& m) { m.anchors[0][0] = 68; }), HasSubstr("no landmark"));
   EXPECT_THAT(refusal_of([](StoredModel& m) { m.forests[0][0].splits[0].idx2 = 2; }),
               HasSubstr("compares what is not there"));
@@ -77,7 +77,7 @@ TEST_F(FaceModel, WhoseNumbersPointNowhereIsRefused) {
               HasSubstr("68 landmarks"));
 }
 
-TEST_F(FaceModel, ThatClaimsMoreThanItsBytesIsRefused) {
+TEST_F(StoredFaceModel, ThatClaimsMoreThanItsBytesIsRefused) {
   std::ostringstream file;
   dlib::serialize(1, file);
   dlib::serialize(StoredModel().mean, file);
@@ -87,7 +87,7 @@ TEST_F(FaceModel, ThatClaimsMoreThanItsBytesIsRefused) {
               HasSubstr("counts 2000000000 entries"));
 }
 
-TEST_F(FaceModel, TruncatedAnywhereIsRefused) {
+TEST_F(StoredFaceModel, TruncatedAnywhereIsRefused) {
   const std::string bytes = StoredModel().bytes();
   for (std::size_t size = 0; size < bytes.size(); size += 7) {
     write_bytes(path(), bytes.substr(0, size));

@@ -60,7 +60,7 @@ TEST_F(LandmarkInput, RefusesAFaceModelWhereNoFaceIsLookedFor) {
   write("t.csv", "x0,y0\n1,2\n");
   EXPECT_THAT(test::message_of<MismatchError>(
                   [&] { read("t.csv", {}, {.faces = {.model = kDebianFaceModel}}); }),
-              HasSubstr("--face-model: "));
+              HasSubstr("option 'face-model': "));
 }
 
 TEST_F(LandmarkInput, HasTheImagesBesidePoints) {

@@ -34,7 +34,7 @@ class Attributes : public testing::Test {
     fs::create_directories(folder_ / "skins");
     write_bytes(folder_ / "skins/my skin.png", "png");
     write_bytes(folder_ / "take/face.mtl",
-                "newmtl skin\r\nmap_Kd -o 1 0 -bm 2 ../skins/my skin.png\nmap_Bump gone.png\n"
+                "newmtl skin\r\nmap_Kd -o 1 0 -bm 2 ../skins/my skin.png\r\nmap_Bump gone.png\n"
                 "newmtl teeth\nKd 1 1 1\n");
     write_bytes(folder_ / "take/f_0.obj", std::string(kVertices) + kFaces);
     std::string moved = std::string(kVertices) + kFaces;
@@ -69,12 +69,11 @@ TEST_F(Attributes, GoFromObjToObjWithTheirLibrary) {
   EXPECT_THAT(text("out/frame_0001.obj"),
               testing::EndsWith("mtllib face.mtl\no head\ng lips\nusemtl skin\nf 1/1 2/2 3/3 4/4\n"
                                 "usemtl teeth\nf 2/5 5/6 3/3\n"));
-  EXPECT_EQ(text("out/face.mtl"),
-            "newmtl skin\nmap_Kd -o 1 0 -bm 2 ../skins/my skin.png\nmap_Bump gone.png\n"
-            "newmtl teeth\nKd 1 1 1\n");
+  EXPECT_EQ(text("out/face.mtl"), text("take/face.mtl"));
   // Deeper down the same texture has another way.
   convert("take", "a/b", {.format = MeshFormat::obj});
-  EXPECT_THAT(text("a/b/face.mtl"), HasSubstr("-bm 2 ../../skins/my skin.png\nmap_Bump gone.png"));
+  EXPECT_THAT(text("a/b/face.mtl"),
+              HasSubstr("-bm 2 ../../skins/my skin.png\r\nmap_Bump gone.png"));
   const auto open = open_sequence(folder_ / "take");
   EXPECT_THAT(materials_in_folder(open.frames->connectivity(), folder_ / "a/b").notes,
               ElementsAre(HasSubstr("paths lead to ../../skins/my skin.png")));
@@ -84,11 +83,25 @@ TEST_F(Attributes, OfASingleMeshHaveALibraryOfItsName) {
   write_take();
   convert("take/f_1.obj", "one.obj");
   EXPECT_THAT(text("one.obj"), HasSubstr("mtllib one.mtl\n"));
-  EXPECT_THAT(text("one.mtl"), HasSubstr("-bm 2 skins/my skin.png\n"));
+  EXPECT_THAT(text("one.mtl"), HasSubstr("-bm 2 skins/my skin.png\r\n"));
   // Where its library lies already, it stays.
   convert("take/f_1.obj", "take/two.obj");
   EXPECT_THAT(text("take/two.obj"), HasSubstr("mtllib face.mtl\n"));
   EXPECT_FALSE(fs::exists(folder_ / "take/two.mtl"));
+}
+
+TEST_F(Attributes, OfSeveralLibrariesGoTogether) {
+  write_take();
+  write_bytes(folder_ / "take/more.mtl", "newmtl teeth\nmap_Kd ../skins/my skin.png");
+  write_bytes(folder_ / "take/f_2.obj",
+              std::string("mtllib more.mtl face.mtl\n") + kVertices + "usemtl teeth\nf 1 2 3\n");
+  const auto place = fs::current_path();
+  fs::current_path(folder_ / "take");  // names without a folder
+  write_sequence(*open_sequence("f_2.obj").frames, "deep/one.obj");
+  fs::current_path(place);
+  EXPECT_THAT(text("take/deep/one.mtl"),
+              testing::StartsWith("newmtl teeth\nmap_Kd ../../skins/my skin.png\nnewmtl skin\r\n"));
+  EXPECT_THAT(text("take/deep/one.obj"), HasSubstr("mtllib one.mtl\nusemtl teeth\n"));
 }
 
 TEST_F(Attributes, OfALibraryThatIsMissingAreLeftOutAndNamed) {
@@ -152,6 +165,14 @@ TEST_F(Attributes, FacesOfPlyWithoutTextureHaveNone) {
   write_mesh(folder_ / "mesh.ply", read_mesh(folder_ / "mesh.obj"));
   EXPECT_THAT(texture_at_corners(folder_ / "mesh.ply"),
               ElementsAre(0, 1, 0, 1, 0, 1, -1, -1, -1, -1, -1, -1));
+}
+
+TEST_F(Attributes, TextureBeyondSinglePrecisionComesBack) {
+  write_bytes(folder_ / "mesh.obj", std::string(kVertices) + "vt 1e39 -1e39\nf 1/1 2/1 3/1\n");
+  for (const char* name : {"a.obj", "a.ply"}) {
+    write_mesh(folder_ / name, read_mesh(folder_ / "mesh.obj"));
+    EXPECT_EQ(texture_at_corners(folder_ / name), texture_at_corners(folder_ / "mesh.obj"));
+  }
 }
 
 TEST_F(Attributes, TextureOfPolygonsOfManyCornersComesBack) {

@@ -2,7 +2,9 @@
 
 #include <draco/compression/encode.h>
 #include <draco/mesh/triangle_soup_mesh_builder.h>
+#include <Eigen/LU>
 #include <gmock/gmock.h>
+#include <Eigen/LU>
 
 #include "tests/io/gltf_builder.h"
 #include "tests/shapes.h"

@@ -1,8 +1,16 @@
 #include "toolkit/io/pending_output.h"
 
+#include <csignal>
 #include <functional>
+#include <set>
+#include <thread>
 
 #include <gmock/gmock.h>
+#include <sys/ptrace.h>
+#include <sys/syscall.h>
+#include <sys/user.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include "tests/temporary_folder.h"
 #include "toolkit/io/whole_file.h"
@@ -71,7 +79,7 @@ TEST(PendingOutput, RefusesAnExistingTarget) {
   const TemporaryFolder folder;
   write_bytes(folder / "out.txt", "old");
   EXPECT_EQ(message_of<OutputError>([&] { PendingOutput(folder / "out.txt", Kind::file, false); }),
-            (folder / "out.txt").string() + ": exists already; use --force to replace it");
+            (folder / "out.txt").string() + ": exists already; use option 'overwrite' to replace it");
   EXPECT_EQ(read_file(folder / "out.txt"), "old");
 }
 
@@ -182,7 +190,7 @@ TEST_P(ForeignFile, KeepsAFolderFromBeingReplaced) {
   GetParam().make(folder / "out");
   EXPECT_EQ(message_of<OutputError>([&] { write_folder(folder / "out", "new"); }),
             (folder / "out").string() + ": holds " + GetParam().named +
-                ", which no manifest of an earlier run lists; --force replaces nothing else: move "
+                ", which no manifest of an earlier run lists; option 'overwrite' replaces nothing else: move "
                 "what is yours, or choose another name");
   EXPECT_EQ(read_file(folder / "out/frame_0000.ply"), "old");
   EXPECT_THAT(folder.names(), ElementsAre("out"));
@@ -216,6 +224,181 @@ INSTANTIATE_TEST_SUITE_P(
                 [](const fs::path& out) { write_bytes(out / "mimetra-run.json", "{"); },
                 "'expressions/smile.ply', 'frame_0000.ply', 'mimetra-run.json'"}),
     [](const auto& test) { return test.param.name; });
+
+TEST(PendingOutput, TakesNothingThatLiesUnderATemporaryName) {
+  const TemporaryFolder folder;
+  // Names are not to be foreseen; what has such a name from a killed run stays by itself.
+  const PendingOutput first(folder / "out", Kind::folder, false);
+  write_bytes(first.path() / "stale", "stale");
+  PendingOutput output(folder / "out", Kind::folder, false);
+  EXPECT_NE(output.path(), first.path());
+  output.commit();
+  EXPECT_FALSE(fs::exists(folder / "out/stale"));
+}
+
+TEST(PendingOutputs, AppearTogether) {
+  const TemporaryFolder folder;
+  PendingOutputs together(false);
+  write_file(folder / "a", "a", false, &together);
+  write_file(folder / "b", "b", false, &together);
+  EXPECT_FALSE(fs::exists(folder / "a"));
+  EXPECT_FALSE(fs::exists(folder / "b"));
+  together.commit();
+  EXPECT_THAT(folder.names(), ElementsAre("a", "b"));
+}
+
+TEST(PendingOutputs, AllStayAsTheyWereWhereOneCannotTakeItsPlace) {
+  const TemporaryFolder folder;
+  write_bytes(folder / "a", "old");
+  write_folder(folder / "c", "old");
+  PendingOutputs outputs(true);
+  fs::create_directory(folder / "gone");
+  // The last one takes its place first.
+  write_bytes(outputs.add(folder / "gone/b", Kind::file), "new");
+  write_bytes(outputs.add(folder / "a", Kind::file), "new");
+  write_bytes(outputs.add(folder / "c", Kind::folder) / "new", "new");
+  write_bytes(outputs.add(folder / "d", Kind::file), "new");
+  fs::remove_all(folder / "gone");
+  EXPECT_THROW(outputs.commit(), OutputError);
+  EXPECT_EQ(read_file(folder / "a"), "old");
+  EXPECT_EQ(read_file(folder / "c/frame_0000.ply"), "old");
+  EXPECT_FALSE(fs::exists(folder / "d"));
+}
+
+TEST(PendingOutputs, NothingStandsWhereOneOfThemIsNotWritten) {
+  const TemporaryFolder folder;
+  {
+    PendingOutputs together(false);
+    write_file(folder / "a", "a", false, &together);
+    PendingOutputs second(false, {}, &together);
+    second.add(folder / "b", Kind::file);
+  }
+  EXPECT_THAT(folder.names(), IsEmpty());
+}
+
+TEST(PendingOutputs, OfOneRunShareAManifest) {
+  const TemporaryFolder folder;
+  PendingOutputs together(false);
+  for (const char* content : {"same", "same"}) {
+    PendingOutputs one(false, {}, &together);
+    write_bytes(one.add(folder / "x.run.json", Kind::file, PendingOutputs::Existing::anything),
+                content);
+    one.commit();
+  }
+  together.commit();
+  EXPECT_EQ(read_file(folder / "x.run.json"), "same");
+}
+
+TEST(PendingOutputs, TwoOfOneNameAreRefused) {
+  const TemporaryFolder folder;
+  PendingOutputs together(false);
+  write_file(folder / "x", "one", false, &together);
+  write_file(folder / "x", "another", false, &together);
+  EXPECT_THAT(message_of<OutputError>([&] { together.commit(); }),
+              testing::HasSubstr("two outputs would be written there"));
+  EXPECT_FALSE(fs::exists(folder / "x"));
+}
+
+/// Ends this process at its `fatal`-th rename, unlink, mkdir or write, counted by its parent.
+/// Returns false where it ended by itself before.
+bool died_at(int fatal, const std::function<void()>& work) {
+  const pid_t child = fork();
+  if (child == 0) {
+    ptrace(PTRACE_TRACEME, 0, nullptr, nullptr);
+    raise(SIGSTOP);
+    work();
+    _exit(0);
+  }
+  const std::set<unsigned long long> kFatal = {
+      SYS_rename, SYS_renameat, SYS_renameat2, SYS_unlink, SYS_unlinkat, SYS_rmdir,
+      SYS_mkdir,  SYS_mkdirat,  SYS_write,     SYS_writev, SYS_pwrite64};
+  int status = 0;
+  waitpid(child, &status, 0);
+  ptrace(PTRACE_SETOPTIONS, child, nullptr, PTRACE_O_TRACESYSGOOD);
+  bool enters = true;
+  for (int count = 0; true; enters = !enters) {
+    ptrace(PTRACE_SYSCALL, child, nullptr, nullptr);
+    waitpid(child, &status, 0);
+    if (WIFEXITED(status)) return false;
+    if (!WIFSTOPPED(status) || WSTOPSIG(status) != (SIGTRAP | 0x80)) {
+      enters = !enters;
+      continue;
+    }
+    user_regs_struct registers;
+    ptrace(PTRACE_GETREGS, child, nullptr, &registers);
+    if (!enters || !kFatal.contains(registers.orig_rax) || count++ < fatal) continue;
+    kill(child, SIGKILL);
+    waitpid(child, &status, 0);
+    return true;
+  }
+}
+
+/// An output that stands, overwritten by a run that dies.
+class KillMatrix : public testing::TestWithParam<Kind> {
+ protected:
+  void write(const std::string& content) const {
+    PendingOutputs outputs(true);
+    const fs::path path = outputs.add(target_, GetParam());
+    const bool is_folder = GetParam() == Kind::folder;
+    for (const char* name : {"a", "b", "c"}) {
+      write_bytes(is_folder ? path / name : path, content);
+      if (!is_folder) break;
+    }
+    outputs.commit();
+  }
+  std::string read() const {
+    if (GetParam() == Kind::file) return read_file(target_);
+    std::string all;
+    for (const char* name : {"a", "b", "c"}) all += read_file(target_ / name);
+    return all;
+  }
+
+  TemporaryFolder folder_;
+  fs::path target_ = folder_ / "out";
+};
+
+TEST_P(KillMatrix, OldOrNewStandsWhole) {
+  int deaths = 0;
+  bool dies = true;
+  for (int fatal = 0; dies; ++fatal) {
+    write("old");
+    const std::string before = read();
+    dies = died_at(fatal, [this] { write("new"); });
+    deaths += dies;
+    const std::string after = read();
+    EXPECT_TRUE(after == before || after == (GetParam() == Kind::file ? "new" : "newnewnew"))
+        << "after death " << fatal << ": " << after;
+    // The same run again.
+    write("new");
+    EXPECT_TRUE(read().starts_with("new"));
+  }
+  EXPECT_GT(deaths, 2);
+}
+
+INSTANTIATE_TEST_SUITE_P(Of, KillMatrix, testing::Values(Kind::file, Kind::folder),
+                         [](const auto& kind) {
+                           return kind.param == Kind::file ? "AFile" : "AFolder";
+                         });
+
+TEST(PendingOutputs, OfTwoRunsAtOnceOneWinsWhole) {
+  const TemporaryFolder folder;
+  const auto run = [&folder](const std::string& content) {
+    for (int i = 0; i < 50; ++i) {
+      PendingOutputs outputs(true);
+      write_bytes(outputs.add(folder / "main", Kind::file), content);
+      write_bytes(outputs.add(folder / "beside", Kind::file), content);
+      write_bytes(outputs.add(folder / "frames", Kind::folder) / "frame", content);
+      outputs.commit();
+    }
+  };
+  std::thread one([&] { run("one"); });
+  run("two");
+  one.join();
+  const std::string winner = read_file(folder / "main");
+  EXPECT_EQ(read_file(folder / "beside"), winner);
+  EXPECT_EQ(read_file(folder / "frames/frame"), winner);
+  EXPECT_THAT(folder.names(), ElementsAre("beside", "frames", "main"));
+}
 
 TEST(PendingOutput, KeepsWhatSomebodyPutsThereMeanwhile) {
   const TemporaryFolder folder;

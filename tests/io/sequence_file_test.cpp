@@ -283,7 +283,7 @@ TEST(WriteSequence, RefusesAnExistingTargetAndAForeignRestPose) {
   const TemporaryFolder folder;
   write_bytes(folder / "s.rest.ply", "somebody else's");
   EXPECT_EQ(message_of<OutputError>([&] { write_sequence(octahedra(2), folder / "s.npy"); }),
-            (folder / "s.rest.ply").string() + ": exists already; use --force to replace it");
+            (folder / "s.rest.ply").string() + ": exists already; use option 'overwrite' to replace it");
   EXPECT_THAT(folder.names(), ElementsAre("s.rest.ply"));
   fs::create_directory(folder / "t");
   EXPECT_THROW(write_sequence(octahedra(2), folder / "t"), OutputError);
@@ -321,7 +321,7 @@ TEST(ReadArraySequence, WithoutFacesSaysHowToNameThem) {
   const std::string message =
       message_of<IoError>([&] { read_sequence((folder / "s.npy").string()); });
   EXPECT_THAT(message, HasSubstr("s.topology.ply"));
-  EXPECT_THAT(message, HasSubstr("--topology"));
+  EXPECT_THAT(message, HasSubstr("option 'topology'"));
 }
 
 TEST(ReadArraySequence, TakesFacesFromTheTopologyAndAPartOfTheFrames) {

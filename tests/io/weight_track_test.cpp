@@ -121,7 +121,7 @@ TEST_F(Weights, WhoseFrameNumbersAreDroppedAreAsMuchSlower) {
 TEST_F(Weights, WithinOneSecondSayThatNothingTellsTheirRate) {
   const WeightTrack track = read(coded({"10:00:00:01", "10:00:00:02", "10:00:00:03"}));
   EXPECT_EQ(track.times.size(), 0);
-  EXPECT_THAT(track.notes, ElementsAre(HasSubstr("give it by --fps")));
+  EXPECT_THAT(track.notes, ElementsAre(HasSubstr("give it by option 'fps'")));
 }
 
 TEST_F(Weights, WithTimecodesThatRepeatOrFallBackNameTheLine) {
@@ -187,7 +187,7 @@ TEST_F(WeightsJson, OfAFitAreItsExpressions) {
 
 TEST_F(WeightsJson, ErrorsNameThePlaceAndWhatWasFound) {
   EXPECT_THAT(message_of(""), HasSubstr("is empty"));
-  EXPECT_THAT(message_of("{\"rows\": ["), HasSubstr("is not JSON"));
+  EXPECT_THAT(message_of("{\"rows\": ["), HasSubstr("expected weights as JSON: line 1"));
   EXPECT_THAT(message_of("time,smile\n0,1\n"), HasSubstr("call it .csv"));
   EXPECT_THAT(message_of("{}"), HasSubstr("holds no weights"));
   EXPECT_THAT(message_of("[]"), HasSubstr("expected a list of rows"));
@@ -207,7 +207,7 @@ TEST_F(WeightsJson, ErrorsNameThePlaceAndWhatWasFound) {
 }
 
 TEST_F(WeightsJson, NestedDeeplyAreAnError) {
-  EXPECT_THAT(message_of(std::string(3000000, '[')), HasSubstr("nested too deeply"));
+  EXPECT_THAT(message_of(std::string(3000000, '[')), HasSubstr("nested deeper than 100 levels"));
 }
 
 TEST_F(Weights, ThatAreJsonAreNoCsv) {

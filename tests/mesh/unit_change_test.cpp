@@ -35,7 +35,7 @@ TEST(UnitChange, ScalesFramesAndRestPoseAndKeepsTimes) {
 
 TEST(UnitChange, TurnsWhatWasUpAlongYToZByARotation) {
   const auto source = moving_sphere();
-  const auto turned = with_units(source, {.up = UpAxis::y_to_z});
+  const auto turned = with_units(source, {.up = UpTurn::y_to_z});
   Eigen::Matrix3d rotation;  // its columns are where x, y and z go
   rotation << 1, 0, 0, 0, 0, -1, 0, 1, 0;
   EXPECT_EQ(rotation.determinant(), 1);
@@ -45,8 +45,8 @@ TEST(UnitChange, TurnsWhatWasUpAlongYToZByARotation) {
 
 TEST(UnitChange, ThereAndBackIsTheIdentity) {
   const auto source = moving_sphere();
-  const auto there = with_units(source, {.scale = 0.25, .up = UpAxis::y_to_z});
-  const auto back = with_units(there, {.scale = 4, .up = UpAxis::z_to_y});
+  const auto there = with_units(source, {.scale = 0.25, .up = UpTurn::y_to_z});
+  const auto back = with_units(there, {.scale = 4, .up = UpTurn::z_to_y});
   EXPECT_EQ(frame_of(*back, 0), frame_of(*source, 0));
   EXPECT_EQ(frame_of(*back, 1), frame_of(*source, 1));
   EXPECT_EQ(back->rest(), source->rest());

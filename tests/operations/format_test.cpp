@@ -87,7 +87,7 @@ TEST(FormatTable, IsWhatHelpAndMessagesOfAnOutputSay) {
   const auto help_of_input = [&table] { return table.help(table.find("transfer")->inputs.back()); };
   EXPECT_THAT(help(), Not(HasSubstr(".mine")));
   table.add(format_of(".mine"));
-  EXPECT_THAT(help(), AllOf(HasSubstr("the regions"), HasSubstr(": .json, .csv or .mine")));
+  EXPECT_THAT(help(), AllOf(HasSubstr("the regions"), HasSubstr(".json, .csv or .mine")));
   EXPECT_THAT(help_of_input(), HasSubstr(": .json, .csv, .txt or .mine"));
   EXPECT_THAT([&] { table.writer(table.find("regions")->outputs.front(), "a.xyz"); },
               ThrowsMessage<UsageError>(HasSubstr(".json, .csv or .mine, not as '.xyz'")));

@@ -133,9 +133,25 @@ TEST(OutputPaths, GiveEachOfSeveralTargetsItsOwn) {
   const Output output{"out", DataKind::sequence, "", false, true};
   EXPECT_EQ(table.output_paths(output, "T/", {"b"}), Paths{"T/"});
   EXPECT_EQ(table.output_paths(output, "T", {"a", "b"}), (Paths{"T/a", "T/b"}));
-  EXPECT_EQ(table.output_paths(output, "results.v2", {"a", "b@x=0.5"}),
+  EXPECT_EQ(table.output_paths(output, "results.v2/", {"a", "b@x=0.5"}),
             (Paths{"results.v2/a", "results.v2/b@x=0.5"}));
   EXPECT_EQ(table.output_paths(output, "d/T.npy", {"a", "b"}), (Paths{"d/T-a.npy", "d/T-b.npy"}));
+}
+
+TEST(OutputNames, AreWhatTheirExtensionsSay) {
+  const OperationTable table = toolkit();
+  const Output sequence{"out", DataKind::sequence, ""};
+  for (const char* folder : {"take", "take/", "take.v2/", "a.b/take", ".hidden"}) {
+    EXPECT_TRUE(table.writes_folder(sequence, folder)) << folder;
+  }
+  for (const char* unknown : {"take.fbx", "take.abc", "take.usd", "take.mp4", "take.v2"}) {
+    EXPECT_THAT(
+        [&] { table.writer(sequence, unknown); },
+        testing::ThrowsMessage<UsageError>(testing::AllOf(
+            testing::HasSubstr(".npy, .npz, .pc2"), testing::HasSubstr("or a folder, not as"),
+            testing::HasSubstr("; a folder of this name is '" + std::string(unknown) + "/'"))))
+        << unknown;
+  }
 }
 
 TEST(OutputPaths, PutACompanionBesideTheMainOutput) {

@@ -92,6 +92,11 @@ TEST_F(VtpHostile, BlocksThatAreLargerThanTheFileAreRefused) {
               HasSubstr("offset"));
 }
 
+/// VTK would take what follows for the values of the array.
+TEST_F(VtpHostile, TheEndOfATagWithinAValueIsRefused) {
+  EXPECT_THAT(refusal_with("Name=\"roi\"", "Name=\"roi>/////w==\""), HasSubstr("no '<' or '>'"));
+}
+
 TEST_F(VtpHostile, OffsetsOfFacesThatDoNotFitAreRefused) {
   for (const std::string offset : {"4", "-3", "2000000000"}) {
     EXPECT_NE(

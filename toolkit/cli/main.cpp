@@ -18,6 +18,7 @@
 #include "toolkit/mesh/errors.h"
 #include "toolkit/operations/listing.h"
 #include "toolkit/operations/memory_use.h"
+#include "toolkit/operations/option_words.h"
 
 #ifdef MIMETRA_HAS_VTK
 #include "toolkit/pictures/picture_formats.h"
@@ -107,7 +108,8 @@ std::string memory_message() {
 }
 
 int fail(int code, const std::exception& error) {
-  spdlog::error(mimetra::cli::terminal_text(error.what()));
+  spdlog::error(mimetra::cli::terminal_text(
+      mimetra::with_options_spelled(error.what(), mimetra::spelled_for_command)));
   return code;
 }
 

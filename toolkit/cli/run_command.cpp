@@ -17,6 +17,7 @@
 #include "toolkit/operations/call.h"
 #include "toolkit/operations/json.h"
 #include "toolkit/operations/memory_use.h"
+#include "toolkit/operations/option_words.h"
 
 namespace mimetra::cli {
 
@@ -105,7 +106,8 @@ void run_command(const OperationTable& table, const Request& request) {
   CallRequest asked = call_of(request);
   asked.progress = [&bar](double share) { return bar.update(share); };
   std::vector<std::string> warnings;
-  asked.log = [&bar, &warnings](LogLevel level, const std::string& message) {
+  asked.log = [&bar, &warnings](LogLevel level, const std::string& text) {
+    const std::string message = with_options_spelled(text, spelled_for_command);
     bar.clear();
     if (level == LogLevel::warning) {
       spdlog::warn(terminal_text(message));

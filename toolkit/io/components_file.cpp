@@ -218,7 +218,7 @@ void read_optional_parts(const Reader& reader, Components& components) {
 }  // namespace
 
 void write_components(const std::filesystem::path& path, const Components& components,
-                      bool overwrite) {
+                      bool overwrite, PendingOutputs* together) {
   Hdf5Image image;
   image.add("default", Hdf5Array::of(components.rest));
   image.add("tris", Hdf5Array::of(components.triangles));
@@ -236,7 +236,7 @@ void write_components(const std::filesystem::path& path, const Components& compo
   if (!components.energies.empty()) image.add("energies", Hdf5Array::of(components.energies));
   write_options(image, components);
   write_convergence(image, components);
-  write_file(path, image.image(), overwrite);
+  write_file(path, image.image(), overwrite, together);
 }
 
 Components read_components(const std::filesystem::path& path) {

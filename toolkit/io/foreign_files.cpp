@@ -11,14 +11,14 @@ namespace {
 
 constexpr std::string_view kExport =
     "; export it as OBJ or PLY files, one a frame, as glTF (.glb), or as a point cache (.pc2, "
-    ".mdd) with --topology";
+    ".mdd) with option 'topology'";
 constexpr std::string_view kVideo =
     "; 'ffmpeg -i VIDEO images/%05d.png' makes images of it, and 'mimetra fit images/ --model "
     "MODEL -o take/' a sequence of these";
 constexpr std::string_view kImage = "; 'mimetra fit' makes a sequence of images";
 constexpr std::string_view kUnpack = "; unpack it first";
 constexpr std::string_view kWeights =
-    "; as blendshape weights it drives a model: name the model, with --weights and this file";
+    "; as blendshape weights it drives a model: name the model, with option 'weights' and this file";
 
 struct Kind {
   std::string_view extensions;  ///< each between blanks

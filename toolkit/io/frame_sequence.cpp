@@ -51,7 +51,7 @@ std::vector<fs::path> all_beside(const std::vector<fs::path>& files, const fs::p
     return fs::absolute(file).lexically_normal().parent_path() != home;
   };
   if (std::ranges::any_of(files, is_elsewhere)) return {};
-  return frames_of_pattern((home / "*").string() + files.front().extension().string()).files;
+  return frames_of_pattern((home / "*").string() + files.front().extension().string()).frames;
 }
 
 /// Those of a folder, also where a pattern takes some of its frames.
@@ -81,7 +81,7 @@ class FolderSink : public FrameSink {
         extent_(extent(header.rest)),
         target_(target),
         extension_('.' + std::string(choice_name(options.format))),
-        outputs_(options.overwrite, options.inputs),
+        outputs_(options.overwrite, options.inputs, options.together),
         folder_(outputs_.add(target, PendingOutput::Kind::folder)),
         writer_(*header.connectivity, extension_, options.double_precision),
         exact_writer_(*header.connectivity, extension_, true) {

@@ -84,7 +84,7 @@ void note_missing(FrameSeries& found, const std::string& name) {
   const std::vector<std::string> missing = missing_numbers(found.frames);
   if (missing.empty()) return;
   found.notes.push_back(name + ": no file has these numbers: " + listed(missing) +
-                        "; the frames follow each other without a pause");
+                        "; without times beside them frames follow each other without a pause");
 }
 
 /// The series that more than half of the files are of; empty where there is none, or it is one

@@ -1,6 +1,7 @@
 #include "toolkit/io/gltf_document.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -224,6 +225,8 @@ void check_gltf_depth(const std::string& path, std::string_view text) {
 
 GltfJson gltf_json(const std::string& path, std::string_view text) {
   if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);
+  // Some exporters fill up with zeros where the specification wants spaces.
+  while (text.ends_with('\0')) text.remove_suffix(1);
   check_gltf_depth(path, text);
   try {
     return GltfJson::parse(text);
@@ -328,9 +331,13 @@ GltfPrimitive gltf_primitive(const GltfValue& value, const GltfDocument& documen
   const GltfValue attributes = value.at("attributes");
   primitive.positions = attributes.maybe_index("POSITION", accessors);
   primitive.texture = attributes.maybe_index("TEXCOORD_0", accessors);
-  primitive.joints = attributes.maybe_index("JOINTS_0", accessors);
-  primitive.weights = attributes.maybe_index("WEIGHTS_0", accessors);
-  primitive.more_joints = attributes.has("JOINTS_1");
+  for (int set = 0;; ++set) {
+    const std::string number = std::to_string(set);
+    const auto joints = attributes.maybe_index(("JOINTS_" + number).c_str(), accessors);
+    const auto weights = attributes.maybe_index(("WEIGHTS_" + number).c_str(), accessors);
+    if (!joints || !weights) break;
+    primitive.joints.emplace_back(*joints, *weights);
+  }
   primitive.indices = value.maybe_index("indices", accessors);
   primitive.material = value.maybe_index("material", materials);
   for (const GltfValue& target : value.list("targets")) {

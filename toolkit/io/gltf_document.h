@@ -1,10 +1,10 @@
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -60,16 +60,18 @@ struct GltfDraco {
 
 struct GltfPrimitive {
   int mode;
-  std::optional<std::size_t> positions, texture, indices, joints, weights, material;
-  bool more_joints;  ///< more than four of a vertex
+  std::optional<std::size_t> positions, texture, indices, material;
+  /// Four joints of each vertex, and their weights; as many times as there are more.
+  std::vector<std::pair<std::size_t, std::size_t>> joints;
   std::vector<std::optional<std::size_t>> targets;
   std::optional<GltfDraco> draco;
   bool polygons;  ///< triangles that share their first corner are one polygon [FB_ngon_encoding]
 
   /// Equal for primitives that are faces on the same vertices.
-  using Vertices =
-      std::pair<std::array<std::optional<std::size_t>, 4>, std::vector<std::optional<std::size_t>>>;
-  Vertices vertices() const { return {{positions, texture, joints, weights}, targets}; }
+  using Vertices = std::tuple<std::optional<std::size_t>, std::optional<std::size_t>,
+                              std::vector<std::pair<std::size_t, std::size_t>>,
+                              std::vector<std::optional<std::size_t>>>;
+  Vertices vertices() const { return {positions, texture, joints, targets}; }
 };
 
 struct GltfMesh {

@@ -7,7 +7,8 @@ namespace mimetra {
 SequenceFormat gltf_format() {
   SequenceFormat format{"glTF 2.0", {".glb", ".gltf"}, false, SequenceFormat::Precision::single,
                         open_scene, begin_gltf};
-  format.holds = {.texture = HeldParts::Texture::vertices};
+  // Polygons by FB_ngon_encoding.
+  format.holds = {.polygons = true, .texture = HeldParts::Texture::vertices};
   format.write_animation = write_gltf;
   return format;
 }

@@ -308,55 +308,60 @@ class GltfReader {
   Placement placement_of(const PlacedNode& placed, const GltfPrimitive& primitive,
                          Eigen::Index vertices) {
     const auto& skin = document_.nodes[placed.node].skin;
-    if (!skin || !primitive.joints || !primitive.weights || primitive.draco) {
+    if (!skin || primitive.joints.empty() || primitive.draco) {
       return Placement(placed.world);
     }
-    const std::vector<Eigen::Matrix4d> joints = joints_of(document_.skins[*skin]);
+    const Frames joints = joints_of(document_.skins[*skin]);
     for (const std::size_t joint : document_.skins[*skin].joints) joints_.insert(joint);
-    const Frames which = values_.read(*primitive.joints, 4, vertices);
-    const Frames weights = values_.read(*primitive.weights, 4, vertices);
-    if (primitive.more_joints) {
-      fail(shown_name(placed), "vertices hang on more than four joints, which is not read");
-    }
-    Frames blended(vertices, 12);
-    for (Eigen::Index v = 0; v < vertices; ++v) {
-      Eigen::Matrix4d blend = Eigen::Matrix4d::Zero();
-      double sum = 0;
-      for (int k = 0; k < 4; ++k) {
-        if (weights(v, k) == 0) continue;
-        if (which(v, k) < 0 || which(v, k) >= static_cast<double>(joints.size())) {
-          fail(shown_name(placed), "vertex " + std::to_string(v) + " hangs on joint " +
-                                       readable(which(v, k)) + " of " +
-                                       std::to_string(joints.size()));
+    Frames blended = Frames::Zero(vertices, 12);
+    Eigen::VectorXd sums = Eigen::VectorXd::Zero(vertices);
+    for (const auto& [which_accessor, weight_accessor] : primitive.joints) {
+      const Frames which = values_.read(which_accessor, 4, vertices);
+      const Frames weights = values_.read(weight_accessor, 4, vertices);
+      for (Eigen::Index v = 0; v < vertices; ++v) {
+        for (int k = 0; k < 4; ++k) {
+          if (weights(v, k) == 0) continue;
+          if (which(v, k) < 0 || which(v, k) >= static_cast<double>(joints.size())) {
+            fail(shown_name(placed), "vertex " + std::to_string(v) + " hangs on joint " +
+                                         readable(which(v, k)) + " of " +
+                                         std::to_string(joints.size()));
+          }
+          blended.row(v) += weights(v, k) * joints.row(static_cast<Eigen::Index>(which(v, k)));
+          sums[v] += weights(v, k);
         }
-        blend += weights(v, k) * joints[static_cast<std::size_t>(which(v, k))];
-        sum += weights(v, k);
       }
-      if (sum <= 0) fail(shown_name(placed), "a vertex hangs on no joint");
-      // Weights that are stored in a byte do not quite add up to 1.
-      const Eigen::Matrix<double, 3, 4> transform = blend.topRows<3>() / sum;
-      blended.row(v) = Eigen::Map<const Eigen::RowVectorXd>(transform.data(), transform.size());
+    }
+    for (Eigen::Index v = 0; v < vertices; ++v) {
+      // Weights that are stored in a byte do not quite add up to 1; some add up to nothing.
+      if (sums[v] > 0) {
+        blended.row(v) /= sums[v];
+      } else {
+        blended.row(v) = joints.row(0);
+      }
     }
     return Placement(std::move(blended));
   }
 
-  /// From the vertices as they are stored to where each joint holds them.
-  std::vector<Eigen::Matrix4d> joints_of(const GltfSkin& skin) {
-    std::vector<Eigen::Matrix4d> joints;
+  /// From the vertices as they are stored to where each joint holds them (rows as of Placement).
+  Frames joints_of(const GltfSkin& skin) {
+    const auto count = static_cast<Eigen::Index>(skin.joints.size());
+    if (count == 0) fail("a skin", "has no joints");
     Frames inverse;
     if (skin.inverse_bind) inverse = values_.read(*skin.inverse_bind, 16);
-    if (skin.inverse_bind && inverse.rows() < static_cast<Eigen::Index>(skin.joints.size())) {
+    if (skin.inverse_bind && inverse.rows() < count) {
       fail("a skin", "has fewer matrices than joints");
     }
-    for (std::size_t j = 0; j < skin.joints.size(); ++j) {
-      const auto world = worlds_.find(skin.joints[j]);
+    Frames joints(count, 12);
+    for (Eigen::Index j = 0; j < count; ++j) {
+      const std::size_t node = skin.joints[static_cast<std::size_t>(j)];
+      const auto world = worlds_.find(node);
       if (world == worlds_.end()) {
-        fail("a skin", "its joint nodes[" + std::to_string(skin.joints[j]) + "] is in no scene");
+        fail("a skin", "its joint nodes[" + std::to_string(node) + "] is in no scene");
       }
-      joints.push_back(world->second);
-      if (!skin.inverse_bind) continue;
-      joints.back() *=
-          Eigen::Map<const Eigen::Matrix4d>(inverse.row(static_cast<Eigen::Index>(j)).data());
+      Eigen::Matrix4d bound = world->second;
+      if (skin.inverse_bind) bound *= Eigen::Map<const Eigen::Matrix4d>(inverse.row(j).data());
+      const Eigen::Matrix<double, 3, 4> transform = bound.topRows<3>();
+      joints.row(j) = Eigen::Map<const Eigen::RowVectorXd>(transform.data(), transform.size());
     }
     return joints;
   }

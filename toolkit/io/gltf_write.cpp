@@ -209,7 +209,7 @@ class GltfFile {
         has_polygons_(has_polygons(*plan.header.connectivity)),
         rest_is_known_(plan.header.rest_is_known),
         neutral_(plan.header.rest.cast<float>()),
-        outputs_(options.overwrite, options.inputs) {
+        outputs_(options.overwrite, options.inputs, options.together) {
     const Positions& rest = plan.header.rest;
     check_single_precision(target, {rest.data(), rest.rows(), 3}, extent(rest));
     if (plan.weights.rows() > 0) check_gltf_times(target, plan.header.times);
@@ -495,7 +495,7 @@ std::unique_ptr<FrameSink> begin_gltf(const SequenceHeader& header, const fs::pa
     throw MismatchError(target.string() + ": " + std::to_string(header.times.size()) +
                         " frames that no model drives would be as many morph targets, expected " +
                         std::to_string(kMostGltfFrames) +
-                        " at most; write .pc2, .npz or .pvd, or a part with --frames");
+                        " at most; write .pc2, .npz or .pvd, or a part with option 'frames'");
   }
   return std::make_unique<GltfFrames>(header, target, options, extra);
 }

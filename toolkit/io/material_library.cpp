@@ -86,30 +86,35 @@ std::size_t path_in(const std::string& line) {
   return word.empty() ? std::string::npos : static_cast<std::size_t>(word.data() - line.data());
 }
 
-/// The text of a library for another folder, and the textures that its paths were turned to.
+fs::path place_of_folder(const fs::path& folder) {
+  std::error_code unreadable;
+  return fs::weakly_canonical(fs::absolute(folder.empty() ? "." : folder), unreadable);
+}
+
+/// The text of a library for another folder, and the textures that its paths were turned to. What
+/// need not change stays byte by byte.
 std::string moved_text(const MaterialLibrary& library, const fs::path& folder,
                        std::vector<std::string>& textures) {
-  std::error_code unreadable;
-  const fs::path from = fs::weakly_canonical(fs::absolute(library.path.parent_path()), unreadable);
-  const fs::path to = fs::weakly_canonical(fs::absolute(folder), unreadable);
+  const fs::path from = place_of_folder(library.path.parent_path()), to = place_of_folder(folder);
   std::string text;
   for (std::size_t at = 0; at < library.text.size();) {
-    const std::size_t end = std::min(library.text.find('\n', at), library.text.size());
+    const std::size_t end = std::min(library.text.find('\n', at), library.text.size() - 1) + 1;
     std::string line = library.text.substr(at, end - at);
-    at = end + 1;
-    if (!line.empty() && line.back() == '\r') line.pop_back();
+    at = end;
     const std::size_t start = path_in(line);
-    if (start != std::string::npos && from != to) {
-      const std::string given =
-          with_slashes(line.substr(start, line.find_last_not_of(" \t") + 1 - start));
+    if (start != std::string::npos) {
+      const std::size_t size = line.find_last_not_of(" \t\r\n") + 1 - start;
+      const std::string given = with_slashes(line.substr(start, size));
+      std::error_code unreadable;
       const fs::path place = fs::weakly_canonical(from / given, unreadable);
       const std::string way = place.lexically_relative(to).generic_string();
-      if (fs::path(given).is_relative() && fs::exists(place, unreadable) && way != given) {
+      const bool leads_elsewhere = fs::path(given).is_relative() && from != to && way != given;
+      if (leads_elsewhere && fs::exists(place, unreadable)) {
         textures.push_back(way);
-        line = line.substr(0, start) + way;
+        line.replace(start, size, way);
       }
     }
-    text += line + '\n';
+    text += line;
   }
   return text;
 }
@@ -121,6 +126,7 @@ WrittenMaterials written(const Materials& materials, const fs::path& folder, std
     result.name = std::move(name);
     result.text.emplace();
     for (const MaterialLibrary& library : materials.libraries) {
+      if (!result.text->empty() && result.text->back() != '\n') *result.text += '\n';
       *result.text += moved_text(library, folder, textures);
     }
   }
@@ -137,11 +143,6 @@ WrittenMaterials written(const Materials& materials, const fs::path& folder, std
                            ", which the source names and which is not beside it");
   }
   return result;
-}
-
-fs::path place_of_folder(const fs::path& folder) {
-  std::error_code unreadable;
-  return fs::weakly_canonical(fs::absolute(folder.empty() ? "." : folder), unreadable);
 }
 
 }  // namespace

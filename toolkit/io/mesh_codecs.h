@@ -44,7 +44,7 @@ struct MeshFrame {
   std::function<std::string(const PositionsView&)> positions;
 };
 
-/// Coordinates are floats unless `double_precision`, in STL always. No reference to the
+/// Coordinates are floats unless `double_precision` or a texture needs more, in STL always. No reference to the
 /// connectivity is kept.
 MeshFrame obj_frame(const Connectivity& connectivity, bool double_precision);
 MeshFrame ply_frame(const Connectivity& connectivity, bool double_precision);
@@ -78,6 +78,8 @@ inline constexpr std::size_t kMostDigits = 32;
 char* put_number(char* text, double value, bool double_precision);
 void append_number(std::string& text, double value, bool double_precision);
 void append_integer(std::string& text, long long value);
+/// False where single precision would make a texture coordinate infinite.
+bool fits_single_precision(const TextureCoordinates& texture);
 /// A line "x y z" for each vertex, with `before` in front of it.
 std::string position_lines(std::string_view before, const PositionsView& positions,
                            bool double_precision);

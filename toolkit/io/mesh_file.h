@@ -65,7 +65,8 @@ struct MeshWriteOptions {
 };
 
 /// Writes one mesh by its extension with its own polygons: .obj (with texture coordinates and
-/// groups), .ply (binary little endian), .off, .stl (binary, triangles). Throws OutputError,
+/// groups; not with the library of its materials, which a sequence has beside it), .ply (binary
+/// little endian, with texture coordinates), .off, .stl (binary, triangles). Throws OutputError,
 /// MismatchError for what the precision cannot hold. Not atomic: see PendingOutput.
 void write_mesh(const std::filesystem::path& path, const PositionsView& positions,
                 const Connectivity& connectivity, const MeshWriteOptions& = {});

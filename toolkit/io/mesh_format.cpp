@@ -23,7 +23,7 @@ class MeshSink : public FrameSink {
         target_(target),
         extra_(extra),
         double_precision_(options.double_precision),
-        outputs_(options.overwrite, options.inputs),
+        outputs_(options.overwrite, options.inputs, options.together),
         path_(outputs_.add(target, PendingOutput::Kind::file)) {
     if (lower_extension(target) != ".obj" || !header.connectivity->materials) return;
     const WrittenMaterials materials = materials_beside(*header.connectivity, target);
@@ -69,7 +69,7 @@ std::unique_ptr<FrameSink> begin_mesh(const SequenceHeader& header, const fs::pa
   if (header.times.size() != 1) {
     throw MismatchError(target.string() + ": one mesh file cannot hold " +
                         std::to_string(header.times.size()) +
-                        " frames; name a folder, a .npy file, or one frame with --frames");
+                        " frames; name a folder, a .npy file, or one frame with option 'frames'");
   }
   return std::make_unique<MeshSink>(header, target, options, extra);
 }

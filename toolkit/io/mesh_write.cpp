@@ -37,7 +37,7 @@ MeshFileWriter::~MeshFileWriter() = default;
 std::string beyond_single(Eigen::Index vertex, double coordinate) {
   return "vertex " + std::to_string(vertex) + " is at " + readable(coordinate) +
          ", and single precision ends at " + readable(kLargestSingle) +
-         "; write double precision (.npy without --single, or .ply with --double), or scale it";
+         "; write double precision (.npy without option 'single', or .ply with option 'double'), or scale it";
 }
 
 void MeshFileWriter::write(const fs::path& path, const PositionsView& positions) const {
@@ -85,6 +85,13 @@ void append_number(std::string& text, double value, bool double_precision) {
 void append_integer(std::string& text, long long value) {
   std::array<char, kMostDigits> digits;
   text.append(digits.data(), put_shortest(digits.data(), value));
+}
+
+bool fits_single_precision(const TextureCoordinates& texture) {
+  return std::ranges::all_of(texture.coordinates, [](const Eigen::Vector2d& uv) {
+    const double farthest = uv.cwiseAbs().maxCoeff();
+    return farthest <= kLargestSingle || !std::isfinite(farthest);
+  });
 }
 
 std::string position_lines(std::string_view before, const PositionsView& positions,

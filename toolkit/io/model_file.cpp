@@ -376,16 +376,17 @@ bool is_model(const fs::path& path) {
 
 void write_model(const fs::path& folder, const MorphableModel& model,
                  const std::optional<WeightTrack>& performance, bool overwrite,
-                 const std::vector<std::pair<std::string, std::string>>& extra) {
-  PendingOutput pending(folder, PendingOutput::Kind::folder, overwrite);
-  write_mesh(pending.path() / "neutral.ply",
-             PositionsView(model.mean().data(), model.mean().rows(), 3), model.connectivity(),
-             {.double_precision = true});
-  write_shapes(pending.path() / "expressions", model.expressions(), model);
-  write_shapes(pending.path() / "identities", model.identities(), model);
-  if (performance) write_weights(pending.path() / "performance.csv", *performance, false);
-  for (const auto& [name, content] : extra) write_bytes(pending.path() / name, content);
-  pending.commit();
+                 const std::vector<std::pair<std::string, std::string>>& extra,
+                 PendingOutputs* together) {
+  PendingOutputs outputs(overwrite, {}, together);
+  const fs::path pending = outputs.add(folder, PendingOutput::Kind::folder);
+  write_mesh(pending / "neutral.ply", PositionsView(model.mean().data(), model.mean().rows(), 3),
+             model.connectivity(), {.double_precision = true});
+  write_shapes(pending / "expressions", model.expressions(), model);
+  write_shapes(pending / "identities", model.identities(), model);
+  if (performance) write_weights(pending / "performance.csv", *performance, false);
+  for (const auto& [name, content] : extra) write_bytes(pending / name, content);
+  outputs.commit();
 }
 
 }  // namespace mimetra

@@ -11,6 +11,8 @@
 
 namespace mimetra {
 
+class PendingOutputs;
+
 /// A model directory or file, and the identity asked for: `MODEL@identity003=1.5,identity007=-1`,
 /// or `MODEL@NAME.fit.json` with fitted coefficients.
 struct ModelSpec {
@@ -63,6 +65,7 @@ std::vector<std::filesystem::path> meshes_beside_model(const std::filesystem::pa
 /// also for a name that cannot be a file's.
 void write_model(const std::filesystem::path& folder, const MorphableModel& model,
                  const std::optional<WeightTrack>& performance, bool overwrite,
-                 const std::vector<std::pair<std::string, std::string>>& extra = {});
+                 const std::vector<std::pair<std::string, std::string>>& extra = {},
+                 PendingOutputs* together = nullptr);
 
 }  // namespace mimetra

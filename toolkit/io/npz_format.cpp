@@ -163,11 +163,15 @@ std::string npy_bytes(const Connectivity& connectivity) {
   return npy_bytes("<i4", {faces, most}, corners);
 }
 
-/// The name of a file that goes with this.
+/// A file that goes with this.
 struct ScratchFile {
   fs::path path;
 
-  explicit ScratchFile(fs::path own_path) : path(std::move(own_path)) {}
+  explicit ScratchFile(const fs::path& target) {
+    std::error_code error;
+    path = make_temporary_beside(target, OutputKind::file, error);
+    if (error) throw OutputError(target.string(), "cannot be written: " + error.message());
+  }
   ~ScratchFile() {
     std::error_code gone;
     fs::remove(path, gone);
@@ -183,9 +187,9 @@ class NpzSink : public FrameSink {
           const ExtraFiles& extra)
       : header_(header),
         target_(target),
-        outputs_(options.overwrite, options.inputs),
+        outputs_(options.overwrite, options.inputs, options.together),
         archive_(outputs_.add(target, PendingOutput::Kind::file)),
-        scratch_(temporary_beside(target)),
+        scratch_(target),
         positions_(begin_npy_cache(scratch_.path, static_cast<std::size_t>(header.times.size()),
                                    static_cast<std::size_t>(header.connectivity->vertices),
                                    options.single_precision)) {

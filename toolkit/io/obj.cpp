@@ -144,6 +144,7 @@ MeshContent read_obj(const std::string& path, std::string_view bytes) {
 }
 
 MeshFrame obj_frame(const Connectivity& connectivity, bool double_precision) {
+  double_precision = double_precision || !fits_single_precision(connectivity.texture);
   std::string after;
   for (const Eigen::Vector2d& uv : connectivity.texture.coordinates) {
     after += "vt ";

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <system_error>
 
 #include <fcntl.h>
 #include <poll.h>
@@ -9,7 +10,6 @@
 #include <sys/vfs.h>
 #include <unistd.h>
 
-#include "toolkit/io/binary_file.h"
 #include "toolkit/mesh/errors.h"
 
 namespace mimetra {
@@ -29,6 +29,10 @@ std::string other_type(const struct stat& status) {
   return "is a device, expected a file";
 }
 
+std::string reading_problem() {
+  return "cannot be read: " + std::error_code(errno, std::generic_category()).message();
+}
+
 bool has_no_name(int pipe) {
   struct statfs system;
   return fstatfs(pipe, &system) == 0 && static_cast<long>(system.f_type) == kPipesWithoutName;
@@ -41,16 +45,11 @@ OpenedFile::OpenedFile(const std::filesystem::path& path)
   struct stat status;
   std::string problem;
   if (descriptor_ < 0) {
-    const std::string reason = last_reason();
-    if (errno == ENOENT) {
-      problem = "no such file";
-    } else if (errno == ENXIO && stat(path.c_str(), &status) == 0) {  // a socket
-      problem = other_type(status);
-    } else {
-      problem = "cannot be read: " + reason;
-    }
+    problem = errno == ENOENT ? "no such file" : reading_problem();
+    if (errno == ENXIO && stat(path.c_str(), &status) == 0)
+      problem = other_type(status);  // a socket
   } else if (fstat(descriptor_, &status) != 0) {
-    problem = "cannot be read: " + last_reason();
+    problem = reading_problem();
   } else {
     is_pipe_ = S_ISFIFO(status.st_mode) && has_no_name(descriptor_);
     if (!is_pipe_) problem = other_type(status);
@@ -69,7 +68,7 @@ std::size_t OpenedFile::next(char* to, std::size_t most) const {
     const ssize_t now = read(descriptor_, to, most);
     if (now >= 0) return static_cast<std::size_t>(now);
     if (errno == EINTR) continue;
-    if (errno != EAGAIN) throw IoError(path_, "cannot be read: " + last_reason());
+    if (errno != EAGAIN) throw IoError(path_, reading_problem());
     pollfd wanted{descriptor_, POLLIN, 0};
     if (poll(&wanted, 1, -1) < 0 && errno == EINTR) throw Cancelled();
   }

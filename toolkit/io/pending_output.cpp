@@ -2,9 +2,14 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <fstream>
+#include <chrono>
+#include <cstdio>
+#include <set>
 #include <system_error>
+#include <thread>
 
+#include <fcntl.h>
+#include <sys/file.h>
 #include <unistd.h>
 
 #include "toolkit/io/temporary_name.h"
@@ -23,7 +28,7 @@ fs::path without_trailing_slash(fs::path path) {
   return path.has_filename() ? path : path.parent_path();
 }
 
-constexpr const char* kExistsAlready = "exists already; use --force to replace it";
+constexpr const char* kExistsAlready = "exists already; use option 'overwrite' to replace it";
 
 /// Without links, dots and a slash at the end, as far as the file system tells.
 fs::path place_of(const fs::path& path) {
@@ -51,6 +56,8 @@ std::string harm_to(const std::vector<fs::path>& inputs, const fs::path& output)
       what = "holds " + input.string() + ", an input of this run";
     } else if (is_within(place, read) && fs::exists(place, unreadable)) {
       what = "is a part of " + input.string() + ", an input of this run";
+    } else if (place.parent_path() == read) {
+      what = "would become a part of " + input.string() + ", an input of this run";
     }
     if (!what.empty()) return what + "; choose another name";
   }
@@ -73,23 +80,76 @@ void check_replaceable(const fs::path& target, const fs::path& folder) {
   for (const fs::path& other : others) quoted_names.push_back("'" + other.string() + "'");
   throw OutputError(target.string(),
                     "holds " + listed(quoted_names, 3) +
-                        ", which no manifest of an earlier run lists; --force replaces nothing "
+                        ", which no manifest of an earlier run lists; option 'overwrite' replaces nothing "
                         "else: move what is yours, or choose another name");
 }
 
-void rename_or_throw(const fs::path& from, const fs::path& to, const fs::path& target) {
-  std::error_code error;
-  fs::rename(from, to, error);
-  if (error) throw OutputError(target.string(), cannot_write(error));
+/// Renames in one step: `flags` RENAME_EXCHANGE changes the two names, RENAME_NOREPLACE replaces
+/// nothing. Some network file systems know neither.
+std::error_code rename_by(const fs::path& from, const fs::path& to, unsigned flags) {
+  if (renameat2(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), flags) == 0) return {};
+  return last_error();
 }
+
+bool is_unknown(const std::error_code& error) {
+  return error == std::errc::invalid_argument || error == std::errc::function_not_supported ||
+         error == std::errc::operation_not_supported;
+}
+
+std::error_code exchange(const fs::path& temporary, const fs::path& target) {
+  std::error_code error = rename_by(temporary, target, RENAME_EXCHANGE);
+  if (!is_unknown(error)) return error;
+  const fs::path aside = temporary.string() + ".old";
+  fs::rename(target, aside, error);
+  if (error) return error;
+  fs::rename(temporary, target, error);
+  std::error_code ignored;
+  fs::rename(aside, error ? target : temporary, ignored);
+  return error;
+}
+
+std::error_code put(const fs::path& temporary, const fs::path& target) {
+  std::error_code error = rename_by(temporary, target, RENAME_NOREPLACE);
+  if (!is_unknown(error)) return error;
+  if (fs::exists(fs::symlink_status(target, error))) {
+    return std::make_error_code(std::errc::file_exists);
+  }
+  fs::rename(temporary, target, error);
+  return error;
+}
+
+/// Keeps other runs from committing in the same folders, where the file system can do that.
+class FolderLocks {
+ public:
+  explicit FolderLocks(const std::set<fs::path>& folders) {
+    for (const fs::path& folder : folders) lock(folder);
+  }
+  ~FolderLocks() {
+    for (const int folder : opened_) close(folder);
+  }
+  FolderLocks(const FolderLocks&) = delete;
+  FolderLocks& operator=(const FolderLocks&) = delete;
+
+ private:
+  /// Whoever has a folder renames a few files and lets it go.
+  void lock(const fs::path& folder) {
+    constexpr int kAttempts = 1000;
+    const int opened = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (opened < 0) return;
+    opened_.push_back(opened);
+    for (int attempt = 0; attempt < kAttempts; ++attempt) {
+      if (flock(opened, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return;
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+  }
+
+  std::vector<int> opened_;
+};
 
 }  // namespace
 
 PendingOutput::PendingOutput(fs::path target, Kind kind, bool overwrite)
-    : target_(without_trailing_slash(std::move(target))),
-      temporary_(temporary_beside(target_)),
-      kind_(kind),
-      overwrite_(overwrite) {
+    : target_(without_trailing_slash(std::move(target))), kind_(kind), overwrite_(overwrite) {
   check_target();
   try {
     create_parents();
@@ -101,7 +161,8 @@ PendingOutput::PendingOutput(fs::path target, Kind kind, bool overwrite)
 }
 
 PendingOutput::~PendingOutput() {
-  if (!committed_) discard();
+  give_place_back();
+  if (stage_ == Stage::pending) discard();
 }
 
 void PendingOutput::check_target() const {
@@ -138,66 +199,78 @@ void PendingOutput::create_parents() {
 
 void PendingOutput::create_temporary() {
   std::error_code error;
-  if (kind_ == Kind::folder) {
-    fs::create_directory(temporary_, error);
-  } else if (!std::ofstream(temporary_, std::ios::binary)) {
-    error = last_error();
-  }
+  temporary_ = make_temporary_beside(target_, kind_, error);
   if (error) throw OutputError(target_.string(), cannot_write(error));
 }
 
-void PendingOutput::commit() {
+void PendingOutput::complete() {
   if (kind_ == Kind::folder) list_written_files(temporary_);
-  check_target();
-  std::error_code ignored;
-  if (kind_ == Kind::folder && fs::exists(target_, ignored)) {
-    replace_folder();
-  } else {
-    rename_or_throw(temporary_, target_, target_);
-  }
-  committed_ = true;
 }
 
-/// A folder with content cannot be renamed over: the old one steps aside and comes back if the new
-/// one cannot take its place.
-void PendingOutput::replace_folder() {
-  const fs::path aside = temporary_beside(target_);
-  rename_or_throw(target_, aside, target_);
+void PendingOutput::take_place() {
+  check_target();
+  std::error_code error;
+  const bool replaces = fs::exists(fs::symlink_status(target_, error));
+  error = replaces ? exchange(temporary_, target_) : put(temporary_, target_);
+  if (error == std::errc::file_exists) throw OutputError(target_.string(), kExistsAlready);
+  if (error) throw OutputError(target_.string(), cannot_write(error));
+  stage_ = replaces ? Stage::stands_for_another : Stage::stands_where_nothing_was;
+  if (!replaces || kind_ == Kind::file) return;
   try {
-    check_replaceable(target_, aside);  // from here on nobody puts anything there
-    rename_or_throw(temporary_, target_, target_);
+    check_replaceable(target_, temporary_);  // from here on nobody puts anything there
   } catch (const OutputError&) {
-    std::error_code ignored;
-    fs::rename(aside, target_, ignored);
+    give_place_back();
     throw;
   }
-  std::error_code ignored;
-  fs::remove_all(aside, ignored);
 }
 
-void PendingOutput::discard() {
+void PendingOutput::give_place_back() noexcept {
+  if (stage_ == Stage::stands_for_another) {
+    exchange(temporary_, target_);
+  } else if (stage_ == Stage::stands_where_nothing_was) {
+    put(target_, temporary_);
+  } else {
+    return;
+  }
+  stage_ = Stage::pending;
+}
+
+void PendingOutput::keep_place() noexcept {
   std::error_code ignored;
-  fs::remove_all(temporary_, ignored);
+  if (stage_ == Stage::stands_for_another) fs::remove_all(temporary_, ignored);
+  stage_ = Stage::kept;
+}
+
+void PendingOutput::commit() {
+  complete();
+  take_place();
+  keep_place();
+}
+
+void PendingOutput::discard() noexcept {
+  std::error_code ignored;
+  if (!temporary_.empty()) fs::remove_all(temporary_, ignored);
   // Removing fails, as it should, where somebody else has put something.
   for (auto parent = created_parents_.rbegin(); parent != created_parents_.rend(); ++parent) {
     fs::remove(*parent, ignored);
   }
 }
 
-PendingOutputs::PendingOutputs(bool overwrite, std::vector<fs::path> inputs)
-    : overwrite_(overwrite), inputs_(std::move(inputs)) {}
+PendingOutputs::PendingOutputs(bool overwrite, std::vector<fs::path> inputs,
+                               PendingOutputs* together)
+    : overwrite_(overwrite), inputs_(std::move(inputs)), together_(together) {}
 
 /// The first one made the parent folders and can remove them only when the others are gone.
 PendingOutputs::~PendingOutputs() {
-  while (!outputs_.empty()) outputs_.pop_back();
+  while (!entries_.empty()) entries_.pop_back();
 }
 
 const fs::path& PendingOutputs::add(const fs::path& target, PendingOutput::Kind kind,
                                     Existing existing) {
   const bool overwrite = overwrite_ || existing != Existing::nothing;
-  outputs_.push_back(std::make_unique<PendingOutput>(target, kind, overwrite));
-  if (!overwrite_ && existing == Existing::same) must_be_same_.push_back(outputs_.back().get());
-  return outputs_.back()->path();
+  entries_.push_back({std::make_unique<PendingOutput>(target, kind, overwrite),
+                      !overwrite_ && existing == Existing::same, existing == Existing::anything});
+  return entries_.back().output->path();
 }
 
 void PendingOutputs::add_stale(const fs::path& path) {
@@ -210,19 +283,75 @@ void PendingOutputs::add_stale(const fs::path& path) {
 void PendingOutputs::commit() {
   check_same();
   check_inputs_stay();
-  for (const auto& output : outputs_) output->check_target();
-  for (const fs::path& path : stale_) {
-    std::error_code error;
-    fs::remove(path, error);
-    if (error) throw OutputError(path.string(), "cannot be removed: " + error.message());
+  for (const Entry& entry : entries_) {
+    entry.output->check_target();
+    entry.output->complete();
   }
-  for (auto output = outputs_.rbegin(); output != outputs_.rend(); ++output) (*output)->commit();
+  if (together_) {
+    hand_over();
+  } else {
+    drop_repeated();
+    swap();
+  }
+}
+
+void PendingOutputs::hand_over() {
+  for (Entry& entry : entries_) together_->entries_.push_back(std::move(entry));
+  entries_.clear();
+  together_->stale_.insert(together_->stale_.end(), stale_.begin(), stale_.end());
+}
+
+/// Outputs of one run may have a manifest in common.
+void PendingOutputs::drop_repeated() {
+  for (auto entry = entries_.begin(); entry != entries_.end();) {
+    const PendingOutput& output = *entry->output;
+    const auto first = std::ranges::find(entries_, output.target(),
+                                         [](const Entry& other) { return other.output->target(); });
+    if (first == entry) {
+      ++entry;
+      continue;
+    }
+    if (output.kind() != PendingOutput::Kind::file || first->output->kind() != output.kind() ||
+        read_file(output.path()) != read_file(first->output->path())) {
+      throw OutputError(output.target().string(), "two outputs would be written there");
+    }
+    entry = entries_.erase(entry);
+  }
+}
+
+/// Everything takes its place, or nothing does.
+void PendingOutputs::swap() {
+  std::vector<PendingOutput*> order;
+  for (auto entry = entries_.rbegin(); entry != entries_.rend(); ++entry) {
+    if (!entry->tells_of_another) order.push_back(entry->output.get());
+  }
+  for (auto entry = entries_.rbegin(); entry != entries_.rend(); ++entry) {
+    if (entry->tells_of_another) order.push_back(entry->output.get());
+  }
+  std::set<fs::path> folders;
+  for (const PendingOutput* output : order) {
+    folders.insert(fs::absolute(output->target()).parent_path());
+  }
+  const FolderLocks locks(folders);
+  try {
+    for (PendingOutput* output : order) output->take_place();
+  } catch (...) {
+    for (auto output = order.rbegin(); output != order.rend(); ++output) {
+      (*output)->give_place_back();
+    }
+    throw;
+  }
+  for (const fs::path& path : stale_) {
+    std::error_code ignored;
+    fs::remove(path, ignored);
+  }
+  for (PendingOutput* output : order) output->keep_place();
 }
 
 void PendingOutputs::check_same() const {
-  for (const PendingOutput* output : must_be_same_) {
+  for (const auto& [output, must_be_same, tells_of_another] : entries_) {
     std::error_code unreadable;
-    if (!fs::exists(output->target(), unreadable)) continue;
+    if (!must_be_same || !fs::exists(output->target(), unreadable)) continue;
     if (read_file(output->target()) == read_file(output->path())) continue;
     throw OutputError(output->target().string(), kExistsAlready);
   }
@@ -230,14 +359,15 @@ void PendingOutputs::check_same() const {
 
 void PendingOutputs::check_inputs_stay() const {
   for (const fs::path& path : stale_) mimetra::check_inputs_stay(path, inputs_);
-  for (const auto& output : outputs_) {
-    const std::string harm = harm_to(inputs_, output->target());
+  for (const Entry& entry : entries_) {
+    const PendingOutput& output = *entry.output;
+    const std::string harm = harm_to(inputs_, output.target());
     if (harm.empty()) continue;
     std::error_code unreadable;
-    const bool is_file = fs::is_regular_file(output->target(), unreadable);
+    const bool is_file = fs::is_regular_file(output.target(), unreadable);
     // A rest pose that was read is written again as it was.
-    if (is_file && read_file(output->target()) == read_file(output->path())) continue;
-    throw OutputError(output->target().string(), harm);
+    if (is_file && read_file(output.target()) == read_file(output.path())) continue;
+    throw OutputError(output.target().string(), harm);
   }
 }
 
@@ -246,10 +376,11 @@ void check_inputs_stay(const fs::path& output, const std::vector<fs::path>& inpu
   if (!harm.empty()) throw OutputError(output.string(), harm);
 }
 
-void write_file(const fs::path& target, std::string_view content, bool overwrite) {
-  PendingOutput output(target, PendingOutput::Kind::file, overwrite);
-  write_bytes(output.path(), content);
-  output.commit();
+void write_file(const fs::path& target, std::string_view content, bool overwrite,
+                PendingOutputs* together) {
+  PendingOutputs outputs(overwrite, {}, together);
+  write_bytes(outputs.add(target, PendingOutput::Kind::file), content);
+  outputs.commit();
 }
 
 }  // namespace mimetra

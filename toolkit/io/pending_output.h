@@ -6,16 +6,18 @@
 #include <string_view>
 #include <vector>
 
+#include "toolkit/io/temporary_name.h"
+
 namespace mimetra {
 
 /// A file or folder that appears under its name only when it is whole.
 ///
-/// What is written goes to `path()`, a temporary name in the same folder; `commit()` renames it. A
-/// process that dies before leaves nothing under the name asked for, and a destroyed object that
-/// was not committed removes what it wrote.
+/// What is written goes to `path()`, a temporary name in the same folder, which takes the place of
+/// what stands under the name in one step. A process that dies before leaves nothing under the name
+/// asked for, and a destroyed object that was not committed removes what it wrote.
 class PendingOutput {
  public:
-  enum class Kind { file, folder };
+  using Kind = OutputKind;
 
   /// Creates missing parent folders, and the temporary file or folder itself. Throws OutputError
   /// where `target` exists and not `overwrite`, nothing can be written there, or a folder to
@@ -29,16 +31,28 @@ class PendingOutput {
   /// needs it from elsewhere.
   const std::filesystem::path& path() const { return temporary_; }
   const std::filesystem::path& target() const { return target_; }
+  Kind kind() const { return kind_; }
   /// Throws OutputError where `target` is, or meanwhile became, one that the constructor refuses.
   void check_target() const;
-  /// Renames into place, a folder with a manifest that lists its files. Throws as check_target().
+
+  /// Makes it whole: a folder gets a manifest that lists its files. Throws OutputError.
+  void complete();
+  /// Stands under its name from now on, what stood there under the temporary one. Throws as
+  /// check_target(), and then nothing has changed. \pre complete()
+  void take_place();
+  /// Undoes take_place(), where that was done.
+  void give_place_back() noexcept;
+  /// After take_place(): keeps the place, and removes what stood there.
+  void keep_place() noexcept;
+  /// All of these. Throws as take_place().
   void commit();
 
  private:
+  enum class Stage { pending, stands_where_nothing_was, stands_for_another, kept };
+
   void create_parents();
   void create_temporary();
-  void replace_folder();
-  void discard();
+  void discard() noexcept;
 
   std::filesystem::path target_;
   std::filesystem::path temporary_;
@@ -46,23 +60,26 @@ class PendingOutput {
   std::vector<std::filesystem::path> created_parents_;
   Kind kind_;
   bool overwrite_;
-  bool committed_ = false;
+  Stage stage_ = Stage::pending;
 };
 
-/// Several outputs that appear one right after the other when all of them are whole.
+/// Outputs that appear together when all of them are whole, or not at all.
 class PendingOutputs {
  public:
   /// What may stand already under an output's name where nothing may be overwritten.
   enum class Existing { nothing, same, anything };
 
-  /// `inputs` are files and folders that were read and must stay.
-  explicit PendingOutputs(bool overwrite, std::vector<std::filesystem::path> inputs = {});
+  /// `inputs` are files and folders that were read and must stay. With `together`, commit() leaves
+  /// what was added to that one, whose commit() makes it appear.
+  explicit PendingOutputs(bool overwrite, std::vector<std::filesystem::path> inputs = {},
+                          PendingOutputs* together = nullptr);
   PendingOutputs(const PendingOutputs&) = delete;
   PendingOutputs& operator=(const PendingOutputs&) = delete;
   ~PendingOutputs();
 
   /// The temporary path to write to. Throws OutputError as PendingOutput does. `same` is for a file
-  /// that goes with the main output: a killed run may have left one of the same content.
+  /// that goes with the main output: a killed run may have left one of the same content; `anything`
+  /// for one that tells of an output and comes after it.
   const std::filesystem::path& add(const std::filesystem::path& target, PendingOutput::Kind kind,
                                    Existing existing = Existing::nothing);
 
@@ -70,27 +87,38 @@ class PendingOutputs {
   /// unless it may be replaced; commit() removes it.
   void add_stale(const std::filesystem::path& path);
 
-  /// What was added first comes last: whoever sees it sees all that belongs to it. Throws
-  /// OutputError, before anything is replaced where one of them cannot be.
+  /// What was added first comes last, but for what tells of it: whoever sees it sees all that
+  /// belongs to it. Other runs that commit in the same folders wait. Throws OutputError, and then
+  /// everything is as it was.
   void commit();
 
  private:
+  struct Entry {
+    std::unique_ptr<PendingOutput> output;
+    bool must_be_same;
+    bool tells_of_another;
+  };
+
+  void hand_over();
+  void drop_repeated();
   void check_same() const;
   void check_inputs_stay() const;
+  void swap();
 
   bool overwrite_;
   std::vector<std::filesystem::path> inputs_;
-  std::vector<std::unique_ptr<PendingOutput>> outputs_;
-  std::vector<const PendingOutput*> must_be_same_;
+  PendingOutputs* together_;
+  std::vector<Entry> entries_;
   std::vector<std::filesystem::path> stale_;
 };
 
-/// Throws OutputError where writing `output` would replace one of `inputs`: it is that file or
-/// folder, holds it, or is a file that exists in it.
+/// Throws OutputError where writing `output` would replace one of `inputs`, or become a part of it:
+/// it is that file or folder, holds it, is something that exists in it, or a new file in it.
 void check_inputs_stay(const std::filesystem::path& output,
                        const std::vector<std::filesystem::path>& inputs);
 
-/// Writes `content` to `target` by way of a PendingOutput. Throws OutputError.
-void write_file(const std::filesystem::path& target, std::string_view content, bool overwrite);
+/// Writes `content` to `target` by way of PendingOutputs. Throws OutputError.
+void write_file(const std::filesystem::path& target, std::string_view content, bool overwrite,
+                PendingOutputs* together = nullptr);
 
 }  // namespace mimetra

@@ -122,6 +122,7 @@ MeshFrame frame(const Connectivity& connectivity, std::string before) {
 }  // namespace
 
 MeshFrame ply_frame(const Connectivity& connectivity, bool double_precision) {
+  double_precision = double_precision || !fits_single_precision(connectivity.texture);
   std::string before = header(connectivity, double_precision);
   return double_precision ? frame<double>(connectivity, std::move(before))
                           : frame<float>(connectivity, std::move(before));

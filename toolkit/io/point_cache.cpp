@@ -101,7 +101,7 @@ class PointCacheSink : public FrameSink {
                  const std::function<PointCacheTarget(const fs::path&)>& begin)
       : header_(header),
         target_(target),
-        outputs_(options.overwrite, options.inputs),
+        outputs_(options.overwrite, options.inputs, options.together),
         cache_(begin(outputs_.add(target, PendingOutput::Kind::file))),
         columns_(3 * static_cast<std::size_t>(header.connectivity->vertices)) {
     add_extra_beside(outputs_, target_, extra, extra_files_);

@@ -39,7 +39,8 @@ SequenceRead read_sequence(const std::string& text, const SequenceSource& source
 /// where the format has no place for them, or a folder of frame_0000.ply on (`frame_00000` and so
 /// on where four digits do not suffice) with NAME.rest.ply beside it where the rest pose is known
 /// (never for STL, which numbers the vertices anew). Atomic. Throws OutputError, MismatchError for
-/// what the format cannot hold, std::invalid_argument for options out of range.
+/// what the format cannot hold, std::invalid_argument for options out of range and for an extension
+/// that no format has: a folder's name ends in '/' or has no dot.
 std::unique_ptr<FrameSink> begin_sequence(const SequenceHeader& header,
                                           const std::filesystem::path& target,
                                           const SequenceWriteOptions& = {},

@@ -15,6 +15,8 @@
 /// What opening a sequence is given and gives, and what writing one is given.
 namespace mimetra {
 
+class PendingOutputs;
+
 /// What a sequence's name does not say.
 struct SequenceSource {
   /// Blendshape weights that drive a model.
@@ -63,6 +65,8 @@ struct SequenceWriteOptions {
   bool overwrite = false;
   /// Files and folders that were read, which must stay.
   std::vector<std::filesystem::path> inputs = {};
+  /// Outputs that it appears together with; alone without.
+  PendingOutputs* together = nullptr;
   /// 0 for all there are; what is written does not depend on it.
   int threads = 0;
   Progress progress = {};

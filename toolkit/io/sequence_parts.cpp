@@ -40,7 +40,7 @@ void check_rate(const std::string& name, const Eigen::VectorXd& times,
   throw std::invalid_argument(name + ": its " + std::to_string(times.size()) +
                               " frames have times of their own, " + readable(times[0]) + " to " +
                               readable(times[times.size() - 1]) +
-                              " s, and --fps is for what has none; leave it out");
+                              " s, and option 'fps' is for what has none; leave it out");
 }
 
 FrameTimes frame_times(const std::string& name, int frames, std::optional<Eigen::VectorXd> known,
@@ -66,7 +66,7 @@ fs::path topology_of(const fs::path& path, const SequenceSource& source) {
   const fs::path topology = beside(path, kTopologySuffix);
   if (!stands(topology)) {
     throw IoError(path.string(), "says nothing of faces and there is no " + topology.string() +
-                                     "; name a mesh file with --topology");
+                                     "; name a mesh file with option 'topology'");
   }
   return topology;
 }

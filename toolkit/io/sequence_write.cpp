@@ -5,6 +5,7 @@
 #include "toolkit/io/sequence_format.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/progress.h"
+#include "toolkit/mesh/text.h"
 #include "toolkit/model/animation.h"
 
 namespace mimetra {
@@ -15,8 +16,14 @@ std::unique_ptr<FrameSink> begin_sequence(const SequenceHeader& header, const fs
                                           const ExtraFiles& extra) {
   check_options(options);
   if (header.times.size() == 0) throw std::invalid_argument("the sequence has no frames");
-  const SequenceFormat* format = sequence_format(target);
-  return (format ? format->begin : begin_folder)(header, target, options, extra);
+  if (target.extension().empty()) return begin_folder(header, target, options, extra);
+  if (const SequenceFormat* format = sequence_format(target)) {
+    return format->begin(header, target, options, extra);
+  }
+  throw std::invalid_argument(target.string() + ": no sequence can be written as '" +
+                              target.extension().string() + "', expected " +
+                              joined(sequence_extensions()) + "; a folder of this name is '" +
+                              target.string() + "/'");
 }
 
 std::vector<fs::path> write_sequence(const FrameSource& sequence, const fs::path& target,

@@ -40,7 +40,7 @@ int counted(const Hdf5Dataset& set, std::uint64_t size) {
 Hdf5Dataset positions_of(const Hdf5File& file) {
   if (file.has(kVerts)) return file.dataset(kVerts);
   if (file.has("default") && file.has("comp000")) {
-    file.fail("holds components, expected a sequence; give it by --components");
+    file.fail("holds components, expected a sequence; give it by option 'components'");
   }
   if (file.has("VTKHDF")) file.fail("is a VTKHDF file, which is written but not read");
   file.fail("holds " + (file.names().empty() ? "nothing" : listed(file.names())) +
@@ -222,7 +222,7 @@ class SplocsSink : public FrameSink {
   SplocsSink(const SequenceHeader& header, const fs::path& target,
              const SequenceWriteOptions& options, const ExtraFiles& extra)
       : target_(target),
-        outputs_(options.overwrite, options.inputs),
+        outputs_(options.overwrite, options.inputs, options.together),
         file_(outputs_.add(target, PendingOutput::Kind::file)),
         columns_(3 * static_cast<std::size_t>(header.connectivity->vertices)) {
     const bool single = options.single_precision;

@@ -124,7 +124,7 @@ std::string usd_faces(const Connectivity& faces) {
 class UsdFile {
  public:
   UsdFile(const fs::path& target, const SequenceWriteOptions& options, const ExtraFiles& extra)
-      : outputs_(options.overwrite, options.inputs),
+      : outputs_(options.overwrite, options.inputs, options.together),
         file_(outputs_.add(target, PendingOutput::Kind::file)),
         files_{target} {
     add_extra_beside(outputs_, target, extra, files_);

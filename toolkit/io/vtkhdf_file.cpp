@@ -185,7 +185,7 @@ std::vector<fs::path> write_vtkhdf(const FieldSequence& sequence, const fs::path
   check_options(options);
   check_names(sequence);
   if (sequence.frames->frames() == 0) throw std::invalid_argument("the sequence has no frames");
-  PendingOutputs outputs(options.overwrite, options.inputs);
+  PendingOutputs outputs(options.overwrite, options.inputs, options.together);
   OutputFile file(outputs.add(target, PendingOutput::Kind::file));
   Layout layout = layout_of(sequence, options);
   report_progress(options.progress, 0);

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "toolkit/io/fit_file.h"
+#include "toolkit/io/json_text.h"
 #include "toolkit/io/text_cursor.h"
 #include "toolkit/io/whole_file.h"
 #include "toolkit/mesh/errors.h"
@@ -16,16 +17,13 @@
 namespace mimetra {
 namespace {
 
-using Value = nlohmann::ordered_json;
-
 // The keys of files in use: ours, Audio2Face's export for ARKit, and plain ones.
 const std::vector<std::string> kNames = {"names", "facsNames", "blendShapeNames", "blendshapes"};
 const std::vector<std::string> kMatrix = {"weights", "weightMat"};
 const std::vector<std::string> kRate = {"fps", "exportFps"};
 const std::vector<std::string> kRows = {"rows", "frames"};
 
-Value parsed(const std::filesystem::path& path) {
-  constexpr int kDeepest = 100;
+Json parsed(const std::filesystem::path& path) {
   const std::string bytes = read_file(path);
   const std::string_view text = without_byte_order_mark(bytes);
   const auto first = text.find_first_not_of(" \t\r\n");
@@ -34,14 +32,7 @@ Value parsed(const std::filesystem::path& path) {
     throw IoError(path.string(),
                   "is not JSON; where it holds comma-separated values, call it .csv");
   }
-  try {
-    return Value::parse(text, [&path](int depth, Value::parse_event_t, const Value&) {
-      if (depth > kDeepest) throw IoError(path.string(), "is nested too deeply for weights");
-      return true;
-    });
-  } catch (const Value::exception& error) {
-    throw IoError(path.string(), std::string("is not JSON: ") + error.what());
-  }
+  return parse_json(path.string(), text, "weights as JSON");
 }
 
 class WeightJson {
@@ -53,11 +44,11 @@ class WeightJson {
   bool is_fit() const { return member(root_, {"expressions"}) && member(root_, {"frames"}); }
 
   WeightTrack read() {
-    const Value* names = member(root_, kNames);
-    const Value* matrix = member(root_, kMatrix);
+    const Json* names = member(root_, kNames);
+    const Json* matrix = member(root_, kMatrix);
     if (names && matrix) {
       read_matrix(*names, *matrix);
-    } else if (const Value* rows = root_.is_array() ? &root_ : member(root_, kRows)) {
+    } else if (const Json* rows = root_.is_array() ? &root_ : member(root_, kRows)) {
       read_rows(*rows);
     } else {
       throw IoError(path_, "holds no weights; expected names and weights, or rows of them");
@@ -71,7 +62,7 @@ class WeightJson {
   }
 
   /// Null where an object has none of these.
-  static const Value* member(const Value& object, const std::vector<std::string>& keys) {
+  static const Json* member(const Json& object, const std::vector<std::string>& keys) {
     for (const std::string& key : keys) {
       const auto found = object.is_object() ? object.find(key) : object.end();
       if (object.is_object() && found != object.end()) return &*found;
@@ -79,7 +70,7 @@ class WeightJson {
     return nullptr;
   }
 
-  double number(const Value& value, const std::string& place) const {
+  double number(const Json& value, const std::string& place) const {
     if (value.is_number() && std::isfinite(value.get<double>())) return value.get<double>();
     fail(place, "expected a finite number");
   }
@@ -91,9 +82,9 @@ class WeightJson {
     track_.names.push_back(name);
   }
 
-  void read_matrix(const Value& names, const Value& matrix) {
+  void read_matrix(const Json& names, const Json& matrix) {
     if (!names.is_array() || names.empty()) fail("names", "expected a list of names");
-    for (const Value& name : names) {
+    for (const Json& name : names) {
       if (!name.is_string()) fail("names", "expected strings");
       add_name(name.get<std::string>(), "names");
     }
@@ -102,7 +93,7 @@ class WeightJson {
                           static_cast<Eigen::Index>(names.size()));
     for (std::size_t f = 0; f < matrix.size(); ++f) {
       const std::string place = "weights/" + std::to_string(f);
-      const Value& row = matrix[f];
+      const Json& row = matrix[f];
       if (!row.is_array() || row.size() != names.size()) {
         fail(place, (row.is_array() ? std::to_string(row.size()) + " weights" : "no list") +
                         ", expected " + std::to_string(names.size()) + ", one for each name");
@@ -117,7 +108,7 @@ class WeightJson {
 
   void read_times() {
     const Eigen::Index frames = track_.weights.rows();
-    if (const Value* times = member(root_, {"times"})) {
+    if (const Json* times = member(root_, {"times"})) {
       if (!times->is_array() || static_cast<Eigen::Index>(times->size()) != frames) {
         fail("times", "expected " + std::to_string(frames) + " numbers, one for each row");
       }
@@ -126,7 +117,7 @@ class WeightJson {
         set_time(f, number((*times)[static_cast<std::size_t>(f)], "times/" + std::to_string(f)),
                  "times/" + std::to_string(f));
       }
-    } else if (const Value* rate = member(root_, kRate)) {
+    } else if (const Json* rate = member(root_, kRate)) {
       const double fps = number(*rate, "fps");
       if (!(fps > 0)) fail("fps", "expected more than 0, found " + readable(fps));
       track_.times = Eigen::VectorXd::LinSpaced(frames, 0, static_cast<double>(frames - 1)) / fps;
@@ -140,18 +131,18 @@ class WeightJson {
 
   /// Objects whose keys are the names of weights, those of the first row; or have them in an object
   /// "weights".
-  void read_rows(const Value& rows) {
+  void read_rows(const Json& rows) {
     if (!rows.is_array() || rows.empty()) fail("rows", "expected a list of rows");
     const auto frames = static_cast<Eigen::Index>(rows.size());
     const bool timed = member(rows.front(), {"time"}) != nullptr;
     if (timed) track_.times.resize(frames);
     for (Eigen::Index f = 0; f < frames; ++f) {
       const std::string place = "row " + std::to_string(f);
-      const Value& row = rows[static_cast<std::size_t>(f)];
+      const Json& row = rows[static_cast<std::size_t>(f)];
       if (!row.is_object()) fail(place, "expected an object of names and weights");
-      const Value* nested = member(row, {"weights"});
-      const Value& weights = nested && nested->is_object() ? *nested : row;
-      const Value* time = member(row, {"time"});
+      const Json* nested = member(row, {"weights"});
+      const Json& weights = nested && nested->is_object() ? *nested : row;
+      const Json* time = member(row, {"time"});
       if ((time != nullptr) != timed)
         fail(place, timed ? "has no time" : "has a time, others none");
       if (time) set_time(f, number(*time, place + ", time"), place);
@@ -159,7 +150,7 @@ class WeightJson {
     }
   }
 
-  void read_row(const Value& row, Eigen::Index frame, Eigen::Index frames,
+  void read_row(const Json& row, Eigen::Index frame, Eigen::Index frames,
                 const std::string& place) {
     const auto is_weight = [](const std::string& key) { return key != "time" && key != "frame"; };
     if (frame == 0) {
@@ -184,7 +175,7 @@ class WeightJson {
   }
 
   std::string path_;
-  Value root_;
+  Json root_;
   WeightTrack track_;
   std::map<std::string, Eigen::Index> columns_;
 };

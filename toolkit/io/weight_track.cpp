@@ -90,7 +90,7 @@ class WeightReader {
       times_ = found.times;
     } else {
       result.notes.push_back(
-          "no second ends among its timecodes, which would tell their rate; give it by --fps");
+          "no second ends among its timecodes, which would tell their rate; give it by option 'fps'");
     }
   }
 

@@ -9,9 +9,9 @@ using Coordinates = Eigen::Ref<Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::R
 
 /// Turns exactly: coordinates change places and signs.
 void change_units(Coordinates positions, const UnitChange& change) {
-  if (change.up != UpAxis::keep) {
+  if (change.up != UpTurn::keep) {
     positions.col(1).swap(positions.col(2));
-    const int turned = change.up == UpAxis::y_to_z ? 1 : 2;
+    const int turned = change.up == UpTurn::y_to_z ? 1 : 2;
     positions.col(turned) = 0 - positions.col(turned).array();  // 0 stays 0, and not -0
   }
   if (change.scale != 1) positions *= change.scale;
@@ -41,7 +41,7 @@ class FramesInUnits : public FrameSource {
 std::shared_ptr<const FrameSource> with_units(std::shared_ptr<const FrameSource> source,
                                               const UnitChange& change) {
   check_options(change);
-  if (change.scale == 1 && change.up == UpAxis::keep) return source;
+  if (change.scale == 1 && change.up == UpTurn::keep) return source;
   return std::make_shared<const FramesInUnits>(std::move(source), change);
 }
 

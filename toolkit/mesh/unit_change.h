@@ -8,17 +8,17 @@
 
 namespace mimetra {
 
-/// Which axis is up, before and after.
-enum class UpAxis { keep, y_to_z, z_to_y };
+/// How what is up is turned.
+enum class UpTurn { keep, y_to_z, z_to_y };
 
 /// As people choose it.
-constexpr std::string_view choice_name(UpAxis value) {
+constexpr std::string_view choice_name(UpTurn value) {
   switch (value) {
-    case UpAxis::keep:
+    case UpTurn::keep:
       return "keep";
-    case UpAxis::y_to_z:
+    case UpTurn::y_to_z:
       return "y-to-z";
-    case UpAxis::z_to_y:
+    case UpTurn::z_to_y:
       return "z-to-y";
   }
   return {};
@@ -30,7 +30,7 @@ struct UnitChange {
   double scale = 1;
   /// `y_to_z` turns by 90 degrees about x, so that what was up along y is up along z and x stays:
   /// (x, y, z) becomes (x, -z, y). `z_to_y` is the way back.
-  UpAxis up = UpAxis::keep;
+  UpTurn up = UpTurn::keep;
 
   static constexpr Option kScale{
       "scale", &UnitChange::scale, {.minimum = 1e-9, .maximum = 1e9}, "a factor"};

@@ -132,6 +132,19 @@ std::vector<std::string> Call::repeated_names() const {
   return names;
 }
 
+/// What was read, and the folders that were named: a new file in one of those would be read next
+/// time.
+Paths Call::inputs_that_stay() const {
+  Paths paths = finished_.inputs;
+  for (const auto& [input, names] : finished_.named_inputs) {
+    std::error_code unreadable;
+    for (const std::string& name : names) {
+      if (std::filesystem::is_directory(name, unreadable)) paths.emplace_back(name);
+    }
+  }
+  return paths;
+}
+
 /// Where the values of the outputs go, now that names and files of the inputs are known.
 void Call::place_outputs() {
   const std::vector<std::string> names = repeated_names();
@@ -146,15 +159,17 @@ void Call::place_outputs() {
   for (const Output& output : request_.operation->outputs) {
     const auto asked = destination_of(output);
     if (!asked) continue;
+    const bool is_folder = table_.writes_folder(output, asked->path);
     paths_[output.name] = table_.output_paths(output, asked->path, names);
     for (const auto& path : paths_[output.name]) {
-      table_.check_writable(output, path, asked->overwrite, finished_.inputs);
+      table_.check_writable(output, is_folder ? path / "" : path, asked->overwrite,
+                            inputs_that_stay());
       claim(path);
-      if (table_.writes_folder(output, path)) folders.emplace(place_of(path), path);
+      if (is_folder) folders.emplace(place_of(path), path);
     }
   }
   if (request_.manifest) {
-    check_inputs_stay(request_.manifest->path, finished_.inputs);
+    check_inputs_stay(request_.manifest->path, inputs_that_stay());
     claim(request_.manifest->path);
   }
   for (const auto& [folder, folder_name] : folders) {
@@ -231,20 +246,25 @@ const Outcome& Call::run() {
 }
 
 void Call::write_values(const Output& output, const Paths& targets, const std::string& manifest,
-                        const Progress& progress, std::size_t& written) const {
+                        const Progress& progress, PendingOutputs& together,
+                        std::size_t& written) const {
   const auto made = outcome_.outputs.find(output.name);
   if (made == outcome_.outputs.end()) return;
+  const Destination asked = *destination_of(output);
+  const Format& format = table_.writer(output, asked.path);
+  const bool is_folder = format.has(Format::kFolder);
   for (std::size_t i = 0; i < made->second.size(); ++i, ++written) {
     const auto& target = targets.at(i);
-    WriteRequest write{target, request_.parameters, destination_of(output)->overwrite, progress};
+    // With a slash at its end a folder's name may have a dot.
+    WriteRequest write{is_folder ? target / "" : target, request_.parameters, asked.overwrite,
+                       progress};
     write.threads = request_.threads;
-    write.inputs = finished_.inputs;
+    write.inputs = inputs_that_stay();
+    write.together = &together;
     // What accompanies another output stands in that one's manifest.
     if (request_.destinations.contains(output.name)) {
-      write.extra.emplace_back(manifest_name(target, table_.writes_folder(output, target)),
-                               manifest);
+      write.extra.emplace_back(manifest_name(target, is_folder), manifest);
     }
-    const Format& format = table_.writer(output, target);
     for (const std::string& note : notes_on_losses(format, made->second[i].data, write)) {
       if (request_.log) request_.log(LogLevel::warning, note);
     }
@@ -258,24 +278,23 @@ void Call::write() {
   const std::string manifest = mimetra::manifest(finished_, outcome_.report);
   std::size_t count = 0, written = 0;
   for (const auto& [name, targets] : paths_) count += targets.size();
-  // Once one output stands, the others follow: an interrupted run leaves all of them or none.
   const Progress progress = [&](double share) {
     const double done = (static_cast<double>(written) + share) / static_cast<double>(count);
     const double all = 1 - kWritingShare + kWritingShare * done;
-    return !request_.progress || request_.progress(all) || written > 0;
+    return !request_.progress || request_.progress(all);
   };
-  // What is drawn while it is written comes first: nothing stands yet where that fails or ends.
-  std::vector<Output> outputs = request_.operation->outputs;
-  std::ranges::stable_partition(
-      outputs, [](const Output& output) { return output.kind == DataKind::pictures; });
-  for (const Output& output : outputs) {
+  // An interrupted run leaves all of its outputs or none.
+  PendingOutputs together(false, inputs_that_stay());
+  for (const Output& output : request_.operation->outputs) {
     const auto targets = paths_.find(output.name);
     if (targets != paths_.end()) {
-      write_values(output, targets->second, manifest, progress, written);
+      write_values(output, targets->second, manifest, progress, together, written);
     }
   }
-  if (request_.manifest)
-    write_file(request_.manifest->path, manifest, request_.manifest->overwrite);
+  if (request_.manifest) {
+    write_file(request_.manifest->path, manifest, request_.manifest->overwrite, &together);
+  }
+  together.commit();
   write_seconds_ = stopwatch.seconds();
 }
 

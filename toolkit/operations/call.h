@@ -91,9 +91,10 @@ class Call {
   void check_outputs() const;
   void check_manifest() const;
   std::vector<std::string> repeated_names() const;
+  Paths inputs_that_stay() const;
   void place_outputs();
   void write_values(const Output& output, const Paths& targets, const std::string& manifest,
-                    const Progress& progress, std::size_t& written) const;
+                    const Progress& progress, PendingOutputs& together, std::size_t& written) const;
 
   const OperationTable& table_;
   CallRequest request_;

@@ -23,7 +23,7 @@ BoundParameters<UnitChange> convert_parameters() {
 std::string said(const UnitChange& change) {
   std::string text;
   if (change.scale != 1) text += ", positions times " + readable(change.scale);
-  if (change.up != UpAxis::keep) text += ", turned " + std::string(choice_name(change.up));
+  if (change.up != UpTurn::keep) text += ", turned " + std::string(choice_name(change.up));
   return text;
 }
 

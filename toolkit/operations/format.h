@@ -13,6 +13,8 @@
 
 namespace mimetra {
 
+class PendingOutputs;
+
 /// How a value is read.
 struct ReadRequest {
   /// With those of the format.
@@ -45,6 +47,8 @@ struct WriteRequest {
   Progress progress = {};
   /// Files and folders that were read for it, which must stay.
   std::vector<std::filesystem::path> inputs = {};
+  /// Outputs that it appears together with; alone without.
+  PendingOutputs* together = nullptr;
   /// Further files (name, content) that appear together with the output.
   std::vector<std::pair<std::string, std::string>> extra = {};
   int threads = 0;  ///< 0 for all there are; what is written does not depend on it

@@ -41,6 +41,7 @@ Paths write_sequence_data(const Data& data, const WriteRequest& request,
                           SequenceWriteOptions options) {
   options.overwrite = request.overwrite;
   options.inputs = request.inputs;
+  options.together = request.together;
   options.threads = request.threads;
   options.progress = request.progress;
   return write_sequence(*std::get<FieldSequence>(data).frames, request.target, options,
@@ -51,6 +52,7 @@ SequenceWriteOptions vtkhdf_options(const WriteRequest& request) {
   SequenceWriteOptions options = mesh_writing_parameters().read(request.parameters);
   options.overwrite = request.overwrite;
   options.inputs = request.inputs;
+  options.together = request.together;
   options.threads = request.threads;
   options.progress = request.progress;
   return options;
@@ -78,7 +80,8 @@ ReadValue read_components_data(const std::string& text, const ReadRequest&) {
 
 Paths write_components_data(const Data& data, const WriteRequest& request) {
   return write_with_extra(request, [&]() -> Paths {
-    write_components(request.target, std::get<Components>(data), request.overwrite);
+    write_components(request.target, std::get<Components>(data), request.overwrite,
+                     request.together);
     return {request.target};
   });
 }
@@ -138,7 +141,7 @@ Paths write_model_data(const Data& data, const WriteRequest& request) {
   if (!landmarks.empty()) extra.emplace_back("landmarks68.txt", mapping_text(landmarks));
   const bool performs = !performance.names.empty();
   write_model(request.target, model, performs ? std::optional(performance) : std::nullopt,
-              request.overwrite, extra);
+              request.overwrite, extra, request.together);
   return {request.target};
 }
 
@@ -147,6 +150,7 @@ Paths write_gltf_data(const Data& data, const WriteRequest& request) {
   SequenceWriteOptions options;
   options.overwrite = request.overwrite;
   options.inputs = request.inputs;
+  options.together = request.together;
   return write_gltf_model(model, performance, request.target, options, request.extra);
 }
 
@@ -256,11 +260,13 @@ void add_model_formats(OperationTable& table) {
 
 Paths write_with_extra(const WriteRequest& request, const std::function<Paths()>& write) {
   // The parents that the request's target needs are made first and go last where it fails.
-  PendingOutputs extra(true, request.inputs);
+  PendingOutputs extra(request.overwrite, request.inputs, request.together);
   Paths beside;
   for (const auto& [name, content] : request.extra) {
     beside.push_back(request.target.parent_path() / name);
-    write_bytes(extra.add(beside.back(), PendingOutput::Kind::file), content);
+    write_bytes(
+        extra.add(beside.back(), PendingOutput::Kind::file, PendingOutputs::Existing::anything),
+        content);
   }
   Paths written = write();
   extra.commit();
@@ -270,7 +276,7 @@ Paths write_with_extra(const WriteRequest& request, const std::function<Paths()>
 
 Paths write_text(const WriteRequest& request, const std::string& text) {
   return write_with_extra(request, [&]() -> Paths {
-    write_file(request.target, text, request.overwrite);
+    write_file(request.target, text, request.overwrite, request.together);
     return {request.target};
   });
 }

@@ -47,7 +47,13 @@ std::string held_by(const Format& format) {
 
 std::string formats_as_markdown(const OperationTable& table) {
   std::string text =
-      "# Formats\n\nMade by `mimetra formats --markdown` from the table of formats.\n";
+      "# Formats\n\nMade by `mimetra formats --markdown` from the table of formats. What a "
+      "sequence has "
+      "and its format does not\nhold is left out, and named where it is written; what stands in "
+      "files "
+      "beside it (`NAME.rest.ply`,\n`NAME.topology.ply`) counts as held. A folder holds what its "
+      "files "
+      "do, by default PLY.\n";
   const DataKind* kind = nullptr;
   const std::vector<Format> formats = by_kind(table);
   for (const Format& format : formats) {

@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "toolkit/mesh/errors.h"
 #include "toolkit/operations/file_hash.h"
 #include "toolkit/operations/json.h"
 #include "toolkit/operations/run_file.h"
@@ -61,8 +62,16 @@ std::string manifest_name(const std::filesystem::path& output, bool is_folder) {
   if (is_folder) return kFolderManifest;
   const std::string name = output.stem().string() + ".run.json";
   const auto path = output.parent_path() / name;
-  const bool is_free = !std::filesystem::exists(path) || is_manifest_of(path, output);
-  return is_free ? name : output.filename().string() + ".run.json";
+  const auto is_free = [&output](const std::filesystem::path& manifest) {
+    return !std::filesystem::exists(manifest) || is_manifest_of(manifest, output);
+  };
+  if (is_free(path)) return name;
+  const std::string longer = output.filename().string() + ".run.json";
+  if (is_free(output.parent_path() / longer)) return longer;
+  throw OutputError(
+      (output.parent_path() / longer).string(),
+      "exists already, and is no manifest of '" + output.filename().string() +
+          "', whose manifest would be written there; move it, or choose another name");
 }
 
 }  // namespace mimetra

@@ -31,7 +31,8 @@ struct FinishedRun {
 std::string manifest(const FinishedRun& run, const std::string& report);
 
 /// Name of the manifest of an output: mimetra-run.json in a folder; NAME.run.json for a file
-/// NAME.EXT, or NAME.EXT.run.json where the former is there and belongs to another output.
+/// NAME.EXT, or NAME.EXT.run.json where the former is there and is not of this output. Throws
+/// OutputError where both are there and of others.
 std::string manifest_name(const std::filesystem::path& output, bool is_folder);
 
 }  // namespace mimetra

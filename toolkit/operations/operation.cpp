@@ -197,26 +197,34 @@ const Format& OperationTable::reader(DataKind kind, const std::string& text) con
                           extension + "'");
 }
 
+namespace {
+
+/// A folder's name may have a dot.
+std::string hint_of_folder(const std::vector<std::string>& known,
+                           const std::filesystem::path& target) {
+  const bool folder = std::ranges::find(known, Format::kFolder) != known.end();
+  if (!folder || lower_extension(target).empty()) return "";
+  return "; a folder of this name is '" + target.string() + "/'";
+}
+
+}  // namespace
+
 const Format& OperationTable::writer(const Output& output,
                                      const std::filesystem::path& target) const {
-  const Format* folder = nullptr;
+  const std::string wanted = lower_extension(target);
   std::vector<std::string> known;
   for (const Format& format : formats_) {
     for (const std::string& extension : extensions_of(output, format)) {
-      if (extension == Format::kFolder) {
-        folder = &format;
-      } else if (extension == lower_extension(target)) {
-        return format;
-      }
+      if (extension == wanted) return format;
       known.push_back(extension);
     }
   }
-  if (folder) return *folder;
   const std::string kind =
       std::string(kind_name(output.kind)) + (output.fields ? " with fields" : "");
   if (known.empty()) throw UsageError(target.string() + ": this program writes no " + kind);
   throw UsageError(target.string() + ": " + kind + " can be written as " +
-                   listed_extensions(known) + ", not as '" + target.extension().string() + "'");
+                   listed_extensions(known) + ", not as '" + target.extension().string() + "'" +
+                   hint_of_folder(known, target));
 }
 
 std::vector<std::string> OperationTable::extensions(const Input& input) const {

@@ -45,7 +45,7 @@ int common_frames(const std::vector<FieldSequence>& sequences, const StripOption
     if (frames != 1) {
       throw MismatchError(row_name(options, row) + ": " + std::to_string(own) +
                           " frames, expected " + std::to_string(frames) +
-                          " as in the rows above; use --frames");
+                          " as in the rows above; use option 'frames'");
     }
     frames = own;
   }

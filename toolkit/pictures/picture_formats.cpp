@@ -18,14 +18,13 @@ std::vector<std::filesystem::path> write_picture(const Data& data, const WriteRe
 
 std::vector<std::filesystem::path> write_pictures(const Data& data, const WriteRequest& request) {
   const auto& pictures = std::get<Pictures>(data);
-  PendingOutput folder(request.target, PendingOutput::Kind::folder, request.overwrite);
+  PendingOutputs outputs(request.overwrite, request.inputs, request.together);
+  const std::filesystem::path folder = outputs.add(request.target, PendingOutput::Kind::folder);
   const auto name = [&](int i) { return frame_name(i, pictures.count, ".png"); };
-  const auto write_one = [&](int i) {
-    write_bytes(folder.path() / name(i), png_of(pictures.draw(i)));
-  };
+  const auto write_one = [&](int i) { write_bytes(folder / name(i), png_of(pictures.draw(i))); };
   parallel_for(pictures.count, request.threads, write_one, request.progress);
-  for (const auto& [extra, content] : request.extra) write_bytes(folder.path() / extra, content);
-  folder.commit();
+  for (const auto& [extra, content] : request.extra) write_bytes(folder / extra, content);
+  outputs.commit();
   std::vector<std::filesystem::path> files;
   for (int i = 0; i < pictures.count; ++i) files.push_back(request.target / name(i));
   return files;

@@ -25,6 +25,7 @@ std::vector<std::filesystem::path> write(const FieldSequence& fields, const Writ
   VtpOptions options = vtp_parameters().read(request.parameters);
   options.overwrite = request.overwrite;
   options.inputs = request.inputs;
+  options.together = request.together;
   options.threads = request.threads;
   options.progress = request.progress;
   return write_with_extra(request,
@@ -35,7 +36,8 @@ std::vector<std::filesystem::path> write(const FieldSequence& fields, const Writ
 void check_frame_count(const FrameSource& frames, const std::filesystem::path& target) {
   if (frames.frames() == 1 || lower_extension(target) != ".vtp") return;
   throw MismatchError(target.string() + ": holds one frame, and the sequence has " +
-                      std::to_string(frames.frames()) + "; write a .pvd, or take one by --frames");
+                      std::to_string(frames.frames()) +
+                      "; write a .pvd, or take one by option 'frames'");
 }
 
 /// True unless the rest pose is the first frame, as readers take it to be.

@@ -2,13 +2,11 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <charconv>
 #include <cstdint>
 #include <limits>
 #include <optional>
 
-#include "toolkit/io/bytes.h"
 #include "toolkit/io/text_cursor.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/vtk/xml_elements.h"
@@ -91,7 +89,7 @@ class VtpHeader {
         "", "vtkZLibDataCompressor", "vtkLZ4DataCompressor", "vtkLZMADataCompressor"};
     if (!is_one_of(kCompressors, compressor)) fail("no such compressor as '" + compressor + "'");
     word_ = header == "UInt64" ? 8 : 4;
-    order_ = order == "BigEndian" ? std::endian::big : std::endian::little;
+    big_endian_ = order == "BigEndian";
     compressed_ = !compressor.empty();
     most_bytes_ = text_.size() * (compressed_ ? kMostCompressed : 1);
     if (elements_.back().name == "AppendedData") {
@@ -166,9 +164,12 @@ class VtpHeader {
       return bytes;
     };
     const auto word = [this](const std::string& bytes, std::size_t i) {
-      const char* at = bytes.data() + i * word_;
-      return word_ == 8 ? number_at<std::uint64_t>(at, order_)
-                        : std::uint64_t{number_at<std::uint32_t>(at, order_)};
+      std::uint64_t number = 0;
+      for (std::size_t j = 0; j < word_; ++j) {
+        const std::size_t place = i * word_ + (big_endian_ ? j : word_ - 1 - j);
+        number = number << 8U | static_cast<unsigned char>(bytes[place]);
+      }
+      return number;
     };
     if (!compressed_) {
       if (word(words(1), 0) > stored.size()) lies();
@@ -193,7 +194,7 @@ class VtpHeader {
   std::string_view text_;
   std::vector<XmlElement> elements_;
   std::size_t word_ = 4;
-  std::endian order_ = std::endian::little;
+  bool big_endian_ = false;
   bool compressed_ = false;
   bool appended_raw_ = false;
   std::size_t appended_ = std::numeric_limits<std::size_t>::max();

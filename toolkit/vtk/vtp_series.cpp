@@ -191,10 +191,11 @@ std::vector<FrameEntry> entries_of(const FrameSource& sequence, const std::strin
 
 std::filesystem::path write_one(const FieldSequence& fields, const std::filesystem::path& target,
                                 const VtpOptions& options) {
-  PendingOutput output(target, PendingOutput::Kind::file, options.overwrite);
-  write_bytes(output.path(), vtp_text(FrameData(fields).at(0), options.compression));
+  PendingOutputs outputs(options.overwrite, options.inputs, options.together);
+  write_bytes(outputs.add(target, PendingOutput::Kind::file),
+              vtp_text(FrameData(fields).at(0), options.compression));
   report_progress(options.progress, 1);
-  output.commit();
+  outputs.commit();
   return target;
 }
 
@@ -209,19 +210,18 @@ std::vector<std::filesystem::path> write_all(const FieldSequence& fields,
   for (const auto& path : {target, series, beside / frames_folder(name)}) {
     check_inputs_stay(path, options.inputs);
   }
-  PendingOutput folder(beside / frames_folder(name), PendingOutput::Kind::folder,
-                       options.overwrite);
-  PendingOutput series_file(series, PendingOutput::Kind::file, options.overwrite);
-  PendingOutput pvd_file(target, PendingOutput::Kind::file, options.overwrite);
-  write_file(series_file.path(), series_text(entries), true);
-  write_file(pvd_file.path(), pvd_text(entries), true);
+  PendingOutputs outputs(options.overwrite, options.inputs, options.together);
+  write_bytes(outputs.add(target, PendingOutput::Kind::file), pvd_text(entries));
+  write_bytes(outputs.add(series, PendingOutput::Kind::file), series_text(entries));
+  const std::filesystem::path frames = beside / frames_folder(name);
+  const std::filesystem::path folder = outputs.add(frames, PendingOutput::Kind::folder);
 
   std::vector<std::filesystem::path> written = {target, series};
   for (const FrameEntry& entry : entries) written.push_back(beside / entry.file);
-  written.push_back(folder.target() / kFolderManifest);
+  written.push_back(frames / kFolderManifest);
   const auto write = [&](FrameData& data, int f) {
     const std::filesystem::path frame = entries[static_cast<std::size_t>(f)].file;
-    write_bytes(folder.path() / frame.filename(), vtp_text(data.at(f), options.compression));
+    write_bytes(folder / frame.filename(), vtp_text(data.at(f), options.compression));
   };
   FrameDataPool pool(fields, options.compression);
   auto first = std::make_unique<FrameData>(fields);
@@ -234,9 +234,7 @@ std::vector<std::filesystem::path> write_all(const FieldSequence& fields,
   };
   parallel_for(fields.frames->frames() - 1, options.threads, write_further, options.progress);
   report_progress(options.progress, 1);
-  folder.commit();
-  series_file.commit();
-  pvd_file.commit();
+  outputs.commit();
   return written;
 }
 

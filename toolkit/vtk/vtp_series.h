@@ -13,6 +13,8 @@
 
 namespace mimetra {
 
+class PendingOutputs;
+
 enum class VtpCompression { lz4, zlib };
 
 /// As people choose it.
@@ -31,6 +33,8 @@ struct VtpOptions {
   bool overwrite = false;
   /// Files and folders that were read, which must stay.
   std::vector<std::filesystem::path> inputs = {};
+  /// Outputs that it appears together with; alone without.
+  PendingOutputs* together = nullptr;
   /// 0 for all there are; what is written does not depend on it.
   int threads = 0;
   Progress progress = {};

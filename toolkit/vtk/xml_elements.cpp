@@ -126,7 +126,8 @@ class XmlWalk {
         {{"amp", '&'}, {"lt", '<'}, {"gt", '>'}, {"quot", '"'}, {"apos", '\''}, {"#39", '\''}}};
     std::string text;
     for (std::size_t i = 0; i < value.size(); ++i) {
-      if (value[i] == '<') fail("expected no '<' in a value");
+      // VTK looks for the end of a tag at the first '>'.
+      if (value[i] == '<' || value[i] == '>') fail("expected no '<' or '>' in a value");
       if (value[i] != '&') {
         text += value[i];
         continue;

@@ -4,6 +4,7 @@ import atexit
 import contextlib
 import ctypes
 import logging
+import re
 import signal
 import threading
 import time
@@ -25,7 +26,12 @@ def _log(level, text, _):
     if getattr(_contexts, "silent", False):
         return
     _logger.log(logging.WARNING if level == c.WARNING else logging.INFO, "%s",
-                text.decode(errors="replace"))
+                in_python(text.decode(errors="replace")))
+
+
+def in_python(message):
+    """A message with options as functions take them."""
+    return re.sub("option '([a-z-]+)'", lambda found: found[1].replace("-", "_"), message)
 
 
 class Context:
@@ -43,7 +49,7 @@ class Context:
     def check(self, status):
         """Raises the exception of a status."""
         if status:
-            raise error_of(status, library.message(self.handle).decode(errors="replace"))
+            raise error_of(status, in_python(library.message(self.handle).decode(errors="replace")))
 
     def operations(self):
         return [each.contents for each in c.listed(library.operations(self.handle))]

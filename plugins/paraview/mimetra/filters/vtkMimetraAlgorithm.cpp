@@ -3,10 +3,23 @@
 #include <utility>
 
 #include "plugins/paraview/mimetra/filters/operation_call.h"
+#include "plugins/paraview/mimetra/filters/proxy_xml.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/progress.h"
+#include "toolkit/operations/option_words.h"
 
 using namespace mimetra;
+
+namespace {
+
+/// Options as the dialogs label them.
+std::string in_its_words(const std::string& message) {
+  return with_options_spelled(message, [](const std::string& option) {
+    return "'" + label_of(option) + "'";
+  });
+}
+
+}  // namespace
 
 vtkMimetraAlgorithm::vtkMimetraAlgorithm(std::unique_ptr<OperationCall> call)
     : call_(std::move(call)) {}
@@ -43,7 +56,8 @@ std::vector<std::string> vtkMimetraAlgorithm::wanted_outputs(const Invocation&) 
 
 const Outcome& vtkMimetraAlgorithm::outcome(double begin) {
   if (call_->is_done()) return call_->outcome();
-  const Log log = [this](LogLevel level, const std::string& message) {
+  const Log log = [this](LogLevel level, const std::string& text) {
+    const std::string message = in_its_words(text);
     if (level == LogLevel::warning) {
       vtkWarningMacro(<< message);
     } else {
@@ -68,7 +82,7 @@ vtkMimetraAlgorithm::Attempt vtkMimetraAlgorithm::attempt(const std::function<vo
   } catch (const std::bad_alloc&) {
     vtkErrorMacro(<< "not enough memory; take fewer time steps");
   } catch (const std::exception& error) {
-    vtkErrorMacro(<< error.what());
+    vtkErrorMacro(<< in_its_words(error.what()));
   }
   return Attempt::failed;
 }
