@@ -89,7 +89,7 @@ std::uint8_t next_marker(ByteReader& bytes) {
 }
 
 /// The decoder fills what is missing with grey: the end has to be looked for.
-ImageHeader jpeg_header(ByteReader bytes) {
+ImageHeader jpeg_header(const std::string& name, ByteReader bytes) {
   constexpr std::uint8_t kEnd = 0xd9;
   ImageHeader header;
   bytes.skip(kJpegStart.size());
@@ -101,6 +101,10 @@ ImageHeader jpeg_header(ByteReader bytes) {
     ByteReader content = bytes;
     bytes.skip(length - 2);
     if (is_frame_header(marker)) {
+      // The decoder takes the first one, whose pixels the limit must hold for.
+      if (header.width != 0 || header.height != 0) {
+        throw IoError(name, "holds two frame headers, expected one; save the image again");
+      }
       content.skip(1);  // bits a channel
       header.height = content.number(2);
       header.width = content.number(2);
@@ -117,7 +121,7 @@ ImageHeader checked_image_header(const std::string& name, const std::string& byt
     throw IoError(name, "is no image that can be read; expected PNG or JPEG");
   }
   const ByteReader reader(name, view);
-  const ImageHeader header = is_png ? png_header(name, reader) : jpeg_header(reader);
+  const ImageHeader header = is_png ? png_header(name, reader) : jpeg_header(name, reader);
   const std::uint64_t pixels = std::uint64_t{header.width} * header.height;
   if (pixels == 0 || pixels > kMostPixels) {
     throw IoError(name, "says it has " + std::to_string(header.width) + " x " +

@@ -8,6 +8,7 @@
 #include "fitting/image_files.h"
 #include "tests/fitting/saved_image.h"
 #include "tests/temporary_folder.h"
+#include "tests/test_folders.h"
 #include "toolkit/io/whole_file.h"
 #include "toolkit/mesh/errors.h"
 
@@ -123,6 +124,22 @@ TEST_F(ImageFile, WithAnImpossibleSizeIsAnError) {
   write_bytes(path("huge.png"), bytes);
   EXPECT_THAT(test::message_of<IoError>([&] { read_image(path("huge.png")); }),
               HasSubstr("2147483647 x 2147483647 pixels"));
+}
+
+/// The decoder takes the first frame header, and a check of the last one would take the other.
+TEST_F(ImageFile, OfJpegWithTwoSizesIsRefused) {
+  std::string bytes = write_jpeg();
+  const auto frame = bytes.find("\xff\xc0");
+  ASSERT_NE(frame, std::string::npos);
+  const std::string header = bytes.substr(frame, 19);
+  bytes.insert(frame, header).replace(frame + 5, 4, "\xff\xdc\xff\xdc");
+  write_bytes(path("two.jpg"), bytes);
+  EXPECT_THAT(test::message_of<IoError>([&] { read_image(path("two.jpg")); }),
+              AllOf(StartsWith(path("two.jpg")), HasSubstr("two frame headers")));
+  const auto found = test::shared_path("data/hostile/dbl.jpg");
+  if (!std::filesystem::exists(found)) return;
+  EXPECT_THAT(test::message_of<IoError>([&] { read_image(found); }),
+              HasSubstr("two frame headers"));
 }
 
 TEST_F(ImageFile, OfAnotherTypeOrMissingIsAnError) {

@@ -49,7 +49,7 @@ inline FieldSequence quad_and_triangle() {
   frames.row(2) = frames.row(0) * 3;
   const Positions rest = PositionsView(frames.data(), 5, 3);
   FieldSequence result{
-      MeshSequence(connectivity, frames, Eigen::Vector3d(0, 1.0 / 3, 1e-7), rest), {}, true};
+      MeshSequence(connectivity, frames, Eigen::Vector3d(0, 1e-7, 1.0 / 3), rest), {}, true};
 
   Field region{"region", Field::Location::vertices, Eigen::VectorXd(5), true};
   region.values << -1, 0, 1, 16777217, 2;  // 2^24 + 1: a float cannot hold it

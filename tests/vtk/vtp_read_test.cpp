@@ -69,7 +69,7 @@ TEST_F(VtpRead, NamesTheFileThatIsWrong) {
   const auto message = [this](const std::string& name) {
     return message_of<IoError>([&] { read_vtp_series(in_folder(name)); });
   };
-  EXPECT_THAT(message("no.pvd"), HasSubstr("no.pvd: expected a VTKFile with a Collection"));
+  EXPECT_THAT(message("no.pvd"), HasSubstr("no.pvd: line 1: expected XML"));
   EXPECT_THAT(message("none.pvd"), HasSubstr("none.pvd: names no frame"));
   EXPECT_THAT(message("lost.pvd"), HasSubstr("x.vtp: no such file"));
   EXPECT_THAT(message("bad.series"), HasSubstr("bad.series: expected JSON"));

@@ -10,10 +10,14 @@
 #include "samples/head/sample_operation.h"
 #include "toolkit/cli/command_line.h"
 #include "toolkit/cli/completion.h"
+#include "toolkit/cli/dry_run.h"
+#include "toolkit/cli/failed_allocation.h"
 #include "toolkit/cli/manual.h"
 #include "toolkit/cli/run_command.h"
+#include "toolkit/cli/terminal_text.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/operations/listing.h"
+#include "toolkit/operations/memory_use.h"
 #include "toolkit/operations/option_words.h"
 
 #ifdef MIMETRA_HAS_VTK
@@ -49,7 +53,7 @@ mimetra::cli::ParsedLine parse(const mimetra::OperationTable& table,
                                const std::vector<std::string>& arguments,
                                const std::vector<std::string>& left_out) {
   const auto warn = [&left_out] {
-    for (const std::string& problem : left_out) spdlog::warn(problem);
+    for (const std::string& problem : left_out) spdlog::warn(mimetra::cli::terminal_text(problem));
   };
   try {
     mimetra::cli::ParsedLine line = mimetra::cli::parse_command_line(table, arguments);
@@ -94,8 +98,18 @@ int run(const std::vector<std::string>& arguments) {
   return kDone;
 }
 
+std::string memory_message() {
+  const auto asked = static_cast<double>(mimetra::cli::failed_allocation());
+  return "not enough memory: " +
+         (asked > 0 ? mimetra::cli::megabytes(asked) + " more were asked for, and "
+                    : std::string()) +
+         mimetra::cli::megabytes(mimetra::MemoryUse::of_this_process().now) +
+         " are held; take fewer frames with --frames";
+}
+
 int fail(int code, const std::exception& error) {
-  spdlog::error(mimetra::with_options_spelled(error.what(), mimetra::spelled_for_command));
+  spdlog::error(mimetra::cli::terminal_text(
+      mimetra::with_options_spelled(error.what(), mimetra::spelled_for_command)));
   return code;
 }
 
@@ -120,7 +134,7 @@ int main(int argc, char** argv) {
   } catch (const std::invalid_argument& error) {
     return fail(kUsage, error);
   } catch (const std::bad_alloc&) {
-    spdlog::error("not enough memory; take fewer frames with --frames");
+    spdlog::error(memory_message());
     return kFailed;
   } catch (const std::exception& error) {
     return fail(kFailed, error);

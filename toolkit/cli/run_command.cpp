@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "toolkit/cli/dry_run.h"
+#include "toolkit/cli/terminal_text.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/progress.h"
 #include "toolkit/mesh/text.h"
@@ -81,7 +82,7 @@ void print_result(const Request& request, const Outcome& outcome,
     if (!warnings.empty() && !report.contains("warnings")) report["warnings"] = warnings;
     std::cout << json_text(report, 2) << '\n';
   } else if (!request.quiet) {
-    std::cout << outcome.summary;
+    std::cout << terminal_text(outcome.summary);
   }
   if (!std::cout.flush()) throw OutputError("standard output", "cannot be written");
 }
@@ -109,10 +110,10 @@ void run_command(const OperationTable& table, const Request& request) {
     const std::string message = with_options_spelled(text, spelled_for_command);
     bar.clear();
     if (level == LogLevel::warning) {
-      spdlog::warn(message);
+      spdlog::warn(terminal_text(message));
       warnings.push_back(message);
     } else {
-      spdlog::info(message);
+      spdlog::info(terminal_text(message));
     }
   };
   Call call(table, std::move(asked));

@@ -44,25 +44,16 @@ bool InputFile::has_size(const fs::path& path) {
          !unreadable;
 }
 
-InputFile::InputFile(fs::path path)
-    : path_(std::move(path)), descriptor_(open(path_.c_str(), O_RDONLY | O_CLOEXEC)) {
-  const off_t end = descriptor_ < 0 ? -1 : lseek(descriptor_, 0, SEEK_END);
-  if (end >= 0) {
-    size_ = static_cast<std::size_t>(end);
-    return;
-  }
-  const std::string reason = last_reason();
-  if (descriptor_ >= 0) ::close(descriptor_);
-  throw IoError(path_.string(), "cannot be read: " + reason);
-}
-
-InputFile::~InputFile() {
-  ::close(descriptor_);
+InputFile::InputFile(fs::path path) : path_(std::move(path)), file_(path_) {
+  const off_t end = lseek(file_.descriptor(), 0, SEEK_END);
+  if (end < 0) throw IoError(path_.string(), "cannot be read: " + last_reason());
+  size_ = static_cast<std::size_t>(end);
 }
 
 void InputFile::read(std::size_t offset, char* to, std::size_t bytes) const {
   const ssize_t done = repeated(bytes, [&](std::size_t so_far) {
-    return pread(descriptor_, to + so_far, bytes - so_far, static_cast<off_t>(offset + so_far));
+    return pread(file_.descriptor(), to + so_far, bytes - so_far,
+                 static_cast<off_t>(offset + so_far));
   });
   if (done < 0) throw IoError(path_.string(), "cannot be read: " + last_reason());
   if (static_cast<std::size_t>(done) < bytes) {

@@ -6,6 +6,8 @@
 #include <string>
 #include <string_view>
 
+#include "toolkit/io/opened_file.h"
+
 /// Files of which parts are read and written, from several threads where wanted. Internal to the
 /// readers and writers of large files.
 namespace mimetra {
@@ -34,14 +36,13 @@ class InputFile : public InputBytes {
 
   /// Throws IoError.
   explicit InputFile(std::filesystem::path path);
-  ~InputFile() override;
 
   std::size_t size() const override { return size_; }
   void read(std::size_t offset, char* to, std::size_t bytes) const override;
 
  private:
   std::filesystem::path path_;
-  int descriptor_;
+  OpenedFile file_;
   std::size_t size_ = 0;
 };
 

@@ -151,6 +151,8 @@ constexpr std::uint32_t kLatestVersion = 4;
 
 bool is_eos_shape(const std::filesystem::path& path) {
   std::array<char, 12> head{};
+  std::error_code unreadable;
+  if (!std::filesystem::is_regular_file(path, unreadable)) return false;
   if (!std::ifstream(path, std::ios::binary).read(head.data(), head.size())) return false;
   const auto version = number_at<std::uint32_t>(head.data(), std::endian::little);
   const auto rows = number_at<std::int32_t>(head.data() + 4, std::endian::little);

@@ -6,7 +6,7 @@
 
 namespace mimetra {
 
-/// The bytes of a file. Throws IoError that says whether it is missing, a folder or unreadable.
+/// The bytes of a file, or of a pipe of the process. Throws IoError that says why not; Cancelled.
 std::string read_file(const std::filesystem::path& path);
 
 /// Writes `content` to `path` itself, replacing what is there. Not atomic. Throws OutputError.

@@ -7,6 +7,7 @@
 
 #include <zip.h>
 
+#include "toolkit/io/opened_file.h"
 #include "toolkit/io/temporary_name.h"
 #include "toolkit/mesh/errors.h"
 
@@ -94,6 +95,7 @@ constexpr std::size_t kMostDeflated = 1100;
 }  // namespace
 
 ZipReader::ZipReader(const fs::path& path) : zip_(std::make_shared<OpenZip>()) {
+  require_regular_file(path);
   zip_->path = path;
   int error = 0;
   zip_->archive = zip_open(path.c_str(), ZIP_RDONLY, &error);

@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <fstream>
 #include <memory>
+#include <new>
 #include <vector>
 
 // Of its header alone: who links this library need not find another.
@@ -12,10 +13,13 @@
 namespace mimetra {
 
 std::string file_hash(const std::filesystem::path& path) {
+  std::error_code unreadable;
+  if (!std::filesystem::is_regular_file(path, unreadable)) return "";
   std::ifstream stream(path, std::ios::binary);
   if (!stream) return "";
   const std::unique_ptr<XXH3_state_t, decltype(&XXH3_freeState)> state(XXH3_createState(),
                                                                        XXH3_freeState);
+  if (!state) throw std::bad_alloc();
   XXH3_64bits_reset(state.get());
   std::vector<char> buffer(1 << 20);
   while (stream) {

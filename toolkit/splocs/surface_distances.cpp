@@ -127,7 +127,7 @@ Eigen::MatrixXd SurfaceDistances::operator()(std::span<const VertexIndex> source
     if (!state_->known.contains(place)) missing.push_back(place);
   }
   std::ranges::sort(missing);
-  missing.erase(std::ranges::unique(missing).begin(), missing.end());
+  missing.erase(std::unique(missing.begin(), missing.end()), missing.end());
   const Eigen::MatrixXd found = state_->computed(missing);
   for (std::size_t i = 0; i < missing.size(); ++i) {
     state_->known[missing[i]] = found.col(static_cast<Eigen::Index>(i));

@@ -26,7 +26,7 @@ std::vector<Eigen::Index> vertices_of(const Triangles& triangles,
     for (const VertexIndex vertex : triangles.row(triangle)) vertices.push_back(vertex);
   }
   std::ranges::sort(vertices);
-  vertices.erase(std::ranges::unique(vertices).begin(), vertices.end());
+  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
   return vertices;
 }
 

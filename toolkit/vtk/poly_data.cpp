@@ -58,7 +58,14 @@ vtkSmartPointer<Array> array_of(const std::string& name, const Values& values, C
 
 template <typename Values>
 vtkSmartPointer<vtkDataArray> float_array(const std::string& name, const Values& values) {
-  return array_of<vtkFloatArray>(name, values, [](double x) { return static_cast<float>(x); });
+  return array_of<vtkFloatArray>(name, values, [&name](double x) {
+    if (std::isfinite(x) && std::abs(x) > std::numeric_limits<float>::max()) {
+      throw MismatchError("'" + name + "' holds " + std::to_string(x) +
+                          ", which is beyond single precision and would be infinite in the file; "
+                          "scale the mesh down, or write .npy");
+    }
+    return static_cast<float>(x);
+  });
 }
 
 template <typename Values>
@@ -119,6 +126,8 @@ Connectivity connectivity_of(vtkPolyData& data, const std::string& name) {
   if (data.GetNumberOfStrips() > 0) {
     throw IoError(name, "has triangle strips; apply ParaView's Triangulate first");
   }
+  // Offsets may lie anywhere.
+  if (!data.GetPolys()->IsValid()) throw IoError(name, "the offsets of its faces do not fit");
   Polygons polygons;
   vtkNew<vtkIdList> corners;
   for (vtkIdType cell = 0; cell < data.GetNumberOfPolys(); ++cell) {

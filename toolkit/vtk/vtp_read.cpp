@@ -1,4 +1,6 @@
 #include <algorithm>
+#include <charconv>
+#include <cmath>
 
 #include <vtkErrorCode.h>
 #include <vtkExecutive.h>
@@ -6,9 +8,7 @@
 #include <vtkPointData.h>
 #include <vtkPolyData.h>
 #include <vtkSmartPointer.h>
-#include <vtkXMLDataElement.h>
 #include <vtkXMLPolyDataReader.h>
-#include <vtkXMLUtilities.h>
 #include <nlohmann/json.hpp>
 
 #include "toolkit/io/frame_files.h"
@@ -19,7 +19,9 @@
 #include "toolkit/mesh/text.h"
 #include "toolkit/vtk/poly_data.h"
 #include "toolkit/vtk/silent_vtk.h"
+#include "toolkit/vtk/vtp_header.h"
 #include "toolkit/vtk/vtp_series.h"
+#include "toolkit/vtk/xml_elements.h"
 
 namespace mimetra {
 
@@ -28,22 +30,22 @@ namespace {
 namespace fs = std::filesystem;
 
 /// What else may be wrong with a file that VTK does not read.
-std::string hint_of(const fs::path& path) {
-  if (read_file(path).find("<AppendedData") == std::string::npos) return "";
+std::string hint_of(const std::string& text) {
+  if (text.find("<AppendedData") == std::string::npos) return "";
   return "; its data are appended, which VTK does not read with newer versions of libexpat: save "
          "it "
          "in ParaView with the data mode Binary";
 }
 
 vtkSmartPointer<vtkPolyData> read_poly_data(const fs::path& path) {
-  // VTK reads a folder as an empty file and a missing one as an error without a reason.
-  if (!fs::exists(path)) throw IoError(path.string(), "no such file");
-  if (fs::is_directory(path)) throw IoError(path.string(), "is a folder");
+  const std::string text = read_file(path);
+  check_vtp_header(path.string(), text);
   const SilentVtk silent;
   vtkNew<vtkXMLPolyDataReader> reader;
-  reader->SetFileName(path.c_str());
+  reader->ReadFromInputStringOn();
+  reader->SetInputString(text);
   if (!reader->GetExecutive()->Update() || reader->GetErrorCode() != vtkErrorCode::NoError) {
-    throw IoError(path.string(), "not a readable VTP file, or truncated" + hint_of(path));
+    throw IoError(path.string(), "not a readable VTP file, or truncated" + hint_of(text));
   }
   if (reader->GetOutput()->GetNumberOfPoints() == 0) {
     throw IoError(path.string(), "has no points, or its counts do not fit");
@@ -57,20 +59,21 @@ struct FrameFile {
 };
 
 std::vector<FrameFile> entries_of_pvd(const fs::path& path) {
-  const SilentVtk silent;
-  const auto root = vtkSmartPointer<vtkXMLDataElement>::Take(
-      vtkXMLUtilities::ReadElementFromString(read_file(path).c_str()));
-  vtkXMLDataElement* list = root ? root->FindNestedElementWithName("Collection") : nullptr;
-  if (!list) throw IoError(path.string(), "expected a VTKFile with a Collection");
+  const std::vector<XmlElement> elements = xml_elements(path.string(), read_file(path));
+  if (std::ranges::find(elements, "Collection", &XmlElement::name) == elements.end()) {
+    throw IoError(path.string(), "expected a VTKFile with a Collection");
+  }
   std::vector<FrameFile> entries;
-  for (int i = 0; i < list->GetNumberOfNestedElements(); ++i) {
-    vtkXMLDataElement* element = list->GetNestedElement(i);
-    const char* file = element->GetAttribute("file");
-    double time = 0;
-    if (!file || !element->GetScalarAttribute("timestep", time)) {
-      throw IoError(path.string(), "DataSet " + std::to_string(i) + " has no file or no timestep");
+  for (const XmlElement& element : elements) {
+    if (element.parent != "Collection") continue;
+    const std::string file = element.attribute("file"), time = element.attribute("timestep");
+    double seconds = 0;
+    const auto [end, error] = std::from_chars(time.data(), time.data() + time.size(), seconds);
+    if (file.empty() || error != std::errc() || end != time.data() + time.size()) {
+      throw IoError(path.string(),
+                    "DataSet " + std::to_string(entries.size()) + " has no file or no timestep");
     }
-    entries.push_back({path.parent_path() / file, time});
+    entries.push_back({path.parent_path() / file, seconds});
   }
   return entries;
 }
@@ -100,6 +103,16 @@ std::vector<FrameFile> listed_by(const fs::path& path) {
 std::vector<FrameFile> entries_of(const fs::path& path) {
   std::vector<FrameFile> entries = listed_by(path);
   if (entries.empty()) throw IoError(path.string(), "names no frame");
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    const double time = entries[i].time;
+    if (std::isfinite(time) && (i == 0 || time > entries[i - 1].time)) continue;
+    throw IoError(path.string(),
+                  entries[i].file.filename().string() + " is at the time " + readable(time) +
+                      (i == 0 ? ", expected a finite one"
+                              : ", expected a later one than " + readable(entries[i - 1].time) +
+                                    " of " + entries[i - 1].file.filename().string()) +
+                      "; times must ascend, with one file each");
+  }
   return entries;
 }
 

@@ -1,0 +1,148 @@
+#include <sys/stat.h>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/shared_data.h"
+#include "tests/temporary_folder.h"
+#include "tests/test_folders.h"
+#include "tests/vtk/vtp_fixture.h"
+#include "toolkit/mesh/errors.h"
+
+namespace mimetra::test {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+/// Files that would make VTK crash, ask for all memory, or wait.
+class VtpHostile : public VtpTest {
+ protected:
+  std::string refusal_of(const std::string& name, const std::string& text) const {
+    std::ofstream(in_folder(name), std::ios::binary) << text;
+    return message_of<IoError>([&] { read_vtp_series(in_folder(name)); });
+  }
+  /// Of a triangle, with one text in place of another.
+  std::string refusal_with(const std::string& before, const std::string& after) const {
+    std::string text = kTriangle;
+    text.replace(text.find(before), before.size(), after);
+    return refusal_of("a.vtp", text);
+  }
+
+  const std::string kTriangle =
+      "<VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"LittleEndian\" "
+      "header_type=\"UInt32\"><PolyData><Piece NumberOfPoints=\"3\" NumberOfPolys=\"1\">"
+      "<PointData><DataArray type=\"Float32\" Name=\"roi\" format=\"ascii\">0 1 1</DataArray>"
+      "</PointData><Points><DataArray type=\"Float32\" NumberOfComponents=\"3\" "
+      "format=\"ascii\">0 0 0 1 0 0 0 1 0</DataArray></Points><Polys>"
+      "<DataArray type=\"Int32\" Name=\"connectivity\" format=\"ascii\">0 1 2</DataArray>"
+      "<DataArray type=\"Int32\" Name=\"offsets\" format=\"ascii\">3</DataArray></Polys></Piece>"
+      "</PolyData></VTKFile>";
+};
+
+TEST_F(VtpHostile, TheTriangleItselfIsRead) {
+  std::ofstream(in_folder("a.vtp")) << kTriangle;
+  EXPECT_EQ(read_vtp_series(in_folder("a.vtp")).sequence().vertices(), 3);
+}
+
+TEST_F(VtpHostile, NestingIsRefusedBeforeItFillsTheStack) {
+  std::string deep;
+  for (int level = 0; level < 200000; ++level) deep += "<a>";
+  EXPECT_THAT(refusal_of("a.pvd", deep), HasSubstr("more than 32 elements"));
+  EXPECT_THAT(refusal_of("a.vtp", deep), HasSubstr("more than 32 elements"));
+}
+
+TEST_F(VtpHostile, EntitiesAreRefused) {
+  const std::string bomb =
+      "<?xml version=\"1.0\"?><!DOCTYPE a [<!ENTITY b \"ha\"><!ENTITY c \"&b;&b;\">]>";
+  EXPECT_THAT(refusal_of("a.pvd", bomb + "<VTKFile/>"), HasSubstr("<!ENTITY"));
+  EXPECT_THAT(refusal_of("a.vtp", bomb + kTriangle), HasSubstr("<!ENTITY"));
+  EXPECT_THAT(refusal_of("b.pvd", "<VTKFile a=\"&c;\"/>"), HasSubstr("'&c'"));
+}
+
+TEST_F(VtpHostile, TypesThatVtkDoesNotKnowAreNamed) {
+  EXPECT_THAT(refusal_with("type=\"Float32\" Name=\"roi\"", "type=\"Float63\" Name=\"roi\""),
+              AllOf(HasSubstr("array 'roi'"), HasSubstr("'Float63'")));
+  EXPECT_THAT(refusal_with("type=\"PolyData\"", "type=\"ImageData\""), HasSubstr("ImageData"));
+  EXPECT_THAT(refusal_with("UInt32", "UInt31"), HasSubstr("'UInt31'"));
+  EXPECT_THAT(refusal_with("<PolyData>",
+                           "<PolyData><FieldData><DataArray type=\"Float63\" "
+                           "Name=\"RestPose\"/></FieldData>"),
+              HasSubstr("FieldData, array 'RestPose'"));
+  EXPECT_THAT(refusal_with("header_type", "compressor=\"vtkNone\" header_type"),
+              HasSubstr("'vtkNone'"));
+}
+
+TEST_F(VtpHostile, CountsBeyondTheFileAreRefusedBeforeMemoryIsAskedFor) {
+  EXPECT_THAT(refusal_with("NumberOfPoints=\"3\"", "NumberOfPoints=\"2000000000\""),
+              HasSubstr("NumberOfPoints: 2000000000 is more"));
+  EXPECT_THAT(refusal_with("NumberOfPolys=\"1\"", "NumberOfPolys=\"-1\""), HasSubstr("'-1'"));
+  EXPECT_THAT(refusal_with("Name=\"roi\"", "NumberOfComponents=\"99999\" Name=\"roi\""),
+              HasSubstr("NumberOfComponents"));
+  EXPECT_THAT(refusal_with("NumberOfComponents=\"3\"", "NumberOfComponents=\"2\""),
+              HasSubstr("expected 3 components"));
+}
+
+TEST_F(VtpHostile, BlocksThatAreLargerThanTheFileAreRefused) {
+  // Before the values stands how many bytes they have: here 2^32 - 1.
+  EXPECT_THAT(refusal_with("Name=\"roi\" format=\"ascii\">0 1 1",
+                           "Name=\"roi\" format=\"binary\">/////w=="),
+              HasSubstr("sizes of its blocks"));
+  EXPECT_THAT(refusal_with("format=\"ascii\">0 1 1", "format=\"appended\" offset=\"9000000\">"),
+              HasSubstr("offset"));
+}
+
+/// VTK would take what follows for the values of the array.
+TEST_F(VtpHostile, TheEndOfATagWithinAValueIsRefused) {
+  EXPECT_THAT(refusal_with("Name=\"roi\"", "Name=\"roi>/////w==\""), HasSubstr("no '<' or '>'"));
+}
+
+TEST_F(VtpHostile, OffsetsOfFacesThatDoNotFitAreRefused) {
+  for (const std::string offset : {"4", "-3", "2000000000"}) {
+    EXPECT_NE(
+        refusal_with("\"offsets\" format=\"ascii\">3", "\"offsets\" format=\"ascii\">" + offset),
+        "");
+  }
+}
+
+TEST_F(VtpHostile, TheFileThatWasFoundIsRefused) {
+  const auto file = shared_path("data/hostile/float63.vtp");
+  MIMETRA_SKIP_WITHOUT(file);
+  EXPECT_THAT(message_of<IoError>([&] { read_vtp_series(file); }), HasSubstr("'Float63'"));
+}
+
+TEST_F(VtpHostile, TimesThatFallOrRepeatAreNamed) {
+  const auto list = [](const std::string& first, const std::string& second) {
+    return "<VTKFile><Collection><DataSet timestep=\"" + first +
+           "\" file=\"a.vtp\"/><DataSet timestep=\"" + second +
+           "\" file=\"b.vtp\"/></Collection></VTKFile>";
+  };
+  EXPECT_THAT(refusal_of("a.pvd", list("2", "1")),
+              AllOf(HasSubstr("b.vtp is at the time 1"), HasSubstr("later one than 2 of a.vtp")));
+  EXPECT_THAT(refusal_of("a.pvd", list("1", "1")), HasSubstr("times must ascend"));
+  EXPECT_THAT(refusal_of("a.pvd", list("nan", "1")), HasSubstr("a.vtp is at the time nan"));
+}
+
+TEST_F(VtpHostile, AListThatNamesItselfOrADeviceEnds) {
+  const auto list = [](const std::string& file) {
+    return "<VTKFile><Collection><DataSet timestep=\"0\" file=\"" + file +
+           "\"/></Collection></VTKFile>";
+  };
+  EXPECT_THAT(refusal_of("a.pvd", list("a.pvd")), HasSubstr("PolyData"));
+  EXPECT_THAT(refusal_of("b.pvd", list("/dev/zero")), HasSubstr("/dev/zero: is a device"));
+  ASSERT_EQ(mkfifo(in_folder("pipe.vtp").c_str(), 0600), 0);
+  EXPECT_THAT(refusal_of("c.pvd", list("pipe.vtp")), HasSubstr("is a named pipe"));
+}
+
+TEST_F(VtpHostile, WhatSinglePrecisionCannotHoldIsNotWritten) {
+  FieldSequence fields = quad_and_triangle();
+  Frames frames = fields.sequence().positions();
+  frames(1, 4) = 1e39;
+  fields.frames = std::make_shared<const MeshSequence>(fields.sequence().with_frames(frames));
+  EXPECT_THAT(message_of<MismatchError>([&] { write_vtp_series(fields, in_folder("a.pvd")); }),
+              HasSubstr("single precision"));
+  EXPECT_TRUE(folder_is_empty());
+}
+
+}  // namespace
+}  // namespace mimetra::test
