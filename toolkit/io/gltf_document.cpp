@@ -10,6 +10,7 @@
 
 #include "toolkit/io/bytes.h"
 #include "toolkit/io/gltf_buffers.h"
+#include "toolkit/io/json_text.h"
 #include "toolkit/io/whole_file.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/text.h"
@@ -18,12 +19,10 @@ namespace mimetra {
 namespace fs = std::filesystem;
 namespace {
 
-using GltfJson = nlohmann::json;
-
 /// One value of the file, and where it stands, for messages: "accessors[3].sparse".
 class GltfValue {
  public:
-  GltfValue(const std::string& path, std::string where, const GltfJson& json)
+  GltfValue(const std::string& path, std::string where, const Json& json)
       : path_(&path), where_(std::move(where)), json_(&json) {}
 
   [[noreturn]] void fail(const std::string& message) const {
@@ -48,7 +47,7 @@ class GltfValue {
     if (!json_->is_array()) fail("expected an array");
     std::vector<GltfValue> items;
     items.reserve(json_->size());
-    for (const GltfJson& item : *json_) {
+    for (const Json& item : *json_) {
       items.emplace_back(*path_, where_ + '[' + std::to_string(items.size()) + ']', item);
     }
     return items;
@@ -137,14 +136,14 @@ class GltfValue {
   }
 
  private:
-  const GltfJson& object() const {
+  const Json& object() const {
     if (!json_->is_object()) fail("expected an object");
     return *json_;
   }
 
   const std::string* path_;
   std::string where_;
-  const GltfJson* json_;
+  const Json* json_;
 };
 
 /// Extensions without which a file cannot be understood, and which are, or which say nothing of
@@ -200,39 +199,10 @@ GltfChunks gltf_chunks(const std::string& path, std::string_view bytes) {
   return chunks;
 }
 
-/// Throws IoError where brackets nest deeper than any exporter's: readers follow them as deep as
-/// their stack goes.
-void check_gltf_depth(const std::string& path, std::string_view text) {
-  constexpr int kDeepest = 100;
-  int depth = 0;
-  bool quoted = false;
-  for (std::size_t at = 0; at < text.size(); ++at) {
-    const char c = text[at];
-    if (quoted) {
-      if (c == '\\') ++at;
-      quoted = c != '"';
-    } else if (c == '"') {
-      quoted = true;
-    } else if (c == '[' || c == '{') {
-      if (++depth <= kDeepest) continue;
-      throw IoError(path, "byte " + std::to_string(at) + " of its JSON: nested deeper than " +
-                              std::to_string(kDeepest) + " levels");
-    } else if (c == ']' || c == '}') {
-      --depth;
-    }
-  }
-}
-
-GltfJson gltf_json(const std::string& path, std::string_view text) {
-  if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);
+Json gltf_json(const std::string& path, std::string_view text) {
   // Some exporters fill up with zeros where the specification wants spaces.
   while (text.ends_with('\0')) text.remove_suffix(1);
-  check_gltf_depth(path, text);
-  try {
-    return GltfJson::parse(text);
-  } catch (const GltfJson::exception& error) {
-    throw IoError(path, std::string("its JSON cannot be read: ") + error.what());
-  }
+  return parse_json(path, text, "glTF");
 }
 
 void check_asset(const GltfValue& root) {
@@ -501,7 +471,7 @@ GltfDocument read_gltf_document(const fs::path& path) {
   const std::string bytes = read_file(path);
   document.file_bytes = bytes.size();
   const GltfChunks chunks = gltf_chunks(document.path, bytes);
-  const GltfJson json = gltf_json(document.path, chunks.json);
+  const Json json = gltf_json(document.path, chunks.json);
   const GltfValue root(document.path, "", json);
   check_asset(root);
   read_gltf_buffers(root, chunks.binary, document);
