@@ -3,6 +3,7 @@
 #include <new>
 
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include "tests/shapes.h"
 #include "tests/temporary_folder.h"
