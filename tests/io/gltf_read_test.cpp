@@ -7,6 +7,7 @@
 #include "tests/io/gltf_fixture.h"
 #include "tests/shapes.h"
 #include "tests/shared_data.h"
+#include "toolkit/io/gltf_document.h"
 #include "toolkit/io/mesh_file.h"
 #include "toolkit/io/model_file.h"
 #include "toolkit/io/sequence_file.h"

@@ -9,7 +9,8 @@
 #include "toolkit/io/binary_file.h"
 #include "toolkit/io/bytes.h"
 #include "toolkit/io/frame_files.h"
-#include "toolkit/io/gltf_layout.h"
+#include "toolkit/io/gltf_numbers.h"
+#include "toolkit/io/json_text.h"
 #include "toolkit/io/pending_output.h"
 #include "toolkit/io/sequence_parts.h"
 #include "toolkit/mesh/errors.h"
@@ -18,6 +19,77 @@
 namespace mimetra {
 namespace fs = std::filesystem;
 namespace {
+
+constexpr int kFloatType = 5126, kIndexType = 5125;
+constexpr int kVertexData = 34962, kFaceData = 34963;
+
+/// Smallest and largest x, y and z.
+using GltfBounds = std::array<std::array<double, 3>, 2>;
+
+/// As long as a bound can get as text, to keep room for it.
+constexpr double kLongestNumber = -std::numeric_limits<double>::min();
+constexpr GltfBounds kUnknownBounds = {{{kLongestNumber, kLongestNumber, kLongestNumber},
+                                        {kLongestNumber, kLongestNumber, kLongestNumber}}};
+
+/// Bounds that hold a point too; those of the first point (0) alone.
+void include(GltfBounds& bounds, Eigen::Index point, const float* xyz) {
+  for (std::size_t c = 0; c < 3; ++c) {
+    const auto value = static_cast<double>(xyz[c]);
+    bounds[0][c] = point == 0 ? value : std::min(bounds[0][c], value);
+    bounds[1][c] = point == 0 ? value : std::max(bounds[1][c], value);
+  }
+}
+
+/// What stands where in the file, told before it is written.
+class GltfLayout {
+ public:
+  /// Room for `bytes` bytes. Returns the view.
+  std::size_t add_view(std::size_t bytes, int use = 0) {
+    Json view = {{"buffer", 0}, {"byteOffset", bytes_}, {"byteLength", bytes}};
+    if (use != 0) view["target"] = use;
+    views_.push_back(std::move(view));
+    bytes_ += bytes;
+    return views_.size() - 1;
+  }
+
+  /// Elements that fill a view.
+  std::size_t add(std::size_t view, int type, const char* shape, std::size_t count) {
+    accessors_.push_back(
+        {{"bufferView", view}, {"componentType", type}, {"count", count}, {"type", shape}});
+    return accessors_.size() - 1;
+  }
+  /// The same of numbers in single precision of which only some are not 0.
+  std::size_t add_sparse(const char* shape, std::size_t count, std::size_t stored,
+                         std::size_t indices, std::size_t values) {
+    accessors_.push_back({{"componentType", kFloatType},
+                          {"count", count},
+                          {"type", shape},
+                          {"sparse",
+                           {{"count", stored},
+                            {"indices", {{"bufferView", indices}, {"componentType", kIndexType}}},
+                            {"values", {{"bufferView", values}}}}}});
+    return accessors_.size() - 1;
+  }
+  void set_bounds(std::size_t accessor, const GltfBounds& bounds) {
+    accessors_[accessor]["min"] = bounds[0];
+    accessors_[accessor]["max"] = bounds[1];
+  }
+  void set_bounds(std::size_t accessor, double least, double most) {
+    accessors_[accessor]["min"] = {least};
+    accessors_[accessor]["max"] = {most};
+  }
+
+  std::size_t bytes() const { return bytes_; }
+  std::size_t offset(std::size_t view) const {
+    return views_[view]["byteOffset"].get<std::size_t>();
+  }
+  const Json& views() const { return views_; }
+  const Json& accessors() const { return accessors_; }
+
+ private:
+  Json views_ = Json::array(), accessors_ = Json::array();
+  std::size_t bytes_ = 0;
+};
 
 /// Coordinates of each vertex (N), from the upper left corner; none where corners of one vertex
 /// differ, for which glTF has no place.

@@ -1,19 +1,10 @@
-#include "toolkit/io/gltf_layout.h"
+#include "toolkit/io/gltf_numbers.h"
 
-#include <algorithm>
 #include <cstdint>
 
 #include "toolkit/io/bytes.h"
 
 namespace mimetra {
-
-void include(GltfBounds& bounds, Eigen::Index point, const float* xyz) {
-  for (std::size_t c = 0; c < 3; ++c) {
-    const auto value = static_cast<double>(xyz[c]);
-    bounds[0][c] = point == 0 ? value : std::min(bounds[0][c], value);
-    bounds[1][c] = point == 0 ? value : std::max(bounds[1][c], value);
-  }
-}
 
 std::string float_bytes(const double* values, Eigen::Index count) {
   std::string bytes(static_cast<std::size_t>(count) * sizeof(float), '\0');
