@@ -282,6 +282,8 @@ TEST_F(UsdFiles, WhatCannotBeIsNamedWithItsLine) {
   EXPECT_THAT(mesh("point3f[] points = [(0, 0, 0)]\nint[] faceVertexCounts = [3.5]\n"
                    "int[] faceVertexIndices = [0, 0, 0]"),
               HasSubstr("3.5 is no count"));
+  EXPECT_THAT(mesh("point3f[] points = [(0, 0, 0), (1, -inf, 0)]\nint[] faceVertexCounts = [3]"),
+              HasSubstr("line 3: holds a number that is not finite"));
   EXPECT_THAT(mesh("int[] a = [1, 2"), HasSubstr("line 4: expected ',' or ']', found '}'"));
   EXPECT_THAT(mesh("string a = \"no end"), HasSubstr("line 3: text in quotes has no end"));
   EXPECT_THAT(mesh("rel a = </no"), HasSubstr("line 3: '<' has no end"));

@@ -39,7 +39,8 @@ class UsdReader {
   UsdReader(const fs::path& path, std::string text)
       : path_(path.string()), bytes_(text.size()), layer_(parse_usd(path_, text)) {
     rate_ = setting("timeCodesPerSecond", setting("framesPerSecond", 24));
-    if (!(rate_ > 0)) throw IoError(path_, "has " + readable(rate_) + " time codes per second");
+    if (!(rate_ > 0) || std::isinf(rate_))
+      throw IoError(path_, "has " + readable(rate_) + " time codes per second");
   }
 
   Scene read() {
@@ -129,7 +130,7 @@ class UsdReader {
 
   std::vector<int> integers(const UsdProperty& property, const std::string& name) const {
     std::vector<int> values;
-    for (const double number : usd_numbers(property, std::nullopt)) {
+    for (const double number : usd_numbers(path_, property)) {
       if (number != std::floor(number) || number < 0 || number > std::numeric_limits<int>::max()) {
         fail(property.line, name + ": " + readable(number, 12) + " is no count");
       }
@@ -141,7 +142,7 @@ class UsdReader {
   /// Numbers of `property` at a time, of which there must be three for each vertex.
   Positions points_at(const UsdProperty& property, std::optional<double> time,
                       Eigen::Index vertices) const {
-    const std::vector<double> numbers = usd_numbers(property, time);
+    const std::vector<double> numbers = usd_numbers(path_, property, time);
     if (vertices < 0 ? numbers.size() % 3 != 0 || numbers.empty()
                      : static_cast<Eigen::Index>(numbers.size()) != 3 * vertices) {
       fail(property.line,
@@ -225,7 +226,7 @@ class UsdReader {
     const std::string name = texture_name(prim);
     if (name.empty()) return;
     const UsdProperty& texture = *usd_property(prim, name);
-    const std::vector<double> numbers = usd_numbers(texture, std::nullopt);
+    const std::vector<double> numbers = usd_numbers(path_, texture);
     if (numbers.size() % 2 != 0) fail(texture.line, "a texture coordinate has no v");
     const std::size_t corners = part.polygons.corners.size();
     const bool by_corner = texture.interpolation == "faceVarying";
@@ -376,6 +377,7 @@ class UsdReader {
     for (std::size_t row = 0; row < rows; ++row) {
       const std::vector<double>& given =
           times.empty() ? weights->value.numbers : weights->samples[row].second.numbers;
+      check_finite(path_, *weights, given);
       if (given.size() != driven->value.words.size()) {
         fail(weights->line, std::to_string(given.size()) + " weights for " +
                                 std::to_string(driven->value.words.size()) + " blendshapes");

@@ -1,6 +1,7 @@
 #include "toolkit/io/usd_transform.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numbers>
 #include <string_view>
 
@@ -17,6 +18,26 @@ namespace {
   throw IoError(path, "line " + std::to_string(line) + ": " + message);
 }
 
+std::vector<double> numbers_at(const UsdProperty& property, std::optional<double> code) {
+  const auto& samples = property.samples;
+  if (samples.empty() || (!code && property.has_value)) return property.value.numbers;
+  if (!code) return samples.front().second.numbers;
+  const auto after =
+      std::ranges::upper_bound(samples, *code, {}, &std::pair<double, UsdValue>::first);
+  if (after == samples.begin()) return after->second.numbers;
+  const auto& [from, start] = *std::prev(after);
+  if (after == samples.end() || from == *code ||
+      after->second.numbers.size() != start.numbers.size()) {
+    return start.numbers;
+  }
+  const double share = (*code - from) / (after->first - from);
+  std::vector<double> between = start.numbers;
+  for (std::size_t i = 0; i < between.size(); ++i) {
+    between[i] += share * (after->second.numbers[i] - between[i]);
+  }
+  return between;
+}
+
 /// A step of a prim's transform. [UsdGeomXformOp]
 Eigen::Matrix4d usd_step(const std::string& path, const std::string& name,
                          const UsdProperty& operation, std::optional<double> code) {
@@ -24,7 +45,7 @@ Eigen::Matrix4d usd_step(const std::string& path, const std::string& name,
   const auto end = name.find(':', kPrefix.size());
   const std::string kind =
       name.starts_with(kPrefix) ? name.substr(kPrefix.size(), end - kPrefix.size()) : "";
-  const std::vector<double> numbers = usd_numbers(operation, code);
+  const std::vector<double> numbers = usd_numbers(path, operation, code);
   const auto need = [&](std::size_t count) {
     if (numbers.size() == count) return;
     usd_fail(path, operation.line,
@@ -68,24 +89,17 @@ const UsdProperty* usd_property(const UsdPrim& prim, const std::string& name) {
   return found == prim.properties.end() ? nullptr : &found->second;
 }
 
-std::vector<double> usd_numbers(const UsdProperty& property, std::optional<double> code) {
-  const auto& samples = property.samples;
-  if (samples.empty() || (!code && property.has_value)) return property.value.numbers;
-  if (!code) return samples.front().second.numbers;
-  const auto after =
-      std::ranges::upper_bound(samples, *code, {}, &std::pair<double, UsdValue>::first);
-  if (after == samples.begin()) return after->second.numbers;
-  const auto& [from, start] = *std::prev(after);
-  if (after == samples.end() || from == *code ||
-      after->second.numbers.size() != start.numbers.size()) {
-    return start.numbers;
-  }
-  const double share = (*code - from) / (after->first - from);
-  std::vector<double> between = start.numbers;
-  for (std::size_t i = 0; i < between.size(); ++i) {
-    between[i] += share * (after->second.numbers[i] - between[i]);
-  }
-  return between;
+void check_finite(const std::string& path, const UsdProperty& property,
+                  const std::vector<double>& numbers) {
+  const bool sound = std::ranges::all_of(numbers, [](double n) { return std::isfinite(n); });
+  if (!sound) usd_fail(path, property.line, "holds a number that is not finite");
+}
+
+std::vector<double> usd_numbers(const std::string& path, const UsdProperty& property,
+                                std::optional<double> code) {
+  const std::vector<double> numbers = numbers_at(property, code);
+  check_finite(path, property, numbers);
+  return numbers;
 }
 
 Eigen::Matrix4d usd_world(const std::string& path, const UsdStack& stack,
