@@ -94,7 +94,8 @@ void add_gltf_cases(std::vector<BadInput>& all) {
   add("other_type", file("s.glb", bytes_of(square(), "ply")), 3, {});
   add("truncated", file("s.glb", good.substr(0, good.size() / 2)), 3, {"truncated"});
   add("truncated_at_the_end", file("s.glb", good.substr(0, good.size() - 1)), 3, {"truncated"});
-  add("a_billion_vertices", scene("\"count\": 4", "\"count\": 1000000000"), 3, {"accessors[0]"});
+  add("a_billion_vertices", scene("\"count\": 4", "\"count\": 1000000000"), 3,
+      {"1e+09 vertices", "cannot mean"});
   add("negative_count", scene("\"count\": 4", "\"count\": -4"), 3, {"expected a count"});
   add("other_number_of_vertices", scene("48, \"byteLength\": 48", "48, \"byteLength\": 36"), 3,
       {"accessors[1]: its 4 elements do not lie"});
@@ -109,12 +110,12 @@ void add_gltf_cases(std::vector<BadInput>& all) {
   add("without_faces",
       scene("[{\"attributes\": {\"POSITION\": 0},",
             "[{\"mode\": 0, \"attributes\": {\"POSITION\": 0},"),
-      3, {"no triangles"});
+      3, {"no mesh of triangles"});
   add("unknown_extension", scene(R"("scenes")", R"("extensionsRequired": ["EXT_other"], "scenes")"),
       3, {"needs the extension EXT_other"});
   add("outside_its_folder",
       scene(R"({"byteLength": 116})", R"({"byteLength": 116, "uri": "../../etc/passwd"})"), 3,
-      {"buffers[0]"});
+      {"'../../etc/passwd' is no file in its own folder"});
   add("nested_deeply",
       scene(R"("asset": {)", R"("asset": {"extras": )" + std::string(100000, '[') + R"(, )"), 3,
       {"nested deeper than 100"});
@@ -141,10 +142,10 @@ void add_usd_cases(std::vector<BadInput>& all) {
   add("truncated", file("s.usda", good.substr(0, good.size() / 2)), 3, {"line"});
   add("index_out_of_range", stage("0, 2, 3]", "0, 2, 4]"), 3, {"line 4", "point 4 of 4"});
   add("negative_index", stage("0, 2, 3]", "0, 2, -3]"), 3, {"line 4", "-3"});
-  add("not_a_number", stage("(1, 1, 0.5)", "(1, nan, 0.5)"), 3, {"line 7"});
-  add("infinity", stage("(1, 1, 0.5)", "(1, inf, 0.5)"), 3, {"line 7"});
-  add("two_coordinates", stage("(1, 1, 0.5)", "(1, 0.5)"), 3, {"line 7", "11 numbers"});
-  add("other_number_of_vertices", stage("(1, 1, 0.5), ", ""), 3, {"line 7"});
+  add("not_a_number", stage("(1, 1, 0.5)", "(1, nan, 0.5)"), 3, {"line 5", "not finite"});
+  add("infinity", stage("(1, 1, 0.5)", "(1, inf, 0.5)"), 3, {"line 5", "not finite"});
+  add("two_coordinates", stage("(1, 1, 0.5)", "(1, 0.5)"), 3, {"line 5", "11 numbers"});
+  add("other_number_of_vertices", stage("(1, 1, 0.5), ", ""), 3, {"line 5", "9 numbers"});
   add("other_corners_than_counts", stage("[3, 3]", "[3, 4]"), 3, {"line 3", "other corners"});
   add("falling_times", stage("24:", "0:"), 3, {"two time samples at 0"});
   add("without_faces", stage("int[] faceVertexCounts = [3, 3]\n", ""), 3, {"'face'"});
@@ -172,12 +173,6 @@ void add_outputs(std::vector<BadInput>& all) {
                    "convert head --weights take.csv -o " + name,
                    5,
                    {name, "--force"}});
-    all.push_back({"output_folder_missing",
-                   name.substr(4),
-                   {},
-                   "convert head --weights take.csv -o nowhere/" + name,
-                   5,
-                   {"nowhere"}});
   }
 }
 
