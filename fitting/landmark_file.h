@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 
 #include "toolkit/model/landmark_track.h"
 
@@ -19,5 +20,9 @@ namespace mimetra {
 /// - `.json`: {"frames": [{"points": [[x, y], null, ...], "time": s, "confidence": c}, ...]} with
 ///   optional "names" beside "frames"; or one such frame alone. 0-based; null is not seen.
 LandmarkTrack read_landmarks(const std::filesystem::path& path);
+
+/// The text of a .csv file from which read_landmarks() reads the same numbers. Throws MismatchError
+/// where landmarks have names other than "1", "2", ..., for which it has no place.
+std::string landmark_csv(const LandmarkTrack& track);
 
 }  // namespace mimetra
