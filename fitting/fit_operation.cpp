@@ -229,6 +229,9 @@ BoundParameters<LandmarkInputOptions> landmark_parameters() {
       .add("images", LandmarkInputOptions::kImages,
            "images that landmarks from files belong to, for --overlay and --strip: a file, folder "
            "or pattern (default: of the same name beside .pts files)")
+      .add("image-size", LandmarkInputOptions::kImageSize,
+           "WIDTHxHEIGHT of the images of landmarks in shares of them, as MediaPipe's (default: "
+           "that of --images)")
       .add(&LandmarkInputOptions::faces, faces);
 }
 
