@@ -16,7 +16,7 @@ namespace mimetra {
 
 namespace {
 
-constexpr double kUnseen = std::numeric_limits<double>::quiet_NaN();
+constexpr double kUnseenPoint = std::numeric_limits<double>::quiet_NaN();
 
 /// Keys under which a frame has its face: ours, and those of MediaPipe's interfaces.
 constexpr std::array kFaceKeys = {"points",    "faceLandmarks",      "face_landmarks",
@@ -135,7 +135,7 @@ class JsonReader {
   /// A depth after x and y is left out.
   void read_point(const Json& point, const std::string& place, Points& points) const {
     if (point.is_null()) {
-      points.insert(points.end(), 2, kUnseen);
+      points.insert(points.end(), 2, kUnseenPoint);
     } else if (point.is_object() && is_point(point)) {
       points.push_back(number(point["x"], place + "/x"));
       points.push_back(number(point["y"], place + "/y"));
@@ -182,7 +182,7 @@ class JsonReader {
     for (std::size_t f = 0; f < faces_.size(); ++f) {
       auto row = points.row(static_cast<Eigen::Index>(f));
       if (!faces_[f]) {
-        row.setConstant(kUnseen);
+        row.setConstant(kUnseenPoint);
       } else {
         row = Eigen::Map<const Eigen::RowVectorXd>(faces_[f]->data(), row.size());
       }

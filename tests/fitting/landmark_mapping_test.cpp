@@ -104,7 +104,7 @@ TEST_F(Mapping, OfTheSharedModelsIsRead) {
 
 LandmarkTrack of_mediapipe() {
   LandmarkTrack track;
-  track.points = Frames::LinSpaced(2 * 478, 0, 2 * 478 - 1).transpose();
+  track.points = Eigen::RowVectorXd::LinSpaced(2 * 478, 0, 2 * 478 - 1);
   for (int i = 0; i < 478; ++i) track.names.push_back("mp" + std::to_string(i));
   return track;
 }
