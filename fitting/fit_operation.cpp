@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "fitting/fit_pictures.h"
+#include "fitting/head_rotation.h"
 #include "fitting/image_files.h"
 #include "fitting/landmark_fitter.h"
 #include "fitting/landmark_input.h"
@@ -25,12 +26,28 @@ namespace mimetra {
 namespace {
 
 struct FitCall {
+  /// Whether the fitted sequence turns as the head does in the images.
+  enum class HeadTurns { drop, keep };
+
   FitOptions fit = {};
+  HeadTurns head_motion = HeadTurns::drop;
   /// Vertex of each landmark; by default the file in the model's folder.
   std::optional<std::filesystem::path> mapping = {};
 
   static constexpr Option kMapping{"mapping", &FitCall::mapping};
+  static constexpr Option kHeadMotion{"head_motion", &FitCall::head_motion};
 };
+
+/// As people choose it.
+constexpr std::string_view choice_name(FitCall::HeadTurns value) {
+  switch (value) {
+    case FitCall::HeadTurns::drop:
+      return "drop";
+    case FitCall::HeadTurns::keep:
+      return "keep";
+  }
+  return {};
+}
 
 BoundParameters<FitCall> fit_parameters() {
   BoundParameters<FitOptions> fit;
@@ -50,6 +67,8 @@ BoundParameters<FitCall> fit_parameters() {
       .add("mapping", FitCall::kMapping,
            "vertex of each landmark (default: ibug_to_*.txt or landmarks68.txt in the model's "
            "folder)")
+      .add("head-motion", FitCall::kHeadMotion,
+           "keep: the sequence turns as the head does in the images; drop: it looks ahead")
       .add(&FitCall::fit, fit);
 }
 
@@ -202,7 +221,11 @@ Outcome run(const Invocation& invocation) {
       std::to_string(track.landmarks()) + " landmarks mapped: RMS " + readable(summary.rms) +
       " px (worst " + readable(fit.rms[summary.worst]) + " in frame " +
       std::to_string(summary.worst) + "), " + std::to_string(summary.iterations) + " iterations\n";
-  outcome.outputs["out"].push_back({"", FieldSequence(sequence), {.model_driven = true}});
+  const bool turns = call.head_motion == FitCall::HeadTurns::keep;
+  outcome.outputs["out"].push_back(
+      {"",
+       FieldSequence(turns ? turned_as_seen(sequence, fit.cameras) : sequence),
+       {.model_driven = !turns}});
   outcome.outputs["fit-out"].push_back({"", fit});
   if (invocation.wants("overlay") || invocation.wants("strip")) {
     const FitPictures pictures(landmarks.origin.images, sequence, fit.cameras, mapped);
