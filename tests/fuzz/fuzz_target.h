@@ -5,35 +5,31 @@
 #include <string>
 #include <vector>
 
-#include "toolkit/mesh/mesh_sequence.h"
-
-/// Readers that libFuzzer feeds with damaged files. A target is an object of a .cpp file:
-///
-///   const Target kObj({"obj", "mesh.obj",
-///                      [](const fs::path& file) { read_mesh(file); },
-///                      [](const fs::path& file) { write_mesh(file, grid()); }});
+/// Readers that libFuzzer feeds with damaged files.
 namespace mimetra::fuzz {
 
 namespace fs = std::filesystem;
 
-struct TargetDescription {
+struct Target {
   std::string name;
-  std::string file;  ///< what the reader finds the bytes under
-  /// Reads it. It may throw what readers promise: std::invalid_argument, IoError, OutputError.
+  /// What the reader finds the bytes under. What the first seed writes beside it stays there.
+  std::string file;
+  /// Reads it. It may throw what readers promise: std::invalid_argument, IoError.
   std::function<void(const fs::path& file)> read;
-  /// Writes a sound file of the format, to start from.
-  std::function<void(const fs::path& file)> write;
+  /// Each writes a sound file, to start from; one at least.
+  std::vector<std::function<void(const fs::path& file)>> seeds;
 };
 
-/// Known to the program as long as it runs.
-class Target {
- public:
-  explicit Target(TargetDescription description);
-};
+/// A seed that is a text.
+std::function<void(const fs::path& file)> text(std::string content);
 
-/// 3 x 3 vertices, eight triangles.
-const TriMesh& grid();
-/// Three frames of it.
-MeshSequence take();
+/// Every format of files in the table of formats that can be read: a new one needs nothing here.
+std::vector<Target> format_targets();
+/// What else is read: models, weights, landmarks, compressed parts of files.
+std::vector<Target> model_targets();
+/// Whatever is said in a text of its own: options, manifests, names.
+std::vector<Target> text_targets();
+/// The C interface, whose calls and arrays are made of the bytes.
+std::vector<Target> interface_targets();
 
 }  // namespace mimetra::fuzz

@@ -1,68 +1,69 @@
+#include <algorithm>
 #include <cstdint>
 #include <initializer_list>
-#include <limits>
 
+#include <meshoptimizer.h>
+
+#include "fitting/image_files.h"
 #include "tests/fuzz/fuzz_target.h"
+#include "tests/fuzz/values.h"
 #include "toolkit/io/bytes.h"
-#include "toolkit/io/components_file.h"
 #include "toolkit/io/eos.h"
-#include "toolkit/io/fit_file.h"
 #include "toolkit/io/mesh_file.h"
+#include "toolkit/io/meshopt_codec.h"
 #include "toolkit/io/model_file.h"
+#include "toolkit/io/sequence_file.h"
+#include "toolkit/io/weight_file.h"
 #include "toolkit/io/whole_file.h"
+
+#ifdef MIMETRA_HAS_DRACO
+#include "tests/io/draco_octahedron.h"
+#include "toolkit/io/draco_mesh.h"
+#endif
 
 namespace mimetra::fuzz {
 
 namespace {
 
-Components two_components() {
-  Components components;
-  components.rest = grid().positions;
-  components.triangles = grid().connectivity.triangles;
-  components.displacements = Frames::Constant(2, 27, 0.5);
-  components.weights = Eigen::MatrixXd::Constant(3, 2, 1);
-  components.centers = {4, 0};
-  components.support = Eigen::MatrixXd::Constant(2, 9, 0.5);
-  components.energies = {2, 1};
-  return components;
+/// The first byte, or 0.
+std::size_t first_byte(const std::string& bytes) {
+  return bytes.empty() ? 0 : static_cast<unsigned char>(bytes[0]);
 }
 
-const Target kComponents(
-    {"components", "components.h5", [](const fs::path& file) { read_components(file); },
-     [](const fs::path& file) { write_components(file, two_components(), true); }});
-
-FittedCoefficients fitted() {
-  FittedCoefficients fit;
-  fit.identities = {"wide"};
-  fit.expressions = {"smile", "brow"};
-  fit.times = Eigen::Vector2d(0, 0.04);
-  fit.alpha = Eigen::MatrixXd::Constant(2, 1, 0.5);
-  fit.beta = Eigen::MatrixXd::Constant(2, 2, 0.25);
-  fit.cameras.assign(2, Eigen::Matrix<double, 2, 4>::Constant(2));
-  fit.rms = Eigen::Vector2d(1.5, std::numeric_limits<double>::quiet_NaN());
-  fit.landmarks = Eigen::Vector2i(68, 0);
-  fit.iterations = Eigen::Vector2i(3, 0);
-  return fit;
+void write_grid(const fs::path& file) {
+  write_mesh(file, grid());
 }
 
-const Target kFit({"fit", "a.fit.json", [](const fs::path& file) { read_fit(file).identity(); },
-                   [](const fs::path& file) { write_bytes(file, fit_json(fitted())); }});
+/// The quick reader of the frames after the first, which finds its places in that one.
+Target frame_target(const std::string& extension) {
+  return {"frame_" + extension,
+          "frame." + extension,
+          [extension](const fs::path& file) {
+            static const MeshFileReader first = [&] {
+              const fs::path sound = file.parent_path() / ("first." + extension);
+              write_grid(sound);
+              return MeshFileReader(sound);
+            }();
+            first.read(file);
+          },
+          {write_grid}};
+}
 
-/// Both files of an eos model: the length of the first stands before them.
+/// Both files of an eos model: the length of the first in numbers stands before them.
 void read_eos_pair(const fs::path& file) {
   const std::string bytes = read_file(file);
-  const std::size_t shape = bytes.empty() ? 0 : static_cast<unsigned char>(bytes[0]) * 4U;
-  const std::string rest = bytes.substr(bytes.empty() ? 0 : 1);
+  const std::string pair = bytes.substr(bytes.empty() ? 0 : 1);
+  const std::size_t shape = std::min(first_byte(bytes) * 4, pair.size());
   const fs::path first = file.parent_path() / "sfm_shape_1.bin";
   const fs::path second = file.parent_path() / "expression_blendshapes_1.bin";
-  write_bytes(first, rest.substr(0, shape));
-  write_bytes(second, shape < rest.size() ? rest.substr(shape) : "");
+  write_bytes(first, pair.substr(0, shape));
+  write_bytes(second, pair.substr(shape));
   is_eos_shape(first);
   read_eos(first, second);
 }
 
 /// A triangle with an identity, without colours and texture, and one expression.
-void write_eos_start(const fs::path& file) {
+void write_eos_pair(const fs::path& file) {
   std::string shape, expressions;
   const auto add = [](std::string& bytes, std::initializer_list<std::int32_t> numbers) {
     for (const std::int32_t number : numbers) append_little_endian(bytes, number);
@@ -82,24 +83,112 @@ void write_eos_start(const fs::path& file) {
   write_bytes(file, std::string(1, static_cast<char>(shape.size() / 4)) + shape + expressions);
 }
 
-const Target kEos({"eos", "pair.bin", read_eos_pair, write_eos_start});
+/// A view's mode and filter, its stride and its count stand before its bytes.
+void read_meshopt(const fs::path& file) {
+  const std::string bytes = read_file(file);
+  if (bytes.size() < 4) return;
+  const auto number = [&bytes](std::size_t i) { return first_byte(bytes.substr(i)); };
+  const GltfCompression how{.buffer = 0,
+                            .offset = 0,
+                            .bytes = bytes.size() - 4,
+                            .stride = number(1),
+                            .count = number(2) + 256 * number(3),
+                            .mode = GltfCompression::Mode(number(0) % 3),
+                            .filter = GltfCompression::Filter(number(0) / 3 % 4)};
+  decompressed("a.glb", "view 0", how, std::string_view(bytes).substr(4));
+}
 
-/// What stands after '@' in a model's name, and the paths of a model.json.
-const Target kModelSpec({"model_spec", "spec.txt",
-                         [](const fs::path& file) { ModelSpec::parse(read_file(file)).name(); },
-                         [](const fs::path& file) {
-                           write_bytes(file, "actor@identity003=1.5,identity007=-1");
-                         }});
+void write_meshopt_points(const fs::path& file) {
+  const Positions& points = grid().positions;
+  const Eigen::Matrix<float, Eigen::Dynamic, 3, Eigen::RowMajor> values = points.cast<float>();
+  const auto count = static_cast<std::size_t>(points.rows());
+  std::string bytes(meshopt_encodeVertexBufferBound(count, 12), '\0');
+  bytes.resize(meshopt_encodeVertexBuffer(reinterpret_cast<unsigned char*>(bytes.data()),
+                                          bytes.size(), values.data(), count, 12));
+  write_bytes(file, std::string("\x00\x0c\x09\x00", 4) + bytes);
+}
 
-const Target kModelJson({"model_json", "model.json",
-                         [](const fs::path& file) {
-                           write_mesh(file.parent_path() / "neutral.ply", grid());
-                           read_model(file.parent_path(), 1);
-                         },
-                         [](const fs::path& file) {
-                           write_bytes(file, R"({"neutral": "neutral.ply"})");
-                         }});
+void write_meshopt_faces(const fs::path& file) {
+  const Triangles& triangles = grid().connectivity.triangles;
+  const std::vector<unsigned> corners(triangles.data(), triangles.data() + triangles.size());
+  std::string bytes(meshopt_encodeIndexBufferBound(corners.size(), 9), '\0');
+  bytes.resize(meshopt_encodeIndexBuffer(reinterpret_cast<unsigned char*>(bytes.data()),
+                                         bytes.size(), corners.data(), corners.size()));
+  write_bytes(file, std::string("\x01\x04\x18\x00", 4) + bytes);
+}
+
+/// PNG and JPEG are told apart by what they hold.
+const std::string& smallest_jpeg() {
+  static const std::string bytes =
+      std::string("\xff\xd8\xff\xc0\0\x0b\x08\0\x10\0\x10\x01\x01\x11\0", 15) + "\xff\xd9";
+  return bytes;
+}
+
+const std::string& smallest_png() {
+  static const std::string bytes(
+      "\x89PNG\r\n\x1a\n\0\0\0\x0dIHDR\0\0\0\1\0\0\0\1\x08\2\0\0\0\x90wS\xde\0\0\0\x0cIDAT\x08\xd7"
+      "c\xf8\xcf\xc0\0\0\3\1\1\0\x18\xdd\x8d\xb0\0\0\0\0IEND\xae\x42\x60\x82",
+      69);
+  return bytes;
+}
 
 }  // namespace
+
+std::vector<Target> model_targets() {
+  std::vector<Target> targets = {
+      frame_target("obj"),
+      frame_target("ply"),
+      {"mesh_library",
+       "a.mtl",
+       [](const fs::path& file) {
+         const fs::path mesh = fs::path(file).replace_extension(".obj");
+         write_bytes(mesh, "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl skin\nf 1 2 3\n");
+         const SequenceRead read = read_sequence(mesh.string(), {.threads = 1});
+         write_sequence(read.sequence, file.parent_path() / "b" / "c.obj",
+                        {.overwrite = true, .threads = 1});
+       },
+       {text("newmtl skin\nKd 1 0.5 0.5\nmap_Kd -s 1 1 1 skin.png\n")}},
+      {"eos", "pair.bin", read_eos_pair, {write_eos_pair}},
+      {"model_json",
+       "model.json",
+       [](const fs::path& file) {
+         const fs::path folder = file.parent_path();
+         fs::create_directories(folder / "targets");
+         for (const char* mesh : {"neutral.ply", "targets/smile.ply"}) write_grid(folder / mesh);
+         read_model(folder, 1);
+       },
+       {text(R"({"neutral": "neutral.ply", "expressions": "targets"})")}},
+      {"weights_csv",
+       "w.csv",
+       [](const fs::path& file) {
+         weights_for(read_weights(file), {"smile", "brow_L", "jaw"});
+       },
+       {[](const fs::path& file) {
+          write_weights(file, std::get<ModelData>(value_of(DataKind::model)).performance, true);
+        },
+        text("Timecode,BlendshapeCount,smile\n00:00:01:02.500,1,0.5\n00:00:01:03.500,1,0.25\n")}},
+      {"weights_json",
+       "w.json",
+       [](const fs::path& file) {
+         weights_for(read_weights(file), {"smile", "brow_L", "jaw"});
+       },
+       {text(R"([{"time": 0, "smile": 0.5}, {"time": 1, "smile": 0.25}])"),
+        text(R"({"names": ["smile", "jaw"], "weights": [[0, 1], [0.5, 0]], "fps": 30})")}},
+      {"meshopt", "view.bin", read_meshopt, {write_meshopt_points, write_meshopt_faces}},
+      {"image",
+       "a.png",
+       [](const fs::path& file) { read_image(file); },
+       {text(smallest_jpeg()), text(smallest_png())}}};
+#ifdef MIMETRA_HAS_DRACO
+  targets.push_back({"draco",
+                     "view.bin",
+                     [](const fs::path& file) {
+                       decode_draco("a.glb", "mesh 0", {.view = 0, .positions = 0, .texture = 1},
+                                    read_file(file));
+                     },
+                     {text(test::draco_octahedron())}});
+#endif
+  return targets;
+}
 
 }  // namespace mimetra::fuzz

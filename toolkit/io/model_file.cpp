@@ -280,10 +280,10 @@ ModelSpec ModelSpec::parse(const std::string& text) {
 
 std::vector<std::string> ModelSpec::notes() const {
   // Standard deviations, or shares of an identity.
-  constexpr double kMostUsual = 10;
+  constexpr double kMostDeviations = 10;
   std::vector<std::string> notes;
   for (const auto& [identity_name, coefficient] : identity) {
-    if (std::abs(coefficient) <= kMostUsual) continue;
+    if (std::abs(coefficient) <= kMostDeviations) continue;
     notes.push_back(path.string() + ": " + identity_name + " is " + readable(coefficient) +
                     ", expected about -3 to 3");
   }
