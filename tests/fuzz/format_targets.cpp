@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <map>
 
 #include "fitting/fit_operation.h"
@@ -23,6 +24,14 @@ const std::map<std::string, std::string>& texts() {
   return all;
 }
 
+/// "landmarks_csv".
+std::string name_of(const Format& format) {
+  std::string name =
+      std::string(kind_name(format.kind)) + '_' + format.extensions.front().substr(1);
+  std::ranges::replace(name, ' ', '_');
+  return name;
+}
+
 void read(const Format& format, const fs::path& file) {
   const Parameters defaults(format.reading);
   format.read(file.string(), {.parameters = defaults,
@@ -39,12 +48,25 @@ void write(const Format& format, const Data& value, const fs::path& file) {
 }
 
 /// The value, or one frame of it for a format that holds one.
-void write_seed(const Format& format, const fs::path& file) {
+void write_value(const Format& format, const fs::path& file) {
   try {
     write(format, value_of(format.kind), file);
   } catch (const MismatchError&) {
     write(format, one_frame(), file);
   }
+}
+
+/// A file as it is under each extension of its format, which readers tell apart by content.
+std::vector<std::function<void(const fs::path& file)>> written_seeds(const Format& format) {
+  std::vector<std::function<void(const fs::path& file)>> seeds;
+  for (const std::string& extension : format.extensions) {
+    seeds.push_back([&format, extension](const fs::path& file) {
+      const fs::path written = fs::path(file).replace_extension(extension);
+      write_value(format, written);
+      fs::rename(written, file);
+    });
+  }
+  return seeds;
 }
 
 }  // namespace
@@ -61,14 +83,14 @@ std::vector<Target> format_targets() {
   for (const Format& format : table.formats()) {
     const std::string& extension = format.extensions.front();
     if (!format.read || !extension.starts_with('.')) continue;
-    Target target{std::string(kind_name(format.kind)) + "_" + extension.substr(1),
+    Target target{name_of(format),
                   "a" + extension,
                   [&format](const fs::path& file) { read(format, file); },
                   {}};
     if (const auto found = texts().find(target.name); found != texts().end()) {
       target.seeds.push_back(text(found->second));
     } else if (format.write) {
-      target.seeds.push_back([&format](const fs::path& file) { write_seed(format, file); });
+      target.seeds = written_seeds(format);
     } else {
       continue;
     }

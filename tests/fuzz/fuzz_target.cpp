@@ -43,6 +43,7 @@ void write_seeds(const Target& target, const fs::path& folder) {
   for (std::size_t i = 0; i < target.seeds.size(); ++i) {
     fs::create_directories(made);
     target.seeds[i](made / target.file);
+    target.read(made / target.file);  // what is thrown here is a seed that is not sound
     fs::copy_file(made / target.file, folder / (std::to_string(i) + "_" + target.file),
                   fs::copy_options::overwrite_existing);
     fs::remove_all(made);
@@ -68,7 +69,7 @@ Target chosen_target() {
   const char* name = std::getenv("FUZZ_TARGET");
   for (const Target& target : all_targets()) {
     if (!name || target.name != name) continue;
-    target.seeds.front()(own_folder() / target.file);
+    for (const auto& seed : target.seeds) seed(own_folder() / target.file);
     return target;
   }
   std::cerr << "mimetra_fuzz: set FUZZ_TARGET to one of those that --list prints\n";

@@ -12,7 +12,7 @@ namespace fs = std::filesystem;
 
 struct Target {
   std::string name;
-  /// What the reader finds the bytes under. What the first seed writes beside it stays there.
+  /// What the reader finds the bytes under. What seeds write beside it stays there.
   std::string file;
   /// Reads it. It may throw what readers promise: std::invalid_argument, IoError.
   std::function<void(const fs::path& file)> read;

@@ -117,19 +117,24 @@ void write_meshopt_faces(const fs::path& file) {
   write_bytes(file, std::string("\x01\x04\x18\x00", 4) + bytes);
 }
 
-/// PNG and JPEG are told apart by what they hold.
-const std::string& smallest_jpeg() {
-  static const std::string bytes =
-      std::string("\xff\xd8\xff\xc0\0\x0b\x08\0\x10\0\x10\x01\x01\x11\0", 15) + "\xff\xd9";
-  return bytes;
+/// A grey block of 8 x 8 pixels, whose only codes are "no change" and "end of block".
+std::string smallest_jpeg() {
+  const std::string codes = '\1' + std::string(16, '\0');
+  const auto bytes = [](std::initializer_list<int> values) {
+    return std::string(values.begin(), values.end());
+  };
+  return bytes({0xff, 0xd8, 0xff, 0xdb, 0, 67, 0}) + std::string(64, '\1') +
+         bytes({0xff, 0xc0, 0, 11, 8, 0, 8, 0, 8, 1, 1, 0x11, 0}) + bytes({0xff, 0xc4, 0, 20, 0}) +
+         codes + bytes({0xff, 0xc4, 0, 20, 0x10}) + codes +
+         bytes({0xff, 0xda, 0, 8, 1, 1, 0, 0, 63, 0, 0x3f, 0xff, 0xd9});
 }
 
-const std::string& smallest_png() {
-  static const std::string bytes(
+/// A red pixel.
+std::string smallest_png() {
+  return std::string(
       "\x89PNG\r\n\x1a\n\0\0\0\x0dIHDR\0\0\0\1\0\0\0\1\x08\2\0\0\0\x90wS\xde\0\0\0\x0cIDAT\x08\xd7"
       "c\xf8\xcf\xc0\0\0\3\1\1\0\x18\xdd\x8d\xb0\0\0\0\0IEND\xae\x42\x60\x82",
       69);
-  return bytes;
 }
 
 }  // namespace

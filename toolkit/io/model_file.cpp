@@ -243,9 +243,7 @@ void write_shapes(const fs::path& folder, const ShapeBasis& basis, const Morphab
   }
 }
 
-}  // namespace
-
-ModelSpec ModelSpec::parse(const std::string& text) {
+ModelSpec parsed_spec(const std::string& text) {
   ModelSpec spec;
   const auto slash = text.find_last_of('/');
   const auto at = text.find_last_of('@');
@@ -276,6 +274,14 @@ ModelSpec ModelSpec::parse(const std::string& text) {
     spec.identity.emplace_back(name, coefficient_of(entry, entry.substr(equals + 1)));
   }
   return spec;
+}
+
+}  // namespace
+
+ModelSpec ModelSpec::parse(const std::string& text) {
+  ModelSpec spec = parsed_spec(text);
+  if (!spec.path.empty()) return spec;
+  throw std::invalid_argument("'" + text + "': names no model");
 }
 
 std::vector<std::string> ModelSpec::notes() const {
