@@ -56,5 +56,17 @@ TEST(Draco, EveryTruncatedPrefixIsAnError) {
   }
 }
 
+TEST(Draco, TruthValuesAreNoPositions) {
+  test::TemporaryFolder folder;
+  std::string encoded = draco_octahedron();
+  const std::string positions("\x01\x00\x09\x03", 4);  // one attribute: positions, float32, 3 each
+  const auto at = encoded.find(positions);
+  ASSERT_NE(at, std::string::npos);
+  encoded[at + 2] = 11;
+  write_bytes(folder / "a.glb", draco_glb(encoded));
+  EXPECT_THAT(test::message_of<IoError>([&] { read_blendshapes((folder / "a.glb").string()); }),
+              HasSubstr("its compressed mesh has no number for a vertex"));
+}
+
 }  // namespace
 }  // namespace mimetra

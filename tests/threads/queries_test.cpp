@@ -50,7 +50,8 @@ TEST(Queries, OfSurfaceDistancesShareWhatTheyKnow) {
 
 TEST(Queries, OfTransfersMayMeet) {
   const MeshSequence take = test::bulging_sphere(12);
-  const auto shapes = take.positions()({3, 9}, Eigen::all);
+  Frames shapes(2, take.positions().cols());
+  shapes << take.positions().row(3), take.positions().row(9);
   const Eigen::Map<const Eigen::RowVectorXd> rest(take.rest().data(), take.rest().size());
   const BlendshapeModel actor(take.shared_connectivity(), take.rest(),
                               {{"up", "aside"}, (shapes.rowwise() - rest).transpose()});
