@@ -30,6 +30,7 @@ std::vector<BadInput> mesh_cases();
 std::vector<BadInput> sequence_cases();
 std::vector<BadInput> array_cases();
 std::vector<BadInput> hdf5_cases();
+std::vector<BadInput> scene_cases();
 std::vector<BadInput> model_cases();
 std::vector<BadInput> weight_cases();
 std::vector<BadInput> eos_cases();

@@ -318,6 +318,31 @@ std::vector<fs::path> meshes_beside_model(const fs::path& path) {
   return files;
 }
 
+std::vector<fs::path> model_files(const fs::path& path) {
+  if (is_scene_file(path) || !is_model(path)) return {path};
+  const Parts parts = parts_of(path);
+  std::vector<fs::path> files;
+  std::error_code unreadable;
+  const fs::path list = path / "model.json";
+  if (fs::exists(list, unreadable)) files.push_back(list);
+  for (const auto& part : {parts.neutral, parts.shape, parts.expressions, parts.identities}) {
+    if (!part) continue;
+    if (fs::is_directory(*part, unreadable)) {
+      const std::vector<fs::path> shapes = meshes_in(*part);
+      files.insert(files.end(), shapes.begin(), shapes.end());
+    } else {
+      files.push_back(*part);
+    }
+  }
+  for (const fs::path& file : sorted_files_in(path)) {
+    const std::string name = file.filename().string();
+    const bool is_mapping =
+        name == "landmarks68.txt" || (name.starts_with("ibug_to_") && name.ends_with(".txt"));
+    if (is_mapping) files.push_back(file);
+  }
+  return files;
+}
+
 MorphableModel read_model(const fs::path& path, int threads) {
   std::error_code unreadable;
   if (!fs::exists(path, unreadable)) throw IoError(path.string(), "does not exist");
