@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "fitting/fit_pictures.h"
+#include "fitting/head_rotation.h"
 #include "fitting/image_files.h"
 #include "fitting/landmark_file.h"
 #include "fitting/landmark_fitter.h"
@@ -28,12 +29,28 @@ namespace mimetra {
 namespace {
 
 struct FitCall {
+  /// Whether the fitted sequence turns as the head does in the images.
+  enum class HeadTurns { drop, keep };
+
   FitOptions fit = {};
+  HeadTurns head_motion = HeadTurns::drop;
   /// Vertex of each landmark; by default the file in the model's folder.
   std::optional<std::filesystem::path> mapping = {};
 
   static constexpr Option kMapping{"mapping", &FitCall::mapping};
+  static constexpr Option kHeadMotion{"head_motion", &FitCall::head_motion};
 };
+
+/// As people choose it.
+constexpr std::string_view choice_name(FitCall::HeadTurns value) {
+  switch (value) {
+    case FitCall::HeadTurns::drop:
+      return "drop";
+    case FitCall::HeadTurns::keep:
+      return "keep";
+  }
+  return {};
+}
 
 BoundParameters<FitCall> fit_parameters() {
   BoundParameters<FitOptions> fit;
@@ -53,6 +70,8 @@ BoundParameters<FitCall> fit_parameters() {
       .add("mapping", FitCall::kMapping,
            "vertex of each landmark (default: ibug_to_*.txt or landmarks68.txt in the model's "
            "folder)")
+      .add("head-motion", FitCall::kHeadMotion,
+           "keep: the sequence turns as the head does in the images; drop: it looks ahead")
       .add(&FitCall::fit, fit);
 }
 
@@ -205,7 +224,11 @@ Outcome run(const Invocation& invocation) {
       std::to_string(track.landmarks()) + " landmarks mapped: RMS " + readable(summary.rms) +
       " px (worst " + readable(fit.rms[summary.worst]) + " in frame " +
       std::to_string(summary.worst) + "), " + std::to_string(summary.iterations) + " iterations\n";
-  outcome.outputs["out"].push_back({"", FieldSequence(sequence), {.model_driven = true}});
+  const bool turns = call.head_motion == FitCall::HeadTurns::keep;
+  outcome.outputs["out"].push_back(
+      {"",
+       FieldSequence(turns ? turned_as_seen(sequence, fit.cameras) : sequence),
+       {.model_driven = !turns}});
   outcome.outputs["fit-out"].push_back({"", fit});
   if (invocation.wants("landmarks-out")) outcome.outputs["landmarks-out"].push_back({"", track});
   if (invocation.wants("overlay") || invocation.wants("strip")) {
@@ -236,10 +259,13 @@ BoundParameters<LandmarkInputOptions> landmark_parameters() {
            "frames of which the detector was less sure are taken as not seen");
   BoundParameters<LandmarkInputOptions> list;
   return list
-      .add("images", LandmarkInputOptions::kImages,
-           "what landmarks from files belong to, for --overlay and --strip: a video, an image, a "
-           "folder "
-           "or pattern of images (default: of the same name beside .pts files)")
+      .add(
+          "images", LandmarkInputOptions::kImages,
+          "what landmarks from files belong to, for --overlay and --strip: a video, or an image, a "
+          "folder or pattern of them (default: those of the same name beside .pts files)")
+      .add("image-size", LandmarkInputOptions::kImageSize,
+           "WIDTHxHEIGHT of the images of landmarks in shares of them, as MediaPipe's (default: "
+           "that of --images)")
       .add(&LandmarkInputOptions::faces, faces);
 }
 

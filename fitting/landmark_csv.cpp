@@ -8,6 +8,7 @@
 
 #include "fitting/landmark_file.h"
 #include "fitting/landmark_formats.h"
+#include "fitting/mediapipe.h"
 #include "toolkit/io/csv.h"
 #include "toolkit/mesh/errors.h"
 
@@ -66,9 +67,11 @@ class LandmarkReader {
     }
     if (x.empty())
       csv_.fail("no landmarks; expected columns x0, y0, x1, ... or x_0, ..., y_0, ...");
+    const std::size_t first = x.begin()->first == 1 ? 1 : 0;
     for (const auto& [number, column] : x) {
-      if (number != columns_.size() / 2) {
-        csv_.fail("column 'x" + std::to_string(columns_.size() / 2) + "' is missing before '" +
+      const std::size_t expected = first + columns_.size() / 2;
+      if (number != expected) {
+        csv_.fail("column 'x" + std::to_string(expected) + "' is missing before '" +
                   std::string(names[column]) + "'");
       }
       const auto found = y.find(number);
@@ -150,7 +153,9 @@ class LandmarkReader {
 }  // namespace
 
 std::string landmark_csv(const LandmarkTrack& track) {
-  if (track.names != numbered_names(track.names.size())) {
+  LandmarkTrack numbered{numbered_names(track.names.size()), {}, {}, {}};
+  name_mediapipe_landmarks(numbered);
+  if (track.names != numbered.names) {
     throw MismatchError("the landmarks have names, such as '" + track.names.front() +
                         "'; a CSV file numbers them");
   }

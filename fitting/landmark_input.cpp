@@ -1,17 +1,20 @@
 #include "fitting/landmark_input.h"
 
 #include <algorithm>
+#include <charconv>
 #include <functional>
 #include <iterator>
 #include <limits>
 
 #include "fitting/image_files.h"
 #include "fitting/landmark_file.h"
+#include "fitting/mediapipe.h"
 #include "fitting/video_file.h"
 #include "toolkit/io/frame_files.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/progress.h"
 #include "toolkit/mesh/text.h"
+#include "toolkit/operations/parameter.h"
 
 namespace mimetra {
 
@@ -75,12 +78,15 @@ void note_others(LandmarksRead& read, const std::string& text, const LandmarkFil
                        "name the images by a pattern to find faces in them");
 }
 
-/// Options that change nothing are mistakes.
-/// `what` the input is where it shows faces: "is a video"; nothing for landmarks.
+/// Options that change nothing are mistakes. `what` says what the input is where it shows faces,
+/// "is a video"; it is nothing for landmarks.
 void check_needed(const std::string& text, const std::string& what,
                   const LandmarkInputOptions& options) {
   if (!what.empty() && options.images) {
     throw MismatchError("option 'images': " + text + " " + what);
+  }
+  if (!what.empty() && options.image_size) {
+    throw MismatchError("option 'image-size': " + text + " " + what + ", whose size is known");
   }
   if (what.empty() && options.faces.model) {
     throw MismatchError("option 'face-model': " + text + " are landmarks already");
@@ -191,6 +197,47 @@ void drop_doubtful(LandmarksRead& read, const std::string& text, double min_conf
   }
 }
 
+/// Width and height: "1920x1080".
+std::pair<int, int> size_of(const std::string& text) {
+  int width = 0, height = 0;
+  const char* const end = text.data() + text.size();
+  const auto first = std::from_chars(text.data(), end, width);
+  const bool goes_on = first.ec == std::errc() && first.ptr != end && *first.ptr == 'x';
+  const auto second = goes_on ? std::from_chars(first.ptr + 1, end, height) : first;
+  if (!goes_on || second.ec != std::errc() || second.ptr != end || width < 1 || height < 1) {
+    throw UsageError("option 'image-size': '" + text + "', expected WIDTHxHEIGHT, as 1920x1080");
+  }
+  return {width, height};
+}
+
+/// No landmark of a face is so near the corner in pixels.
+bool are_shares(const LandmarkTrack& track) {
+  constexpr double kMostShare = 2;
+  return !track.points.array().isNaN().all() &&
+         (track.points.array().isNaN() || track.points.array().abs() <= kMostShare).all();
+}
+
+void make_pixels(LandmarksRead& read, const std::string& text,
+                 const std::optional<std::string>& size) {
+  if (!is_mediapipe(read.track) || !are_shares(read.track)) {
+    if (!size) return;
+    throw MismatchError("option 'image-size': " + text + " has landmarks in pixels already");
+  }
+  if (size) {
+    const auto [width, height] = size_of(*size);
+    scale_to_pixels(read.track, width, height);
+  } else if (read.images) {
+    const Image image = read.images->image(0);
+    scale_to_pixels(read.track, image.width, image.height);
+  } else {
+    throw MismatchError(
+        text +
+        ": has landmarks in shares of the image's width and height, as MediaPipe "
+        "counts; give its size by option 'image-size' (1920x1080), or its images by "
+        "option 'images'");
+  }
+}
+
 LandmarksRead find_in_images(std::shared_ptr<const ImageSequence> images, int threads,
                              const Progress& progress, FaceOptions options) {
   options.threads = threads;
@@ -251,6 +298,7 @@ LandmarksRead read_landmark_input(const std::string& text, const SequenceSource&
     const bool of_frames = static_cast<int>(shown.files.size()) == count;
     const Paths shown_files = of_frames ? taken_from(shown.files, selected) : shown.files;
     read.files.insert(read.files.end(), shown_files.begin(), shown_files.end());
+    make_pixels(read, text, options.image_size);
     drop_doubtful(read, text, options.faces.min_confidence);
     note_others(read, text, input);
   }

@@ -19,7 +19,7 @@ namespace mimetra {
 
 namespace {
 
-std::string size_of(const Image& image) {
+std::string size_text(const Image& image) {
   return std::to_string(image.width) + " x " + std::to_string(image.height);
 }
 
@@ -61,7 +61,7 @@ void write_frames(const Pictures& pictures, const WriteRequest& request,
       }
       if (image.width != size.width || image.height != size.height) {
         throw MismatchError(request.target.string() + ": picture " + std::to_string(first + i) +
-                            " has " + size_of(image) + " pixels, expected " + size_of(size) +
+                            " has " + size_text(image) + " pixels, expected " + size_text(size) +
                             " as the first; write them to a folder");
       }
       encoder->add(image, times[first + i]);

@@ -42,6 +42,7 @@ std::vector<BadInput> motion_cases();
 std::vector<BadInput> geometry_cases();
 std::vector<BadInput> request_cases();
 std::vector<BadInput> output_cases();
+std::vector<BadInput> hostile_cases();
 
 /// A mesh that may be wrong in any way, to be written without any help of the library.
 struct RawMesh {

@@ -209,6 +209,12 @@ TEST(ModelSpec, RefusesWhatIsNoCoefficient) {
   }
 }
 
+TEST(ModelSpec, RefusesANameWithoutAModel) {
+  for (const char* text : {"", "@wide=1", "@a.fit.json"}) {
+    EXPECT_THROW(ModelSpec::parse(text), std::invalid_argument) << text;
+  }
+}
+
 TEST(ModelSpec, RefusesANameGivenTwice) {
   EXPECT_THROW(ModelSpec::parse("m@wide=1,wide=2"), std::invalid_argument);
 }

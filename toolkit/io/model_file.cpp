@@ -243,9 +243,7 @@ void write_shapes(const fs::path& folder, const ShapeBasis& basis, const Morphab
   }
 }
 
-}  // namespace
-
-ModelSpec ModelSpec::parse(const std::string& text) {
+ModelSpec parsed_spec(const std::string& text) {
   ModelSpec spec;
   const auto slash = text.find_last_of('/');
   const auto at = text.find_last_of('@');
@@ -278,12 +276,20 @@ ModelSpec ModelSpec::parse(const std::string& text) {
   return spec;
 }
 
+}  // namespace
+
+ModelSpec ModelSpec::parse(const std::string& text) {
+  ModelSpec spec = parsed_spec(text);
+  if (!spec.path.empty()) return spec;
+  throw std::invalid_argument("'" + text + "': names no model");
+}
+
 std::vector<std::string> ModelSpec::notes() const {
   // Standard deviations, or shares of an identity.
-  constexpr double kMostUsual = 10;
+  constexpr double kMostDeviations = 10;
   std::vector<std::string> notes;
   for (const auto& [identity_name, coefficient] : identity) {
-    if (std::abs(coefficient) <= kMostUsual) continue;
+    if (std::abs(coefficient) <= kMostDeviations) continue;
     notes.push_back(path.string() + ": " + identity_name + " is " + readable(coefficient) +
                     ", expected about -3 to 3");
   }

@@ -25,7 +25,8 @@ struct ModelSpec {
 
   /// The '@' counts after the last '/' (where a .json follows: the first one that follows something
   /// that exists), and only where nothing has the whole text as its name.
-  /// Throws std::invalid_argument for what is not NAME=NUMBER after it, and a name given twice.
+  /// Throws std::invalid_argument for what is not NAME=NUMBER after it, a name given twice, and
+  /// where there is no path.
   static ModelSpec parse(const std::string& text);
   /// `ict-face@identity007=2`, without folders; a file without its extension; `sfm@target` for
   /// `sfm@out/target.fit.json`.
