@@ -51,7 +51,7 @@ std::vector<BadInput> model_cases() {
       "transfer head --weights take.csv m -o x", 3, {"m: is no model", "neutral"});
   add("without_neutral", remove("neutral.obj"), "transfer head --weights take.csv m -o x", 3,
       {"m: is no model"});
-  add("empty_neutral", write("neutral.obj", ""), "info m", 3, {"neutral.obj", "no faces"});
+  add("empty_neutral", write("neutral.obj", ""), "info m", 3, {"neutral.obj", "is empty"});
   add("truncated", write("expressions/lift.obj", "v 0 0 0\nv 1 0"), "info m", 3, {"lift.obj"});
   add("no_expression_file",
       model([](const fs::path& m) { fs::remove(m / "expressions/lift.obj"); }), "info m", 3,
