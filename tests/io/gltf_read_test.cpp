@@ -44,6 +44,12 @@ TEST_F(GltfFiles, TargetsWithoutNamesAreNumbered) {
   EXPECT_THAT(model(gltf.glb()).expressions().names, ElementsAre("target_000"));
 }
 
+TEST_F(GltfFiles, WhoseMeshesNoNodeShowsSaySo) {
+  GltfBuilder gltf = plain();
+  for (auto& node : gltf.root["nodes"]) node.erase("mesh");
+  EXPECT_THAT(error(gltf.glb()), HasSubstr("has meshes, and no node of its scene shows one"));
+}
+
 TEST_F(GltfFiles, WithoutAnAnimationASequenceIsTheNeutral) {
   const MeshSequence sequence = read(plain().glb());
   EXPECT_EQ(sequence.frames(), 1);
