@@ -13,7 +13,7 @@
 #include <dlib/image_processing/shape_predictor.h>
 
 #include "fitting/detector_pyramid.h"
-#include "fitting/face_images.h"
+#include "fitting/face_finder.h"
 #include "fitting/image_codec.h"
 #include "toolkit/mesh/errors.h"
 
