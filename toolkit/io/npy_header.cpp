@@ -54,7 +54,8 @@ void parse_type(const std::string& path, std::string_view text, NpyHeader& heade
   const bool known = (bytes == 4 || bytes == 8) || (bytes == 2 && sound && type[1] != 'f') ||
                      (bytes == 1 && sound && type[1] != 'f');
   if (!known || (type[1] == 'b' && bytes != 1)) {
-    throw IoError(path, "has values of type " + std::string(text.substr(0, 20)) +
+    const bool is_word = !type.empty() && type.size() <= 20;
+    throw IoError(path, "has values of type " + std::string(is_word ? type : text.substr(0, 20)) +
                             ", expected float32, float64 or integers");
   }
   if (type[0] == '>') header.order = std::endian::big;

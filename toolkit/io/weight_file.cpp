@@ -84,7 +84,8 @@ class WeightReader {
       csv_.fail("expected a timecode HH:MM:SS:FF, found '" + std::string(text) + "'");
     }
     if (!timecodes_.empty() && !passes(timecodes_.back(), *code)) {
-      csv_.fail("the timecode " + std::string(text) + " is not later than the one before");
+      csv_.fail("the timecode " + std::string(text) +
+                " is not later than the one before; leave out one of the rows, or the column");
     }
     timecodes_.push_back(*code);
   }
