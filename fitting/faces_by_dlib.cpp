@@ -283,9 +283,9 @@ struct FaceFinder::State {
     return faces;
   }
 
+  dlib::shape_predictor predictor;  // what is no model is refused before detectors are made
   Detector detector = dlib::get_frontal_face_detector();
   Detector one_level = of_one_level(detector);
-  dlib::shape_predictor predictor;
 };
 
 FaceFinder::FaceFinder(const std::filesystem::path& model)
