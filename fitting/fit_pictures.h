@@ -8,6 +8,7 @@
 #include "fitting/image_files.h"
 #include "fitting/landmark_mapping.h"
 #include "fitting/overlay.h"
+#include "toolkit/io/fit_file.h"
 #include "toolkit/mesh/mesh_sequence.h"
 
 /// What the operation `fit` draws. Internal to fit_operation.h.
@@ -18,7 +19,7 @@ class FitPictures {
  public:
   /// \pre one image and one camera for each frame of `sequence` and `mapped`
   FitPictures(std::vector<std::filesystem::path> images, MeshSequence sequence,
-              std::vector<AffineCamera> cameras, MappedLandmarks mapped);
+              const FittedCoefficients& fit, MappedLandmarks mapped);
 
   /// A frame's whole image. Throws as read_image.
   Image overlay(int frame) const;
@@ -31,6 +32,7 @@ class FitPictures {
     std::vector<std::filesystem::path> images;
     MeshSequence sequence;
     std::vector<AffineCamera> cameras;
+    Eigen::Matrix<double, Eigen::Dynamic, 4> depths;
     MappedLandmarks mapped;
     Triangles triangles;
   };

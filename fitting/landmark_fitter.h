@@ -13,13 +13,19 @@ namespace mimetra {
 /// What was fitted to one frame.
 struct FrameFit {
   AffineCamera camera = AffineCamera::Zero();
+  /// Third row of the camera's matrix; other than (0, 0, 0, 1) for a perspective one.
+  Eigen::RowVector4d depth = {0, 0, 0, 1};
   Eigen::VectorXd alpha;  ///< one per identity
   Eigen::VectorXd beta;   ///< one per expression, within the bounds
   /// Root of the mean squared distance between landmarks and their projections, in pixels; NaN
   /// where none was seen.
   double rms = 0;
-  /// Noise that was assumed, in pixels.
+  /// The same with the distances of landmarks to the outline on which they lie.
+  double rms_all = 0;
+  /// Noise that was assumed or estimated, in pixels; share of its square that is the same in every
+  /// frame.
   double sigma = 0;
+  double repeated = 0;
   /// Landmarks seen. Where it is 0, camera and coefficients are interpolated in time between the
   /// nearest frames with some, or those of the one there is.
   int landmarks = 0;
@@ -39,19 +45,25 @@ struct FrameFit {
 /// [Do, Ma, Cao, An. Region-based deformation transfer], section III-A
 class LandmarkFitter {
  public:
+  /// Whether landmarks on the outline will be given: the fitter keeps a copy of the model then.
+  enum class Outline { none, given };
+
   /// `vertices`: the model's vertex of each landmark (n). Throws MismatchError for a vertex that
   /// the model does not have.
-  LandmarkFitter(const MorphableModel& model, std::vector<int> vertices);
+  LandmarkFitter(const MorphableModel& model, std::vector<int> vertices,
+                 Outline outline = Outline::none);
   ~LandmarkFitter();
   LandmarkFitter(LandmarkFitter&&) noexcept;
   LandmarkFitter& operator=(LandmarkFitter&&) noexcept;
 
   /// `points` F x 2n: x0 y0 x1 y1 ... in pixels, y down, 0-based; NaN for landmarks not seen.
-  /// `times` in seconds (F), ascending; frames are evenly spaced without. Throws
+  /// `times` in seconds (F), ascending; frames are evenly spaced without. `outline` F x 2m, alike:
+  /// landmarks somewhere on the outline of the face as each camera sees it, which are used where
+  /// the noise is estimated. Throws
   /// std::invalid_argument where sizes disagree or an option is out of range; MismatchError where
   /// no frame has landmarks, or those of a frame are fewer than four or coplanar; Cancelled.
   std::vector<FrameFit> fit(const Frames& points, const FitOptions& = {},
-                            const Eigen::VectorXd& times = {}) const;
+                            const Eigen::VectorXd& times = {}, const Frames& outline = {}) const;
 
  private:
   struct State;
