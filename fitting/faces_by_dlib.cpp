@@ -167,7 +167,8 @@ struct FaceFinder::State {
 };
 
 FaceFinder::FaceFinder(const std::filesystem::path& model)
-    : state_(std::make_unique<State>(dlib::get_frontal_face_detector(), read_predictor(model))) {}
+    : state_(std::make_unique<State>(
+          State{dlib::get_frontal_face_detector(), read_predictor(model)})) {}
 FaceFinder::~FaceFinder() = default;
 FaceFinder::FaceFinder(FaceFinder&&) noexcept = default;
 FaceFinder& FaceFinder::operator=(FaceFinder&&) noexcept = default;

@@ -9,6 +9,7 @@
 
 #include "fitting/fit_pictures.h"
 #include "fitting/fit_verdict.h"
+#include "fitting/head_rotation.h"
 #include "fitting/image_files.h"
 #include "fitting/landmark_fitter.h"
 #include "fitting/landmark_input.h"
@@ -27,12 +28,28 @@ namespace mimetra {
 namespace {
 
 struct FitCall {
+  /// Whether the fitted sequence turns as the head does in the images.
+  enum class HeadTurns { drop, keep };
+
   FitOptions fit = {};
+  HeadTurns head_motion = HeadTurns::drop;
   /// Vertex of each landmark; by default the file in the model's folder.
   std::optional<std::filesystem::path> mapping = {};
 
   static constexpr Option kMapping{"mapping", &FitCall::mapping};
+  static constexpr Option kHeadMotion{"head_motion", &FitCall::head_motion};
 };
+
+/// As people choose it.
+constexpr std::string_view choice_name(FitCall::HeadTurns value) {
+  switch (value) {
+    case FitCall::HeadTurns::drop:
+      return "drop";
+    case FitCall::HeadTurns::keep:
+      return "keep";
+  }
+  return {};
+}
 
 BoundParameters<FitCall> fit_parameters() {
   BoundParameters<FitOptions> fit;
@@ -70,6 +87,8 @@ BoundParameters<FitCall> fit_parameters() {
       .add("mapping", FitCall::kMapping,
            "vertex of each landmark (default: ibug_to_*.txt or landmarks68.txt in the model's "
            "folder)")
+      .add("head-motion", FitCall::kHeadMotion,
+           "keep: the sequence turns as the head does in the images; drop: it looks ahead")
       .add(&FitCall::fit, fit);
 }
 
@@ -297,14 +316,25 @@ void warn_of(const Judgement& judgement, const std::vector<std::string>& names,
   }
 }
 
+/// Affine cameras that see the model's origin, and a little around it, as the fitted ones do.
+std::vector<AffineCamera> cameras_at_origin(const FittedCoefficients& fit) {
+  std::vector<AffineCamera> cameras = fit.cameras;
+  for (Eigen::Index f = 0; f < fit.depths.rows(); ++f) {
+    AffineCamera& camera = cameras[static_cast<std::size_t>(f)];
+    camera.leftCols<3>() -= camera.col(3) * fit.depths.row(f).head<3>();
+  }
+  return cameras;
+}
+
 /// Frames in which the head is turned so far that landmarks are behind it.
 std::vector<std::string> notes_of(const MeshSequence& sequence, const FittedCoefficients& fit,
                                   const MappedLandmarks& mapped, std::vector<std::string> notes) {
   notes.resize(static_cast<std::size_t>(fit.frames()));
+  const std::vector<AffineCamera> cameras = cameras_at_origin(fit);
   for (int f = 0; f < fit.frames(); ++f) {
     if (fit.landmarks[f] == 0) continue;
     const int averted = averted_landmarks(sequence.frame(f), sequence.triangles(), mapped.vertices,
-                                          fit.cameras[static_cast<std::size_t>(f)]);
+                                          cameras[static_cast<std::size_t>(f)]);
     if (4 * averted < static_cast<int>(mapped.vertices.size())) continue;
     std::string& note = notes[static_cast<std::size_t>(f)];
     note += (note.empty() ? "" : "; ") + std::string("turned away: ") + std::to_string(averted) +
@@ -367,7 +397,12 @@ Outcome run(const Invocation& invocation) {
                     " in frame " + std::to_string(summary.worst) + "), " +
                     std::to_string(summary.iterations) + " iterations\n" + judgement.words();
   warn_of(judgement, fit.expressions, invocation);
-  outcome.outputs["out"].push_back({"", FieldSequence(sequence), {.model_driven = true}});
+  const std::vector<AffineCamera> cameras = cameras_at_origin(fit);
+  const bool turns = call.head_motion == FitCall::HeadTurns::keep;
+  outcome.outputs["out"].push_back(
+      {"",
+       FieldSequence(turns ? turned_as_seen(sequence, cameras) : sequence),
+       {.model_driven = !turns}});
   outcome.outputs["fit-out"].push_back({"", fit});
   if (invocation.wants("overlay") || invocation.wants("strip")) {
     const FitPictures pictures(landmarks.origin.images, sequence, fit, mapped);
@@ -394,6 +429,9 @@ BoundParameters<LandmarkInputOptions> landmark_parameters() {
       .add("images", LandmarkInputOptions::kImages,
            "images that landmarks from files belong to, for --overlay and --strip: a file, folder "
            "or pattern (default: of the same name beside .pts files)")
+      .add("image-size", LandmarkInputOptions::kImageSize,
+           "WIDTHxHEIGHT of the images of landmarks in shares of them, as MediaPipe's (default: "
+           "that of --images)")
       .add(&LandmarkInputOptions::faces, faces);
 }
 

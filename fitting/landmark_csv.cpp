@@ -58,9 +58,11 @@ class LandmarkReader {
     }
     if (x.empty())
       csv_.fail("no landmarks; expected columns x0, y0, x1, ... or x_0, ..., y_0, ...");
+    const std::size_t first = x.begin()->first == 1 ? 1 : 0;
     for (const auto& [number, column] : x) {
-      if (number != columns_.size() / 2) {
-        csv_.fail("column 'x" + std::to_string(columns_.size() / 2) + "' is missing before '" +
+      const std::size_t expected = first + columns_.size() / 2;
+      if (number != expected) {
+        csv_.fail("column 'x" + std::to_string(expected) + "' is missing before '" +
                   std::string(names[column]) + "'");
       }
       const auto found = y.find(number);

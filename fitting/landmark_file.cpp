@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "fitting/landmark_formats.h"
+#include "fitting/mediapipe.h"
 #include "toolkit/io/frame_files.h"
 #include "toolkit/io/text_cursor.h"
 #include "toolkit/io/whole_file.h"
@@ -47,10 +48,19 @@ LandmarkTrack read_pts(const std::filesystem::path& path) {
 
 LandmarkTrack read_landmarks(const std::filesystem::path& path) {
   const std::string extension = lower_extension(path);
-  if (extension == ".pts") return read_pts(path);
-  if (extension == ".csv") return read_landmark_csv(path);
-  if (extension == ".json") return read_landmark_json(path);
-  throw IoError(path.string(), "is not a known format of landmarks; expected .pts, .csv or .json");
+  LandmarkTrack track;
+  if (extension == ".pts") {
+    track = read_pts(path);
+  } else if (extension == ".csv") {
+    track = read_landmark_csv(path);
+  } else if (extension == ".json") {
+    track = read_landmark_json(path);
+  } else {
+    throw IoError(path.string(),
+                  "is not a known format of landmarks; expected .pts, .csv or .json");
+  }
+  name_mediapipe_landmarks(track);
+  return track;
 }
 
 }  // namespace mimetra

@@ -158,6 +158,7 @@ FrameFit unseen_between(const FrameFit& before, const FrameFit& after, double sh
   fit.beta = before.beta + share * (after.beta - before.beta);
   fit.depth = before.depth + share * (after.depth - before.depth);
   fit.rms = fit.rms_all = std::numeric_limits<double>::quiet_NaN();
+  fit.repeated = before.repeated;
   return fit;
 }
 

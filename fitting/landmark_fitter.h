@@ -30,13 +30,15 @@ struct FrameFit {
   /// nearest frames with some, or those of the one there is.
   int landmarks = 0;
   int iterations = 0;
-  /// After each iteration: sum over frames of |residual|^2 / (2 sigma^2) + ridge |beta|^2, plus
-  /// |alpha|^2 (eq. 4) and the smoothness term; over the clip where frames are solved together, of
-  /// this frame otherwise. It never rises.
+  /// After each iteration with the last noise: sum over frames of |residual|^2 / (2 sigma^2) +
+  /// ridge |beta|^2, plus |alpha|^2 (eq. 4) and the smoothness term; over the clip where frames are
+  /// solved together, of this frame otherwise. Where noise is estimated, landmarks are weighed, the
+  /// camera's stretch counts, and |alpha|^2 weighs F / 2 over the number of independent frames. It
+  /// never rises.
   std::vector<double> energies;
 };
 
-/// Fits a morphable model to the 2D landmarks of a clip: minimises over affine cameras, alpha and
+/// Fits a morphable model to the 2D landmarks of a clip: minimises over cameras, alpha and
 /// 0 <= beta <= 1 the reprojection error with a prior on alpha (eq. 4, 5).
 ///
 /// The constructor takes the landmarks' rows from the model and folds their products, so that no

@@ -1,16 +1,19 @@
 #include "fitting/landmark_input.h"
 
 #include <algorithm>
+#include <charconv>
 #include <functional>
 #include <iterator>
 #include <limits>
 
 #include "fitting/image_files.h"
 #include "fitting/landmark_file.h"
+#include "fitting/mediapipe.h"
 #include "toolkit/io/frame_files.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/progress.h"
 #include "toolkit/mesh/text.h"
+#include "toolkit/operations/parameter.h"
 
 namespace mimetra {
 
@@ -78,6 +81,9 @@ void note_others(LandmarksRead& read, const std::string& text, const LandmarkFil
 void check_needed(const std::string& text, bool images, const LandmarkInputOptions& options) {
   if (images && options.images) {
     throw MismatchError("option 'images': " + text + " are images themselves");
+  }
+  if (images && options.image_size) {
+    throw MismatchError("option 'image-size': " + text + " are images, whose size is known");
   }
   if (!images && options.faces.model) {
     throw MismatchError("option 'face-model': " + text + " are landmarks already");
@@ -166,6 +172,47 @@ void drop_doubtful(LandmarksRead& read, const std::string& text, double min_conf
   }
 }
 
+/// Width and height: "1920x1080".
+std::pair<int, int> size_of(const std::string& text) {
+  int width = 0, height = 0;
+  const char* const end = text.data() + text.size();
+  const auto first = std::from_chars(text.data(), end, width);
+  const bool goes_on = first.ec == std::errc() && first.ptr != end && *first.ptr == 'x';
+  const auto second = goes_on ? std::from_chars(first.ptr + 1, end, height) : first;
+  if (!goes_on || second.ec != std::errc() || second.ptr != end || width < 1 || height < 1) {
+    throw UsageError("option 'image-size': '" + text + "', expected WIDTHxHEIGHT, as 1920x1080");
+  }
+  return {width, height};
+}
+
+/// No landmark of a face is so near the corner in pixels.
+bool are_shares(const LandmarkTrack& track) {
+  constexpr double kMostShare = 2;
+  return !track.points.array().isNaN().all() &&
+         (track.points.array().isNaN() || track.points.array().abs() <= kMostShare).all();
+}
+
+void make_pixels(LandmarksRead& read, const std::string& text,
+                 const std::optional<std::string>& size) {
+  if (!is_mediapipe(read.track) || !are_shares(read.track)) {
+    if (!size) return;
+    throw MismatchError("option 'image-size': " + text + " has landmarks in pixels already");
+  }
+  if (size) {
+    const auto [width, height] = size_of(*size);
+    scale_to_pixels(read.track, width, height);
+  } else if (!read.images.empty()) {
+    const Image image = read_image(read.images.front());
+    scale_to_pixels(read.track, image.width, image.height);
+  } else {
+    throw MismatchError(
+        text +
+        ": has landmarks in shares of the image's width and height, as MediaPipe "
+        "counts; give its size by option 'image-size' (1920x1080), or its images by "
+        "option 'images'");
+  }
+}
+
 LandmarksRead find_in_images(Paths images, const SequenceSource& source, FaceOptions options) {
   options.threads = source.threads;
   options.progress = source.progress;
@@ -202,6 +249,7 @@ LandmarksRead read_landmark_input(const std::string& text, const SequenceSource&
     read.files = files.empty() ? Paths{input.track} : files;
     read.images = taken_from(images_of(text, input.frames, count, options), selected);
     read.files.insert(read.files.end(), read.images.begin(), read.images.end());
+    make_pixels(read, text, options.image_size);
     drop_doubtful(read, text, options.faces.min_confidence);
     note_others(read, text, input);
   }

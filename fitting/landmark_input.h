@@ -17,7 +17,11 @@ struct LandmarkInputOptions {
   /// The images that the landmarks of a track or of .pts files belong to, one for each frame: a
   /// file, folder or pattern. By default those of the same name beside .pts files, or none.
   std::optional<std::string> images = {};
+  /// "1920x1080": of landmarks in shares of width and height, as MediaPipe's are. By default that
+  /// of the images, where there are any.
+  std::optional<std::string> image_size = {};
 
+  static constexpr Option kImageSize{"image_size", &LandmarkInputOptions::image_size};
   static constexpr Option kImages{"images", &LandmarkInputOptions::images};
 };
 

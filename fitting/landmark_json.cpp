@@ -1,6 +1,10 @@
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <set>
+#include <utility>
 
 #include <nlohmann/json.hpp>
 
@@ -12,28 +16,49 @@ namespace mimetra {
 
 namespace {
 
+constexpr double kUnseenPoint = std::numeric_limits<double>::quiet_NaN();
+
+/// Keys under which a frame has its face: ours, and those of MediaPipe's interfaces.
+constexpr std::array kFaceKeys = {"points",    "faceLandmarks",      "face_landmarks",
+                                  "landmarks", "multiFaceLandmarks", "multi_face_landmarks",
+                                  "landmark"};
+
+/// A key for the time of a frame, and how many of it are a second.
+constexpr std::array<std::pair<const char*, double>, 3> kTimeKeys = {
+    {{"time", 1}, {"timestamp_ms", 1000}, {"timestampMs", 1000}}};
+
+bool is_point(const Json& value) {
+  if (value.is_object()) return value.contains("x") && value.contains("y");
+  return value.is_array() && !value.empty() && value[0].is_primitive();
+}
+
+/// True for a list whose first entry that is any is a point, and for one without any.
+bool are_points(const Json& list) {
+  const auto first = std::ranges::find_if(list, [](const Json& entry) { return !entry.is_null(); });
+  return first == list.end() || is_point(*first);
+}
+
 class JsonReader {
  public:
   explicit JsonReader(const std::filesystem::path& path)
       : path_(path.string()), root_(read_json(path)) {}
 
   LandmarkTrack read() {
-    if (!root_.is_object()) fail("/", "expected an object with \"frames\" or \"points\"");
-    if (!root_.contains("frames")) {
-      read_frame(root_, "");
+    if (root_.is_object() && root_.contains("frames")) {
+      read_frames(root_["frames"], "/frames");
+    } else if (root_.is_array() && !are_points(root_)) {
+      read_frames(root_, "");
     } else {
-      const Json& frames = root_["frames"];
-      if (!frames.is_array() || frames.empty()) fail("/frames", "expected a list of frames");
-      for (std::size_t f = 0; f < frames.size(); ++f) {
-        read_frame(frames[f], "/frames/" + std::to_string(f));
-      }
+      read_frame(root_, "");
     }
     return track();
   }
 
  private:
+  using Points = std::vector<double>;
+
   [[noreturn]] void fail(const std::string& place, const std::string& message) const {
-    throw IoError(path_, place + ": " + message);
+    throw IoError(path_, (place.empty() ? "/" : place) + ": " + message);
   }
 
   double number(const Json& value, const std::string& place) const {
@@ -43,40 +68,94 @@ class JsonReader {
     return value.get<double>();
   }
 
+  void read_frames(const Json& frames, const std::string& place) {
+    if (!frames.is_array() || frames.empty()) fail(place, "expected a list of frames");
+    for (std::size_t f = 0; f < frames.size(); ++f) {
+      read_frame(frames[f], place + '/' + std::to_string(f));
+    }
+  }
+
   void read_frame(const Json& frame, const std::string& place) {
-    if (!frame.is_object() || !frame.contains("points") || !frame["points"].is_array()) {
-      fail(place + "/points", "expected a list of points [x, y]");
+    faces_.push_back(face_in(frame, place));
+    if (!frame.is_object()) return;
+    if (frame.contains("timestamp")) {
+      fail(place + "/timestamp",
+           "in which unit? call it \"time\" for seconds, or \"timestamp_ms\"");
     }
-    const Json& points = frame["points"];
-    if (frames_ == 0) landmarks_ = points.size();
-    if (landmarks_ == 0 || points.size() != landmarks_) {
-      fail(place + "/points", std::to_string(points.size()) + " points, expected " +
-                                  (frames_ == 0 ? "some" : std::to_string(landmarks_)) +
-                                  (frames_ == 0 ? "" : " as in the first frame"));
-    }
-    for (std::size_t i = 0; i < points.size(); ++i) {
-      read_point(points[i], place + "/points/" + std::to_string(i));
-    }
-    if (frame.contains("time")) {
-      const double time = number(frame["time"], place + "/time");
-      if (!times_.empty() && time <= times_.back()) fail(place + "/time", "times do not ascend");
+    for (const auto& [key, per_second] : kTimeKeys) {
+      if (!frame.contains(key)) continue;
+      const double time = number(frame[key], place + '/' + key) / per_second;
+      if (!times_.empty() && time <= times_.back()) {
+        fail(place + '/' + key, "times do not ascend");
+      }
       times_.push_back(time);
+      break;
     }
     if (frame.contains("confidence")) {
       const double confidence = number(frame["confidence"], place + "/confidence");
       if (!(confidence >= 0 && confidence <= 1)) fail(place + "/confidence", "is outside [0, 1]");
       confidences_.push_back(confidence);
     }
-    ++frames_;
   }
 
-  void read_point(const Json& point, const std::string& place) {
-    if (point.is_null()) {
-      points_.insert(points_.end(), 2, std::numeric_limits<double>::quiet_NaN());
-      return;
+  /// The face in a frame or in a part of it: of several the largest, and once there is one, the
+  /// nearest to the last one. None where there is none.
+  std::optional<Points> face_in(const Json& value, const std::string& place) {
+    if (value.is_object()) {
+      for (const char* key : kFaceKeys) {
+        if (value.contains(key)) return face_in(value[key], place + '/' + key);
+      }
+      fail(place, "expected a list of \"points\", or MediaPipe's \"faceLandmarks\"");
     }
-    if (!point.is_array() || point.size() != 2) fail(place, "expected [x, y] or null");
-    for (const Json& value : point) points_.push_back(number(value, place));
+    if (value.is_null() || (value.is_array() && value.empty())) return {};
+    if (!value.is_array()) fail(place, "expected a list of points [x, y]");
+    if (are_points(value)) return points_of(value, place);
+    std::optional<Points> chosen;
+    for (std::size_t face = 0; face < value.size(); ++face) {
+      std::optional<Points> found = face_in(value[face], place + '/' + std::to_string(face));
+      if (found && (!chosen || merit(*found) > merit(*chosen))) chosen = std::move(found);
+    }
+    if (chosen) last_ = middle(*chosen);
+    return chosen;
+  }
+
+  Points points_of(const Json& list, const std::string& place) {
+    if (landmarks_ == 0) landmarks_ = list.size();
+    if (list.size() != landmarks_) {
+      fail(place, std::to_string(list.size()) + " points, expected " + std::to_string(landmarks_) +
+                      " as in the first frame");
+    }
+    Points points;
+    for (std::size_t i = 0; i < list.size(); ++i) {
+      read_point(list[i], place + '/' + std::to_string(i), points);
+    }
+    return points;
+  }
+
+  /// A depth after x and y is left out.
+  void read_point(const Json& point, const std::string& place, Points& points) const {
+    if (point.is_null()) {
+      points.insert(points.end(), 2, kUnseenPoint);
+    } else if (point.is_object() && is_point(point)) {
+      points.push_back(number(point["x"], place + "/x"));
+      points.push_back(number(point["y"], place + "/y"));
+    } else if (point.is_array() && (point.size() == 2 || point.size() == 3)) {
+      points.push_back(number(point[0], place));
+      points.push_back(number(point[1], place));
+    } else {
+      fail(place, "expected [x, y] or null");
+    }
+  }
+
+  using Seen = Eigen::Map<const Eigen::Matrix2Xd>;
+  static Seen columns(const Points& points) {
+    return {points.data(), 2, static_cast<Eigen::Index>(points.size() / 2)};
+  }
+  static Eigen::Vector2d middle(const Points& points) { return columns(points).rowwise().mean(); }
+  double merit(const Points& points) const {
+    const Eigen::Vector2d center = middle(points);
+    if (last_) return -(center - *last_).squaredNorm();
+    return (columns(points).colwise() - center).squaredNorm();
   }
 
   std::vector<std::string> names() const {
@@ -97,27 +176,41 @@ class JsonReader {
     return names;
   }
 
+  Frames points() const {
+    Frames points(static_cast<Eigen::Index>(faces_.size()),
+                  static_cast<Eigen::Index>(2 * landmarks_));
+    for (std::size_t f = 0; f < faces_.size(); ++f) {
+      auto row = points.row(static_cast<Eigen::Index>(f));
+      if (!faces_[f]) {
+        row.setConstant(kUnseenPoint);
+      } else {
+        row = Eigen::Map<const Eigen::RowVectorXd>(faces_[f]->data(), row.size());
+      }
+    }
+    return points;
+  }
+
   /// One number for each frame, or none at all.
   Eigen::VectorXd of_frames(const std::vector<double>& values, const std::string& name) const {
-    if (!values.empty() && values.size() != frames_) {
+    if (!values.empty() && values.size() != faces_.size()) {
       fail("/frames", "\"" + name + "\" is in " + std::to_string(values.size()) + " of " +
-                          std::to_string(frames_) + " frames, expected it in all or in none");
+                          std::to_string(faces_.size()) + " frames, expected it in all or in none");
     }
     return Eigen::Map<const Eigen::VectorXd>(values.data(),
                                              static_cast<Eigen::Index>(values.size()));
   }
 
   LandmarkTrack track() const {
-    return {names(),
-            Eigen::Map<const Frames>(points_.data(), static_cast<Eigen::Index>(frames_),
-                                     static_cast<Eigen::Index>(2 * landmarks_)),
-            of_frames(times_, "time"), of_frames(confidences_, "confidence")};
+    if (landmarks_ == 0) fail("", "shows no face in any frame; expected a list of points");
+    return {names(), points(), of_frames(times_, "time"), of_frames(confidences_, "confidence")};
   }
 
   std::string path_;
   Json root_;
-  std::size_t landmarks_ = 0, frames_ = 0;
-  std::vector<double> points_, times_, confidences_;
+  std::size_t landmarks_ = 0;
+  std::vector<std::optional<Points>> faces_;
+  std::optional<Eigen::Vector2d> last_;  ///< middle of the last face that was chosen of several
+  std::vector<double> times_, confidences_;
 };
 
 }  // namespace

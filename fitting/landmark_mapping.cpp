@@ -5,6 +5,7 @@
 #include <set>
 
 #include "fitting/landmark_formats.h"
+#include "fitting/mediapipe.h"
 #include "toolkit/io/text_cursor.h"
 #include "toolkit/io/whole_file.h"
 #include "toolkit/mesh/errors.h"
@@ -129,7 +130,8 @@ MappedLandmarks map_landmarks(const LandmarkTrack& track, const LandmarkMapping&
   std::vector<Eigen::Index> columns;
   MappedLandmarks mapped;
   for (const auto& [name, index] : mapping) {
-    const auto found = std::ranges::find(track.names, name);
+    const std::string known = is_mediapipe(track) ? mediapipe_name(name).value_or(name) : name;
+    const auto found = std::ranges::find(track.names, known);
     if (found == track.names.end()) {
       check_scheme(name, track);
       continue;

@@ -30,8 +30,9 @@ struct MappedLandmarks {
   Frames outline = {};
 };
 
-/// Takes them in the mapping's order. Throws MismatchError where there is none, and where landmarks
-/// are numbered and the mapping has larger numbers.
+/// Takes them in the mapping's order; of MediaPipe's landmarks ("mp0" to "mp477") those at the
+/// places of iBUG's that the mapping names. Throws MismatchError where there is none, and where
+/// landmarks are numbered and the mapping has larger numbers.
 MappedLandmarks map_landmarks(const LandmarkTrack& track, const LandmarkMapping& mapping);
 
 }  // namespace mimetra

@@ -284,7 +284,7 @@ const std::vector<FolderRule>& folder_rules() {
         {"io",
          "toolkit/io",
          {"mesh", "model", "splocs", "regions"},
-         {"OpenMesh", "HDF5", "JSON", "libzip", "zlib", "meshoptimizer", "Draco"}},
+         {"OpenMesh", "JSON", "libzip", "zlib", "meshoptimizer", "Draco"}},
         {"operations", "toolkit/operations", below_operations, {"JSON", "xxHash"}},
         {"vtk", "toolkit/vtk", up_to_operations, {"VTK", "JSON"}},
         {"pictures", "toolkit/pictures", up_to_vtk, {"VTK", "VTK's rendering", "OpenGL", "JSON"}},

@@ -1,5 +1,7 @@
 // Values made of arrays, and of other values.
 
+#include <cstddef>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -220,6 +222,16 @@ TEST(MadeData, IsOnePictureOrADocument) {
   const char* const text[] = {"<html>"};
   const NamedData page = made(MIMETRA_DOCUMENT, {array("text", MIMETRA_STRING, {1}, text)});
   EXPECT_EQ(std::get<Document>(page.data).text, "<html>");
+}
+
+TEST(MadeData, TakesNoPartOfAPointer) {
+  const double values[3] = {};
+  mimetra_array column = array("x", MIMETRA_F64, {3}, values);
+  for (const std::size_t bytes : {1U, 4U, 7U}) {
+    column.struct_size = static_cast<std::uint32_t>(offsetof(mimetra_array, name) + bytes);
+    EXPECT_THAT([&] { made(MIMETRA_TABLE, {column}); },
+                ThrowsMessage<UsageError>(HasSubstr("has no name")));
+  }
 }
 
 TEST(MadeData, SaysWhereALocationIsWrong) {

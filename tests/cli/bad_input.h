@@ -30,6 +30,7 @@ std::vector<BadInput> mesh_cases();
 std::vector<BadInput> sequence_cases();
 std::vector<BadInput> array_cases();
 std::vector<BadInput> hdf5_cases();
+std::vector<BadInput> scene_cases();
 std::vector<BadInput> model_cases();
 std::vector<BadInput> weight_cases();
 std::vector<BadInput> eos_cases();
@@ -41,6 +42,7 @@ std::vector<BadInput> motion_cases();
 std::vector<BadInput> geometry_cases();
 std::vector<BadInput> request_cases();
 std::vector<BadInput> output_cases();
+std::vector<BadInput> hostile_cases();
 
 /// A mesh that may be wrong in any way, to be written without any help of the library.
 struct RawMesh {

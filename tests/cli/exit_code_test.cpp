@@ -26,7 +26,7 @@ TEST_F(ExitCode, Is2ForAnUnknownCommandAndSuggestsTheNearest) {
 
 TEST_F(ExitCode, Is2ForAnUnknownOptionAndSuggestsTheNearest) {
   expect_failure("regions head --weights take.csv --radios 0.1 -o r.json", 2,
-                 "did you mean '--radius'?");
+                 "unknown option --radios; did you mean '--radius'?");
 }
 
 TEST_F(ExitCode, Is2ForAPatternWithoutQuotesWhichIsNamed) {

@@ -118,8 +118,9 @@ TEST_F(Fit, IsReadAgainAsThePerformance) {
   }
 }
 
-TEST_F(Fit, DoesNotChangeWithTheImagesScaleRotationAndPlace) {
-  Frames moved = clip_.points;
+/// The points in images that are turned by 36 degrees, made smaller and moved.
+Frames moved_images(const Frames& points) {
+  Frames moved = points;
   const Eigen::Rotation2D<double> turn(std::numbers::pi / 5);
   for (Eigen::Index f = 0; f < moved.rows(); ++f) {
     for (Eigen::Index i = 0; i < moved.cols(); i += 2) {
@@ -127,7 +128,11 @@ TEST_F(Fit, DoesNotChangeWithTheImagesScaleRotationAndPlace) {
       moved.row(f).segment<2>(i) = (0.37 * (turn * point) + Eigen::Vector2d(1000, -20)).transpose();
     }
   }
-  write("moved.csv", csv_of(moved));
+  return moved;
+}
+
+TEST_F(Fit, DoesNotChangeWithTheImagesScaleRotationAndPlace) {
+  write("moved.csv", csv_of(moved_images(clip_.points)));
   for (const std::string solver : {"joint", "alternating"}) {
     for (const std::string shape : {"clip", "frame"}) {
       const std::string options = " --solver " + solver + " --shape " + shape;
@@ -137,6 +142,30 @@ TEST_F(Fit, DoesNotChangeWithTheImagesScaleRotationAndPlace) {
       EXPECT_LT((here.alpha - there.alpha).cwiseAbs().maxCoeff(), 1e-6) << name;
       EXPECT_LT((here.beta - there.beta).cwiseAbs().maxCoeff(), 1e-6) << name;
     }
+  }
+}
+
+/// Images have y down: what turns there by an angle turns by its negative for a viewer.
+TEST_F(Fit, TurnsAsTheHeadDoesWhereItIsAskedTo) {
+  write("moved.csv", csv_of(moved_images(clip_.points)));
+  fitted("track.csv", "still");
+  fitted("track.csv --head-motion keep", "here");
+  fitted("moved.csv --head-motion keep", "there");
+  const SequenceRead still = read_sequence((folder_ / "still.npy").string());
+  const SequenceRead here = read_sequence((folder_ / "here.npy").string());
+  EXPECT_EQ(here.sequence.rest(), still.sequence.rest());
+  EXPECT_EQ(here.sequence.times(), still.sequence.times());
+  const Eigen::RowVector3d middle = here.sequence.rest().colwise().mean();
+  const Eigen::Matrix3d turn =
+      Eigen::AngleAxisd(-std::numbers::pi / 5, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+  const Frames there = frames_of("there.npy");
+  const double size = (here.sequence.rest().rowwise() - middle).norm();
+  for (int f = 0; f < kFrames; ++f) {
+    const Positions frame = here.sequence.frame(f);
+    EXPECT_GT((frame - still.sequence.frame(f)).norm(), 0.01 * size) << f;
+    const Positions expected = ((frame.rowwise() - middle) * turn.transpose()).rowwise() + middle;
+    const Eigen::Map<const Positions> found(there.row(f).data(), frame.rows(), 3);
+    EXPECT_LT((found - expected).norm(), 1e-5 * size) << f;
   }
 }
 

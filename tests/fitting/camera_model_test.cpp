@@ -74,24 +74,24 @@ TEST(CameraModel, OfTheJointSolverEndsAtAMinimumOfItsEnergy) {
     EXPECT_NEAR(fits.front().energies.back(), least, 1e-9 * least);
     if (std::isfinite(focal_length)) continue;  // there a step takes each landmark's depth as it is
     // A step away along any unknown costs its square; what a slope would gain is 1e4 times that.
-    constexpr double kStep = 1e-4, kRounding = 1e-9;
+    constexpr double kStep = 1e-4, kOfRounding = 1e-9;
     for (const double step : {-kStep, kStep}) {
       for (Eigen::Index j = 0; j < alpha.size(); ++j) {
         Eigen::VectorXd other = alpha;
         other[j] += step;
-        EXPECT_GT(energy(cameras, other, beta), least - kRounding * least);
+        EXPECT_GT(energy(cameras, other, beta), least - kOfRounding * least);
       }
       for (std::size_t f = 0; f < 3; ++f) {
         for (Eigen::Index j = 0; j < beta.cols(); ++j) {
           Eigen::MatrixXd other = beta;
           double& value = other(static_cast<Eigen::Index>(f), j);
           value = std::clamp(value + step, 0.0, 1.0);
-          EXPECT_GT(energy(cameras, alpha, other), least - kRounding * least);
+          EXPECT_GT(energy(cameras, alpha, other), least - kOfRounding * least);
         }
         for (Eigen::Index j = 0; j < 8; ++j) {
           std::vector<AffineCamera> other = cameras;
           other[f].reshaped()[j] += step * (j < 6 ? 1e-2 : 1);
-          EXPECT_GT(energy(other, alpha, beta), least - kRounding * least);
+          EXPECT_GT(energy(other, alpha, beta), least - kOfRounding * least);
         }
       }
     }

@@ -137,16 +137,20 @@ TEST_F(Landmarks, OfAJsonFileMayBeOneFrame) {
 
 TEST_F(Landmarks, OfABrokenJsonFileNameTheElement) {
   EXPECT_THAT(message("a.json", "{"), HasSubstr("expected JSON"));
-  EXPECT_THAT(message("a.json", "[]"), HasSubstr("expected an object with \"frames\""));
-  EXPECT_THAT(message("a.json", "{}"), HasSubstr("/points: expected a list of points"));
-  EXPECT_THAT(message("a.json", R"({"points": []})"), HasSubstr("/points: 0 points"));
+  EXPECT_THAT(message("a.json", "[]"), HasSubstr("shows no face in any frame"));
+  EXPECT_THAT(message("a.json", "{}"), HasSubstr("/: expected a list of \"points\""));
+  EXPECT_THAT(message("a.json", "[[]]"), HasSubstr("shows no face in any frame"));
+  EXPECT_THAT(message("a.json", R"({"points": 3})"), HasSubstr("/points: expected a list"));
+  EXPECT_THAT(message("a.json", R"({"points": []})"), HasSubstr("shows no face in any frame"));
   EXPECT_THAT(message("a.json", R"({"frames": []})"), HasSubstr("/frames: expected a list"));
   EXPECT_THAT(message("a.json", R"({"points": [[1]]})"),
               HasSubstr("/points/0: expected [x, y] or null"));
   EXPECT_THAT(message("a.json", R"({"points": [["a", 1]]})"),
               HasSubstr("/points/0: expected a finite number"));
-  EXPECT_THAT(message("a.json", R"({"frames": [{"points": [[1, 2]]}, {"points": []}]})"),
-              HasSubstr("/frames/1/points: 0 points, expected 1 as in the first frame"));
+  EXPECT_THAT(message("a.json", R"({"frames": [{"points": [[1, 2]]}, {"points": [null, null]}]})"),
+              HasSubstr("/frames/1/points: 2 points, expected 1 as in the first frame"));
+  EXPECT_THAT(message("a.json", R"([{"timestamp": 33, "points": [[1, 2]]}])"),
+              HasSubstr("/0/timestamp: in which unit?"));
   EXPECT_THAT(
       message("a.json", R"({"frames": [{"points": [null]}, {"time": 1, "points": [null]}]})"),
       HasSubstr("\"time\" is in 1 of 2 frames"));
@@ -159,6 +163,57 @@ TEST_F(Landmarks, OfABrokenJsonFileNameTheElement) {
               HasSubstr("/names: expected strings"));
   EXPECT_THAT(message("a.json", R"({"names": ["a", "a"], "points": [null, null]})"),
               HasSubstr("/names: the name 'a' occurs twice"));
+}
+
+/// Every frame of these shows (1, 2) and (3, 4), and the second none.
+TEST_F(Landmarks, OfMediaPipeAreReadAsItsInterfacesGiveThem) {
+  const std::string face = R"([{"x": 1, "y": 2, "z": -5}, {"x": 3, "y": 4, "z": 6}])";
+  const std::vector<std::string> files = {
+      R"({"frames": [{"faceLandmarks": [)" + face + R"(]}, {"faceLandmarks": []}]})",
+      R"([{"face_landmarks": [)" + face + R"(]}, {"face_landmarks": []}])",
+      R"([{"multi_face_landmarks": [{"landmark": )" + face + R"(}]}, null])",
+      R"([{"multiFaceLandmarks": [)" + face + R"(]}, {"multiFaceLandmarks": null}])",
+      "[" + face + ", null]",
+      "[" + face + ", []]",
+      "[[[1, 2, -5], [3, 4, 6]], []]",
+  };
+  for (const std::string& file : files) {
+    const LandmarkTrack track = read("a.json", file);
+    ASSERT_EQ(track.frames(), 2) << file;
+    EXPECT_EQ(track.points.row(0), Eigen::RowVector4d(1, 2, 3, 4)) << file;
+    EXPECT_TRUE(track.points.row(1).array().isNaN().all()) << file;
+  }
+  EXPECT_TRUE(read("a.json", "[null, " + face + "]").points.row(0).array().isNaN().all());
+}
+
+TEST_F(Landmarks, OfSeveralFacesFollowOneFromTheLargestOn) {
+  const auto face = [](double x, double size) {
+    const std::string left = std::to_string(x - size), right = std::to_string(x + size);
+    return "[[" + left + ", 0], [" + right + ", 0]]";
+  };
+  const LandmarkTrack track =
+      read("a.json", "[[" + face(10, 1) + ", " + face(50, 3) + "], [" + face(12, 9) + ", " +
+                         face(47, 1) + "], [" + face(40, 2) + "]]");
+  EXPECT_EQ(track.points.col(0), Eigen::Vector3d(47, 46, 38));
+}
+
+TEST_F(Landmarks, OfMediaPipeAreCalledByItsNumbersAndMayHaveMilliseconds) {
+  for (const int count : {468, 478}) {
+    std::string points;
+    for (int i = 0; i < count; ++i) points += (i > 0 ? ", [" : "[") + std::to_string(i) + ", 0, 0]";
+    const LandmarkTrack track =
+        read("a.json", R"([{"timestamp_ms": 40, "faceLandmarks": [[)" + points + "]]}]");
+    EXPECT_EQ(track.names.front(), "mp0");
+    EXPECT_EQ(track.names.back(), "mp" + std::to_string(count - 1));
+    EXPECT_EQ(track.points(0, 2 * 133), 133);
+    EXPECT_EQ(track.times[0], 0.04);
+  }
+}
+
+TEST_F(Landmarks, OfACsvTrackMayCountFromOne) {
+  const LandmarkTrack track = read("a.csv", "x1,y1,z1,x2,y2,z2\n1,2,9,3,4,9\n");
+  EXPECT_THAT(track.names, ElementsAre("1", "2"));
+  EXPECT_EQ(track.points, Eigen::RowVector4d(1, 2, 3, 4));
 }
 
 TEST_F(Landmarks, OfAnUnknownFormatAreRefused) {

@@ -97,5 +97,32 @@ TEST_F(LandmarkInput, KeepsTheTimeOfTheWholeClip) {
               ElementsAre(testing::DoubleEq(0.1), testing::DoubleEq(0.2)));
 }
 
+/// 468 landmarks, all in the middle of a quarter of the image.
+std::string quarter_of_an_image() {
+  std::string points;
+  for (int i = 0; i < 468; ++i) points += std::string(i > 0 ? ", " : "") + "[0.25, 0.5, 0]";
+  return "[[" + points + "]]";
+}
+
+TEST_F(LandmarkInput, InSharesOfTheImageBecomePixels) {
+  write("m.json", quarter_of_an_image());
+  const LandmarksRead read = this->read("m.json", {}, {.image_size = "1920x1080"});
+  EXPECT_EQ(read.track.points(0, 0), 479.5);
+  EXPECT_EQ(read.track.points(0, 1), 539.5);
+}
+
+TEST_F(LandmarkInput, InSharesNeedsTheSizeOfTheImage) {
+  write("m.json", quarter_of_an_image());
+  EXPECT_THAT(test::message_of<MismatchError>([&] { read("m.json"); }),
+              AllOf(HasSubstr("in shares"), HasSubstr("option 'image-size'")));
+  for (const std::string size : {"", "1920", "1920x", "x1080", "1920x1080x3", "0x5", "-3x4"}) {
+    EXPECT_THROW(read("m.json", {}, {.image_size = size}), std::invalid_argument) << size;
+  }
+  write("t.csv", "x0,y0\n100,200\n");
+  EXPECT_THAT(
+      test::message_of<MismatchError>([&] { read("t.csv", {}, {.image_size = "1920x1080"}); }),
+      HasSubstr("in pixels already"));
+}
+
 }  // namespace
 }  // namespace mimetra

@@ -1,4 +1,5 @@
 #include <fstream>
+#include <set>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -99,6 +100,42 @@ TEST_F(Mapping, OfTheSharedModelsIsRead) {
   const auto ict = read_landmark_mapping(find_landmark_mapping(test::shared_path("data/ict-face")));
   EXPECT_EQ(ict.size(), 68u);
   EXPECT_THAT(ict.front(), Pair("1", 1225));
+}
+
+LandmarkTrack of_mediapipe() {
+  LandmarkTrack track;
+  track.points = Eigen::RowVectorXd::LinSpaced(2 * 478, 0, 2 * 478 - 1);
+  for (int i = 0; i < 478; ++i) track.names.push_back("mp" + std::to_string(i));
+  return track;
+}
+
+TEST_F(Mapping, OfIbugTakesThePlacesOfMediaPipe) {
+  // The corners of eyes and mouth, the chin, and the tip of the nose.
+  const LandmarkMapping mapping = {{"37", 1}, {"40", 2}, {"43", 3}, {"46", 4},
+                                   {"49", 5}, {"55", 6}, {"9", 7},  {"31", 8}};
+  const MappedLandmarks mapped = map_landmarks(of_mediapipe(), mapping);
+  EXPECT_THAT(mapped.vertices, ElementsAre(1, 2, 3, 4, 5, 6, 7, 8));
+  const std::vector<int> expected = {33, 133, 362, 263, 61, 291, 152, 4};
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    EXPECT_EQ(mapped.points(0, static_cast<Eigen::Index>(2 * i)), 2 * expected[i]);
+  }
+}
+
+TEST_F(Mapping, OfIbugTakes68PlacesOfMediaPipeOnce) {
+  LandmarkMapping mapping;
+  for (int i = 1; i <= 68; ++i) mapping.emplace_back(std::to_string(i), i);
+  const MappedLandmarks mapped = map_landmarks(of_mediapipe(), mapping);
+  ASSERT_EQ(mapped.points.cols(), 2 * 68);
+  std::set<double> places;
+  for (Eigen::Index i = 0; i < 68; ++i) places.insert(mapped.points(0, 2 * i));
+  EXPECT_EQ(places.size(), 68U);
+}
+
+TEST_F(Mapping, MayNameMediaPipesLandmarks) {
+  const MappedLandmarks mapped =
+      map_landmarks(of_mediapipe(), read("[landmark_mappings]\nmp468 = 12\nmp1 = 7\n"));
+  EXPECT_THAT(mapped.vertices, ElementsAre(12, 7));
+  EXPECT_EQ(mapped.points, Eigen::RowVector4d(2 * 468, 2 * 468 + 1, 2, 3));
 }
 
 }  // namespace

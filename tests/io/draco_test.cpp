@@ -1,10 +1,7 @@
-#include <array>
-
-#include <draco/compression/encode.h>
-#include <draco/mesh/triangle_soup_mesh_builder.h>
 #include <gmock/gmock.h>
 #include <Eigen/LU>
 
+#include "tests/io/draco_octahedron.h"
 #include "tests/io/gltf_builder.h"
 #include "tests/shapes.h"
 #include "tests/temporary_folder.h"
@@ -15,33 +12,10 @@
 namespace mimetra {
 namespace {
 
+using test::draco_octahedron;
 using test::GltfBuilder;
 using test::GltfJson;
 using testing::HasSubstr;
-
-/// An octahedron as Draco's bytes: no number is rounded, every point stands once.
-std::string draco_octahedron() {
-  const test::Shape shape = test::octahedron();
-  draco::TriangleSoupMeshBuilder builder;
-  builder.Start(static_cast<int>(shape.triangles.rows()));
-  const int id = builder.AddAttribute(draco::GeometryAttribute::POSITION, 3, draco::DT_FLOAT32);
-  for (int t = 0; t < shape.triangles.rows(); ++t) {
-    std::array<std::array<float, 3>, 3> corner{};
-    for (std::size_t k = 0; k < 3; ++k) {
-      for (std::size_t c = 0; c < 3; ++c) {
-        corner[k][c] = static_cast<float>(
-            shape.positions(shape.triangles(t, Eigen::Index(k)), Eigen::Index(c)));
-      }
-    }
-    builder.SetAttributeValuesForFace(id, draco::FaceIndex(static_cast<std::uint32_t>(t)),
-                                      corner[0].data(), corner[1].data(), corner[2].data());
-  }
-  const auto mesh = builder.Finalize();
-  draco::Encoder encoder;
-  draco::EncoderBuffer buffer;
-  EXPECT_TRUE(encoder.EncodeMeshToBuffer(*mesh, &buffer).ok());
-  return {buffer.data(), buffer.size()};
-}
 
 std::string draco_glb(const std::string& encoded) {
   GltfBuilder gltf;
@@ -80,6 +54,18 @@ TEST(Draco, EveryTruncatedPrefixIsAnError) {
                 HasSubstr("a.glb: 'mesh_000'"))
         << bytes;
   }
+}
+
+TEST(Draco, TruthValuesAreNoPositions) {
+  test::TemporaryFolder folder;
+  std::string encoded = draco_octahedron();
+  const std::string positions("\x01\x00\x09\x03", 4);  // one attribute: positions, float32, 3 each
+  const auto at = encoded.find(positions);
+  ASSERT_NE(at, std::string::npos);
+  encoded[at + 2] = 11;
+  write_bytes(folder / "a.glb", draco_glb(encoded));
+  EXPECT_THAT(test::message_of<IoError>([&] { read_blendshapes((folder / "a.glb").string()); }),
+              HasSubstr("its compressed mesh has no number for a vertex"));
 }
 
 }  // namespace

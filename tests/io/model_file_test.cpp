@@ -111,6 +111,20 @@ TEST_F(Model, IsNotWrittenWhereAShapeNameCannotBeAFile) {
   }
 }
 
+TEST_F(Model, ConsistsOfTheFilesThatAreReadAndNotOfStrangers) {
+  write_model(folder_ / "m", small_model(), {}, false, {{"landmarks68.txt", "1 = 2"}});
+  std::filesystem::create_directory(folder_ / "m/renders");
+  write("m/renders/strange.png", "large");
+  write("m/expressions/notes.doc", "strange");
+  std::filesystem::create_symlink("loop", folder_ / "m/loop");
+  const auto folder = folder_ / "m";
+  EXPECT_EQ(model_files(folder),
+            (std::vector{folder / "neutral.ply", folder / "expressions/blink.ply",
+                         folder / "expressions/frown.ply", folder / "expressions/smile.ply",
+                         folder / "identities/long.ply", folder / "identities/wide.ply",
+                         folder / "landmarks68.txt"}));
+}
+
 TEST_F(Model, HasItsShapesInNaturalOrder) {
   write("neutral.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
   std::filesystem::create_directory(folder_ / "expressions");
@@ -191,6 +205,12 @@ TEST_F(Model, UnknownIdentityIsAMismatchThatSaysWhatThereIs) {
 
 TEST(ModelSpec, RefusesWhatIsNoCoefficient) {
   for (const char* text : {"m@wide", "m@wide=", "m@=1", "m@wide=1,", "m@wide=x", "m@wide=inf"}) {
+    EXPECT_THROW(ModelSpec::parse(text), std::invalid_argument) << text;
+  }
+}
+
+TEST(ModelSpec, RefusesANameWithoutAModel) {
+  for (const char* text : {"", "@wide=1", "@a.fit.json"}) {
     EXPECT_THROW(ModelSpec::parse(text), std::invalid_argument) << text;
   }
 }

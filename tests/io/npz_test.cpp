@@ -187,6 +187,10 @@ TEST_F(NpzFiles, ClaimsOfAHugeSizeAreRefusedBeforeMemoryIsAskedFor) {
   }
 }
 
+TEST_F(NpzFiles, MayHoldAMemberWithoutBytes) {
+  EXPECT_THAT(error({positions_, {"faces.npy", ""}}), HasSubstr("a.npz: faces"));
+}
+
 TEST_F(NpzFiles, NameWhatIsWrongInThem) {
   EXPECT_THAT(error({faces_}), HasSubstr("holds faces.npy, expected an array positions"));
   EXPECT_THAT(error({{"positions.npy", npy("<i8", "1, 3", kFace)}, faces_}),

@@ -19,6 +19,14 @@ TEST(NaturalLess, OrdersEqualNumbersOfDifferentLengthOneWay) {
   EXPECT_TRUE(natural_less("f01a", "f1b"));
 }
 
+TEST(Text, IsPrintableWithoutControlsInUtf8) {
+  EXPECT_TRUE(is_printable("smile \u7b11 <&\"'>"));
+  EXPECT_TRUE(is_printable(""));
+  for (const char* text : {"a\nb", "\t", "\x1b[31m", "\x7f", "\u009b", "br\xe4ue", "\u202e"}) {
+    EXPECT_FALSE(is_printable(text)) << text;
+  }
+}
+
 TEST(Text, ListsTheFirstOfManyAndCountsTheRest) {
   EXPECT_EQ(listed({"a", "b", "c"}, 3), "a, b, c");
   EXPECT_EQ(listed({"a", "b", "c"}, 2), "a, b and 1 more");

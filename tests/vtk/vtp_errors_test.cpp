@@ -81,6 +81,17 @@ TEST_F(VtpErrors, AFullDiskIsAnOutputErrorAndLeavesNothing) {
   EXPECT_TRUE(folder_is_empty());
 }
 
+TEST_F(VtpErrors, ANameThatXmlCannotHoldIsRefused) {
+  for (const std::string name : {"a\nb.pvd", "a\x01.pvd", "br\xe4ue.pvd"}) {
+    EXPECT_THAT([&] { write_vtp_series(quad_and_triangle(), in_folder(name)); },
+                ThrowsMessage<OutputError>(HasSubstr("choose another")));
+    EXPECT_FALSE(std::filesystem::exists(in_folder(name)));
+  }
+  write_vtp_series(quad_and_triangle(), in_folder("<a> & \"b's\" \u7b11.pvd"));
+  EXPECT_EQ(read_vtp_series(in_folder("<a> & \"b's\" \u7b11.pvd")).sequence().frames(),
+            quad_and_triangle().frames->frames());
+}
+
 TEST_F(VtpErrors, ACancelledSeriesLeavesNothing) {
   const auto stop_at_half = [](double share) { return share < 0.5; };
   EXPECT_THROW(

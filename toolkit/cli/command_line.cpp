@@ -174,7 +174,7 @@ std::string explained(const CLI::App& app, const std::vector<std::string>& argum
     const std::string name = argument.substr(0, argument.find('='));
     if (!name.starts_with("--") || std::ranges::find(known, name) != known.end()) continue;
     const std::string nearest = nearest_word(name, known);
-    return first + ": no option '" + name + "'" +
+    return first + ": unknown option " + name +
            (nearest.empty() ? "; mimetra " + first + " --help lists them"
                             : "; did you mean '" + nearest + "'?");
   }

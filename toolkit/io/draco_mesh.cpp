@@ -11,15 +11,20 @@
 namespace mimetra {
 namespace {
 
-Frames draco_values(const draco::Mesh& mesh, const draco::PointAttribute& attribute,
-                    int components) {
+Frames draco_values(const std::string& path, const std::string& what, const draco::Mesh& mesh,
+                    const draco::PointAttribute& attribute, int components) {
+  // Its bytes would be taken for truth values, whatever they are.
+  const bool is_of_numbers = attribute.data_type() != draco::DT_BOOL;
   Frames values(mesh.num_points(), components);
   float element[4] = {};
   for (draco::PointIndex point(0); point < mesh.num_points(); ++point) {
-    const bool is_there = attribute.ConvertValue<float>(attribute.mapped_index(point),
-                                                        static_cast<int8_t>(components), element);
+    if (!is_of_numbers ||
+        !attribute.ConvertValue<float>(attribute.mapped_index(point),
+                                       static_cast<int8_t>(components), element)) {
+      throw IoError(path, what + ": its compressed mesh has no number for a vertex");
+    }
     for (int c = 0; c < components; ++c) {
-      values(point.value(), c) = is_there ? static_cast<double>(element[c]) : 0;
+      values(point.value(), c) = static_cast<double>(element[c]);
     }
   }
   return values;
@@ -32,7 +37,8 @@ DracoMesh draco_parts(const std::string& path, const std::string& what, const dr
   };
   const auto* positions = attribute(draco.positions);
   if (!positions) throw IoError(path, what + ": its compressed mesh has no positions");
-  DracoMesh parts{Triangles(mesh.num_faces(), 3), draco_values(mesh, *positions, 3), {}};
+  DracoMesh parts{
+      Triangles(mesh.num_faces(), 3), draco_values(path, what, mesh, *positions, 3), {}};
   for (draco::FaceIndex face(0); face < mesh.num_faces(); ++face) {
     for (int corner = 0; corner < 3; ++corner) {
       const auto point = mesh.face(face)[static_cast<std::size_t>(corner)].value();
@@ -42,7 +48,7 @@ DracoMesh draco_parts(const std::string& path, const std::string& what, const dr
   }
   if (!parts.positions.allFinite()) throw IoError(path, what + ": a position is not finite");
   if (const auto* texture = attribute(draco.texture)) {
-    parts.texture = draco_values(mesh, *texture, 2);
+    parts.texture = draco_values(path, what, mesh, *texture, 2);
   }
   return parts;
 }

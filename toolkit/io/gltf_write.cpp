@@ -9,6 +9,8 @@
 #include "toolkit/io/binary_file.h"
 #include "toolkit/io/bytes.h"
 #include "toolkit/io/frame_files.h"
+#include "toolkit/io/gltf_numbers.h"
+#include "toolkit/io/json_text.h"
 #include "toolkit/io/pending_output.h"
 #include "toolkit/io/sequence_parts.h"
 #include "toolkit/mesh/errors.h"
@@ -17,8 +19,6 @@
 namespace mimetra {
 namespace fs = std::filesystem;
 namespace {
-
-using GltfOutJson = nlohmann::ordered_json;
 
 constexpr int kFloatType = 5126, kIndexType = 5125;
 constexpr int kVertexData = 34962, kFaceData = 34963;
@@ -31,6 +31,7 @@ constexpr double kLongestNumber = -std::numeric_limits<double>::min();
 constexpr GltfBounds kUnknownBounds = {{{kLongestNumber, kLongestNumber, kLongestNumber},
                                         {kLongestNumber, kLongestNumber, kLongestNumber}}};
 
+/// Bounds that hold a point too; those of the first point (0) alone.
 void include(GltfBounds& bounds, Eigen::Index point, const float* xyz) {
   for (std::size_t c = 0; c < 3; ++c) {
     const auto value = static_cast<double>(xyz[c]);
@@ -44,7 +45,7 @@ class GltfLayout {
  public:
   /// Room for `bytes` bytes. Returns the view.
   std::size_t add_view(std::size_t bytes, int use = 0) {
-    GltfOutJson view = {{"buffer", 0}, {"byteOffset", bytes_}, {"byteLength", bytes}};
+    Json view = {{"buffer", 0}, {"byteOffset", bytes_}, {"byteLength", bytes}};
     if (use != 0) view["target"] = use;
     views_.push_back(std::move(view));
     bytes_ += bytes;
@@ -82,48 +83,13 @@ class GltfLayout {
   std::size_t offset(std::size_t view) const {
     return views_[view]["byteOffset"].get<std::size_t>();
   }
-  const GltfOutJson& views() const { return views_; }
-  const GltfOutJson& accessors() const { return accessors_; }
+  const Json& views() const { return views_; }
+  const Json& accessors() const { return accessors_; }
 
  private:
-  GltfOutJson views_ = GltfOutJson::array(), accessors_ = GltfOutJson::array();
+  Json views_ = Json::array(), accessors_ = Json::array();
   std::size_t bytes_ = 0;
 };
-
-std::string float_bytes(const double* values, Eigen::Index count) {
-  std::string bytes(static_cast<std::size_t>(count) * sizeof(float), '\0');
-  for (Eigen::Index i = 0; i < count; ++i) {
-    put_little_endian(bytes.data() + sizeof(float) * static_cast<std::size_t>(i),
-                      static_cast<float>(values[i]));
-  }
-  return bytes;
-}
-
-/// Numbers of which those that are not 0 are stored, at least one.
-struct SparseNumbers {
-  std::string indices, values;
-  std::size_t stored = 0;
-};
-
-/// `values` in elements of `size`; elements with `count / 2` or more that are not 0 give nothing.
-std::optional<SparseNumbers> sparse_numbers(const double* values, Eigen::Index count, int size) {
-  SparseNumbers sparse;
-  const auto keep = [&](Eigen::Index element) {
-    append_little_endian(sparse.indices, static_cast<std::uint32_t>(element));
-    sparse.values += float_bytes(values + size * element, size);
-    ++sparse.stored;
-  };
-  for (Eigen::Index element = 0; element < count; ++element) {
-    bool is_zero = true;
-    for (int c = 0; c < size; ++c) {
-      is_zero = is_zero && static_cast<float>(values[size * element + c]) == 0;
-    }
-    if (!is_zero) keep(element);
-    if (2 * sparse.stored > static_cast<std::size_t>(count)) return std::nullopt;
-  }
-  if (sparse.stored == 0) keep(0);
-  return sparse;
-}
 
 /// Coordinates of each vertex (N), from the upper left corner; none where corners of one vertex
 /// differ, for which glTF has no place.
@@ -358,34 +324,33 @@ class GltfFile {
   }
 
   std::string json() const {
-    GltfOutJson primitive = {{"attributes", {{"POSITION", positions_}}}, {"indices", faces_}};
+    Json primitive = {{"attributes", {{"POSITION", positions_}}}, {"indices", faces_}};
     if (texture_) primitive["attributes"]["TEXCOORD_0"] = *texture_;
     for (const std::size_t accessor : accessors_of_targets_) {
       primitive["targets"].push_back({{"POSITION", accessor}});
     }
-    if (has_polygons_) primitive["extensions"]["FB_ngon_encoding"] = GltfOutJson::object();
-    GltfOutJson mesh = {{"primitives", GltfOutJson::array({primitive})}};
+    if (has_polygons_) primitive["extensions"]["FB_ngon_encoding"] = Json::object();
+    Json mesh = {{"primitives", Json::array({primitive})}};
     if (!names_.empty()) mesh["extras"] = {{"targetNames", names_}};
-    GltfOutJson root = {{"asset", {{"version", "2.0"}, {"generator", "mimetra"}}}};
+    Json root = {{"asset", {{"version", "2.0"}, {"generator", "mimetra"}}}};
     if (!rest_is_known_) root["asset"]["extras"] = {{"restIsFirstFrame", true}};
     if (has_polygons_) root["extensionsUsed"] = {"FB_ngon_encoding"};
     root["scene"] = 0;
-    root["scenes"] = GltfOutJson::array({{{"nodes", {0}}}});
-    root["nodes"] = GltfOutJson::array({{{"name", "face"}, {"mesh", 0}}});
-    root["meshes"] = GltfOutJson::array({mesh});
+    root["scenes"] = Json::array({{{"nodes", {0}}}});
+    root["nodes"] = Json::array({{{"name", "face"}, {"mesh", 0}}});
+    root["meshes"] = Json::array({mesh});
     if (times_) {
-      const GltfOutJson sampler = {
-          {"input", *times_}, {"interpolation", "LINEAR"}, {"output", weights_}};
-      const GltfOutJson channel = {{"sampler", 0}, {"target", {{"node", 0}, {"path", "weights"}}}};
-      root["animations"] = GltfOutJson::array(
+      const Json sampler = {{"input", *times_}, {"interpolation", "LINEAR"}, {"output", weights_}};
+      const Json channel = {{"sampler", 0}, {"target", {{"node", 0}, {"path", "weights"}}}};
+      root["animations"] = Json::array(
           {{{"name", "performance"}, {"samplers", {sampler}}, {"channels", {channel}}}});
     }
     root["accessors"] = layout_.accessors();
     root["bufferViews"] = layout_.views();
-    GltfOutJson buffer = {{"byteLength", layout_.bytes()}};
+    Json buffer = {{"byteLength", layout_.bytes()}};
     if (!is_binary_) buffer["uri"] = uri_of(data_path().filename().string());
-    root["buffers"] = GltfOutJson::array({buffer});
-    return root.dump(-1, ' ', false, GltfOutJson::error_handler_t::replace);
+    root["buffers"] = Json::array({buffer});
+    return root.dump(-1, ' ', false, Json::error_handler_t::replace);
   }
 
   /// A file's name as a URI. [RFC 3986, 2.3]

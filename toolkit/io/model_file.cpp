@@ -243,9 +243,7 @@ void write_shapes(const fs::path& folder, const ShapeBasis& basis, const Morphab
   }
 }
 
-}  // namespace
-
-ModelSpec ModelSpec::parse(const std::string& text) {
+ModelSpec parsed_spec(const std::string& text) {
   ModelSpec spec;
   const auto slash = text.find_last_of('/');
   const auto at = text.find_last_of('@');
@@ -278,12 +276,20 @@ ModelSpec ModelSpec::parse(const std::string& text) {
   return spec;
 }
 
+}  // namespace
+
+ModelSpec ModelSpec::parse(const std::string& text) {
+  ModelSpec spec = parsed_spec(text);
+  if (!spec.path.empty()) return spec;
+  throw std::invalid_argument("'" + text + "': names no model");
+}
+
 std::vector<std::string> ModelSpec::notes() const {
   // Standard deviations, or shares of an identity.
-  constexpr double kMostUsual = 10;
+  constexpr double kMostDeviations = 10;
   std::vector<std::string> notes;
   for (const auto& [identity_name, coefficient] : identity) {
-    if (std::abs(coefficient) <= kMostUsual) continue;
+    if (std::abs(coefficient) <= kMostDeviations) continue;
     notes.push_back(path.string() + ": " + identity_name + " is " + readable(coefficient) +
                     ", expected about -3 to 3");
   }
@@ -309,6 +315,31 @@ std::vector<fs::path> meshes_beside_model(const fs::path& path) {
   if (!is_named_by_parts) return {};
   std::vector<fs::path> files = meshes_in(path);
   std::erase_if(files, [](const fs::path& file) { return file.stem() == "neutral"; });
+  return files;
+}
+
+std::vector<fs::path> model_files(const fs::path& path) {
+  if (is_scene_file(path) || !is_model(path)) return {path};
+  const Parts parts = parts_of(path);
+  std::vector<fs::path> files;
+  std::error_code unreadable;
+  const fs::path list = path / "model.json";
+  if (fs::exists(list, unreadable)) files.push_back(list);
+  for (const auto& part : {parts.neutral, parts.shape, parts.expressions, parts.identities}) {
+    if (!part) continue;
+    if (fs::is_directory(*part, unreadable)) {
+      const std::vector<fs::path> shapes = meshes_in(*part);
+      files.insert(files.end(), shapes.begin(), shapes.end());
+    } else {
+      files.push_back(*part);
+    }
+  }
+  for (const fs::path& file : sorted_files_in(path)) {
+    const std::string name = file.filename().string();
+    const bool is_mapping =
+        name == "landmarks68.txt" || (name.starts_with("ibug_to_") && name.ends_with(".txt"));
+    if (is_mapping) files.push_back(file);
+  }
   return files;
 }
 

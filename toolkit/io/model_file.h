@@ -25,7 +25,8 @@ struct ModelSpec {
 
   /// The '@' counts after the last '/' (where a .json follows: the first one that follows something
   /// that exists), and only where nothing has the whole text as its name.
-  /// Throws std::invalid_argument for what is not NAME=NUMBER after it, and a name given twice.
+  /// Throws std::invalid_argument for what is not NAME=NUMBER after it, a name given twice, and
+  /// where there is no path.
   static ModelSpec parse(const std::string& text);
   /// `ict-face@identity007=2`, without folders; a file without its extension; `sfm@target` for
   /// `sfm@out/target.fit.json`.
@@ -42,6 +43,10 @@ struct ModelSpec {
 /// the shape model of such a pair. Shapes come in the natural order of their names. Throws IoError;
 /// MismatchError where shapes differ in topology. `threads`: 0 for all there are.
 MorphableModel read_model(const std::filesystem::path& path, int threads = 0);
+
+/// The files that read_model reads of `path`, and the landmark mappings in its folder, but not what
+/// else lies there. Throws IoError for a model.json that is none.
+std::vector<std::filesystem::path> model_files(const std::filesystem::path& path);
 
 /// The person that a spec names. Throws as read_model and read_fit; MismatchError for an unknown
 /// identity name, and for a fit of another model.

@@ -11,6 +11,7 @@
 #include "toolkit/io/scene.h"
 #include "toolkit/io/sequence_parts.h"
 #include "toolkit/io/usd_text.h"
+#include "toolkit/io/usd_transform.h"
 #include "toolkit/io/whole_file.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/text.h"
@@ -18,36 +19,6 @@
 namespace mimetra {
 namespace fs = std::filesystem;
 namespace {
-
-/// A prim and those that it stands in, the innermost last.
-using UsdStack = std::vector<const UsdPrim*>;
-
-const UsdProperty* usd_property(const UsdPrim& prim, const std::string& name) {
-  const auto found = prim.properties.find(name);
-  return found == prim.properties.end() ? nullptr : &found->second;
-}
-
-/// The numbers of a property at a time: the nearest sample's outside of them, and a straight line
-/// between two of them. Its own value where it has no samples, or where no time is asked for.
-std::vector<double> numbers_at(const UsdProperty& property, std::optional<double> time) {
-  const auto& samples = property.samples;
-  if (samples.empty() || (!time && property.has_value)) return property.value.numbers;
-  if (!time) return samples.front().second.numbers;
-  const auto after =
-      std::ranges::upper_bound(samples, *time, {}, &std::pair<double, UsdValue>::first);
-  if (after == samples.begin()) return after->second.numbers;
-  const auto& [from, start] = *std::prev(after);
-  if (after == samples.end() || from == *time ||
-      after->second.numbers.size() != start.numbers.size()) {
-    return start.numbers;
-  }
-  const double share = (*time - from) / (after->first - from);
-  std::vector<double> between = start.numbers;
-  for (std::size_t i = 0; i < between.size(); ++i) {
-    between[i] += share * (after->second.numbers[i] - between[i]);
-  }
-  return between;
-}
 
 Eigen::Map<const Positions> as_points(const std::vector<double>& numbers) {
   return {numbers.data(), static_cast<Eigen::Index>(numbers.size() / 3), 3};
@@ -68,7 +39,8 @@ class UsdReader {
   UsdReader(const fs::path& path, std::string text)
       : path_(path.string()), bytes_(text.size()), layer_(parse_usd(path_, text)) {
     rate_ = setting("timeCodesPerSecond", setting("framesPerSecond", 24));
-    if (!(rate_ > 0)) throw IoError(path_, "has " + readable(rate_) + " time codes per second");
+    if (!(rate_ > 0) || std::isinf(rate_))
+      throw IoError(path_, "has " + readable(rate_) + " time codes per second");
   }
 
   Scene read() {
@@ -158,7 +130,7 @@ class UsdReader {
 
   std::vector<int> integers(const UsdProperty& property, const std::string& name) const {
     std::vector<int> values;
-    for (const double number : numbers_at(property, std::nullopt)) {
+    for (const double number : usd_numbers(path_, property)) {
       if (number != std::floor(number) || number < 0 || number > std::numeric_limits<int>::max()) {
         fail(property.line, name + ": " + readable(number, 12) + " is no count");
       }
@@ -170,7 +142,7 @@ class UsdReader {
   /// Numbers of `property` at a time, of which there must be three for each vertex.
   Positions points_at(const UsdProperty& property, std::optional<double> time,
                       Eigen::Index vertices) const {
-    const std::vector<double> numbers = numbers_at(property, time);
+    const std::vector<double> numbers = usd_numbers(path_, property, time);
     if (vertices < 0 ? numbers.size() % 3 != 0 || numbers.empty()
                      : static_cast<Eigen::Index>(numbers.size()) != 3 * vertices) {
       fail(property.line,
@@ -196,7 +168,7 @@ class UsdReader {
         mesh.rest_is_known = mesh.rest_is_known && (property.samples.empty() || property.has_value);
       }
     }
-    const Eigen::Matrix4d world = world_at(mesh.stack, std::nullopt);
+    const Eigen::Matrix4d world = usd_world(path_, mesh.stack);
     if (world.topLeftCorner<3, 3>().determinant() < 0) reverse(part);
     place(part.positions, world, true);
     fill_targets(mesh, world);
@@ -254,7 +226,7 @@ class UsdReader {
     const std::string name = texture_name(prim);
     if (name.empty()) return;
     const UsdProperty& texture = *usd_property(prim, name);
-    const std::vector<double> numbers = numbers_at(texture, std::nullopt);
+    const std::vector<double> numbers = usd_numbers(path_, texture);
     if (numbers.size() % 2 != 0) fail(texture.line, "a texture coordinate has no v");
     const std::size_t corners = part.polygons.corners.size();
     const bool by_corner = texture.interpolation == "faceVarying";
@@ -405,6 +377,7 @@ class UsdReader {
     for (std::size_t row = 0; row < rows; ++row) {
       const std::vector<double>& given =
           times.empty() ? weights->value.numbers : weights->samples[row].second.numbers;
+      check_finite(path_, *weights, given);
       if (given.size() != driven->value.words.size()) {
         fail(weights->line, std::to_string(given.size()) + " weights for " +
                                 std::to_string(driven->value.words.size()) + " blendshapes");
@@ -417,69 +390,6 @@ class UsdReader {
     }
     curve->times /= rate_;
     return curve;
-  }
-
-  Eigen::Matrix4d world_at(const UsdStack& stack, std::optional<double> code) const {
-    Eigen::Matrix4d world = Eigen::Matrix4d::Identity();
-    for (const UsdPrim* prim : stack) {
-      const UsdProperty* order = usd_property(*prim, "xformOpOrder");
-      if (!order) continue;
-      for (const std::string& name : order->value.words) {
-        if (name == "!resetXformStack!") {
-          world.setIdentity();
-          continue;
-        }
-        constexpr std::string_view kInverse = "!invert!";
-        const bool inverse = name.starts_with(kInverse);
-        const std::string own = inverse ? name.substr(kInverse.size()) : name;
-        const UsdProperty* operation = usd_property(*prim, own);
-        if (!operation) fail(order->line, "there is no '" + own + "'");
-        const Eigen::Matrix4d step = step_of(own, *operation, code);
-        if (inverse && step.determinant() == 0) fail(operation->line, "has no inverse");
-        world *= inverse ? Eigen::Matrix4d(step.inverse()) : step;
-      }
-    }
-    return world;
-  }
-
-  /// A step of a prim's transform. [UsdGeomXformOp]
-  Eigen::Matrix4d step_of(const std::string& name, const UsdProperty& operation,
-                          std::optional<double> code) const {
-    const std::string kind = name.substr(8, name.find(':', 8) - 8);
-    const std::vector<double> numbers = numbers_at(operation, code);
-    const auto need = [&](std::size_t count) {
-      if (numbers.size() == count) return;
-      fail(operation.line, "'" + name + "' has " + std::to_string(numbers.size()) +
-                               " numbers, expected " + std::to_string(count));
-    };
-    Eigen::Affine3d step = Eigen::Affine3d::Identity();
-    const auto turn = [&step](char axis, double degrees) {
-      step.prerotate(
-          Eigen::AngleAxisd(degrees * std::numbers::pi / 180, Eigen::Vector3d::Unit(axis - 'X')));
-    };
-    if (kind == "transform") {
-      need(16);
-      return Eigen::Map<const Eigen::Matrix4d>(numbers.data());  // its rows are our columns
-    }
-    if (kind == "translate" || kind == "scale") {
-      need(3);
-      const Eigen::Vector3d xyz(numbers[0], numbers[1], numbers[2]);
-      if (kind == "scale") return step.scale(xyz).matrix();
-      return step.translate(xyz).matrix();
-    }
-    if (kind == "orient") {
-      need(4);
-      const Eigen::Quaterniond turned(numbers[0], numbers[1], numbers[2], numbers[3]);
-      if (turned.norm() == 0) fail(operation.line, "'" + name + "' is no rotation");
-      return step.rotate(turned.normalized()).matrix();
-    }
-    const std::string axes = kind.starts_with("rotate") ? kind.substr(6) : "";
-    const bool known = (axes.size() == 1 || axes.size() == 3) &&
-                       axes.find_first_not_of("XYZ") == std::string::npos;
-    if (!known) fail(operation.line, "'" + name + "' is not read; use a matrix");
-    need(axes.size());
-    for (const char axis : axes) turn(axis, numbers[axes.size() == 1 ? 0 : axis - 'X']);
-    return step.matrix();
   }
 
   /// Frames of points and transforms that are told over time, with the weights on top.
@@ -518,11 +428,11 @@ class UsdReader {
     const UsdProperty& points = needed(*mesh.prim, "points");
     const Eigen::Index vertices = mesh.part.positions.rows();
     Positions pose = points_at(points, code, vertices);
-    const Eigen::Matrix4d world = world_at(mesh.stack, code);
+    const Eigen::Matrix4d world = usd_world(path_, mesh.stack, code);
     place(pose, world, true);
     if (!mesh.part.weights) return pose;
     // Targets stand as at rest: they turn with the mesh.
-    const Eigen::Matrix4d rest = world_at(mesh.stack, std::nullopt);
+    const Eigen::Matrix4d rest = usd_world(path_, mesh.stack);
     const Eigen::Matrix3d turned =
         world.topLeftCorner<3, 3>() * rest.topLeftCorner<3, 3>().inverse();
     const Eigen::RowVectorXd weights = mesh.part.weights->at(code / rate_);

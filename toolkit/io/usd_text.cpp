@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <limits>
 
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/text.h"
@@ -131,15 +132,21 @@ class UsdParser {
     return text;
   }
 
-  double number() {
+  /// Also one that is not finite: only what is used of a layer is refused for it.
+  double literal() {
     const char first = peek();
     if (first == '+') ++at_;
     const std::string_view rest = text_.substr(at_);
     double value = 0;
     const auto [end, error] = std::from_chars(rest.data(), rest.data() + rest.size(), value);
     if (error != std::errc() || end == rest.data()) fail_expected("a number");
-    if (!std::isfinite(value)) fail("a number that is not finite");
     at_ += static_cast<std::size_t>(end - rest.data());
+    return value;
+  }
+
+  double number() {
+    const double value = literal();
+    if (!std::isfinite(value)) fail("a number that is not finite");
     return value;
   }
 
@@ -164,9 +171,14 @@ class UsdParser {
     } else if (first == '<') {
       value.words.push_back(enclosed('<', '>'));
     } else if (first != '\0' && starts_number(first)) {
-      value.numbers.push_back(number());
+      value.numbers.push_back(literal());
     } else {
-      value.words.push_back(word("a value"));
+      std::string given = word("a value");
+      if (given == "nan" || given == "inf") {
+        value.numbers.push_back(std::numeric_limits<double>::quiet_NaN());
+      } else {
+        value.words.push_back(std::move(given));
+      }
     }
   }
   UsdValue value(int depth = 0) {

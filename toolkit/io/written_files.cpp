@@ -1,12 +1,12 @@
 #include "toolkit/io/written_files.h"
 
 #include <algorithm>
-#include <fstream>
 #include <set>
 #include <system_error>
 
 #include <nlohmann/json.hpp>
 
+#include "toolkit/io/json_text.h"
 #include "toolkit/io/whole_file.h"
 #include "toolkit/mesh/errors.h"
 
@@ -14,15 +14,12 @@ namespace mimetra {
 namespace fs = std::filesystem;
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 constexpr const char* kFiles = "files";
 
 /// The manifest of a folder, or an empty object.
 Json manifest_in(const fs::path& folder) {
-  std::ifstream stream(folder / kFolderManifest);
-  Json json = Json::parse(stream, nullptr, false);
-  return json.is_object() ? json : Json::object();
+  std::optional<Json> json = read_json_if_any(folder / kFolderManifest);
+  return json && json->is_object() ? *std::move(json) : Json::object();
 }
 
 /// Files and empty folders below `folder`, relative to it. Links are not followed.
@@ -50,8 +47,7 @@ void list_written_files(const fs::path& folder) {
   for (const fs::path& path : contents(folder)) {
     if (path != kFolderManifest) files.push_back(path.generic_string());
   }
-  write_bytes(folder / kFolderManifest,
-              manifest.dump(2, ' ', false, Json::error_handler_t::replace) + '\n');
+  write_bytes(folder / kFolderManifest, json_text(manifest, 2) + '\n');
 }
 
 std::vector<fs::path> files_of_others(const fs::path& folder) {

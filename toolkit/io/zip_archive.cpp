@@ -51,6 +51,8 @@ class StoredMember : public InputBytes {
   std::size_t size() const override { return size_; }
 
   void read(std::size_t offset, char* to, std::size_t bytes) const override {
+    if (offset > size_ || bytes > size_ - offset) zip_->fail(name_, "it is truncated");
+    if (bytes == 0) return;  // the library crashes where it seeks in a member without bytes
     const std::lock_guard lock(zip_->mutex);
     if (zip_fseek(file_, static_cast<zip_int64_t>(offset), SEEK_SET) != 0) fail();
     for (std::size_t done = 0; done < bytes;) {

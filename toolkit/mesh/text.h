@@ -46,4 +46,11 @@ std::string fixed(double value, int decimals);
 /// A share as a percentage: 0.1234 is "12.3 %".
 std::string percent(double share);
 
+/// Bytes of the character in UTF-8 that `text` begins with; 0 where it begins with a control
+/// character, with one that turns the direction of writing, or with none. \pre not empty
+std::size_t printable_bytes(std::string_view text);
+
+/// True where all of it is such characters.
+bool is_printable(std::string_view text);
+
 }  // namespace mimetra

@@ -29,7 +29,8 @@ std::vector<Parameter> Format::options() const {
 }
 
 std::string listed_extensions(std::vector<std::string> extensions) {
-  std::ranges::stable_partition(extensions, [](const auto& each) { return each.starts_with('.'); });
+  std::stable_partition(extensions.begin(), extensions.end(),
+                        [](const auto& each) { return each.starts_with('.'); });
   std::vector<std::string> words;
   for (const std::string& extension : extensions) {
     const std::string word = word_of(extension);

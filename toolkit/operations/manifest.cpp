@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "toolkit/io/model_file.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/operations/file_hash.h"
 #include "toolkit/operations/json.h"
@@ -13,17 +14,20 @@ namespace mimetra {
 
 namespace {
 
-/// Files, and the files below folders, in order of their names.
-std::vector<std::filesystem::path> files_below(const std::vector<std::filesystem::path>& inputs) {
+/// Files, what is read of models, and the files below other folders, in order of their names.
+std::vector<std::filesystem::path> files_of(const std::vector<std::filesystem::path>& inputs) {
   std::vector<std::filesystem::path> files;
   for (const auto& input : inputs) {
-    if (!std::filesystem::is_directory(input)) {
-      files.push_back(input);
-      continue;
-    }
     const auto start = static_cast<std::ptrdiff_t>(files.size());
-    for (const auto& entry : std::filesystem::recursive_directory_iterator(input)) {
-      if (entry.is_regular_file()) files.push_back(entry.path());
+    std::error_code unreadable;
+    if (!std::filesystem::is_directory(input, unreadable)) {
+      files.push_back(input);
+    } else if (is_model(input)) {
+      std::ranges::copy(model_files(input), std::back_inserter(files));
+    } else {
+      for (const auto& entry : std::filesystem::recursive_directory_iterator(input)) {
+        if (entry.is_regular_file(unreadable)) files.push_back(entry.path());
+      }
     }
     std::sort(files.begin() + start, files.end());
   }
@@ -38,7 +42,7 @@ std::string manifest(const FinishedRun& run, const std::string& report) {
     options[parameter.name] = to_text(run.parameters.value(parameter.name));
   }
   Json inputs = Json::array();
-  for (const auto& path : files_below(run.inputs)) {
+  for (const auto& path : files_of(run.inputs)) {
     inputs.push_back({{"path", path.string()}, {"xxh3", file_hash(path)}});
   }
   Json outputs = Json::array();
@@ -55,7 +59,7 @@ std::string manifest(const FinishedRun& run, const std::string& report) {
                {"peak_memory_bytes", run.peak_memory},
                {"result", Json::parse(report)}};
   if (!run.given_inputs.empty()) json["given_inputs"] = run.given_inputs;
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
+  return json_text(json, 2) + '\n';
 }
 
 std::string manifest_name(const std::filesystem::path& output, bool is_folder) {

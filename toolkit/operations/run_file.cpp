@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <fstream>
 
 #include <nlohmann/json.hpp>
 
@@ -26,7 +25,7 @@ RunRecord parse(const fs::path& manifest) {
   RunRecord run;
   run.manifest = manifest;
   try {
-    const Json json = Json::parse(read_file(manifest));
+    const Json json = read_json(manifest, "the manifest of a run of mimetra");
     run.operation = json.at("command").get<std::string>();
     if (!json.contains("named_inputs")) {
       throw IoError(manifest.string(),
@@ -124,9 +123,8 @@ RunRecord main_run(const fs::path& folder) {
 
 /// False for one that only lists files: those of a library's, not of a run.
 bool is_of_a_run(const fs::path& manifest) {
-  std::ifstream stream(manifest);
-  const Json json = Json::parse(stream, nullptr, false);
-  return !json.is_object() || json.contains("command") || !json.contains("files");
+  const std::optional<Json> json = read_json_if_any(manifest);
+  return !json || !json->is_object() || json->contains("command") || !json->contains("files");
 }
 
 RunRecord run_of(const fs::path& path) {
@@ -157,20 +155,20 @@ RunRecord read_run(const fs::path& path) {
 }
 
 bool is_manifest_of(const fs::path& manifest, const fs::path& output) {
-  std::ifstream stream(manifest);
-  const Json json = Json::parse(stream, nullptr, false);
-  if (!json.is_object() || !json.contains("outputs") || !json["outputs"].is_array()) return false;
-  return std::ranges::any_of(json["outputs"], [&output](const Json& path) {
+  const std::optional<Json> json = read_json_if_any(manifest);
+  if (!json || !json->is_object()) return false;
+  const auto outputs = json->find("outputs");
+  if (outputs == json->end() || !outputs->is_array()) return false;
+  return std::ranges::any_of(*outputs, [&output](const Json& path) {
     return path.is_string() && fs::path(path.get<std::string>()).filename() == output.filename();
   });
 }
 
 bool is_manifest_of_operation(const fs::path& manifest, const std::string& operation) {
   if (!fs::is_regular_file(manifest)) return false;
-  std::ifstream stream(manifest);
-  const Json json = Json::parse(stream, nullptr, false);
-  return json.is_object() && json.value("program", Json()) == "mimetra" &&
-         json.value("command", Json()) == operation;
+  const std::optional<Json> json = read_json_if_any(manifest);
+  return json && json->is_object() && json->value("program", Json()) == "mimetra" &&
+         json->value("command", Json()) == operation;
 }
 
 bool accompanies_an_output(const fs::path& manifest) {

@@ -203,6 +203,11 @@ std::vector<std::filesystem::path> write_all(const FieldSequence& fields,
                                              const std::filesystem::path& target,
                                              const VtpOptions& options) {
   const std::string name = target.stem().string();
+  if (!is_printable(name)) {
+    throw OutputError(target.string(),
+                      "its name has control characters or is no UTF-8, and the list of its frames "
+                      "is XML, which cannot hold it; choose another");
+  }
   const std::filesystem::path beside = target.parent_path();
   const std::filesystem::path series = beside / (name + ".vtp.series");
   const std::vector<FrameEntry> entries = entries_of(*fields.frames, name);

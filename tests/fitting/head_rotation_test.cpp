@@ -1,0 +1,79 @@
+#include "fitting/head_rotation.h"
+
+#include <numbers>
+
+#include <gtest/gtest.h>
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+
+#include "tests/shapes.h"
+
+namespace mimetra {
+namespace {
+
+Eigen::Matrix3d turned_by(double degrees, const Eigen::Vector3d& axis) {
+  return Eigen::AngleAxisd(degrees * std::numbers::pi / 180, axis.normalized()).toRotationMatrix();
+}
+
+/// A scaled orthographic camera for which the head is turned: x right, y down.
+AffineCamera seeing(const Eigen::Matrix3d& head, double scale) {
+  AffineCamera camera;
+  camera.col(3) << 300, 200;
+  camera.row(0).head<3>() = scale * head.row(0);
+  camera.row(1).head<3>() = -scale * head.row(1);
+  return camera;
+}
+
+TEST(HeadRotation, IsNoneForAFaceThatIsSeenUprightFromTheFront) {
+  EXPECT_TRUE(head_rotation(seeing(Eigen::Matrix3d::Identity(), 2)).isIdentity(1e-14));
+}
+
+TEST(HeadRotation, IsThatOfAScaledOrthographicCamera) {
+  for (const Eigen::Vector3d& axis : {Eigen::Vector3d(0, 1, 0), Eigen::Vector3d(1, 0, 0),
+                                      Eigen::Vector3d(0, 0, 1), Eigen::Vector3d(1, -2, 0.5)}) {
+    for (const double degrees : {-80.0, 30.0, 170.0}) {
+      const Eigen::Matrix3d head = turned_by(degrees, axis);
+      EXPECT_TRUE(head_rotation(seeing(head, 0.7)).isApprox(head, 1e-13)) << degrees;
+    }
+  }
+}
+
+/// Whoever is turned to the image's right, his left, shows his right side: x to -z.
+TEST(HeadRotation, TurnsTheNoseToWhereTheImageHasIt) {
+  const Eigen::Matrix3d head = turned_by(30, Eigen::Vector3d::UnitY());
+  const Eigen::Vector2d nose = seeing(head, 2).leftCols<3>() * Eigen::Vector3d::UnitZ();
+  EXPECT_GT(nose.x(), 0);
+  EXPECT_GT((head_rotation(seeing(head, 2)) * Eigen::Vector3d::UnitZ()).x(), 0);
+}
+
+TEST(HeadRotation, IsARotationWhateverTheCameraStretches) {
+  AffineCamera camera = seeing(turned_by(20, Eigen::Vector3d(1, 1, 0)), 3);
+  camera(0, 1) += 0.8;
+  camera.row(1) *= 1.4;
+  const Eigen::Matrix3d rotation = head_rotation(camera);
+  EXPECT_TRUE((rotation * rotation.transpose()).isIdentity(1e-14));
+  EXPECT_NEAR(rotation.determinant(), 1, 1e-14);
+}
+
+TEST(TurnedAsSeen, TurnsFramesAboutTheMiddleOfTheRestPose) {
+  const test::Shape shape = test::octahedron();
+  Positions rest = shape.positions;
+  rest.rowwise() += Eigen::RowVector3d(5, 6, 7);
+  Frames frames(2, rest.size());
+  frames.rowwise() = Eigen::Map<const Eigen::RowVectorXd>(rest.data(), rest.size());
+  const MeshSequence still(
+      Connectivity::from_triangles(static_cast<int>(rest.rows()), shape.triangles), frames, {},
+      rest);
+  const Eigen::Matrix3d head = turned_by(30, Eigen::Vector3d::UnitY());
+  const MeshSequence turned =
+      turned_as_seen(still, {seeing(Eigen::Matrix3d::Identity(), 1), seeing(head, 4)});
+  EXPECT_EQ(turned.rest(), rest);
+  EXPECT_TRUE(turned.frame(0).isApprox(rest, 1e-14));
+  const Eigen::RowVector3d middle = rest.colwise().mean();
+  const Positions expected = ((rest.rowwise() - middle) * head.transpose()).rowwise() + middle;
+  EXPECT_TRUE(turned.frame(1).isApprox(expected, 1e-14));
+  EXPECT_THROW(turned_as_seen(still, {}), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace mimetra

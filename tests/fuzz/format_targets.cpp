@@ -1,0 +1,102 @@
+#include <algorithm>
+#include <map>
+
+#include "fitting/fit_operation.h"
+#include "tests/fuzz/fuzz_target.h"
+#include "tests/fuzz/values.h"
+#include "toolkit/io/mesh_file.h"
+#include "toolkit/mesh/errors.h"
+#include "toolkit/operations/operation.h"
+#include "toolkit/vtk/vtk_formats.h"
+
+namespace mimetra::fuzz {
+
+namespace {
+
+/// Sound files of formats that nothing here writes.
+const std::map<std::string, std::string>& texts() {
+  static const std::map<std::string, std::string> all = {
+      {"regions_txt", "3\n4\n5\n"},
+      {"landmarks_pts", "version: 1\nn_points: 3\n{\n1 2\n3.5 4\n5 6e1\n}\n"},
+      {"landmarks_csv", "time,x0,y0,x1,y1\n0,1,2,3,4\n0.04,1,2,3,4\n"},
+      {"landmarks_json",
+       R"({"names": ["a", "b"], "frames": [{"time": 0, "points": [[1, 2], null]}]})"}};
+  return all;
+}
+
+/// "landmarks_csv".
+std::string name_of(const Format& format) {
+  std::string name =
+      std::string(kind_name(format.kind)) + '_' + format.extensions.front().substr(1);
+  std::ranges::replace(name, ' ', '_');
+  return name;
+}
+
+void read(const Format& format, const fs::path& file) {
+  const Parameters defaults(format.reading);
+  format.read(file.string(), {.parameters = defaults,
+                              .fields = true,
+                              .identities = true,
+                              .vertices = static_cast<int>(grid().positions.rows()),
+                              .triangles = &grid().connectivity.triangles,
+                              .threads = 1});
+}
+
+void write(const Format& format, const Data& value, const fs::path& file) {
+  const Parameters defaults(format.writing);
+  format.write(value, {.target = file, .parameters = defaults, .overwrite = true, .threads = 1});
+}
+
+/// The value, or one frame of it for a format that holds one.
+void write_value(const Format& format, const fs::path& file) {
+  try {
+    write(format, value_of(format.kind), file);
+  } catch (const MismatchError&) {
+    write(format, one_frame(), file);
+  }
+}
+
+/// A file as it is under each extension of its format, which readers tell apart by content.
+std::vector<std::function<void(const fs::path& file)>> written_seeds(const Format& format) {
+  std::vector<std::function<void(const fs::path& file)>> seeds;
+  for (const std::string& extension : format.extensions) {
+    seeds.push_back([&format, extension](const fs::path& file) {
+      const fs::path written = fs::path(file).replace_extension(extension);
+      write_value(format, written);
+      fs::rename(written, file);
+    });
+  }
+  return seeds;
+}
+
+}  // namespace
+
+std::vector<Target> format_targets() {
+  static const OperationTable table = [] {
+    OperationTable made;
+    add_toolkit(made);
+    add_vtk(made);
+    add_fitting(made);
+    return made;
+  }();
+  std::vector<Target> targets;
+  for (const Format& format : table.formats()) {
+    const std::string& extension = format.extensions.front();
+    if (!format.read || !extension.starts_with('.')) continue;
+    Target target{name_of(format),
+                  "a" + extension,
+                  [&format](const fs::path& file) { read(format, file); },
+                  {}};
+    if (const auto found = texts().find(target.name); found != texts().end()) {
+      target.seeds.push_back(text(found->second));
+    } else if (format.write) {
+      target.seeds = written_seeds(format);
+    } else {
+      continue;
+    }
+    targets.push_back(std::move(target));
+  }
+  return targets;
+}
+
+}  // namespace mimetra::fuzz

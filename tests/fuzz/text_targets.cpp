@@ -1,0 +1,125 @@
+#include <algorithm>
+
+#include <nlohmann/json.hpp>
+
+#include "fitting/landmark_mapping.h"
+#include "tests/fuzz/fuzz_target.h"
+#include "tests/fuzz/values.h"
+#include "toolkit/io/frame_files.h"
+#include "toolkit/io/json_text.h"
+#include "toolkit/io/model_file.h"
+#include "toolkit/io/sequence_file.h"
+#include "toolkit/io/whole_file.h"
+#include "toolkit/operations/manifest.h"
+#include "toolkit/operations/operation.h"
+#include "toolkit/operations/option_file.h"
+#include "toolkit/operations/parameter_files.h"
+#include "toolkit/operations/run_file.h"
+#include "toolkit/operations/vertex_sets.h"
+
+namespace mimetra::fuzz {
+
+namespace {
+
+/// Those of every operation of the toolkit, each name once.
+Parameters all_parameters() {
+  OperationTable table;
+  add_toolkit(table);
+  std::vector<Parameter> all;
+  for (const Operation& operation : table.operations()) {
+    for (Parameter& parameter : table.parameters_of(operation)) {
+      if (std::ranges::find(all, parameter.name, &Parameter::name) != all.end()) continue;
+      all.push_back(std::move(parameter));
+    }
+  }
+  return Parameters(std::move(all));
+}
+
+/// What is read is said again as a manifest says it.
+void read_options(const fs::path& file) {
+  static const Parameters declared = all_parameters();
+  Parameters parameters = declared;
+  set_from_file(file.string(), parameters);
+  for (const Parameter& parameter : declared.declared()) to_text(parameters.value(parameter.name));
+}
+
+/// A run that wrote the file beside its manifest.
+void write_manifest(const fs::path& file) {
+  FinishedRun run;
+  run.operation = "transfer";
+  run.parameters = all_parameters();
+  run.arguments = {"transfer", "take.npy", "actor", "-o", "out.npy"};
+  run.named_inputs = {{"source", {"take.npy"}}, {"target", {"actor"}}};
+  run.inputs = {"/dev/null"};
+  run.outputs = {"out.npy"};
+  write_bytes(file, manifest(run, R"({"seconds": 1})"));
+}
+
+void read_manifest(const fs::path& file) {
+  const fs::path output = file.parent_path() / "out.npy";
+  is_manifest_of(file, output);
+  is_manifest_of_operation(file, "transfer");
+  read_run(file);
+}
+
+/// A folder's manifest says which files of it are mimetra's; it is written again with all of them.
+void read_file_list(const fs::path& file) {
+  files_of_others(file.parent_path());
+  list_written_files(file.parent_path());
+}
+
+/// The times beside an array.
+void read_times(const fs::path& file) {
+  static const fs::path take = [&file] {
+    const fs::path made = file.parent_path() / "take.npy";
+    write_sequence(*std::get<FieldSequence>(value_of(DataKind::sequence)).frames, made,
+                   {.overwrite = true, .threads = 1});
+    return made;
+  }();
+  read_sequence(take.string(), {.threads = 1});
+}
+
+}  // namespace
+
+std::vector<Target> text_targets() {
+  return {{"json",
+           "a.json",
+           [](const fs::path& file) { parse_json("a.json", json_text(read_json(file), 1)); },
+           {text(R"({"k": [1, 2.5, "x\u00e4"], "all": {"a": null}})")}},
+          {"options",
+           "c.json",
+           read_options,
+           {text(R"({"k": 3, "radius": "12abs", "full": true, "space": "vertex", "rest": "a.ply",)"
+                 R"( "coverage": 0.5, "frames": "2:90:3", "ridge": 1e-3})")}},
+          {"manifest", "out.run.json", read_manifest, {write_manifest}},
+          {"file_list",
+           "mimetra-run.json",
+           read_file_list,
+           {text(R"({"program": "mimetra", "files": ["a.ply", "b/c.ply"]})")}},
+          {"motion",
+           "align.json",
+           [](const fs::path& file) { read_motion(file.string(), 1); },
+           {text(R"({"result": {"motion": [{"rotation": [1, 0, 0, 0, 1, 0, 0, 0, 1],)"
+                 R"( "translation": [0, 0.5, 1e3]}]}})")}},
+          {"times", "take.times.csv", read_times, {text("time\n0\n0.04\n0.08\n")}},
+          {"landmark_mapping",
+           "ibug_to_m.txt",
+           [](const fs::path& file) { read_landmark_mapping(file); },
+           {text("# iBUG\n[landmark_mappings]\n9 = 33\n31 = 114\n")}},
+          {"model_name",
+           "name.txt",
+           [](const fs::path& file) { ModelSpec::parse(read_file(file)).name(); },
+           {text("actor@identity003=1.5,identity007=-1"), text("actor@out/a.fit.json")}},
+          {"frame_range",
+           "range.txt",
+           [](const fs::path& file) { selected_frames(read_file(file), 100); },
+           {text("2:90:3")}},
+          {"vertex_set",
+           "set.txt",
+           [](const fs::path& file) {
+             named_vertices(read_file(file), std::get<FieldSequence>(value_of(DataKind::sequence)));
+           },
+           {text("component:0"), text("group:lips"), text("field:heat")}}};
+}
+
+}  // namespace mimetra::fuzz

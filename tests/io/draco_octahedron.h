@@ -1,0 +1,38 @@
+#pragma once
+
+#include <array>
+#include <stdexcept>
+#include <string>
+
+#include <draco/compression/encode.h>
+#include <draco/mesh/triangle_soup_mesh_builder.h>
+
+#include "tests/shapes.h"
+
+namespace mimetra::test {
+
+/// An octahedron as Draco's bytes: no number is rounded, every point stands once.
+inline std::string draco_octahedron() {
+  const Shape shape = octahedron();
+  draco::TriangleSoupMeshBuilder builder;
+  builder.Start(static_cast<int>(shape.triangles.rows()));
+  const int id = builder.AddAttribute(draco::GeometryAttribute::POSITION, 3, draco::DT_FLOAT32);
+  for (int t = 0; t < shape.triangles.rows(); ++t) {
+    std::array<std::array<float, 3>, 3> corner{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      for (std::size_t c = 0; c < 3; ++c) {
+        corner[k][c] = static_cast<float>(
+            shape.positions(shape.triangles(t, Eigen::Index(k)), Eigen::Index(c)));
+      }
+    }
+    builder.SetAttributeValuesForFace(id, draco::FaceIndex(static_cast<std::uint32_t>(t)),
+                                      corner[0].data(), corner[1].data(), corner[2].data());
+  }
+  const auto mesh = builder.Finalize();
+  draco::Encoder encoder;
+  draco::EncoderBuffer buffer;
+  if (!encoder.EncodeMeshToBuffer(*mesh, &buffer).ok()) throw std::runtime_error("Draco failed");
+  return {buffer.data(), buffer.size()};
+}
+
+}  // namespace mimetra::test

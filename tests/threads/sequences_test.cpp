@@ -1,0 +1,69 @@
+#include <algorithm>
+
+#include <gtest/gtest.h>
+
+#include "tests/temporary_folder.h"
+#include "tests/threads/together.h"
+#include "toolkit/io/sequence_file.h"
+#include "toolkit/io/sequence_format.h"
+
+namespace mimetra {
+namespace {
+
+using test::kTogether;
+using test::together;
+
+constexpr int kFrames = 16;
+
+/// A file, or a folder where the format's files hold one mesh each.
+std::string output_of(const SequenceFormat& format) {
+  const std::string& extension = format.extensions.front();
+  return is_mesh_extension(extension) ? extension.substr(1) + "/" : "a" + extension;
+}
+
+SequenceWriteOptions options_of(const SequenceFormat& format) {
+  SequenceWriteOptions options{.overwrite = true, .threads = 2};
+  const std::string extension = format.extensions.front().substr(1);
+  for (const MeshFormat mesh : {MeshFormat::obj, MeshFormat::off, MeshFormat::stl}) {
+    if (choice_name(mesh) == extension) options.format = mesh;
+  }
+  return options;
+}
+
+TEST(SequencesOfEveryFormat, AreReadByThreadsAtOnce) {
+  const test::TemporaryFolder folder;
+  const MeshSequence take = test::bulging_sphere(kFrames);
+  for (const SequenceFormat& format : sequence_formats()) {
+    const std::filesystem::path target = folder / output_of(format);
+    write_sequence(take, target, options_of(format));
+    const auto frames = open_sequence(target.string(), {.threads = 2}).frames;
+    const Frames expected = frames->read(0, kFrames);
+    together([&](int i) {
+      for (int f = 0; f < kFrames; ++f) {
+        const int frame = (f * (i + 1)) % kFrames;  // each in an order of its own
+        EXPECT_TRUE(frames->read(frame, 1) == expected.row(frame)) << format.name;
+      }
+    });
+  }
+}
+
+TEST(SequencesOfEveryFormat, OfThreadsThatWriteOneOutputOneWinsWhole) {
+  const test::TemporaryFolder folder;
+  const MeshSequence take = test::bulging_sphere(4);
+  for (const SequenceFormat& format : sequence_formats()) {
+    const std::filesystem::path target = folder / output_of(format);
+    together([&](int i) {
+      const Frames poses = take.positions() * (i + 1);
+      write_sequence(take.with_frames(poses), target, options_of(format));
+    });
+    const Frames found = read_sequence(target.string()).sequence.positions();
+    const bool is_one_of_them = std::ranges::any_of(std::array{1, 2, 3, 4}, [&](double scale) {
+      return format.extensions.front() == ".stl" ||  // numbers its vertices anew
+             found.isApprox(take.positions() * scale, 1e-6);
+    });
+    EXPECT_TRUE(is_one_of_them) << format.name;
+  }
+}
+
+}  // namespace
+}  // namespace mimetra
