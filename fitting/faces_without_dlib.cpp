@@ -26,6 +26,10 @@ std::vector<Face> FaceFinder::faces(const Image&) const {
   return {};
 }
 
+std::vector<Face> FaceFinder::faces_near(const Image&, const std::vector<Face>&) const {
+  return {};
+}
+
 void require_dlib(const std::string& name) {
   throw IoError(name, kMissing);
 }

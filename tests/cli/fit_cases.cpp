@@ -140,6 +140,26 @@ void add_json(std::vector<BadInput>& all) {
       {"none of the 1 landmarks", "'a'"});
 }
 
+void add_videos(std::vector<BadInput>& all) {
+  const auto add = [&all](const std::string& kind, const std::string& bytes) {
+    all.push_back({kind,
+                   "landmarks_video",
+                   mapped({{"v.mp4", bytes}}),
+                   "fit v.mp4 --model head -o o.npy",
+                   3,
+                   {"v.mp4: "}});
+  };
+  all.push_back({"missing",
+                 "landmarks_video",
+                 mapped({}),
+                 "fit v.mp4 --model head -o o.npy",
+                 3,
+                 {"v.mp4: no such file"}});
+  add("empty", "");
+  add("other_type", bytes_of(square(), "ply"));
+  add("list_of_files", "#EXTM3U\n#EXT-X-TARGETDURATION:1\n#EXTINF:1,\nfile:///etc/hostname\n");
+}
+
 void add_mappings(std::vector<BadInput>& all) {
   const auto add = [&all](const std::string& kind, const std::string& text, int code,
                           std::vector<std::string> says) {
@@ -259,6 +279,7 @@ std::vector<BadInput> fit_cases() {
   add_tracks(all);
   add_points(all);
   add_json(all);
+  add_videos(all);
   add_mappings(all);
   add_fits(all);
   add_requests(all);

@@ -14,13 +14,14 @@ namespace mimetra::fuzz {
 namespace {
 
 /// Sound files of formats that nothing here writes.
-const std::map<std::string, std::string>& texts() {
-  static const std::map<std::string, std::string> all = {
-      {"regions_txt", "3\n4\n5\n"},
-      {"landmarks_pts", "version: 1\nn_points: 3\n{\n1 2\n3.5 4\n5 6e1\n}\n"},
-      {"landmarks_csv", "time,x0,y0,x1,y1\n0,1,2,3,4\n0.04,1,2,3,4\n"},
+const std::map<std::string, std::vector<std::string>>& texts() {
+  static const std::map<std::string, std::vector<std::string>> all = {
+      {"regions_txt", {"3\n4\n5\n", "0\n0\n1\n1\n0\n0\n0\n0\n0\n"}},
+      {"landmarks_pts", {"version: 1\nn_points: 3\n{\n1 2\n3.5 4\n5 6e1\n}\n"}},
+      {"landmarks_csv", {"time,x0,y0,x1,y1\n0,1,2,3,4\n0.04,1,2,3,4\n"}},
       {"landmarks_json",
-       R"({"names": ["a", "b"], "frames": [{"time": 0, "points": [[1, 2], null]}]})"}};
+       {R"({"names": ["a", "b"], "frames": [{"time": 0, "points": [[1, 2], null]}]})",
+        R"([{"timestamp_ms": 40, "faceLandmarks": [[{"x": 1, "y": 2, "z": -5}]]}, null])"}}};
   return all;
 }
 
@@ -88,7 +89,7 @@ std::vector<Target> format_targets() {
                   [&format](const fs::path& file) { read(format, file); },
                   {}};
     if (const auto found = texts().find(target.name); found != texts().end()) {
-      target.seeds.push_back(text(found->second));
+      for (const std::string& content : found->second) target.seeds.push_back(text(content));
     } else if (format.write) {
       target.seeds = written_seeds(format);
     } else {

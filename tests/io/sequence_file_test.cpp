@@ -280,14 +280,39 @@ TEST(WriteSequence, OverwritingRemovesAStaleRestPose) {
 }
 
 TEST(WriteSequence, RefusesAnExistingTargetAndAForeignRestPose) {
-  const TemporaryFolder folder;
-  write_bytes(folder / "s.rest.ply", "somebody else's");
-  EXPECT_EQ(
-      message_of<OutputError>([&] { write_sequence(octahedra(2), folder / "s.npy"); }),
-      (folder / "s.rest.ply").string() + ": exists already; use option 'overwrite' to replace it");
-  EXPECT_THAT(folder.names(), ElementsAre("s.rest.ply"));
-  fs::create_directory(folder / "t");
-  EXPECT_THROW(write_sequence(octahedra(2), folder / "t"), OutputError);
+  for (const bool overwrite : {false, true}) {
+    const TemporaryFolder folder;
+    write_bytes(folder / "s.rest.ply", "somebody else's");
+    for (const MeshSequence& take : {octahedra(2), octahedra(2, pose(4))}) {
+      EXPECT_THAT(message_of<OutputError>(
+                      [&] { write_sequence(take, folder / "s.npy", {.overwrite = overwrite}); }),
+                  HasSubstr("s.rest.ply: stands without 's.npy'"));
+      EXPECT_THAT(folder.names(), ElementsAre("s.rest.ply"));
+    }
+    fs::create_directory(folder / "t");
+    EXPECT_THROW(write_sequence(octahedra(2), folder / "t"), OutputError);
+  }
+}
+
+/// They would have its rest pose and times.
+TEST(WriteSequence, KeepsWhatIsAPartOfAnotherOfItsName) {
+  for (const auto& [first, second] :
+       {std::pair("s.npy", "s.pc2"), std::pair("s", "s.npy"), std::pair("s.npy", "s")}) {
+    const TemporaryFolder folder;
+    const MeshSequence take = octahedra(3, pose(1));
+    write_sequence(take, folder / first);
+    const std::string rest = read_file(folder / "s.rest.ply");
+    write_sequence(take, folder / second);  // the same parts
+    for (const MeshSequence& other : {octahedra(2), octahedra(2, pose(4))}) {
+      EXPECT_THAT(message_of<OutputError>(
+                      [&] { write_sequence(other, folder / second, {.overwrite = true}); }),
+                  HasSubstr("belongs to '" + std::string(first) + "', which stays"));
+    }
+    EXPECT_EQ(read_file(folder / "s.rest.ply"), rest);
+    for (const std::string name : {first, second}) {
+      EXPECT_EQ(read_sequence((folder / name).string()).sequence.frames(), 3);
+    }
+  }
 }
 
 TEST(WriteSequence, LeavesNothingWhenCancelled) {

@@ -253,12 +253,12 @@ TEST(BlendshapeTransfer, RefusesTrianglesInWhichNothingMoves) {
   Shape shape = patch();
   ShapeBasis basis{{"none"}, Eigen::MatrixXd::Zero(shape.positions.size(), 1)};
   const BlendshapeModel target(test::connectivity_of(shape), shape.positions, basis);
-  EXPECT_THAT(
-      [&] {
-        BlendshapeTransfer(shape.positions, target, {0, 1});
-      },
-      testing::ThrowsMessage<MismatchError>(
-          HasSubstr("none of the target's 1 expressions moves in the 2 chosen triangles")));
+  for (const std::vector<int>& triangles : {std::vector{0, 1}, std::vector<int>()}) {
+    EXPECT_THAT([&] { BlendshapeTransfer(shape.positions, target, triangles); },
+                testing::ThrowsMessage<MismatchError>(
+                    HasSubstr("none of the target's 1 expressions moves in the " +
+                              std::to_string(triangles.size()) + " chosen triangles")));
+  }
 }
 
 TEST(BlendshapeTransfer, StopsWhenAsked) {

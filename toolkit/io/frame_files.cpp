@@ -256,6 +256,10 @@ std::vector<int> selected_frames(const std::optional<std::string>& range, int fr
   return selected;
 }
 
+std::optional<int> end_of_frames(const std::optional<std::string>& range) {
+  return range ? parsed_range(*range).last : std::nullopt;
+}
+
 fs::path beside(const fs::path& sequence, const std::string& suffix) {
   fs::path name = sequence.lexically_normal();
   if (!name.has_filename()) name = name.parent_path();

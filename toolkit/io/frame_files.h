@@ -37,6 +37,10 @@ FrameSeries frames_of_folder(const std::filesystem::path& folder);
 /// std::invalid_argument for what is not a range, MismatchError for one beyond the last frame.
 std::vector<int> selected_frames(const std::optional<std::string>& range, int frames);
 
+/// B of `range`, before which the chosen frames end; none where it is left open. Throws
+/// std::invalid_argument for what is not a range.
+std::optional<int> end_of_frames(const std::optional<std::string>& range);
+
 /// "frame_0007.ply" for frame 7 of up to 10000, more digits where four do not suffice.
 std::string frame_name(int frame, int frames, const std::string& extension);
 

@@ -59,7 +59,9 @@ VertexPull::VertexPull(const Positions& rest, const Triangles& triangles,
   }
   const Rows at_rest = sums(gather(Eigen::Map<const Frames>(rest.data(), 1, rest.size())));
   at_rest_.resize(at_rest.rows(), 3);
-  for (int c = 0; c < 3; ++c) at_rest_.col(c) = at_rest.col(c * kLanes);
+  for (Eigen::Index slot = 0; slot < at_rest.rows(); ++slot) {
+    for (int c = 0; c < 3; ++c) at_rest_(slot, c) = at_rest(slot, c * kLanes);
+  }
 }
 
 /// Vertices are numbered in the order of first use.
