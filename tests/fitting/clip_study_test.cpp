@@ -150,6 +150,22 @@ double median(std::vector<double> values) {
   return values[values.size() / 2];
 }
 
+/// What is estimated of the noise and the cameras costs nothing, on average over the clips, where
+/// they are as the paper takes them to be or are nearer to it than to anything else.
+void expect_no_worse(const std::vector<Figures>& estimated, const std::vector<Figures>& paper) {
+  // Of a single clip either may be the luckier one.
+  constexpr double kSlack = kSeeds > 1 ? 1.05 : 1.25;
+  for (double Figures::*error : {&Figures::alpha, &Figures::beta, &Figures::camera,
+                                 &Figures::points, &Figures::beta_flicker}) {
+    const auto mean = [&](const std::vector<Figures>& all) {
+      double sum = 0;
+      for (const Figures& figures : all) sum += figures.*error / double(all.size());
+      return sum;
+    };
+    EXPECT_LT(mean(estimated), kSlack * mean(paper));
+  }
+}
+
 /// Of both solvers and both ways to see identity; prints the medians over the clips.
 void study(const MorphableModel& model, const std::vector<int>& vertices, const Seen& seen = {}) {
   constexpr int kMany = 100;
@@ -178,11 +194,7 @@ void study(const MorphableModel& model, const std::vector<int>& vertices, const 
       all[i].push_back(studied(known, studies[i].options));
     }
     const auto last = [&](std::size_t i) { return all[i].back(); };
-    if (!as_the_paper) {
-      // What the noise is counts where it is not as the paper takes it to be.
-      EXPECT_LT(last(5).alpha, 1.05 * last(2).alpha);
-      continue;
-    }
+    if (!as_the_paper) continue;
     // A few steps of all unknowns together do what a hundred of the alternation do not.
     EXPECT_LT(last(2).energy, last(1).energy);
     EXPECT_LT(last(1).energy, last(0).energy);
@@ -195,13 +207,8 @@ void study(const MorphableModel& model, const std::vector<int>& vertices, const 
     EXPECT_LT(last(2).beta_flicker, last(4).beta_flicker);
     // 1 px in each direction on each landmark is more than what is left of it in the fit.
     EXPECT_LT(last(2).points, std::sqrt(2));
-    // What is estimated of the noise costs nothing where it is as the paper takes it to be.
-    EXPECT_LT(last(5).alpha, 1.05 * last(2).alpha);
-    EXPECT_LT(last(5).beta, 1.05 * last(2).beta);
-    EXPECT_LT(last(5).camera, 1.05 * last(2).camera);
-    EXPECT_LT(last(5).points, 1.05 * last(2).points);
-    EXPECT_LT(last(5).beta_flicker, 1.05 * last(2).beta_flicker);
   }
+  expect_no_worse(all[5], all[2]);
   std::cout << "fit               its.  energy    ms      alpha    beta     camera px  points px  "
                "alpha flicker  beta flicker\n";
   for (std::size_t i = 0; i < studies.size(); ++i) {
