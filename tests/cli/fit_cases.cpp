@@ -131,10 +131,10 @@ void add_json(std::vector<BadInput>& all) {
   };
   add("empty", "", 3, {"t.json", "JSON"});
   add("truncated", R"({"points": [[1, 2], [3)", 3, {"t.json", "JSON"});
-  add("other_type", "[1, 2]", 3, {"t.json: /: expected an object"});
+  add("other_type", "[1, 2]", 3, {"t.json: /0: expected a list of points"});
   add("text_for_a_number", R"({"points": [[1, "2"]]})", 3, {"/points/0: expected a finite number"});
-  add("three_coordinates", R"({"points": [[1, 2, 3]]})", 3, {"/points/0: expected [x, y]"});
-  add("other_count", R"({"frames": [{"points": [null]}, {"points": []}]})", 3,
+  add("four_coordinates", R"({"points": [[1, 2, 3, 4]]})", 3, {"/points/0: expected [x, y]"});
+  add("other_count", R"({"frames": [{"points": [null]}, {"points": [null, null]}]})", 3,
       {"/frames/1/points", "expected 1"});
   add("unknown_names", R"({"names": ["a"], "frames": [{"points": [[1, 2]]}]})", 4,
       {"none of the 1 landmarks", "'a'"});
