@@ -1,12 +1,15 @@
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include <Eigen/Cholesky>
 #include <Eigen/QR>
 
-#include "fitting/fitted_frame.h"
+#include "fitting/joint_fit.h"
 #include "toolkit/mesh/progress.h"
 #include "toolkit/model/box_least_squares.h"
+#include "toolkit/model/second_differences.h"
+#include "toolkit/model/smooth_weights.h"
 
 namespace mimetra {
 
@@ -23,43 +26,22 @@ struct FrameSystem {
   Eigen::VectorXd h_a, h_b;
 };
 
-/// Orthonormal basis of what a change of the camera moves in one image coordinate: x, y, z and 1.
-Eigen::Matrix<double, Eigen::Dynamic, 4> camera_directions(const FittedFrame& frame) {
-  const ModelPoints points = frame.points();
-  Eigen::Matrix<double, Eigen::Dynamic, 4> directions(points.rows(), 4);
-  directions << (points.rowwise() - points.colwise().mean()), Eigen::VectorXd::Ones(points.rows());
-  const Eigen::HouseholderQR<Eigen::Matrix<double, Eigen::Dynamic, 4>> qr(directions);
-  directions.setIdentity();
-  directions.applyOnTheLeft(qr.householderQ());
-  return directions;
-}
-
-/// What a change of the camera undoes of each basis vector: 4 rows for each image coordinate.
-Eigen::MatrixXd undone_by_camera(const FittedFrame& frame) {
-  const Eigen::MatrixXd& rows = frame.rows().both.rows();
-  const Eigen::Index count = rows.rows() / 3;
-  const auto Q = camera_directions(frame);
-  Eigen::MatrixXd Z = Eigen::MatrixXd::Zero(8, rows.cols());
-  for (int axis = 0; axis < 3; ++axis) {
-    const Eigen::MatrixXd part = Q.transpose() * rows.middleRows(axis * count, count);
-    Z.topRows<4>() += frame.camera()(0, axis) * part;
-    Z.bottomRows<4>() += frame.camera()(1, axis) * part;
-  }
-  return Z;
-}
-
 FrameSystem frame_system(const FittedFrame& frame, double ridge) {
-  const BasisRows& basis = frame.rows().both;
   const Eigen::Index a = frame.alpha().size(), b = frame.beta().size();
-  const auto C = frame.camera().leftCols<3>();
-  Eigen::MatrixXd N =
-      lower_triangle(basis.packed_gram(frame.weight() * C.transpose() * C), basis.size());
-  const Eigen::MatrixXd Z = std::sqrt(frame.weight()) * undone_by_camera(frame);
+  const FittedFrame::Linear linear = frame.linear();
+  // What a change of the camera undoes: the projection on the span of what that moves.
+  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(linear.camera);
+  Eigen::MatrixXd Q = Eigen::MatrixXd::Identity(linear.camera.rows(), linear.camera.cols());
+  Q.applyOnTheLeft(qr.householderQ());
+  const Eigen::MatrixXd Z = Q.transpose() * linear.basis;
+  const Eigen::VectorXd z = Q.transpose() * linear.residual;
+  Eigen::MatrixXd N = Eigen::MatrixXd::Zero(a + b, a + b);
+  N.selfadjointView<Eigen::Lower>().rankUpdate(linear.basis.transpose());
   N.selfadjointView<Eigen::Lower>().rankUpdate(Z.transpose(), -1);
   Eigen::VectorXd x(a + b);
   x << frame.alpha(), frame.beta();
   const Eigen::VectorXd h = N.selfadjointView<Eigen::Lower>() * x +
-                            frame.weight() * basis.transposed_product(C, frame.residual());
+                            linear.basis.transpose() * linear.residual - Z.transpose() * z;
   FrameSystem system{N.topLeftCorner(a, a), N.bottomLeftCorner(b, a),
                      N.bottomRightCorner(b, b).selfadjointView<Eigen::Lower>(), h.head(a),
                      h.tail(b)};
@@ -67,9 +49,9 @@ FrameSystem frame_system(const FittedFrame& frame, double ridge) {
   return system;
 }
 
-/// Minimises the sum of the frames' quadratic models plus |alpha|^2 over alpha and beta in its box.
-/// The minimum over beta is a convex, piecewise quadratic function of alpha; this is Newton's
-/// method on that, halved where it goes up.
+/// Minimises the sum of the frames' quadratic models plus prior |alpha|^2 over alpha and beta in
+/// its box. The minimum over beta is a convex, piecewise quadratic function of alpha; this is
+/// Newton's method on that, halved where it goes up.
 class BoxedStep {
  public:
   /// alpha, the best beta of each frame for it, and which of these are within their bounds.
@@ -80,16 +62,17 @@ class BoxedStep {
     double value = 0;
   };
 
-  BoxedStep(const std::vector<FittedFrame>& frames, const FitOptions& options)
-      : upper_(options.max_expression) {
+  BoxedStep(const std::vector<FittedFrame>& frames, const FitOptions& options, double prior)
+      : upper_(options.max_expression), prior_(prior) {
     const Eigen::Index size = frames.front().alpha().size();
-    N_aa_ = Eigen::MatrixXd::Identity(size, size);
+    N_aa_ = prior * Eigen::MatrixXd::Identity(size, size);
     h_a_ = Eigen::VectorXd::Zero(size);
     here_.alpha = frames.front().alpha();
     for (const FittedFrame& frame : frames) {
       systems_.push_back(frame_system(frame, *options.ridge));
       N_aa_.triangularView<Eigen::Lower>() += systems_.back().N_aa;
       h_a_ += systems_.back().h_a;
+      systems_.back().N_aa.resize(0, 0);  // only their sum is needed
       here_.beta.push_back(frame.beta());
     }
     here_ = point_at(here_.alpha);
@@ -110,6 +93,15 @@ class BoxedStep {
       if (settled) break;
     }
     return here_;
+  }
+
+  /// How many directions of alpha the landmarks determine, and not the prior.
+  double determined() const {
+    const Eigen::Index size = here_.alpha.size();
+    if (size == 0) return 0;
+    const Eigen::MatrixXd schur = reduced().matrix;
+    const Eigen::LLT<Eigen::MatrixXd> factor(schur);
+    return double(size) - prior_ * factor.solve(Eigen::MatrixXd::Identity(size, size)).trace();
   }
 
  private:
@@ -133,29 +125,39 @@ class BoxedStep {
     return point;
   }
 
-  /// alpha at the minimum where every beta on a bound stays there.
-  Eigen::VectorXd newton() const {
-    if (here_.alpha.size() == 0) return here_.alpha;
-    Eigen::MatrixXd schur = N_aa_;
-    Eigen::VectorXd right = h_a_;
+  /// The system of alpha where every beta on a bound stays there.
+  struct Reduced {
+    Eigen::MatrixXd matrix;  ///< lower triangle
+    Eigen::VectorXd right;
+  };
+
+  Reduced reduced() const {
+    Reduced system{N_aa_, h_a_};
     for (std::size_t f = 0; f < systems_.size(); ++f) {
-      const FrameSystem& system = systems_[f];
+      const FrameSystem& own = systems_[f];
       const std::vector<Eigen::Index>& free = here_.free[f];
       Eigen::VectorXd bound = here_.beta[f];
       for (const Eigen::Index j : free) bound[j] = 0;
-      right -= system.N_ba.transpose() * bound;
+      system.right -= own.N_ba.transpose() * bound;
       if (free.empty()) continue;
-      const Eigen::MatrixXd inner = system.N_bb(free, free);
+      const Eigen::MatrixXd inner = own.N_bb(free, free);
       const Eigen::LLT<Eigen::MatrixXd> factor(inner);
-      const Eigen::MatrixXd coupling = factor.matrixL().solve(system.N_ba(free, Eigen::all));
-      const Eigen::VectorXd rest = factor.matrixL().solve((system.h_b - system.N_bb * bound)(free));
-      schur.selfadjointView<Eigen::Lower>().rankUpdate(coupling.transpose(), -1);
-      right -= coupling.transpose() * rest;
+      const Eigen::MatrixXd coupling = factor.matrixL().solve(own.N_ba(free, Eigen::all));
+      const Eigen::VectorXd rest = factor.matrixL().solve((own.h_b - own.N_bb * bound)(free));
+      system.matrix.selfadjointView<Eigen::Lower>().rankUpdate(coupling.transpose(), -1);
+      system.right -= coupling.transpose() * rest;
     }
-    return Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>>(schur).solve(right);
+    return system;
   }
 
-  double upper_;
+  /// alpha at the minimum of the reduced system.
+  Eigen::VectorXd newton() const {
+    if (here_.alpha.size() == 0) return here_.alpha;
+    Reduced system = reduced();
+    return Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>>(system.matrix).solve(system.right);
+  }
+
+  double upper_, prior_;
   Eigen::MatrixXd N_aa_;  // lower triangle
   Eigen::VectorXd h_a_;
   std::vector<FrameSystem> systems_;
@@ -177,30 +179,135 @@ std::vector<FittedFrame> moved(std::vector<FittedFrame> frames, const BoxedStep:
   return frames;
 }
 
-}  // namespace
+/// Steps with the noise as it is. `prior`: weight of |alpha|^2.
+struct Descent {
+  FittedClip clip;
+  double determined = 0;
+};
 
-FittedClip fit_jointly(std::vector<FittedFrame> frames, const FitOptions& options) {
+Descent descended(std::vector<FittedFrame> frames, const FitOptions& options, double prior,
+                  int iterations) {
   constexpr int kHalvings = 10;
-  FittedClip result{std::move(frames), 0, {}};
-  double before = energy(result.frames, true, *options.ridge);
-  while (result.iterations < options.iterations) {
-    const BoxedStep::Point end = BoxedStep(result.frames, options).solve();
+  Descent result{{std::move(frames), 0, {}}};
+  FittedClip& clip = result.clip;
+  double before = energy(clip.frames, true, *options.ridge, prior);
+  while (clip.iterations < iterations) {
+    BoxedStep step(clip.frames, options, prior);
+    const BoxedStep::Point end = step.solve();
+    if (iterations == 1) result.determined = step.determined();
     double share = 1, now = before;
     for (int halving = 0; halving <= kHalvings; ++halving, share /= 2) {
-      std::vector<FittedFrame> trial = moved(result.frames, end, share);
-      const double energy_there = energy(trial, true, *options.ridge);
+      std::vector<FittedFrame> trial = moved(clip.frames, end, share);
+      const double energy_there = energy(trial, true, *options.ridge, prior);
       if (energy_there > before) continue;
       now = energy_there;
-      result.frames = std::move(trial);
+      clip.frames = std::move(trial);
       break;
     }
-    ++result.iterations;
-    result.energies.push_back(now);
+    ++clip.iterations;
+    clip.energies.push_back(now);
     if (has_converged(before, now, options.tolerance) || now == before) break;
-    report_progress(options.progress, double(result.iterations) / options.iterations);
+    report_progress(options.progress, double(clip.iterations) / options.iterations);
     before = now;
   }
   return result;
+}
+
+/// Of |alpha|^2 beside the landmarks of all frames, which say as much as fewer independent ones.
+double prior_of(const KnownNoise& known, const ClipNoise& noise, double frames) {
+  // That of eq. 4 goes with the sigma it was made for. An estimated one is a standard deviation as
+  // alpha's are, and both have half of their squares.
+  const double own = known.sigma ? 1 : 0.5;
+  return own * frames / noise.independent_frames(frames);
+}
+
+bool have_settled(const ClipNoise& before, const ClipNoise& now, const Eigen::VectorXd& moved) {
+  constexpr double kNoise = 1e-3, kAlpha = 1e-3;
+  return std::abs(now.sigma - before.sigma) < kNoise * before.sigma &&
+         std::abs(now.repeated - before.repeated) < kNoise &&
+         moved.squaredNorm() <= kAlpha * kAlpha * double(moved.size());
+}
+
+}  // namespace
+
+FittedClip fit_jointly(std::vector<FittedFrame> frames, const FitOptions& options,
+                       const ClipOutline& outline) {
+  constexpr int kRounds = 40;  // 10 to 20 are usual
+  const KnownNoise known = known_noise(options, frames.size());
+  const double count = double(frames.size());
+  if (known.all()) {
+    const ClipNoise noise{.repeated = *known.repeated};
+    return descended(std::move(frames), options, prior_of(known, noise, count), options.iterations)
+        .clip;
+  }
+  ClipNoise noise = rough_noise(frames, known);
+  set_noise(frames, noise, known);
+  const auto match_outline = [&] {
+    if (!outline.face) return;
+    const auto rows = outline.matched(frames);
+    for (std::size_t f = 0; f < frames.size(); ++f) frames[f].set_outline(rows[f]);
+    noise.outline = outline_noise(frames, noise);
+    set_noise(frames, noise, known);
+  };
+  int round = 0;
+  for (bool settled = false; !settled && round < kRounds; ++round) {
+    report_progress(options.progress, double(round) / (kRounds + options.iterations));
+    const Eigen::VectorXd alpha = frames.front().alpha();
+    Descent step = descended(std::move(frames), options, prior_of(known, noise, count), 1);
+    frames = std::move(step.clip.frames);
+    ClipNoise now = estimated_noise(frames, noise, step.determined, known);
+    now.outline = noise.outline;
+    set_noise(frames, now, known);
+    settled = have_settled(noise, now, frames.front().alpha() - alpha);
+    noise = now;
+    match_outline();
+  }
+  FittedClip clip =
+      descended(std::move(frames), options, prior_of(known, noise, count), options.iterations).clip;
+  clip.iterations += round;
+  clip.noise = noise;
+  return clip;
+}
+
+FittedClip smoothed(std::vector<FittedFrame> frames, const FitOptions& options,
+                    const Eigen::VectorXd& times) {
+  const Eigen::Index count = static_cast<Eigen::Index>(frames.size());
+  const Eigen::Index size = frames.front().beta().size();
+  FittedClip clip{std::move(frames), 0, {}};
+  if (size == 0 || count < 3) return clip;
+  const SecondDifferences differences = second_differences(times);
+  std::optional<double> penalty;
+  for (bool falling = true; falling && clip.iterations < options.iterations;) {
+    std::vector<Eigen::MatrixXd> grams;
+    Eigen::MatrixXd h(count, size), beta(count, size);
+    double diagonal = 0;
+    for (Eigen::Index f = 0; f < count; ++f) {
+      const FittedFrame& frame = clip.frames[static_cast<std::size_t>(f)];
+      FrameSystem system = frame_system(frame, *options.ridge);
+      h.row(f) = system.h_b - system.N_ba * frame.alpha();
+      beta.row(f) = frame.beta();
+      diagonal += system.N_bb.diagonal().mean() / double(count);
+      grams.push_back(std::move(system.N_bb));
+    }
+    // Kept from here on, or the energy would change its meaning between iterations.
+    if (!penalty) penalty = smoothness_penalty(options.smoothness, times, diagonal);
+    const Eigen::MatrixXd smooth = smooth_weights(grams, h, times, *penalty, beta);
+    std::vector<FittedFrame> trial = clip.frames;
+    for (Eigen::Index f = 0; f < count; ++f) {
+      trial[static_cast<std::size_t>(f)].set_beta(smooth.row(f));
+      trial[static_cast<std::size_t>(f)].estimate_camera();
+    }
+    const double now = energy(trial, true, *options.ridge) +
+                       *penalty * differences_of(differences, smooth).squaredNorm();
+    falling = clip.energies.empty() || now < clip.energies.back();
+    if (!falling) break;
+    falling = clip.energies.empty() || !has_converged(clip.energies.back(), now, options.tolerance);
+    clip.frames = std::move(trial);
+    clip.energies.push_back(now);
+    ++clip.iterations;
+    report_progress(options.progress, double(clip.iterations) / options.iterations);
+  }
+  return clip;
 }
 
 }  // namespace mimetra
