@@ -9,7 +9,7 @@
 #include <string>
 #include <utility>
 
-#include "fitting/joint_fit.h"
+#include "fitting/joint_solver.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/product_blocking.h"
 #include "toolkit/mesh/progress.h"

@@ -5,7 +5,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/QR>
 
-#include "fitting/joint_fit.h"
+#include "fitting/joint_solver.h"
 #include "toolkit/mesh/progress.h"
 #include "toolkit/model/box_least_squares.h"
 #include "toolkit/model/second_differences.h"
