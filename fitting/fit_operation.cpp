@@ -59,7 +59,8 @@ BoundParameters<FitCall> fit_parameters() {
   fit.add("solver", FitOptions::kSolver,
           "joint: camera, shape and expressions together; alternating: in turn, as in the paper")
       .add("shape", FitOptions::kShape, "one identity for the clip, or one in every frame")
-      .add("iterations", FitOptions::kIterations, "iterations at most")
+      .add("iterations", FitOptions::kIterations,
+           "iterations at most, after those in which a clip's noise is estimated")
       .add("tolerance", FitOptions::kTolerance,
            "it ends where an iteration lowers the energy by a smaller share")
       .add("sigma", FitOptions::kSigma,
@@ -175,8 +176,8 @@ struct Judgement {
       const ExpressionUse& use = expressions[j];
       uses.push_back({{"name", names[j]},
                       {"mean", use.mean},
-                      {"at_least", use.at_least},
-                      {"at_most", use.at_most}});
+                      {"at_zero", use.at_zero},
+                      {"at_one", use.at_one}});
     }
     return {{"alpha_rms", identity.alpha_rms},
             {"alpha_max", identity.alpha_max},
@@ -193,6 +194,13 @@ struct Judgement {
     if (halves) {
       text += "; the neutrals of the clip's halves are " + readable(100 * halves->mean) +
               " % of the longest side apart (at most " + readable(100 * halves->largest) + " %)";
+    }
+    double at_bounds = 0;
+    for (const ExpressionUse& use : expressions) {
+      at_bounds += (use.at_zero + use.at_one) / double(expressions.size());
+    }
+    if (at_bounds > 0) {
+      text += "; expressions are at a bound in " + readable(100 * at_bounds) + " % of the frames";
     }
     return text + '\n';
   }
@@ -329,9 +337,13 @@ std::vector<AffineCamera> cameras_at_origin(const FittedCoefficients& fit) {
   return cameras;
 }
 
-/// Frames in which the head is turned so far that landmarks are behind it.
+/// The notes of the frames, with those in which the head is turned so far that landmarks are behind
+/// it, of which it warns.
 std::vector<std::string> notes_of(const MeshSequence& sequence, const FittedCoefficients& fit,
-                                  const MappedLandmarks& mapped, std::vector<std::string> notes) {
+                                  const MappedLandmarks& mapped, const Invocation& invocation) {
+  const NamedData& landmarks = invocation.input("landmarks");
+  std::vector<std::string> notes = landmarks.origin.frame_notes;
+  std::vector<int> turned;
   notes.resize(static_cast<std::size_t>(fit.frames()));
   const std::vector<AffineCamera> cameras = cameras_at_origin(fit);
   for (int f = 0; f < fit.frames(); ++f) {
@@ -339,9 +351,16 @@ std::vector<std::string> notes_of(const MeshSequence& sequence, const FittedCoef
     const int averted = averted_landmarks(sequence.frame(f), sequence.triangles(), mapped.vertices,
                                           cameras[static_cast<std::size_t>(f)]);
     if (4 * averted < static_cast<int>(mapped.vertices.size())) continue;
+    turned.push_back(f);
     std::string& note = notes[static_cast<std::size_t>(f)];
     note += (note.empty() ? "" : "; ") + std::string("turned away: ") + std::to_string(averted) +
             " of " + std::to_string(mapped.vertices.size()) + " landmarks are behind the face";
+  }
+  if (!turned.empty()) {
+    invocation.warn(landmarks.name +
+                    ": frames in which the head is turned so far that the hidden half of the face "
+                    "is guessed: " +
+                    listed(words_of(turned)));
   }
   const bool none =
       std::ranges::all_of(notes, [](const std::string& note) { return note.empty(); });
@@ -382,7 +401,7 @@ Outcome run(const Invocation& invocation) {
                     listed(words_of(summary.unseen)));
   }
   const MeshSequence sequence = sequence_of(model, fit, call.fit.shape);
-  fit.notes = notes_of(sequence, fit, mapped, landmarks.origin.frame_notes);
+  fit.notes = notes_of(sequence, fit, mapped, invocation);
   Outcome outcome;
   Json report = {{"rms_px", summary.rms},
                  {"vertices", model.vertices()},
