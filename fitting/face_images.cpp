@@ -9,6 +9,7 @@
 
 #include "fitting/image_codec.h"
 #include "fitting/landmark_formats.h"
+#include "fitting/recording_search.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/parallel.h"
 
@@ -34,7 +35,7 @@ double merit(const Face& face, const std::optional<Face>& last) {
 FaceFrame frame_of(const FacesInImage& image, const std::vector<Face>& confident,
                    const Face* chosen, double min_confidence) {
   FaceFrame frame;
-  frame.file = image.file;
+  frame.image = image.image;
   frame.faces = static_cast<int>(confident.size());
   if (chosen) {
     frame.outcome = FaceFrame::Outcome::found;
@@ -58,7 +59,7 @@ void add_note(std::vector<std::string>& notes, const std::vector<FaceFrame>& fra
   if (first == frames.end()) return;
   notes.push_back(std::to_string(std::ranges::count_if(frames, is_counted)) + " of " +
                   std::to_string(frames.size()) + " images " + what + ", the first is " +
-                  first->file.filename().string());
+                  fs::path(first->image).filename().string());
 }
 
 std::vector<std::string> notes_on(const std::vector<FaceFrame>& frames) {
@@ -74,6 +75,16 @@ std::vector<std::string> notes_on(const std::vector<FaceFrame>& frames) {
   return notes;
 }
 
+std::vector<FacesInImage> faces_of_images(const ImageSequence& images, const FaceFinder& finder,
+                                          const FaceOptions& options) {
+  std::vector<FacesInImage> frames(static_cast<std::size_t>(images.frames()));
+  const auto look_at = [&](int i) {
+    frames[static_cast<std::size_t>(i)] = {images.name(i), finder.faces(images.image(i))};
+  };
+  parallel_for(images.frames(), options.threads, look_at, options.progress);
+  return frames;
+}
+
 /// Throws IoError where no frame shows a face.
 void check_some_face(const FaceTrack& track) {
   const auto is_found = [](const FaceFrame& frame) {
@@ -82,7 +93,7 @@ void check_some_face(const FaceTrack& track) {
   if (std::ranges::any_of(track.frames, is_found)) return;
   const std::size_t others = track.frames.size() - 1;
   throw IoError(
-      track.frames.front().file.string(),
+      track.frames.front().image,
       "shows no face that the detector is sure of" +
           (others == 0 ? std::string() : ", nor does any of the other " + std::to_string(others)) +
           "; a face must look towards the camera and be at least 80 pixels wide");
@@ -124,18 +135,15 @@ std::string low_confidence_note(double confidence, double min_confidence) {
   return text.str();
 }
 
-FaceTrack track_face(const std::vector<fs::path>& images, const FaceOptions& options) {
-  if (images.empty()) throw std::invalid_argument("there are no images");
-  require_dlib(images.front().string());
+FaceTrack track_face(const ImageSequence& images, const FaceOptions& options) {
+  if (images.frames() == 0) throw std::invalid_argument("there are no images");
+  require_dlib(images.name(0));
   const fs::path model = options.model.value_or(kDebianFaceModel);
   const FaceFinder finder(model);
-  std::vector<FacesInImage> frames(images.size());
-  const auto look_at = [&](int i) {
-    const auto at = static_cast<std::size_t>(i);
-    frames[at] = {images[at], finder.faces(read_image(images[at]))};
-  };
-  parallel_for(static_cast<int>(images.size()), options.threads, look_at, options.progress);
-  FaceTrack track = follow_face(frames, options.min_confidence);
+  const std::vector<FacesInImage> found = images.is_recording()
+                                              ? faces_of_recording(images, finder, options)
+                                              : faces_of_images(images, finder, options);
+  FaceTrack track = follow_face(found, options.min_confidence);
   check_some_face(track);
   if (model == kDebianFaceModel) track.notes.insert(track.notes.begin(), kTerms);
   return track;

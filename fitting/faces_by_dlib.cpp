@@ -1,8 +1,10 @@
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <fstream>
 #include <stdexcept>
+#include <utility>
 
 #include <dlib/array2d.h>
 #include <dlib/image_loader/jpeg_loader.h>
@@ -10,29 +12,47 @@
 #include <dlib/image_processing/frontal_face_detector.h>
 #include <dlib/image_processing/shape_predictor.h>
 
-#include "fitting/face_images.h"
+#include "fitting/detector_pyramid.h"
+#include "fitting/face_finder.h"
 #include "fitting/image_codec.h"
 #include "toolkit/mesh/errors.h"
 
-/// All that needs dlib.
+/// All that needs dlib, which sees an image as rows of pixels of its own.
+namespace dlib {
+
+static_assert(sizeof(rgb_pixel) == sizeof(mimetra::Color));
+
+template <>
+struct image_traits<mimetra::Image> {
+  using pixel_type = rgb_pixel;
+};
+template <>
+struct image_traits<const mimetra::Image> {
+  using pixel_type = rgb_pixel;
+};
+
+}  // namespace dlib
+
 namespace mimetra {
+
+static long num_rows(const Image& image) {
+  return image.height;
+}
+static long num_columns(const Image& image) {
+  return image.width;
+}
+static long width_step(const Image& image) {
+  return image.width * static_cast<long>(sizeof(Color));
+}
+static const void* image_data(const Image& image) {
+  return image.pixels.data();
+}
 
 namespace {
 
 using Pixels = dlib::array2d<dlib::rgb_pixel>;
 
 constexpr unsigned long kModelLandmarks = 68;
-
-Pixels pixels_of(const Image& image) {
-  Pixels pixels(image.height, image.width);
-  for (int y = 0; y < image.height; ++y) {
-    for (int x = 0; x < image.width; ++x) {
-      const Color& color = image.at(x, y);
-      pixels[y][x] = dlib::rgb_pixel(color.red, color.green, color.blue);
-    }
-  }
-  return pixels;
-}
 
 Image image_of(const Pixels& pixels) {
   Image image(static_cast<int>(pixels.nc()), static_cast<int>(pixels.nr()));
@@ -159,30 +179,136 @@ Face face_of(const dlib::rect_detection& found, const dlib::full_object_detectio
   return face;
 }
 
+using Detector = dlib::frontal_face_detector;
+using Detections = std::vector<dlib::rect_detection>;
+
+/// The detector for faces of one size: it does not look at smaller images of an image.
+Detector of_one_level(const Detector& detector) {
+  Detector::image_scanner_type scanner;
+  scanner.copy_configuration(detector.get_scanner());
+  scanner.set_max_pyramid_levels(1);
+  std::vector<Detector::feature_vector_type> weights;
+  for (unsigned long i = 0; i < detector.num_detectors(); ++i) weights.push_back(detector.get_w(i));
+  return {scanner, detector.get_overlap_tester(), weights};
+}
+
+/// Where faces of about the last one's size and place are looked for: in three levels of the
+/// pyramid, each a part around the face. Windows lie on the grid of the whole level, so that what
+/// is found is what is found there.
+class NearSearch {
+ public:
+  NearSearch(const Image& image, const Detector& one_level)
+      : pyramid_(image, kLeastLevel), detector_(one_level) {}
+
+  Detections around(const Face& last) {
+    const double level = std::log(last.width / kWindow) / std::log(kStep);
+    const int middle = std::clamp(static_cast<int>(std::lround(level)), 0, pyramid_.levels() - 1);
+    const int first = std::max(middle - 1, 0), end = std::min(middle + 2, pyramid_.levels());
+    std::vector<PixelArea> wanted(static_cast<std::size_t>(end));
+    for (int l = first; l < end; ++l) wanted[static_cast<std::size_t>(l)] = area_of(last, l);
+    const std::vector<PyramidPart> parts = pyramid_.parts(wanted);
+    Detections found;
+    for (int l = first; l < end; ++l) add(parts[static_cast<std::size_t>(l)], l, found);
+    return found;
+  }
+
+ private:
+  static constexpr double kStep = 6.0 / 5;  ///< from a level's size to the one before
+  static constexpr int kWindow = 72;        ///< pixels of a found face in its level
+  static constexpr int kLeastLevel = 64;    ///< the detector makes no smaller ones
+  static constexpr int kCell = 8;           ///< pixels from window to window
+  /// Cells at a part's edge lack the gradients beyond it, and are in no window that counts.
+  static constexpr int kEdge = 2 * kCell;
+
+  /// Half of the face, as much for its motion, and the edge.
+  PixelArea area_of(const Face& last, int level) const {
+    const double scale = std::pow(kStep, -level);
+    const double half = scale * last.width + kEdge;
+    const PixelArea& whole = pyramid_.whole(level);
+    const auto range = [&](double middle, const PixelRange& all) -> PixelRange {
+      const auto cell = [&](double at) {
+        return kCell * static_cast<int>(std::clamp(at, 0.0, double(all.last)) / kCell);
+      };
+      return {std::min(cell(middle - half), all.last - 1),
+              std::min(cell(middle + half) + kCell, all.last)};
+    };
+    return {range(scale * (last.left + last.width / 2), whole.columns),
+            range(scale * (last.top + last.height / 2), whole.rows)};
+  }
+
+  void add(const PyramidPart& part, int level, Detections& found) {
+    const auto& [area, pixels] = part;
+    const PixelArea& whole = pyramid_.whole(level);
+    const auto edge = [](bool is_own) { return is_own ? 2L * kWindow : -long{kEdge}; };
+    const dlib::rectangle counted(-edge(area.columns.first == 0), -edge(area.rows.first == 0),
+                                  pixels.width - 1 + edge(area.columns.last == whole.columns.last),
+                                  pixels.height - 1 + edge(area.rows.last == whole.rows.last));
+    Detections of_part;
+    detector_(pixels, of_part);
+    for (dlib::rect_detection& face : of_part) {
+      if (!counted.contains(face.rect)) continue;
+      const dlib::rectangle placed =
+          dlib::translate_rect(face.rect, area.columns.first, area.rows.first);
+      face.rect = dlib::pyramid_down<6>().rect_up(placed, static_cast<unsigned>(level));
+      found.push_back(face);
+    }
+  }
+
+  DetectorPyramid pyramid_;
+  Detector detector_;  ///< it keeps the image's features
+};
+
+/// The best of those that overlap, best first.
+Detections best_of(Detections found, const dlib::test_box_overlap& overlap) {
+  std::ranges::stable_sort(found, std::ranges::greater(),
+                           &dlib::rect_detection::detection_confidence);
+  Detections best;
+  for (const dlib::rect_detection& face : found) {
+    const auto hides = [&](const auto& better) { return overlap(better.rect, face.rect); };
+    if (std::ranges::none_of(best, hides)) best.push_back(face);
+  }
+  return best;
+}
+
 }  // namespace
 
 struct FaceFinder::State {
-  dlib::frontal_face_detector detector;
-  dlib::shape_predictor predictor;
+  explicit State(const std::filesystem::path& model) : predictor(read_predictor(model)) {}
+
+  std::vector<Face> faces(const Image& image, const Detections& found) const {
+    std::vector<Face> faces;
+    for (const dlib::rect_detection& face : found) {
+      faces.push_back(face_of(face, predictor(image, face.rect)));
+    }
+    return faces;
+  }
+
+  dlib::shape_predictor predictor;  // what is no model is refused before detectors are made
+  Detector detector = dlib::get_frontal_face_detector();
+  Detector one_level = of_one_level(detector);
 };
 
 FaceFinder::FaceFinder(const std::filesystem::path& model)
-    : state_(std::make_unique<State>(
-          State{dlib::get_frontal_face_detector(), read_predictor(model)})) {}
+    : state_(std::make_unique<State>(model)) {}
 FaceFinder::~FaceFinder() = default;
 FaceFinder::FaceFinder(FaceFinder&&) noexcept = default;
 FaceFinder& FaceFinder::operator=(FaceFinder&&) noexcept = default;
 
 std::vector<Face> FaceFinder::faces(const Image& image) const {
-  dlib::frontal_face_detector detector = state_->detector;  // it keeps the image's features
-  const Pixels pixels = pixels_of(image);
-  std::vector<dlib::rect_detection> found;
-  detector(pixels, found);
-  std::vector<Face> faces;
-  for (const dlib::rect_detection& face : found) {
-    faces.push_back(face_of(face, state_->predictor(pixels, face.rect)));
+  Detector detector = state_->detector;  // it keeps the image's features
+  Detections found;
+  detector(image, found);
+  return state_->faces(image, found);
+}
+
+std::vector<Face> FaceFinder::faces_near(const Image& image, const std::vector<Face>& last) const {
+  NearSearch search(image, state_->one_level);
+  Detections found;
+  for (const Face& face : last) {
+    const Detections near = search.around(face);
+    found.insert(found.end(), near.begin(), near.end());
   }
-  return faces;
+  return state_->faces(image, best_of(found, state_->detector.get_overlap_tester()));
 }
 
 void require_dlib(const std::string&) {}

@@ -1,4 +1,4 @@
-#include "fitting/face_images.h"
+#include "fitting/face_finder.h"
 #include "fitting/image_codec.h"
 #include "toolkit/mesh/errors.h"
 
@@ -23,6 +23,10 @@ FaceFinder::FaceFinder(FaceFinder&&) noexcept = default;
 FaceFinder& FaceFinder::operator=(FaceFinder&&) noexcept = default;
 
 std::vector<Face> FaceFinder::faces(const Image&) const {
+  return {};
+}
+
+std::vector<Face> FaceFinder::faces_near(const Image&, const std::vector<Face>&) const {
   return {};
 }
 

@@ -9,9 +9,12 @@
 #include "fitting/fit_pictures.h"
 #include "fitting/head_rotation.h"
 #include "fitting/image_files.h"
+#include "fitting/landmark_file.h"
 #include "fitting/landmark_fitter.h"
 #include "fitting/landmark_input.h"
 #include "fitting/landmark_mapping.h"
+#include "fitting/video_file.h"
+#include "fitting/video_format.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/product_blocking.h"
 #include "toolkit/mesh/progress.h"
@@ -165,11 +168,11 @@ void check_images(const Invocation& invocation) {
   const NamedData& landmarks = invocation.input("landmarks");
   for (const char* output : {"overlay", "strip"}) {
     if (!invocation.wants(output)) continue;
-    if (landmarks.origin.images.empty()) {
+    if (!landmarks.origin.images) {
       throw UsageError("--" + std::string(output) + ": " + landmarks.name +
                        " has no images; name them by --images");
     }
-    for (const auto& image : landmarks.origin.images) check_image(image);
+    landmarks.origin.images->check();
   }
 }
 
@@ -227,11 +230,18 @@ Outcome run(const Invocation& invocation) {
        FieldSequence(turns ? turned_as_seen(sequence, fit.cameras) : sequence),
        {.model_driven = !turns}});
   outcome.outputs["fit-out"].push_back({"", fit});
+  if (invocation.wants("landmarks-out")) outcome.outputs["landmarks-out"].push_back({"", track});
   if (invocation.wants("overlay") || invocation.wants("strip")) {
     const FitPictures pictures(landmarks.origin.images, sequence, fit.cameras, mapped);
     if (invocation.wants("overlay")) {
+      const std::filesystem::path sound = landmarks.origin.images->sound();
+      for (const auto& target : invocation.wanted.at("overlay")) {
+        const std::string loss = lost_sound(target, sound);
+        if (!loss.empty()) invocation.warn(loss);
+      }
       outcome.outputs["overlay"].push_back(
-          {"", Pictures{fit.frames(), [pictures](int f) { return pictures.overlay(f); }}});
+          {"", Pictures{fit.frames(), [pictures](int f) { return pictures.overlay(f); }, fit.times,
+                        sound}});
     }
     if (invocation.wants("strip")) {
       outcome.outputs["strip"].push_back({"", Pictures::of(pictures.strip(seen_frames(fit)))});
@@ -249,9 +259,10 @@ BoundParameters<LandmarkInputOptions> landmark_parameters() {
            "frames of which the detector was less sure are taken as not seen");
   BoundParameters<LandmarkInputOptions> list;
   return list
-      .add("images", LandmarkInputOptions::kImages,
-           "images that landmarks from files belong to, for --overlay and --strip: a file, folder "
-           "or pattern (default: of the same name beside .pts files)")
+      .add(
+          "images", LandmarkInputOptions::kImages,
+          "what landmarks from files belong to, for --overlay and --strip: a video, or an image, a "
+          "folder or pattern of them (default: those of the same name beside .pts files)")
       .add("image-size", LandmarkInputOptions::kImageSize,
            "WIDTHxHEIGHT of the images of landmarks in shares of them, as MediaPipe's (default: "
            "that of --images)")
@@ -272,21 +283,29 @@ ReadValue read_landmark_data(const std::string& text, const ReadRequest& request
           std::move(read.notes)};
 }
 
+std::vector<std::filesystem::path> write_landmark_data(const Data& data,
+                                                       const WriteRequest& request) {
+  return write_text(request, landmark_csv(std::get<LandmarkTrack>(data)));
+}
+
 void add_landmark_formats(OperationTable& table) {
   std::vector<Parameter> reading = frame_parameters().declared();
   for (Parameter& parameter : landmark_parameters().declared()) {
     reading.push_back(std::move(parameter));
   }
-  const auto add = [&](std::string name, std::vector<std::string> extensions) {
+  const auto add = [&](std::string name, std::vector<std::string> extensions,
+                       decltype(Format::write) write = {}) {
     table.add(Format{.name = std::move(name),
                      .kind = DataKind::landmarks,
                      .extensions = std::move(extensions),
                      .reading = reading,
-                     .read = read_landmark_data});
+                     .read = read_landmark_data,
+                     .write = std::move(write)});
   };
   add("image of a face", image_extensions());
+  add("video of a face", video_extensions());
   add("points of iBUG", {".pts"});
-  add("track of OpenFace, or a row for each frame", {".csv"});
+  add("track of OpenFace, or a row for each frame", {".csv"}, write_landmark_data);
   add("track of frames and their points", {".json"});
   add("folder of images or of .pts files", {Format::kFolder});
 }
@@ -313,7 +332,7 @@ void add_fitting(OperationTable& table) {
   operation.summary = "Fit a morphable face model to 2D landmarks: a sequence in correspondence";
   operation.inputs = {
       {"landmarks", DataKind::landmarks,
-       "images of a face, or landmarks that were found: one file, a track, a folder, a "
+       "images of a face, a video, or landmarks that were found: one file, a track, a folder, a "
        "pattern"},
       {"model", DataKind::model, "model with identities and expressions", false, false, true}};
   operation.outputs = {
@@ -322,17 +341,21 @@ void add_fitting(OperationTable& table) {
        "coefficients and cameras, for MODEL@NAME.fit.json (default: NAME.fit.json beside "
        "OUT)",
        true, false, ".fit.json"},
-      {"overlay", DataKind::pictures, "the images with mesh and landmarks drawn over them", true},
+      {"landmarks-out", DataKind::landmarks, "what was found, to start from another time", true},
+      {"overlay", DataKind::pictures,
+       "the images with mesh and landmarks drawn over them, as a video or in a folder", true},
       {"strip", DataKind::pictures, "five of them in a row, near enough to judge the fit", true}};
   operation.inputs.back().identities = true;
-  operation.outputs[2].extensions = {""};
-  operation.outputs[3].extensions = {".png"};
+  operation.outputs[2].extensions = {".csv"};
+  operation.outputs[3].extensions = {"", ".mp4", ".mov", ".mkv"};
+  operation.outputs[4].extensions = {".png"};
   operation.parameters = fit_parameters().declared();
   operation.examples = {"fit face.png --model sfm/ -o face.obj --strip face_fit.png",
-                        "fit track.csv --model sfm/ --smoothness 0.1 -o take/"};
+                        "fit take.mp4 --model sfm/ -o take/ --landmarks-out track.csv"};
   operation.run = run;
   operation.memory = memory;
   add_landmark_formats(table);
+  add_video_format(table);
   table.add(std::move(operation));
 }
 

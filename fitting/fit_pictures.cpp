@@ -3,11 +3,12 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "fitting/image_files.h"
 #include "toolkit/mesh/errors.h"
 
 namespace mimetra {
 
-FitPictures::FitPictures(std::vector<std::filesystem::path> images, MeshSequence sequence,
+FitPictures::FitPictures(std::shared_ptr<const ImageSequence> images, MeshSequence sequence,
                          std::vector<AffineCamera> cameras, MappedLandmarks mapped) {
   Triangles triangles = sequence.triangles();
   clip_ =
@@ -16,7 +17,7 @@ FitPictures::FitPictures(std::vector<std::filesystem::path> images, MeshSequence
 }
 
 Image FitPictures::image(int frame) const {
-  return read_image(clip_->images[static_cast<std::size_t>(frame)]);
+  return clip_->images->image(frame);
 }
 
 FittedView FitPictures::view(int frame) const {
@@ -40,7 +41,7 @@ Image FitPictures::strip(const std::vector<int>& frames) const {
     try {
       parts.push_back(draw_close_up(image(frame), clip_->triangles, view(frame), kHeight));
     } catch (const std::invalid_argument&) {
-      throw MismatchError(clip_->images[static_cast<std::size_t>(frame)].string() +
+      throw MismatchError(clip_->images->name(frame) +
                           ": the fitted face is outside the image; do the landmarks belong to it?");
     }
   }

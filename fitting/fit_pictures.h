@@ -1,14 +1,13 @@
 #pragma once
 
-#include <filesystem>
 #include <memory>
 #include <vector>
 
 #include "fitting/affine_camera.h"
-#include "fitting/image_files.h"
 #include "fitting/landmark_mapping.h"
 #include "fitting/overlay.h"
 #include "toolkit/mesh/mesh_sequence.h"
+#include "toolkit/operations/image_sequence.h"
 
 /// What the operation `fit` draws. Internal to fit_operation.h.
 namespace mimetra {
@@ -17,18 +16,18 @@ namespace mimetra {
 class FitPictures {
  public:
   /// \pre one image and one camera for each frame of `sequence` and `mapped`
-  FitPictures(std::vector<std::filesystem::path> images, MeshSequence sequence,
+  FitPictures(std::shared_ptr<const ImageSequence> images, MeshSequence sequence,
               std::vector<AffineCamera> cameras, MappedLandmarks mapped);
 
-  /// A frame's whole image. Throws as read_image.
+  /// A frame's whole image. Throws as ImageSequence::image.
   Image overlay(int frame) const;
-  /// The faces of up to five of `frames`, evenly spread, side by side. Throws as read_image;
-  /// MismatchError for a face outside its image.
+  /// The faces of up to five of `frames`, evenly spread, side by side. Throws as
+  /// ImageSequence::image; MismatchError for a face outside its image.
   Image strip(const std::vector<int>& frames) const;
 
  private:
   struct Clip {
-    std::vector<std::filesystem::path> images;
+    std::shared_ptr<const ImageSequence> images;
     MeshSequence sequence;
     std::vector<AffineCamera> cameras;
     MappedLandmarks mapped;

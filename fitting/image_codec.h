@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <string>
 
+#include "fitting/image_orientation.h"
 #include "toolkit/operations/image.h"
 
 /// Bytes of image files to pixels, where dlib is there. Internal to image_files.h.
@@ -13,6 +14,7 @@ struct ImageHeader {
   bool is_png = false;  ///< JPEG otherwise
   unsigned width = 0;
   unsigned height = 0;
+  Orientation orientation = {};  ///< of the camera, which JPEGs of phones hold
 };
 
 /// Reads the header, and follows the file's parts to the end. Throws IoError where the type is

@@ -91,7 +91,12 @@ void check_image(const std::filesystem::path& path) {
 
 Image read_image(const std::filesystem::path& path) {
   const std::string bytes = read_file(path);
-  return decoded_image(path.string(), bytes, checked_image_header(path.string(), bytes));
+  const ImageHeader header = checked_image_header(path.string(), bytes);
+  return oriented(decoded_image(path.string(), bytes, header), header.orientation);
+}
+
+void ImageFiles::check() const {
+  std::ranges::for_each(files_, check_image);
 }
 
 Image cropped(const Image& image, int left, int top, int width, int height) {

@@ -2,9 +2,10 @@
 
 #include <filesystem>
 #include <string>
+#include <utility>
 #include <vector>
 
-#include "toolkit/operations/image.h"
+#include "toolkit/operations/image_sequence.h"
 
 namespace mimetra {
 
@@ -18,12 +19,33 @@ bool is_image(const std::filesystem::path& path);
 /// order (2 before 10). Throws IoError where there is none.
 std::vector<std::filesystem::path> image_files(const std::string& text);
 
-/// Reads a PNG or JPEG file of 8 bits a channel, whatever its extension. Throws IoError for one
+/// Reads a PNG or JPEG file of 8 bits a channel, whatever its extension, turned as the Exif data of
+/// a JPEG say. Throws IoError for one
 /// that is truncated, damaged or of another type, and where mimetra was built without dlib.
 Image read_image(const std::filesystem::path& path);
 
 /// Throws as read_image for a file that is no such image or was cut; its pixels are not decoded.
 void check_image(const std::filesystem::path& path);
+
+/// A frame from each of some files.
+class ImageFiles final : public ImageSequence {
+ public:
+  explicit ImageFiles(std::vector<std::filesystem::path> files) : files_(std::move(files)) {}
+
+  int frames() const override { return static_cast<int>(files_.size()); }
+  /// Throws as read_image.
+  Image image(int frame) const override { return read_image(file(frame)); }
+  std::string name(int frame) const override { return file(frame).string(); }
+  /// Throws as check_image.
+  void check() const override;
+
+ private:
+  const std::filesystem::path& file(int frame) const {
+    return files_.at(static_cast<std::size_t>(frame));
+  }
+
+  std::vector<std::filesystem::path> files_;
+};
 
 /// The part of columns left .. left + width - 1 and rows top .. top + height - 1 that is inside the
 /// image. Throws std::invalid_argument where nothing is.

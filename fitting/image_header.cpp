@@ -1,4 +1,5 @@
 #include <cstddef>
+#include <cstdint>
 #include <string_view>
 
 #include "fitting/image_codec.h"
@@ -88,9 +89,59 @@ std::uint8_t next_marker(ByteReader& bytes) {
   }
 }
 
+/// The turns that Exif numbers from 1 to 8.
+Orientation exif_orientation(unsigned number) {
+  switch (number) {
+    case 2:
+      return {false, true, false};
+    case 3:
+      return {false, true, true};
+    case 4:
+      return {false, false, true};
+    case 5:
+      return {true, false, false};
+    case 6:
+      return {true, true, false};
+    case 7:
+      return {true, true, true};
+    case 8:
+      return {true, false, true};
+    default:
+      return {};
+  }
+}
+
+/// What the orientation's entry in the first list of Exif data says; damaged data say nothing.
+///
+/// [CIPA DC-008, Exchangeable image file format for digital still cameras, 2.3], 4.5 and 4.6.4
+Orientation orientation_of_exif(std::string_view data) {
+  constexpr std::string_view kStart("Exif\0\0", 6);
+  constexpr unsigned kOrientation = 0x0112;
+  if (!data.starts_with(kStart)) return {};
+  data.remove_prefix(kStart.size());
+  const bool little = data.starts_with("II");
+  const auto number = [&](std::size_t at, std::size_t size) -> std::uint64_t {
+    std::uint64_t value = 0;
+    if (at > data.size() || size > data.size() - at) return value;
+    for (std::size_t i = 0; i < size; ++i) {
+      const auto byte = static_cast<unsigned char>(data[at + (little ? size - 1 - i : i)]);
+      value = value << 8 | byte;
+    }
+    return value;
+  };
+  const std::size_t list = number(4, 4), entries = number(list, 2);
+  for (std::size_t i = 0; i < entries; ++i) {
+    const std::size_t entry = list + 2 + 12 * i;
+    if (number(entry, 2) == kOrientation) {
+      return exif_orientation(static_cast<unsigned>(number(entry + 8, 2)));
+    }
+  }
+  return {};
+}
+
 /// The decoder fills what is missing with grey: the end has to be looked for.
 ImageHeader jpeg_header(const std::string& name, ByteReader bytes) {
-  constexpr std::uint8_t kEnd = 0xd9;
+  constexpr std::uint8_t kEnd = 0xd9, kExif = 0xe1;
   ImageHeader header;
   bytes.skip(kJpegStart.size());
   while (true) {
@@ -100,6 +151,10 @@ ImageHeader jpeg_header(const std::string& name, ByteReader bytes) {
     if (length < 2) bytes.fail_truncated();
     ByteReader content = bytes;
     bytes.skip(length - 2);
+    if (marker == kExif) {
+      const std::string_view data = content.text(length - 2);
+      if (data.starts_with("Exif")) header.orientation = orientation_of_exif(data);
+    }
     if (is_frame_header(marker)) {
       // The decoder takes the first one, whose pixels the limit must hold for.
       if (header.width != 0 || header.height != 0) {

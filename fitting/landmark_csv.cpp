@@ -1,3 +1,4 @@
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <limits>
@@ -5,7 +6,9 @@
 #include <optional>
 #include <string_view>
 
+#include "fitting/landmark_file.h"
 #include "fitting/landmark_formats.h"
+#include "fitting/mediapipe.h"
 #include "toolkit/io/csv.h"
 #include "toolkit/mesh/errors.h"
 
@@ -23,6 +26,12 @@ std::optional<std::size_t> landmark_number(std::string_view name, char letter) {
   const auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), number);
   if (error != std::errc() || end != name.data() + name.size()) return {};
   return number;
+}
+
+/// Those that read back equal.
+std::string shortest_digits(double value) {
+  std::array<char, 32> digits;
+  return {digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr};
 }
 
 class LandmarkReader {
@@ -142,6 +151,33 @@ class LandmarkReader {
 };
 
 }  // namespace
+
+std::string landmark_csv(const LandmarkTrack& track) {
+  LandmarkTrack numbered{numbered_names(track.names.size()), {}, {}, {}};
+  name_mediapipe_landmarks(numbered);
+  if (track.names != numbered.names) {
+    throw MismatchError("the landmarks have names, such as '" + track.names.front() +
+                        "'; a CSV file numbers them");
+  }
+  const bool has_times = track.times.size() > 0, has_confidence = track.confidence.size() > 0;
+  std::string text = has_times ? "time," : "";
+  if (has_confidence) text += "confidence,";
+  for (int i = 0; i < track.landmarks(); ++i) {
+    const std::string number = std::to_string(i);
+    text += (i > 0 ? ",x" : "x") + number + ",y" + number;
+  }
+  for (Eigen::Index f = 0; f < track.points.rows(); ++f) {
+    text += '\n';
+    if (has_times) text += shortest_digits(track.times[f]) + ',';
+    if (has_confidence) text += shortest_digits(track.confidence[f]) + ',';
+    for (Eigen::Index i = 0; i < track.points.cols(); ++i) {
+      const double value = track.points(f, i);
+      if (i > 0) text += ',';
+      if (!std::isnan(value)) text += shortest_digits(value);
+    }
+  }
+  return text + '\n';
+}
 
 LandmarkTrack read_landmark_csv(const std::filesystem::path& path) {
   return LandmarkReader(path).read();

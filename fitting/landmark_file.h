@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 
 #include "toolkit/model/landmark_track.h"
 
@@ -23,5 +24,9 @@ namespace mimetra {
 ///
 /// 468 or 478 numbered landmarks are MediaPipe's, "mp0" to "mp477".
 LandmarkTrack read_landmarks(const std::filesystem::path& path);
+
+/// The text of a .csv file from which read_landmarks() reads the same numbers. Throws MismatchError
+/// where landmarks have names of their own, for which it has no place.
+std::string landmark_csv(const LandmarkTrack& track);
 
 }  // namespace mimetra

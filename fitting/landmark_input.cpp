@@ -9,6 +9,7 @@
 #include "fitting/image_files.h"
 #include "fitting/landmark_file.h"
 #include "fitting/mediapipe.h"
+#include "fitting/video_file.h"
 #include "toolkit/io/frame_files.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/progress.h"
@@ -77,35 +78,59 @@ void note_others(LandmarksRead& read, const std::string& text, const LandmarkFil
                        "name the images by a pattern to find faces in them");
 }
 
-/// Options that change nothing are mistakes.
-void check_needed(const std::string& text, bool images, const LandmarkInputOptions& options) {
-  if (images && options.images) {
-    throw MismatchError("option 'images': " + text + " are images themselves");
+/// Options that change nothing are mistakes. `what` says what the input is where it shows faces,
+/// "is a video"; it is nothing for landmarks.
+void check_needed(const std::string& text, const std::string& what,
+                  const LandmarkInputOptions& options) {
+  if (!what.empty() && options.images) {
+    throw MismatchError("option 'images': " + text + " " + what);
   }
-  if (images && options.image_size) {
-    throw MismatchError("option 'image-size': " + text + " are images, whose size is known");
+  if (!what.empty() && options.image_size) {
+    throw MismatchError("option 'image-size': " + text + " " + what + ", whose size is known");
   }
-  if (!images && options.faces.model) {
+  if (what.empty() && options.faces.model) {
     throw MismatchError("option 'face-model': " + text + " are landmarks already");
   }
 }
 
-/// The image of each frame of the whole clip, or none.
-Paths images_of(const std::string& text, const Paths& frames, int count,
-                const LandmarkInputOptions& options) {
-  Paths images;
-  if (options.images) {
-    images = image_files(*options.images);
-    if (static_cast<int>(images.size()) != count) {
-      throw MismatchError(*options.images + ": " + std::to_string(images.size()) +
-                          " images, expected one for each of the " + std::to_string(count) +
-                          " frames of " + text);
-    }
-  } else {
-    std::ranges::transform(frames, std::back_inserter(images), image_beside);
-    if (std::ranges::any_of(images, &fs::path::empty)) images.clear();
+/// Throws IoError where frames up to `end`, or all that there should be, are asked for and the
+/// video is damaged before.
+void check_whole(const std::string& text, const VideoFile& video, std::optional<int> end) {
+  const std::string sound = std::to_string(video.frames());
+  if (video.damage().empty() || (end && *end <= video.frames())) return;
+  throw IoError(
+      text, video.damage() + "; option 'frames' 0:" + sound + " takes the " + sound + " before it");
+}
+
+/// What each frame of the whole clip shows, or null; and its files.
+struct ShownImages {
+  std::shared_ptr<const ImageSequence> images;
+  Paths files;
+};
+
+ShownImages images_named(const std::string& text, int count, const Progress& progress) {
+  if (is_video(text) && fs::exists(text)) {
+    auto video = std::make_shared<const VideoFile>(text, progress);
+    check_whole(text, *video, count);
+    return {std::move(video), {text}};
   }
-  return images;
+  Paths files = image_files(text);
+  return {std::make_shared<const ImageFiles>(files), files};
+}
+
+ShownImages images_of(const std::string& text, const Paths& frames, int count,
+                      const LandmarkInputOptions& options, const Progress& progress) {
+  if (options.images) {
+    ShownImages shown = images_named(*options.images, count, progress);
+    if (shown.images->frames() == count) return shown;
+    throw MismatchError(*options.images + ": " + std::to_string(shown.images->frames()) +
+                        " images, expected one for each of the " + std::to_string(count) +
+                        " frames of " + text);
+  }
+  Paths images;
+  std::ranges::transform(frames, std::back_inserter(images), image_beside);
+  if (images.empty() || std::ranges::any_of(images, &fs::path::empty)) return {};
+  return {std::make_shared<const ImageFiles>(images), images};
 }
 
 Paths taken_from(const Paths& all, const std::vector<int>& frames) {
@@ -201,8 +226,8 @@ void make_pixels(LandmarksRead& read, const std::string& text,
   if (size) {
     const auto [width, height] = size_of(*size);
     scale_to_pixels(read.track, width, height);
-  } else if (!read.images.empty()) {
-    const Image image = read_image(read.images.front());
+  } else if (read.images) {
+    const Image image = read.images->image(0);
     scale_to_pixels(read.track, image.width, image.height);
   } else {
     throw MismatchError(
@@ -213,16 +238,31 @@ void make_pixels(LandmarksRead& read, const std::string& text,
   }
 }
 
-LandmarksRead find_in_images(Paths images, const SequenceSource& source, FaceOptions options) {
-  options.threads = source.threads;
-  options.progress = source.progress;
-  FaceTrack faces = track_face(images, options);
+LandmarksRead find_in_images(std::shared_ptr<const ImageSequence> images, int threads,
+                             const Progress& progress, FaceOptions options) {
+  options.threads = threads;
+  options.progress = progress;
+  FaceTrack faces = track_face(*images, options);
   LandmarksRead read;
   read.track = std::move(faces.landmarks);
-  read.files = images;
   read.images = std::move(images);
   read.notes = std::move(faces.notes);
   for (FaceFrame& frame : faces.frames) read.frame_notes.push_back(std::move(frame.note));
+  return read;
+}
+
+LandmarksRead find_in_video(const std::string& text, const SequenceSource& source,
+                            const FaceOptions& options) {
+  constexpr double kShareOfOpening = 0.2;
+  const auto video =
+      std::make_shared<const VideoFile>(text, part_of(source.progress, 0, kShareOfOpening));
+  check_rate(text, video->times(), source);
+  check_whole(text, *video, end_of_frames(source.frames));
+  const std::vector<int> chosen = selected_frames(source.frames, video->frames());
+  LandmarksRead read = find_in_images(selected(video, chosen), source.threads,
+                                      part_of(source.progress, kShareOfOpening, 1), options);
+  read.track.times = video->times()(chosen);
+  read.files = {text};
   return read;
 }
 
@@ -233,6 +273,10 @@ LandmarksRead read_landmark_input(const std::string& text, const SequenceSource&
   check_options(source);
   check_options(options.faces);
   const LandmarkFiles input = input_of(text);
+  if (is_video(input.track)) {
+    check_needed(text, "is a video", options);
+    return find_in_video(text, source, options.faces);
+  }
   LandmarkTrack whole;
   if (input.frames.empty()) whole = read_landmarks(input.track);
   const int count = input.frames.empty() ? whole.frames() : static_cast<int>(input.frames.size());
@@ -240,15 +284,20 @@ LandmarksRead read_landmark_input(const std::string& text, const SequenceSource&
   const Paths files = taken_from(input.frames, selected);
   LandmarksRead read;
   const bool from_images = !files.empty() && is_image(files.front());
-  check_needed(text, from_images, options);
+  check_needed(text, from_images ? "are images themselves" : "", options);
   if (from_images) {
-    read = find_in_images(files, source, options.faces);
+    read = find_in_images(std::make_shared<const ImageFiles>(files), source.threads,
+                          source.progress, options.faces);
+    read.files = files;
   } else {
     read.track = files.empty() ? taken_from(std::move(whole), selected)
                                : read_points(files, source.progress);
     read.files = files.empty() ? Paths{input.track} : files;
-    read.images = taken_from(images_of(text, input.frames, count, options), selected);
-    read.files.insert(read.files.end(), read.images.begin(), read.images.end());
+    const ShownImages shown = images_of(text, input.frames, count, options, source.progress);
+    if (shown.images) read.images = mimetra::selected(shown.images, selected);
+    const bool of_frames = static_cast<int>(shown.files.size()) == count;
+    const Paths shown_files = of_frames ? taken_from(shown.files, selected) : shown.files;
+    read.files.insert(read.files.end(), shown_files.begin(), shown_files.end());
     make_pixels(read, text, options.image_size);
     drop_doubtful(read, text, options.faces.min_confidence);
     note_others(read, text, input);

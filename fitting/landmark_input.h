@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -15,7 +16,8 @@ struct LandmarkInputOptions {
   /// For images. Frames of less confidence are taken as not seen, also those of a track.
   FaceOptions faces = {};
   /// The images that the landmarks of a track or of .pts files belong to, one for each frame: a
-  /// file, folder or pattern. By default those of the same name beside .pts files, or none.
+  /// video, or a file, folder or pattern. By default those of the same name beside .pts files, or
+  /// none.
   std::optional<std::string> images = {};
   /// "1920x1080": of landmarks in shares of width and height, as MediaPipe's are. By default that
   /// of the images, where there are any.
@@ -27,8 +29,9 @@ struct LandmarkInputOptions {
 
 /// Landmarks, and what was noticed while reading them.
 struct LandmarksRead {
-  LandmarkTrack track;                             ///< with times
-  std::vector<std::filesystem::path> images = {};  ///< that each frame shows (F), or none
+  LandmarkTrack track;  ///< with times
+  /// What the frames show (F images), or null.
+  std::shared_ptr<const ImageSequence> images = {};
   /// What was noticed in each frame (F, "" for nothing), or none.
   std::vector<std::string> frame_notes = {};
   std::vector<std::filesystem::path> files = {};
@@ -36,8 +39,9 @@ struct LandmarksRead {
 };
 
 /// Reads the landmarks of a clip: one .pts, .csv or .json file, a folder or pattern of .pts files,
-/// or an image, a folder or pattern of images in which faces are found; one frame a file in natural
-/// order. With times, the frames that `source.frames` takes. Throws IoError, also as track_face;
+/// or a video, an image, a folder or pattern of images in which faces are found; one frame a file
+/// in natural order. With times, the frames that `source.frames` takes. Throws IoError, also as
+/// VideoFile and track_face, and where a frame that is taken comes after a video's damage;
 /// MismatchError for files that differ in their number of landmarks, another number of images, an
 /// option that changes nothing, and as selected_frames; std::invalid_argument for options out of
 /// range; Cancelled.

@@ -34,6 +34,7 @@ void add_sample(OperationTable& table) {
   operation.summary =
       "Write the built-in sample: a parametric head and a performance of 120 frames";
   operation.outputs = {{"out", DataKind::model, "folder of the model"}};
+  operation.outputs.front().extensions = {""};  // its identities need one
   operation.examples = {
       "sample -o head/",
       "transfer head@identity001=1 head@identity002=1 --weights head/performance.csv -o out/"};

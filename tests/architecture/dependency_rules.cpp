@@ -42,6 +42,7 @@ const std::vector<ThirdParty>& third_parties() {
       {"fmt", {"fmt/"}, {"fmt::"}},
       {"xxHash", {"xxhash.h"}, {"xxHash::"}},
       {"dlib", {"dlib/"}, {"dlib"}},
+      {"FFmpeg", {"libav", "libsw"}, {"${FFMPEG_", "${MIMETRA_FFMPEG_"}},
       {"GoogleTest", {"gtest/", "gmock/"}, {"GTest::"}},
       {"Google Benchmark", {"benchmark/"}, {"benchmark::"}},
   };
@@ -289,7 +290,7 @@ const std::vector<FolderRule>& folder_rules() {
         {"vtk", "toolkit/vtk", up_to_operations, {"VTK", "JSON"}},
         {"pictures", "toolkit/pictures", up_to_vtk, {"VTK", "VTK's rendering", "OpenGL", "JSON"}},
         {"report", "toolkit/report", with(up_to_vtk, {"pictures"}), {"VTK", "JSON"}},
-        {"fitting", "fitting", {"mesh", "model", "io", "operations"}, {"dlib", "JSON"}},
+        {"fitting", "fitting", {"mesh", "model", "io", "operations"}, {"dlib", "FFmpeg", "JSON"}},
         {"samples", "samples/head", up_to_operations, {"JSON"}},
         // The C interface makes values of all kinds, and shows them.
         {"c", "plugins/c", with(up_to_operations, {"fitting", "samples"}), {"JSON"}},

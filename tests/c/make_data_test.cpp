@@ -1,6 +1,9 @@
 // Values made of arrays, and of other values.
 
 #include <cstddef>
+#include <memory>
+#include <stdexcept>
+#include <string>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,6 +12,7 @@
 #include "plugins/c/shown_arrays.h"
 #include "tests/shapes.h"
 #include "toolkit/mesh/errors.h"
+#include "toolkit/operations/image_sequence.h"
 #include "toolkit/operations/parameter.h"
 
 namespace mimetra {
@@ -96,21 +100,35 @@ TEST(DerivedData, KeepsWhatNoArrayShows) {
   EXPECT_EQ(std::get<ModelData>(larger.data).model.mean(), moved);
 }
 
+/// Images that nobody looks at.
+class UnseenImages final : public ImageSequence {
+ public:
+  explicit UnseenImages(int frames) : frames_(frames) {}
+  int frames() const override { return frames_; }
+  Image image(int frame) const override { throw std::logic_error(name(frame)); }
+  std::string name(int frame) const override { return std::to_string(frame) + ".png"; }
+  void check() const override {}
+
+ private:
+  int frames_;
+};
+
 TEST(DerivedData, KeepsTheImagesOfAsManyFrames) {
   LandmarkTrack track;
   track.points = Frames::Zero(2, 2);
   track.names = {"nose"};
   track.times = Eigen::Vector2d(0, 1);
-  const NamedData read{"it", track, {.images = {"a.png", "b.png"}, .frame_notes = {"", "dark"}}};
+  const auto images = std::make_shared<const UnseenImages>(2);
+  const NamedData read{"it", track, {.images = images, .frame_notes = {"", "dark"}}};
   const double points[] = {1, 2, 3, 4, 5, 6};
   const Origin moved = derived(read, {array("points", MIMETRA_F64, {2, 1, 2}, points)}).origin;
-  EXPECT_THAT(moved.images, ElementsAre("a.png", "b.png"));
+  EXPECT_EQ(moved.images, images);
   EXPECT_THAT(moved.frame_notes, ElementsAre("", "dark"));
   const double times[] = {0, 1, 2};
   const Origin longer = derived(read, {array("points", MIMETRA_F64, {3, 1, 2}, points),
                                        array("times", MIMETRA_F64, {3}, times)})
                             .origin;
-  EXPECT_TRUE(longer.images.empty());
+  EXPECT_EQ(longer.images, nullptr);
   EXPECT_TRUE(longer.frame_notes.empty());
 }
 

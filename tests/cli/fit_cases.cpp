@@ -131,13 +131,33 @@ void add_json(std::vector<BadInput>& all) {
   };
   add("empty", "", 3, {"t.json", "JSON"});
   add("truncated", R"({"points": [[1, 2], [3)", 3, {"t.json", "JSON"});
-  add("other_type", "[1, 2]", 3, {"t.json: /: expected an object"});
+  add("other_type", "[1, 2]", 3, {"t.json: /0: expected a list of points"});
   add("text_for_a_number", R"({"points": [[1, "2"]]})", 3, {"/points/0: expected a finite number"});
-  add("three_coordinates", R"({"points": [[1, 2, 3]]})", 3, {"/points/0: expected [x, y]"});
-  add("other_count", R"({"frames": [{"points": [null]}, {"points": []}]})", 3,
+  add("four_coordinates", R"({"points": [[1, 2, 3, 4]]})", 3, {"/points/0: expected [x, y]"});
+  add("other_count", R"({"frames": [{"points": [null]}, {"points": [null, null]}]})", 3,
       {"/frames/1/points", "expected 1"});
   add("unknown_names", R"({"names": ["a"], "frames": [{"points": [[1, 2]]}]})", 4,
       {"none of the 1 landmarks", "'a'"});
+}
+
+void add_videos(std::vector<BadInput>& all) {
+  const auto add = [&all](const std::string& kind, const std::string& bytes) {
+    all.push_back({kind,
+                   "landmarks_video",
+                   mapped({{"v.mp4", bytes}}),
+                   "fit v.mp4 --model head -o o.npy",
+                   3,
+                   {"v.mp4: "}});
+  };
+  all.push_back({"missing",
+                 "landmarks_video",
+                 mapped({}),
+                 "fit v.mp4 --model head -o o.npy",
+                 3,
+                 {"v.mp4: no such file"}});
+  add("empty", "");
+  add("other_type", bytes_of(square(), "ply"));
+  add("list_of_files", "#EXTM3U\n#EXT-X-TARGETDURATION:1\n#EXTINF:1,\nfile:///etc/hostname\n");
 }
 
 void add_mappings(std::vector<BadInput>& all) {
@@ -247,6 +267,7 @@ std::vector<BadInput> fit_cases() {
   add_tracks(all);
   add_points(all);
   add_json(all);
+  add_videos(all);
   add_mappings(all);
   add_fits(all);
   add_requests(all);

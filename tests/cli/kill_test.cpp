@@ -152,11 +152,13 @@ INSTANTIATE_TEST_SUITE_P(
 
 using Companion = test::CommandTest;
 
-TEST_F(Companion, OfSomebodyElseIsNotReplacedWithoutForce) {
+TEST_F(Companion, OfSomebodyElseIsNotReplaced) {
   write("x.rest.ply", "mine");
-  const auto result = run("convert head --weights take.csv -o x.npy");
-  EXPECT_EQ(result.code, 5);
-  EXPECT_THAT(result.err, testing::HasSubstr("x.rest.ply: exists already; use --force"));
+  for (const std::string force : {"", " --force"}) {
+    const auto result = run("convert head --weights take.csv -o x.npy" + force);
+    EXPECT_EQ(result.code, 5);
+    EXPECT_THAT(result.err, testing::HasSubstr("x.rest.ply: stands without 'x.npy'"));
+  }
   EXPECT_EQ(text_of(folder_ / "x.rest.ply"), "mine");
   EXPECT_FALSE(listing().contains("x.npy"));
 }

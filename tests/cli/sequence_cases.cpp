@@ -181,7 +181,7 @@ std::vector<BadInput> sequence_cases() {
                  file("take.mp4", "x"),
                  "info take.mp4",
                  3,
-                 {"take.mp4: is a video", "mimetra fit images/"}});
+                 {"take.mp4: is a video", "mimetra fit VIDEO"}});
   all.push_back({"beyond_single_precision",
                  "frames",
                  file("huge.obj", "v 0 0 0\nv 1e39 0 0\nv 0 1e39 0\nf 1 2 3\n"),

@@ -78,7 +78,7 @@ class FaceImages : public FaceModel {
 };
 
 TEST_F(FaceImages, HaveLandmarksWhereAPersonMarkedThem) {
-  const FaceTrack track = track_face({photo_});
+  const FaceTrack track = track_face(ImageFiles({photo_}));
   const LandmarkTrack marked = read_landmarks(shared_path("data/sfm/image_0010.pts"));
   ASSERT_EQ(track.frames.front().outcome, FaceFrame::Outcome::found);
   EXPECT_EQ(track.landmarks.names, marked.names);
@@ -105,7 +105,7 @@ TEST_F(FaceImages, FitAtLeastAsWellAsMarkedOnes) {
         .front()
         .rms;
   };
-  const LandmarkTrack found = track_face({photo_}).landmarks;
+  const LandmarkTrack found = track_face(ImageFiles({photo_})).landmarks;
   const LandmarkTrack marked = read_landmarks(folder / "image_0010.pts");
   for (const auto& [name, solver] : {std::pair("alternating", FitOptions::Solver::alternating),
                                      std::pair("joint", FitOptions::Solver::joint)}) {
@@ -133,10 +133,10 @@ TEST_F(FaceImages, OfAFaceAtTwoSizesGiveTheLargerOneOrTheNearer) {
   const auto nose = [](const FaceTrack& track, Eigen::Index frame) {
     return track.landmarks.points(frame, 2 * 30);
   };
-  const FaceTrack largest = track_face({two});
+  const FaceTrack largest = track_face(ImageFiles({two}));
   EXPECT_EQ(largest.frames[0].faces, 2);
   EXPECT_GT(nose(largest, 0), small.width);
-  const FaceTrack nearest = track_face({first, two});
+  const FaceTrack nearest = track_face(ImageFiles({first, two}));
   EXPECT_EQ(nearest.frames[0].faces, 1);
   EXPECT_EQ(nearest.frames[1].faces, 2);
   EXPECT_LT(nose(nearest, 1), small.width);
@@ -145,12 +145,12 @@ TEST_F(FaceImages, OfAFaceAtTwoSizesGiveTheLargerOneOrTheNearer) {
 TEST_F(FaceImages, OfNoiseShowNoFace) {
   const std::string nothing = written(noise(320, 240), "noise.png");
   const std::string face = written(head(), "face.png");
-  const FaceTrack track = track_face({nothing, face});
+  const FaceTrack track = track_face(ImageFiles({nothing, face}));
   EXPECT_EQ(track.frames[0].outcome, FaceFrame::Outcome::no_face);
   EXPECT_EQ(track.frames[1].outcome, FaceFrame::Outcome::found);
   EXPECT_TRUE(track.landmarks.points.row(0).array().isNaN().all());
   EXPECT_THAT(message_of<IoError>([&] {
-                track_face({nothing, nothing});
+                track_face(ImageFiles({nothing, nothing}));
               }),
               AllOf(StartsWith(nothing), HasSubstr("shows no face"),
                     HasSubstr("nor does any of the other 1")));
@@ -158,12 +158,14 @@ TEST_F(FaceImages, OfNoiseShowNoFace) {
 
 TEST_F(FaceImages, BelowTheConfidenceAskedForShowNoFace) {
   const std::string face = written(head(), "face.png");
-  EXPECT_THAT(message_of<IoError>([&] { track_face({face}, {.min_confidence = 0.99}); }),
-              HasSubstr("shows no face that the detector is sure of"));
+  EXPECT_THAT(
+      message_of<IoError>([&] { track_face(ImageFiles({face}), {.min_confidence = 0.99}); }),
+      HasSubstr("shows no face that the detector is sure of"));
 }
 
 TEST_F(FaceImages, CanBeCancelled) {
-  EXPECT_THROW(track_face({photo_, photo_}, {.progress = [](double share) { return share == 0; }}),
+  EXPECT_THROW(track_face(ImageFiles({photo_, photo_}),
+                          {.progress = [](double share) { return share == 0; }}),
                Cancelled);
 }
 

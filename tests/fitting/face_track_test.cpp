@@ -61,7 +61,7 @@ TEST(FaceTrack, ReportsEachFrame) {
   EXPECT_EQ(track.frames[1].confidence, 0.05);
   EXPECT_EQ(track.frames[1].faces, 0);
   EXPECT_EQ(track.frames[2].outcome, Outcome::found);
-  EXPECT_EQ(track.frames[2].file, "d/2.png");
+  EXPECT_EQ(track.frames[2].image, "d/2.png");
   EXPECT_TRUE(track.landmarks.points.topRows(2).array().isNaN().all());
   EXPECT_EQ(track.landmarks.confidence, Eigen::Vector3d(0, 0, 0.5));
   EXPECT_THAT(
@@ -83,7 +83,7 @@ TEST(FaceTrack, RefusesAConfidenceOutOfRange) {
   EXPECT_THROW(follow_face({}, -0.1), std::invalid_argument);
 }
 
-class ImageFiles : public testing::Test {
+class NamedImages : public testing::Test {
  protected:
   void touch(const std::string& name) { std::ofstream(folder_ / name) << name; }
   std::vector<std::string> names(const std::string& text) {
@@ -95,7 +95,7 @@ class ImageFiles : public testing::Test {
   test::TemporaryFolder folder_;
 };
 
-TEST_F(ImageFiles, OfAFolderAreInNaturalOrder) {
+TEST_F(NamedImages, OfAFolderAreInNaturalOrder) {
   for (const char* name : {"f10.jpg", "f2.JPG", "f1.jpg", ".f0.jpg", "f1.pts"}) touch(name);
   EXPECT_THAT(names(folder_.path().string()), ElementsAre("f1.jpg", "f2.JPG", "f10.jpg"));
   EXPECT_THAT(names(path("f1*")), ElementsAre("f1.jpg", "f10.jpg"));
@@ -103,7 +103,7 @@ TEST_F(ImageFiles, OfAFolderAreInNaturalOrder) {
   EXPECT_THAT(names(path("f1.jpg")), ElementsAre("f1.jpg"));
 }
 
-TEST_F(ImageFiles, ThatAreMissingAreNamed) {
+TEST_F(NamedImages, ThatAreMissingAreNamed) {
   touch("a.txt");
   EXPECT_THAT(test::message_of<IoError>([&] { names(folder_.path().string()); }),
               HasSubstr("holds no PNG or JPEG file"));

@@ -53,6 +53,24 @@ class ImageFile : public testing::Test {
     test::save_png(gradient(), path("a.png"));
     return read_file(path("a.png"));
   }
+  /// A JPEG whose camera was turned, as Exif counts it, in the order of bytes of "II" or "MM".
+  void write_turned(char orientation, const std::string& order) {
+    const bool little = order == "II";
+    const auto number = [&](unsigned value, int size) {
+      std::string bytes;
+      for (int i = 0; i < size; ++i) {
+        bytes += static_cast<char>(value >> (8 * (little ? i : size - 1 - i)));
+      }
+      return bytes;
+    };
+    std::string exif = std::string("Exif\0\0", 6) + order + number(42, 2) + number(8, 4) +
+                       number(1, 2) + number(0x0112, 2) + number(3, 2) + number(1, 4) +
+                       number(static_cast<unsigned>(orientation), 2) + number(0, 2) + number(0, 4);
+    const std::string segment =
+        std::string("\xff\xe1\0", 3) + static_cast<char>(exif.size() + 2) + exif;
+    std::string bytes = write_jpeg();
+    write_bytes(path("turned.jpg"), bytes.insert(2, segment));
+  }
   void expect_no_prefix_is_read(const std::string& bytes, const std::string& name) {
     for (std::size_t size = 0; size < bytes.size(); ++size) {
       write_bytes(path(name), bytes.substr(0, size));
@@ -148,6 +166,40 @@ TEST_F(ImageFile, OfAnotherTypeOrMissingIsAnError) {
               HasSubstr("expected PNG or JPEG"));
   EXPECT_THROW(read_image(path("none.png")), IoError);
   EXPECT_THROW(read_image(folder_.path()), IoError);
+}
+
+TEST_F(ImageFile, IsTurnedAsItsCameraWas) {
+  write_jpeg();
+  const Image stored = read_image(path("a.jpg"));
+  const auto at = [&](double x, double y) {
+    return stored.at(static_cast<int>(x * (stored.width - 1)),
+                     static_cast<int>(y * (stored.height - 1)));
+  };
+  struct Turn {
+    char number;
+    bool is_upright;   ///< columns stay columns
+    double left, top;  ///< where the stored image's left upper corner is seen
+  };
+  for (const Turn& turn :
+       {Turn{1, true, 0, 0}, Turn{2, true, 1, 0}, Turn{3, true, 1, 1}, Turn{4, true, 0, 1},
+        Turn{5, false, 0, 0}, Turn{6, false, 1, 0}, Turn{7, false, 1, 1}, Turn{8, false, 0, 1}}) {
+    for (const char* order : {"II", "MM"}) {
+      write_turned(turn.number, order);
+      const Image seen = read_image(path("turned.jpg"));
+      const std::string which = order + std::to_string(int{turn.number});
+      ASSERT_EQ(seen.width, turn.is_upright ? stored.width : stored.height) << which;
+      ASSERT_EQ(seen.height, turn.is_upright ? stored.height : stored.width) << which;
+      const auto corner = [&](double x, double y) {
+        return seen.at(static_cast<int>(x * (seen.width - 1)),
+                       static_cast<int>(y * (seen.height - 1)));
+      };
+      EXPECT_EQ(corner(turn.left, turn.top), at(0, 0)) << which;
+      EXPECT_EQ(corner(1 - turn.left, 1 - turn.top), at(1, 1)) << which;
+      EXPECT_EQ(corner(1 - turn.left, turn.top), turn.is_upright ? at(1, 0) : at(0, 1)) << which;
+    }
+  }
+  write_turned(9, "II");  // no turn that there is
+  EXPECT_EQ(read_image(path("turned.jpg")).width, stored.width);
 }
 
 }  // namespace

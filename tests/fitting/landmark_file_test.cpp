@@ -1,5 +1,6 @@
 #include <cmath>
 #include <fstream>
+#include <limits>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -163,6 +164,28 @@ TEST_F(Landmarks, OfABrokenJsonFileNameTheElement) {
               HasSubstr("/names: expected strings"));
   EXPECT_THAT(message("a.json", R"({"names": ["a", "a"], "points": [null, null]})"),
               HasSubstr("/names: the name 'a' occurs twice"));
+}
+
+TEST_F(Landmarks, AreWrittenAsTheyAreRead) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  LandmarkTrack track;
+  track.names = {"1", "2"};
+  track.points.resize(3, 4);
+  track.points << 0.1, 1.0 / 3, -2, 1e-7, nan, nan, 5, 6, nan, nan, nan, nan;
+  track.times = Eigen::Vector3d(0, 1.0 / 30, 0.7);
+  track.confidence = Eigen::Vector3d(0.9, 0.123456789012345678, 0);
+  const LandmarkTrack again = read("a.csv", landmark_csv(track));
+  EXPECT_EQ(again.names, track.names);
+  EXPECT_EQ(again.times, track.times);
+  EXPECT_EQ(again.confidence, track.confidence);
+  EXPECT_TRUE((again.points.array() == track.points.array() ||
+               (again.points.array().isNaN() && track.points.array().isNaN()))
+                  .all());
+  track.times.resize(0);
+  track.confidence.resize(0);
+  EXPECT_EQ(read("b.csv", landmark_csv(track)).times.size(), 0);
+  track.names = {"nose", "chin"};
+  EXPECT_THAT(test::message_of<MismatchError>([&] { landmark_csv(track); }), HasSubstr("'nose'"));
 }
 
 /// Every frame of these shows (1, 2) and (3, 4), and the second none.

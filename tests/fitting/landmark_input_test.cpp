@@ -26,7 +26,9 @@ class LandmarkInput : public testing::Test {
   }
   std::vector<std::string> images(const LandmarksRead& read) {
     std::vector<std::string> names;
-    for (const auto& image : read.images) names.push_back(image.filename().string());
+    for (int f = 0; read.images && f < read.images->frames(); ++f) {
+      names.push_back(std::filesystem::path(read.images->name(f)).filename().string());
+    }
     return names;
   }
   LandmarksRead read(const std::string& name, const SequenceSource& source = {},

@@ -19,7 +19,7 @@ TEST(WithoutDlib, AskingForImagesSaysWhichPackagesAreMissing) {
     return AllOf(StartsWith(name), HasSubstr("without which mimetra was built"),
                  HasSubstr("libdlib-dev"), HasSubstr("libdlib-data"));
   };
-  EXPECT_THAT(test::message_of<IoError>([] { track_face({"photo.png"}); }),
+  EXPECT_THAT(test::message_of<IoError>([] { track_face(ImageFiles({"photo.png"})); }),
               says_what_is_missing("photo.png: "));
   EXPECT_THAT(test::message_of<IoError>([] { FaceFinder("model.dat"); }),
               says_what_is_missing("model.dat: "));

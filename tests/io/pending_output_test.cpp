@@ -291,6 +291,45 @@ TEST(PendingOutputs, OfOneRunShareAManifest) {
   EXPECT_EQ(read_file(folder / "x.run.json"), "same");
 }
 
+TEST(PendingOutputs, AreWrittenWhereALinkLeads) {
+  const TemporaryFolder folder;
+  fs::create_directory(folder / "real");
+  write_bytes(folder / "real/a", "old");
+  fs::create_symlink("real/a", folder / "link");
+  write_file(folder / "link", "new", true);
+  EXPECT_TRUE(fs::is_symlink(folder / "link"));
+  EXPECT_EQ(read_file(folder / "real/a"), "new");
+  fs::remove_all(folder / "real");
+  for (const bool overwrite : {false, true}) {
+    EXPECT_THAT(message_of<OutputError>([&] { write_file(folder / "link", "new", overwrite); }),
+                testing::HasSubstr("link: is a link that leads nowhere"));
+  }
+  EXPECT_TRUE(fs::is_symlink(folder / "link"));
+}
+
+TEST(PendingOutputs, AreNeverPutInPlaceOfADevice) {
+  for (const bool overwrite : {false, true}) {
+    EXPECT_THAT(message_of<OutputError>([&] { write_file("/dev/null", "x", overwrite); }),
+                testing::HasSubstr("no ordinary file"));
+  }
+}
+
+TEST(PendingOutputs, OfAFolderWithoutANameStandBesideIt) {
+  const TemporaryFolder folder;
+  fs::create_directory(folder / "out");
+  {
+    PendingOutput output(folder / "out/.", Kind::folder, true);
+    EXPECT_EQ(output.path().parent_path(), fs::canonical(folder.path()));
+  }
+}
+
+TEST(PendingOutputs, MayNotLieInASubfolderOfAnInput) {
+  const TemporaryFolder folder;
+  fs::create_directory(folder / "take");
+  EXPECT_THROW(check_inputs_stay(folder / "take/sub/x.npy", {folder / "take"}), OutputError);
+  EXPECT_NO_THROW(check_inputs_stay(folder / "take2/x.npy", {folder / "take"}));
+}
+
 TEST(PendingOutputs, TwoOfOneNameAreRefused) {
   const TemporaryFolder folder;
   PendingOutputs together(false);

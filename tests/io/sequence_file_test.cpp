@@ -9,6 +9,7 @@
 #include "toolkit/io/mesh_file.h"
 #include "toolkit/io/whole_file.h"
 #include "toolkit/mesh/errors.h"
+#include "toolkit/model/animation.h"
 
 namespace mimetra {
 namespace {
@@ -280,14 +281,39 @@ TEST(WriteSequence, OverwritingRemovesAStaleRestPose) {
 }
 
 TEST(WriteSequence, RefusesAnExistingTargetAndAForeignRestPose) {
-  const TemporaryFolder folder;
-  write_bytes(folder / "s.rest.ply", "somebody else's");
-  EXPECT_EQ(
-      message_of<OutputError>([&] { write_sequence(octahedra(2), folder / "s.npy"); }),
-      (folder / "s.rest.ply").string() + ": exists already; use option 'overwrite' to replace it");
-  EXPECT_THAT(folder.names(), ElementsAre("s.rest.ply"));
-  fs::create_directory(folder / "t");
-  EXPECT_THROW(write_sequence(octahedra(2), folder / "t"), OutputError);
+  for (const bool overwrite : {false, true}) {
+    const TemporaryFolder folder;
+    write_bytes(folder / "s.rest.ply", "somebody else's");
+    for (const MeshSequence& take : {octahedra(2), octahedra(2, pose(4))}) {
+      EXPECT_THAT(message_of<OutputError>(
+                      [&] { write_sequence(take, folder / "s.npy", {.overwrite = overwrite}); }),
+                  HasSubstr("s.rest.ply: stands without 's.npy'"));
+      EXPECT_THAT(folder.names(), ElementsAre("s.rest.ply"));
+    }
+    fs::create_directory(folder / "t");
+    EXPECT_THROW(write_sequence(octahedra(2), folder / "t"), OutputError);
+  }
+}
+
+/// They would have its rest pose and times.
+TEST(WriteSequence, KeepsWhatIsAPartOfAnotherOfItsName) {
+  for (const auto& [first, second] :
+       {std::pair("s.npy", "s.pc2"), std::pair("s", "s.npy"), std::pair("s.npy", "s")}) {
+    const TemporaryFolder folder;
+    const MeshSequence take = octahedra(3, pose(1));
+    write_sequence(take, folder / first);
+    const std::string rest = read_file(folder / "s.rest.ply");
+    write_sequence(take, folder / second);  // the same parts
+    for (const MeshSequence& other : {octahedra(2), octahedra(2, pose(4))}) {
+      EXPECT_THAT(message_of<OutputError>(
+                      [&] { write_sequence(other, folder / second, {.overwrite = true}); }),
+                  HasSubstr("belongs to '" + std::string(first) + "', which stays"));
+    }
+    EXPECT_EQ(read_file(folder / "s.rest.ply"), rest);
+    for (const std::string name : {first, second}) {
+      EXPECT_EQ(read_sequence((folder / name).string()).sequence.frames(), 3);
+    }
+  }
 }
 
 TEST(WriteSequence, LeavesNothingWhenCancelled) {
@@ -367,6 +393,26 @@ TEST_F(SmallModel, WithoutWeightsIsItsNeutral) {
   EXPECT_TRUE(read.sequence.rest_is_known());
   ASSERT_EQ(read.sequence.frames(), 1);
   EXPECT_EQ(read.sequence.frame(0), read_mesh(folder_ / "m/neutral.obj").positions);
+}
+
+TEST_F(SmallModel, KeepsItsExpressionsWhereItIsWrittenAlsoInOtherUnits) {
+  write_bytes(folder_ / "w.csv", "time,jawOpen,pout\n0,0,0\n0.5,0.25,0.5\n");
+  for (const char* name : {"a.glb", "a.usda"}) {
+    for (const bool driven : {false, true}) {
+      SequenceSource source;
+      if (driven) source.weights = folder_ / "w.csv";
+      const auto given = open_sequence(text(), source).frames;
+      const UnitChange change{.scale = 0.5, .up = UpTurn::y_to_z};
+      write_sequence(*in_units(given, change), folder_ / name, {.overwrite = true});
+      const auto found = open_sequence((folder_ / name).string()).frames;
+      EXPECT_THAT(dynamic_cast<const Animation&>(*found).model().expressions().names,
+                  ElementsAre("jawOpen", "pout"));
+      const auto frames = with_units(given, change);
+      ASSERT_EQ(found->frames(), given->frames());
+      EXPECT_EQ(found->read(0, found->frames()), frames->read(0, frames->frames()));
+      EXPECT_EQ(found->rest(), frames->rest());
+    }
+  }
 }
 
 TEST_F(SmallModel, IsDrivenByWeightsWithTheirTimes) {

@@ -62,7 +62,7 @@ TEST(FormatTable, ListsWhatItKnowsWhereNothingReadsAFile) {
   std::ofstream(video) << "text\n";
   EXPECT_THAT([&] { table.reader(DataKind::sequence, video); },
               ThrowsMessage<IoError>(
-                  AllOf(HasSubstr("is a video; 'ffmpeg -i VIDEO"), HasSubstr("not from '.mp4'"))));
+                  AllOf(HasSubstr("is a video; 'mimetra fit VIDEO"), HasSubstr("not from '.mp4'"))));
   EXPECT_THAT([&] { table.reader(DataKind::components, "take.npy"); },
               ThrowsMessage<UsageError>(HasSubstr("components can be read from .h5 or .hdf5")));
   EXPECT_THAT([&] { table.reader(DataKind::table, "take.csv"); },

@@ -113,12 +113,21 @@ int fail(int code, const std::exception& error) {
   return code;
 }
 
+/// Whoever ends a run finds nothing half-written, and a limit of the system's is an error.
+void take_signals() {
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    const auto before = std::signal(signal, [](int) { mimetra::cli::interrupt(); });
+    if (before == SIG_IGN) std::signal(signal, SIG_IGN);  // as nohup has it
+  }
+  std::signal(SIGXFSZ, SIG_IGN);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   spdlog::set_default_logger(spdlog::stderr_logger_st("mimetra"));
   spdlog::set_pattern("%n: %l: %v");
-  std::signal(SIGINT, [](int) { mimetra::cli::interrupt(); });
+  take_signals();
   try {
     return run({argv + 1, argv + argc});
   } catch (const mimetra::UsageError& error) {

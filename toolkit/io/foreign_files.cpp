@@ -13,8 +13,7 @@ constexpr std::string_view kExport =
     "; export it as OBJ or PLY files, one a frame, as glTF (.glb), or as a point cache (.pc2, "
     ".mdd) with option 'topology'";
 constexpr std::string_view kVideo =
-    "; 'ffmpeg -i VIDEO images/%05d.png' makes images of it, and 'mimetra fit images/ --model "
-    "MODEL -o take/' a sequence of these";
+    "; 'mimetra fit VIDEO --model MODEL -o take/' makes a sequence of the face in it";
 constexpr std::string_view kImage = "; 'mimetra fit' makes a sequence of images";
 constexpr std::string_view kUnpack = "; unpack it first";
 constexpr std::string_view kWeights =

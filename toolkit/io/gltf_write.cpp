@@ -182,7 +182,9 @@ class GltfFile {
     std::vector<std::pair<std::size_t, std::string>> known = laid_out(plan);
     check_length();
     const fs::path path = outputs_.add(target, PendingOutput::Kind::file);
-    const fs::path data = is_binary_ ? path : outputs_.add(data_path(), PendingOutput::Kind::file);
+    const fs::path data = is_binary_ ? path
+                                     : outputs_.add(data_path(), PendingOutput::Kind::file,
+                                                    PendingOutputs::Existing::same);
     json_path_ = path;
     file_ = std::make_unique<OutputFile>(data);
     for (const auto& [view, content] : known) write_view(view, content);

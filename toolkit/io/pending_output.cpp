@@ -29,6 +29,20 @@ fs::path without_trailing_slash(fs::path path) {
   return path.has_filename() ? path : path.parent_path();
 }
 
+/// Where the output really goes: what a link leads to, and for "." and ".." the folder's name.
+fs::path real_target(const fs::path& target) {
+  fs::path real = without_trailing_slash(target);
+  std::error_code error;
+  if (real.filename() == "." || real.filename() == "..") {
+    real = without_trailing_slash(fs::absolute(real, error));
+  }
+  if (!fs::is_symlink(fs::symlink_status(real, error))) return real;
+  const fs::path leads_to = fs::canonical(real, error);
+  if (!error) return leads_to;
+  throw OutputError(real.string(),
+                    "is a link that leads nowhere; make what it should lead to, or remove it");
+}
+
 constexpr const char* kExistsAlready = "exists already; use option 'overwrite' to replace it";
 
 /// Without links, dots and a slash at the end, as far as the file system tells.
@@ -57,7 +71,7 @@ std::string harm_to(const std::vector<fs::path>& inputs, const fs::path& output)
       what = "holds " + input.string() + ", an input of this run";
     } else if (is_within(place, read) && fs::exists(place, unreadable)) {
       what = "is a part of " + input.string() + ", an input of this run";
-    } else if (place.parent_path() == read) {
+    } else if (is_within(place.parent_path(), read)) {
       what = "would become a part of " + input.string() + ", an input of this run";
     }
     if (!what.empty()) return what + "; choose another name";
@@ -124,6 +138,9 @@ std::error_code put(const fs::path& temporary, const fs::path& target) {
 void remove_quietly(const fs::path& path) noexcept {
   try {
     std::error_code ignored;
+    if (fs::is_directory(fs::symlink_status(path, ignored))) {
+      fs::permissions(path, fs::perms::owner_all, fs::perm_options::add, ignored);
+    }
     fs::remove_all(path, ignored);
   } catch (const std::bad_alloc&) {
     return;
@@ -160,8 +177,8 @@ class FolderLocks {
 
 }  // namespace
 
-PendingOutput::PendingOutput(fs::path target, Kind kind, bool overwrite)
-    : target_(without_trailing_slash(std::move(target))), kind_(kind), overwrite_(overwrite) {
+PendingOutput::PendingOutput(const fs::path& target, Kind kind, bool overwrite)
+    : target_(real_target(target)), kind_(kind), overwrite_(overwrite) {
   check_target();
   try {
     create_parents();
@@ -184,15 +201,15 @@ void PendingOutput::check_target() const {
     throw OutputError(target_.string(), "cannot be written: it names no file");
   }
   if (!fs::exists(status)) return;
-  if (!overwrite_) throw OutputError(target_.string(), kExistsAlready);
   if (kind_ == Kind::folder && !fs::is_directory(status)) {
-    throw OutputError(target_.string(), "exists and is no folder; remove it first");
+    throw OutputError(target_.string(), "exists and is no folder; choose another name");
   }
-  if (kind_ == Kind::folder) check_replaceable(target_, target_);
   // Renaming onto a device such as /dev/null would replace the device.
   if (kind_ == Kind::file && !fs::is_regular_file(status)) {
     throw OutputError(target_.string(), "exists and is no ordinary file; choose another name");
   }
+  if (!overwrite_) throw OutputError(target_.string(), kExistsAlready);
+  if (kind_ == Kind::folder) check_replaceable(target_, target_);
 }
 
 void PendingOutput::create_parents() {
@@ -277,18 +294,37 @@ PendingOutputs::~PendingOutputs() {
 }
 
 const fs::path& PendingOutputs::add(const fs::path& target, PendingOutput::Kind kind,
-                                    Existing existing) {
+                                    Existing existing, const fs::path& owner) {
   const bool overwrite = overwrite_ || existing != Existing::nothing;
+  std::string unless_same;
+  if (existing == Existing::same) unless_same = why_to_keep(owner);
   entries_.push_back({std::make_unique<PendingOutput>(target, kind, overwrite),
-                      !overwrite_ && existing == Existing::same, existing == Existing::anything});
+                      std::move(unless_same), existing == Existing::anything});
   return entries_.back().output->path();
 }
 
-void PendingOutputs::add_stale(const fs::path& path) {
+void PendingOutputs::add_stale(const fs::path& path, const fs::path& owner) {
   std::error_code unreadable;
   if (!fs::exists(path, unreadable)) return;
-  if (!overwrite_) throw OutputError(path.string(), kExistsAlready);
+  if (const std::string reason = why_to_keep(owner); !reason.empty()) {
+    throw OutputError(path.string(), reason);
+  }
   stale_.push_back(path);
+}
+
+/// Of a file that stands where one of this run's would go with the main output; empty where that
+/// may replace it.
+std::string PendingOutputs::why_to_keep(const fs::path& owner) const {
+  if (!owner.empty()) {
+    return "belongs to '" + owner.filename().string() + "', which stays; choose another name";
+  }
+  const fs::path main = entries_.empty() ? fs::path() : entries_.front().output->target();
+  std::error_code unreadable;
+  if (!main.empty() && !fs::exists(main, unreadable)) {
+    return "stands without '" + main.filename().string() +
+           "', a part of which it would be; move it, or choose another name";
+  }
+  return overwrite_ ? "" : kExistsAlready;
 }
 
 void PendingOutputs::commit() {
@@ -360,11 +396,11 @@ void PendingOutputs::swap() {
 }
 
 void PendingOutputs::check_same() const {
-  for (const auto& [output, must_be_same, tells_of_another] : entries_) {
+  for (const auto& [output, unless_same, tells_of_another] : entries_) {
     std::error_code unreadable;
-    if (!must_be_same || !fs::exists(output->target(), unreadable)) continue;
+    if (unless_same.empty() || !fs::exists(output->target(), unreadable)) continue;
     if (read_file(output->target()) == read_file(output->path())) continue;
-    throw OutputError(output->target().string(), kExistsAlready);
+    throw OutputError(output->target().string(), unless_same);
   }
 }
 

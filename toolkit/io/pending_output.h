@@ -22,7 +22,7 @@ class PendingOutput {
   /// Creates missing parent folders, and the temporary file or folder itself. Throws OutputError
   /// where `target` exists and not `overwrite`, nothing can be written there, or a folder to
   /// overwrite holds anything that its manifest does not list (written_files.h).
-  PendingOutput(std::filesystem::path target, Kind kind, bool overwrite);
+  PendingOutput(const std::filesystem::path& target, Kind kind, bool overwrite);
   ~PendingOutput();
   PendingOutput(const PendingOutput&) = delete;
   PendingOutput& operator=(const PendingOutput&) = delete;
@@ -78,14 +78,17 @@ class PendingOutputs {
   ~PendingOutputs();
 
   /// The temporary path to write to. Throws OutputError as PendingOutput does. `same` is for a file
-  /// that goes with the main output: a killed run may have left one of the same content; `anything`
-  /// for one that tells of an output and comes after it.
+  /// that goes with the main output, which was added first: where one stands with another content,
+  /// it is replaced only as a part of a main output that is, and not where it is a part of `owner`
+  /// too; a killed run may have left one of the same content. `anything` is for one that tells of
+  /// an output and comes after it.
   const std::filesystem::path& add(const std::filesystem::path& target, PendingOutput::Kind kind,
-                                   Existing existing = Existing::nothing);
+                                   Existing existing = Existing::nothing,
+                                   const std::filesystem::path& owner = {});
 
   /// A file of an earlier output that would be taken for a part of this one. Throws OutputError
-  /// unless it may be replaced; commit() removes it.
-  void add_stale(const std::filesystem::path& path);
+  /// where `same` would not replace it; commit() removes it.
+  void add_stale(const std::filesystem::path& path, const std::filesystem::path& owner = {});
 
   /// What was added first comes last, but for what tells of it: whoever sees it sees all that
   /// belongs to it. Other runs that commit in the same folders wait. Throws OutputError, and then
@@ -95,10 +98,11 @@ class PendingOutputs {
  private:
   struct Entry {
     std::unique_ptr<PendingOutput> output;
-    bool must_be_same;
+    std::string unless_same;  ///< why it must hold what stands there; empty where it need not
     bool tells_of_another;
   };
 
+  std::string why_to_keep(const std::filesystem::path& owner) const;
   void hand_over();
   void drop_repeated();
   void check_same() const;

@@ -7,7 +7,9 @@
 #include "toolkit/io/frame_files.h"
 #include "toolkit/io/mesh_codecs.h"
 #include "toolkit/io/mesh_file.h"
+#include "toolkit/io/sequence_format.h"
 #include "toolkit/io/whole_file.h"
+#include "toolkit/io/written_files.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/text.h"
 
@@ -18,18 +20,36 @@ namespace {
 /// Of NAME.times.csv, in seconds.
 constexpr std::string_view kTimeColumn = "time";
 
-/// A file that only mimetra reads: it holds what the program held.
-void add_pose(PendingOutputs& outputs, const fs::path& target, const SequenceHeader& header,
-              std::vector<fs::path>& files) {
-  write_mesh(outputs.add(target, PendingOutput::Kind::file, PendingOutputs::Existing::same),
-             {header.rest.data(), header.rest.rows(), 3}, *header.connectivity,
-             {.double_precision = true, .extension = ".ply"});
-  files.push_back(target);
-}
-
 bool stands(const fs::path& path) {
   std::error_code unreadable;
   return fs::exists(path, unreadable);
+}
+
+/// Another sequence of the name, a part of which is what stands beside `sequence`; empty where
+/// there is none.
+fs::path other_of_name(const fs::path& sequence) {
+  const fs::path name = beside(sequence, ""), own = sequence.lexically_normal();
+  std::vector<fs::path> others;
+  if (stands(name / kFolderManifest) && own != name && own != name / "") others.push_back(name);
+  for (const SequenceFormat& format : sequence_formats()) {
+    if (!format.has_companions) continue;
+    for (const std::string& extension : format.extensions) {
+      const fs::path other = name.string() + extension;
+      if (other != own && stands(other)) others.push_back(other);
+    }
+  }
+  return others.empty() ? fs::path() : others.front();
+}
+
+/// A file that only mimetra reads: it holds what the program held.
+void add_pose(PendingOutputs& outputs, const fs::path& sequence, const std::string& suffix,
+              const SequenceHeader& header, std::vector<fs::path>& files) {
+  const fs::path target = beside(sequence, suffix);
+  write_mesh(outputs.add(target, PendingOutput::Kind::file, PendingOutputs::Existing::same,
+                         other_of_name(sequence)),
+             {header.rest.data(), header.rest.rows(), 3}, *header.connectivity,
+             {.double_precision = true, .extension = ".ply"});
+  files.push_back(target);
 }
 
 }  // namespace
@@ -104,16 +124,15 @@ std::optional<Eigen::VectorXd> times_beside(const fs::path& sequence, int frames
 
 void add_topology_beside(PendingOutputs& outputs, const fs::path& sequence,
                          const SequenceHeader& header, std::vector<fs::path>& files) {
-  add_pose(outputs, beside(sequence, kTopologySuffix), header, files);
+  add_pose(outputs, sequence, kTopologySuffix, header, files);
 }
 
 void add_rest_beside(PendingOutputs& outputs, const fs::path& sequence,
                      const SequenceHeader& header, std::vector<fs::path>& files) {
-  const fs::path rest = beside(sequence, kRestSuffix);
   if (header.rest_is_known) {
-    add_pose(outputs, rest, header, files);
+    add_pose(outputs, sequence, kRestSuffix, header, files);
   } else {
-    outputs.add_stale(rest);
+    outputs.add_stale(beside(sequence, kRestSuffix), other_of_name(sequence));
   }
 }
 
@@ -121,7 +140,7 @@ void add_times_beside(PendingOutputs& outputs, const fs::path& sequence,
                       const SequenceHeader& header, std::vector<fs::path>& files) {
   const fs::path target = beside(sequence, kTimesSuffix);
   if (!header.times_are_known) {
-    outputs.add_stale(target);
+    outputs.add_stale(target, other_of_name(sequence));
     return;
   }
   std::string text = std::string(kTimeColumn) + '\n';
@@ -129,7 +148,9 @@ void add_times_beside(PendingOutputs& outputs, const fs::path& sequence,
     append_number(text, time, true);
     text += '\n';
   }
-  write_bytes(outputs.add(target, PendingOutput::Kind::file, PendingOutputs::Existing::same), text);
+  write_bytes(outputs.add(target, PendingOutput::Kind::file, PendingOutputs::Existing::same,
+                          other_of_name(sequence)),
+              text);
   files.push_back(target);
 }
 

@@ -15,6 +15,7 @@
 #include "toolkit/model/landmark_track.h"
 #include "toolkit/model/morphable_model.h"
 #include "toolkit/operations/image.h"
+#include "toolkit/operations/image_sequence.h"
 #include "toolkit/regions/regions.h"
 #include "toolkit/splocs/decomposition.h"
 
@@ -66,6 +67,9 @@ struct ModelData {
 struct Pictures {
   int count = 0;
   std::function<Image(int)> draw;  ///< may be called from several threads
+  Eigen::VectorXd times = {};      ///< seconds (count), or none
+  /// A video whose sound belongs to them, at these times, or none.
+  std::filesystem::path sound = {};
 
   static Pictures of(Image image);
 };
@@ -89,8 +93,8 @@ struct Origin {
   bool model_driven = false;
   /// Where a model was read; empty for one that was made.
   std::filesystem::path path = {};
-  /// Images that the frames of landmarks show (F), or none.
-  std::vector<std::filesystem::path> images = {};
+  /// What the frames of landmarks show (F images), or null.
+  std::shared_ptr<const ImageSequence> images = {};
   /// What was noticed in each frame of landmarks (F, "" for nothing), or none.
   std::vector<std::string> frame_notes = {};
   /// What was noticed while it was read, which was said by then.

@@ -212,9 +212,13 @@ std::string hint_of_folder(const std::vector<std::string>& known,
 const Format& OperationTable::writer(const Output& output,
                                      const std::filesystem::path& target) const {
   const std::string wanted = lower_extension(target);
+  const std::string whole = lower_case(target.filename().string());
   std::vector<std::string> known;
   for (const Format& format : formats_) {
     for (const std::string& extension : extensions_of(output, format)) {
+      if (!extension.empty() && extension == whole) {
+        throw UsageError(target.string() + ": is an extension without a name before it");
+      }
       if (extension == wanted) return format;
       known.push_back(extension);
     }

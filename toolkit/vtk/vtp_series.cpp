@@ -217,7 +217,8 @@ std::vector<std::filesystem::path> write_all(const FieldSequence& fields,
   }
   PendingOutputs outputs(options.overwrite, options.inputs, options.together);
   write_bytes(outputs.add(target, PendingOutput::Kind::file), pvd_text(entries));
-  write_bytes(outputs.add(series, PendingOutput::Kind::file), series_text(entries));
+  write_bytes(outputs.add(series, PendingOutput::Kind::file, PendingOutputs::Existing::same),
+              series_text(entries));
   const std::filesystem::path frames = beside / frames_folder(name);
   const std::filesystem::path folder = outputs.add(frames, PendingOutput::Kind::folder);
 

@@ -1,0 +1,21 @@
+#include "fitting/image_orientation.h"
+
+#include <utility>
+
+namespace mimetra {
+
+Image oriented(Image stored, const Orientation& orientation) {
+  if (orientation == Orientation()) return stored;
+  const bool transposed = orientation.transposed;
+  Image image(transposed ? stored.height : stored.width, transposed ? stored.width : stored.height);
+  for (int y = 0; y < image.height; ++y) {
+    const int row = orientation.bottom_up ? image.height - 1 - y : y;
+    for (int x = 0; x < image.width; ++x) {
+      const int column = orientation.right_to_left ? image.width - 1 - x : x;
+      image.at(x, y) = transposed ? stored.at(row, column) : stored.at(column, row);
+    }
+  }
+  return image;
+}
+
+}  // namespace mimetra

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "toolkit/mesh/progress.h"
+#include "toolkit/operations/image_sequence.h"
+
+namespace mimetra {
+
+/// Those of videos that can be read, in lower case.
+std::vector<std::string> video_extensions();
+
+/// True for NAME.mp4 and the like in any case.
+bool is_video(const std::filesystem::path& path);
+
+/// The frames of a video, decoded when they are needed: turned as the file says, with square
+/// pixels. Going back starts from the beginning.
+class VideoFile final : public ImageSequence {
+ public:
+  /// Decodes all frames once, to know their times. Throws IoError for what is no video, where not
+  /// even its first frame can be decoded, and where mimetra was built without FFmpeg's libraries;
+  /// Cancelled.
+  explicit VideoFile(std::filesystem::path path, const Progress& progress = {});
+  ~VideoFile() override;
+
+  /// Those before the first one that is damaged.
+  int frames() const override;
+  /// Seconds (F): the time stamps of the frames, which rise.
+  const Eigen::VectorXd& times() const;
+  /// Why there are no frames after the last one, where the video is damaged or breaks off. Nothing
+  /// where it is whole.
+  const std::string& damage() const;
+
+  Image image(int frame) const override;
+  std::string name(int frame) const override;
+  bool is_recording() const override { return true; }
+  std::filesystem::path sound() const override;
+  void check() const override {}
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace mimetra
