@@ -99,7 +99,7 @@ Eigen::VectorXd shown_times(const std::string& path, const std::set<const Weight
     constexpr double kMostFrames = 1e6;
     if (most > kMostFrames) {
       throw IoError(path, "an animation of weights on splines lasts " +
-                              readable(keys[keys.size() - 1] - keys[0], 6) +
+                              readable(keys[keys.size() - 1] - keys[0], 8) +
                               " s; expected at most " + readable(kMostFrames, 8) + " frames of it");
     }
     for (Eigen::Index k = 1; k < keys.size(); ++k) {
