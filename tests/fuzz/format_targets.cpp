@@ -21,7 +21,8 @@ const std::map<std::string, std::vector<std::string>>& texts() {
       {"landmarks_csv", {"time,x0,y0,x1,y1\n0,1,2,3,4\n0.04,1,2,3,4\n"}},
       {"landmarks_json",
        {R"({"names": ["a", "b"], "frames": [{"time": 0, "points": [[1, 2], null]}]})",
-        R"([{"timestamp_ms": 40, "faceLandmarks": [[{"x": 1, "y": 2, "z": -5}]]}, null])"}}};
+        R"([{"timestamp_ms": 40, "faceLandmarks": [[{"x": 1, "y": 2, "z": -5}]]},
+            {"timestamp_ms": 80, "faceLandmarks": []}])"}}};
   return all;
 }
 
