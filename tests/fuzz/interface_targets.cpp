@@ -196,7 +196,7 @@ mimetra_data* changed(Bytes& bytes, Handles& held, int kind) {
 }
 
 /// All that can be asked of a value; it is written, too.
-void look_at(Bytes& bytes, Handles& held, mimetra_data* data, const fs::path& folder) {
+void look_at(Bytes& bytes, mimetra_data* data, const fs::path& folder) {
   static constexpr std::array<const char*, 14> kExtensions = {
       "/",     ".npy",  ".npz", ".pc2", ".mdd", ".h5",   ".glb",
       ".gltf", ".usda", ".obj", ".stl", ".csv", ".json", ".vtkhdf"};
@@ -256,7 +256,7 @@ void call(Bytes& bytes, Handles& held, const fs::path& folder) {
     for (int i = 0; i < m().call_output_count(held.call, (*output)->name); ++i) {
       mimetra_data** made = held.next();
       m().call_output(held.call, (*output)->name, i, made);
-      look_at(bytes, held, *made, folder);
+      look_at(bytes, *made, folder);
     }
   }
 }
@@ -278,7 +278,7 @@ void use(const fs::path& file) {
   } else {
     const int kind = bytes.ConsumeIntegralInRange<int>(MIMETRA_SEQUENCE, MIMETRA_DOCUMENT);
     if (mimetra_data* data = changed(bytes, held, kind)) {
-      look_at(bytes, held, data, file.parent_path());
+      look_at(bytes, data, file.parent_path());
     }
   }
 }
