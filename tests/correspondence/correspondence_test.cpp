@@ -98,7 +98,7 @@ TEST(Correspondence, HasTheSameBytesForEveryNumberOfThreads) {
 
 TEST(CorrespondenceQuality, NamesWhatIsPoor) {
   CorrespondenceQuality quality;
-  quality.triangles = 1000;
+  quality.partners = 1000;
   quality.mean_residual = 0.01;
   EXPECT_EQ(quality.verdict(), "usable");
   quality.mean_residual = 0.05;

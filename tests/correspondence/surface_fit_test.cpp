@@ -246,6 +246,23 @@ TEST(SurfaceFit, LeavesWhatReachesBeyondAnOpenTargetThere) {
   }
 }
 
+TEST(SurfaceFit, LeavesTheBackOfAHeadBehindAMask) {
+  // The target is the front half of a sphere whose middle bulges.
+  const test::Shape head = test::sphere(3);
+  test::Shape mask = head;
+  std::vector<int> front;
+  for (int t = 0; t < mask.triangles.rows(); ++t) {
+    double z = 0;
+    for (const int v : mask.triangles.row(t)) z += mask.positions(v, 2);
+    if (z > 0) front.push_back(t);
+  }
+  mask.triangles = Triangles(mask.triangles(front, Eigen::all));
+  const std::vector<Marker> markers = {{0, 0}, {1, 1}, {2, 2}, {3, 3}, {4, 4}};
+  const SurfaceFit fit = fit_to_surface(test::mesh_of(head), test::mesh_of(mask), markers);
+  // The front is there already, and nothing draws the back: it stays a sphere.
+  EXPECT_LT((fit.positions - head.positions).rowwise().norm().maxCoeff(), 0.02);
+}
+
 TEST(SurfaceFit, MovesBothSidesOfASeamAsOne) {
   test::Shape left = test::sphere(2);
   const TriMesh source = test::mesh_of(left);

@@ -85,14 +85,16 @@ Partners found_on(const PairedSurface& side, const PairedSurface& other, double 
   return found;
 }
 
-int folded_triangles(const Positions& positions, const Triangles& triangles) {
+/// Of `triangles`, those of `counted` only.
+int folded_triangles(const Positions& positions, const Triangles& triangles,
+                     const std::vector<bool>& counted) {
   const Positions at_vertices = vertex_normals(positions, triangles);
   const Positions normals = triangle_normals(positions, triangles);
   int folded = 0;
   for (Eigen::Index t = 0; t < triangles.rows(); ++t) {
     Eigen::RowVector3d around = Eigen::RowVector3d::Zero();
     for (const VertexIndex v : triangles.row(t)) around += at_vertices.row(v).normalized();
-    if (normals.row(t).dot(around) < 0) ++folded;
+    if (counted[t] && normals.row(t).dot(around) < 0) ++folded;
   }
   return folded;
 }
@@ -155,7 +157,6 @@ CorrespondenceQuality quality_of_pairs(const Correspondence& pairs, double diago
   if (with_partner > 0) quality.mean_residual /= with_partner;
   quality.without_partner =
       1 - static_cast<double>(with_partner) / std::max(1, pairs.target_triangles());
-  quality.triangles = pairs.source_triangles;
   return quality;
 }
 
@@ -173,7 +174,7 @@ Correspondence Correspondence::identity(int triangles) {
 }
 
 std::string CorrespondenceQuality::verdict() const {
-  const double folds = static_cast<double>(folded) / std::max(1, triangles);
+  const double folds = static_cast<double>(folded) / std::max(1, partners);
   std::vector<std::string> poor;
   if (without_partner > kMostWithoutPartner) {
     poor.push_back(percent(without_partner) + " of the target has no partner");
@@ -207,8 +208,15 @@ FoundCorrespondence find_correspondence(const TriMesh& source, const TriMesh& ta
   const Triangles& triangles = source.connectivity.triangles;
   found.correspondence = pair_triangles(found.fit, triangles, target, options.threads);
   found.quality = quality_of_pairs(found.correspondence, box_diagonal(target.positions));
-  found.quality.folded =
-      folded_triangles(found.fit.positions, FittedTriangles(found.fit, triangles).triangles);
+  const FittedTriangles parts(found.fit, triangles);
+  std::vector<bool> is_partner(triangles.rows(), false);
+  for (const Correspondence::Part& part : found.correspondence.parts) {
+    is_partner[part.triangle] = true;
+  }
+  std::vector<bool> counted;
+  for (const int number : parts.numbers) counted.push_back(is_partner[number]);
+  found.quality.partners = static_cast<int>(std::ranges::count(is_partner, true));
+  found.quality.folded = folded_triangles(found.fit.positions, parts.triangles, counted);
   return found;
 }
 

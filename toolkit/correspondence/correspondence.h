@@ -40,8 +40,9 @@ struct CorrespondenceQuality {
   double without_partner = 0;   ///< share of the target's triangles
   double mean_residual = 0;     ///< of those with a partner, as a share of the target's diagonal
   double largest_residual = 0;  ///< likewise
-  int folded = 0;     ///< triangles of the deformed source that face against their neighbours
-  int triangles = 0;  ///< of the source
+  /// Partners whose triangle faces against its neighbours on the deformed source.
+  int folded = 0;
+  int partners = 0;  ///< triangles of the source that are one's partner
 
   /// "good", "usable" or "poor: " and why, in words.
   std::string verdict() const;

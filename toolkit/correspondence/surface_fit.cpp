@@ -20,6 +20,10 @@ namespace {
 /// Borders are matched to borders that are nearer than this share of the target's diagonal.
 constexpr double kBorderReach = 0.02;
 
+/// Closest points that are farther than this share do not count: the back of a head has no place
+/// on a mask.
+constexpr double kClosestReach = 0.1;
+
 /// Vertices that one call of a thread asks for.
 constexpr int kVerticesAtATime = 256;
 
@@ -127,7 +131,8 @@ ClosestPoints closest_points(const Source& source, const Positions& positions,
         border ? target.closest_on_border(point, normal, source.along_border.row(v))
                : target.closest(point, normal);
     if (found.triangle < 0 || found.on_border != border) return;
-    if (border && found.squared_distance > kBorderReach * kBorderReach) return;
+    const double reach = border ? kBorderReach : kClosestReach;
+    if (found.squared_distance > reach * reach) return;
     result.places.row(v) = found.position;
     result.counts[v] = 1;
   };

@@ -54,8 +54,9 @@ struct SurfaceFit {
 /// where T_i is what happens to triangle i and to a fourth vertex above it, and c the point of the
 /// target that is nearest to v and faces less than 90 degrees from v's normal. A c on the target's
 /// border does not count, unless v is on the source's border; such a v is matched to nothing else,
-/// and only to border edges that lead the same way and are nearer than 2 % of the target's
-/// diagonal, so that what reaches beyond an open target stays there. Vertices at one place are one.
+/// and only to border edges that lead the same way. A c does not count either where it is farther
+/// from v than 10 % of the target's diagonal, or 2 % on borders: what reaches beyond an open target
+/// stays there. Vertices at one place are one.
 ///
 /// One sparse system for the x, y and z of vertices and fourth vertices; its pattern is analysed
 /// once. Throws what check_markers() throws, std::invalid_argument for options out of range and a
