@@ -11,8 +11,9 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 
+/// On a target of any size up to 10000 vertices, all of which markers reach.
 SurfaceFit lying_at(const Positions& positions) {
-  return {positions, std::vector<bool>(positions.rows(), true)};
+  return {positions, std::vector<bool>(positions.rows(), true), std::vector<bool>(10000, true)};
 }
 
 std::vector<int> partners_of(const Correspondence& pairs, int target_triangle) {
@@ -82,6 +83,19 @@ TEST(Correspondence, HasNoPartnersInPartsThatNoMarkerReaches) {
   const Correspondence pairs =
       pair_triangles(fit, test::both(sphere, sphere).triangles, test::mesh_of(sphere));
   for (int t = 0; t < 32; ++t) EXPECT_THAT(partners_of(pairs, t), ElementsAre(32 + t));
+}
+
+TEST(Correspondence, GivesNoPartnerToPartsOfTheTargetThatNoMarkerReaches) {
+  // Teeth right behind the lips, and facing as they do.
+  const test::Shape lips = test::sphere(2);
+  test::Shape teeth = lips;
+  teeth.positions *= 0.99;
+  const TriMesh target = test::mesh_of(test::both(lips, teeth));
+  const std::vector<Marker> markers = {{0, 0}, {1, 1}, {2, 2}, {3, 3}, {4, 4}, {5, 5}};
+  const auto found = find_correspondence(test::mesh_of(lips), target, markers);
+  for (int t = 0; t < 128; ++t) EXPECT_THAT(partners_of(found.correspondence, t), ElementsAre(t));
+  for (int t = 128; t < 256; ++t) EXPECT_FALSE(found.correspondence.has_partner(t));
+  EXPECT_EQ(found.quality.without_partner, 0.5);
 }
 
 TEST(Correspondence, HasTheSameBytesForEveryNumberOfThreads) {

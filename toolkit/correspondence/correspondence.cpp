@@ -99,25 +99,23 @@ int folded_triangles(const Positions& positions, const Triangles& triangles,
   return folded;
 }
 
-/// Triangles of the source that were fitted, and their numbers.
-struct FittedTriangles {
-  FittedTriangles(const SurfaceFit& fitted, const Triangles& source) {
-    for (int t = 0; t < source.rows(); ++t) {
-      if (fitted.reached[source(t, 0)]) numbers.push_back(t);
+/// Triangles of the parts that a marker reaches, and their numbers.
+struct ReachedTriangles {
+  ReachedTriangles(const Positions& positions, const Triangles& all,
+                   const std::vector<bool>& reached) {
+    for (int t = 0; t < all.rows(); ++t) {
+      if (reached[all(t, 0)]) numbers.push_back(t);
     }
-    triangles = Weld::exact(fitted.positions).welded(source(numbers, Eigen::all));
+    triangles = Weld::exact(positions).welded(all(numbers, Eigen::all));
   }
 
   std::vector<int> numbers;
   Triangles triangles;  ///< on the lowest vertices of each place
 };
 
-Correspondence paired(const PairedSurface& source, const std::vector<int>& numbers,
-                      int source_triangles, const PairedSurface& target, double diagonal,
-                      int threads) {
-  const double reach = kPairReach * diagonal;
-  const Partners of_target = found_on(target, source, reach, threads);
-  const Partners of_source = found_on(source, target, reach, threads);
+/// The partners of each triangle of `target`, ascending; rows of both surfaces.
+std::vector<std::vector<int>> partners_of(const PairedSurface& target, const Partners& of_target,
+                                          const Partners& of_source) {
   std::vector<std::vector<int>> partners(target.triangles.rows());
   for (std::size_t t = 0; t < partners.size(); ++t) {
     if (of_target.partner[t] >= 0) partners[t].push_back(of_target.partner[t]);
@@ -128,20 +126,22 @@ Correspondence paired(const PairedSurface& source, const std::vector<int>& numbe
     if (t < 0 || of_target.partner[t] < 0 || of_target.partner[t] == static_cast<int>(s)) continue;
     partners[t].push_back(static_cast<int>(s));
   }
-  Correspondence result;
-  result.source_triangles = source_triangles;
-  result.residuals = of_target.residuals;
-  for (std::vector<int>& of_triangle : partners) {
-    std::ranges::sort(of_triangle);
-    double area = 0;
-    for (const int s : of_triangle) area += source.normals.row(s).norm();
-    for (const int s : of_triangle) {
-      const double weight = of_triangle.size() == 1 ? 1 : source.normals.row(s).norm() / area;
-      result.parts.push_back({numbers[s], weight});
-    }
-    result.offsets.push_back(static_cast<int>(result.parts.size()));
+  for (std::vector<int>& of_triangle : partners) std::ranges::sort(of_triangle);
+  return partners;
+}
+
+/// Triangles with their shares of the areas. \pre `rows` of the surface, whose numbers they are
+std::vector<Correspondence::Part> by_area(const std::vector<int>& rows,
+                                          const std::vector<int>& numbers,
+                                          const PairedSurface& surface) {
+  if (rows.size() == 1) return {{numbers[rows.front()], 1}};
+  double area = 0;
+  for (const int row : rows) area += surface.normals.row(row).norm();
+  std::vector<Correspondence::Part> parts;
+  for (const int row : rows) {
+    parts.push_back({numbers[row], surface.normals.row(row).norm() / area});
   }
-  return result;
+  return parts;
 }
 
 CorrespondenceQuality quality_of_pairs(const Correspondence& pairs, double diagonal) {
@@ -192,12 +192,29 @@ std::string CorrespondenceQuality::verdict() const {
 
 Correspondence pair_triangles(const SurfaceFit& fitted, const Triangles& source,
                               const TriMesh& target, int threads) {
-  const FittedTriangles parts(fitted, source);
-  const PairedSurface from(fitted.positions, parts.triangles);
-  const PairedSurface to(target.positions,
-                         Weld::exact(target.positions).welded(target.connectivity.triangles));
-  return paired(from, parts.numbers, static_cast<int>(source.rows()), to,
-                box_diagonal(target.positions), threads);
+  const ReachedTriangles of_source(fitted.positions, source, fitted.reached);
+  const ReachedTriangles of_target(target.positions, target.connectivity.triangles,
+                                   fitted.target_reached);
+  const PairedSurface from(fitted.positions, of_source.triangles);
+  const PairedSurface to(target.positions, of_target.triangles);
+  const double reach = kPairReach * box_diagonal(target.positions);
+  const Partners found = found_on(to, from, reach, threads);
+  const auto partners = partners_of(to, found, found_on(from, to, reach, threads));
+
+  Correspondence result;
+  result.source_triangles = static_cast<int>(source.rows());
+  const Eigen::Index triangles = target.connectivity.triangles.rows();
+  result.residuals.setConstant(triangles, std::numeric_limits<double>::infinity());
+  result.residuals(of_target.numbers) = found.residuals;
+  std::size_t next = 0;
+  for (int t = 0; t < triangles; ++t) {
+    if (next < partners.size() && of_target.numbers[next] == t) {
+      const auto parts = by_area(partners[next++], of_source.numbers, from);
+      result.parts.insert(result.parts.end(), parts.begin(), parts.end());
+    }
+    result.offsets.push_back(static_cast<int>(result.parts.size()));
+  }
+  return result;
 }
 
 FoundCorrespondence find_correspondence(const TriMesh& source, const TriMesh& target,
@@ -208,7 +225,7 @@ FoundCorrespondence find_correspondence(const TriMesh& source, const TriMesh& ta
   const Triangles& triangles = source.connectivity.triangles;
   found.correspondence = pair_triangles(found.fit, triangles, target, options.threads);
   found.quality = quality_of_pairs(found.correspondence, box_diagonal(target.positions));
-  const FittedTriangles parts(found.fit, triangles);
+  const ReachedTriangles parts(found.fit.positions, triangles, found.fit.reached);
   std::vector<bool> is_partner(triangles.rows(), false);
   for (const Correspondence::Part& part : found.correspondence.parts) {
     is_partner[part.triangle] = true;

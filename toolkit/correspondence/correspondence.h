@@ -23,7 +23,7 @@ struct Correspondence {
   std::vector<int> offsets = {0};
   std::vector<Part> parts;
   /// How far the deformed source is from each target triangle's centroid (M), in the unit of the
-  /// target; infinite where nothing of it faces the same way.
+  /// target; infinite where nothing of it faces the same way, and on parts that no marker reaches.
   Eigen::VectorXd residuals;
 
   int target_triangles() const { return static_cast<int>(offsets.size()) - 1; }
@@ -60,7 +60,7 @@ struct FoundCorrespondence {
 /// is nearest to its own, and those to which it is the nearest; both must face less than 90 degrees
 /// apart, be no farther apart than their longest edges (or 2 % of the target's diagonal where they
 /// are shorter), and have its place inside the other's surface, not on its border. Weights are the
-/// partners' areas. Triangles of the source that no marker reaches have no partner.
+/// partners' areas. Triangles that no marker reaches have no partner, and are none.
 Correspondence pair_triangles(const SurfaceFit& fitted, const Triangles& source,
                               const TriMesh& target, int threads = 0);
 

@@ -58,6 +58,17 @@ Triangles sound(const Positions& positions, const Triangles& triangles) {
   return triangles(rows, Eigen::all);
 }
 
+/// Whether a marker is on the connected part of each vertex (N).
+std::vector<bool> reached_parts(const Positions& positions, const Triangles& triangles,
+                                const Weld& weld, const std::vector<VertexIndex>& markers) {
+  const SurfaceParts parts = surface_parts(positions, triangles, weld);
+  std::vector<bool> part_reached(parts.count(), false);
+  for (const VertexIndex v : markers) part_reached[parts.of_vertex[v]] = true;
+  std::vector<bool> reached;
+  for (const int part : parts.of_vertex) reached.push_back(part_reached[part]);
+  return reached;
+}
+
 /// The source's surface with vertices at one place as one.
 struct Source {
   Source(const TriMesh& mesh, const std::vector<Marker>& markers)
@@ -73,15 +84,13 @@ struct Source {
       }
       target = marker.target;
     }
-    const SurfaceParts parts = surface_parts(mesh.positions, triangles, weld);
-    std::vector<bool> part_reached(parts.count(), false);
-    for (std::size_t v = 0; v < target_of.size(); ++v) {
-      if (target_of[v] >= 0) part_reached[parts.of_vertex[v]] = true;
-    }
+    std::vector<VertexIndex> marked;
+    for (const Marker& marker : markers) marked.push_back(marker.source);
+    reached = reached_parts(mesh.positions, triangles, weld, marked);
     std::vector<bool> in_triangle(target_of.size(), false);
     for (const VertexIndex v : triangles.reshaped()) in_triangle[v] = true;
     for (std::size_t v = 0; v < target_of.size(); ++v) {
-      reached.push_back(part_reached[parts.of_vertex[v]] && in_triangle[weld.representative[v]]);
+      reached[v] = reached[v] && in_triangle[weld.representative[v]];
       free.push_back(reached[v] && in_triangle[v] && target_of[v] < 0);
     }
     borders = border_edges(triangles);
@@ -182,8 +191,14 @@ SurfaceFit fit_to_surface(const TriMesh& source_mesh, const TriMesh& target_mesh
   const double share = 1.0 / (options.steps + 2);
   DeformationSystem system(start, source.triangles, source.free, options.smoothness,
                            options.identity);
-  const ClosestSurface surface(target,
-                               Weld::exact(target).welded(target_mesh.connectivity.triangles));
+  const Weld target_weld = Weld::exact(target);
+  const Triangles target_triangles = target_weld.welded(target_mesh.connectivity.triangles);
+  const std::vector<bool> target_reached = reached_parts(target, target_triangles, target_weld, to);
+  std::vector<int> rows;
+  for (int t = 0; t < target_triangles.rows(); ++t) {
+    if (target_reached[target_triangles(t, 0)]) rows.push_back(t);
+  }
+  const ClosestSurface surface(target, target_triangles(rows, Eigen::all));
   report_progress(options.progress, share);
   Positions positions = system.solve(held, start, Eigen::VectorXd::Zero(start.rows()));
   for (int step = 0; step < options.steps; ++step) {
@@ -196,7 +211,7 @@ SurfaceFit fit_to_surface(const TriMesh& source_mesh, const TriMesh& target_mesh
   for (Eigen::Index v = 0; v < positions.rows(); ++v) {
     if (source.reached[v]) positions.row(v) = positions.row(source.weld.representative[v]);
   }
-  return {normalisation.undo(positions), source.reached};
+  return {normalisation.undo(positions), source.reached, target_reached};
 }
 
 }  // namespace mimetra

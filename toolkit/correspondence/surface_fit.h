@@ -44,6 +44,8 @@ struct SurfaceFit {
   /// False for vertices of parts that no marker reaches, which the similarity of the markers alone
   /// has carried (N).
   std::vector<bool> reached;
+  /// The same of the target's vertices, which are no place for the source's.
+  std::vector<bool> target_reached;
 };
 
 /// Deforms `source` so that its markers are on those of `target` and its surface on the target's:
@@ -56,7 +58,8 @@ struct SurfaceFit {
 /// border does not count, unless v is on the source's border; such a v is matched to nothing else,
 /// and only to border edges that lead the same way. A c does not count either where it is farther
 /// from v than 10 % of the target's diagonal, or 2 % on borders: what reaches beyond an open target
-/// stays there. Vertices at one place are one.
+/// stays there; nor does one on a part of the target that no marker reaches, such as teeth.
+/// Vertices at one place are one.
 ///
 /// One sparse system for the x, y and z of vertices and fourth vertices; its pattern is analysed
 /// once. Throws what check_markers() throws, std::invalid_argument for options out of range and a
