@@ -46,8 +46,14 @@ AffineCamera estimate_affine_camera(const ModelPoints& points, const ImagePoints
   return camera;
 }
 
-ImagePoints project(const AffineCamera& camera, const ModelPoints& points) {
-  return (points * camera.leftCols<3>().transpose()).rowwise() + camera.col(3).transpose();
+ImagePoints project(const AffineCamera& camera, const ModelPoints& points,
+                    const Eigen::RowVector4d& depth) {
+  ImagePoints image =
+      (points * camera.leftCols<3>().transpose()).rowwise() + camera.col(3).transpose();
+  if (!depth.head<3>().isZero(0)) {
+    image.array().colwise() /= (points * depth.head<3>().transpose()).array() + depth[3];
+  }
+  return image;
 }
 
 double rms_radius(const Eigen::MatrixXd& points) {

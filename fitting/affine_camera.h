@@ -21,8 +21,9 @@ using ImagePoints = Eigen::Matrix<double, Eigen::Dynamic, 2>;
 /// [Hartley, Zisserman. Multiple View Geometry in Computer Vision, 2nd ed., 2004], algorithm 14.1
 AffineCamera estimate_affine_camera(const ModelPoints& points, const ImagePoints& image);
 
-/// Where the camera sees the points.
-ImagePoints project(const AffineCamera& camera, const ModelPoints& points);
+/// Where the camera sees the points. `depth`: the third row of a perspective camera's matrix.
+ImagePoints project(const AffineCamera& camera, const ModelPoints& points,
+                    const Eigen::RowVector4d& depth = {0, 0, 0, 1});
 
 /// Root of the mean squared distance of points (n x D) from their centroid.
 double rms_radius(const Eigen::MatrixXd& points);

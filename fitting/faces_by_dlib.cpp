@@ -13,7 +13,7 @@
 #include <dlib/image_processing/shape_predictor.h>
 
 #include "fitting/detector_pyramid.h"
-#include "fitting/face_images.h"
+#include "fitting/face_finder.h"
 #include "fitting/image_codec.h"
 #include "toolkit/mesh/errors.h"
 
@@ -283,9 +283,9 @@ struct FaceFinder::State {
     return faces;
   }
 
+  dlib::shape_predictor predictor;  // what is no model is refused before detectors are made
   Detector detector = dlib::get_frontal_face_detector();
   Detector one_level = of_one_level(detector);
-  dlib::shape_predictor predictor;
 };
 
 FaceFinder::FaceFinder(const std::filesystem::path& model)

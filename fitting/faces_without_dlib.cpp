@@ -1,4 +1,4 @@
-#include "fitting/face_images.h"
+#include "fitting/face_finder.h"
 #include "fitting/image_codec.h"
 #include "toolkit/mesh/errors.h"
 

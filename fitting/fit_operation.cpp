@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include <nlohmann/json.hpp>
 
 #include "fitting/fit_pictures.h"
+#include "fitting/fit_verdict.h"
 #include "fitting/head_rotation.h"
 #include "fitting/image_files.h"
 #include "fitting/landmark_file.h"
@@ -61,7 +63,25 @@ BoundParameters<FitCall> fit_parameters() {
       .add("tolerance", FitOptions::kTolerance,
            "it ends where an iteration lowers the energy by a smaller share")
       .add("sigma", FitOptions::kSigma,
-           "noise of the landmarks (default: 0.017485 of the face's RMS radius)")
+           "noise of the landmarks (default: estimated from a clip; 0.017485 of the face's RMS "
+           "radius "
+           "in a picture, with --repeated 0 and by the alternating solver)")
+      .add("repeated", FitOptions::kRepeated,
+           "share of the landmarks' squared error that is the same in every frame: frames say so "
+           "much "
+           "less about the identity; 0 for frames that are independent (default: estimated)")
+      .add("camera", FitOptions::kCamera,
+           "orthographic: scaled orthographic (auto: for clips); affine: as in the paper; "
+           "perspective: "
+           "with --focal-length")
+      .add("stretch", FitOptions::kStretch,
+           "how much the orthographic and perspective cameras may stretch the image, as a standard "
+           "deviation")
+      .add("focal-length", FitOptions::kFocalLength, "of the perspective camera")
+      .add("outliers", FitOptions::kOutliers,
+           "landmarks far from the face in units of the clip's noise: resist them (auto: where "
+           "noise "
+           "is estimated), or trust all")
       .add("ridge", FitOptions::kRidge,
            "weight of squared expressions (default: 0.1 with more than ten of them, else 0)")
       .add("smoothness", FitOptions::kSmoothness, "time constant of smooth expressions");
@@ -73,6 +93,24 @@ BoundParameters<FitCall> fit_parameters() {
       .add("head-motion", FitCall::kHeadMotion,
            "keep: the sequence turns as the head does in the images; drop: it looks ahead")
       .add(&FitCall::fit, fit);
+}
+
+/// Throws UsageError for options that contradict each other.
+void check_fit(const FitOptions& options) {
+  using Camera = FitOptions::Camera;
+  if ((options.camera == Camera::perspective) != options.focal_length.has_value()) {
+    throw UsageError(options.focal_length ? "--focal-length: is for --camera perspective"
+                                          : "--camera: a perspective one needs --focal-length");
+  }
+  if (options.solver == FitOptions::Solver::joint) return;
+  const auto refuse = [](const char* option) {
+    throw UsageError(std::string(option) + ": is for --solver joint");
+  };
+  if (options.camera == Camera::orthographic || options.camera == Camera::perspective) {
+    refuse("--camera");
+  }
+  if (options.outliers == FitOptions::Outliers::resist) refuse("--outliers");
+  if (options.repeated.value_or(0) > 0) refuse("--repeated");
 }
 
 LandmarkMapping mapping_of(const FitCall& call, const NamedData& model) {
@@ -92,6 +130,7 @@ FittedCoefficients coefficients_of(const MorphableModel& model, const Eigen::Vec
   fit.alpha.resize(count, model.identities().size());
   fit.beta.resize(count, model.expressions().size());
   fit.rms.resize(count);
+  fit.rms_all.resize(count);
   fit.landmarks.resize(count);
   fit.iterations.resize(count);
   for (Eigen::Index f = 0; f < count; ++f) {
@@ -99,7 +138,12 @@ FittedCoefficients coefficients_of(const MorphableModel& model, const Eigen::Vec
     fit.alpha.row(f) = frame.alpha;
     fit.beta.row(f) = frame.beta;
     fit.cameras.push_back(frame.camera);
+    if (!frame.depth.head<3>().isZero(0)) {
+      fit.depths.conservativeResize(count, 4);
+      fit.depths.row(f) = frame.depth;
+    }
     fit.rms[f] = frame.rms;
+    fit.rms_all[f] = frame.rms_all;
     fit.landmarks[f] = frame.landmarks;
     fit.iterations[f] = frame.iterations;
   }
@@ -118,6 +162,41 @@ MeshSequence sequence_of(const MorphableModel& model, const FittedCoefficients& 
   frames.noalias() += rest_of_identity * model.identities().displacements.transpose();
   return sequence.with_frames(std::move(frames));
 }
+
+/// What a fit is worth, and in words.
+struct Judgement {
+  IdentityVerdict identity;
+  std::optional<NeutralDistance> halves;
+  std::vector<ExpressionUse> expressions;
+
+  Json json(const std::vector<std::string>& names) const {
+    Json uses = Json::array();
+    for (std::size_t j = 0; j < expressions.size(); ++j) {
+      const ExpressionUse& use = expressions[j];
+      uses.push_back({{"name", names[j]},
+                      {"mean", use.mean},
+                      {"at_least", use.at_least},
+                      {"at_most", use.at_most}});
+    }
+    return {{"alpha_rms", identity.alpha_rms},
+            {"alpha_max", identity.alpha_max},
+            {"flipped", identity.flipped},
+            {"halves_mean", halves ? Json(halves->mean) : Json(nullptr)},
+            {"halves_largest", halves ? Json(halves->largest) : Json(nullptr)},
+            {"expressions", uses}};
+  }
+
+  std::string words() const {
+    std::string text = "identity: " + readable(identity.alpha_rms) +
+                       " standard deviations (RMS), at most " + readable(identity.alpha_max) +
+                       ", " + std::to_string(identity.flipped) + " flipped triangles";
+    if (halves) {
+      text += "; the neutrals of the clip's halves are " + readable(100 * halves->mean) +
+              " % of the longest side apart (at most " + readable(100 * halves->largest) + " %)";
+    }
+    return text + '\n';
+  }
+};
 
 struct FitSummary {
   double rms = 0;  ///< over all landmarks of all frames, pixels
@@ -154,13 +233,47 @@ auto naming_landmarks(const Invocation& invocation, Call call) {
   }
 }
 
-std::vector<FrameFit> fitted(const Invocation& invocation, const MorphableModel& model,
-                             const MappedLandmarks& mapped, FitOptions options) {
-  options.progress = part_of(invocation.progress, 0, 0.5);
-  const Eigen::VectorXd& times = invocation.get<LandmarkTrack>("landmarks").times;
-  return naming_landmarks(invocation, [&] {
-    return LandmarkFitter(model, mapped.vertices).fit(mapped.points, options, times);
-  });
+/// Fits all frames, or parts of them.
+class ClipFit {
+ public:
+  ClipFit(const Invocation& invocation, const MorphableModel& model, const MappedLandmarks& mapped,
+          const FitOptions& options)
+      : invocation_(invocation),
+        mapped_(mapped),
+        options_(options),
+        outline_(options.solver == FitOptions::Solver::joint && mapped.outline.cols() > 0),
+        fitter_(model, mapped.vertices,
+                outline_ ? LandmarkFitter::Outline::given : LandmarkFitter::Outline::none) {}
+
+  std::vector<FrameFit> of(int from, int to, double progress_from, double progress_to) const {
+    FitOptions options = options_;
+    options.progress = part_of(invocation_.progress, progress_from, progress_to);
+    const auto rows = Eigen::seqN(from, to - from);
+    const Eigen::VectorXd& times = invocation_.get<LandmarkTrack>("landmarks").times;
+    return fitter_.fit(mapped_.points(rows, Eigen::all), options, times(rows),
+                       outline_ ? Frames(mapped_.outline(rows, Eigen::all)) : Frames());
+  }
+
+ private:
+  const Invocation& invocation_;
+  const MappedLandmarks& mapped_;
+  FitOptions options_;
+  bool outline_;
+  LandmarkFitter fitter_;
+};
+
+/// Distance of the neutrals that the two halves of a clip give, where it has one shape and each
+/// half frames enough to tell.
+std::optional<NeutralDistance> halves_distance(const ClipFit& clip, const MorphableModel& model,
+                                               const FittedCoefficients& fit,
+                                               FitOptions::Shape shape) {
+  constexpr int kFewest = 10;
+  const int frames = fit.frames(), half = frames / 2;
+  const bool enough = (fit.landmarks.head(half).array() > 0).count() >= kFewest &&
+                      (fit.landmarks.tail(frames - half).array() > 0).count() >= kFewest;
+  if (shape == FitOptions::Shape::frame || !enough || model.identities().size() == 0) return {};
+  const Eigen::VectorXd first = clip.of(0, half, 0.3, 0.4).front().alpha;
+  return neutral_distance(model, first, clip.of(half, frames, 0.4, 0.5).front().alpha);
 }
 
 /// Before anything is computed: pictures need what they are drawn on, and that it is sound.
@@ -184,6 +297,57 @@ std::vector<int> seen_frames(const FittedCoefficients& fit) {
   return frames;
 }
 
+void warn_of(const Judgement& judgement, const std::vector<std::string>& names,
+             const Invocation& invocation) {
+  const IdentityVerdict& identity = judgement.identity;
+  if (identity.is_doubtful()) {
+    invocation.warn("the fitted identity is hardly a person: its largest coefficient is " +
+                    readable(identity.alpha_max) + " standard deviations, and " +
+                    std::to_string(identity.flipped) +
+                    " triangles are flipped; use more frames in which the head turns, --camera "
+                    "orthographic, a --repeated nearer to 1 or a larger --sigma");
+  }
+  std::string constant;
+  for (std::size_t j = 0; j < names.size(); ++j) {
+    if (!judgement.expressions[j].is_constant()) continue;
+    constant += (constant.empty() ? "" : ", ") + names[j] + " (" +
+                readable(judgement.expressions[j].mean) + ")";
+  }
+  if (!constant.empty() && judgement.halves) {
+    invocation.warn("expressions that are there all the time, as parts of the face are: " +
+                    constant + "; --ridge 1 makes them smaller");
+  }
+}
+
+/// Affine cameras that see the model's origin, and a little around it, as the fitted ones do.
+std::vector<AffineCamera> cameras_at_origin(const FittedCoefficients& fit) {
+  std::vector<AffineCamera> cameras = fit.cameras;
+  for (Eigen::Index f = 0; f < fit.depths.rows(); ++f) {
+    AffineCamera& camera = cameras[static_cast<std::size_t>(f)];
+    camera.leftCols<3>() -= camera.col(3) * fit.depths.row(f).head<3>();
+  }
+  return cameras;
+}
+
+/// Frames in which the head is turned so far that landmarks are behind it.
+std::vector<std::string> notes_of(const MeshSequence& sequence, const FittedCoefficients& fit,
+                                  const MappedLandmarks& mapped, std::vector<std::string> notes) {
+  notes.resize(static_cast<std::size_t>(fit.frames()));
+  const std::vector<AffineCamera> cameras = cameras_at_origin(fit);
+  for (int f = 0; f < fit.frames(); ++f) {
+    if (fit.landmarks[f] == 0) continue;
+    const int averted = averted_landmarks(sequence.frame(f), sequence.triangles(), mapped.vertices,
+                                          cameras[static_cast<std::size_t>(f)]);
+    if (4 * averted < static_cast<int>(mapped.vertices.size())) continue;
+    std::string& note = notes[static_cast<std::size_t>(f)];
+    note += (note.empty() ? "" : "; ") + std::string("turned away: ") + std::to_string(averted) +
+            " of " + std::to_string(mapped.vertices.size()) + " landmarks are behind the face";
+  }
+  const bool none =
+      std::ranges::all_of(notes, [](const std::string& note) { return note.empty(); });
+  return none ? std::vector<std::string>{} : notes;
+}
+
 Outcome run(const Invocation& invocation) {
   const NamedData& landmarks = invocation.input("landmarks");
   const LandmarkTrack& track = std::get<LandmarkTrack>(landmarks.data);
@@ -195,13 +359,19 @@ Outcome run(const Invocation& invocation) {
   }
   check_images(invocation);
   const FitCall call = fit_parameters().read(invocation.parameters);
+  check_fit(call.fit);
   const LandmarkMapping mapping = mapping_of(call, invocation.input("model"));
   const MappedLandmarks mapped =
       naming_landmarks(invocation, [&] { return map_landmarks(track, mapping); });
   report_progress(invocation.progress, 0);
-  FittedCoefficients fit =
-      coefficients_of(model, track.times, fitted(invocation, model, mapped, call.fit));
-  fit.notes = landmarks.origin.frame_notes;
+  const ClipFit clip =
+      naming_landmarks(invocation, [&] { return ClipFit(invocation, model, mapped, call.fit); });
+  const std::vector<FrameFit> frames =
+      naming_landmarks(invocation, [&] { return clip.of(0, track.frames(), 0, 0.3); });
+  FittedCoefficients fit = coefficients_of(model, track.times, frames);
+  const Judgement judgement{verdict_of(model, fit.identity()),
+                            halves_distance(clip, model, fit, call.fit.shape),
+                            expression_use(fit.beta)};
   report_progress(invocation.progress, 0.5);
 
   const FitSummary summary = summary_of(fit);
@@ -212,27 +382,34 @@ Outcome run(const Invocation& invocation) {
                     listed(words_of(summary.unseen)));
   }
   const MeshSequence sequence = sequence_of(model, fit, call.fit.shape);
+  fit.notes = notes_of(sequence, fit, mapped, landmarks.origin.frame_notes);
   Outcome outcome;
   Json report = {{"rms_px", summary.rms},
                  {"vertices", model.vertices()},
                  {"mapped_landmarks", mapped.vertices.size()},
-                 {"unseen_frames", summary.unseen}};
+                 {"unseen_frames", summary.unseen},
+                 {"outline_landmarks", mapped.outline.cols() / 2},
+                 {"repeated", frames.front().repeated},
+                 {"verdict", judgement.json(fit.expressions)}};
   report.update(Json::parse(fit_json(fit)));
   outcome.report = json_text(report);
-  outcome.summary =
-      std::to_string(fit.frames()) + " frames, " + std::to_string(mapped.vertices.size()) + " of " +
-      std::to_string(track.landmarks()) + " landmarks mapped: RMS " + readable(summary.rms) +
-      " px (worst " + readable(fit.rms[summary.worst]) + " in frame " +
-      std::to_string(summary.worst) + "), " + std::to_string(summary.iterations) + " iterations\n";
+  outcome.summary = std::to_string(fit.frames()) + " frames, " +
+                    std::to_string(mapped.vertices.size()) + " of " +
+                    std::to_string(track.landmarks()) + " landmarks mapped: RMS " +
+                    readable(summary.rms) + " px (worst " + readable(fit.rms[summary.worst]) +
+                    " in frame " + std::to_string(summary.worst) + "), " +
+                    std::to_string(summary.iterations) + " iterations\n" + judgement.words();
+  warn_of(judgement, fit.expressions, invocation);
+  const std::vector<AffineCamera> cameras = cameras_at_origin(fit);
   const bool turns = call.head_motion == FitCall::HeadTurns::keep;
   outcome.outputs["out"].push_back(
       {"",
-       FieldSequence(turns ? turned_as_seen(sequence, fit.cameras) : sequence),
+       FieldSequence(turns ? turned_as_seen(sequence, cameras) : sequence),
        {.model_driven = !turns}});
   outcome.outputs["fit-out"].push_back({"", fit});
   if (invocation.wants("landmarks-out")) outcome.outputs["landmarks-out"].push_back({"", track});
   if (invocation.wants("overlay") || invocation.wants("strip")) {
-    const FitPictures pictures(landmarks.origin.images, sequence, fit.cameras, mapped);
+    const FitPictures pictures(landmarks.origin.images, sequence, fit, mapped);
     if (invocation.wants("overlay")) {
       const std::filesystem::path sound = landmarks.origin.images->sound();
       for (const auto& target : invocation.wanted.at("overlay")) {

@@ -15,6 +15,15 @@ struct FitOptions {
   /// `clip`: one alpha for all frames; `frame`: an alpha in every frame, which starts from the
   /// frame before.
   enum class Shape { clip, frame };
+  /// `affine`: eight free numbers in each frame, as in the paper. `orthographic`: scaled
+  /// orthographic, an affine camera whose rows may differ in length and be askew by `stretch`.
+  /// `perspective`: the same, and what is farther away is smaller by the focal length.
+  /// `automatic`: orthographic where the joint solver fits one shape to several frames, else
+  /// affine.
+  enum class Camera { automatic, orthographic, affine, perspective };
+  /// `resist`: landmarks that are not like the others, in units of the clip's own noise, count
+  /// little; `trust`: all count alike. `automatic`: resist where the noise is estimated.
+  enum class Outliers { automatic, resist, trust };
 
   Solver solver = Solver::joint;
   Shape shape = Shape::clip;
@@ -22,9 +31,23 @@ struct FitOptions {
   int iterations = 5;
   /// It ends where the energy falls by less than this share of it in one iteration.
   double tolerance = 1e-4;
-  /// Noise of the landmarks. By default 0.017485 x the RMS distance of the used landmarks from
-  /// their centroid, in each frame, so that the image's scale changes nothing.
+  /// Noise of the landmarks, a standard deviation in each direction. By default the joint solver
+  /// estimates it where it fits one shape to several frames, as a share of the face's size in each;
+  /// elsewhere it is 0.017485 x the RMS distance of the used landmarks from their centroid, in each
+  /// frame, so that the image's scale changes nothing.
   std::optional<double> sigma = std::nullopt;
+  /// rho, the share of the landmarks' squared error that is the same in every frame: F frames of
+  /// one shape say as much of it as F / (1 + (F - 1) rho). 0 where frames are independent;
+  /// estimated by default where sigma is, else 0.
+  std::optional<double> repeated = std::nullopt;
+  Camera camera = Camera::automatic;
+  /// Standard deviation of a scaled orthographic camera's stretch: the difference of its rows'
+  /// lengths, and their product, as shares of the length. A face at ten times its depth from the
+  /// camera needs 0.1.
+  double stretch = 0.1;
+  /// Of a perspective camera.
+  std::optional<double> focal_length = std::nullopt;
+  Outliers outliers = Outliers::automatic;
   /// Upper bound of each beta, > 0; infinity leaves only beta >= 0.
   double max_expression = 1;
   /// Weight of |beta|^2 beside |alpha|^2. By default 0, or 0.1 with more than ten expressions.
@@ -42,11 +65,20 @@ struct FitOptions {
       "tolerance", &FitOptions::tolerance, {.minimum = 0, .maximum = 1}};
   static constexpr Option kSigma{
       "sigma", &FitOptions::sigma, {.minimum = 1e-9, .maximum = 1e9}, "pixels"};
+  static constexpr Option kRepeated{
+      "repeated", &FitOptions::repeated, {.minimum = 0, .maximum = 1}};
+  static constexpr Option kCamera{"camera", &FitOptions::camera};
+  static constexpr Option kStretch{
+      "stretch", &FitOptions::stretch, {.minimum = 1e-3, .maximum = 1e3}};
+  static constexpr Option kFocalLength{
+      "focal-length", &FitOptions::focal_length, {.minimum = 1, .maximum = 1e9}, "pixels"};
+  static constexpr Option kOutliers{"outliers", &FitOptions::outliers};
   static constexpr Option kRidge{"ridge", &FitOptions::ridge, {.minimum = 0, .maximum = 1e9}};
   static constexpr Option kSmoothness{
       "smoothness", &FitOptions::smoothness, {.minimum = 0, .maximum = 1e6}, "seconds"};
   static constexpr auto declared() {
-    return std::tuple(kSolver, kShape, kIterations, kTolerance, kSigma, kRidge, kSmoothness);
+    return std::tuple(kSolver, kShape, kIterations, kTolerance, kSigma, kRepeated, kCamera,
+                      kStretch, kFocalLength, kOutliers, kRidge, kSmoothness);
   }
 };
 
@@ -68,6 +100,34 @@ constexpr std::string_view choice_name(FitOptions::Shape value) {
       return "clip";
     case FitOptions::Shape::frame:
       return "frame";
+  }
+  return {};
+}
+
+/// As people choose it.
+constexpr std::string_view choice_name(FitOptions::Camera value) {
+  switch (value) {
+    case FitOptions::Camera::automatic:
+      return "auto";
+    case FitOptions::Camera::orthographic:
+      return "orthographic";
+    case FitOptions::Camera::affine:
+      return "affine";
+    case FitOptions::Camera::perspective:
+      return "perspective";
+  }
+  return {};
+}
+
+/// As people choose it.
+constexpr std::string_view choice_name(FitOptions::Outliers value) {
+  switch (value) {
+    case FitOptions::Outliers::automatic:
+      return "auto";
+    case FitOptions::Outliers::resist:
+      return "resist";
+    case FitOptions::Outliers::trust:
+      return "trust";
   }
   return {};
 }

@@ -9,11 +9,10 @@
 namespace mimetra {
 
 FitPictures::FitPictures(std::shared_ptr<const ImageSequence> images, MeshSequence sequence,
-                         std::vector<AffineCamera> cameras, MappedLandmarks mapped) {
+                         const FittedCoefficients& fit, MappedLandmarks mapped) {
   Triangles triangles = sequence.triangles();
-  clip_ =
-      std::make_shared<const Clip>(Clip{std::move(images), std::move(sequence), std::move(cameras),
-                                        std::move(mapped), std::move(triangles)});
+  clip_ = std::make_shared<const Clip>(Clip{std::move(images), std::move(sequence), fit.cameras,
+                                            fit.depths, std::move(mapped), std::move(triangles)});
 }
 
 Image FitPictures::image(int frame) const {
@@ -23,8 +22,11 @@ Image FitPictures::image(int frame) const {
 FittedView FitPictures::view(int frame) const {
   const MappedLandmarks& mapped = clip_->mapped;
   const Eigen::RowVectorXd points = mapped.points.row(frame);
-  return {project(clip_->cameras[static_cast<std::size_t>(frame)], clip_->sequence.frame(frame)),
-          points.reshaped<Eigen::RowMajor>(points.size() / 2, 2), mapped.vertices};
+  const Eigen::RowVector4d depth =
+      clip_->depths.rows() > 0 ? clip_->depths.row(frame) : Eigen::RowVector4d(0, 0, 0, 1);
+  return {
+      project(clip_->cameras[static_cast<std::size_t>(frame)], clip_->sequence.frame(frame), depth),
+      points.reshaped<Eigen::RowMajor>(points.size() / 2, 2), mapped.vertices};
 }
 
 Image FitPictures::overlay(int frame) const {

@@ -6,6 +6,7 @@
 #include "fitting/affine_camera.h"
 #include "fitting/landmark_mapping.h"
 #include "fitting/overlay.h"
+#include "toolkit/io/fit_file.h"
 #include "toolkit/mesh/mesh_sequence.h"
 #include "toolkit/operations/image_sequence.h"
 
@@ -17,7 +18,7 @@ class FitPictures {
  public:
   /// \pre one image and one camera for each frame of `sequence` and `mapped`
   FitPictures(std::shared_ptr<const ImageSequence> images, MeshSequence sequence,
-              std::vector<AffineCamera> cameras, MappedLandmarks mapped);
+              const FittedCoefficients& fit, MappedLandmarks mapped);
 
   /// A frame's whole image. Throws as ImageSequence::image.
   Image overlay(int frame) const;
@@ -30,6 +31,7 @@ class FitPictures {
     std::shared_ptr<const ImageSequence> images;
     MeshSequence sequence;
     std::vector<AffineCamera> cameras;
+    Eigen::Matrix<double, Eigen::Dynamic, 4> depths;
     MappedLandmarks mapped;
     Triangles triangles;
   };

@@ -9,7 +9,7 @@
 #include <string>
 #include <utility>
 
-#include "fitting/fitted_frame.h"
+#include "fitting/joint_solver.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/product_blocking.h"
 #include "toolkit/mesh/progress.h"
@@ -33,10 +33,37 @@ std::string frame_name(Eigen::Index frame) {
 void check(const FitOptions& options) {
   const auto fail = [](const char* message) { throw std::invalid_argument(message); };
   check_options(options);
+  using Camera = FitOptions::Camera;
+  const bool plain = options.camera == Camera::affine || options.camera == Camera::automatic;
+  if (options.solver == FitOptions::Solver::alternating) {
+    if (!plain) fail("the alternating solver has affine cameras only");
+    if (options.outliers == FitOptions::Outliers::resist) {
+      fail("the alternating solver trusts all landmarks");
+    }
+    if (options.repeated.value_or(0) > 0) {
+      fail("the alternating solver takes frames for independent");
+    }
+  }
+  if ((options.camera == Camera::perspective) != options.focal_length.has_value()) {
+    fail("a perspective camera needs a focal length, and others have none");
+  }
   if (!(options.max_expression > 0)) fail("max_expression must be positive");
   if (options.smoothness > 0 && options.max_expression != 1) {
     fail("smoothness needs expressions of at most 1");
   }
+}
+
+/// The automatic camera of so many frames is chosen here.
+CameraModel camera_of(const FitOptions& options, std::size_t frames) {
+  using Camera = FitOptions::Camera;
+  Camera camera = options.camera;
+  if (camera == Camera::automatic) {
+    const bool clip = options.solver == FitOptions::Solver::joint &&
+                      options.shape == FitOptions::Shape::clip && frames > 1;
+    camera = clip ? Camera::orthographic : Camera::affine;
+  }
+  if (camera == Camera::affine) return {};
+  return {options.stretch, camera == Camera::perspective ? 1 / *options.focal_length : 0};
 }
 
 /// A landmark is seen where both of its coordinates are finite.
@@ -53,28 +80,38 @@ std::vector<FrameFit> results_of(const FittedClip& clip) {
   for (const FittedFrame& frame : clip.frames) {
     FrameFit& fit = fits.emplace_back();
     fit.camera = frame.camera();
+    fit.depth = frame.depth_row();
+    // The image of the origin stays where it is: rows of a perspective camera hold it times the
+    // depth.
+    fit.camera.leftCols<3>() += fit.camera.col(3) * fit.depth.head<3>();
     fit.alpha = frame.alpha();
     fit.beta = frame.beta();
     fit.landmarks = static_cast<int>(frame.image().rows());
     fit.rms = std::sqrt(frame.residual().squaredNorm() / fit.landmarks);
+    const Eigen::VectorXd outline = frame.outline_residual();
+    fit.rms_all = std::sqrt((frame.residual().squaredNorm() + outline.squaredNorm()) /
+                            double(fit.landmarks + outline.size()));
     fit.sigma = frame.sigma();
+    fit.repeated = clip.noise.repeated;
     fit.iterations = clip.iterations;
     fit.energies = clip.energies;
   }
   return fits;
 }
 
-FittedClip solved(std::vector<FittedFrame> frames, const FitOptions& options) {
-  return options.solver == FitOptions::Solver::joint ? fit_jointly(std::move(frames), options)
-                                                     : fit_alternating(std::move(frames), options);
+FittedClip solved(std::vector<FittedFrame> frames, const FitOptions& options,
+                  const ClipOutline& outline = {}) {
+  return options.solver == FitOptions::Solver::joint
+             ? fit_jointly(std::move(frames), options, outline)
+             : fit_alternating(std::move(frames), options);
 }
 
 /// One clip of all frames, or one of each frame, which starts from the one before.
-std::vector<FittedClip> solved_by_shape(std::vector<FittedFrame> frames,
-                                        const FitOptions& options) {
+std::vector<FittedClip> solved_by_shape(std::vector<FittedFrame> frames, const FitOptions& options,
+                                        const ClipOutline& outline) {
   std::vector<FittedClip> clips;
   if (options.shape == FitOptions::Shape::clip) {
-    clips.push_back(solved(std::move(frames), options));
+    clips.push_back(solved(std::move(frames), options, outline));
     return clips;
   }
   FitOptions of_frame = options;
@@ -94,17 +131,22 @@ std::vector<FittedClip> solved_by_shape(std::vector<FittedFrame> frames,
 
 /// Fits of frames that are seen, at their `times`.
 std::vector<FrameFit> fits_of(std::vector<FittedFrame> frames, const FitOptions& options,
-                              const Eigen::VectorXd& times) {
+                              const Eigen::VectorXd& times, const ClipOutline& outline) {
   std::vector<FrameFit> fits;
   std::vector<FittedFrame> rough;
-  for (FittedClip& clip : solved_by_shape(std::move(frames), options)) {
+  for (FittedClip& clip : solved_by_shape(std::move(frames), options, outline)) {
     if (options.smoothness > 0) {
       std::ranges::move(clip.frames, std::back_inserter(rough));
     } else {
       std::ranges::move(results_of(clip), std::back_inserter(fits));
     }
   }
-  return options.smoothness > 0 ? results_of(fit_smoothly(std::move(rough), options, times)) : fits;
+  if (options.smoothness == 0) return fits;
+  const bool jointly =
+      options.solver == FitOptions::Solver::joint && options.shape == FitOptions::Shape::clip;
+  FittedClip smooth = jointly ? smoothed(std::move(rough), options, times)
+                              : fit_smoothly(std::move(rough), options, times);
+  return results_of(smooth);
 }
 
 /// A frame without landmarks at a share of the way between two with some. What is equal in both
@@ -114,7 +156,9 @@ FrameFit unseen_between(const FrameFit& before, const FrameFit& after, double sh
   fit.camera = before.camera + share * (after.camera - before.camera);
   fit.alpha = before.alpha + share * (after.alpha - before.alpha);
   fit.beta = before.beta + share * (after.beta - before.beta);
-  fit.rms = std::numeric_limits<double>::quiet_NaN();
+  fit.depth = before.depth + share * (after.depth - before.depth);
+  fit.rms = fit.rms_all = std::numeric_limits<double>::quiet_NaN();
+  fit.repeated = before.repeated;
   return fit;
 }
 
@@ -144,9 +188,14 @@ using RowsOfSeen = std::map<std::vector<Eigen::Index>, std::shared_ptr<const Lan
 
 struct LandmarkFitter::State {
   std::shared_ptr<const LandmarkRows> rows;
+  std::shared_ptr<const FaceOutline> outline;
 
   FittedFrame frame(const Frames& points, Eigen::Index index, const std::vector<Eigen::Index>& seen,
-                    const FitOptions& options, RowsOfSeen& rows_of_seen) const;
+                    const std::optional<double>& sigma, const CameraModel& camera,
+                    RowsOfSeen& rows_of_seen) const;
+  /// Of the frames with `indices`. Throws std::invalid_argument.
+  ClipOutline on_outline(const Frames& points, Eigen::Index frames,
+                         const std::vector<Eigen::Index>& indices) const;
   FitOptions checked(const Frames& points, const FitOptions& options,
                      const Eigen::VectorXd& times) const;
 };
@@ -173,25 +222,44 @@ FitOptions LandmarkFitter::State::checked(const Frames& points, const FitOptions
 
 FittedFrame LandmarkFitter::State::frame(const Frames& points, Eigen::Index index,
                                          const std::vector<Eigen::Index>& seen,
-                                         const FitOptions& options,
+                                         const std::optional<double>& given_sigma,
+                                         const CameraModel& camera,
                                          RowsOfSeen& rows_of_seen) const {
   ImagePoints image(seen.size(), 2);
   for (std::size_t i = 0; i < seen.size(); ++i) {
     image.row(static_cast<Eigen::Index>(i)) = points.row(index).segment<2>(2 * seen[i]);
   }
   const bool all = image.rows() == rows->mean.rows();
-  const double sigma = options.sigma ? *options.sigma : kRelativeSigma * rms_radius(image);
+  const double sigma = given_sigma ? *given_sigma : kRelativeSigma * rms_radius(image);
   if (!(sigma > 0)) throw MismatchError(frame_name(index) + "all landmarks are at one place");
   std::shared_ptr<const LandmarkRows>& known = rows_of_seen[seen];
   if (!known) known = all ? rows : std::make_shared<const LandmarkRows>(*rows, seen);
   try {
-    return {known, std::move(image), sigma};
+    return {known, std::move(image), sigma, camera};
   } catch (const MismatchError& error) {
     throw MismatchError(frame_name(index) + error.what());
   }
 }
 
-LandmarkFitter::LandmarkFitter(const MorphableModel& model, std::vector<int> vertices) {
+ClipOutline LandmarkFitter::State::on_outline(const Frames& points, Eigen::Index frames,
+                                              const std::vector<Eigen::Index>& indices) const {
+  if (points.size() == 0) return {};
+  if (!outline) throw std::invalid_argument("the fitter was made for no landmarks on the outline");
+  if (points.rows() != frames || points.cols() % 2 != 0) {
+    throw std::invalid_argument("landmarks on the outline are for " +
+                                std::to_string(points.rows()) + " frames, expected " +
+                                std::to_string(frames) + " and x and y of each");
+  }
+  ClipOutline result{outline, {}};
+  for (const Eigen::Index f : indices) {
+    const Eigen::RowVectorXd row = points.row(f);
+    result.landmarks.push_back(row.reshaped<Eigen::RowMajor>(row.size() / 2, 2));
+  }
+  return result;
+}
+
+LandmarkFitter::LandmarkFitter(const MorphableModel& model, std::vector<int> vertices,
+                               Outline outline) {
   for (const int vertex : vertices) {
     if (vertex >= 0 && vertex < model.vertices()) continue;
     throw MismatchError(
@@ -199,7 +267,9 @@ LandmarkFitter::LandmarkFitter(const MorphableModel& model, std::vector<int> ver
         std::to_string(model.vertices() - 1) + "; is the mapping for another model?");
   }
   fix_product_blocking();
-  state_ = std::make_unique<State>(State{std::make_shared<const LandmarkRows>(model, vertices)});
+  state_ = std::make_unique<State>(
+      State{std::make_shared<const LandmarkRows>(model, vertices),
+            outline == Outline::given ? std::make_shared<const FaceOutline>(model) : nullptr});
 }
 
 LandmarkFitter::~LandmarkFitter() = default;
@@ -207,7 +277,8 @@ LandmarkFitter::LandmarkFitter(LandmarkFitter&&) noexcept = default;
 LandmarkFitter& LandmarkFitter::operator=(LandmarkFitter&&) noexcept = default;
 
 std::vector<FrameFit> LandmarkFitter::fit(const Frames& points, const FitOptions& given,
-                                          const Eigen::VectorXd& given_times) const {
+                                          const Eigen::VectorXd& given_times,
+                                          const Frames& outline) const {
   const FitOptions options = state_->checked(points, given, given_times);
   fix_product_blocking();
   const Eigen::Index count = points.rows();
@@ -215,16 +286,24 @@ std::vector<FrameFit> LandmarkFitter::fit(const Frames& points, const FitOptions
                                     ? given_times
                                     : Eigen::VectorXd::LinSpaced(count, 0, double(count - 1));
   std::vector<Eigen::Index> indices;
+  std::vector<std::vector<Eigen::Index>> seen;
+  for (Eigen::Index f = 0; f < count; ++f) {
+    std::vector<Eigen::Index> landmarks = seen_landmarks(points, f);
+    if (landmarks.empty()) continue;
+    indices.push_back(f);
+    seen.push_back(std::move(landmarks));
+  }
+  if (seen.empty()) throw MismatchError("no frame has landmarks");
+  const CameraModel camera = camera_of(options, seen.size());
   std::vector<FittedFrame> frames;
   RowsOfSeen rows_of_seen;
-  for (Eigen::Index f = 0; f < count; ++f) {
-    const std::vector<Eigen::Index> seen = seen_landmarks(points, f);
-    if (seen.empty()) continue;
-    indices.push_back(f);
-    frames.push_back(state_->frame(points, f, seen, options, rows_of_seen));
+  for (std::size_t i = 0; i < seen.size(); ++i) {
+    frames.push_back(
+        state_->frame(points, indices[i], seen[i], options.sigma, camera, rows_of_seen));
   }
-  if (frames.empty()) throw MismatchError("no frame has landmarks");
-  const std::vector<FrameFit> fits = fits_of(std::move(frames), options, times(indices));
+  const ClipOutline on_outline = state_->on_outline(outline, points.rows(), indices);
+  const std::vector<FrameFit> fits =
+      fits_of(std::move(frames), options, times(indices), on_outline);
   return with_unseen(fits, indices, times);
 }
 

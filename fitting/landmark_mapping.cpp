@@ -67,6 +67,20 @@ LandmarkMapping read_list(TextCursor& text) {
   return mapping;
 }
 
+std::vector<Eigen::Index> outline_columns(const LandmarkTrack& track,
+                                          const LandmarkMapping& mapping) {
+  constexpr int kAll = 68, kJaw = 17;
+  std::vector<Eigen::Index> columns;
+  if (track.names != numbered_names(kAll)) return columns;
+  for (Eigen::Index i = 0; i < kJaw; ++i) {
+    const std::string& name = track.names[static_cast<std::size_t>(i)];
+    const bool known =
+        std::ranges::any_of(mapping, [&](const auto& each) { return each.first == name; });
+    if (!known) columns.insert(columns.end(), {2 * i, 2 * i + 1});
+  }
+  return columns;
+}
+
 /// Numbered landmarks are those of a scheme, which has as many as its largest number.
 void check_scheme(const std::string& name, const LandmarkTrack& track) {
   if (track.names != numbered_names(track.names.size())) return;
@@ -134,6 +148,7 @@ MappedLandmarks map_landmarks(const LandmarkTrack& track, const LandmarkMapping&
                         (mapping.empty() ? "" : mapping.front().first) + "'");
   }
   mapped.points = track.points(Eigen::all, columns);
+  mapped.outline = track.points(Eigen::all, outline_columns(track, mapping));
   return mapped;
 }
 

@@ -25,6 +25,9 @@ std::filesystem::path find_landmark_mapping(const std::filesystem::path& model);
 struct MappedLandmarks {
   std::vector<int> vertices;  ///< of the model, one per landmark (n)
   Frames points;              ///< F x 2n, as LandmarkTrack::points
+  /// Those of iBUG's jaw (1 to 17 of 68) that the mapping lacks, which lie on the face's outline: F
+  /// x 2m.
+  Frames outline = {};
 };
 
 /// Takes them in the mapping's order; of MediaPipe's landmarks ("mp0" to "mp477") those at the

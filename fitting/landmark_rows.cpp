@@ -1,5 +1,6 @@
 #include "fitting/landmark_rows.h"
 
+#include <numeric>
 #include <utility>
 
 namespace mimetra {
@@ -75,15 +76,19 @@ Eigen::MatrixXd lower_triangle(const Eigen::VectorXd& packed, Eigen::Index size)
 }
 
 LandmarkRows::LandmarkRows(const MorphableModel& model, const std::vector<int>& vertices)
-    : mean(model.mean()(vertices, Eigen::all)),
+    : landmarks(vertices.size()),
+      mean(model.mean()(vertices, Eigen::all)),
       identities(rows_of(model.identities().displacements, vertices)),
       expressions(rows_of(model.expressions().displacements, vertices)),
-      both(side_by_side(identities.rows(), expressions.rows())) {}
+      both(side_by_side(identities.rows(), expressions.rows())) {
+  std::iota(landmarks.begin(), landmarks.end(), 0);
+}
 
-LandmarkRows::LandmarkRows(const LandmarkRows& all, const std::vector<Eigen::Index>& landmarks)
-    : mean(all.mean(landmarks, Eigen::all)),
-      identities(some_rows(all.identities.rows(), landmarks)),
-      expressions(some_rows(all.expressions.rows(), landmarks)),
+LandmarkRows::LandmarkRows(const LandmarkRows& all, const std::vector<Eigen::Index>& some)
+    : landmarks(some),
+      mean(all.mean(some, Eigen::all)),
+      identities(some_rows(all.identities.rows(), some)),
+      expressions(some_rows(all.expressions.rows(), some)),
       both(side_by_side(identities.rows(), expressions.rows())) {}
 
 }  // namespace mimetra

@@ -40,8 +40,9 @@ Eigen::MatrixXd lower_triangle(const Eigen::VectorXd& packed, Eigen::Index size)
 struct LandmarkRows {
   LandmarkRows(const MorphableModel& model, const std::vector<int>& vertices);
   /// Those of some landmarks only.
-  LandmarkRows(const LandmarkRows& all, const std::vector<Eigen::Index>& landmarks);
+  LandmarkRows(const LandmarkRows& all, const std::vector<Eigen::Index>& some);
 
+  std::vector<Eigen::Index> landmarks;  ///< which of all they are, ascending
   ModelPoints mean;
   BasisRows identities;
   BasisRows expressions;

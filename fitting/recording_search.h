@@ -2,10 +2,10 @@
 
 #include <vector>
 
-#include "fitting/face_images.h"
+#include "fitting/face_finder.h"
 #include "toolkit/operations/image_sequence.h"
 
-/// Internal to face_images.h.
+/// Internal to track_face().
 namespace mimetra {
 
 /// Frames from one that is searched everywhere to the next, a second of most videos. Those between

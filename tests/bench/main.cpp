@@ -24,6 +24,7 @@
 #include "tests/bench/splocs_bench.h"
 #include "tests/bench/subjects.h"
 #include "tests/bench/transfer_bench.h"
+#include "tests/bench/video_bench.h"
 #include "toolkit/pictures/picture.h"
 
 namespace mimetra::bench {
@@ -89,6 +90,11 @@ class Run {
     if (large) measure_long_job(*large);
     const Subject told = large ? first_frames(*large, 300) : first;
     add(fitting_rows(settings()));
+    const std::vector<Row> of_video = video_rows(scratch_.path(), settings());
+    for (const Row& row : of_video) {
+      if (!row.note.empty()) results_.notes.push_back(row.note);
+    }
+    add(of_video);
     add(io_rows(told, scratch_.path(), settings()));
     add(transfer_command_rows(told, components(), mimetra_, scratch_.path(), settings()));
   }

@@ -131,10 +131,10 @@ void add_json(std::vector<BadInput>& all) {
   };
   add("empty", "", 3, {"t.json", "JSON"});
   add("truncated", R"({"points": [[1, 2], [3)", 3, {"t.json", "JSON"});
-  add("other_type", "[1, 2]", 3, {"t.json: /: expected an object"});
+  add("other_type", "[1, 2]", 3, {"t.json: /0: expected a list of points"});
   add("text_for_a_number", R"({"points": [[1, "2"]]})", 3, {"/points/0: expected a finite number"});
-  add("three_coordinates", R"({"points": [[1, 2, 3]]})", 3, {"/points/0: expected [x, y]"});
-  add("other_count", R"({"frames": [{"points": [null]}, {"points": []}]})", 3,
+  add("four_coordinates", R"({"points": [[1, 2, 3, 4]]})", 3, {"/points/0: expected [x, y]"});
+  add("other_count", R"({"frames": [{"points": [null]}, {"points": [null, null]}]})", 3,
       {"/frames/1/points", "expected 1"});
   add("unknown_names", R"({"names": ["a"], "frames": [{"points": [[1, 2]]}]})", 4,
       {"none of the 1 landmarks", "'a'"});
@@ -243,6 +243,18 @@ void add_requests(std::vector<BadInput>& all) {
   add("no_iterations", "t.csv --model head -o o --iterations 0", 2, {"--iterations", "1"});
   add("unknown_solver", "t.csv --model head -o o --solver newton", 2, {"joint", "alternating"});
   add("no_noise", "t.csv --model head -o o --sigma 0", 2, {"--sigma"});
+  add("perspective_from_nowhere", "t.csv --model head -o o --camera perspective", 2,
+      {"--camera", "--focal-length"});
+  add("focal_length_of_another_camera", "t.csv --model head -o o --focal-length 900", 2,
+      {"--focal-length", "--camera perspective"});
+  add("orthographic_and_alternating",
+      "t.csv --model head -o o --solver alternating --camera "
+      "orthographic",
+      2, {"--camera", "--solver joint"});
+  add("resisting_and_alternating", "t.csv --model head -o o --solver alternating --outliers resist",
+      2, {"--outliers", "--solver joint"});
+  add("repeated_and_alternating", "t.csv --model head -o o --solver alternating --repeated 0.5", 2,
+      {"--repeated", "--solver joint"});
   add("frames_beyond", "t.csv --model head -o o --frames 5:", 4, {"2 frames"});
   add("missing_model", "t.csv --model no -o o", 3, {"no: does not exist"});
   add("no_model", "t.csv --model t.csv -o o", 3, {"t.csv: ", "model can be read from .bin"});

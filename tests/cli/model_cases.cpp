@@ -51,7 +51,7 @@ std::vector<BadInput> model_cases() {
       "transfer head --weights take.csv m -o x", 3, {"m: is no model", "neutral"});
   add("without_neutral", remove("neutral.obj"), "transfer head --weights take.csv m -o x", 3,
       {"m: is no model"});
-  add("empty_neutral", write("neutral.obj", ""), "info m", 3, {"neutral.obj", "no faces"});
+  add("empty_neutral", write("neutral.obj", ""), "info m", 3, {"neutral.obj", "is empty"});
   add("truncated", write("expressions/lift.obj", "v 0 0 0\nv 1 0"), "info m", 3, {"lift.obj"});
   add("no_expression_file",
       model([](const fs::path& m) { fs::remove(m / "expressions/lift.obj"); }), "info m", 3,
@@ -115,7 +115,7 @@ std::vector<BadInput> weight_cases() {
       {"\"frames\": 2"});
   add("json_in_a_csv", "[{\"left\": 1}]", 3, {"holds JSON", "call it .json"});
   add("percent", "time,left,right,top\n0,0,50,0\n1,100,20,80\n", 0,
-      {"\"frames\": 2", "look like percent", "divide them by 100"});
+      {"\"frames\": 2", "look like percent", "divided by 100"});
   add("timecode_that_repeats", "Timecode,left\n01:00:00:01,0\n01:00:00:01,1\n", 3,
       {"line 3", "01:00:00:01 is not later"});
   add("no_timecode", "Timecode,left\nlater,0\n", 3, {"line 2", "HH:MM:SS:FF", "'later'"});

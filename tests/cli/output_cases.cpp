@@ -59,12 +59,16 @@ void add_making(std::vector<BadInput>& all, const Making& making) {
       {"locked/" + name, "cannot be written", "Permission denied"}, without_override());
   add("file_instead_of_a_folder", "take.csv/" + name, {}, {"take.csv/" + name, "cannot be written"},
       "");
-  add("existing_output", name, file(name, "mine"), {name, "exists already", "--force"}, "");
-  if (!fs::path(name).has_extension()) {
+  if (fs::path(name).has_extension()) {
+    add("existing_output", name, file(name, "mine"), {name, "exists already", "--force"}, "");
+  } else {
     const auto of_users = [name](const fs::path& folder) {
       fs::create_directory(folder / name);
       std::ofstream(folder / name / "notes.txt") << "mine";
     };
+    add("existing_output", name, of_users, {name, "exists already", "--force"}, "");
+    add("existing_file", name + " --force", file(name, "mine"), {name, "exists and is no folder"},
+        "");
     add("folder_of_others", name + " --force", of_users, {name, "holds 'notes.txt'", "manifest"},
         "");
   }

@@ -145,8 +145,11 @@ TEST_F(Output, ProgressBarIsDrawnOnlyWhenAskedForOffATerminal) {
 
 TEST_F(Output, KeepsInputsThatItsCompanionsWouldReplace) {
   ASSERT_EQ(run("convert head --weights take.csv -o a.npy").code, 0);
-  ASSERT_EQ(run("convert head -o x.topology.ply").code, 0);
-  ASSERT_EQ(run("convert head -o y.rest.ply").code, 0);
+  ASSERT_EQ(run("convert head --weights take.csv -o x.npy").code, 0);
+  ASSERT_EQ(run("convert head -o n.ply").code, 0);
+  std::filesystem::copy_file(folder_ / "n.ply", folder_ / "x.topology.ply",
+                             std::filesystem::copy_options::overwrite_existing);
+  ASSERT_EQ(run("convert head --weights take.csv -o y/").code, 0);
   ASSERT_EQ(run("regions a.npy -k 2 -o r.pvd").code, 0);
   const std::string topology = text_of(folder_ / "x.topology.ply");
   const std::string rest = text_of(folder_ / "y.rest.ply");

@@ -38,7 +38,8 @@ inline void draw_head(const Positions& pose, const Triangles& triangles, const H
     for (int corner = 0; corner < 3; ++corner) normals.row(triangles(t, corner)) += ab.cross(ac);
   }
   const Eigen::RowVector3d light = Eigen::RowVector3d(-0.4, 0.5, 0.77).normalized();
-  const Eigen::VectorXd shade = (normals.rowwise().normalized() * light.transpose()).cwiseMax(0);
+  normals.rowwise().normalize();
+  const Eigen::VectorXd shade = (normals * light.transpose()).cwiseMax(0);
   std::vector<double> depth(image.pixels.size(), -std::numeric_limits<double>::infinity());
   for (Eigen::Index t = 0; t < triangles.rows(); ++t) {
     Eigen::Matrix<double, 3, 2> corner;

@@ -77,6 +77,15 @@ TEST_F(FolderOfFrames, TakesAllFilesWhereMostAreOfNoSeries) {
   EXPECT_THAT(series().notes, IsEmpty());
 }
 
+TEST_F(FolderOfFrames, RefusesTwoTakesAndNamesAPatternForEach) {
+  write_frames({1, 2, 3});
+  for (const char* name : {"g_1.obj", "g_2.obj", "g_3.obj"}) write(name);
+  EXPECT_THAT(refusal(), AllOf(HasSubstr("holds several takes, 3 files f_*.obj, 3 files g_*.obj"),
+                               HasSubstr("/f_*.obj'"), HasSubstr("/g_*.obj'")));
+  EXPECT_EQ(frames_of_pattern((folder_ / "g_*.obj").string()).frames.size(), 3u);
+  EXPECT_EQ(frames_of_pattern((folder_ / "*.obj").string()).frames.size(), 6u);
+}
+
 TEST_F(FolderOfFrames, NamesMissingNumbers) {
   write_frames({0, 1, 3, 4, 8});
   EXPECT_THAT(series().notes, ElementsAre(HasSubstr("no file has these numbers: 2, 5 to 7")));

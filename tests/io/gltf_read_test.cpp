@@ -1,3 +1,4 @@
+#include <cmath>
 #include <cstdint>
 
 #include <gmock/gmock.h>
@@ -44,6 +45,12 @@ TEST_F(GltfFiles, TargetsWithoutNamesAreNumbered) {
   EXPECT_THAT(model(gltf.glb()).expressions().names, ElementsAre("target_000"));
 }
 
+TEST_F(GltfFiles, WhoseMeshesNoNodeShowsSaySo) {
+  GltfBuilder gltf = plain();
+  for (auto& node : gltf.root["nodes"]) node.erase("mesh");
+  EXPECT_THAT(error(gltf.glb()), HasSubstr("has meshes, and no node of its scene shows one"));
+}
+
 TEST_F(GltfFiles, WithoutAnAnimationASequenceIsTheNeutral) {
   const MeshSequence sequence = read(plain().glb());
   EXPECT_EQ(sequence.frames(), 1);
@@ -77,7 +84,31 @@ TEST_F(GltfFiles, StepsAndSplinesHaveTheirValuesAtTheirKeys) {
   GltfBuilder steps = plain(), splines = plain();
   steps.animate(0, {0, 1}, {0.25, 0.5}, "STEP");
   splines.animate(0, {0, 1}, {9, 0.25, 8, 7, 0.5, 6}, "CUBICSPLINE");
-  EXPECT_EQ(read(splines.glb()).positions(), read(steps.glb()).positions());
+  const MeshSequence stepped = read(steps.glb()), splined = read(splines.glb());
+  ASSERT_EQ(stepped.frames(), 2);
+  EXPECT_EQ(splined.frame(0), stepped.frame(0));
+  EXPECT_EQ(splined.frame(splined.frames() - 1), stepped.frame(1));
+}
+
+TEST_F(GltfFiles, SplinesAreShownBetweenTheirKeys) {
+  // The spline of w(t) = t^3 through 0 and 2, whose slopes are 3 t^2; and keys as close as frames.
+  GltfBuilder gltf = plain();
+  gltf.animate(0, {0, 2, 2 + 1.f / 30}, {0, 0, 0, 12, 8, 0, 0, 8, 0}, "CUBICSPLINE");
+  const MeshSequence sequence = read(gltf.glb());
+  ASSERT_EQ(sequence.frames(), 62);
+  for (int f = 0; f <= 60; ++f) {
+    const double time = f / 30.;
+    ASSERT_NEAR(sequence.times()[f], time, 1e-12);
+    ASSERT_LT((sequence.frame(f) - quarters() - std::pow(time, 3) * moved()).cwiseAbs().maxCoeff(),
+              1e-5)
+        << "frame " << f;
+  }
+}
+
+TEST_F(GltfFiles, SplinesThatLastForDaysAreRefused) {
+  GltfBuilder gltf = plain();
+  gltf.animate(0, {0, 1e6}, {0, 0, 0, 0, 1, 0}, "CUBICSPLINE");
+  EXPECT_THAT(error(gltf.glb()), HasSubstr("on splines lasts 1000000 s"));
 }
 
 TEST_F(GltfFiles, WeightsThatStayShowInOneFrame) {

@@ -187,6 +187,21 @@ TEST_F(NpzFiles, ClaimsOfAHugeSizeAreRefusedBeforeMemoryIsAskedFor) {
   }
 }
 
+TEST_F(NpzFiles, AreRefusedByTheBeginningOfAMemberBeforeAllOfItIsDecoded) {
+  // Damage behind what the header needs is not seen where the header is wrong already.
+  const std::string noise(std::size_t{1} << 22, 'x');
+  const std::vector<double> zeros(std::size_t{1} << 19, 0);
+  for (const std::string& content : {noise, npy("<f8", "7, 4, 3", zeros)}) {
+    write({{"positions.npy", content}, faces_}, true);
+    std::string bytes = read_file(folder_ / "a.npz");
+    bytes[bytes.find("PK\3\4", 4) - 4] ^= 0x55;  // at the end of the first member's bytes
+    write_bytes(folder_ / "a.npz", bytes);
+    EXPECT_THAT(
+        message_of<IoError>([this] { read(); }),
+        testing::AnyOf(HasSubstr("is no NumPy array"), HasSubstr("bytes follow the values")));
+  }
+}
+
 TEST_F(NpzFiles, MayHoldAMemberWithoutBytes) {
   EXPECT_THAT(error({positions_, {"faces.npy", ""}}), HasSubstr("a.npz: faces"));
 }

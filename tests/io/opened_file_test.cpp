@@ -15,6 +15,7 @@
 #include "toolkit/io/mesh_file.h"
 #include "toolkit/io/model_file.h"
 #include "toolkit/io/sequence_file.h"
+#include "toolkit/io/weight_file.h"
 #include "toolkit/io/whole_file.h"
 #include "toolkit/mesh/errors.h"
 
@@ -24,6 +25,28 @@ namespace {
 using test::message_of;
 using test::TemporaryFolder;
 using testing::HasSubstr;
+
+TEST(OpenedFile, OfAnotherContentThanItsNameSaysIsNamed) {
+  const TemporaryFolder folder;
+  const auto error = [&folder](const std::string& name, const std::string& content) {
+    write_bytes(folder / name, content);
+    return message_of<IoError>([&] { read_sequence((folder / name).string()); });
+  };
+  const std::string pointer =
+      "version https://git-lfs.github.com/spec/v1\noid sha256:4d7a\nsize 12345\n";
+  for (const char* name : {"a.obj", "a.npy", "a.npz", "a.glb", "a.stl"}) {
+    EXPECT_THAT(error(name, pointer), HasSubstr("'git lfs pull' fetches it")) << name;
+  }
+  for (const char* name : {"b.obj", "b.ply", "b.off", "b.stl"}) {
+    EXPECT_THAT(error(name, ""), HasSubstr("is empty, expected a mesh")) << name;
+  }
+  for (const char* name : {"c.obj", "c.ply", "c.off", "c.usda"}) {
+    EXPECT_THAT(error(name, std::string("\xFF\xFEv\0 \0", 6)), HasSubstr("is text in UTF-16"))
+        << name;
+  }
+  write_bytes(folder / "w.json", std::string("\xFE\xFF\0{", 4));
+  EXPECT_THAT(message_of<IoError>([&] { read_weights(folder / "w.json"); }), HasSubstr("UTF-16"));
+}
 
 /// A pipe, named as bash names `<(command)`.
 class Pipe {

@@ -9,6 +9,7 @@
 #include "toolkit/io/mesh_file.h"
 #include "toolkit/io/whole_file.h"
 #include "toolkit/mesh/errors.h"
+#include "toolkit/model/animation.h"
 
 namespace mimetra {
 namespace {
@@ -392,6 +393,26 @@ TEST_F(SmallModel, WithoutWeightsIsItsNeutral) {
   EXPECT_TRUE(read.sequence.rest_is_known());
   ASSERT_EQ(read.sequence.frames(), 1);
   EXPECT_EQ(read.sequence.frame(0), read_mesh(folder_ / "m/neutral.obj").positions);
+}
+
+TEST_F(SmallModel, KeepsItsExpressionsWhereItIsWrittenAlsoInOtherUnits) {
+  write_bytes(folder_ / "w.csv", "time,jawOpen,pout\n0,0,0\n0.5,0.25,0.5\n");
+  for (const char* name : {"a.glb", "a.usda"}) {
+    for (const bool driven : {false, true}) {
+      SequenceSource source;
+      if (driven) source.weights = folder_ / "w.csv";
+      const auto given = open_sequence(text(), source).frames;
+      const UnitChange change{.scale = 0.5, .up = UpTurn::y_to_z};
+      write_sequence(*in_units(given, change), folder_ / name, {.overwrite = true});
+      const auto found = open_sequence((folder_ / name).string()).frames;
+      EXPECT_THAT(dynamic_cast<const Animation&>(*found).model().expressions().names,
+                  ElementsAre("jawOpen", "pout"));
+      const auto frames = with_units(given, change);
+      ASSERT_EQ(found->frames(), given->frames());
+      EXPECT_EQ(found->read(0, found->frames()), frames->read(0, frames->frames()));
+      EXPECT_EQ(found->rest(), frames->rest());
+    }
+  }
 }
 
 TEST_F(SmallModel, IsDrivenByWeightsWithTheirTimes) {

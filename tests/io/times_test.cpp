@@ -116,6 +116,53 @@ TEST_F(TimesBeside, AreFoundForAPatternOfTheFolder) {
   ASSERT_EQ(read("take/frame_000?.ply").times(), kTimes);
 }
 
+MeshSequence with_a_rest(const Eigen::VectorXd& times) {
+  const MeshSequence frames = four_frames(times);
+  return {frames.shared_connectivity(), frames.positions(), times,
+          Positions(frames.rest().array() - 1)};
+}
+
+TEST_F(TimesBeside, AreFoundWithTheRestPoseWhereAFolderIsNamedByADot) {
+  write_sequence(with_a_rest(kTimes), folder_ / "take");
+  const fs::path before = fs::current_path();
+  fs::create_directory(folder_ / "take/inside");
+  fs::current_path(folder_ / "take");
+  const MeshSequence here = read_sequence(".").sequence;
+  fs::current_path(folder_ / "take/inside");
+  const MeshSequence above = read_sequence("../").sequence;
+  fs::current_path(before);
+  for (const MeshSequence& read : {here, above}) {
+    EXPECT_EQ(read.times(), kTimes);
+    EXPECT_TRUE(read.rest_is_known());
+  }
+}
+
+TEST_F(TimesBeside, AreFoundWithRestPoseAndFacesThroughLinks) {
+  write_sequence(with_a_rest(kTimes), folder_ / "take_1");
+  write_sequence(with_a_rest(kTimes), folder_ / "other.npy");
+  fs::create_symlink("take_1", folder_ / "current");
+  fs::create_symlink("other.npy", folder_ / "current.npy");
+  for (const char* name : {"current", "current/", "current/*.ply", "current.npy"}) {
+    const MeshSequence read = this->read(name);
+    EXPECT_EQ(read.times(), kTimes) << name;
+    EXPECT_TRUE(read.rest_is_known()) << name;
+  }
+}
+
+TEST_F(TimesBeside, AndTheRestPoseAreThoseOfAPatternToo) {
+  write_sequence(with_a_rest(kTimes), folder_ / "take");
+  EXPECT_EQ(read("take/*.ply").rest(), with_a_rest(kTimes).rest());
+  EXPECT_FALSE(read("take/*2.ply").rest_is_known());  // one mesh
+  // A file that is no frame of the folder is one of the pattern: what of the rest is nobody says.
+  fs::copy_file(folder_ / "take/frame_0001.ply", folder_ / "take/smile.ply");
+  EXPECT_EQ(read("take").times(), kTimes);
+  EXPECT_EQ(read("take/frame_*.ply").times(), kTimes);
+  const SequenceRead all = read_sequence((folder_ / "take/*.ply").string());
+  EXPECT_EQ(all.sequence.frames(), 5);
+  EXPECT_FALSE(all.sequence.times_are_known());
+  EXPECT_THAT(all.notes, testing::Contains(HasSubstr("smile.ply is none of its 4 frames")));
+}
+
 TEST_F(TimesBeside, OfAnotherNumberOfFramesAreRefused) {
   write_sequence(four_frames(kTimes), folder_ / "take");
   write_times("time\n0\n1\n2\n");

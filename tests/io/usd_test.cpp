@@ -12,6 +12,7 @@
 #include "toolkit/io/sequence_file.h"
 #include "toolkit/io/whole_file.h"
 #include "toolkit/mesh/errors.h"
+#include "toolkit/mesh/unit_change.h"
 #include "toolkit/model/animation.h"
 
 namespace mimetra {
@@ -379,6 +380,21 @@ TEST_F(UsdFiles, AModelAndItsWeightsComeBackAsSuch) {
   EXPECT_LT((found.weights() - weights).cwiseAbs().maxCoeff(), kRounded);
   EXPECT_EQ(found.times(), given.times());
   EXPECT_LT((found.read(0, 3) - given.read(0, 3)).cwiseAbs().maxCoeff(), kRounded);
+}
+
+TEST_F(UsdFiles, WhatIsUpIsSaid) {
+  for (const bool turned : {false, true}) {
+    const auto grid = std::make_shared<const MeshSequence>(turning_grid(2));
+    const UpTurn up = turned ? UpTurn::y_to_z : UpTurn::keep;
+    write_sequence(*with_units(grid, {.up = up}), file_, {.overwrite = true});
+    EXPECT_THAT(read_file(file_), HasSubstr(turned ? "upAxis = \"Z\"" : "upAxis = \"Y\""));
+    const std::vector<std::string> notes = open_sequence(file_.string()).notes;
+    if (turned) {
+      EXPECT_THAT(notes, ElementsAre(HasSubstr("its up axis is z; convert with option 'up'")));
+    } else {
+      EXPECT_TRUE(notes.empty());
+    }
+  }
 }
 
 TEST_F(UsdFiles, PosesFarFromTheOriginAreRefused) {

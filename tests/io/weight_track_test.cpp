@@ -134,13 +134,31 @@ TEST_F(Weights, WithTimecodesThatRepeatOrFallBackNameTheLine) {
 }
 
 TEST_F(Weights, ThatLookLikePercentOrAreFarOffAreNoted) {
-  EXPECT_THAT(read("jawOpen,smile\n0,55\n87,12\n").notes,
-              ElementsAre(testing::AllOf(HasSubstr("look like percent"), HasSubstr("87"))));
+  const WeightTrack percent = read("jawOpen,smile\n0,55\n87,12\n");
+  EXPECT_THAT(percent.notes, ElementsAre(testing::AllOf(HasSubstr("look like percent"),
+                                                        HasSubstr("87"), HasSubstr("divided"))));
+  EXPECT_EQ(percent.weights, (Eigen::Matrix2d() << 0, 0.55, 0.87, 0.12).finished());
+  const WeightTrack unclear = read("jawOpen,smile\n0,5\n8,1\n");
+  EXPECT_THAT(unclear.notes, ElementsAre(HasSubstr("taken as they are")));
+  EXPECT_EQ(unclear.weights(1, 0), 8);
   std::string mostly_usual = "jawOpen,smile\n0.5,0\n99,0\n";
   for (int row = 0; row < 50; ++row) mostly_usual += "0.25,1\n";
   EXPECT_THAT(read(mostly_usual).notes,
               ElementsAre("the weight of 'jawOpen' is 99 in frame 1, expected 0 to 1"));
   EXPECT_THAT(read("a\n1.5\n-1\n").notes, testing::IsEmpty());
+}
+
+TEST_F(Weights, HaveSecondsUnderSeveralNames) {
+  for (const char* name : {"time", "Time (s)", "time_s", "Seconds"}) {
+    const WeightTrack track = read(name + std::string(",smile\n0,0.25\n0.5,1\n"));
+    EXPECT_THAT(track.names, ElementsAre("smile")) << name;
+    EXPECT_EQ(track.times, Eigen::Vector2d(0, 0.5)) << name;
+  }
+  EXPECT_THAT(message_of("time,seconds,a\n0,0,0\n"), HasSubstr("two columns of times"));
+  const WeightTrack stamped = read("Timestamp,smile\n1234,0.25\n1238,1\n");
+  EXPECT_THAT(stamped.names, ElementsAre("smile"));
+  EXPECT_EQ(stamped.times.size(), 0);
+  EXPECT_THAT(stamped.notes, ElementsAre(HasSubstr("'Timestamp' is not used")));
 }
 
 class WeightsJson : public Weights {
@@ -159,6 +177,7 @@ TEST_F(WeightsJson, OfEveryShapeAreTheSame) {
       const char* text :
       {R"({"rows": [{"time": 0, "smile": 0.25, "blink": 0}, {"time": 0.5, "blink": 1, "smile": 1}]})",
        R"([{"time": 0, "smile": 0.25, "blink": 0}, {"time": 0.5, "smile": 1, "blink": 1}])",
+       R"({"fps": 2, "rows": [{"smile": 0.25, "blink": 0}, {"smile": 1, "blink": 1}]})",
        R"([{"time": 0, "weights": {"smile": 0.25, "blink": 0}},
             {"time": 0.5, "weights": {"smile": 1, "blink": 1}}])",
        R"({"names": ["smile", "blink"], "weights": [[0.25, 0], [1, 1]], "times": [0, 0.5]})",
@@ -174,6 +193,16 @@ TEST_F(WeightsJson, OfEveryShapeAreTheSame) {
 
 TEST_F(WeightsJson, WithoutTimesHaveNone) {
   EXPECT_EQ(read(R"([{"smile": 0.25}, {"smile": 1}])").times.size(), 0);
+}
+
+TEST_F(WeightsJson, DoNotUseATimestampAndSaySo) {
+  const WeightTrack track = read(R"([{"timestamp": 7, "a": 0}, {"timestamp": 9, "a": 1}])");
+  EXPECT_THAT(track.names, ElementsAre("a"));
+  EXPECT_THAT(track.notes, ElementsAre(HasSubstr("'timestamp' is not used")));
+}
+
+TEST_F(WeightsJson, InPercentAreDividedBy100) {
+  EXPECT_EQ(read(R"([{"a": 50}, {"a": 100}])").weights, Eigen::Vector2d(0.5, 1));
 }
 
 TEST_F(WeightsJson, OfAFitAreItsExpressions) {
@@ -223,7 +252,7 @@ TEST_F(Weights, ErrorsNameLineColumnAndWhatWasFound) {
   EXPECT_THAT(message_of("a,b\n0,5,1\n"), HasSubstr("decimal commas"));
   EXPECT_THAT(message_of("a;b\n0;1\n"), HasSubstr("separated by ';', expected ','"));
   EXPECT_THAT(message_of("a,a\n0,0\n"), HasSubstr("the name 'a' occurs twice"));
-  EXPECT_THAT(message_of("time,Time,a\n"), HasSubstr("the name 'time' occurs twice"));
+  EXPECT_THAT(message_of("time,Time,a\n"), HasSubstr("two columns of times"));
   EXPECT_THAT(message_of("a,\n0,0\n"), HasSubstr("column 2 has no name"));
   EXPECT_THAT(message_of("time\n0\n"), HasSubstr("no column of weights"));
   EXPECT_THAT(message_of("time,a\n1,0\n1,0\n"), HasSubstr("line 3: times do not ascend"));

@@ -9,9 +9,11 @@
 namespace mimetra {
 namespace {
 
+using testing::Contains;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::Not;
 
 /// Two quads of two groups and materials, numbered backwards, and a frame in which they have moved.
 /// The texture has a seam where it is asked for.
@@ -54,6 +56,20 @@ TEST(Losses, OfAFolderAreThoseOfItsFiles) {
   EXPECT_THAT(notes_on(quads(true), "take/", "obj"), IsEmpty());
   EXPECT_THAT(notes_on(quads(true), "take/", "off"), ElementsAre(HasSubstr("texture")));
   EXPECT_THAT(notes_on(quads(true), "take/"), ElementsAre(HasSubstr("no groups or materials;")));
+}
+
+TEST(Losses, OfTimesAreNamedWhereSinglePrecisionMovesFrames) {
+  const FieldSequence given = quads(false);
+  const MeshSequence& frames = given.sequence();
+  const auto at = [&](double start) {
+    return FieldSequence(MeshSequence(frames.shared_connectivity(), frames.positions(),
+                                      Eigen::Vector2d(start, start + 0.02), frames.rest()));
+  };
+  for (const char* target : {"take.mdd", "take.glb", "take.gltf"}) {
+    EXPECT_THAT(notes_on(at(40000.1), target), Contains(HasSubstr("exact times (rounded by")));
+    EXPECT_THAT(notes_on(at(0.1), target), Not(Contains(HasSubstr("exact times"))));
+  }
+  EXPECT_THAT(notes_on(at(40000.1), "take.npz"), Not(Contains(HasSubstr("exact times"))));
 }
 
 TEST(Losses, AreNoneWhereTheOnlyFrameIsTheRestPoseAndNumbersAreKept) {

@@ -12,10 +12,6 @@ namespace mimetra {
 namespace fs = std::filesystem;
 namespace {
 
-Eigen::Map<const Eigen::RowVectorXd> as_row(const Positions& positions) {
-  return {positions.data(), positions.size()};
-}
-
 std::vector<std::string> match_notes(const fs::path& weights, const fs::path& model,
                                      const WeightMatch& match) {
   std::vector<std::string> notes;
@@ -30,11 +26,12 @@ std::vector<std::string> match_notes(const fs::path& weights, const fs::path& mo
   return notes;
 }
 
-std::shared_ptr<const FrameSource> resting(const BlendshapeModel& person,
+/// One frame with all weights at 0.
+std::shared_ptr<const FrameSource> resting(std::shared_ptr<const BlendshapeModel> model,
                                            const SequenceSource& source) {
   selected_frames(source.frames, 1);
-  return std::make_shared<const MeshSequence>(
-      person.shared_connectivity(), as_row(person.neutral()), Eigen::VectorXd(), person.neutral());
+  const int expressions = model->expressions().size();
+  return std::make_shared<const Animation>(std::move(model), Eigen::MatrixXd::Zero(1, expressions));
 }
 
 Eigen::MatrixXd weights_of(const fs::path& path, const WeightTrack& track,
@@ -53,7 +50,7 @@ OpenSequence drive(std::shared_ptr<const BlendshapeModel> model, const fs::path&
   if (source.weights) {
     return drive(std::move(model), path, source, *source.weights, read_weights(*source.weights));
   }
-  return {resting(*model, source), true, {path}, {}};
+  return {resting(std::move(model), source), true, {path}, {}};
 }
 
 OpenSequence drive(std::shared_ptr<const BlendshapeModel> model, const fs::path& path,

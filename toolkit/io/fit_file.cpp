@@ -110,7 +110,14 @@ class FitReader {
     fit_.alpha.row(f) = row(member(frame, "alpha", place), fit_.alpha.cols(), place + "/alpha");
     fit_.beta.row(f) = row(member(frame, "beta", place), fit_.beta.cols(), place + "/beta");
     const Json& camera = member(frame, "camera", place);
-    if (!camera.is_array() || camera.size() != 2) fail(place + "/camera", "expected two rows");
+    if (!camera.is_array() || (camera.size() != 2 && camera.size() != 3)) {
+      fail(place + "/camera", "expected two rows, or three of a perspective camera");
+    }
+    if (f == 0 && camera.size() == 3) fit_.depths.resize(fit_.alpha.rows(), 4);
+    if ((camera.size() == 3) != (fit_.depths.rows() > 0)) {
+      fail(place + "/camera", "expected as many rows as in the first frame");
+    }
+    if (camera.size() == 3) fit_.depths.row(f) = row(camera[2], 4, place + "/camera/2");
     for (int i = 0; i < 2; ++i) {
       fit_.cameras[static_cast<std::size_t>(f)].row(i) =
           row(camera[static_cast<std::size_t>(i)], 4, place + "/camera/" + std::to_string(i));
@@ -149,6 +156,10 @@ std::string fit_json(const FittedCoefficients& fit) {
                   {"alpha", numbers_of(fit.alpha.row(f))},
                   {"beta", numbers_of(fit.beta.row(f))},
                   {"camera", {numbers_of(camera.row(0)), numbers_of(camera.row(1))}}};
+    if (fit.depths.rows() > 0) frame["camera"].push_back(numbers_of(fit.depths.row(f)));
+    if (fit.rms_all.size() > 0 && !std::isnan(fit.rms_all[f])) {
+      frame["rms_px_all"] = fit.rms_all[f];
+    }
     if (f < static_cast<int>(fit.notes.size()) && !fit.notes[static_cast<std::size_t>(f)].empty()) {
       frame["note"] = fit.notes[static_cast<std::size_t>(f)];
     }

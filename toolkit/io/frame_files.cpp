@@ -176,6 +176,12 @@ std::string no_match(const std::string& pattern) {
          (path.has_parent_path() ? (path.parent_path() / fitting).string() : fitting) + "'";
 }
 
+/// Without a slash at its end, so that the folder that it stands in is its parent.
+fs::path normal_absolute(const fs::path& path) {
+  const fs::path normal = fs::absolute(path).lexically_normal();
+  return normal.has_filename() ? normal : normal.parent_path();
+}
+
 struct FrameRange {
   std::optional<int> first;
   std::optional<int> last;
@@ -238,7 +244,17 @@ FrameSeries frames_of_folder(const fs::path& folder) {
   FrameSeries found = series_in_folder(
       mesh_files(files_in(folder), name, "holds no OBJ, PLY, OFF or STL file"), folder);
   check_one_format(found.frames, name, "holds");
+  check_one_series(found.frames, folder);
   return found;
+}
+
+std::vector<fs::path> frames_of_format(const fs::path& folder, const std::string& extension) {
+  std::vector<fs::path> files = files_in(folder);
+  std::erase_if(files, [&](const fs::path& file) {
+    return lower_extension(file) != lower_case(extension) || is_companion(file, folder.string());
+  });
+  sort_naturally(files);
+  return frames_among(std::move(files)).frames;
 }
 
 std::vector<int> selected_frames(const std::optional<std::string>& range, int frames) {
@@ -263,9 +279,17 @@ std::optional<int> end_of_frames(const std::optional<std::string>& range) {
 fs::path beside(const fs::path& sequence, const std::string& suffix) {
   fs::path name = sequence.lexically_normal();
   if (!name.has_filename()) name = name.parent_path();
+  if (name.filename() == "." || name.filename() == "..") name = normal_absolute(name);
   const SequenceFormat* format = sequence_format(name);
   if (format && format->has_companions) name.replace_extension();
   return name += suffix;
+}
+
+fs::path name_with(const fs::path& sequence, const std::string& suffix) {
+  std::error_code missing;
+  if (fs::exists(beside(sequence, suffix), missing)) return sequence;
+  const fs::path led_to = fs::canonical(sequence, missing);
+  return !missing && fs::exists(beside(led_to, suffix), missing) ? led_to : sequence;
 }
 
 std::string frame_name(int frame, int frames, const std::string& extension) {

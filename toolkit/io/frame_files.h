@@ -30,8 +30,13 @@ FrameSeries frames_of_pattern(const std::string& pattern);
 
 /// The mesh files of a folder, hidden ones and those that belong to other sequences left out, in
 /// natural order; `neutral.*` and strangers to the numbered ones are no frames. Throws as
-/// frames_of_pattern.
+/// frames_of_pattern, and where they are of several numbered series and mainly of none.
 FrameSeries frames_of_folder(const std::filesystem::path& folder);
+
+/// Those that it would have if it held files of this extension only, whatever is odd about them;
+/// maybe none.
+std::vector<std::filesystem::path> frames_of_format(const std::filesystem::path& folder,
+                                                    const std::string& extension);
 
 /// Indices of the frames that `range` ("A:B:STEP") takes of `frames`; all without one. Throws
 /// std::invalid_argument for what is not a range, MismatchError for one beyond the last frame.
@@ -44,7 +49,12 @@ std::optional<int> end_of_frames(const std::optional<std::string>& range);
 /// "frame_0007.ply" for frame 7 of up to 10000, more digits where four do not suffice.
 std::string frame_name(int frame, int frames, const std::string& extension);
 
-/// `folder/NAME` + suffix for `folder/NAME`, `folder/NAME/` and `folder/NAME.npy`.
+/// `folder/NAME` + suffix for `folder/NAME`, `folder/NAME/` and `folder/NAME.npy`; for `.` and `..`
+/// what these stand for.
 std::filesystem::path beside(const std::filesystem::path& sequence, const std::string& suffix);
+
+/// The name of `sequence` beside which a file with the suffix stands: where nothing stands beside a
+/// link, what it leads to; the given name where neither has one.
+std::filesystem::path name_with(const std::filesystem::path& sequence, const std::string& suffix);
 
 }  // namespace mimetra

@@ -1,6 +1,7 @@
 #include "toolkit/io/frame_sequence.h"
 
 #include <algorithm>
+#include <map>
 #include <optional>
 #include <span>
 
@@ -45,31 +46,55 @@ class FrameFiles : public FrameSource {
   std::vector<fs::path> files_;
 };
 
-/// The frames of the folder that a pattern takes some of; none for files of several folders.
-std::vector<fs::path> all_beside(const std::vector<fs::path>& files, const fs::path& home) {
+/// What stands beside the folder of a sequence's files.
+struct KnownBeside {
+  std::optional<Eigen::VectorXd> times = {};  ///< of the files
+  std::optional<Positions> rest = {};
+};
+
+KnownBeside known_beside(const fs::path& folder, int frames, const MeshFileReader& reader,
+                         std::vector<fs::path>& read) {
+  KnownBeside known;
+  known.times = times_beside(name_with(folder, kTimesSuffix), frames, read);
+  known.rest = rest_beside(name_with(folder, kRestSuffix), reader, read);
+  return known;
+}
+
+bool has_companion(const fs::path& folder) {
+  return fs::exists(beside(name_with(folder, kTimesSuffix), kTimesSuffix)) ||
+         fs::exists(beside(name_with(folder, kRestSuffix), kRestSuffix));
+}
+
+/// What stands beside the folder that a pattern takes several frames of; nothing, with a note, for
+/// other files of the folder. One mesh is no part of a sequence.
+KnownBeside known_of_folder(const std::vector<fs::path>& files, const MeshFileReader& reader,
+                            OpenSequence& open) {
+  const fs::path home = fs::absolute(files.front()).lexically_normal().parent_path();
   const auto is_elsewhere = [&home](const fs::path& file) {
     return fs::absolute(file).lexically_normal().parent_path() != home;
   };
-  if (std::ranges::any_of(files, is_elsewhere)) return {};
-  return frames_of_pattern((home / "*").string() + files.front().extension().string()).frames;
-}
-
-/// Those of a folder, also where a pattern takes some of its frames.
-std::optional<Eigen::VectorXd> known_times(const std::vector<fs::path>& files,
-                                           const fs::path& folder, std::vector<fs::path>& read) {
-  if (!folder.empty()) return times_beside(folder, static_cast<int>(files.size()), read);
-  const fs::path home = fs::absolute(files.front()).lexically_normal().parent_path();
-  if (files.size() < 2 || !fs::exists(beside(home, kTimesSuffix))) return std::nullopt;
-  const std::vector<fs::path> all = all_beside(files, home);
-  if (all.empty()) return std::nullopt;
-  const auto of_all = times_beside(home, static_cast<int>(all.size()), read);
-  Eigen::VectorXd times(static_cast<Eigen::Index>(files.size()));
-  for (std::size_t i = 0; i < files.size(); ++i) {
-    const auto found = std::ranges::find(all, files[i].filename(), &fs::path::filename);
-    if (found == all.end()) return std::nullopt;
-    times[static_cast<Eigen::Index>(i)] = (*of_all)[found - all.begin()];
+  if (files.size() < 2 || !has_companion(home) || std::ranges::any_of(files, is_elsewhere)) {
+    return {};
   }
-  return times;
+  const std::vector<fs::path> all = frames_of_format(home, files.front().extension().string());
+  std::map<std::string, Eigen::Index> place_of;
+  for (const fs::path& file : all) {
+    place_of.emplace(file.filename().string(), static_cast<Eigen::Index>(place_of.size()));
+  }
+  std::vector<Eigen::Index> places;
+  for (const fs::path& file : files) {
+    if (const auto found = place_of.find(file.filename().string()); found != place_of.end()) {
+      places.push_back(found->second);
+      continue;
+    }
+    open.notes.push_back(home.string() + ": times and rest pose beside it are not used: " +
+                         file.filename().string() + " is none of its " +
+                         std::to_string(all.size()) + " frames");
+    return {};
+  }
+  KnownBeside known = known_beside(home, static_cast<int>(all.size()), reader, open.files);
+  if (known.times) known.times = Eigen::VectorXd((*known.times)(places));
+  return known;
 }
 
 class FolderSink : public FrameSink {
@@ -150,13 +175,14 @@ OpenSequence open_frames(const FrameSeries& series, const fs::path& folder,
   auto reader = std::make_unique<const MeshFileReader>(names_vertices ? frames[0] : files[0]);
   SequenceHeader header;
   header.connectivity = std::make_shared<const Connectivity>(reader->mesh().connectivity);
+  const auto count = static_cast<int>(files.size());
+  auto [known_times, rest] = folder.empty() ? known_of_folder(files, *reader, open)
+                                            : known_beside(folder, count, *reader, open.files);
   const FrameTimes times =
-      frame_times(folder.empty() ? files.front().parent_path().string() : folder.string(),
-                  static_cast<int>(files.size()), known_times(files, folder, open.files), source);
+      frame_times(folder.empty() ? files.front().parent_path().string() : folder.string(), count,
+                  std::move(known_times), source);
   header.times = times.seconds(chosen);
   header.times_are_known = times.are_known;
-  std::optional<Positions> rest;
-  if (!folder.empty()) rest = rest_beside(folder, *reader, open.files);
   if (!rest && series.rest) {
     rest = reader->read(*series.rest);
     open.files.push_back(*series.rest);

@@ -87,13 +87,19 @@ void note_missing(FrameSeries& found, const std::string& name) {
                         "; without times beside them frames follow each other without a pause");
 }
 
+/// Numbered series of more than one file, and how many files each has.
+std::map<std::string, std::size_t> numbered_series(const std::vector<fs::path>& files) {
+  std::map<std::string, std::size_t> sizes;
+  for (const fs::path& file : files) ++sizes[numbered(file).series];
+  std::erase_if(sizes, [](const auto& entry) { return entry.first.empty() || entry.second < 2; });
+  return sizes;
+}
+
 /// The series that more than half of the files are of; empty where there is none, or it is one
 /// file.
 std::string main_series(const std::vector<fs::path>& files) {
-  std::map<std::string, std::size_t> sizes;
-  for (const fs::path& file : files) ++sizes[numbered(file).series];
-  for (const auto& [series, size] : sizes) {
-    if (!series.empty() && size > 1 && 2 * size > files.size()) return series;
+  for (const auto& [series, size] : numbered_series(files)) {
+    if (2 * size > files.size()) return series;
   }
   return {};
 }
@@ -118,9 +124,12 @@ std::vector<fs::path> strangers_in(std::vector<fs::path>& files, const std::stri
   return strangers;
 }
 
-}  // namespace
+struct SplitFiles {
+  FrameSeries series;
+  std::vector<fs::path> strangers;
+};
 
-FrameSeries series_in_folder(std::vector<fs::path> files, const fs::path& folder) {
+SplitFiles split(std::vector<fs::path> files) {
   FrameSeries found;
   const auto is_neutral = [](const fs::path& file) {
     return lower_case(file.stem().string()) == "neutral";
@@ -130,15 +139,25 @@ FrameSeries series_in_folder(std::vector<fs::path> files, const fs::path& folder
     found.rest = *neutral;
     files.erase(neutral);
   }
-  const std::string series = main_series(files);
-  const std::vector<fs::path> strangers = strangers_in(files, series);
-  if (!strangers.empty()) {
-    found.notes.push_back(place_of(folder) + ": " + names_of(strangers) +
-                          (strangers.size() == 1 ? " is" : " are") + " left out of the " +
-                          std::to_string(files.size()) + " frames " + series +
-                          "; name files by a pattern to take them");
-  }
+  std::vector<fs::path> strangers = strangers_in(files, main_series(files));
   found.frames = std::move(files);
+  return {std::move(found), std::move(strangers)};
+}
+
+}  // namespace
+
+FrameSeries frames_among(std::vector<fs::path> files) {
+  return split(std::move(files)).series;
+}
+
+FrameSeries series_in_folder(std::vector<fs::path> files, const fs::path& folder) {
+  auto [found, strangers] = split(std::move(files));
+  if (!strangers.empty()) {
+    found.notes.push_back(
+        place_of(folder) + ": " + names_of(strangers) + (strangers.size() == 1 ? " is" : " are") +
+        " left out of the " + std::to_string(found.frames.size()) + " frames " +
+        numbered(found.frames.front()).series + "; name files by a pattern to take them");
+  }
   if (found.rest) {
     found.notes.push_back(found.rest->string() + ": is taken for the rest pose of the other " +
                           std::to_string(found.frames.size()) +
@@ -148,6 +167,20 @@ FrameSeries series_in_folder(std::vector<fs::path> files, const fs::path& folder
   check_numbers(found.frames);
   note_missing(found, place_of(folder));
   return found;
+}
+
+void check_one_series(const std::vector<fs::path>& files, const fs::path& folder) {
+  const std::map<std::string, std::size_t> all = numbered_series(files);
+  if (all.size() < 2 || !main_series(files).empty()) return;
+  std::vector<std::string> series, patterns;
+  for (const auto& [name, size] : all) {
+    series.push_back(std::to_string(size) + " files " + name);
+    patterns.push_back("'" + place_of(folder) + name + "'");
+  }
+  throw IoError(folder.string(), "holds several takes, " + listed(series, 4) +
+                                     "; name one by a pattern, " + listed(patterns, 4) +
+                                     ", or all by '" + place_of(folder) + '*' +
+                                     files.front().extension().string() + "'");
 }
 
 FrameSeries series_of_pattern(std::vector<fs::path> files, const std::string& pattern) {

@@ -17,11 +17,18 @@ struct FrameSeries {
   std::vector<std::string> notes = {};
 };
 
+/// The frames and the rest pose of series_in_folder, without notes and errors.
+FrameSeries frames_among(std::vector<std::filesystem::path> files);
+
 /// Takes `neutral.*` out of the files of a folder as the rest pose, and files that are not of the
 /// numbered series that most of the files are of. Throws IoError where two frames have one number,
 /// or one is a link that leads nowhere.
 FrameSeries series_in_folder(std::vector<std::filesystem::path> files,
                              const std::filesystem::path& folder);
+
+/// Throws IoError where `files` are of several numbered series and none has more than half of them.
+void check_one_series(const std::vector<std::filesystem::path>& files,
+                      const std::filesystem::path& folder);
 
 /// All `files` are frames. Throws as series_in_folder.
 FrameSeries series_of_pattern(std::vector<std::filesystem::path> files, const std::string& pattern);

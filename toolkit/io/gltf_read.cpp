@@ -101,8 +101,14 @@ class GltfReader {
     check_size();
     read_animations();
     std::vector<ScenePart> parts;
+    bool shows_mesh = false;
     for (const PlacedNode& placed : placed_) {
-      if (document_.nodes[placed.node].mesh) add_parts(placed, parts);
+      if (!document_.nodes[placed.node].mesh) continue;
+      add_parts(placed, parts);
+      shows_mesh = true;
+    }
+    if (!shows_mesh && !document_.meshes.empty()) {
+      throw IoError(document_.path, "has meshes, and no node of its scene shows one");
     }
     note_moved_nodes();
     motion_notes_.swap(notes_);

@@ -47,6 +47,17 @@ void add_lost_texture(std::vector<std::string>& lost, HeldParts::Texture held,
   }
 }
 
+/// The most that single precision changes a time by, in seconds; 0 where no step changes by more
+/// than a thousandth of the shortest.
+double rounding_of(const Eigen::VectorXd& times) {
+  constexpr double kLeastShare = 1e-3;
+  if (times.size() < 2) return 0;
+  const Eigen::Index steps = times.size() - 1;
+  const double step = (times.tail(steps) - times.head(steps)).minCoeff();
+  const double rounded = (times.cast<float>().cast<double>() - times).cwiseAbs().maxCoeff();
+  return rounded > kLeastShare * step ? rounded : 0;
+}
+
 }  // namespace
 
 std::string description(const HeldParts& held) {
@@ -76,6 +87,10 @@ std::vector<std::string> parts_left_out(const HeldParts& held, const FrameSource
     lost.emplace_back("rest pose");
   }
   if (!held.vertex_order && !is_numbered_by_use(sequence)) lost.emplace_back("order of vertices");
+  if (const double rounded = held.exact_times ? 0 : rounding_of(sequence.known_times());
+      rounded > 0) {
+    lost.push_back("exact times (rounded by up to " + readable(rounded) + " s)");
+  }
   return lost;
 }
 

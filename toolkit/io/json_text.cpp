@@ -93,6 +93,7 @@ Json parse_json(const std::string& path, std::string_view text, const std::strin
   const auto fail = [&](const std::string& found) -> Json {
     throw IoError(path, "expected " + expected + ": " + found);
   };
+  check_encoding(path, text);
   if (text.size() > kLongestJson) {
     return fail("is longer than " + std::to_string(kLongestJson >> 20) + " MB");
   }

@@ -78,13 +78,10 @@ std::unique_ptr<FrameSink> begin_mdd(const SequenceHeader& header, const fs::pat
 }  // namespace
 
 SequenceFormat mdd_format() {
-  return {"MDD point cache",
-          {".mdd"},
-          true,
-          SequenceFormat::Precision::single,
-          open_mdd,
-          begin_mdd,
-          parts_held_by(MeshFormat::ply)};
+  HeldParts holds = parts_held_by(MeshFormat::ply);
+  holds.exact_times = false;
+  return {"MDD point cache", {".mdd"},  true, SequenceFormat::Precision::single,
+          open_mdd,          begin_mdd, holds};
 }
 
 }  // namespace mimetra

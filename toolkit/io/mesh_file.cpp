@@ -22,7 +22,9 @@ std::string read_bytes(const fs::path& path) {
   if (!is_mesh_extension(extension)) {
     throw IoError(path.string(), unknown_mesh_extension(extension));
   }
-  return read_file(path);
+  std::string bytes = read_file(path);
+  if (bytes.empty()) throw IoError(path.string(), "is empty, expected a mesh");
+  return bytes;
 }
 
 Positions positions_of(const std::vector<double>& coordinates) {

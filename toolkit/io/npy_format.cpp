@@ -29,19 +29,10 @@ int vertices_of(const fs::path& path, const NpyHeader& header) {
   return counted(path, header.shape[header.shape.size() - 2]);
 }
 
-/// What an array starts with; all of its header but for very long ones.
-std::string beginning_of(const InputBytes& file) {
-  constexpr std::size_t kMost = 1 << 17;
-  std::string bytes(std::min(file.size(), kMost), '\0');
-  file.read(0, bytes.data(), bytes.size());
-  return bytes;
-}
-
 class StoredArray : public StoredPointCache {
  public:
   StoredArray(const fs::path& path, const NpyHeader& header, std::unique_ptr<const InputBytes> file)
       : StoredPointCache(path, std::move(file)) {
-    checked_count(path.string(), file_->size(), header);
     frames_ = frames_of(path, header);
     vertices_ = vertices_of(path, header);
     positions_ = {header.data, header.item_bytes, header.order};
@@ -92,13 +83,10 @@ std::unique_ptr<const PointCache> open_npy_cache(const fs::path& path) {
 
 std::unique_ptr<const PointCache> open_npy_cache(const std::string& name,
                                                  std::unique_ptr<const InputBytes> bytes) {
-  const std::string beginning = beginning_of(*bytes);
-  if (holds_npy_header(beginning)) {
-    const NpyHeader header = read_npy_header(name, beginning);
-    check_frames_header(name, header);
-    if (!header.fortran_order) {
-      return std::make_unique<const StoredArray>(name, header, std::move(bytes));
-    }
+  const NpyHeader header = read_npy_header(name, *bytes);
+  check_frames_header(name, header);
+  if (!header.fortran_order) {
+    return std::make_unique<const StoredArray>(name, header, std::move(bytes));
   }
   std::string all(bytes->size(), '\0');
   bytes->read(0, all.data(), all.size());

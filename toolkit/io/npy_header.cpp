@@ -54,7 +54,8 @@ void parse_type(const std::string& path, std::string_view text, NpyHeader& heade
   const bool known = (bytes == 4 || bytes == 8) || (bytes == 2 && sound && type[1] != 'f') ||
                      (bytes == 1 && sound && type[1] != 'f');
   if (!known || (type[1] == 'b' && bytes != 1)) {
-    throw IoError(path, "has values of type " + std::string(text.substr(0, 20)) +
+    const bool is_word = !type.empty() && type.size() <= 20;
+    throw IoError(path, "has values of type " + std::string(is_word ? type : text.substr(0, 20)) +
                             ", expected float32, float64 or integers");
   }
   if (type[0] == '>') header.order = std::endian::big;
@@ -92,16 +93,6 @@ std::string shape_text(const std::vector<std::size_t>& shape) {
   return text.empty() ? "a single number" : text;
 }
 
-bool holds_npy_header(std::string_view bytes) {
-  try {
-    std::size_t data = 0;
-    dictionary("", bytes, data);
-    return true;
-  } catch (const IoError&) {
-    return false;
-  }
-}
-
 NpyHeader read_npy_header(const std::string& path, std::string_view bytes) {
   NpyHeader header;
   const std::string_view text = dictionary(path, bytes, header.data);
@@ -134,6 +125,15 @@ std::size_t checked_count(const std::string& path, std::size_t file_bytes,
                             shape_text(header.shape));
   }
   return count;
+}
+
+NpyHeader read_npy_header(const std::string& path, const InputBytes& file) {
+  constexpr std::size_t kMost = 1 << 17;
+  std::string bytes(std::min(file.size(), kMost), '\0');
+  file.read(0, bytes.data(), bytes.size());
+  const NpyHeader header = read_npy_header(path, bytes);
+  checked_count(path, file.size(), header);
+  return header;
 }
 
 void check_frames_header(const std::string& path, const NpyHeader& header) {

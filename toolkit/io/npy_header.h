@@ -6,6 +6,8 @@
 #include <string_view>
 #include <vector>
 
+#include "toolkit/io/binary_file.h"
+
 /// The header of NumPy's arrays. Internal to those who read and write them.
 namespace mimetra {
 
@@ -21,13 +23,14 @@ struct NpyHeader {
 
 /// "4 x 5 x 3".
 std::string shape_text(const std::vector<std::size_t>& shape);
-/// True where the first bytes of a file hold all of its header.
-bool holds_npy_header(std::string_view bytes);
 /// From the first bytes of a file. Throws IoError that names `path`.
 NpyHeader read_npy_header(const std::string& path, std::string_view bytes);
 /// Number of values, which the file holds exactly: found before memory is asked for. Throws
 /// IoError.
 std::size_t checked_count(const std::string& path, std::size_t file_bytes, const NpyHeader& header);
+/// The header of a whole file, whose size fits it; no more than the first 128 kB are read. Throws
+/// IoError.
+NpyHeader read_npy_header(const std::string& path, const InputBytes& file);
 /// Throws IoError unless the array is F x N x 3 or N x 3, in floating point and not empty.
 void check_frames_header(const std::string& path, const NpyHeader& header);
 /// What stands before numbers of a type ("<f8") in C order: version 1, padded so that the values

@@ -51,9 +51,10 @@ class NpzFile {
 
   NumericArray array(const std::string& name) const {
     const auto source = bytes(name);
+    const NpyHeader header = read_npy_header(named(name), *source);
     std::string content(source->size(), '\0');
     source->read(0, content.data(), content.size());
-    return npy_values(named(name), content, read_npy_header(named(name), content));
+    return npy_values(named(name), content, header);
   }
 
   /// What it holds, for messages.

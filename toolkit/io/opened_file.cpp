@@ -1,7 +1,9 @@
 #include "toolkit/io/opened_file.h"
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
+#include <string_view>
 #include <system_error>
 
 #include <fcntl.h>
@@ -33,6 +35,14 @@ std::string reading_problem() {
   return "cannot be read: " + std::error_code(errno, std::generic_category()).message();
 }
 
+/// True for what Git LFS leaves where the file itself was not fetched.
+bool is_lfs_pointer(int file) {
+  constexpr std::string_view kBeginning = "version https://git-lfs";
+  std::array<char, kBeginning.size()> bytes{};
+  return pread(file, bytes.data(), bytes.size(), 0) == static_cast<ssize_t>(bytes.size()) &&
+         std::string_view(bytes.data(), bytes.size()) == kBeginning;
+}
+
 bool has_no_name(int pipe) {
   struct statfs system;
   return fstatfs(pipe, &system) == 0 && static_cast<long>(system.f_type) == kPipesWithoutName;
@@ -53,6 +63,9 @@ OpenedFile::OpenedFile(const std::filesystem::path& path)
   } else {
     is_pipe_ = S_ISFIFO(status.st_mode) && has_no_name(descriptor_);
     if (!is_pipe_) problem = other_type(status);
+    if (!is_pipe_ && problem.empty() && is_lfs_pointer(descriptor_)) {
+      problem = "is a pointer of Git LFS, not the file itself; 'git lfs pull' fetches it";
+    }
   }
   if (problem.empty()) return;
   if (descriptor_ >= 0) close(descriptor_);

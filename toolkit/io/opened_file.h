@@ -10,8 +10,8 @@ namespace mimetra {
 /// else is waited for: what a person names by mistake, or a list names, may never end.
 class OpenedFile {
  public:
-  /// Throws IoError for what is not there or cannot be read, for folders, devices and sockets, and
-  /// for named pipes.
+  /// Throws IoError for what is not there or cannot be read, for folders, devices and sockets, for
+  /// named pipes, and for pointers of Git LFS.
   explicit OpenedFile(const std::filesystem::path& path);
   ~OpenedFile();
   OpenedFile(const OpenedFile&) = delete;

@@ -69,7 +69,7 @@ Positions pose_of(const PointCache& cache, int frame) {
 void add_parts_beside(const PointCache& cache, const SequenceSource& source, PointCacheParts& parts,
                       std::vector<fs::path>& files) {
   const fs::path path = files.front();
-  files.push_back(topology_of(path, source));
+  files.push_back(topology_of(name_with(path, kTopologySuffix), source));
   const MeshFileReader reader(files.back());
   if (cache.vertices() != reader.mesh().connectivity.vertices) {
     throw MismatchError(path.string() + ": " + std::to_string(cache.vertices()) +
@@ -77,14 +77,16 @@ void add_parts_beside(const PointCache& cache, const SequenceSource& source, Poi
                         " as in " + files.back().string());
   }
   parts.faces = std::make_shared<const Connectivity>(reader.mesh().connectivity);
-  if (!parts.rest) parts.rest = rest_beside(path, reader, files);
+  if (!parts.rest) parts.rest = rest_beside(name_with(path, kRestSuffix), reader, files);
 }
 
 /// Frames keep the time they have in the whole sequence, whichever part is taken.
 FrameTimes times_of(const PointCache& cache, const SequenceSource& source,
                     std::optional<Eigen::VectorXd> known, std::vector<fs::path>& files) {
   if (!known && cache.times().size() > 0) known = cache.times();
-  if (!known) known = times_beside(files.front(), cache.frames(), files);
+  if (!known) {
+    known = times_beside(name_with(files.front(), kTimesSuffix), cache.frames(), files);
+  }
   const bool by_rate = !known;
   FrameTimes times = frame_times(files.front().string(), cache.frames(), std::move(known), source);
   if (by_rate) {

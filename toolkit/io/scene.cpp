@@ -1,6 +1,7 @@
 #include "toolkit/io/scene.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <set>
 #include <stdexcept>
@@ -78,9 +79,36 @@ std::set<const WeightCurve*> all_curves(const std::vector<ScenePart>& parts) {
   return curves;
 }
 
-Eigen::VectorXd all_keys(const std::set<const WeightCurve*>& curves) {
+/// How many equal steps between two keys show a curve no more coarsely than frames without times
+/// are apart.
+double steps_between(double key, double next) {
+  // A third of a frame is no reason for another step: keys stand in single precision.
+  constexpr double kAllowance = 1. / 3;
+  return std::max(1., std::ceil((next - key) * kDefaultFramesPerSecond - kAllowance));
+}
+
+/// The keys of all curves, and times between those of splines, which move on a line nowhere.
+Eigen::VectorXd shown_times(const std::string& path, const std::set<const WeightCurve*>& curves) {
   std::set<double> times;
-  for (const WeightCurve* curve : curves) times.insert(curve->times.begin(), curve->times.end());
+  for (const WeightCurve* curve : curves) {
+    const Eigen::VectorXd& keys = curve->times;
+    times.insert(keys.begin(), keys.end());
+    if (curve->between != WeightCurve::Between::cubic) continue;
+    double most = 0;
+    for (Eigen::Index k = 1; k < keys.size(); ++k) most += steps_between(keys[k - 1], keys[k]);
+    constexpr double kMostFrames = 1e6;
+    if (most > kMostFrames) {
+      throw IoError(path, "an animation of weights on splines lasts " +
+                              readable(keys[keys.size() - 1] - keys[0], 8) +
+                              " s; expected at most " + readable(kMostFrames, 8) + " frames of it");
+    }
+    for (Eigen::Index k = 1; k < keys.size(); ++k) {
+      const double steps = steps_between(keys[k - 1], keys[k]);
+      for (double step = 1; step < steps; ++step) {
+        times.insert(keys[k - 1] + step / steps * (keys[k] - keys[k - 1]));
+      }
+    }
+  }
   Eigen::VectorXd all(static_cast<Eigen::Index>(times.size()));
   std::copy(times.begin(), times.end(), all.begin());
   return all;
@@ -195,7 +223,7 @@ Scene joined_scene(const std::string& path, std::vector<ScenePart> parts, std::s
     still = still && curve->values.isZero(0);
   }
   Scene scene;
-  const Eigen::VectorXd times = all_keys(curves);
+  const Eigen::VectorXd times = shown_times(path, curves);
   const int frames = times.size() > 0 ? static_cast<int>(times.size()) : still ? 0 : 1;
   check_scene_size(path, targets / 3, frames, file_bytes);
   ExpressionList list;

@@ -52,13 +52,20 @@ std::string_view without_byte_order_mark(std::string_view text) {
   return text.starts_with(kMark) ? text.substr(kMark.size()) : text;
 }
 
+void check_encoding(const std::string& path, std::string_view text) {
+  if (!text.starts_with("\xFF\xFE") && !text.starts_with("\xFE\xFF")) return;
+  throw IoError(path, "is text in UTF-16, expected UTF-8; save it in that encoding");
+}
+
 TextCursor::TextCursor(const std::string& path, std::string_view text, Syntax syntax,
                        int first_line)
     : path_(path),
       at_(text.data()),
       end_(text.data() + text.size()),
       syntax_(syntax),
-      line_(first_line) {}
+      line_(first_line) {
+  check_encoding(path, text);
+}
 
 void TextCursor::skip_blanks() {
   while (at_ != end_) {

@@ -18,6 +18,9 @@ inline bool ends_word(char c) {
 /// `text` without the mark that some programs put before UTF-8.
 std::string_view without_byte_order_mark(std::string_view text);
 
+/// Throws IoError for text in UTF-16, which begins with its own mark.
+void check_encoding(const std::string& path, std::string_view text);
+
 /// Walks through the text of a file word by word, within a line or across lines, and knows the line
 /// for messages. Lines end in LF or CRLF. For readers.
 class TextCursor {
@@ -29,6 +32,7 @@ class TextCursor {
   };
 
   /// Keeps references: both must outlive the cursor. `first_line` is what the text starts with.
+  /// Throws IoError for text in UTF-16.
   TextCursor(const std::string& path, std::string_view text, Syntax syntax, int first_line = 1);
 
   int line() const { return line_; }

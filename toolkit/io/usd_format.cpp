@@ -91,7 +91,8 @@ std::string usd_head(const SequenceHeader& header, const char* first_prim) {
   return std::string("#usda 1.0\n(\n    defaultPrim = \"") + first_prim +
          "\"\n    startTimeCode = " + usd_code(times[0], rate) +
          "\n    endTimeCode = " + usd_code(times[times.size() - 1], rate) +
-         "\n    timeCodesPerSecond = " + rate_text + "\n    upAxis = \"Y\"\n)\n\n";
+         "\n    timeCodesPerSecond = " + rate_text + "\n    upAxis = \"" +
+         (header.z_is_up ? "Z" : "Y") + "\"\n)\n\n";
 }
 
 /// Faces and texture coordinates of a mesh.

@@ -10,6 +10,7 @@
 
 #include "toolkit/io/scene.h"
 #include "toolkit/io/sequence_parts.h"
+#include "toolkit/io/text_cursor.h"
 #include "toolkit/io/usd_text.h"
 #include "toolkit/io/usd_transform.h"
 #include "toolkit/io/whole_file.h"
@@ -41,6 +42,10 @@ class UsdReader {
     rate_ = setting("timeCodesPerSecond", setting("framesPerSecond", 24));
     if (!(rate_ > 0) || std::isinf(rate_))
       throw IoError(path_, "has " + readable(rate_) + " time codes per second");
+    const auto up = layer_.metadata.find("upAxis");
+    if (up != layer_.metadata.end() && up->second.words == std::vector<std::string>{"Z"}) {
+      notes_.push_back(path_ + ": its up axis is z; convert with option 'up' z-to-y turns it");
+    }
   }
 
   Scene read() {
@@ -462,6 +467,7 @@ Scene read_usd(const fs::path& path) {
                              path.filename().string() + " -o NAME.usda)";
   if (text.starts_with("PXR-USDC")) throw IoError(path.string(), "is binary USD" + remedy);
   if (text.starts_with("PK")) throw IoError(path.string(), "is a package of USD" + remedy);
+  check_encoding(path.string(), text);
   return UsdReader(path, std::move(text)).read();
 }
 

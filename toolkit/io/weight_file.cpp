@@ -17,9 +17,13 @@ namespace mimetra {
 namespace {
 
 /// Columns of captures that are not weights.
-bool is_bookkeeping(std::string_view name) {
-  const std::string plain = lower_case(std::string(name));
-  return plain == "frame" || plain == "blendshapecount";
+bool is_bookkeeping(const std::string& name) {
+  return name == "frame" || name == "blendshapecount";
+}
+
+/// Names of a column of seconds, in lower case.
+bool is_time(const std::string& name) {
+  return name == "time" || name == "time (s)" || name == "time_s" || name == "seconds";
 }
 
 class WeightReader {
@@ -47,12 +51,15 @@ class WeightReader {
       const std::string_view name = names[column];
       if (name.empty()) csv_.fail("column " + std::to_string(column + 1) + " has no name");
       if (!seen.insert(name).second) csv_.fail("the name '" + std::string(name) + "' occurs twice");
-      if (lower_case(std::string(name)) == "time") {
-        if (time_column_) csv_.fail("the name 'time' occurs twice");
+      const std::string plain = lower_case(std::string(name));
+      if (is_time(plain)) {
+        if (time_column_) csv_.fail("there are two columns of times");
         time_column_ = column;
-      } else if (lower_case(std::string(name)) == "timecode") {
+      } else if (plain == "timecode") {
         timecode_column_ = column;
-      } else if (!is_bookkeeping(name)) {
+      } else if (plain == kTimestamp) {
+        notes_.push_back(note_on_timestamp(std::string(name)));
+      } else if (!is_bookkeeping(plain)) {
         weight_columns_.push_back(column);
       }
     }
@@ -77,7 +84,8 @@ class WeightReader {
       csv_.fail("expected a timecode HH:MM:SS:FF, found '" + std::string(text) + "'");
     }
     if (!timecodes_.empty() && !passes(timecodes_.back(), *code)) {
-      csv_.fail("the timecode " + std::string(text) + " is not later than the one before");
+      csv_.fail("the timecode " + std::string(text) +
+                " is not later than the one before; leave out one of the rows, or the column");
     }
     timecodes_.push_back(*code);
   }
@@ -97,6 +105,7 @@ class WeightReader {
 
   WeightTrack track() {
     WeightTrack result;
+    result.notes = std::move(notes_);
     find_times(result);
     const auto columns = static_cast<Eigen::Index>(weight_columns_.size());
     for (const std::size_t column : weight_columns_) {
@@ -115,28 +124,40 @@ class WeightReader {
   std::vector<double> weights_;
   std::vector<double> times_;
   std::vector<Timecode> timecodes_;
+  std::vector<std::string> notes_;
   int frames_ = 0;
 };
 
 /// Blendshape weights are 0 to 1, and sometimes a little beyond.
 constexpr double kMostUsual = 2;
 
-/// What is to be said of weights that nobody means; "" where all are usual.
-std::string note_on_size(const WeightTrack& track) {
+/// Weights that go beyond this and look like percent are nothing else.
+constexpr double kLeastPercent = 10;
+
+bool look_like_percent(const Eigen::MatrixXd& weights) {
+  constexpr double kMany = 0.05;
+  const auto beyond = static_cast<double>((weights.array() > 1.5).count());
+  return beyond > kMany * static_cast<double>(weights.size()) && weights.maxCoeff() <= 100 &&
+         weights.minCoeff() >= 0;
+}
+
+/// Divides weights in percent by 100; notes that, and weights that nobody means.
+void check_size(WeightTrack& track) {
   Eigen::Index frame = 0, column = 0;
   const double most = track.weights.cwiseAbs().maxCoeff(&frame, &column);
-  if (most <= kMostUsual) return {};
-  constexpr double kMany = 0.05;
-  const auto beyond = static_cast<double>((track.weights.array() > 1.5).count());
-  const bool many = beyond > kMany * static_cast<double>(track.weights.size());
-  if (many && most <= 100 && track.weights.minCoeff() >= 0) {
-    return "weights go up to " + readable(most) +
-           " and look like percent, expected 0 to 1; they are taken as they are: divide them by "
-           "100";
+  if (most <= kMostUsual) return;
+  if (look_like_percent(track.weights)) {
+    const bool is_percent = most > kLeastPercent;
+    if (is_percent) track.weights /= 100;
+    track.notes.push_back("weights go up to " + readable(most) +
+                          " and look like percent, expected 0 to 1; " +
+                          (is_percent ? "they are divided by 100"
+                                      : "they are taken as they are: divide them by 100"));
+    return;
   }
-  return "the weight of '" + track.names[static_cast<std::size_t>(column)] + "' is " +
-         readable(track.weights(frame, column)) + " in frame " + std::to_string(frame) +
-         ", expected 0 to 1";
+  track.notes.push_back("the weight of '" + track.names[static_cast<std::size_t>(column)] +
+                        "' is " + readable(track.weights(frame, column)) + " in frame " +
+                        std::to_string(frame) + ", expected 0 to 1");
 }
 
 void append(std::string& text, double number) {
@@ -159,7 +180,7 @@ void check_sizes(const WeightTrack& track) {
 WeightTrack read_weights(const std::filesystem::path& path) {
   const bool is_json = lower_extension(path) == ".json";
   WeightTrack track = is_json ? read_weights_json(path) : WeightReader(path).read();
-  if (const std::string note = note_on_size(track); !note.empty()) track.notes.push_back(note);
+  check_size(track);
   return track;
 }
 

@@ -25,6 +25,7 @@ const std::vector<std::string> kRows = {"rows", "frames"};
 
 Json parsed(const std::filesystem::path& path) {
   const std::string bytes = read_file(path);
+  check_encoding(path.string(), bytes);
   const std::string_view text = without_byte_order_mark(bytes);
   const auto first = text.find_first_not_of(" \t\r\n");
   if (first == std::string_view::npos) throw IoError(path.string(), "is empty; expected weights");
@@ -136,6 +137,9 @@ class WeightJson {
     const auto frames = static_cast<Eigen::Index>(rows.size());
     const bool timed = member(rows.front(), {"time"}) != nullptr;
     if (timed) track_.times.resize(frames);
+    for (const auto& [key, value] : rows.front().items()) {
+      if (lower_case(key) == kTimestamp) track_.notes.push_back(note_on_timestamp(key));
+    }
     for (Eigen::Index f = 0; f < frames; ++f) {
       const std::string place = "row " + std::to_string(f);
       const Json& row = rows[static_cast<std::size_t>(f)];
@@ -148,11 +152,14 @@ class WeightJson {
       if (time) set_time(f, number(*time, place + ", time"), place);
       read_row(weights, f, frames, place);
     }
+    if (!timed) read_times();
   }
 
   void read_row(const Json& row, Eigen::Index frame, Eigen::Index frames,
                 const std::string& place) {
-    const auto is_weight = [](const std::string& key) { return key != "time" && key != "frame"; };
+    const auto is_weight = [](const std::string& key) {
+      return key != "time" && key != "frame" && lower_case(key) != kTimestamp;
+    };
     if (frame == 0) {
       for (const auto& [key, value] : row.items()) {
         if (is_weight(key)) add_name(key, place);
@@ -181,6 +188,11 @@ class WeightJson {
 };
 
 }  // namespace
+
+std::string note_on_timestamp(const std::string& name) {
+  return "'" + name +
+         "' is not used, since it does not say its unit; call it 'time' where it is in seconds";
+}
 
 WeightTrack read_weights_json(const std::filesystem::path& path) {
   WeightJson json(path);

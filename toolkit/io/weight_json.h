@@ -1,10 +1,15 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 
 #include "toolkit/io/weight_track.h"
 
 namespace mimetra {
+
+/// What looks like a time and does not say its unit, in lower case.
+inline constexpr const char* kTimestamp = "timestamp";
+std::string note_on_timestamp(const std::string& name);
 
 /// Reads weights as JSON, in any of the shapes of read_weights(). Internal to it.
 WeightTrack read_weights_json(const std::filesystem::path& path);

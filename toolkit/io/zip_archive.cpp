@@ -72,22 +72,53 @@ class StoredMember : public InputBytes {
   std::size_t size_;
 };
 
-class LoadedMember : public InputBytes {
- public:
-  LoadedMember(std::string name, std::string bytes)
-      : name_(std::move(name)), bytes_(std::move(bytes)) {}
+/// What a reader asks for first, to see whether the rest is what it expects.
+constexpr std::size_t kBeginning = std::size_t{1} << 17;
 
-  std::size_t size() const override { return bytes_.size(); }
+/// A compressed member: its beginning is decoded alone, all of it once more is asked for.
+class DeflatedMember : public InputBytes {
+ public:
+  DeflatedMember(std::shared_ptr<OpenZip> zip, std::string name, zip_file_t* file, std::size_t size)
+      : zip_(std::move(zip)), name_(std::move(name)), file_(file), size_(size) {}
+  ~DeflatedMember() override {
+    const std::lock_guard lock(zip_->mutex);
+    zip_fclose(file_);
+  }
+
+  std::size_t size() const override { return size_; }
+
   void read(std::size_t offset, char* to, std::size_t bytes) const override {
-    if (offset > bytes_.size() || bytes > bytes_.size() - offset) {
-      throw IoError(name_, "is truncated");
-    }
+    if (offset > size_ || bytes > size_ - offset) zip_->fail(name_, "it is truncated");
+    const std::lock_guard lock(zip_->mutex);
+    const std::size_t end = offset + bytes;
+    if (bytes_.size() < end) decode(end <= kBeginning ? std::min(kBeginning, size_) : size_);
     std::memcpy(to, bytes_.data() + offset, bytes);
   }
 
  private:
+  void decode(std::size_t end) const {
+    std::size_t done = bytes_.size();
+    bytes_.resize(end);
+    while (done < end) {
+      const zip_int64_t now = zip_fread(file_, bytes_.data() + done, end - done);
+      if (now <= 0) fail(now == 0 ? "it is truncated" : zip_file_strerror(file_));
+      done += static_cast<std::size_t>(now);
+    }
+    char beyond = 0;
+    // Only behind the last byte does the library compare checksums.
+    if (end == size_ && zip_fread(file_, &beyond, 1) < 0) fail(zip_file_strerror(file_));
+  }
+
+  [[noreturn]] void fail(const std::string& reason) const {
+    bytes_.clear();
+    zip_->fail(name_, reason);
+  }
+
+  std::shared_ptr<OpenZip> zip_;
   std::string name_;
-  std::string bytes_;
+  zip_file_t* file_;
+  std::size_t size_;
+  mutable std::string bytes_;
 };
 
 /// Deflate makes nothing more than about a thousand times smaller: a larger claim is a lie, found
@@ -135,15 +166,7 @@ std::unique_ptr<const InputBytes> ZipReader::member(const std::string& name) con
   if (stored) {
     return std::make_unique<const StoredMember>(zip_, name, file.release(), stat.size);
   }
-  std::string bytes(stat.size, '\0');
-  const zip_int64_t read = zip_fread(file.get(), bytes.data(), bytes.size());
-  char beyond = 0;
-  // Only behind the last byte does the library compare checksums.
-  if (read < 0 || zip_fread(file.get(), &beyond, 1) < 0) {
-    zip_->fail(name, zip_file_strerror(file.get()));
-  }
-  if (static_cast<std::size_t>(read) < bytes.size()) zip_->fail(name, "it is truncated");
-  return std::make_unique<const LoadedMember>(zip_->path.string() + ": " + name, std::move(bytes));
+  return std::make_unique<const DeflatedMember>(zip_, name, file.release(), stat.size);
 }
 
 struct ZipWriter::State {

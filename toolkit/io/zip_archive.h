@@ -20,8 +20,9 @@ class ZipReader {
 
   /// Names of the members, in the archive's order.
   std::vector<std::string> names() const;
-  /// A member's bytes; one that is stored as it is is read in parts, a compressed one is kept in
-  /// memory. They outlive the reader. Throws IoError.
+  /// A member's bytes, as large as the archive says; one that is stored as it is is read in parts,
+  /// a compressed one is kept in memory, all of it once more than its first 128 kB are read. They
+  /// outlive the reader. Throws IoError.
   std::unique_ptr<const InputBytes> member(const std::string& name) const;
 
  private:

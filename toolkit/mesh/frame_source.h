@@ -35,6 +35,8 @@ struct SequenceHeader {
   bool rest_is_known = false;
   /// False where nobody gave them, so that they follow from kDefaultFramesPerSecond.
   bool times_are_known = false;
+  /// True where it is known that z is up; formats that say what is up say y otherwise.
+  bool z_is_up = false;
 };
 
 /// One mesh that moves, whose poses are read when they are needed: one connectivity, F poses, their

@@ -5,24 +5,12 @@
 namespace mimetra {
 namespace {
 
-using Coordinates = Eigen::Ref<Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>>;
-
-/// Turns exactly: coordinates change places and signs.
-void change_units(Coordinates positions, const UnitChange& change) {
-  if (change.up != UpTurn::keep) {
-    positions.col(1).swap(positions.col(2));
-    const int turned = change.up == UpTurn::y_to_z ? 1 : 2;
-    positions.col(turned) = 0 - positions.col(turned).array();  // 0 stays 0, and not -0
-  }
-  if (change.scale != 1) positions *= change.scale;
-}
-
 class FramesInUnits : public FrameSource {
  public:
   FramesInUnits(std::shared_ptr<const FrameSource> source, const UnitChange& change)
-      : FrameSource(source->header()), source_(std::move(source)), change_(change) {
-    change_units(header_.rest, change_);
-  }
+      : FrameSource(in_units(source->header(), change)),
+        source_(std::move(source)),
+        change_(change) {}
 
   bool is_quick() const override { return source_->is_quick(); }
 
@@ -37,6 +25,21 @@ class FramesInUnits : public FrameSource {
 };
 
 }  // namespace
+
+void change_units(CoordinatesView positions, const UnitChange& change) {
+  if (change.up != UpTurn::keep) {
+    positions.col(1).swap(positions.col(2));
+    const int turned = change.up == UpTurn::y_to_z ? 1 : 2;
+    positions.col(turned) = 0 - positions.col(turned).array();  // 0 stays 0, and not -0
+  }
+  if (change.scale != 1) positions *= change.scale;
+}
+
+SequenceHeader in_units(SequenceHeader header, const UnitChange& change) {
+  change_units(header.rest, change);
+  if (change.up != UpTurn::keep) header.z_is_up = change.up == UpTurn::y_to_z;
+  return header;
+}
 
 std::shared_ptr<const FrameSource> with_units(std::shared_ptr<const FrameSource> source,
                                               const UnitChange& change) {

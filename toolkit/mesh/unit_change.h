@@ -38,6 +38,15 @@ struct UnitChange {
   static constexpr auto declared() { return std::tuple(kScale, kUp); }
 };
 
+using CoordinatesView = Eigen::Ref<Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>>;
+
+/// Changes points or displacements (N x 3) in place. Turns exactly: coordinates change places and
+/// signs.
+void change_units(CoordinatesView positions, const UnitChange& change);
+
+/// The header of a sequence in other units and axes.
+SequenceHeader in_units(SequenceHeader header, const UnitChange& change);
+
 /// The same sequence in other units and axes, read when it is needed; the source itself where
 /// nothing changes. Throws std::invalid_argument for options out of range.
 std::shared_ptr<const FrameSource> with_units(std::shared_ptr<const FrameSource> source,

@@ -30,6 +30,22 @@ Animation::Animation(std::shared_ptr<const BlendshapeModel> model, Eigen::Matrix
       model_(std::move(model)),
       weights_(std::move(weights)) {}
 
+Animation Animation::in_units(const UnitChange& change) const {
+  check_options(change);
+  Animation changed = *this;
+  changed.header_ = mimetra::in_units(header_, change);
+  Positions neutral = model_->neutral();
+  change_units(neutral, change);
+  ShapeBasis shapes = model_->expressions();
+  for (int j = 0; j < shapes.size(); ++j) {
+    change_units(Eigen::Map<Positions>(shapes.displacements.col(j).data(), neutral.rows(), 3),
+                 change);
+  }
+  changed.model_ = std::make_shared<const BlendshapeModel>(model_->shared_connectivity(),
+                                                           std::move(neutral), std::move(shapes));
+  return changed;
+}
+
 void Animation::read_frames(int first, FramesView poses) const {
   // A product takes its columns, here the frames, in fours and the rest one by one, which adds in
   // another order; and it takes another way altogether where there is only one. Runs that start
@@ -41,6 +57,15 @@ void Animation::read_frames(int first, FramesView poses) const {
       std::max(0, std::min(first / kFrames * kFrames, end / kFrames * kFrames - kFrames));
   const MeshSequence run = model_->animate(weights_.middleRows(start, end - start));
   poses = run.positions().middleRows(first - start, poses.rows());
+}
+
+std::shared_ptr<const FrameSource> in_units(std::shared_ptr<const FrameSource> source,
+                                            const UnitChange& change) {
+  const auto* animation = dynamic_cast<const Animation*>(source.get());
+  if (!animation || (change.scale == 1 && change.up == UpTurn::keep)) {
+    return with_units(std::move(source), change);
+  }
+  return std::make_shared<const Animation>(animation->in_units(change));
 }
 
 }  // namespace mimetra

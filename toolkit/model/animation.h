@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "toolkit/mesh/frame_source.h"
+#include "toolkit/mesh/unit_change.h"
 #include "toolkit/model/blendshape_model.h"
 
 namespace mimetra {
@@ -18,6 +19,9 @@ class Animation : public FrameSource {
   const BlendshapeModel& model() const { return *model_; }
   const Eigen::MatrixXd& weights() const { return weights_; }
   bool is_quick() const override { return true; }
+  /// The same with its model in other units and axes. Throws std::invalid_argument for options out
+  /// of range.
+  Animation in_units(const UnitChange& change) const;
 
  private:
   /// The same numbers as those frames of model().animate(weights()).
@@ -26,5 +30,9 @@ class Animation : public FrameSource {
   std::shared_ptr<const BlendshapeModel> model_;
   Eigen::MatrixXd weights_;
 };
+
+/// with_units() of any sequence, by which an Animation stays one.
+std::shared_ptr<const FrameSource> in_units(std::shared_ptr<const FrameSource> source,
+                                            const UnitChange& change);
 
 }  // namespace mimetra

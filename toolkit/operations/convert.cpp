@@ -4,7 +4,7 @@
 
 #include "toolkit/correspondence/renumbered_frames.h"
 #include "toolkit/mesh/text.h"
-#include "toolkit/mesh/unit_change.h"
+#include "toolkit/model/animation.h"
 #include "toolkit/operations/bound_parameters.h"
 #include "toolkit/operations/formats.h"
 #include "toolkit/operations/json.h"
@@ -71,7 +71,7 @@ Outcome run_convert(const Invocation& invocation) {
   const auto& given = std::get<FieldSequence>(input.data);
   const UnitChange change = convert_parameters().read(invocation.parameters);
   FieldSequence made = given;
-  if (const auto frames = with_units(given.frames, change); frames != given.frames) {
+  if (const auto frames = in_units(given.frames, change); frames != given.frames) {
     made =
         held_like(given, frames, {.threads = invocation.threads, .progress = invocation.progress});
     made.fields = given.fields;

@@ -1,0 +1,191 @@
+#include "fitting/clip_noise.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+
+namespace mimetra {
+
+namespace {
+
+/// Standard deviation of outliers beside that of the others.
+constexpr double kWide = 10;
+/// Below it there is nothing that a detector or a person could mean: 0.01 px of a face of 100 px.
+constexpr double kLeastSigma = 1e-4;
+/// The noise that single frames are taken to have counts as this many coordinates beside a clip's,
+/// so that a few landmarks that fit by chance are not trusted beyond measure.
+constexpr double kBelieved = 10;
+constexpr double kUsualSigma = 0.017485;
+constexpr double kUnknownRepeated = 0.5;
+
+/// What is left of a frame's landmarks in shares of its radius, turned in the image as the face of
+/// `reference` is.
+ImagePoints aligned_residual(const FittedFrame& frame, const FittedFrame& reference) {
+  const Eigen::Matrix2d M =
+      reference.camera().leftCols<3>() * frame.camera().leftCols<3>().transpose();
+  const double angle = std::atan2(M(1, 0) - M(0, 1), M(0, 0) + M(1, 1));
+  Eigen::Matrix2d turn;
+  turn << std::cos(angle), -std::sin(angle), std::sin(angle), std::cos(angle);
+  return frame.residual() * turn.transpose() / frame.radius();
+}
+
+/// Weighted sums over a clip.
+struct Sums {
+  struct Landmark {
+    double weight = 0;
+    Eigen::RowVector2d mean = Eigen::RowVector2d::Zero();
+  };
+  std::map<Eigen::Index, Landmark> landmarks;
+  double weight = 0;        ///< of all landmarks in all frames
+  double within = 0;        ///< squares of what is not the same in every frame
+  double own_unknowns = 0;  ///< of cameras and expressions that are not at a bound
+};
+
+Sums sums_of(const std::vector<FittedFrame>& frames) {
+  Sums sums;
+  std::vector<ImagePoints> residuals;
+  for (const FittedFrame& frame : frames) {
+    residuals.push_back(aligned_residual(frame, frames.front()));
+    for (Eigen::Index i = 0; i < residuals.back().rows(); ++i) {
+      const double weight = frame.landmark_weights()[i];
+      Sums::Landmark& landmark = sums.landmarks[frame.rows().landmarks[std::size_t(i)]];
+      landmark.weight += weight;
+      landmark.mean += weight * residuals.back().row(i);
+    }
+    constexpr double kCamera = 6;
+    const auto& beta = frame.beta().array();
+    sums.own_unknowns += kCamera + double((beta > 0 && beta < 1).count());
+  }
+  for (auto& [index, landmark] : sums.landmarks) {
+    landmark.mean /= landmark.weight;
+    sums.weight += landmark.weight;
+  }
+  for (std::size_t f = 0; f < frames.size(); ++f) {
+    for (Eigen::Index i = 0; i < residuals[f].rows(); ++i) {
+      const auto& landmark = sums.landmarks.at(frames[f].rows().landmarks[std::size_t(i)]);
+      sums.within +=
+          frames[f].landmark_weights()[i] * (residuals[f].row(i) - landmark.mean).squaredNorm();
+    }
+  }
+  return sums;
+}
+
+/// Mean probability of the frames' landmarks that they are outliers.
+double outlier_share(const std::vector<FittedFrame>& frames, const ClipNoise& noise) {
+  double sum = 0, count = 0;
+  for (const FittedFrame& frame : frames) {
+    const Eigen::VectorXd z = frame.residual().rowwise().norm() / frame.sigma();
+    for (const double each : z) sum += 1 - noise.weight(each);
+    count += double(z.size());
+  }
+  return sum / count;
+}
+
+}  // namespace
+
+double ClipNoise::weight(double z) const {
+  constexpr double kVariance = kWide * kWide, kLargest = 700;
+  // A frame of nothing but outliers keeps a camera.
+  constexpr double kLeast = 1e-4;
+  // The ratio of the densities, outliers over the others.
+  const double odds = outliers / (1 - outliers) / kVariance *
+                      std::exp(std::min(z * z * (1 - 1 / kVariance) / 2, kLargest));
+  return std::max(1 / (1 + odds), kLeast);
+}
+
+KnownNoise known_noise(const FitOptions& options, std::size_t frames) {
+  using Outliers = FitOptions::Outliers;
+  const bool clip = options.shape == FitOptions::Shape::clip && frames > 1;
+  const bool estimated = clip && !options.sigma && options.repeated != 0.0;
+  const bool resist = options.outliers == Outliers::resist ||
+                      (options.outliers == Outliers::automatic && estimated);
+  KnownNoise known{.sigma = !estimated, .repeated = options.repeated, .outliers = !resist};
+  if (!known.repeated && !estimated) known.repeated = 0;
+  return known;
+}
+
+ClipNoise rough_noise(const std::vector<FittedFrame>& frames, const KnownNoise& known) {
+  std::vector<double> squares;
+  for (const FittedFrame& frame : frames) {
+    const Eigen::VectorXd r = frame.residual().rowwise().squaredNorm();
+    for (const double each : r) squares.push_back(each / (frame.radius() * frame.radius()));
+  }
+  const auto middle = squares.begin() + std::ptrdiff_t(squares.size() / 2);
+  std::ranges::nth_element(squares, middle);
+  ClipNoise noise;
+  // The median of a squared distance in the plane is 2 ln 2 sigma^2.
+  noise.sigma = std::max(std::sqrt(*middle / (2 * std::numbers::ln2)), kLeastSigma);
+  noise.repeated = known.repeated.value_or(kUnknownRepeated);
+  return noise;
+}
+
+ClipNoise estimated_noise(const std::vector<FittedFrame>& frames, const ClipNoise& before,
+                          double determined, const KnownNoise& known) {
+  const Sums sums = sums_of(frames);
+  const double count = double(frames.size()), landmarks = double(sums.landmarks.size());
+  const double own = sums.own_unknowns / count;
+  const double believed = kBelieved * kUsualSigma * kUsualSigma;
+  const double freedom = std::max(0.0, 2 * (sums.weight - landmarks) - sums.own_unknowns + own);
+  const double within = (believed + sums.within) / (kBelieved + freedom);
+  // Of each landmark's mean, the part that the mean of so many frames has anyway.
+  double squares = 0, by_chance = 0, seen = 0;
+  for (const auto& [index, landmark] : sums.landmarks) {
+    // One that is an outlier in every frame says nothing.
+    const double share = std::min(1.0, landmark.weight / count);
+    squares += share * landmark.mean.squaredNorm();
+    by_chance += share * 2 * within / std::max(1.0, landmark.weight);
+    seen += share;
+  }
+  const double free = std::max(2.0, 2 * seen - own - determined);
+  const double repeated = std::max(0.0, squares - by_chance * free / (2 * seen)) / free;
+  ClipNoise noise;
+  noise.sigma = std::max(std::sqrt(within + repeated), kLeastSigma);
+  noise.repeated = known.repeated.value_or(repeated / (within + repeated));
+  noise.outliers = std::clamp(outlier_share(frames, before), 1e-4, 0.5);
+  return noise;
+}
+
+double outline_noise(const std::vector<FittedFrame>& frames, const ClipNoise& noise) {
+  double squares = 0, weight = 0;
+  std::vector<double> sizes;
+  for (const FittedFrame& frame : frames) {
+    const Eigen::VectorXd rest = frame.outline_residual() / frame.radius();
+    for (const double r : rest) {
+      sizes.push_back(std::abs(r));
+      if (noise.outline == 0) continue;
+      const double own = noise.weight(r / noise.outline);
+      squares += own * r * r;
+      weight += own;
+    }
+  }
+  if (sizes.empty()) return 0;
+  const double least = std::max(noise.sigma, kLeastSigma);
+  if (weight > 0) return std::max(least, std::sqrt(squares / weight));
+  const auto middle = sizes.begin() + std::ptrdiff_t(sizes.size() / 2);
+  std::ranges::nth_element(sizes, middle);
+  constexpr double kNormal = 1.4826;  // of a median of sizes
+  return std::max(least, kNormal * *middle);
+}
+
+void set_noise(std::vector<FittedFrame>& frames, const ClipNoise& noise, const KnownNoise& known) {
+  for (FittedFrame& frame : frames) {
+    if (!known.sigma) frame.set_sigma(noise.sigma * frame.radius());
+    if (frame.outline() && noise.outline > 0) {
+      auto outline = std::make_shared<OutlineRows>(*frame.outline());
+      const double sigma = noise.outline * frame.radius();
+      outline->weight = frame.outline_residual() / sigma;
+      for (double& weight : outline->weight) {
+        const double ratio = frame.sigma() / sigma;
+        weight = ratio * ratio * (known.outliers ? 1 : noise.weight(weight));
+      }
+      frame.set_outline(std::move(outline));
+    }
+    if (known.outliers) continue;
+    Eigen::VectorXd weights = frame.residual().rowwise().norm() / frame.sigma();
+    for (double& weight : weights) weight = noise.weight(weight);
+    frame.set_landmark_weights(std::move(weights));
+  }
+}
+
+}  // namespace mimetra
