@@ -22,7 +22,8 @@ constexpr int kTrianglesAtATime = 256;
 /// % shows the same wrinkles in other places; folds turn deformations around.
 constexpr double kGoodResidual = 0.005, kUsableResidual = 0.02;
 constexpr double kGoodFolds = 0.001, kUsableFolds = 0.01;
-constexpr double kMostWithoutPartner = 0.5;
+/// A mask shows half of a head; with less than this, other things than faces were paired.
+constexpr double kMostWithoutPartner = 0.9;
 
 /// A surface with what its triangles are asked for.
 struct PairedSurface {
