@@ -61,8 +61,8 @@ TEST(FormatTable, ListsWhatItKnowsWhereNothingReadsAFile) {
   const std::string video = folder.path() / "take.MP4";
   std::ofstream(video) << "text\n";
   EXPECT_THAT([&] { table.reader(DataKind::sequence, video); },
-              ThrowsMessage<IoError>(
-                  AllOf(HasSubstr("is a video; 'mimetra fit VIDEO"), HasSubstr("not from '.mp4'"))));
+              ThrowsMessage<IoError>(AllOf(HasSubstr("is a video; 'mimetra fit VIDEO"),
+                                           HasSubstr("not from '.mp4'"))));
   EXPECT_THAT([&] { table.reader(DataKind::components, "take.npy"); },
               ThrowsMessage<UsageError>(HasSubstr("components can be read from .h5 or .hdf5")));
   EXPECT_THAT([&] { table.reader(DataKind::table, "take.csv"); },
