@@ -17,6 +17,7 @@ import numpy as np
 
 SPARSITY, RHO = 2.0, 10.0
 ITERATIONS, ADMM_ITERATIONS = 10, 10
+NEAR_TIE = 1e-9  # of what ties but for rounding
 
 
 def feasible(w):
@@ -26,6 +27,11 @@ def feasible(w):
     return w / largest if largest > 0 else w
 
 
+def largest(values):
+    """The first of those that tie with the largest one but for rounding."""
+    return int(np.argmax(values >= (1 - NEAR_TIE) * values.max()))
+
+
 def start(X, count, support):
     """Deflation: one component after the other from what is left (section 4.2)."""
     frames, vertices, _ = X.shape
@@ -33,7 +39,7 @@ def start(X, count, support):
     W = np.empty((frames, count))
     C = np.empty((count, vertices, 3))
     for k in range(count):
-        center = (R**2).sum(axis=(0, 2)).argmax()
+        center = largest((R**2).sum(axis=(0, 2)))
         U, s, _ = np.linalg.svd(R[:, center, :], full_matrices=False)
         plus, minus = feasible(s[0] * U[:, 0]), feasible(-s[0] * U[:, 0])
         w = plus if np.linalg.norm(plus) > np.linalg.norm(minus) else minus
@@ -81,14 +87,14 @@ def energy(X, W, C, Lambda):
 
 def decompose(frames, rest, count, support):
     X = frames - rest
-    X /= X.std()
+    X /= np.sqrt((X**2).mean())
     W, C = start(X, count, support)
     U = np.zeros_like(C)
     Lambda = np.empty(C.shape[:2])
     for _ in range(ITERATIONS):
         update_weights(X, W, C)
         for k in range(count):
-            Lambda[k] = SPARSITY * support((C[k] ** 2).sum(axis=1).argmax())
+            Lambda[k] = SPARSITY * support(largest((C[k] ** 2).sum(axis=1)))
         C, U = update_components(X, W, C, U, Lambda)
         last_energy = energy(X, W, C, Lambda)
     return last_energy
