@@ -7,8 +7,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "fitting/fit_judgement.h"
 #include "fitting/fit_pictures.h"
-#include "fitting/fit_verdict.h"
 #include "fitting/head_rotation.h"
 #include "fitting/image_files.h"
 #include "fitting/landmark_file.h"
@@ -59,29 +59,27 @@ BoundParameters<FitCall> fit_parameters() {
   fit.add("solver", FitOptions::kSolver,
           "joint: camera, shape and expressions together; alternating: in turn, as in the paper")
       .add("shape", FitOptions::kShape, "one identity for the clip, or one in every frame")
-      .add("iterations", FitOptions::kIterations, "iterations at most")
+      .add("iterations", FitOptions::kIterations,
+           "iterations at most, after those in which a clip's noise is estimated")
       .add("tolerance", FitOptions::kTolerance,
            "it ends where an iteration lowers the energy by a smaller share")
       .add("sigma", FitOptions::kSigma,
            "noise of the landmarks (default: estimated from a clip; 0.017485 of the face's RMS "
-           "radius "
-           "in a picture, with --repeated 0 and by the alternating solver)")
+           "radius in "
+           "a picture, with --repeated 0 and by the alternating solver)")
       .add("repeated", FitOptions::kRepeated,
            "share of the landmarks' squared error that is the same in every frame: frames say so "
-           "much "
-           "less about the identity; 0 for frames that are independent (default: estimated)")
+           "much less about the identity; 0 for frames that are independent (default: estimated)")
       .add("camera", FitOptions::kCamera,
            "orthographic: scaled orthographic (auto: for clips); affine: as in the paper; "
-           "perspective: "
-           "with --focal-length")
+           "perspective: with --focal-length")
       .add("stretch", FitOptions::kStretch,
            "how much the orthographic and perspective cameras may stretch the image, as a standard "
            "deviation")
       .add("focal-length", FitOptions::kFocalLength, "of the perspective camera")
       .add("outliers", FitOptions::kOutliers,
            "landmarks far from the face in units of the clip's noise: resist them (auto: where "
-           "noise "
-           "is estimated), or trust all")
+           "noise is estimated), or trust all")
       .add("ridge", FitOptions::kRidge,
            "weight of squared expressions (default: 0.1 with more than ten of them, else 0)")
       .add("smoothness", FitOptions::kSmoothness, "time constant of smooth expressions");
@@ -162,41 +160,6 @@ MeshSequence sequence_of(const MorphableModel& model, const FittedCoefficients& 
   frames.noalias() += rest_of_identity * model.identities().displacements.transpose();
   return sequence.with_frames(std::move(frames));
 }
-
-/// What a fit is worth, and in words.
-struct Judgement {
-  IdentityVerdict identity;
-  std::optional<NeutralDistance> halves;
-  std::vector<ExpressionUse> expressions;
-
-  Json json(const std::vector<std::string>& names) const {
-    Json uses = Json::array();
-    for (std::size_t j = 0; j < expressions.size(); ++j) {
-      const ExpressionUse& use = expressions[j];
-      uses.push_back({{"name", names[j]},
-                      {"mean", use.mean},
-                      {"at_least", use.at_least},
-                      {"at_most", use.at_most}});
-    }
-    return {{"alpha_rms", identity.alpha_rms},
-            {"alpha_max", identity.alpha_max},
-            {"flipped", identity.flipped},
-            {"halves_mean", halves ? Json(halves->mean) : Json(nullptr)},
-            {"halves_largest", halves ? Json(halves->largest) : Json(nullptr)},
-            {"expressions", uses}};
-  }
-
-  std::string words() const {
-    std::string text = "identity: " + readable(identity.alpha_rms) +
-                       " standard deviations (RMS), at most " + readable(identity.alpha_max) +
-                       ", " + std::to_string(identity.flipped) + " flipped triangles";
-    if (halves) {
-      text += "; the neutrals of the clip's halves are " + readable(100 * halves->mean) +
-              " % of the longest side apart (at most " + readable(100 * halves->largest) + " %)";
-    }
-    return text + '\n';
-  }
-};
 
 struct FitSummary {
   double rms = 0;  ///< over all landmarks of all frames, pixels
@@ -297,28 +260,6 @@ std::vector<int> seen_frames(const FittedCoefficients& fit) {
   return frames;
 }
 
-void warn_of(const Judgement& judgement, const std::vector<std::string>& names,
-             const Invocation& invocation) {
-  const IdentityVerdict& identity = judgement.identity;
-  if (identity.is_doubtful()) {
-    invocation.warn("the fitted identity is hardly a person: its largest coefficient is " +
-                    readable(identity.alpha_max) + " standard deviations, and " +
-                    std::to_string(identity.flipped) +
-                    " triangles are flipped; use more frames in which the head turns, --camera "
-                    "orthographic, a --repeated nearer to 1 or a larger --sigma");
-  }
-  std::string constant;
-  for (std::size_t j = 0; j < names.size(); ++j) {
-    if (!judgement.expressions[j].is_constant()) continue;
-    constant += (constant.empty() ? "" : ", ") + names[j] + " (" +
-                readable(judgement.expressions[j].mean) + ")";
-  }
-  if (!constant.empty() && judgement.halves) {
-    invocation.warn("expressions that are there all the time, as parts of the face are: " +
-                    constant + "; --ridge 1 makes them smaller");
-  }
-}
-
 /// Affine cameras that see the model's origin, and a little around it, as the fitted ones do.
 std::vector<AffineCamera> cameras_at_origin(const FittedCoefficients& fit) {
   std::vector<AffineCamera> cameras = fit.cameras;
@@ -329,9 +270,13 @@ std::vector<AffineCamera> cameras_at_origin(const FittedCoefficients& fit) {
   return cameras;
 }
 
-/// Frames in which the head is turned so far that landmarks are behind it.
+/// The notes of the frames, with those in which the head is turned so far that landmarks are behind
+/// it, of which it warns.
 std::vector<std::string> notes_of(const MeshSequence& sequence, const FittedCoefficients& fit,
-                                  const MappedLandmarks& mapped, std::vector<std::string> notes) {
+                                  const MappedLandmarks& mapped, const Invocation& invocation) {
+  const NamedData& landmarks = invocation.input("landmarks");
+  std::vector<std::string> notes = landmarks.origin.frame_notes;
+  std::vector<int> turned;
   notes.resize(static_cast<std::size_t>(fit.frames()));
   const std::vector<AffineCamera> cameras = cameras_at_origin(fit);
   for (int f = 0; f < fit.frames(); ++f) {
@@ -339,9 +284,16 @@ std::vector<std::string> notes_of(const MeshSequence& sequence, const FittedCoef
     const int averted = averted_landmarks(sequence.frame(f), sequence.triangles(), mapped.vertices,
                                           cameras[static_cast<std::size_t>(f)]);
     if (4 * averted < static_cast<int>(mapped.vertices.size())) continue;
+    turned.push_back(f);
     std::string& note = notes[static_cast<std::size_t>(f)];
     note += (note.empty() ? "" : "; ") + std::string("turned away: ") + std::to_string(averted) +
             " of " + std::to_string(mapped.vertices.size()) + " landmarks are behind the face";
+  }
+  if (!turned.empty()) {
+    invocation.warn(landmarks.name +
+                    ": frames in which the head is turned so far that the hidden half of the face "
+                    "is guessed: " +
+                    listed(words_of(turned)));
   }
   const bool none =
       std::ranges::all_of(notes, [](const std::string& note) { return note.empty(); });
@@ -382,7 +334,7 @@ Outcome run(const Invocation& invocation) {
                     listed(words_of(summary.unseen)));
   }
   const MeshSequence sequence = sequence_of(model, fit, call.fit.shape);
-  fit.notes = notes_of(sequence, fit, mapped, landmarks.origin.frame_notes);
+  fit.notes = notes_of(sequence, fit, mapped, invocation);
   Outcome outcome;
   Json report = {{"rms_px", summary.rms},
                  {"vertices", model.vertices()},

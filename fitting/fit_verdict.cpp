@@ -51,7 +51,7 @@ NeutralDistance neutral_distance(const MorphableModel& model, const Eigen::Vecto
 
 bool ExpressionUse::is_constant() const {
   constexpr double kMean = 0.7, kShare = 0.5;
-  return mean > kMean || at_most > kShare;
+  return mean > kMean || at_one > kShare;
 }
 
 std::vector<ExpressionUse> expression_use(const Eigen::MatrixXd& beta) {

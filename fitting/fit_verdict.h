@@ -32,8 +32,8 @@ NeutralDistance neutral_distance(const MorphableModel& model, const Eigen::Vecto
 /// How an expression is used in a clip.
 struct ExpressionUse {
   double mean = 0;
-  double at_least = 0;  ///< share of the frames in which it is at its lower bound
-  double at_most = 0;   ///< at its upper bound
+  double at_zero = 0;  ///< share of the frames in which it is at its lower bound
+  double at_one = 0;   ///< at its upper bound
   /// True where it is there all the time, as if it were a part of the face.
   bool is_constant() const;
 };

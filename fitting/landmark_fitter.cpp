@@ -134,8 +134,10 @@ std::vector<FrameFit> fits_of(std::vector<FittedFrame> frames, const FitOptions&
                               const Eigen::VectorXd& times, const ClipOutline& outline) {
   std::vector<FrameFit> fits;
   std::vector<FittedFrame> rough;
+  ClipNoise noise;
   for (FittedClip& clip : solved_by_shape(std::move(frames), options, outline)) {
     if (options.smoothness > 0) {
+      noise = clip.noise;
       std::ranges::move(clip.frames, std::back_inserter(rough));
     } else {
       std::ranges::move(results_of(clip), std::back_inserter(fits));
@@ -146,6 +148,7 @@ std::vector<FrameFit> fits_of(std::vector<FittedFrame> frames, const FitOptions&
       options.solver == FitOptions::Solver::joint && options.shape == FitOptions::Shape::clip;
   FittedClip smooth = jointly ? smoothed(std::move(rough), options, times)
                               : fit_smoothly(std::move(rough), options, times);
+  smooth.noise = noise;
   return results_of(smooth);
 }
 

@@ -1,4 +1,5 @@
 #include <cmath>
+#include <iostream>
 
 #include <gtest/gtest.h>
 
@@ -79,6 +80,8 @@ TEST(ClipNoise, OfOneLandmarkFarOffInEveryFrameDoesNotMoveTheIdentity) {
   const double resisted = (test::fit(wrong, {}).front().alpha - clip.alpha).norm();
   const double trusted =
       (test::fit(wrong, {.outliers = Outliers::trust}).front().alpha - clip.alpha).norm();
+  std::cout << "alpha's error: " << clean << " without, " << resisted << " with, " << trusted
+            << " where it is trusted\n";
   // One landmark of 52 less: what it said is missing, and no more.
   EXPECT_LT(resisted, 1.5 * clean);
   EXPECT_GT(trusted, 5 * clean);
@@ -122,6 +125,10 @@ TEST(ClipNoise, WeighsThePriorAsTheNeutralNeedsIt) {
     weaker += error(0.1);
     stronger += error(10);
   }
+  const double unit = extent(model.mean()) * kPeople / 100;
+  std::cout << "the neutral's error in % of the longest side: " << as_it_is / unit << ", "
+            << weaker / unit << " with a tenth of the prior, " << stronger / unit
+            << " with ten times it\n";
   EXPECT_LT(as_it_is, weaker);
   EXPECT_LT(as_it_is, stronger);
 }

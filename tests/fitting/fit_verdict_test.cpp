@@ -50,8 +50,8 @@ TEST(FitVerdict, TellsExpressionsThatAreAlwaysThere) {
   Eigen::MatrixXd beta(4, 3);
   beta << 0, 0.8, 1, 1, 0.9, 1, 0, 0.7, 1, 0, 0.8, 0;
   const auto uses = expression_use(beta);
-  EXPECT_EQ(uses[0].at_least, 0.75);
-  EXPECT_EQ(uses[0].at_most, 0.25);
+  EXPECT_EQ(uses[0].at_zero, 0.75);
+  EXPECT_EQ(uses[0].at_one, 0.25);
   EXPECT_FALSE(uses[0].is_constant());
   EXPECT_TRUE(uses[1].is_constant());
   EXPECT_TRUE(uses[2].is_constant());

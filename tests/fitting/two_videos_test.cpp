@@ -1,9 +1,7 @@
 #include "tests/fitting/two_videos.h"
 
-#include <cmath>
 #include <iomanip>
 #include <iostream>
-#include <numbers>
 
 #include <gtest/gtest.h>
 
@@ -76,9 +74,9 @@ constexpr double kPixel = 1 / test::kFacePixels;
 /// `face`: what the errors of the whole face must stay below.
 void expect_close(const std::vector<test::SequenceDistance>& errors, double face) {
   for (const test::SequenceDistance& error : errors) {
-    // Every landmark is off by 1 px in each direction, sqrt(pi / 2) px on average; expressions are
-    // solved frame by frame from many landmarks, and move most vertices less than those.
-    EXPECT_LT(error.expression, std::sqrt(std::numbers::pi / 2) * kPixel);
+    // Every landmark is off by 1 px in each direction; expressions are solved frame by frame from
+    // many landmarks, and move most vertices less than those.
+    EXPECT_LT(error.expression, kPixel);
     EXPECT_LT(error.face, face);
     // Regions lose little against all triangles of the same fitted source.
     EXPECT_LT(error.expression, errors.front().expression + 0.25 * kPixel);
@@ -119,11 +117,23 @@ TEST(TwoVideos, GiveTheSourcesExpressionsOnTheTargetsFaceForTheSurreyModel) {
   const LandmarkMapping mapping = read_landmark_mapping(find_landmark_mapping(folder));
   std::vector<int> vertices;
   for (const auto& [name, vertex] : mapping) vertices.push_back(vertex);
-  const test::TwoVideos videos = test::two_videos(
-      model, vertices, weights_for(track, model.expressions().names), track.times, 1);
+  // Of two people with 63 identities each, one pair may be luckier than another.
+  constexpr unsigned kPairs = 3;
+  std::vector<test::SequenceDistance> errors(kCounts.size());
+  double mean_face = 0;
+  for (unsigned seed = 1; seed <= kPairs; ++seed) {
+    const test::TwoVideos videos = test::two_videos(
+        model, vertices, weights_for(track, model.expressions().names), track.times, seed);
+    const auto of_pair = transfer_errors(videos, kCounts);
+    for (std::size_t i = 0; i < errors.size(); ++i) {
+      errors[i].face += of_pair[i].face / kPairs;
+      errors[i].expression += of_pair[i].expression / kPairs;
+    }
+    mean_face += distance_of_mean(videos) / kPairs;
+  }
   // 50 landmarks do not see all that 63 identities do between them, and an affine camera takes a
   // part of it; what they see brings the face nearer than the mean.
-  expect_close(transfer_errors(videos, kCounts), distance_of_mean(videos));
+  expect_close(errors, mean_face);
 }
 
 }  // namespace
