@@ -260,8 +260,8 @@ std::set<fs::path> public_headers(const Tree& lists) {
 
 const std::vector<FolderRule>& folder_rules() {
   static const std::vector<FolderRule> rules = [] {
-    const std::vector<std::string> below_pipeline = {"geodesic", "mesh",    "model",
-                                                     "splocs",   "regions", "transfer"};
+    const std::vector<std::string> below_pipeline = {
+        "geodesic", "mesh", "model", "splocs", "regions", "correspondence", "transfer"};
     const auto with = [](std::vector<std::string> folders, const std::vector<std::string>& more) {
       folders.insert(folders.end(), more.begin(), more.end());
       return folders;
@@ -277,14 +277,15 @@ const std::vector<FolderRule>& folder_rules() {
         {"model", "toolkit/model", {"mesh"}},
         {"splocs", "toolkit/splocs", {"mesh", "geodesic"}, {"OpenMesh", "OpenBLAS"}},
         {"regions", "toolkit/regions", {"splocs", "mesh", "geodesic"}, {"OpenMesh"}},
+        {"correspondence", "toolkit/correspondence", {"mesh", "geodesic"}, {"CGAL", "OpenMesh"}},
         {"transfer",
          "toolkit/transfer",
-         {"model", "regions", "mesh", "geodesic"},
+         {"model", "regions", "correspondence", "mesh", "geodesic"},
          {"OpenMesh", "CHOLMOD"}},
         {"pipeline", "toolkit/pipeline", below_pipeline},
         {"io",
          "toolkit/io",
-         {"mesh", "model", "splocs", "regions"},
+         {"mesh", "model", "splocs", "regions", "correspondence"},
          {"OpenMesh", "JSON", "libzip", "zlib", "meshoptimizer", "Draco"}},
         {"operations", "toolkit/operations", below_operations, {"JSON", "xxHash"}},
         {"vtk", "toolkit/vtk", up_to_operations, {"VTK", "JSON"}},

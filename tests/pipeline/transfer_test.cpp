@@ -233,6 +233,18 @@ TEST_F(TransferTest, RefusesATargetBeforeAnythingIsComputed) {
   EXPECT_EQ(reports, 0);
 }
 
+TEST_F(TransferTest, TellsATargetThatIsOnlyNumberedDifferently) {
+  const int last = source_.vertices() - 1;
+  const BlendshapeModel backwards =
+      test::model_on({Positions(actor_.neutral().colwise().reverse()),
+                      Triangles((last - source_.triangles().array()).matrix())},
+                     1);
+  EXPECT_THAT([&] { to(backwards); },
+              ThrowsMessage<MismatchError>(HasSubstr(
+                  "has the same faces, " + std::to_string(last % 2 == 0 ? last : last + 1) +
+                  " vertices renumbered against the source; write the source in its numbering")));
+}
+
 /// A sheet of quads; of the other, each begins at another corner, which is the same face.
 Connectivity quads(int first) {
   Polygons polygons;

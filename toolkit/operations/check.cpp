@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "toolkit/correspondence/renumbering.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/inspection.h"
 #include "toolkit/mesh/text.h"
@@ -72,11 +73,31 @@ std::vector<std::string> warnings_of(const FrameSource& sequence, bool moves) {
   return warnings;
 }
 
+/// What is odd about the numbering against the mesh to be matched, and that it is the same mesh.
+/// Throws MismatchError for another one.
+std::vector<std::string> numbering_warnings(const Invocation& invocation) {
+  const auto* reference = invocation.find<FieldSequence>("match");
+  if (!reference) return {};
+  const NamedData& input = invocation.input("sequence");
+  const std::string& name = invocation.input("match").name;
+  const FrameSource& frames = *std::get<FieldSequence>(input.data).frames;
+  if (same_faces(reference->frames->connectivity(), frames.connectivity())) return {};
+  const Renumbering found =
+      renumbering(TriMesh{reference->frames->rest(), reference->frames->connectivity()},
+                  TriMesh{frames.rest(), frames.connectivity()});
+  if (!found.found()) {
+    throw MismatchError(input.name + ": " + found.summary() + " (as in " + name + ")");
+  }
+  return {found.summary() + " against " + name + " (convert --match writes it in its numbering)"};
+}
+
 Outcome run_check(const Invocation& invocation) {
   const NamedData& input = invocation.input("sequence");
   const FrameSource& sequence = *std::get<FieldSequence>(input.data).frames;
-  const std::vector<std::string> found = warnings_of(
+  std::vector<std::string> found = numbering_warnings(invocation);
+  const std::vector<std::string> own = warnings_of(
       sequence, moves(sequence, {.threads = invocation.threads, .progress = invocation.progress}));
+  found.insert(found.end(), own.begin(), own.end());
   // What reading said is not said again.
   std::vector<std::string> warnings = input.origin.notes;
   warnings.insert(warnings.end(), found.begin(), found.end());
@@ -102,8 +123,15 @@ Operation check_operation() {
   operation.summary = "Tell whether a sequence can be used, and what is odd about it";
   operation.inputs = {{"sequence", DataKind::sequence, "sequence to check"}};
   operation.inputs.front().streamed = true;
+  operation.inputs.push_back({.name = "match",
+                              .kind = DataKind::sequence,
+                              .help = "a mesh that must be the same, and a warning where it is "
+                                      "numbered differently",
+                              .optional = true,
+                              .streamed = true});
   operation.parameters = check_parameters().declared();
-  operation.examples = {"check takes/smile_%04d.obj", "check take.npy --strict"};
+  operation.examples = {"check takes/smile_%04d.obj --strict",
+                        "check export.obj --match neutral.obj"};
   operation.run = run_check;
   return operation;
 }

@@ -1,5 +1,8 @@
+#include <optional>
+
 #include <nlohmann/json.hpp>
 
+#include "toolkit/correspondence/renumbered_frames.h"
 #include "toolkit/mesh/text.h"
 #include "toolkit/model/animation.h"
 #include "toolkit/operations/bound_parameters.h"
@@ -27,8 +30,44 @@ std::string said(const UnitChange& change) {
   return text;
 }
 
+/// The sequence with the vertices and faces of `reference`. Throws MismatchError where it is
+/// another mesh.
+FieldSequence matched(const Invocation& invocation, const NamedData& input,
+                      const Renumbering& found) {
+  const auto& given = std::get<FieldSequence>(input.data);
+  const auto& reference = *invocation.get<FieldSequence>("match").frames;
+  FieldSequence made =
+      held_like(given, renumbered(given.frames, reference.shared_connectivity(), found.vertices),
+                {.threads = invocation.threads, .progress = invocation.progress});
+  for (const Field& field : given.fields) {
+    if (field.location == Field::Location::vertices) {
+      made.fields.push_back(renumbered(field, found.vertices));
+    } else {
+      invocation.warn(input.name + ": the field " + field.name +
+                      " of its triangles is left out: they have another order in " +
+                      invocation.input("match").name);
+    }
+  }
+  return made;
+}
+
+/// How the sequence is numbered against `match`; none where nothing is to be matched.
+std::optional<Renumbering> renumbering_of(const Invocation& invocation, const NamedData& input) {
+  const auto* reference = invocation.find<FieldSequence>("match");
+  if (!reference) return {};
+  const FrameSource& frames = *std::get<FieldSequence>(input.data).frames;
+  Renumbering found =
+      renumbering(TriMesh{reference->frames->rest(), reference->frames->connectivity()},
+                  TriMesh{frames.rest(), frames.connectivity()});
+  if (found.found()) return found;
+  throw MismatchError(input.name + ": " + found.summary() + " (as in " +
+                      invocation.input("match").name + ")");
+}
+
 Outcome run_convert(const Invocation& invocation) {
-  const NamedData& input = invocation.input("sequence");
+  NamedData input = invocation.input("sequence");
+  const std::optional<Renumbering> found = renumbering_of(invocation, input);
+  if (found) input.data = matched(invocation, input, *found);
   const auto& given = std::get<FieldSequence>(input.data);
   const UnitChange change = convert_parameters().read(invocation.parameters);
   FieldSequence made = given;
@@ -38,16 +77,19 @@ Outcome run_convert(const Invocation& invocation) {
     made.fields = given.fields;
   }
   Outcome outcome;
-  outcome.report = json_text(Json{{"frames", made.frames->frames()},
-                                  {"vertices", made.frames->vertices()},
-                                  {"faces", made.frames->connectivity().polygons.size()},
-                                  {"seconds", seconds(*made.frames)},
-                                  {"times_known", made.frames->times_are_known()},
-                                  {"scale", change.scale},
-                                  {"up", choice_name(change.up)}});
+  Json report = Json{{"frames", made.frames->frames()},
+                     {"vertices", made.frames->vertices()},
+                     {"faces", made.frames->connectivity().polygons.size()},
+                     {"seconds", seconds(*made.frames)},
+                     {"times_known", made.frames->times_are_known()},
+                     {"scale", change.scale},
+                     {"up", choice_name(change.up)}};
+  if (found) report["renumbered"] = found->moved();
+  outcome.report = json_text(report);
   outcome.summary = std::to_string(made.frames->frames()) + " frames of " +
                     std::to_string(made.frames->vertices()) + " vertices, " +
-                    times_text(*made.frames) + said(change) + '\n';
+                    times_text(*made.frames) + said(change) +
+                    (found ? ", " + found->summary() : "") + '\n';
   outcome.outputs["out"].push_back({"", std::move(made), input.origin});
   return outcome;
 }
@@ -57,12 +99,19 @@ Outcome run_convert(const Invocation& invocation) {
 Operation convert_operation() {
   Operation operation;
   operation.name = "convert";
-  operation.summary = "Write a sequence in another format; vertex order and faces stay as they are";
+  operation.summary =
+      "Write a sequence in another format; vertex order and faces stay, or become another's";
   operation.inputs = {{"sequence", DataKind::sequence, "sequence to convert"}};
   operation.inputs.front().streamed = operation.inputs.front().fields = true;
+  operation.inputs.push_back({.name = "match",
+                              .kind = DataKind::sequence,
+                              .help = "the same mesh, whose numbering and faces are taken: found "
+                                      "by its faces, refused where more than one fits",
+                              .optional = true,
+                              .streamed = true});
   operation.outputs = {{"out", DataKind::sequence, "the new sequence"}};
   operation.parameters = convert_parameters().declared();
-  operation.examples = {"convert takes/smile_%04d.obj -o smile.npy",
+  operation.examples = {"convert takes/smile_%04d.obj --match neutral.obj -o smile.npy",
                         "convert scan_mm/ --scale 0.001 --up z-to-y -o scan/"};
   operation.run = run_convert;
   return operation;

@@ -1,5 +1,6 @@
 #include "toolkit/pipeline/solution.h"
 
+#include "toolkit/correspondence/renumbering.h"
 #include "toolkit/mesh/frame_store.h"
 #include "toolkit/mesh/stopwatch.h"
 #include "toolkit/mesh/text.h"
@@ -168,6 +169,28 @@ Similarity similarity_between(const Positions& rest, const Target& target,
   return scaling_fit(from, to);
 }
 
+/// Throws MismatchError that tells a mesh which is only numbered differently from another one.
+void check_same_faces(const FrameSource& source, const Target& target) {
+  const BlendshapeModel& model = target.model;
+  if (same_faces(source.connectivity(), model.connectivity())) return;
+  const Renumbering found = renumbering(TriMesh{source.rest(), source.connectivity()},
+                                        TriMesh{model.neutral(), model.connectivity()});
+  if (found.found()) {
+    throw MismatchError(target.name + ": has " + found.summary() +
+                        " against the source; write the source in its numbering first "
+                        "(convert --match)");
+  }
+  if (model.vertices() != source.vertices()) {
+    throw MismatchError(target.name + ": " + std::to_string(model.vertices()) +
+                        " vertices, expected " + std::to_string(source.vertices()) +
+                        " as in the source");
+  }
+  throw MismatchError(
+      target.name + ": face " +
+      std::to_string(first_different_face(source.connectivity(), model.connectivity())) +
+      " is not the source's; source and target need the same faces");
+}
+
 }  // namespace
 
 EdgeSum edge_sum(Compatibility compatibility) {
@@ -186,16 +209,7 @@ bool solves_for_vertices(const BlendshapeModel& target, Space space) {
 MatchedTarget::MatchedTarget(const FrameSource& source, Target target)
     : target_(std::move(target)) {
   const BlendshapeModel& model = target_.model;
-  if (model.vertices() != source.vertices()) {
-    throw MismatchError(target_.name + ": " + std::to_string(model.vertices()) +
-                        " vertices, expected " + std::to_string(source.vertices()) +
-                        " as in the source");
-  }
-  const int face = first_different_face(source.connectivity(), model.connectivity());
-  if (face >= 0) {
-    throw MismatchError(target_.name + ": face " + std::to_string(face) +
-                        " is not the source's; source and target need the same faces");
-  }
+  check_same_faces(source, target_);
   if (model.triangles() == source.triangles()) return;
   auto connectivity = std::make_shared<Connectivity>(model.connectivity());
   connectivity->triangles = source.triangles();

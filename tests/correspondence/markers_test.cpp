@@ -1,0 +1,77 @@
+#include "toolkit/correspondence/markers.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/shapes.h"
+#include "toolkit/mesh/errors.h"
+
+namespace mimetra {
+namespace {
+
+using testing::HasSubstr;
+using testing::ThrowsMessage;
+
+const std::vector<Marker> kOctahedron = {{0, 0}, {1, 1}, {2, 2}, {3, 3}, {4, 4}, {5, 5}};
+
+auto refused(const std::vector<Marker>& markers, const std::string& why) {
+  const Positions sphere = test::sphere(1).positions;
+  EXPECT_THAT([&] { check_markers(markers, sphere, sphere); },
+              ThrowsMessage<MismatchError>(HasSubstr(why)));
+}
+
+TEST(Markers, OfAnOctahedronAreFine) {
+  const Positions sphere = test::sphere(1).positions;
+  EXPECT_NO_THROW(check_markers(kOctahedron, sphere, sphere));
+}
+
+TEST(Markers, NeedTheirVertices) {
+  refused({{0, 0}, {18, 1}, {2, 2}, {4, 4}},
+          "marker 2: vertex 18 of the source, which has vertices 0 to 17");
+  refused({{0, 0}, {1, -1}, {2, 2}, {4, 4}}, "marker 2: vertex -1 of the target");
+}
+
+TEST(Markers, HaveEachVertexOnce) {
+  refused({{0, 0}, {1, 1}, {2, 2}, {0, 4}}, "marker 4: vertex 0 of the source is in marker 1 too");
+  refused({{0, 0}, {1, 1}, {2, 2}, {4, 1}}, "marker 4: vertex 1 of the target is in marker 2 too");
+}
+
+TEST(Markers, AreAtLeastFourAndNotInOnePlane) {
+  refused({{0, 0}, {2, 2}, {4, 4}}, "3 markers, expected at least 4");
+  refused({{0, 0}, {1, 1}, {2, 2}, {3, 3}}, "the markers lie in one plane of the source");
+}
+
+TEST(Markers, ThatAnAffineMapExplainsLeaveNothing) {
+  const Positions source = test::sphere(1).positions;
+  Eigen::Matrix3d shear;
+  shear << 2, 1, 0, 0, 1, 0.5, 0, 0, 3;
+  const Positions target = source * shear;
+  EXPECT_LT(affine_residual(kOctahedron, source, target), 1e-14);
+}
+
+TEST(Markers, OfAnotherBaseFitBetterShifted) {
+  const Positions sphere = test::sphere(2).positions;
+  // The numbers of neighbours tell nothing about places: shifted markers are scattered.
+  const std::vector<Marker> right = {{0, 0},   {7, 7},   {12, 12}, {25, 25},
+                                     {33, 33}, {47, 47}, {60, 60}};
+  std::vector<Marker> wrong;
+  for (const Marker& marker : right) wrong.push_back({marker.source + 1, marker.target + 1});
+  Positions target = sphere;
+  // The same sphere with its vertices in an order of its own.
+  std::vector<Marker> right_there = right, wrong_there;
+  for (Marker& marker : right_there) marker.target = 65 - marker.target;
+  for (int v = 0; v < 66; ++v) target.row(65 - v) = sphere.row(v);
+  for (const Marker& m : right_there) wrong_there.push_back({m.source + 1, m.target + 1});
+  EXPECT_TRUE(fit_better_shifted(wrong_there, 1, sphere, target));
+  EXPECT_FALSE(fit_better_shifted(right_there, 1, sphere, target));
+  EXPECT_FALSE(fit_better_shifted(right_there, -1, sphere, target));
+}
+
+TEST(Markers, BeyondTheMeshAreOfAnotherBase) {
+  const Positions sphere = test::sphere(1).positions;
+  const std::vector<Marker> from_one = {{1, 1}, {2, 2}, {3, 3}, {4, 4}, {5, 5}, {18, 18}};
+  EXPECT_TRUE(fit_better_shifted(from_one, 1, sphere, sphere));
+}
+
+}  // namespace
+}  // namespace mimetra

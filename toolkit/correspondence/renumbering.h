@@ -1,0 +1,50 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "toolkit/mesh/tri_mesh.h"
+
+namespace mimetra {
+
+/// How the vertices of one mesh are those of another that is numbered differently, or why they are
+/// not.
+struct Renumbering {
+  /// Vertex of the other mesh for each one of the reference; empty where there is no map, or more
+  /// than one.
+  std::vector<VertexIndex> vertices;
+  /// Polygons of one are split in the other: quads and their triangles.
+  bool splits = false;
+  /// Vertices of one are several at the same place in the other: UV seams. A vertex of the
+  /// reference is then the lowest of those it is in the other.
+  bool seams = false;
+  /// Why `vertices` is empty.
+  std::string why_not;
+
+  bool found() const { return why_not.empty(); }
+  /// Vertices of the reference that have another number in the other mesh.
+  int moved() const;
+  /// "the same faces, 572 vertices renumbered", "the same faces but for polygons that one of them
+  /// splits", or why not.
+  std::string summary() const;
+};
+
+/// The map that makes the faces of `other` those of `reference`. In this order, the first that
+/// holds:
+/// - the faces are the same one by one, each from the same first corner;
+/// - they are the same one by one, each from some corner, and only one choice of them fits;
+/// - faces are joined and bounded alike, in one way only. Oriented polygons that hang together have
+///   at most one map for each image of one edge, so that no mirror image counts.
+/// Polygons of one may be several successive faces of the other (they share their inner edges).
+/// Vertices without a face are paired in ascending order, since nothing tells them apart.
+Renumbering renumbering(const Connectivity& reference, const Connectivity& other);
+
+/// The same where positions may decide, in two cases only: of several maps of a connected part, as
+/// eyeballs have, the one whose vertices are nearest (after the similarity that the other parts
+/// tell) is taken where every other map is at least twice as far (root mean square); and where
+/// there is no map, vertices at exactly one place are taken for one in both meshes. Throws
+/// std::invalid_argument where a mesh has not a position for each vertex, or one that is not
+/// finite.
+Renumbering renumbering(const TriMesh& reference, const TriMesh& other);
+
+}  // namespace mimetra

@@ -1,0 +1,110 @@
+#include "toolkit/io/marker_file.h"
+
+#include <algorithm>
+#include <limits>
+#include <string>
+
+#include "toolkit/io/text_cursor.h"
+#include "toolkit/io/whole_file.h"
+#include "toolkit/mesh/errors.h"
+#include "toolkit/mesh/text.h"
+
+namespace mimetra {
+namespace {
+
+/// A line with numbers.
+struct NumberLine {
+  int line;
+  std::string name;  ///< what stands before them
+  std::vector<long long> numbers;
+};
+
+bool is_name(std::string_view word) {
+  return word == "-" || (word[0] >= 'a' && word[0] <= 'z') || (word[0] >= 'A' && word[0] <= 'Z');
+}
+
+std::vector<NumberLine> number_lines(const std::string& path, std::string text) {
+  for (char& c : text) {
+    if (std::string_view(",;:[](){}\"'").find(c) != std::string_view::npos) c = ' ';
+  }
+  TextCursor cursor(path, without_byte_order_mark(text), {.comments = true});
+  std::vector<NumberLine> lines;
+  for (; !cursor.at_end(); cursor.next_line()) {
+    NumberLine found{cursor.line(), "", {}};
+    std::string_view word = cursor.word();
+    for (; !word.empty() && is_name(word) && found.numbers.empty(); word = cursor.word()) {
+      if (word != "-") found.name = lower_case(std::string(word));
+    }
+    for (; !word.empty(); word = cursor.word()) {
+      found.numbers.push_back(cursor.integer(word, "a vertex"));
+    }
+    if (!found.numbers.empty()) lines.push_back(std::move(found));
+  }
+  return lines;
+}
+
+[[noreturn]] void fail(const std::string& path, int line, const std::string& message) {
+  throw IoError(path, "line " + std::to_string(line) + ": " + message);
+}
+
+VertexIndex vertex_of_file(const std::string& path, int line, long long number, int base) {
+  const long long vertex = number - base;
+  if (number < base || vertex > std::numeric_limits<VertexIndex>::max()) {
+    fail(path, line,
+         "vertex " + std::to_string(number) + ", expected one from " + std::to_string(base) +
+             " on, where the file's count begins");
+  }
+  return static_cast<VertexIndex>(vertex);
+}
+
+bool are_two_lists(const std::vector<NumberLine>& lines) {
+  return lines.size() == 2 && lines[0].numbers.size() > 2 &&
+         lines[0].numbers.size() == lines[1].numbers.size();
+}
+
+std::vector<Marker> markers_of_lists(const std::string& path, const std::vector<NumberLine>& lines,
+                                     int base) {
+  const bool target_first = lines[0].name == "target" || lines[1].name == "source";
+  const NumberLine &source = lines[target_first ? 1 : 0], &target = lines[target_first ? 0 : 1];
+  std::vector<Marker> markers;
+  for (std::size_t i = 0; i < source.numbers.size(); ++i) {
+    markers.push_back({vertex_of_file(path, source.line, source.numbers[i], base),
+                       vertex_of_file(path, target.line, target.numbers[i], base)});
+  }
+  return markers;
+}
+
+std::vector<Marker> markers_of_pairs(const std::string& path, const std::vector<NumberLine>& lines,
+                                     int base) {
+  const bool counted = !lines.empty() && lines.front().numbers.size() == 1;
+  std::vector<Marker> markers;
+  for (std::size_t i = counted ? 1 : 0; i < lines.size(); ++i) {
+    const NumberLine& pair = lines[i];
+    if (pair.numbers.size() != 2) {
+      fail(path, pair.line,
+           "expected two vertices, of the source and of the target, found " +
+               std::to_string(pair.numbers.size()));
+    }
+    markers.push_back({vertex_of_file(path, pair.line, pair.numbers[0], base),
+                       vertex_of_file(path, pair.line, pair.numbers[1], base)});
+  }
+  if (counted && lines.front().numbers[0] != static_cast<long long>(markers.size())) {
+    fail(path, lines.front().line,
+         "announces " + std::to_string(lines.front().numbers[0]) + " markers, found " +
+             std::to_string(markers.size()));
+  }
+  return markers;
+}
+
+}  // namespace
+
+std::vector<Marker> read_markers(const std::filesystem::path& path, int index_base) {
+  const std::string name = path.string();
+  const std::vector<NumberLine> lines = number_lines(name, read_file(path));
+  std::vector<Marker> markers = are_two_lists(lines) ? markers_of_lists(name, lines, index_base)
+                                                     : markers_of_pairs(name, lines, index_base);
+  if (markers.empty()) throw IoError(name, "holds no marker");
+  return markers;
+}
+
+}  // namespace mimetra
