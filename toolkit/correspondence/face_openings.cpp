@@ -1,0 +1,216 @@
+#include "toolkit/correspondence/face_openings.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <queue>
+#include <stdexcept>
+#include <string>
+
+#include "toolkit/mesh/weld.h"
+
+namespace mimetra {
+namespace {
+
+/// Edges are looked for within this share of the opening's width from their landmarks: lips are
+/// thick, and a socket's ground is farther away.
+constexpr double kReach = 0.4;
+/// Where edges meet behind, as in a mouth's bag, they end at this share of the way from one to the
+/// other.
+constexpr double kShareOfWay = 0.4;
+/// A way from edge to edge that is shorter than this many times the straight line leads over skin
+/// without a cut.
+constexpr double kDetour = 1.6;
+/// Half of the band around the opening's middle, as a share of the width: at the corners edges
+/// meet.
+constexpr double kBand = 0.25;
+
+/// Landmarks of one opening.
+struct Scheme {
+  std::string_view name;
+  std::array<int, 2> corners;
+  std::vector<int> upper, lower;
+};
+
+const std::array<Scheme, 3>& schemes() {
+  static const std::array<Scheme, 3> all = {{{"right eye", {36, 39}, {37, 38}, {41, 40}},
+                                             {"left eye", {42, 45}, {43, 44}, {47, 46}},
+                                             {"mouth", {48, 54}, {50, 51, 52}, {58, 57, 56}}}};
+  return all;
+}
+
+using Neighbours = std::vector<std::vector<VertexIndex>>;
+
+Neighbours neighbours_of(int vertices, const Triangles& triangles) {
+  Neighbours result(vertices);
+  for (Eigen::Index t = 0; t < triangles.rows(); ++t) {
+    for (int c = 0; c < 3; ++c) {
+      const VertexIndex a = triangles(t, c), b = triangles(t, (c + 1) % 3);
+      if (a == b) continue;
+      result[a].push_back(b);
+      result[b].push_back(a);
+    }
+  }
+  return result;
+}
+
+/// What is reached along edges from two groups of vertices, and from which first.
+struct Reached {
+  std::vector<int> group;        ///< 0 or 1; -1 for what neither reaches
+  std::vector<double> distance;  ///< from it
+};
+
+Reached reached_from(const Positions& positions, const Neighbours& neighbours,
+                     const std::array<std::vector<VertexIndex>, 2>& groups, double reach) {
+  struct Front {
+    double distance;
+    VertexIndex vertex;
+    int group;
+    auto operator<=>(const Front&) const = default;
+  };
+  std::priority_queue<Front, std::vector<Front>, std::greater<>> fronts;
+  Reached result{std::vector<int>(neighbours.size(), -1), std::vector<double>(neighbours.size())};
+  for (int g = 0; g < 2; ++g) {
+    for (const VertexIndex v : groups[g]) fronts.push({0, v, g});
+  }
+  while (!fronts.empty()) {
+    const Front next = fronts.top();
+    fronts.pop();
+    if (result.group[next.vertex] >= 0) continue;
+    result.group[next.vertex] = next.group;
+    result.distance[next.vertex] = next.distance;
+    for (const VertexIndex v : neighbours[next.vertex]) {
+      const double distance =
+          next.distance + (positions.row(v) - positions.row(next.vertex)).norm();
+      if (result.group[v] < 0 && distance <= reach) fronts.push({distance, v, next.group});
+    }
+  }
+  return result;
+}
+
+/// The welded surface that openings are looked for on.
+struct Skin {
+  explicit Skin(const TriMesh& rest)
+      : positions(rest.positions),
+        weld(Weld::exact(rest.positions)),
+        neighbours(
+            neighbours_of(rest.connectivity.vertices, weld.welded(rest.connectivity.triangles))) {}
+
+  const Positions& positions;
+  Weld weld;
+  Neighbours neighbours;
+};
+
+/// An opening's landmarks on the skin.
+struct Edges {
+  Edges(const Skin& skin, const Scheme& scheme, const std::map<int, VertexIndex>& vertex_of)
+      : from(skin.positions.row(vertex_of.at(scheme.corners[0]))),
+        to(skin.positions.row(vertex_of.at(scheme.corners[1]))),
+        width((to - from).norm()) {
+    for (std::size_t i = 0; i < scheme.upper.size(); ++i) {
+      const VertexIndex upper = vertex_of.at(scheme.upper[i]),
+                        lower = vertex_of.at(scheme.lower[i]);
+      landmarks[0].push_back(skin.weld.representative[upper]);
+      landmarks[1].push_back(skin.weld.representative[lower]);
+      apart += (skin.positions.row(upper) - skin.positions.row(lower)).norm() /
+               static_cast<double>(scheme.upper.size());
+    }
+  }
+
+  bool is_in_band(const Eigen::RowVector3d& place) const {
+    return std::abs((place - (from + to) / 2).dot(to - from)) <= kBand * width * width;
+  }
+
+  Eigen::RowVector3d from, to;
+  double width;
+  std::array<std::vector<VertexIndex>, 2> landmarks;  ///< upper and lower
+  double apart = 0;                                   ///< the landmarks of a pair, mean
+};
+
+/// The shortest way in the band from one edge's landmarks to the other's; infinite without one.
+double way_between(const Skin& skin, const Edges& edges, const Reached& reached) {
+  double shortest = std::numeric_limits<double>::infinity();
+  for (VertexIndex v = 0; v < skin.positions.rows(); ++v) {
+    if (reached.group[v] != 0 || !edges.is_in_band(skin.positions.row(v))) continue;
+    for (const VertexIndex other : skin.neighbours[v]) {
+      if (reached.group[other] != 1) continue;
+      shortest = std::min(shortest, reached.distance[v] + reached.distance[other] +
+                                        (skin.positions.row(v) - skin.positions.row(other)).norm());
+    }
+  }
+  return shortest;
+}
+
+/// Its edges are empty where they hang together.
+FaceOpening opening_between(const Skin& skin, const Scheme& scheme,
+                            const std::map<int, VertexIndex>& vertex_of) {
+  const Edges edges(skin, scheme, vertex_of);
+  FaceOpening opening{scheme.name, {}, {}, edges.width};
+  const Reached reached =
+      reached_from(skin.positions, skin.neighbours, edges.landmarks, edges.width);
+  const double way = way_between(skin, edges, reached);
+  if (way < kDetour * edges.apart) return opening;
+  const double reach = std::min(kReach * edges.width, kShareOfWay * way);
+  for (VertexIndex v = 0; v < skin.positions.rows(); ++v) {
+    if (reached.group[v] < 0 || reached.distance[v] > reach) continue;
+    if (!edges.is_in_band(skin.positions.row(v))) continue;
+    (reached.group[v] == 0 ? opening.upper : opening.lower).push_back(v);
+  }
+  return opening;
+}
+
+double shortest_distance(const Eigen::Ref<const Positions>& pose, const FaceOpening& opening) {
+  double shortest = std::numeric_limits<double>::infinity();
+  for (const VertexIndex u : opening.upper) {
+    for (const VertexIndex v : opening.lower) {
+      shortest = std::min(shortest, (pose.row(u) - pose.row(v)).squaredNorm());
+    }
+  }
+  return std::sqrt(shortest);
+}
+
+}  // namespace
+
+std::vector<FaceOpening> face_openings(const TriMesh& rest,
+                                       const std::vector<std::pair<int, VertexIndex>>& landmarks) {
+  std::map<int, VertexIndex> vertex_of;
+  for (const auto& [landmark, vertex] : landmarks) {
+    if (vertex < 0 || vertex >= rest.connectivity.vertices) {
+      throw std::invalid_argument("landmark " + std::to_string(landmark) + ": vertex " +
+                                  std::to_string(vertex) + ", expected 0 to " +
+                                  std::to_string(rest.connectivity.vertices - 1));
+    }
+    vertex_of[landmark] = vertex;
+  }
+  const Skin skin(rest);
+  std::vector<FaceOpening> result;
+  for (const Scheme& scheme : schemes()) {
+    std::vector<int> needed = {scheme.corners[0], scheme.corners[1]};
+    needed.insert(needed.end(), scheme.upper.begin(), scheme.upper.end());
+    needed.insert(needed.end(), scheme.lower.begin(), scheme.lower.end());
+    if (!std::ranges::all_of(needed, [&](int landmark) { return vertex_of.contains(landmark); })) {
+      continue;
+    }
+    FaceOpening opening = opening_between(skin, scheme, vertex_of);
+    if (!opening.upper.empty() && !opening.lower.empty()) result.push_back(std::move(opening));
+  }
+  return result;
+}
+
+Eigen::MatrixXd openness(const FrameSource& sequence, const std::vector<FaceOpening>& openings,
+                         const BlockOptions& options) {
+  Eigen::MatrixXd result(sequence.frames(), static_cast<Eigen::Index>(openings.size()));
+  for_each_block(sequence, options, [&](int first, const Frames& poses) {
+    for (Eigen::Index f = 0; f < poses.rows(); ++f) {
+      const Eigen::Map<const Positions> pose(poses.row(f).data(), sequence.vertices(), 3);
+      for (Eigen::Index o = 0; o < result.cols(); ++o) {
+        result(first + f, o) = shortest_distance(pose, openings[o]) / openings[o].width;
+      }
+    }
+  });
+  return result;
+}
+
+}  // namespace mimetra
