@@ -9,6 +9,7 @@
 #include <Eigen/SVD>
 
 #include "toolkit/mesh/errors.h"
+#include "toolkit/mesh/product_blocking.h"
 
 namespace mimetra {
 namespace {
@@ -81,6 +82,7 @@ void check_markers(const std::vector<Marker>& markers, const Positions& source,
 
 double affine_residual(const std::vector<Marker>& markers, const Positions& source,
                        const Positions& target) {
+  fix_product_blocking();
   const Eigen::MatrixXd from = centred(places(markers, &Marker::source, source));
   const Eigen::MatrixXd to = centred(places(markers, &Marker::target, target));
   const Eigen::MatrixXd map = from.colPivHouseholderQr().solve(to);
