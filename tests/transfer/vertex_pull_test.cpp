@@ -50,7 +50,7 @@ void expect_literal(const Shape& shape, const std::vector<int>& selected, int fr
   const MeshSequence take = test::shaken(shape, frames, 0.2);
   const DeformationGradients gradients(shape.positions, shape.triangles, selected);
   const std::vector<Edges> vectors = random_vectors(selected.size());
-  const VertexPull pull(shape.positions, shape.triangles, gradients, vectors,
+  const VertexPull pull(shape.positions, shape.triangles, shape.triangles, gradients, vectors,
                         every_vertex(shape.positions.rows()));
   const VertexPull::Rows found = pull(take.positions());
   ASSERT_EQ(found.rows(), shape.positions.rows());
@@ -85,7 +85,8 @@ TEST(VertexPull, PutsEachVertexWhereItIsWanted) {
   const DeformationGradients gradients(shape.positions, shape.triangles, selected);
   const std::vector<Edges> vectors = random_vectors(3);
   const auto pulled = [&](const std::vector<int>& rows) {
-    return VertexPull(shape.positions, shape.triangles, gradients, vectors, rows)(take.positions());
+    return VertexPull(shape.positions, shape.triangles, shape.triangles, gradients, vectors,
+                      rows)(take.positions());
   };
   const VertexPull::Rows all = pulled(every_vertex(81));
   const int wanted = shape.triangles(31, 1), unused = 80;
@@ -104,7 +105,8 @@ TEST(VertexPull, AddsWhatGoesToOneRow) {
   const DeformationGradients gradients(shape.positions, shape.triangles, {30});
   const std::vector<Edges> vectors = random_vectors(1);
   const auto pulled = [&](const std::vector<int>& rows) {
-    return VertexPull(shape.positions, shape.triangles, gradients, vectors, rows)(take.positions());
+    return VertexPull(shape.positions, shape.triangles, shape.triangles, gradients, vectors,
+                      rows)(take.positions());
   };
   const VertexPull::Rows all = pulled(every_vertex(81));
   const int one = shape.triangles(30, 0), other = shape.triangles(30, 2);
@@ -118,16 +120,16 @@ TEST(VertexPull, OfTheRestPoseIsExactlyZeroInEveryLane) {
   shape.positions.rowwise() += Eigen::RowVector3d(1e5, 3, -1e5);
   const auto all = test::half_of(shape.triangles);
   const DeformationGradients gradients(shape.positions, shape.triangles, all);
-  const VertexPull pull(shape.positions, shape.triangles, gradients, random_vectors(all.size()),
-                        every_vertex(81));
+  const VertexPull pull(shape.positions, shape.triangles, shape.triangles, gradients,
+                        random_vectors(all.size()), every_vertex(81));
   EXPECT_EQ(pull(test::shaken(shape, 16, 0).positions()).norm(), 0);
 }
 
 TEST(VertexPull, GivesAFlatTriangleNoNormal) {
   const Shape shape = patch();
   const DeformationGradients gradients(shape.positions, shape.triangles, {0});
-  const VertexPull pull(shape.positions, shape.triangles, gradients, random_vectors(1),
-                        every_vertex(81));
+  const VertexPull pull(shape.positions, shape.triangles, shape.triangles, gradients,
+                        random_vectors(1), every_vertex(81));
   EXPECT_TRUE(pull(Frames::Zero(1, 3 * 81)).allFinite());
 }
 

@@ -145,7 +145,20 @@ std::vector<Correspondence::Part> by_area(const std::vector<int>& rows,
   return parts;
 }
 
-CorrespondenceQuality quality_of_pairs(const Correspondence& pairs, double diagonal) {
+}  // namespace
+
+Correspondence Correspondence::identity(int triangles) {
+  Correspondence result;
+  result.source_triangles = triangles;
+  for (int t = 0; t < triangles; ++t) {
+    result.parts.push_back({t, 1});
+    result.offsets.push_back(t + 1);
+  }
+  result.residuals = Eigen::VectorXd::Zero(triangles);
+  return result;
+}
+
+CorrespondenceQuality quality_of(const Correspondence& pairs, double diagonal) {
   CorrespondenceQuality quality;
   int with_partner = 0;
   for (int t = 0; t < pairs.target_triangles(); ++t) {
@@ -159,19 +172,6 @@ CorrespondenceQuality quality_of_pairs(const Correspondence& pairs, double diago
   quality.without_partner =
       1 - static_cast<double>(with_partner) / std::max(1, pairs.target_triangles());
   return quality;
-}
-
-}  // namespace
-
-Correspondence Correspondence::identity(int triangles) {
-  Correspondence result;
-  result.source_triangles = triangles;
-  for (int t = 0; t < triangles; ++t) {
-    result.parts.push_back({t, 1});
-    result.offsets.push_back(t + 1);
-  }
-  result.residuals = Eigen::VectorXd::Zero(triangles);
-  return result;
 }
 
 std::string CorrespondenceQuality::verdict() const {
@@ -225,7 +225,7 @@ FoundCorrespondence find_correspondence(const TriMesh& source, const TriMesh& ta
   found.fit = fit_to_surface(source, target, markers, options);
   const Triangles& triangles = source.connectivity.triangles;
   found.correspondence = pair_triangles(found.fit, triangles, target, options.threads);
-  found.quality = quality_of_pairs(found.correspondence, box_diagonal(target.positions));
+  found.quality = quality_of(found.correspondence, box_diagonal(target.positions));
   const ReachedTriangles parts(found.fit.positions, triangles, found.fit.reached);
   std::vector<bool> is_partner(triangles.rows(), false);
   for (const Correspondence::Part& part : found.correspondence.parts) {

@@ -48,6 +48,9 @@ struct CorrespondenceQuality {
   std::string verdict() const;
 };
 
+/// What the residuals tell of it; nothing is known of folds. `diagonal` of the target's box.
+CorrespondenceQuality quality_of(const Correspondence& pairs, double diagonal);
+
 /// A source deformed onto a target, and their triangles in pairs.
 struct FoundCorrespondence {
   Correspondence correspondence;

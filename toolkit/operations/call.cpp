@@ -23,6 +23,13 @@ std::filesystem::path place_of(const std::filesystem::path& path) {
   return place.has_filename() ? place : place.parent_path();
 }
 
+/// A sequence with the fields that nobody asked for.
+FieldSequence with_more_fields(const NamedData& value) {
+  FieldSequence sequence = std::get<FieldSequence>(value.data);
+  sequence.fields.insert(sequence.fields.end(), value.more_fields.begin(), value.more_fields.end());
+  return sequence;
+}
+
 }  // namespace
 
 void check_kind(const Operation& operation, const Input& input, const Data& data) {
@@ -265,10 +272,19 @@ void Call::write_values(const Output& output, const Paths& targets, const std::s
     if (request_.destinations.contains(output.name)) {
       write.extra.emplace_back(manifest_name(target, is_folder), manifest);
     }
+    for (const auto& [ending, text] : made->second[i].beside) {
+      const std::string name = is_folder ? ending.substr(1) : target.stem().string() + ending;
+      write.extra.emplace_back(name, text);
+    }
     for (const std::string& note : notes_on_losses(format, made->second[i].data, write)) {
       if (request_.log) request_.log(LogLevel::warning, note);
     }
-    format.write(made->second[i].data, write);
+    const NamedData& value = made->second[i];
+    if (format.fields && !value.more_fields.empty()) {
+      format.write(with_more_fields(value), write);
+    } else {
+      format.write(value.data, write);
+    }
   }
 }
 

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -108,6 +109,12 @@ struct NamedData {
   std::string name;
   Data data;
   Origin origin = {};
+  /// Text that is written beside it, by the end of its name: ".correspondence.json" becomes
+  /// NAME.correspondence.json beside a file NAME.EXT, and correspondence.json in a folder.
+  std::map<std::string, std::string> beside = {};
+  /// Fields of a sequence that nobody asked for: written where the format holds fields, and left
+  /// out without a word elsewhere.
+  std::vector<Field> more_fields = {};
 };
 
 }  // namespace mimetra

@@ -5,6 +5,7 @@
 #include "toolkit/mesh/text.h"
 #include "toolkit/operations/evaluation_table.h"
 #include "toolkit/operations/json.h"
+#include "toolkit/operations/match_parameters.h"
 #include "toolkit/operations/pipeline_parameters.h"
 #include "toolkit/operations/toolkit_operations.h"
 #include "toolkit/pipeline/memory.h"
@@ -55,7 +56,6 @@ std::string text_of(const std::vector<EvaluationRow>& rows) {
 
 Outcome run_evaluate(const Invocation& invocation) {
   const MeshSequence& sequence = invocation.sequence("source");
-  const NamedData& target = invocation.input("target");
   EvaluationOptions options =
       evaluation_parameters(&invocation.get<FieldSequence>("source")).read(invocation.parameters);
   options.source = described(options.source, invocation.input("source"));
@@ -63,8 +63,7 @@ Outcome run_evaluate(const Invocation& invocation) {
   options.progress = invocation.progress;
   options.notes = warnings_of(invocation);
   const std::vector<EvaluationRow> rows = in_command_terms(invocation.parameters, [&] {
-    return evaluate(sequence, {target.name, std::get<ModelData>(target.data).model.average()},
-                    options);
+    return evaluate(sequence, targets_of(invocation).front(), options);
   });
   const Table table = table_of(rows);
   Outcome outcome;
@@ -97,6 +96,8 @@ Operation evaluate_operation() {
   operation.inputs.front().fields = true;
   operation.outputs = {{"out", DataKind::table, "the table", true}};
   operation.parameters = evaluation_parameters().declared();
+  const std::vector<Parameter> matching = match_parameters();
+  operation.parameters.insert(operation.parameters.end(), matching.begin(), matching.end());
   operation.examples = {"evaluate take.npy actor/ -k 10,30,40",
                         "evaluate takes/ actor@identity007=2 -k 10,20,30,40,50 -o table.csv"};
   operation.run = run_evaluate;

@@ -244,8 +244,20 @@ std::vector<std::string> Parameters::files() const {
       return colon == std::string::npos ? word == *path
                                         : path->starts_with(word.substr(0, colon + 1));
     });
-    if (!is_word) paths.push_back(*path);
+    if (is_word) continue;
+    const std::vector<std::string> several = this->paths(name);
+    paths.insert(paths.end(), several.begin(), several.end());
   }
+  return paths;
+}
+
+std::vector<std::string> Parameters::paths(const std::string& name) const {
+  const auto text = optional_text(name);
+  if (!text) return {};
+  if (!find(name)->several) return {*text};
+  std::vector<std::string> paths;
+  std::istringstream rest(*text);
+  for (std::string path; std::getline(rest, path, ',');) paths.push_back(path);
   return paths;
 }
 

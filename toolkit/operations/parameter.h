@@ -44,6 +44,7 @@ struct Parameter {
   std::optional<double> minimum = {};
   std::optional<double> maximum = {};
   std::vector<std::string> choices = {};
+  bool several = false;  ///< of a file: several paths between commas
 
   /// `--radius` or `-k`.
   std::string option() const;
@@ -98,6 +99,8 @@ class Parameters {
   bool is_set(const std::string& name) const { return values_.contains(name); }
   /// The paths that were set, without the words that stand beside paths.
   std::vector<std::string> files() const;
+  /// Those of one parameter of files; none where none is set.
+  std::vector<std::string> paths(const std::string& name) const;
   const ParameterValue& value(const std::string& name) const;
 
   bool flag(const std::string& name) const { return std::get<bool>(value(name)); }

@@ -174,6 +174,16 @@ std::string in_command_terms(Topic topic, const std::string& text, const Paramet
       return "--anchor: " + text;
     case Topic::held_anchor:
       return "--anchor: " + text + "; use --outside identity or --full";
+    case Topic::other_faces:
+      if (!parameters.find("markers")) return text;
+      return text +
+             "; for another topology name at least four pairs of vertices that are the same "
+             "point of the face (--markers FILE), or the --correspondence FILE of an earlier "
+             "run";
+    case Topic::shifted_markers:
+      return text + "; use --index-base " + (parameters.integer("index-base") == 0 ? "1" : "0");
+    case Topic::poor_match:
+      return text;
   }
   return text;
 }

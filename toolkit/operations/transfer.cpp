@@ -2,12 +2,14 @@
 
 #include <nlohmann/json.hpp>
 
+#include "toolkit/io/correspondence_file.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/stopwatch.h"
 #include "toolkit/mesh/text.h"
 #include "toolkit/operations/convergence_report.h"
 #include "toolkit/operations/formats.h"
 #include "toolkit/operations/json.h"
+#include "toolkit/operations/match_parameters.h"
 #include "toolkit/operations/pipeline_parameters.h"
 #include "toolkit/operations/region_report.h"
 #include "toolkit/operations/toolkit_operations.h"
@@ -36,14 +38,6 @@ BoundParameters<TransferOptions> transfer_parameters(const FieldSequence* source
 
 const BlendshapeModel& model_of(const NamedData& target) {
   return std::get<ModelData>(target.data).model.average();
-}
-
-std::vector<Target> targets_of(const Invocation& invocation) {
-  std::vector<Target> targets;
-  for (const NamedData& target : invocation.inputs.at("target")) {
-    targets.push_back({target.name, model_of(target)});
-  }
-  return targets;
 }
 
 TransferOptions options_of(const Invocation& invocation) {
@@ -75,10 +69,12 @@ NamedData weight_table(const NamedData& target, const Solution& solution) {
 }
 
 Json report_of(const NamedData& target, const TransferredTarget& transferred) {
-  const auto& [solution, regions, similarity, error] = transferred;
+  const auto& [solution, regions, similarity, error, pairing, match, error_seconds] = transferred;
   Json json = {{"name", target.name},          {"output", nullptr},  {"de_all", error.de_all},
                {"de_region", error.de_region}, {"leak", error.leak}, {"flipped", error.flipped},
                {"seconds", solution.seconds}};
+  json["error_seconds"] = error_seconds;
+  if (match) json["correspondence"] = json_of(*match);
   json["missed"] = missed_share(error);
   json["axes"] = {{"angle", similarity.angle()},
                   {"scale", similarity.scale},
@@ -99,11 +95,11 @@ Json report_of(const NamedData& target, const TransferredTarget& transferred) {
 }
 
 std::string summary_of(const NamedData& target, const TransferredTarget& transferred) {
-  const auto& [solution, regions, similarity, error] = transferred;
+  const auto& [solution, regions, similarity, error, pairing, match, error_seconds] = transferred;
   return target.name + ": DE " + readable(error.de_all) + " over all triangles, " +
          readable(error.de_region) + " over the regions; leak " + readable(error.leak) + ", " +
          std::to_string(error.flipped) + " flipped triangles; " + readable(solution.seconds) +
-         " s\n";
+         " s" + (match ? "; " + summary_of(*match) : "") + '\n';
 }
 
 /// Refuses outputs that this request cannot make, before anything is computed.
@@ -146,10 +142,17 @@ void add_targets(Outcome& outcome, Json& report, const Invocation& invocation,
     if (invocation.wants("weights-out") && solution.weights().size() > 0) {
       outcome.outputs["weights-out"].push_back(weight_table(targets[t], solution));
     }
-    outcome.outputs["out"].push_back(
-        {targets[t].name,
-         held_like(invocation.get<FieldSequence>("source"), std::move(solution.sequence),
-                   {.threads = invocation.threads})});
+    const FieldSequence& source = invocation.get<FieldSequence>("source");
+    FieldSequence made =
+        held_like(source, std::move(solution.sequence), {.threads = invocation.threads});
+    NamedData& out = outcome.outputs["out"].emplace_back(targets[t].name, FieldSequence());
+    if (transferred.pairing) {
+      const Correspondence& pairs = transferred.pairing->triangles();
+      out.more_fields = fields_of(pairs);
+      out.beside[".correspondence.json"] =
+          correspondence_json(pairs, source.frames->connectivity(), made.frames->connectivity());
+    }
+    out.data = std::move(made);
   }
   report["targets"] = reports;
 }
@@ -235,6 +238,8 @@ Operation transfer_operation() {
       components_output(),
       {"weights-out", DataKind::table, "blendshape weights", true, true}};
   operation.parameters = transfer_parameters().declared();
+  const std::vector<Parameter> matching = match_parameters();
+  operation.parameters.insert(operation.parameters.end(), matching.begin(), matching.end());
   operation.examples = {
       "transfer takes/smile_%04d.obj actor/ -k 30 -o actor_smile/ --regions-out rois/smile.pvd",
       "transfer take.npy actor@identity007=2 double/ --full -o results/"};

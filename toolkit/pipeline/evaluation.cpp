@@ -26,14 +26,21 @@ EvaluatedTransfer solved(const Source& source, const Target& target, const Selec
                          const SolveOptions& options) {
   const PlacedSource placed = placed_at(target, source, options);
   EvaluatedTransfer result{{}, solve(placed.source, target, selection, options), {}};
-  result.error =
-      transfer_error(*placed.source.sequence, *result.solution.sequence, selection.triangles,
-                     {.edges = options.edges, .threads = options.threads});
-  result.row.triangles = static_cast<int>(selection.triangles.size());
+  result.error = transfer_error(
+      *placed.source.sequence, *result.solution.sequence, selection.triangles,
+      {.edges = options.edges, .pairing = target.pairing, .threads = options.threads});
   result.row.de_all = result.error.de_all;
   result.row.de_region = result.error.de_region;
   result.row.transfer_seconds = result.solution.seconds;
   return result;
+}
+
+/// Those of L that count.
+std::vector<int> paired_of(const Selection& selection, const Target& target) {
+  std::vector<int> paired = selection.triangles;
+  if (!target.pairing) return paired;
+  std::erase_if(paired, [&](int t) { return !target.pairing->triangles().has_partner(t); });
+  return paired;
 }
 
 /// The work of one decomposition in a row; the rest is its transfer.
@@ -54,8 +61,9 @@ std::optional<double> common_radius(const Regions& regions) {
 
 EvaluatedTransfer evaluate_full(const Source& source, const Target& target,
                                 const SolveOptions& options) {
-  EvaluatedTransfer result = solved(source, target, whole(*source.sequence), options);
+  EvaluatedTransfer result = solved(source, target, whole(target), options);
   result.row.vertices = source.sequence->vertices();
+  result.row.triangles = static_cast<int>(source.sequence->triangles().rows());
   result.row.de_region = result.row.de_all;
   return result;
 }
@@ -63,16 +71,18 @@ EvaluatedTransfer evaluate_full(const Source& source, const Target& target,
 EvaluatedTransfer evaluate_by(const Regions& regions, const EvaluatedTransfer& full,
                               const Source& source, const Target& target,
                               const SolveOptions& options) {
-  EvaluatedTransfer result = solved(source, target, selection_of(regions), options);
+  const Selection selection = selection_of(regions, target);
+  EvaluatedTransfer result = solved(source, target, selection, options);
   EvaluationRow& row = result.row;
   row.vertices = regions.vertex_count();
+  row.triangles = static_cast<int>(regions.triangles.size());
   row.vertex_share = regions.vertex_share();
   row.triangle_share = regions.triangle_share();
   row.radius = common_radius(regions);
   const double size = result.solution.sequence->diameter();
   row.mpe_all = percentage_error(full.error.de_all, row.de_all, size);
-  row.mpe_region =
-      percentage_error(mean_over(full.error.per_triangle, regions.triangles), row.de_region, size);
+  row.mpe_region = percentage_error(
+      mean_over(full.error.per_triangle, paired_of(selection, target)), row.de_region, size);
   return result;
 }
 
@@ -92,7 +102,10 @@ std::vector<EvaluationRow> evaluate(const MeshSequence& sequence, const Target& 
   of_solving.notes = options.notes;
   of_solving.edges = edge_sum(options.analysis.compatibility);
 
-  const MatchedTarget matched(sequence, given);
+  const MatchedTarget matched(sequence, given,
+                              {.source_rest = asked_rest(sequence, options.source),
+                               .threads = options.threads,
+                               .notes = options.notes});
   const Target& target = *matched;
   of_source.joint = joint_search({target}, of_solving);
   const Source source = prepare_source(sequence, of_source);

@@ -8,7 +8,7 @@
 
 namespace mimetra {
 
-/// One row of the paper's Table I.
+/// One row of the paper's Table I. Vertices, triangles and their shares are the source's.
 struct EvaluationRow {
   std::optional<int> k;  ///< number of components; none for the full transfer and for given regions
   int vertices = 0;

@@ -85,18 +85,44 @@ std::vector<int> triangles_outside(const Triangles& triangles, const std::vector
   return outside;
 }
 
+/// A source at the vertices of a target, where its motion is known; the others stay.
+MeshSequence on_target(const MeshSequence& sequence, const BlendshapeModel& target,
+                       const Pairing& pairing) {
+  const std::vector<VertexIndex> carried = pairing.carried_vertices();
+  const auto placed = [&](const PositionsView& pose) {
+    Positions result = target.neutral();
+    result(carried, Eigen::all) = pairing.carried(pose, carried);
+    return result;
+  };
+  Frames frames(sequence.frames(), 3 * target.vertices());
+  for (int f = 0; f < sequence.frames(); ++f) {
+    const Positions pose = placed(sequence.frame(f));
+    frames.row(f) = Eigen::Map<const Eigen::RowVectorXd>(pose.data(), pose.size());
+  }
+  return {target.connectivity(), std::move(frames), sequence.known_times(),
+          placed(PositionsView(sequence.rest().data(), sequence.vertices(), 3))};
+}
+
 /// Both errors as a share of the diameter; none where there is no patch to hold out.
 std::optional<HeldOutErrors> held_out_errors(const std::shared_ptr<const FrameSource>& placed,
-                                             const BlendshapeModel& target,
-                                             const SolveOptions& options) {
-  const MeshSequence sequence = judged_frames(placed);
+                                             const Target& matched, const SolveOptions& options) {
+  const BlendshapeModel& target = matched.model;
+  const Pairing* pairing = matched.pairing.get();
+  const MeshSequence judged = judged_frames(placed);
+  const MeshSequence sequence = pairing ? on_target(judged, target, *pairing) : judged;
   const std::vector<int> patch = patches_of(sequence.rest());
   HeldOutErrors sums;
   Eigen::Index points = 0;
   for (int p = 0; p < kPatches; ++p) {
     std::vector<Eigen::Index> held, others;
-    for (int v = 0; v < sequence.vertices(); ++v) (patch[v] == p ? held : others).push_back(v);
-    const std::vector<int> triangles = triangles_outside(target.triangles(), patch, p);
+    for (int v = 0; v < sequence.vertices(); ++v) {
+      if (pairing && pairing->carriers(v).empty()) continue;
+      (patch[v] == p ? held : others).push_back(v);
+    }
+    std::vector<int> triangles = triangles_outside(target.triangles(), patch, p);
+    if (pairing) {
+      std::erase_if(triangles, [&](int t) { return !pairing->triangles().has_partner(t); });
+    }
     if (held.empty() || triangles.empty()) continue;
     const std::vector<RigidTransform> stable =
         rigid_motion(part_of_vertices(sequence, others), {.threads = options.threads});
@@ -125,10 +151,11 @@ JointMotion joint_motion(const Source& source, const Target& target, const Solve
   const PlacedSource placed = placed_at(target, source, options);
   const FrameSource& sequence = *placed.source.sequence;
   const BlendshapeModel& model = target.model;
-  const JointFit fit(sequence.rest(), model, all_triangles(model.triangles()),
-                     {.edges = options.edges, .threads = options.threads});
+  const JointFit fit(
+      sequence.rest(), model, all_triangles(model.triangles()),
+      {.edges = options.edges, .pairing = target.pairing, .threads = options.threads});
   JointMotion joint{fit(sequence, placed.source.motion).motion,
-                    held_out_errors(placed.source.sequence, model, options)};
+                    held_out_errors(placed.source.sequence, target, options)};
   const Similarity back = inverse(placed.similarity);
   for (RigidTransform& motion : joint.motion) motion = back.carry(motion);
   return joint;

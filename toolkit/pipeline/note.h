@@ -28,7 +28,10 @@ enum class Topic {
   support_range,      ///< d_min is not below d_max
   no_expressions,     ///< of the target, where weights are asked for
   anchor_vertex,      ///< one that the mesh does not have
-  held_anchor         ///< an anchor where fixed vertices hold the mesh
+  held_anchor,        ///< an anchor where fixed vertices hold the mesh
+  other_faces,        ///< a target has not the source's faces, and nothing pairs them
+  shifted_markers,    ///< markers fit much better as vertices one lower or higher
+  poor_match          ///< source and target are hardly paired
 };
 
 /// What the user of a computation should know of it.

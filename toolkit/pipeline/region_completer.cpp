@@ -67,6 +67,7 @@ Regions RegionCompleter::operator()(const Regions& regions, const Target& target
   }
   CompletionOptions of_completion = options_.completion;
   of_completion.edges = options.edges;
+  of_completion.pairing = target.pairing;
   CompletedRegions completed = mimetra::completed(regions, target.model, *search_, of_completion);
   if (completed.added > 0) {
     const double share = completed.regions.triangle_share() - regions.triangle_share();

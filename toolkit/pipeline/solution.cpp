@@ -1,6 +1,7 @@
 #include "toolkit/pipeline/solution.h"
 
 #include "toolkit/correspondence/renumbering.h"
+#include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/frame_store.h"
 #include "toolkit/mesh/stopwatch.h"
 #include "toolkit/mesh/text.h"
@@ -69,6 +70,7 @@ Solution solve_blendshapes(const Source& source, const Target& target, const Sel
   of_space.threads = options.threads;
   of_space.progress = options.progress;
   of_space.edges = options.edges;
+  of_space.pairing = target.pairing;
   const FrameSource& performance = *source.sequence;
   const BlendshapeTransfer transfer(performance.rest(), model, selection.triangles, of_space);
   Solution solution;
@@ -118,9 +120,11 @@ Solution solve_vertices(const Source& source, const Target& target, const Select
   of_space.threads = options.threads;
   check_anchor(of_space, model, selection);
   const FrameSource& performance = *source.sequence;
-  of_space.weld = closed_seams(
-      performance, model.neutral(),
-      {.threads = options.threads, .progress = part_of(options.progress, 0, kSeamShare)});
+  of_space.pairing = target.pairing;
+  const BlockOptions of_seams{options.threads, part_of(options.progress, 0, kSeamShare)};
+  of_space.weld = target.pairing ? closed_seams(performance, model.neutral(), model.triangles(),
+                                                *target.pairing, of_seams)
+                                 : closed_seams(performance, model.neutral(), of_seams);
   of_space.progress = part_of(options.progress, kSeamShare, 1);
   const VertexTransfer transfer(performance.rest(), model.neutral(), model.triangles(),
                                 selection.triangles, of_space);
@@ -153,9 +157,12 @@ std::vector<VertexIndex> used_vertices(const BlendshapeModel& model) {
 Similarity similarity_between(const Positions& rest, const Target& target,
                               const SolveOptions& options) {
   const BlendshapeModel& model = target.model;
-  if (rest == model.neutral()) return {};
-  const std::vector<VertexIndex> used = used_vertices(model);
-  const Positions from = rest(used, Eigen::all), to = model.neutral()(used, Eigen::all);
+  if (!target.pairing && rest == model.neutral()) return {};
+  const std::vector<VertexIndex> used =
+      target.pairing ? target.pairing->carried_vertices() : used_vertices(model);
+  const Positions to = model.neutral()(used, Eigen::all);
+  const Positions from =
+      target.pairing ? target.pairing->carried(rest, used) : rest(used, Eigen::all);
   switch (options.axes) {
     case Axes::fit:
       try {
@@ -181,14 +188,48 @@ void check_same_faces(const FrameSource& source, const Target& target) {
                         "(convert --match)");
   }
   if (model.vertices() != source.vertices()) {
-    throw MismatchError(target.name + ": " + std::to_string(model.vertices()) +
-                        " vertices, expected " + std::to_string(source.vertices()) +
-                        " as in the source");
+    throw OptionError(Topic::other_faces, target.name + ": " + std::to_string(model.vertices()) +
+                                              " vertices, expected " +
+                                              std::to_string(source.vertices()) +
+                                              " as in the source");
   }
-  throw MismatchError(
+  throw OptionError(
+      Topic::other_faces,
       target.name + ": face " +
-      std::to_string(first_different_face(source.connectivity(), model.connectivity())) +
-      " is not the source's; source and target need the same faces");
+          std::to_string(first_different_face(source.connectivity(), model.connectivity())) +
+          " is not the source's; source and target need the same faces");
+}
+
+/// By how much lower or higher vertices the markers would fit much better; 0 where they are right.
+int better_shift(const std::vector<Marker>& markers, const TriMesh& source, const TriMesh& target) {
+  for (const int shift : {1, -1}) {
+    if (fit_better_shifted(markers, shift, source.positions, target.positions)) return shift;
+  }
+  return 0;
+}
+
+std::string described_shift(int shift) {
+  return std::string("the markers fit much better as vertices one ") +
+         (shift > 0 ? "lower: they are counted from 1" : "higher: they are counted from 0");
+}
+
+/// Finds what markers tell. Errors are the target's.
+FoundCorrespondence found_by(const std::vector<Marker>& markers, const TriMesh& source,
+                             const TriMesh& target, const std::string& name,
+                             const MatchOptions& options) {
+  const int shift = better_shift(markers, source, target);
+  try {
+    FoundCorrespondence found = find_correspondence(
+        source, target, markers, {.threads = options.threads, .progress = options.progress});
+    if (shift != 0) {
+      note(options.notes, name + ": " + described_shift(shift), Topic::shifted_markers);
+    }
+    return found;
+  } catch (const MismatchError& error) {
+    const std::string text = name + ": " + error.what();
+    if (shift == 0) throw MismatchError(text);
+    throw OptionError(Topic::shifted_markers, text + "; " + described_shift(shift));
+  }
 }
 
 }  // namespace
@@ -206,9 +247,13 @@ bool solves_for_vertices(const BlendshapeModel& target, Space space) {
   return space == Space::vertex || target.expressions().size() == 0;
 }
 
-MatchedTarget::MatchedTarget(const FrameSource& source, Target target)
+MatchedTarget::MatchedTarget(const FrameSource& source, Target target, const MatchOptions& options)
     : target_(std::move(target)) {
   const BlendshapeModel& model = target_.model;
+  if (!std::holds_alternative<std::monostate>(target_.match)) {
+    pair({options.source_rest.value_or(source.rest()), source.connectivity()}, options);
+    return;
+  }
   check_same_faces(source, target_);
   if (model.triangles() == source.triangles()) return;
   auto connectivity = std::make_shared<Connectivity>(model.connectivity());
@@ -217,6 +262,61 @@ MatchedTarget::MatchedTarget(const FrameSource& source, Target target)
   own_ = std::make_unique<BlendshapeModel>(std::move(connectivity), model.neutral(),
                                            model.expressions());
   target_.model = *own_;
+}
+
+void MatchedTarget::pair(const TriMesh& source, const MatchOptions& options) {
+  const Stopwatch stopwatch;
+  const BlendshapeModel& model = target_.model;
+  const TriMesh target{model.neutral(), model.connectivity()};
+  MatchReport report;
+  Correspondence pairs;
+  if (const auto* markers = std::get_if<std::vector<Marker>>(&target_.match)) {
+    FoundCorrespondence found = found_by(*markers, source, target, target_.name, options);
+    report = {found.quality, static_cast<int>(markers->size())};
+    pairs = std::move(found.correspondence);
+  } else {
+    pairs = std::get<Correspondence>(target_.match);
+    report.quality = quality_of(pairs, box_diagonal(target.positions));
+  }
+  if (pairs.parts.empty()) {
+    throw MismatchError(target_.name + ": no triangle has a partner in the source");
+  }
+  target_.pairing = std::make_shared<const Pairing>(source, target, std::move(pairs));
+  target_.match = {};
+  const std::string verdict = report.quality.verdict();
+  if (verdict.starts_with("poor")) {
+    note(options.notes, target_.name + ": its correspondence with the source is " + verdict,
+         Topic::poor_match);
+  }
+  report.seconds = stopwatch.seconds();
+  report_ = report;
+}
+
+Selection selection_of(const Regions& regions, const Target& target) {
+  if (!target.pairing) return selection_of(regions);
+  const Pairing& pairing = *target.pairing;
+  const Triangles& triangles = target.model.get().triangles();
+  Selection selection{
+      pairing.with_gaps(triangles_over(pairing.triangles(), regions.triangles), triangles),
+      pairing.over(regions.inside)};
+  // Vertices without carriers are inside where all of their triangles are in L.
+  std::vector<bool> in_l(triangles.rows(), false), leaves(pairing.target_vertices(), false);
+  for (const int t : selection.triangles) in_l[t] = true;
+  std::vector<bool> is_used(pairing.target_vertices(), false);
+  for (int t = 0; t < triangles.rows(); ++t) {
+    for (const VertexIndex v : triangles.row(t)) {
+      is_used[v] = true;
+      if (!in_l[t]) leaves[v] = true;
+    }
+  }
+  for (VertexIndex v = 0; v < pairing.target_vertices(); ++v) {
+    if (pairing.carriers(v).empty()) selection.inside[v] = is_used[v] && !leaves[v];
+  }
+  return selection;
+}
+
+Selection whole(const Target& target) {
+  return {all_triangles(target.model.get().triangles()), {}};
 }
 
 PlacedSource placed_at(const Target& target, const Source& source, const SolveOptions& options) {

@@ -2,9 +2,12 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <variant>
 
+#include "toolkit/correspondence/pairing.h"
 #include "toolkit/mesh/similarity.h"
 #include "toolkit/model/animation.h"
 #include "toolkit/pipeline/region_choice.h"
@@ -50,12 +53,19 @@ constexpr std::string_view choice_name(Axes value) {
   return {};
 }
 
+/// How a target of other faces than the source's is paired with it: not at all, by markers, or as
+/// is known already.
+using GivenMatch = std::variant<std::monostate, std::vector<Marker>, Correspondence>;
+
 /// Who receives the deformation: a model, or a mesh, which is a model without expressions. It
 /// refers to the model.
 struct Target {
   /// In notes and errors.
   std::string name;
   std::reference_wrapper<const BlendshapeModel> model;
+  GivenMatch match = {};
+  /// With the source; null where both have the same faces. A MatchedTarget has it of `match`.
+  std::shared_ptr<const Pairing> pairing = {};
 };
 
 struct SolveOptions {
@@ -89,10 +99,10 @@ struct PlacedSource {
 };
 
 /// Carries the source by the similarity from its rest pose to the target's neutral, over the
-/// vertices that triangles use, so that unit, place and axes are the target's; bit by bit the
-/// source itself where both are equal. With Axes::none it is not turned. Notes a mirrored target
-/// under its name. Throws OptionError (Topic::undetermined_axes) where the rest poses leave the
-/// rotation open. \pre a MatchedTarget
+/// vertices that triangles use (where faces differ, target vertices and their carriers), so that
+/// unit, place and axes are the target's; bit by bit the source itself where both are equal. With
+/// Axes::none it is not turned. Notes a mirrored target under its name. Throws OptionError
+/// (Topic::undetermined_axes) where the rest poses leave the rotation open. \pre a MatchedTarget
 PlacedSource placed_at(const Target& target, const Source& source,
                        const SolveOptions& options = {});
 
@@ -118,19 +128,52 @@ struct Solution {
 /// True for the vertex space, and where a target has no expressions to solve for.
 bool solves_for_vertices(const BlendshapeModel& target, Space space);
 
-/// A target on the triangles of a source: polygons that the target's file begins at another corner
-/// are cut along the source's diagonals.
+struct MatchOptions {
+  /// The source's undeformed shape (N x 3); by default its rest pose.
+  std::optional<Positions> source_rest = {};
+  /// 0 for all there are; the result does not depend on it.
+  int threads = 0;
+  Progress progress = {};
+  Notes notes = {};
+};
+
+/// How well a target is paired, and what that took.
+struct MatchReport {
+  CorrespondenceQuality quality;
+  /// By how many markers; 0 for a correspondence that was given.
+  int markers = 0;
+  double seconds = 0;
+};
+
+/// A target and how its faces are the source's: the same, where polygons that its file begins at
+/// another corner are cut along the source's diagonals, or paired.
 class MatchedTarget {
  public:
-  /// Throws MismatchError unless the target has the source's vertices and faces.
-  MatchedTarget(const FrameSource& source, Target target);
+  /// Notes, under the target's name, markers that fit better as other vertices
+  /// (Topic::shifted_markers) and a match whose verdict is poor (Topic::poor_match). Throws
+  /// OptionError (Topic::other_faces) unless the target has the source's vertices and faces or a
+  /// match is given, and (Topic::shifted_markers) for markers that would fit as other vertices;
+  /// MismatchError for other wrong markers, a correspondence of other numbers of triangles, and one
+  /// without any pair; Cancelled.
+  MatchedTarget(const FrameSource& source, Target target, const MatchOptions& options = {});
 
   const Target& operator*() const { return target_; }
+  /// None where the faces are the same.
+  const std::optional<MatchReport>& report() const { return report_; }
 
  private:
+  void pair(const TriMesh& source, const MatchOptions& options);
+
   std::unique_ptr<const BlendshapeModel> own_;  // null where the triangles are the same
   Target target_;
+  std::optional<MatchReport> report_;
 };
+
+/// What a transfer by regions of the source looks at on a target: where faces differ, the triangles
+/// over theirs (triangles_over()) and in gaps between them. \pre a MatchedTarget
+Selection selection_of(const Regions& regions, const Target& target);
+/// All triangles of the target.
+Selection whole(const Target& target);
 
 /// Solves on the selected triangles in blendshape or vertex space; in vertex space closed_seams()
 /// stay closed. Notes, under the target's name, expressions that the triangles do not or hardly

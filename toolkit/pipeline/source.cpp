@@ -202,6 +202,13 @@ bool is_mean(const SourceOptions& options) {
 
 }  // namespace
 
+Positions asked_rest(const FrameSource& sequence, const SourceOptions& options) {
+  if (!options.rest) return sequence.rest();
+  if (const auto* given = std::get_if<Positions>(&*options.rest)) return *given;
+  const bool is_first = std::get<SourceRest>(*options.rest) == SourceRest::first;
+  return is_first ? Positions(FrameBlock(sequence, 0, 1).frame(0)) : sequence.rest();
+}
+
 bool takes_out_motion(const FrameSource& sequence, const SourceOptions& options) {
   return takes_out(motion_of(sequence, options).motion);
 }

@@ -131,6 +131,10 @@ struct Source {
   bool neutral_is_known = false;
 };
 
+/// The rest pose that these options ask for, as far as frames do not have to be aligned for it: the
+/// sequence's own stands in for the mean.
+Positions asked_rest(const FrameSource& sequence, const SourceOptions& options);
+
 /// True where these options take a head motion out of the sequence.
 bool takes_out_motion(const FrameSource& sequence, const SourceOptions& options);
 

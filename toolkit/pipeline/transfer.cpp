@@ -73,6 +73,19 @@ Source source_of(const FrameSource& sequence, const std::vector<Target>& targets
   return prepare_source(std::move(given), of_source);
 }
 
+std::vector<MatchedTarget> matched_targets(const FrameSource& sequence,
+                                           const std::vector<Target>& given,
+                                           const TransferOptions& options) {
+  std::vector<MatchedTarget> matched;
+  for (const Target& target : given) {
+    const bool pairs = !std::holds_alternative<std::monostate>(target.match);
+    MatchOptions of_match{.threads = options.threads, .notes = options.notes};
+    if (pairs) of_match.source_rest = asked_rest(sequence, options.source);
+    matched.emplace_back(sequence, target, of_match);
+  }
+  return matched;
+}
+
 /// The discs of `completed` that `regions` lack.
 void take_over(const Regions& completed, Regions& regions, const Triangles& triangles) {
   std::vector<Region> added;
@@ -104,7 +117,11 @@ void note_usability(const Target& target, const TransferError& error,
   }
   if (wrong.empty()) return;
   const std::string text = target.name + ": the result may not be usable: " + wrong;
-  if (options.full) {
+  if (target.pairing) {
+    note(options.notes, text +
+                            "; source and target are paired: look at the result, and add markers "
+                            "where it is wrong");
+  } else if (options.full) {
     note(options.notes, text +
                             "; look whether source and target have the same vertices in the same "
                             "order, and whether both rest poses are neutral");
@@ -122,11 +139,9 @@ bool decomposes(const TransferOptions& options) {
 TransferResult transfer(const FrameSource& sequence, const std::vector<Target>& given,
                         const TransferOptions& options) {
   check_options(options);
-  std::vector<MatchedTarget> matched;
+  const std::vector<MatchedTarget> matched = matched_targets(sequence, given, options);
   std::vector<Target> targets;
-  for (const Target& target : given) {
-    targets.push_back(*matched.emplace_back(sequence, target));
-  }
+  for (const MatchedTarget& target : matched) targets.push_back(*target);
   SolveOptions of_solving = options.solving;
   of_solving.threads = options.threads;
   of_solving.notes = options.notes;
@@ -147,17 +162,21 @@ TransferResult transfer(const FrameSource& sequence, const std::vector<Target>& 
     const PlacedSource placed = placed_at(target, source, of_solving);
     std::optional<Regions> regions;
     if (choice.regions) regions = (*choice.completion)(*choice.regions, target, of_solving);
-    const Selection selection = regions ? selection_of(*regions) : whole(*placed.source.sequence);
+    const Selection selection = regions ? selection_of(*regions, target) : whole(target);
     Solution solution = solve(placed.source, target, selection, of_solving);
+    const Stopwatch of_error;
     TransferError error =
         transfer_error(*placed.source.sequence, *solution.sequence, selection.triangles,
                        {.edges = of_solving.edges,
+                        .pairing = target.pairing,
                         .threads = options.threads,
                         .progress = part_of(progress, kSolveShare, 1)});
+    const double error_seconds = of_error.seconds();
     note_usability(target, error, options);
     if (give_back) solution.sequence = with_head_motion(solution.sequence, placed.source.motion);
-    result.targets.push_back(
-        {std::move(solution), std::move(regions), placed.similarity, std::move(error)});
+    result.targets.push_back({std::move(solution), std::move(regions), placed.similarity,
+                              std::move(error), target.pairing, matched[t].report(),
+                              error_seconds});
   }
   result.head_motion = source.head_motion;
   result.regions = std::move(choice.regions);

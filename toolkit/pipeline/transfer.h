@@ -59,6 +59,10 @@ struct TransferredTarget {
   Similarity similarity;
   /// Before head motion was given back.
   TransferError error;
+  /// With the source, null where the faces are the same; and how well they are paired.
+  std::shared_ptr<const Pairing> pairing = {};
+  std::optional<MatchReport> match = {};
+  double error_seconds = 0;  ///< what measuring the error took
 };
 
 struct TransferResult {
@@ -75,7 +79,8 @@ bool decomposes(const TransferOptions& options);
 
 /// The main job: transfers the deformation of a sequence to each of some targets. The rest pose and
 /// the head motion of the source are settled, its regions found, and the target's poses solved for
-/// on their triangles. What depends on the source only is done once. Unless it decomposes(), it
+/// on their triangles, or those that are paired with them. What depends on the source only is done
+/// once. Unless it decomposes(), it
 /// reads the source in blocks, several times, and holds no more of it; the result does not need it.
 ///
 /// Notes a result that is likely not usable, because much of the deformation is missing or many

@@ -123,6 +123,13 @@ class RunSteps {
   static std::vector<MatchedTarget> targets_of(const Invocation& call) {
     std::vector<MatchedTarget> targets;
     if (!call.inputs.contains("target")) return targets;
+    for (const char* option : {"markers", "correspondence"}) {
+      const Parameter* parameter = call.parameters.find(option);
+      if (!parameter || call.parameters.paths(option).empty()) continue;
+      throw MismatchError("the run has --" + std::string(option) +
+                          ", and the report shows targets with the source's faces only; draw its "
+                          "output with render");
+    }
     for (const NamedData& target : call.inputs.at("target")) {
       targets.emplace_back(call.sequence("source"),
                            Target{target.name, std::get<ModelData>(target.data).model.average()});

@@ -16,6 +16,7 @@
 #include "toolkit/regions/regions.h"
 #include "toolkit/transfer/deformation_gradients.h"
 #include "toolkit/transfer/expression_edges.h"
+#include "toolkit/transfer/pairs.h"
 #include "toolkit/transfer/right_hand_side.h"
 
 namespace mimetra {
@@ -44,11 +45,7 @@ int degenerate_triangles(const BlendshapeModel& target, const std::vector<int>& 
 
 void check(const Positions& source_rest, const BlendshapeModel& target,
            const BlendshapeTransferOptions& options) {
-  if (source_rest.rows() != target.vertices()) {
-    throw MismatchError("the source has " + std::to_string(source_rest.rows()) +
-                        " vertices, the target " + std::to_string(target.vertices()) +
-                        "; both need the same connectivity");
-  }
+  check_sizes(source_rest, target.neutral(), options.pairing.get());
   check_options(options);
 }
 
@@ -57,10 +54,11 @@ void check(const Positions& source_rest, const BlendshapeModel& target,
 struct BlendshapeTransfer::State {
   State(const Positions& source_rest, const BlendshapeModel& target, std::vector<int> selected,
         const BlendshapeTransferOptions& given)
-      : gradients(source_rest, target.triangles(), std::move(selected)),
+      : gradients(gradients_between(source_rest, target.triangles(), given.pairing.get(),
+                                    with_partners(std::move(selected), given.pairing.get()))),
         gram(gram_matrix(target, gradients.selected(), given.edges)),
         right_hand_side(source_rest, gradients, target, given.edges),
-        vertices(target.vertices()),
+        vertices(static_cast<int>(source_rest.rows())),
         options(given) {}
 
   void judge(const BlendshapeModel& target);

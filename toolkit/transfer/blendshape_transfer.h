@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "toolkit/correspondence/pairing.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/option.h"
 #include "toolkit/mesh/progress.h"
@@ -22,6 +23,9 @@ struct BlendshapeTransferOptions {
   /// Weight of squared second differences of beta over time: time constant in seconds. The penalty
   /// is (smoothness * frame rate)^4 times the same.
   double smoothness = 0;
+  /// Of source and target where their faces differ, or null. Triangles without partner show
+  /// nothing, also those of L.
+  std::shared_ptr<const Pairing> pairing = {};
   /// 0 for all there are; the result does not depend on it.
   int threads = 0;
   /// Of weights().
@@ -60,9 +64,10 @@ struct BlendshapeConditions {
 /// Queries are const.
 class BlendshapeTransfer {
  public:
-  /// `source_rest` N x 3 has the target's connectivity; `triangles` are rows of target.triangles().
-  /// Throws MismatchError where the vertex counts differ or the target has no expression that moves
-  /// in `triangles`, std::invalid_argument for a triangle or an option out of range.
+  /// `source_rest` N x 3 has the target's connectivity, or is that of the pairing; `triangles` are
+  /// rows of target.triangles(). Throws MismatchError where the vertex counts differ or the target
+  /// has no expression that moves in `triangles`, std::invalid_argument for a triangle or an option
+  /// out of range.
   BlendshapeTransfer(const Positions& source_rest, const BlendshapeModel& target,
                      std::vector<int> triangles, const BlendshapeTransferOptions& = {});
   ~BlendshapeTransfer();

@@ -129,30 +129,53 @@ class StandIns {
   std::vector<std::vector<int>> neighbors_;
 };
 
+void check_selected(int triangle, int all) {
+  if (triangle >= 0 && triangle < all) return;
+  throw std::invalid_argument("triangle " + std::to_string(triangle) +
+                              " is selected, expected 0 to " + std::to_string(all - 1));
+}
+
+/// Itself where there are no pairs.
+std::vector<Correspondence::Part> partners_of(int triangle, const Correspondence* pairs) {
+  if (!pairs) return {{triangle, 1}};
+  return {pairs->parts.begin() + pairs->offsets[triangle],
+          pairs->parts.begin() + pairs->offsets[triangle + 1]};
+}
+
 }  // namespace
 
 DeformationGradients::DeformationGradients(const Positions& rest, const Triangles& triangles,
                                            std::vector<int> selected)
+    : DeformationGradients(rest, triangles, nullptr, std::move(selected)) {}
+
+DeformationGradients::DeformationGradients(const Positions& rest, const Triangles& triangles,
+                                           const Correspondence& pairs, std::vector<int> selected)
+    : DeformationGradients(rest, triangles, &pairs, std::move(selected)) {}
+
+DeformationGradients::DeformationGradients(const Positions& rest, const Triangles& triangles,
+                                           const Correspondence* pairs, std::vector<int> selected)
     : triangles_(triangles),
       selected_(std::move(selected)),
       parts_(selected_.size()),
       inverse_frames_(triangles.rows(), Eigen::Matrix3d::Identity()) {
+  const auto all = pairs ? pairs->target_triangles() : static_cast<int>(triangles.rows());
   std::optional<StandIns> stand_ins;
   for (std::size_t s = 0; s < selected_.size(); ++s) {
-    const int triangle = selected_[s];
-    if (triangle < 0 || triangle >= triangles.rows()) {
-      throw std::invalid_argument("triangle " + std::to_string(triangle) +
-                                  " is selected, expected 0 to " +
-                                  std::to_string(triangles.rows() - 1));
-    }
-    const double own = own_share(quality_of(rest, triangles, triangle));
-    if (own == 1) {
-      parts_[s] = {{triangle, 1}};
-    } else {
-      if (own < 0.5) ++replaced_;
+    check_selected(selected_[s], all);
+    double replaced = 0;
+    for (const auto& [triangle, weight] : partners_of(selected_[s], pairs)) {
+      const double own = own_share(quality_of(rest, triangles, triangle));
+      if (own == 1) {
+        parts_[s].push_back({triangle, weight});
+        continue;
+      }
+      replaced += weight * (1 - own);
       if (!stand_ins) stand_ins.emplace(rest, triangles);
-      parts_[s] = stand_ins->parts_of(triangle);
+      for (const Part& part : stand_ins->parts_of(triangle)) {
+        parts_[s].push_back({part.triangle, weight * part.share});
+      }
     }
+    if (replaced > 0.5) ++replaced_;
     for (const Part& part : parts_[s]) {
       inverse_frames_[part.triangle] = triangle_frame(rest, triangles, part.triangle).inverse();
     }

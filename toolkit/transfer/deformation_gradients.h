@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "toolkit/correspondence/correspondence.h"
 #include "toolkit/mesh/mesh_sequence.h"
 
 namespace mimetra {
@@ -36,22 +37,30 @@ double quality_of(const Eigen::Ref<const Positions>& positions, const Triangles&
 /// around it: it goes to the neighbours in proportion to the edges that they share, each takes as
 /// much as it is sound, and the remainder goes on to the next ring. What finds no sound triangle is
 /// the identity.
+///
+/// Where a target has other faces, a triangle of it has the mean of its partners' gradients, by
+/// their weights, and the identity without one: it keeps its shape.
 class DeformationGradients {
  public:
   /// `triangles` M x 3; `selected` (L) are rows of it. Throws std::invalid_argument for a row out
   /// of range.
   DeformationGradients(const Positions& rest, const Triangles& triangles,
                        std::vector<int> selected);
+  /// `rest` and `triangles` of the source, `selected` are triangles of the target.
+  DeformationGradients(const Positions& rest, const Triangles& triangles,
+                       const Correspondence& pairs, std::vector<int> selected);
 
   /// Q_i of each selected triangle, 3 L x 3 (three rows a triangle), for one frame (N x 3).
   Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor> operator()(
       const Eigen::Ref<const Positions>& frame) const;
 
   const std::vector<int>& selected() const { return selected_; }
-  /// Selected triangles that keep less than half of their own gradient.
+  /// Of the source.
+  const Triangles& triangles() const { return triangles_; }
+  /// Selected triangles that keep less than half of their own, or their partners', gradient.
   int replaced() const { return replaced_; }
 
-  /// A triangle and how much of its gradient is taken.
+  /// A triangle of the source and how much of its gradient is taken.
   struct Part {
     int triangle;
     double share;
@@ -64,6 +73,9 @@ class DeformationGradients {
   const Eigen::Matrix3d& inverse_frame(int triangle) const { return inverse_frames_[triangle]; }
 
  private:
+  DeformationGradients(const Positions& rest, const Triangles& triangles,
+                       const Correspondence* pairs, std::vector<int> selected);
+
   Triangles triangles_;
   std::vector<int> selected_;
   std::vector<std::vector<Part>> parts_;

@@ -9,6 +9,7 @@
 #include "toolkit/model/box_least_squares.h"
 #include "toolkit/regions/regions.h"
 #include "toolkit/transfer/expression_edges.h"
+#include "toolkit/transfer/pairs.h"
 
 namespace mimetra {
 
@@ -19,9 +20,8 @@ namespace {
 constexpr double kSettledRotation = 1e-11;
 
 /// Vertices of the triangles, ascending.
-std::vector<Eigen::Index> vertices_of(const Triangles& triangles,
-                                      const std::vector<int>& selected) {
-  std::vector<Eigen::Index> vertices;
+std::vector<VertexIndex> vertices_of(const Triangles& triangles, const std::vector<int>& selected) {
+  std::vector<VertexIndex> vertices;
   for (const int triangle : selected) {
     for (const VertexIndex vertex : triangles.row(triangle)) vertices.push_back(vertex);
   }
@@ -39,9 +39,16 @@ void check_vertices(Eigen::Index found, Eigen::Index expected) {
 const Positions& checked(const Positions& rest, const BlendshapeModel& target,
                          const JointFitOptions& options) {
   check_options(options);
-  check_vertices(rest.rows(), target.vertices());
+  const Pairing* pairing = options.pairing.get();
+  check_vertices(rest.rows(), pairing ? pairing->source_vertices() : target.vertices());
   fix_product_blocking();
   return rest;
+}
+
+Eigen::Vector3d mean_of_rows(const PositionsView& rows, const std::vector<VertexIndex>& numbers) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (const VertexIndex number : numbers) sum += rows.row(number).transpose();
+  return sum / static_cast<double>(numbers.size());
 }
 
 /// <A, B> of 3 x 3 matrices.
@@ -54,7 +61,8 @@ double product(const Eigen::Matrix3d& a, const Eigen::Matrix3d& b) {
 JointFit::JointFit(const Positions& source_rest, const BlendshapeModel& target,
                    std::vector<int> triangles, const JointFitOptions& options)
     : rest_(checked(source_rest, target, options)),
-      gradients_(rest_, target.triangles(), std::move(triangles)),
+      gradients_(gradients_between(rest_, target.triangles(), options.pairing.get(),
+                                   with_partners(std::move(triangles), options.pairing.get()))),
       gram_(gram_matrix(target, gradients_.selected(), options.edges)),
       moments_(rest_, gradients_, target, options.edges),
       vertices_(vertices_of(target.triangles(), gradients_.selected())),
@@ -66,15 +74,17 @@ JointFit::JointFit(const Positions& source_rest, const BlendshapeModel& target,
   rest_mean_ = mean_of(PositionsView(rest_.data(), rest_.rows(), 3));
   for (Eigen::Index j = 0; j < gram_.cols(); ++j) {
     if (moves_there(gram_(j, j), full[j])) upper_[j] = 1;
-    mean_fields_.col(j) = mean_of(
-        PositionsView(target.expressions().displacements.col(j).data(), target.vertices(), 3));
+    const double* field = target.expressions().displacements.col(j).data();
+    mean_fields_.col(j) = mean_of_rows(PositionsView(field, target.vertices(), 3), vertices_);
   }
 }
 
-/// Of the triangles' vertices.
+/// Of the triangles' vertices, or of what carries them.
 Eigen::Vector3d JointFit::mean_of(const PositionsView& pose) const {
+  if (!options_.pairing) return mean_of_rows(pose, vertices_);
+  const Positions places = options_.pairing->carried(pose, vertices_);
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  for (const Eigen::Index vertex : vertices_) sum += pose.row(vertex).transpose();
+  for (Eigen::Index i = 0; i < places.rows(); ++i) sum += places.row(i).transpose();
   return sum / static_cast<double>(vertices_.size());
 }
 

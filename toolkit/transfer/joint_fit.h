@@ -1,7 +1,9 @@
 #pragma once
 
+#include <memory>
 #include <vector>
 
+#include "toolkit/correspondence/pairing.h"
 #include "toolkit/mesh/alignment.h"
 #include "toolkit/model/blendshape_model.h"
 #include "toolkit/transfer/deformation_gradients.h"
@@ -13,6 +15,8 @@ struct JointFitOptions {
   EdgeSum edges = EdgeSum::all;
   /// Alternations at most; a dozen are needed as a rule. 0 keeps the rotations as they are.
   int iterations = 100;
+  /// Of source and target where their faces differ, or null.
+  std::shared_ptr<const Pairing> pairing = {};
   /// 0 for all there are; the result does not depend on it.
   int threads = 0;
   Progress progress = {};
@@ -64,8 +68,8 @@ class JointFit {
   DeformationGradients gradients_;
   Eigen::MatrixXd gram_;
   RotationMoments moments_;
-  Eigen::VectorXd upper_;               // 1, or 0 for columns that do not move in L
-  std::vector<Eigen::Index> vertices_;  // of the triangles
+  Eigen::VectorXd upper_;              // 1, or 0 for columns that do not move in L
+  std::vector<VertexIndex> vertices_;  // of the target's triangles
   Eigen::Vector3d rest_mean_;
   Eigen::Matrix3Xd mean_fields_;  // mean displacement of each expression
   JointFitOptions options_;

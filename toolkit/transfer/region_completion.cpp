@@ -22,21 +22,25 @@ struct Unseen {
   std::string name;
 };
 
-/// What some triangles show of a target's expressions.
+/// What some triangles show of a target's expressions. `open`, regions and discs are triangles of
+/// the source, all else of the target.
 class View {
  public:
   /// `open` are the triangles that discs may hold.
   View(const BlendshapeModel& target, const Regions& regions, const std::vector<int>& open,
-       EdgeSum edges)
+       const CompletionOptions& options)
       : target_(target),
-        edges_(edges),
-        all_(gram_matrix(target, open, edges)),
+        edges_(options.edges),
+        pairing_(options.pairing.get()),
+        in_discs_(regions.triangles),
         is_seen_(target.triangles().rows(), true) {
-    for (const int triangle : open) is_seen_[triangle] = false;
+    const std::vector<int> over_open = over(open);
+    all_ = gram_matrix(target, over_open, edges_);
+    for (const int triangle : over_open) is_seen_[triangle] = false;
     std::vector<int> seen;
-    std::ranges::copy_if(regions.triangles, std::back_inserter(seen),
+    std::ranges::copy_if(over(in_discs_), std::back_inserter(seen),
                          [this](int triangle) { return !is_seen_[triangle]; });
-    seen_ = gram_matrix(target, seen, edges);
+    seen_ = gram_matrix(target, seen, edges_);
     for (const int triangle : seen) is_seen_[triangle] = true;
     const double most = all_.diagonal().maxCoeff();
     for (Eigen::Index j = 0; j < all_.rows(); ++j) {
@@ -59,29 +63,49 @@ class View {
     return hardly_told_apart(share);
   }
 
-  /// What the triangles that are not seen hold of a field (M).
+  /// What the triangles that are not seen hold of a field, at those of the source (M).
   Eigen::VectorXd missing(const Eigen::VectorXd& field) const {
     Eigen::VectorXd motion = motion_of_triangles(target_, field, edges_);
     for (Eigen::Index t = 0; t < motion.size(); ++t) {
       if (is_seen_[t]) motion[t] = 0;
     }
-    return motion;
+    return pairing_ ? at_partners(motion) : motion;
   }
 
-  /// Triangles of the disc that are not seen.
+  /// Triangles that would be seen with the disc and are not.
   std::vector<int> unseen(const Disc& disc) const {
+    std::vector<int> with_disc = pairing_ ? in_discs_ : std::vector<int>();
+    with_disc.insert(with_disc.end(), disc.triangles.begin(), disc.triangles.end());
     std::vector<int> triangles;
-    std::ranges::copy_if(disc.triangles, std::back_inserter(triangles),
+    std::ranges::copy_if(over(with_disc), std::back_inserter(triangles),
                          [this](int triangle) { return !is_seen_[triangle]; });
     return triangles;
   }
 
-  void add(const std::vector<int>& triangles) {
+  void add(const Disc& disc) {
+    const std::vector<int> triangles = unseen(disc);
+    in_discs_.insert(in_discs_.end(), disc.triangles.begin(), disc.triangles.end());
     seen_ += gram_matrix(target_, triangles, edges_);
     for (const int triangle : triangles) is_seen_[triangle] = true;
   }
 
  private:
+  /// The target's triangles over those of the source.
+  std::vector<int> over(const std::vector<int>& triangles) const {
+    return pairing_ ? triangles_over(pairing_->triangles(), triangles) : triangles;
+  }
+
+  Eigen::VectorXd at_partners(const Eigen::VectorXd& amounts) const {
+    const Correspondence& pairs = pairing_->triangles();
+    Eigen::VectorXd result = Eigen::VectorXd::Zero(pairs.source_triangles);
+    for (int t = 0; t < pairs.target_triangles(); ++t) {
+      for (int p = pairs.offsets[t]; p < pairs.offsets[t + 1]; ++p) {
+        result[pairs.parts[p].triangle] += pairs.parts[p].weight * amounts[t];
+      }
+    }
+    return result;
+  }
+
   const Eigen::MatrixXd& displacements() const { return target_.expressions().displacements; }
 
   /// Combinations of the expressions that move, from the one that is seen least.
@@ -107,6 +131,8 @@ class View {
 
   const BlendshapeModel& target_;
   EdgeSum edges_;
+  const Pairing* pairing_;
+  std::vector<int> in_discs_;         // triangles of the source in regions and discs
   Eigen::MatrixXd all_, seen_;        // A^T A of eq. 11 (D x D)
   std::vector<bool> is_seen_;         // or cannot be
   std::vector<Eigen::Index> moving_;  // expressions that move anything
@@ -131,8 +157,10 @@ CompletedRegions completed(const Regions& regions, const BlendshapeModel& target
   CompletedRegions result{regions};
   if (options.share == 0) return result;
   fix_product_blocking();
-  View view(target, regions, open_triangles(target.triangles(), search), options.edges);
-  double room = options.limit * static_cast<double>(regions.all_triangles);
+  const Triangles& of_source =
+      options.pairing ? options.pairing->source_triangles() : target.triangles();
+  View view(target, regions, open_triangles(of_source, search), options);
+  double room = options.limit * static_cast<double>(target.triangles().rows());
   std::vector<Region> discs;
   while (const auto unseen = view.least_seen(options.share)) {
     const Disc disc = search.best(view.missing(unseen->field));
@@ -140,7 +168,7 @@ CompletedRegions completed(const Regions& regions, const BlendshapeModel& target
     room -= static_cast<double>(triangles.size());
     result.limited = room < 0;
     if (triangles.empty() || result.limited) break;
-    view.add(triangles);
+    view.add(disc);
     Region& region = discs.emplace_back();
     region.center = disc.center;
     region.radius = search.radius();
@@ -148,7 +176,7 @@ CompletedRegions completed(const Regions& regions, const BlendshapeModel& target
     region.added_for = unseen->name;
   }
   result.added = static_cast<int>(discs.size());
-  result.regions = with_added(regions, std::move(discs), target.triangles());
+  result.regions = with_added(regions, std::move(discs), of_source);
   return result;
 }
 

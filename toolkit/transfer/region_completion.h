@@ -1,5 +1,8 @@
 #pragma once
 
+#include <memory>
+
+#include "toolkit/correspondence/pairing.h"
 #include "toolkit/regions/disc_search.h"
 #include "toolkit/regions/regions.h"
 #include "toolkit/transfer/expression_edges.h"
@@ -11,9 +14,11 @@ struct CompletionOptions {
   /// they are. On seven other heads, K = 10 regions of a real capture have an MPE of -4 to -23 %
   /// with 0.05, of -2 to -4 % with 0.3.
   double share = 0.3;
-  /// Share of the mesh's triangles that may be added.
+  /// Share of the target's triangles that may be added.
   double limit = 0.25;
   EdgeSum edges = EdgeSum::all;
+  /// Of source and target where their faces differ, or null.
+  std::shared_ptr<const Pairing> pairing = {};
 
   static constexpr Option kShare{
       "share", &CompletionOptions::share, {.minimum = 0, .maximum = 0.95}};
@@ -33,8 +38,8 @@ struct CompletedRegions {
 /// apart (condition number of G_L up to kPoorCondition): the one that holds most of what is unseen
 /// of the expression that is seen least, then of the combination that is. Expressions that move
 /// nothing are passed over; of the others counts what they move where discs may lie. Throws
-/// std::invalid_argument for options out of range, and what the search throws. \pre the regions,
-/// the target and the search are of one connectivity
+/// std::invalid_argument for options out of range, and what the search throws. \pre the regions
+/// and the search are of one connectivity, the target of the same or paired with it
 CompletedRegions completed(const Regions& regions, const BlendshapeModel& target,
                            DiscSearch& search, const CompletionOptions& options = {});
 

@@ -79,7 +79,8 @@ Positions pull_at_rest(const BlendshapeModel& target, const std::vector<int>& se
 
 RightHandSide::RightHandSide(const Positions& rest, const DeformationGradients& gradients,
                              const BlendshapeModel& target, EdgeSum sum)
-    : pull_(rest, target.triangles(), gradients, neutral_edges(target, gradients.selected(), sum),
+    : pull_(rest, gradients.triangles(), target.triangles(), gradients,
+            neutral_edges(target, gradients.selected(), sum),
             numbered_vertices(target, gradients.selected())),
       basis_(rows_at(target.expressions().displacements,
                      numbered_vertices(target, gradients.selected()))) {}
@@ -94,7 +95,8 @@ Eigen::MatrixXd RightHandSide::operator()(const Eigen::Ref<const Frames>& frames
 
 RotationMoments::RotationMoments(const Positions& rest, const DeformationGradients& gradients,
                                  const BlendshapeModel& target, EdgeSum sum)
-    : pull_(rest, target.triangles(), gradients, neutral_edges(target, gradients.selected(), sum),
+    : pull_(rest, gradients.triangles(), target.triangles(), gradients,
+            neutral_edges(target, gradients.selected(), sum),
             numbered_vertices(target, gradients.selected())),
       fields_(fields_at(target, numbered_vertices(target, gradients.selected()))) {
   const std::vector<int>& selected = gradients.selected();

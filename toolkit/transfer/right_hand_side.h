@@ -22,7 +22,7 @@ class RightHandSide {
   RightHandSide(const Positions& rest, const DeformationGradients& gradients,
                 const BlendshapeModel& target, EdgeSum sum);
 
-  /// One row a frame (F x D). \pre 1 <= frames.rows() <= kLanes, frames.cols() == 3N
+  /// One row a frame (F x D). \pre 1 <= frames.rows() <= kLanes, frames.cols() == 3N of the source
   Eigen::MatrixXd operator()(const Eigen::Ref<const Frames>& frames) const;
 
  private:

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "toolkit/correspondence/pairing.h"
 #include "toolkit/mesh/weld.h"
 
 namespace mimetra {
@@ -7,6 +8,10 @@ namespace mimetra {
 /// Vertices of a source farther apart than this share of its diameter have parted: well above
 /// the rounding of single precision, well below what one sees.
 constexpr double kPartedShare = 1e-6;
+
+/// The same where target vertices at one place have several carriers, not quite at the same place
+/// of the source: above what a face stretches between neighbours, below lips that open.
+constexpr double kPartedOverPairs = 0.01;
 
 /// Which vertices are one point of a surface that a source and a target of its connectivity share:
 /// the two sides of a UV seam, but not lips that open. They are at the same place in both rest
@@ -18,6 +23,14 @@ constexpr double kPartedShare = 1e-6;
 /// MismatchError for another number of vertices, std::invalid_argument that names a vertex of a
 /// rest pose which is not finite; what reading throws, Cancelled.
 Weld closed_seams(const FrameSource& source, const Positions& target_rest,
+                  const BlockOptions& = {});
+
+/// The same for a target of other faces (rest pose and triangles), which it shares with no source:
+/// its vertices at one place are one where what carries them does not part, by kPartedShare where
+/// numbers differ only (then it is at one place of the source's rest pose, too), otherwise by
+/// kPartedOverPairs. A vertex without carriers goes with those that it is at one place with.
+Weld closed_seams(const FrameSource& source, const Positions& target_rest,
+                  const Triangles& target_triangles, const Pairing& pairing,
                   const BlockOptions& = {});
 
 }  // namespace mimetra

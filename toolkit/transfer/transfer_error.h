@@ -1,13 +1,16 @@
 #pragma once
 
+#include <memory>
 #include <vector>
 
+#include "toolkit/correspondence/pairing.h"
 #include "toolkit/mesh/mesh_sequence.h"
 #include "toolkit/transfer/edges.h"
 
 namespace mimetra {
 
-/// How far a transferred sequence is from the source's deformation.
+/// How far a transferred sequence is from the source's deformation. Where the faces differ, only
+/// the target's triangles with a partner are asked for anything, and count.
 struct TransferError {
   /// DE over all triangles and over L: mean over frames and triangles of ||Q_i V_i - V~_i||^2 (eq.
   /// 12), a sum over edges (EdgeSum), unit of length squared.
@@ -17,7 +20,8 @@ struct TransferError {
   /// for.
   double de_still = 0;
   Eigen::VectorXd per_frame;     ///< mean over all triangles (F)
-  Eigen::VectorXd per_triangle;  ///< mean over frames (M)
+  Eigen::VectorXd per_triangle;  ///< mean over frames (M), 0 for those that do not count
+  int triangles = 0;             ///< those that count
   /// Largest displacement from the target's rest of a vertex in no triangle of L, over all frames;
   /// length.
   double leak = 0;
@@ -28,6 +32,8 @@ struct TransferError {
 
 struct TransferErrorOptions {
   EdgeSum edges = EdgeSum::all;
+  /// Of source and target where their faces differ, or null.
+  std::shared_ptr<const Pairing> pairing = {};
   /// 0 for all there are; the result does not depend on it.
   int threads = 0;
   Progress progress = {};
@@ -35,9 +41,9 @@ struct TransferErrorOptions {
 
 /// `result` is the transferred sequence before head motion is given back; its rest pose is the
 /// target's neutral. `source` F frames with its neutral as rest. `selected` = L, rows of the
-/// triangles. Throws MismatchError where sizes differ, std::invalid_argument for a row out of
-/// range, what reading throws, and Cancelled. A degenerate source triangle is measured against what
-/// stands in for it in the transfer. The result does not depend on the number of threads.
+/// target's triangles. Throws MismatchError where sizes differ, std::invalid_argument for a row out
+/// of range, what reading throws, and Cancelled. A degenerate source triangle is measured against
+/// what stands in for it in the transfer. The result does not depend on the number of threads.
 TransferError transfer_error(const FrameSource& source, const FrameSource& result,
                              const std::vector<int>& selected,
                              const TransferErrorOptions& options = {});

@@ -38,40 +38,56 @@ Vector scaled_normal(const Vector& e1, const Vector& e2) {
   return {x * scale, y * scale, z * scale};
 }
 
+/// Vertices of a mesh that are used, numbered in the order of first use.
+class Slots {
+ public:
+  Slots(const Triangles& triangles, std::size_t vertices)
+      : triangles_(triangles), slot_of_vertex_(vertices, -1) {}
+
+  /// Of a triangle's corners.
+  Eigen::Vector3i operator()(int triangle) {
+    Eigen::Vector3i slots;
+    for (int c = 0; c < 3; ++c) slots[c] = slot_of(triangles_(triangle, c));
+    return slots;
+  }
+  const std::vector<VertexIndex>& vertices() const { return vertices_; }
+
+ private:
+  int slot_of(VertexIndex vertex) {
+    int& slot = slot_of_vertex_[vertex];
+    if (slot < 0) {
+      slot = static_cast<int>(vertices_.size());
+      vertices_.push_back(vertex);
+    }
+    return slot;
+  }
+
+  const Triangles& triangles_;
+  std::vector<VertexIndex> vertices_;
+  std::vector<int> slot_of_vertex_;
+};
+
 }  // namespace
 
-VertexPull::VertexPull(const Positions& rest, const Triangles& triangles,
+VertexPull::VertexPull(const Positions& rest, const Triangles& source, const Triangles& target,
                        const DeformationGradients& gradients, const std::vector<Edges>& vectors,
-                       std::vector<int> row_of_vertex)
-    : row_of_vertex_(std::move(row_of_vertex)), slot_of_vertex_(rest.rows(), -1) {
-  if (!row_of_vertex_.empty()) rows_ = std::ranges::max(row_of_vertex_) + 1;
-  const auto slots_of = [&](int triangle) {
-    const auto corners = triangles.row(triangle);
-    return Eigen::Vector3i(slot_of(corners[0]), slot_of(corners[1]), slot_of(corners[2]));
-  };
+                       const std::vector<int>& row_of_vertex) {
+  if (!row_of_vertex.empty()) rows_ = std::ranges::max(row_of_vertex) + 1;
+  Slots from(source, rest.rows()), to(target, row_of_vertex.size());
   for (std::size_t s = 0; s < vectors.size(); ++s) {
     if (vectors[s].isZero(0)) continue;
-    const int triangle = gradients.selected()[s];
-    for (const auto& [source, share] : gradients.parts(static_cast<int>(s))) {
-      terms_.push_back({slots_of(source), slots_of(triangle),
-                        share * gradients.inverse_frame(source) * vectors[s]});
+    for (const auto& [triangle, share] : gradients.parts(static_cast<int>(s))) {
+      terms_.push_back({from(triangle), to(gradients.selected()[s]),
+                        share * gradients.inverse_frame(triangle) * vectors[s]});
     }
   }
+  vertices_ = from.vertices();
+  for (const VertexIndex vertex : to.vertices()) row_of_slot_.push_back(row_of_vertex[vertex]);
   const Rows at_rest = sums(gather(Eigen::Map<const Frames>(rest.data(), 1, rest.size())));
   at_rest_.resize(at_rest.rows(), 3);
   for (Eigen::Index slot = 0; slot < at_rest.rows(); ++slot) {
     for (int c = 0; c < 3; ++c) at_rest_(slot, c) = at_rest(slot, c * kLanes);
   }
-}
-
-/// Vertices are numbered in the order of first use.
-int VertexPull::slot_of(VertexIndex vertex) {
-  int& slot = slot_of_vertex_[vertex];
-  if (slot < 0) {
-    slot = static_cast<int>(vertices_.size());
-    vertices_.push_back(vertex);
-  }
-  return slot;
 }
 
 /// Positions of the used vertices, one frame a lane.
@@ -90,9 +106,9 @@ VertexPull::Rows VertexPull::gather(const Eigen::Ref<const Frames>& frames) cons
   return positions;
 }
 
-/// Sum of U~_i U_i^-1 x_iv, one row a slot.
+/// Sum of U~_i U_i^-1 x_iv, one row a slot of the target.
 VertexPull::Rows VertexPull::sums(const Rows& positions) const {
-  Rows result = Rows::Zero(positions.rows(), kWidth);
+  Rows result = Rows::Zero(static_cast<Eigen::Index>(row_of_slot_.size()), kWidth);
   for (const Term& term : terms_) {
     const auto from = [&](int corner) { return positions.row(term.source[corner]).data(); };
     const auto to = [&](int corner) { return result.row(term.target[corner]).data(); };
@@ -118,8 +134,8 @@ VertexPull::Rows VertexPull::sums(const Rows& positions) const {
 VertexPull::Rows VertexPull::operator()(const Eigen::Ref<const Frames>& frames) const {
   const Rows all = sums(gather(frames));
   Rows result = Rows::Zero(rows_, kWidth);
-  for (std::size_t slot = 0; slot < vertices_.size(); ++slot) {
-    const int row = row_of_vertex_[vertices_[slot]];
+  for (std::size_t slot = 0; slot < row_of_slot_.size(); ++slot) {
+    const int row = row_of_slot_[slot];
     if (row < 0) continue;
     for (int c = 0; c < 3; ++c) {
       result.row(row).segment<kLanes>(c * kLanes).array() +=

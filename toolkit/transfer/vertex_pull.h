@@ -22,15 +22,16 @@ class VertexPull {
   /// A row holds x of each frame, then y, then z.
   using Rows = Eigen::Matrix<double, Eigen::Dynamic, kWidth, Eigen::RowMajor>;
 
-  /// `rest` N x 3, of the source; `gradients` are those of `triangles` (M x 3) at `rest`. `vectors`
-  /// holds, for each selected triangle a b c, x_ib and x_ic; x_ia = -x_ib - x_ic. `row_of_vertex`
-  /// (N) says where a vertex' sum goes; -1 for nowhere. Sums that go to one row are added.
-  VertexPull(const Positions& rest, const Triangles& triangles,
+  /// `rest` N x 3 and `source` of the source, `gradients` those of `target` (M x 3) at `rest`.
+  /// `vectors` holds, for each selected triangle a b c of the target, x_ib and x_ic;
+  /// x_ia = -x_ib - x_ic. `row_of_vertex` says where the sum of a vertex of the target goes; -1 for
+  /// nowhere. Sums that go to one row are added.
+  VertexPull(const Positions& rest, const Triangles& source, const Triangles& target,
              const DeformationGradients& gradients, const std::vector<Edges>& vectors,
-             std::vector<int> row_of_vertex);
+             const std::vector<int>& row_of_vertex);
 
   /// One row for each number in row_of_vertex; lanes beyond the last frame repeat it.
-  /// \pre 1 <= frames.rows() <= kLanes, frames.cols() == 3N
+  /// \pre 1 <= frames.rows() <= kLanes, frames.cols() == 3N of the source
   Rows operator()(const Eigen::Ref<const Frames>& frames) const;
 
  private:
@@ -40,14 +41,12 @@ class VertexPull {
     Edges factor;                    // U^-1 x_ib, U^-1 x_ic
   };
 
-  int slot_of(VertexIndex vertex);
   Rows gather(const Eigen::Ref<const Frames>& frames) const;
   Rows sums(const Rows& positions) const;
 
-  std::vector<int> row_of_vertex_;
   int rows_ = 0;
-  std::vector<VertexIndex> vertices_;  // those that terms use
-  std::vector<int> slot_of_vertex_;    // -1 where no term uses it
+  std::vector<VertexIndex> vertices_;  // of the source, that terms use
+  std::vector<int> row_of_slot_;       // of the target's vertices that terms use
   std::vector<Term> terms_;
   Positions at_rest_;  // sums of the rest pose
 };

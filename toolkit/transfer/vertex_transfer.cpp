@@ -17,6 +17,8 @@
 #include "toolkit/mesh/inspection.h"
 #include "toolkit/mesh/parallel.h"
 #include "toolkit/transfer/deformation_gradients.h"
+#include "toolkit/transfer/following_parts.h"
+#include "toolkit/transfer/pairs.h"
 #include "toolkit/transfer/vertex_pull.h"
 #include "toolkit/transfer/vertex_unknowns.h"
 
@@ -95,11 +97,7 @@ void check_options(const VertexTransferOptions& options, Eigen::Index vertices) 
 
 void check(const Positions& source_rest, const Positions& target_rest, const Triangles& triangles,
            const VertexTransferOptions& options) {
-  if (source_rest.rows() != target_rest.rows()) {
-    throw MismatchError("the source has " + std::to_string(source_rest.rows()) +
-                        " vertices, the target " + std::to_string(target_rest.rows()) +
-                        "; both need the same connectivity");
-  }
+  check_sizes(source_rest, target_rest, options.pairing.get());
   if (triangles.size() > 0 &&
       (triangles.minCoeff() < 0 || triangles.maxCoeff() >= target_rest.rows())) {
     throw std::invalid_argument("a triangle uses a vertex outside 0 to " +
@@ -107,7 +105,7 @@ void check(const Positions& source_rest, const Positions& target_rest, const Tri
   }
   check_options(options, target_rest.rows());
   if (options.weld.representative.empty()) return;
-  options.weld.check(source_rest);
+  if (!options.pairing) options.weld.check(source_rest);
   options.weld.check(target_rest);
 }
 
@@ -117,6 +115,20 @@ VertexTransferOptions completed(VertexTransferOptions options, Eigen::Index vert
   if (one.empty()) options.weld = Weld::none(static_cast<int>(vertices));
   if (options.anchor == Anchor::vertex) options.anchor_vertex = one[options.anchor_vertex];
   return options;
+}
+
+/// Source triangles whose neighbours are found across seams: on the lowest of vertices that are
+/// one, as far as the target tells.
+Triangles welded_source(const Triangles& welded_target, const Weld& weld, const Pairing* pairing) {
+  if (!pairing) return welded_target;
+  if (!pairing->is_one_to_one()) return pairing->source_triangles();
+  Weld of_source = Weld::none(pairing->source_vertices());
+  for (VertexIndex v = 0; v < pairing->target_vertices(); ++v) {
+    const auto here = pairing->carriers(v), one = pairing->carriers(weld.representative[v]);
+    if (here.empty() || one.empty()) continue;
+    of_source.representative[here.front().vertex] = one.front().vertex;
+  }
+  return of_source.welded(pairing->source_triangles());
 }
 
 std::vector<bool> mask_of(const std::vector<int>& selected, Eigen::Index triangles) {
@@ -141,6 +153,7 @@ struct VertexTransfer::State {
   State(const Positions& source, const Positions& target, const Triangles& triangles,
         const std::vector<int>& selected, const VertexTransferOptions& options);
 
+  std::vector<int> uncollapsed(std::vector<int> selected) const;
   void weigh();
   void fix();
   Triplets stiffness() const;
@@ -149,7 +162,8 @@ struct VertexTransfer::State {
   void prepare_pull(const DeformationGradients& gradients);
   Row shift_of(const FloatingPiece& piece, const Eigen::Ref<const Frames>& frames,
                const Rows& displacement) const;
-  Row motion_of(const FloatingPiece& piece, const Eigen::Ref<const Frames>& frames) const;
+  Row motion_of(const std::vector<Pairing::Carrier>& carriers,
+                const Eigen::Ref<const Frames>& frames) const;
   Frames solve(const Eigen::Map<const Frames>& frames) const;
   void solve_all(const FrameSource& performance,
                  const std::function<void(int first, const Frames& poses)>& take) const;
@@ -158,7 +172,10 @@ struct VertexTransfer::State {
 
   Positions source_rest, target_rest;
   VertexTransferOptions options;
-  Triangles triangles, welded;  // as given, and on the lowest of vertices that are one
+  const Pairing* pairing;  // of the options, or null
+  Triangles triangles,
+      welded;  // of the target: as given, and on the lowest of vertices that are one
+  std::optional<FollowingParts> following;
   std::vector<bool> in_l;       // of each triangle
   std::vector<double> weights;  // of each triangle; 0 where it takes no part
   std::vector<bool> fixed;      // of each vertex
@@ -176,14 +193,18 @@ VertexTransfer::State::State(const Positions& source, const Positions& target,
     : source_rest(source),
       target_rest(target),
       options(completed(given, target.rows())),
+      pairing(options.pairing.get()),
       triangles(faces),
       welded(options.weld.welded(faces)) {
-  // Only to find neighbours across seams: at rest both are the same.
-  const DeformationGradients gradients(source_rest, welded, selected);
+  if (pairing) following.emplace(target_rest, triangles, options.weld, *pairing);
+  const std::vector<int> solved = uncollapsed(selected);
+  // Welded only to find neighbours across seams: at rest both are the same.
+  const Triangles source_faces = welded_source(welded, options.weld, pairing);
+  const DeformationGradients gradients =
+      pairing ? DeformationGradients(source_rest, source_faces, pairing->triangles(), solved)
+              : DeformationGradients(source_rest, source_faces, solved);
   in_l = mask_of(selected, triangles.rows());
-  // Those that collapse have no area in the source's rest pose either.
-  degenerate_source = gradients.replaced() - static_cast<int>(std::ranges::count_if(
-                                                 selected, [this](int t) { return collapses(t); }));
+  degenerate_source = gradients.replaced();
   weigh();
   fix();
   unknowns = number_unknowns(triangles, weights, fixed, options.weld);
@@ -196,11 +217,24 @@ VertexTransfer::State::State(const Positions& source, const Positions& target,
   prepare_pull(gradients);
 }
 
+/// Those of L that take part. Throws std::invalid_argument for a row out of range.
+std::vector<int> VertexTransfer::State::uncollapsed(std::vector<int> selected) const {
+  for (const int t : selected) {
+    if (t >= 0 && t < triangles.rows()) continue;
+    throw std::invalid_argument("triangle " + std::to_string(t) + " is selected, expected 0 to " +
+                                std::to_string(triangles.rows() - 1));
+  }
+  std::erase_if(selected, [this](int t) { return collapses(t); });
+  return selected;
+}
+
 void VertexTransfer::State::weigh() {
   const double outside = options.outside == Outside::identity ? options.outside_weight : 0;
   weights.assign(triangles.rows(), outside);
   for (int t = 0; t < triangles.rows(); ++t) {
-    if (in_l[t]) weights[t] = 1;
+    const bool is_shown = !pairing || pairing->triangles().has_partner(t);
+    if (in_l[t]) weights[t] = is_shown ? 1 : options.outside_weight;
+    if (following && following->vertices()[triangles(t, 0)]) weights[t] = 0;
     if (weights[t] == 0) continue;
     if (collapses(t)) {
       weights[t] = 0;
@@ -311,7 +345,8 @@ void VertexTransfer::State::prepare_pull(const DeformationGradients& gradients) 
     if (weights[triangle] == 0) continue;
     vectors[s] = weights[triangle] * hat_gradients(target_rest, triangles, triangle).rightCols<2>();
   }
-  pull.emplace(source_rest, triangles, gradients, vectors, unknowns.of_vertex);
+  pull.emplace(source_rest, pairing ? pairing->source_triangles() : triangles, triangles, gradients,
+               vectors, unknowns.of_vertex);
 }
 
 /// Where its anchor wants a floating piece whose pin stayed in place.
@@ -326,21 +361,31 @@ Row VertexTransfer::State::shift_of(const FloatingPiece& piece,
     if (holds_it && row >= 0) shift = -displacement.row(row);
     return shift;
   }
+  std::vector<Pairing::Carrier> carriers;
+  std::size_t carried = 0;
   for (const VertexIndex v : piece.vertices) {
+    if (anchor == Anchor::source_motion && pairing) {
+      const auto more = pairing->carriers(v);
+      carriers.insert(carriers.end(), more.begin(), more.end());
+      if (more.empty()) continue;
+    } else if (anchor == Anchor::source_motion) {
+      carriers.push_back({v, 1});
+    }
+    ++carried;
     if (unknowns.of_vertex[v] >= 0) shift -= displacement.row(unknowns.of_vertex[v]);
   }
-  if (anchor == Anchor::source_motion) shift += motion_of(piece, frames);
-  return shift / static_cast<double>(piece.vertices.size());
+  if (anchor == Anchor::source_motion) shift += motion_of(carriers, frames);
+  return carried > 0 ? Row(shift / static_cast<double>(carried)) : Row(Row::Zero());
 }
 
-/// Sum of the source's displacements over a piece.
-Row VertexTransfer::State::motion_of(const FloatingPiece& piece,
+/// Sum of the source's displacements.
+Row VertexTransfer::State::motion_of(const std::vector<Pairing::Carrier>& carriers,
                                      const Eigen::Ref<const Frames>& frames) const {
   Row motion = Row::Zero();
   for (Eigen::Index lane = 0; lane < frames.rows(); ++lane) {
     const PositionsView frame(frames.row(lane).data(), source_rest.rows(), 3);
     Eigen::RowVector3d sum = Eigen::RowVector3d::Zero();
-    for (const VertexIndex v : piece.vertices) sum += frame.row(v) - source_rest.row(v);
+    for (const auto& [v, weight] : carriers) sum += weight * (frame.row(v) - source_rest.row(v));
     for (int c = 0; c < 3; ++c) motion[c * kLanes + lane] = sum[c];
   }
   return motion;
@@ -365,6 +410,11 @@ Frames VertexTransfer::State::solve(const Eigen::Map<const Frames>& frames) cons
   for (VertexIndex v = 0; v < target_rest.rows(); ++v) {
     if (unknowns.of_vertex[v] >= 0) move(v, displacement.row(unknowns.of_vertex[v]));
   }
+  if (following) {
+    for (Eigen::Index lane = 0; lane < poses.rows(); ++lane) {
+      following->place(Eigen::Map<Positions>(poses.row(lane).data(), target_rest.rows(), 3));
+    }
+  }
   return poses;
 }
 
@@ -383,9 +433,9 @@ VertexTransfer& VertexTransfer::operator=(VertexTransfer&&) noexcept = default;
 void VertexTransfer::State::solve_all(
     const FrameSource& performance,
     const std::function<void(int first, const Frames& poses)>& take) const {
-  if (performance.vertices() != target_rest.rows()) {
+  if (performance.vertices() != source_rest.rows()) {
     throw MismatchError("the performance has " + std::to_string(performance.vertices()) +
-                        " vertices, the target " + std::to_string(target_rest.rows()));
+                        " vertices, the source " + std::to_string(source_rest.rows()));
   }
   const auto solve_block = [&](int number) {
     const int first = number * kLanes;

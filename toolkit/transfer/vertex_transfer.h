@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include "toolkit/correspondence/pairing.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/mesh_sequence.h"
 #include "toolkit/mesh/option.h"
@@ -48,7 +49,8 @@ constexpr std::string_view choice_name(Outside value) {
 
 /// What holds a connected piece that nothing else holds in place.
 enum class Anchor {
-  source_motion,  ///< its centroid moves as the same vertices of the source do, not scaled
+  source_motion,  ///< its centroid moves as the same vertices of the source do, not scaled; where
+                  ///< faces differ, that of its vertices with carriers as their carriers
   centroid,       ///< its centroid stays
   vertex          ///< one vertex stays
 };
@@ -62,7 +64,10 @@ struct VertexTransferOptions {
   /// Vertices that are one point of the surface and move as one (N), such as closed_seams(); by
   /// default none are. Where one of them is fixed, all are.
   Weld weld = {};
-  /// Weight of triangles outside L for Outside::identity, relative to those inside.
+  /// Of source and target where their faces differ, or null.
+  std::shared_ptr<const Pairing> pairing = {};
+  /// Weight of triangles outside L for Outside::identity, and of those without partner, relative
+  /// to the others.
   double outside_weight = 0.1;
   /// Weight of squared differences of displacement gradients across edges of triangles outside L.
   double outside_smoothness = 0;
@@ -89,7 +94,7 @@ struct VertexTransferOptions {
 };
 
 /// Positions of a target that follow a source's deformation gradients on triangles L; the target
-/// has the source's connectivity and needs no expressions.
+/// has the source's connectivity, or is paired with it, and needs no expressions.
 ///
 /// The fourth-vertex unknowns drop out exactly: what is left is one N x N system of gradient
 /// products, shared by x, y, z and all frames, factored once in the constructor. Translation is
@@ -99,13 +104,17 @@ struct VertexTransferOptions {
 /// Vertices that are one (VertexTransferOptions::weld) are one unknown of the system: the result is
 /// that of the mesh without duplicates, though each triangle has its own corners' gradient.
 ///
+/// A triangle without partner wants to keep its shape, with the weight of those outside L, so that
+/// a mouth's inside does not hold the lips; connected parts without any take no part in the solve
+/// and move with the surface around them (FollowingParts), whether they are in L or not.
+///
 /// [Sumner, Popovic. Deformation Transfer for Triangle Meshes. ACM TOG 23(3), 2004]
 class VertexTransfer {
  public:
-  /// `source_rest`, `target_rest` N x 3; `selected` are rows of `triangles` (M x 3). Throws
-  /// MismatchError where vertex counts differ, std::invalid_argument for options out of range, an
-  /// explicit anchor where vertices are fixed, an index out of range, or vertices that are one but
-  /// lie apart in a rest pose.
+  /// `source_rest`, `target_rest` N x 3; `selected` are rows of the target's `triangles` (M x 3).
+  /// Throws MismatchError where vertex counts differ, std::invalid_argument for options out of
+  /// range, an explicit anchor where vertices are fixed, an index out of range, or vertices that
+  /// are one but lie apart in a rest pose.
   VertexTransfer(const Positions& source_rest, const Positions& target_rest,
                  const Triangles& triangles, std::vector<int> selected,
                  const VertexTransferOptions& = {});
@@ -125,7 +134,7 @@ class VertexTransfer {
   int collapsed_triangles() const;
   int degenerate_source_triangles() const;
   int degenerate_target_triangles() const;
-  /// Vertices that stay exactly at the target's rest pose (N).
+  /// Vertices that stay exactly at the target's rest pose (N), or follow.
   const std::vector<bool>& fixed() const;
 
  private:

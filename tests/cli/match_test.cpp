@@ -1,0 +1,80 @@
+#include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
+
+#include "tests/cli/matched_patch.h"
+#include "toolkit/io/correspondence_file.h"
+
+namespace mimetra {
+namespace {
+
+using testing::HasSubstr;
+
+/// A performance of the model, and a mesh of other faces.
+class MatchTest : public test::CommandTest {
+ protected:
+  void SetUp() override {
+    CommandTest::SetUp();
+    write("small.obj", test::small_patch());
+    write("m.txt", test::patch_markers(0));
+  }
+
+  nlohmann::json report_of(const std::string& arguments) const {
+    const auto result = run(arguments + " --json");
+    EXPECT_EQ(result.code, 0) << arguments << '\n' << result.err;
+    return nlohmann::json::parse(result.out);
+  }
+
+  static constexpr const char* kSource = "transfer head --weights take.csv ";
+};
+
+TEST_F(MatchTest, WritesTheCorrespondenceThatAnotherRunTakes) {
+  const auto report = report_of(std::string(kSource) + "small.obj --full --markers m.txt -o x.npy");
+  EXPECT_EQ(report["targets"][0]["correspondence"]["verdict"], "good");
+  EXPECT_EQ(report["targets"][0]["correspondence"]["markers"], 9);
+  ASSERT_TRUE(listing().contains("x.correspondence.json"));
+  report_of(std::string(kSource) +
+            "small.obj --full --correspondence x.correspondence.json -o y.npy");
+  EXPECT_EQ(text_of(folder_ / "y.npy"), text_of(folder_ / "x.npy"));
+  EXPECT_EQ(text_of(folder_ / "y.correspondence.json"), text_of(folder_ / "x.correspondence.json"));
+}
+
+TEST_F(MatchTest, ShowsTheResidualsWhereFieldsAreWritten) {
+  report_of(std::string(kSource) + "small.obj --full --markers m.txt -o x.pvd");
+  const std::string first = text_of(folder_ / "x_vtp/x_0000.vtp");
+  EXPECT_THAT(first, HasSubstr("\"match_residual\""));
+  EXPECT_THAT(first, HasSubstr("\"match_partners\""));
+}
+
+TEST_F(MatchTest, TakesAFileForEachTargetOrOneForAll) {
+  write("other.obj", test::small_patch());
+  const std::string both = std::string(kSource) + "small.obj other.obj -k 2 -o out/ ";
+  const auto one = report_of(both + "--markers m.txt");
+  const auto each = report_of(both + "--markers m.txt,m.txt --force");
+  for (int t = 0; t < 2; ++t) {
+    EXPECT_EQ(each["targets"][t]["de_all"], one["targets"][t]["de_all"]);
+    EXPECT_GE(one["targets"][t]["correspondence"]["seconds"], 0);
+    EXPECT_GE(one["targets"][t]["error_seconds"], 0);
+  }
+  EXPECT_TRUE(listing("out/other").contains("correspondence.json"));
+}
+
+TEST_F(MatchTest, IdentityAsAFileGivesTheSameVertices) {
+  const MorphableModel head = model();
+  const Connectivity& faces = head.connectivity();
+  write("same.json",
+        correspondence_json(Correspondence::identity(static_cast<int>(faces.triangles.rows())),
+                            faces, faces));
+  const std::string wide = std::string(kSource) + "head@wide=1 --space vertex -k 2 ";
+  report_of(wide + "-o x.npy");
+  report_of(wide + "--correspondence same.json -o y.npy");
+  EXPECT_EQ(text_of(folder_ / "y.npy"), text_of(folder_ / "x.npy"));
+}
+
+TEST_F(MatchTest, EvaluatesOverACorrespondence) {
+  const auto report = report_of("evaluate head --weights take.csv small.obj -k 2 --markers m.txt");
+  ASSERT_EQ(report["rows"].size(), 2u);
+  EXPECT_EQ(report["rows"][1]["vertices"], 225);
+}
+
+}  // namespace
+}  // namespace mimetra

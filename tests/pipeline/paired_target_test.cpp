@@ -1,0 +1,147 @@
+#include <gmock/gmock.h>
+
+#include "tests/pipeline/takes.h"
+#include "toolkit/pipeline/evaluation.h"
+
+namespace mimetra {
+namespace {
+
+using test::Noted;
+using testing::HasSubstr;
+using testing::ThrowsMessage;
+
+class PairedTargetTest : public testing::Test {
+ protected:
+  const MeshSequence take_ = test::take(24);
+  const BlendshapeModel actor_ = test::model_on(test::bent_patch(), 5);
+  const Correspondence same_ = Correspondence::identity(128);
+
+  TransferredTarget transferred(const Target& target, const TransferOptions& options) const {
+    return std::move(transfer(take_, {target}, options).targets.front());
+  }
+};
+
+TEST_F(PairedTargetTest, IdentityGivesEqualBytes) {
+  for (const Space space : {Space::blendshape, Space::vertex}) {
+    for (const bool full : {true, false}) {
+      TransferOptions options{.full = full};
+      options.analysis.decomposition.count = 3;
+      options.solving.space = space;
+      const TransferredTarget plain = transferred({"actor", actor_}, options);
+      const TransferredTarget by_pairs = transferred({"actor", actor_, same_}, options);
+      EXPECT_TRUE(test::frames_of(by_pairs.solution.sequence) ==
+                  test::frames_of(plain.solution.sequence));
+      EXPECT_EQ(by_pairs.error.de_all, plain.error.de_all);
+      EXPECT_EQ(by_pairs.error.de_region, plain.error.de_region);
+      EXPECT_EQ(by_pairs.error.leak, plain.error.leak);
+      EXPECT_FALSE(plain.match);
+      EXPECT_TRUE(by_pairs.match);
+    }
+  }
+}
+
+TEST_F(PairedTargetTest, IdentityFindsTheSameHeadMotionAndGivesItBack) {
+  const MeshSequence nodding = test::bare(with_motion(take_, test::nodding(24)));
+  TransferOptions options{.full = true};
+  options.source.head_motion = HeadMotion::joint;
+  const auto plain = transfer(nodding, {{"actor", actor_}}, options);
+  const auto by_pairs = transfer(nodding, {{"actor", actor_, same_}}, options);
+  // Patches are held out on the source's own vertices there, and at the target's here.
+  EXPECT_TRUE(test::frames_of(by_pairs.targets[0].solution.sequence) ==
+              test::frames_of(plain.targets[0].solution.sequence));
+  ASSERT_TRUE(by_pairs.head_motion.held_out);
+  EXPECT_NEAR(by_pairs.head_motion.held_out->joint, plain.head_motion.held_out->joint, 1e-12);
+}
+
+TEST_F(PairedTargetTest, IdentityEvaluatesAlike) {
+  EvaluationOptions options{.counts = {3}};
+  const auto plain = evaluate(take_, {"actor", actor_}, options);
+  const auto by_pairs = evaluate(take_, {"actor", actor_, same_}, options);
+  ASSERT_EQ(by_pairs.size(), plain.size());
+  for (std::size_t i = 0; i < plain.size(); ++i) {
+    EXPECT_EQ(by_pairs[i].de_all, plain[i].de_all);
+    EXPECT_EQ(by_pairs[i].mpe_region, plain[i].mpe_region);
+    EXPECT_EQ(by_pairs[i].triangles, plain[i].triangles);
+  }
+}
+
+/// The same surface with four times the faces.
+class FinerTargetTest : public PairedTargetTest {
+ protected:
+  FinerTargetTest() {
+    const test::Shape fine = test::subdivided(test::patch());
+    mesh_.emplace(test::connectivity_of(fine), fine.positions,
+                  ShapeBasis{{}, Eigen::MatrixXd(fine.positions.size(), 0)});
+    // Old vertices come first.
+    for (const VertexIndex v : {1, 7, 9, 40, 44, 63, 71, 78}) markers_.push_back({v, v});
+  }
+
+  std::optional<BlendshapeModel> mesh_;
+  std::vector<Marker> markers_;
+};
+
+TEST_F(FinerTargetTest, IsFoundByMarkersAndFollows) {
+  const auto found = transferred({"fine", *mesh_, markers_}, {.full = true});
+  ASSERT_TRUE(found.match);
+  EXPECT_EQ(found.match->quality.verdict(), "good");
+  EXPECT_EQ(found.match->markers, 8);
+  // Of a face 8 wide whose bumps are up to 1 high.
+  double farthest = 0;
+  for (int f = 0; f < take_.frames(); ++f) {
+    const Frames pose = found.solution.sequence->read(f, 1);
+    const PositionsView result(pose.data(), mesh_->vertices(), 3);
+    farthest =
+        std::max(farthest, (result.topRows(81) - take_.frame(f)).rowwise().norm().maxCoeff());
+  }
+  EXPECT_LT(farthest, 0.15);
+}
+
+TEST_F(FinerTargetTest, MovesOnlyOverTheRegions) {
+  TransferOptions options;
+  options.given =
+      GivenRegions{"regions", regions_from_vertices(81, take_.triangles(), {{30, 31, 39, 40}})};
+  const auto found = transferred({"fine", *mesh_, markers_}, options);
+  EXPECT_GT(found.error.de_still, 0);
+  EXPECT_EQ(found.error.leak, 0);
+  const Frames pose = found.solution.sequence->read(5, 1);
+  const PositionsView result(pose.data(), mesh_->vertices(), 3);
+  EXPECT_TRUE(result.row(0) == mesh_->neutral().row(0));
+  EXPECT_GT((result.row(40) - mesh_->neutral().row(40)).norm(), 1e-3);
+}
+
+TEST_F(FinerTargetTest, IsRefusedWithoutMatch) {
+  const auto work = [this] { transferred({"fine", *mesh_}, {.full = true}); };
+  EXPECT_EQ(test::topic_of(work), Topic::other_faces);
+}
+
+TEST_F(FinerTargetTest, IsToldWhenMarkersWouldFitAsOtherVertices) {
+  for (Marker& marker : markers_) marker = {marker.source + 1, marker.target + 1};
+  markers_.back() = {81, 79};  // beyond the source
+  const auto work = [this] { transferred({"fine", *mesh_, markers_}, {.full = true}); };
+  EXPECT_EQ(test::topic_of(work), Topic::shifted_markers);
+  EXPECT_THAT(work, ThrowsMessage<MismatchError>(HasSubstr("fine: marker 8: vertex 81 of the "
+                                                           "source")));
+}
+
+TEST_F(PairedTargetTest, NotesAPoorCorrespondence) {
+  Correspondence far = same_;
+  far.residuals.setConstant(5);
+  Noted noted;
+  const MatchedTarget matched(take_, {"actor", actor_, far}, {.notes = noted.sink()});
+  EXPECT_TRUE(noted.has(Topic::poor_match));
+}
+
+TEST_F(PairedTargetTest, RefusesACorrespondenceWithoutPairs) {
+  Correspondence none;
+  none.source_triangles = 128;
+  none.offsets.assign(129, 0);
+  none.residuals = Eigen::VectorXd::Zero(128);
+  EXPECT_THAT(
+      [&] {
+        MatchedTarget(take_, {"actor", actor_, none});
+      },
+      ThrowsMessage<MismatchError>("actor: no triangle has a partner in the source"));
+}
+
+}  // namespace
+}  // namespace mimetra

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <vector>
+
+#include "toolkit/operations/json.h"
+#include "toolkit/operations/operation.h"
+#include "toolkit/pipeline/solution.h"
+
+namespace mimetra {
+
+/// --markers, --index-base and --correspondence, of operations with a target.
+std::vector<Parameter> match_parameters();
+
+/// The call's targets and how they are paired with its source. Throws UsageError where options
+/// exclude each other or name another number of files than one or one for each target; what
+/// read_markers() and read_correspondence() throw.
+std::vector<Target> targets_of(const Invocation& invocation);
+
+/// What a correspondence is worth, for reports and for people.
+Json json_of(const MatchReport& match);
+std::string summary_of(const MatchReport& match);
+
+/// Of the target's triangles: the distance from the deformed source (0 where it is nowhere near)
+/// and the number of partners.
+std::vector<Field> fields_of(const Correspondence& pairs);
+
+}  // namespace mimetra

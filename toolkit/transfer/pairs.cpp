@@ -1,0 +1,40 @@
+#include "toolkit/transfer/pairs.h"
+
+#include <string>
+#include <utility>
+
+#include "toolkit/mesh/errors.h"
+
+namespace mimetra {
+
+void check_sizes(const Positions& source_rest, const Positions& target_rest,
+                 const Pairing* pairing) {
+  const auto sizes = [](Eigen::Index source, Eigen::Index target) {
+    return "the source has " + std::to_string(source) + " vertices, the target " +
+           std::to_string(target);
+  };
+  const std::string found = sizes(source_rest.rows(), target_rest.rows());
+  if (!pairing) {
+    if (source_rest.rows() == target_rest.rows()) return;
+    throw MismatchError(found + "; both need the same connectivity");
+  }
+  const std::string expected = sizes(pairing->source_vertices(), pairing->target_vertices());
+  if (found != expected) throw MismatchError(found + "; in their pairing " + expected);
+}
+
+DeformationGradients gradients_between(const Positions& source_rest, const Triangles& triangles,
+                                       const Pairing* pairing, std::vector<int> selected) {
+  if (!pairing) return {source_rest, triangles, std::move(selected)};
+  return {source_rest, pairing->source_triangles(), pairing->triangles(), std::move(selected)};
+}
+
+std::vector<int> with_partners(std::vector<int> triangles, const Pairing* pairing) {
+  if (!pairing) return triangles;
+  std::erase_if(triangles, [&](int t) {
+    return t >= 0 && t < pairing->triangles().target_triangles() &&
+           !pairing->triangles().has_partner(t);
+  });
+  return triangles;
+}
+
+}  // namespace mimetra
