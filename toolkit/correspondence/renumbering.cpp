@@ -1,14 +1,15 @@
 #include "toolkit/correspondence/renumbering.h"
 
 #include <algorithm>
-#include <cstdint>
 #include <functional>
 #include <limits>
 #include <numeric>
 #include <optional>
 #include <stdexcept>
-#include <unordered_map>
 #include <utility>
+
+#include <Eigen/LU>
+#include <Eigen/SVD>
 
 #include "toolkit/correspondence/face_graph.h"
 #include "toolkit/correspondence/polygon_split.h"
@@ -322,16 +323,10 @@ Renumbering with_map(std::vector<VertexIndex> vertices) {
 Renumbering by_graph(const Side& from, const Side& to) {
   Search search(from, to, false);
   const Colours colours(search.graph(), search.other());
-  std::unordered_map<std::uint64_t, std::vector<int>> of_colour;
+  std::vector<std::vector<int>> of_colour(colours.count);
   for (int g = 0; g < search.other().size(); ++g) of_colour[colours.of_b[g]].push_back(g);
-  const auto candidates = [&](int h) {
-    const auto found = of_colour.find(colours.of_a[h]);
-    return found == of_colour.end() ? std::vector<int>{} : found->second;
-  };
-  const auto rarity = [&](int h) {
-    const auto found = of_colour.find(colours.of_a[h]);
-    return found == of_colour.end() ? std::size_t{0} : found->second.size();
-  };
+  const auto candidates = [&](int h) { return of_colour[colours.of_a[h]]; };
+  const auto rarity = [&](int h) { return of_colour[colours.of_a[h]].size(); };
   const std::string why = search.run(starts_of(search.graph(), rarity), candidates);
   return why.empty() ? with_map(search.vertices()) : without_map(why);
 }
