@@ -161,7 +161,7 @@ TEST(Renumbering, IsNoMirrorImage) {
   Triangles flipped = mesh.connectivity.triangles;
   flipped.col(1).swap(flipped.col(2));
   const Connectivity mirrored = Connectivity::from_triangles(30, flipped);
-  EXPECT_THAT(renumbering(mesh.connectivity, mirrored).why_not, HasSubstr("joined and bounded"));
+  EXPECT_THAT(renumbering(mesh.connectivity, mirrored).why_not, HasSubstr("the other way round"));
 }
 
 TEST(Renumbering, NamesCountsThatDiffer) {
@@ -243,6 +243,41 @@ TEST(Renumbering, PairsVerticesWithoutAFaceInOrder) {
       renumbering(Connectivity::from_triangles(5, one), Connectivity::from_triangles(5, other))
           .vertices,
       ElementsAre(1, 0, 2, 4, 3));
+}
+
+TEST(Renumbering, PairsVerticesWithoutAFaceByPlace) {
+  const TriMesh grid = test::mesh_of(notched_grid());
+  TriMesh mesh = grid;
+  mesh.positions.conservativeResize(34, 3);
+  for (int v = 30; v < 34; ++v) mesh.positions.row(v) << v, 0.5 * v, 7;
+  mesh.connectivity = Connectivity::from_triangles(34, grid.connectivity.triangles);
+  for (const bool faces : {false, true}) {
+    Shuffled other(mesh, {.faces = faces});
+    other.moved.positions = (10 * other.moved.positions.array() + 3).matrix();
+    EXPECT_EQ(renumbering(mesh, other.moved).vertices, other.vertices);
+  }
+}
+
+TEST(Renumbering, TellsFacesThatLeadTheOtherWayRound) {
+  // Curved squares around a gap: a mirror image has the same faces, with left and right exchanged.
+  TriMesh mesh = quads(4, 4);
+  mesh.positions.col(2) =
+      (mesh.positions.col(0).array() - 1.5).square() + mesh.positions.col(1).array().square();
+  Polygons polygons, turned;
+  for (int face = 0; face < 9; ++face) {
+    if (face == 7) continue;
+    const auto first = mesh.connectivity.polygons.corners.begin() + 4 * face;
+    polygons.corners.insert(polygons.corners.end(), first, first + 4);
+    turned.corners.insert(turned.corners.end(), first, first + 4);
+    std::reverse(turned.corners.end() - 4, turned.corners.end());
+    polygons.offsets.push_back(static_cast<int>(polygons.corners.size()));
+  }
+  turned.offsets = polygons.offsets;
+  mesh.connectivity = Connectivity::from_polygons(16, polygons);
+  TriMesh other = {mesh.positions, Connectivity::from_polygons(16, turned)};
+  EXPECT_THAT(renumbering(mesh, other).why_not, HasSubstr("the other way round"));
+  other.positions.col(0) *= -1;
+  EXPECT_TRUE(renumbering(mesh, other).found()) << "a mirror image";
 }
 
 TEST(Renumbering, NeedsAPositionForEachVertex) {

@@ -37,6 +37,14 @@ TEST_F(MarkerFile, IsReadInEveryFormThatPeopleWrite) {
   EXPECT_EQ(read("target: [34, 78, 11]\nsource: [12, 56, 90]\n"), expected);
 }
 
+TEST_F(MarkerFile, DoesNotGuessWhichListIsWhich) {
+  const std::vector<Marker> expected = {{12, 34}, {56, 78}, {90, 11}};
+  EXPECT_EQ(read("12 56 90\ntarget: 34 78 11\n"), expected);
+  refused("tgt: 34 78 11\nsrc: 12 56 90\n", "line 1: a list of vertices named 'tgt'");
+  refused("tgt: 34 78 11\n12 56 90\n", "expected one 'source' and one 'target'");
+  refused("target: 34 78 11\ntarget: 12 56 90\n", "line 2: a list of vertices named 'target'");
+}
+
 TEST_F(MarkerFile, CountsFromOneWhereItIsToldSo) {
   EXPECT_THAT(read("12 34\n1 2\n", 1), ElementsAre(Marker{11, 33}, Marker{0, 1}));
   refused("12 34\n0 2\n", "line 2: vertex 0, expected one from 1 on", 1);
@@ -49,6 +57,7 @@ TEST_F(MarkerFile, NamesTheLineOfWhatIsNoPair) {
   refused("12 34.5\n", "expected an integer for a vertex");
   refused("12 -3\n", "line 1: vertex -3, expected one from 0 on");
   refused("12 4294967296\n", "vertex 4294967296");
+  refused("12 -9223372036854775808\n", "vertex -9223372036854775808", 1);
   refused("3\n12, 34\n56, 78\n", "line 1: announces 3 markers, found 2");
   refused("# nothing\n", "holds no marker");
   refused("", "holds no marker");

@@ -1,10 +1,14 @@
 // A mesh that is only numbered differently is told from another one, and can be numbered alike.
 
+#include <filesystem>
+#include <fstream>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "tests/shapes.h"
-#include "toolkit/operations/operation.h"
+#include "tests/temporary_folder.h"
+#include "toolkit/operations/call.h"
 
 namespace mimetra {
 namespace {
@@ -68,6 +72,41 @@ TEST_F(NumberingTest, BecomesTheReferences) {
   EXPECT_EQ(made.fields.front().values(0, 0), 11);
   EXPECT_THAT(said_, ElementsAre(HasSubstr("the field in_L of its triangles is left out")));
   EXPECT_THAT(outcome.summary, HasSubstr("the same faces, 12 vertices renumbered"));
+}
+
+TEST_F(NumberingTest, SaysWhatOnlyItsOwnFacesHave) {
+  const auto with_texture = [](const FieldSequence& plain) {
+    Connectivity faces = plain.frames->connectivity();
+    faces.texture.coordinates = {{0, 0}, {1, 0}};
+    faces.texture.corners.assign(faces.polygons.corners.size(), 1);
+    faces.groups = {{0, "g lips"}, {2, "usemtl skin"}};
+    return FieldSequence(MeshSequence(std::move(faces), plain.frames->read(0, 1)));
+  };
+  run("convert", with_texture(numbered(true)), numbered(false));
+  EXPECT_THAT(said_, ElementsAre("export.obj: its texture coordinates, groups and materials are "
+                                 "left out: the faces are those of neutral.obj, which has none"));
+  said_.clear();
+  run("convert", with_texture(numbered(true)), with_texture(numbered(false)));
+  EXPECT_THAT(said_, IsEmpty());
+}
+
+TEST_F(NumberingTest, ChoosesNoFramesOfTheReference) {
+  const test::TemporaryFolder folder;
+  const std::string text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+  for (const char* file : {"take/0.obj", "take/1.obj", "neutral.obj"}) {
+    std::filesystem::create_directories(folder / "take");
+    std::ofstream(folder / file) << text;
+  }
+  CallRequest request;
+  request.operation = table_.find("check");
+  request.parameters = Parameters(table_.parameters_of(*request.operation));
+  request.parameters.set("frames", "1:2");
+  request.named = {{"sequence", {(folder / "take").string()}},
+                   {"match", {(folder / "neutral.obj").string()}}};
+  Call call(table_, std::move(request));
+  call.load();
+  EXPECT_EQ(call.invocation().get<FieldSequence>("sequence").frames->frames(), 1);
+  EXPECT_EQ(call.invocation().get<FieldSequence>("match").frames->frames(), 1);
 }
 
 TEST_F(NumberingTest, IsRefusedForAnotherMesh) {

@@ -1,6 +1,7 @@
 #include "toolkit/correspondence/face_graph.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <iterator>
 #include <numeric>
 #include <tuple>
@@ -9,42 +10,92 @@
 namespace mimetra {
 namespace {
 
-/// splitmix64's last step: every bit of the result depends on every bit of the number.
-std::uint64_t mixed(std::uint64_t number) {
-  number = (number ^ (number >> 30)) * 0xbf58476d1ce4e5b9U;
-  number = (number ^ (number >> 27)) * 0x94d049bb133111ebU;
-  return number ^ (number >> 31);
-}
-
-std::uint64_t mixed(std::uint64_t a, std::uint64_t b, std::uint64_t c) {
-  return mixed(a + 0x9e3779b97f4a7c15U * mixed(b + 0x9e3779b97f4a7c15U * mixed(c + 1)));
-}
-
-std::vector<std::uint64_t> first_colours(const FaceGraph& graph) {
-  std::vector<std::uint64_t> colours;
-  for (const EdgeKind kind : graph.kind) colours.push_back(mixed(static_cast<std::uint64_t>(kind)));
-  return colours;
-}
-
-/// A half-edge is known by itself, by the next one of its face, and by the one across.
-std::vector<std::uint64_t> next_colours(const FaceGraph& graph,
-                                        const std::vector<std::uint64_t>& colours) {
-  std::vector<std::uint64_t> result(colours.size());
-  for (std::size_t h = 0; h < result.size(); ++h) {
-    const int across = graph.opposite[h];
-    result[h] = mixed(colours[h], colours[graph.next[h]], across < 0 ? 0 : colours[across]);
+/// Numbers 0 .. n - 1 in classes, which are split.
+class Partition {
+ public:
+  /// \pre classes are numbered from 0 on, each with a member
+  explicit Partition(std::vector<int> class_of)
+      : class_of_(std::move(class_of)), elements_(class_of_.size()), place_(class_of_.size()) {
+    std::iota(elements_.begin(), elements_.end(), 0);
+    std::ranges::stable_sort(elements_, {}, [this](int element) { return class_of_[element]; });
+    for (std::size_t i = 0; i < elements_.size(); ++i) {
+      place_[elements_[i]] = static_cast<int>(i);
+      if (class_of_[elements_[i]] == classes()) ranges_.push_back({static_cast<int>(i), 0, 0});
+      ranges_.back().end = static_cast<int>(i) + 1;
+    }
   }
-  return result;
+
+  int classes() const { return static_cast<int>(ranges_.size()); }
+  int size(int each) const { return ranges_[each].end - ranges_[each].first; }
+  const std::vector<int>& class_of() const { return class_of_; }
+  std::vector<int> members(int each) const {
+    return {elements_.begin() + ranges_[each].first, elements_.begin() + ranges_[each].end};
+  }
+
+  void mark(int element) {
+    Range& range = ranges_[class_of_[element]];
+    if (range.marked++ == 0) touched_.push_back(class_of_[element]);
+    const int to = range.first + range.marked - 1, from = place_[element];
+    std::swap(elements_[to], elements_[from]);
+    place_[elements_[to]] = to;
+    place_[elements_[from]] = from;
+  }
+
+  /// The marked members of each class become one of their own where there are others; calls
+  /// `on_split` with both classes. Nothing is marked then.
+  template <typename OnSplit>
+  void split_marked(OnSplit on_split) {
+    for (const int each : std::exchange(touched_, {})) {
+      const int marked = std::exchange(ranges_[each].marked, 0);
+      if (marked == size(each)) continue;
+      const int added = classes(), first = ranges_[each].first;
+      ranges_.push_back({first, first + marked, 0});
+      ranges_[each].first += marked;
+      for (const int element : members(added)) class_of_[element] = added;
+      on_split(each, added);
+    }
+  }
+
+ private:
+  struct Range {
+    int first, end;  ///< of elements_
+    int marked;      ///< the first ones
+  };
+
+  std::vector<int> class_of_, elements_, place_;
+  std::vector<Range> ranges_;
+  std::vector<int> touched_;
+};
+
+/// Classes of kinds, without those that no half-edge is of.
+std::vector<int> classes_of_kinds(const FaceGraph& a, const FaceGraph& b) {
+  std::vector<int> kinds;
+  for (const FaceGraph* graph : {&a, &b}) {
+    for (const EdgeKind kind : graph->kind) kinds.push_back(static_cast<int>(kind));
+  }
+  std::vector<int> present = kinds;
+  std::ranges::sort(present);
+  present.erase(std::unique(present.begin(), present.end()), present.end());
+  for (int& kind : kinds) {
+    kind = static_cast<int>(std::ranges::lower_bound(present, kind) - present.begin());
+  }
+  return kinds;
 }
 
-std::size_t number_of_colours(const std::vector<std::uint64_t>& a,
-                              const std::vector<std::uint64_t>& b) {
-  std::vector<std::uint64_t> all = a;
-  all.insert(all.end(), b.begin(), b.end());
-  std::ranges::sort(all);
-  all.erase(std::unique(all.begin(), all.end()), all.end());
-  return all.size();
-}
+/// The half-edges of two graphs in one row: which each one follows, and which lies across; -1.
+struct Arrivals {
+  Arrivals(const FaceGraph& a, const FaceGraph& b) : before(a.size() + b.size()) {
+    for (const FaceGraph* graph : {&a, &b}) {
+      const int first = graph == &a ? 0 : a.size();
+      for (int h = 0; h < graph->size(); ++h) {
+        before[first + graph->next[h]] = first + h;
+        across.push_back(graph->opposite[h] < 0 ? -1 : first + graph->opposite[h]);
+      }
+    }
+  }
+
+  std::vector<int> before, across;
+};
 
 }  // namespace
 
@@ -82,19 +133,37 @@ FaceGraph::FaceGraph(const Polygons& polygons)
   }
 }
 
-Colours::Colours(const FaceGraph& a, const FaceGraph& b)
-    : of_a(first_colours(a)), of_b(first_colours(b)) {
-  // Colours spread by one edge a round. Where twice as many rounds tell no more apart, none do.
-  std::size_t known = 0;
-  for (int rounds = 1;; rounds *= 2) {
-    for (int round = 0; round < rounds; ++round) {
-      of_a = next_colours(a, of_a);
-      of_b = next_colours(b, of_b);
+Colours::Colours(const FaceGraph& a, const FaceGraph& b) {
+  const Arrivals arrivals(a, b);
+  Partition partition(classes_of_kinds(a, b));
+  std::vector<int> waiting(partition.classes());
+  std::iota(waiting.begin(), waiting.end(), 0);
+  std::vector<bool> waits(waiting.size(), true);
+  const auto wait = [&](int each) {
+    waits[each] = true;
+    waiting.push_back(each);
+  };
+  // Of a class whose members all lead where they did, the smaller part tells what the whole would.
+  const auto on_split = [&](int split, int added) {
+    waits.push_back(false);
+    const bool is_smaller = !waits[split] && partition.size(split) < partition.size(added);
+    wait(is_smaller ? split : added);
+  };
+  while (!waiting.empty()) {
+    const int each = waiting.back();
+    waiting.pop_back();
+    waits[each] = false;
+    const std::vector<int> members = partition.members(each);
+    for (const int h : members) partition.mark(arrivals.before[h]);
+    partition.split_marked(on_split);
+    for (const int h : members) {
+      if (arrivals.across[h] >= 0) partition.mark(arrivals.across[h]);
     }
-    const std::size_t now = number_of_colours(of_a, of_b);
-    if (now == known) return;
-    known = now;
+    partition.split_marked(on_split);
   }
+  count = partition.classes();
+  of_a.assign(partition.class_of().begin(), partition.class_of().begin() + a.size());
+  of_b.assign(partition.class_of().begin() + a.size(), partition.class_of().end());
 }
 
 }  // namespace mimetra

@@ -28,11 +28,15 @@ struct FaceGraph {
 };
 
 /// What tells the half-edges of two meshes apart by how faces are joined around them, however far
-/// away: those with one colour may be each other's image, others cannot.
+/// away: those with one colour may be each other's image, others cannot. Takes n log n steps.
+///
+/// [Hopcroft. An n log n algorithm for minimizing states in a finite automaton. Theory of Machines
+/// and Computations, 1971]: half-edges are states, the next one and the one across their letters.
 struct Colours {
   Colours(const FaceGraph& a, const FaceGraph& b);
 
-  std::vector<std::uint64_t> of_a, of_b;
+  int count = 0;                ///< colours are 0 to count - 1
+  std::vector<int> of_a, of_b;  ///< of each half-edge
 };
 
 }  // namespace mimetra

@@ -1,14 +1,15 @@
 #include "toolkit/correspondence/renumbering.h"
 
 #include <algorithm>
-#include <cstdint>
 #include <functional>
 #include <limits>
 #include <numeric>
 #include <optional>
 #include <stdexcept>
-#include <unordered_map>
 #include <utility>
+
+#include <Eigen/LU>
+#include <Eigen/SVD>
 
 #include "toolkit/correspondence/face_graph.h"
 #include "toolkit/correspondence/polygon_split.h"
@@ -21,6 +22,9 @@ namespace {
 
 /// Of two maps of one part the nearer one is taken where the other is this many times as far.
 constexpr double kClearlyFarther = 2;
+
+/// What a fit leaves of the squared distances is rounding below this share.
+constexpr double kFitRounding = 1e-9;
 
 /// Half-edges that are followed in all for one part before it counts as too symmetric.
 constexpr double kMostWork = 1e8;
@@ -110,26 +114,14 @@ struct Side {
   const Positions* positions;  ///< null where positions may not decide
 };
 
-/// Vertices that no face holds are paired in ascending order. \pre as many in both meshes
-std::vector<VertexIndex> with_loose(std::vector<VertexIndex> image,
-                                    const std::vector<VertexIndex>& preimage) {
-  VertexIndex loose = 0;
-  for (VertexIndex& each : image) {
-    if (each >= 0) continue;
-    while (preimage[loose] >= 0) ++loose;
-    each = loose++;
-  }
-  return image;
-}
-
 /// The similarity from `from` to `to` that the vertices with an image tell; the identity where they
 /// tell none.
-Similarity told_by(const GraphMap& map, const Side& from, const Side& to) {
+Similarity told_by(const std::vector<VertexIndex>& image, const Side& from, const Side& to) {
   std::vector<VertexIndex> known, images;
   for (VertexIndex v = 0; v < from.vertices; ++v) {
-    if (map.vertices()[v] < 0) continue;
+    if (image[v] < 0) continue;
     known.push_back(v);
-    images.push_back(map.vertices()[v]);
+    images.push_back(image[v]);
   }
   try {
     if (known.size() > 3) {
@@ -140,6 +132,30 @@ Similarity told_by(const GraphMap& map, const Side& from, const Side& to) {
     // Points on a line tell no similarity.
   }
   return {};
+}
+
+/// Vertices that no face holds are paired in ascending order, each with the nearest one left where
+/// positions may decide. \pre as many in both meshes
+std::vector<VertexIndex> with_loose(std::vector<VertexIndex> image,
+                                    const std::vector<VertexIndex>& preimage, const Side& from,
+                                    const Side& to) {
+  std::vector<VertexIndex> left;
+  for (VertexIndex w = 0; w < to.vertices; ++w) {
+    if (preimage[w] < 0) left.push_back(w);
+  }
+  if (left.empty()) return image;
+  Positions carried;
+  if (from.positions) carried = told_by(image, from, to).apply(*from.positions);
+  for (VertexIndex v = 0; v < from.vertices; ++v) {
+    if (image[v] >= 0) continue;
+    const auto distance = [&](VertexIndex w) {
+      return from.positions ? (carried.row(v) - to.positions->row(w)).squaredNorm() : 0;
+    };
+    const auto nearest = std::ranges::min_element(left, {}, distance);
+    image[v] = *nearest;
+    left.erase(nearest);
+  }
+  return image;
 }
 
 /// Finds the images of one part after another.
@@ -168,7 +184,8 @@ class Search {
       for (const int start : left) {
         const std::vector<int> images = fitting(start, candidates(start));
         if (images.empty())
-          return "nothing in it is joined and bounded as the faces around " + at(start);
+          return "another mesh: nothing in it is joined and bounded as the faces around " +
+                 at(start);
         if (images.size() == 1) {
           map_.grow(start, images.front());
         } else {
@@ -182,7 +199,7 @@ class Search {
   }
 
   std::vector<VertexIndex> vertices() const {
-    return with_loose(map_.vertices(), map_.preimages());
+    return with_loose(map_.vertices(), map_.preimages(), from_, to_);
   }
 
  private:
@@ -229,9 +246,9 @@ class Search {
   }
 
   std::string decide_by_positions(const std::vector<int>& starts, const Candidates& candidates) {
-    const std::string several = "more than one map of the part around ";
+    const std::string several = "perhaps the same mesh: more than one map of the part around ";
     if (!from_.positions) return several + at(starts.front()) + " fits: it is symmetric";
-    const Positions carried = told_by(map_, from_, to_).apply(*from_.positions);
+    const Positions carried = told_by(map_.vertices(), from_, to_).apply(*from_.positions);
     for (const int start : starts) {
       const int image = nearest_image(start, candidates(start), carried);
       if (image < 0) {
@@ -283,7 +300,7 @@ std::optional<std::vector<VertexIndex>> by_corners(const Side& from, const Side&
     }
     if (image[v] != w || preimage[w] != v) return {};
   }
-  return with_loose(std::move(image), preimage);
+  return with_loose(std::move(image), preimage, from, to);
 }
 
 /// Face for face, from some corner each.
@@ -322,18 +339,48 @@ Renumbering with_map(std::vector<VertexIndex> vertices) {
 Renumbering by_graph(const Side& from, const Side& to) {
   Search search(from, to, false);
   const Colours colours(search.graph(), search.other());
-  std::unordered_map<std::uint64_t, std::vector<int>> of_colour;
+  std::vector<std::vector<int>> of_colour(colours.count);
   for (int g = 0; g < search.other().size(); ++g) of_colour[colours.of_b[g]].push_back(g);
-  const auto candidates = [&](int h) {
-    const auto found = of_colour.find(colours.of_a[h]);
-    return found == of_colour.end() ? std::vector<int>{} : found->second;
-  };
-  const auto rarity = [&](int h) {
-    const auto found = of_colour.find(colours.of_a[h]);
-    return found == of_colour.end() ? std::size_t{0} : found->second.size();
-  };
+  const auto candidates = [&](int h) { return of_colour[colours.of_a[h]]; };
+  const auto rarity = [&](int h) { return of_colour[colours.of_a[h]].size(); };
   const std::string why = search.run(starts_of(search.graph(), rarity), candidates);
   return why.empty() ? with_map(search.vertices()) : without_map(why);
+}
+
+/// Whether a mirror image of `from` comes clearly nearer to the images of its vertices than it does
+/// itself, each carried by the similarity that fits best. [Umeyama 1991]
+bool is_mirrored(const std::vector<VertexIndex>& image, const Side& from, const Side& to) {
+  const auto centred = [](const Positions& positions) -> Eigen::MatrixXd {
+    return positions.rowwise() - positions.colwise().mean();
+  };
+  const Eigen::MatrixXd a = centred(*from.positions);
+  const Eigen::MatrixXd b = centred((*to.positions)(image, Eigen::all));
+  const Eigen::Matrix3d products = a.transpose() * b;
+  const Eigen::Vector3d sizes = Eigen::JacobiSVD<Eigen::Matrix3d>(products).singularValues();
+  const double turn = products.determinant() < 0 ? -sizes[2] : sizes[2];
+  const double straight = sizes[0] + sizes[1] + turn, mirrored = sizes[0] + sizes[1] - turn;
+  const double whole = a.squaredNorm() * b.squaredNorm();
+  const double left = whole - straight * straight, left_mirrored = whole - mirrored * mirrored;
+  return left > kFitRounding * whole && kClearlyFarther * kClearlyFarther * left_mirrored < left;
+}
+
+/// Each face from its last corner to its first.
+Polygons turned_round(Polygons polygons) {
+  for (int f = 0; f < polygons.size(); ++f) {
+    std::reverse(polygons.corners.begin() + polygons.offsets[f],
+                 polygons.corners.begin() + polygons.offsets[f + 1]);
+  }
+  return polygons;
+}
+
+/// The map by the graph, unless faces lead the other way round: a face that is symmetric then has
+/// one that exchanges left and right.
+Renumbering by_graph_and_sides(const Side& from, const Side& to) {
+  Renumbering found = by_graph(from, to);
+  if (found.found() && !(from.positions && is_mirrored(found.vertices, from, to))) return found;
+  const Polygons turned = turned_round(*to.polygons);
+  if (!by_graph(from, {&turned, to.vertices, to.positions}).found()) return found;
+  return without_map("the same faces, but they lead the other way round (inside out): turn them");
 }
 
 /// Vertices as they are.
@@ -349,11 +396,11 @@ Renumbering by_faces_or_graph(const Side& reference, const Side& other) {
   }
   if (from.vertices != to.vertices || from.polygons->size() != to.polygons->size() ||
       from.polygons->corners.size() != to.polygons->corners.size()) {
-    return without_map(counted(other) + ", expected " + counted(reference));
+    return without_map("another mesh: " + counted(other) + ", expected " + counted(reference));
   }
   std::optional<std::vector<VertexIndex>> in_order = by_corners(from, to);
   if (!in_order) in_order = by_faces(from, to);
-  Renumbering result = in_order ? with_map(std::move(*in_order)) : by_graph(from, to);
+  Renumbering result = in_order ? with_map(std::move(*in_order)) : by_graph_and_sides(from, to);
   result.splits = joined && result.found();
   return result;
 }
@@ -425,7 +472,7 @@ int Renumbering::moved() const {
 }
 
 std::string Renumbering::summary() const {
-  if (!found()) return "another mesh: " + why_not;
+  if (!found()) return why_not;
   std::string text = "the same faces";
   if (splits) text += " but for polygons that one of them splits";
   if (seams) text += splits ? " and seams" : " but for seams";

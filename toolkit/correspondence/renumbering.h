@@ -35,14 +35,16 @@ struct Renumbering {
 /// - they are the same one by one, each from some corner, and only one choice of them fits;
 /// - faces are joined and bounded alike, in one way only. Oriented polygons that hang together have
 ///   at most one map for each image of one edge, so that no mirror image counts.
+/// A mesh whose faces lead the other way round is refused, and said to be so.
 /// Polygons of one may be several successive faces of the other (they share their inner edges).
-/// Vertices without a face are paired in ascending order, since nothing tells them apart.
+/// Vertices without a face are paired in ascending order, since nothing tells them apart here.
 Renumbering renumbering(const Connectivity& reference, const Connectivity& other);
 
-/// The same where positions may decide, in two cases only: of several maps of a connected part, as
-/// eyeballs have, the one whose vertices are nearest (after the similarity that the other parts
-/// tell) is taken where every other map is at least twice as far (root mean square); and where
-/// there is no map, vertices at exactly one place are taken for one in both meshes. Throws
+/// The same where positions may decide, for faces in two cases only: of several maps of a connected
+/// part, as eyeballs have, the one whose vertices are nearest (after the similarity that the other
+/// parts tell) is taken where every other map is at least twice as far (root mean square); and
+/// where there is no map, vertices at exactly one place are taken for one in both meshes. Vertices
+/// without a face are paired in ascending order, each with the nearest one left. Throws
 /// std::invalid_argument where a mesh has not a position for each vertex, or one that is not
 /// finite.
 Renumbering renumbering(const TriMesh& reference, const TriMesh& other);

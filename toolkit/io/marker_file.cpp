@@ -48,13 +48,12 @@ std::vector<NumberLine> number_lines(const std::string& path, std::string text) 
 }
 
 VertexIndex vertex_of_file(const std::string& path, int line, long long number, int base) {
-  const long long vertex = number - base;
-  if (number < base || vertex > std::numeric_limits<VertexIndex>::max()) {
+  if (number < base || number > std::numeric_limits<VertexIndex>::max()) {
     fail(path, line,
          "vertex " + std::to_string(number) + ", expected one from " + std::to_string(base) +
              " on, where the file's count begins");
   }
-  return static_cast<VertexIndex>(vertex);
+  return static_cast<VertexIndex>(number - base);
 }
 
 bool are_two_lists(const std::vector<NumberLine>& lines) {
@@ -65,6 +64,12 @@ bool are_two_lists(const std::vector<NumberLine>& lines) {
 std::vector<Marker> markers_of_lists(const std::string& path, const std::vector<NumberLine>& lines,
                                      int base) {
   const bool target_first = lines[0].name == "target" || lines[1].name == "source";
+  for (const NumberLine& list : lines) {
+    const bool is_target = target_first == (&list == &lines[0]);
+    if (list.name.empty() || list.name == (is_target ? "target" : "source")) continue;
+    fail(path, list.line,
+         "a list of vertices named '" + list.name + "', expected one 'source' and one 'target'");
+  }
   const NumberLine &source = lines[target_first ? 1 : 0], &target = lines[target_first ? 0 : 1];
   std::vector<Marker> markers;
   for (std::size_t i = 0; i < source.numbers.size(); ++i) {

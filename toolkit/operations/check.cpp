@@ -128,7 +128,8 @@ Operation check_operation() {
                               .help = "a mesh that must be the same, and a warning where it is "
                                       "numbered differently",
                               .optional = true,
-                              .streamed = true});
+                              .streamed = true,
+                              .shape = true});
   operation.parameters = check_parameters().declared();
   operation.examples = {"check takes/smile_%04d.obj --strict",
                         "check export.obj --match neutral.obj"};

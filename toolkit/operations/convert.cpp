@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "toolkit/correspondence/renumbered_frames.h"
+#include "toolkit/mesh/face_groups.h"
 #include "toolkit/mesh/text.h"
 #include "toolkit/model/animation.h"
 #include "toolkit/operations/bound_parameters.h"
@@ -30,6 +31,23 @@ std::string said(const UnitChange& change) {
   return text;
 }
 
+/// What faces have in one mesh and in no form in the other, in words.
+std::vector<std::string> parts_of_faces(const Connectivity& faces, const Connectivity& others) {
+  std::vector<std::string> parts;
+  if (!faces.texture.coordinates.empty() && others.texture.coordinates.empty()) {
+    parts.emplace_back("texture coordinates");
+  }
+  if (!named_faces(faces, FaceGroupKind::group).empty() &&
+      named_faces(others, FaceGroupKind::group).empty()) {
+    parts.emplace_back("groups");
+  }
+  if (!named_faces(faces, FaceGroupKind::material).empty() &&
+      named_faces(others, FaceGroupKind::material).empty()) {
+    parts.emplace_back("materials");
+  }
+  return parts;
+}
+
 /// The sequence with the vertices and faces of `reference`. Throws MismatchError where it is
 /// another mesh.
 FieldSequence matched(const Invocation& invocation, const NamedData& input,
@@ -39,13 +57,18 @@ FieldSequence matched(const Invocation& invocation, const NamedData& input,
   FieldSequence made =
       held_like(given, renumbered(given.frames, reference.shared_connectivity(), found.vertices),
                 {.threads = invocation.threads, .progress = invocation.progress});
+  const std::string& name = invocation.input("match").name;
+  if (const auto lost = parts_of_faces(given.frames->connectivity(), reference.connectivity());
+      !lost.empty()) {
+    invocation.warn(input.name + ": its " + joined(lost, ", ", " and ") +
+                    " are left out: the faces are those of " + name + ", which has none");
+  }
   for (const Field& field : given.fields) {
     if (field.location == Field::Location::vertices) {
       made.fields.push_back(renumbered(field, found.vertices));
     } else {
       invocation.warn(input.name + ": the field " + field.name +
-                      " of its triangles is left out: they have another order in " +
-                      invocation.input("match").name);
+                      " of its triangles is left out: the faces are those of " + name);
     }
   }
   return made;
@@ -108,7 +131,8 @@ Operation convert_operation() {
                               .help = "the same mesh, whose numbering and faces are taken: found "
                                       "by its faces, refused where more than one fits",
                               .optional = true,
-                              .streamed = true});
+                              .streamed = true,
+                              .shape = true});
   operation.outputs = {{"out", DataKind::sequence, "the new sequence"}};
   operation.parameters = convert_parameters().declared();
   operation.examples = {"convert takes/smile_%04d.obj --match neutral.obj -o smile.npy",

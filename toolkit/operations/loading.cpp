@@ -29,7 +29,8 @@ class Loader {
     if (input.kind == DataKind::regions && vertices_ == 0) {
       throw UsageError(text + ": regions speak of a mesh, and no input has one");
     }
-    ReadValue read = format.read(text, {.parameters = parameters_,
+    const Parameters as_it_is(parameters_.declared());
+    ReadValue read = format.read(text, {.parameters = input.shape ? as_it_is : parameters_,
                                         .fields = input.fields,
                                         .identities = input.identities,
                                         .may_stream = may_stream_ && input.streamed,

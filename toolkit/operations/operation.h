@@ -28,6 +28,9 @@ struct Input {
   bool identities = false;  ///< a model that keeps its identities; otherwise it is one person
   bool run = false;         ///< the manifest of a run, whose inputs are read too
   bool streamed = false;    ///< frames are read when they are needed, not all at once
+  /// A sequence of which only the faces and the rest pose count: what says how sequences are read
+  /// (--frames, --weights) is about the others.
+  bool shape = false;
 };
 
 /// Something an operation makes.
