@@ -117,16 +117,16 @@ void note_usability(const Target& target, const TransferError& error,
   }
   if (wrong.empty()) return;
   const std::string text = target.name + ": the result may not be usable: " + wrong;
-  if (target.pairing) {
+  if (!options.full) {
+    note(options.notes, text, Topic::poor_condition);
+  } else if (target.pairing) {
     note(options.notes, text +
                             "; source and target are paired: look at the result, and add markers "
                             "where it is wrong");
-  } else if (options.full) {
+  } else {
     note(options.notes, text +
                             "; look whether source and target have the same vertices in the same "
                             "order, and whether both rest poses are neutral");
-  } else {
-    note(options.notes, text, Topic::poor_condition);
   }
 }
 
