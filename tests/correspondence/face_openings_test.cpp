@@ -7,12 +7,10 @@
 namespace mimetra {
 namespace {
 
-using Landmarks = std::vector<std::pair<int, VertexIndex>>;
-
 constexpr int kColumns = 41, kRows = 31, kMiddle = 15;
 
 /// A sheet with a mouth from column 8 to 32: landmarks on row 15 above, where y grows, and below.
-Landmarks mouth() {
+LandmarkVertices mouth() {
   const auto at = [](int x, int y) { return y * kColumns + x; };
   return {{48, at(8, kMiddle)},      {54, at(32, kMiddle)},     {50, at(15, kMiddle + 4)},
           {51, at(20, kMiddle + 4)}, {52, at(25, kMiddle + 4)}, {58, at(15, kMiddle - 3)},
@@ -65,7 +63,7 @@ TEST(FaceOpenings, AreNoneWhereTheSkinHasNoCut) {
 }
 
 TEST(FaceOpenings, AreNoneWithoutAllTheirLandmarks) {
-  Landmarks landmarks = mouth();
+  LandmarkVertices landmarks = mouth();
   landmarks.pop_back();
   EXPECT_TRUE(face_openings(sheet(true, 0.5), landmarks).empty());
 }

@@ -173,8 +173,7 @@ double shortest_distance(const Eigen::Ref<const Positions>& pose, const FaceOpen
 
 }  // namespace
 
-std::vector<FaceOpening> face_openings(const TriMesh& rest,
-                                       const std::vector<std::pair<int, VertexIndex>>& landmarks) {
+std::vector<FaceOpening> face_openings(const TriMesh& rest, const LandmarkVertices& landmarks) {
   std::map<int, VertexIndex> vertex_of;
   for (const auto& [landmark, vertex] : landmarks) {
     if (vertex < 0 || vertex >= rest.connectivity.vertices) {

@@ -1,9 +1,9 @@
 #pragma once
 
 #include <string_view>
-#include <utility>
 #include <vector>
 
+#include "toolkit/correspondence/face_landmarks.h"
 #include "toolkit/mesh/frame_source.h"
 
 namespace mimetra {
@@ -22,8 +22,7 @@ struct FaceOpening {
 /// together: skin without a cut.
 ///
 /// Throws std::invalid_argument for a landmark that is no vertex of the mesh.
-std::vector<FaceOpening> face_openings(const TriMesh& rest,
-                                       const std::vector<std::pair<int, VertexIndex>>& landmarks);
+std::vector<FaceOpening> face_openings(const TriMesh& rest, const LandmarkVertices& landmarks);
 
 /// The shortest distance between the edges' vertices, in shares of the opening's width (F x
 /// openings). Throws what reading throws, Cancelled.

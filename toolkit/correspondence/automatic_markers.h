@@ -1,0 +1,38 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "toolkit/correspondence/face_landmarks.h"
+#include "toolkit/correspondence/markers.h"
+
+namespace mimetra {
+
+/// Markers that no hand has placed, and how far they can be relied on.
+struct AutomaticMarkers {
+  std::vector<Marker> markers;
+  std::vector<int> landmarks;  ///< of iBUG's (0 to 67), one for each marker
+  FaceLandmarks source, target;
+  /// What an affine map leaves of the markers, as affine_residual(): of two people's faces about
+  /// 0.1, of landmarks at wrong places more.
+  double affine_residual = 0;
+
+  /// For people: how many there are, and for each head how many landmarks were found and how well
+  /// the views agree.
+  std::vector<std::string> summary(const std::string& source_name,
+                                   const std::string& target_name) const;
+  /// What makes them doubtful.
+  std::vector<std::string> warnings() const;
+};
+
+/// "right eye (landmark 37)", for 36.
+std::string landmark_name(int landmark);
+
+/// Pairs the landmarks that find_landmarks() gives for both heads. Landmarks that are known of one
+/// head only do not count: a finder errs alike on both, and other hands put brows elsewhere. Throws
+/// what it throws, and MismatchError where those of both are too few for markers, or lie in one
+/// plane.
+AutomaticMarkers automatic_markers(const Head& source, const Head& target,
+                                   const LandmarkFinder& finder, const FaceSearchOptions& = {});
+
+}  // namespace mimetra

@@ -1,0 +1,269 @@
+#include "toolkit/correspondence/face_landmarks.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <set>
+#include <string>
+#include <tuple>
+#include <utility>
+
+#include "toolkit/correspondence/face_search.h"
+#include "toolkit/mesh/errors.h"
+#include "toolkit/mesh/parallel.h"
+#include "toolkit/mesh/surface_parts.h"
+
+namespace mimetra {
+namespace {
+
+using Eigen::Vector3d;
+
+/// Those that are looked for: the chin, brows, nose, eyes and the outside of the lips.
+constexpr bool is_sought(int number) {
+  return number == 8 || (number >= 17 && number < 60);
+}
+
+/// Outer corners of the eyes.
+constexpr int kRightCorner = 36, kLeftCorner = 45;
+
+/// Share of the views that must show the face, and that must agree about a landmark. What is no
+/// face may look like one in a drawing, but not from all sides.
+constexpr double kMajority = 0.5;
+/// Fewer are no face.
+constexpr std::size_t kFewestLandmarks = 12;
+
+/// A landmark's vertex is no farther from it than this share of the face's size.
+constexpr double kVertexReach = 0.15;
+
+/// Share of the search for the face along the mesh's axes in the progress.
+constexpr double kSearchShare = 0.6;
+
+bool is_of_eyes(int number) {
+  return number >= 36 && number < 48;  // which an eyeball may show instead of its lids
+}
+
+/// The part of the surface that shows most landmarks.
+int skin_part(const SeenFace& seen, const Triangles& triangles, const SurfaceParts& parts) {
+  std::map<int, int> landmarks;
+  for (int i = 0; i < kFaceLandmarks; ++i) {
+    if (!seen.points[i] || !is_sought(i) || is_of_eyes(i)) continue;
+    ++landmarks[parts.of_vertex[triangles(seen.points[i]->triangle, 0)]];
+  }
+  const auto fewer = [](const auto& a, const auto& b) { return a.second < b.second; };
+  return std::ranges::max_element(landmarks, fewer)->first;
+}
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::ranges::nth_element(values, middle);
+  return *middle;
+}
+
+/// Where most of some points are: the mean of those within reach of the median.
+struct Agreement {
+  Vector3d centre = Vector3d::Zero();
+  double spread = 0;
+  int points = 0;
+};
+
+Agreement agreement(const std::vector<Vector3d>& points, double reach) {
+  Vector3d middle;
+  for (int axis = 0; axis < 3; ++axis) {
+    std::vector<double> values;
+    for (const Vector3d& point : points) values.push_back(point[axis]);
+    middle[axis] = median(std::move(values));
+  }
+  std::vector<Vector3d> near = points;
+  std::erase_if(near, [&](const Vector3d& point) { return (point - middle).norm() > reach; });
+  Agreement found;
+  if (near.empty()) return found;
+  found.points = static_cast<int>(near.size());
+  for (const Vector3d& point : near) found.centre += point / found.points;
+  for (const Vector3d& point : near) {
+    found.spread += (point - found.centre).squaredNorm() / found.points;
+  }
+  found.spread = std::sqrt(found.spread);
+  return found;
+}
+
+/// One search of one head's face.
+class FaceSearch {
+ public:
+  FaceSearch(const Head& head, const LandmarkFinder& finder, const FaceSearchOptions& options)
+      : head_(head),
+        finder_(finder),
+        options_(options),
+        weld_(Weld::exact(head.mesh.positions)),
+        triangles_(weld_.welded(head.mesh.connectivity.triangles)),
+        parts_(surface_parts(head.mesh.positions, head.mesh.connectivity.triangles, weld_)),
+        painter_(head.mesh) {}
+
+  FaceLandmarks landmarks() {
+    const auto first =
+        most_certain_face(painter_, head_.mesh.positions, finder_, options_.pixels,
+                          options_.threads, part_of(options_.progress, 0, kSearchShare));
+    if (!first) fail("no face was found in drawings of it along all of its axes");
+    skin_ = skin_part(*first, triangles_, parts_);
+    const FacePlace place = nearer_place(*face_place(*first));
+    const std::vector<View> views = views_of(place, options_.pixels);
+    const std::vector<SeenFace> seen = faces_in(views, part_of(options_.progress, kSearchShare, 1));
+    FaceLandmarks found;
+    found.axes = place.axes;
+    found.views = static_cast<int>(views.size());
+    found.views_with_face = static_cast<int>(seen.size());
+    for (const SeenFace& face : seen) {
+      found.confidence += face.confidence / static_cast<double>(seen.size());
+    }
+    if (found.views_with_face > kMajority * found.views) agree(seen, found);
+    if (found.found.size() < kFewestLandmarks) {
+      fail("what looks like a face from one side does not from others");
+    }
+    snap(views, found);
+    return found;
+  }
+
+ private:
+  [[noreturn]] void fail(const std::string& problem) const {
+    throw MismatchError(head_.name + ": " + problem + "; give markers of your own: --markers FILE");
+  }
+
+  bool is_skin(int t) const { return parts_.of_vertex[triangles_(t, 0)] == skin_; }
+
+  std::vector<SeenFace> faces_in(const std::vector<View>& views, const Progress& progress) const {
+    std::vector<std::optional<SeenFace>> seen(views.size());
+    const auto look = [&](int i) {
+      seen[i] = seen_face(painter_, views[i], finder_, [this](int t) { return is_skin(t); });
+    };
+    parallel_for(static_cast<int>(views.size()), options_.threads, look, progress);
+    std::vector<SeenFace> faces;
+    for (auto& face : seen) {
+      if (face) faces.push_back(std::move(*face));
+    }
+    return faces;
+  }
+
+  /// From the front of the face instead of along an axis of the mesh.
+  FacePlace nearer_place(const FacePlace& place) const {
+    std::vector<View> views = views_of(place, options_.pixels);
+    views.resize(kFaceLights);
+    std::optional<FacePlace> best;
+    double confidence = 0;
+    for (const SeenFace& face : faces_in(views, {})) {
+      const auto found = face_place(face);
+      if (!found || (best && face.confidence <= confidence)) continue;
+      best = found;
+      confidence = face.confidence;
+    }
+    return best.value_or(place);
+  }
+
+  std::vector<Vector3d> points_of(const std::vector<SeenFace>& seen, int number) const {
+    std::vector<Vector3d> points;
+    for (const SeenFace& face : seen) {
+      if (face.points[number]) points.push_back(face.points[number]->position);
+    }
+    return points;
+  }
+
+  void agree(const std::vector<SeenFace>& seen, FaceLandmarks& found) const {
+    const auto corner = [&](int number) {
+      return agreement(points_of(seen, number), std::numeric_limits<double>::infinity()).centre;
+    };
+    found.size = (corner(kLeftCorner) - corner(kRightCorner)).norm();
+    const double most = options_.max_spread * found.size;
+    for (int number = 0; number < kFaceLandmarks; ++number) {
+      if (!is_sought(number)) continue;
+      const std::vector<Vector3d> points = points_of(seen, number);
+      if (points.empty()) continue;
+      const Agreement most_of = agreement(points, 2 * most);
+      if (most_of.points <= kMajority * found.views || most_of.spread > most) continue;
+      found.found.push_back({number, -1, most_of.centre, most_of.spread, most_of.points});
+    }
+  }
+
+  /// Corners of skin that is seen from outside.
+  std::set<VertexIndex> seen_vertices(const std::vector<View>& views) const {
+    std::set<VertexIndex> vertices;
+    for (std::size_t i = 0; i < views.size(); i += kFaceLights) {
+      for (const SeenPlace& place : painter_.draw(views[i]).places) {
+        const int t = place.triangle;
+        if (t < 0 || !is_skin(t) || !painter_.shows_outside(t, views[i])) continue;
+        vertices.insert(triangles_.row(t).begin(), triangles_.row(t).end());
+      }
+    }
+    return vertices;
+  }
+
+  /// Gives landmarks their vertices. Of two at one vertex the nearer stays.
+  void snap(const std::vector<View>& views, FaceLandmarks& found) const {
+    std::map<VertexIndex, std::pair<double, int>> nearest;  // distance and number of its landmark
+    const std::set<VertexIndex> vertices = seen_vertices(views);
+    for (FaceLandmark& landmark : found.found) {
+      double distance = kVertexReach * found.size;
+      for (const VertexIndex v : vertices) {
+        const double to_v = (head_.mesh.positions.row(v).transpose() - landmark.place).norm();
+        if (to_v < distance) std::tie(distance, landmark.vertex) = std::tuple(to_v, v);
+      }
+      const std::pair own(distance, landmark.number);
+      const auto [entry, added] = nearest.try_emplace(landmark.vertex, own);
+      if (!added) entry->second = std::min(entry->second, own);
+    }
+    std::erase_if(found.found, [&](const FaceLandmark& landmark) {
+      return landmark.vertex < 0 || nearest.at(landmark.vertex).second != landmark.number;
+    });
+  }
+
+  const Head& head_;
+  const LandmarkFinder& finder_;
+  const FaceSearchOptions& options_;
+  Weld weld_;
+  Triangles triangles_;
+  SurfaceParts parts_;
+  MeshPainter painter_;
+  int skin_ = 0;
+};
+
+FaceLandmarks known_landmarks(const Head& head) {
+  const Positions& positions = head.mesh.positions;
+  FaceLandmarks landmarks;
+  std::map<int, VertexIndex> sorted(head.known.begin(), head.known.end());
+  std::set<VertexIndex> taken;
+  for (const auto& [number, vertex] : sorted) {
+    if (vertex < 0 || vertex >= positions.rows()) {
+      throw MismatchError(head.name + ": landmark " + std::to_string(number + 1) +
+                          " is said to be vertex " + std::to_string(vertex) +
+                          ", the mesh has vertices 0 to " + std::to_string(positions.rows() - 1));
+    }
+    if (!taken.insert(vertex).second) continue;
+    landmarks.found.push_back({number, vertex, positions.row(vertex), 0, 0});
+  }
+  if (sorted.contains(kRightCorner) && sorted.contains(kLeftCorner)) {
+    landmarks.size =
+        (positions.row(sorted[kLeftCorner]) - positions.row(sorted[kRightCorner])).norm();
+  }
+  return landmarks;
+}
+
+}  // namespace
+
+double FaceLandmarks::mean_spread() const {
+  double sum = 0;
+  for (const FaceLandmark& landmark : found) sum += landmark.spread;
+  return sum > 0 ? sum / (static_cast<double>(found.size()) * size) : 0;
+}
+
+FaceLandmarks find_landmarks(const Head& head, const LandmarkFinder& finder,
+                             const FaceSearchOptions& options) {
+  check_options(options);
+  if (!head.known.empty()) return known_landmarks(head);
+  if (!finder) {
+    throw MismatchError(
+        head.name +
+        ": this program cannot find faces (it was built without dlib); give markers "
+        "of your own: --markers FILE");
+  }
+  return FaceSearch(head, finder, options).landmarks();
+}
+
+}  // namespace mimetra
