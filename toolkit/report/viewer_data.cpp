@@ -92,14 +92,17 @@ Json region_colors(const ViewerMesh& mesh) {
   return colors;
 }
 
+bool have_one_surface(const ViewerMesh& a, const ViewerMesh& b) {
+  const Triangles &of_a = a.sequence.triangles(), &of_b = b.sequence.triangles();
+  return of_a.rows() == of_b.rows() && of_a == of_b && a.regions == b.regions;
+}
+
 /// The number of each mesh's surface: one for all that have the same triangles and regions.
 std::vector<std::size_t> surface_of_each(const std::vector<ViewerMesh>& meshes) {
   std::vector<std::size_t> first_of, surface;
   for (std::size_t i = 0; i < meshes.size(); ++i) {
-    const auto same = std::ranges::find_if(first_of, [&](std::size_t first) {
-      return meshes[first].sequence.triangles() == meshes[i].sequence.triangles() &&
-             meshes[first].regions == meshes[i].regions;
-    });
+    const auto same = std::ranges::find_if(
+        first_of, [&](std::size_t first) { return have_one_surface(meshes[first], meshes[i]); });
     surface.push_back(static_cast<std::size_t>(same - first_of.begin()));
     if (same == first_of.end()) first_of.push_back(i);
   }
