@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <fstream>
 #include <limits>
 
 #include <gmock/gmock.h>
@@ -7,6 +8,8 @@
 
 #include "tests/report/report_fixture.h"
 #include "tests/temporary_folder.h"
+#include "toolkit/correspondence/correspondence.h"
+#include "toolkit/io/correspondence_file.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/operations/evaluation_table.h"
 #include "toolkit/operations/xml_text.h"
@@ -153,6 +156,28 @@ TEST(Report, ShowsATargetOfAnotherUnitAtTheSourcesSize) {
       study(test::named(run_of("transfer", "actor", {{"k", std::int64_t{3}}}, 0.8)), {}, {}, {});
   EXPECT_EQ(alike.transfer->shown_scale, 1);
   EXPECT_FALSE(holds(report_page(alike, {}, "", {}).html, "times its size"));
+}
+
+TEST(Report, ShowsATargetOfOtherFaces) {
+  test::Shape coarse = test::grid(9, 9);  // over the source's 15 x 15 vertices
+  coarse.positions *= 14.0 / 8;
+  const TriMesh target = test::mesh_of(coarse);
+  const MeshSequence take = test::bumpy_take();
+  const SurfaceFit lying{take.rest(), std::vector<bool>(225, true), std::vector<bool>(81, true)};
+  const test::TemporaryFolder folder;
+  std::ofstream(folder / "pairs.json") << correspondence_json(
+      pair_triangles(lying, take.triangles(), target), take.connectivity(), target.connectivity);
+  RunRead run =
+      run_of("transfer", "actor",
+             {{"k", std::int64_t{3}}, {"correspondence", (folder / "pairs.json").string()}});
+  const BlendshapeModel mesh(std::make_shared<Connectivity>(target.connectivity), coarse.positions,
+                             {{}, Eigen::MatrixXd(243, 0)});
+  run.invocation.inputs["target"] = {{"actor", ModelData{MorphableModel(mesh)}}};
+  const ReportStudy shown = study(test::named(run), {}, {}, {});
+  EXPECT_EQ(shown.transfer->by_regions.vertices(), 81);
+  ASSERT_EQ(shown.transfer->regions_of_vertices.size(), 81u);
+  EXPECT_GE(std::ranges::max(shown.transfer->regions_of_vertices), 0);
+  EXPECT_FALSE(report_page(shown, {}, "", {}).html.empty());
 }
 
 TEST(Report, KeepsAnyLimit) {

@@ -36,11 +36,12 @@ MeshSequence swinging(int frames, double seconds, int side = 12) {
 }
 
 ViewerScene scene_of(const MeshSequence& sequence) {
+  std::vector<int> regions(static_cast<std::size_t>(sequence.vertices()), -1);
+  regions[3] = 0;
+  regions[4] = 1;
   ViewerScene scene;
-  scene.meshes = {{"source", "take </script> & co", sequence}, {"target", "actor", sequence}};
-  scene.regions.assign(static_cast<std::size_t>(sequence.vertices()), -1);
-  scene.regions[3] = 0;
-  scene.regions[4] = 1;
+  scene.meshes = {{"source", "take </script> & co", sequence, regions},
+                  {"target", "actor", sequence, regions}};
   return scene;
 }
 
@@ -107,14 +108,29 @@ TEST(ViewerData, HoldsTrianglesAndRegionsAsTheyAre) {
   const MeshSequence sequence = swinging(3, 0.1);
   const ViewerScene scene = scene_of(sequence);
   const json data = json::parse(packed(scene, kPlenty).json);
-  const auto triangles = indices(data.at("triangles"), sequence.triangles().size());
+  ASSERT_EQ(data.at("surfaces").size(), 1u);
+  const json surface = data.at("surfaces").at(0);
+  const auto triangles = indices(surface.at("triangles"), sequence.triangles().size());
   const Triangles& expected = sequence.triangles();
   for (std::size_t i = 0; i < triangles.size(); ++i) {
     ASSERT_EQ(triangles[i], expected(static_cast<int>(i) / 3, static_cast<int>(i) % 3));
   }
-  EXPECT_EQ(indices(data.at("regions"), scene.regions.size()), scene.regions);
+  const std::vector<int>& regions = scene.meshes.front().regions;
+  EXPECT_EQ(indices(surface.at("regions"), regions.size()), regions);
   EXPECT_EQ(data.at("regionColors").size(), 2u);
   EXPECT_NE(data.at("regionColors").at(0), data.at("clay"));
+}
+
+TEST(ViewerData, HoldsASurfaceForEachSetOfFaces) {
+  const MeshSequence take = swinging(3, 0.1), other = swinging(3, 0.1, 5);
+  ViewerScene scene = scene_of(take);
+  scene.meshes.push_back({"target", "other", other, std::vector<int>(25, 1)});
+  const json data = json::parse(packed(scene, kPlenty).json);
+  ASSERT_EQ(data.at("surfaces").size(), 2u);
+  EXPECT_EQ(data.at("surfaces").at(1).at("vertices"), 25);
+  EXPECT_EQ(indices(data.at("surfaces").at(1).at("regions"), 25), std::vector<int>(25, 1));
+  EXPECT_EQ(data.at("meshes").at(1).at("surface"), 0);
+  EXPECT_EQ(data.at("meshes").at(2).at("surface"), 1);
 }
 
 TEST(ViewerData, ShadesVerticesAtOnePlaceAsOne) {
@@ -128,10 +144,9 @@ TEST(ViewerData, ShadesVerticesAtOnePlaceAsOne) {
   }
   const MeshSequence sequence(Connectivity::from_triangles(4, triangles), frames, {}, rest);
   ViewerScene scene;
-  scene.meshes = {{"source", "seam", sequence}};
-  scene.regions = {-1, -1, -1, -1};
+  scene.meshes = {{"source", "seam", sequence, {-1, -1, -1, -1}}};
   const json data = json::parse(packed(scene, kPlenty).json);
-  EXPECT_THAT(indices(data.at("places"), 4), ElementsAre(0, 1, 2, 1));
+  EXPECT_THAT(indices(data.at("surfaces").at(0).at("places"), 4), ElementsAre(0, 1, 2, 1));
 }
 
 TEST(ViewerData, TellsTheLargestDisplacementOfAllFrames) {

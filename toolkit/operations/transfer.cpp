@@ -129,14 +129,13 @@ void check_outputs(const Invocation& invocation) {
 void add_targets(Outcome& outcome, Json& report, const Invocation& invocation,
                  TransferResult& result) {
   const std::vector<NamedData>& targets = invocation.inputs.at("target");
+  const auto paths = invocation.wanted.find("out");
+  const bool is_written = paths != invocation.wanted.end() && !paths->second.empty();
   Json reports = Json::array();
   for (std::size_t t = 0; t < targets.size(); ++t) {
     TransferredTarget& transferred = result.targets[t];
     reports.push_back(report_of(targets[t], transferred));
-    const auto paths = invocation.wanted.find("out");
-    if (paths != invocation.wanted.end() && !paths->second.empty()) {
-      reports.back()["output"] = paths->second.at(t).string();
-    }
+    if (is_written) reports.back()["output"] = paths->second.at(t).string();
     outcome.summary += summary_of(targets[t], transferred);
     Solution& solution = transferred.solution;
     if (invocation.wants("weights-out") && solution.weights().size() > 0) {
@@ -148,7 +147,8 @@ void add_targets(Outcome& outcome, Json& report, const Invocation& invocation,
     NamedData& out = outcome.outputs["out"].emplace_back(targets[t].name, FieldSequence());
     if (transferred.pairing) {
       const Correspondence& pairs = transferred.pairing->triangles();
-      out.more_fields = fields_of(pairs);
+      // A host that takes values shows them; formats write them where they hold fields.
+      (is_written ? out.more_fields : made.fields) = fields_of(pairs);
       out.beside[".correspondence.json"] =
           correspondence_json(pairs, source.frames->connectivity(), made.frames->connectivity());
     }

@@ -225,13 +225,12 @@ class PageText {
 
 ViewerScene scene_of(const ReportStudy& study, const ReportView& view) {
   ViewerScene scene;
-  scene.meshes.push_back({"source", study.source, study.sequence});
+  scene.meshes.push_back(
+      {"source", study.source, study.sequence, strongest_regions(study.regions)});
   if (study.transfer) {
-    scene.meshes.push_back({"target", study.transfer->target, study.transfer->by_regions});
-  }
-  const Field region = fields_of(study.regions).front();
-  for (const double index : region.values.col(0)) {
-    scene.regions.push_back(static_cast<int>(std::lround(index)));
+    const ReportedTransfer& transfer = *study.transfer;
+    scene.meshes.push_back(
+        {"target", transfer.target, transfer.by_regions, transfer.regions_of_vertices});
   }
   scene.viewpoint = view.viewpoint;
   return scene;

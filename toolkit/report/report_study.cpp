@@ -1,10 +1,12 @@
 #include "toolkit/report/report_study.h"
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <set>
 
 #include "toolkit/mesh/stopwatch.h"
+#include "toolkit/operations/match_parameters.h"
 #include "toolkit/operations/pipeline_parameters.h"
 #include "toolkit/pipeline/joint_motion.h"
 #include "toolkit/pipeline/region_completer.h"
@@ -123,16 +125,15 @@ class RunSteps {
   static std::vector<MatchedTarget> targets_of(const Invocation& call) {
     std::vector<MatchedTarget> targets;
     if (!call.inputs.contains("target")) return targets;
-    for (const char* option : {"markers", "correspondence"}) {
-      const Parameter* parameter = call.parameters.find(option);
-      if (!parameter || call.parameters.paths(option).empty()) continue;
-      throw MismatchError("the run has --" + std::string(option) +
-                          ", and the report shows targets with the source's faces only; draw its "
-                          "output with render");
-    }
-    for (const NamedData& target : call.inputs.at("target")) {
-      targets.emplace_back(call.sequence("source"),
-                           Target{target.name, std::get<ModelData>(target.data).model.average()});
+    const MeshSequence& sequence = call.sequence("source");
+    const SourceOptions of_source = source_rest_parameters(&sequence).read(call.parameters);
+    for (const Target& target : mimetra::targets_of(call)) {
+      targets.push_back(in_command_terms(call.parameters, [&] {
+        return MatchedTarget(sequence, target,
+                             {.source_rest = asked_rest(sequence, of_source),
+                              .threads = call.threads,
+                              .notes = warnings_of(call)});
+      }));
     }
     return targets;
   }
@@ -213,6 +214,19 @@ auto apart_from(std::vector<std::string>& notes, const Work& work) {
   return result;
 }
 
+/// Those of the source over the vertices of a target.
+std::vector<int> regions_over(const std::vector<int>& regions, const Target& target) {
+  if (!target.pairing) return regions;
+  std::vector<int> over(static_cast<std::size_t>(target.pairing->target_vertices()), -1);
+  for (VertexIndex v = 0; v < target.pairing->target_vertices(); ++v) {
+    const auto carriers = target.pairing->carriers(v);
+    if (carriers.empty()) continue;
+    const auto most = std::ranges::max_element(carriers, {}, &Pairing::Carrier::weight);
+    over[static_cast<std::size_t>(v)] = regions[static_cast<std::size_t>(most->vertex)];
+  }
+  return over;
+}
+
 ReportedTransfer transferred(const RunSteps& steps, const Target& to, RunSteps::Found& main,
                              const std::vector<int>& counts, std::vector<std::string>& notes,
                              const Progress& progress) {
@@ -247,6 +261,7 @@ ReportedTransfer transferred(const RunSteps& steps, const Target& to, RunSteps::
   transfer.rows.push_back(full.row);
   transfer.full = MeshSequence(*full.solution.sequence);
   transfer.by_regions = MeshSequence(*by_regions.solution.sequence);
+  transfer.regions_of_vertices = regions_over(strongest_regions(main.regions), to);
   transfer.weights = by_regions.solution.weights();
   transfer.shown_scale = shown_scale(*steps.source().sequence, transfer.by_regions);
   enlarge(transfer.full, transfer.shown_scale);
@@ -263,6 +278,15 @@ std::vector<int> all_counts(std::vector<int> counts, const Parameters& parameter
 }
 
 }  // namespace
+
+std::vector<int> strongest_regions(const Regions& regions) {
+  std::vector<int> strongest;
+  const Field region = fields_of(regions).front();
+  for (const double index : region.values.col(0)) {
+    strongest.push_back(static_cast<int>(std::lround(index)));
+  }
+  return strongest;
+}
 
 int main_count(const Parameters& parameters) {
   if (parameters.find("k")->kind == ParameterKind::integer) return parameters.integer("k");

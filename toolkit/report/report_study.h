@@ -16,9 +16,10 @@ struct ReportedTransfer {
   std::vector<std::string> expressions;  ///< of the target, for a solution of weights
   MeshSequence full;
   MeshSequence by_regions;
-  Eigen::MatrixXd weights;          ///< of the one by regions, F x D; empty in vertex space
-  std::vector<EvaluationRow> rows;  ///< ascending in K, all triangles last
-  std::size_t main_row = 0;         ///< the run's own
+  std::vector<int> regions_of_vertices;  ///< strongest region over each vertex, -1 outside
+  Eigen::MatrixXd weights;               ///< of the one by regions, F x D; empty in vertex space
+  std::vector<EvaluationRow> rows;       ///< ascending in K, all triangles last
+  std::size_t main_row = 0;              ///< the run's own
   /// How many times larger than it is the target is shown: 1, unless its unit of length seems to be
   /// another than the source's. Both sequences are enlarged.
   double shown_scale = 1;
@@ -36,6 +37,9 @@ struct ReportStudy {
   std::optional<ReportedTransfer> transfer;
   std::vector<std::string> notes;  ///< what the run warned of
 };
+
+/// The strongest region of each vertex of the source (N), -1 outside.
+std::vector<int> strongest_regions(const Regions& regions);
 
 /// K of a run that looked for regions; of several the largest.
 int main_count(const Parameters& parameters);

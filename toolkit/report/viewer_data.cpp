@@ -81,15 +81,47 @@ Json json_of(const Eigen::Vector3d& vector) {
 }
 
 /// The colour that the still pictures give each region.
-Json region_colors(const ViewerScene& scene, const Triangles& triangles) {
-  const int last = scene.regions.empty() ? -1 : *std::ranges::max_element(scene.regions);
+Json region_colors(const ViewerMesh& mesh) {
+  const int last = mesh.regions.empty() ? -1 : *std::ranges::max_element(mesh.regions);
   std::vector<Json> colors(static_cast<std::size_t>(last + 1), json_of(kClay));
-  const std::vector<Color> vertices = category_colors(scene.regions, triangles);
+  const std::vector<Color> vertices = category_colors(mesh.regions, mesh.sequence.triangles());
   for (std::size_t v = 0; v < vertices.size(); ++v) {
-    const int region = scene.regions[v];
+    const int region = mesh.regions[v];
     if (region >= 0) colors[static_cast<std::size_t>(region)] = json_of(vertices[v]);
   }
   return colors;
+}
+
+bool have_one_surface(const ViewerMesh& a, const ViewerMesh& b) {
+  const Triangles &of_a = a.sequence.triangles(), &of_b = b.sequence.triangles();
+  return of_a.rows() == of_b.rows() && of_a == of_b && a.regions == b.regions;
+}
+
+/// The number of each mesh's surface: one for all that have the same triangles and regions.
+std::vector<std::size_t> surface_of_each(const std::vector<ViewerMesh>& meshes) {
+  std::vector<std::size_t> first_of, surface;
+  for (std::size_t i = 0; i < meshes.size(); ++i) {
+    const auto same = std::ranges::find_if(
+        first_of, [&](std::size_t first) { return have_one_surface(meshes[first], meshes[i]); });
+    surface.push_back(static_cast<std::size_t>(same - first_of.begin()));
+    if (same == first_of.end()) first_of.push_back(i);
+  }
+  return surface;
+}
+
+/// Their faces, the lowest vertex at each vertex's place, and regions.
+Json json_of_surfaces(const std::vector<ViewerMesh>& meshes) {
+  Json surfaces = Json::array();
+  const std::vector<std::size_t> surface = surface_of_each(meshes);
+  for (std::size_t i = 0; i < meshes.size(); ++i) {
+    if (surface[i] < surfaces.size()) continue;
+    const MeshSequence& sequence = meshes[i].sequence;
+    surfaces.push_back({{"vertices", sequence.vertices()},
+                        {"triangles", packed_indices(flat(sequence.triangles()))},
+                        {"places", packed_indices(Weld::exact(sequence.rest()).representative)},
+                        {"regions", packed_indices(meshes[i].regions)}});
+  }
+  return surfaces;
 }
 
 double largest_displacement(const ViewerScene& scene) {
@@ -130,16 +162,12 @@ Json view_of_scene(const ViewerScene& scene) {
 
 /// All of a scene but its frames.
 Json still_part(const ViewerScene& scene) {
-  const MeshSequence& first = scene.meshes.front().sequence;
   Json even = Json::array();
   for (int i = 0; i < kEvenColors; ++i) {
     even.push_back(json_of(even_color(double(i) / (kEvenColors - 1))));
   }
-  return {{"vertices", first.vertices()},
-          {"triangles", packed_indices(flat(first.triangles()))},
-          {"places", packed_indices(Weld::exact(first.rest()).representative)},
-          {"regions", packed_indices(scene.regions)},
-          {"regionColors", region_colors(scene, first.triangles())},
+  return {{"surfaces", json_of_surfaces(scene.meshes)},
+          {"regionColors", region_colors(scene.meshes.front())},
           {"evenColors", even},
           {"clay", json_of(kClay)},
           {"largest", largest_displacement(scene)},
@@ -160,10 +188,13 @@ std::string with_frames(Json json, const ViewerScene& scene, const std::vector<i
   for (const int frame : frames) times.push_back(scene.meshes.front().sequence.times()[frame]);
   json["times"] = times;
   json["meshes"] = Json::array();
-  for (const ViewerMesh& mesh : scene.meshes) {
+  const std::vector<std::size_t> surface = surface_of_each(scene.meshes);
+  for (std::size_t i = 0; i < scene.meshes.size(); ++i) {
+    const ViewerMesh& mesh = scene.meshes[i];
     const QuantizedPoses poses = quantized(mesh.sequence, frames);
     json["meshes"].push_back({{"role", mesh.role},
                               {"name", mesh.name},
+                              {"surface", surface[i]},
                               {"step", poses.step},
                               {"poses", packed_poses(poses)}});
   }
@@ -175,7 +206,8 @@ int most_frames(const ViewerScene& scene, std::size_t bytes) {
   constexpr double kBestCompression = 40;
   const MeshSequence& first = scene.meshes.front().sequence;
   const double seconds = first.times()[first.frames() - 1] - first.times()[0];
-  const double pose = 6.0 * first.vertices() * static_cast<double>(scene.meshes.size());
+  double pose = 0;
+  for (const ViewerMesh& mesh : scene.meshes) pose += 6.0 * mesh.sequence.vertices();
   const double most = std::min({double(first.frames()), seconds * kMostFramesPerSecond + 1.5,
                                 kBestCompression * static_cast<double>(bytes) / pose});
   return std::max(2, static_cast<int>(most));

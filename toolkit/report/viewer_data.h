@@ -14,12 +14,12 @@ struct ViewerMesh {
   std::string role;  ///< "source" or "target"
   std::string name;
   MeshSequence sequence;
+  std::vector<int> regions;  ///< strongest region of each vertex (N), -1 outside
 };
 
-/// What a report plays: meshes of one connectivity, with the times of the first.
+/// What a report plays: meshes with the times of the first, whose regions have one colour in all.
 struct ViewerScene {
   std::vector<ViewerMesh> meshes;
-  std::vector<int> regions;  ///< strongest region of each vertex (N), -1 outside
   Viewpoint viewpoint = {.yaw = 0, .pitch = 0};
 };
 

@@ -29,16 +29,20 @@ function unpackIndices(text) {
 }
 
 export function unpackPerformance(packed) {
-  const coordinates = 3 * packed.vertices;
+  const surfaces = packed.surfaces.map((surface) => ({
+    vertices: surface.vertices,
+    triangles: unpackIndices(surface.triangles),
+    places: unpackIndices(surface.places),
+    regions: unpackIndices(surface.regions),
+  }));
   return {
     ...packed,
-    triangles: unpackIndices(packed.triangles),
-    places: unpackIndices(packed.places),
-    regions: unpackIndices(packed.regions),
+    surfaces,
     // The first pose is the one at rest.
     meshes: packed.meshes.map((mesh) => ({
       ...mesh,
-      poses: unpackDifferences(mesh.poses, coordinates),
+      surface: surfaces[mesh.surface],
+      poses: unpackDifferences(mesh.poses, 3 * surfaces[mesh.surface].vertices),
     })),
   };
 }

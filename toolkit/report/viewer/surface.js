@@ -27,14 +27,14 @@ export class Surface {
   constructor(performance, mesh, camera) {
     this.performance = performance;
     this.mesh = mesh;
-    const coordinates = 3 * performance.vertices;
+    const coordinates = 3 * mesh.surface.vertices;
     this.positions = new Float32Array(coordinates);
     this.normals = new Float32Array(coordinates);
     this.colors = new Uint8Array(coordinates);
 
     this.data = vtkPolyData.newInstance();
     this.data.getPoints().setData(this.positions, 3);
-    this.data.getPolys().setData(trianglesOf(performance.triangles));
+    this.data.getPolys().setData(trianglesOf(mesh.surface.triangles));
     this.normalArray = vtkDataArray.newInstance({
       name: 'normals', numberOfComponents: 3, values: this.normals,
     });
@@ -81,7 +81,7 @@ export class Surface {
 
   // By area; vertices at one place share theirs.
   updateNormals() {
-    const { triangles, places } = this.performance;
+    const { triangles, places } = this.mesh.surface;
     const p = this.positions;
     const n = this.normals.fill(0);
     for (let t = 0; t < triangles.length; t += 3) {
@@ -105,8 +105,9 @@ export class Surface {
   }
 
   updateColors(coloring) {
-    const { regions, regionColors, evenColors, clay, largest } = this.performance;
+    const { regionColors, evenColors, clay, largest } = this.performance;
     const { poses, step } = this.mesh;
+    const { regions } = this.mesh.surface;
     for (let v = 0; v < regions.length; ++v) {
       let color = clay;
       if (coloring === 'regions' && regions[v] >= 0) {
