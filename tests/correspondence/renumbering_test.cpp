@@ -149,6 +149,25 @@ TEST(Renumbering, LetsPositionsDecideBetweenSymmetricMaps) {
   EXPECT_EQ(renumbering(mesh, other.moved).vertices, other.vertices);
 }
 
+TEST(Renumbering, LetsPositionsDecideWherePartsAreInAnotherOrder) {
+  test::Shape left_eye = test::sphere(1), right_eye = test::sphere(1);
+  left_eye.positions.col(0).array() += 3;
+  right_eye.positions.col(0).array() -= 3;
+  const TriMesh mesh = test::mesh_of(test::both(notched_grid(), test::both(left_eye, right_eye)));
+  TriMesh other = test::mesh_of(test::both(notched_grid(), test::both(right_eye, left_eye)));
+  std::vector<VertexIndex> expected(66);
+  std::iota(expected.begin(), expected.end(), 0);
+  std::rotate(expected.begin() + 30, expected.begin() + 48, expected.end());
+  EXPECT_EQ(renumbering(mesh, other).vertices, expected);
+  // The eye that has turned within its place is the one whose faces are in order.
+  other = mesh;
+  const int turned[] = {2, 3, 1, 0};
+  for (int corner = 0; corner < 4; ++corner) {
+    other.positions.row(30 + corner) = mesh.positions.row(30 + turned[corner]);
+  }
+  EXPECT_EQ(renumbering(mesh, other).moved(), 0);
+}
+
 TEST(Renumbering, IsRefusedWherePositionsDoNotDecide) {
   const TriMesh mesh = test::mesh_of(test::grid(4, 3));
   Shuffled other(mesh, {.faces = true});

@@ -314,6 +314,10 @@ TEST(SurfaceFit, RefusesTwoMarkersAtOnePlace) {
   markers.push_back({18, 9});
   EXPECT_THAT([&] { fit_to_surface(test::mesh_of(twice), test::mesh_of(egg(1)), markers); },
               ThrowsMessage<MismatchError>(HasSubstr("two markers are at the place of vertex 18")));
+  markers.back() = {9, 18};
+  EXPECT_THAT(
+      [&] { fit_to_surface(test::mesh_of(test::sphere(1)), test::mesh_of(twice), markers); },
+      ThrowsMessage<MismatchError>(HasSubstr("place of vertex 18 of the target")));
 }
 
 TEST(SurfaceFit, RefusesOptionsOutOfRange) {

@@ -30,7 +30,7 @@ TEST_F(MarkerFile, IsReadInEveryFormThatPeopleWrite) {
   const std::vector<Marker> expected = {{12, 34}, {56, 78}, {90, 11}};
   EXPECT_EQ(read("3\n12, 34\n56, 78\n90, 11\n"), expected) << ".cons";
   EXPECT_EQ(read("12 34\r\n56 78\r\n90 11"), expected) << ".corr";
-  EXPECT_EQ(read("# nose, chin, ear\n12:34\n\n56:78 # chin\n90:11\n"), expected);
+  EXPECT_EQ(read("# nose, chin, ear\n12:34\n\n56:78 # chin\n90:11#ear\n"), expected);
   EXPECT_EQ(read("markers:\n  - 12:34\n  - 56:78\n  - 90:11\n"), expected) << "YAML";
   EXPECT_EQ(read("12 56 90\n34 78 11\n"), expected) << "two lists";
   EXPECT_EQ(read("{\"source\": [12, 56, 90],\n \"target\": [34, 78, 11]}\n"), expected) << "JSON";

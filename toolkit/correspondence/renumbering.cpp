@@ -383,6 +383,61 @@ Renumbering by_graph_and_sides(const Side& from, const Side& to) {
   return without_map("the same faces, but they lead the other way round (inside out): turn them");
 }
 
+/// Connected part of each vertex: its lowest vertex (N).
+std::vector<VertexIndex> parts_of(const Side& side) {
+  std::vector<VertexIndex> lower(side.vertices);
+  std::iota(lower.begin(), lower.end(), 0);
+  const auto lowest = [&lower](VertexIndex v) {
+    while (lower[v] != v) v = lower[v] = lower[lower[v]];
+    return v;
+  };
+  for (int f = 0; f < side.polygons->size(); ++f) {
+    const int begin = side.polygons->offsets[f], end = side.polygons->offsets[f + 1];
+    for (int corner = begin; corner < end; ++corner) {
+      const VertexIndex a = lowest(side.polygons->corners[begin]);
+      const VertexIndex b = lowest(side.polygons->corners[corner]);
+      lower[std::max(a, b)] = std::min(a, b);
+    }
+  }
+  std::vector<VertexIndex> parts;
+  for (VertexIndex v = 0; v < side.vertices; ++v) parts.push_back(lowest(v));
+  return parts;
+}
+
+/// Whether the image of some part lies farther from it than the part is large: from centre to
+/// centre, against the root mean square distance from the centre, after the similarity of all.
+bool has_part_elsewhere(const std::vector<VertexIndex>& image, const Side& from, const Side& to) {
+  const Positions carried = told_by(image, from, to).apply(*from.positions);
+  const Positions images = (*to.positions)(image, Eigen::all);
+  const std::vector<VertexIndex> parts = parts_of(from);
+  Eigen::VectorXd counts = Eigen::VectorXd::Zero(from.vertices), squares = counts;
+  Positions centres = Positions::Zero(from.vertices, 3), ways = centres;
+  for (VertexIndex v = 0; v < from.vertices; ++v) {
+    counts[parts[v]] += 1;
+    centres.row(parts[v]) += carried.row(v);
+    ways.row(parts[v]) += images.row(v) - carried.row(v);
+  }
+  for (VertexIndex v = 0; v < from.vertices; ++v) {
+    squares[parts[v]] += (carried.row(v) - centres.row(parts[v]) / counts[parts[v]]).squaredNorm();
+  }
+  for (VertexIndex part = 0; part < from.vertices; ++part) {
+    if (counts[part] > 1 && ways.row(part).squaredNorm() > counts[part] * squares[part])
+      return true;
+  }
+  return false;
+}
+
+/// What the order of faces says, unless it exchanges parts that positions tell apart: two eyes of
+/// one shape in another order, or triangles that share no vertex.
+Renumbering in_order_or_by_places(std::vector<VertexIndex> in_order, const Side& from,
+                                  const Side& to) {
+  if (from.positions && has_part_elsewhere(in_order, from, to)) {
+    Renumbering found = by_graph(from, to);
+    if (found.found() && !has_part_elsewhere(found.vertices, from, to)) return found;
+  }
+  return with_map(std::move(in_order));
+}
+
 /// Vertices as they are.
 Renumbering by_faces_or_graph(const Side& reference, const Side& other) {
   Side from = reference, to = other;
@@ -400,7 +455,8 @@ Renumbering by_faces_or_graph(const Side& reference, const Side& other) {
   }
   std::optional<std::vector<VertexIndex>> in_order = by_corners(from, to);
   if (!in_order) in_order = by_faces(from, to);
-  Renumbering result = in_order ? with_map(std::move(*in_order)) : by_graph_and_sides(from, to);
+  Renumbering result = in_order ? in_order_or_by_places(std::move(*in_order), from, to)
+                                : by_graph_and_sides(from, to);
   result.splits = joined && result.found();
   return result;
 }

@@ -40,11 +40,13 @@ struct Renumbering {
 /// Vertices without a face are paired in ascending order, since nothing tells them apart here.
 Renumbering renumbering(const Connectivity& reference, const Connectivity& other);
 
-/// The same where positions may decide, for faces in two cases only: of several maps of a connected
-/// part, as eyeballs have, the one whose vertices are nearest (after the similarity that the other
-/// parts tell) is taken where every other map is at least twice as far (root mean square); and
-/// where there is no map, vertices at exactly one place are taken for one in both meshes. Vertices
-/// without a face are paired in ascending order, each with the nearest one left. Throws
+/// The same where positions may decide, for faces in three cases only: of several maps of a
+/// connected part, as eyeballs have, the one whose vertices are nearest (after the similarity that
+/// the other parts tell) is taken where every other map is at least twice as far (root mean
+/// square); where the order of faces exchanges parts, so that one lies farther away than it is
+/// large, the map by how faces are joined is taken if it does not; and where there is no map,
+/// vertices at exactly one place are taken for one in both meshes. Vertices without a face are
+/// paired in ascending order, each with the nearest one left. Throws
 /// std::invalid_argument where a mesh has not a position for each vertex, or one that is not
 /// finite.
 Renumbering renumbering(const TriMesh& reference, const TriMesh& other);

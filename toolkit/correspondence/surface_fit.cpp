@@ -69,6 +69,18 @@ std::vector<bool> reached_parts(const Positions& positions, const Triangles& tri
   return reached;
 }
 
+/// Throws MismatchError where two of the target's markers are one point of its surface.
+void check_places(const std::vector<VertexIndex>& markers, const Weld& weld) {
+  std::vector<bool> taken(weld.representative.size(), false);
+  for (const VertexIndex v : markers) {
+    if (taken[weld.representative[v]]) {
+      throw MismatchError("two markers are at the place of vertex " + std::to_string(v) +
+                          " of the target");
+    }
+    taken[weld.representative[v]] = true;
+  }
+}
+
 /// The source's surface with vertices at one place as one.
 struct Source {
   Source(const TriMesh& mesh, const std::vector<Marker>& markers)
@@ -192,6 +204,7 @@ SurfaceFit fit_to_surface(const TriMesh& source_mesh, const TriMesh& target_mesh
   DeformationSystem system(start, source.triangles, source.free, options.smoothness,
                            options.identity);
   const Weld target_weld = Weld::exact(target);
+  check_places(to, target_weld);
   const Triangles target_triangles = target_weld.welded(target_mesh.connectivity.triangles);
   const std::vector<bool> target_reached = reached_parts(target, target_triangles, target_weld, to);
   std::vector<int> rows;

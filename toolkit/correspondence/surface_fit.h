@@ -64,7 +64,7 @@ struct SurfaceFit {
 /// One sparse system for the x, y and z of vertices and fourth vertices; its pattern is analysed
 /// once. Throws what check_markers() throws, std::invalid_argument for options out of range and a
 /// mesh that has not a position for each vertex, MismatchError for two markers at one place of the
-/// source, Cancelled.
+/// source or of the target, Cancelled.
 ///
 /// [Sumner, Popovic. Deformation Transfer for Triangle Meshes. ACM TOG 23(3), 2004], section 4
 SurfaceFit fit_to_surface(const TriMesh& source, const TriMesh& target,

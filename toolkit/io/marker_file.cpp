@@ -23,11 +23,14 @@ bool is_name(std::string_view word) {
   return word == "-" || (word[0] >= 'a' && word[0] <= 'z') || (word[0] >= 'A' && word[0] <= 'Z');
 }
 
-std::vector<NumberLine> number_lines(const std::string& path, std::string text) {
-  for (char& c : text) {
-    if (std::string_view(",;:[](){}\"'").find(c) != std::string_view::npos) c = ' ';
+std::vector<NumberLine> number_lines(const std::string& path, std::string_view text) {
+  std::string spaced;
+  for (const char c : text) {
+    const bool parts = std::string_view(",;:[](){}\"'").find(c) != std::string_view::npos;
+    if (parts || c == '#') spaced += ' ';
+    if (!parts) spaced += c;
   }
-  TextCursor cursor(path, without_byte_order_mark(text), {.comments = true});
+  TextCursor cursor(path, without_byte_order_mark(spaced), {.comments = true});
   std::vector<NumberLine> lines;
   for (; !cursor.at_end(); cursor.next_line()) {
     NumberLine found{cursor.line(), "", {}};
