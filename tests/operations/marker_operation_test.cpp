@@ -1,5 +1,6 @@
 // Finders of faces are tested where they are.
 
+#include <cstdint>
 #include <fstream>
 
 #include <gmock/gmock.h>
@@ -43,6 +44,7 @@ class MarkersTest : public testing::Test {
     CallRequest request;
     request.operation = table_.find("markers");
     request.parameters = Parameters(table_.parameters_of(*request.operation));
+    request.parameters.set("pixels", std::int64_t{64});
     request.named = {{"source", {folder_ / "source" / "neutral.obj"}},
                      {"target", {folder_ / "target" / "neutral.obj"}}};
     request.destinations["out"] = {folder_ / "found.markers"};
