@@ -68,6 +68,9 @@ class FaceFinder {
   std::unique_ptr<State> state_;
 };
 
+/// False where mimetra was built without dlib.
+bool faces_can_be_found();
+
 /// The faces of one frame.
 struct FacesInImage {
   std::string image;  ///< its name

@@ -15,6 +15,7 @@
 #include "fitting/landmark_fitter.h"
 #include "fitting/landmark_input.h"
 #include "fitting/landmark_mapping.h"
+#include "fitting/landmarks_of_drawings.h"
 #include "fitting/video_file.h"
 #include "fitting/video_format.h"
 #include "toolkit/mesh/errors.h"
@@ -486,6 +487,7 @@ void add_fitting(OperationTable& table) {
   add_landmark_formats(table);
   add_video_format(table);
   table.add(std::move(operation));
+  if (faces_can_be_found()) table.add(landmarks_of_drawings());
 }
 
 }  // namespace mimetra

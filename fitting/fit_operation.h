@@ -4,7 +4,8 @@
 
 namespace mimetra {
 
-/// The operation `fit`, and the reader of landmarks that it needs.
+/// The operation `fit`, the reader of landmarks that it needs, and with dlib the finder of
+/// landmarks in drawings.
 void add_fitting(OperationTable& table);
 
 }  // namespace mimetra

@@ -1,25 +1,11 @@
 #pragma once
 
-#include <filesystem>
-#include <string>
-#include <utility>
 #include <vector>
 
+#include "toolkit/io/landmark_vertices.h"
 #include "toolkit/model/landmark_track.h"
 
 namespace mimetra {
-
-/// Which vertex of a model each named landmark is, in the order of the file.
-using LandmarkMapping = std::vector<std::pair<std::string, int>>;
-
-/// Reads a mapping: eos' `[landmark_mappings]` with lines `9 = 33` (name = vertex; other sections
-/// are left out), or one vertex a line for the landmarks "1", "2", .... Vertices are 0-based, '#'
-/// starts a comment. Throws IoError that names the line.
-LandmarkMapping read_landmark_mapping(const std::filesystem::path& path);
-
-/// The mapping in a model's folder, `ibug_to_*.txt` or `landmarks68.txt`; `model` is the folder or
-/// a file in it. Throws IoError where there is none, or more than one.
-std::filesystem::path find_landmark_mapping(const std::filesystem::path& model);
 
 /// Landmarks of a track that a mapping knows.
 struct MappedLandmarks {

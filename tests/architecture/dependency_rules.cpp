@@ -291,7 +291,10 @@ const std::vector<FolderRule>& folder_rules() {
         {"vtk", "toolkit/vtk", up_to_operations, {"VTK", "JSON"}},
         {"pictures", "toolkit/pictures", up_to_vtk, {"VTK", "VTK's rendering", "OpenGL", "JSON"}},
         {"report", "toolkit/report", with(up_to_vtk, {"pictures"}), {"VTK", "JSON"}},
-        {"fitting", "fitting", {"mesh", "model", "io", "operations"}, {"dlib", "FFmpeg", "JSON"}},
+        {"fitting",
+         "fitting",
+         {"mesh", "model", "correspondence", "io", "operations"},
+         {"dlib", "FFmpeg", "JSON"}},
         {"samples", "samples/head", up_to_operations, {"JSON"}},
         // The C interface makes values of all kinds, and shows them.
         {"c", "plugins/c", with(up_to_operations, {"fitting", "samples"}), {"JSON"}},

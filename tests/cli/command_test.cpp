@@ -216,10 +216,10 @@ TEST_F(Command, OperationsListsEveryCommand) {
   const json list = json::parse(run("operations --json").out)["operations"];
   std::set<std::string> names;
   for (const json& entry : list) names.insert(entry.at("name").get<std::string>());
-  EXPECT_EQ(names,
-            (std::set<std::string>{"info", "check", "align", "geodesic", "decompose", "regions",
-                                   "transfer", "evaluate", "convert", "fit", "render", "report",
-                                   "sample", "operations", "formats", "completion", "manual"}));
+  EXPECT_EQ(names, (std::set<std::string>{"info", "check", "align", "geodesic", "decompose",
+                                          "regions", "transfer", "evaluate", "convert", "markers",
+                                          "fit", "render", "report", "sample", "operations",
+                                          "formats", "completion", "manual"}));
 }
 
 TEST_F(Command, SampleIsAModelWithAPerformance) {

@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 
 #include "fitting/landmark_mapping.h"
-#include "tests/shared_data.h"
 #include "tests/temporary_folder.h"
 #include "toolkit/mesh/errors.h"
 
@@ -14,7 +13,6 @@ namespace {
 
 using testing::ElementsAre;
 using testing::HasSubstr;
-using testing::Pair;
 
 class Mapping : public testing::Test {
  protected:
@@ -22,49 +20,8 @@ class Mapping : public testing::Test {
     std::ofstream(folder_ / "map.txt", std::ios::binary) << content;
     return read_landmark_mapping(folder_ / "map.txt");
   }
-  std::string message(const std::string& content) {
-    return test::message_of<IoError>([&] { read(content); });
-  }
   test::TemporaryFolder folder_;
 };
-
-TEST_F(Mapping, IsASectionOfEos) {
-  EXPECT_THAT(read("# iBUG\n[landmark_mappings]\n  # jaw\n 9 = 33 # chin\r\n\"10\" = 2\n\n"
-                   "[contour_landmarks]\nright = [ 1,\n 2\n ]\n"),
-              ElementsAre(Pair("9", 33), Pair("10", 2)));
-}
-
-TEST_F(Mapping, IsAListOfVertices) {
-  EXPECT_THAT(read("# 0-based\n1225\n1888 # jaw\n\n0\n"),
-              ElementsAre(Pair("1", 1225), Pair("2", 1888), Pair("3", 0)));
-}
-
-TEST_F(Mapping, NamesTheLineThatIsWrong) {
-  EXPECT_THAT(message("[landmark_mappings]\n9 33\n"),
-              HasSubstr("line 2: expected '=' after the landmark '9', found '33'"));
-  EXPECT_THAT(message("[landmark_mappings]\n9 = chin\n"),
-              HasSubstr("line 2: expected an integer for a vertex, found 'chin'"));
-  EXPECT_THAT(message("[landmark_mappings]\n9 = 1\n9 = 2\n"),
-              HasSubstr("line 3: the landmark '9' occurs twice"));
-  EXPECT_THAT(message("[landmark_mappings]\n9 = 1 2\n"),
-              HasSubstr("line 2: expected the end of the line, found '2'"));
-  EXPECT_THAT(message("1\n-2\n"), HasSubstr("line 2: vertex -2 is out of range"));
-  EXPECT_THAT(message("1\n99999999999\n"), HasSubstr("line 2: vertex 99999999999 is out of range"));
-  EXPECT_THAT(message("# nothing\n"), HasSubstr("maps no landmark"));
-  EXPECT_THAT(message("[other]\n9 = 1\n"), HasSubstr("maps no landmark"));
-}
-
-TEST_F(Mapping, IsFoundInTheFolderOfAModel) {
-  std::ofstream(folder_ / "readme.txt") << "x";
-  EXPECT_THAT(test::message_of<IoError>([&] { find_landmark_mapping(folder_.path()); }),
-              HasSubstr("holds no landmark mapping"));
-  std::ofstream(folder_ / "ibug_to_face.txt") << "x";
-  EXPECT_EQ(find_landmark_mapping(folder_.path()), folder_ / "ibug_to_face.txt");
-  EXPECT_EQ(find_landmark_mapping(folder_ / "shape.bin"), folder_ / "ibug_to_face.txt");
-  std::ofstream(folder_ / "landmarks68.txt") << "x";
-  EXPECT_THAT(test::message_of<IoError>([&] { find_landmark_mapping(folder_.path()); }),
-              HasSubstr("several landmark mappings, such as ibug_to_face.txt and landmarks68.txt"));
-}
 
 TEST_F(Mapping, TakesItsLandmarksFromATrack) {
   const LandmarkTrack track{
@@ -89,17 +46,6 @@ TEST_F(Mapping, RefusesATrackOfFewerNumberedLandmarks) {
                 map_landmarks(track, {{"3", 30}, {"68", 70}});
               }),
               HasSubstr("the mapping has a landmark '68', but there are only 1 to 3"));
-}
-
-TEST_F(Mapping, OfTheSharedModelsIsRead) {
-  MIMETRA_SKIP_WITHOUT(test::shared_path("data/sfm"));
-  const auto sfm = read_landmark_mapping(find_landmark_mapping(test::shared_path("data/sfm")));
-  EXPECT_EQ(sfm.size(), 50u);
-  EXPECT_THAT(sfm.front(), Pair("9", 33));
-  EXPECT_THAT(sfm.back(), Pair("68", 404));
-  const auto ict = read_landmark_mapping(find_landmark_mapping(test::shared_path("data/ict-face")));
-  EXPECT_EQ(ict.size(), 68u);
-  EXPECT_THAT(ict.front(), Pair("1", 1225));
 }
 
 LandmarkTrack of_mediapipe() {

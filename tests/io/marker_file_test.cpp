@@ -45,6 +45,15 @@ TEST_F(MarkerFile, DoesNotGuessWhichListIsWhich) {
   refused("target: 34 78 11\ntarget: 12 56 90\n", "line 2: a list of vertices named 'target'");
 }
 
+TEST_F(MarkerFile, IsReadAsItIsWritten) {
+  const std::vector<Marker> markers = {{12, 34}, {0, 78}, {90, 11}};
+  const std::string text =
+      marker_text(markers, {"nose", "chin 1 2", "ear"}, {"3 markers", "source, target"});
+  EXPECT_EQ(text.substr(0, 12), "# 3 markers\n");
+  EXPECT_EQ(read(text), markers);
+  EXPECT_EQ(read(marker_text(markers)), markers);
+}
+
 TEST_F(MarkerFile, CountsFromOneWhereItIsToldSo) {
   EXPECT_THAT(read("12 34\n1 2\n", 1), ElementsAre(Marker{11, 33}, Marker{0, 1}));
   refused("12 34\n0 2\n", "line 2: vertex 0, expected one from 1 on", 1);

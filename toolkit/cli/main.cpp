@@ -17,6 +17,7 @@
 #include "toolkit/cli/terminal_text.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/operations/listing.h"
+#include "toolkit/operations/marker_operation.h"
 #include "toolkit/operations/memory_use.h"
 #include "toolkit/operations/option_words.h"
 
@@ -69,6 +70,7 @@ mimetra::cli::ParsedLine parse(const mimetra::OperationTable& table,
 /// The operations of all parts that were built.
 void add_built(mimetra::OperationTable& table) {
   mimetra::add_toolkit(table);
+  mimetra::add_markers(table);
 #ifdef MIMETRA_HAS_VTK
   mimetra::add_vtk(table);
   mimetra::add_pictures(table);

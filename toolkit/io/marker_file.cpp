@@ -115,4 +115,17 @@ std::vector<Marker> read_markers(const std::filesystem::path& path, int index_ba
   return markers;
 }
 
+std::string marker_text(const std::vector<Marker>& markers,
+                        const std::vector<std::string>& comments,
+                        const std::vector<std::string>& header) {
+  std::string text;
+  for (const std::string& line : header) text += "# " + line + '\n';
+  for (std::size_t i = 0; i < markers.size(); ++i) {
+    text += std::to_string(markers[i].source) + ' ' + std::to_string(markers[i].target);
+    if (!comments.empty()) text += "  # " + comments.at(i);
+    text += '\n';
+  }
+  return text;
+}
+
 }  // namespace mimetra

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include "toolkit/correspondence/markers.h"
@@ -17,5 +18,11 @@ namespace mimetra {
 /// number of pairs than announced, or no pair at all. Whether a mesh has the vertices is for
 /// check_markers().
 std::vector<Marker> read_markers(const std::filesystem::path& path, int index_base = 0);
+
+/// The same as text that read_markers() reads: a pair a line, counted from 0, each with its
+/// `comments` (as many as markers, or none), after lines of `header`.
+std::string marker_text(const std::vector<Marker>& markers,
+                        const std::vector<std::string>& comments = {},
+                        const std::vector<std::string>& header = {});
 
 }  // namespace mimetra

@@ -94,6 +94,7 @@ class Loader {
     files.insert(files.end(), loaded.files.begin(), loaded.files.end());
     invocation.inputs = std::move(loaded.data);
     invocation.threads = threads_;
+    invocation.landmark_finder = table_.landmark_finder();
     Document manifest{read_file(read.record.manifest)};
     Origin origin;
     origin.run = std::make_shared<const RunRead>(std::move(read));

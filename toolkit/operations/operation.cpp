@@ -141,6 +141,11 @@ void OperationTable::add(Format format) {
   }
 }
 
+void OperationTable::add(LandmarkFinder finder) {
+  if (landmark_finder_) throw std::invalid_argument("there is a finder of landmarks already");
+  landmark_finder_ = std::move(finder);
+}
+
 const Operation* OperationTable::find(const std::string& name) const {
   const auto found = std::ranges::find(operations_, name, &Operation::name);
   return found == operations_.end() ? nullptr : &*found;

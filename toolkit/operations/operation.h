@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "toolkit/correspondence/landmark_finder.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/progress.h"
 #include "toolkit/operations/data.h"
@@ -65,6 +66,8 @@ struct Invocation {
   Progress progress;
   Log log;
   int threads = 0;  ///< 0 for all there are; results do not depend on it
+  /// The program's; empty where it cannot find faces.
+  LandmarkFinder landmark_finder = {};
 
   template <typename T>
   const T& get(const std::string& name) const {
@@ -127,9 +130,12 @@ class OperationTable {
   /// Throws std::invalid_argument for an extension that its kind is read or written by already, and
   /// for an option that means something else in an operation.
   void add(Format format);
+  /// What finds faces in drawings of meshes. Throws std::invalid_argument where there is one.
+  void add(LandmarkFinder finder);
 
   const std::vector<Operation>& operations() const { return operations_; }
   const std::vector<Format>& formats() const { return formats_; }
+  const LandmarkFinder& landmark_finder() const { return landmark_finder_; }  ///< may be empty
   const Operation* find(const std::string& name) const;
 
   /// The operation's own parameters, those of reading its inputs and of writing its outputs. Throws
@@ -170,6 +176,7 @@ class OperationTable {
 
   std::vector<Operation> operations_;
   std::vector<Format> formats_;
+  LandmarkFinder landmark_finder_;
 };
 
 /// The operations of the toolkit (info, check, align, geodesic, decompose, regions, transfer,
