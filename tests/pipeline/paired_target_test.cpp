@@ -96,6 +96,35 @@ TEST_F(FinerTargetTest, IsFoundByMarkersAndFollows) {
   EXPECT_LT(farthest, 0.15);
 }
 
+TEST_F(FinerTargetTest, IsPairedByMarkersThatAreLookedFor) {
+  const MarkersBetween search = [this](const TriMesh& source) {
+    EXPECT_TRUE(source.positions == take_.rest());
+    AutomaticMarkers found;
+    found.markers = markers_;
+    return found;
+  };
+  Noted noted;
+  const auto looked_for =
+      transferred({"fine", *mesh_, search}, {.full = true, .notes = noted.sink()});
+  const auto given = transferred({"fine", *mesh_, markers_}, {.full = true});
+  EXPECT_TRUE(test::frames_of(looked_for.solution.sequence) ==
+              test::frames_of(given.solution.sequence));
+  ASSERT_TRUE(looked_for.match && looked_for.match->found);
+  EXPECT_EQ(looked_for.match->markers, 8);
+  EXPECT_FALSE(given.match->found);
+  EXPECT_TRUE(noted.has(Topic::poor_match));  // eight are few
+}
+
+TEST_F(PairedTargetTest, NeedsNoMarkersWhereFacesAreTheSame) {
+  const MarkersBetween search = [](const TriMesh&) -> AutomaticMarkers {
+    throw std::logic_error("nothing is to be looked for");
+  };
+  const auto plain = transferred({"actor", actor_}, {.full = true});
+  const auto same = transferred({"actor", actor_, search}, {.full = true});
+  EXPECT_TRUE(test::frames_of(same.solution.sequence) == test::frames_of(plain.solution.sequence));
+  EXPECT_FALSE(same.match);
+}
+
 TEST_F(FinerTargetTest, MovesOnlyOverTheRegions) {
   TransferOptions options;
   options.given =

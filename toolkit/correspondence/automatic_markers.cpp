@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <string_view>
+#include <utility>
 
 #include "toolkit/mesh/text.h"
 
@@ -63,18 +64,25 @@ std::string landmark_name(int landmark) {
   return std::string(part->name) + " (landmark " + std::to_string(landmark + 1) + ")";
 }
 
-AutomaticMarkers automatic_markers(const Head& source, const Head& target,
-                                   const LandmarkFinder& finder, const FaceSearchOptions& options) {
-  const bool are_known = !source.known.empty() && !target.known.empty();
-  const auto landmarks_of = [&](Head head, double from, double to) {
+MarkerSearch::MarkerSearch(Head source, LandmarkFinder finder, const FaceSearchOptions& options)
+    : source_(std::move(source)), finder_(std::move(finder)), options_(options) {}
+
+AutomaticMarkers MarkerSearch::operator()(const Head& target) {
+  const auto landmarks_of = [this](Head head, bool are_known, double from, double to) {
     if (!are_known) head.known.clear();
-    FaceSearchOptions search = options;
-    search.progress = part_of(options.progress, from, to);
-    return find_landmarks(head, finder, search);
+    FaceSearchOptions search = options_;
+    search.progress = part_of(options_.progress, from, to);
+    return find_landmarks(head, finder_, search);
   };
+  const bool are_known = !source_.known.empty() && !target.known.empty();
   AutomaticMarkers result;
-  result.source = landmarks_of(source, 0, 0.5);
-  result.target = landmarks_of(target, 0.5, 1);
+  if (are_known) {
+    result.source = landmarks_of(source_, true, 0, 0.5);
+  } else {
+    if (!found_) found_ = landmarks_of(source_, false, 0, 0.5);
+    result.source = *found_;
+  }
+  result.target = landmarks_of(target, are_known, 0.5, 1);
   for (const FaceLandmark& landmark : result.source.found) {
     const auto partner =
         std::ranges::find(result.target.found, landmark.number, &FaceLandmark::number);
@@ -82,10 +90,15 @@ AutomaticMarkers automatic_markers(const Head& source, const Head& target,
     result.markers.push_back({landmark.vertex, partner->vertex});
     result.landmarks.push_back(landmark.number);
   }
-  check_markers(result.markers, source.mesh.positions, target.mesh.positions);
+  check_markers(result.markers, source_.mesh.positions, target.mesh.positions);
   result.affine_residual =
-      affine_residual(result.markers, source.mesh.positions, target.mesh.positions);
+      affine_residual(result.markers, source_.mesh.positions, target.mesh.positions);
   return result;
+}
+
+AutomaticMarkers automatic_markers(const Head& source, const Head& target,
+                                   const LandmarkFinder& finder, const FaceSearchOptions& options) {
+  return MarkerSearch(source, finder, options)(target);
 }
 
 }  // namespace mimetra

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -28,10 +29,26 @@ struct AutomaticMarkers {
 /// "right eye (landmark 37)", for 36.
 std::string landmark_name(int landmark);
 
-/// Pairs the landmarks that find_landmarks() gives for both heads. Landmarks that are known of one
-/// head only do not count: a finder errs alike on both, and other hands put brows elsewhere. Throws
-/// what it throws, and MismatchError where those of both are too few for markers, or lie in one
-/// plane.
+/// Looks for markers between one head and others; its own face is looked for once.
+class MarkerSearch {
+ public:
+  /// Keeps the finder; an empty one finds nothing.
+  MarkerSearch(Head source, LandmarkFinder finder, const FaceSearchOptions& = {});
+
+  /// Pairs the landmarks that find_landmarks() gives for both heads. Landmarks that are known of
+  /// one head only do not count: a finder errs alike on both, and other hands put brows elsewhere.
+  /// Throws what it throws, and MismatchError where those of both are too few for markers, or lie
+  /// in one plane.
+  AutomaticMarkers operator()(const Head& target);
+
+ private:
+  Head source_;
+  LandmarkFinder finder_;
+  FaceSearchOptions options_;
+  std::optional<FaceLandmarks> found_;  // of the source
+};
+
+/// A search for one target.
 AutomaticMarkers automatic_markers(const Head& source, const Head& target,
                                    const LandmarkFinder& finder, const FaceSearchOptions& = {});
 

@@ -20,7 +20,7 @@ constexpr int kTrianglesAtATime = 256;
 
 /// Limits of the verdict: shares of the target's diagonal, and of triangles. A face that fits to 1
 /// % shows the same wrinkles in other places; folds turn deformations around.
-constexpr double kGoodResidual = 0.005, kUsableResidual = 0.02;
+constexpr double kGoodResidual = 0.005, kUsableResidual = 0.01;
 constexpr double kGoodFolds = 0.001, kUsableFolds = 0.01;
 /// A mask shows half of a head; with less than this, other things than faces were paired.
 constexpr double kMostWithoutPartner = 0.9;

@@ -14,7 +14,7 @@ namespace mimetra {
 namespace {
 
 /// Half of the weight, but for rounding.
-constexpr double kMajority = 0.5 - 1e-9;
+constexpr double kHalf = 0.5 - 1e-9;
 
 void check_sizes(const TriMesh& source, const TriMesh& target, const Correspondence& pairs) {
   const auto from = static_cast<int>(source.connectivity.triangles.rows());
@@ -84,7 +84,7 @@ std::vector<int> triangles_over(const Correspondence& pairs, const std::vector<i
     for (int p = pairs.offsets[t]; p < pairs.offsets[t + 1]; ++p) {
       if (is_selected[pairs.parts[p].triangle]) weight += pairs.parts[p].weight;
     }
-    if (weight >= kMajority) over.push_back(t);
+    if (weight >= kHalf) over.push_back(t);
   }
   return over;
 }
@@ -192,7 +192,7 @@ std::vector<bool> Pairing::over(const std::vector<bool>& source_vertices) const 
     for (const Carrier& carrier : carriers(v)) {
       if (source_vertices[carrier.vertex]) weight += carrier.weight;
     }
-    is_over[v] = weight >= kMajority;
+    is_over[v] = weight >= kHalf;
   }
   return is_over;
 }

@@ -1,6 +1,9 @@
 #include "toolkit/operations/match_parameters.h"
 
 #include <cmath>
+#include <memory>
+#include <optional>
+#include <utility>
 
 #include <nlohmann/json.hpp>
 
@@ -8,6 +11,7 @@
 #include "toolkit/io/marker_file.h"
 #include "toolkit/mesh/text.h"
 #include "toolkit/operations/bound_parameters.h"
+#include "toolkit/operations/heads.h"
 
 namespace mimetra {
 
@@ -21,9 +25,14 @@ struct MatchCall {
       "index_base", &MatchCall::index_base, {.minimum = 0, .maximum = 1}};
 };
 
-Parameter several(std::string name, std::string help) {
+/// `word` stands for no file, as a default.
+Parameter several(std::string name, std::string help, const std::string& word = "") {
   Parameter parameter{std::move(name), ParameterKind::file, {}, std::move(help)};
   parameter.several = true;
+  if (!word.empty()) {
+    parameter.choices = {word};
+    parameter.fallback = word;
+  }
   return parameter;
 }
 
@@ -38,6 +47,29 @@ std::vector<std::string> file_of_each(const Parameters& parameters, const std::s
                    std::to_string(targets) + ", between commas");
 }
 
+/// Looks for markers from a call's source to its targets; the source's face is looked for once.
+class MarkersTo {
+ public:
+  explicit MarkersTo(const Invocation& invocation) : invocation_(invocation) {}
+
+  MarkersBetween operator()(const NamedData& target) const {
+    return [search = search_, &target, &invocation = invocation_](const TriMesh& source) {
+      if (!*search) {
+        Head head = head_of(invocation.input("source"), invocation.log);
+        head.mesh = source;
+        search->emplace(std::move(head), invocation.landmark_finder,
+                        FaceSearchOptions{.threads = invocation.threads});
+      }
+      return (**search)(head_of(target, invocation.log));
+    };
+  }
+
+ private:
+  const Invocation& invocation_;
+  std::shared_ptr<std::optional<MarkerSearch>> search_ =
+      std::make_shared<std::optional<MarkerSearch>>();
+};
+
 }  // namespace
 
 std::vector<Parameter> match_parameters() {
@@ -47,7 +79,10 @@ std::vector<Parameter> match_parameters() {
       several(
           "markers",
           "for a target of other faces: pairs of vertices, source and target, that are the same "
-          "point of a face; one file for all targets, or one for each between commas"),
+          "point of a face; one file for all targets, or one for each between commas; auto: "
+          "landmarks that are found in drawings of both, or that a landmarks68.txt beside both "
+          "names",
+          "auto"),
       several(
           "correspondence",
           "the same by pairs of triangles that an earlier run found and wrote beside its output")};
@@ -69,11 +104,13 @@ std::vector<Target> targets_of(const Invocation& invocation) {
     throw UsageError("--index-base: there are no vertices to count without --markers");
   }
   const FrameSource& source = *invocation.get<FieldSequence>("source").frames;
+  const MarkersTo markers_to(invocation);
   std::vector<Target> targets;
   for (std::size_t t = 0; t < given.size(); ++t) {
     const BlendshapeModel& model = std::get<ModelData>(given[t].data).model.average();
     Target& target = targets.emplace_back(given[t].name, model);
     if (!markers.empty()) target.match = read_markers(markers[t], parameters.integer("index-base"));
+    if (markers.empty() && pairs.empty()) target.match = markers_to(given[t]);
     if (!pairs.empty()) {
       target.match = read_correspondence(pairs[t], source.connectivity(), model.connectivity());
     }
@@ -90,14 +127,38 @@ Json json_of(const MatchReport& match) {
                {"seconds", match.seconds}};
   if (match.markers > 0) {
     json["markers"] = match.markers;
+    json["markers_found"] = match.found.has_value();
     json["folded"] = quality.folded;
   }
   return json;
 }
 
+Json json_of(const std::vector<ComparedOpening>& openings) {
+  Json list = Json::array();
+  for (const ComparedOpening& opening : openings) {
+    list.push_back({{"name", opening.name},
+                    {"source", {opening.source_least, opening.source_most}},
+                    {"target", {opening.target_least, opening.target_most}},
+                    {"mean_difference", opening.difference}});
+  }
+  return list;
+}
+
+std::string summary_of(const std::vector<ComparedOpening>& openings) {
+  std::vector<std::string> parts;
+  for (const ComparedOpening& opening : openings) {
+    parts.push_back(std::string(opening.name) + ' ' + percent(opening.source_least) + " to " +
+                    percent(opening.source_most) + " on the source, " +
+                    percent(opening.target_least) + " to " + percent(opening.target_most) +
+                    " here");
+  }
+  return parts.empty() ? "" : "  open, of their width: " + joined(parts, "; ", "; ") + '\n';
+}
+
 std::string summary_of(const MatchReport& match) {
   const std::string verdict = match.quality.verdict();
-  return "correspondence " + verdict.substr(0, verdict.find(':')) + ", " +
+  return (match.found ? std::to_string(match.markers) + " markers found, " : "") +
+         "correspondence " + verdict.substr(0, verdict.find(':')) + ", " +
          percent(1 - match.quality.without_partner) + " of the triangles paired, " +
          readable(match.seconds) + " s";
 }

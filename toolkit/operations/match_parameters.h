@@ -4,6 +4,7 @@
 
 #include "toolkit/operations/json.h"
 #include "toolkit/operations/operation.h"
+#include "toolkit/pipeline/opening_comparison.h"
 #include "toolkit/pipeline/solution.h"
 
 namespace mimetra {
@@ -11,7 +12,8 @@ namespace mimetra {
 /// --markers, --index-base and --correspondence, of operations with a target.
 std::vector<Parameter> match_parameters();
 
-/// The call's targets and how they are paired with its source. Throws UsageError where options
+/// The call's targets and how they are paired with its source: where nothing is named, by markers
+/// that are looked for if faces differ. Throws UsageError where options
 /// exclude each other or name another number of files than one or one for each target; what
 /// read_markers() and read_correspondence() throw.
 std::vector<Target> targets_of(const Invocation& invocation);
@@ -19,6 +21,10 @@ std::vector<Target> targets_of(const Invocation& invocation);
 /// What a correspondence is worth, for reports and for people.
 Json json_of(const MatchReport& match);
 std::string summary_of(const MatchReport& match);
+
+/// How far eyes and mouth are open on source and target, for reports and for people.
+Json json_of(const std::vector<ComparedOpening>& openings);
+std::string summary_of(const std::vector<ComparedOpening>& openings);
 
 /// Of the target's triangles: the distance from the deformed source (0 where it is nowhere near)
 /// and the number of partners.

@@ -69,13 +69,15 @@ NamedData weight_table(const NamedData& target, const Solution& solution) {
 }
 
 Json report_of(const NamedData& target, const TransferredTarget& transferred) {
-  const auto& [solution, regions, similarity, error, pairing, match, error_seconds] = transferred;
+  const auto& [solution, regions, similarity, error, pairing, match, error_seconds, openings] =
+      transferred;
   Json json = {{"name", target.name},          {"output", nullptr},  {"de_all", error.de_all},
                {"de_region", error.de_region}, {"leak", error.leak}, {"flipped", error.flipped},
                {"seconds", solution.seconds}};
   json["error_seconds"] = error_seconds;
   if (match) json["correspondence"] = json_of(*match);
   json["missed"] = missed_share(error);
+  if (!openings.empty()) json["openings"] = json_of(openings);
   json["axes"] = {{"angle", similarity.angle()},
                   {"scale", similarity.scale},
                   {"mirrored", similarity.mirrors()}};
@@ -95,11 +97,12 @@ Json report_of(const NamedData& target, const TransferredTarget& transferred) {
 }
 
 std::string summary_of(const NamedData& target, const TransferredTarget& transferred) {
-  const auto& [solution, regions, similarity, error, pairing, match, error_seconds] = transferred;
+  const auto& [solution, regions, similarity, error, pairing, match, error_seconds, openings] =
+      transferred;
   return target.name + ": DE " + readable(error.de_all) + " over all triangles, " +
          readable(error.de_region) + " over the regions; leak " + readable(error.leak) + ", " +
          std::to_string(error.flipped) + " flipped triangles; " + readable(solution.seconds) +
-         " s" + (match ? "; " + summary_of(*match) : "") + '\n';
+         " s" + (match ? "; " + summary_of(*match) : "") + '\n' + summary_of(openings);
 }
 
 /// Refuses outputs that this request cannot make, before anything is computed.

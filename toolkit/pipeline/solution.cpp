@@ -176,28 +176,27 @@ Similarity similarity_between(const Positions& rest, const Target& target,
   return scaling_fit(from, to);
 }
 
-/// Throws MismatchError that tells a mesh which is only numbered differently from another one.
-void check_same_faces(const FrameSource& source, const Target& target) {
+/// Throws MismatchError for a mesh that is only numbered differently.
+void check_numbering(const FrameSource& source, const Target& target) {
   const BlendshapeModel& model = target.model;
-  if (same_faces(source.connectivity(), model.connectivity())) return;
   const Renumbering found = renumbering(TriMesh{source.rest(), source.connectivity()},
                                         TriMesh{model.neutral(), model.connectivity()});
-  if (found.found()) {
-    throw MismatchError(target.name + ": has " + found.summary() +
-                        " against the source; write the source in its numbering first "
-                        "(convert --match)");
-  }
+  if (!found.found()) return;
+  throw MismatchError(target.name + ": has " + found.summary() +
+                      " against the source; write the source in its numbering first "
+                      "(convert --match)");
+}
+
+/// What is different about faces that are not the source's.
+std::string described_faces(const FrameSource& source, const Target& target) {
+  const BlendshapeModel& model = target.model;
   if (model.vertices() != source.vertices()) {
-    throw OptionError(Topic::other_faces, target.name + ": " + std::to_string(model.vertices()) +
-                                              " vertices, expected " +
-                                              std::to_string(source.vertices()) +
-                                              " as in the source");
+    return std::to_string(model.vertices()) + " vertices, expected " +
+           std::to_string(source.vertices()) + " as in the source";
   }
-  throw OptionError(
-      Topic::other_faces,
-      target.name + ": face " +
-          std::to_string(first_different_face(source.connectivity(), model.connectivity())) +
-          " is not the source's; source and target need the same faces");
+  return "face " +
+         std::to_string(first_different_face(source.connectivity(), model.connectivity())) +
+         " is not the source's; source and target need the same faces";
 }
 
 /// By how much lower or higher vertices the markers would fit much better; 0 where they are right.
@@ -247,14 +246,27 @@ bool solves_for_vertices(const BlendshapeModel& target, Space space) {
   return space == Space::vertex || target.expressions().size() == 0;
 }
 
+bool is_to_be_paired(const FrameSource& source, const Target& target) {
+  if (std::holds_alternative<std::monostate>(target.match)) return false;
+  return !std::holds_alternative<MarkersBetween>(target.match) ||
+         !same_faces(source.connectivity(), target.model.get().connectivity());
+}
+
 MatchedTarget::MatchedTarget(const FrameSource& source, Target target, const MatchOptions& options)
     : target_(std::move(target)) {
   const BlendshapeModel& model = target_.model;
-  if (!std::holds_alternative<std::monostate>(target_.match)) {
+  const bool is_given = !std::holds_alternative<std::monostate>(target_.match) &&
+                        !std::holds_alternative<MarkersBetween>(target_.match);
+  const bool differs = !same_faces(source.connectivity(), model.connectivity());
+  if (differs && !is_given) check_numbering(source, target_);
+  if (is_to_be_paired(source, target_)) {
     pair({options.source_rest.value_or(source.rest()), source.connectivity()}, options);
     return;
   }
-  check_same_faces(source, target_);
+  if (differs) {
+    throw OptionError(Topic::other_faces, target_.name + ": " + described_faces(source, target_));
+  }
+  target_.match = {};
   if (model.triangles() == source.triangles()) return;
   auto connectivity = std::make_shared<Connectivity>(model.connectivity());
   connectivity->triangles = source.triangles();
@@ -270,9 +282,17 @@ void MatchedTarget::pair(const TriMesh& source, const MatchOptions& options) {
   const TriMesh target{model.neutral(), model.connectivity()};
   MatchReport report;
   Correspondence pairs;
+  if (const auto* search = std::get_if<MarkersBetween>(&target_.match)) {
+    report.found = (*search)(source);
+    for (const std::string& warning : report.found->warnings()) {
+      note(options.notes, target_.name + ": " + warning, Topic::poor_match);
+    }
+    target_.match = report.found->markers;
+  }
   if (const auto* markers = std::get_if<std::vector<Marker>>(&target_.match)) {
     FoundCorrespondence found = found_by(*markers, source, target, target_.name, options);
-    report = {found.quality, static_cast<int>(markers->size())};
+    report.quality = found.quality;
+    report.markers = static_cast<int>(markers->size());
     pairs = std::move(found.correspondence);
   } else {
     pairs = std::get<Correspondence>(target_.match);
@@ -289,7 +309,7 @@ void MatchedTarget::pair(const TriMesh& source, const MatchOptions& options) {
          Topic::poor_match);
   }
   report.seconds = stopwatch.seconds();
-  report_ = report;
+  report_ = std::move(report);
 }
 
 Selection selection_of(const Regions& regions, const Target& target) {

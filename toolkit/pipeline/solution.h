@@ -7,6 +7,7 @@
 #include <string_view>
 #include <variant>
 
+#include "toolkit/correspondence/automatic_markers.h"
 #include "toolkit/correspondence/pairing.h"
 #include "toolkit/mesh/similarity.h"
 #include "toolkit/model/animation.h"
@@ -53,9 +54,14 @@ constexpr std::string_view choice_name(Axes value) {
   return {};
 }
 
-/// How a target of other faces than the source's is paired with it: not at all, by markers, or as
-/// is known already.
-using GivenMatch = std::variant<std::monostate, std::vector<Marker>, Correspondence>;
+/// Looks for markers from the source's undeformed shape to a target. Throws MismatchError that
+/// names the mesh on which nothing is found.
+using MarkersBetween = std::function<AutomaticMarkers(const TriMesh& source)>;
+
+/// How a target of other faces than the source's is paired with it: not at all, by markers that are
+/// looked for if it has other faces, by markers, or as is known already.
+using GivenMatch =
+    std::variant<std::monostate, MarkersBetween, std::vector<Marker>, Correspondence>;
 
 /// Who receives the deformation: a model, or a mesh, which is a model without expressions. It
 /// refers to the model.
@@ -128,6 +134,10 @@ struct Solution {
 /// True for the vertex space, and where a target has no expressions to solve for.
 bool solves_for_vertices(const BlendshapeModel& target, Space space);
 
+/// Whether a MatchedTarget is paired: markers or pairs are given, or markers are looked for and the
+/// faces differ.
+bool is_to_be_paired(const FrameSource& source, const Target& target);
+
 struct MatchOptions {
   /// The source's undeformed shape (N x 3); by default its rest pose.
   std::optional<Positions> source_rest = {};
@@ -142,6 +152,8 @@ struct MatchReport {
   CorrespondenceQuality quality;
   /// By how many markers; 0 for a correspondence that was given.
   int markers = 0;
+  /// These, where they were looked for.
+  std::optional<AutomaticMarkers> found = {};
   double seconds = 0;
 };
 
@@ -150,11 +162,11 @@ struct MatchReport {
 class MatchedTarget {
  public:
   /// Notes, under the target's name, markers that fit better as other vertices
-  /// (Topic::shifted_markers) and a match whose verdict is poor (Topic::poor_match). Throws
-  /// OptionError (Topic::other_faces) unless the target has the source's vertices and faces or a
-  /// match is given, and (Topic::shifted_markers) for markers that would fit as other vertices;
-  /// MismatchError for other wrong markers, a correspondence of other numbers of triangles, and one
-  /// without any pair; Cancelled.
+  /// (Topic::shifted_markers), and found markers that are doubtful and a match whose verdict is
+  /// poor (Topic::poor_match). Throws OptionError (Topic::other_faces) unless the target has the
+  /// source's vertices and faces or a match is given, and (Topic::shifted_markers) for markers that
+  /// would fit as other vertices; MismatchError for other wrong markers, a correspondence of other
+  /// numbers of triangles, and one without any pair; Cancelled; what the search for markers throws.
   MatchedTarget(const FrameSource& source, Target target, const MatchOptions& options = {});
 
   const Target& operator*() const { return target_; }

@@ -78,9 +78,9 @@ std::vector<MatchedTarget> matched_targets(const FrameSource& sequence,
                                            const TransferOptions& options) {
   std::vector<MatchedTarget> matched;
   for (const Target& target : given) {
-    const bool pairs = !std::holds_alternative<std::monostate>(target.match);
     MatchOptions of_match{.threads = options.threads, .notes = options.notes};
-    if (pairs) of_match.source_rest = asked_rest(sequence, options.source);
+    if (is_to_be_paired(sequence, target))
+      of_match.source_rest = asked_rest(sequence, options.source);
     matched.emplace_back(sequence, target, of_match);
   }
   return matched;
@@ -130,6 +130,21 @@ void note_usability(const Target& target, const TransferError& error,
   }
 }
 
+/// Of a target for which markers were looked for. Says what does not close.
+std::vector<ComparedOpening> openings_on(const MatchedTarget& target, const FrameSource& source,
+                                         const Solution& solution, const TransferOptions& options) {
+  if (!target.report() || !target.report()->found) return {};
+  std::vector<ComparedOpening> openings = compared_openings(
+      source, *solution.sequence, *target.report()->found, {.threads = options.threads});
+  for (const ComparedOpening& opening : openings) {
+    if (!opening.stays_open()) continue;
+    note(options.notes, (*target).name + ": the " + std::string(opening.name) +
+                            " closes on the source, here " + percent(opening.target_least) +
+                            " of its width stay open; look at it, and add markers around it");
+  }
+  return openings;
+}
+
 }  // namespace
 
 bool decomposes(const TransferOptions& options) {
@@ -173,10 +188,12 @@ TransferResult transfer(const FrameSource& sequence, const std::vector<Target>& 
                         .progress = part_of(progress, kSolveShare, 1)});
     const double error_seconds = of_error.seconds();
     note_usability(target, error, options);
+    std::vector<ComparedOpening> openings =
+        openings_on(matched[t], *placed.source.sequence, solution, options);
     if (give_back) solution.sequence = with_head_motion(solution.sequence, placed.source.motion);
     result.targets.push_back({std::move(solution), std::move(regions), placed.similarity,
-                              std::move(error), target.pairing, matched[t].report(),
-                              error_seconds});
+                              std::move(error), target.pairing, matched[t].report(), error_seconds,
+                              std::move(openings)});
   }
   result.head_motion = source.head_motion;
   result.regions = std::move(choice.regions);

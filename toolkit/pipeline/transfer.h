@@ -4,6 +4,7 @@
 #include <variant>
 #include <vector>
 
+#include "toolkit/pipeline/opening_comparison.h"
 #include "toolkit/pipeline/solution.h"
 #include "toolkit/transfer/transfer_error.h"
 
@@ -63,6 +64,8 @@ struct TransferredTarget {
   std::shared_ptr<const Pairing> pairing = {};
   std::optional<MatchReport> match = {};
   double error_seconds = 0;  ///< what measuring the error took
+  /// Eyes and mouth, where markers were looked for.
+  std::vector<ComparedOpening> openings = {};
 };
 
 struct TransferResult {
@@ -84,7 +87,8 @@ bool decomposes(const TransferOptions& options);
 /// reads the source in blocks, several times, and holds no more of it; the result does not need it.
 ///
 /// Notes a result that is likely not usable, because much of the deformation is missing or many
-/// triangles are flipped (Topic::poor_condition where there are regions).
+/// triangles are flipped (Topic::poor_condition where there are regions), and eyes and mouths that
+/// close on the source only.
 ///
 /// Throws what prepare_source(), MatchedTarget(), analyse(), analysis_of(), check_regions(),
 /// choose_regions() and solve() throw; Cancelled. A target that does not fit is refused before

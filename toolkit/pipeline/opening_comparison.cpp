@@ -1,0 +1,54 @@
+#include "toolkit/pipeline/opening_comparison.h"
+
+#include <algorithm>
+
+#include "toolkit/correspondence/face_openings.h"
+#include "toolkit/mesh/errors.h"
+
+namespace mimetra {
+
+namespace {
+
+/// Lids that touch are about 0.03 apart, by the distance of vertices on either; on two heads this
+/// differs by less than the second number.
+constexpr double kClosed = 0.06;
+constexpr double kStaysOpen = 0.06;
+
+std::vector<FaceOpening> openings_of(const FrameSource& sequence, const FaceLandmarks& face) {
+  LandmarkVertices landmarks;
+  for (const FaceLandmark& landmark : face.found) {
+    landmarks.emplace_back(landmark.number, landmark.vertex);
+  }
+  return face_openings({sequence.rest(), sequence.connectivity()}, landmarks);
+}
+
+}  // namespace
+
+bool ComparedOpening::stays_open() const {
+  return source_least <= kClosed && target_least > source_least + kStaysOpen;
+}
+
+std::vector<ComparedOpening> compared_openings(const FrameSource& source, const FrameSource& result,
+                                               const AutomaticMarkers& markers,
+                                               const BlockOptions& options) {
+  if (source.frames() != result.frames()) {
+    throw MismatchError("the source has " + std::to_string(source.frames()) +
+                        " frames, the result " + std::to_string(result.frames()));
+  }
+  const std::vector<FaceOpening> of_source = openings_of(source, markers.source),
+                                 of_target = openings_of(result, markers.target);
+  const Eigen::MatrixXd source_is = openness(source, of_source, options),
+                        target_is = openness(result, of_target, options);
+  std::vector<ComparedOpening> compared;
+  for (std::size_t s = 0; s < of_source.size(); ++s) {
+    const auto same = std::ranges::find(of_target, of_source[s].name, &FaceOpening::name);
+    if (same == of_target.end()) continue;
+    const Eigen::VectorXd from = source_is.col(static_cast<Eigen::Index>(s)),
+                          to = target_is.col(same - of_target.begin());
+    compared.push_back({of_source[s].name, from.minCoeff(), from.maxCoeff(), to.minCoeff(),
+                        to.maxCoeff(), (from - to).cwiseAbs().mean()});
+  }
+  return compared;
+}
+
+}  // namespace mimetra
