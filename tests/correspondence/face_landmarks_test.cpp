@@ -2,6 +2,7 @@
 
 #include "toolkit/correspondence/face_landmarks.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <gmock/gmock.h>
@@ -173,6 +174,16 @@ TEST_F(KnownFace, LosesLandmarksOnWhichViewsDisagree) {
     EXPECT_EQ(one[i].vertex, found.found[i].vertex);
     EXPECT_EQ(one[i].place, found.found[i].place);
   }
+}
+
+TEST_F(KnownFace, HasMarkersThatLieAlikeBesideItsLandmarks) {
+  // The finer ball has the coarse one's vertices first, and others nearer to the landmarks.
+  const Head fine = {"fine.obj", test::mesh_of(test::sphere(5))};
+  const AutomaticMarkers found = automatic_markers(head_, fine, pixels_of_all(), {.pixels = 96});
+  const auto same = std::ranges::count_if(
+      found.markers, [](const Marker& marker) { return marker.source == marker.target; });
+  EXPECT_GE(found.markers.size(), 20u);
+  EXPECT_GE(static_cast<double>(same), 0.8 * static_cast<double>(found.markers.size()));
 }
 
 TEST_F(KnownFace, ThatIsNotFoundIsAnErrorThatSaysWhatToDo) {

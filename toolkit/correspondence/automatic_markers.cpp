@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <array>
+#include <set>
 #include <string_view>
 #include <utility>
 
+#include "toolkit/mesh/similarity.h"
 #include "toolkit/mesh/text.h"
 
 namespace mimetra {
@@ -22,6 +24,55 @@ std::string summary_of(const std::string& name, const FaceLandmarks& face) {
          std::to_string(face.views) + " views, which agree to " +
          readable(100 * face.mean_spread(), 2) +
          " % of the distance between the eyes' outer corners";
+}
+
+/// Where a walk from vertex to vertex, always nearer to `place`, ends: on the same lip or lid.
+VertexIndex nearest_by_edges(VertexIndex vertex, const Eigen::Vector3d& place,
+                             const TriMesh& mesh) {
+  const auto distance = [&](VertexIndex v) {
+    return (mesh.positions.row(v).transpose() - place).squaredNorm();
+  };
+  for (VertexIndex last = -1; last != vertex;) {
+    last = vertex;
+    for (const auto& triangle : mesh.connectivity.triangles.rowwise()) {
+      if ((triangle.array() != last).all()) continue;
+      for (const VertexIndex v : triangle) {
+        if (distance(v) < distance(vertex)) vertex = v;
+      }
+    }
+  }
+  return vertex;
+}
+
+/// Pairs of landmarks that both heads have.
+using LandmarkPairs = std::vector<std::pair<FaceLandmark, FaceLandmark>>;
+
+LandmarkPairs pairs_of(const FaceLandmarks& source, const FaceLandmarks& target) {
+  LandmarkPairs pairs;
+  for (const FaceLandmark& landmark : source.found) {
+    const auto partner = std::ranges::find(target.found, landmark.number, &FaceLandmark::number);
+    if (partner != target.found.end()) pairs.emplace_back(landmark, *partner);
+  }
+  return pairs;
+}
+
+/// A landmark lies beside its vertex of the source; the target's vertex is to lie beside it alike.
+void match_vertices(LandmarkPairs& pairs, const Positions& source, const TriMesh& target) {
+  const auto count = static_cast<Eigen::Index>(pairs.size());
+  if (count < kFewestMarkers) return;
+  Positions from(count, 3), to(count, 3);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    from.row(i) = pairs[i].first.place;
+    to.row(i) = pairs[i].second.place;
+  }
+  const Similarity map = similarity_fit(from, to);
+  std::set<VertexIndex> taken;
+  for (auto& [a, b] : pairs) {
+    const Eigen::Vector3d beside = source.row(a.vertex).transpose() - a.place;
+    const Eigen::Vector3d wanted = b.place + map.scale * map.rotation * beside;
+    b.vertex = nearest_by_edges(b.vertex, wanted, target);
+  }
+  std::erase_if(pairs, [&](const auto& pair) { return !taken.insert(pair.second.vertex).second; });
 }
 
 }  // namespace
@@ -83,12 +134,11 @@ AutomaticMarkers MarkerSearch::operator()(const Head& target) {
     result.source = *found_;
   }
   result.target = landmarks_of(target, are_known, 0.5, 1);
-  for (const FaceLandmark& landmark : result.source.found) {
-    const auto partner =
-        std::ranges::find(result.target.found, landmark.number, &FaceLandmark::number);
-    if (partner == result.target.found.end()) continue;
-    result.markers.push_back({landmark.vertex, partner->vertex});
-    result.landmarks.push_back(landmark.number);
+  LandmarkPairs pairs = pairs_of(result.source, result.target);
+  if (!are_known) match_vertices(pairs, source_.mesh.positions, target.mesh);
+  for (const auto& [a, b] : pairs) {
+    result.markers.push_back({a.vertex, b.vertex});
+    result.landmarks.push_back(a.number);
   }
   check_markers(result.markers, source_.mesh.positions, target.mesh.positions);
   result.affine_residual =

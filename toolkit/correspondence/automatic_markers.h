@@ -37,8 +37,10 @@ class MarkerSearch {
 
   /// Pairs the landmarks that find_landmarks() gives for both heads. Landmarks that are known of
   /// one head only do not count: a finder errs alike on both, and other hands put brows elsewhere.
-  /// Throws what it throws, and MismatchError where those of both are too few for markers, or lie
-  /// in one plane.
+  /// A vertex of the target lies beside its landmark as the source's does beside its own.
+  ///
+  /// Throws what find_landmarks() throws, and MismatchError where the landmarks of both are too few
+  /// for markers, or lie in one plane.
   AutomaticMarkers operator()(const Head& target);
 
  private:
