@@ -9,6 +9,15 @@ namespace mimetra {
 
 namespace {
 
+/// Whether a text is one of the words that stand beside paths; "group:NAME" is where "group:..."
+/// is.
+bool is_word(const Parameter& parameter, const std::string& text) {
+  return std::ranges::any_of(parameter.choices, [&text](const std::string& word) {
+    const std::size_t colon = word.find(':');
+    return colon == std::string::npos ? word == text : text.starts_with(word.substr(0, colon + 1));
+  });
+}
+
 std::string shortest(double number) {
   char buffer[32];
   const auto [end, error] = std::to_chars(buffer, buffer + sizeof buffer, number);
@@ -237,14 +246,7 @@ std::vector<std::string> Parameters::files() const {
   std::vector<std::string> paths;
   for (const auto& [name, value] : values_) {
     const Parameter& parameter = *find(name);
-    const auto* path = std::get_if<std::string>(&value);
-    if (parameter.kind != ParameterKind::file || !path) continue;
-    const bool is_word = std::ranges::any_of(parameter.choices, [&](const std::string& word) {
-      const std::size_t colon = word.find(':');
-      return colon == std::string::npos ? word == *path
-                                        : path->starts_with(word.substr(0, colon + 1));
-    });
-    if (is_word) continue;
+    if (parameter.kind != ParameterKind::file) continue;
     const std::vector<std::string> several = this->paths(name);
     paths.insert(paths.end(), several.begin(), several.end());
   }
@@ -253,7 +255,7 @@ std::vector<std::string> Parameters::files() const {
 
 std::vector<std::string> Parameters::paths(const std::string& name) const {
   const auto text = optional_text(name);
-  if (!text) return {};
+  if (!text || is_word(*find(name), *text)) return {};
   if (!find(name)->several) return {*text};
   std::vector<std::string> paths;
   std::istringstream rest(*text);
