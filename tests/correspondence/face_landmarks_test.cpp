@@ -149,7 +149,7 @@ TEST_F(KnownFace, ThatIsNoneInNearerViewsIsRefused) {
               ThrowsMessage<MismatchError>(
                   AllOf(StartsWith("ball.obj: what looks like a face from one side does not from "
                                    "others"),
-                        HasSubstr("--markers FILE"))));
+                        HasSubstr("pair vertices of both heads by hand"))));
 }
 
 TEST_F(KnownFace, LosesLandmarksOnWhichViewsDisagree) {
@@ -188,16 +188,17 @@ TEST_F(KnownFace, HasMarkersThatLieAlikeBesideItsLandmarks) {
 
 TEST_F(KnownFace, ThatIsNotFoundIsAnErrorThatSaysWhatToDo) {
   const LandmarkFinder none = [](const GreyImage&) { return std::optional<FoundFace>(); };
-  EXPECT_THAT([&] { find_landmarks(head_, none, {.pixels = 96}); },
-              ThrowsMessage<MismatchError>(
-                  AllOf(StartsWith("ball.obj: no face was found"), HasSubstr("--markers FILE"))));
+  EXPECT_THAT(
+      [&] { find_landmarks(head_, none, {.pixels = 96}); },
+      ThrowsMessage<MismatchError>(AllOf(StartsWith("ball.obj: no face was found"),
+                                         HasSubstr("pair vertices of both heads by hand"))));
 }
 
 TEST_F(KnownFace, NeedsAFinder) {
   EXPECT_THAT(
       [&] { find_landmarks(head_, {}); },
       ThrowsMessage<MismatchError>(AllOf(StartsWith("ball.obj: this program cannot find faces"),
-                                         HasSubstr("--markers FILE"))));
+                                         HasSubstr("pair vertices of both heads by hand"))));
 }
 
 TEST_F(KnownFace, CanBeCancelled) {

@@ -143,6 +143,17 @@ TEST_F(FinerTargetTest, IsRefusedWithoutMatch) {
   EXPECT_EQ(test::topic_of(work), Topic::other_faces);
 }
 
+TEST_F(FinerTargetTest, IsRefusedWhereNoMarkersAreFound) {
+  const MarkersBetween search = [](const TriMesh&) -> AutomaticMarkers {
+    throw MismatchError("fine.obj: no face was found");
+  };
+  const auto work = [&] { transferred({"fine", *mesh_, search}, {.full = true}); };
+  EXPECT_EQ(test::topic_of(work), Topic::other_faces);
+  EXPECT_THAT(work,
+              ThrowsMessage<MismatchError>("fine: 289 vertices, expected 81 as in the source; "
+                                           "fine.obj: no face was found"));
+}
+
 TEST_F(FinerTargetTest, IsToldWhenMarkersWouldFitAsOtherVertices) {
   for (Marker& marker : markers_) marker = {marker.source + 1, marker.target + 1};
   markers_.back() = {81, 79};  // beyond the source

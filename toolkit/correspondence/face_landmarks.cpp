@@ -125,7 +125,7 @@ class FaceSearch {
 
  private:
   [[noreturn]] void fail(const std::string& problem) const {
-    throw MismatchError(head_.name + ": " + problem + "; give markers of your own: --markers FILE");
+    throw MismatchError(head_.name + ": " + problem + "; pair vertices of both heads by hand");
   }
 
   bool is_skin(int t) const { return parts_.of_vertex[triangles_(t, 0)] == skin_; }
@@ -260,8 +260,8 @@ FaceLandmarks find_landmarks(const Head& head, const LandmarkFinder& finder,
   if (!finder) {
     throw MismatchError(
         head.name +
-        ": this program cannot find faces (it was built without dlib); give markers "
-        "of your own: --markers FILE");
+        ": this program cannot find faces (it was built without dlib); pair vertices of both heads "
+        "by hand");
   }
   return FaceSearch(head, finder, options).landmarks();
 }

@@ -188,15 +188,13 @@ void check_numbering(const FrameSource& source, const Target& target) {
 }
 
 /// What is different about faces that are not the source's.
-std::string described_faces(const FrameSource& source, const Target& target) {
-  const BlendshapeModel& model = target.model;
-  if (model.vertices() != source.vertices()) {
+std::string described_faces(const Connectivity& source, const BlendshapeModel& model) {
+  if (model.vertices() != source.vertices) {
     return std::to_string(model.vertices()) + " vertices, expected " +
-           std::to_string(source.vertices()) + " as in the source";
+           std::to_string(source.vertices) + " as in the source";
   }
-  return "face " +
-         std::to_string(first_different_face(source.connectivity(), model.connectivity())) +
-         " is not the source's; source and target need the same faces";
+  return "face " + std::to_string(first_different_face(source, model.connectivity())) +
+         " is not the source's";
 }
 
 /// By how much lower or higher vertices the markers would fit much better; 0 where they are right.
@@ -228,6 +226,24 @@ FoundCorrespondence found_by(const std::vector<Marker>& markers, const TriMesh& 
     const std::string text = name + ": " + error.what();
     if (shift == 0) throw MismatchError(text);
     throw OptionError(Topic::shifted_markers, text + "; " + described_shift(shift));
+  }
+}
+
+/// Says that it was needed, and what makes the markers doubtful.
+AutomaticMarkers found_between(const MarkersBetween& search, const TriMesh& source,
+                               const Target& target, const MatchOptions& options) {
+  const std::string differs =
+      target.name + ": " + described_faces(source.connectivity, target.model.get());
+  try {
+    AutomaticMarkers found = search(source);
+    note(options.notes,
+         differs + "; " + std::to_string(found.markers.size()) + " markers were found on both");
+    for (const std::string& warning : found.warnings()) {
+      note(options.notes, target.name + ": " + warning, Topic::poor_match);
+    }
+    return found;
+  } catch (const MismatchError& error) {
+    throw OptionError(Topic::other_faces, differs + "; " + error.what());
   }
 }
 
@@ -264,7 +280,9 @@ MatchedTarget::MatchedTarget(const FrameSource& source, Target target, const Mat
     return;
   }
   if (differs) {
-    throw OptionError(Topic::other_faces, target_.name + ": " + described_faces(source, target_));
+    throw OptionError(Topic::other_faces, target_.name + ": " +
+                                              described_faces(source.connectivity(), model) +
+                                              "; source and target need the same faces");
   }
   target_.match = {};
   if (model.triangles() == source.triangles()) return;
@@ -283,10 +301,7 @@ void MatchedTarget::pair(const TriMesh& source, const MatchOptions& options) {
   MatchReport report;
   Correspondence pairs;
   if (const auto* search = std::get_if<MarkersBetween>(&target_.match)) {
-    report.found = (*search)(source);
-    for (const std::string& warning : report.found->warnings()) {
-      note(options.notes, target_.name + ": " + warning, Topic::poor_match);
-    }
+    report.found = found_between(*search, source, target_, options);
     target_.match = report.found->markers;
   }
   if (const auto* markers = std::get_if<std::vector<Marker>>(&target_.match)) {
