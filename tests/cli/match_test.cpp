@@ -38,6 +38,37 @@ TEST_F(MatchTest, WritesTheCorrespondenceThatAnotherRunTakes) {
   EXPECT_EQ(text_of(folder_ / "y.correspondence.json"), text_of(folder_ / "x.correspondence.json"));
 }
 
+TEST_F(MatchTest, LeavesACorrespondenceThatItDidNotWrite) {
+  for (const std::string out : {"x.npy", "x.glb", "x.pvd"}) {
+    write("x.correspondence.json", "mine");
+    const auto result = run(std::string(kSource) + "small.obj --full --markers m.txt -o " + out);
+    EXPECT_EQ(result.code, 5) << out;
+    EXPECT_THAT(result.err, HasSubstr("x.correspondence.json"));
+    EXPECT_EQ(text_of(folder_ / "x.correspondence.json"), "mine");
+    EXPECT_FALSE(listing().contains(out));
+  }
+}
+
+TEST_F(MatchTest, ReplacesItsOwnCorrespondenceWithItsOutput) {
+  const std::string base = std::string(kSource) + "small.obj --full -o x.npy --markers ";
+  report_of(base + "m.txt");
+  const std::string markers = test::patch_markers(0);
+  write("few.txt", markers.substr(0, markers.rfind('\n', markers.size() - 2) + 1));
+  EXPECT_EQ(run(base + "few.txt").code, 5);
+  const std::string before = text_of(folder_ / "x.correspondence.json");
+  report_of(base + "few.txt --force");
+  EXPECT_NE(text_of(folder_ / "x.correspondence.json"), before);
+}
+
+TEST_F(MatchTest, NeedsNoMarkersForTheSourcesFaces) {
+  const std::string wide = std::string(kSource) + "head@wide=1 --full ";
+  report_of(wide + "-o x.npy");
+  const auto result = run(wide + "--markers m.txt -o y.npy");
+  EXPECT_EQ(result.code, 0) << result.err;
+  EXPECT_THAT(result.err, HasSubstr("head@wide=1: has the source's faces"));
+  EXPECT_EQ(text_of(folder_ / "y.npy"), text_of(folder_ / "x.npy"));
+}
+
 TEST_F(MatchTest, ShowsTheResidualsWhereFieldsAreWritten) {
   report_of(std::string(kSource) + "small.obj --full --markers m.txt -o x.pvd");
   const std::string first = text_of(folder_ / "x_vtp/x_0000.vtp");

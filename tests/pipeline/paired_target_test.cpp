@@ -138,6 +138,29 @@ TEST_F(FinerTargetTest, MovesOnlyOverTheRegions) {
   EXPECT_GT((result.row(40) - mesh_->neutral().row(40)).norm(), 1e-3);
 }
 
+TEST_F(FinerTargetTest, HasNoAnchorOnAPartThatFollows) {
+  test::Shape shape = test::subdivided(test::patch());
+  const auto first = static_cast<int>(shape.positions.rows());
+  shape.positions.conservativeResize(first + 3, 3);
+  shape.positions.bottomRows(3) << 4, 4, -3, 5, 4, -3, 4, 5, -3;
+  shape.triangles.conservativeResize(shape.triangles.rows() + 1, 3);
+  shape.triangles.bottomRows(1) << first, first + 1, first + 2;
+  const BlendshapeModel with_tooth(test::connectivity_of(shape), shape.positions,
+                                   ShapeBasis{{}, Eigen::MatrixXd(shape.positions.size(), 0)});
+  TransferOptions options{.full = true};
+  options.solving.vertex.anchor = Anchor::vertex;
+  options.solving.vertex.anchor_vertex = first;
+  const auto work = [&] { transferred({"fine", with_tooth, markers_}, options); };
+  EXPECT_EQ(test::topic_of(work), Topic::anchor_vertex);
+  options.solving.vertex.anchor_vertex = 40;
+  const auto held = transferred({"fine", with_tooth, markers_}, options);
+  const Frames pose = held.solution.sequence->read(5, 1);
+  EXPECT_LT(
+      (PositionsView(pose.data(), with_tooth.vertices(), 3).row(40) - with_tooth.neutral().row(40))
+          .norm(),
+      1e-9);
+}
+
 TEST_F(FinerTargetTest, IsRefusedWithoutMatch) {
   const auto work = [this] { transferred({"fine", *mesh_}, {.full = true}); };
   EXPECT_EQ(test::topic_of(work), Topic::other_faces);

@@ -1,8 +1,11 @@
+#include <map>
 #include <numeric>
+#include <set>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "tests/correspondence/cut_sheet.h"
 #include "tests/transfer/seamed_face.h"
 #include "toolkit/mesh/alignment.h"
 #include "toolkit/transfer/blendshape_transfer.h"
@@ -119,6 +122,68 @@ TEST(PairedSeams, OfTheSameFacesAreTheSame) {
   EXPECT_GT(plain.count, 0);
   EXPECT_EQ(closed_seams(take, take.rest(), face.triangles, same).representative,
             plain.representative);
+}
+
+/// A sheet whose mouth is closed at rest and opens, and the same with vertices of its own for each
+/// triangle, as flat shading makes them; each triangle follows itself and its successor.
+class FlatShadedTest : public testing::Test {
+ protected:
+  FlatShadedTest() {
+    const Triangles& triangles = rest_.connectivity.triangles;
+    const Eigen::Index count = triangles.rows();
+    flat_.resize(count, 3);
+    places_.resize(3 * count, 3);
+    pairs_.source_triangles = static_cast<int>(count);
+    pairs_.residuals = Eigen::VectorXd::Zero(count);
+    for (int t = 0; t < count; ++t) {
+      for (int c = 0; c < 3; ++c) {
+        flat_(t, c) = 3 * t + c;
+        places_.row(3 * t + c) = rest_.positions.row(triangles(t, c));
+        original_.push_back(triangles(t, c));
+      }
+      const int other = t + 1 < count ? t + 1 : t - 1;
+      pairs_.parts.push_back({std::min(t, other), 0.5});
+      pairs_.parts.push_back({std::max(t, other), 0.5});
+      pairs_.offsets.push_back(2 * (t + 1));
+    }
+  }
+
+  Weld seams(const MeshSequence& source) const {
+    const TriMesh target{places_,
+                         Connectivity::from_triangles(static_cast<int>(places_.rows()), flat_)};
+    return closed_seams(source, places_, flat_, Pairing(rest_, target, pairs_));
+  }
+
+  MeshSequence opening(double gap) const {
+    Frames frames(2, rest_.positions.size());
+    frames.row(0) = rest_.positions.reshaped<Eigen::RowMajor>().transpose();
+    frames.row(1) = test::sheet(true, gap).positions.reshaped<Eigen::RowMajor>().transpose();
+    return MeshSequence(rest_.connectivity, frames).with_rest(rest_.positions);
+  }
+
+  const TriMesh rest_ = test::sheet(true, 0);
+  Triangles flat_;
+  Positions places_;
+  std::vector<VertexIndex> original_;  // in the source
+  Correspondence pairs_;
+};
+
+TEST_F(FlatShadedTest, StaysWholeButForLips) {
+  const Weld weld = seams(opening(0.01));
+  std::map<VertexIndex, std::set<VertexIndex>> of_place;
+  for (std::size_t v = 0; v < original_.size(); ++v) {
+    of_place[original_[v]].insert(weld.representative[v]);
+  }
+  for (const auto& [vertex, lowest] : of_place) EXPECT_EQ(lowest.size(), 1u) << vertex;
+  // The lips' middle, half of the mouth's width from its corners.
+  const int lower = test::kMiddle * test::kColumns + 20, upper = test::kColumns * test::kRows + 11;
+  ASSERT_TRUE(rest_.positions.row(lower) == rest_.positions.row(upper));
+  EXPECT_NE(of_place[lower], of_place[upper]);
+}
+
+TEST_F(FlatShadedTest, StaysClosedWhereTheSourceNeverOpens) {
+  const Weld weld = seams(opening(0));
+  EXPECT_EQ(weld.representative, Weld::exact(places_).representative);
 }
 
 /// The source's vertices, faces and corners in another order.

@@ -5,10 +5,10 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <queue>
 #include <stdexcept>
 #include <string>
 
+#include "toolkit/mesh/edge_graph.h"
 #include "toolkit/mesh/weld.h"
 
 namespace mimetra {
@@ -41,50 +41,21 @@ const std::array<Scheme, 3>& schemes() {
   return all;
 }
 
-using Neighbours = std::vector<std::vector<VertexIndex>>;
-
-Neighbours neighbours_of(int vertices, const Triangles& triangles) {
-  Neighbours result(vertices);
-  for (Eigen::Index t = 0; t < triangles.rows(); ++t) {
-    for (int c = 0; c < 3; ++c) {
-      const VertexIndex a = triangles(t, c), b = triangles(t, (c + 1) % 3);
-      if (a == b) continue;
-      result[a].push_back(b);
-      result[b].push_back(a);
-    }
-  }
-  return result;
-}
-
-/// What is reached along edges from two groups of vertices, and from which first.
+/// What is reached along edges from two groups of vertices.
 struct Reached {
-  std::vector<int> group;        ///< 0 or 1; -1 for what neither reaches
-  std::vector<double> distance;  ///< from it
+  std::map<VertexIndex, double> distance;  ///< from the nearer group
+  std::map<VertexIndex, int> group;        ///< that one, 0 or 1
 };
 
-Reached reached_from(const Positions& positions, const Neighbours& neighbours,
-                     const std::array<std::vector<VertexIndex>, 2>& groups, double reach) {
-  struct Front {
-    double distance;
-    VertexIndex vertex;
-    int group;
-    auto operator<=>(const Front&) const = default;
-  };
-  std::priority_queue<Front, std::vector<Front>, std::greater<>> fronts;
-  Reached result{std::vector<int>(neighbours.size(), -1), std::vector<double>(neighbours.size())};
+Reached reached_from(const EdgeGraph& graph, const std::array<std::vector<VertexIndex>, 2>& groups,
+                     double reach) {
+  Reached result;
   for (int g = 0; g < 2; ++g) {
-    for (const VertexIndex v : groups[g]) fronts.push({0, v, g});
-  }
-  while (!fronts.empty()) {
-    const Front next = fronts.top();
-    fronts.pop();
-    if (result.group[next.vertex] >= 0) continue;
-    result.group[next.vertex] = next.group;
-    result.distance[next.vertex] = next.distance;
-    for (const VertexIndex v : neighbours[next.vertex]) {
-      const double distance =
-          next.distance + (positions.row(v) - positions.row(next.vertex)).norm();
-      if (result.group[v] < 0 && distance <= reach) fronts.push({distance, v, next.group});
+    for (const auto& [vertex, distance] : graph.within(reach, groups[g])) {
+      const auto known = result.distance.find(vertex);
+      if (known != result.distance.end() && known->second <= distance) continue;
+      result.distance[vertex] = distance;
+      result.group[vertex] = g;
     }
   }
   return result;
@@ -95,12 +66,11 @@ struct Skin {
   explicit Skin(const TriMesh& rest)
       : positions(rest.positions),
         weld(Weld::exact(rest.positions)),
-        neighbours(
-            neighbours_of(rest.connectivity.vertices, weld.welded(rest.connectivity.triangles))) {}
+        graph(positions, weld.welded(rest.connectivity.triangles)) {}
 
   const Positions& positions;
   Weld weld;
-  Neighbours neighbours;
+  EdgeGraph graph;
 };
 
 /// An opening's landmarks on the skin.
@@ -132,12 +102,12 @@ struct Edges {
 /// The shortest way in the band from one edge's landmarks to the other's; infinite without one.
 double way_between(const Skin& skin, const Edges& edges, const Reached& reached) {
   double shortest = std::numeric_limits<double>::infinity();
-  for (VertexIndex v = 0; v < skin.positions.rows(); ++v) {
-    if (reached.group[v] != 0 || !edges.is_in_band(skin.positions.row(v))) continue;
-    for (const VertexIndex other : skin.neighbours[v]) {
-      if (reached.group[other] != 1) continue;
-      shortest = std::min(shortest, reached.distance[v] + reached.distance[other] +
-                                        (skin.positions.row(v) - skin.positions.row(other)).norm());
+  for (const auto& [vertex, group] : reached.group) {
+    if (group != 0 || !edges.is_in_band(skin.positions.row(vertex))) continue;
+    for (const auto& [to, length] : skin.graph.edges(vertex)) {
+      const auto other = reached.group.find(to);
+      if (other == reached.group.end() || other->second != 1) continue;
+      shortest = std::min(shortest, reached.distance.at(vertex) + length + reached.distance.at(to));
     }
   }
   return shortest;
@@ -148,15 +118,15 @@ FaceOpening opening_between(const Skin& skin, const Scheme& scheme,
                             const std::map<int, VertexIndex>& vertex_of) {
   const Edges edges(skin, scheme, vertex_of);
   FaceOpening opening{scheme.name, {}, {}, edges.width};
-  const Reached reached =
-      reached_from(skin.positions, skin.neighbours, edges.landmarks, edges.width);
+  const Reached reached = reached_from(skin.graph, edges.landmarks, edges.width);
   const double way = way_between(skin, edges, reached);
   if (way < kDetour * edges.apart) return opening;
   const double reach = std::min(kReach * edges.width, kShareOfWay * way);
-  for (VertexIndex v = 0; v < skin.positions.rows(); ++v) {
-    if (reached.group[v] < 0 || reached.distance[v] > reach) continue;
-    if (!edges.is_in_band(skin.positions.row(v))) continue;
-    (reached.group[v] == 0 ? opening.upper : opening.lower).push_back(v);
+  for (const auto& [vertex, group] : reached.group) {
+    if (reached.distance.at(vertex) > reach || !edges.is_in_band(skin.positions.row(vertex))) {
+      continue;
+    }
+    (group == 0 ? opening.upper : opening.lower).push_back(vertex);
   }
   return opening;
 }

@@ -20,6 +20,8 @@ constexpr double kReach = 0.03;
 /// Drawings of a whole mesh, against those of a face alone: a head's face has the finder's 80
 /// pixels; that of a body, an eighth of its height, needs more.
 constexpr std::array<double, 2> kOfWholeMesh = {2.0 / 3, 2};
+/// A body of fewer vertices has no face that a finder would know.
+constexpr Eigen::Index kFewestOfBody = 2000;
 /// What is drawn is larger than the mesh by this factor: detectors want a margin.
 constexpr double kMargin = 1.15;
 
@@ -146,6 +148,7 @@ std::optional<SeenFace> most_certain_face(const MeshPainter& painter, const Posi
                                           const LandmarkFinder& finder, int pixels, int threads,
                                           const Progress& progress) {
   for (const double share : kOfWholeMesh) {
+    if (share > 1 && positions.rows() < kFewestOfBody) break;
     const std::vector<View> views =
         views_along_axes(positions, static_cast<int>(std::lround(share * pixels)));
     std::vector<std::optional<SeenFace>> seen(views.size());

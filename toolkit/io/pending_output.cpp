@@ -423,6 +423,11 @@ void check_inputs_stay(const fs::path& output, const std::vector<fs::path>& inpu
   if (!harm.empty()) throw OutputError(without_trailing_slash(output).string(), harm);
 }
 
+PendingOutputs::Existing existing_beside(std::string_view name) {
+  const bool is_manifest = name.ends_with(".run.json") || name == kFolderManifest;
+  return is_manifest ? PendingOutputs::Existing::anything : PendingOutputs::Existing::same;
+}
+
 void write_file(const fs::path& target, std::string_view content, bool overwrite,
                 PendingOutputs* together) {
   PendingOutputs outputs(overwrite, {}, together);

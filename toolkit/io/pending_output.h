@@ -121,6 +121,11 @@ class PendingOutputs {
 void check_inputs_stay(const std::filesystem::path& output,
                        const std::vector<std::filesystem::path>& inputs);
 
+/// What may stand already under the name of a file that a run writes beside its output: a run's
+/// manifest (NAME.run.json, mimetra-run.json) tells of it and may replace anything, which who names
+/// it sees to; others go with it.
+PendingOutputs::Existing existing_beside(std::string_view name);
+
 /// Writes `content` to `target` by way of PendingOutputs. Throws OutputError.
 void write_file(const std::filesystem::path& target, std::string_view content, bool overwrite,
                 PendingOutputs* together = nullptr);

@@ -158,8 +158,7 @@ void add_extra_beside(PendingOutputs& outputs, const fs::path& target, const Ext
                       std::vector<fs::path>& files) {
   for (const auto& [name, content] : extra) {
     const fs::path path = target.parent_path() / name;
-    write_bytes(outputs.add(path, PendingOutput::Kind::file, PendingOutputs::Existing::anything),
-                content);
+    write_bytes(outputs.add(path, PendingOutput::Kind::file, existing_beside(name)), content);
     files.push_back(path);
   }
 }

@@ -264,9 +264,8 @@ Paths write_with_extra(const WriteRequest& request, const std::function<Paths()>
   Paths beside;
   for (const auto& [name, content] : request.extra) {
     beside.push_back(request.target.parent_path() / name);
-    write_bytes(
-        extra.add(beside.back(), PendingOutput::Kind::file, PendingOutputs::Existing::anything),
-        content);
+    write_bytes(extra.add(beside.back(), PendingOutput::Kind::file, existing_beside(name)),
+                content);
   }
   Paths written = write();
   extra.commit();

@@ -109,7 +109,14 @@ std::vector<Target> targets_of(const Invocation& invocation) {
   for (std::size_t t = 0; t < given.size(); ++t) {
     const BlendshapeModel& model = std::get<ModelData>(given[t].data).model.average();
     Target& target = targets.emplace_back(given[t].name, model);
-    if (!markers.empty()) target.match = read_markers(markers[t], parameters.integer("index-base"));
+    if (!markers.empty()) {
+      std::vector<Marker> read = read_markers(markers[t], parameters.integer("index-base"));
+      if (same_faces(source.connectivity(), model.connectivity())) {
+        invocation.warn(given[t].name + ": has the source's faces; markers are left out");
+      } else {
+        target.match = std::move(read);
+      }
+    }
     if (markers.empty() && pairs.empty()) target.match = markers_to(given[t]);
     if (!pairs.empty()) {
       target.match = read_correspondence(pairs[t], source.connectivity(), model.connectivity());

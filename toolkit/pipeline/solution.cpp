@@ -6,6 +6,7 @@
 #include "toolkit/mesh/stopwatch.h"
 #include "toolkit/mesh/text.h"
 #include "toolkit/model/animation.h"
+#include "toolkit/transfer/following_parts.h"
 #include "toolkit/transfer/seams.h"
 
 namespace mimetra {
@@ -97,13 +98,25 @@ Solution solve_blendshapes(const Source& source, const Target& target, const Sel
   return solution;
 }
 
-void check_anchor(const VertexTransferOptions& options, const BlendshapeModel& model,
+void check_anchor(const VertexTransferOptions& options, const Target& target,
                   const Selection& selection) {
   if (!options.anchor) return;
-  if (*options.anchor == Anchor::vertex && options.anchor_vertex >= model.vertices()) {
-    throw OptionError(Topic::anchor_vertex, "vertex " + std::to_string(options.anchor_vertex) +
-                                                ", the mesh has " +
-                                                std::to_string(model.vertices()) + " (0-based)");
+  const BlendshapeModel& model = target.model;
+  const bool is_vertex = *options.anchor == Anchor::vertex;
+  const std::string vertex = "vertex " + std::to_string(options.anchor_vertex);
+  if (is_vertex && options.anchor_vertex >= model.vertices()) {
+    throw OptionError(Topic::anchor_vertex,
+                      vertex + ", the mesh has " + std::to_string(model.vertices()) + " (0-based)");
+  }
+  if (is_vertex && target.pairing) {
+    const FollowingParts following(model.neutral(), model.triangles(), Weld::exact(model.neutral()),
+                                   *target.pairing);
+    if (following.vertices()[options.anchor_vertex]) {
+      throw OptionError(Topic::anchor_vertex,
+                        vertex +
+                            " is on a part without partner in the source, which follows the "
+                            "surface around it; name a vertex of that");
+    }
   }
   const bool all = selection.triangles.size() == static_cast<std::size_t>(model.triangles().rows());
   if (options.outside == Outside::fixed && !all) {
@@ -118,7 +131,7 @@ Solution solve_vertices(const Source& source, const Target& target, const Select
   VertexTransferOptions of_space = options.vertex;
   of_space.inside = selection.inside;
   of_space.threads = options.threads;
-  check_anchor(of_space, model, selection);
+  check_anchor(of_space, target, selection);
   const FrameSource& performance = *source.sequence;
   of_space.pairing = target.pairing;
   const BlockOptions of_seams{options.threads, part_of(options.progress, 0, kSeamShare)};
@@ -280,9 +293,10 @@ MatchedTarget::MatchedTarget(const FrameSource& source, Target target, const Mat
     return;
   }
   if (differs) {
-    throw OptionError(Topic::other_faces, target_.name + ": " +
-                                              described_faces(source.connectivity(), model) +
-                                              "; source and target need the same faces");
+    const bool same_count = model.vertices() == source.vertices();
+    throw OptionError(Topic::other_faces,
+                      target_.name + ": " + described_faces(source.connectivity(), model) +
+                          (same_count ? "; source and target need the same faces" : ""));
   }
   target_.match = {};
   if (model.triangles() == source.triangles()) return;

@@ -1,10 +1,14 @@
 #include "toolkit/transfer/seams.h"
 
+#include <algorithm>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
+#include "toolkit/mesh/edge_graph.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/transfer/deformation_gradients.h"
 #include "toolkit/transfer/pairs.h"
@@ -44,6 +48,66 @@ std::vector<VertexIndex> carried_at_place(const Weld& at_target, const Pairing& 
   }
   return carried;
 }
+
+/// Of a source's triangles that are partners of a vertex' triangles, and of these themselves, the
+/// longest edges together are how far the carriers of one place may be apart; partners of
+/// neighbours need not be neighbours.
+constexpr double kNearEdges = 2;
+
+/// Target vertices at one place by what carries them. Vertices of the source at one place that part
+/// later, as lips do, are not neighbours.
+class PlacesOverPairs {
+ public:
+  PlacesOverPairs(const FrameSource& source, const Positions& target_rest,
+                  const Triangles& target_triangles, const Pairing& pairing,
+                  const std::vector<VertexIndex>& moves_as, const BlockOptions& options)
+      : at_source_(staying_together(source, Weld::exact(source.rest()),
+                                    kPartedShare * source.diameter(), options)),
+        source_(source.rest(), at_source_.welded(source.triangles())),
+        target_(target_rest, target_triangles),
+        pairing_(pairing),
+        moves_as_(moves_as) {}
+
+  /// Of vertices at one place the lowest that each is one with.
+  std::vector<VertexIndex> lowest_of(const std::vector<VertexIndex>& place) const {
+    std::vector<std::vector<VertexIndex>> carriers;
+    double reach = 0;
+    for (const VertexIndex v : place) {
+      std::vector<VertexIndex>& of_vertex = carriers.emplace_back();
+      reach = std::max(reach, target_.longest_edge(v));
+      for (const auto& carrier : pairing_.carriers(moves_as_[v])) {
+        of_vertex.push_back(at_source_.representative[carrier.vertex]);
+      }
+    }
+    double longest = 0;
+    for (const VertexIndex carrier : carriers.front()) {
+      longest = std::max(longest, source_.longest_edge(carrier));
+    }
+    reach = kNearEdges * (reach + longest);
+    std::vector<VertexIndex> lowest = place;
+    for (std::size_t i = 0; i + 1 < place.size(); ++i) {
+      const auto near = source_.within(reach, carriers[i]);
+      for (std::size_t j = i + 1; j < place.size(); ++j) {
+        const bool is_one =
+            carriers[i].empty()
+                ? carriers[j].empty()
+                : std::ranges::any_of(carriers[j], [&](VertexIndex v) { return near.contains(v); });
+        if (is_one) join(lowest, lowest[i], lowest[j]);
+      }
+    }
+    return lowest;
+  }
+
+ private:
+  static void join(std::vector<VertexIndex>& lowest, VertexIndex a, VertexIndex b) {
+    std::ranges::replace(lowest, std::max(a, b), std::min(a, b));
+  }
+
+  Weld at_source_;
+  EdgeGraph source_, target_;
+  const Pairing& pairing_;
+  const std::vector<VertexIndex>& moves_as_;
+};
 
 /// A target's rest pose whose vertices are moved as what carries them.
 class CarriedFrames : public FrameSource {
@@ -111,19 +175,33 @@ Weld closed_seams(const FrameSource& source, const Positions& target_rest,
   const std::vector<VertexIndex> moves_as = carried_at_place(at_target, pairing);
   const bool only_numbers = pairing.is_one_to_one();
   Weld together = Weld::none(pairing.target_vertices());
-  std::map<std::pair<VertexIndex, VertexIndex>, VertexIndex> lowest;
+  std::map<std::pair<VertexIndex, VertexIndex>, std::vector<VertexIndex>> places;
   for (VertexIndex v = 0; v < pairing.target_vertices(); ++v) {
     if (!on[v]) continue;
     const auto carriers = pairing.carriers(moves_as[v]);
     const bool at_one = only_numbers && !carriers.empty();
-    const std::pair places(at_one ? at_source.representative[carriers.front().vertex] : -1,
-                           at_target.representative[v]);
-    together.representative[v] = lowest.try_emplace(places, v).first->second;
-    if (together.representative[v] != v) ++together.count;
+    places[{at_one ? at_source.representative[carriers.front().vertex] : -1,
+            at_target.representative[v]}]
+        .push_back(v);
   }
-  const double share = only_numbers ? kPartedShare : kPartedOverPairs;
+  std::optional<PlacesOverPairs> over_pairs;
+  for (const auto& [key, place] : places) {
+    if (place.size() == 1) continue;
+    std::vector<VertexIndex> lowest(place.size(), place.front());
+    if (!only_numbers) {
+      if (!over_pairs) {
+        over_pairs.emplace(source, target_rest, target_triangles, pairing, moves_as, options);
+      }
+      lowest = over_pairs->lowest_of(place);
+    }
+    for (std::size_t i = 0; i < place.size(); ++i) {
+      together.representative[place[i]] = lowest[i];
+      if (lowest[i] != place[i]) ++together.count;
+    }
+  }
+  if (!only_numbers) return together;
   return staying_together(CarriedFrames(source, target_rest, pairing, moves_as), together,
-                          share * source.diameter(), options);
+                          kPartedShare * source.diameter(), options);
 }
 
 }  // namespace mimetra

@@ -9,10 +9,6 @@ namespace mimetra {
 /// the rounding of single precision, well below what one sees.
 constexpr double kPartedShare = 1e-6;
 
-/// The same where target vertices at one place have several carriers, not quite at the same place
-/// of the source: above what a face stretches between neighbours, below lips that open.
-constexpr double kPartedOverPairs = 0.01;
-
 /// Which vertices are one point of a surface that a source and a target of its connectivity share:
 /// the two sides of a UV seam, but not lips that open. They are at the same place in both rest
 /// poses, exactly, and in every frame of the source within kPartedShare of the lowest of them.
@@ -26,9 +22,10 @@ Weld closed_seams(const FrameSource& source, const Positions& target_rest,
                   const BlockOptions& = {});
 
 /// The same for a target of other faces (rest pose and triangles), which it shares with no source:
-/// its vertices at one place are one where what carries them does not part, by kPartedShare where
-/// numbers differ only (then it is at one place of the source's rest pose, too), otherwise by
-/// kPartedOverPairs. A vertex without carriers goes with those that it is at one place with.
+/// where numbers differ only, as if it did. Otherwise its vertices at one place are one where what
+/// carries them is near along the source's surface, by about a triangle of either: duplicates of
+/// flat shading are, lips are not, but at the corners of a mouth. A vertex without carriers goes
+/// with those that it is at one place with. `source` is placed at the target.
 Weld closed_seams(const FrameSource& source, const Positions& target_rest,
                   const Triangles& target_triangles, const Pairing& pairing,
                   const BlockOptions& = {});
