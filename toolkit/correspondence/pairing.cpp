@@ -130,14 +130,6 @@ bool Pairing::is_one_to_one() const {
   return at_most_one(offsets_) && at_most_one(pairs_.offsets);
 }
 
-std::vector<int> Pairing::paired_triangles() const {
-  std::vector<int> paired;
-  for (int t = 0; t < pairs_.target_triangles(); ++t) {
-    if (pairs_.has_partner(t)) paired.push_back(t);
-  }
-  return paired;
-}
-
 std::vector<int> Pairing::with_gaps(std::vector<int> selected, const Triangles& triangles) const {
   const auto neighbors = triangle_neighbors(target_vertices(), triangles);
   std::vector<bool> is_selected(triangles.rows(), false), is_seen(triangles.rows(), false);
@@ -195,6 +187,15 @@ std::vector<bool> Pairing::over(const std::vector<bool>& source_vertices) const 
     is_over[v] = weight >= kHalf;
   }
   return is_over;
+}
+
+std::vector<int> with_partners(std::vector<int> triangles, const Pairing* pairing) {
+  if (!pairing) return triangles;
+  std::erase_if(triangles, [&](int t) {
+    return t >= 0 && t < pairing->triangles().target_triangles() &&
+           !pairing->triangles().has_partner(t);
+  });
+  return triangles;
 }
 
 }  // namespace mimetra

@@ -36,8 +36,6 @@ class Pairing {
   /// No vertex has more than one carrier, and no triangle more than one partner: only numbers
   /// differ.
   bool is_one_to_one() const;
-  /// Target triangles with a partner, ascending.
-  std::vector<int> paired_triangles() const;
   /// `selected` triangles of the target with those of gaps between them: connected triangles
   /// without partner, of whose neighbours with one at least half are selected. `triangles` (M x 3)
   /// are the target's.
@@ -59,5 +57,8 @@ class Pairing {
   std::vector<int> offsets_ = {0};
   std::vector<Carrier> carriers_;
 };
+
+/// Those of some triangles of a target that have a partner; all without a pairing (null).
+std::vector<int> with_partners(std::vector<int> triangles, const Pairing* pairing);
 
 }  // namespace mimetra

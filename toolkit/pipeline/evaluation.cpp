@@ -35,14 +35,6 @@ EvaluatedTransfer solved(const Source& source, const Target& target, const Selec
   return result;
 }
 
-/// Those of L that count.
-std::vector<int> paired_of(const Selection& selection, const Target& target) {
-  std::vector<int> paired = selection.triangles;
-  if (!target.pairing) return paired;
-  std::erase_if(paired, [&](int t) { return !target.pairing->triangles().has_partner(t); });
-  return paired;
-}
-
 /// The work of one decomposition in a row; the rest is its transfer.
 constexpr double kAnalysisShare = 0.9;
 
@@ -82,7 +74,8 @@ EvaluatedTransfer evaluate_by(const Regions& regions, const EvaluatedTransfer& f
   const double size = result.solution.sequence->diameter();
   row.mpe_all = percentage_error(full.error.de_all, row.de_all, size);
   row.mpe_region = percentage_error(
-      mean_over(full.error.per_triangle, paired_of(selection, target)), row.de_region, size);
+      mean_over(full.error.per_triangle, with_partners(selection.triangles, target.pairing.get())),
+      row.de_region, size);
   return result;
 }
 

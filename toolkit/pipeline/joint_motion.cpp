@@ -119,10 +119,8 @@ std::optional<HeldOutErrors> held_out_errors(const std::shared_ptr<const FrameSo
       if (pairing && pairing->carriers(v).empty()) continue;
       (patch[v] == p ? held : others).push_back(v);
     }
-    std::vector<int> triangles = triangles_outside(target.triangles(), patch, p);
-    if (pairing) {
-      std::erase_if(triangles, [&](int t) { return !pairing->triangles().has_partner(t); });
-    }
+    const std::vector<int> triangles =
+        with_partners(triangles_outside(target.triangles(), patch, p), pairing);
     if (held.empty() || triangles.empty()) continue;
     const std::vector<RigidTransform> stable =
         rigid_motion(part_of_vertices(sequence, others), {.threads = options.threads});

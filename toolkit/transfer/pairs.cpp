@@ -28,13 +28,4 @@ DeformationGradients gradients_between(const Positions& source_rest, const Trian
   return {source_rest, pairing->source_triangles(), pairing->triangles(), std::move(selected)};
 }
 
-std::vector<int> with_partners(std::vector<int> triangles, const Pairing* pairing) {
-  if (!pairing) return triangles;
-  std::erase_if(triangles, [&](int t) {
-    return t >= 0 && t < pairing->triangles().target_triangles() &&
-           !pairing->triangles().has_partner(t);
-  });
-  return triangles;
-}
-
 }  // namespace mimetra

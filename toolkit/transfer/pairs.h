@@ -17,7 +17,4 @@ void check_sizes(const Positions& source_rest, const Positions& target_rest,
 DeformationGradients gradients_between(const Positions& source_rest, const Triangles& triangles,
                                        const Pairing* pairing, std::vector<int> selected);
 
-/// Those of the target's triangles that have a partner.
-std::vector<int> with_partners(std::vector<int> triangles, const Pairing* pairing);
-
 }  // namespace mimetra
