@@ -5,8 +5,10 @@
 #include "fitting/landmark_mapping.h"
 #include "tests/fuzz/fuzz_target.h"
 #include "tests/fuzz/values.h"
+#include "toolkit/io/correspondence_file.h"
 #include "toolkit/io/frame_files.h"
 #include "toolkit/io/json_text.h"
+#include "toolkit/io/marker_file.h"
 #include "toolkit/io/model_file.h"
 #include "toolkit/io/sequence_file.h"
 #include "toolkit/io/whole_file.h"
@@ -79,6 +81,13 @@ void read_times(const fs::path& file) {
   read_sequence(take.string(), {.threads = 1});
 }
 
+/// Each of the grid's triangles is its own partner.
+void write_correspondence(const fs::path& file) {
+  write_bytes(file, correspondence_json(Correspondence::identity(
+                                            static_cast<int>(grid().connectivity.triangles.rows())),
+                                        grid().connectivity, grid().connectivity));
+}
+
 }  // namespace
 
 std::vector<Target> text_targets() {
@@ -106,6 +115,17 @@ std::vector<Target> text_targets() {
            "ibug_to_m.txt",
            [](const fs::path& file) { read_landmark_mapping(file); },
            {text("# iBUG\n[landmark_mappings]\n9 = 33\n31 = 114\n")}},
+          {"markers",
+           "pairs.corr",
+           [](const fs::path& file) { marker_text(read_markers(file, 1)); },
+           {text("# eyes\n1, 2\n3 4\n5:6\n- 7:8\n"), text("2\n1, 2\n3, 4\n"),
+            text("source: [1, 3]\ntarget: [2, 4]\n")}},
+          {"correspondence",
+           "a.correspondence.json",
+           [](const fs::path& file) {
+             read_correspondence(file, grid().connectivity, grid().connectivity);
+           },
+           {write_correspondence}},
           {"model_name",
            "name.txt",
            [](const fs::path& file) { ModelSpec::parse(read_file(file)).name(); },
