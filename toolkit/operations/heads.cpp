@@ -21,8 +21,8 @@ fs::path place_of(const NamedData& value) {
 LandmarkVertices landmarks_beside(const fs::path& place, int vertices, const Log& log) {
   std::vector<fs::path> files = landmark_mappings(place);
   // Of several, that of the 68 counts.
-  std::ranges::stable_partition(
-      files, [](const fs::path& file) { return file.filename() == "landmarks68.txt"; });
+  std::stable_partition(files.begin(), files.end(),
+                        [](const fs::path& file) { return file.filename() == "landmarks68.txt"; });
   if (files.empty()) return {};
   LandmarkVertices landmarks = ibug_landmarks(read_landmark_mapping(files.front()));
   const auto is_beyond = [vertices](const auto& each) { return each.second >= vertices; };
