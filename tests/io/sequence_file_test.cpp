@@ -297,8 +297,9 @@ TEST(WriteSequence, RefusesAnExistingTargetAndAForeignRestPose) {
 
 /// They would have its rest pose and times.
 TEST(WriteSequence, KeepsWhatIsAPartOfAnotherOfItsName) {
-  for (const auto& [first, second] :
+  for (const auto& names :
        {std::pair("s.npy", "s.pc2"), std::pair("s", "s.npy"), std::pair("s.npy", "s")}) {
+    const std::string first = names.first, second = names.second;
     const TemporaryFolder folder;
     const MeshSequence take = octahedra(3, pose(1));
     write_sequence(take, folder / first);
@@ -307,10 +308,10 @@ TEST(WriteSequence, KeepsWhatIsAPartOfAnotherOfItsName) {
     for (const MeshSequence& other : {octahedra(2), octahedra(2, pose(4))}) {
       EXPECT_THAT(message_of<OutputError>(
                       [&] { write_sequence(other, folder / second, {.overwrite = true}); }),
-                  HasSubstr("belongs to '" + std::string(first) + "', which stays"));
+                  HasSubstr("belongs to '" + first + "', which stays"));
     }
     EXPECT_EQ(read_file(folder / "s.rest.ply"), rest);
-    for (const std::string name : {first, second}) {
+    for (const std::string& name : {first, second}) {
       EXPECT_EQ(read_sequence((folder / name).string()).sequence.frames(), 3);
     }
   }

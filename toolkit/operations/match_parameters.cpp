@@ -108,7 +108,8 @@ std::vector<Target> targets_of(const Invocation& invocation) {
   std::vector<Target> targets;
   for (std::size_t t = 0; t < given.size(); ++t) {
     const BlendshapeModel& model = std::get<ModelData>(given[t].data).model.average();
-    Target& target = targets.emplace_back(given[t].name, model);
+    targets.push_back({given[t].name, model});
+    Target& target = targets.back();
     if (!markers.empty()) {
       std::vector<Marker> read = read_markers(markers[t], parameters.integer("index-base"));
       if (same_faces(source.connectivity(), model.connectivity())) {

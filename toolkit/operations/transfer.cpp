@@ -147,7 +147,9 @@ void add_targets(Outcome& outcome, Json& report, const Invocation& invocation,
     const FieldSequence& source = invocation.get<FieldSequence>("source");
     FieldSequence made =
         held_like(source, std::move(solution.sequence), {.threads = invocation.threads});
-    NamedData& out = outcome.outputs["out"].emplace_back(targets[t].name, FieldSequence());
+    std::vector<NamedData>& all = outcome.outputs["out"];
+    all.push_back({targets[t].name, FieldSequence()});
+    NamedData& out = all.back();
     if (transferred.pairing) {
       const Correspondence& pairs = transferred.pairing->triangles();
       // A host that takes values shows them; formats write them where they hold fields.
