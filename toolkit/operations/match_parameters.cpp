@@ -9,9 +9,11 @@
 
 #include "toolkit/io/correspondence_file.h"
 #include "toolkit/io/marker_file.h"
+#include "toolkit/io/rules_file.h"
 #include "toolkit/mesh/text.h"
 #include "toolkit/operations/bound_parameters.h"
 #include "toolkit/operations/heads.h"
+#include "toolkit/operations/pipeline_parameters.h"
 
 namespace mimetra {
 
@@ -25,16 +27,18 @@ struct MatchCall {
       "index_base", &MatchCall::index_base, {.minimum = 0, .maximum = 1}};
 };
 
-/// `word` stands for no file, as a default.
-Parameter several(std::string name, std::string help, const std::string& word = "") {
+/// `words` stand for no file, the first as a default.
+Parameter several(std::string name, std::string help, std::vector<std::string> words = {}) {
   Parameter parameter{std::move(name), ParameterKind::file, {}, std::move(help)};
   parameter.several = true;
-  if (!word.empty()) {
-    parameter.choices = {word};
-    parameter.fallback = word;
-  }
+  if (!words.empty()) parameter.fallback = words.front();
+  parameter.choices = std::move(words);
   return parameter;
 }
+
+/// What stands for files of --markers and --rules.
+constexpr std::string_view kAuto = "auto";
+constexpr std::string_view kNone = "none";
 
 /// The file of each target; none where none is named.
 std::vector<std::string> file_of_each(const Parameters& parameters, const std::string& name,
@@ -70,6 +74,63 @@ class MarkersTo {
       std::make_shared<std::optional<MarkerSearch>>();
 };
 
+/// "12 expressions, 3 groups that exclude each other and 1 pair".
+std::string summary_of(const WeightRules& rules) {
+  const auto counted = [](std::size_t count, const std::string& one, const std::string& more) {
+    return std::to_string(count) + " " + (count == 1 ? one : more);
+  };
+  return counted(rules.expressions.size(), "expression", "expressions") + ", " +
+         counted(rules.exclusive.size(), "group that exclude each other",
+                 "groups that exclude each other") +
+         " and " + counted(rules.pairs.size(), "pair", "pairs");
+}
+
+/// The rules of each target, read even where they do not act.
+std::vector<WeightRules> rules_of(const Invocation& invocation) {
+  const Parameters& parameters = invocation.parameters;
+  const std::vector<NamedData>& targets = invocation.inputs.at("target");
+  const auto files = file_of_each(parameters, "rules", targets.size());
+  std::vector<WeightRules> rules(targets.size());
+  for (std::size_t t = 0; t < targets.size(); ++t) {
+    if (!files.empty()) {
+      rules[t] = read_rules(files[t]);
+      continue;
+    }
+    const BlendshapeModel& model = std::get<ModelData>(targets[t].data).model.average();
+    if (parameters.text("rules") == kNone || solves_for_vertices(parameters, model)) continue;
+    const auto found = rules_beside(targets[t].origin.path);
+    if (!found) continue;
+    rules[t] = read_rules(*found);
+    invocation.warn(targets[t].name + ": takes the rules in its folder (" + summary_of(rules[t]) +
+                    "); --rules none leaves them out");
+  }
+  return rules;
+}
+
+/// Options of weights are refused where no target has any, and said to leave out those that have
+/// none.
+void check_weight_options(const Invocation& invocation) {
+  const Parameters& parameters = invocation.parameters;
+  const std::vector<NamedData>& targets = invocation.inputs.at("target");
+  std::vector<std::string> without;
+  for (const NamedData& target : targets) {
+    const BlendshapeModel& model = std::get<ModelData>(target.data).model.average();
+    if (solves_for_vertices(parameters, model)) without.push_back(target.name);
+  }
+  if (without.empty()) return;
+  for (const std::string name : {"ridge", "l1", "symmetry", "exclusive", "rules"}) {
+    const ParameterValue& value = parameters.value(name);
+    const bool is_asked_for = value != parameters.find(name)->fallback &&
+                              (name != "rules" || parameters.text(name) != kNone);
+    if (!is_asked_for) continue;
+    const std::string verb = without.size() == 1 ? " is" : " are";
+    const std::string message = "--" + name + ": " + joined(without, ", ", " and ") + verb +
+                                " solved for vertices, not weights";
+    if (without.size() == targets.size()) throw UsageError(message);
+    invocation.warn(message + "; it does not act there");
+  }
+}
+
 }  // namespace
 
 std::vector<Parameter> match_parameters() {
@@ -82,10 +143,15 @@ std::vector<Parameter> match_parameters() {
           "point of a face; one file for all targets, or one for each between commas; auto: "
           "landmarks that are found in drawings of both, or that a landmarks68.txt beside both "
           "names",
-          "auto"),
+          {std::string(kAuto)}),
       several(
           "correspondence",
-          "the same by pairs of triangles that an earlier run found and wrote beside its output")};
+          "the same by pairs of triangles that an earlier run found and wrote beside its output"),
+      several("rules",
+              "what is known of the target's expressions, as JSON: pairs, groups that exclude each "
+              "other, limits, gains and offsets; one file for all targets, or one for each between "
+              "commas; auto: rules.json in a model's folder",
+              {std::string(kAuto), std::string(kNone)})};
   const std::vector<Parameter> more = list.declared();
   parameters.insert(parameters.begin() + 1, more.begin(), more.end());
   return parameters;
@@ -103,12 +169,16 @@ std::vector<Target> targets_of(const Invocation& invocation) {
   if (markers.empty() && parameters.is_set("index-base")) {
     throw UsageError("--index-base: there are no vertices to count without --markers");
   }
+  std::vector<WeightRules> rules = rules_of(invocation);
+  check_weight_options(invocation);
   const FrameSource& source = *invocation.get<FieldSequence>("source").frames;
   const MarkersTo markers_to(invocation);
   std::vector<Target> targets;
   for (std::size_t t = 0; t < given.size(); ++t) {
     const BlendshapeModel& model = std::get<ModelData>(given[t].data).model.average();
-    Target& target = targets.emplace_back(given[t].name, model);
+    targets.push_back({given[t].name, model});
+    Target& target = targets.back();
+    target.rules = std::move(rules[t]);
     if (!markers.empty()) {
       std::vector<Marker> read = read_markers(markers[t], parameters.integer("index-base"));
       if (same_faces(source.connectivity(), model.connectivity())) {

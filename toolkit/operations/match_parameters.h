@@ -9,13 +9,14 @@
 
 namespace mimetra {
 
-/// --markers, --index-base and --correspondence, of operations with a target.
+/// --markers, --index-base, --correspondence and --rules, of operations with a target.
 std::vector<Parameter> match_parameters();
 
 /// The call's targets and how they are paired with its source: where nothing is named, by markers
-/// that are looked for if faces differ. Throws UsageError where options
-/// exclude each other or name another number of files than one or one for each target; what
-/// read_markers() and read_correspondence() throw.
+/// that are looked for if faces differ. Rules of expressions are those named, or in a model's
+/// folder, which is said. Throws UsageError where options exclude each other or name another number
+/// of files than one or one for each target, and where no target is solved for the weights that one
+/// is about; what read_markers(), read_correspondence() and read_rules() throw.
 std::vector<Target> targets_of(const Invocation& invocation);
 
 /// What a correspondence is worth, for reports and for people.

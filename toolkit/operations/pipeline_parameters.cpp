@@ -111,7 +111,12 @@ BoundParameters<BlendshapeTransferOptions> blendshape_parameters() {
   BoundParameters<Options> list;
   list.add("ridge", Options::kRidge, "pull of the weights towards 0")
       .add("l1", Options::kSparsity, "sparsity of the weights")
-      .add("smoothness", Options::kSmoothness, "time constant of smooth weights");
+      .add("symmetry", Options::kSymmetry,
+           "how much the weights of the left and the right half of an expression are drawn "
+           "together; pairs are known by their names, or by --rules")
+      .add("exclusive", Options::kExclusive,
+           "expressions of which at most one is there in a frame, by ARKit's names; eyes: looking "
+           "up or down, and in or out; all: jawOpen or mouthClose, too");
   return list;
 }
 
@@ -170,6 +175,10 @@ std::string in_command_terms(Topic topic, const std::string& text, const Paramet
              "; --only component:0 keeps to the largest, --without component:N leaves some out";
     case Topic::no_expressions:
       return text + "; use --space vertex";
+    case Topic::no_pairs:
+      return "--symmetry: " + text + "; name pairs in a file of --rules";
+    case Topic::no_exclusives:
+      return "--exclusive: " + text + "; name groups in a file of --rules";
     case Topic::anchor_vertex:
       return "--anchor: " + text;
     case Topic::held_anchor:
@@ -282,6 +291,9 @@ BoundParameters<SolveOptions> solving_parameters() {
            "expressions")
       .add("axes", SolveOptions::kAxes,
            "fit: the source is turned as its rest pose is to the target's; none: it is not")
+      .add("smoothness", SolveOptions::kSmoothness,
+           "time constant of smooth weights, or in vertex space of smooth motion; 0 smooths "
+           "nothing")
       .add(&SolveOptions::blendshape, blendshape_parameters())
       .add(&SolveOptions::vertex, vertex_parameters());
   return list;

@@ -100,6 +100,7 @@ std::vector<EvaluationRow> evaluate(const MeshSequence& sequence, const Target& 
                                .threads = options.threads,
                                .notes = options.notes});
   const Target& target = *matched;
+  check_rules(target, of_solving);
   of_source.joint = joint_search({target}, of_solving);
   const Source source = prepare_source(sequence, of_source);
   const double steps = static_cast<double>(options.counts.size()) + 1;

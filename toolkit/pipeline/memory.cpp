@@ -56,9 +56,14 @@ double solution_bytes(const FrameSource& sequence, const BlendshapeModel& target
                triangles = static_cast<double>(target.triangles().rows());
   // The displacement fields at the vertices that are looked at, those of the result, and its
   // weights; or factors, and the poses of a short result.
-  const double space = solves_for_vertices(target, options.space)
-                           ? kFactorsPerVertex * vertices + kept_bytes(frame_bytes(sequence))
-                           : kNumber * expressions * (6 * vertices + 2 * sequence.frames());
+  const double poses = kNumber * 3 * vertices * sequence.frames();
+  const bool has_vertices = solves_for_vertices(target, options.space);
+  double space = has_vertices ? kFactorsPerVertex * vertices + kept_bytes(poses)
+                              : kNumber * expressions * (6 * vertices + 2 * sequence.frames());
+  // What is smoothed over time is there as a whole: poses, or a banded system of all weights.
+  if (options.smoothness > 0) {
+    space += has_vertices ? poses : kNumber * 4 * sequence.frames() * expressions * expressions;
+  }
   const double threads =
       options.threads > 0 ? options.threads : std::thread::hardware_concurrency();
   return space + kPullPerTriangle * triangles + threads * kLanesPerVertex * vertices;

@@ -27,6 +27,8 @@ enum class Topic {
   small_parts,        ///< regions lie on small connected parts of the surface
   support_range,      ///< d_min is not below d_max
   no_expressions,     ///< of the target, where weights are asked for
+  no_pairs,           ///< of left and right among the target's expressions
+  no_exclusives,      ///< among the target's expressions, of those that names tell
   anchor_vertex,      ///< one that the mesh does not have
   held_anchor,        ///< an anchor where fixed vertices hold the mesh
   other_faces,        ///< a target has not the source's faces, and nothing pairs them

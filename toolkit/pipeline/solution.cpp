@@ -6,6 +6,7 @@
 #include "toolkit/mesh/stopwatch.h"
 #include "toolkit/mesh/text.h"
 #include "toolkit/model/animation.h"
+#include "toolkit/model/motion_filter.h"
 #include "toolkit/transfer/following_parts.h"
 #include "toolkit/transfer/seams.h"
 
@@ -13,8 +14,10 @@ namespace mimetra {
 
 namespace {
 
-/// Looking for seams, which reads every frame, as a part of a solve's progress.
+/// Looking for seams, which reads every frame, as a part of a solve's progress; and until poses are
+/// solved for that are smoothed afterwards.
 constexpr double kSeamShare = 0.2;
+constexpr double kUnsmoothedShare = 0.9;
 
 /// Notes of a target.
 class TargetNotes {
@@ -72,6 +75,8 @@ Solution solve_blendshapes(const Source& source, const Target& target, const Sel
   of_space.progress = options.progress;
   of_space.edges = options.edges;
   of_space.pairing = target.pairing;
+  of_space.smoothness = options.smoothness;
+  of_space.rules = target.rules;
   const FrameSource& performance = *source.sequence;
   const BlendshapeTransfer transfer(performance.rest(), model, selection.triangles, of_space);
   Solution solution;
@@ -138,13 +143,21 @@ Solution solve_vertices(const Source& source, const Target& target, const Select
   of_space.weld = target.pairing ? closed_seams(performance, model.neutral(), model.triangles(),
                                                 *target.pairing, of_seams)
                                  : closed_seams(performance, model.neutral(), of_seams);
-  of_space.progress = part_of(options.progress, kSeamShare, 1);
+  const bool smooths = options.smoothness > 0;
+  const double solved = smooths ? kUnsmoothedShare : 1;
+  of_space.progress = part_of(options.progress, kSeamShare, solved);
   const VertexTransfer transfer(performance.rest(), model.neutral(), model.triangles(),
                                 selection.triangles, of_space);
   const auto store = std::make_shared<FrameStore>(
       SequenceHeader{model.shared_connectivity(), performance.times(), model.neutral(), true,
                      performance.times_are_known()});
-  transfer.write_frames(performance, *store);
+  if (smooths) {
+    const MotionFilter filter(performance.times(), options.smoothness);
+    store->write(0, filter(transfer.frames(performance),
+                           {options.threads, part_of(options.progress, solved, 1)}));
+  } else {
+    transfer.write_frames(performance, *store);
+  }
   store->commit();
   Solution solution;
   solution.sequence = store;
@@ -275,6 +288,25 @@ bool solves_for_vertices(const BlendshapeModel& target, Space space) {
   return space == Space::vertex || target.expressions().size() == 0;
 }
 
+void check_rules(const Target& target, const SolveOptions& options) {
+  const BlendshapeModel& model = target.model;
+  if (solves_for_vertices(model, options.space)) return;
+  const auto& names = model.expressions().names;
+  const BlendshapeTransferOptions& of_space = options.blendshape;
+  const ExpressionRules rules(names, target.rules, of_space.exclusive);
+  if (of_space.symmetry > 0 && rules.unknowns().pairs.empty()) {
+    throw OptionError(Topic::no_pairs,
+                      target.name + ": no two of its expressions are named as left and right");
+  }
+  if (known_exclusives(names, of_space.exclusive).empty() &&
+      of_space.exclusive != Exclusive::none) {
+    throw OptionError(Topic::no_exclusives,
+                      target.name +
+                          ": none of its expressions are named as those of ARKit that exclude "
+                          "each other");
+  }
+}
+
 bool is_to_be_paired(const FrameSource& source, const Target& target) {
   if (std::holds_alternative<std::monostate>(target.match)) return false;
   return !std::holds_alternative<MarkersBetween>(target.match) ||
@@ -385,6 +417,7 @@ Solution solve(const Source& source, const Target& target, const Selection& sele
   if (options.space == Space::blendshape && model.expressions().size() == 0) {
     throw OptionError(Topic::no_expressions, target.name + ": has no expressions");
   }
+  check_rules(target, options);
   return solves_for_vertices(model, options.space)
              ? solve_vertices(source, target, selection, options)
              : solve_blendshapes(source, target, selection, options);

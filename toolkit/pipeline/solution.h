@@ -11,6 +11,7 @@
 #include "toolkit/correspondence/pairing.h"
 #include "toolkit/mesh/similarity.h"
 #include "toolkit/model/animation.h"
+#include "toolkit/model/weight_rules.h"
 #include "toolkit/pipeline/region_choice.h"
 #include "toolkit/transfer/blendshape_transfer.h"
 #include "toolkit/transfer/vertex_transfer.h"
@@ -70,6 +71,8 @@ struct Target {
   std::string name;
   std::reference_wrapper<const BlendshapeModel> model;
   GivenMatch match = {};
+  /// Of the model's expressions, where they are solved for.
+  WeightRules rules = {};
   /// With the source; null where both have the same faces. A MatchedTarget has it of `match`.
   std::shared_ptr<const Pairing> pairing = {};
 };
@@ -79,8 +82,11 @@ struct SolveOptions {
   Axes axes = Axes::fit;
   /// Of eq. 10 and 12.
   EdgeSum edges = EdgeSum::all;
-  /// Of each space; their threads and progress, edges, the vertices inside and those that are one
-  /// are those of the solve.
+  /// Time constant in seconds: weights, or in vertex space positions, are drawn to a small second
+  /// derivative (smooth_weights(), MotionFilter).
+  double smoothness = 0;
+  /// Of each space; their threads and progress, edges, smoothness, the vertices inside, those that
+  /// are one and the rules of expressions are those of the solve and the target.
   BlendshapeTransferOptions blendshape = {};
   VertexTransferOptions vertex = {};
   /// 0 for all there are; the result does not depend on it.
@@ -90,7 +96,8 @@ struct SolveOptions {
 
   static constexpr Option kSpace{"space", &SolveOptions::space};
   static constexpr Option kAxes{"axes", &SolveOptions::axes};
-  static constexpr auto declared() { return std::tuple(kSpace, kAxes); }
+  static constexpr Option kSmoothness{"smoothness", &SolveOptions::smoothness, {.minimum = 0}, "s"};
+  static constexpr auto declared() { return std::tuple(kSpace, kAxes, kSmoothness); }
 };
 
 /// What eq. 10 and 12 sum over.
@@ -137,6 +144,11 @@ bool solves_for_vertices(const BlendshapeModel& target, Space space);
 /// Whether a MatchedTarget is paired: markers or pairs are given, or markers are looked for and the
 /// faces differ.
 bool is_to_be_paired(const FrameSource& source, const Target& target);
+
+/// Throws OptionError where the target has no pair for a symmetry (Topic::no_pairs), or none of the
+/// groups that are to exclude each other (Topic::no_exclusives), and what ExpressionRules() throws;
+/// nothing where it is solved for vertices.
+void check_rules(const Target& target, const SolveOptions& options);
 
 struct MatchOptions {
   /// The source's undeformed shape (N x 3); by default its rest pose.
@@ -194,7 +206,8 @@ Selection whole(const Target& target);
 /// it (Topic::unneutral_rest). \pre the target is a MatchedTarget, the source is placed_at() it
 ///
 /// Throws OptionError (Topic::no_expressions, Topic::anchor_vertex, Topic::held_anchor) and what
-/// BlendshapeTransfer, closed_seams(), VertexTransfer, reading the source and FrameStore throw.
+/// check_rules(), BlendshapeTransfer, closed_seams(), VertexTransfer, reading the source and
+/// FrameStore throw.
 Solution solve(const Source& source, const Target& target, const Selection& selection,
                const SolveOptions& options = {});
 

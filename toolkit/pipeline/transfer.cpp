@@ -161,6 +161,7 @@ TransferResult transfer(const FrameSource& sequence, const std::vector<Target>& 
   of_solving.threads = options.threads;
   of_solving.notes = options.notes;
   of_solving.edges = edge_sum(options.analysis.compatibility);
+  for (const Target& target : targets) check_rules(target, of_solving);
   const Source source = source_of(sequence, targets, options, of_solving);
   Choice choice = choose(source, options);
   const bool give_back = !source.motion.empty() && options.head_motion == RemovedMotion::keep;
