@@ -75,13 +75,14 @@ Eigen::MatrixXd resampled(const Eigen::MatrixXd& rows, int count) {
 
 std::optional<Subject> captured(const std::string& name, const std::string& model,
                                 const std::string& source, const std::string& target,
-                                const std::string& track, int frames) {
+                                const std::string& capture, int frames) {
   const auto folder = test::shared_path("data") / model;
-  const auto weights = test::shared_path("data/captures") / track;
+  const auto weights = test::shared_path("data/captures") / capture;
   if (!std::filesystem::exists(folder) || !std::filesystem::exists(weights)) return {};
   const BlendshapeModel actor = read_blendshapes(folder.string() + source);
-  const Eigen::MatrixXd beta = weights_for(read_weights(weights), actor.expressions().names);
-  return Subject{name, actor.animate(beta.topRows(frames)),
+  const WeightTrack track = read_weights(weights);
+  const Eigen::MatrixXd beta = weights_for(track, actor.expressions().names);
+  return Subject{name, actor.animate(beta.topRows(frames), track.times.head(frames)),
                  read_blendshapes(folder.string() + target), folder.string() + target};
 }
 
