@@ -107,7 +107,7 @@ TEST_F(RulesTest, SayWhichTargetsAnOptionOfWeightsLeavesOut) {
   const auto result =
       run("transfer head --weights take.csv head@wide=1 head/neutral.ply --full --ridge 0.1 -o o/");
   EXPECT_EQ(result.code, 0) << result.err;
-  EXPECT_THAT(result.err, HasSubstr("--ridge: head/neutral.ply is solved for vertices"));
+  EXPECT_THAT(result.err, HasSubstr("--ridge: neutral is solved for vertices"));
 }
 
 TEST_F(RulesTest, DrawPairsTogether) {
