@@ -22,7 +22,8 @@ class Pairing {
   };
 
   /// The carriers of a target vertex are the corners of its triangles' partners that lie as it does
-  /// in its triangles, as the rest poses show them after the similarity of the paired triangles; it
+  /// in its triangles, as the rest poses show them after the similarity of the paired triangles (in
+  /// the other direction around where the target is inside out); it
   /// has none where no triangle around it has a partner. Throws MismatchError where the
   /// correspondence is of other numbers of triangles.
   Pairing(const TriMesh& source, const TriMesh& target, Correspondence pairs);

@@ -1,11 +1,16 @@
 #include "toolkit/pipeline/solution.h"
 
+#include <set>
+
 #include "toolkit/correspondence/renumbering.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/frame_store.h"
 #include "toolkit/mesh/stopwatch.h"
+#include "toolkit/mesh/surface_parts.h"
 #include "toolkit/mesh/text.h"
 #include "toolkit/model/animation.h"
+#include "toolkit/pipeline/given_markers.h"
+#include "toolkit/pipeline/opening_comparison.h"
 #include "toolkit/transfer/following_parts.h"
 #include "toolkit/transfer/seams.h"
 
@@ -40,6 +45,15 @@ class TargetNotes {
               readable(conditions.condition, 2) + ")",
           Topic::poor_condition);
     }
+  }
+
+  void add_following(const std::vector<int>& parts, std::size_t vertices) const {
+    if (parts.empty()) return;
+    std::vector<std::string> names;
+    for (const int part : parts) names.push_back("component:" + std::to_string(part));
+    add(std::to_string(parts.size()) + " connected parts without partner in the source (" +
+        std::to_string(vertices) +
+        " vertices) move rigidly with the surface around them: " + listed(names));
   }
 
   void add_degenerate(const Solution& solution) const {
@@ -124,6 +138,15 @@ void check_anchor(const VertexTransferOptions& options, const Target& target,
   }
 }
 
+/// The connected parts that some vertices are, ascending.
+std::vector<int> parts_of(const std::vector<VertexIndex>& vertices, const BlendshapeModel& model) {
+  if (vertices.empty()) return {};
+  const SurfaceParts parts = surface_parts(model.neutral(), model.triangles());
+  std::set<int> found;
+  for (const VertexIndex v : vertices) found.insert(parts.of_vertex[v]);
+  return {found.begin(), found.end()};
+}
+
 Solution solve_vertices(const Source& source, const Target& target, const Selection& selection,
                         const SolveOptions& options) {
   const Stopwatch stopwatch;
@@ -152,7 +175,11 @@ Solution solve_vertices(const Source& source, const Target& target, const Select
   solution.collapsed_triangles = transfer.collapsed_triangles();
   solution.degenerate_source_triangles = transfer.degenerate_source_triangles();
   solution.degenerate_target_triangles = transfer.degenerate_target_triangles();
-  TargetNotes(target, options).add_degenerate(solution);
+  const std::vector<VertexIndex> following = transfer.following_vertices();
+  solution.following_parts = parts_of(following, model);
+  const TargetNotes notes(target, options);
+  notes.add_following(solution.following_parts, following.size());
+  notes.add_degenerate(solution);
   return solution;
 }
 
@@ -210,35 +237,21 @@ std::string described_faces(const Connectivity& source, const BlendshapeModel& m
          " is not the source's";
 }
 
-/// By how much lower or higher vertices the markers would fit much better; 0 where they are right.
-int better_shift(const std::vector<Marker>& markers, const TriMesh& source, const TriMesh& target) {
-  for (const int shift : {1, -1}) {
-    if (fit_better_shifted(markers, shift, source.positions, target.positions)) return shift;
-  }
-  return 0;
-}
-
-std::string described_shift(int shift) {
-  return std::string("the markers fit much better as vertices one ") +
-         (shift > 0 ? "lower: they are counted from 1" : "higher: they are counted from 0");
-}
-
 /// Finds what markers tell. Errors are the target's.
 FoundCorrespondence found_by(const std::vector<Marker>& markers, const TriMesh& source,
                              const TriMesh& target, const std::string& name,
                              const MatchOptions& options) {
-  const int shift = better_shift(markers, source, target);
   try {
     FoundCorrespondence found = find_correspondence(
         source, target, markers, {.threads = options.threads, .progress = options.progress});
-    if (shift != 0) {
-      note(options.notes, name + ": " + described_shift(shift), Topic::shifted_markers);
+    if (found.inside_out) {
+      note(options.notes, name +
+                              ": its faces lead the other way round than the source's (one of them "
+                              "is inside out); they are paired as if turned");
     }
     return found;
   } catch (const MismatchError& error) {
-    const std::string text = name + ": " + error.what();
-    if (shift == 0) throw MismatchError(text);
-    throw OptionError(Topic::shifted_markers, text + "; " + described_shift(shift));
+    throw MismatchError(name + ": " + error.what());
   }
 }
 
@@ -257,6 +270,21 @@ AutomaticMarkers found_between(const MarkersBetween& search, const TriMesh& sour
     return found;
   } catch (const MismatchError& error) {
     throw OptionError(Topic::other_faces, differs + "; " + error.what());
+  }
+}
+
+/// Says where a face is open at rest as the other one is not.
+void note_openings(const TriMesh& source, const TriMesh& target, const AutomaticMarkers& markers,
+                   const std::string& name, const Notes& notes) {
+  for (const OpeningAtRest& opening : openings_at_rest(source, target, markers)) {
+    if (!opening.differs()) continue;
+    const bool is_sources = opening.source > opening.target;
+    note(notes,
+         name + ": at rest the " + std::string(opening.name) + " is open by " +
+             percent(opening.target) + " of its width, on the source by " +
+             percent(opening.source) + ": " + (is_sources ? "the source's" : "its") +
+             " rest pose is likely not neutral",
+         is_sources ? Topic::unneutral_rest : Topic::other);
   }
 }
 
@@ -316,7 +344,10 @@ void MatchedTarget::pair(const TriMesh& source, const MatchOptions& options) {
   Correspondence pairs;
   if (const auto* search = std::get_if<MarkersBetween>(&target_.match)) {
     report.found = found_between(*search, source, target_, options);
+    note_openings(source, target, *report.found, target_.name, options.notes);
     target_.match = report.found->markers;
+  } else if (const auto* given = std::get_if<std::vector<Marker>>(&target_.match)) {
+    check_given_markers(*given, target_.marker_places, source, target, target_.name, options.notes);
   }
   if (const auto* markers = std::get_if<std::vector<Marker>>(&target_.match)) {
     FoundCorrespondence found = found_by(*markers, source, target, target_.name, options);

@@ -70,6 +70,8 @@ struct Target {
   std::string name;
   std::reference_wrapper<const BlendshapeModel> model;
   GivenMatch match = {};
+  /// Where each of the markers was written, for notes: "m.txt, line 3". None for their numbers.
+  std::vector<std::string> marker_places = {};
   /// With the source; null where both have the same faces. A MatchedTarget has it of `match`.
   std::shared_ptr<const Pairing> pairing = {};
 };
@@ -123,6 +125,9 @@ struct Solution {
   /// Between vertices that are one, in vertex space: they take no part, and are none of the
   /// degenerate ones.
   int collapsed_triangles = 0;
+  /// Connected parts without partner, by their rank among surface_parts(), that moved rigidly with
+  /// the surface around them.
+  std::vector<int> following_parts = {};
   int degenerate_source_triangles = 0;
   int degenerate_target_triangles = 0;
   double seconds = 0;  ///< set-up and the solve of all frames
@@ -161,12 +166,13 @@ struct MatchReport {
 /// another corner are cut along the source's diagonals, or paired.
 class MatchedTarget {
  public:
-  /// Notes, under the target's name, markers that fit better as other vertices
-  /// (Topic::shifted_markers), and found markers that are doubtful and a match whose verdict is
-  /// poor (Topic::poor_match). Throws OptionError (Topic::other_faces) unless the target has the
-  /// source's vertices and faces or a match is given, and (Topic::shifted_markers) for markers that
-  /// would fit as other vertices; MismatchError for other wrong markers, a correspondence of other
-  /// numbers of triangles, and one without any pair; Cancelled; what the search for markers throws.
+  /// Notes, under the target's name, markers that are doubtful and a match whose verdict is
+  /// poor (Topic::poor_match), and a target that is inside out. Throws OptionError
+  /// (Topic::other_faces) unless the target has the source's vertices and faces or a match is
+  /// given, and (Topic::shifted_markers) for markers that fit much better as other vertices;
+  /// MismatchError for other wrong markers and those that fit a mirror image, a correspondence of
+  /// other numbers of triangles, and one without any pair; Cancelled; what the search for markers
+  /// throws.
   MatchedTarget(const FrameSource& source, Target target, const MatchOptions& options = {});
 
   const Target& operator*() const { return target_; }
@@ -190,8 +196,9 @@ Selection whole(const Target& target);
 /// Solves on the selected triangles in blendshape or vertex space; in vertex space closed_seams()
 /// stay closed. Notes, under the target's name, expressions that the triangles do not or hardly
 /// show (Topic::poor_condition where they do not tell them apart), triangles without area or that a
-/// seam collapses, and a source whose neutral is not known and whose rest pose does not look like
-/// it (Topic::unneutral_rest). \pre the target is a MatchedTarget, the source is placed_at() it
+/// seam collapses, parts that follow the surface around them, and a source whose neutral is not
+/// known and whose rest pose does not look like it (Topic::unneutral_rest). \pre the target is a
+/// MatchedTarget, the source is placed_at() it
 ///
 /// Throws OptionError (Topic::no_expressions, Topic::anchor_vertex, Topic::held_anchor) and what
 /// BlendshapeTransfer, closed_seams(), VertexTransfer, reading the source and FrameStore throw.

@@ -459,6 +459,16 @@ void VertexTransfer::write_frames(const FrameSource& performance, FrameSink& sin
                     [&sink](int first, const Frames& poses) { sink.write(first, poses); });
 }
 
+std::vector<VertexIndex> VertexTransfer::following_vertices() const {
+  std::vector<VertexIndex> vertices;
+  if (!state_->following) return vertices;
+  const std::vector<bool>& follows = state_->following->vertices();
+  for (std::size_t v = 0; v < follows.size(); ++v) {
+    if (follows[v]) vertices.push_back(static_cast<VertexIndex>(v));
+  }
+  return vertices;
+}
+
 int VertexTransfer::collapsed_triangles() const {
   return state_->collapsed;
 }
