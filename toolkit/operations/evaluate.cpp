@@ -102,6 +102,7 @@ Operation evaluate_operation() {
                         "evaluate takes/ actor@identity007=2 -k 10,20,30,40,50 -o table.csv"};
   operation.run = run_evaluate;
   operation.memory = memory_of_evaluate;
+  operation.foresee = check_targets;
   return operation;
 }
 

@@ -12,6 +12,8 @@
 #include "toolkit/mesh/text.h"
 #include "toolkit/operations/bound_parameters.h"
 #include "toolkit/operations/heads.h"
+#include "toolkit/operations/pipeline_parameters.h"
+#include "toolkit/pipeline/given_markers.h"
 
 namespace mimetra {
 
@@ -20,9 +22,12 @@ namespace {
 struct MatchCall {
   /// Of the vertices in marker files.
   int index_base = 0;
+  /// Landmarks are looked for although files beside both meshes name their vertices.
+  bool ignore_files = false;
 
   static constexpr Option kIndexBase{
       "index_base", &MatchCall::index_base, {.minimum = 0, .maximum = 1}};
+  static constexpr Option kIgnoreFiles{"ignore_files", &MatchCall::ignore_files};
 };
 
 /// `word` stands for no file, as a default.
@@ -53,19 +58,21 @@ class MarkersTo {
   explicit MarkersTo(const Invocation& invocation) : invocation_(invocation) {}
 
   MarkersBetween operator()(const NamedData& target) const {
-    return [search = search_, &target, &invocation = invocation_](const TriMesh& source) {
+    return [search = search_, &target, &invocation = invocation_,
+            ignore_files = ignore_files_](const TriMesh& source) {
       if (!*search) {
-        Head head = head_of(invocation.input("source"), invocation.log);
+        Head head = head_of(invocation.input("source"), invocation.log, ignore_files);
         head.mesh = source;
         search->emplace(std::move(head), invocation.landmark_finder,
                         FaceSearchOptions{.threads = invocation.threads});
       }
-      return (**search)(head_of(target, invocation.log));
+      return (**search)(head_of(target, invocation.log, ignore_files));
     };
   }
 
  private:
   const Invocation& invocation_;
+  bool ignore_files_ = invocation_.parameters.flag("ignore-files");
   std::shared_ptr<std::optional<MarkerSearch>> search_ =
       std::make_shared<std::optional<MarkerSearch>>();
 };
@@ -74,7 +81,10 @@ class MarkersTo {
 
 std::vector<Parameter> match_parameters() {
   BoundParameters<MatchCall> list;
-  list.add("index-base", MatchCall::kIndexBase, "the first vertex in --markers is called 0 or 1");
+  list.add("index-base", MatchCall::kIndexBase, "the first vertex in --markers is called 0 or 1")
+      .add("ignore-files", MatchCall::kIgnoreFiles,
+           "--markers auto: look for landmarks also where files landmarks68.txt beside both meshes "
+           "name them");
   std::vector<Parameter> parameters = {
       several(
           "markers",
@@ -103,6 +113,9 @@ std::vector<Target> targets_of(const Invocation& invocation) {
   if (markers.empty() && parameters.is_set("index-base")) {
     throw UsageError("--index-base: there are no vertices to count without --markers");
   }
+  if (parameters.flag("ignore-files") && (!markers.empty() || !pairs.empty())) {
+    throw UsageError("--ignore-files: nothing is looked for with --markers or --correspondence");
+  }
   const FrameSource& source = *invocation.get<FieldSequence>("source").frames;
   const MarkersTo markers_to(invocation);
   std::vector<Target> targets;
@@ -110,11 +123,14 @@ std::vector<Target> targets_of(const Invocation& invocation) {
     const BlendshapeModel& model = std::get<ModelData>(given[t].data).model.average();
     Target& target = targets.emplace_back(given[t].name, model);
     if (!markers.empty()) {
-      std::vector<Marker> read = read_markers(markers[t], parameters.integer("index-base"));
+      MarkerFile read = read_marker_file(markers[t], parameters.integer("index-base"));
       if (same_faces(source.connectivity(), model.connectivity())) {
         invocation.warn(given[t].name + ": has the source's faces; markers are left out");
       } else {
-        target.match = std::move(read);
+        for (const int line : read.lines) {
+          target.marker_places.push_back(markers[t] + ", line " + std::to_string(line));
+        }
+        target.match = std::move(read.markers);
       }
     }
     if (markers.empty() && pairs.empty()) target.match = markers_to(given[t]);
@@ -123,6 +139,29 @@ std::vector<Target> targets_of(const Invocation& invocation) {
     }
   }
   return targets;
+}
+
+void check_targets(const Invocation& invocation) {
+  const FrameSource& source = *invocation.get<FieldSequence>("source").frames;
+  const TriMesh from{source.rest(), source.connectivity()};
+  const MatchOptions options{.threads = invocation.threads, .notes = warnings_of(invocation)};
+  in_command_terms(invocation.parameters, [&] {
+    for (const Target& target : targets_of(invocation)) {
+      const BlendshapeModel& model = target.model;
+      const TriMesh to{model.neutral(), model.connectivity()};
+      if (const auto* markers = std::get_if<std::vector<Marker>>(&target.match)) {
+        check_given_markers(*markers, target.marker_places, from, to, target.name, options.notes);
+        continue;
+      }
+      const bool is_drawn = std::holds_alternative<MarkersBetween>(target.match) &&
+                            invocation.landmark_finder && is_to_be_paired(source, target);
+      if (!is_drawn) {
+        MatchedTarget(source, target, options);
+      } else {
+        invocation.info(target.name + ": has other faces; markers will be looked for");
+      }
+    }
+  });
 }
 
 Json json_of(const MatchReport& match) {

@@ -18,6 +18,10 @@ std::vector<Parameter> match_parameters();
 /// read_markers() and read_correspondence() throw.
 std::vector<Target> targets_of(const Invocation& invocation);
 
+/// Throws and warns as a run does of the call's targets before anything is fitted to them: faces,
+/// given markers and correspondences. Markers that would be looked for in drawings are not.
+void check_targets(const Invocation& invocation);
+
 /// What a correspondence is worth, for reports and for people.
 Json json_of(const MatchReport& match);
 std::string summary_of(const MatchReport& match);

@@ -119,6 +119,9 @@ struct Operation {
   std::function<double(const Invocation&)> memory = {};
   /// The step that has all frames of streamed inputs in memory, "the decomposition"; "" for none.
   std::function<std::string(const Invocation&)> all_frames_for = {};
+  /// For who asks what a run would do: throws and warns as it would of its inputs, without
+  /// computing.
+  std::function<void(const Invocation&)> foresee = {};
 };
 
 /// All operations and formats of a program; built by its main function and passed down.

@@ -82,6 +82,7 @@ Json report_of(const NamedData& target, const TransferredTarget& transferred) {
                   {"scale", similarity.scale},
                   {"mirrored", similarity.mirrors()}};
   json["collapsed_triangles"] = solution.collapsed_triangles;
+  json["following_parts"] = solution.following_parts;
   json["degenerate_source_triangles"] = solution.degenerate_source_triangles;
   json["degenerate_target_triangles"] = solution.degenerate_target_triangles;
   if (regions) {
@@ -250,6 +251,10 @@ Operation transfer_operation() {
   operation.memory = memory_of_transfer;
   operation.all_frames_for = [](const Invocation& invocation) {
     return looks_for_regions(invocation) ? "the decomposition" : "";
+  };
+  operation.foresee = [](const Invocation& invocation) {
+    check_outputs(invocation);
+    check_targets(invocation);
   };
   return operation;
 }
