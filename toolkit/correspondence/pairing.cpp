@@ -75,16 +75,21 @@ int turn_of(const Eigen::Matrix3d& source, const Eigen::Matrix3d& target) {
 
 }  // namespace
 
+bool is_over(const Correspondence& pairs, int target_triangle,
+             const std::function<bool(int)>& is_selected) {
+  double weight = 0;
+  for (int p = pairs.offsets[target_triangle]; p < pairs.offsets[target_triangle + 1]; ++p) {
+    if (is_selected(pairs.parts[p].triangle)) weight += pairs.parts[p].weight;
+  }
+  return weight >= kHalf;
+}
+
 std::vector<int> triangles_over(const Correspondence& pairs, const std::vector<int>& selected) {
   std::vector<bool> is_selected(pairs.source_triangles, false);
   for (const int triangle : selected) is_selected[triangle] = true;
   std::vector<int> over;
   for (int t = 0; t < pairs.target_triangles(); ++t) {
-    double weight = 0;
-    for (int p = pairs.offsets[t]; p < pairs.offsets[t + 1]; ++p) {
-      if (is_selected[pairs.parts[p].triangle]) weight += pairs.parts[p].weight;
-    }
-    if (weight >= kHalf) over.push_back(t);
+    if (is_over(pairs, t, [&](int triangle) { return is_selected[triangle]; })) over.push_back(t);
   }
   return over;
 }
@@ -178,15 +183,15 @@ Positions Pairing::carried(const Eigen::Ref<const Positions>& pose,
 }
 
 std::vector<bool> Pairing::over(const std::vector<bool>& source_vertices) const {
-  std::vector<bool> is_over(target_vertices(), false);
+  std::vector<bool> is_inside(target_vertices(), false);
   for (VertexIndex v = 0; v < target_vertices(); ++v) {
     double weight = 0;
     for (const Carrier& carrier : carriers(v)) {
       if (source_vertices[carrier.vertex]) weight += carrier.weight;
     }
-    is_over[v] = weight >= kHalf;
+    is_inside[v] = weight >= kHalf;
   }
-  return is_over;
+  return is_inside;
 }
 
 std::vector<int> with_partners(std::vector<int> triangles, const Pairing* pairing) {

@@ -1,11 +1,17 @@
 #pragma once
 
+#include <functional>
 #include <span>
 #include <vector>
 
 #include "toolkit/correspondence/correspondence.h"
 
 namespace mimetra {
+
+/// True where at least half of the weight of a target triangle's partners is of triangles of the
+/// source for which `is_selected` says so.
+bool is_over(const Correspondence& pairs, int target_triangle,
+             const std::function<bool(int)>& is_selected);
 
 /// Target triangles of which at least half of their partners' weight is in `selected` (triangles of
 /// the source), ascending.

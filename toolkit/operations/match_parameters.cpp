@@ -50,12 +50,14 @@ std::vector<std::string> file_of_each(const Parameters& parameters, const std::s
 /// Looks for markers from a call's source to its targets; the source's face is looked for once.
 class MarkersTo {
  public:
-  explicit MarkersTo(const Invocation& invocation) : invocation_(invocation) {}
+  MarkersTo(const Invocation& invocation, std::string source)
+      : invocation_(invocation), source_(std::move(source)) {}
 
   MarkersBetween operator()(const NamedData& target) const {
-    return [search = search_, &target, &invocation = invocation_](const TriMesh& source) {
+    return [search = search_, &target, &invocation = invocation_,
+            name = source_](const TriMesh& source) {
       if (!*search) {
-        Head head = head_of(invocation.input("source"), invocation.log);
+        Head head = head_of(invocation.input(name), invocation.log);
         head.mesh = source;
         search->emplace(std::move(head), invocation.landmark_finder,
                         FaceSearchOptions{.threads = invocation.threads});
@@ -66,6 +68,7 @@ class MarkersTo {
 
  private:
   const Invocation& invocation_;
+  std::string source_;
   std::shared_ptr<std::optional<MarkerSearch>> search_ =
       std::make_shared<std::optional<MarkerSearch>>();
 };
@@ -91,7 +94,7 @@ std::vector<Parameter> match_parameters() {
   return parameters;
 }
 
-std::vector<Target> targets_of(const Invocation& invocation) {
+std::vector<Target> targets_of(const Invocation& invocation, const std::string& source_name) {
   const Parameters& parameters = invocation.parameters;
   const std::vector<NamedData>& given = invocation.inputs.at("target");
   const auto markers = file_of_each(parameters, "markers", given.size());
@@ -103,8 +106,8 @@ std::vector<Target> targets_of(const Invocation& invocation) {
   if (markers.empty() && parameters.is_set("index-base")) {
     throw UsageError("--index-base: there are no vertices to count without --markers");
   }
-  const FrameSource& source = *invocation.get<FieldSequence>("source").frames;
-  const MarkersTo markers_to(invocation);
+  const FrameSource& source = *invocation.get<FieldSequence>(source_name).frames;
+  const MarkersTo markers_to(invocation, source_name);
   std::vector<Target> targets;
   for (std::size_t t = 0; t < given.size(); ++t) {
     const BlendshapeModel& model = std::get<ModelData>(given[t].data).model.average();

@@ -16,7 +16,9 @@ std::vector<Parameter> match_parameters();
 /// that are looked for if faces differ. Throws UsageError where options
 /// exclude each other or name another number of files than one or one for each target; what
 /// read_markers() and read_correspondence() throw.
-std::vector<Target> targets_of(const Invocation& invocation);
+///
+/// `source` is the input that they are paired with.
+std::vector<Target> targets_of(const Invocation& invocation, const std::string& source = "source");
 
 /// What a correspondence is worth, for reports and for people.
 Json json_of(const MatchReport& match);

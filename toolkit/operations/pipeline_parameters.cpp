@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "toolkit/operations/parameter_files.h"
+#include "toolkit/operations/selection_parameters.h"
 #include "toolkit/operations/vertex_sets.h"
 #include "toolkit/pipeline/memory.h"
 
@@ -165,6 +166,12 @@ std::string in_command_terms(Topic topic, const std::string& text, const Paramet
       return "-k: " + text;
     case Topic::no_vertex_inside:
       return "--only, --without: " + text;
+    case Topic::triangle_bound:
+      return "--triangles: " + text + " (--radius)";
+    case Topic::few_discs:
+      return text + "; a larger --radius makes larger discs";
+    case Topic::no_selection:
+      return text + "; use --select energy";
     case Topic::small_parts:
       return text +
              "; --only component:0 keeps to the largest, --without component:N leaves some out";
@@ -258,7 +265,8 @@ BoundParameters<RegionChoiceOptions> region_parameters() {
       .add("coverage", RegionOptions::kCoverage,
            "take the strongest regions until they hold this share of the motion energy");
   BoundParameters<RegionChoiceOptions> list;
-  list.add("radius", RegionChoiceOptions::kRadius, "geodesic radius of a region")
+  list.add(selection_parameters())
+      .add("radius", RegionChoiceOptions::kRadius, "geodesic radius of a region")
       .add(&RegionChoiceOptions::regions, regions);
   return list;
 }

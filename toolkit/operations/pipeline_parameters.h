@@ -27,7 +27,7 @@ BoundParameters<AnalysisOptions> count_parameters(const AnalysisOptions& default
 /// All others of a decomposition but for its rest pose, the distances' included, with --only and
 /// --without, which name vertices of `sequence`.
 BoundParameters<AnalysisOptions> analysis_parameters(const FieldSequence* sequence = nullptr);
-/// --radius, --region and --coverage.
+/// --select, --triangles, --radius, --region and --coverage.
 BoundParameters<RegionChoiceOptions> region_parameters();
 BoundParameters<RegionChoiceOptions> completion_parameters();
 /// --space and what belongs to each.

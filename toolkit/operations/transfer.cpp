@@ -12,6 +12,7 @@
 #include "toolkit/operations/match_parameters.h"
 #include "toolkit/operations/pipeline_parameters.h"
 #include "toolkit/operations/region_report.h"
+#include "toolkit/operations/selection_parameters.h"
 #include "toolkit/operations/toolkit_operations.h"
 #include "toolkit/pipeline/memory.h"
 
@@ -45,6 +46,7 @@ TransferOptions options_of(const Invocation& invocation) {
   TransferOptions options =
       transfer_parameters(&std::get<FieldSequence>(source.data)).read(invocation.parameters);
   options.source = described(std::move(options.source), source);
+  options.regions = with_most_discs(std::move(options.regions), invocation.parameters);
   if (const RegionData* regions = invocation.find<RegionData>("regions")) {
     options.given = GivenRegions{invocation.input("regions").name, regions->regions};
   } else if (auto components = given_components(invocation)) {
@@ -68,7 +70,9 @@ NamedData weight_table(const NamedData& target, const Solution& solution) {
   return {target.name, std::move(table)};
 }
 
-Json report_of(const NamedData& target, const TransferredTarget& transferred) {
+/// `has_own_regions` where the source's are not those of this target.
+Json report_of(const NamedData& target, const TransferredTarget& transferred,
+               bool has_own_regions) {
   const auto& [solution, regions, similarity, error, pairing, match, error_seconds, openings] =
       transferred;
   Json json = {{"name", target.name},          {"output", nullptr},  {"de_all", error.de_all},
@@ -87,6 +91,7 @@ Json report_of(const NamedData& target, const TransferredTarget& transferred) {
   if (regions) {
     json["triangle_share"] = regions->triangle_share();
     json["added_regions"] = added_regions(*regions);
+    if (has_own_regions) json["regions"] = report_of(*regions);
   }
   if (solution.weights().size() > 0) {
     json["condition"] = solution.conditions.condition;
@@ -112,10 +117,16 @@ void check_outputs(const Invocation& invocation) {
     throw UsageError("--regions-out: there are no regions with --full");
   }
   const bool chooses = !options.full && !invocation.find<RegionData>("regions");
-  for (const std::string name : {"only", "without"}) {
-    if (!chooses && invocation.parameters.is_set(name)) {
-      throw UsageError("--" + name + ": no regions are looked for with --full or --regions");
-    }
+  if (!chooses) {
+    refuse_options(invocation.parameters, {"only", "without", "select", "triangles", "drop-rims"},
+                   "no regions are looked for with --full or --regions");
+  }
+  check_selection(invocation);
+  if (options.regions.select == Selector::transfer && invocation.wants("regions-out") &&
+      invocation.inputs.at("target").size() > 1) {
+    throw UsageError(
+        "--regions-out: with --select transfer each target has regions of its own; name one "
+        "target, or take the regions of one for all (--regions)");
   }
   if (invocation.wants("components-out") && !chooses) {
     throw UsageError("--components-out: there are no components with --full or --regions");
@@ -137,8 +148,10 @@ void add_targets(Outcome& outcome, Json& report, const Invocation& invocation,
   Json reports = Json::array();
   for (std::size_t t = 0; t < targets.size(); ++t) {
     TransferredTarget& transferred = result.targets[t];
-    reports.push_back(report_of(targets[t], transferred));
+    const bool has_own_regions = transferred.regions && !result.regions;
+    reports.push_back(report_of(targets[t], transferred, has_own_regions));
     if (is_written) reports.back()["output"] = paths->second.at(t).string();
+    if (has_own_regions) outcome.summary += summary_of(*transferred.regions);
     outcome.summary += summary_of(targets[t], transferred);
     Solution& solution = transferred.solution;
     if (invocation.wants("weights-out") && solution.weights().size() > 0) {
@@ -194,10 +207,11 @@ Outcome run_transfer(const Invocation& invocation) {
   return outcome;
 }
 
-/// True where the run looks for regions itself.
-bool looks_for_regions(const Invocation& invocation) {
+/// True where the run decomposes the source to find regions.
+bool looks_for_components(const Invocation& invocation) {
   return !invocation.parameters.flag("full") && !invocation.find<RegionData>("regions") &&
-         !invocation.find<Components>("components");
+         !invocation.find<Components>("components") &&
+         invocation.parameters.choice<Selector>("select") == Selector::energy;
 }
 
 /// Decomposition, for which all frames are there, then one target after the other, whose results
@@ -208,17 +222,20 @@ double memory_of_transfer(const Invocation& invocation) {
   TransferOptions options = transfer_parameters().read(invocation.parameters);
   options.solving.threads = invocation.threads;
   const FrameSource& frames = *held.frames;
-  const bool decomposes = looks_for_regions(invocation);
+  const bool decomposes = looks_for_components(invocation);
   const double loaded = decomposes && !held.is_in_memory() ? frame_bytes(frames) : 0;
   const double analysis =
       decomposes ? analysis_bytes(invocation, source, options.analysis.decomposition.count) : 0;
-  double solutions = decomposes ? 0 : stored_bytes(frames);
+  double solutions = decomposes ? 0 : stored_bytes(frames), most_selection = 0;
   for (const NamedData& target : invocation.inputs.at("target")) {
     solutions += solution_bytes(frames, model_of(target), options.solving);
+    if (options.regions.select == Selector::transfer) {
+      most_selection = std::max(most_selection, selection_bytes(frames, model_of(target)));
+    }
     // Results of a source in memory are there, too.
     if (held.is_in_memory()) solutions += frame_bytes(frames);
   }
-  return loaded + std::max(analysis, solutions);
+  return loaded + std::max(analysis, solutions + most_selection);
 }
 
 }  // namespace
@@ -249,7 +266,7 @@ Operation transfer_operation() {
   operation.run = run_transfer;
   operation.memory = memory_of_transfer;
   operation.all_frames_for = [](const Invocation& invocation) {
-    return looks_for_regions(invocation) ? "the decomposition" : "";
+    return looks_for_components(invocation) ? "the decomposition" : "";
   };
   return operation;
 }

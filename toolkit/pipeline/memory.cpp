@@ -1,8 +1,10 @@
 #include "toolkit/pipeline/memory.h"
 
+#include <algorithm>
 #include <thread>
 
 #include "toolkit/mesh/frame_store.h"
+#include "toolkit/pipeline/region_selector.h"
 
 namespace mimetra {
 
@@ -47,6 +49,16 @@ double analysis_bytes(const FrameSource& sequence, int count) {
   const double maps = (2 + kCentersPerComponent) * count * vertices;
   // The displacements are as many numbers as the frames.
   return kFactorsPerVertex * vertices + frame_bytes(sequence) + kNumber * (components + maps);
+}
+
+double selection_bytes(const FrameSource& sequence, const BlendshapeModel& target) {
+  const double frames = std::min(sequence.frames(), RegionSelector::kMostFrames);
+  const auto triangles = static_cast<double>(target.triangles().rows());
+  const auto expressions = static_cast<double>(target.expressions().size());
+  // The frames, what each triangle lacks in them, and what each disc shows.
+  return kNumber * (frames * (3.0 * sequence.vertices() + 6 * triangles) +
+                    RegionSelector::kCandidates * expressions * (expressions + frames)) +
+         kFactorsPerVertex * sequence.vertices();
 }
 
 double solution_bytes(const FrameSource& sequence, const BlendshapeModel& target,
