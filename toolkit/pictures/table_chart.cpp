@@ -55,8 +55,16 @@ std::vector<ChartSeries> lines_of(const Table& table) {
   return lines;
 }
 
-bool is_above_zero(const ChartSeries& line) {
-  return std::ranges::all_of(line.y, [](double y) { return y > 0; });
+/// A logarithmic scale has ticks where numbers span more than this.
+constexpr double kManyTimes = 10;
+
+bool spans_magnitudes(const std::vector<ChartSeries>& lines) {
+  double least = lines.front().y.front(), most = least;
+  for (const ChartSeries& line : lines) {
+    least = std::min(least, std::ranges::min(line.y));
+    most = std::max(most, std::ranges::max(line.y));
+  }
+  return least > 0 && most > kManyTimes * least;
 }
 
 }  // namespace
@@ -73,7 +81,7 @@ Chart chart_of(const Table& table) {
   chart.title = table.picture->title;
   chart.x.label = table.picture->x_label;
   chart.y.label = table.picture->y_label;
-  if (std::ranges::all_of(chart.series, is_above_zero)) chart.y.scale = ChartScale::logarithmic;
+  if (spans_magnitudes(chart.series)) chart.y.scale = ChartScale::logarithmic;
   return chart;
 }
 
