@@ -1,7 +1,8 @@
-// usage: mimetra_bench OUT [--quick] [--iterations]
+// usage: mimetra_bench OUT [--quick] [--iterations | --per-region]
 // Times kernels and whole commands; writes OUT/bench.json and OUT/growth.png, and a table to
 // stdout. With --iterations instead what more iterations of the decomposition give: the picture
-// OUT/iterations.png, and a table to stdout.
+// OUT/iterations.png, and a table to stdout; with --per-region what weights of each region give: a
+// table to stdout.
 
 #include <algorithm>
 #include <cstdio>
@@ -20,6 +21,7 @@
 #include "tests/bench/io_bench.h"
 #include "tests/bench/iterations_bench.h"
 #include "tests/bench/numpy_bench.h"
+#include "tests/bench/per_region_bench.h"
 #include "tests/bench/report.h"
 #include "tests/bench/splocs_bench.h"
 #include "tests/bench/subjects.h"
@@ -253,18 +255,39 @@ void run_iterations(const fs::path& out, bool quick) {
   std::printf("%s\nwritten: %s\n", table_of(curves).c_str(), (out / "iterations.png").c_str());
 }
 
+/// The same subjects, and a target that cannot follow what one half of a face does.
+void run_per_region(const fs::path&, bool quick) {
+  std::vector<Subject> subjects;
+  if (!quick) {
+    constexpr int kTalking = 300;
+    for (auto& found : {surrey(), ict(kTalking), bent_facecap(), symmetric_ict(kTalking)}) {
+      if (found) subjects.push_back(*found);
+    }
+  }
+  if (subjects.empty()) subjects.push_back(head(0, quick ? 10 : kFrames));
+  std::vector<PerRegionRow> rows;
+  for (const Subject& subject : subjects) {
+    std::ranges::move(per_region_rows(subject, quick), std::back_inserter(rows));
+  }
+  std::printf("%s", table_of(rows).c_str());
+}
+
 }  // namespace
 }  // namespace mimetra::bench
 
 int main(int argc, char** argv) {
   const std::set<std::string> modes(argv + std::min(argc, 2), argv + argc);
-  const bool quick = modes.contains("--quick"), iterations = modes.contains("--iterations");
-  if (argc < 2 || modes.size() != std::size_t{quick} + std::size_t{iterations}) {
-    std::fprintf(stderr, "usage: mimetra_bench OUT [--quick] [--iterations]\n");
+  const bool quick = modes.contains("--quick"), iterations = modes.contains("--iterations"),
+             per_region = modes.contains("--per-region");
+  if (argc < 2 || (iterations && per_region) ||
+      modes.size() != std::size_t{quick} + std::size_t{iterations || per_region}) {
+    std::fprintf(stderr, "usage: mimetra_bench OUT [--quick] [--iterations | --per-region]\n");
     return 2;
   }
   try {
-    const auto run = iterations ? mimetra::bench::run_iterations : mimetra::bench::run;
+    const auto run = iterations   ? mimetra::bench::run_iterations
+                     : per_region ? mimetra::bench::run_per_region
+                                  : mimetra::bench::run;
     run(std::filesystem::absolute(argv[1]), quick);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "mimetra_bench: %s\n", error.what());

@@ -55,6 +55,7 @@ std::string text_of(const std::vector<EvaluationRow>& rows) {
 }
 
 Outcome run_evaluate(const Invocation& invocation) {
+  check_solving(invocation.parameters, invocation.inputs.at("target"));
   const MeshSequence& sequence = invocation.sequence("source");
   EvaluationOptions options =
       evaluation_parameters(&invocation.get<FieldSequence>("source")).read(invocation.parameters);
@@ -81,7 +82,12 @@ double memory_of_evaluate(const Invocation& invocation) {
   const double analysis = analysis_bytes(invocation, invocation.input("source"),
                                          *std::ranges::max_element(options.counts));
   const BlendshapeModel& target = invocation.get<ModelData>("target").model.average();
-  return std::max(analysis, 2 * solution_bytes(sequence, target, options.solving));
+  const double regional =
+      options.solving.per_region
+          ? regional_bytes(sequence, target, *std::ranges::max_element(options.counts),
+                           options.solving)
+          : 0;
+  return std::max(analysis, 2 * solution_bytes(sequence, target, options.solving) + regional);
 }
 
 }  // namespace

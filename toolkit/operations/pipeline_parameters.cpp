@@ -115,6 +115,20 @@ BoundParameters<BlendshapeTransferOptions> blendshape_parameters() {
   return list;
 }
 
+/// --per-region and what belongs to it.
+BoundParameters<SolveOptions> regional_parameters() {
+  BoundParameters<LocalWeightsOptions> local;
+  local.add("region-ridge", LocalWeightsOptions::kRidge,
+            "per region: pull of a region's weights towards those of the whole face");
+  BoundParameters<SolveOptions> list;
+  list.add("per-region", SolveOptions::kPerRegion,
+           "give each region blendshape weights of its own, found together on all triangles")
+      .add("falloff", SolveOptions::kFalloff,
+           "per region: distance from a region's rim over which its weights fade out")
+      .add(&SolveOptions::local, local);
+  return list;
+}
+
 BoundParameters<VertexTransferOptions> vertex_parameters() {
   using Options = VertexTransferOptions;
   BoundParameters<Options> list;
@@ -283,8 +297,33 @@ BoundParameters<SolveOptions> solving_parameters() {
       .add("axes", SolveOptions::kAxes,
            "fit: the source is turned as its rest pose is to the target's; none: it is not")
       .add(&SolveOptions::blendshape, blendshape_parameters())
+      .add(regional_parameters())
       .add(&SolveOptions::vertex, vertex_parameters());
   return list;
+}
+
+void check_solving(const Parameters& parameters, const std::vector<NamedData>& targets) {
+  if (!parameters.flag("per-region")) {
+    for (const std::string name : {"falloff", "region-ridge"}) {
+      if (!parameters.is_set(name)) continue;
+      throw UsageError("--" + name + ": is about weights of each region, --per-region");
+    }
+    return;
+  }
+  if (parameters.number("smoothness") > 0) {
+    throw UsageError(
+        "--smoothness: with --per-region weights are found frame by frame; leave one of them out");
+  }
+  for (const std::string name : {"complete", "complete-limit"}) {
+    if (!parameters.is_set(name)) continue;
+    throw UsageError("--" + name +
+                     ": with --per-region all triangles are looked at, and no discs are added");
+  }
+  for (const NamedData& target : targets) {
+    const BlendshapeModel& model = std::get<ModelData>(target.data).model.average();
+    if (!solves_for_vertices(parameters, model)) continue;
+    throw UsageError("--per-region: " + target.name + " is solved for vertices, not weights");
+  }
 }
 
 SourceOptions described(SourceOptions options, const NamedData& input) {

@@ -33,6 +33,11 @@ BoundParameters<RegionChoiceOptions> completion_parameters();
 /// --space and what belongs to each.
 BoundParameters<SolveOptions> solving_parameters();
 
+/// Throws UsageError for options of a solve that would do nothing beside others: those of weights
+/// of each region without --per-region, and with it those that such weights do not follow, also
+/// for `targets` that are solved for vertices.
+void check_solving(const Parameters& parameters, const std::vector<NamedData>& targets);
+
 /// The options, with what an input that is a sequence says of itself.
 SourceOptions described(SourceOptions options, const NamedData& input);
 

@@ -59,7 +59,7 @@ TransferOptions options_of(const Invocation& invocation) {
 NamedData weight_table(const NamedData& target, const Solution& solution) {
   Table table;
   table.columns = {"time"};
-  const auto& names = model_of(target).expressions().names;
+  const std::vector<std::string> names = solution.weight_names();
   table.columns.insert(table.columns.end(), names.begin(), names.end());
   for (int f = 0; f < solution.weights().rows(); ++f) {
     table.rows.push_back({solution.sequence->times()[f]});
@@ -88,6 +88,10 @@ Json report_of(const NamedData& target, const TransferredTarget& transferred) {
     json["triangle_share"] = regions->triangle_share();
     json["added_regions"] = added_regions(*regions);
   }
+  if (solution.regional) {
+    json["per_region"] = {{"regions", solution.regional->shares().cols() - 1},
+                          {"violation", solution.violation}};
+  }
   if (solution.weights().size() > 0) {
     json["condition"] = solution.conditions.condition;
     json["unseen"] = solution.conditions.unseen;
@@ -108,6 +112,10 @@ std::string summary_of(const NamedData& target, const TransferredTarget& transfe
 /// Refuses outputs that this request cannot make, before anything is computed.
 void check_outputs(const Invocation& invocation) {
   const TransferOptions options = transfer_parameters().read(invocation.parameters);
+  check_solving(invocation.parameters, invocation.inputs.at("target"));
+  if (options.full && options.solving.per_region) {
+    throw UsageError("--per-region: there are no regions with --full");
+  }
   if (invocation.wants("regions-out") && options.full) {
     throw UsageError("--regions-out: there are no regions with --full");
   }
@@ -200,6 +208,17 @@ bool looks_for_regions(const Invocation& invocation) {
          !invocation.find<Components>("components");
 }
 
+/// How many regions there are, or may be.
+int region_count(const Invocation& invocation, const TransferOptions& options) {
+  if (const RegionData* given = invocation.find<RegionData>("regions")) {
+    return static_cast<int>(given->regions.regions.size());
+  }
+  if (const Components* components = invocation.find<Components>("components")) {
+    return components->count();
+  }
+  return options.analysis.decomposition.count;
+}
+
 /// Decomposition, for which all frames are there, then one target after the other, whose results
 /// are kept.
 double memory_of_transfer(const Invocation& invocation) {
@@ -215,6 +234,10 @@ double memory_of_transfer(const Invocation& invocation) {
   double solutions = decomposes ? 0 : stored_bytes(frames);
   for (const NamedData& target : invocation.inputs.at("target")) {
     solutions += solution_bytes(frames, model_of(target), options.solving);
+    if (options.solving.per_region) {
+      solutions += regional_bytes(frames, model_of(target), region_count(invocation, options),
+                                  options.solving);
+    }
     // Results of a source in memory are there, too.
     if (held.is_in_memory()) solutions += frame_bytes(frames);
   }

@@ -94,6 +94,7 @@ std::vector<EvaluationRow> evaluate(const MeshSequence& sequence, const Target& 
   of_solving.threads = options.threads;
   of_solving.notes = options.notes;
   of_solving.edges = edge_sum(options.analysis.compatibility);
+  of_solving.distances = options.analysis.distances;
 
   const MatchedTarget matched(sequence, given,
                               {.source_rest = asked_rest(sequence, options.source),

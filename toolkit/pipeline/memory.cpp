@@ -64,4 +64,17 @@ double solution_bytes(const FrameSource& sequence, const BlendshapeModel& target
   return space + kPullPerTriangle * triangles + threads * kLanesPerVertex * vertices;
 }
 
+double regional_bytes(const FrameSource& sequence, const BlendshapeModel& target, int regions,
+                      const SolveOptions& options) {
+  const auto expressions = static_cast<double>(target.expressions().size());
+  const double unknowns = (regions + 1) * expressions;
+  const double threads =
+      options.threads > 0 ? options.threads : std::thread::hardware_concurrency();
+  // The Gram matrix, the system and for each thread its factor; each thread's fields of a region,
+  // gathered and shared out; the shares, twice, and the weights.
+  return kNumber *
+         ((2 + 2 * threads) * unknowns * unknowns + threads * 6 * expressions * target.vertices() +
+          2.0 * (regions + 1) * target.vertices() + 2 * unknowns * sequence.frames());
+}
+
 }  // namespace mimetra

@@ -23,4 +23,8 @@ double analysis_bytes(const FrameSource& sequence, int count);
 double solution_bytes(const FrameSource& sequence, const BlendshapeModel& target,
                       const SolveOptions& options);
 
+/// What weights of each of `regions` regions take besides.
+double regional_bytes(const FrameSource& sequence, const BlendshapeModel& target, int regions,
+                      const SolveOptions& options);
+
 }  // namespace mimetra

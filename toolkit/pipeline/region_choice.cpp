@@ -58,7 +58,9 @@ void check_regions(const GivenRegions& given, const FrameSource& sequence) {
 }
 
 Selection selection_of(const Regions& regions) {
-  return {regions.triangles, regions.inside};
+  Selection selection{regions.triangles, regions.inside};
+  for (const Region& region : regions.regions) selection.regions.push_back(region.vertices);
+  return selection;
 }
 
 Selection whole(const FrameSource& sequence) {

@@ -45,6 +45,8 @@ void check_regions(const GivenRegions& given, const FrameSource& sequence);
 struct Selection {
   std::vector<int> triangles;  ///< L
   std::vector<bool> inside;    ///< vertices inside the regions (N); empty for all
+  /// Vertices of each region, in the regions' order; none for all triangles.
+  std::vector<std::vector<VertexIndex>> regions = {};
 };
 
 Selection selection_of(const Regions& regions);

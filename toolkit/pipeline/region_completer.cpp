@@ -60,7 +60,7 @@ RegionCompleter::RegionCompleter(const Analysis& analysis, const RegionChoiceOpt
 
 Regions RegionCompleter::operator()(const Regions& regions, const Target& target,
                                     const SolveOptions& options) {
-  if (solves_for_vertices(target.model, options.space)) return regions;
+  if (options.per_region || solves_for_vertices(target.model, options.space)) return regions;
   if (!search_) {
     search_.emplace(rest_, triangles_, distances_,
                     kAddedRadius * options_.radius.in(diameter(rest_)), inside_);

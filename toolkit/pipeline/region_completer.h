@@ -17,7 +17,8 @@ class RegionCompleter {
                   const AnalysisOptions& analysis);
   RegionCompleter(const Analysis& analysis, const RegionChoiceOptions& options);
 
-  /// The regions themselves where a target is solved for vertices. Notes, under the target's name,
+  /// The regions themselves where a target is solved for vertices, or for weights of each region,
+  /// which look at all triangles. Notes, under the target's name,
   /// what was added (Topic::completed_regions). Throws what completed() throws.
   Regions operator()(const Regions& regions, const Target& target, const SolveOptions& options);
 

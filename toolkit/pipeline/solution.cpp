@@ -6,6 +6,7 @@
 #include "toolkit/mesh/stopwatch.h"
 #include "toolkit/mesh/text.h"
 #include "toolkit/model/animation.h"
+#include "toolkit/pipeline/regional_solution.h"
 #include "toolkit/transfer/following_parts.h"
 #include "toolkit/transfer/seams.h"
 
@@ -15,6 +16,9 @@ namespace {
 
 /// Looking for seams, which reads every frame, as a part of a solve's progress.
 constexpr double kSeamShare = 0.2;
+
+/// The weights of the whole face, as a part of those of each region.
+constexpr double kGlobalShare = 0.2;
 
 /// Notes of a target.
 class TargetNotes {
@@ -73,12 +77,22 @@ Solution solve_blendshapes(const Source& source, const Target& target, const Sel
   of_space.edges = options.edges;
   of_space.pairing = target.pairing;
   const FrameSource& performance = *source.sequence;
-  const BlendshapeTransfer transfer(performance.rest(), model, selection.triangles, of_space);
+  const bool regional = options.per_region && !selection.regions.empty();
+  if (regional) of_space.progress = part_of(options.progress, 0, kGlobalShare);
+  const BlendshapeTransfer transfer(performance.rest(), model,
+                                    regional ? whole(target).triangles : selection.triangles,
+                                    of_space);
+  const Eigen::MatrixXd beta = transfer.weights(performance);
   Solution solution;
-  solution.animation =
-      std::make_shared<const Animation>(std::make_shared<const BlendshapeModel>(model),
-                                        transfer.weights(performance), performance.known_times());
-  solution.sequence = solution.animation;
+  if (regional) {
+    SolveOptions of_regions = options;
+    of_regions.progress = part_of(options.progress, kGlobalShare, 1);
+    add_regional_weights(solution, performance, target, selection, beta, of_regions);
+  } else {
+    solution.animation = std::make_shared<const Animation>(
+        std::make_shared<const BlendshapeModel>(model), beta, performance.known_times());
+    solution.sequence = solution.animation;
+  }
   solution.seconds = stopwatch.seconds();
   solution.conditions = transfer.conditions();
   solution.degenerate_source_triangles = solution.conditions.degenerate_source_triangles;
@@ -89,7 +103,7 @@ Solution solve_blendshapes(const Source& source, const Target& target, const Sel
   // Another face's expressions are never quite the source's: with an exact neutral, too, some want
   // to be negative.
   const bool may_be_wrong = !source.neutral_is_known;
-  if (may_be_wrong && transfer.rest_looks_unneutral(performance, solution.weights())) {
+  if (may_be_wrong && transfer.rest_looks_unneutral(performance, beta)) {
     notes.add(
         "many expressions want to be negative, so the source's rest pose is likely not its "
         "neutral",
@@ -268,7 +282,22 @@ EdgeSum edge_sum(Compatibility compatibility) {
 
 const Eigen::MatrixXd& Solution::weights() const {
   static const Eigen::MatrixXd none;
+  if (regional) return regional->weights();
   return animation ? animation->weights() : none;
+}
+
+std::vector<std::string> Solution::weight_names() const {
+  if (animation) return animation->model().expressions().names;
+  std::vector<std::string> names;
+  if (!regional) return names;
+  const Eigen::Index regions = regional->shares().cols();
+  for (Eigen::Index r = 0; r < regions; ++r) {
+    const std::string region = r + 1 < regions ? std::to_string(r) : "background";
+    for (const std::string& name : regional->model().expressions().names) {
+      names.push_back(name + "@" + region);
+    }
+  }
+  return names;
 }
 
 bool solves_for_vertices(const BlendshapeModel& target, Space space) {
@@ -347,7 +376,7 @@ Selection selection_of(const Regions& regions, const Target& target) {
   const Triangles& triangles = target.model.get().triangles();
   Selection selection{
       pairing.with_gaps(triangles_over(pairing.triangles(), regions.triangles), triangles),
-      pairing.over(regions.inside)};
+      pairing.over(regions.inside), regions_over(pairing, regions)};
   // Vertices without carriers are inside where all of their triangles are in L.
   std::vector<bool> in_l(triangles.rows(), false), leaves(pairing.target_vertices(), false);
   for (const int t : selection.triangles) in_l[t] = true;
@@ -385,6 +414,7 @@ Solution solve(const Source& source, const Target& target, const Selection& sele
   if (options.space == Space::blendshape && model.expressions().size() == 0) {
     throw OptionError(Topic::no_expressions, target.name + ": has no expressions");
   }
+  if (options.per_region) check_regional(target, options);
   return solves_for_vertices(model, options.space)
              ? solve_vertices(source, target, selection, options)
              : solve_blendshapes(source, target, selection, options);

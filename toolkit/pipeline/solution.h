@@ -11,8 +11,10 @@
 #include "toolkit/correspondence/pairing.h"
 #include "toolkit/mesh/similarity.h"
 #include "toolkit/model/animation.h"
+#include "toolkit/model/regional_animation.h"
 #include "toolkit/pipeline/region_choice.h"
 #include "toolkit/transfer/blendshape_transfer.h"
+#include "toolkit/transfer/local_weights.h"
 #include "toolkit/transfer/vertex_transfer.h"
 
 namespace mimetra {
@@ -83,6 +85,16 @@ struct SolveOptions {
   /// are those of the solve.
   BlendshapeTransferOptions blendshape = {};
   VertexTransferOptions vertex = {};
+  /// Blendshape space: each region has weights of its own, and what lies around them too; all
+  /// triangles are looked at.
+  bool per_region = false;
+  /// Geodesic distance from a region's rim over which its weights fade out, on the target.
+  Length falloff = Length::share(0.1);
+  /// Its threads, progress, edges and pairing are those of the solve.
+  LocalWeightsOptions local = {};
+  /// By which that is measured; of a transfer those of the analysis. Threads are those of the
+  /// solve.
+  DistanceOptions distances = {};
   /// 0 for all there are; the result does not depend on it.
   int threads = 0;
   Progress progress = {};
@@ -90,7 +102,9 @@ struct SolveOptions {
 
   static constexpr Option kSpace{"space", &SolveOptions::space};
   static constexpr Option kAxes{"axes", &SolveOptions::axes};
-  static constexpr auto declared() { return std::tuple(kSpace, kAxes); }
+  static constexpr Option kPerRegion{"per_region", &SolveOptions::per_region};
+  static constexpr Option kFalloff{"falloff", &SolveOptions::falloff, {.minimum = 1e-9}};
+  static constexpr auto declared() { return std::tuple(kSpace, kAxes, kFalloff); }
 };
 
 /// What eq. 10 and 12 sum over.
@@ -119,6 +133,10 @@ struct Solution {
   std::shared_ptr<const FrameSource> sequence;
   /// The same where weights drive it; null in vertex space.
   std::shared_ptr<const Animation> animation;
+  /// The same where each region has weights of its own, else null.
+  std::shared_ptr<const RegionalAnimation> regional;
+  /// Of the weights of regions: LocalWeights.
+  double violation = 0;
   BlendshapeConditions conditions;
   /// Between vertices that are one, in vertex space: they take no part, and are none of the
   /// degenerate ones.
@@ -127,8 +145,12 @@ struct Solution {
   int degenerate_target_triangles = 0;
   double seconds = 0;  ///< set-up and the solve of all frames
 
-  /// beta, F x D; empty in vertex space.
+  /// beta, F x D; of R regions with weights of their own F x R D, as in RegionalAnimation, the last
+  /// region being what lies around them; empty in vertex space.
   const Eigen::MatrixXd& weights() const;
+  /// Names of its columns: those of the expressions, of regions NAME@0, NAME@1, ... in the order of
+  /// the selection and NAME@background.
+  std::vector<std::string> weight_names() const;
 };
 
 /// True for the vertex space, and where a target has no expressions to solve for.
@@ -193,8 +215,13 @@ Selection whole(const Target& target);
 /// seam collapses, and a source whose neutral is not known and whose rest pose does not look like
 /// it (Topic::unneutral_rest). \pre the target is a MatchedTarget, the source is placed_at() it
 ///
+/// Where each region has weights of its own, they are found on all triangles and drawn towards
+/// those of the whole face, which ridge and sparsity shape; a selection without regions has those.
+///
 /// Throws OptionError (Topic::no_expressions, Topic::anchor_vertex, Topic::held_anchor) and what
-/// BlendshapeTransfer, closed_seams(), VertexTransfer, reading the source and FrameStore throw.
+/// BlendshapeTransfer, LocalWeights, closed_seams(), VertexTransfer, reading the source and
+/// FrameStore throw; std::invalid_argument where each region is to have weights of its own that are
+/// smooth over time, or a target has none.
 Solution solve(const Source& source, const Target& target, const Selection& selection,
                const SolveOptions& options = {});
 

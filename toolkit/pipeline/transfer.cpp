@@ -1,6 +1,7 @@
 #include "toolkit/pipeline/transfer.h"
 
 #include <algorithm>
+#include <stdexcept>
 
 #include "toolkit/mesh/stopwatch.h"
 #include "toolkit/mesh/text.h"
@@ -154,6 +155,9 @@ bool decomposes(const TransferOptions& options) {
 TransferResult transfer(const FrameSource& sequence, const std::vector<Target>& given,
                         const TransferOptions& options) {
   check_options(options);
+  if (options.full && options.solving.per_region) {
+    throw std::invalid_argument("per_region: a full transfer has no regions");
+  }
   const std::vector<MatchedTarget> matched = matched_targets(sequence, given, options);
   std::vector<Target> targets;
   for (const MatchedTarget& target : matched) targets.push_back(*target);
@@ -161,6 +165,7 @@ TransferResult transfer(const FrameSource& sequence, const std::vector<Target>& 
   of_solving.threads = options.threads;
   of_solving.notes = options.notes;
   of_solving.edges = edge_sum(options.analysis.compatibility);
+  of_solving.distances = options.analysis.distances;
   const Source source = source_of(sequence, targets, options, of_solving);
   Choice choice = choose(source, options);
   const bool give_back = !source.motion.empty() && options.head_motion == RemovedMotion::keep;

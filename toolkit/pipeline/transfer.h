@@ -90,7 +90,8 @@ bool decomposes(const TransferOptions& options);
 /// triangles are flipped (Topic::poor_condition where there are regions), and eyes and mouths that
 /// close on the source only.
 ///
-/// Throws what prepare_source(), MatchedTarget(), analyse(), analysis_of(), check_regions(),
+/// Throws std::invalid_argument for a full transfer by weights of each region, and what
+/// prepare_source(), MatchedTarget(), analyse(), analysis_of(), check_regions(),
 /// choose_regions() and solve() throw; Cancelled. A target that does not fit is refused before
 /// anything is computed.
 TransferResult transfer(const FrameSource& source, const std::vector<Target>& targets,

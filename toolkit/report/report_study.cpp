@@ -118,7 +118,9 @@ class RunSteps {
     options.threads = call.threads;
     options.progress = progress;
     options.notes = warnings_of(call);
-    options.edges = edge_sum(analysis_parameters().read(call.parameters).compatibility);
+    const AnalysisOptions analysis = analysis_parameters().read(call.parameters);
+    options.edges = edge_sum(analysis.compatibility);
+    options.distances = analysis.distances;
     return options;
   }
 
@@ -230,16 +232,13 @@ std::vector<int> regions_over(const std::vector<int>& regions, const Target& tar
 ReportedTransfer transferred(const RunSteps& steps, const Target& to, RunSteps::Found& main,
                              const std::vector<int>& counts, std::vector<std::string>& notes,
                              const Progress& progress) {
-  const BlendshapeModel& model = to.model;
   ReportedTransfer transfer;
   transfer.target = short_name(to.name);
   EvaluatedTransfer full =
       apart_from(notes, [&] { return steps.full(to, part_of(progress, 0, 0.1)); });
   main.regions = steps.completed(main, to);
   EvaluatedTransfer by_regions = steps.by(main.regions, full, to, part_of(progress, 0.1, 0.2));
-  if (by_regions.solution.weights().size() > 0) {
-    transfer.expressions = model.expressions().names;
-  }
+  transfer.expressions = by_regions.solution.weight_names();
   const EvaluationRow main_row = completed(by_regions.row, main);
   transfer.rows.push_back(main_row);
   const std::set<int> more(counts.begin(), counts.end());
