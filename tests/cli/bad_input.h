@@ -40,6 +40,7 @@ std::vector<BadInput> region_cases();
 std::vector<BadInput> json_cases();
 std::vector<BadInput> match_cases();
 std::vector<BadInput> motion_cases();
+std::vector<BadInput> retarget_cases();
 std::vector<BadInput> geometry_cases();
 std::vector<BadInput> request_cases();
 std::vector<BadInput> output_cases();

@@ -114,6 +114,27 @@ class Operations(SampleTest):
                 self.assert_same(table[name], np.array([float(row[name] or "nan") for row in rows]),
                                  name)
 
+    def test_retargets_weights_as_the_command_does(self):
+        track, out, kept = (self.path / name for name in ["rig.csv", "double.csv", "map.json"])
+        names = mimetra.Model.load(self.actor).expression_names
+        times = np.linspace(0, 1, 5)
+        columns = {"time": times,
+                   **{name: times * (number % 3) / 3 for number, name in enumerate(names)}}
+        np.savetxt(track, np.array([*columns.values()]).T, fmt="%.17g", delimiter=",",
+                   header=",".join(columns), comments="")
+        command("retarget", self.actor, self.head, "--weights", track, "-o", out,
+                "--map-out", kept)
+        result = mimetra.retarget(source=self.actor, target=self.head,
+                                  weights=mimetra.Table(columns))
+        again = mimetra.retarget(weights=track, map=kept)
+        with open(out, newline="") as file:
+            rows = list(csv.DictReader(file))
+        self.assertGreater(len(rows[0]), 12)
+        for name in rows[0]:
+            self.assert_same(result.out[name], np.array([float(row[name]) for row in rows]), name)
+            # The map is linear at the neutral; the weights are below 1.
+            self.assertLess(np.abs(again.out[name] - result.out[name]).max(), 0.1)
+
     def test_fits_as_the_command_does(self):
         lines = (self.head / "landmarks68.txt").read_text().splitlines()
         pairs = [tuple(map(int, line.split("="))) for line in lines if line[:1].isdigit()]

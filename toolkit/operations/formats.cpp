@@ -13,6 +13,7 @@
 #include "toolkit/io/whole_file.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/operations/sequence_parameters.h"
+#include "toolkit/operations/weight_tables.h"
 
 namespace mimetra {
 
@@ -320,14 +321,7 @@ void add_formats(OperationTable& table) {
                    .kind = DataKind::regions,
                    .extensions = {".txt"},
                    .read = read_regions_data});
-  table.add(Format{.name = "comma-separated values",
-                   .kind = DataKind::table,
-                   .extensions = {".csv"},
-                   .write = writer_of<Table>([](const Table& values) { return values.csv(); })});
-  table.add(Format{.name = "rows as JSON",
-                   .kind = DataKind::table,
-                   .extensions = {".json"},
-                   .write = writer_of<Table>([](const Table& values) { return values.json(); })});
+  add_weight_formats(table);
   table.add(Format{.name = "coefficients and cameras",
                    .kind = DataKind::fit,
                    .extensions = {".json"},

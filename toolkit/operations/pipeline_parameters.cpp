@@ -106,15 +106,6 @@ BoundParameters<AnalysisOptions> place_parameters(const FieldSequence* sequence)
   return list;
 }
 
-BoundParameters<BlendshapeTransferOptions> blendshape_parameters() {
-  using Options = BlendshapeTransferOptions;
-  BoundParameters<Options> list;
-  list.add("ridge", Options::kRidge, "pull of the weights towards 0")
-      .add("l1", Options::kSparsity, "sparsity of the weights")
-      .add("smoothness", Options::kSmoothness, "time constant of smooth weights");
-  return list;
-}
-
 BoundParameters<VertexTransferOptions> vertex_parameters() {
   using Options = VertexTransferOptions;
   BoundParameters<Options> list;
@@ -154,6 +145,7 @@ std::string in_command_terms(Topic topic, const std::string& text, const Paramet
     case Topic::no_joint_motion:
       return text + "; use --align stable";
     case Topic::poor_condition:
+      if (!parameters.find("full")) return text;
       return text + "; take more regions (-k, --radius) or --full";
     case Topic::completed_regions:
       return text + "; --complete 0 leaves them as they are";
@@ -275,13 +267,27 @@ BoundParameters<RegionChoiceOptions> completion_parameters() {
   return list.add(&RegionChoiceOptions::completion, completion);
 }
 
+BoundParameters<BlendshapeTransferOptions> blendshape_parameters() {
+  using Options = BlendshapeTransferOptions;
+  BoundParameters<Options> list;
+  list.add("ridge", Options::kRidge, "pull of the weights towards 0")
+      .add("l1", Options::kSparsity, "sparsity of the weights")
+      .add("smoothness", Options::kSmoothness, "time constant of smooth weights");
+  return list;
+}
+
+BoundParameters<SolveOptions> axes_parameters() {
+  BoundParameters<SolveOptions> list;
+  return list.add("axes", SolveOptions::kAxes,
+                  "fit: the source is turned as its rest pose is to the target's; none: it is not");
+}
+
 BoundParameters<SolveOptions> solving_parameters() {
   BoundParameters<SolveOptions> list;
   list.add("space", SolveOptions::kSpace,
            "solve for blendshape weights or vertices; auto: weights where the target has "
            "expressions")
-      .add("axes", SolveOptions::kAxes,
-           "fit: the source is turned as its rest pose is to the target's; none: it is not")
+      .add(axes_parameters())
       .add(&SolveOptions::blendshape, blendshape_parameters())
       .add(&SolveOptions::vertex, vertex_parameters());
   return list;

@@ -32,6 +32,9 @@ BoundParameters<RegionChoiceOptions> region_parameters();
 BoundParameters<RegionChoiceOptions> completion_parameters();
 /// --space and what belongs to each.
 BoundParameters<SolveOptions> solving_parameters();
+/// Those of weights alone: --axes, and of the weights themselves.
+BoundParameters<SolveOptions> axes_parameters();
+BoundParameters<BlendshapeTransferOptions> blendshape_parameters();
 
 /// The options, with what an input that is a sequence says of itself.
 SourceOptions described(SourceOptions options, const NamedData& input);

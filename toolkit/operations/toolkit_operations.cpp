@@ -15,6 +15,7 @@ void add_toolkit(OperationTable& table) {
   table.add(transfer_operation());
   table.add(evaluate_operation());
   table.add(convert_operation());
+  table.add(retarget_operation());
 }
 
 }  // namespace mimetra

@@ -13,6 +13,7 @@
 #include "toolkit/operations/pipeline_parameters.h"
 #include "toolkit/operations/region_report.h"
 #include "toolkit/operations/toolkit_operations.h"
+#include "toolkit/operations/weight_tables.h"
 #include "toolkit/pipeline/memory.h"
 
 namespace mimetra {
@@ -56,16 +57,9 @@ TransferOptions options_of(const Invocation& invocation) {
   return options;
 }
 
-NamedData weight_table(const NamedData& target, const Solution& solution) {
-  Table table;
-  table.columns = {"time"};
-  const auto& names = model_of(target).expressions().names;
-  table.columns.insert(table.columns.end(), names.begin(), names.end());
-  for (int f = 0; f < solution.weights().rows(); ++f) {
-    table.rows.push_back({solution.sequence->times()[f]});
-    for (const double weight : solution.weights().row(f)) table.rows.back().push_back(weight);
-  }
-  return {target.name, std::move(table)};
+NamedData weights_of(const NamedData& target, const Solution& solution) {
+  return {target.name, weight_table({model_of(target).expressions().names, solution.weights(),
+                                     solution.sequence->times()})};
 }
 
 Json report_of(const NamedData& target, const TransferredTarget& transferred) {
@@ -125,6 +119,7 @@ void check_outputs(const Invocation& invocation) {
     if (solves_for_vertices(model_of(target), options.solving.space)) {
       throw UsageError("--weights-out: " + target.name + " is solved for vertices, not weights");
     }
+    check_live_link(invocation, "weights-out", model_of(target).expressions().names);
   }
 }
 
@@ -142,7 +137,7 @@ void add_targets(Outcome& outcome, Json& report, const Invocation& invocation,
     outcome.summary += summary_of(targets[t], transferred);
     Solution& solution = transferred.solution;
     if (invocation.wants("weights-out") && solution.weights().size() > 0) {
-      outcome.outputs["weights-out"].push_back(weight_table(targets[t], solution));
+      outcome.outputs["weights-out"].push_back(weights_of(targets[t], solution));
     }
     const FieldSequence& source = invocation.get<FieldSequence>("source");
     FieldSequence made =
@@ -240,6 +235,7 @@ Operation transfer_operation() {
       {"regions-out", DataKind::regions, "the regions, as .pvd over time", true},
       components_output(),
       {"weights-out", DataKind::table, "blendshape weights", true, true}};
+  operation.outputs.back().weights = true;
   operation.parameters = transfer_parameters().declared();
   const std::vector<Parameter> matching = match_parameters();
   operation.parameters.insert(operation.parameters.end(), matching.begin(), matching.end());
