@@ -51,6 +51,14 @@ TEST(PlainMatrix, LeavesOutWhatCannotMove) {
   EXPECT_LE(left.row(0).norm() + left.row(2).norm(), 1e-14);
 }
 
+TEST(PlainMatrix, IsAppliedToEveryFrame) {
+  const Eigen::MatrixXd matrix = Eigen::Matrix<double, 3, 2>{{1, 2}, {3, 4}, {5, 6}};
+  const Eigen::MatrixXd weights = Eigen::Matrix2d{{1, 0}, {0.5, -1}};
+  const Eigen::MatrixXd expected = Eigen::Matrix<double, 2, 3>{{1, 3, 5}, {-1.5, -2.5, -3.5}};
+  EXPECT_TRUE(multiplied(matrix, weights) == expected);
+  EXPECT_THROW(multiplied(matrix, Eigen::MatrixXd::Zero(2, 3)), std::invalid_argument);
+}
+
 TEST(ClippedWeights, StayWithinTheBounds) {
   Retargeting map = small_map();
   map.upper[2] = 0.5;

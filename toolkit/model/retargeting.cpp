@@ -96,6 +96,12 @@ Eigen::MatrixXd plain_matrix(const Retargeting& map) {
   return matrix;
 }
 
+Eigen::MatrixXd multiplied(const Eigen::MatrixXd& matrix, const Eigen::MatrixXd& weights) {
+  check_shape(weights, weights.rows(), matrix.cols(), "the weights' table");
+  fix_product_blocking();
+  return weights * matrix.transpose();
+}
+
 Eigen::MatrixXd clipped(const Eigen::MatrixXd& weights, const Retargeting& map) {
   check_shape(weights, weights.rows(), map.lower.size(), "the weights' table");
   Eigen::MatrixXd result = weights;

@@ -28,6 +28,9 @@ struct Retargeting {
 /// move. What programs take that multiply weights by a matrix.
 Eigen::MatrixXd plain_matrix(const Retargeting& map);
 
+/// M w of every frame (F x D_t) of the source's weights w (F x D_s).
+Eigen::MatrixXd multiplied(const Eigen::MatrixXd& matrix, const Eigen::MatrixXd& weights);
+
 /// Weights (F x D_t) within the bounds.
 Eigen::MatrixXd clipped(const Eigen::MatrixXd& weights, const Retargeting& map);
 

@@ -13,7 +13,6 @@
 #include "toolkit/io/whole_file.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/operations/sequence_parameters.h"
-#include "toolkit/operations/weight_tables.h"
 
 namespace mimetra {
 
@@ -321,7 +320,6 @@ void add_formats(OperationTable& table) {
                    .kind = DataKind::regions,
                    .extensions = {".txt"},
                    .read = read_regions_data});
-  add_weight_formats(table);
   table.add(Format{.name = "coefficients and cameras",
                    .kind = DataKind::fit,
                    .extensions = {".json"},

@@ -229,7 +229,7 @@ void add_map(const Invocation& invocation, const WeightTrack& track,
 
 /// How far a plain matrix' weights are, as they are and clipped.
 void add_matrix(const Invocation& invocation, const Eigen::MatrixXd& matrix, Retargeted& made) {
-  const Eigen::MatrixXd unbounded = made.driving * matrix.transpose();
+  const Eigen::MatrixXd unbounded = multiplied(matrix, made.driving);
   const WeightDifference of_clipped = difference_of(clipped(unbounded, *made.map), made.weights);
   const WeightDifference of_unbounded = difference_of(unbounded, made.weights);
   made.report["matrix"] = {{"clipped", json_of(of_clipped)}, {"unbounded", json_of(of_unbounded)}};

@@ -1,11 +1,13 @@
 #include "toolkit/operations/toolkit_operations.h"
 
 #include "toolkit/operations/formats.h"
+#include "toolkit/operations/weight_tables.h"
 
 namespace mimetra {
 
 void add_toolkit(OperationTable& table) {
   add_formats(table);
+  add_weight_formats(table);
   table.add(info_operation());
   table.add(check_operation());
   table.add(align_operation());
