@@ -23,7 +23,7 @@ Retargeting small_map() {
   return map;
 }
 
-std::string refusal(const Retargeting& map) {
+std::string refusal_of_map(const Retargeting& map) {
   return test::message_of<std::invalid_argument>([&] { map.check(); });
 }
 
@@ -81,25 +81,25 @@ TEST(WeightDifferences, AreRootMeanSquareMeanAndLargest) {
 TEST(RetargetingCheck, NamesWhatIsWrong) {
   Retargeting map = small_map();
   map.target_names[2] = "x";
-  EXPECT_THAT(refusal(map), HasSubstr("the target has the expression 'x' twice"));
+  EXPECT_THAT(refusal_of_map(map), HasSubstr("the target has the expression 'x' twice"));
   map = small_map();
   map.source_names.clear();
-  EXPECT_THAT(refusal(map), HasSubstr("the source has no expressions"));
+  EXPECT_THAT(refusal_of_map(map), HasSubstr("the source has no expressions"));
   map = small_map();
   map.linear.resize(3, 3);
-  EXPECT_THAT(refusal(map), HasSubstr("the linear part is 3 x 3, expected 3 x 2"));
+  EXPECT_THAT(refusal_of_map(map), HasSubstr("the linear part is 3 x 3, expected 3 x 2"));
   map = small_map();
   map.gram(0, 1) = 2;
-  EXPECT_THAT(refusal(map), HasSubstr("not symmetric"));
+  EXPECT_THAT(refusal_of_map(map), HasSubstr("not symmetric"));
   map = small_map();
   map.gram(2, 2) = -1;
-  EXPECT_THAT(refusal(map), HasSubstr("a negative eigenvalue"));
+  EXPECT_THAT(refusal_of_map(map), HasSubstr("a negative eigenvalue"));
   map = small_map();
   map.lower[1] = 2;
-  EXPECT_THAT(refusal(map), HasSubstr("the bounds of 'y' cross"));
+  EXPECT_THAT(refusal_of_map(map), HasSubstr("the bounds of 'y' cross"));
   map = small_map();
   map.linear(0, 0) = std::numeric_limits<double>::infinity();
-  EXPECT_THAT(refusal(map), HasSubstr("not finite"));
+  EXPECT_THAT(refusal_of_map(map), HasSubstr("not finite"));
 }
 
 }  // namespace

@@ -14,7 +14,7 @@ using testing::HasSubstr;
 constexpr int kDrivenFrames = 30, kDrivenExpressions = 5;
 
 /// The model in another unit, turned and shifted.
-BlendshapeModel elsewhere(const BlendshapeModel& model) {
+BlendshapeModel moved_rig(const BlendshapeModel& model) {
   const Eigen::Matrix3d turn =
       40 * Eigen::AngleAxisd(1.1, Eigen::Vector3d(1, -2, 0.5).normalized()).toRotationMatrix();
   Positions neutral = model.neutral() * turn.transpose();
@@ -43,7 +43,7 @@ class RetargetTest : public testing::Test {
 };
 
 TEST_F(RetargetTest, OntoItselfGivesTheWeightsWhereverItStands) {
-  const BlendshapeModel moved = elsewhere(source_);
+  const BlendshapeModel moved = moved_rig(source_);
   for (const BlendshapeModel* target : {&source_, &moved}) {
     const RetargetResult result = retarget(take(1), Target{"target", *target}, {.keep_map = true});
     // The condition number of these bumps is below 100, that of the similarity 1.
@@ -53,7 +53,7 @@ TEST_F(RetargetTest, OntoItselfGivesTheWeightsWhereverItStands) {
 }
 
 TEST_F(RetargetTest, KeepsAMapThatIsRightWhereWeightsAreSmall) {
-  const BlendshapeModel target = elsewhere(other_);
+  const BlendshapeModel target = moved_rig(other_);
   const auto error = [&](double amplitude) {
     const Animation source = take(amplitude);
     const RetargetResult result = retarget(source, Target{"target", target}, {.keep_map = true});
