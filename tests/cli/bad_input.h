@@ -39,6 +39,7 @@ std::vector<BadInput> fit_cases();
 std::vector<BadInput> region_cases();
 std::vector<BadInput> json_cases();
 std::vector<BadInput> match_cases();
+std::vector<BadInput> rig_cases();
 std::vector<BadInput> motion_cases();
 std::vector<BadInput> geometry_cases();
 std::vector<BadInput> request_cases();

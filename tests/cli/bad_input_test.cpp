@@ -18,7 +18,7 @@ std::vector<BadInput> all_cases() {
         test::scene_cases(), test::model_cases(), test::weight_cases(), test::eos_cases(),
         test::component_cases(), test::region_cases(), test::json_cases(), test::motion_cases(),
         test::geometry_cases(), test::request_cases(), test::output_cases(), test::hostile_cases(),
-        test::fit_cases(), test::match_cases()}) {
+        test::fit_cases(), test::match_cases(), test::rig_cases()}) {
     all.insert(all.end(), cases.begin(), cases.end());
   }
   return all;

@@ -217,9 +217,9 @@ TEST_F(Command, OperationsListsEveryCommand) {
   std::set<std::string> names;
   for (const json& entry : list) names.insert(entry.at("name").get<std::string>());
   EXPECT_EQ(names, (std::set<std::string>{"info", "check", "align", "geodesic", "decompose",
-                                          "regions", "transfer", "evaluate", "convert", "markers",
-                                          "fit", "render", "report", "sample", "operations",
-                                          "formats", "completion", "manual"}));
+                                          "regions", "transfer", "evaluate", "rig", "convert",
+                                          "markers", "fit", "render", "report", "sample",
+                                          "operations", "formats", "completion", "manual"}));
 }
 
 TEST_F(Command, SampleIsAModelWithAPerformance) {

@@ -135,6 +135,17 @@ class Operations(SampleTest):
                                       model.neutral.astype(np.float32))
         self.assertEqual(len(sample.weights), 120)
 
+    def test_makes_a_rig_as_the_command_does(self):
+        mesh, out = self.path / "bare.ply", self.path / "rig"
+        command("convert", self.actor, "-o", mesh, "--double")
+        command("rig", self.head, mesh, "-o", out)
+        made = mimetra.Model.load(out)
+        result = mimetra.rig(self.head, mesh)
+        self.assertEqual(list(result.out.expression_names), list(made.expression_names))
+        self.assertEqual(len(result.report["expressions"]), 12)
+        # Shapes in files are absolute: displacements lose what the positions round.
+        np.testing.assert_allclose(result.out.expressions, made.expressions, atol=1e-12)
+
     def test_parameters_are_numbers_text_paths_and_lists(self):
         rest, out = self.path / "rest.ply", self.path / "aligned.npy"
         command("convert", f"{self.head}@identity001=1", "-o", rest)

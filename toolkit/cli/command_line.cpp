@@ -6,9 +6,9 @@
 #include <CLI/CLI.hpp>
 
 #include "toolkit/cli/command.h"
-#include "toolkit/cli/suggestion.h"
 #include "toolkit/io/frame_series.h"
 #include "toolkit/io/mesh_formats.h"
+#include "toolkit/mesh/suggestion.h"
 #include "toolkit/mesh/text.h"
 #include "toolkit/operations/option_file.h"
 

@@ -47,6 +47,14 @@ std::vector<std::string> file_of_each(const Parameters& parameters, const std::s
                    std::to_string(targets) + ", between commas");
 }
 
+/// Of a sequence or a model.
+const Connectivity& faces_of(const Data& data) {
+  if (const auto* sequence = std::get_if<FieldSequence>(&data)) {
+    return sequence->frames->connectivity();
+  }
+  return std::get<ModelData>(data).model.connectivity();
+}
+
 /// Looks for markers from a call's source to its targets; the source's face is looked for once.
 class MarkersTo {
  public:
@@ -103,7 +111,7 @@ std::vector<Target> targets_of(const Invocation& invocation) {
   if (markers.empty() && parameters.is_set("index-base")) {
     throw UsageError("--index-base: there are no vertices to count without --markers");
   }
-  const FrameSource& source = *invocation.get<FieldSequence>("source").frames;
+  const Connectivity& source = faces_of(invocation.input("source").data);
   const MarkersTo markers_to(invocation);
   std::vector<Target> targets;
   for (std::size_t t = 0; t < given.size(); ++t) {
@@ -111,7 +119,7 @@ std::vector<Target> targets_of(const Invocation& invocation) {
     Target& target = targets.emplace_back(given[t].name, model);
     if (!markers.empty()) {
       std::vector<Marker> read = read_markers(markers[t], parameters.integer("index-base"));
-      if (same_faces(source.connectivity(), model.connectivity())) {
+      if (same_faces(source, model.connectivity())) {
         invocation.warn(given[t].name + ": has the source's faces; markers are left out");
       } else {
         target.match = std::move(read);
@@ -119,7 +127,7 @@ std::vector<Target> targets_of(const Invocation& invocation) {
     }
     if (markers.empty() && pairs.empty()) target.match = markers_to(given[t]);
     if (!pairs.empty()) {
-      target.match = read_correspondence(pairs[t], source.connectivity(), model.connectivity());
+      target.match = read_correspondence(pairs[t], source, model.connectivity());
     }
   }
   return targets;

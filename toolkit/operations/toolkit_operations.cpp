@@ -1,6 +1,7 @@
 #include "toolkit/operations/toolkit_operations.h"
 
 #include "toolkit/operations/formats.h"
+#include "toolkit/operations/rig_operation.h"
 
 namespace mimetra {
 
@@ -14,6 +15,7 @@ void add_toolkit(OperationTable& table) {
   table.add(regions_operation());
   table.add(transfer_operation());
   table.add(evaluate_operation());
+  table.add(rig_operation());
   table.add(convert_operation());
 }
 

@@ -6,6 +6,7 @@
 #include "toolkit/mesh/text.h"
 #include "toolkit/pipeline/joint_motion.h"
 #include "toolkit/pipeline/region_completer.h"
+#include "toolkit/pipeline/usability.h"
 
 namespace mimetra {
 
@@ -98,19 +99,14 @@ void take_over(const Regions& completed, Regions& regions, const Triangles& tria
   regions = with_added(regions, std::move(added), triangles);
 }
 
-/// Sound results miss 0.1 to 4 % of the deformation and flip 1 to 5 triangles of 100 000; results
-/// that people see to be wrong, 8 % and more, or 40 and more.
-constexpr double kMissedShare = 0.08;
-constexpr double kFlippedShare = 2e-4;
-
 /// Says where a result is not usable, by its error before head motion is given back.
 void note_usability(const Target& target, const TransferError& error,
                     const TransferOptions& options) {
   std::string wrong;
-  if (missed_share(error) > kMissedShare) {
+  if (missed_share(error) > kUnusableMissedShare) {
     wrong = percent(missed_share(error)) + " of the deformation is missing";
   }
-  if (flipped_share(error) > kFlippedShare) {
+  if (flipped_share(error) > kUnusableFlippedShare) {
     wrong += (wrong.empty() ? "" : ", and ") +
              readable(error.flipped / double(error.per_frame.size()), 2) +
              " triangles a frame are flipped";

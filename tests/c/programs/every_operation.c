@@ -98,6 +98,17 @@ static void fit(const mimetra_interface* m, mimetra_context* context, const char
   m->free_data(model);
 }
 
+/* The sample's head with all of its expressions, on itself. */
+static void rig(const mimetra_interface* m, mimetra_context* context, const char* head) {
+  enum { EXPRESSIONS = 12 };
+  mimetra_data* model = NULL;
+  OK(context, m->load_data(context, MIMETRA_MODEL, head, NULL, &model));
+  mimetra_call* call = call_on(m, context, "rig", "source", model);
+  OK(context, m->call_read(call, "target", head));
+  m->free_data(makes(m, context, call, "expressions", EXPRESSIONS));
+  m->free_data(model);
+}
+
 /* argv: a model's folder, and its mapping of landmarks. */
 int main(int argc, char** argv) {
   CHECK(argc == 3);
@@ -130,6 +141,7 @@ int main(int argc, char** argv) {
   OK(context, m->call_give(call, "target", flat));
   OK(context, m->call_set(call, "k", "1,2"));
   m->free_data(makes(m, context, call, "de_all", 3));
+  rig(m, context, argv[1]);
   OK(context, m->new_call(context, "sample", &call));
   m->free_data(makes(m, context, call, "weights", 120));
   fit(m, context, argv[1], argv[2]);

@@ -1,9 +1,9 @@
-#include "toolkit/cli/suggestion.h"
+#include "toolkit/mesh/suggestion.h"
 
 #include <algorithm>
 #include <numeric>
 
-namespace mimetra::cli {
+namespace mimetra {
 
 namespace {
 
@@ -39,4 +39,4 @@ std::string nearest_word(const std::string& word, const std::vector<std::string>
   return nearest;
 }
 
-}  // namespace mimetra::cli
+}  // namespace mimetra
