@@ -94,7 +94,9 @@ void DescribedTable::describe(const Format& format) {
   made.parameters = described(format.options(), format.reading, format.writing);
   if (format.fields) made.flags |= MIMETRA_WITH_FIELDS;
   if (format.read) made.use |= MIMETRA_READING;
-  if (format.write) made.use |= MIMETRA_WRITING;
+  // Weights of a sequence are what operations write; its value is poses.
+  const bool is_of_value = !format.weights || format.kind == DataKind::table;
+  if (format.write && is_of_value) made.use |= MIMETRA_WRITING;
 }
 
 void DescribedTable::describe(const Operation& operation) {

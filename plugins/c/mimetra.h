@@ -188,7 +188,7 @@ typedef struct mimetra_array {
  *               fields: region I32 N (strongest region, -1 outside), region_count I32 N, roi I32 N
  *               (0/1), in_L I32 T (0/1), ...; centers, radii and energies say nothing of regions
  *               that were made or read
- *   table       one array R per column; NaN is an empty cell
+ *   table       one array R per column; NaN is an empty cell | one column of words, STRING R
  *   landmarks   points F x L x 2 (pixels, y down, NaN: not seen), names STRING L, [times F],
  *               [confidence F]
  *   fit         | alpha F x I, beta F x D, identity_names STRING I, expression_names STRING D,
@@ -201,7 +201,8 @@ typedef struct mimetra_array {
  * tables and the points of landmarks. Only fields have a location; two of them may share a name
  * where one is on vertices and one on triangles, and data_array() then gives the first.
  *
- * Tables, pictures and fits are in no file that can be read: as inputs they are given as values.
+ * Of tables only weights are read from files; pictures and fits are in no file that can be read. As
+ * inputs they are given as values.
  */
 typedef struct mimetra_data mimetra_data;
 

@@ -210,6 +210,7 @@ void ShownArrays::show(const Table& table) {
     }
     add_numbers(table.columns[column].c_str(), {rows}, std::move(values));
   }
+  if (!table.word_column.empty()) add_strings(table.word_column.c_str(), table.words);
 }
 
 void ShownArrays::show(const Pictures& pictures) {

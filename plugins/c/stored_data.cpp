@@ -48,7 +48,9 @@ NamedData loaded_data(const mimetra_context& context, DataKind kind, const std::
 void write_data(const mimetra_context& context, const Data& data, const std::string& path,
                 const char* const* settings) {
   const OperationTable& table = context.table->operations();
-  const Format& format = table.writer({"output", kind_of(data), ""}, path);
+  Output output{"output", kind_of(data), ""};
+  output.weights = output.kind == DataKind::table;
+  const Format& format = table.writer(output, path);
   std::vector<Parameter> declared = format.writing;
   declared.push_back(kForce);
   const Parameters parameters = parameters_of(std::move(declared), settings);

@@ -49,16 +49,18 @@ const mimetra_port* mesh_input(const mimetra_operation& operation) {
   return needed_input(operation, MIMETRA_MODEL);
 }
 
-bool begins_with_mesh(const mimetra_operation& operation) {
-  const mimetra_port* first = *operation.inputs;
-  return first && (first == frames_input(operation) || first == mesh_input(operation));
-}
-
 bool makes(const mimetra_operation& operation, mimetra_kind kind) {
   for (auto output = operation.outputs; *output; ++output) {
     if (is_needed(**output) && (*output)->kind == kind) return true;
   }
   return false;
+}
+
+/// False where a model is made: layers have no expressions.
+bool begins_with_mesh(const mimetra_operation& operation) {
+  const mimetra_port* first = *operation.inputs;
+  return first && !makes(operation, MIMETRA_MODEL) &&
+         (first == frames_input(operation) || first == mesh_input(operation));
 }
 
 /// True for an operation whose sequence is made for what is shown on it.

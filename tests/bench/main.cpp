@@ -1,7 +1,9 @@
-// usage: mimetra_bench OUT [--quick] [--iterations]
+// usage: mimetra_bench OUT [--quick] [--iterations | --steady | --per-region]
 // Times kernels and whole commands; writes OUT/bench.json and OUT/growth.png, and a table to
 // stdout. With --iterations instead what more iterations of the decomposition give: the picture
-// OUT/iterations.png, and a table to stdout.
+// OUT/iterations.png, and a table to stdout; with --steady a table of what smoothness, symmetry and
+// exclusive expressions take from flicker, and what they cost; with --per-region one of what
+// weights of each region give.
 
 #include <algorithm>
 #include <cstdio>
@@ -20,8 +22,10 @@
 #include "tests/bench/io_bench.h"
 #include "tests/bench/iterations_bench.h"
 #include "tests/bench/numpy_bench.h"
+#include "tests/bench/per_region_bench.h"
 #include "tests/bench/report.h"
 #include "tests/bench/splocs_bench.h"
+#include "tests/bench/steady_bench.h"
 #include "tests/bench/subjects.h"
 #include "tests/bench/transfer_bench.h"
 #include "tests/bench/video_bench.h"
@@ -253,18 +257,49 @@ void run_iterations(const fs::path& out, bool quick) {
   std::printf("%s\nwritten: %s\n", table_of(curves).c_str(), (out / "iterations.png").c_str());
 }
 
+/// What flickers, and what helps.
+void run_steady(const fs::path&, bool quick) {
+  constexpr int kTalking = 1000;
+  const auto large = quick ? std::nullopt : ict(kTalking);
+  const Subject subject = large ? *large : head(0, quick ? 20 : kFrames);
+  std::printf("%s\n", table_of(steady_rows(subject, quick)).c_str());
+}
+
+/// The same subjects, and a target that cannot follow what one half of a face does.
+void run_per_region(const fs::path&, bool quick) {
+  std::vector<Subject> subjects;
+  if (!quick) {
+    constexpr int kTalking = 300;
+    for (auto& found : {surrey(), ict(kTalking), bent_facecap(), symmetric_ict(kTalking)}) {
+      if (found) subjects.push_back(*found);
+    }
+  }
+  if (subjects.empty()) subjects.push_back(head(0, quick ? 10 : kFrames));
+  std::vector<PerRegionRow> rows;
+  for (const Subject& subject : subjects) {
+    std::ranges::move(per_region_rows(subject, quick), std::back_inserter(rows));
+  }
+  std::printf("%s", table_of(rows).c_str());
+}
+
 }  // namespace
 }  // namespace mimetra::bench
 
 int main(int argc, char** argv) {
   const std::set<std::string> modes(argv + std::min(argc, 2), argv + argc);
   const bool quick = modes.contains("--quick"), iterations = modes.contains("--iterations");
-  if (argc < 2 || modes.size() != std::size_t{quick} + std::size_t{iterations}) {
-    std::fprintf(stderr, "usage: mimetra_bench OUT [--quick] [--iterations]\n");
+  const bool steady = modes.contains("--steady"), per_region = modes.contains("--per-region");
+  const int subjects = int{iterations} + int{steady} + int{per_region};
+  if (argc < 2 || modes.size() != static_cast<std::size_t>(int{quick} + subjects) || subjects > 1) {
+    std::fprintf(stderr,
+                 "usage: mimetra_bench OUT [--quick] [--iterations | --steady | --per-region]\n");
     return 2;
   }
   try {
-    const auto run = iterations ? mimetra::bench::run_iterations : mimetra::bench::run;
+    const auto run = iterations   ? mimetra::bench::run_iterations
+                     : steady     ? mimetra::bench::run_steady
+                     : per_region ? mimetra::bench::run_per_region
+                                  : mimetra::bench::run;
     run(std::filesystem::absolute(argv[1]), quick);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "mimetra_bench: %s\n", error.what());

@@ -75,14 +75,35 @@ Eigen::MatrixXd resampled(const Eigen::MatrixXd& rows, int count) {
 
 std::optional<Subject> captured(const std::string& name, const std::string& model,
                                 const std::string& source, const std::string& target,
-                                const std::string& track, int frames) {
+                                const std::string& capture, int frames) {
   const auto folder = test::shared_path("data") / model;
-  const auto weights = test::shared_path("data/captures") / track;
+  const auto weights = test::shared_path("data/captures") / capture;
   if (!std::filesystem::exists(folder) || !std::filesystem::exists(weights)) return {};
   const BlendshapeModel actor = read_blendshapes(folder.string() + source);
-  const Eigen::MatrixXd beta = weights_for(read_weights(weights), actor.expressions().names);
-  return Subject{name, actor.animate(beta.topRows(frames)),
-                 read_blendshapes(folder.string() + target), folder.string() + target};
+  const WeightTrack track = read_weights(weights);
+  const Eigen::MatrixXd beta = weights_for(track, actor.expressions().names);
+  const BlendshapeModel other = read_blendshapes(folder.string() + target);
+  return Subject{name, actor.animate(beta.topRows(frames), track.times.head(frames)), other,
+                 folder.string() + target, other.animate(beta.topRows(frames))};
+}
+
+/// Expressions NAME_L and NAME_R as one.
+BlendshapeModel without_sides(const BlendshapeModel& model) {
+  const ShapeBasis& given = model.expressions();
+  std::map<std::string, Eigen::VectorXd> fields;
+  for (int j = 0; j < given.size(); ++j) {
+    const std::string& name = given.names[static_cast<std::size_t>(j)];
+    const bool has_side = name.ends_with("_L") || name.ends_with("_R");
+    const auto [entry, added] = fields.try_emplace(
+        has_side ? name.substr(0, name.size() - 2) : name, given.displacements.col(j));
+    if (!added) entry->second += given.displacements.col(j);
+  }
+  ShapeBasis basis{{}, Eigen::MatrixXd(given.displacements.rows(), fields.size())};
+  for (const auto& [name, field] : fields) {
+    basis.displacements.col(basis.size()) = field;
+    basis.names.push_back(name);
+  }
+  return {model.shared_connectivity(), model.neutral(), std::move(basis)};
 }
 
 /// Stretched, and bent forwards above and below.
@@ -127,6 +148,15 @@ std::optional<Subject> surrey() {
 std::optional<Subject> ict(int frames) {
   return captured("ICT", "ict-face", "@identity003=1.5", "@identity007=2", "talking-60fps-1200.csv",
                   frames);
+}
+
+std::optional<Subject> symmetric_ict(int frames) {
+  std::optional<Subject> subject = ict(frames);
+  if (!subject) return {};
+  subject->name = "ICT, symmetric target";
+  subject->target = without_sides(subject->target);
+  subject->target_text.clear();
+  return subject;
 }
 
 std::optional<Subject> bent_facecap() {

@@ -15,6 +15,8 @@ struct Subject {
   BlendshapeModel target;
   /// The target as the command takes it; empty where it is in no file.
   std::string target_text = {};
+  /// What the target does in the performance, where its weights are known.
+  std::optional<MeshSequence> truth = {};
 };
 
 /// The built-in head, its triangles split in four `splits` times, with its performance slowed down
@@ -24,6 +26,10 @@ Subject head(int splits, int frames);
 /// The models beside the project, where they are.
 std::optional<Subject> surrey();         ///< 100 frames x 3448, 6 expressions
 std::optional<Subject> ict(int frames);  ///< x 6706, 53 expressions; at most 1200 frames
+
+/// The first frames of ict() by a target that knows only expressions of both halves together, which
+/// cannot follow a capture that is not symmetric.
+std::optional<Subject> symmetric_ict(int frames);
 
 std::optional<Subject> bent_facecap();  ///< 335 frames x 2694, 52 expressions; onto itself bent
 

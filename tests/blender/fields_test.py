@@ -131,6 +131,14 @@ class Fields(HostTest):
         bpy.ops.mimetra.info()
         self.assertIn("frames      120", bpy.data.texts["mimetra info"].as_string())
 
+    def test_weights_of_another_rig_are_text(self):
+        answer = bpy.ops.mimetra.retarget(source="source", target="target",
+                                          weights=str(self.head / "performance.csv"))
+        self.assertEqual(answer, {"FINISHED"})
+        lines = bpy.data.texts["retarget out.csv"].as_string().strip().splitlines()
+        self.assertTrue(lines[0].startswith("time,"))
+        self.assertEqual(len(lines), 121)
+
     def test_a_check_is_text(self):
         bpy.ops.mimetra.check()
         self.assertIn("usable, 120 frames of 4334 vertices",

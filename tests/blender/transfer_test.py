@@ -28,6 +28,13 @@ class Transfer(HostTest):
         self.assert_performs(*self.expected("-k", 30))
         self.assertEqual(len(self.target.modifiers), 0)
 
+    def test_makes_a_rig_with_the_sources_shape_keys(self):
+        self.bare_target()
+        self.assertEqual(bpy.ops.mimetra.rig(target="bare"), {"FINISHED"})
+        made = bpy.context.view_layer.objects.active
+        names = [key.name for key in self.source.data.shape_keys.key_blocks]
+        self.assertEqual([key.name for key in made.data.shape_keys.key_blocks], names)
+
     def test_takes_the_parameters_of_the_command(self):
         bpy.ops.mimetra.transfer(target="target", k=8, radius=0.2, ridge=0.1, region="support")
         self.assert_performs(*self.expected("-k", 8, "--radius", 0.2, "--ridge", 0.1, "--region",

@@ -13,12 +13,13 @@ using test::BadInput;
 
 std::vector<BadInput> all_cases() {
   std::vector<BadInput> all;
-  for (const auto& cases :
-       {test::mesh_cases(), test::sequence_cases(), test::array_cases(), test::hdf5_cases(),
-        test::scene_cases(), test::model_cases(), test::weight_cases(), test::eos_cases(),
-        test::component_cases(), test::region_cases(), test::json_cases(), test::motion_cases(),
-        test::geometry_cases(), test::request_cases(), test::output_cases(), test::hostile_cases(),
-        test::fit_cases(), test::match_cases()}) {
+  for (const auto& cases : {test::mesh_cases(),     test::sequence_cases(), test::array_cases(),
+                            test::hdf5_cases(),     test::scene_cases(),    test::model_cases(),
+                            test::weight_cases(),   test::eos_cases(),      test::component_cases(),
+                            test::region_cases(),   test::json_cases(),     test::motion_cases(),
+                            test::geometry_cases(), test::request_cases(),  test::output_cases(),
+                            test::hostile_cases(),  test::fit_cases(),      test::match_cases(),
+                            test::retarget_cases(), test::rig_cases()}) {
     all.insert(all.end(), cases.begin(), cases.end());
   }
   return all;

@@ -162,6 +162,37 @@ TEST_F(Command, TransferToTheSameHeadGivesTheSourceBack) {
   EXPECT_LT((found.weights - performance().weights).cwiseAbs().maxCoeff(), 1e-9);
 }
 
+TEST_F(Command, TransferWritesWeightsOfEachRegionThatRegionsOutNumbers) {
+  const auto result = run(
+      "transfer head --weights take.csv head@wide=1 head@wide=2 -k 3 --per-region -o out --json "
+      "--weights-out w.csv --regions-out r.json");
+  ASSERT_EQ(result.code, 0) << result.err;
+  const json report = json::parse(result.out);
+  const auto regions = report.at("regions").at("regions").size();
+  for (const json& target : report.at("targets")) {
+    EXPECT_EQ(target.at("per_region").at("regions"), regions);
+    EXPECT_LT(target.at("per_region").at("violation").get<double>(), 1e-12);
+    EXPECT_EQ(target.at("added_regions").size(), 0u);
+  }
+  const std::string name = performance().names.front();
+  std::string header = text_of(folder_ / "w-head@wide=1.csv");
+  header.resize(header.find('\n'));
+  EXPECT_THAT(header, HasSubstr("time," + name + "@0,"));
+  for (const std::string region : {"@0,", "@1,", "@background"}) {
+    EXPECT_THAT(header, HasSubstr(region));
+  }
+  // One column each of the background and of every region.
+  EXPECT_EQ(static_cast<std::size_t>(std::ranges::count(header, '@')),
+            (regions + 1) * performance().names.size());
+}
+
+TEST_F(Command, EvaluateMeasuresWeightsOfEachRegionBesideTheWholeFaces) {
+  const auto result = run("evaluate head --weights take.csv head@wide=1 -k 3 --per-region --json");
+  ASSERT_EQ(result.code, 0) << result.err;
+  const json rows = json::parse(result.out).at("rows");
+  EXPECT_LE(rows[0].at("de_all").get<double>(), rows[1].at("de_all").get<double>() * (1 + 1e-12));
+}
+
 TEST_F(Command, TransferWithSeveralTargetsGivesEachAFolder) {
   const auto result =
       run("transfer head --weights take.csv head@wide=1 head@wide=2 -k 3 -o out --json");
@@ -216,10 +247,11 @@ TEST_F(Command, OperationsListsEveryCommand) {
   const json list = json::parse(run("operations --json").out)["operations"];
   std::set<std::string> names;
   for (const json& entry : list) names.insert(entry.at("name").get<std::string>());
-  EXPECT_EQ(names, (std::set<std::string>{"info", "check", "align", "geodesic", "decompose",
-                                          "regions", "transfer", "evaluate", "convert", "markers",
-                                          "fit", "render", "report", "sample", "operations",
-                                          "formats", "completion", "manual"}));
+  EXPECT_EQ(names,
+            (std::set<std::string>{"info",     "check",      "align",    "geodesic",   "decompose",
+                                   "regions",  "transfer",   "evaluate", "rig",        "convert",
+                                   "retarget", "markers",    "fit",      "render",     "report",
+                                   "sample",   "operations", "formats",  "completion", "manual"}));
 }
 
 TEST_F(Command, SampleIsAModelWithAPerformance) {

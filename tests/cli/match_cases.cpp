@@ -16,6 +16,18 @@ std::function<void(const fs::path&)> markers(const std::string& text) {
   };
 }
 
+/// Each marker of the source with its mirror image: a patch is as good as flat, and only a lifted
+/// corner tells.
+std::string exchanged_sides() {
+  std::string text;
+  for (const int y : {0, 3, 7}) {
+    for (const int x : {0, 3, 7}) {
+      text += std::to_string(30 * y + 2 * x) + ' ' + std::to_string(8 * y + 7 - x) + '\n';
+    }
+  }
+  return text;
+}
+
 std::function<void(const fs::path&)> correspondence(const std::string& text) {
   return [text](const fs::path& folder) {
     write_bytes_to(folder / "small.obj", small_patch());
@@ -43,6 +55,10 @@ std::vector<BadInput> match_cases() {
       refused("markers_from_1_as_from_0", patch_markers(1), 4,
               {"vertex 225 of the source", "counted from 1", "--index-base 1"}),
       refused("markers_from_0_as_from_1", right, 3, {"m.txt", "line 1"}, " --index-base 1"),
+      refused("markers_with_left_and_right_exchanged", exchanged_sides(), 4,
+              {"small: the markers fit a mirror image of the source", "exchange them"}),
+      refused("ignored_files_of_given_markers", right, 2,
+              {"--ignore-files: nothing is looked for with --markers"}, " --ignore-files"),
       refused("markers_without_pairs", "# nothing\n", 3, {"m.txt"}),
       refused("marker_files_of_too_many_targets", right, 2,
               {"--markers: 2 files, expected one for all targets or one for each of 1"}, ",m.txt"),

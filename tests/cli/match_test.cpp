@@ -89,6 +89,53 @@ TEST_F(MatchTest, TakesAFileForEachTargetOrOneForAll) {
   EXPECT_TRUE(listing("out/other").contains("correspondence.json"));
 }
 
+TEST_F(MatchTest, NamesTheLinesOfExchangedMarkers) {
+  // Lines 2 and 4 have each other's target.
+  std::string markers = test::patch_markers(0);
+  const auto replace = [&markers](const std::string& old, const std::string& by) {
+    markers.replace(markers.find(old), old.size(), by);
+  };
+  replace("6 3\n", "6 24!\n");
+  replace("90 24\n", "90 3\n");
+  replace("!", "");
+  write("exchanged.txt", markers);
+  const auto result =
+      run(std::string(kSource) + "small.obj --full --markers exchanged.txt -o x.npy");
+  EXPECT_EQ(result.code, 0) << result.err;
+  EXPECT_THAT(result.err, HasSubstr("exchanged.txt, line 2 (vertices 6 and 24) and exchanged.txt, "
+                                    "line 4 (vertices 90 and 3) are likely exchanged"));
+}
+
+TEST_F(MatchTest, ForeseesInADryRunWhatMarkersAreRefusedFor) {
+  write("wrong.txt", test::patch_markers(1));
+  for (const std::string command : {"transfer head --weights take.csv small.obj --full -o x.npy ",
+                                    "evaluate head --weights take.csv small.obj -k 2 "}) {
+    const auto wrong = run(command + "--markers wrong.txt --dry-run");
+    EXPECT_EQ(wrong.code, 4) << command;
+    EXPECT_THAT(wrong.err, HasSubstr("--index-base 1"));
+    const auto right = run(command + "--markers m.txt --dry-run");
+    EXPECT_EQ(right.code, 0) << right.err;
+  }
+  EXPECT_FALSE(listing().contains("x.npy"));
+}
+
+TEST_F(MatchTest, ForeseesInADryRunFilesThatAreNobodys) {
+  write("x.correspondence.json", "mine");
+  write("x.rest.ply", "mine");
+  const auto planned =
+      run(std::string(kSource) + "small.obj --full --markers m.txt -o x.npy --dry-run");
+  EXPECT_EQ(planned.code, 0);
+  EXPECT_THAT(planned.err, HasSubstr("x.correspondence.json: stands without 'x.npy'"));
+  EXPECT_THAT(planned.err, HasSubstr("x.rest.ply: stands without 'x.npy'"));
+}
+
+TEST_F(MatchTest, TakesSeveralMarkerFilesFromAConfiguration) {
+  write("other.obj", test::small_patch());
+  write("config.json", R"({"markers": ["m.txt", "m.txt"], "full": true})");
+  report_of(std::string(kSource) + "small.obj other.obj --config config.json -o out/");
+  EXPECT_TRUE(listing("out").contains("other"));
+}
+
 TEST_F(MatchTest, IdentityAsAFileGivesTheSameVertices) {
   const MorphableModel head = model();
   const Connectivity& faces = head.connectivity();

@@ -49,29 +49,5 @@ TEST(Markers, ThatAnAffineMapExplainsLeaveNothing) {
   EXPECT_LT(affine_residual(kOctahedron, source, target), 1e-14);
 }
 
-TEST(Markers, OfAnotherBaseFitBetterShifted) {
-  const Positions sphere = test::sphere(2).positions;
-  // The numbers of neighbours tell nothing about places: shifted markers are scattered.
-  const std::vector<Marker> right = {{0, 0},   {7, 7},   {12, 12}, {25, 25},
-                                     {33, 33}, {47, 47}, {60, 60}};
-  std::vector<Marker> wrong;
-  for (const Marker& marker : right) wrong.push_back({marker.source + 1, marker.target + 1});
-  Positions target = sphere;
-  // The same sphere with its vertices in an order of its own.
-  std::vector<Marker> right_there = right, wrong_there;
-  for (Marker& marker : right_there) marker.target = 65 - marker.target;
-  for (int v = 0; v < 66; ++v) target.row(65 - v) = sphere.row(v);
-  for (const Marker& m : right_there) wrong_there.push_back({m.source + 1, m.target + 1});
-  EXPECT_TRUE(fit_better_shifted(wrong_there, 1, sphere, target));
-  EXPECT_FALSE(fit_better_shifted(right_there, 1, sphere, target));
-  EXPECT_FALSE(fit_better_shifted(right_there, -1, sphere, target));
-}
-
-TEST(Markers, BeyondTheMeshAreOfAnotherBase) {
-  const Positions sphere = test::sphere(1).positions;
-  const std::vector<Marker> from_one = {{1, 1}, {2, 2}, {3, 3}, {4, 4}, {5, 5}, {18, 18}};
-  EXPECT_TRUE(fit_better_shifted(from_one, 1, sphere, sphere));
-}
-
 }  // namespace
 }  // namespace mimetra

@@ -46,6 +46,19 @@ TEST(Pairing, OfAMeshWithItselfCarriesEachVertexByItself) {
   }
 }
 
+TEST(Pairing, OfAMeshThatIsInsideOutCarriesEachVertexByItself) {
+  const test::Shape sphere = test::sphere(2);
+  test::Shape turned = sphere;
+  turned.triangles.col(1).swap(turned.triangles.col(2));
+  const Pairing pairing(test::mesh_of(sphere), test::mesh_of(turned),
+                        Correspondence::identity(128));
+  EXPECT_TRUE(pairing.is_one_to_one());
+  for (VertexIndex v = 0; v < pairing.target_vertices(); ++v) {
+    ASSERT_EQ(pairing.carriers(v).size(), 1u);
+    EXPECT_EQ(pairing.carriers(v).front().vertex, v);
+  }
+}
+
 TEST(Pairing, FindsTheCornersOfATriangleThatIsWrittenFromAnotherOne) {
   const test::Shape sphere = test::sphere(2);
   test::Shape other = sphere;

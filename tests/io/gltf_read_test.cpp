@@ -245,6 +245,15 @@ TEST_F(GltfFiles, TextureCoordinatesHaveTheirOriginBelow) {
   EXPECT_EQ(faces.texture.coordinates[2], Eigen::Vector2d(0.25, 0.75));
 }
 
+TEST_F(GltfFiles, ColoursAndFurtherTexturesAreSaidToBeLeftOut) {
+  GltfBuilder gltf;
+  const int colours = gltf.points(quarters());
+  GltfJson& attributes = gltf.primitive(gltf.points(quarters()), gltf.faces(eight()))["attributes"];
+  attributes["COLOR_0"] = colours;
+  read(gltf.glb());
+  EXPECT_THAT(notes_, ElementsAre(HasSubstr("are left out: COLOR_0")));
+}
+
 TEST_F(GltfFiles, NodesAreJoinedWhereTheyStand) {
   const BlendshapeModel face = model(two_nodes(plain()).glb());
   ASSERT_EQ(face.vertices(), 12);

@@ -1,3 +1,4 @@
+#include <limits>
 #include <random>
 
 #include <gtest/gtest.h>
@@ -172,6 +173,55 @@ TEST(SmoothWeights, AreTheSingleFramesWhereThereAreTooFew) {
   const Clip clip = noisy_clip(2, 3);
   const Eigen::MatrixXd single = random(2, 3).cwiseAbs();
   EXPECT_EQ(smooth_weights({clip.gram}, clip.h, even(clip.h.rows()), 1, single), single);
+}
+
+TEST(SmoothWeights, KeepBoundsOfEachFrameAndGivenWeights) {
+  const Clip clip = noisy_clip(25, 4);
+  WeightBounds bounds{Eigen::MatrixXd::Zero(25, 4), Eigen::MatrixXd::Ones(25, 4)};
+  bounds.lower.col(0).setConstant(-0.5);
+  bounds.upper.col(1).setConstant(0.4);
+  for (int f = 5; f < 15; ++f) bounds.lower(f, 2) = bounds.upper(f, 2) = 0.3;
+  for (const double factor : {0.1, 10.0}) {
+    const double mu = factor * clip.mean_diagonal();
+    const Eigen::MatrixXd beta = smooth_weights({clip.gram}, clip.h, even(25), mu, clip.h, bounds);
+    EXPECT_LT(smooth_optimality_violation({clip.gram}, clip.h, even(25), mu, beta, bounds), 1e-9);
+    DenseProblem dense(clip.gram, clip.h, mu);
+    dense.lower = bounds.lower.reshaped<Eigen::RowMajor>();
+    dense.upper = bounds.upper.reshaped<Eigen::RowMajor>();
+    EXPECT_LT(dense.violation(beta), 1e-9);
+    EXPECT_EQ(beta.col(2).segment(5, 10), Eigen::VectorXd::Constant(10, 0.3));
+  }
+}
+
+TEST(SmoothWeights, ConvergeWherePenaltiesAreFarAboveTheData) {
+  // A second at 60 frames a second and beyond: what is left of the penalty in a residual is
+  // rounding, which grows with it and must not be waited for.
+  const Clip clip = noisy_clip(120, 6);
+  for (const double frames : {30.0, 60.0, 240.0}) {
+    const double mu = std::pow(frames, 4) * clip.mean_diagonal();
+    const Eigen::MatrixXd beta = smooth(clip, mu);
+    const double rounding = 16 * mu * std::numeric_limits<double>::epsilon() * 16;
+    EXPECT_LT(smooth_optimality_violation({clip.gram}, clip.h, even(120), mu, beta),
+              1e-9 + rounding / clip.h.lpNorm<Eigen::Infinity>())
+        << frames;
+  }
+}
+
+TEST(SmoothWeights, RefuseBoundsThatDoNotFit) {
+  const Clip clip = noisy_clip(5, 4);
+  const auto with = [&](const WeightBounds& bounds) {
+    smooth_weights({clip.gram}, clip.h, even(5), 1, clip.h, bounds);
+  };
+  EXPECT_THROW(with({Eigen::MatrixXd::Zero(4, 4), {}}), std::invalid_argument);
+  EXPECT_THROW(with({Eigen::MatrixXd::Constant(5, 4, 2), {}}), std::invalid_argument);
+}
+
+TEST(SmoothWeights, KnowTheViolationOfTheDenseProblem) {
+  const Clip clip = noisy_clip(12, 4);
+  const Eigen::MatrixXd beta = (random(12, 4).array() * 0.6 + 0.5).cwiseMax(0).cwiseMin(1);
+  const DenseProblem dense(clip.gram, clip.h, 3);
+  EXPECT_NEAR(smooth_optimality_violation({clip.gram}, clip.h, even(12), 3, beta),
+              dense.violation(beta), 1e-12);
 }
 
 TEST(SmoothnessPenalty, IsTheFourthPowerOfTheTimeConstantInFrames) {

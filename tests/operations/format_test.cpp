@@ -65,8 +65,8 @@ TEST(FormatTable, ListsWhatItKnowsWhereNothingReadsAFile) {
                                            HasSubstr("not from '.mp4'"))));
   EXPECT_THAT([&] { table.reader(DataKind::components, "take.npy"); },
               ThrowsMessage<UsageError>(HasSubstr("components can be read from .h5 or .hdf5")));
-  EXPECT_THAT([&] { table.reader(DataKind::table, "take.csv"); },
-              ThrowsMessage<UsageError>(HasSubstr("no file holds a value of the kind 'table'")));
+  EXPECT_THAT([&] { table.reader(DataKind::pictures, "take.csv"); },
+              ThrowsMessage<UsageError>(HasSubstr("no file holds a value of the kind 'pictures'")));
 }
 
 TEST(FormatTable, RefusesAnExtensionThatItsKindHasAlready) {

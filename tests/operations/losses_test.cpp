@@ -72,6 +72,18 @@ TEST(Losses, OfTimesAreNamedWhereSinglePrecisionMovesFrames) {
   EXPECT_THAT(notes_on(at(40000.1), "take.npz"), Not(Contains(HasSubstr("exact times"))));
 }
 
+TEST(Losses, OfOneFrameAreItsTime) {
+  const FieldSequence given = quads(false);
+  const MeshSequence& frames = given.sequence();
+  const auto at = [&](double time) {
+    return FieldSequence(MeshSequence(frames.shared_connectivity(), frames.positions().topRows(1),
+                                      Eigen::VectorXd::Constant(1, time), frames.rest()));
+  };
+  EXPECT_THAT(notes_on(at(0.2), "pose.ply"), Contains(HasSubstr("time (its frame is at 0.2 s)")));
+  EXPECT_THAT(notes_on(at(0), "pose.ply"), Not(Contains(HasSubstr("time ("))));
+  EXPECT_THAT(notes_on(at(0.2), "pose/"), Not(Contains(HasSubstr("time ("))));
+}
+
 TEST(Losses, AreNoneWhereTheOnlyFrameIsTheRestPoseAndNumbersAreKept) {
   Connectivity faces = Connectivity::from_triangles(3, (Triangles(1, 3) << 0, 1, 2).finished());
   const Positions triangle = test::grid(3, 3).positions.bottomRows(3);

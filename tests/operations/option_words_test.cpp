@@ -20,6 +20,8 @@ TEST(OptionWords, AreThoseOfTheHost) {
             "take more regions (-k, --radius) or --full");
   EXPECT_EQ(library("take more regions (-k, --radius) or --full"),
             "take more regions (option 'k', option 'radius') or option 'full'");
+  EXPECT_EQ(command("--l1: no weights"), "--l1: no weights");
+  EXPECT_EQ(library("--l1: no weights"), "option 'l1': no weights");
   EXPECT_EQ(library("--source-rest: vertex 3"), "option 'source-rest': vertex 3");
   EXPECT_EQ(library("use --force; write -o NAME"),
             "use option 'overwrite'; write option 'out' NAME");

@@ -133,6 +133,9 @@ class Operations(HostTest):
             rows = list(csv.DictReader(file))
         self.assertEqual([table.GetColumnName(i) for i in range(table.GetNumberOfColumns())],
                          list(rows[0]))
+        words = table.GetColumnByName("by")
+        self.assertEqual([words.GetValue(i) for i in range(words.GetNumberOfTuples())],
+                         [row.pop("by") for row in rows])
         for name in rows[0]:
             if name.endswith("_seconds"):
                 continue

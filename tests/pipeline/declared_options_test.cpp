@@ -15,6 +15,7 @@ TEST(DeclaredOptions, AreTheRangesThatAlgorithmsCheck) {
   expect_ranges<DecompositionOptions>();
   expect_ranges<RegionOptions>();
   expect_ranges<BlendshapeTransferOptions>();
+  expect_ranges<LocalWeightsOptions>();
   expect_ranges<VertexTransferOptions>();
   expect_ranges<DistanceOptions>();
   expect_ranges<AnalysisOptions>();

@@ -48,6 +48,22 @@ TEST(ComparedOpenings, TellWhatClosesOnTheSourceOnly) {
   EXPECT_FALSE((ComparedOpening{"mouth", 0.3, 0.5, 0.5, 0.6}).stays_open());
 }
 
+TEST(OpeningsAtRest, AreThoseOfTheRestPoses) {
+  const auto at_rest = openings_at_rest(test::sheet(true, 0.1), test::sheet(true, 0.9), mouths());
+  ASSERT_EQ(at_rest.size(), 1u);
+  EXPECT_EQ(at_rest[0].name, "mouth");
+  EXPECT_NEAR(at_rest[0].source, 0.1 / 24, 1e-12);
+  EXPECT_NEAR(at_rest[0].target, 0.9 / 24, 1e-12);
+}
+
+TEST(OpeningsAtRest, DifferWhereOneMouthIsOpen) {
+  EXPECT_TRUE((OpeningAtRest{"mouth", 0, 0.3}).differs());
+  EXPECT_TRUE((OpeningAtRest{"mouth", 0.3, 0}).differs());
+  EXPECT_FALSE((OpeningAtRest{"mouth", 0.3, 0.35}).differs());
+  EXPECT_FALSE((OpeningAtRest{"left eye", 0.2, 0.4}).differs());
+  EXPECT_TRUE((OpeningAtRest{"left eye", 0, 0.35}).differs());
+}
+
 TEST(ComparedOpenings, RefuseAnotherNumberOfFrames) {
   EXPECT_THROW(compared_openings(talking({0}, 1), talking({0, 0}, 1), mouths()), MismatchError);
 }

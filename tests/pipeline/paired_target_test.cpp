@@ -186,6 +186,58 @@ TEST_F(FinerTargetTest, IsToldWhenMarkersWouldFitAsOtherVertices) {
                                                            "source")));
 }
 
+TEST_F(FinerTargetTest, IsRefusedWhereMarkersFitMuchBetterAsOtherVertices) {
+  // The same surface, its 17 x 17 vertices counted in another order.
+  std::vector<VertexIndex> order(289);
+  for (VertexIndex v = 0; v < 289; ++v) order[v] = 17 * (v % 17) + v / 17;
+  Positions positions(289, 3);
+  for (VertexIndex v = 0; v < 289; ++v) positions.row(order[v]) = mesh_->neutral().row(v);
+  Triangles triangles = mesh_->triangles();
+  for (VertexIndex& corner : triangles.reshaped()) corner = order[corner];
+  const BlendshapeModel other(
+      std::make_shared<Connectivity>(Connectivity::from_triangles(289, triangles)), positions,
+      ShapeBasis{{}, Eigen::MatrixXd(positions.size(), 0)});
+  std::vector<Marker> markers;
+  for (const Marker& marker : markers_) markers.push_back({marker.source, order[marker.target]});
+  EXPECT_NO_THROW(MatchedTarget(take_, {"fine", other, markers}));
+  for (Marker& marker : markers) marker = {marker.source + 1, marker.target + 1};
+  const auto work = [&] { MatchedTarget(take_, {"fine", other, markers}); };
+  EXPECT_EQ(test::topic_of(work), Topic::shifted_markers);
+}
+
+TEST_F(FinerTargetTest, FollowsAlikeWhereItIsInsideOut) {
+  Triangles triangles = mesh_->triangles();
+  triangles.col(1).swap(triangles.col(2));
+  const BlendshapeModel turned(
+      std::make_shared<Connectivity>(Connectivity::from_triangles(289, triangles)),
+      mesh_->neutral(), ShapeBasis{{}, Eigen::MatrixXd(3 * 289, 0)});
+  Noted noted;
+  const auto upright = transferred({"fine", *mesh_, markers_}, {.full = true});
+  const auto inside_out =
+      transferred({"fine", turned, markers_}, {.full = true, .notes = noted.sink()});
+  ASSERT_EQ(noted.notes.size(), 1u);
+  EXPECT_THAT(noted.notes.front().text, HasSubstr("inside out"));
+  // Sums over a triangle's corners in another order: rounding.
+  EXPECT_LT(
+      (test::frames_of(inside_out.solution.sequence) - test::frames_of(upright.solution.sequence))
+          .cwiseAbs()
+          .maxCoeff(),
+      1e-9);
+}
+
+TEST_F(FinerTargetTest, IsToldOfExchangedMarkersWithTheirPlaces) {
+  std::swap(markers_[2].target, markers_[4].target);
+  Target target{"fine", *mesh_, markers_};
+  for (std::size_t i = 1; i <= markers_.size(); ++i) {
+    target.marker_places.push_back("m.txt, line " + std::to_string(i));
+  }
+  Noted noted;
+  const MatchedTarget matched(take_, target, {.notes = noted.sink()});
+  EXPECT_THAT(noted.notes.front().text, HasSubstr("fine: m.txt, line 3 (vertices 9 and 44) and "
+                                                  "m.txt, line 5 (vertices 44 and 9) are likely "
+                                                  "exchanged"));
+}
+
 TEST_F(PairedTargetTest, NotesAPoorCorrespondence) {
   Correspondence far = same_;
   far.residuals.setConstant(5);

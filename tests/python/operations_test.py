@@ -109,10 +109,33 @@ class Operations(SampleTest):
         table = mimetra.evaluate(self.arrays, self.actor, k=[3, 6], out=True).out
         with open(out, newline="") as file:
             rows = list(csv.DictReader(file))
+        self.assertEqual(table["by"], ["energy", "energy", ""])
+        self.assertEqual(table["by"], [row.pop("by") for row in rows])
         for name in rows[0]:
             if not name.endswith("_seconds"):
                 self.assert_same(table[name], np.array([float(row[name] or "nan") for row in rows]),
                                  name)
+
+    def test_retargets_weights_as_the_command_does(self):
+        track, out, kept = (self.path / name for name in ["rig.csv", "double.csv", "map.json"])
+        names = mimetra.Model.load(self.actor).expression_names
+        times = np.linspace(0, 1, 5)
+        columns = {"time": times,
+                   **{name: times * (number % 3) / 3 for number, name in enumerate(names)}}
+        np.savetxt(track, np.array([*columns.values()]).T, fmt="%.17g", delimiter=",",
+                   header=",".join(columns), comments="")
+        command("retarget", self.actor, self.head, "--weights", track, "-o", out,
+                "--map-out", kept)
+        result = mimetra.retarget(source=self.actor, target=self.head,
+                                  weights=mimetra.Table(columns))
+        again = mimetra.retarget(weights=track, map=kept)
+        with open(out, newline="") as file:
+            rows = list(csv.DictReader(file))
+        self.assertGreater(len(rows[0]), 12)
+        for name in rows[0]:
+            self.assert_same(result.out[name], np.array([float(row[name]) for row in rows]), name)
+            # The map is linear at the neutral; the weights are below 1.
+            self.assertLess(np.abs(again.out[name] - result.out[name]).max(), 0.1)
 
     def test_fits_as_the_command_does(self):
         lines = (self.head / "landmarks68.txt").read_text().splitlines()
@@ -134,6 +157,17 @@ class Operations(SampleTest):
         np.testing.assert_array_equal(sample.neutral.astype(np.float32),
                                       model.neutral.astype(np.float32))
         self.assertEqual(len(sample.weights), 120)
+
+    def test_makes_a_rig_as_the_command_does(self):
+        mesh, out = self.path / "bare.ply", self.path / "rig"
+        command("convert", self.actor, "-o", mesh, "--double")
+        command("rig", self.head, mesh, "-o", out)
+        made = mimetra.Model.load(out)
+        result = mimetra.rig(self.head, mesh)
+        self.assertEqual(list(result.out.expression_names), list(made.expression_names))
+        self.assertEqual(len(result.report["expressions"]), 12)
+        # Shapes in files are absolute: displacements lose what the positions round.
+        np.testing.assert_allclose(result.out.expressions, made.expressions, atol=1e-12)
 
     def test_parameters_are_numbers_text_paths_and_lists(self):
         rest, out = self.path / "rest.ply", self.path / "aligned.npy"

@@ -110,7 +110,7 @@ std::vector<Command> commands_of(const OperationTable& table) {
     }
     for (Input input : operation.inputs) {
       input.help = table.help(input);
-      if (input.optional || input.named)
+      if (input.is_option())
         command.options.push_back(option_of(table, input));
       else
         command.positionals.push_back(std::move(input));

@@ -6,9 +6,9 @@
 #include <CLI/CLI.hpp>
 
 #include "toolkit/cli/command.h"
-#include "toolkit/cli/suggestion.h"
 #include "toolkit/io/frame_series.h"
 #include "toolkit/io/mesh_formats.h"
+#include "toolkit/mesh/suggestion.h"
 #include "toolkit/mesh/text.h"
 #include "toolkit/operations/option_file.h"
 
@@ -39,7 +39,7 @@ void declare(CLI::App& app, const Command& command, Slots& slots) {
         ->type_name(upper(input.name))
         ->expected(1, input.repeated ? CLI::detail::expected_max_vector_size : 1)
         ->allow_extra_args(input.repeated)
-        ->required();
+        ->required(!input.optional);
   }
   for (const CommandOption& option : command.options) {
     const std::string forms = joined(option.forms, ",");
@@ -99,9 +99,10 @@ Request request_of(const CLI::App& app, const Command& command, const Slots& slo
   request.parameters = parameters_of(app, command, slots);
   request.inputs = slots.inputs;
   for (const Input& input : command.operation->inputs) {
-    const bool is_option = input.optional || input.named;
-    if (const auto text = slots.value(input.name); is_option && text) {
+    if (const auto text = slots.value(input.name); input.is_option() && text) {
       request.inputs[input.name] = {*text};
+    } else if (input.positional && request.inputs[input.name].empty()) {
+      request.inputs.erase(input.name);
     }
   }
   for (const Output& output : command.operation->outputs) {

@@ -49,7 +49,8 @@ std::string synopsis(const Command& command) {
     if (option.required) text += " " + option.forms.front() + " " + option.value;
   }
   for (const Input& input : command.positionals) {
-    text += " " + upper(input.name) + (input.repeated ? "..." : "");
+    const std::string name = upper(input.name) + (input.repeated ? "..." : "");
+    text += input.optional ? " [" + name + "]" : " " + name;
   }
   return text;
 }

@@ -119,6 +119,7 @@ void run_command(const OperationTable& table, const Request& request) {
   Call call(table, std::move(asked));
   call.load();
   if (request.dry_run) {
+    call.foresee();
     bar.clear();
     print_result(request, planned(*request.operation, call.invocation()), warnings);
     return;

@@ -6,6 +6,7 @@
 #include <string_view>
 #include <utility>
 
+#include "toolkit/correspondence/marker_check.h"
 #include "toolkit/mesh/similarity.h"
 #include "toolkit/mesh/text.h"
 
@@ -84,7 +85,7 @@ std::vector<std::string> AutomaticMarkers::summary(const std::string& source_nam
 }
 
 std::vector<std::string> AutomaticMarkers::warnings() const {
-  std::vector<std::string> warnings;
+  std::vector<std::string> warnings = doubtful;
   if (affine_residual > kDoubtfulResidual) {
     warnings.push_back("the two faces differ by " + readable(100 * affine_residual, 2) +
                        " % of their size beyond what stretching explains; look at the markers");
@@ -143,6 +144,11 @@ AutomaticMarkers MarkerSearch::operator()(const Head& target) {
   check_markers(result.markers, source_.mesh.positions, target.mesh.positions);
   result.affine_residual =
       affine_residual(result.markers, source_.mesh.positions, target.mesh.positions);
+  std::vector<std::string> names;
+  for (const int number : result.landmarks) names.push_back(landmark_name(number));
+  result.doubtful =
+      described(doubtful_markers(result.markers, source_.mesh.positions, target.mesh.positions),
+                result.markers, names);
   return result;
 }
 

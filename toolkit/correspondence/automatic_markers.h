@@ -17,6 +17,8 @@ struct AutomaticMarkers {
   /// What an affine map leaves of the markers, as affine_residual(): of two people's faces about
   /// 0.1, of landmarks at wrong places more.
   double affine_residual = 0;
+  /// Those that are not where the others say (doubtful_markers()), in words.
+  std::vector<std::string> doubtful = {};
 
   /// For people: how many there are, and for each head how many landmarks were found and how well
   /// the views agree.

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "toolkit/correspondence/closest_surface.h"
+#include "toolkit/correspondence/marker_check.h"
 #include "toolkit/mesh/parallel.h"
 #include "toolkit/mesh/text.h"
 #include "toolkit/mesh/weld.h"
@@ -145,6 +146,12 @@ std::vector<Correspondence::Part> by_area(const std::vector<int>& rows,
   return parts;
 }
 
+/// With triangles that lead the other way round.
+TriMesh turned_over(TriMesh mesh) {
+  mesh.connectivity.triangles.col(1).swap(mesh.connectivity.triangles.col(2));
+  return mesh;
+}
+
 }  // namespace
 
 Correspondence Correspondence::identity(int triangles) {
@@ -221,10 +228,13 @@ Correspondence pair_triangles(const SurfaceFit& fitted, const Triangles& source,
 FoundCorrespondence find_correspondence(const TriMesh& source, const TriMesh& target,
                                         const std::vector<Marker>& markers,
                                         const SurfaceFitOptions& options) {
+  check_fit(source, target, markers);
   FoundCorrespondence found;
-  found.fit = fit_to_surface(source, target, markers, options);
+  found.inside_out = is_inside_out(source, target, markers);
+  const TriMesh facing = found.inside_out ? turned_over(target) : target;
+  found.fit = fit_to_surface(source, facing, markers, options);
   const Triangles& triangles = source.connectivity.triangles;
-  found.correspondence = pair_triangles(found.fit, triangles, target, options.threads);
+  found.correspondence = pair_triangles(found.fit, triangles, facing, options.threads);
   found.quality = quality_of(found.correspondence, box_diagonal(target.positions));
   const ReachedTriangles parts(found.fit.positions, triangles, found.fit.reached);
   std::vector<bool> is_partner(triangles.rows(), false);

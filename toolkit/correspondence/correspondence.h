@@ -56,6 +56,8 @@ struct FoundCorrespondence {
   Correspondence correspondence;
   SurfaceFit fit;
   CorrespondenceQuality quality;
+  /// The target's faces lead the other way round than the source's: they were paired as if turned.
+  bool inside_out = false;
 };
 
 /// Pairs triangles whose centroids are nearest to each other's surface, both ways: a target
@@ -67,7 +69,7 @@ struct FoundCorrespondence {
 Correspondence pair_triangles(const SurfaceFit& fitted, const Triangles& source,
                               const TriMesh& target, int threads = 0);
 
-/// fit_to_surface() and pair_triangles(). Throws what they throw.
+/// fit_to_surface() and pair_triangles(). Throws what they and is_inside_out() throw.
 FoundCorrespondence find_correspondence(const TriMesh& source, const TriMesh& target,
                                         const std::vector<Marker>& markers,
                                         const SurfaceFitOptions& = {});

@@ -16,7 +16,7 @@ namespace {
 
 /// Edges are looked for within this share of the opening's width from their landmarks: lips are
 /// thick, and a socket's ground is farther away.
-constexpr double kReach = 0.4;
+constexpr double kEdgeReach = 0.4;
 /// Where edges meet behind, as in a mouth's bag, they end at this share of the way from one to the
 /// other.
 constexpr double kShareOfWay = 0.4;
@@ -121,7 +121,7 @@ FaceOpening opening_between(const Skin& skin, const Scheme& scheme,
   const Reached reached = reached_from(skin.graph, edges.landmarks, edges.width);
   const double way = way_between(skin, edges, reached);
   if (way < kDetour * edges.apart) return opening;
-  const double reach = std::min(kReach * edges.width, kShareOfWay * way);
+  const double reach = std::min(kEdgeReach * edges.width, kShareOfWay * way);
   for (const auto& [vertex, group] : reached.group) {
     if (reached.distance.at(vertex) > reach || !edges.is_in_band(skin.positions.row(vertex))) {
       continue;

@@ -17,9 +17,6 @@ namespace {
 /// Points are in one plane where their smallest extent is this share of their largest.
 constexpr double kFlat = 1e-3;
 
-/// Markers that an affine map does not fit whatever they are: it has four for itself.
-constexpr std::size_t kFewestForAffine = 6;
-
 Positions places(const std::vector<Marker>& markers, VertexIndex Marker::*vertex,
                  const Positions& positions) {
   Positions result(static_cast<Eigen::Index>(markers.size()), 3);
@@ -58,14 +55,6 @@ void check_not_flat(const Positions& markers, std::string_view mesh) {
                       "; add one that does not, such as the tip of the nose");
 }
 
-bool are_there(const std::vector<Marker>& markers, const Positions& source,
-               const Positions& target) {
-  return std::ranges::all_of(markers, [&](const Marker& marker) {
-    return marker.source >= 0 && marker.source < source.rows() && marker.target >= 0 &&
-           marker.target < target.rows();
-  });
-}
-
 }  // namespace
 
 void check_markers(const std::vector<Marker>& markers, const Positions& source,
@@ -88,19 +77,6 @@ double affine_residual(const std::vector<Marker>& markers, const Positions& sour
   const Eigen::MatrixXd map = from.colPivHouseholderQr().solve(to);
   const double size = to.norm();
   return size > 0 ? (from * map - to).norm() / size : 0;
-}
-
-bool fit_better_shifted(const std::vector<Marker>& markers, int shift, const Positions& source,
-                        const Positions& target) {
-  if (markers.size() < kFewestForAffine) return false;
-  std::vector<Marker> shifted = markers;
-  for (Marker& marker : shifted) {
-    marker.source -= shift;
-    marker.target -= shift;
-  }
-  if (!are_there(shifted, source, target)) return false;
-  if (!are_there(markers, source, target)) return true;
-  return affine_residual(shifted, source, target) < affine_residual(markers, source, target) / 2;
 }
 
 }  // namespace mimetra

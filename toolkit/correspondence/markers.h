@@ -28,10 +28,4 @@ void check_markers(const std::vector<Marker>& markers, const Positions& source,
 double affine_residual(const std::vector<Marker>& markers, const Positions& source,
                        const Positions& target);
 
-/// Whether vertices were counted from another number than was said: markers taken `shift` (1 or -1)
-/// lower are all there, and an affine map leaves less than half as much of them. Six and more tell
-/// it; false for fewer.
-bool fit_better_shifted(const std::vector<Marker>& markers, int shift, const Positions& source,
-                        const Positions& target);
-
 }  // namespace mimetra

@@ -44,6 +44,27 @@ Positions placed_over(const TriMesh& source, const TriMesh& target, const Corres
   }
 }
 
+/// Whether the paired triangles of most of the target's surface face away from their partners.
+bool leads_other_way(const Positions& placed, const Triangles& triangles, const TriMesh& target,
+                     const Correspondence& pairs) {
+  const Positions from = triangle_normals(placed, triangles),
+                  to = triangle_normals(target.positions, target.connectivity.triangles);
+  double facing = 0;
+  for (int t = 0; t < pairs.target_triangles(); ++t) {
+    for (int p = pairs.offsets[t]; p < pairs.offsets[t + 1]; ++p) {
+      const auto [partner, weight] = pairs.parts[p];
+      facing += weight * from.row(partner).stableNormalized().dot(to.row(t));
+    }
+  }
+  return facing < 0;
+}
+
+/// Triangles whose corners come the other way round.
+Triangles backwards(Triangles triangles) {
+  triangles.col(1).swap(triangles.col(2));
+  return triangles;
+}
+
 /// From the centroid to each corner, one a column.
 Eigen::Matrix3d corner_directions(const Positions& positions, const Triangles& triangles,
                                   int triangle) {
@@ -75,16 +96,21 @@ int turn_of(const Eigen::Matrix3d& source, const Eigen::Matrix3d& target) {
 
 }  // namespace
 
+bool is_over(const Correspondence& pairs, int target_triangle,
+             const std::function<bool(int)>& is_selected) {
+  double weight = 0;
+  for (int p = pairs.offsets[target_triangle]; p < pairs.offsets[target_triangle + 1]; ++p) {
+    if (is_selected(pairs.parts[p].triangle)) weight += pairs.parts[p].weight;
+  }
+  return weight >= kHalf;
+}
+
 std::vector<int> triangles_over(const Correspondence& pairs, const std::vector<int>& selected) {
   std::vector<bool> is_selected(pairs.source_triangles, false);
   for (const int triangle : selected) is_selected[triangle] = true;
   std::vector<int> over;
   for (int t = 0; t < pairs.target_triangles(); ++t) {
-    double weight = 0;
-    for (int p = pairs.offsets[t]; p < pairs.offsets[t + 1]; ++p) {
-      if (is_selected[pairs.parts[p].triangle]) weight += pairs.parts[p].weight;
-    }
-    if (weight >= kHalf) over.push_back(t);
+    if (is_over(pairs, t, [&](int triangle) { return is_selected[triangle]; })) over.push_back(t);
   }
   return over;
 }
@@ -96,14 +122,17 @@ Pairing::Pairing(const TriMesh& source, const TriMesh& target, Correspondence pa
   check_sizes(source, target, pairs_);
   const Triangles& triangles = target.connectivity.triangles;
   const Positions placed = placed_over(source, target, pairs_);
+  const Triangles facing = leads_other_way(placed, source_triangles_, target, pairs_)
+                               ? backwards(source_triangles_)
+                               : source_triangles_;
   std::vector<std::map<VertexIndex, double>> weights(target.positions.rows());
   for (int t = 0; t < triangles.rows(); ++t) {
     const Eigen::Matrix3d here = corner_directions(target.positions, triangles, t);
     for (int p = pairs_.offsets[t]; p < pairs_.offsets[t + 1]; ++p) {
       const auto [partner, weight] = pairs_.parts[p];
-      const int turn = turn_of(corner_directions(placed, source_triangles_, partner), here);
+      const int turn = turn_of(corner_directions(placed, facing, partner), here);
       for (int c = 0; c < 3; ++c) {
-        weights[triangles(t, c)][source_triangles_(partner, (c + turn) % 3)] += weight;
+        weights[triangles(t, c)][facing(partner, (c + turn) % 3)] += weight;
       }
     }
   }
@@ -178,15 +207,15 @@ Positions Pairing::carried(const Eigen::Ref<const Positions>& pose,
 }
 
 std::vector<bool> Pairing::over(const std::vector<bool>& source_vertices) const {
-  std::vector<bool> is_over(target_vertices(), false);
+  std::vector<bool> is_inside(target_vertices(), false);
   for (VertexIndex v = 0; v < target_vertices(); ++v) {
     double weight = 0;
     for (const Carrier& carrier : carriers(v)) {
       if (source_vertices[carrier.vertex]) weight += carrier.weight;
     }
-    is_over[v] = weight >= kHalf;
+    is_inside[v] = weight >= kHalf;
   }
-  return is_over;
+  return is_inside;
 }
 
 std::vector<int> with_partners(std::vector<int> triangles, const Pairing* pairing) {

@@ -1,11 +1,17 @@
 #pragma once
 
+#include <functional>
 #include <span>
 #include <vector>
 
 #include "toolkit/correspondence/correspondence.h"
 
 namespace mimetra {
+
+/// True where at least half of the weight of a target triangle's partners is of triangles of the
+/// source for which `is_selected` says so.
+bool is_over(const Correspondence& pairs, int target_triangle,
+             const std::function<bool(int)>& is_selected);
 
 /// Target triangles of which at least half of their partners' weight is in `selected` (triangles of
 /// the source), ascending.
@@ -22,7 +28,8 @@ class Pairing {
   };
 
   /// The carriers of a target vertex are the corners of its triangles' partners that lie as it does
-  /// in its triangles, as the rest poses show them after the similarity of the paired triangles; it
+  /// in its triangles, as the rest poses show them after the similarity of the paired triangles (in
+  /// the other direction around where the target is inside out); it
   /// has none where no triangle around it has a partner. Throws MismatchError where the
   /// correspondence is of other numbers of triangles.
   Pairing(const TriMesh& source, const TriMesh& target, Correspondence pairs);

@@ -176,12 +176,16 @@ double closest_weight(const SurfaceFitOptions& options, int step) {
 
 }  // namespace
 
+void check_fit(const TriMesh& source, const TriMesh& target, const std::vector<Marker>& markers) {
+  check_mesh(source, "source");
+  check_mesh(target, "target");
+  check_markers(markers, source.positions, target.positions);
+}
+
 SurfaceFit fit_to_surface(const TriMesh& source_mesh, const TriMesh& target_mesh,
                           const std::vector<Marker>& markers, const SurfaceFitOptions& options) {
   check_options(options);
-  check_mesh(source_mesh, "source");
-  check_mesh(target_mesh, "target");
-  check_markers(markers, source_mesh.positions, target_mesh.positions);
+  check_fit(source_mesh, target_mesh, markers);
   Source source(source_mesh, markers);
 
   std::vector<VertexIndex> from, to;

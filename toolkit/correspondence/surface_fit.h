@@ -48,6 +48,10 @@ struct SurfaceFit {
   std::vector<bool> target_reached;
 };
 
+/// Throws std::invalid_argument for a mesh that has not a position for each vertex, and what
+/// check_markers() throws.
+void check_fit(const TriMesh& source, const TriMesh& target, const std::vector<Marker>& markers);
+
 /// Deforms `source` so that its markers are on those of `target` and its surface on the target's:
 /// the markers' similarity first, then the least sum of
 /// - smoothness * |T_i - T_j|^2 over triangles i and their neighbours j, across edges,
@@ -62,9 +66,8 @@ struct SurfaceFit {
 /// Vertices at one place are one.
 ///
 /// One sparse system for the x, y and z of vertices and fourth vertices; its pattern is analysed
-/// once. Throws what check_markers() throws, std::invalid_argument for options out of range and a
-/// mesh that has not a position for each vertex, MismatchError for two markers at one place of the
-/// source or of the target, Cancelled.
+/// once. Throws what check_fit() throws, std::invalid_argument for options out of range,
+/// MismatchError for two markers at one place of the source or of the target, Cancelled.
 ///
 /// [Sumner, Popovic. Deformation Transfer for Triangle Meshes. ACM TOG 23(3), 2004], section 4
 SurfaceFit fit_to_surface(const TriMesh& source, const TriMesh& target,

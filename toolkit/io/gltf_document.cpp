@@ -175,6 +175,9 @@ GltfPrimitive gltf_primitive(const GltfValue& value, const GltfDocument& documen
   const GltfValue attributes = value.at("attributes");
   primitive.positions = attributes.maybe_index("POSITION", accessors);
   primitive.texture = attributes.maybe_index("TEXCOORD_0", accessors);
+  for (const char* name : {"TEXCOORD_1", "COLOR_0"}) {
+    if (attributes.has(name)) primitive.unread.emplace_back(name);
+  }
   for (int set = 0;; ++set) {
     const std::string number = std::to_string(set);
     const auto joints = attributes.maybe_index(("JOINTS_" + number).c_str(), accessors);

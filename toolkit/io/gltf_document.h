@@ -65,6 +65,8 @@ struct GltfPrimitive {
   std::vector<std::pair<std::size_t, std::size_t>> joints;
   std::vector<std::optional<std::size_t>> targets;
   std::optional<GltfDraco> draco;
+  /// Attributes that nothing here has a place for, by name.
+  std::vector<std::string> unread;
   bool polygons;  ///< triangles that share their first corner are one polygon [FB_ngon_encoding]
 
   /// Equal for primitives that are faces on the same vertices.

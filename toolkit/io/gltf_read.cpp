@@ -113,6 +113,7 @@ class GltfReader {
     note_moved_nodes();
     motion_notes_.swap(notes_);
     note(left_out_, "primitives that are no triangles are left out");
+    note(unread_, "further texture coordinates and colours of vertices are left out");
     Scene scene = joined_scene(document_.path, std::move(parts), document_.file_bytes);
     scene.motion_notes = std::move(motion_notes_);
     scene.rest_is_known = document_.rest_is_known;
@@ -238,6 +239,7 @@ class GltfReader {
         left_out_.insert("'" + name + "'");
         continue;
       }
+      unread_.insert(primitive.unread.begin(), primitive.unread.end());
       const auto [same, is_new] = made.emplace(primitive.vertices(), parts.size());
       if (is_new || primitive.draco) {
         parts.push_back(part_of(placed, name, mesh, primitive));
@@ -473,7 +475,7 @@ class GltfReader {
   std::map<std::size_t, Eigen::Matrix4d> worlds_;
   std::vector<std::shared_ptr<const WeightCurve>> curves_;
   std::set<std::size_t> moved_, joints_;
-  std::set<std::string> left_out_;
+  std::set<std::string> left_out_, unread_;
   std::vector<std::string> notes_, motion_notes_;
 };
 

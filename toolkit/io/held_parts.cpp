@@ -87,6 +87,10 @@ std::vector<std::string> parts_left_out(const HeldParts& held, const FrameSource
     lost.emplace_back("rest pose");
   }
   if (!held.vertex_order && !is_numbered_by_use(sequence)) lost.emplace_back("order of vertices");
+  if (const Eigen::VectorXd times = sequence.known_times();
+      !held.times && times.size() > 0 && times[0] != 0) {
+    lost.push_back("time (its frame is at " + readable(times[0]) + " s)");
+  }
   if (const double rounded = held.exact_times ? 0 : rounding_of(sequence.known_times());
       rounded > 0) {
     lost.push_back("exact times (rounded by up to " + readable(rounded) + " s)");

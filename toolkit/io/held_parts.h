@@ -22,6 +22,8 @@ struct HeldParts {
   bool rest = true;
   /// Vertices in their order; otherwise they are numbered anew.
   bool vertex_order = true;
+  /// Times at all.
+  bool times = true;
   /// Times as they are; otherwise in single precision.
   bool exact_times = true;
 

@@ -64,8 +64,8 @@ bool are_two_lists(const std::vector<NumberLine>& lines) {
          lines[0].numbers.size() == lines[1].numbers.size();
 }
 
-std::vector<Marker> markers_of_lists(const std::string& path, const std::vector<NumberLine>& lines,
-                                     int base) {
+MarkerFile markers_of_lists(const std::string& path, const std::vector<NumberLine>& lines,
+                            int base) {
   const bool target_first = lines[0].name == "target" || lines[1].name == "source";
   for (const NumberLine& list : lines) {
     const bool is_target = target_first == (&list == &lines[0]);
@@ -74,18 +74,19 @@ std::vector<Marker> markers_of_lists(const std::string& path, const std::vector<
          "a list of vertices named '" + list.name + "', expected one 'source' and one 'target'");
   }
   const NumberLine &source = lines[target_first ? 1 : 0], &target = lines[target_first ? 0 : 1];
-  std::vector<Marker> markers;
+  MarkerFile found;
   for (std::size_t i = 0; i < source.numbers.size(); ++i) {
-    markers.push_back({vertex_of_file(path, source.line, source.numbers[i], base),
-                       vertex_of_file(path, target.line, target.numbers[i], base)});
+    found.markers.push_back({vertex_of_file(path, source.line, source.numbers[i], base),
+                             vertex_of_file(path, target.line, target.numbers[i], base)});
+    found.lines.push_back(source.line);
   }
-  return markers;
+  return found;
 }
 
-std::vector<Marker> markers_of_pairs(const std::string& path, const std::vector<NumberLine>& lines,
-                                     int base) {
+MarkerFile markers_of_pairs(const std::string& path, const std::vector<NumberLine>& lines,
+                            int base) {
   const bool counted = !lines.empty() && lines.front().numbers.size() == 1;
-  std::vector<Marker> markers;
+  MarkerFile found;
   for (std::size_t i = counted ? 1 : 0; i < lines.size(); ++i) {
     const NumberLine& pair = lines[i];
     if (pair.numbers.size() != 2) {
@@ -93,26 +94,31 @@ std::vector<Marker> markers_of_pairs(const std::string& path, const std::vector<
            "expected two vertices, of the source and of the target, found " +
                std::to_string(pair.numbers.size()));
     }
-    markers.push_back({vertex_of_file(path, pair.line, pair.numbers[0], base),
-                       vertex_of_file(path, pair.line, pair.numbers[1], base)});
+    found.markers.push_back({vertex_of_file(path, pair.line, pair.numbers[0], base),
+                             vertex_of_file(path, pair.line, pair.numbers[1], base)});
+    found.lines.push_back(pair.line);
   }
-  if (counted && lines.front().numbers[0] != static_cast<long long>(markers.size())) {
+  if (counted && lines.front().numbers[0] != static_cast<long long>(found.markers.size())) {
     fail(path, lines.front().line,
          "announces " + std::to_string(lines.front().numbers[0]) + " markers, found " +
-             std::to_string(markers.size()));
+             std::to_string(found.markers.size()));
   }
-  return markers;
+  return found;
 }
 
 }  // namespace
 
-std::vector<Marker> read_markers(const std::filesystem::path& path, int index_base) {
+MarkerFile read_marker_file(const std::filesystem::path& path, int index_base) {
   const std::string name = path.string();
   const std::vector<NumberLine> lines = number_lines(name, read_file(path));
-  std::vector<Marker> markers = are_two_lists(lines) ? markers_of_lists(name, lines, index_base)
-                                                     : markers_of_pairs(name, lines, index_base);
-  if (markers.empty()) throw IoError(name, "holds no marker");
-  return markers;
+  MarkerFile found = are_two_lists(lines) ? markers_of_lists(name, lines, index_base)
+                                          : markers_of_pairs(name, lines, index_base);
+  if (found.markers.empty()) throw IoError(name, "holds no marker");
+  return found;
+}
+
+std::vector<Marker> read_markers(const std::filesystem::path& path, int index_base) {
+  return read_marker_file(path, index_base).markers;
 }
 
 std::string marker_text(const std::vector<Marker>& markers,

@@ -8,6 +8,12 @@
 
 namespace mimetra {
 
+/// Markers of a file, and the line that each stands in (of two lists that of the source's).
+struct MarkerFile {
+  std::vector<Marker> markers;
+  std::vector<int> lines;
+};
+
 /// Reads pairs of vertices, source and target, as people write them: a line each, with a comma, a
 /// colon or blanks between (`.corr`, YAML's `- 12:34`), after a line with their number or not
 /// (`.cons`); or two lines with all of the source and all of the target, as `source: [12, 56]` and
@@ -17,6 +23,8 @@ namespace mimetra {
 /// Throws IoError that names the line of what is no such pair, a vertex below the base, another
 /// number of pairs than announced, or no pair at all. Whether a mesh has the vertices is for
 /// check_markers().
+MarkerFile read_marker_file(const std::filesystem::path& path, int index_base = 0);
+/// Its markers alone.
 std::vector<Marker> read_markers(const std::filesystem::path& path, int index_base = 0);
 
 /// The same as text that read_markers() reads: a pair a line, counted from 0, each with its

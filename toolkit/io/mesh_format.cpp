@@ -80,6 +80,7 @@ SequenceFormat mesh_format(MeshFormat format) {
   const std::string name(choice_name(format));
   HeldParts holds = parts_held_by(format);
   holds.rest = false;
+  holds.times = false;
   return {upper_case(name) + " mesh of one frame",
           {'.' + name},
           false,

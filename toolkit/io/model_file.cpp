@@ -338,7 +338,7 @@ std::vector<fs::path> model_files(const fs::path& path) {
     const std::string name = file.filename().string();
     const bool is_mapping =
         name == "landmarks68.txt" || (name.starts_with("ibug_to_") && name.ends_with(".txt"));
-    if (is_mapping) files.push_back(file);
+    if (is_mapping || name == "rules.json") files.push_back(file);
   }
   return files;
 }

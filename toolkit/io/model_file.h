@@ -44,8 +44,8 @@ struct ModelSpec {
 /// MismatchError where shapes differ in topology. `threads`: 0 for all there are.
 MorphableModel read_model(const std::filesystem::path& path, int threads = 0);
 
-/// The files that read_model reads of `path`, and the landmark mappings in its folder, but not what
-/// else lies there. Throws IoError for a model.json that is none.
+/// The files that read_model reads of `path`, and the landmark mappings and rules in its folder,
+/// but not what else lies there. Throws IoError for a model.json that is none.
 std::vector<std::filesystem::path> model_files(const std::filesystem::path& path);
 
 /// The person that a spec names. Throws as read_model and read_fit; MismatchError for an unknown

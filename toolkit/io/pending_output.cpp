@@ -297,7 +297,7 @@ const fs::path& PendingOutputs::add(const fs::path& target, PendingOutput::Kind 
                                     Existing existing, const fs::path& owner) {
   const bool overwrite = overwrite_ || existing != Existing::nothing;
   std::string unless_same;
-  if (existing == Existing::same) unless_same = why_to_keep(owner);
+  if (existing == Existing::same) unless_same = reason_to_keep(owner);
   entries_.push_back({std::make_unique<PendingOutput>(target, kind, overwrite),
                       std::move(unless_same), existing == Existing::anything});
   return entries_.back().output->path();
@@ -306,7 +306,7 @@ const fs::path& PendingOutputs::add(const fs::path& target, PendingOutput::Kind 
 void PendingOutputs::add_stale(const fs::path& path, const fs::path& owner) {
   std::error_code unreadable;
   if (!fs::exists(path, unreadable)) return;
-  if (const std::string reason = why_to_keep(owner); !reason.empty()) {
+  if (const std::string reason = reason_to_keep(owner); !reason.empty()) {
     throw OutputError(path.string(), reason);
   }
   stale_.push_back(path);
@@ -314,17 +314,9 @@ void PendingOutputs::add_stale(const fs::path& path, const fs::path& owner) {
 
 /// Of a file that stands where one of this run's would go with the main output; empty where that
 /// may replace it.
-std::string PendingOutputs::why_to_keep(const fs::path& owner) const {
-  if (!owner.empty()) {
-    return "belongs to '" + owner.filename().string() + "', which stays; choose another name";
-  }
-  const fs::path main = entries_.empty() ? fs::path() : entries_.front().output->target();
-  std::error_code unreadable;
-  if (!main.empty() && !fs::exists(main, unreadable)) {
-    return "stands without '" + main.filename().string() +
-           "', a part of which it would be; move it, or choose another name";
-  }
-  return overwrite_ ? "" : kExistsAlready;
+std::string PendingOutputs::reason_to_keep(const fs::path& owner) const {
+  return why_to_keep(entries_.empty() ? fs::path() : entries_.front().output->target(), owner,
+                     overwrite_);
 }
 
 void PendingOutputs::commit() {
@@ -421,6 +413,18 @@ void PendingOutputs::check_inputs_stay() const {
 void check_inputs_stay(const fs::path& output, const std::vector<fs::path>& inputs) {
   const std::string harm = harm_to(inputs, output);
   if (!harm.empty()) throw OutputError(without_trailing_slash(output).string(), harm);
+}
+
+std::string why_to_keep(const fs::path& main, const fs::path& owner, bool overwrite) {
+  if (!owner.empty()) {
+    return "belongs to '" + owner.filename().string() + "', which stays; choose another name";
+  }
+  std::error_code unreadable;
+  if (!main.empty() && !fs::exists(main, unreadable)) {
+    return "stands without '" + main.filename().string() +
+           "', a part of which it would be; move it, or choose another name";
+  }
+  return overwrite ? "" : kExistsAlready;
 }
 
 PendingOutputs::Existing existing_beside(std::string_view name) {

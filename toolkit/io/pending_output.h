@@ -102,7 +102,7 @@ class PendingOutputs {
     bool tells_of_another;
   };
 
-  std::string why_to_keep(const std::filesystem::path& owner) const;
+  std::string reason_to_keep(const std::filesystem::path& owner) const;
   void hand_over();
   void drop_repeated();
   void check_same() const;
@@ -120,6 +120,12 @@ class PendingOutputs {
 /// it is that file or folder, holds it, is something that exists in it, or a new file in it.
 void check_inputs_stay(const std::filesystem::path& output,
                        const std::vector<std::filesystem::path>& inputs);
+
+/// Why a file that stands where one would go with the output `main` is not to be replaced by
+/// another content: it is a part of `owner` too, or stands without `main`, or nothing may be
+/// overwritten. Empty where it may be.
+std::string why_to_keep(const std::filesystem::path& main, const std::filesystem::path& owner,
+                        bool overwrite);
 
 /// What may stand already under the name of a file that a run writes beside its output: a run's
 /// manifest (NAME.run.json, mimetra-run.json) tells of it and may replace anything, which who names

@@ -7,9 +7,8 @@
 #include "toolkit/io/frame_files.h"
 #include "toolkit/io/mesh_codecs.h"
 #include "toolkit/io/mesh_file.h"
-#include "toolkit/io/sequence_format.h"
+#include "toolkit/io/sequence_companions.h"
 #include "toolkit/io/whole_file.h"
-#include "toolkit/io/written_files.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/text.h"
 
@@ -23,22 +22,6 @@ constexpr std::string_view kTimeColumn = "time";
 bool stands(const fs::path& path) {
   std::error_code unreadable;
   return fs::exists(path, unreadable);
-}
-
-/// Another sequence of the name, a part of which is what stands beside `sequence`; empty where
-/// there is none.
-fs::path other_of_name(const fs::path& sequence) {
-  const fs::path name = beside(sequence, ""), own = sequence.lexically_normal();
-  std::vector<fs::path> others;
-  if (stands(name / kFolderManifest) && own != name && own != name / "") others.push_back(name);
-  for (const SequenceFormat& format : sequence_formats()) {
-    if (!format.has_companions) continue;
-    for (const std::string& extension : format.extensions) {
-      const fs::path other = name.string() + extension;
-      if (other != own && stands(other)) others.push_back(other);
-    }
-  }
-  return others.empty() ? fs::path() : others.front();
 }
 
 /// A file that only mimetra reads: it holds what the program held.

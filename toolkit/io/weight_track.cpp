@@ -3,28 +3,15 @@
 #include <algorithm>
 
 #include "toolkit/mesh/errors.h"
-#include "toolkit/mesh/text.h"
+#include "toolkit/model/expression_names.h"
 
 namespace mimetra {
 
 namespace {
 
-/// `mouthSmile_L` as captures write it: `mouthSmileLeft`.
-std::string spelled_out(const std::string& name) {
-  if (name.ends_with("_L")) return name.substr(0, name.size() - 2) + "Left";
-  if (name.ends_with("_R")) return name.substr(0, name.size() - 2) + "Right";
-  return name;
-}
-
 /// `browInnerUp` of `browInnerUp_L`.
 std::string without_side(const std::string& name) {
   return name.ends_with("_L") || name.ends_with("_R") ? name.substr(0, name.size() - 2) : name;
-}
-
-std::string folded(const std::string& name) {
-  std::string result = lower_case(std::string(name));
-  std::erase(result, '_');
-  return result;
 }
 
 int column_of(const std::vector<std::string>& names, const std::string& expression) {
@@ -34,7 +21,7 @@ int column_of(const std::vector<std::string>& names, const std::string& expressi
     const std::string wanted = spelling(expression);
     const auto exact = std::ranges::find(names, wanted);
     if (exact != names.end()) return static_cast<int>(exact - names.begin());
-    const auto loose = std::ranges::find(names, folded(wanted), folded);
+    const auto loose = std::ranges::find(names, folded_name(wanted), folded_name);
     if (loose != names.end()) return static_cast<int>(loose - names.begin());
   }
   return -1;

@@ -73,9 +73,12 @@ class CenteredFit {
         is_proper_(factors_.matrixU().determinant() * factors_.matrixV().determinant() > 0) {}
 
   /// Turning about the axis of the two smallest values changes nothing where they cancel.
-  bool is_unique() const {
+  void check_unique() const {
     const Eigen::Vector3d values = factors_.singularValues();
-    return values[1] + (is_proper_ ? 1 : -1) * values[2] > kNoExtent * values[0];
+    if (values[1] + (is_proper_ ? 1 : -1) * values[2] > kNoExtent * values[0]) return;
+    throw MismatchError(
+        "the rest poses lie on a line, or else leave open how one is turned to "
+        "the other");
   }
 
   Similarity with(bool mirrored) const {
@@ -132,14 +135,19 @@ Similarity similarity_fit(const Eigen::Ref<const Positions>& from,
   if (from == to) return {};
   const Centered a(from), b(to);
   const CenteredFit fit(a.positions, b.positions);
-  if (!fit.is_unique()) {
-    throw MismatchError(
-        "the rest poses lie on a line, or else leave open how one is turned to "
-        "the other");
-  }
+  fit.check_unique();
   const Similarity proper = fit.with(false), mirrored = fit.with(true);
   const bool mirrors = fit.residual(mirrored) < kMirroredShare * fit.residual(proper);
   return between(mirrors ? mirrored : proper, a, b);
+}
+
+Similarity similarity_fit(const Eigen::Ref<const Positions>& from,
+                          const Eigen::Ref<const Positions>& to, Handedness handedness) {
+  check_sizes(from, to);
+  const Centered a(from), b(to);
+  const CenteredFit fit(a.positions, b.positions);
+  fit.check_unique();
+  return between(fit.with(handedness == Handedness::mirrored), a, b);
 }
 
 Similarity scaling_fit(const Eigen::Ref<const Positions>& from,

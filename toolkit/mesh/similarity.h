@@ -33,6 +33,13 @@ struct Similarity {
 Similarity similarity_fit(const Eigen::Ref<const Positions>& from,
                           const Eigen::Ref<const Positions>& to);
 
+/// Whether left stays left.
+enum class Handedness { kept, mirrored };
+
+/// The same among those that mirror, or those that do not.
+Similarity similarity_fit(const Eigen::Ref<const Positions>& from,
+                          const Eigen::Ref<const Positions>& to, Handedness handedness);
+
 /// The same without a rotation: only their size (the root mean square distance from the centre) and
 /// place. Throws std::invalid_argument where sizes differ, MismatchError where all points of one
 /// are at one place.

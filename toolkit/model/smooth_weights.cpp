@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -21,26 +22,60 @@ using Array = Eigen::Array<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMaj
 /// factored. Residuals are those of the system itself, so it does not move the solution.
 constexpr double kLift = 1e-13;
 
-/// min x^T H x / 2 - h^T x over 0 <= x <= 1 by a primal-dual interior-point method with Mehrotra's
-/// predictor and corrector; z and w are the multipliers of the lower and the upper bounds.
+/// The bounds of the unknowns, and which of them are free: 1, or 0 where both bounds are one.
+struct Box {
+  Array lower, upper, free;
+
+  Array middle() const { return (lower + upper) / 2; }
+  Array nearest_to_zero() const { return lower.max(0.0).min(upper); }
+};
+
+Box box_of(const WeightBounds& bounds, const Eigen::MatrixXd& h) {
+  const auto checked = [&h](const Eigen::MatrixXd& given, double usual) -> Array {
+    if (given.size() == 0) return Array::Constant(h.rows(), h.cols(), usual);
+    if (given.rows() == h.rows() && given.cols() == h.cols()) return given.array();
+    throw std::invalid_argument("smoothness: bounds of another number of weights");
+  };
+  Box box{checked(bounds.lower, 0), checked(bounds.upper, 1), {}};
+  if (!(box.lower <= box.upper).all()) {
+    throw std::invalid_argument("smoothness: a lower bound is above its upper bound");
+  }
+  box.free = (box.lower < box.upper).cast<double>();
+  return box;
+}
+
+/// What of H x is rounding, at most: a few units in the last place of its terms.
+double rounding_of(const TemporalSystem& system, const Box& box) {
+  constexpr double kUnits = 4 * std::numeric_limits<double>::epsilon();
+  return kUnits * system.norm() * box.lower.abs().max(box.upper.abs()).maxCoeff();
+}
+
+/// min x^T H x / 2 - h^T x over a box by a primal-dual interior-point method with Mehrotra's
+/// predictor and corrector; z and w are the multipliers of the lower and the upper bounds. Unknowns
+/// that are not free stay, with multipliers of 0.
 class InteriorPoint {
  public:
-  InteriorPoint(TemporalSystem& system, const Rows& h, double lift)
+  /// `scale`: how large multipliers are.
+  InteriorPoint(TemporalSystem& system, const Rows& h, const Box& box, double scale, double lift)
       : system_(system),
         h_(h),
+        box_(box),
         lift_(lift),
-        scale_(h.lpNorm<Eigen::Infinity>()),
-        x_(Array::Constant(h.rows(), h.cols(), 0.5)),
-        z_(Array::Constant(h.rows(), h.cols(), scale_)),
+        scale_(scale),
+        rounding_(rounding_of(system, box)),
+        unknowns_(std::max(1.0, box.free.sum())),
+        x_(box.middle()),
+        z_(scale * box.free),
         w_(z_) {}
 
   void solve() {
     constexpr int kMost = 100;      // 16 to 28 steps are usual
-    constexpr double kGap = 1e-13;  // of |h|: beyond that rounding takes over
+    constexpr double kGap = 1e-13;  // of the scale: beyond that rounding takes over
     constexpr double kResidual = 1e-11;
     for (int step = 0; step < kMost; ++step) {
-      const Array residual = (system_.product(x_.matrix()) - h_).array() - z_ + w_;
-      if (gap() < kGap * scale_ && residual.abs().maxCoeff() < kResidual * scale_) return;
+      const Array residual = ((system_.product(x_.matrix()) - h_).array() - z_ + w_) * box_.free;
+      const bool is_feasible = residual.abs().maxCoeff() < std::max(kResidual * scale_, rounding_);
+      if (is_feasible && gap() < kGap * scale_) return;
       advance(residual);
     }
     throw std::runtime_error("temporal smoothing did not converge; take a smaller smoothness");
@@ -51,7 +86,9 @@ class InteriorPoint {
   /// -1 where the lower bound holds, 1 where the upper one does, 0 elsewhere: of a bound's distance
   /// and its multiplier one goes to 0, and the larger says which.
   Array sides() const {
-    return (1 - x_ < w_ / scale_).cast<double>() - (x_ < z_ / scale_).cast<double>();
+    const Array sides =
+        (above() < w_ / scale_).cast<double>() - (below() < z_ / scale_).cast<double>();
+    return (box_.free > 0).select(sides, -1.0);
   }
 
  private:
@@ -59,7 +96,11 @@ class InteriorPoint {
     Array x, z, w;
   };
 
-  double gap() const { return ((x_ * z_).sum() + ((1 - x_) * w_).sum()) / double(2 * x_.size()); }
+  /// Distances from the bounds; 1 where there is no room between them.
+  Array below() const { return (box_.free > 0).select(x_ - box_.lower, 1.0); }
+  Array above() const { return (box_.free > 0).select(box_.upper - x_, 1.0); }
+
+  double gap() const { return ((below() * z_).sum() + (above() * w_).sum()) / (2 * unknowns_); }
 
   /// Largest share of the way on which `value` stays positive.
   static double room(const Array& value, const Array& change) {
@@ -68,35 +109,35 @@ class InteriorPoint {
 
   /// Newton direction towards complementarity products of `goal`, corrected by those of `before`.
   Direction direction(const Array& residual, double goal, const Direction* before) const {
-    const Array t = 1 - x_;
-    Array p = goal - x_ * z_, q = goal - t * w_;
+    const Array s = below(), t = above();
+    Array p = goal - s * z_, q = goal - t * w_;
     if (before) {
       p -= before->x * before->z;
       q += before->x * before->w;
     }
-    p /= x_;
-    q /= t;
+    p *= box_.free / s;
+    q *= box_.free / t;
     Direction d;
     d.x = system_.solve((p - q - residual).matrix()).array();
-    d.z = p - z_ / x_ * d.x;
+    d.z = p - z_ / s * d.x;
     d.w = q + w_ / t * d.x;
     return d;
   }
 
   void advance(const Array& residual) {
-    const Array t = 1 - x_;
-    system_.factorize((z_ / x_ + w_ / t + lift_).matrix(), Rows::Ones(h_.rows(), h_.cols()));
+    const Array s = below(), t = above();
+    system_.factorize((z_ / s + w_ / t + lift_ * box_.free).matrix(), box_.free.matrix());
     const Direction predictor = direction(residual, 0, nullptr);
-    const double primal = std::min(room(x_, predictor.x), room(t, -predictor.x));
+    const double primal = std::min(room(s, predictor.x), room(t, -predictor.x));
     const double dual = std::min(room(z_, predictor.z), room(w_, predictor.w));
-    const double predicted = (((x_ + primal * predictor.x) * (z_ + dual * predictor.z)).sum() +
+    const double predicted = (((s + primal * predictor.x) * (z_ + dual * predictor.z)).sum() +
                               ((t - primal * predictor.x) * (w_ + dual * predictor.w)).sum()) /
-                             double(2 * x_.size());
+                             (2 * unknowns_);
     const double now = gap();
     const Direction d = direction(residual, now * std::pow(predicted / now, 3), &predictor);
     constexpr double kInside = 0.995;  // keeps every variable strictly inside
     const double step = std::min(
-        1.0, kInside * std::min({room(x_, d.x), room(t, -d.x), room(z_, d.z), room(w_, d.w)}));
+        1.0, kInside * std::min({room(s, d.x), room(t, -d.x), room(z_, d.z), room(w_, d.w)}));
     x_ += step * d.x;
     z_ += step * d.z;
     w_ += step * d.w;
@@ -104,15 +145,17 @@ class InteriorPoint {
 
   TemporalSystem& system_;
   const Rows& h_;
-  double lift_, scale_;
+  const Box& box_;
+  double lift_, scale_, rounding_, unknowns_;
   Array x_, z_, w_;
 };
 
-/// Minimum with some unknowns at their bounds.
-Rows minimum_on(TemporalSystem& system, const Rows& h, const Array& sides, double lift) {
+/// Minimum with some unknowns at their bounds, the others near `near`.
+Rows minimum_on(TemporalSystem& system, const Rows& h, const Box& box, const Array& sides,
+                const Array& near, double lift) {
   const Rows free = (sides == 0).cast<double>().matrix();
   system.factorize(lift * free, free);
-  Rows x = (sides > 0).cast<double>().matrix();
+  Rows x = (sides == 0).select(near, (sides > 0).select(box.upper, box.lower)).matrix();
   // The second and third solve take out what the lift and rounding left.
   for (int round = 0; round < 3; ++round) {
     x += system.solve((h - system.product(x)).cwiseProduct(free));
@@ -121,19 +164,39 @@ Rows minimum_on(TemporalSystem& system, const Rows& h, const Array& sides, doubl
 }
 
 /// Moves bounds until all signs are right. Returns `near` where that does not settle.
-Rows polished(TemporalSystem& system, const Rows& h, Array sides, const Rows& near, double lift) {
+Rows polished(TemporalSystem& system, const Rows& h, const Box& box, Array sides, const Array& near,
+              double scale, double lift) {
   constexpr int kRounds = 20;
-  const double tolerance = 1e-12 * h.lpNorm<Eigen::Infinity>();
+  const double tolerance = std::max(1e-12 * scale, rounding_of(system, box));
   for (int round = 0; round < kRounds; ++round) {
-    Rows x = minimum_on(system, h, sides, lift);
+    Rows x = minimum_on(system, h, box, sides, near, lift);
     const Array pull = (h - system.product(x)).array();
     const Array before = sides;
-    sides = (before == 0 && x.array() < 0).select(-1.0, sides);
-    sides = (before == 0 && x.array() > 1).select(1.0, sides);
-    sides = (before * pull < -tolerance).select(0.0, sides);
+    sides = (before == 0 && x.array() < box.lower).select(-1.0, sides);
+    sides = (before == 0 && x.array() > box.upper).select(1.0, sides);
+    sides = (box.free > 0 && before * pull < -tolerance).select(0.0, sides);
     if ((sides == before).all()) return x;
   }
-  return near;
+  return near.matrix();
+}
+
+void check_counts(const std::vector<Eigen::MatrixXd>& grams, const Eigen::MatrixXd& h,
+                  const Eigen::VectorXd& times) {
+  if (grams.size() != 1 && static_cast<Eigen::Index>(grams.size()) != h.rows()) {
+    throw std::invalid_argument("smoothness: " + std::to_string(grams.size()) +
+                                " Gram matrices, expected 1 or " + std::to_string(h.rows()) +
+                                ", one for each frame");
+  }
+  if (times.size() != h.rows()) {
+    throw std::invalid_argument("smoothness: " + std::to_string(times.size()) + " times for " +
+                                std::to_string(h.rows()) + " frames");
+  }
+}
+
+/// How far the multipliers of `x` are from right signs.
+double wrong_pull(const Array& pull, const Box& box, const Array& x) {
+  const Array up = (x < box.upper).select(pull, 0.0), down = (x > box.lower).select(-pull, 0.0);
+  return std::max({up.maxCoeff(), down.maxCoeff(), 0.0});
 }
 
 }  // namespace
@@ -145,28 +208,39 @@ double smoothness_penalty(double smoothness, const Eigen::VectorXd& times, doubl
 
 Eigen::MatrixXd smooth_weights(const std::vector<Eigen::MatrixXd>& grams, const Eigen::MatrixXd& h,
                                const Eigen::VectorXd& times, double mu,
-                               const Eigen::MatrixXd& single) {
-  if (grams.size() != 1 && static_cast<Eigen::Index>(grams.size()) != h.rows()) {
-    throw std::invalid_argument("smoothness: " + std::to_string(grams.size()) +
-                                " Gram matrices, expected 1 or " + std::to_string(h.rows()) +
-                                ", one for each frame");
-  }
-  if (times.size() != h.rows()) {
-    throw std::invalid_argument("smoothness: " + std::to_string(times.size()) + " times for " +
-                                std::to_string(h.rows()) + " frames");
-  }
+                               const Eigen::MatrixXd& single, const WeightBounds& bounds) {
+  check_counts(grams, h, times);
+  const Box box = box_of(bounds, h);
   fix_product_blocking();
   if (h.rows() < 3) return single;
-  // Nothing pulls upwards: the interior-point method would have no scale to work with.
-  if (h.maxCoeff() <= 0) return Eigen::MatrixXd::Zero(h.rows(), h.cols());
   const Rows right = h;
   double mean = 0;
   for (const Eigen::MatrixXd& gram : grams) mean += gram.diagonal().mean() / double(grams.size());
   const double lift = kLift * mean;
   TemporalSystem system(grams, second_differences(times), mu);
-  InteriorPoint method(system, right, lift);
+  const Array still = box.nearest_to_zero();
+  const Array pull = (right - system.product(still.matrix())).array();
+  // Nothing pulls away from there: the interior-point method would have no scale to work with.
+  if (wrong_pull(pull, box, still) == 0) return still.matrix();
+  const double scale = std::max(right.lpNorm<Eigen::Infinity>(), pull.abs().maxCoeff());
+  InteriorPoint method(system, right, box, scale, lift);
   method.solve();
-  return polished(system, right, method.sides(), method.solution().matrix(), lift);
+  return polished(system, right, box, method.sides(), method.solution(), scale, lift);
+}
+
+double smooth_optimality_violation(const std::vector<Eigen::MatrixXd>& grams,
+                                   const Eigen::MatrixXd& h, const Eigen::VectorXd& times,
+                                   double mu, const Eigen::MatrixXd& beta,
+                                   const WeightBounds& bounds) {
+  check_counts(grams, h, times);
+  const Box box = box_of(bounds, h);
+  fix_product_blocking();
+  const TemporalSystem system(grams, second_differences(times), mu);
+  const Array x = beta;
+  const Array pull = (Rows(h) - system.product(beta)).array();
+  const double norm = h.lpNorm<Eigen::Infinity>();
+  const double outside = std::max((box.lower - x).maxCoeff(), (x - box.upper).maxCoeff());
+  return std::max({outside, wrong_pull(pull, box, x) / (norm > 0 ? norm : 1), 0.0});
 }
 
 }  // namespace mimetra

@@ -1,6 +1,7 @@
 #include "toolkit/model/temporal_system.h"
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 #include <utility>
 
@@ -52,6 +53,21 @@ TemporalSystem::Rows TemporalSystem::product(const Rows& x) const {
   const Rows second = mu_ * differences_of(differences_, x);
   for (int i = 0; i < 3; ++i) result.middleRows(i, n) += differences_.col(i).asDiagonal() * second;
   return result;
+}
+
+double TemporalSystem::norm() const {
+  double of_grams = 0, of_couplings = 0;
+  for (const Eigen::MatrixXd& gram : grams_) {
+    of_grams = std::max(of_grams, gram.lpNorm<Eigen::Infinity>());
+  }
+  for (Eigen::Index a = 0; a < frames_; ++a) {
+    double sum = 0;
+    for (Eigen::Index b = std::max<Eigen::Index>(0, a - 2); b < std::min(frames_, a + 3); ++b) {
+      sum += std::abs(coupling(a, b));
+    }
+    of_couplings = std::max(of_couplings, sum);
+  }
+  return of_grams + of_couplings;
 }
 
 Eigen::MatrixXd TemporalSystem::diagonal_block(Eigen::Index block, const Rows& extra,

@@ -21,6 +21,9 @@ class TemporalSystem {
   /// H x (F x D).
   Rows product(const Rows& x) const;
 
+  /// A bound of the largest sum of absolute entries in a row of H.
+  double norm() const;
+
   /// Factors H + diag(extra). Where `free` (F x D of 0 and 1) is 0, the unknown is decoupled from
   /// the others. Throws std::runtime_error where that is not positive definite.
   void factorize(const Rows& extra, const Rows& free);

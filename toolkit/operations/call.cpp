@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "toolkit/io/pending_output.h"
+#include "toolkit/io/sequence_companions.h"
 #include "toolkit/mesh/stopwatch.h"
 #include "toolkit/operations/loading.h"
 #include "toolkit/operations/memory_use.h"
@@ -141,7 +142,7 @@ std::vector<std::string> Call::repeated_names() const {
 
 /// What was read, and the folders that were named: a new file in one of those would be read next
 /// time.
-Paths Call::inputs_that_stay() const {
+Call::Paths Call::inputs_that_stay() const {
   Paths paths = finished_.inputs;
   for (const auto& [input, names] : finished_.named_inputs) {
     std::error_code unreadable;
@@ -231,6 +232,22 @@ void Call::load() {
   invocation_.threads = request_.threads;
   invocation_.landmark_finder = table_.landmark_finder();
   finished_.read_seconds = stopwatch.seconds();
+}
+
+void Call::foresee() const {
+  if (request_.operation->foresee) request_.operation->foresee(invocation_);
+  for (const Output& output : request_.operation->outputs) {
+    const auto targets = paths_.find(output.name);
+    if (targets == paths_.end() || output.kind != DataKind::sequence) continue;
+    const Destination asked = *destination_of(output);
+    const bool is_folder = table_.writes_folder(output, asked.path);
+    for (const auto& target : targets->second) {
+      for (const std::string& refusal :
+           refused_companions(is_folder ? target / "" : target, asked.overwrite)) {
+        invocation_.warn(refusal);
+      }
+    }
+  }
 }
 
 void Call::want(const std::string& output) {

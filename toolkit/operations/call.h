@@ -63,6 +63,9 @@ class Call {
   /// Reads the inputs. Throws what the readers throw, and UsageError where two outputs would be
   /// written to one place.
   void load();
+  /// Throws and warns of what a run would refuse later: what the operation foresees, and files
+  /// beside the outputs that would be refused where the run's have another content. \pre load()
+  void foresee() const;
   /// What the operation is going to get. \pre load()
   const Invocation& invocation() const { return invocation_; }
   /// Also asks for an output's value.

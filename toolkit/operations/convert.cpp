@@ -11,6 +11,7 @@
 #include "toolkit/operations/json.h"
 #include "toolkit/operations/times_text.h"
 #include "toolkit/operations/toolkit_operations.h"
+#include "toolkit/operations/weight_tables.h"
 
 namespace mimetra {
 
@@ -87,8 +88,31 @@ std::optional<Renumbering> renumbering_of(const Invocation& invocation, const Na
                       invocation.input("match").name + ")");
 }
 
+/// Refuses what weights have no part in, where they are to be written instead of poses.
+void check_weights(const Invocation& invocation, const FrameSource& frames) {
+  const auto paths = invocation.wanted.find("out");
+  if (paths == invocation.wanted.end() || paths->second.empty()) return;
+  const std::string path = paths->second.front().string();
+  if (!is_weight_file(path)) return;
+  for (const std::string name : {"scale", "up"}) {
+    if (!invocation.parameters.is_set(name)) continue;
+    throw UsageError("--" + name + ": " + path + " holds weights, which have no positions");
+  }
+  if (invocation.find<FieldSequence>("match")) {
+    throw UsageError("--match: " + path + " holds weights, which have no vertices");
+  }
+  const auto* animation = dynamic_cast<const Animation*>(&frames);
+  if (!animation) {
+    throw UsageError(path +
+                     ": holds weights, and none drive the sequence here; name a model with "
+                     "--weights in a command, or another format");
+  }
+  check_live_link(invocation, "out", animation->model().expressions().names);
+}
+
 Outcome run_convert(const Invocation& invocation) {
   NamedData input = invocation.input("sequence");
+  check_weights(invocation, *std::get<FieldSequence>(input.data).frames);
   const std::optional<Renumbering> found = renumbering_of(invocation, input);
   if (found) input.data = matched(invocation, input, *found);
   const auto& given = std::get<FieldSequence>(input.data);
@@ -133,7 +157,9 @@ Operation convert_operation() {
                               .optional = true,
                               .streamed = true,
                               .shape = true});
-  operation.outputs = {{"out", DataKind::sequence, "the new sequence"}};
+  operation.outputs = {{"out", DataKind::sequence,
+                        "the new sequence; .csv, .json and .livelink.csv hold a model's weights"}};
+  operation.outputs.back().weights = true;
   operation.parameters = convert_parameters().declared();
   operation.examples = {"convert takes/smile_%04d.obj --match neutral.obj -o smile.npy",
                         "convert scan_mm/ --scale 0.001 --up z-to-y -o scan/"};

@@ -47,12 +47,14 @@ std::string Table::csv() const {
   for (std::size_t column = 0; column < columns.size(); ++column) {
     text << (column > 0 ? "," : "") << csv_field(columns[column]);
   }
+  if (!word_column.empty()) text << ',' << csv_field(word_column);
   text << '\n';
   for (const auto& row : rows) {
     for (std::size_t column = 0; column < row.size(); ++column) {
       if (column > 0) text << ',';
       if (row[column]) text << to_text(*row[column]);
     }
+    if (!word_column.empty()) text << ',' << csv_field(words.at(&row - rows.data()));
     text << '\n';
   }
   return text.str();
@@ -64,6 +66,10 @@ std::string Table::json() const {
     Json entry;
     for (std::size_t column = 0; column < columns.size(); ++column) {
       entry[columns[column]] = row[column] ? Json(*row[column]) : Json(nullptr);
+    }
+    if (!word_column.empty()) {
+      const std::string& word = words.at(&row - rows.data());
+      entry[word_column] = word.empty() ? Json(nullptr) : Json(word);
     }
     list.push_back(entry);
   }

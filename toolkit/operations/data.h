@@ -50,6 +50,17 @@ struct RegionData {
 struct Table {
   std::vector<std::string> columns;
   std::vector<std::vector<std::optional<double>>> rows;
+  /// One more column, the last, that holds words: its name, or none, and a word for each row, ""
+  /// for nothing.
+  std::string word_column = {};
+  std::vector<std::string> words = {};
+  /// What a picture of the table shows; by default all columns against the first.
+  struct Picture {
+    std::string x, y;  ///< columns
+    std::string title, x_label, y_label;
+    std::string without_word = {};  ///< name of the line of rows without a word
+  };
+  std::optional<Picture> picture = {};
 
   std::string csv() const;
   /// {"rows": [{column: value}]}; null for an empty cell.

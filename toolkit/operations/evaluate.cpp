@@ -7,6 +7,7 @@
 #include "toolkit/operations/json.h"
 #include "toolkit/operations/match_parameters.h"
 #include "toolkit/operations/pipeline_parameters.h"
+#include "toolkit/operations/selection_parameters.h"
 #include "toolkit/operations/toolkit_operations.h"
 #include "toolkit/pipeline/memory.h"
 
@@ -18,9 +19,14 @@ BoundParameters<EvaluationOptions> evaluation_parameters(const FieldSequence* so
   using Options = EvaluationOptions;
   const FrameSource* sequence = source ? source->frames.get() : nullptr;
   BoundParameters<Options> list;
-  return list.add(&Options::regions, region_parameters())
+  return list
+      .add("k", Options::kCounts,
+           "numbers of components, one row each; with --select transfer of discs at most")
+      .add(&Options::regions, region_parameters())
       .add(&Options::regions, completion_parameters())
-      .add("k", Options::kCounts, "numbers of components, one row each")
+      .add("curve", Options::kCurve,
+           "rows at a tenth to eight of the triangles instead, by energy and for the transfer; -o "
+           "NAME.png draws them")
       .add(&Options::analysis, analysis_rest_parameters(sequence))
       .add(&Options::analysis, analysis_parameters(source))
       .add(&Options::source, alignment_parameters(sequence))
@@ -32,7 +38,7 @@ std::string text_of(const std::vector<EvaluationRow>& rows) {
   std::string text =
       "   K  vertices  triangles   share    radius       DE all   MPE all      DE in L  MPE in L  "
       "regions s"
-      "  transfer s\n";
+      "  transfer s        by\n";
   const auto cell = [](const std::string& content, int width) {
     return std::string(std::max<std::size_t>(width, content.size()) - content.size(), ' ') +
            content;
@@ -49,16 +55,37 @@ std::string text_of(const std::vector<EvaluationRow>& rows) {
             cell(percent(row.triangle_share), 8) + digits(row.radius, 4, 10) +
             digits(row.de_all, 6, 13) + decimals(row.mpe_all, 3, 10) +
             digits(row.de_region, 6, 13) + decimals(row.mpe_region, 3, 10) +
-            decimals(row.decompose_seconds, 3, 11) + decimals(row.transfer_seconds, 3, 12) + '\n';
+            decimals(row.decompose_seconds, 3, 11) + decimals(row.transfer_seconds, 3, 12) +
+            cell(row.by ? std::string(choice_name(*row.by)) : "-", 10) + '\n';
   }
   return text;
 }
 
+/// Options that the others leave without an effect.
+void check_rows(const Invocation& invocation) {
+  if (invocation.parameters.flag("curve")) {
+    refuse_options(invocation.parameters, {"select", "triangles", "k", "coverage"},
+                   "--curve has rows by energy and for the transfer, at shares of its own");
+  }
+  check_selection(invocation);
+  if (invocation.parameters.flag("curve") &&
+      invocation.parameters.choice<Space>("space") == Space::vertex) {
+    throw UsageError(
+        "--curve: regions are chosen for a transfer by what they tell of expressions, which "
+        "--space vertex does not solve for");
+  }
+}
+
 Outcome run_evaluate(const Invocation& invocation) {
+  check_rows(invocation);
+  check_solving(invocation.parameters, invocation.inputs.at("target"));
   const MeshSequence& sequence = invocation.sequence("source");
   EvaluationOptions options =
       evaluation_parameters(&invocation.get<FieldSequence>("source")).read(invocation.parameters);
   options.source = described(options.source, invocation.input("source"));
+  if (options.regions.select == Selector::transfer && !invocation.parameters.is_set("k")) {
+    options.counts = {};
+  }
   options.threads = invocation.threads;
   options.progress = invocation.progress;
   options.notes = warnings_of(invocation);
@@ -78,10 +105,17 @@ double memory_of_evaluate(const Invocation& invocation) {
   const MeshSequence& sequence = invocation.sequence("source");
   EvaluationOptions options = evaluation_parameters().read(invocation.parameters);
   options.solving.threads = invocation.threads;
-  const double analysis = analysis_bytes(invocation, invocation.input("source"),
-                                         *std::ranges::max_element(options.counts));
   const BlendshapeModel& target = invocation.get<ModelData>("target").model.average();
-  return std::max(analysis, 2 * solution_bytes(sequence, target, options.solving));
+  const bool selects = options.regions.select == Selector::transfer;
+  const int most = options.curve ? EvaluationOptions::kCurveComponents
+                                 : *std::ranges::max_element(options.counts);
+  const double analysis =
+      selects ? 0 : analysis_bytes(invocation, invocation.input("source"), most);
+  const double selection = selects || options.curve ? selection_bytes(sequence, target) : 0;
+  const double regional =
+      options.solving.per_region ? regional_bytes(sequence, target, most, options.solving) : 0;
+  return std::max(
+      {analysis, selection, 2 * solution_bytes(sequence, target, options.solving) + regional});
 }
 
 }  // namespace
@@ -102,6 +136,7 @@ Operation evaluate_operation() {
                         "evaluate takes/ actor@identity007=2 -k 10,20,30,40,50 -o table.csv"};
   operation.run = run_evaluate;
   operation.memory = memory_of_evaluate;
+  operation.foresee = check_targets;
   return operation;
 }
 

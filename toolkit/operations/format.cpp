@@ -41,8 +41,9 @@ std::string listed_extensions(std::vector<std::string> extensions) {
 
 std::vector<std::string> notes_on_losses(const Format& format, const Data& data,
                                          const WriteRequest& request) {
+  if (format.losses) return format.losses(data, request.target);
   const auto* sequence = std::get_if<FieldSequence>(&data);
-  if (!sequence) return {};
+  if (!sequence || format.weights) return {};
   std::vector<std::string> notes;
   if (!sequence->fields.empty() && !format.fields) {
     std::vector<std::string> names;

@@ -79,6 +79,11 @@ struct Format {
   /// What else of a sequence its files have a place for, with these options; where it is not set
   /// nothing is said.
   std::function<HeldParts(const Parameters&)> holds = {};
+  /// It holds blendshape weights, a table's or those that drive a sequence: for outputs that say
+  /// so.
+  bool weights = false;
+  /// What a value loses in it, as notes; where it is not set nothing is said.
+  std::function<std::vector<std::string>(const Data&, const std::filesystem::path&)> losses = {};
 
   bool has(const std::string& extension) const;
   /// Those of reading and of writing, each once.

@@ -320,14 +320,6 @@ void add_formats(OperationTable& table) {
                    .kind = DataKind::regions,
                    .extensions = {".txt"},
                    .read = read_regions_data});
-  table.add(Format{.name = "comma-separated values",
-                   .kind = DataKind::table,
-                   .extensions = {".csv"},
-                   .write = writer_of<Table>([](const Table& values) { return values.csv(); })});
-  table.add(Format{.name = "rows as JSON",
-                   .kind = DataKind::table,
-                   .extensions = {".json"},
-                   .write = writer_of<Table>([](const Table& values) { return values.json(); })});
   table.add(Format{.name = "coefficients and cameras",
                    .kind = DataKind::fit,
                    .extensions = {".json"},

@@ -9,7 +9,7 @@
 
 namespace mimetra {
 
-/// Adds the formats of io.
+/// Adds the formats of io but for those of tables (weight_tables.h).
 void add_formats(OperationTable& table);
 
 /// Calls `write`, which makes the request's target and returns its files, and lets the request's

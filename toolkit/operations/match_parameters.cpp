@@ -9,9 +9,12 @@
 
 #include "toolkit/io/correspondence_file.h"
 #include "toolkit/io/marker_file.h"
+#include "toolkit/io/rules_file.h"
 #include "toolkit/mesh/text.h"
 #include "toolkit/operations/bound_parameters.h"
 #include "toolkit/operations/heads.h"
+#include "toolkit/operations/pipeline_parameters.h"
+#include "toolkit/pipeline/given_markers.h"
 
 namespace mimetra {
 
@@ -20,21 +23,26 @@ namespace {
 struct MatchCall {
   /// Of the vertices in marker files.
   int index_base = 0;
+  /// Landmarks are looked for although files beside both meshes name their vertices.
+  bool ignore_files = false;
 
   static constexpr Option kIndexBase{
       "index_base", &MatchCall::index_base, {.minimum = 0, .maximum = 1}};
+  static constexpr Option kIgnoreFiles{"ignore_files", &MatchCall::ignore_files};
 };
 
-/// `word` stands for no file, as a default.
-Parameter several(std::string name, std::string help, const std::string& word = "") {
+/// `words` stand for no file, the first as a default.
+Parameter several(std::string name, std::string help, std::vector<std::string> words = {}) {
   Parameter parameter{std::move(name), ParameterKind::file, {}, std::move(help)};
   parameter.several = true;
-  if (!word.empty()) {
-    parameter.choices = {word};
-    parameter.fallback = word;
-  }
+  if (!words.empty()) parameter.fallback = words.front();
+  parameter.choices = std::move(words);
   return parameter;
 }
+
+/// What stands for files of --markers and --rules.
+constexpr std::string_view kAuto = "auto";
+constexpr std::string_view kNone = "none";
 
 /// The file of each target; none where none is named.
 std::vector<std::string> file_of_each(const Parameters& parameters, const std::string& name,
@@ -47,34 +55,117 @@ std::vector<std::string> file_of_each(const Parameters& parameters, const std::s
                    std::to_string(targets) + ", between commas");
 }
 
+/// Of a sequence or a model.
+const Connectivity& faces_of(const Data& data) {
+  if (const auto* sequence = std::get_if<FieldSequence>(&data)) {
+    return sequence->frames->connectivity();
+  }
+  return std::get<ModelData>(data).model.connectivity();
+}
+
 /// Looks for markers from a call's source to its targets; the source's face is looked for once.
 class MarkersTo {
  public:
-  explicit MarkersTo(const Invocation& invocation) : invocation_(invocation) {}
+  MarkersTo(const Invocation& invocation, std::string source)
+      : invocation_(invocation), source_(std::move(source)) {}
 
   MarkersBetween operator()(const NamedData& target) const {
-    return [search = search_, &target, &invocation = invocation_](const TriMesh& source) {
+    return [search = search_, &target, &invocation = invocation_, name = source_,
+            ignore_files = ignore_files_](const TriMesh& source) {
       if (!*search) {
-        Head head = head_of(invocation.input("source"), invocation.log);
+        Head head = head_of(invocation.input(name), invocation.log, ignore_files);
         head.mesh = source;
         search->emplace(std::move(head), invocation.landmark_finder,
                         FaceSearchOptions{.threads = invocation.threads});
       }
-      return (**search)(head_of(target, invocation.log));
+      return (**search)(head_of(target, invocation.log, ignore_files));
     };
   }
 
  private:
   const Invocation& invocation_;
+  bool ignore_files_ = invocation_.parameters.flag("ignore-files");
+  std::string source_;
   std::shared_ptr<std::optional<MarkerSearch>> search_ =
       std::make_shared<std::optional<MarkerSearch>>();
 };
 
+/// "12 expressions, 3 groups that exclude each other and 1 pair".
+std::string summary_of(const WeightRules& rules) {
+  const auto counted = [](std::size_t count, const std::string& one, const std::string& more) {
+    return std::to_string(count) + " " + (count == 1 ? one : more);
+  };
+  return counted(rules.expressions.size(), "expression", "expressions") + ", " +
+         counted(rules.exclusive.size(), "group that exclude each other",
+                 "groups that exclude each other") +
+         " and " + counted(rules.pairs.size(), "pair", "pairs");
+}
+
+/// Operations without a choice of spaces solve for weights, where there are expressions.
+bool has_no_weights(const Parameters& parameters, const BlendshapeModel& model) {
+  if (parameters.find("space")) return solves_for_vertices(parameters, model);
+  return model.expressions().size() == 0;
+}
+
+/// The rules of each target, read even where they do not act.
+std::vector<WeightRules> rules_of(const Invocation& invocation) {
+  const Parameters& parameters = invocation.parameters;
+  const std::vector<NamedData>& targets = invocation.inputs.at("target");
+  const auto files = file_of_each(parameters, "rules", targets.size());
+  std::vector<WeightRules> rules(targets.size());
+  for (std::size_t t = 0; t < targets.size(); ++t) {
+    if (!files.empty()) {
+      rules[t] = read_rules(files[t]);
+      continue;
+    }
+    const BlendshapeModel& model = std::get<ModelData>(targets[t].data).model.average();
+    if (parameters.text("rules") == kNone || has_no_weights(parameters, model)) continue;
+    const auto found = rules_beside(targets[t].origin.path);
+    if (!found) continue;
+    if (parameters.find("per-region") && parameters.flag("per-region")) {
+      invocation.warn(targets[t].name +
+                      ": weights of each region do not follow the rules in its folder");
+      continue;
+    }
+    rules[t] = read_rules(*found);
+    invocation.warn(targets[t].name + ": takes the rules in its folder (" + summary_of(rules[t]) +
+                    "); --rules none leaves them out");
+  }
+  return rules;
+}
+
+/// Options of weights are refused where no target has any, and said to leave out those that have
+/// none.
+void check_weight_options(const Invocation& invocation) {
+  const Parameters& parameters = invocation.parameters;
+  const std::vector<NamedData>& targets = invocation.inputs.at("target");
+  std::vector<std::string> without;
+  for (const NamedData& target : targets) {
+    const BlendshapeModel& model = std::get<ModelData>(target.data).model.average();
+    if (has_no_weights(parameters, model)) without.push_back(target.name);
+  }
+  if (without.empty()) return;
+  for (const std::string name : {"ridge", "l1", "symmetry", "exclusive", "rules"}) {
+    const ParameterValue& value = parameters.value(name);
+    const bool is_asked_for = value != parameters.find(name)->fallback &&
+                              (name != "rules" || parameters.text(name) != kNone);
+    if (!is_asked_for) continue;
+    const std::string verb = without.size() == 1 ? " is" : " are";
+    const std::string message = "--" + name + ": " + joined(without, ", ", " and ") + verb +
+                                " solved for vertices, not weights";
+    if (without.size() == targets.size()) throw UsageError(message);
+    invocation.warn(message + "; it does not act there");
+  }
+}
+
 }  // namespace
 
-std::vector<Parameter> match_parameters() {
+std::vector<Parameter> pairing_parameters() {
   BoundParameters<MatchCall> list;
-  list.add("index-base", MatchCall::kIndexBase, "the first vertex in --markers is called 0 or 1");
+  list.add("index-base", MatchCall::kIndexBase, "the first vertex in --markers is called 0 or 1")
+      .add("ignore-files", MatchCall::kIgnoreFiles,
+           "--markers auto: look for landmarks also where files landmarks68.txt beside both meshes "
+           "name them");
   std::vector<Parameter> parameters = {
       several(
           "markers",
@@ -82,7 +173,7 @@ std::vector<Parameter> match_parameters() {
           "point of a face; one file for all targets, or one for each between commas; auto: "
           "landmarks that are found in drawings of both, or that a landmarks68.txt beside both "
           "names",
-          "auto"),
+          {std::string(kAuto)}),
       several(
           "correspondence",
           "the same by pairs of triangles that an earlier run found and wrote beside its output")};
@@ -91,7 +182,18 @@ std::vector<Parameter> match_parameters() {
   return parameters;
 }
 
-std::vector<Target> targets_of(const Invocation& invocation) {
+std::vector<Parameter> match_parameters() {
+  std::vector<Parameter> parameters = pairing_parameters();
+  parameters.push_back(
+      several("rules",
+              "what is known of the target's expressions, as JSON: pairs, groups that exclude each "
+              "other, limits, gains and offsets; one file for all targets, or one for each between "
+              "commas; auto: rules.json in a model's folder",
+              {std::string(kAuto), std::string(kNone)}));
+  return parameters;
+}
+
+std::vector<Target> targets_of(const Invocation& invocation, const std::string& source_name) {
   const Parameters& parameters = invocation.parameters;
   const std::vector<NamedData>& given = invocation.inputs.at("target");
   const auto markers = file_of_each(parameters, "markers", given.size());
@@ -103,27 +205,62 @@ std::vector<Target> targets_of(const Invocation& invocation) {
   if (markers.empty() && parameters.is_set("index-base")) {
     throw UsageError("--index-base: there are no vertices to count without --markers");
   }
-  const FrameSource& source = *invocation.get<FieldSequence>("source").frames;
-  const MarkersTo markers_to(invocation);
+  std::vector<WeightRules> rules(given.size());
+  if (parameters.find("rules")) {
+    rules = rules_of(invocation);
+    check_weight_options(invocation);
+  }
+  if (parameters.flag("ignore-files") && (!markers.empty() || !pairs.empty())) {
+    throw UsageError("--ignore-files: nothing is looked for with --markers or --correspondence");
+  }
+  const Connectivity& source = faces_of(invocation.input(source_name).data);
+  const MarkersTo markers_to(invocation, source_name);
   std::vector<Target> targets;
   for (std::size_t t = 0; t < given.size(); ++t) {
     const BlendshapeModel& model = std::get<ModelData>(given[t].data).model.average();
     targets.push_back({given[t].name, model});
     Target& target = targets.back();
+    target.rules = std::move(rules[t]);
     if (!markers.empty()) {
-      std::vector<Marker> read = read_markers(markers[t], parameters.integer("index-base"));
-      if (same_faces(source.connectivity(), model.connectivity())) {
+      MarkerFile read = read_marker_file(markers[t], parameters.integer("index-base"));
+      if (same_faces(source, model.connectivity())) {
         invocation.warn(given[t].name + ": has the source's faces; markers are left out");
       } else {
-        target.match = std::move(read);
+        for (const int line : read.lines) {
+          target.marker_places.push_back(markers[t] + ", line " + std::to_string(line));
+        }
+        target.match = std::move(read.markers);
       }
     }
     if (markers.empty() && pairs.empty()) target.match = markers_to(given[t]);
     if (!pairs.empty()) {
-      target.match = read_correspondence(pairs[t], source.connectivity(), model.connectivity());
+      target.match = read_correspondence(pairs[t], source, model.connectivity());
     }
   }
   return targets;
+}
+
+void check_targets(const Invocation& invocation) {
+  const FrameSource& source = *invocation.get<FieldSequence>("source").frames;
+  const TriMesh from{source.rest(), source.connectivity()};
+  const MatchOptions options{.threads = invocation.threads, .notes = warnings_of(invocation)};
+  in_command_terms(invocation.parameters, [&] {
+    for (const Target& target : targets_of(invocation)) {
+      const BlendshapeModel& model = target.model;
+      const TriMesh to{model.neutral(), model.connectivity()};
+      if (const auto* markers = std::get_if<std::vector<Marker>>(&target.match)) {
+        check_given_markers(*markers, target.marker_places, from, to, target.name, options.notes);
+        continue;
+      }
+      const bool is_drawn = std::holds_alternative<MarkersBetween>(target.match) &&
+                            invocation.landmark_finder && is_to_be_paired(source, target);
+      if (!is_drawn) {
+        MatchedTarget(source, target, options);
+      } else {
+        invocation.info(target.name + ": has other faces; markers will be looked for");
+      }
+    }
+  });
 }
 
 Json json_of(const MatchReport& match) {

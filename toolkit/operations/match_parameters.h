@@ -9,14 +9,24 @@
 
 namespace mimetra {
 
-/// --markers, --index-base and --correspondence, of operations with a target.
+/// --markers, --index-base, --ignore-files and --correspondence, of operations that pair a source
+/// with a target.
+std::vector<Parameter> pairing_parameters();
+/// The same and --rules, of those that solve for a target's weights.
 std::vector<Parameter> match_parameters();
 
 /// The call's targets and how they are paired with its source: where nothing is named, by markers
-/// that are looked for if faces differ. Throws UsageError where options
-/// exclude each other or name another number of files than one or one for each target; what
-/// read_markers() and read_correspondence() throw.
-std::vector<Target> targets_of(const Invocation& invocation);
+/// that are looked for if faces differ. Rules of expressions are those named, or in a model's
+/// folder, which is said. Throws UsageError where options exclude each other or name another number
+/// of files than one or one for each target, and where no target is solved for the weights that one
+/// is about; what read_markers(), read_correspondence() and read_rules() throw.
+///
+/// `source` is the input that they are paired with.
+std::vector<Target> targets_of(const Invocation& invocation, const std::string& source = "source");
+
+/// Throws and warns as a run does of the call's targets before anything is fitted to them: faces,
+/// given markers and correspondences. Markers that would be looked for in drawings are not.
+void check_targets(const Invocation& invocation);
 
 /// What a correspondence is worth, for reports and for people.
 Json json_of(const MatchReport& match);

@@ -17,7 +17,8 @@ namespace {
 
 /// Those that the format can write an output with.
 std::vector<std::string> extensions_of(const Output& output, const Format& format) {
-  const bool fits = format.write && format.kind == output.kind && (format.fields || !output.fields);
+  const bool fits = format.write && format.kind == output.kind &&
+                    (format.fields || !output.fields) && (output.weights || !format.weights);
   if (!fits) return {};
   std::vector<std::string> extensions = format.extensions;
   std::erase_if(extensions, [&output](const std::string& extension) {
@@ -25,6 +26,25 @@ std::vector<std::string> extensions_of(const Output& output, const Format& forma
            std::ranges::find(output.extensions, extension) == output.extensions.end();
   });
   return extensions;
+}
+
+/// True for a name that ends in an extension, ".csv" or ".livelink.csv".
+bool ends_in(const std::filesystem::path& target, const std::string& extension) {
+  if (extension.find('.', 1) == std::string::npos) return lower_extension(target) == extension;
+  return lower_case(target.filename().string()).ends_with(extension);
+}
+
+/// The double extension of some format that a name ends in, or "": ".livelink.csv" is no ".csv",
+/// also where it cannot be written.
+std::string written_extension(const std::vector<Format>& formats,
+                              const std::filesystem::path& target) {
+  for (const Format& format : formats) {
+    for (const std::string& extension : format.extensions) {
+      const bool is_double = extension.find('.', 1) != std::string::npos;
+      if (is_double && format.write && ends_in(target, extension)) return extension;
+    }
+  }
+  return "";
 }
 
 /// "what it is: .json or .csv".
@@ -216,23 +236,30 @@ std::string hint_of_folder(const std::vector<std::string>& known,
 
 const Format& OperationTable::writer(const Output& output,
                                      const std::filesystem::path& target) const {
-  const std::string wanted = lower_extension(target);
   const std::string whole = lower_case(target.filename().string());
   std::vector<std::string> known;
+  const Format* found = nullptr;
+  std::string of_found;
   for (const Format& format : formats_) {
     for (const std::string& extension : extensions_of(output, format)) {
       if (!extension.empty() && extension == whole) {
         throw UsageError(target.string() + ": is an extension without a name before it");
       }
-      if (extension == wanted) return format;
+      if (ends_in(target, extension) && (!found || extension.size() > of_found.size())) {
+        found = &format;
+        of_found = extension;
+      }
       known.push_back(extension);
     }
   }
+  const std::string wanted = written_extension(formats_, target);
+  if (found && of_found.size() >= wanted.size()) return *found;
   const std::string kind =
       std::string(kind_name(output.kind)) + (output.fields ? " with fields" : "");
   if (known.empty()) throw UsageError(target.string() + ": this program writes no " + kind);
   throw UsageError(target.string() + ": " + kind + " can be written as " +
-                   listed_extensions(known) + ", not as '" + target.extension().string() + "'" +
+                   listed_extensions(known) + ", not as '" +
+                   (wanted.empty() ? target.extension().string() : wanted) + "'" +
                    hint_of_folder(known, target));
 }
 
@@ -280,9 +307,14 @@ std::vector<std::filesystem::path> OperationTable::output_paths(
     const std::vector<std::string>& names) const {
   if (!output.repeated || names.size() <= 1) return {asked};
   const bool is_folder = writes_folder(output, asked);
+  const std::string whole = asked.filename().string();
+  std::string stem = asked.stem().string();
+  for (const std::string& extension : writer(output, asked).extensions) {
+    if (ends_in(asked, extension)) stem = whole.substr(0, whole.size() - extension.size());
+  }
   std::vector<std::filesystem::path> paths;
   for (const std::string& name : names) {
-    const std::string file = asked.stem().string() + '-' + name + asked.extension().string();
+    const std::string file = stem + '-' + name + whole.substr(stem.size());
     paths.push_back(is_folder ? asked / name : asked.parent_path() / file);
   }
   return paths;

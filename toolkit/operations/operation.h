@@ -32,6 +32,11 @@ struct Input {
   /// A sequence of which only the faces and the rest pose count: what says how sequences are read
   /// (--frames, --weights) is about the others.
   bool shape = false;
+  /// An optional one that a command line has in its place among the needed ones.
+  bool positional = false;
+
+  /// True where a command line names it by an option.
+  bool is_option() const { return (optional && !positional) || named; }
 };
 
 /// Something an operation makes.
@@ -48,6 +53,8 @@ struct Output {
   bool fields = false;
   /// The formats that it is written in, where its kind has others too; "" is a folder.
   std::vector<std::string> extensions = {};
+  /// A table of blendshape weights, or a sequence that may be written as the weights that drive it.
+  bool weights = false;
 };
 
 enum class LogLevel { info, warning };
@@ -119,6 +126,9 @@ struct Operation {
   std::function<double(const Invocation&)> memory = {};
   /// The step that has all frames of streamed inputs in memory, "the decomposition"; "" for none.
   std::function<std::string(const Invocation&)> all_frames_for = {};
+  /// For who asks what a run would do: throws and warns as it would of its inputs, without
+  /// computing.
+  std::function<void(const Invocation&)> foresee = {};
 };
 
 /// All operations and formats of a program; built by its main function and passed down.
@@ -180,7 +190,7 @@ class OperationTable {
 };
 
 /// The operations of the toolkit (info, check, align, geodesic, decompose, regions, transfer,
-/// evaluate, convert) and the formats of io.
+/// evaluate, convert, retarget) and the formats of io.
 void add_toolkit(OperationTable& table);
 
 }  // namespace mimetra

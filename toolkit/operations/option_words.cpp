@@ -2,6 +2,8 @@
 
 #include <string_view>
 
+#include "toolkit/mesh/text.h"
+
 namespace mimetra {
 namespace {
 
@@ -21,8 +23,9 @@ struct Mention {
   std::string name;
 };
 
-std::size_t end_of_name(const std::string& text, std::size_t at) {
-  while (at < text.size() && is_of_a_name(text[at])) ++at;
+std::size_t end_of_name(const std::string& text, std::size_t begin) {
+  std::size_t at = begin;
+  while (at < text.size() && (is_of_a_name(text[at]) || (at > begin && is_digit(text[at])))) ++at;
   return at;
 }
 

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "toolkit/operations/parameter_files.h"
+#include "toolkit/operations/selection_parameters.h"
 #include "toolkit/operations/vertex_sets.h"
 #include "toolkit/pipeline/memory.h"
 
@@ -106,12 +107,17 @@ BoundParameters<AnalysisOptions> place_parameters(const FieldSequence* sequence)
   return list;
 }
 
-BoundParameters<BlendshapeTransferOptions> blendshape_parameters() {
-  using Options = BlendshapeTransferOptions;
-  BoundParameters<Options> list;
-  list.add("ridge", Options::kRidge, "pull of the weights towards 0")
-      .add("l1", Options::kSparsity, "sparsity of the weights")
-      .add("smoothness", Options::kSmoothness, "time constant of smooth weights");
+/// --per-region and what belongs to it.
+BoundParameters<SolveOptions> regional_parameters() {
+  BoundParameters<LocalWeightsOptions> local;
+  local.add("region-ridge", LocalWeightsOptions::kRidge,
+            "per region: pull of a region's weights towards those of the whole face");
+  BoundParameters<SolveOptions> list;
+  list.add("per-region", SolveOptions::kPerRegion,
+           "give each region blendshape weights of its own, found together on all triangles")
+      .add("falloff", SolveOptions::kFalloff,
+           "per region: distance from a region's rim over which its weights fade out")
+      .add(&SolveOptions::local, local);
   return list;
 }
 
@@ -154,6 +160,7 @@ std::string in_command_terms(Topic topic, const std::string& text, const Paramet
     case Topic::no_joint_motion:
       return text + "; use --align stable";
     case Topic::poor_condition:
+      if (!parameters.find("full")) return text;
       return text + "; take more regions (-k, --radius) or --full";
     case Topic::completed_regions:
       return text + "; --complete 0 leaves them as they are";
@@ -165,11 +172,21 @@ std::string in_command_terms(Topic topic, const std::string& text, const Paramet
       return "-k: " + text;
     case Topic::no_vertex_inside:
       return "--only, --without: " + text;
+    case Topic::triangle_bound:
+      return "--triangles: " + text + " (--radius)";
+    case Topic::few_discs:
+      return text + "; a larger --radius makes larger discs";
+    case Topic::no_selection:
+      return text + "; use --select energy";
     case Topic::small_parts:
       return text +
              "; --only component:0 keeps to the largest, --without component:N leaves some out";
     case Topic::no_expressions:
       return text + "; use --space vertex";
+    case Topic::no_pairs:
+      return "--symmetry: " + text + "; name pairs in a file of --rules";
+    case Topic::no_exclusives:
+      return "--exclusive: " + text + "; name groups in a file of --rules";
     case Topic::anchor_vertex:
       return "--anchor: " + text;
     case Topic::held_anchor:
@@ -258,7 +275,8 @@ BoundParameters<RegionChoiceOptions> region_parameters() {
       .add("coverage", RegionOptions::kCoverage,
            "take the strongest regions until they hold this share of the motion energy");
   BoundParameters<RegionChoiceOptions> list;
-  list.add("radius", RegionChoiceOptions::kRadius, "geodesic radius of a region")
+  list.add(selection_parameters())
+      .add("radius", RegionChoiceOptions::kRadius, "geodesic radius of a region")
       .add(&RegionChoiceOptions::regions, regions);
   return list;
 }
@@ -275,16 +293,68 @@ BoundParameters<RegionChoiceOptions> completion_parameters() {
   return list.add(&RegionChoiceOptions::completion, completion);
 }
 
+BoundParameters<BlendshapeTransferOptions> blendshape_parameters() {
+  using Options = BlendshapeTransferOptions;
+  BoundParameters<Options> list;
+  list.add("ridge", Options::kRidge, "pull of the weights towards 0")
+      .add("l1", Options::kSparsity, "sparsity of the weights")
+      .add("symmetry", Options::kSymmetry,
+           "how much the weights of the left and the right half of an expression are drawn "
+           "together; pairs are known by their names, or by --rules")
+      .add("exclusive", Options::kExclusive,
+           "expressions of which at most one is there in a frame, by ARKit's names; eyes: looking "
+           "up or down, and in or out; all: jawOpen or mouthClose, too");
+  return list;
+}
+
+BoundParameters<SolveOptions> axes_parameters() {
+  BoundParameters<SolveOptions> list;
+  return list.add("axes", SolveOptions::kAxes,
+                  "fit: the source is turned as its rest pose is to the target's; none: it is not");
+}
+
 BoundParameters<SolveOptions> solving_parameters() {
   BoundParameters<SolveOptions> list;
   list.add("space", SolveOptions::kSpace,
            "solve for blendshape weights or vertices; auto: weights where the target has "
            "expressions")
-      .add("axes", SolveOptions::kAxes,
-           "fit: the source is turned as its rest pose is to the target's; none: it is not")
+      .add(axes_parameters())
+      .add("smoothness", SolveOptions::kSmoothness,
+           "time constant of smooth weights, or in vertex space of smooth motion; 0 smooths "
+           "nothing")
       .add(&SolveOptions::blendshape, blendshape_parameters())
+      .add(regional_parameters())
       .add(&SolveOptions::vertex, vertex_parameters());
   return list;
+}
+
+void check_solving(const Parameters& parameters, const std::vector<NamedData>& targets) {
+  if (!parameters.flag("per-region")) {
+    for (const std::string name : {"falloff", "region-ridge"}) {
+      if (!parameters.is_set(name)) continue;
+      throw UsageError("--" + name + ": is about weights of each region, --per-region");
+    }
+    return;
+  }
+  if (parameters.number("smoothness") > 0) {
+    throw UsageError(
+        "--smoothness: with --per-region weights are found frame by frame; leave one of them out");
+  }
+  for (const std::string name : {"symmetry", "exclusive", "rules"}) {
+    if (!parameters.is_set(name)) continue;
+    throw UsageError("--" + name +
+                     ": weights of each region, --per-region, follow no rules of expressions");
+  }
+  for (const std::string name : {"complete", "complete-limit"}) {
+    if (!parameters.is_set(name)) continue;
+    throw UsageError("--" + name +
+                     ": with --per-region all triangles are looked at, and no discs are added");
+  }
+  for (const NamedData& target : targets) {
+    const BlendshapeModel& model = std::get<ModelData>(target.data).model.average();
+    if (!solves_for_vertices(parameters, model)) continue;
+    throw UsageError("--per-region: " + target.name + " is solved for vertices, not weights");
+  }
 }
 
 SourceOptions described(SourceOptions options, const NamedData& input) {

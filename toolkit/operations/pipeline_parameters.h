@@ -27,11 +27,19 @@ BoundParameters<AnalysisOptions> count_parameters(const AnalysisOptions& default
 /// All others of a decomposition but for its rest pose, the distances' included, with --only and
 /// --without, which name vertices of `sequence`.
 BoundParameters<AnalysisOptions> analysis_parameters(const FieldSequence* sequence = nullptr);
-/// --radius, --region and --coverage.
+/// --select, --triangles, --radius, --region and --coverage.
 BoundParameters<RegionChoiceOptions> region_parameters();
 BoundParameters<RegionChoiceOptions> completion_parameters();
 /// --space and what belongs to each.
 BoundParameters<SolveOptions> solving_parameters();
+/// Those of weights alone: --axes, and of the weights themselves.
+BoundParameters<SolveOptions> axes_parameters();
+BoundParameters<BlendshapeTransferOptions> blendshape_parameters();
+
+/// Throws UsageError for options of a solve that would do nothing beside others: those of weights
+/// of each region without --per-region, and with it those that such weights do not follow, also
+/// for `targets` that are solved for vertices.
+void check_solving(const Parameters& parameters, const std::vector<NamedData>& targets);
 
 /// The options, with what an input that is a sequence says of itself.
 SourceOptions described(SourceOptions options, const NamedData& input);

@@ -1,13 +1,19 @@
 #include <nlohmann/json.hpp>
 
 #include "toolkit/mesh/errors.h"
+#include "toolkit/mesh/stopwatch.h"
 #include "toolkit/mesh/text.h"
 #include "toolkit/operations/convergence_report.h"
 #include "toolkit/operations/json.h"
+#include "toolkit/operations/match_parameters.h"
 #include "toolkit/operations/paraview_view.h"
 #include "toolkit/operations/pipeline_parameters.h"
 #include "toolkit/operations/region_report.h"
+#include "toolkit/operations/selection_parameters.h"
 #include "toolkit/operations/toolkit_operations.h"
+#include "toolkit/pipeline/joint_motion.h"
+#include "toolkit/pipeline/memory.h"
+#include "toolkit/pipeline/region_selector.h"
 
 namespace mimetra {
 
@@ -36,23 +42,75 @@ BoundParameters<RegionsCall> regions_parameters(const FieldSequence* fields = nu
 }
 
 struct Found {
-  Analysis analysis;
+  Regions regions;
   /// None where components are given.
   std::optional<HeadMotionTaken> head_motion = {};
+  /// That the regions come from; none where they are chosen for a transfer.
+  std::optional<Components> components = {};
+  double seconds = 0;
 };
 
-/// Components given, or those of the sequence without its motion.
-Found analysis_of(const Invocation& invocation, const RegionsCall& call) {
-  const NamedData& input = invocation.input("sequence");
-  const MeshSequence& sequence = std::get<FieldSequence>(input.data).sequence();
-  if (const auto given = given_components(invocation)) {
-    return {analysis_of(*given, sequence, call.analysis)};
-  }
-  SourceOptions options = described(call.source, input);
+SourceOptions source_options(const Invocation& invocation, const RegionsCall& call) {
+  SourceOptions options = described(call.source, invocation.input("sequence"));
   options.notes = call.analysis.notes;
   options.threads = invocation.threads;
-  const Source source = prepare_source(sequence, options);
-  return {analyse(source, call.analysis), source.head_motion};
+  return options;
+}
+
+/// By components that are given, or those of the sequence without its motion.
+Found found_by_energy(const Invocation& invocation, const RegionsCall& call) {
+  const MeshSequence& sequence = invocation.sequence("sequence");
+  Found found;
+  const auto analysis = [&] {
+    if (const auto given = given_components(invocation)) {
+      return analysis_of(*given, sequence, call.analysis);
+    }
+    const Source source = prepare_source(sequence, source_options(invocation, call));
+    found.head_motion = source.head_motion;
+    return analyse(source, call.analysis);
+  }();
+  found.regions = choose_regions(analysis, call.regions);
+  found.components = analysis.components;
+  found.seconds = analysis.seconds;
+  return found;
+}
+
+/// By what they tell of the target's expressions.
+Found found_for_transfer(const Invocation& invocation, const RegionsCall& call) {
+  const Stopwatch stopwatch;
+  const MeshSequence& sequence = invocation.sequence("sequence");
+  SourceOptions of_source = source_options(invocation, call);
+  const MatchedTarget matched(sequence, targets_of(invocation, "sequence").front(),
+                              {.source_rest = asked_rest(sequence, of_source),
+                               .threads = invocation.threads,
+                               .notes = of_source.notes});
+  check_selection(*matched, call.regions, Space::automatic);
+  SolveOptions of_solving;
+  of_solving.threads = invocation.threads;
+  of_solving.notes = of_source.notes;
+  of_solving.progress = invocation.progress;
+  of_solving.edges = edge_sum(call.analysis.compatibility);
+  of_source.joint = joint_search({*matched}, of_solving);
+  const Source source = prepare_source(sequence, of_source);
+  const PlacedSource placed = placed_at(*matched, source, of_solving);
+  RegionSelector selector(*source.sequence, call.regions, call.analysis);
+  Found found{selector(placed.source, *matched, of_solving), source.head_motion};
+  found.seconds = stopwatch.seconds();
+  return found;
+}
+
+/// Options that the others leave without an effect, or that need more.
+void check_choice(const Invocation& invocation) {
+  check_selection(invocation);
+  const bool selects = invocation.parameters.choice<Selector>("select") == Selector::transfer;
+  const bool has_target = invocation.find<ModelData>("target") != nullptr;
+  if (selects && !has_target) {
+    throw UsageError("--select transfer: needs the target of the transfer, --target MODEL");
+  }
+  if (selects) return;
+  const std::string reason = "regions by energy do not depend on a target; use --select transfer";
+  if (has_target) throw UsageError("--target: " + reason);
+  refuse_options(invocation.parameters, {"markers", "index-base", "correspondence"}, reason);
 }
 
 /// What the script for ParaView opens: the main output.
@@ -70,8 +128,10 @@ std::filesystem::path series_of(const Invocation& invocation) {
 
 Outcome run_regions(const Invocation& invocation) {
   if (invocation.wants("paraview")) series_of(invocation);
+  check_choice(invocation);
   RegionsCall call =
       regions_parameters(&invocation.get<FieldSequence>("sequence")).read(invocation.parameters);
+  call.regions = with_most_discs(std::move(call.regions), invocation.parameters);
   call.regions.notes = call.analysis.notes = warnings_of(invocation);
   call.analysis.threads = invocation.threads;
   call.analysis.progress = invocation.progress;
@@ -81,21 +141,22 @@ Outcome run_regions(const Invocation& invocation) {
                         ": holds no support maps, which --component-fields writes; decompose the "
                         "sequence again");
   }
-  const Found found =
-      in_command_terms(invocation.parameters, [&] { return analysis_of(invocation, call); });
-  const Analysis& analysis = found.analysis;
-  const Regions regions = choose_regions(analysis, call.regions);
+  const Found found = in_command_terms(invocation.parameters, [&] {
+    return call.regions.select == Selector::transfer ? found_for_transfer(invocation, call)
+                                                     : found_by_energy(invocation, call);
+  });
+  const Regions& regions = found.regions;
   std::vector<Field> fields = fields_of(regions);
   if (call.component_fields) {
-    for (Field& field : component_fields(analysis.components, regions)) {
+    for (Field& field : component_fields(*found.components, regions)) {
       fields.push_back(std::move(field));
     }
   }
   Outcome outcome;
   Json json = report_of(regions);
   if (found.head_motion) json["head_motion"] = json_of(*found.head_motion);
-  add_convergence(json, analysis.components);
-  json["seconds"] = analysis.seconds;
+  if (found.components) add_convergence(json, *found.components);
+  json["seconds"] = found.seconds;
   outcome.report = json_text(json);
   outcome.summary = summary_of(regions);
   const RegionData shown{regions, FieldSequence(invocation.get<FieldSequence>("sequence").frames,
@@ -106,7 +167,7 @@ Outcome run_regions(const Invocation& invocation) {
   }
   outcome.outputs["out"].push_back({"", shown});
   if (invocation.wants("components-out")) {
-    outcome.outputs["components-out"].push_back({"", analysis.components});
+    outcome.outputs["components-out"].push_back({"", *found.components});
   }
   return outcome;
 }
@@ -119,7 +180,8 @@ Operation regions_operation() {
   operation.summary = "Regions of interest of a sequence, as fields for ParaView";
   operation.inputs = {
       {"sequence", DataKind::sequence, "sequence whose moving regions are looked for"},
-      {"components", DataKind::components, "components of an earlier decompose", true}};
+      {"components", DataKind::components, "components of an earlier decompose", true},
+      {"target", DataKind::model, "who receives the motion, for --select transfer", true}};
   operation.inputs.front().fields = true;
   operation.outputs = {{"out", DataKind::regions, "the regions, as .pvd over time"},
                        components_output(),
@@ -127,10 +189,16 @@ Operation regions_operation() {
                         "script that shows them by paraview --script=VIEW.py", true}};
   operation.outputs.back().extensions = {".py"};
   operation.parameters = regions_parameters().declared();
+  const std::vector<Parameter> matching = pairing_parameters();
+  operation.parameters.insert(operation.parameters.end(), matching.begin(), matching.end());
   operation.examples = {"regions takes/ -k 30 -o rois/take.pvd --paraview view.py",
                         "regions take.npy --coverage 0.8 --radius 12abs -o rois.json"};
   operation.run = run_regions;
   operation.memory = [](const Invocation& invocation) {
+    if (invocation.parameters.choice<Selector>("select") == Selector::transfer) {
+      const auto* target = invocation.find<ModelData>("target");
+      return target ? selection_bytes(invocation.sequence("sequence"), target->model.average()) : 0;
+    }
     return analysis_bytes(invocation, invocation.input("sequence"),
                           invocation.parameters.integer("k"));
   };

@@ -1,11 +1,14 @@
 #include "toolkit/operations/toolkit_operations.h"
 
 #include "toolkit/operations/formats.h"
+#include "toolkit/operations/rig_operation.h"
+#include "toolkit/operations/weight_tables.h"
 
 namespace mimetra {
 
 void add_toolkit(OperationTable& table) {
   add_formats(table);
+  add_weight_formats(table);
   table.add(info_operation());
   table.add(check_operation());
   table.add(align_operation());
@@ -14,7 +17,9 @@ void add_toolkit(OperationTable& table) {
   table.add(regions_operation());
   table.add(transfer_operation());
   table.add(evaluate_operation());
+  table.add(rig_operation());
   table.add(convert_operation());
+  table.add(retarget_operation());
 }
 
 }  // namespace mimetra

@@ -14,5 +14,6 @@ Operation regions_operation();
 Operation transfer_operation();
 Operation evaluate_operation();
 Operation convert_operation();
+Operation retarget_operation();
 
 }  // namespace mimetra

@@ -12,7 +12,9 @@
 #include "toolkit/operations/match_parameters.h"
 #include "toolkit/operations/pipeline_parameters.h"
 #include "toolkit/operations/region_report.h"
+#include "toolkit/operations/selection_parameters.h"
 #include "toolkit/operations/toolkit_operations.h"
+#include "toolkit/operations/weight_tables.h"
 #include "toolkit/pipeline/memory.h"
 
 namespace mimetra {
@@ -45,6 +47,7 @@ TransferOptions options_of(const Invocation& invocation) {
   TransferOptions options =
       transfer_parameters(&std::get<FieldSequence>(source.data)).read(invocation.parameters);
   options.source = described(std::move(options.source), source);
+  options.regions = with_most_discs(std::move(options.regions), invocation.parameters);
   if (const RegionData* regions = invocation.find<RegionData>("regions")) {
     options.given = GivenRegions{invocation.input("regions").name, regions->regions};
   } else if (auto components = given_components(invocation)) {
@@ -56,19 +59,14 @@ TransferOptions options_of(const Invocation& invocation) {
   return options;
 }
 
-NamedData weight_table(const NamedData& target, const Solution& solution) {
-  Table table;
-  table.columns = {"time"};
-  const auto& names = model_of(target).expressions().names;
-  table.columns.insert(table.columns.end(), names.begin(), names.end());
-  for (int f = 0; f < solution.weights().rows(); ++f) {
-    table.rows.push_back({solution.sequence->times()[f]});
-    for (const double weight : solution.weights().row(f)) table.rows.back().push_back(weight);
-  }
-  return {target.name, std::move(table)};
+NamedData weights_of(const NamedData& target, const Solution& solution) {
+  return {target.name, weight_table(WeightTrack{solution.weight_names(), solution.weights(),
+                                                solution.sequence->times()})};
 }
 
-Json report_of(const NamedData& target, const TransferredTarget& transferred) {
+/// `has_own_regions` where the source's are not those of this target.
+Json report_of(const NamedData& target, const TransferredTarget& transferred,
+               bool has_own_regions) {
   const auto& [solution, regions, similarity, error, pairing, match, error_seconds, openings] =
       transferred;
   Json json = {{"name", target.name},          {"output", nullptr},  {"de_all", error.de_all},
@@ -82,11 +80,17 @@ Json report_of(const NamedData& target, const TransferredTarget& transferred) {
                   {"scale", similarity.scale},
                   {"mirrored", similarity.mirrors()}};
   json["collapsed_triangles"] = solution.collapsed_triangles;
+  json["following_parts"] = solution.following_parts;
   json["degenerate_source_triangles"] = solution.degenerate_source_triangles;
   json["degenerate_target_triangles"] = solution.degenerate_target_triangles;
   if (regions) {
     json["triangle_share"] = regions->triangle_share();
     json["added_regions"] = added_regions(*regions);
+    if (has_own_regions) json["regions"] = report_of(*regions);
+  }
+  if (solution.regional) {
+    json["per_region"] = {{"regions", solution.regional->shares().cols() - 1},
+                          {"violation", solution.violation}};
   }
   if (solution.weights().size() > 0) {
     json["condition"] = solution.conditions.condition;
@@ -108,14 +112,24 @@ std::string summary_of(const NamedData& target, const TransferredTarget& transfe
 /// Refuses outputs that this request cannot make, before anything is computed.
 void check_outputs(const Invocation& invocation) {
   const TransferOptions options = transfer_parameters().read(invocation.parameters);
+  check_solving(invocation.parameters, invocation.inputs.at("target"));
+  if (options.full && options.solving.per_region) {
+    throw UsageError("--per-region: there are no regions with --full");
+  }
   if (invocation.wants("regions-out") && options.full) {
     throw UsageError("--regions-out: there are no regions with --full");
   }
   const bool chooses = !options.full && !invocation.find<RegionData>("regions");
-  for (const std::string name : {"only", "without"}) {
-    if (!chooses && invocation.parameters.is_set(name)) {
-      throw UsageError("--" + name + ": no regions are looked for with --full or --regions");
-    }
+  if (!chooses) {
+    refuse_options(invocation.parameters, {"only", "without", "select", "triangles", "drop-rims"},
+                   "no regions are looked for with --full or --regions");
+  }
+  check_selection(invocation);
+  if (options.regions.select == Selector::transfer && invocation.wants("regions-out") &&
+      invocation.inputs.at("target").size() > 1) {
+    throw UsageError(
+        "--regions-out: with --select transfer each target has regions of its own; name one "
+        "target, or take the regions of one for all (--regions)");
   }
   if (invocation.wants("components-out") && !chooses) {
     throw UsageError("--components-out: there are no components with --full or --regions");
@@ -125,6 +139,7 @@ void check_outputs(const Invocation& invocation) {
     if (solves_for_vertices(model_of(target), options.solving.space)) {
       throw UsageError("--weights-out: " + target.name + " is solved for vertices, not weights");
     }
+    check_live_link(invocation, "weights-out", model_of(target).expressions().names);
   }
 }
 
@@ -137,12 +152,14 @@ void add_targets(Outcome& outcome, Json& report, const Invocation& invocation,
   Json reports = Json::array();
   for (std::size_t t = 0; t < targets.size(); ++t) {
     TransferredTarget& transferred = result.targets[t];
-    reports.push_back(report_of(targets[t], transferred));
+    const bool has_own_regions = transferred.regions && !result.regions;
+    reports.push_back(report_of(targets[t], transferred, has_own_regions));
     if (is_written) reports.back()["output"] = paths->second.at(t).string();
+    if (has_own_regions) outcome.summary += summary_of(*transferred.regions);
     outcome.summary += summary_of(targets[t], transferred);
     Solution& solution = transferred.solution;
     if (invocation.wants("weights-out") && solution.weights().size() > 0) {
-      outcome.outputs["weights-out"].push_back(weight_table(targets[t], solution));
+      outcome.outputs["weights-out"].push_back(weights_of(targets[t], solution));
     }
     const FieldSequence& source = invocation.get<FieldSequence>("source");
     FieldSequence made =
@@ -196,10 +213,22 @@ Outcome run_transfer(const Invocation& invocation) {
   return outcome;
 }
 
-/// True where the run looks for regions itself.
-bool looks_for_regions(const Invocation& invocation) {
+/// True where the run decomposes the source to find regions.
+bool looks_for_components(const Invocation& invocation) {
   return !invocation.parameters.flag("full") && !invocation.find<RegionData>("regions") &&
-         !invocation.find<Components>("components");
+         !invocation.find<Components>("components") &&
+         invocation.parameters.choice<Selector>("select") == Selector::energy;
+}
+
+/// How many regions there are, or may be.
+int region_count(const Invocation& invocation, const TransferOptions& options) {
+  if (const RegionData* given = invocation.find<RegionData>("regions")) {
+    return static_cast<int>(given->regions.regions.size());
+  }
+  if (const Components* components = invocation.find<Components>("components")) {
+    return components->count();
+  }
+  return options.analysis.decomposition.count;
 }
 
 /// Decomposition, for which all frames are there, then one target after the other, whose results
@@ -210,17 +239,24 @@ double memory_of_transfer(const Invocation& invocation) {
   TransferOptions options = transfer_parameters().read(invocation.parameters);
   options.solving.threads = invocation.threads;
   const FrameSource& frames = *held.frames;
-  const bool decomposes = looks_for_regions(invocation);
+  const bool decomposes = looks_for_components(invocation);
   const double loaded = decomposes && !held.is_in_memory() ? frame_bytes(frames) : 0;
   const double analysis =
       decomposes ? analysis_bytes(invocation, source, options.analysis.decomposition.count) : 0;
-  double solutions = decomposes ? 0 : stored_bytes(frames);
+  double solutions = decomposes ? 0 : stored_bytes(frames), most_selection = 0;
   for (const NamedData& target : invocation.inputs.at("target")) {
     solutions += solution_bytes(frames, model_of(target), options.solving);
+    if (options.regions.select == Selector::transfer) {
+      most_selection = std::max(most_selection, selection_bytes(frames, model_of(target)));
+    }
+    if (options.solving.per_region) {
+      solutions += regional_bytes(frames, model_of(target), region_count(invocation, options),
+                                  options.solving);
+    }
     // Results of a source in memory are there, too.
     if (held.is_in_memory()) solutions += frame_bytes(frames);
   }
-  return loaded + std::max(analysis, solutions);
+  return loaded + std::max(analysis, solutions + most_selection);
 }
 
 }  // namespace
@@ -242,6 +278,7 @@ Operation transfer_operation() {
       {"regions-out", DataKind::regions, "the regions, as .pvd over time", true},
       components_output(),
       {"weights-out", DataKind::table, "blendshape weights", true, true}};
+  operation.outputs.back().weights = true;
   operation.parameters = transfer_parameters().declared();
   const std::vector<Parameter> matching = match_parameters();
   operation.parameters.insert(operation.parameters.end(), matching.begin(), matching.end());
@@ -251,7 +288,11 @@ Operation transfer_operation() {
   operation.run = run_transfer;
   operation.memory = memory_of_transfer;
   operation.all_frames_for = [](const Invocation& invocation) {
-    return looks_for_regions(invocation) ? "the decomposition" : "";
+    return looks_for_components(invocation) ? "the decomposition" : "";
+  };
+  operation.foresee = [](const Invocation& invocation) {
+    check_outputs(invocation);
+    check_targets(invocation);
   };
   return operation;
 }

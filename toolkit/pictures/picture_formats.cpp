@@ -7,6 +7,7 @@
 #include "toolkit/operations/formats.h"
 #include "toolkit/pictures/picture.h"
 #include "toolkit/pictures/render_operation.h"
+#include "toolkit/pictures/table_chart.h"
 
 namespace mimetra {
 
@@ -14,6 +15,10 @@ namespace {
 
 std::vector<std::filesystem::path> write_picture(const Data& data, const WriteRequest& request) {
   return write_text(request, png_of(std::get<Pictures>(data).draw(0)));
+}
+
+std::vector<std::filesystem::path> write_table(const Data& data, const WriteRequest& request) {
+  return write_text(request, png_of(draw({chart_of(std::get<Table>(data))})));
 }
 
 std::vector<std::filesystem::path> write_pictures(const Data& data, const WriteRequest& request) {
@@ -41,6 +46,10 @@ void add_pictures(OperationTable& table) {
                    .kind = DataKind::pictures,
                    .extensions = {Format::kFolder},
                    .write = write_pictures});
+  table.add(Format{.name = "picture of a table",
+                   .kind = DataKind::table,
+                   .extensions = {".png"},
+                   .write = write_table});
   table.add(render_operation());
 }
 

@@ -4,7 +4,7 @@
 
 namespace mimetra {
 
-/// Adds .png of pictures, folders of them, and the operation `render`.
+/// Adds .png of pictures and of tables, folders of pictures, and the operation `render`.
 void add_pictures(OperationTable& table);
 
 }  // namespace mimetra

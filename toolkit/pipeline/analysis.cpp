@@ -14,16 +14,6 @@ namespace mimetra {
 
 namespace {
 
-Weld weld_of(const Positions& positions, Welding welding) {
-  switch (welding) {
-    case Welding::exact:
-      return Weld::exact(positions);
-    case Welding::none:
-      break;
-  }
-  return Weld::none(static_cast<int>(positions.rows()));
-}
-
 /// The rest pose that was made for frames with head motion, where that was taken out.
 Positions aligned(const Positions& rest, const Source& source) {
   if (source.motion.empty()) return rest;
@@ -117,6 +107,16 @@ Components centered_inside(Components components, const std::vector<bool>& insid
 }
 
 }  // namespace
+
+Weld weld_of(const Positions& positions, Welding welding) {
+  switch (welding) {
+    case Welding::exact:
+      return Weld::exact(positions);
+    case Welding::none:
+      break;
+  }
+  return Weld::none(static_cast<int>(positions.rows()));
+}
 
 PartWeights part_weights(const Positions& rest, const Triangles& triangles,
                          const std::vector<bool>& inside, Welding welding) {
@@ -214,7 +214,8 @@ Analysis analyse(const Source& source, const AnalysisOptions& options) {
   decomposition.threads = options.threads;
   decomposition.progress = options.progress;
   Components components = decomposed_inside(work, options.inside, decomposition);
-  return {std::move(components), std::move(distances), options.inside, stopwatch.seconds()};
+  return {std::move(components), std::move(distances), options.inside, stopwatch.seconds(),
+          options.distances.welding};
 }
 
 Analysis analysis_of(const GivenComponents& given, const FrameSource& sequence,
@@ -238,7 +239,8 @@ Analysis analysis_of(const GivenComponents& given, const FrameSource& sequence,
   SurfaceDistances distances =
       distances_along(components.rest, components.triangles, distance_options(options));
   check_inside(options.inside, components.vertices());
-  return {centered_inside(components, options.inside), std::move(distances), options.inside, 0};
+  return {centered_inside(components, options.inside), std::move(distances), options.inside, 0,
+          options.distances.welding};
 }
 
 }  // namespace mimetra

@@ -27,6 +27,9 @@ constexpr std::string_view choice_name(Welding value) {
   return {};
 }
 
+/// Of positions (N x 3).
+Weld weld_of(const Positions& positions, Welding welding);
+
 struct DistanceOptions {
   GeodesicMethod method = GeodesicMethod::heat;
   Welding welding = Welding::exact;
@@ -121,13 +124,14 @@ struct AnalysisOptions {
   static constexpr auto declared() { return std::tuple(kMinimum, kMaximum, kCompatibility); }
 };
 
-/// Components of a sequence, the distances along their rest pose, and where regions may lie (N, or
-/// empty).
+/// Components of a sequence, the distances along their rest pose, where regions may lie (N, or
+/// empty), and which vertices are one.
 struct Analysis {
   Components components;
   SurfaceDistances distances;
   std::vector<bool> inside = {};
   double seconds = 0;
+  Welding welding = Welding::exact;
 };
 
 /// Connected parts of a surface, each weighing its area as a share of the largest part's, of which

@@ -1,8 +1,13 @@
 #include "toolkit/pipeline/evaluation.h"
 
+#include <algorithm>
+#include <array>
+#include <utility>
+
 #include "toolkit/mesh/stopwatch.h"
 #include "toolkit/pipeline/joint_motion.h"
 #include "toolkit/pipeline/region_completer.h"
+#include "toolkit/pipeline/region_selector.h"
 
 namespace mimetra {
 
@@ -79,52 +84,168 @@ EvaluatedTransfer evaluate_by(const Regions& regions, const EvaluatedTransfer& f
   return result;
 }
 
-std::vector<EvaluationRow> evaluate(const MeshSequence& sequence, const Target& given,
+namespace {
+
+/// Shares of the triangles that a curve is measured at.
+constexpr std::array kCurveShares = {0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8};
+
+/// Makes the rows of one evaluation, one after the other.
+class Rows {
+ public:
+  Rows(const MeshSequence& sequence, const Target& given, const EvaluationOptions& options)
+      : options_(with_common(options)),
+        steps_(1 + number_of_rows(options)),
+        matched_(sequence, given,
+                 {.source_rest = asked_rest(sequence, options.source),
+                  .threads = options.threads,
+                  .notes = options.notes}),
+        target_(*matched_) {
+    if (options.curve || options.regions.select == Selector::transfer) {
+      RegionChoiceOptions of_transfer = options.regions;
+      of_transfer.select = Selector::transfer;
+      check_selection(target_, of_transfer, options.solving.space);
+    }
+    check_rules(target_, options_.solving);
+    options_.source.joint = joint_search({target_}, options_.solving);
+    source_ = prepare_source(sequence, options_.source);
+    options_.solving.progress = next_part(0, 1);
+    full_ = evaluate_full(source_, target_, options_.solving);
+  }
+
+  /// A row of the strongest regions of k components.
+  void add_energy(int k) {
+    const Stopwatch stopwatch;
+    const Analysis analysis = analysis_of(k);
+    const Regions regions =
+        completer(analysis)(choose_regions(analysis, options_.regions), target_, options_.solving);
+    add(regions, analysis, stopwatch.seconds());
+  }
+
+  /// A row of regions that are chosen for the transfer.
+  void add_transfer(const SelectionBound& bound) {
+    const Stopwatch stopwatch;
+    if (!selector_) selector_.emplace(*source_.sequence, options_.regions, options_.analysis);
+    const PlacedSource placed = placed_at(target_, source_, options_.solving);
+    options_.solving.progress = next_part(0, kAnalysisShare);
+    const Regions regions =
+        selector_->within({&bound, 1}, placed.source, target_, options_.solving).front();
+    const double seconds = stopwatch.seconds();
+    options_.solving.progress = next_part(kAnalysisShare, 1);
+    EvaluationRow row = evaluate_by(regions, full_, source_, target_, options_.solving).row;
+    row.k = static_cast<int>(regions.regions.size());
+    row.by = Selector::transfer;
+    row.decompose_seconds = seconds;
+    rows_.push_back(row);
+  }
+
+  /// A row for each share of a curve by the strongest regions, of one decomposition; none where
+  /// there are no regions for it, or only those of the row before.
+  void add_energy_curve() {
+    const Stopwatch stopwatch;
+    const Analysis analysis = analysis_of(EvaluationOptions::kCurveComponents);
+    const double seconds = stopwatch.seconds();
+    RegionChoiceOptions of_share = options_.regions;
+    const Regions all = choose_regions(analysis, of_share);
+    of_share.notes = {};
+    for (const double share : kCurveShares) {
+      if (regions_within(all, share, source_.sequence->triangles()) == 0) continue;
+      of_share.triangles = share;
+      RegionCompleter completion(analysis, of_share);
+      const Regions regions =
+          completion(choose_regions(analysis, of_share), target_, options_.solving);
+      const auto triangles = static_cast<int>(regions.triangles.size());
+      if (!rows_.empty() && rows_.back().triangles == triangles) continue;
+      add(regions, analysis, seconds);
+      rows_.back().k = static_cast<int>(regions.regions.size());
+    }
+  }
+
+  /// The same by regions that are chosen for the transfer.
+  void add_transfer_curve() {
+    for (const double share : kCurveShares) add_transfer({share, {}});
+  }
+
+  std::vector<EvaluationRow> with_full() && {
+    rows_.push_back(full_.row);
+    return std::move(rows_);
+  }
+
+ private:
+  static EvaluationOptions with_common(EvaluationOptions options) {
+    options.source.notes = options.analysis.notes = options.regions.notes = options.solving.notes =
+        options.notes;
+    options.source.threads = options.analysis.threads = options.solving.threads = options.threads;
+    options.solving.edges = edge_sum(options.analysis.compatibility);
+    options.solving.distances = options.analysis.distances;
+    return options;
+  }
+
+  static double number_of_rows(const EvaluationOptions& options) {
+    if (options.curve) return 2 * static_cast<double>(kCurveShares.size());
+    return std::max(1.0, static_cast<double>(options.counts.size()));
+  }
+
+  /// Of the row that is made.
+  Progress next_part(double from, double to) const {
+    const double done = full_.solution.sequence ? static_cast<double>(rows_.size()) + 1 : 0;
+    return part_of(options_.progress, std::min(1.0, (done + from) / steps_),
+                   std::min(1.0, (done + to) / steps_));
+  }
+
+  Analysis analysis_of(int k) {
+    options_.analysis.decomposition.count = k;
+    options_.analysis.progress = next_part(0, kAnalysisShare);
+    return analyse(source_, options_.analysis);
+  }
+
+  RegionCompleter& completer(const Analysis& analysis) {
+    if (!completer_) completer_.emplace(analysis, options_.regions);
+    return *completer_;
+  }
+
+  void add(const Regions& regions, const Analysis& analysis, double seconds) {
+    options_.solving.progress = next_part(kAnalysisShare, 1);
+    EvaluationRow row = evaluate_by(regions, full_, source_, target_, options_.solving).row;
+    row.k = analysis.components.count();
+    row.by = Selector::energy;
+    row.decompose_seconds = seconds;
+    row.converged = analysis.components.converged;
+    rows_.push_back(row);
+  }
+
+  EvaluationOptions options_;
+  double steps_;
+  MatchedTarget matched_;
+  Target target_;
+  Source source_;
+  EvaluatedTransfer full_;
+  std::optional<RegionCompleter> completer_;
+  std::optional<RegionSelector> selector_;
+  std::vector<EvaluationRow> rows_;
+};
+
+}  // namespace
+
+std::vector<EvaluationRow> evaluate(const MeshSequence& sequence, const Target& target,
                                     const EvaluationOptions& options) {
   check_options(options);
-  SourceOptions of_source = options.source;
-  of_source.notes = options.notes;
-  of_source.threads = options.threads;
-  AnalysisOptions of_analysis = options.analysis;
-  of_analysis.threads = options.threads;
-  of_analysis.notes = options.notes;
-  RegionChoiceOptions of_regions = options.regions;
-  of_regions.notes = options.notes;
-  SolveOptions of_solving = options.solving;
-  of_solving.threads = options.threads;
-  of_solving.notes = options.notes;
-  of_solving.edges = edge_sum(options.analysis.compatibility);
-
-  const MatchedTarget matched(sequence, given,
-                              {.source_rest = asked_rest(sequence, options.source),
-                               .threads = options.threads,
-                               .notes = options.notes});
-  const Target& target = *matched;
-  of_source.joint = joint_search({target}, of_solving);
-  const Source source = prepare_source(sequence, of_source);
-  const double steps = static_cast<double>(options.counts.size()) + 1;
-  of_solving.progress = part_of(options.progress, 0, 1 / steps);
-  const EvaluatedTransfer full = evaluate_full(source, target, of_solving);
-  std::vector<EvaluationRow> rows;
-  std::optional<RegionCompleter> completion;
-  for (const int k : options.counts) {
-    const double done = static_cast<double>(rows.size()) + 1;
-    const Progress progress = part_of(options.progress, done / steps, (done + 1) / steps);
-    const Stopwatch stopwatch;
-    of_analysis.decomposition.count = k;
-    of_analysis.progress = part_of(progress, 0, kAnalysisShare);
-    const Analysis analysis = analyse(source, of_analysis);
-    if (!completion) completion.emplace(analysis, of_regions);
-    const Regions regions = (*completion)(choose_regions(analysis, of_regions), target, of_solving);
-    const double seconds = stopwatch.seconds();
-    of_solving.progress = part_of(progress, kAnalysisShare, 1);
-    rows.push_back(evaluate_by(regions, full, source, target, of_solving).row);
-    rows.back().k = analysis.components.count();
-    rows.back().decompose_seconds = seconds;
-    rows.back().converged = analysis.components.converged;
+  check_options(options.regions);
+  Rows rows(sequence, target, options);
+  if (options.curve) {
+    rows.add_energy_curve();
+    rows.add_transfer_curve();
+  } else if (options.regions.select == Selector::energy) {
+    for (const int k : options.counts) rows.add_energy(k);
+  } else {
+    SelectionBound bound = selection_bound(options.regions);
+    if (options.counts.empty()) rows.add_transfer(bound);
+    for (const int k : options.counts) {
+      if (!options.regions.triangles) bound.share = 1;
+      bound.count = k;
+      rows.add_transfer(bound);
+    }
   }
-  rows.push_back(full.row);
-  return rows;
+  return std::move(rows).with_full();
 }
 
 }  // namespace mimetra

@@ -10,7 +10,11 @@ namespace mimetra {
 
 /// One row of the paper's Table I. Vertices, triangles and their shares are the source's.
 struct EvaluationRow {
-  std::optional<int> k;  ///< number of components; none for the full transfer and for given regions
+  /// Number of components, or of discs that were chosen for the transfer; none for the full
+  /// transfer and for given regions.
+  std::optional<int> k;
+  /// By what the regions were chosen; none for the full transfer and for given regions.
+  std::optional<Selector> by = {};
   int vertices = 0;
   int triangles = 0;
   double vertex_share = 1;
@@ -21,7 +25,7 @@ struct EvaluationRow {
   double de_region = 0;
   std::optional<double> mpe_all;  ///< percent; none for the full transfer, or where it is exact
   std::optional<double> mpe_region;
-  std::optional<double> decompose_seconds;
+  std::optional<double> decompose_seconds;  ///< decomposition and choice of regions
   double transfer_seconds = 0;
   std::optional<bool> converged = {};  ///< the decomposition; none where there was none
 };
@@ -44,8 +48,13 @@ EvaluatedTransfer evaluate_by(const Regions& regions, const EvaluatedTransfer& f
                               const SolveOptions& options = {});
 
 struct EvaluationOptions {
-  /// Numbers of components, each >= 1: one row each.
+  /// Numbers of components, each >= 1: one row each. With Selector::transfer the most discs; none
+  /// for one row of any number.
   std::vector<int> counts = {10, 30, 40};
+  /// Instead of these rows two curves, error against share of triangles from a tenth to eight: the
+  /// strongest regions, and those that are chosen for the transfer. The regions' choice and bound
+  /// do not count.
+  bool curve = false;
   /// Of the parts; their threads, progress and notes are those of the evaluation, and the number of
   /// components is each of `counts`.
   SourceOptions source = {};
@@ -57,12 +66,17 @@ struct EvaluationOptions {
   Progress progress = {};
   Notes notes = {};
 
+  /// So many discs of the usual radius hold most of a face.
+  static constexpr int kCurveComponents = 80;
+
   static constexpr Option kCounts{"counts", &EvaluationOptions::counts, {.minimum = 1}};
-  static constexpr auto declared() { return std::tuple(kCounts); }
+  static constexpr Option kCurve{"curve", &EvaluationOptions::curve};
+  static constexpr auto declared() { return std::tuple(kCounts, kCurve); }
 };
 
-/// The paper's Table I: a row for each number of components, and one by all triangles, which is the
-/// last. Throws what prepare_source(), MatchedTarget(), analyse() and solve() throw.
+/// The paper's Table I: a row for each number of components, or of discs, and one by all triangles,
+/// which is the last. Throws what prepare_source(), MatchedTarget(), analyse(), choose_regions(),
+/// RegionSelector and solve() throw.
 std::vector<EvaluationRow> evaluate(const MeshSequence& source, const Target& target,
                                     const EvaluationOptions& options = {});
 

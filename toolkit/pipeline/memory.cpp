@@ -1,8 +1,10 @@
 #include "toolkit/pipeline/memory.h"
 
+#include <algorithm>
 #include <thread>
 
 #include "toolkit/mesh/frame_store.h"
+#include "toolkit/pipeline/region_selector.h"
 
 namespace mimetra {
 
@@ -49,6 +51,16 @@ double analysis_bytes(const FrameSource& sequence, int count) {
   return kFactorsPerVertex * vertices + frame_bytes(sequence) + kNumber * (components + maps);
 }
 
+double selection_bytes(const FrameSource& sequence, const BlendshapeModel& target) {
+  const double frames = std::min(sequence.frames(), RegionSelector::kMostFrames);
+  const auto triangles = static_cast<double>(target.triangles().rows());
+  const auto expressions = static_cast<double>(target.expressions().size());
+  // The frames, what each triangle lacks in them, and what each disc shows.
+  return kNumber * (frames * (3.0 * sequence.vertices() + 6 * triangles) +
+                    RegionSelector::kCandidates * expressions * (expressions + frames)) +
+         kFactorsPerVertex * sequence.vertices();
+}
+
 double solution_bytes(const FrameSource& sequence, const BlendshapeModel& target,
                       const SolveOptions& options) {
   const auto expressions = static_cast<double>(target.expressions().size());
@@ -56,12 +68,30 @@ double solution_bytes(const FrameSource& sequence, const BlendshapeModel& target
                triangles = static_cast<double>(target.triangles().rows());
   // The displacement fields at the vertices that are looked at, those of the result, and its
   // weights; or factors, and the poses of a short result.
-  const double space = solves_for_vertices(target, options.space)
-                           ? kFactorsPerVertex * vertices + kept_bytes(frame_bytes(sequence))
-                           : kNumber * expressions * (6 * vertices + 2 * sequence.frames());
+  const double poses = kNumber * 3 * vertices * sequence.frames();
+  const bool has_vertices = solves_for_vertices(target, options.space);
+  double space = has_vertices ? kFactorsPerVertex * vertices + kept_bytes(poses)
+                              : kNumber * expressions * (6 * vertices + 2 * sequence.frames());
+  // What is smoothed over time is there as a whole: poses, or a banded system of all weights.
+  if (options.smoothness > 0) {
+    space += has_vertices ? poses : kNumber * 4 * sequence.frames() * expressions * expressions;
+  }
   const double threads =
       options.threads > 0 ? options.threads : std::thread::hardware_concurrency();
   return space + kPullPerTriangle * triangles + threads * kLanesPerVertex * vertices;
+}
+
+double regional_bytes(const FrameSource& sequence, const BlendshapeModel& target, int regions,
+                      const SolveOptions& options) {
+  const auto expressions = static_cast<double>(target.expressions().size());
+  const double unknowns = (regions + 1) * expressions;
+  const double threads =
+      options.threads > 0 ? options.threads : std::thread::hardware_concurrency();
+  // The Gram matrix, the system and for each thread its factor; each thread's fields of a region,
+  // gathered and shared out; the shares, twice, and the weights.
+  return kNumber *
+         ((2 + 2 * threads) * unknowns * unknowns + threads * 6 * expressions * target.vertices() +
+          2.0 * (regions + 1) * target.vertices() + 2 * unknowns * sequence.frames());
 }
 
 }  // namespace mimetra

@@ -19,8 +19,15 @@ double alignment_bytes(const FrameSource& sequence, const SourceOptions& options
 /// A decomposition into `count` components, alignment not included.
 double analysis_bytes(const FrameSource& sequence, int count);
 
+/// The choice of regions for a transfer to `target`.
+double selection_bytes(const FrameSource& sequence, const BlendshapeModel& target);
+
 /// Set-up and result of a transfer to `target`.
 double solution_bytes(const FrameSource& sequence, const BlendshapeModel& target,
+                      const SolveOptions& options);
+
+/// What weights of each of `regions` regions take besides.
+double regional_bytes(const FrameSource& sequence, const BlendshapeModel& target, int regions,
                       const SolveOptions& options);
 
 }  // namespace mimetra

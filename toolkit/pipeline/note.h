@@ -24,9 +24,14 @@ enum class Topic {
   undetermined_axes,  ///< the rest poses leave open how source and target are turned
   component_count,    ///< more than the mesh can have
   no_vertex_inside,   ///< where regions may lie
+  triangle_bound,     ///< no region fits into the share of the triangles that was asked for
+  few_discs,          ///< all discs together hold less than that share
+  no_selection,       ///< a target is solved for vertices, for which no region can be chosen
   small_parts,        ///< regions lie on small connected parts of the surface
   support_range,      ///< d_min is not below d_max
   no_expressions,     ///< of the target, where weights are asked for
+  no_pairs,           ///< of left and right among the target's expressions
+  no_exclusives,      ///< among the target's expressions, of those that names tell
   anchor_vertex,      ///< one that the mesh does not have
   held_anchor,        ///< an anchor where fixed vertices hold the mesh
   other_faces,        ///< a target has not the source's faces, and nothing pairs them

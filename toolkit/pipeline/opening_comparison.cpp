@@ -1,9 +1,11 @@
 #include "toolkit/pipeline/opening_comparison.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "toolkit/correspondence/face_openings.h"
 #include "toolkit/mesh/errors.h"
+#include "toolkit/mesh/mesh_sequence.h"
 
 namespace mimetra {
 
@@ -14,6 +16,9 @@ namespace {
 constexpr double kClosed = 0.06;
 constexpr double kStaysOpen = 0.06;
 
+/// Mouths at rest are closed; eyes of people are open by different shares of their width.
+constexpr double kMouthsAtRest = 0.15, kEyesAtRest = 0.25;
+
 std::vector<FaceOpening> openings_of(const FrameSource& sequence, const FaceLandmarks& face) {
   LandmarkVertices landmarks;
   for (const FaceLandmark& landmark : face.found) {
@@ -22,7 +27,27 @@ std::vector<FaceOpening> openings_of(const FrameSource& sequence, const FaceLand
   return face_openings({sequence.rest(), sequence.connectivity()}, landmarks);
 }
 
+MeshSequence one_pose(const TriMesh& mesh) {
+  const Frames pose = mesh.positions.reshaped<Eigen::RowMajor>().transpose();
+  return MeshSequence(mesh.connectivity, pose);
+}
+
 }  // namespace
+
+bool OpeningAtRest::differs() const {
+  const double most = name == "mouth" ? kMouthsAtRest : kEyesAtRest;
+  return std::abs(source - target) > most;
+}
+
+std::vector<OpeningAtRest> openings_at_rest(const TriMesh& source, const TriMesh& target,
+                                            const AutomaticMarkers& markers) {
+  std::vector<OpeningAtRest> at_rest;
+  for (const ComparedOpening& opening :
+       compared_openings(one_pose(source), one_pose(target), markers)) {
+    at_rest.push_back({opening.name, opening.source_least, opening.target_least});
+  }
+  return at_rest;
+}
 
 bool ComparedOpening::stays_open() const {
   return source_least <= kClosed && target_least > source_least + kStaysOpen;

@@ -22,6 +22,19 @@ struct ComparedOpening {
   bool stays_open() const;
 };
 
+/// An opening of two faces at rest.
+struct OpeningAtRest {
+  std::string_view name;
+  double source = 0, target = 0;  ///< as in ComparedOpening
+
+  /// One of them is open as no face at rest is when the other's is so: it is not neutral.
+  bool differs() const;
+};
+
+/// Of the openings that both faces have where their landmarks are known.
+std::vector<OpeningAtRest> openings_at_rest(const TriMesh& source, const TriMesh& target,
+                                            const AutomaticMarkers& markers);
+
 /// Of the openings that both faces have where their landmarks are known. `result` follows `source`
 /// frame by frame; the rest poses are neutral. Throws MismatchError for other numbers of frames,
 /// what reading throws, Cancelled.

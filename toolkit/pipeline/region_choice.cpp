@@ -3,11 +3,34 @@
 #include <set>
 
 #include "toolkit/mesh/diameter.h"
+#include "toolkit/mesh/rims.h"
 #include "toolkit/mesh/text.h"
 
 namespace mimetra {
 
 namespace {
+
+/// Vertices where no region is made: those near rims, unless no component moves another vertex
+/// most.
+std::vector<bool> rims_to_avoid(const Analysis& analysis, const RegionChoiceOptions& options) {
+  if (!options.drop_rims) return {};
+  const Components& components = analysis.components;
+  std::vector<bool> near =
+      near_rims(components.rest, components.triangles, weld_of(components.rest, analysis.welding));
+  int there = 0, elsewhere = 0;
+  for (const VertexIndex center : components.centers) {
+    if (center >= 0) ++(near[center] ? there : elsewhere);
+  }
+  if (there == 0) return {};
+  if (elsewhere == 0) {
+    note(options.notes, "every component moves the rim of the surface most: its regions are kept");
+    return {};
+  }
+  note(options.notes,
+       std::to_string(there) + (there == 1 ? " component moves" : " components move") +
+           " the rim of the surface most and " + (there == 1 ? "gives" : "give") + " no region");
+  return near;
+}
 
 /// Notes regions on parts of less than kSmallPart of the surface, also in the regions' own notes.
 void note_small_parts(Regions& regions, const Notes& notes) {
@@ -30,13 +53,26 @@ void note_small_parts(Regions& regions, const Notes& notes) {
 
 }  // namespace
 
+void refuse_bound(double share, const std::string& reason) {
+  throw OptionError(Topic::triangle_bound, percent(share) + " of the triangles: " + reason +
+                                               "; allow more, or take "
+                                               "smaller regions");
+}
+
 Regions choose_regions(const Analysis& analysis, const RegionChoiceOptions& options) {
   check_options(options);
   RegionOptions of_search = options.regions;
   of_search.radius = options.radius.in(diameter(analysis.components.rest));
   of_search.distances = analysis.distances;
   of_search.inside = analysis.inside;
+  of_search.no_centers = rims_to_avoid(analysis, options);
   Regions regions = find_regions(analysis.components, of_search);
+  if (options.triangles) {
+    const Triangles& triangles = analysis.components.triangles;
+    const int count = regions_within(regions, *options.triangles, triangles);
+    if (count == 0) refuse_bound(*options.triangles, "the strongest region holds more");
+    regions = strongest(regions, count, triangles);
+  }
   for (const std::string& text : regions.notes) note(options.notes, text);
   note_small_parts(regions, options.notes);
   return regions;
@@ -58,7 +94,9 @@ void check_regions(const GivenRegions& given, const FrameSource& sequence) {
 }
 
 Selection selection_of(const Regions& regions) {
-  return {regions.triangles, regions.inside};
+  Selection selection{regions.triangles, regions.inside};
+  for (const Region& region : regions.regions) selection.regions.push_back(region.vertices);
+  return selection;
 }
 
 Selection whole(const FrameSource& sequence) {

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <optional>
 #include <string>
+#include <string_view>
 
 #include "toolkit/pipeline/analysis.h"
 #include "toolkit/regions/regions.h"
@@ -8,7 +10,35 @@
 
 namespace mimetra {
 
+/// By what regions are chosen.
+enum class Selector {
+  energy,   ///< where the source's components move most
+  transfer  ///< by what they tell of a target's expressions (RegionSelection)
+};
+
+/// As people choose it.
+constexpr std::string_view choice_name(Selector value) {
+  switch (value) {
+    case Selector::energy:
+      return "energy";
+    case Selector::transfer:
+      return "transfer";
+  }
+  return {};
+}
+
 struct RegionChoiceOptions {
+  Selector select = Selector::energy;
+  /// Share of the source's triangles that the regions may hold, those that complete them included;
+  /// by default any for Selector::energy, and kUsualShare for Selector::transfer.
+  std::optional<double> triangles = {};
+  /// Number of discs that Selector::transfer may choose, >= 1; by default any. Where it is given,
+  /// `triangles` is any by default.
+  std::optional<int> discs = {};
+  /// Leaves out regions by energy whose centres lie on the rim of the surface (near_rims()), which
+  /// noise moves where a scan ends. Where a model makes the motion of a rim, it is worth as much as
+  /// any other.
+  bool drop_rims = false;
   /// Geodesic radius of a region. One of no size would hold nothing but its centre, and no triangle
   /// would be sure to be in it.
   Length radius = Length::share(RegionOptions::kRadiusShare);
@@ -18,18 +48,35 @@ struct RegionChoiceOptions {
   CompletionOptions completion = {};
   Notes notes = {};
 
+  /// Above it regions by the transfer cost hardly anything.
+  static constexpr double kUsualShare = 0.3;
+
+  static constexpr Option kSelect{"select", &RegionChoiceOptions::select};
+  static constexpr Option kTriangles{
+      "triangles", &RegionChoiceOptions::triangles, {.minimum = 1e-9, .maximum = 1}};
+  static constexpr Option kDiscs{"discs", &RegionChoiceOptions::discs, {.minimum = 1}};
+  static constexpr Option kDropRims{"drop_rims", &RegionChoiceOptions::drop_rims};
   static constexpr Option kRadius{"radius", &RegionChoiceOptions::radius, {.minimum = 1e-9}};
-  static constexpr auto declared() { return std::tuple(kRadius); }
+  static constexpr auto declared() {
+    return std::tuple(kSelect, kTriangles, kDiscs, kDropRims, kRadius);
+  }
 };
 
 /// Connected parts of a smaller share of the surface are hardly what a face's regions are meant
 /// for: single teeth, lashes.
 constexpr double kSmallPart = 0.02;
 
-/// Regions of an analysis; what find_regions() notes is noted, and regions whose centres lie on a
-/// small part of the surface (Topic::small_parts). Throws std::invalid_argument for
-/// options out of range.
+/// Regions of an analysis, of which the strongest are kept that hold no more than the share of the
+/// triangles; what find_regions() notes is noted, and regions whose centres lie on a small part of
+/// the surface (Topic::small_parts), and components that give no region because
+/// they move a rim most. Throws std::invalid_argument for
+/// options out of range, OptionError (Topic::triangle_bound) where the strongest region alone holds
+/// more.
 Regions choose_regions(const Analysis& analysis, const RegionChoiceOptions& options = {});
+
+/// Throws OptionError (Topic::triangle_bound) that says why no region fits into a share of the
+/// triangles.
+[[noreturn]] void refuse_bound(double share, const std::string& reason);
 
 /// Regions that were made before.
 struct GivenRegions {
@@ -45,6 +92,8 @@ void check_regions(const GivenRegions& given, const FrameSource& sequence);
 struct Selection {
   std::vector<int> triangles;  ///< L
   std::vector<bool> inside;    ///< vertices inside the regions (N); empty for all
+  /// Vertices of each region, in the regions' order; none for all triangles.
+  std::vector<std::vector<VertexIndex>> regions = {};
 };
 
 Selection selection_of(const Regions& regions);

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "toolkit/mesh/diameter.h"
+#include "toolkit/mesh/near_tie.h"
 #include "toolkit/mesh/text.h"
 
 namespace mimetra {
@@ -58,9 +59,34 @@ RegionCompleter::RegionCompleter(const Analysis& analysis, const RegionChoiceOpt
         return distances.once(sources);
       }) {}
 
+CompletedRegions RegionCompleter::completed_within(double bound, const Regions& regions,
+                                                   const Target& target,
+                                                   const CompletionOptions& options) {
+  const auto with = [&](int count, const CompletionOptions& of_completion) {
+    return completed(strongest(regions, count, triangles_), target.model, *search_, of_completion);
+  };
+  const auto fits = [bound](const CompletedRegions& made) {
+    return made.regions.triangle_share() <= (1 + kNearTie) * bound;
+  };
+  for (auto count = static_cast<int>(regions.regions.size()); count > 0; --count) {
+    CompletedRegions made = with(count, options);
+    if (fits(made)) return made;
+  }
+  // The strongest region, and as many discs as fit beside it.
+  CompletionOptions what_fits = options;
+  what_fits.limit = std::max(0.0, bound - strongest(regions, 1, triangles_).triangle_share());
+  CompletedRegions made = with(1, what_fits);
+  if (fits(made)) return made;
+  // Discs that are counted on the target may hold more of the source.
+  what_fits.share = 0;
+  made = with(1, what_fits);
+  made.limited = true;
+  return made;
+}
+
 Regions RegionCompleter::operator()(const Regions& regions, const Target& target,
                                     const SolveOptions& options) {
-  if (solves_for_vertices(target.model, options.space)) return regions;
+  if (options.per_region || solves_for_vertices(target.model, options.space)) return regions;
   if (!search_) {
     search_.emplace(rest_, triangles_, distances_,
                     kAddedRadius * options_.radius.in(diameter(rest_)), inside_);
@@ -68,23 +94,32 @@ Regions RegionCompleter::operator()(const Regions& regions, const Target& target
   CompletionOptions of_completion = options_.completion;
   of_completion.edges = options.edges;
   of_completion.pairing = target.pairing;
-  CompletedRegions completed = mimetra::completed(regions, target.model, *search_, of_completion);
+  const CompletedRegions completed =
+      options_.triangles ? completed_within(*options_.triangles, regions, target, of_completion)
+                         : mimetra::completed(regions, target.model, *search_, of_completion);
   if (completed.added > 0) {
-    const double share = completed.regions.triangle_share() - regions.triangle_share();
+    const std::size_t kept = completed.regions.regions.size() - completed.added;
+    const Regions before = strongest(regions, static_cast<int>(kept), triangles_);
+    const double share = completed.regions.triangle_share() - before.triangle_share();
+    const std::size_t left_out = regions.regions.size() - kept;
     note(options_.notes,
          target.name + ": " + std::to_string(completed.added) + " discs, " + percent(share) +
              " of the triangles, were added to the regions, which hardly see " +
-             listed(reasons(completed)),
+             listed(reasons(completed)) +
+             (left_out > 0 ? "; the " + std::to_string(left_out) + " weakest regions made room"
+                           : ""),
          Topic::completed_regions);
   }
   if (completed.limited) {
     note(options_.notes,
          target.name + ": no more than " + percent(of_completion.limit) +
-             " of the triangles are added to the regions, which leaves expressions that are "
-             "hardly seen",
+             " of the triangles are added to the regions" +
+             (options_.triangles ? ", and no more than " + percent(*options_.triangles) + " taken"
+                                 : "") +
+             ", which leaves expressions that are hardly seen",
          Topic::completion_limit);
   }
-  return std::move(completed.regions);
+  return completed.regions;
 }
 
 }  // namespace mimetra

@@ -17,11 +17,19 @@ class RegionCompleter {
                   const AnalysisOptions& analysis);
   RegionCompleter(const Analysis& analysis, const RegionChoiceOptions& options);
 
-  /// The regions themselves where a target is solved for vertices. Notes, under the target's name,
-  /// what was added (Topic::completed_regions). Throws what completed() throws.
+  /// The regions themselves where a target is solved for vertices, or for weights of each region,
+  /// which look at all triangles. Where the options bound the share of the triangles, the weakest
+  /// regions make room for the discs that are added, the last one apart, beside which as many are
+  /// added as fit. Notes, under the target's name, what was added and left out
+  /// (Topic::completed_regions). Throws what completed() throws.
   Regions operator()(const Regions& regions, const Target& target, const SolveOptions& options);
 
  private:
+  /// The most regions with the discs that complete them, within `bound` as a share of the
+  /// triangles.
+  CompletedRegions completed_within(double bound, const Regions& regions, const Target& target,
+                                    const CompletionOptions& options);
+
   Positions rest_;
   Triangles triangles_;
   RegionChoiceOptions options_;

@@ -1,11 +1,19 @@
 #include "toolkit/pipeline/solution.h"
 
+#include <set>
+
 #include "toolkit/correspondence/renumbering.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/frame_store.h"
 #include "toolkit/mesh/stopwatch.h"
+#include "toolkit/mesh/surface_parts.h"
 #include "toolkit/mesh/text.h"
 #include "toolkit/model/animation.h"
+#include "toolkit/model/motion_filter.h"
+#include "toolkit/pipeline/given_markers.h"
+#include "toolkit/pipeline/opening_comparison.h"
+#include "toolkit/pipeline/regional_solution.h"
+#include "toolkit/pipeline/target_notes.h"
 #include "toolkit/transfer/following_parts.h"
 #include "toolkit/transfer/seams.h"
 
@@ -13,55 +21,23 @@ namespace mimetra {
 
 namespace {
 
-/// Looking for seams, which reads every frame, as a part of a solve's progress.
+/// Looking for seams, which reads every frame, as a part of a solve's progress; and until poses are
+/// solved for that are smoothed afterwards.
 constexpr double kSeamShare = 0.2;
+constexpr double kUnsmoothedShare = 0.9;
 
-/// Notes of a target.
-class TargetNotes {
- public:
-  TargetNotes(const Target& target, const SolveOptions& options)
-      : start_(target.name + ": "), notes_(options.notes) {}
+/// The weights of the whole face, as a part of those of each region.
+constexpr double kGlobalShare = 0.2;
 
-  void add(const std::string& text, Topic topic = Topic::other) const {
-    note(notes_, start_ + text, topic);
-  }
-
-  void add(const BlendshapeConditions& conditions) const {
-    if (!conditions.unseen.empty()) {
-      add(std::to_string(conditions.unseen.size()) +
-          " expressions do not move in the regions and stay 0: " + listed(conditions.unseen));
-    }
-    if (!conditions.weakly_seen.empty()) {
-      add(std::to_string(conditions.weakly_seen.size()) +
-          " expressions are weakly seen in the regions: " + listed(conditions.weakly_seen));
-    }
-    if (conditions.condition > kPoorCondition) {
-      add("the regions hardly tell the expressions apart (condition number " +
-              readable(conditions.condition, 2) + ")",
-          Topic::poor_condition);
-    }
-  }
-
-  void add_degenerate(const Solution& solution) const {
-    if (solution.collapsed_triangles > 0) {
-      add(std::to_string(solution.collapsed_triangles) +
-          " triangles between vertices that a seam makes one take no part");
-    }
-    if (solution.degenerate_source_triangles > 0) {
-      add(std::to_string(solution.degenerate_source_triangles) +
-          " slivers of the source, triangles of hardly any area, take their neighbours' "
-          "deformation");
-    }
-    if (solution.degenerate_target_triangles > 0) {
-      add(std::to_string(solution.degenerate_target_triangles) +
-          " slivers of the target, triangles of hardly any area");
-    }
-  }
-
- private:
-  std::string start_;
-  const Notes& notes_;
-};
+RegionalOptions regional_options(const Target& target, const SolveOptions& options) {
+  RegionalOptions of_regions{target.name, options.falloff, options.distances, options.local,
+                             options.notes};
+  of_regions.distances.threads = of_regions.local.threads = options.threads;
+  of_regions.local.edges = options.edges;
+  of_regions.local.pairing = target.pairing;
+  of_regions.local.progress = part_of(options.progress, kGlobalShare, 1);
+  return of_regions;
+}
 
 Solution solve_blendshapes(const Source& source, const Target& target, const Selection& selection,
                            const SolveOptions& options) {
@@ -72,24 +48,40 @@ Solution solve_blendshapes(const Source& source, const Target& target, const Sel
   of_space.progress = options.progress;
   of_space.edges = options.edges;
   of_space.pairing = target.pairing;
+  of_space.smoothness = options.smoothness;
+  of_space.rules = target.rules;
   const FrameSource& performance = *source.sequence;
-  const BlendshapeTransfer transfer(performance.rest(), model, selection.triangles, of_space);
+  const bool regional = options.per_region && !selection.regions.empty();
+  if (regional) of_space.progress = part_of(options.progress, 0, kGlobalShare);
+  const BlendshapeTransfer transfer(performance.rest(), model,
+                                    regional ? whole(target).triangles : selection.triangles,
+                                    of_space);
+  const Eigen::MatrixXd beta = transfer.weights(performance);
   Solution solution;
-  solution.animation =
-      std::make_shared<const Animation>(std::make_shared<const BlendshapeModel>(model),
-                                        transfer.weights(performance), performance.known_times());
-  solution.sequence = solution.animation;
+  if (regional) {
+    RegionalSolution local = solve_regions(performance, model, selection.regions, beta,
+                                           regional_options(target, options));
+    solution.violation = local.violation;
+    solution.regional = std::move(local.animation);
+    solution.sequence = solution.regional;
+  } else {
+    solution.animation = std::make_shared<const Animation>(
+        std::make_shared<const BlendshapeModel>(model), beta, performance.known_times());
+    solution.sequence = solution.animation;
+  }
   solution.seconds = stopwatch.seconds();
   solution.conditions = transfer.conditions();
   solution.degenerate_source_triangles = solution.conditions.degenerate_source_triangles;
   solution.degenerate_target_triangles = solution.conditions.degenerate_target_triangles;
-  const TargetNotes notes(target, options);
+  const TargetNotes notes(target.name, options.notes);
   notes.add(solution.conditions);
-  notes.add_degenerate(solution);
+  notes.add_degenerate({.source = solution.degenerate_source_triangles,
+                        .target = solution.degenerate_target_triangles,
+                        .collapsed = solution.collapsed_triangles});
   // Another face's expressions are never quite the source's: with an exact neutral, too, some want
   // to be negative.
   const bool may_be_wrong = !source.neutral_is_known;
-  if (may_be_wrong && transfer.rest_looks_unneutral(performance, solution.weights())) {
+  if (may_be_wrong && transfer.rest_looks_unneutral(performance, beta)) {
     notes.add(
         "many expressions want to be negative, so the source's rest pose is likely not its "
         "neutral",
@@ -124,6 +116,15 @@ void check_anchor(const VertexTransferOptions& options, const Target& target,
   }
 }
 
+/// The connected parts that some vertices are, ascending.
+std::vector<int> parts_of(const std::vector<VertexIndex>& vertices, const BlendshapeModel& model) {
+  if (vertices.empty()) return {};
+  const SurfaceParts parts = surface_parts(model.neutral(), model.triangles());
+  std::set<int> found;
+  for (const VertexIndex v : vertices) found.insert(parts.of_vertex[v]);
+  return {found.begin(), found.end()};
+}
+
 Solution solve_vertices(const Source& source, const Target& target, const Selection& selection,
                         const SolveOptions& options) {
   const Stopwatch stopwatch;
@@ -138,13 +139,21 @@ Solution solve_vertices(const Source& source, const Target& target, const Select
   of_space.weld = target.pairing ? closed_seams(performance, model.neutral(), model.triangles(),
                                                 *target.pairing, of_seams)
                                  : closed_seams(performance, model.neutral(), of_seams);
-  of_space.progress = part_of(options.progress, kSeamShare, 1);
+  const bool smooths = options.smoothness > 0;
+  const double solved = smooths ? kUnsmoothedShare : 1;
+  of_space.progress = part_of(options.progress, kSeamShare, solved);
   const VertexTransfer transfer(performance.rest(), model.neutral(), model.triangles(),
                                 selection.triangles, of_space);
   const auto store = std::make_shared<FrameStore>(
       SequenceHeader{model.shared_connectivity(), performance.times(), model.neutral(), true,
                      performance.times_are_known()});
-  transfer.write_frames(performance, *store);
+  if (smooths) {
+    const MotionFilter filter(performance.times(), options.smoothness);
+    store->write(0, filter(transfer.frames(performance),
+                           {options.threads, part_of(options.progress, solved, 1)}));
+  } else {
+    transfer.write_frames(performance, *store);
+  }
   store->commit();
   Solution solution;
   solution.sequence = store;
@@ -152,7 +161,13 @@ Solution solve_vertices(const Source& source, const Target& target, const Select
   solution.collapsed_triangles = transfer.collapsed_triangles();
   solution.degenerate_source_triangles = transfer.degenerate_source_triangles();
   solution.degenerate_target_triangles = transfer.degenerate_target_triangles();
-  TargetNotes(target, options).add_degenerate(solution);
+  const std::vector<VertexIndex> following = transfer.following_vertices();
+  solution.following_parts = parts_of(following, model);
+  const TargetNotes notes(target.name, options.notes);
+  notes.add_following(solution.following_parts, following.size());
+  notes.add_degenerate({.source = solution.degenerate_source_triangles,
+                        .target = solution.degenerate_target_triangles,
+                        .collapsed = solution.collapsed_triangles});
   return solution;
 }
 
@@ -210,35 +225,21 @@ std::string described_faces(const Connectivity& source, const BlendshapeModel& m
          " is not the source's";
 }
 
-/// By how much lower or higher vertices the markers would fit much better; 0 where they are right.
-int better_shift(const std::vector<Marker>& markers, const TriMesh& source, const TriMesh& target) {
-  for (const int shift : {1, -1}) {
-    if (fit_better_shifted(markers, shift, source.positions, target.positions)) return shift;
-  }
-  return 0;
-}
-
-std::string described_shift(int shift) {
-  return std::string("the markers fit much better as vertices one ") +
-         (shift > 0 ? "lower: they are counted from 1" : "higher: they are counted from 0");
-}
-
 /// Finds what markers tell. Errors are the target's.
 FoundCorrespondence found_by(const std::vector<Marker>& markers, const TriMesh& source,
                              const TriMesh& target, const std::string& name,
                              const MatchOptions& options) {
-  const int shift = better_shift(markers, source, target);
   try {
     FoundCorrespondence found = find_correspondence(
         source, target, markers, {.threads = options.threads, .progress = options.progress});
-    if (shift != 0) {
-      note(options.notes, name + ": " + described_shift(shift), Topic::shifted_markers);
+    if (found.inside_out) {
+      note(options.notes, name +
+                              ": its faces lead the other way round than the source's (one of them "
+                              "is inside out); they are paired as if turned");
     }
     return found;
   } catch (const MismatchError& error) {
-    const std::string text = name + ": " + error.what();
-    if (shift == 0) throw MismatchError(text);
-    throw OptionError(Topic::shifted_markers, text + "; " + described_shift(shift));
+    throw MismatchError(name + ": " + error.what());
   }
 }
 
@@ -260,6 +261,21 @@ AutomaticMarkers found_between(const MarkersBetween& search, const TriMesh& sour
   }
 }
 
+/// Says where a face is open at rest as the other one is not.
+void note_openings(const TriMesh& source, const TriMesh& target, const AutomaticMarkers& markers,
+                   const std::string& name, const Notes& notes) {
+  for (const OpeningAtRest& opening : openings_at_rest(source, target, markers)) {
+    if (!opening.differs()) continue;
+    const bool is_sources = opening.source > opening.target;
+    note(notes,
+         name + ": at rest the " + std::string(opening.name) + " is open by " +
+             percent(opening.target) + " of its width, on the source by " +
+             percent(opening.source) + ": " + (is_sources ? "the source's" : "its") +
+             " rest pose is likely not neutral",
+         is_sources ? Topic::unneutral_rest : Topic::other);
+  }
+}
+
 }  // namespace
 
 EdgeSum edge_sum(Compatibility compatibility) {
@@ -268,11 +284,68 @@ EdgeSum edge_sum(Compatibility compatibility) {
 
 const Eigen::MatrixXd& Solution::weights() const {
   static const Eigen::MatrixXd none;
+  if (regional) return regional->weights();
   return animation ? animation->weights() : none;
+}
+
+std::vector<std::string> Solution::weight_names() const {
+  if (animation) return animation->model().expressions().names;
+  std::vector<std::string> names;
+  if (!regional) return names;
+  const Eigen::Index regions = regional->shares().cols();
+  for (Eigen::Index r = 0; r < regions; ++r) {
+    const std::string region = r + 1 < regions ? std::to_string(r) : "background";
+    for (const std::string& name : regional->model().expressions().names) {
+      names.push_back(name + "@" + region);
+    }
+  }
+  return names;
 }
 
 bool solves_for_vertices(const BlendshapeModel& target, Space space) {
   return space == Space::vertex || target.expressions().size() == 0;
+}
+
+namespace {
+
+/// Throws std::invalid_argument where such weights cannot be found as the options say.
+void check_regional(const Target& target, const SolveOptions& options) {
+  if (solves_for_vertices(target.model, options.space)) {
+    throw std::invalid_argument("per_region: " + target.name +
+                                " is solved for vertices, which have no weights");
+  }
+  if (options.smoothness > 0) {
+    throw std::invalid_argument(
+        "smoothness: weights of each region are found frame by frame; it must be 0");
+  }
+  if (options.blendshape.symmetry > 0 || options.blendshape.exclusive != Exclusive::none ||
+      !target.rules.empty()) {
+    throw std::invalid_argument("per_region: " + target.name +
+                                ": weights of each region follow no rules of expressions, neither "
+                                "symmetry nor exclusive");
+  }
+}
+
+}  // namespace
+
+void check_rules(const Target& target, const SolveOptions& options) {
+  if (options.per_region) check_regional(target, options);
+  const BlendshapeModel& model = target.model;
+  if (solves_for_vertices(model, options.space)) return;
+  const auto& names = model.expressions().names;
+  const BlendshapeTransferOptions& of_space = options.blendshape;
+  const ExpressionRules rules(names, target.rules, of_space.exclusive);
+  if (of_space.symmetry > 0 && rules.unknowns().pairs.empty()) {
+    throw OptionError(Topic::no_pairs,
+                      target.name + ": no two of its expressions are named as left and right");
+  }
+  if (known_exclusives(names, of_space.exclusive).empty() &&
+      of_space.exclusive != Exclusive::none) {
+    throw OptionError(Topic::no_exclusives,
+                      target.name +
+                          ": none of its expressions are named as those of ARKit that exclude "
+                          "each other");
+  }
 }
 
 bool is_to_be_paired(const FrameSource& source, const Target& target) {
@@ -316,7 +389,10 @@ void MatchedTarget::pair(const TriMesh& source, const MatchOptions& options) {
   Correspondence pairs;
   if (const auto* search = std::get_if<MarkersBetween>(&target_.match)) {
     report.found = found_between(*search, source, target_, options);
+    note_openings(source, target, *report.found, target_.name, options.notes);
     target_.match = report.found->markers;
+  } else if (const auto* given = std::get_if<std::vector<Marker>>(&target_.match)) {
+    check_given_markers(*given, target_.marker_places, source, target, target_.name, options.notes);
   }
   if (const auto* markers = std::get_if<std::vector<Marker>>(&target_.match)) {
     FoundCorrespondence found = found_by(*markers, source, target, target_.name, options);
@@ -347,7 +423,7 @@ Selection selection_of(const Regions& regions, const Target& target) {
   const Triangles& triangles = target.model.get().triangles();
   Selection selection{
       pairing.with_gaps(triangles_over(pairing.triangles(), regions.triangles), triangles),
-      pairing.over(regions.inside)};
+      pairing.over(regions.inside), regions_over(pairing, regions)};
   // Vertices without carriers are inside where all of their triangles are in L.
   std::vector<bool> in_l(triangles.rows(), false), leaves(pairing.target_vertices(), false);
   for (const int t : selection.triangles) in_l[t] = true;
@@ -385,6 +461,7 @@ Solution solve(const Source& source, const Target& target, const Selection& sele
   if (options.space == Space::blendshape && model.expressions().size() == 0) {
     throw OptionError(Topic::no_expressions, target.name + ": has no expressions");
   }
+  check_rules(target, options);
   return solves_for_vertices(model, options.space)
              ? solve_vertices(source, target, selection, options)
              : solve_blendshapes(source, target, selection, options);

@@ -11,8 +11,11 @@
 #include "toolkit/correspondence/pairing.h"
 #include "toolkit/mesh/similarity.h"
 #include "toolkit/model/animation.h"
+#include "toolkit/model/regional_animation.h"
+#include "toolkit/model/weight_rules.h"
 #include "toolkit/pipeline/region_choice.h"
 #include "toolkit/transfer/blendshape_transfer.h"
+#include "toolkit/transfer/local_weights.h"
 #include "toolkit/transfer/vertex_transfer.h"
 
 namespace mimetra {
@@ -70,6 +73,10 @@ struct Target {
   std::string name;
   std::reference_wrapper<const BlendshapeModel> model;
   GivenMatch match = {};
+  /// Of the model's expressions, where they are solved for.
+  WeightRules rules = {};
+  /// Where each of the markers was written, for notes: "m.txt, line 3". None for their numbers.
+  std::vector<std::string> marker_places = {};
   /// With the source; null where both have the same faces. A MatchedTarget has it of `match`.
   std::shared_ptr<const Pairing> pairing = {};
 };
@@ -79,10 +86,23 @@ struct SolveOptions {
   Axes axes = Axes::fit;
   /// Of eq. 10 and 12.
   EdgeSum edges = EdgeSum::all;
-  /// Of each space; their threads and progress, edges, the vertices inside and those that are one
-  /// are those of the solve.
+  /// Time constant in seconds: weights, or in vertex space positions, are drawn to a small second
+  /// derivative (smooth_weights(), MotionFilter).
+  double smoothness = 0;
+  /// Of each space; their threads and progress, edges, smoothness, the vertices inside, those that
+  /// are one and the rules of expressions are those of the solve and the target.
   BlendshapeTransferOptions blendshape = {};
   VertexTransferOptions vertex = {};
+  /// Blendshape space: each region has weights of its own, and what lies around them too; all
+  /// triangles are looked at.
+  bool per_region = false;
+  /// Geodesic distance from a region's rim over which its weights fade out, on the target.
+  Length falloff = Length::share(0.1);
+  /// Its threads, progress, edges and pairing are those of the solve.
+  LocalWeightsOptions local = {};
+  /// By which that is measured; of a transfer those of the analysis. Threads are those of the
+  /// solve.
+  DistanceOptions distances = {};
   /// 0 for all there are; the result does not depend on it.
   int threads = 0;
   Progress progress = {};
@@ -90,7 +110,10 @@ struct SolveOptions {
 
   static constexpr Option kSpace{"space", &SolveOptions::space};
   static constexpr Option kAxes{"axes", &SolveOptions::axes};
-  static constexpr auto declared() { return std::tuple(kSpace, kAxes); }
+  static constexpr Option kSmoothness{"smoothness", &SolveOptions::smoothness, {.minimum = 0}, "s"};
+  static constexpr Option kPerRegion{"per_region", &SolveOptions::per_region};
+  static constexpr Option kFalloff{"falloff", &SolveOptions::falloff, {.minimum = 1e-9}};
+  static constexpr auto declared() { return std::tuple(kSpace, kAxes, kSmoothness, kFalloff); }
 };
 
 /// What eq. 10 and 12 sum over.
@@ -119,16 +142,27 @@ struct Solution {
   std::shared_ptr<const FrameSource> sequence;
   /// The same where weights drive it; null in vertex space.
   std::shared_ptr<const Animation> animation;
+  /// The same where each region has weights of its own, else null.
+  std::shared_ptr<const RegionalAnimation> regional;
+  /// Of the weights of regions: LocalWeights.
+  double violation = 0;
   BlendshapeConditions conditions;
   /// Between vertices that are one, in vertex space: they take no part, and are none of the
   /// degenerate ones.
   int collapsed_triangles = 0;
+  /// Connected parts without partner, by their rank among surface_parts(), that moved rigidly with
+  /// the surface around them.
+  std::vector<int> following_parts = {};
   int degenerate_source_triangles = 0;
   int degenerate_target_triangles = 0;
   double seconds = 0;  ///< set-up and the solve of all frames
 
-  /// beta, F x D; empty in vertex space.
+  /// beta, F x D; of R regions with weights of their own F x R D, as in RegionalAnimation, the last
+  /// region being what lies around them; empty in vertex space.
   const Eigen::MatrixXd& weights() const;
+  /// Names of its columns: those of the expressions, of regions NAME@0, NAME@1, ... in the order of
+  /// the selection and NAME@background.
+  std::vector<std::string> weight_names() const;
 };
 
 /// True for the vertex space, and where a target has no expressions to solve for.
@@ -137,6 +171,12 @@ bool solves_for_vertices(const BlendshapeModel& target, Space space);
 /// Whether a MatchedTarget is paired: markers or pairs are given, or markers are looked for and the
 /// faces differ.
 bool is_to_be_paired(const FrameSource& source, const Target& target);
+
+/// Throws OptionError where the target has no pair for a symmetry (Topic::no_pairs), or none of the
+/// groups that are to exclude each other (Topic::no_exclusives), and what ExpressionRules() throws;
+/// nothing where it is solved for vertices. Throws std::invalid_argument where each region is to
+/// have weights of its own and the target has none, or they are to be smooth or to follow rules.
+void check_rules(const Target& target, const SolveOptions& options);
 
 struct MatchOptions {
   /// The source's undeformed shape (N x 3); by default its rest pose.
@@ -161,12 +201,13 @@ struct MatchReport {
 /// another corner are cut along the source's diagonals, or paired.
 class MatchedTarget {
  public:
-  /// Notes, under the target's name, markers that fit better as other vertices
-  /// (Topic::shifted_markers), and found markers that are doubtful and a match whose verdict is
-  /// poor (Topic::poor_match). Throws OptionError (Topic::other_faces) unless the target has the
-  /// source's vertices and faces or a match is given, and (Topic::shifted_markers) for markers that
-  /// would fit as other vertices; MismatchError for other wrong markers, a correspondence of other
-  /// numbers of triangles, and one without any pair; Cancelled; what the search for markers throws.
+  /// Notes, under the target's name, markers that are doubtful and a match whose verdict is
+  /// poor (Topic::poor_match), and a target that is inside out. Throws OptionError
+  /// (Topic::other_faces) unless the target has the source's vertices and faces or a match is
+  /// given, and (Topic::shifted_markers) for markers that fit much better as other vertices;
+  /// MismatchError for other wrong markers and those that fit a mirror image, a correspondence of
+  /// other numbers of triangles, and one without any pair; Cancelled; what the search for markers
+  /// throws.
   MatchedTarget(const FrameSource& source, Target target, const MatchOptions& options = {});
 
   const Target& operator*() const { return target_; }
@@ -190,11 +231,17 @@ Selection whole(const Target& target);
 /// Solves on the selected triangles in blendshape or vertex space; in vertex space closed_seams()
 /// stay closed. Notes, under the target's name, expressions that the triangles do not or hardly
 /// show (Topic::poor_condition where they do not tell them apart), triangles without area or that a
-/// seam collapses, and a source whose neutral is not known and whose rest pose does not look like
-/// it (Topic::unneutral_rest). \pre the target is a MatchedTarget, the source is placed_at() it
+/// seam collapses, parts that follow the surface around them, and a source whose neutral is not
+/// known and whose rest pose does not look like it (Topic::unneutral_rest). \pre the target is a
+/// MatchedTarget, the source is placed_at() it
+///
+/// Where each region has weights of its own, they are found on all triangles and drawn towards
+/// those of the whole face, which ridge and sparsity shape; a selection without regions has those.
 ///
 /// Throws OptionError (Topic::no_expressions, Topic::anchor_vertex, Topic::held_anchor) and what
-/// BlendshapeTransfer, closed_seams(), VertexTransfer, reading the source and FrameStore throw.
+/// check_rules(), BlendshapeTransfer, LocalWeights, closed_seams(), VertexTransfer, reading the
+/// source and FrameStore throw; std::invalid_argument where each region is to have weights of its
+/// own that are smooth over time, or a target has none.
 Solution solve(const Source& source, const Target& target, const Selection& selection,
                const SolveOptions& options = {});
 

@@ -1,11 +1,14 @@
 #include "toolkit/pipeline/transfer.h"
 
 #include <algorithm>
+#include <stdexcept>
 
 #include "toolkit/mesh/stopwatch.h"
 #include "toolkit/mesh/text.h"
 #include "toolkit/pipeline/joint_motion.h"
 #include "toolkit/pipeline/region_completer.h"
+#include "toolkit/pipeline/region_selector.h"
+#include "toolkit/pipeline/usability.h"
 
 namespace mimetra {
 
@@ -20,6 +23,8 @@ constexpr double kSolveShare = 0.7;
 struct Choice {
   std::optional<Regions> regions = {};
   std::optional<RegionCompleter> completion = {};
+  /// Chooses the regions of each target, instead of the above.
+  std::optional<RegionSelector> selector = {};
   std::optional<Components> components = {};
   double seconds = 0;
 };
@@ -39,20 +44,28 @@ Choice choose(const Source& source, const TransferOptions& options) {
   if (options.full) return {};
   RegionChoiceOptions of_regions = options.regions;
   of_regions.notes = options.notes;
+  const FrameSource& sequence = *source.sequence;
+  AnalysisOptions of_analysis = options.analysis;
+  of_analysis.threads = options.threads;
+  of_analysis.notes = options.notes;
   if (const auto* given = std::get_if<GivenRegions>(&options.given)) {
-    const FrameSource& sequence = *source.sequence;
     check_regions(*given, sequence);
-    AnalysisOptions of_analysis = options.analysis;
-    of_analysis.threads = options.threads;
-    of_analysis.notes = options.notes;
     return {given->regions,
             RegionCompleter(sequence.rest(), sequence.triangles(), of_regions, of_analysis)};
+  }
+  if (options.regions.select == Selector::transfer) {
+    Choice choice;
+    choice.selector.emplace(sequence, of_regions, of_analysis);
+    return choice;
   }
   const Stopwatch stopwatch;
   Analysis analysis = analysis_for(source, options);
   Regions regions = choose_regions(analysis, of_regions);
   RegionCompleter completion(analysis, of_regions);
-  return {std::move(regions), std::move(completion), std::move(analysis.components),
+  return {std::move(regions),
+          std::move(completion),
+          {},
+          std::move(analysis.components),
           stopwatch.seconds()};
 }
 
@@ -86,6 +99,19 @@ std::vector<MatchedTarget> matched_targets(const FrameSource& sequence,
   return matched;
 }
 
+/// The regions that a target is solved by; none for all triangles.
+std::optional<Regions> regions_for(const Target& target, const Source& placed, Choice& choice,
+                                   const SolveOptions& of_solving) {
+  if (choice.selector) {
+    const Stopwatch stopwatch;
+    Regions regions = (*choice.selector)(placed, target, of_solving);
+    choice.seconds += stopwatch.seconds();
+    return regions;
+  }
+  if (!choice.regions) return {};
+  return (*choice.completion)(*choice.regions, target, of_solving);
+}
+
 /// The discs of `completed` that `regions` lack.
 void take_over(const Regions& completed, Regions& regions, const Triangles& triangles) {
   std::vector<Region> added;
@@ -98,19 +124,24 @@ void take_over(const Regions& completed, Regions& regions, const Triangles& tria
   regions = with_added(regions, std::move(added), triangles);
 }
 
-/// Sound results miss 0.1 to 4 % of the deformation and flip 1 to 5 triangles of 100 000; results
-/// that people see to be wrong, 8 % and more, or 40 and more.
-constexpr double kMissedShare = 0.08;
-constexpr double kFlippedShare = 2e-4;
+/// What the regions of all targets together are.
+std::optional<Regions> regions_of(const std::vector<TransferredTarget>& targets, Choice& choice,
+                                  const Triangles& triangles) {
+  if (choice.selector) return targets.size() == 1 ? targets.front().regions : std::nullopt;
+  for (const TransferredTarget& each : targets) {
+    if (each.regions) take_over(*each.regions, *choice.regions, triangles);
+  }
+  return std::move(choice.regions);
+}
 
 /// Says where a result is not usable, by its error before head motion is given back.
 void note_usability(const Target& target, const TransferError& error,
                     const TransferOptions& options) {
   std::string wrong;
-  if (missed_share(error) > kMissedShare) {
+  if (missed_share(error) > kUnusableMissedShare) {
     wrong = percent(missed_share(error)) + " of the deformation is missing";
   }
-  if (flipped_share(error) > kFlippedShare) {
+  if (flipped_share(error) > kUnusableFlippedShare) {
     wrong += (wrong.empty() ? "" : ", and ") +
              readable(error.flipped / double(error.per_frame.size()), 2) +
              " triangles a frame are flipped";
@@ -148,35 +179,46 @@ std::vector<ComparedOpening> openings_on(const MatchedTarget& target, const Fram
 }  // namespace
 
 bool decomposes(const TransferOptions& options) {
-  return !options.full && std::holds_alternative<std::monostate>(options.given);
+  return !options.full && std::holds_alternative<std::monostate>(options.given) &&
+         options.regions.select == Selector::energy;
 }
 
 TransferResult transfer(const FrameSource& sequence, const std::vector<Target>& given,
                         const TransferOptions& options) {
   check_options(options);
+  if (options.full && options.solving.per_region) {
+    throw std::invalid_argument("per_region: a full transfer has no regions");
+  }
   const std::vector<MatchedTarget> matched = matched_targets(sequence, given, options);
   std::vector<Target> targets;
-  for (const MatchedTarget& target : matched) targets.push_back(*target);
+  for (const MatchedTarget& target : matched) {
+    if (!options.full) check_selection(*target, options.regions, options.solving.space);
+    targets.push_back(*target);
+  }
   SolveOptions of_solving = options.solving;
   of_solving.threads = options.threads;
   of_solving.notes = options.notes;
   of_solving.edges = edge_sum(options.analysis.compatibility);
+  for (const Target& target : targets) check_rules(target, of_solving);
+  of_solving.distances = options.analysis.distances;
   const Source source = source_of(sequence, targets, options, of_solving);
   Choice choice = choose(source, options);
   const bool give_back = !source.motion.empty() && options.head_motion == RemovedMotion::keep;
 
   TransferResult result;
   const double first = choice.regions ? kRegionShare : kSourceShare;
+  const double solved = choice.selector ? kRegionShare : 0;
   const auto count = static_cast<double>(targets.size());
   for (std::size_t t = 0; t < targets.size(); ++t) {
     const Progress progress =
         part_of(options.progress, first + (1 - first) * static_cast<double>(t) / count,
                 first + (1 - first) * static_cast<double>(t + 1) / count);
-    of_solving.progress = part_of(progress, 0, kSolveShare);
+    const Progress until_error = part_of(progress, 0, kSolveShare);
+    of_solving.progress = part_of(until_error, 0, solved);
     const Target& target = targets[t];
     const PlacedSource placed = placed_at(target, source, of_solving);
-    std::optional<Regions> regions;
-    if (choice.regions) regions = (*choice.completion)(*choice.regions, target, of_solving);
+    std::optional<Regions> regions = regions_for(target, placed.source, choice, of_solving);
+    of_solving.progress = part_of(until_error, solved, 1);
     const Selection selection = regions ? selection_of(*regions, target) : whole(target);
     Solution solution = solve(placed.source, target, selection, of_solving);
     const Stopwatch of_error;
@@ -196,10 +238,7 @@ TransferResult transfer(const FrameSource& sequence, const std::vector<Target>& 
                               std::move(openings)});
   }
   result.head_motion = source.head_motion;
-  result.regions = std::move(choice.regions);
-  for (const TransferredTarget& each : result.targets) {
-    if (each.regions) take_over(*each.regions, *result.regions, sequence.triangles());
-  }
+  result.regions = regions_of(result.targets, choice, sequence.triangles());
   result.components = std::move(choice.components);
   result.region_seconds = choice.seconds;
   return result;

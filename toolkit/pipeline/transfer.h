@@ -54,7 +54,7 @@ struct TransferredTarget {
   /// Its sequence has the source's head motion where that was taken out and is kept; its neutral is
   /// then not its rest pose.
   Solution solution;
-  /// Those of the source, completed for this target; none for all triangles.
+  /// Those of the source, completed for this target, or chosen for it; none for all triangles.
   std::optional<Regions> regions;
   /// From the source's rest pose to the target's.
   Similarity similarity;
@@ -70,11 +70,12 @@ struct TransferredTarget {
 
 struct TransferResult {
   std::vector<TransferredTarget> targets;  ///< in the order of the targets
-  /// Of the source, and what was added for any of the targets; none for all triangles.
+  /// Of the source, and what was added for any of the targets; none for all triangles, and where
+  /// Selector::transfer chose others for each of several targets.
   std::optional<Regions> regions;
   std::optional<Components> components;  ///< that the regions come from
   HeadMotionTaken head_motion;           ///< of the source
-  double region_seconds = 0;             ///< decomposition and choice of regions
+  double region_seconds = 0;             ///< decomposition and choice of regions, for all targets
 };
 
 /// True where regions are looked for: then all frames are in memory.
@@ -90,8 +91,9 @@ bool decomposes(const TransferOptions& options);
 /// triangles are flipped (Topic::poor_condition where there are regions), and eyes and mouths that
 /// close on the source only.
 ///
-/// Throws what prepare_source(), MatchedTarget(), analyse(), analysis_of(), check_regions(),
-/// choose_regions() and solve() throw; Cancelled. A target that does not fit is refused before
+/// Throws std::invalid_argument for a full transfer by weights of each region, and what
+/// prepare_source(), MatchedTarget(), analyse(), analysis_of(), check_regions(), choose_regions(),
+/// RegionSelector and solve() throw; Cancelled. A target that does not fit is refused before
 /// anything is computed.
 TransferResult transfer(const FrameSource& source, const std::vector<Target>& targets,
                         const TransferOptions& options = {});

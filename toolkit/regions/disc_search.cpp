@@ -113,6 +113,33 @@ class TriangleSum {
 
 }  // namespace
 
+std::vector<std::vector<int>> triangles_of_vertices(int vertices, const Triangles& triangles) {
+  std::vector<std::vector<int>> of_vertex(vertices);
+  for (int t = 0; t < triangles.rows(); ++t) {
+    for (const VertexIndex v : triangles.row(t)) of_vertex[v].push_back(t);
+  }
+  return of_vertex;
+}
+
+Disc disc_around(VertexIndex center, const Eigen::Ref<const Eigen::VectorXd>& distances,
+                 double radius, const std::vector<std::vector<int>>& triangles_of_vertex,
+                 const std::vector<bool>& inside) {
+  Disc disc;
+  disc.center = center;
+  for (VertexIndex v = 0; v < distances.size(); ++v) {
+    // A centre on no triangle has no distances, not even to itself.
+    const bool is_near = distances[v] <= (1 + kNearTie) * radius || v == center;
+    if (!is_near || !(inside.empty() || inside[v])) continue;
+    disc.vertices.push_back(v);
+    const std::vector<int>& around = triangles_of_vertex[v];
+    disc.triangles.insert(disc.triangles.end(), around.begin(), around.end());
+  }
+  std::ranges::sort(disc.triangles);
+  disc.triangles.erase(std::unique(disc.triangles.begin(), disc.triangles.end()),
+                       disc.triangles.end());
+  return disc;
+}
+
 DiscSearch::DiscSearch(Positions positions, Triangles triangles, DistanceFunction distances,
                        double radius, std::vector<bool> inside)
     : positions_(std::move(positions)),
@@ -120,10 +147,7 @@ DiscSearch::DiscSearch(Positions positions, Triangles triangles, DistanceFunctio
       distances_(std::move(distances)),
       radius_(radius),
       inside_(std::move(inside)),
-      triangles_of_vertex_(positions_.rows()) {
-  for (int t = 0; t < triangles_.rows(); ++t) {
-    for (const VertexIndex v : triangles_.row(t)) triangles_of_vertex_[v].push_back(t);
-  }
+      triangles_of_vertex_(triangles_of_vertices(static_cast<int>(positions_.rows()), triangles_)) {
 }
 
 std::vector<DiscSearch::Candidate> DiscSearch::candidates(const Eigen::VectorXd& amounts) const {
@@ -161,16 +185,6 @@ std::vector<DiscSearch::Candidate> DiscSearch::candidates(const Eigen::VectorXd&
   return result;
 }
 
-std::vector<int> DiscSearch::triangles_at(const std::vector<VertexIndex>& vertices) const {
-  std::vector<int> touching;
-  for (const VertexIndex v : vertices) {
-    touching.insert(touching.end(), triangles_of_vertex_[v].begin(), triangles_of_vertex_[v].end());
-  }
-  std::ranges::sort(touching);
-  touching.erase(std::unique(touching.begin(), touching.end()), touching.end());
-  return touching;
-}
-
 void DiscSearch::measure(std::span<const Candidate> some) {
   std::vector<VertexIndex> unknown;
   for (const Candidate& candidate : some) {
@@ -179,14 +193,8 @@ void DiscSearch::measure(std::span<const Candidate> some) {
   if (unknown.empty()) return;
   const Eigen::MatrixXd distances = distances_(unknown);
   for (std::size_t i = 0; i < unknown.size(); ++i) {
-    Disc& disc = discs_[unknown[i]];
-    disc.center = unknown[i];
-    for (int v = 0; v < positions_.rows(); ++v) {
-      const double distance = distances(v, static_cast<Eigen::Index>(i));
-      const bool is_near = distance <= (1 + kNearTie) * radius_ || v == disc.center;
-      if (is_near && is_inside(v)) disc.vertices.push_back(v);
-    }
-    disc.triangles = triangles_at(disc.vertices);
+    discs_[unknown[i]] = disc_around(unknown[i], distances.col(static_cast<Eigen::Index>(i)),
+                                     radius_, triangles_of_vertex_, inside_);
   }
 }
 

@@ -14,6 +14,15 @@ struct Disc {
   std::vector<int> triangles;         ///< with a vertex in the disc, ascending
 };
 
+/// Triangles of each vertex, ascending (N). `triangles` M x 3.
+std::vector<std::vector<int>> triangles_of_vertices(int vertices, const Triangles& triangles);
+
+/// The disc around a vertex from which the distances to all are known (N). `inside` (N, empty for
+/// all): vertices that it may hold.
+Disc disc_around(VertexIndex center, const Eigen::Ref<const Eigen::VectorXd>& distances,
+                 double radius, const std::vector<std::vector<int>>& triangles_of_vertex,
+                 const std::vector<bool>& inside);
+
 /// Looks for discs of one radius that hold much of a quantity on the triangles. Centres are
 /// compared that are a quarter of the radius apart from each other; a disc is measured along the
 /// surface only where the ball around its centre, which holds more, could still win.
@@ -40,7 +49,6 @@ class DiscSearch {
   std::vector<Candidate> candidates(const Eigen::VectorXd& amounts) const;
   /// Measured for all of them together where they are new.
   void measure(std::span<const Candidate> some);
-  std::vector<int> triangles_at(const std::vector<VertexIndex>& vertices) const;
 
   Positions positions_;
   Triangles triangles_;

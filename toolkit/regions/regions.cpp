@@ -31,6 +31,13 @@ void require_valid(const RegionOptions& options) {
   check_options(options);
 }
 
+/// For one value a vertex, or none.
+void require_size(const std::string& name, const std::vector<bool>& values, int vertices) {
+  if (values.empty() || static_cast<int>(values.size()) == vertices) return;
+  throw std::invalid_argument(name + ": " + std::to_string(values.size()) + " vertices, expected " +
+                              std::to_string(vertices));
+}
+
 /// Components that move the same vertex most, strongest first, and how far all vertices are from
 /// it.
 struct Site {
@@ -233,16 +240,17 @@ Eigen::VectorXd motion_energy(const Components& components) {
 
 Regions find_regions(const Components& components, const RegionOptions& options) {
   require_valid(options);
-  if (!options.inside.empty() && static_cast<int>(options.inside.size()) != components.vertices()) {
-    throw std::invalid_argument("inside: " + std::to_string(options.inside.size()) +
-                                " vertices, expected " + std::to_string(components.vertices()));
-  }
+  require_size("inside", options.inside, components.vertices());
+  require_size("no_centers", options.no_centers, components.vertices());
   const DistanceFunction distances =
       options.distances
           ? options.distances
           : SurfaceDistances(components.rest, components.triangles, Weld::exact(components.rest),
                              GeodesicMethod::heat, options.threads);
-  const std::vector<Site> sites = sites_of(components, distances);
+  std::vector<Site> sites = sites_of(components, distances);
+  if (!options.no_centers.empty()) {
+    std::erase_if(sites, [&](const Site& site) { return options.no_centers[site.center]; });
+  }
   Regions regions;
   regions.vertices = components.vertices();
   regions.notes = notes_on(components, sites);
@@ -276,6 +284,18 @@ Regions strongest(const Regions& regions, int count, const Triangles& triangles)
   if (count < static_cast<int>(first.regions.size())) first.regions.resize(count);
   complete(first, triangles);
   return first;
+}
+
+int regions_within(const Regions& regions, double share, const Triangles& triangles) {
+  const double room = share * static_cast<double>(triangles.rows()) * (1 + kSumRounding);
+  std::vector<bool> inside(regions.vertices, false);
+  int count = 0;
+  for (const Region& region : regions.regions) {
+    for (const VertexIndex v : region.vertices) inside[v] = true;
+    if (static_cast<double>(triangles_touching(inside, triangles).size()) > room) break;
+    ++count;
+  }
+  return count;
 }
 
 Regions with_added(const Regions& regions, std::vector<Region> added, const Triangles& triangles) {

@@ -38,6 +38,9 @@ struct RegionOptions {
   std::optional<double> coverage = {};
   /// Where regions may lie (N), empty for everywhere: they hold no other vertex.
   std::vector<bool> inside = {};
+  /// Vertices around which no region is made (N), empty for none of them: a component that moves
+  /// one of them most gives none.
+  std::vector<bool> no_centers = {};
   /// Distances along the rest pose; by default SurfaceDistances of its exactly welded vertices.
   DistanceFunction distances = {};
   /// For those default distances; 0 for all there are. The result does not depend on it.
@@ -92,12 +95,16 @@ Eigen::VectorXd motion_energy(const Components& components);
 /// Region k = the vertices within the radius of the centre of component k. Ordered by motion
 /// energy; components with the same centre (also across a welded seam) are merged. A vertex that no
 /// way along the surface reaches is in no region. Throws std::invalid_argument for options out of
-/// range, and for a number of vertices `inside` that is not the mesh's.
+/// range, and for numbers of vertices `inside` or `no_centers` that are not the mesh's.
 Regions find_regions(const Components& components, const RegionOptions& options = {});
 
 /// The first `count` regions only (all, where there are fewer). Throws std::invalid_argument where
 /// count < 1.
 Regions strongest(const Regions& regions, int count, const Triangles& triangles);
+
+/// How many of the first regions have no more than this share of the triangles in their union; 0
+/// where the first has more.
+int regions_within(const Regions& regions, double share, const Triangles& triangles);
 
 /// The regions and further ones behind them, of which vertices, centre, radius and what they were
 /// added for are known.

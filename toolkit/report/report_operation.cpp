@@ -46,6 +46,17 @@ void check_pictures(const Invocation& invocation) {
     throw MismatchError("--gallery: " + manifest +
                         " is a run by given regions, which have no components");
   }
+  const Parameters& parameters = run.invocation.parameters;
+  const bool selects =
+      parameters.find("select") && parameters.choice<Selector>("select") == Selector::transfer;
+  if (selects && run.record.operation == "regions") {
+    throw MismatchError(manifest +
+                        " is a run of regions for a transfer; take that of the transfer itself");
+  }
+  if (invocation.wants("gallery") && selects) {
+    throw MismatchError("--gallery: " + manifest +
+                        " is a run by regions for a transfer, which have no components");
+  }
   if (invocation.wants("table-plot") && !run.invocation.inputs.contains("target")) {
     throw MismatchError("--table-plot: " + manifest + " is a run of " + run.record.operation +
                         ", without a transfer");

@@ -8,8 +8,10 @@
 #include "toolkit/mesh/stopwatch.h"
 #include "toolkit/operations/match_parameters.h"
 #include "toolkit/operations/pipeline_parameters.h"
+#include "toolkit/operations/selection_parameters.h"
 #include "toolkit/pipeline/joint_motion.h"
 #include "toolkit/pipeline/region_completer.h"
+#include "toolkit/pipeline/region_selector.h"
 
 namespace mimetra {
 
@@ -74,11 +76,29 @@ class RunSteps {
     double seconds = 0;
   };
 
+  /// Whether regions are chosen for each target; they are not known without one.
+  bool selects() const { return region_options().select == Selector::transfer; }
+
+  /// As the run chose them for a target, or with another number of discs at most.
+  Found regions_for(const Target& target, std::optional<int> discs,
+                    const Progress& progress) const {
+    const Stopwatch stopwatch;
+    RegionChoiceOptions options = with_most_discs(region_options(), call_.parameters);
+    if (discs) options.discs = discs;
+    const SolveOptions of_solving = solve_options(call_, progress);
+    Found found = as_given({});
+    found.regions = in_command_terms(call_.parameters, [&] {
+      const PlacedSource placed = placed_at(target, source_, of_solving);
+      RegionSelector selector(*source_.sequence, options, analysis_options({}));
+      return selector(placed.source, target, of_solving);
+    });
+    found.seconds = stopwatch.seconds();
+    return found;
+  }
+
   Found regions_as_run(const Progress& progress) const {
     if (const RegionData* given = call_.find<RegionData>("regions")) {
-      const FrameSource& source = *source_.sequence;
-      return {given->regions, RegionCompleter(source.rest(), source.triangles(), region_options(),
-                                              analysis_options({}))};
+      return as_given(given->regions);
     }
     const auto given = given_components(call_);
     if (!given) return regions_of(main_count(call_.parameters), progress);
@@ -102,6 +122,7 @@ class RunSteps {
   }
 
   Regions completed(Found& found, const Target& target) const {
+    if (selects()) return found.regions;
     return found.completer(found.regions, target, solve_options(call_, {}));
   }
 
@@ -118,7 +139,9 @@ class RunSteps {
     options.threads = call.threads;
     options.progress = progress;
     options.notes = warnings_of(call);
-    options.edges = edge_sum(analysis_parameters().read(call.parameters).compatibility);
+    const AnalysisOptions analysis = analysis_parameters().read(call.parameters);
+    options.edges = edge_sum(analysis.compatibility);
+    options.distances = analysis.distances;
     return options;
   }
 
@@ -153,6 +176,12 @@ class RunSteps {
     return in_command_terms(call.parameters, [&] { return prepare_source(sequence, options); });
   }
 
+  Found as_given(const Regions& regions) const {
+    const FrameSource& source = *source_.sequence;
+    return {regions, RegionCompleter(source.rest(), source.triangles(), region_options(),
+                                     analysis_options({}))};
+  }
+
   Found found_by(Analysis analysis, double seconds) const {
     Regions regions = choose_regions(analysis, region_options());
     RegionCompleter completer(analysis, region_options());
@@ -184,9 +213,15 @@ class RunSteps {
   Source source_;
 };
 
-EvaluationRow completed(EvaluationRow row, const RunSteps::Found& found) {
+EvaluationRow completed(EvaluationRow row, const RunSteps::Found& found, const RunSteps& steps) {
+  if (steps.selects()) {
+    row.k = static_cast<int>(found.regions.regions.size());
+    row.by = Selector::transfer;
+    row.decompose_seconds = found.seconds;
+  }
   if (!found.components) return row;
   row.k = found.components->count();
+  row.by = Selector::energy;
   row.converged = found.components->converged;
   if (found.seconds > 0) row.decompose_seconds = found.seconds;
   return row;
@@ -230,17 +265,14 @@ std::vector<int> regions_over(const std::vector<int>& regions, const Target& tar
 ReportedTransfer transferred(const RunSteps& steps, const Target& to, RunSteps::Found& main,
                              const std::vector<int>& counts, std::vector<std::string>& notes,
                              const Progress& progress) {
-  const BlendshapeModel& model = to.model;
   ReportedTransfer transfer;
   transfer.target = short_name(to.name);
   EvaluatedTransfer full =
       apart_from(notes, [&] { return steps.full(to, part_of(progress, 0, 0.1)); });
   main.regions = steps.completed(main, to);
   EvaluatedTransfer by_regions = steps.by(main.regions, full, to, part_of(progress, 0.1, 0.2));
-  if (by_regions.solution.weights().size() > 0) {
-    transfer.expressions = model.expressions().names;
-  }
-  const EvaluationRow main_row = completed(by_regions.row, main);
+  transfer.expressions = by_regions.solution.weight_names();
+  const EvaluationRow main_row = completed(by_regions.row, main, steps);
   transfer.rows.push_back(main_row);
   const std::set<int> more(counts.begin(), counts.end());
   double done = 0.2;
@@ -250,9 +282,11 @@ ReportedTransfer transferred(const RunSteps& steps, const Target& to, RunSteps::
     done += each;
     if (k == main_row.k || k > main.regions.vertices) continue;
     transfer.rows.push_back(apart_from(notes, [&] {
-      auto found = steps.regions_of(k, part_of(part, 0, 0.7));
+      const Progress until_found = part_of(part, 0, 0.7);
+      auto found = steps.selects() ? steps.regions_for(to, k, until_found)
+                                   : steps.regions_of(k, until_found);
       found.regions = steps.completed(found, to);
-      return completed(steps.by(found.regions, full, to, part_of(part, 0.7, 1)).row, found);
+      return completed(steps.by(found.regions, full, to, part_of(part, 0.7, 1)).row, found, steps);
     }));
   }
   std::ranges::stable_sort(transfer.rows, {}, [](const EvaluationRow& row) { return row.k; });
@@ -310,7 +344,10 @@ ReportStudy study(const NamedData& run, const std::vector<int>& counts, const Pr
   result.sequence = MeshSequence(*steps.source().sequence);
   const NamedData* target = call.inputs.contains("target") ? &target_of(call, run, log) : nullptr;
   const double found_at = target ? 0.3 : 1;
-  auto found = steps.regions_as_run(part_of(progress, 0, found_at));
+  const Progress until_found = part_of(progress, 0, found_at);
+  auto found = target && steps.selects()
+                   ? steps.regions_for(steps.matched(*target), {}, until_found)
+                   : steps.regions_as_run(until_found);
   if (target) {
     result.transfer =
         transferred(steps, steps.matched(*target), found, all_counts(counts, call.parameters),

@@ -15,6 +15,8 @@ namespace {
 /// A method with its mesh.
 struct Geodesics {
   DistanceFunction distances;
+  /// From the nearest of several; without it, each of them is asked for.
+  std::function<Eigen::VectorXd(std::span<const VertexIndex>)> nearest = {};
   /// Sources that are best asked for together.
   int group = 1;
   int degenerate_triangles = 0;
@@ -24,13 +26,18 @@ struct Geodesics {
 Geodesics prepared(const Positions& positions, const Triangles& triangles, GeodesicMethod method) {
   if (method == GeodesicMethod::exact) {
     const auto exact = std::make_shared<const geodesic::ExactGeodesics>(positions, triangles);
-    return {one_by_one([exact](VertexIndex source) { return exact->distances(source); }), 1,
-            exact->degenerate_triangles(), exact->vertices_without_face()};
+    // CGAL's paths from several vertices of one triangle end in a failed assertion.
+    return {one_by_one([exact](VertexIndex source) { return exact->distances(source); }),
+            {},
+            1,
+            exact->degenerate_triangles(),
+            exact->vertices_without_face()};
   }
   const geodesic::HeatOptions options{.intrinsic_delaunay = method == GeodesicMethod::heat};
   const auto heat = std::make_shared<const geodesic::HeatGeodesics>(positions, triangles, options);
   return {
       [heat](std::span<const VertexIndex> sources) { return heat->distances_from_each(sources); },
+      [heat](std::span<const VertexIndex> sources) { return heat->distances(sources); },
       geodesic::HeatGeodesics::kGroup, heat->degenerate_triangles(), heat->vertices_without_face()};
 }
 
@@ -146,6 +153,19 @@ Eigen::MatrixXd SurfaceDistances::once(std::span<const VertexIndex> sources) con
 
 Eigen::VectorXd SurfaceDistances::operator()(VertexIndex source) const {
   return (*this)(std::span(&source, 1));
+}
+
+Eigen::VectorXd SurfaceDistances::from_nearest(std::span<const VertexIndex> sources) const {
+  if (!state_->geodesics.nearest) {
+    if (sources.empty()) throw std::invalid_argument("distances from the nearest of no vertices");
+    return once(sources).rowwise().minCoeff();
+  }
+  const Eigen::VectorXd found = state_->geodesics.nearest(state_->representatives(sources));
+  return found(state_->weld.representative);
+}
+
+const Weld& SurfaceDistances::weld() const {
+  return state_->weld;
 }
 
 int SurfaceDistances::computed() const {

@@ -48,6 +48,12 @@ class SurfaceDistances {
   Eigen::MatrixXd once(std::span<const VertexIndex> sources) const;
   /// Distances from `source` (N).
   Eigen::VectorXd operator()(VertexIndex source) const;
+  /// Distances from the nearest of `sources` (N), not kept. Throws std::out_of_range, and
+  /// std::invalid_argument when there is no source.
+  Eigen::VectorXd from_nearest(std::span<const VertexIndex> sources) const;
+
+  /// Which vertices are one.
+  const Weld& weld() const;
 
   /// Vertices asked for so far, each computed once.
   int computed() const;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 #include <numeric>
+#include <optional>
 #include <stdexcept>
 
 #include <Eigen/Eigenvalues>
@@ -11,7 +12,7 @@
 #include "toolkit/mesh/inspection.h"
 #include "toolkit/mesh/parallel.h"
 #include "toolkit/mesh/product_blocking.h"
-#include "toolkit/model/box_least_squares.h"
+#include "toolkit/model/ruled_least_squares.h"
 #include "toolkit/model/smooth_weights.h"
 #include "toolkit/regions/regions.h"
 #include "toolkit/transfer/deformation_gradients.h"
@@ -59,10 +60,11 @@ struct BlendshapeTransfer::State {
         gram(gram_matrix(target, gradients.selected(), given.edges)),
         right_hand_side(source_rest, gradients, target, given.edges),
         vertices(static_cast<int>(source_rest.rows())),
-        options(given) {}
+        options(given),
+        rules(target.expressions().names, given.rules, given.exclusive) {}
 
   void judge(const BlendshapeModel& target);
-  void set_up();
+  void set_up(const std::vector<std::string>& names);
   void check_size(const FrameSource& performance) const;
   void smooth(const FrameSource& performance, const Eigen::MatrixXd& h,
               Eigen::MatrixXd& beta) const;
@@ -72,11 +74,11 @@ struct BlendshapeTransfer::State {
   RightHandSide right_hand_side;
   int vertices;
   BlendshapeTransferOptions options;
+  ExpressionRules rules;
   BlendshapeConditions conditions;
   std::vector<Eigen::Index> seen;
-  double mean_diagonal = 0;  // of gram, over the columns that are seen
-  Eigen::MatrixXd system;    // gram and ridge
-  Eigen::VectorXd upper;     // 1, or 0 for columns that are not seen
+  double mean_diagonal = 0;                 // of gram, over the columns that are seen
+  std::optional<RuledLeastSquares> solver;  // of gram and ridge; columns that are not seen stay
 };
 
 /// Which expressions L sees, and how well it tells them apart.
@@ -84,14 +86,12 @@ void BlendshapeTransfer::State::judge(const BlendshapeModel& target) {
   const Eigen::VectorXd full =
       gram_diagonal(target, all_triangles(target.triangles()), options.edges);
   const std::vector<std::string>& names = target.expressions().names;
-  upper = Eigen::VectorXd::Zero(gram.rows());
   for (Eigen::Index j = 0; j < gram.rows(); ++j) {
     if (!moves_there(gram(j, j), full[j])) {
       conditions.unseen.push_back(names[j]);
       continue;
     }
     if (gram(j, j) < kWeaklySeenShare * full[j]) conditions.weakly_seen.push_back(names[j]);
-    upper[j] = 1;
     seen.push_back(j);
   }
   if (seen.empty()) {
@@ -108,10 +108,20 @@ void BlendshapeTransfer::State::judge(const BlendshapeModel& target) {
   conditions.degenerate_target_triangles = degenerate_triangles(target, gradients.selected());
 }
 
-void BlendshapeTransfer::State::set_up() {
+void BlendshapeTransfer::State::set_up(const std::vector<std::string>& names) {
   mean_diagonal = gram.diagonal()(seen).mean();
-  system = gram;
+  Eigen::MatrixXd system = gram;
   system.diagonal().array() += options.ridge * mean_diagonal;
+  UnknownRules unknowns = rules.unknowns();
+  unknowns.pair_weight = options.symmetry * mean_diagonal;
+  for (int j = 0; j < static_cast<int>(gram.rows()); ++j) {
+    if (options.sparsity > 0 && unknowns.lower[j] < 0) {
+      throw MismatchError(options.rules.name + ": '" + names[j] +
+                          "' may be negative, for which sparsity is not defined");
+    }
+    if (!std::ranges::binary_search(seen, Eigen::Index{j})) unknowns.hold(j);
+  }
+  solver.emplace(std::move(system), std::move(unknowns));
 }
 
 void BlendshapeTransfer::State::check_size(const FrameSource& performance) const {
@@ -124,9 +134,7 @@ void BlendshapeTransfer::State::check_size(const FrameSource& performance) const
 void BlendshapeTransfer::State::smooth(const FrameSource& performance, const Eigen::MatrixXd& h,
                                        Eigen::MatrixXd& beta) const {
   const double mu = smoothness_penalty(options.smoothness, performance.times(), mean_diagonal);
-  const Eigen::MatrixXd seen_gram = system(seen, seen);
-  beta(Eigen::all, seen) = smooth_weights({seen_gram}, h(Eigen::all, seen), performance.times(), mu,
-                                          beta(Eigen::all, seen));
+  beta = solver->smooth(h, performance.times(), mu, beta);
 }
 
 BlendshapeTransfer::BlendshapeTransfer(const Positions& source_rest, const BlendshapeModel& target,
@@ -136,7 +144,7 @@ BlendshapeTransfer::BlendshapeTransfer(const Positions& source_rest, const Blend
   fix_product_blocking();
   state_ = std::make_unique<State>(source_rest, target, std::move(triangles), options);
   state_->judge(target);
-  state_->set_up();
+  state_->set_up(target.expressions().names);
 }
 
 BlendshapeTransfer::~BlendshapeTransfer() = default;
@@ -147,28 +155,27 @@ Eigen::MatrixXd BlendshapeTransfer::weights(const FrameSource& performance) cons
   const State& state = *state_;
   state.check_size(performance);
   fix_product_blocking();
-  const Eigen::VectorXd lower = Eigen::VectorXd::Zero(state.upper.size());
+  const Eigen::Index unknowns = state.gram.cols();
   const double penalty = state.options.sparsity * state.mean_diagonal;
   const int frames = performance.frames();
   const bool smooths = state.options.smoothness > 0;
-  Eigen::MatrixXd beta(frames, lower.size()), h(smooths ? frames : 0, lower.size());
+  Eigen::MatrixXd beta(frames, unknowns), h(smooths ? frames : 0, unknowns);
   const auto solve_block = [&](int number) {
     const int first = number * kFramesPerBlock;
     const int count = std::min(kFramesPerBlock, frames - first);
     const FrameBlock block(performance, first, count);
     const Eigen::MatrixXd of_block = state.right_hand_side(block.poses()).array() - penalty;
     if (smooths) h.middleRows(first, count) = of_block;
-    Eigen::VectorXd current = lower;
+    Eigen::VectorXd current = state.solver->rules().lower;
     for (int row = 0; row < count; ++row) {
-      current = box_least_squares(state.system, of_block.row(row).transpose(), lower, state.upper,
-                                  current);
+      current = (*state.solver)(of_block.row(row).transpose(), current);
       beta.row(first + row) = current.transpose();
     }
   };
   const int blocks = (frames + kFramesPerBlock - 1) / kFramesPerBlock;
   parallel_for(blocks, state.options.threads, solve_block, state.options.progress);
   if (smooths) state.smooth(performance, h, beta);
-  return beta;
+  return state.rules.written(beta);
 }
 
 const Eigen::MatrixXd& BlendshapeTransfer::gram() const {
@@ -200,20 +207,23 @@ bool BlendshapeTransfer::rest_looks_unneutral(const FrameSource& performance,
     throw MismatchError("the weights are not those of the performance");
   }
   const Eigen::VectorXd diagonal = state.gram.diagonal();
+  const Eigen::MatrixXd solved = state.rules.solved(weights);
+  std::vector<Eigen::Index> counted = state.seen;
+  std::erase_if(counted, [&state](Eigen::Index j) { return state.solver->rules().lower[j] != 0; });
   const int blocks = (performance.frames() + kFramesPerBlock - 1) / kFramesPerBlock;
   std::vector<Eigen::Index> below(blocks, 0);
   parallel_for(blocks, state.options.threads, [&](int number) {
     const int first = number * kFramesPerBlock;
     const int count = std::min(kFramesPerBlock, performance.frames() - first);
-    const auto beta = weights.middleRows(first, count);
+    const auto beta = solved.middleRows(first, count);
     const FrameBlock block(performance, first, count);
     const Eigen::MatrixXd pull = state.right_hand_side(block.poses()) - beta * state.gram;
-    for (const Eigen::Index j : state.seen) {
+    for (const Eigen::Index j : counted) {
       below[number] +=
           (beta.col(j).array() == 0 && pull.col(j).array() < kWantedStep * diagonal[j]).count();
     }
   });
-  const auto all = static_cast<double>(performance.frames() * state.seen.size());
+  const auto all = static_cast<double>(performance.frames() * counted.size());
   const auto wanted = std::accumulate(below.begin(), below.end(), Eigen::Index{0});
   return static_cast<double>(wanted) > kUnneutralShare * all;
 }

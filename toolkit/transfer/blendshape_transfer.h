@@ -9,6 +9,7 @@
 #include "toolkit/mesh/option.h"
 #include "toolkit/mesh/progress.h"
 #include "toolkit/model/blendshape_model.h"
+#include "toolkit/model/weight_rules.h"
 #include "toolkit/transfer/edges.h"
 
 namespace mimetra {
@@ -23,6 +24,13 @@ struct BlendshapeTransferOptions {
   /// Weight of squared second differences of beta over time: time constant in seconds. The penalty
   /// is (smoothness * frame rate)^4 times the same.
   double smoothness = 0;
+  /// Weight of (beta_left - beta_right)^2 for each pair of expressions, as a share of the same.
+  /// Pairs of which L sees one only are left out.
+  double symmetry = 0;
+  /// Expressions of which at most one is there in a frame, by their names.
+  Exclusive exclusive = Exclusive::none;
+  /// What else is known of the target's expressions.
+  WeightRules rules = {};
   /// Of source and target where their faces differ, or null. Triangles without partner show
   /// nothing, also those of L.
   std::shared_ptr<const Pairing> pairing = {};
@@ -36,7 +44,12 @@ struct BlendshapeTransferOptions {
       "sparsity", &BlendshapeTransferOptions::sparsity, {.minimum = 0}};
   static constexpr Option kSmoothness{
       "smoothness", &BlendshapeTransferOptions::smoothness, {.minimum = 0}, "s"};
-  static constexpr auto declared() { return std::tuple(kRidge, kSparsity, kSmoothness); }
+  static constexpr Option kSymmetry{
+      "symmetry", &BlendshapeTransferOptions::symmetry, {.minimum = 0}};
+  static constexpr Option kExclusive{"exclusive", &BlendshapeTransferOptions::exclusive};
+  static constexpr auto declared() {
+    return std::tuple(kRidge, kSparsity, kSmoothness, kSymmetry, kExclusive);
+  }
 };
 
 /// Condition number of G_L above which regions hardly determine the weights.
@@ -44,7 +57,7 @@ constexpr double kPoorCondition = 1e5;
 
 /// What the chosen triangles show of the target's expressions.
 struct BlendshapeConditions {
-  /// Columns with no motion in L: their weight is 0 in every frame.
+  /// Columns with no motion in L: their weight is 0 in every frame, or what their rule makes of it.
   std::vector<std::string> unseen;
   /// Columns with G_L,jj < 0.05 G_jj.
   std::vector<std::string> weakly_seen;
@@ -56,7 +69,8 @@ struct BlendshapeConditions {
 
 /// Blendshape weights of a target that follow a source's deformation gradients on triangles L:
 /// minimise over 0 <= beta <= 1 of sum_{i in L} ||Q_i V_i - V~_i(beta)||^2 (eq. 10, 11), a sum over
-/// edges (EdgeSum).
+/// edges (EdgeSum). Rules of the expressions (WeightRules) change the bounds, draw pairs together
+/// and exclude expressions beside others, exactly (RuledLeastSquares).
 ///
 /// The constructor forms the Gram matrix. A frame costs one pass over the triangles of L, which
 /// gathers their gradients at the vertices, one product with the displacement fields there, and a
@@ -66,16 +80,17 @@ class BlendshapeTransfer {
  public:
   /// `source_rest` N x 3 has the target's connectivity, or is that of the pairing; `triangles` are
   /// rows of target.triangles(). Throws MismatchError where the vertex counts differ or the target
-  /// has no expression that moves in `triangles`, std::invalid_argument for a triangle or an option
-  /// out of range.
+  /// has no expression that moves in `triangles`, for rules that do not fit the target
+  /// (ExpressionRules) and for a sparsity of weights that may be negative by rule,
+  /// std::invalid_argument for a triangle or an option out of range.
   BlendshapeTransfer(const Positions& source_rest, const BlendshapeModel& target,
                      std::vector<int> triangles, const BlendshapeTransferOptions& = {});
   ~BlendshapeTransfer();
   BlendshapeTransfer(BlendshapeTransfer&&) noexcept;
   BlendshapeTransfer& operator=(BlendshapeTransfer&&) noexcept;
 
-  /// beta for every frame (F x D), each within [0, 1]. Throws MismatchError, Cancelled, and what
-  /// reading throws, as does rest_looks_unneutral().
+  /// beta for every frame (F x D), each within [0, 1]; with rules, the weights to write. Throws
+  /// MismatchError, Cancelled, and what reading throws, as does rest_looks_unneutral().
   Eigen::MatrixXd weights(const FrameSource& performance) const;
 
   /// A^T A of eq. 11 over L (D x D).
@@ -85,7 +100,8 @@ class BlendshapeTransfer {
   const BlendshapeConditions& conditions() const;
 
   /// True where many weights sit at 0 with a multiplier that wants them negative: the source's rest
-  /// pose is likely not neutral. `weights` as returned for `performance`.
+  /// pose is likely not neutral. `weights` as returned for `performance`. Expressions whose rule
+  /// has beta not begin at 0 do not count.
   bool rest_looks_unneutral(const FrameSource& performance, const Eigen::MatrixXd& weights) const;
 
  private:

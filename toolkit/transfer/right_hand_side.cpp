@@ -93,6 +93,48 @@ Eigen::MatrixXd RightHandSide::operator()(const Eigen::Ref<const Frames>& frames
   return h.topRows(frames.rows());
 }
 
+RegionalRightHandSide::RegionalRightHandSide(const Positions& rest,
+                                             const DeformationGradients& gradients,
+                                             const BlendshapeModel& target,
+                                             const RegionShares& shares, EdgeSum sum)
+    : fields_(target.expressions().displacements),
+      pull_(rest, gradients.triangles(), target.triangles(), gradients,
+            neutral_edges(target, gradients.selected(), sum),
+            numbered_vertices(target, gradients.selected())),
+      held_(shares.cols()) {
+  const std::vector<int> row_of_vertex = numbered_vertices(target, gradients.selected());
+  for (Eigen::Index r = 0; r < shares.cols(); ++r) {
+    for (RegionShares::InnerIterator share(shares, r); share; ++share) {
+      const auto vertex = static_cast<VertexIndex>(share.index());
+      if (row_of_vertex[vertex] < 0) continue;
+      held_[r].push_back({vertex, row_of_vertex[vertex], share.value()});
+    }
+  }
+}
+
+Eigen::MatrixXd RegionalRightHandSide::operator()(const Eigen::Ref<const Frames>& frames) const {
+  const VertexPull::Rows pull = pull_(frames);
+  const Eigen::Index D = fields_.cols();
+  Eigen::MatrixXd h(frames.rows(), D * static_cast<Eigen::Index>(held_.size()));
+  for (std::size_t r = 0; r < held_.size(); ++r) {
+    const std::vector<Held>& held = held_[r];
+    const auto rows = static_cast<Eigen::Index>(3 * held.size());
+    Eigen::MatrixXd sums(kLanes, rows), basis(rows, D);
+    for (std::size_t i = 0; i < held.size(); ++i) {
+      const auto at = static_cast<Eigen::Index>(3 * i);
+      for (int c = 0; c < 3; ++c) {
+        sums.col(at + c) =
+            held[i].share *
+            pull.row(held[i].row).segment<kLanes>(static_cast<Eigen::Index>(c) * kLanes);
+      }
+      basis.middleRows<3>(at) = fields_.middleRows<3>(3 * held[i].vertex);
+    }
+    const Eigen::MatrixXd of_region = sums * basis;
+    h.middleCols(static_cast<Eigen::Index>(r) * D, D) = of_region.topRows(frames.rows());
+  }
+  return h;
+}
+
 RotationMoments::RotationMoments(const Positions& rest, const DeformationGradients& gradients,
                                  const BlendshapeModel& target, EdgeSum sum)
     : pull_(rest, gradients.triangles(), target.triangles(), gradients,

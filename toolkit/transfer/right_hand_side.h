@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "toolkit/model/blendshape_model.h"
+#include "toolkit/model/regional_animation.h"
 #include "toolkit/transfer/vertex_pull.h"
 
 namespace mimetra {
@@ -28,6 +28,32 @@ class RightHandSide {
  private:
   VertexPull pull_;
   Eigen::MatrixXd basis_;  // displacements of the selected triangles' vertices
+};
+
+/// The same where each of some regions has weights of its own: h_(r,j) is the product of the
+/// vectors at the vertices, each times the region's share there, with displacement field j.
+class RegionalRightHandSide {
+ public:
+  static constexpr int kLanes = VertexPull::kLanes;
+
+  /// As RightHandSide; `shares` N x R of the target's vertices. Keeps a reference to the target.
+  RegionalRightHandSide(const Positions& rest, const DeformationGradients& gradients,
+                        const BlendshapeModel& target, const RegionShares& shares, EdgeSum sum);
+
+  /// One row a frame (F x R D), column r D + j. \pre as RightHandSide
+  Eigen::MatrixXd operator()(const Eigen::Ref<const Frames>& frames) const;
+
+ private:
+  /// A vertex of a region: its row among the sums, and the region's share.
+  struct Held {
+    VertexIndex vertex;
+    int row;
+    double share;
+  };
+
+  const Eigen::MatrixXd& fields_;
+  VertexPull pull_;
+  std::vector<std::vector<Held>> held_;  // of each region
 };
 
 /// What eq. 10 needs of frames whose head turns by rotations that are not known yet.

@@ -9,8 +9,6 @@
 #include <string>
 
 #include <Eigen/Geometry>
-#include <Eigen/LU>
-#include <Eigen/SparseCore>
 
 #include "geodesic/sparse_factor.h"
 #include "toolkit/mesh/errors.h"
@@ -18,6 +16,7 @@
 #include "toolkit/mesh/parallel.h"
 #include "toolkit/transfer/deformation_gradients.h"
 #include "toolkit/transfer/following_parts.h"
+#include "toolkit/transfer/gradient_system.h"
 #include "toolkit/transfer/pairs.h"
 #include "toolkit/transfer/vertex_pull.h"
 #include "toolkit/transfer/vertex_unknowns.h"
@@ -26,59 +25,14 @@ namespace mimetra {
 
 namespace {
 
-using Triplets = std::vector<Eigen::Triplet<double>>;
-
 /// x, y and z of so many frames lie side by side in one block of right-hand sides.
 constexpr int kLanes = VertexPull::kLanes;
 using Rows = VertexPull::Rows;
 using Row = Eigen::RowVector<double, VertexPull::kWidth>;
 
-/// Gradients of the three hat functions of a triangle in its plane, one a column.
-using HatGradients = Eigen::Matrix3d;
-
-HatGradients hat_gradients(const Positions& rest, const Triangles& triangles, int triangle) {
-  const Eigen::Matrix3d inverse = triangle_frame(rest, triangles, triangle).inverse();
-  HatGradients gradients;
-  gradients.col(1) = inverse.row(0).transpose();
-  gradients.col(2) = inverse.row(1).transpose();
-  gradients.col(0) = -gradients.col(1) - gradients.col(2);
-  return gradients;
-}
-
-/// How much a triangle of the target counts. Its stiffness grows as 1 / quality^2 and its normal
-/// loses its sense: from sound to degenerate it fades out faster than that, without a jump.
-double target_share(double quality) {
-  const double share = own_share(quality);
-  return share * share;
-}
-
 double area(const Positions& rest, const Triangles& triangles, int triangle) {
   const Eigen::Matrix3d frame = triangle_frame(rest, triangles, triangle);
   return frame.col(0).cross(frame.col(1)).norm() / 2;
-}
-
-/// Adds scale * X^T X at the unknowns of X's columns.
-template <int Columns>
-void add_products(const Eigen::Matrix<double, 3, Columns>& x, double scale,
-                  const std::array<int, Columns>& unknowns, Triplets& entries) {
-  const Eigen::Matrix<double, Columns, Columns> products = scale * x.transpose() * x;
-  for (int a = 0; a < Columns; ++a) {
-    for (int b = 0; b < Columns; ++b) {
-      if (unknowns[a] < 0 || unknowns[b] < 0) continue;
-      entries.emplace_back(unknowns[a], unknowns[b], products(a, b));
-    }
-  }
-}
-
-geodesic::SparseFactor factor_of(const Eigen::SparseMatrix<double>& system) {
-  if (system.rows() == 0) return {};
-  const geodesic::SparseFactor::Factorization factorization(system);
-  if (factorization.info() == Eigen::Success) {
-    geodesic::SparseFactor factor(factorization);
-    if (factor.pivots().minCoeff() > 0) return factor;
-  }
-  throw std::runtime_error(
-      "the target's triangles do not determine its vertices; look for nearly degenerate ones");
 }
 
 void check_options(const VertexTransferOptions& options, Eigen::Index vertices) {
@@ -330,9 +284,7 @@ void VertexTransfer::State::factor() {
   if (options.outside == Outside::identity && options.outside_smoothness > 0) {
     add_smoothness(entries);
   }
-  Eigen::SparseMatrix<double> system(unknowns.count, unknowns.count);
-  system.setFromTriplets(entries.begin(), entries.end());
-  solver = factor_of(system);
+  solver = factor_of(entries, unknowns.count);
   for (int& unknown : unknowns.of_vertex) {
     if (unknown >= 0) unknown = solver.order()[unknown];
   }
@@ -457,6 +409,16 @@ Frames VertexTransfer::frames(const FrameSource& performance) const {
 void VertexTransfer::write_frames(const FrameSource& performance, FrameSink& sink) const {
   state_->solve_all(performance,
                     [&sink](int first, const Frames& poses) { sink.write(first, poses); });
+}
+
+std::vector<VertexIndex> VertexTransfer::following_vertices() const {
+  std::vector<VertexIndex> vertices;
+  if (!state_->following) return vertices;
+  const std::vector<bool>& follows = state_->following->vertices();
+  for (std::size_t v = 0; v < follows.size(); ++v) {
+    if (follows[v]) vertices.push_back(static_cast<VertexIndex>(v));
+  }
+  return vertices;
 }
 
 int VertexTransfer::collapsed_triangles() const {

@@ -132,6 +132,9 @@ class VertexTransfer {
   /// Triangles of which two corners are one vertex: they take no part, and are none of the
   /// degenerate ones.
   int collapsed_triangles() const;
+  /// Vertices of connected parts without partner, which move rigidly with the surface around them,
+  /// ascending.
+  std::vector<VertexIndex> following_vertices() const;
   int degenerate_source_triangles() const;
   int degenerate_target_triangles() const;
   /// Vertices that stay exactly at the target's rest pose (N), or follow.

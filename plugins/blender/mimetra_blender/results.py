@@ -389,5 +389,12 @@ def csv_of(table):
     writer = csv.writer(text, lineterminator="\n")
     writer.writerow(table)
     for row in zip(*(table[name] for name in table)):
-        writer.writerow("" if np.isnan(cell) else repr(float(cell)) for cell in row)
+        writer.writerow(_text_of(cell) for cell in row)
     return text.getvalue()
+
+
+def _text_of(cell):
+    """A word, or a number; nothing where there is none."""
+    if isinstance(cell, str):
+        return cell
+    return "" if np.isnan(cell) else repr(float(cell))

@@ -98,6 +98,38 @@ static void fit(const mimetra_interface* m, mimetra_context* context, const char
   m->free_data(model);
 }
 
+/* The sample's head with all of its expressions, on itself. */
+static void rig(const mimetra_interface* m, mimetra_context* context, const char* head) {
+  enum { EXPRESSIONS = 12 };
+  mimetra_data* model = NULL;
+  OK(context, m->load_data(context, MIMETRA_MODEL, head, NULL, &model));
+  mimetra_call* call = call_on(m, context, "rig", "source", model);
+  OK(context, m->call_read(call, "target", head));
+  m->free_data(makes(m, context, call, "expressions", EXPRESSIONS));
+  m->free_data(model);
+}
+
+/* Weights of the sample's head become those of the same head. */
+static void retarget(const mimetra_interface* m, mimetra_context* context, const char* head) {
+  enum { WEIGHTED = 3 };
+  const double opening[WEIGHTED] = {0, 0.25, 0.5};
+  const mimetra_array jaw = {sizeof jaw, MIMETRA_F64, 1, 0, {WEIGHTED}, "jawOpen", opening};
+  const mimetra_array* arrays[] = {&jaw, NULL};
+  mimetra_data* weights = NULL;
+  OK(context, m->new_data(context, MIMETRA_TABLE, "opening", arrays, &weights));
+  mimetra_call* call = call_on(m, context, "retarget", "weights", weights);
+  OK(context, m->call_read(call, "source", head));
+  OK(context, m->call_read(call, "target", head));
+  mimetra_data* made = makes(m, context, call, "jawOpen", WEIGHTED);
+  const mimetra_array* found = NULL;
+  OK(context, m->data_array(context, made, "jawOpen", &found));
+  for (int f = 0; f < WEIGHTED; ++f) {
+    CHECK(fabs(((const double*)found->values)[f] - opening[f]) < 1e-6);
+  }
+  m->free_data(made);
+  m->free_data(weights);
+}
+
 /* argv: a model's folder, and its mapping of landmarks. */
 int main(int argc, char** argv) {
   CHECK(argc == 3);
@@ -130,6 +162,8 @@ int main(int argc, char** argv) {
   OK(context, m->call_give(call, "target", flat));
   OK(context, m->call_set(call, "k", "1,2"));
   m->free_data(makes(m, context, call, "de_all", 3));
+  rig(m, context, argv[1]);
+  retarget(m, context, argv[1]);
   OK(context, m->new_call(context, "sample", &call));
   m->free_data(makes(m, context, call, "weights", 120));
   fit(m, context, argv[1], argv[2]);

@@ -90,6 +90,11 @@ void fill(vtkTable& output, const Table& table) {
     }
     output.AddColumn(values);
   }
+  if (table.word_column.empty()) return;
+  vtkNew<vtkStringArray> words;
+  words->SetName(table.word_column.c_str());
+  for (const std::string& word : table.words) words->InsertNextValue(word);
+  output.AddColumn(words);
 }
 
 void fill(vtkTable& output, const std::string& report) {

@@ -1,8 +1,8 @@
 #include <gtest/gtest.h>
 
-#include "toolkit/cli/suggestion.h"
+#include "toolkit/mesh/suggestion.h"
 
-namespace mimetra::cli {
+namespace mimetra {
 namespace {
 
 TEST(NearestWord, IsTheOneWithTheFewestEdits) {
@@ -19,4 +19,4 @@ TEST(NearestWord, IsTheEarlierOneOfTwoEquallyNear) {
 }
 
 }  // namespace
-}  // namespace mimetra::cli
+}  // namespace mimetra

@@ -1,9 +1,9 @@
-#include "toolkit/cli/suggestion.h"
+#include "toolkit/mesh/suggestion.h"
 
 #include <algorithm>
 #include <numeric>
 
-namespace mimetra::cli {
+namespace mimetra {
 
 namespace {
 
@@ -39,4 +39,9 @@ std::string nearest_word(const std::string& word, const std::vector<std::string>
   return nearest;
 }
 
-}  // namespace mimetra::cli
+std::string suggestion_for(const std::string& word, const std::vector<std::string>& known) {
+  const std::string nearest = nearest_word(word, known);
+  return nearest.empty() ? "" : "; did you mean '" + nearest + "'?";
+}
+
+}  // namespace mimetra

@@ -1,0 +1,146 @@
+#include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
+
+#include "tests/cli/command_fixture.h"
+
+namespace mimetra {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+/// Options of weights, and rules in a file or in a model's folder.
+class RulesTest : public test::CommandTest {
+ protected:
+  void SetUp() override {
+    CommandTest::SetUp();
+    write("low.json", R"({"expressions": {"top": {"maximum": 0.25}}})");
+  }
+
+  void expect_failure(const std::string& arguments, int code, const std::string& message) const {
+    const auto before = listing();
+    const auto result = run(kTransfer + arguments);
+    EXPECT_EQ(result.code, code) << arguments << '\n' << result.err;
+    EXPECT_THAT(result.err, HasSubstr(message)) << arguments;
+    EXPECT_EQ(listing(), before) << arguments;
+  }
+
+  std::string weights_of(const std::string& arguments, const std::string& name) const {
+    const auto result = run(kTransfer + arguments + " -o " + name + ".npy --weights-out " + name);
+    EXPECT_EQ(result.code, 0) << arguments << '\n' << result.err;
+    return text_of(folder_ / name);
+  }
+
+  /// The largest number in a column of a table.
+  static double largest(const std::string& csv, int column) {
+    std::istringstream lines(csv);
+    std::string line, cell;
+    std::getline(lines, line);
+    double most = 0;
+    while (std::getline(lines, line)) {
+      std::istringstream cells(line);
+      for (int c = 0; c <= column; ++c) std::getline(cells, cell, ',');
+      most = std::max(most, std::stod(cell));
+    }
+    return most;
+  }
+
+  static constexpr int kTop = 3;
+  const std::string kTransfer = "transfer head --weights take.csv head@wide=1 --full ";
+};
+
+TEST_F(RulesTest, BoundWhatIsWritten) {
+  EXPECT_GT(largest(weights_of("", "free.csv"), kTop), 0.5);
+  EXPECT_EQ(largest(weights_of("--rules low.json", "low.csv"), kTop), 0.25);
+  EXPECT_EQ(weights_of("--rules none", "none.csv"), text_of(folder_ / "free.csv"));
+}
+
+TEST_F(RulesTest, AreTakenFromAModelsFolderWhichIsSaid) {
+  const std::string asked = weights_of("--rules low.json", "low.csv");
+  std::filesystem::rename(folder_ / "low.json", folder_ / "head/rules.json");
+  const auto result = run(kTransfer + "-o x.npy --weights-out found.csv");
+  EXPECT_EQ(result.code, 0) << result.err;
+  EXPECT_THAT(result.err, HasSubstr("head@wide=1: takes the rules in its folder (1 expression, 0 "
+                                    "groups that exclude each other and 0 pairs); --rules none"));
+  EXPECT_EQ(text_of(folder_ / "found.csv"), asked);
+  EXPECT_THAT(text_of(folder_ / "x.run.json"), HasSubstr("head/rules.json"));
+  EXPECT_GT(largest(weights_of("--rules none", "none.csv"), kTop), 0.5);
+}
+
+TEST_F(RulesTest, AreInTheTableOfErrorsToo) {
+  const auto result =
+      run("evaluate head --weights take.csv head@wide=1 -k 2 --rules low.json --json");
+  const auto free = run("evaluate head --weights take.csv head@wide=1 -k 2 --json");
+  EXPECT_EQ(result.code, 0) << result.err;
+  EXPECT_GT(nlohmann::json::parse(result.out)["rows"][1]["de_all"],
+            nlohmann::json::parse(free.out)["rows"][1]["de_all"]);
+}
+
+TEST_F(RulesTest, AreNotLookedForInVertexSpace) {
+  std::filesystem::copy_file(folder_ / "low.json", folder_ / "head/rules.json");
+  const auto result = run(kTransfer + "--space vertex -o x.npy");
+  EXPECT_EQ(result.code, 0) << result.err;
+  EXPECT_THAT(result.err, Not(HasSubstr("rules")));
+}
+
+TEST_F(RulesTest, RefuseWhatIsWrongOrCannotAct) {
+  write("bad.json", R"({"expressions": {"top": {"maximum": -1}}})");
+  write("other.json", R"({"expressions": {"topp": {"maximum": 1}}})");
+  expect_failure("--rules no.json -o x.npy", 3, "no.json");
+  expect_failure("--rules no.json --space vertex -o x.npy", 3, "no.json");
+  expect_failure("--rules bad.json -o x.npy", 3, "bad.json: /expressions/top: its minimum, 0");
+  expect_failure("--rules other.json -o x.npy", 4,
+                 "other.json: the model has no expression 'topp'; did you mean 'top'?");
+  expect_failure("--rules low.json --space vertex -o x.npy", 2,
+                 "--rules: head@wide=1 is solved for vertices, not weights");
+  expect_failure("--symmetry 1 --space vertex -o x.npy", 2, "--symmetry: head@wide=1 is solved");
+  expect_failure("--exclusive eyes --space vertex -o x.npy", 2, "--exclusive: ");
+  expect_failure("--l1 1 --space vertex -o x.npy", 2, "--l1: ");
+  expect_failure("--symmetry -1 -o x.npy", 2, "--symmetry");
+  expect_failure("--exclusive mouth -o x.npy", 2, "none, eyes, all");
+  expect_failure("--symmetry 1 -o x.npy", 4, "named as left and right; name pairs in a file of");
+  expect_failure("--exclusive eyes -o x.npy", 4, "--exclusive: head@wide=1: none of its expr");
+  expect_failure("--rules low.json,low.json -o x.npy", 2, "--rules: 2 files");
+}
+
+TEST_F(RulesTest, SayWhichTargetsAnOptionOfWeightsLeavesOut) {
+  const auto result =
+      run("transfer head --weights take.csv head@wide=1 head/neutral.ply --full --ridge 0.1 -o o/");
+  EXPECT_EQ(result.code, 0) << result.err;
+  EXPECT_THAT(result.err, HasSubstr("--ridge: neutral is solved for vertices"));
+}
+
+TEST_F(RulesTest, DrawPairsTogether) {
+  write("pairs.json", R"({"pairs": [["left", "right"]]})");
+  const auto difference = [&](const std::string& arguments, const std::string& name) {
+    std::istringstream lines(weights_of(arguments, name));
+    std::string line;
+    std::getline(lines, line);
+    double sum = 0;
+    for (char comma = 0; std::getline(lines, line);) {
+      std::istringstream cells(line);
+      double time = 0, left = 0, right = 0;
+      cells >> time >> comma >> left >> comma >> right;
+      sum += std::abs(left - right);
+    }
+    return sum;
+  };
+  const double free = difference("--rules pairs.json", "free.csv");
+  EXPECT_LT(difference("--rules pairs.json --symmetry 10", "drawn.csv"), 0.2 * free);
+  EXPECT_GT(free, 0.5);
+}
+
+TEST_F(RulesTest, SmoothnessOfZeroChangesNothingAndMoreSmoothsBothSpaces) {
+  for (const std::string space : {"vertex", "blendshape"}) {
+    const std::string line = kTransfer + "--space " + space + " -o " + space;
+    ASSERT_EQ(run(line + "0.npy").code, 0);
+    ASSERT_EQ(run(line + "1.npy --smoothness 0").code, 0);
+    ASSERT_EQ(run(line + "2.npy --smoothness 0.1").code, 0);
+    const std::string plain = text_of(folder_ / (space + "0.npy"));
+    EXPECT_EQ(text_of(folder_ / (space + "1.npy")), plain);
+    EXPECT_NE(text_of(folder_ / (space + "2.npy")), plain);
+  }
+}
+
+}  // namespace
+}  // namespace mimetra

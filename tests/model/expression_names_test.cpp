@@ -1,0 +1,51 @@
+#include "toolkit/model/expression_names.h"
+
+#include <gmock/gmock.h>
+
+namespace mimetra {
+namespace {
+
+using testing::ElementsAre;
+using testing::IsEmpty;
+using Pair = std::array<int, 2>;
+
+TEST(KnownPairs, AreLeftAndRightHoweverTheyAreNamed) {
+  for (const auto& [left, right] :
+       std::vector<std::array<std::string, 2>>{{"smileLeft", "smileRight"},
+                                               {"smile_L", "smile_R"},
+                                               {"smile_left", "smile_right"},
+                                               {"smile.l", "smile.r"}}) {
+    EXPECT_THAT(known_pairs({"jawOpen", right, left}), ElementsAre(Pair{2, 1})) << left;
+  }
+}
+
+TEST(KnownPairs, NeedBothHalves) {
+  EXPECT_THAT(known_pairs({"smile_L", "frown_R", "left", "right"}), IsEmpty());
+}
+
+TEST(KnownPairs, AreNoMovesToASide) {
+  EXPECT_THAT(known_pairs({"jawLeft", "jawRight", "mouthLeft", "mouthRight"}), IsEmpty());
+}
+
+TEST(KnownPairs, HaveEyesLookToOneSide) {
+  const std::vector<std::string> names = {"eyeLookInLeft", "eyeLookInRight", "eyeLookOutLeft",
+                                          "eyeLookOutRight"};
+  EXPECT_THAT(known_pairs(names), ElementsAre(Pair{0, 3}, Pair{2, 1}));
+}
+
+TEST(KnownExclusives, AreTheLooksOfEachEye) {
+  const std::vector<std::string> names = {"eyeLookDown_L", "eyeLookDown_R", "eyeLookIn_L",
+                                          "eyeLookOut_L",  "eyeLookUp_L",   "eyeLookUp_R",
+                                          "jawOpen",       "mouthClose"};
+  EXPECT_THAT(known_exclusives(names, Exclusive::none), IsEmpty());
+  EXPECT_THAT(known_exclusives(names, Exclusive::eyes),
+              ElementsAre(ElementsAre(0, 4), ElementsAre(1, 5), ElementsAre(2, 3)));
+  EXPECT_THAT(known_exclusives(names, Exclusive::all).back(), ElementsAre(6, 7));
+}
+
+TEST(KnownExclusives, NeedAllOfAGroup) {
+  EXPECT_THAT(known_exclusives({"eyeLookUpLeft", "jawOpen"}, Exclusive::all), IsEmpty());
+}
+
+}  // namespace
+}  // namespace mimetra

@@ -1,0 +1,230 @@
+#include "toolkit/transfer/region_selection.h"
+
+#include <cmath>
+#include <set>
+
+#include <gmock/gmock.h>
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+
+#include "tests/transfer/faces.h"
+#include "toolkit/regions/farthest_discs.h"
+#include "toolkit/transfer/blendshape_transfer.h"
+#include "toolkit/transfer/deformation_gradients.h"
+
+namespace mimetra {
+namespace {
+
+using testing::HasSubstr;
+using testing::ThrowsMessage;
+
+/// A performance of five bumps on a patch, for another identity with three of its own.
+class RegionSelectionTest : public testing::Test {
+ protected:
+  static constexpr int kExpressions = 3, kFrames = 7;
+  static constexpr double kNoise = 10;
+
+  std::vector<Disc> discs(double radius = 0.5, int count = 30) const {
+    const Positions& rest = take_.rest();
+    return farthest_discs(
+        rest, take_.triangles(),
+        SurfaceDistances(rest, take_.triangles(), Weld::none(static_cast<int>(rest.rows()))),
+        {.radius = radius, .count = count});
+  }
+
+  RegionSelection selection(int threads = 0) const {
+    return {take_, actor_, {.noise = kNoise, .threads = threads}};
+  }
+
+  static std::vector<int> joined(const std::vector<int>& some, const std::vector<int>& more) {
+    std::set<int> all(some.begin(), some.end());
+    all.insert(more.begin(), more.end());
+    return {all.begin(), all.end()};
+  }
+
+  static std::vector<int> triangles_of(const std::vector<Disc>& discs,
+                                       const std::vector<int>& chosen) {
+    std::vector<int> triangles;
+    for (const int disc : chosen) triangles = joined(triangles, discs[disc].triangles);
+    return triangles;
+  }
+
+  const MeshSequence take_ =
+      test::model_on(test::patch(), 5).animate(test::random_weights(kFrames, 5));
+  const BlendshapeModel actor_ = test::model_on(test::bent_patch(), kExpressions);
+  const std::vector<int> all_ = all_triangles(actor_.triangles());
+};
+
+/// The two edges of a triangle by which eq. 10 over all three edges is a sum of squares.
+Edges weighed_edges(const Eigen::Ref<const Positions>& positions, const Triangles& triangles,
+                    int t) {
+  return edges_of(positions, triangles, t) * edge_factor(EdgeSum::all);
+}
+
+/// A and b of eq. 11 for one triangle, written out.
+struct LiteralRows {
+  LiteralRows(const MeshSequence& take, const BlendshapeModel& actor, int t)
+      : a(6, actor.expressions().size()), b(6, take.frames()) {
+    const Triangles& triangles = actor.triangles();
+    for (int j = 0; j < a.cols(); ++j) {
+      const Eigen::VectorXd& column = actor.expressions().displacements.col(j);
+      const PositionsView field(column.data(), actor.vertices(), 3);
+      a.col(j) = weighed_edges(field, triangles, t).reshaped();
+    }
+    const Eigen::Matrix3d rest_inverse = triangle_frame(take.rest(), triangles, t).inverse();
+    for (int f = 0; f < b.cols(); ++f) {
+      const Eigen::Matrix3d q = triangle_frame(take.frame(f), triangles, t) * rest_inverse;
+      const Edges edges = weighed_edges(actor.neutral(), triangles, t);
+      b.col(f) = (q * edges - edges).reshaped();
+    }
+  }
+
+  Eigen::MatrixXd a, b;
+};
+
+/// J as it is written: dense matrices over all triangles, an inverse, and a symmetric root.
+double literal_criterion(const MeshSequence& take, const BlendshapeModel& actor,
+                         const std::vector<int>& chosen, double noise) {
+  const Eigen::Index d = actor.expressions().size();
+  const std::vector<int> all = all_triangles(actor.triangles());
+  const Eigen::MatrixXd beta = BlendshapeTransfer(take.rest(), actor, all).weights(take);
+  Eigen::MatrixXd g = Eigen::MatrixXd::Zero(d, d), g_l = g;
+  Eigen::MatrixXd h_l = Eigen::MatrixXd::Zero(d, take.frames());
+  double squares = 0;
+  for (const int t : all) {
+    const LiteralRows rows(take, actor, t);
+    const Eigen::MatrixXd r = rows.b - rows.a * beta.transpose();
+    squares += r.squaredNorm();
+    g += rows.a.transpose() * rows.a;
+    if (std::ranges::find(chosen, t) == chosen.end()) continue;
+    g_l += rows.a.transpose() * rows.a;
+    h_l += rows.a.transpose() * r;
+  }
+  g_l += 1e-6 * g.trace() / static_cast<double>(d) * Eigen::MatrixXd::Identity(d, d);
+  const Eigen::MatrixXd root = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(g).operatorSqrt();
+  const Eigen::MatrixXd inverse = g_l.inverse();
+  const double variance = squares / static_cast<double>(6 * all.size() * take.frames());
+  return (root * inverse * h_l).squaredNorm() / take.frames() +
+         noise * variance * (inverse * g).trace();
+}
+
+TEST_F(RegionSelectionTest, CriterionIsTheLiteralOne) {
+  const RegionSelection selection = this->selection();
+  for (const std::vector<int>& chosen :
+       {all_, test::half_of(actor_.triangles()), discs()[4].triangles, std::vector<int>{}}) {
+    const double literal = literal_criterion(take_, actor_, chosen, kNoise);
+    // The ridge keeps the condition number below 1e7, so that an inverse keeps nine digits.
+    EXPECT_NEAR(selection.criterion(chosen), literal, 1e-8 * literal);
+  }
+}
+
+TEST_F(RegionSelectionTest, IsTheLiteralGreedySearch) {
+  const std::vector<Disc> discs = this->discs();
+  const auto all = static_cast<double>(all_.size());
+  for (const double share : {0.2, 0.5}) {
+    std::vector<int> literal, triangles;
+    while (true) {
+      const double now = std::log(literal_criterion(take_, actor_, triangles, kNoise));
+      int best = -1;
+      double most = 0;
+      for (std::size_t d = 0; d < discs.size(); ++d) {
+        const std::vector<int> with = joined(triangles, discs[d].triangles);
+        const auto added = static_cast<double>(with.size() - triangles.size());
+        if (added == 0 || static_cast<double>(with.size()) > share * all) continue;
+        const double then = std::log(literal_criterion(take_, actor_, with, kNoise));
+        const double fall = (now - then) / added;
+        if (best >= 0 && fall <= most) continue;
+        best = static_cast<int>(d);
+        most = fall;
+      }
+      if (best < 0) break;
+      literal.push_back(best);
+      triangles = joined(triangles, discs[best].triangles);
+    }
+    EXPECT_GT(literal.size(), 2U);
+    EXPECT_EQ(selection().choose(discs, {.share = share}), literal);
+  }
+}
+
+TEST_F(RegionSelectionTest, KeepsTheShareAndTheCount) {
+  const std::vector<Disc> discs = this->discs();
+  const RegionSelection selection = this->selection();
+  for (const double share : {0.1, 0.33, 0.7, 1.0}) {
+    const auto chosen = selection.choose(discs, {.share = share});
+    EXPECT_LE(static_cast<double>(triangles_of(discs, chosen).size()),
+              share * static_cast<double>(all_.size()));
+    EXPECT_FALSE(chosen.empty());
+    EXPECT_EQ(std::set<int>(chosen.begin(), chosen.end()).size(), chosen.size());
+    const auto two = selection.choose(discs, {.share = share, .count = 2});
+    EXPECT_LE(two.size(), 2U);
+    EXPECT_TRUE(std::equal(two.begin(), two.end(), chosen.begin()));
+  }
+  EXPECT_TRUE(selection.choose(discs, {.share = 1e-3}).empty());
+}
+
+TEST_F(RegionSelectionTest, RefusesABoundOutOfRange) {
+  const RegionSelection selection = this->selection();
+  for (const double share : {0.0, -0.5, 1.01, std::nan("")}) {
+    EXPECT_THAT([&] { selection.choose(discs(), {.share = share}); },
+                ThrowsMessage<std::invalid_argument>(HasSubstr("above 0 and at most 1")));
+  }
+  EXPECT_THAT([&] { selection.choose(discs(), {.count = 0}); },
+              ThrowsMessage<std::invalid_argument>(HasSubstr("at least 1 disc")));
+}
+
+TEST_F(RegionSelectionTest, DoesNotDependOnThreads) {
+  const std::vector<Disc> discs = this->discs();
+  const RegionSelection one = selection(1);
+  for (const int threads : {2, 5}) {
+    const RegionSelection several = selection(threads);
+    EXPECT_EQ(several.choose(discs), one.choose(discs));
+    EXPECT_EQ(several.criterion(all_), one.criterion(all_));
+  }
+}
+
+TEST_F(RegionSelectionTest, IsTheSameOverAPairingOfTheSameFaces) {
+  const auto pairing = std::make_shared<const Pairing>(
+      TriMesh{take_.rest(), take_.connectivity()}, TriMesh{actor_.neutral(), actor_.connectivity()},
+      Correspondence::identity(static_cast<int>(all_.size())));
+  const RegionSelection paired(take_, actor_, {.noise = kNoise, .pairing = pairing});
+  EXPECT_EQ(paired.choose(discs(), {.share = 0.4}), selection().choose(discs(), {.share = 0.4}));
+}
+
+TEST_F(RegionSelectionTest, ShowsNothingOfTrianglesWithoutPartner) {
+  Correspondence pairs = Correspondence::identity(static_cast<int>(all_.size()));
+  // The last triangle loses its partner.
+  pairs.parts.pop_back();
+  --pairs.offsets.back();
+  const auto pairing =
+      std::make_shared<const Pairing>(TriMesh{take_.rest(), take_.connectivity()},
+                                      TriMesh{actor_.neutral(), actor_.connectivity()}, pairs);
+  const RegionSelection paired(take_, actor_, {.noise = kNoise, .pairing = pairing});
+  std::vector<int> but_last = all_;
+  but_last.pop_back();
+  EXPECT_EQ(paired.criterion(all_), paired.criterion(but_last));
+}
+
+TEST_F(RegionSelectionTest, ChoosesWhereNothingMoves) {
+  const Frames still = take_.rest().reshaped<Eigen::RowMajor>().transpose().replicate(kFrames, 1);
+  const RegionSelection selection(take_.with_frames(still), actor_);
+  EXPECT_TRUE(std::isfinite(selection.criterion(all_)));
+  EXPECT_FALSE(selection.choose(discs(), {.share = 0.3}).empty());
+}
+
+TEST_F(RegionSelectionTest, LetsTheCriterionFallFromDiscToDisc) {
+  const std::vector<Disc> discs = this->discs();
+  const RegionSelection selection = this->selection();
+  const std::vector<int> chosen = selection.choose(discs, {.count = 4});
+  ASSERT_EQ(chosen.size(), 4U);
+  std::vector<int> triangles;
+  double before = selection.criterion(triangles);
+  for (const int disc : chosen) {
+    triangles = joined(triangles, discs[disc].triangles);
+    const double after = selection.criterion(triangles);
+    EXPECT_LT(after, before);
+    before = after;
+  }
+}
+
+}  // namespace
+}  // namespace mimetra

@@ -1,0 +1,66 @@
+#include "toolkit/io/sequence_companions.h"
+
+#include "toolkit/io/frame_files.h"
+#include "toolkit/io/pending_output.h"
+#include "toolkit/io/sequence_format.h"
+#include "toolkit/io/written_files.h"
+#include "toolkit/mesh/text.h"
+
+namespace mimetra {
+namespace fs = std::filesystem;
+namespace {
+
+bool is_there(const fs::path& path) {
+  std::error_code unreadable;
+  return fs::exists(path, unreadable);
+}
+
+/// What follows the name in those of the files that a sequence may be written with.
+std::vector<std::string> suffixes_of(const fs::path& sequence) {
+  std::vector<std::string> suffixes = {".correspondence.json"};
+  const std::string extension = lower_extension(sequence);
+  const SequenceFormat* format = sequence_format(sequence);
+  if (extension.empty()) suffixes.clear();  // a folder holds it
+  if (extension.empty() || (format && format->has_companions)) {
+    suffixes.insert(suffixes.end(), {kRestSuffix, kTimesSuffix});
+  }
+  if (format && format->has_companions) suffixes.emplace_back(kTopologySuffix);
+  if (extension == ".gltf") suffixes.emplace_back(".bin");
+  if (extension == ".pvd") suffixes.emplace_back(".vtp.series");
+  return suffixes;
+}
+
+}  // namespace
+
+fs::path other_of_name(const fs::path& sequence) {
+  const fs::path name = beside(sequence, ""), own = sequence.lexically_normal();
+  std::vector<fs::path> others;
+  if (is_there(name / kFolderManifest) && own != name && own != name / "") others.push_back(name);
+  for (const SequenceFormat& format : sequence_formats()) {
+    if (!format.has_companions) continue;
+    for (const std::string& extension : format.extensions) {
+      const fs::path other = name.string() + extension;
+      if (other != own && is_there(other)) others.push_back(other);
+    }
+  }
+  return others.empty() ? fs::path() : others.front();
+}
+
+std::vector<std::string> refused_companions(const fs::path& sequence, bool overwrite) {
+  const fs::path main = sequence.has_filename() ? sequence : sequence.parent_path();
+  std::vector<std::string> refused;
+  for (const std::string& suffix : suffixes_of(sequence)) {
+    const fs::path path = beside(sequence, suffix);
+    if (!is_there(path)) continue;
+    const bool has_owner =
+        suffix == kRestSuffix || suffix == kTimesSuffix || suffix == kTopologySuffix;
+    const std::string reason =
+        why_to_keep(main, has_owner ? other_of_name(sequence) : fs::path(), overwrite);
+    if (reason.empty()) continue;
+    refused.push_back(path.string() + ": " + reason +
+                      "; a run that writes another content there is refused");
+  }
+  return refused;
+}
+
+}  // namespace mimetra

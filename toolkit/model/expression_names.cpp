@@ -1,0 +1,105 @@
+#include "toolkit/model/expression_names.h"
+
+#include <algorithm>
+
+#include "toolkit/mesh/text.h"
+
+namespace mimetra {
+
+namespace {
+
+enum class Half { none, left, right };
+
+struct HalfName {
+  Half half = Half::none;
+  std::string stem;  // folded
+};
+
+HalfName half_of(const std::string& name) {
+  struct Ending {
+    std::string_view text;
+    Half half;
+  };
+  constexpr Ending kEndings[] = {
+      {"Left", Half::left}, {"_left", Half::left}, {"_L", Half::left},     {"_l", Half::left},
+      {".L", Half::left},   {".l", Half::left},    {"Right", Half::right}, {"_right", Half::right},
+      {"_R", Half::right},  {"_r", Half::right},   {".R", Half::right},    {".r", Half::right}};
+  for (const Ending& ending : kEndings) {
+    if (!name.ends_with(ending.text)) continue;
+    return {ending.half, folded_name(name.substr(0, name.size() - ending.text.size()))};
+  }
+  return {};
+}
+
+/// What the right half of a left one is called without its side; empty for what is no half.
+std::string stem_of_right(const std::string& left) {
+  if (left == "jaw" || left == "mouth") return {};
+  if (left == "eyelookin") return "eyelookout";
+  if (left == "eyelookout") return "eyelookin";
+  return left;
+}
+
+/// ARKit's names, spelled out and folded.
+struct KnownGroup {
+  Exclusive least;  // the choice from which on it counts
+  std::vector<std::string_view> names;
+};
+
+std::vector<KnownGroup> known_groups() {
+  return {{Exclusive::eyes, {"eyelookupleft", "eyelookdownleft"}},
+          {Exclusive::eyes, {"eyelookupright", "eyelookdownright"}},
+          {Exclusive::eyes, {"eyelookinleft", "eyelookoutleft"}},
+          {Exclusive::eyes, {"eyelookinright", "eyelookoutright"}},
+          {Exclusive::all, {"jawopen", "mouthclose"}}};
+}
+
+}  // namespace
+
+std::string spelled_out(const std::string& name) {
+  if (name.ends_with("_L")) return name.substr(0, name.size() - 2) + "Left";
+  if (name.ends_with("_R")) return name.substr(0, name.size() - 2) + "Right";
+  return name;
+}
+
+std::string folded_name(const std::string& name) {
+  std::string result = lower_case(name);
+  std::erase(result, '_');
+  return result;
+}
+
+std::vector<std::array<int, 2>> known_pairs(const std::vector<std::string>& names) {
+  std::vector<HalfName> halves;
+  for (const std::string& name : names) halves.push_back(half_of(name));
+  std::vector<std::array<int, 2>> pairs;
+  for (std::size_t left = 0; left < halves.size(); ++left) {
+    if (halves[left].half != Half::left) continue;
+    const std::string wanted = stem_of_right(halves[left].stem);
+    const auto right = std::ranges::find_if(halves, [&wanted](const HalfName& other) {
+      return other.half == Half::right && !wanted.empty() && other.stem == wanted;
+    });
+    if (right == halves.end()) continue;
+    pairs.push_back({static_cast<int>(left), static_cast<int>(right - halves.begin())});
+  }
+  return pairs;
+}
+
+std::vector<std::vector<int>> known_exclusives(const std::vector<std::string>& names,
+                                               Exclusive which) {
+  std::vector<std::string> folded;
+  for (const std::string& name : names) folded.push_back(folded_name(spelled_out(name)));
+  std::vector<std::vector<int>> groups;
+  for (const KnownGroup& known : known_groups()) {
+    if (which < known.least) continue;
+    std::vector<int> group;
+    for (const std::string_view name : known.names) {
+      const auto found = std::ranges::find(folded, name);
+      if (found != folded.end()) group.push_back(static_cast<int>(found - folded.begin()));
+    }
+    if (group.size() < known.names.size()) continue;
+    std::ranges::sort(group);
+    groups.push_back(std::move(group));
+  }
+  return groups;
+}
+
+}  // namespace mimetra

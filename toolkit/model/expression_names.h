@@ -1,0 +1,49 @@
+#pragma once
+
+#include <array>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "toolkit/mesh/choice.h"
+
+/// What the names of expressions tell: ARKit's, and others that end like them.
+namespace mimetra {
+
+/// Which expressions exclude each other, of those that are known by name.
+enum class Exclusive {
+  none,
+  eyes,  ///< each eye looks up or down, and in or out
+  all    ///< and jawOpen excludes mouthClose, which performances of ARKit use together
+};
+
+/// As people choose it.
+constexpr std::string_view choice_name(Exclusive value) {
+  switch (value) {
+    case Exclusive::none:
+      return "none";
+    case Exclusive::eyes:
+      return "eyes";
+    case Exclusive::all:
+      return "all";
+  }
+  return {};
+}
+
+/// `mouthSmile_L` as captures write it: `mouthSmileLeft`.
+std::string spelled_out(const std::string& name);
+
+/// Without regard to case and underscores.
+std::string folded_name(const std::string& name);
+
+/// Left and right of one expression, by the index of each among `names`: those that end in Left and
+/// Right, _left and _right, _L and _R or .L and .R, in any case after a mark. Of an eye that looks
+/// in, the other half is the other eye that looks out: both look to one side. `jawLeft`,
+/// `mouthLeft` and their opposites move to a side and are no halves.
+std::vector<std::array<int, 2>> known_pairs(const std::vector<std::string>& names);
+
+/// Groups of expressions of which at most one is there at a time, by index among `names`.
+std::vector<std::vector<int>> known_exclusives(const std::vector<std::string>& names,
+                                               Exclusive which);
+
+}  // namespace mimetra

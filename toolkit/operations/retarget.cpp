@@ -1,0 +1,344 @@
+#include <algorithm>
+#include <optional>
+
+#include <nlohmann/json.hpp>
+
+#include "toolkit/io/frame_files.h"
+#include "toolkit/io/retargeting_file.h"
+#include "toolkit/mesh/errors.h"
+#include "toolkit/mesh/stopwatch.h"
+#include "toolkit/mesh/text.h"
+#include "toolkit/operations/formats.h"
+#include "toolkit/operations/json.h"
+#include "toolkit/operations/match_parameters.h"
+#include "toolkit/operations/pipeline_parameters.h"
+#include "toolkit/operations/sequence_parameters.h"
+#include "toolkit/operations/toolkit_operations.h"
+#include "toolkit/operations/weight_tables.h"
+#include "toolkit/pipeline/retarget.h"
+#include "toolkit/transfer/linear_transfer.h"
+
+namespace mimetra {
+
+namespace {
+
+/// Options of a map's weights too; the others are about meshes.
+BoundParameters<SolveOptions> retarget_parameters() {
+  BoundParameters<SolveOptions> list;
+  return list.add(axes_parameters())
+      .add("smoothness", SolveOptions::kSmoothness, "time constant of smooth weights")
+      .add(&SolveOptions::blendshape, blendshape_parameters());
+}
+
+/// What comes of a call, by meshes or by a map.
+struct Retargeted {
+  std::vector<std::string> source_names = {}, target_names = {};
+  Eigen::MatrixXd driving = {};  ///< the source's weights (F x D_s)
+  Eigen::MatrixXd weights = {};  ///< the target's (F x D_t)
+  std::optional<Retargeting> map = {};
+  bool by_map = false;
+  Json report = Json::object();
+  std::string summary = {};
+};
+
+/// Refuses what the request cannot mean.
+void check_request(const Invocation& invocation) {
+  const bool source = invocation.find<ModelData>("source") != nullptr;
+  const bool target = invocation.find<ModelData>("target") != nullptr;
+  if (!invocation.find<Document>("map")) {
+    if (source && target) return;
+    throw UsageError(
+        "retarget: expected two models, SOURCE and TARGET, or what an earlier run kept of them "
+        "(--map FILE)");
+  }
+  if (source || target) {
+    throw UsageError("--map: it stands for SOURCE and TARGET; leave one or the other out");
+  }
+  if (invocation.wants("map-out")) {
+    throw UsageError("--map-out: a map is kept of meshes, and --map reads none");
+  }
+  for (const std::string name :
+       {"axes", "markers", "index-base", "ignore-files", "correspondence"}) {
+    if (!invocation.parameters.is_set(name)) continue;
+    throw UsageError("--" + name + ": it is about meshes, and --map reads none");
+  }
+  for (const std::string name : {"symmetry", "exclusive", "rules"}) {
+    if (!invocation.parameters.is_set(name)) continue;
+    throw UsageError("--" + name + ": weights by --map are bounded, and have no other rules");
+  }
+}
+
+/// The weights and their times of those frames that are asked for.
+WeightTrack chosen_track(const Invocation& invocation) {
+  const SequenceSource source = frame_parameters().read(invocation.parameters);
+  const std::string& name = invocation.input("weights").name;
+  WeightTrack track = track_of(invocation.get<Table>("weights"));
+  const auto frames = static_cast<int>(track.weights.rows());
+  if (track.times.size() > 0) {
+    check_rate(name, track.times, source);
+  } else if (source.fps) {
+    track.times = Eigen::VectorXd::LinSpaced(frames, 0, frames - 1) / *source.fps;
+  }
+  const std::vector<int> chosen = selected_frames(source.frames, frames);
+  track.weights = Eigen::MatrixXd(track.weights(chosen, Eigen::all));
+  if (track.times.size() > 0) track.times = Eigen::VectorXd(track.times(chosen));
+  return track;
+}
+
+/// Sets the source's weights, and says which names of the track drive it and which do not.
+void drive_source(const Invocation& invocation, const WeightTrack& track, Retargeted& made) {
+  const std::string& name = invocation.input("weights").name;
+  try {
+    made.driving = weights_for(track, made.source_names);
+  } catch (const MismatchError& error) {
+    throw MismatchError(name + ": " + error.what());
+  }
+  const WeightMatch match = match_weights(track, made.source_names);
+  if (!match.unmatched_columns.empty()) {
+    invocation.warn(name + ": columns that drive no expression of the source: " +
+                    listed(match.unmatched_columns));
+  }
+  if (!match.undriven_expressions.empty()) {
+    invocation.warn(name + ": expressions of the source that no column drives: " +
+                    listed(match.undriven_expressions));
+  }
+  Json matched = Json::array();
+  for (std::size_t j = 0; j < match.column.size(); ++j) {
+    if (match.column[j] >= 0) matched.push_back(made.source_names[j]);
+  }
+  made.report["matched"] = std::move(matched);
+  made.report["unmatched"] = match.unmatched_columns;
+  made.report["undriven"] = match.undriven_expressions;
+}
+
+Retargeted by_map(const Invocation& invocation, const WeightTrack& track,
+                  const BlendshapeTransferOptions& options) {
+  Retargeted made;
+  made.by_map = true;
+  made.map = parse_retargeting(invocation.input("map").name, invocation.get<Document>("map").text);
+  made.source_names = made.map->source_names;
+  made.target_names = made.map->target_names;
+  check_live_link(invocation, "out", made.target_names);
+  drive_source(invocation, track, made);
+  const bool timed = track.times.size() > 0;
+  made.weights = retargeted(
+      *made.map, made.driving,
+      timed ? track.times : default_times(static_cast<int>(track.weights.rows())), options);
+  return made;
+}
+
+void add_transfer(const TransferredTarget& transferred, Retargeted& made) {
+  made.report["missed"] = missed_share(transferred.error);
+  made.report["condition"] = transferred.solution.conditions.condition;
+  made.report["unseen"] = transferred.solution.conditions.unseen;
+  if (transferred.match) made.report["correspondence"] = json_of(*transferred.match);
+  if (!transferred.openings.empty()) made.report["openings"] = json_of(transferred.openings);
+  made.summary += percent(missed_share(transferred.error)) + " of the deformation is missing" +
+                  (transferred.match ? "; " + summary_of(*transferred.match) : "") + '\n' +
+                  summary_of(transferred.openings);
+}
+
+Retargeted by_meshes(const Invocation& invocation, const WeightTrack& track,
+                     const SolveOptions& solving) {
+  const auto model =
+      std::make_shared<const BlendshapeModel>(invocation.get<ModelData>("source").model.average());
+  const NamedData& source = invocation.input("source");
+  Retargeted made;
+  made.source_names = model->expressions().names;
+  if (made.source_names.empty()) {
+    throw MismatchError(source.name + ": has no expressions that weights could drive");
+  }
+  drive_source(invocation, track, made);
+  const auto animation = std::make_shared<const Animation>(model, made.driving, track.times);
+  Invocation driven = invocation;
+  driven.inputs["source"] = {NamedData{source.name, FieldSequence(animation), source.origin}};
+  const Target target = targets_of(driven).front();
+  made.target_names = target.model.get().expressions().names;
+  check_live_link(invocation, "out", made.target_names);
+  RetargetOptions options;
+  options.source_name = source.name;
+  options.solving = solving;
+  options.keep_map = invocation.wants("map-out") || invocation.wants("matrix-out");
+  options.threads = invocation.threads;
+  options.progress = invocation.progress;
+  options.notes = warnings_of(invocation);
+  RetargetResult result = retarget(*animation, target, options);
+  made.weights = result.transferred.solution.weights();
+  made.map = std::move(result.map);
+  add_transfer(result.transferred, made);
+  return made;
+}
+
+Json json_of(const WeightDifference& difference) {
+  return {{"rms", difference.rms}, {"mean", difference.mean}, {"largest", difference.largest}};
+}
+
+std::string summary_of(const WeightDifference& difference) {
+  return readable(difference.rms, 2) + " rms, " + readable(difference.mean, 2) + " on average, " +
+         readable(difference.largest, 2) + " at most";
+}
+
+/// Columns of the target's weights and of the source's that have one name.
+struct SharedNames {
+  std::vector<Eigen::Index> target = {}, source = {};
+
+  explicit SharedNames(const Retargeted& made) {
+    WeightTrack driving;
+    driving.names = made.source_names;
+    const std::vector<int> column = match_weights(driving, made.target_names).column;
+    for (std::size_t j = 0; j < column.size(); ++j) {
+      if (column[j] < 0) continue;
+      source.push_back(column[j]);
+      target.push_back(static_cast<Eigen::Index>(j));
+    }
+  }
+
+  WeightDifference difference(const Eigen::MatrixXd& weights, const Retargeted& made) const {
+    return difference_of(weights(Eigen::all, target), made.driving(Eigen::all, source));
+  }
+};
+
+/// Says which expressions nothing moves, and how far those are from the source's that have its
+/// names.
+void add_weights(const Invocation& invocation, Retargeted& made) {
+  std::vector<std::string> still;
+  for (Eigen::Index j = 0; j < made.weights.cols(); ++j) {
+    if (made.weights.col(j).isZero(0)) {
+      still.push_back(made.target_names[static_cast<std::size_t>(j)]);
+    }
+  }
+  if (!still.empty()) {
+    invocation.warn("expressions of the target that stay 0 in all frames: " + listed(still));
+  }
+  made.report["still"] = still;
+  const SharedNames shared(made);
+  made.report["shared"] = {{"names", shared.target.size()}};
+  if (shared.target.empty()) return;
+  const WeightDifference difference = shared.difference(made.weights, made);
+  made.report["shared"].update(json_of(difference));
+  made.summary += std::to_string(shared.target.size()) +
+                  " weights that have the source's names differ from its by " +
+                  summary_of(difference) + '\n';
+}
+
+/// How far the kept map's weights are from those of the meshes.
+void add_map(const Invocation& invocation, const WeightTrack& track,
+             const BlendshapeTransferOptions& options, Retargeted& made) {
+  if (made.by_map || !invocation.wants("map-out")) return;
+  const bool timed = track.times.size() > 0;
+  const Eigen::MatrixXd weights = retargeted(
+      *made.map, made.driving,
+      timed ? track.times : default_times(static_cast<int>(track.weights.rows())), options);
+  const WeightDifference difference = difference_of(weights, made.weights);
+  made.report["map"] = json_of(difference);
+  made.summary += "the map's weights differ from these by " + summary_of(difference) + '\n';
+}
+
+/// How far a plain matrix' weights are, as they are and clipped.
+void add_matrix(const Invocation& invocation, const Eigen::MatrixXd& matrix, Retargeted& made) {
+  const Eigen::MatrixXd unbounded = multiplied(matrix, made.driving);
+  const WeightDifference of_clipped = difference_of(clipped(unbounded, *made.map), made.weights);
+  const WeightDifference of_unbounded = difference_of(unbounded, made.weights);
+  made.report["matrix"] = {{"clipped", json_of(of_clipped)}, {"unbounded", json_of(of_unbounded)}};
+  const SharedNames shared(made);
+  if (!shared.target.empty()) {
+    made.report["matrix"]["shared"] = json_of(shared.difference(unbounded, made));
+  }
+  invocation.warn("the matrix knows no bounds: its weights differ from these by " +
+                  summary_of(of_unbounded) + ", clipped to the bounds by " +
+                  summary_of(of_clipped));
+}
+
+/// Says what neither a map nor a matrix keeps of the options.
+void note_options(const Invocation& invocation) {
+  std::vector<std::string> names;
+  for (const std::string name : {"ridge", "l1", "smoothness", "symmetry", "exclusive", "rules"}) {
+    if (invocation.parameters.is_set(name)) names.push_back("--" + name);
+  }
+  if (names.empty()) return;
+  const std::string options = joined(names, ", ", " and ");
+  if (invocation.wants("map-out")) {
+    invocation.warn("--map-out: the map does not keep " + options + "; give them with --map too");
+  }
+  if (invocation.wants("matrix-out")) {
+    invocation.warn("--matrix-out: the matrix does not keep " + options);
+  }
+}
+
+Outcome run_retarget(const Invocation& invocation) {
+  const Stopwatch stopwatch;
+  check_request(invocation);
+  SolveOptions solving = retarget_parameters().read(invocation.parameters);
+  BlendshapeTransferOptions of_map = solving.blendshape;
+  of_map.threads = invocation.threads;
+  of_map.smoothness = solving.smoothness;
+  const WeightTrack track = chosen_track(invocation);
+  note_options(invocation);
+  Retargeted made = in_command_terms(invocation.parameters, [&] {
+    return invocation.find<Document>("map") ? by_map(invocation, track, of_map)
+                                            : by_meshes(invocation, track, solving);
+  });
+  add_weights(invocation, made);
+  add_map(invocation, track, of_map, made);
+  Outcome outcome;
+  outcome.outputs["out"].push_back(
+      {"", weight_table(WeightTrack{made.target_names, made.weights, track.times})});
+  if (invocation.wants("map-out")) {
+    outcome.outputs["map-out"].push_back({"", Document{retargeting_json(*made.map)}});
+  }
+  if (invocation.wants("matrix-out")) {
+    const Eigen::MatrixXd matrix = plain_matrix(*made.map);
+    add_matrix(invocation, matrix, made);
+    outcome.outputs["matrix-out"].push_back({"", Document{plain_matrix_csv(*made.map, matrix)}});
+  }
+  made.report["frames"] = made.weights.rows();
+  made.report["expressions"] = made.weights.cols();
+  made.report["seconds"] = stopwatch.seconds();
+  outcome.report = json_text(made.report);
+  outcome.summary = std::to_string(made.weights.rows()) + " frames of " +
+                    std::to_string(made.weights.cols()) + " weights, " +
+                    readable(stopwatch.seconds()) + " s\n" + made.summary;
+  return outcome;
+}
+
+Operation declared_operation() {
+  Operation operation;
+  operation.name = "retarget";
+  operation.summary = "Make weights of one rig weights of another, through their meshes";
+  operation.inputs = {{"source", DataKind::model,
+                       "model (MODEL or MODEL@identity=1.5) that the weights are of", true},
+                      {"target", DataKind::model, "model whose weights are made", true},
+                      {.name = "weights",
+                       .kind = DataKind::table,
+                       .help = "blendshape weights of the source",
+                       .named = true},
+                      {"map", DataKind::document,
+                       "what --map-out kept of an earlier run, in place of both models", true}};
+  operation.inputs[0].positional = operation.inputs[1].positional = true;
+  operation.outputs = {{"out", DataKind::table, "blendshape weights of the target"},
+                       {"map-out", DataKind::document,
+                        "what can be applied to later weights without the models", true},
+                       {"matrix-out", DataKind::document,
+                        "a plain matrix, without bounds, for programs that take no more", true}};
+  operation.outputs[0].weights = true;
+  operation.outputs[1].extensions = {".json"};
+  operation.outputs[2].extensions = {".csv"};
+  return operation;
+}
+
+}  // namespace
+
+Operation retarget_operation() {
+  Operation operation = declared_operation();
+  operation.parameters = retarget_parameters().declared();
+  for (const std::vector<Parameter>& more : {match_parameters(), frame_parameters().declared()}) {
+    operation.parameters.insert(operation.parameters.end(), more.begin(), more.end());
+  }
+  operation.examples = {
+      "retarget actor/ double.glb --weights talk.csv -o talk_double.csv --map-out map.json",
+      "retarget --map map.json --weights take.csv -o take_double.livelink.csv"};
+  operation.run = run_retarget;
+  return operation;
+}
+
+}  // namespace mimetra

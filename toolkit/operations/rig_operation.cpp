@@ -1,0 +1,246 @@
+#include "toolkit/operations/rig_operation.h"
+
+#include <algorithm>
+
+#include <nlohmann/json.hpp>
+
+#include "toolkit/io/example_folder.h"
+#include "toolkit/mesh/stopwatch.h"
+#include "toolkit/mesh/suggestion.h"
+#include "toolkit/mesh/text.h"
+#include "toolkit/operations/match_parameters.h"
+#include "toolkit/operations/pipeline_parameters.h"
+#include "toolkit/pipeline/rig.h"
+
+namespace mimetra {
+
+namespace {
+
+struct RigCall {
+  /// A folder.
+  std::optional<std::filesystem::path> examples = {};
+  bool estimate_weights = false;
+  RigOptions rig = {};
+
+  static constexpr Option kExamples{"examples", &RigCall::examples};
+  static constexpr Option kEstimateWeights{"estimate_weights", &RigCall::estimate_weights};
+};
+
+/// Those of a vertex solve over all triangles.
+BoundParameters<SolveOptions> vertex_solve_parameters() {
+  BoundParameters<SolveOptions> list;
+  const BoundParameters<SolveOptions> all = solving_parameters();
+  for (const auto& entry : all.entries()) {
+    const std::string& name = entry.parameter.name;
+    if (name == "axes" || name == "triangle-weight") list.add(entry.parameter, entry.apply);
+  }
+  return list;
+}
+
+BoundParameters<ExampleRigOptions> example_fit_parameters() {
+  using Options = ExampleRigOptions;
+  BoundParameters<Options> list;
+  return list
+      .add("share", Options::kShare,
+           "how much expressions that move a triangle alike share of what examples tell; 0: true "
+           "shapes tell nothing of other expressions")
+      .add("prior", Options::kPrior, "pull towards the transferred expressions, against poses")
+      .add("kappa", Options::kKappa,
+           "the pull is ((1 + m) / (kappa + m))^theta times that where an expression moves by m")
+      .add("theta", Options::kTheta, "exponent of that")
+      .add("rounds", Options::kRounds, "of --estimate-weights at most");
+}
+
+BoundParameters<RigCall> rig_parameters() {
+  BoundParameters<RigOptions> rig;
+  rig.add(&RigOptions::examples, example_fit_parameters())
+      .add(&RigOptions::solving, vertex_solve_parameters());
+  BoundParameters<RigCall> list;
+  return list
+      .add("examples", RigCall::kExamples,
+           "folder of meshes of the target: true shapes, named as expressions of the source, and "
+           "poses, whose weights an examples.csv there has (mesh,jawOpen,...)")
+      .add("estimate-weights", RigCall::kEstimateWeights,
+           "meshes that no expression and no row of examples.csv names are poses, whose weights "
+           "are looked for")
+      .add(&RigCall::rig, rig);
+}
+
+const BlendshapeModel& person_of(const NamedData& value) {
+  return std::get<ModelData>(value.data).model.average();
+}
+
+std::string guess(const std::string& word, const std::vector<std::string>& known) {
+  const std::string nearest = nearest_word(word, known);
+  return nearest.empty() ? "there are " + listed(known, 60) : "did you mean '" + nearest + "'?";
+}
+
+/// Weights of the row that names an example, by expression.
+Eigen::VectorXd given_weights(const ExampleFolder& folder, Eigen::Index row,
+                              const std::vector<std::string>& expressions,
+                              const std::string& path) {
+  const WeightMatch match = match_weights(folder.weights, expressions);
+  if (!match.unmatched_columns.empty()) {
+    const std::string& column = match.unmatched_columns.front();
+    throw MismatchError(path + "/examples.csv: '" + column + "' is no expression of the source; " +
+                        guess(column, expressions));
+  }
+  Eigen::VectorXd weights = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(expressions.size()));
+  for (std::size_t j = 0; j < expressions.size(); ++j) {
+    if (match.column[j] < 0) continue;
+    const double weight = folder.weights.weights(row, match.column[j]);
+    if (weight < 0 || weight > 1) {
+      throw MismatchError(path + "/examples.csv: the weight of '" + expressions[j] + "' is " +
+                          readable(weight) + " for mesh '" +
+                          folder.weighted[static_cast<std::size_t>(row)] + "', expected 0 to 1");
+    }
+    weights[static_cast<Eigen::Index>(j)] = weight;
+  }
+  return weights;
+}
+
+/// What an example is. Throws MismatchError where nothing tells.
+ExampleMeaning meaning_of(const ExampleShape& shape, const ExampleFolder& folder,
+                          const ShapeBasis& expressions, const RigCall& call) {
+  const auto weighted = std::ranges::find(folder.weighted, shape.name);
+  if (weighted != folder.weighted.end()) {
+    return given_weights(folder, weighted - folder.weighted.begin(), expressions.names,
+                         call.examples->string());
+  }
+  const int expression = expressions.find(shape.name);
+  if (expression >= 0) return expression;
+  if (call.estimate_weights) return {};
+  throw MismatchError(shape.path.string() + ": '" + shape.name +
+                      "' is no expression of the source; " + guess(shape.name, expressions.names) +
+                      " (a pose needs a row in examples.csv, or --estimate-weights)");
+}
+
+std::vector<RigExample> examples_of(const Invocation& invocation, const RigCall& call) {
+  if (!call.examples) return {};
+  const NamedData& target = invocation.input("target");
+  const ShapeBasis& expressions = person_of(invocation.input("source")).expressions();
+  ExampleFolder folder =
+      read_examples(*call.examples, person_of(target).connectivity(), target.name);
+  std::vector<RigExample> examples;
+  for (ExampleShape& shape : folder.shapes) {
+    if (shape.name == "neutral" && expressions.find(shape.name) < 0) {
+      invocation.warn(shape.path.string() + ": is left out; the neutral is the target's");
+      continue;
+    }
+    ExampleMeaning meaning = meaning_of(shape, folder, expressions, call);
+    examples.push_back({shape.name, std::move(shape.pose), std::move(meaning)});
+  }
+  return examples;
+}
+
+/// Refuses options that nothing would look at.
+void check_rig_options(const Invocation& invocation, const RigCall& call) {
+  if (call.examples) {
+    if (call.estimate_weights || !invocation.parameters.is_set("rounds")) return;
+    throw UsageError("--rounds: no weights are looked for without --estimate-weights");
+  }
+  const bool has_own = person_of(invocation.input("target")).expressions().size() > 0;
+  for (const std::string name :
+       {"estimate-weights", "rounds", "prior", "kappa", "theta", "share"}) {
+    const bool is_for_poses = name != "kappa" && name != "theta" && name != "share";
+    if (!invocation.parameters.is_set(name) || (has_own && !is_for_poses)) continue;
+    throw UsageError("--" + name + ": there are no examples without --examples");
+  }
+}
+
+Json json_of(const Rig& made, const std::vector<RigExample>& examples) {
+  Json expressions = Json::array(), of_examples = Json::array();
+  for (const RiggedExpression& each : made.expressions) {
+    expressions.push_back({{"name", each.name},
+                           {"origin", choice_name(each.origin)},
+                           {"largest_displacement", each.largest},
+                           {"changed_by_examples", each.change},
+                           {"flipped", each.flipped}});
+  }
+  for (std::size_t s = 0; s < made.examples.size(); ++s) {
+    Json weights = Json::object();
+    for (Eigen::Index j = 0; j < made.weights.cols(); ++j) {
+      const double weight = made.weights(static_cast<Eigen::Index>(s), j);
+      if (weight > 0) weights[made.expressions[static_cast<std::size_t>(j)].name] = weight;
+    }
+    const bool is_estimated =
+        s < examples.size() && std::holds_alternative<std::monostate>(examples[s].meaning);
+    of_examples.push_back(
+        {{"name", made.examples[s]}, {"estimated", is_estimated}, {"weights", weights}});
+  }
+  Json report{{"expressions", expressions},
+              {"examples", of_examples},
+              {"missed", made.missed},
+              {"axes",
+               {{"angle", made.similarity.angle()},
+                {"scale", made.similarity.scale},
+                {"mirrored", made.similarity.mirrors()}}}};
+  if (made.match) report["correspondence"] = json_of(*made.match);
+  return report;
+}
+
+std::string summary_of(const Rig& made, const std::string& target) {
+  const auto count = [&made](RigOrigin origin) {
+    return std::ranges::count(made.expressions, origin, &RiggedExpression::origin);
+  };
+  int flipped = 0;
+  for (const RiggedExpression& each : made.expressions) flipped += each.flipped;
+  std::vector<std::string> parts;
+  for (const RigOrigin origin :
+       {RigOrigin::transferred, RigOrigin::corrected, RigOrigin::example, RigOrigin::own}) {
+    if (const auto of_origin = count(origin); of_origin > 0) {
+      parts.push_back(std::to_string(of_origin) + ' ' + std::string(choice_name(origin)));
+    }
+  }
+  return target + ": " + std::to_string(made.expressions.size()) + " expressions, " +
+         joined(parts) + "; " + std::to_string(flipped) + " flipped triangles" +
+         (made.match ? "; " + summary_of(*made.match) : "") + '\n';
+}
+
+Outcome run_rig(const Invocation& invocation) {
+  const Stopwatch stopwatch;
+  RigCall call = rig_parameters().read(invocation.parameters);
+  check_rig_options(invocation, call);
+  const NamedData& target = invocation.input("target");
+  const std::vector<RigExample> examples = examples_of(invocation, call);
+  call.rig.threads = invocation.threads;
+  call.rig.progress = invocation.progress;
+  call.rig.notes = warnings_of(invocation);
+  Rig made = in_command_terms(invocation.parameters, [&] {
+    return rig(person_of(invocation.input("source")), targets_of(invocation).front(), examples,
+               call.rig);
+  });
+  Outcome outcome;
+  Json report = json_of(made, examples);
+  report["seconds"] = stopwatch.seconds();
+  outcome.report = json_text(report);
+  outcome.summary = summary_of(made, target.name);
+  outcome.outputs["out"].push_back({"", ModelData{MorphableModel(std::move(made.model)), {}, {}}});
+  return outcome;
+}
+
+double memory_of_rig(const Invocation& invocation) {
+  return rig_bytes(person_of(invocation.input("source")), person_of(invocation.input("target")));
+}
+
+}  // namespace
+
+Operation rig_operation() {
+  Operation operation;
+  operation.name = "rig";
+  operation.summary = "Make the full set of a model's expressions for another character";
+  operation.inputs = {
+      {"source", DataKind::model, "model that has the expressions"},
+      {"target", DataKind::model, "mesh, or model that has some of them, which it keeps"}};
+  operation.outputs = {{"out", DataKind::model, "the target with all expressions"}};
+  operation.parameters = rig_parameters().declared();
+  const std::vector<Parameter> matching = pairing_parameters();
+  operation.parameters.insert(operation.parameters.end(), matching.begin(), matching.end());
+  operation.examples = {"rig actor/ double.ply -o double/",
+                        "rig actor/ double.ply --examples double_scans/ -o double.glb"};
+  operation.run = run_rig;
+  operation.memory = memory_of_rig;
+  return operation;
+}
+
+}  // namespace mimetra

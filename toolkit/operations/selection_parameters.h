@@ -1,0 +1,24 @@
+#pragma once
+
+#include "toolkit/operations/bound_parameters.h"
+#include "toolkit/operations/operation.h"
+#include "toolkit/pipeline/region_choice.h"
+
+namespace mimetra {
+
+/// --select, --triangles and --drop-rims.
+BoundParameters<RegionChoiceOptions> selection_parameters();
+
+/// The options with what -k says where regions are chosen for the transfer: discs at most, and any
+/// number of them where nobody says so.
+RegionChoiceOptions with_most_discs(RegionChoiceOptions options, const Parameters& parameters);
+
+/// Throws UsageError where options of the call exclude each other or would have no effect: those of
+/// a decomposition where regions are chosen for the transfer, and vertices to solve for.
+void check_selection(const Invocation& invocation);
+
+/// Throws UsageError where one of the options is set, with the reason: "there are no regions".
+void refuse_options(const Parameters& parameters, const std::vector<std::string>& names,
+                    const std::string& reason);
+
+}  // namespace mimetra

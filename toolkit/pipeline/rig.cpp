@@ -1,0 +1,278 @@
+#include "toolkit/pipeline/rig.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "toolkit/mesh/parallel.h"
+#include "toolkit/mesh/text.h"
+#include "toolkit/pipeline/usability.h"
+#include "toolkit/transfer/seams.h"
+#include "toolkit/transfer/transfer_error.h"
+
+namespace mimetra {
+
+namespace {
+
+/// A vertex of the source that moves by less, as a share of the farthest that its expression moves
+/// one, stays: modelled expressions fade out far beyond what is seen.
+constexpr double kStill = 1e-4;
+
+/// Transfer and examples as progress shows them.
+constexpr double kTransferPart = 0.5;
+
+/// Each expression at weight 1 is one frame.
+std::shared_ptr<const Animation> frame_of_each_expression(const BlendshapeModel& source) {
+  const int count = source.expressions().size();
+  if (count == 0) throw MismatchError("the source has no expressions");
+  return std::make_shared<const Animation>(std::make_shared<const BlendshapeModel>(source),
+                                           Eigen::MatrixXd::Identity(count, count));
+}
+
+/// What an expression moves on the source: vertices, and triangles with one of them.
+Regions moving_part(const Positions& rest, const PositionsView& pose, const Triangles& triangles) {
+  const Eigen::VectorXd distances = (pose - rest).rowwise().norm();
+  const double least = kStill * distances.maxCoeff();
+  Regions moving;
+  moving.vertices = static_cast<int>(rest.rows());
+  moving.all_triangles = static_cast<int>(triangles.rows());
+  for (const double distance : distances) moving.inside.push_back(distance > least);
+  for (int t = 0; t < triangles.rows(); ++t) {
+    const auto moves = [&](VertexIndex v) { return moving.inside[static_cast<std::size_t>(v)]; };
+    if (std::ranges::any_of(triangles.row(t), moves)) moving.triangles.push_back(t);
+  }
+  return moving;
+}
+
+Weld seams_of(const FrameSource& source, const Target& target, int threads) {
+  const BlendshapeModel& model = target.model;
+  return target.pairing ? closed_seams(source, model.neutral(), model.triangles(), *target.pairing,
+                                       {.threads = threads})
+                        : closed_seams(source, model.neutral(), {.threads = threads});
+}
+
+/// Displacements of the target that follow each frame of the source, 3N x D.
+class ExpressionTransfer {
+ public:
+  ExpressionTransfer(const FrameSource& source, const Target& target, const Weld& weld,
+                     const RigOptions& options)
+      : source_(source), target_(target), options_(options.solving.vertex) {
+    options_.outside = Outside::fixed;
+    options_.weld = weld;
+    options_.pairing = target.pairing;
+    options_.threads = 1;
+    const BlendshapeModel& model = target.model;
+    displacements_ = Eigen::MatrixXd::Zero(model.neutral().size(), source.frames());
+    std::vector<int> slivers(static_cast<std::size_t>(source.frames()), 0);
+    parallel_for(
+        source.frames(), options.threads, [&](int j) { slivers[j] = transfer(j); },
+        part_of(options.progress, 0, kTransferPart));
+    slivers_ = std::ranges::max(slivers);
+  }
+
+  const Eigen::MatrixXd& displacements() const { return displacements_; }
+  /// Of the target, at most of any expression.
+  int slivers() const { return slivers_; }
+
+ private:
+  int transfer(int j) {
+    const Frames frame = source_.read(j, 1);
+    const PositionsView pose(frame.data(), source_.rest().rows(), 3);
+    const Regions moving = moving_part(source_.rest(), pose, source_.triangles());
+    const Selection selection = selection_of(moving, target_);
+    if (selection.triangles.empty()) return 0;
+    VertexTransferOptions of_expression = options_;
+    of_expression.inside = selection.inside;
+    const BlendshapeModel& model = target_.model;
+    const VertexTransfer solver(source_.rest(), model.neutral(), model.triangles(),
+                                selection.triangles, of_expression);
+    const MeshSequence single(source_.shared_connectivity(), frame, {}, source_.rest());
+    const Eigen::Map<const Eigen::RowVectorXd> neutral(model.neutral().data(),
+                                                       model.neutral().size());
+    displacements_.col(j) = (solver.frames(single).row(0) - neutral).transpose();
+    return solver.degenerate_target_triangles();
+  }
+
+  const FrameSource& source_;
+  const Target& target_;
+  VertexTransferOptions options_;
+  Eigen::MatrixXd displacements_;
+  int slivers_ = 0;
+};
+
+/// The target's own expressions that the source has are examples, too, unless one is given.
+void add_own_expressions(std::vector<RigExample>& examples, const BlendshapeModel& target,
+                         const ShapeBasis& expressions, const Notes& notes) {
+  for (int own = 0; own < target.expressions().size(); ++own) {
+    const std::string& name = target.expressions().names[static_cast<std::size_t>(own)];
+    const int known = expressions.find(name);
+    if (known < 0) continue;
+    const auto is_it = [known](const RigExample& example) {
+      const int* expression = std::get_if<int>(&example.meaning);
+      return expression && *expression == known;
+    };
+    if (std::ranges::any_of(examples, is_it)) {
+      note(notes, "the example '" + name + "' replaces the target's own expression");
+      continue;
+    }
+    examples.push_back(
+        {name, target.pose(Eigen::VectorXd::Unit(target.expressions().size(), own)), known});
+  }
+}
+
+/// Notes examples that are the neutral.
+void note_still(const std::vector<RigExample>& examples, const Positions& neutral,
+                const Notes& notes) {
+  std::vector<std::string> still;
+  for (const RigExample& example : examples) {
+    if (example.pose == neutral) still.push_back(example.name);
+  }
+  if (still.empty()) return;
+  note(notes, "examples that are the target's neutral: " + listed(still) +
+                  "; a true shape that does not move makes its expression do nothing");
+}
+
+/// The expressions of the source on the target, then the target's others.
+BlendshapeModel with_others(const BlendshapeModel& target, ShapeBasis expressions) {
+  const ShapeBasis& own = target.expressions();
+  for (int j = 0; j < own.size(); ++j) {
+    const std::string& name = own.names[static_cast<std::size_t>(j)];
+    if (expressions.find(name) >= 0) continue;
+    expressions.names.push_back(name);
+    expressions.displacements.conservativeResize(Eigen::NoChange, expressions.names.size());
+    expressions.displacements.rightCols<1>() = own.displacements.col(j);
+  }
+  return {target.shared_connectivity(), target.neutral(), std::move(expressions)};
+}
+
+double largest_of(const Eigen::VectorXd& field) {
+  return Eigen::Map<const Positions>(field.data(), field.size() / 3, 3).rowwise().norm().maxCoeff();
+}
+
+/// What became of each expression of the model.
+std::vector<RiggedExpression> described(const BlendshapeModel& model,
+                                        const Eigen::MatrixXd& transferred,
+                                        const std::vector<RigExample>& examples) {
+  std::vector<RiggedExpression> list;
+  for (int j = 0; j < model.expressions().size(); ++j) {
+    const Eigen::VectorXd field = model.expressions().displacements.col(j);
+    RiggedExpression each{model.expressions().names[static_cast<std::size_t>(j)]};
+    each.largest = largest_of(field);
+    const auto is_it = [j](const RigExample& example) {
+      const int* expression = std::get_if<int>(&example.meaning);
+      return expression && *expression == j;
+    };
+    if (j >= transferred.cols()) {
+      each.origin = RigOrigin::own;
+    } else {
+      each.change = largest_of(field - transferred.col(j));
+      if (each.change > 0) each.origin = RigOrigin::corrected;
+      if (std::ranges::any_of(examples, is_it)) each.origin = RigOrigin::example;
+    }
+    list.push_back(std::move(each));
+  }
+  return list;
+}
+
+/// One expression of a model as a sequence.
+MeshSequence single_frame(const BlendshapeModel& model, int expression) {
+  const Eigen::RowVectorXd weights = Eigen::VectorXd::Unit(model.expressions().size(), expression);
+  return model.animate(weights);
+}
+
+/// Counts flipped triangles of the source's expressions.
+void count_flipped(Rig& rig, const FrameSource& source, const Target& target, int threads) {
+  const TransferErrorOptions of_error{.pairing = target.pairing, .threads = 1};
+  parallel_for(source.frames(), threads, [&](int j) {
+    const MeshSequence single(source.shared_connectivity(), source.read(j, 1), {}, source.rest());
+    rig.expressions[j].flipped =
+        transfer_error(single, single_frame(rig.model, j), {}, of_error).flipped;
+  });
+}
+
+/// The share of the deformation that the transferred expressions lack.
+double missed_by(const BlendshapeModel& transferred, const FrameSource& source,
+                 const Target& target, int threads) {
+  const Eigen::MatrixXd each = Eigen::MatrixXd::Identity(source.frames(), source.frames());
+  const Animation animation(std::make_shared<const BlendshapeModel>(transferred), each);
+  return missed_share(
+      transfer_error(source, animation, {}, {.pairing = target.pairing, .threads = threads}));
+}
+
+void note_usability(const Rig& rig, const Target& target, const Notes& notes) {
+  std::vector<std::string> flipped, still;
+  double all = 0;
+  for (const RiggedExpression& each : rig.expressions) {
+    all += each.flipped;
+    if (each.largest == 0) still.push_back(each.name);
+    const double allowed =
+        std::max(1.0, kUnusableFlippedShare * static_cast<double>(rig.model.triangles().rows()));
+    if (each.flipped > allowed) {
+      flipped.push_back(each.name + " (" + std::to_string(each.flipped) + ")");
+    }
+  }
+  if (!still.empty()) {
+    note(notes, target.name + ": expressions that do not move it: " + listed(still));
+  }
+  const double triangles =
+      static_cast<double>(rig.model.triangles().rows()) * static_cast<double>(rig.weights.cols());
+  if (rig.missed > kUnusableMissedShare) {
+    note(notes, target.name + ": the rig may not be usable: " + percent(rig.missed) +
+                    " of the deformation is missing; look whether source and target have the same "
+                    "vertices in the same order, or are paired well, and both are neutral");
+  }
+  if (all > kUnusableFlippedShare * triangles) {
+    note(notes, target.name + ": the rig may not be usable: flipped triangles in " +
+                    listed(flipped) + "; look at these expressions");
+  }
+}
+
+}  // namespace
+
+Rig rig(const BlendshapeModel& source, const Target& given, std::vector<RigExample> examples,
+        const RigOptions& options) {
+  check_options(options.solving);
+  const auto frames = frame_of_each_expression(source);
+  const MatchedTarget matched(*frames, given, {.threads = options.threads, .notes = options.notes});
+  const Target& target = *matched;
+  SolveOptions solving = options.solving;
+  solving.notes = options.notes;
+  const PlacedSource placed =
+      placed_at(target, prepare_source(frames, {.model_driven = true}), solving);
+  const FrameSource& sequence = *placed.source.sequence;
+  const BlendshapeModel& model = target.model;
+  const Weld weld = seams_of(sequence, target, options.threads);
+  const ExpressionTransfer transfer(sequence, target, weld, options);
+  if (transfer.slivers() > 0) {
+    note(options.notes, target.name + ": " + std::to_string(transfer.slivers()) +
+                            " slivers, triangles of hardly any area, follow their neighbours");
+  }
+  const BlendshapeModel transferred(model.shared_connectivity(), model.neutral(),
+                                    {source.expressions().names, transfer.displacements()});
+  add_own_expressions(examples, model, source.expressions(), options.notes);
+  note_still(examples, model.neutral(), options.notes);
+  ExampleRigOptions of_examples = options.examples;
+  of_examples.threads = options.threads;
+  of_examples.progress = part_of(options.progress, kTransferPart, 1);
+  ExampleRig fitted = fit_to_examples(transferred, examples, weld, of_examples);
+  Rig result;
+  for (const RigExample& example : examples) result.examples.push_back(example.name);
+  result.weights = std::move(fitted.weights);
+  result.model = with_others(model, {source.expressions().names, std::move(fitted.displacements)});
+  result.expressions = described(result.model, transfer.displacements(), examples);
+  result.similarity = placed.similarity;
+  result.match = matched.report();
+  result.missed = missed_by(transferred, sequence, target, options.threads);
+  count_flipped(result, sequence, target, options.threads);
+  note_usability(result, target, options.notes);
+  return result;
+}
+
+double rig_bytes(const BlendshapeModel& source, const BlendshapeModel& target) {
+  // The transferred expressions, the corrected ones, the model's, and gradients of six numbers a
+  // triangle.
+  const auto expressions = static_cast<double>(source.expressions().size());
+  return sizeof(double) * expressions *
+         (3 * 3.0 * target.vertices() + 6.0 * static_cast<double>(target.triangles().rows()));
+}
+
+}  // namespace mimetra

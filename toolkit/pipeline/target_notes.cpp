@@ -1,0 +1,51 @@
+#include "toolkit/pipeline/target_notes.h"
+
+#include "toolkit/mesh/text.h"
+
+namespace mimetra {
+
+void TargetNotes::add(const std::string& text, Topic topic) const {
+  note(notes_, start_ + text, topic);
+}
+
+void TargetNotes::add(const BlendshapeConditions& conditions) const {
+  if (!conditions.unseen.empty()) {
+    add(std::to_string(conditions.unseen.size()) +
+        " expressions do not move in the regions and stay 0: " + listed(conditions.unseen));
+  }
+  if (!conditions.weakly_seen.empty()) {
+    add(std::to_string(conditions.weakly_seen.size()) +
+        " expressions are weakly seen in the regions: " + listed(conditions.weakly_seen));
+  }
+  if (conditions.condition > kPoorCondition) {
+    add("the regions hardly tell the expressions apart (condition number " +
+            readable(conditions.condition, 2) + ")",
+        Topic::poor_condition);
+  }
+}
+
+void TargetNotes::add_following(const std::vector<int>& parts, std::size_t vertices) const {
+  if (parts.empty()) return;
+  std::vector<std::string> names;
+  for (const int part : parts) names.push_back("component:" + std::to_string(part));
+  add(std::to_string(parts.size()) + " connected parts without partner in the source (" +
+      std::to_string(vertices) +
+      " vertices) move rigidly with the surface around them: " + listed(names));
+}
+
+void TargetNotes::add_degenerate(const Degenerate& triangles) const {
+  if (triangles.collapsed > 0) {
+    add(std::to_string(triangles.collapsed) +
+        " triangles between vertices that a seam makes one take no part");
+  }
+  if (triangles.source > 0) {
+    add(std::to_string(triangles.source) +
+        " slivers of the source, triangles of hardly any area, take their neighbours' "
+        "deformation");
+  }
+  if (triangles.target > 0) {
+    add(std::to_string(triangles.target) + " slivers of the target, triangles of hardly any area");
+  }
+}
+
+}  // namespace mimetra

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "toolkit/pipeline/note.h"
+#include "toolkit/transfer/blendshape_transfer.h"
+
+namespace mimetra {
+
+/// What a solve notes of a target, under its name.
+class TargetNotes {
+ public:
+  TargetNotes(const std::string& name, const Notes& notes) : start_(name + ": "), notes_(notes) {}
+
+  void add(const std::string& text, Topic topic = Topic::other) const;
+  /// Expressions that are not or hardly seen.
+  void add(const BlendshapeConditions& conditions) const;
+  /// Connected parts, by their numbers, that follow the surface around them, and their vertices.
+  void add_following(const std::vector<int>& parts, std::size_t vertices) const;
+
+  /// Triangles that are slivers, or lie between vertices that a seam makes one.
+  struct Degenerate {
+    int source = 0, target = 0, collapsed = 0;
+  };
+  void add_degenerate(const Degenerate& triangles) const;
+
+ private:
+  std::string start_;
+  const Notes& notes_;
+};
+
+}  // namespace mimetra

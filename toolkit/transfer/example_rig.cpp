@@ -1,0 +1,322 @@
+#include "toolkit/transfer/example_rig.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <stdexcept>
+
+#include <Eigen/Cholesky>
+
+#include "toolkit/mesh/parallel.h"
+#include "toolkit/mesh/product_blocking.h"
+#include "toolkit/model/box_least_squares.h"
+#include "toolkit/transfer/plane_gradients.h"
+
+namespace mimetra {
+
+namespace {
+
+/// A vertex that moves by less, as a share of the box's diagonal, does not move: examples come from
+/// files in single precision.
+constexpr double kUnmoved = 1e-6;
+
+/// The pull towards what was transferred begins so many times as strong, and falls from round to
+/// round: the paper's goes from 0.5 to 0.1.
+constexpr double kFirstPrior = 5;
+
+/// Rounds end when no weight changes by more.
+constexpr double kSettled = 1e-4;
+
+/// Weights of a pose are pulled to 0 by this share of an expression's own square: without it, those
+/// of expressions that are nearly alike are open.
+constexpr double kWeightRidge = 1e-3;
+
+constexpr int kTrianglesAtOnce = 256;
+
+Eigen::VectorXd flat_difference(const Positions& pose, const Positions& neutral) {
+  const Positions difference = pose - neutral;
+  return Eigen::Map<const Eigen::VectorXd>(difference.data(), difference.size());
+}
+
+void check_weights(const RigExample& example, const Eigen::VectorXd& weights, int expressions) {
+  const bool in_box = weights.size() == expressions && weights.allFinite() &&
+                      (weights.array() >= 0).all() && (weights.array() <= 1).all();
+  if (in_box) return;
+  throw std::invalid_argument(example.name + ": expected " + std::to_string(expressions) +
+                              " weights within 0 to 1");
+}
+
+void check(const BlendshapeModel& transferred, const std::vector<RigExample>& examples,
+           const Weld& weld, const ExampleRigOptions& options) {
+  check_options(options);
+  weld.check(transferred.neutral());
+  const int expressions = transferred.expressions().size();
+  std::vector<bool> is_given(expressions, false);
+  for (const RigExample& example : examples) {
+    if (example.pose.rows() != transferred.vertices()) {
+      throw std::invalid_argument(example.name + ": " + std::to_string(example.pose.rows()) +
+                                  " vertices, expected " + std::to_string(transferred.vertices()));
+    }
+    if (const auto* weights = std::get_if<Eigen::VectorXd>(&example.meaning)) {
+      check_weights(example, *weights, expressions);
+    }
+    const int* expression = std::get_if<int>(&example.meaning);
+    if (!expression) continue;
+    if (*expression < 0 || *expression >= expressions) {
+      throw std::invalid_argument(example.name + ": is expression " + std::to_string(*expression) +
+                                  ", expected 0 to " + std::to_string(expressions - 1));
+    }
+    if (is_given[*expression]) {
+      throw std::invalid_argument(
+          example.name + ": a second shape of '" +
+          transferred.expressions().names[static_cast<std::size_t>(*expression)] + "'");
+    }
+    is_given[*expression] = true;
+  }
+}
+
+/// The paper's step A in the differences E_j from the transferred expressions, at one triangle:
+///   min sum_s |R_s - sum_j a_sj E_j|^2 + sum_jk <E_j, (C^-1)_jk E_k>
+/// with R_s what is left of example s. C = diag(1 / w_j) is the paper's prior. Added to it is
+/// share <M_j, M_k>, the covariance of E_j = B M_j for an unknown linear map B of gradients: what
+/// an expression does differently than its source, one that moves the triangle alike does as well.
+/// In the dual it takes an S x S system: E = C A^T (A C A^T + N)^-1 R, with N = prior for a pose
+/// and 0 for the true shape of an expression.
+class ExampleFit {
+ public:
+  ExampleFit(const BlendshapeModel& transferred, const std::vector<RigExample>& examples,
+             const Weld& weld, const ExampleRigOptions& options)
+      : model_(transferred),
+        examples_(examples),
+        options_(options),
+        gradients_(transferred.neutral(), transferred.triangles(), weld),
+        size_(box_diagonal(transferred.neutral())),
+        poses_(transferred.neutral().size(), static_cast<Eigen::Index>(examples.size())) {
+    for (std::size_t s = 0; s < examples_.size(); ++s) {
+      poses_.col(static_cast<Eigen::Index>(s)) =
+          flat_difference(examples_[s].pose, model_.neutral());
+    }
+    const std::vector<bool> none(model_.vertices(), false);
+    pieces_ = gradients_.unknowns(none).floating;
+  }
+
+  ExampleRig solve() const;
+
+ private:
+  /// Of each piece (3 x D), by its lowest vertex.
+  using Shifts = std::map<VertexIndex, Eigen::MatrixXd>;
+
+  const Eigen::MatrixXd& prior() const { return model_.expressions().displacements; }
+  bool looks_for_weights(std::size_t example) const {
+    return std::holds_alternative<std::monostate>(examples_[example].meaning);
+  }
+
+  Eigen::MatrixXd first_weights() const;
+  Eigen::VectorXd weights_of(std::size_t example, const Eigen::MatrixXd& displacements) const;
+  Eigen::MatrixXd fitted(const Eigen::MatrixXd& weights, double strength) const;
+  Eigen::MatrixXd correction(const Eigen::MatrixXd& before, const Eigen::MatrixXd& left,
+                             const Eigen::MatrixXd& weights, double strength) const;
+  Eigen::MatrixXd corrections(const Eigen::MatrixXd& left, const Eigen::MatrixXd& weights,
+                              double strength) const;
+  Shifts shifts(const Eigen::MatrixXd& left, const Eigen::MatrixXd& weights, double strength) const;
+  std::vector<bool> fixed(int expression, const Eigen::MatrixXd& left,
+                          const Eigen::MatrixXd& weights) const;
+  void add_shifts(Eigen::VectorXd& field, const std::vector<FloatingPiece>& floating,
+                  const Shifts& shifts, Eigen::Index expression) const;
+
+  const BlendshapeModel& model_;
+  const std::vector<RigExample>& examples_;
+  const ExampleRigOptions& options_;
+  PlaneGradients gradients_;
+  double size_;
+  Eigen::MatrixXd poses_;  // displacements of the examples, 3N x S
+  std::vector<FloatingPiece> pieces_;
+};
+
+/// What is known, and where nothing is, what fits the transferred expressions best.
+Eigen::MatrixXd ExampleFit::first_weights() const {
+  Eigen::MatrixXd weights =
+      Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(examples_.size()), prior().cols());
+  for (std::size_t s = 0; s < examples_.size(); ++s) {
+    auto row = weights.row(static_cast<Eigen::Index>(s));
+    if (const int* expression = std::get_if<int>(&examples_[s].meaning)) {
+      row[*expression] = 1;
+    } else if (const auto* given = std::get_if<Eigen::VectorXd>(&examples_[s].meaning)) {
+      row = given->transpose();
+    } else {
+      row = weights_of(s, prior()).transpose();
+    }
+  }
+  return weights;
+}
+
+/// The paper's step B.
+Eigen::VectorXd ExampleFit::weights_of(std::size_t example,
+                                       const Eigen::MatrixXd& displacements) const {
+  Eigen::MatrixXd gram = displacements.transpose() * displacements;
+  const Eigen::VectorXd h =
+      displacements.transpose() * poses_.col(static_cast<Eigen::Index>(example));
+  gram.diagonal() *= 1 + kWeightRidge;
+  const Eigen::Index count = gram.rows();
+  return box_least_squares(gram, h, Eigen::VectorXd::Zero(count), Eigen::VectorXd::Ones(count));
+}
+
+/// What the expressions become at one place: `before` (q x D) is what they do there, `left` (q x S)
+/// what is left of the examples.
+Eigen::MatrixXd ExampleFit::correction(const Eigen::MatrixXd& before, const Eigen::MatrixXd& left,
+                                       const Eigen::MatrixXd& weights, double strength) const {
+  if (left.isZero(0)) return Eigen::MatrixXd::Zero(before.rows(), before.cols());
+  const Eigen::ArrayXd norms = before.colwise().norm().transpose();
+  const Eigen::VectorXd freedom =
+      ((options_.kappa + norms) / (1 + norms)).pow(options_.theta).matrix();
+  const Eigen::MatrixXd shared =
+      options_.share * before.transpose() * (before * weights.transpose()).eval();
+  const Eigen::MatrixXd covariance = freedom.asDiagonal() * weights.transpose() + shared;
+  Eigen::MatrixXd system = weights * covariance;
+  for (std::size_t s = 0; s < examples_.size(); ++s) {
+    const auto row = static_cast<Eigen::Index>(s);
+    if (!std::holds_alternative<int>(examples_[s].meaning)) system(row, row) += strength;
+  }
+  return left * system.llt().solve(covariance.transpose());
+}
+
+/// Of every triangle: 6M x D.
+Eigen::MatrixXd ExampleFit::corrections(const Eigen::MatrixXd& left, const Eigen::MatrixXd& weights,
+                                        double strength) const {
+  constexpr int kNumbers = PlaneGradients::kNumbers;
+  const int triangles = gradients_.triangles();
+  Eigen::MatrixXd result =
+      Eigen::MatrixXd::Zero(Eigen::Index{kNumbers} * triangles, prior().cols());
+  const auto fit_block = [&](int block) {
+    const int first = block * kTrianglesAtOnce;
+    for (int t = first; t < std::min(triangles, first + kTrianglesAtOnce); ++t) {
+      if (gradients_.counts()[t] == 0) continue;
+      result.middleRows<kNumbers>(Eigen::Index{kNumbers} * t) =
+          correction(gradients_.at(t, prior()), gradients_.at(t, left), weights, strength);
+    }
+  };
+  parallel_for((triangles + kTrianglesAtOnce - 1) / kTrianglesAtOnce, options_.threads, fit_block);
+  return result;
+}
+
+/// How far each connected piece goes in the mean, which no gradient tells: by the same fit, in
+/// shares of the mesh's size.
+ExampleFit::Shifts ExampleFit::shifts(const Eigen::MatrixXd& left, const Eigen::MatrixXd& weights,
+                                      double strength) const {
+  Shifts result;
+  for (const FloatingPiece& piece : pieces_) {
+    const auto mean_of = [&](const Eigen::MatrixXd& fields) {
+      Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(3, fields.cols());
+      for (const VertexIndex v : piece.vertices) sum += fields.middleRows<3>(Eigen::Index{3} * v);
+      return Eigen::MatrixXd(sum / (static_cast<double>(piece.vertices.size()) * size_));
+    };
+    result.emplace(piece.vertices.front(),
+                   size_ * correction(mean_of(prior()), mean_of(left), weights, strength));
+  }
+  return result;
+}
+
+/// Vertices (N) that nothing moves in an expression.
+std::vector<bool> ExampleFit::fixed(int expression, const Eigen::MatrixXd& left,
+                                    const Eigen::MatrixXd& weights) const {
+  const std::vector<VertexIndex>& one = gradients_.weld().representative;
+  std::vector<bool> moves(one.size(), false);
+  const auto look_at = [&](const auto& field) {
+    for (std::size_t v = 0; v < one.size(); ++v) {
+      if (field.template segment<3>(static_cast<Eigen::Index>(3 * v)).norm() > kUnmoved * size_) {
+        moves[one[v]] = true;
+      }
+    }
+  };
+  look_at(prior().col(expression));
+  for (Eigen::Index s = 0; s < weights.rows(); ++s) {
+    if (weights(s, expression) > 0) look_at(left.col(s));
+  }
+  std::vector<bool> result(one.size());
+  for (std::size_t v = 0; v < one.size(); ++v) result[v] = !moves[one[v]];
+  return result;
+}
+
+/// Moves the pieces of a field that nothing holds, so that their means go where they are to.
+void ExampleFit::add_shifts(Eigen::VectorXd& field, const std::vector<FloatingPiece>& floating,
+                            const Shifts& shifts, Eigen::Index expression) const {
+  const std::vector<VertexIndex>& one = gradients_.weld().representative;
+  Positions by = Positions::Zero(static_cast<Eigen::Index>(one.size()), 3);
+  for (const FloatingPiece& piece : floating) {
+    Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+    for (const VertexIndex v : piece.vertices) mean += field.segment<3>(Eigen::Index{3} * v);
+    mean /= static_cast<double>(piece.vertices.size());
+    const Eigen::Vector3d shift = shifts.at(piece.vertices.front()).col(expression) - mean;
+    for (const VertexIndex v : piece.vertices) by.row(v) = shift.transpose();
+  }
+  for (std::size_t v = 0; v < one.size(); ++v) {
+    field.segment<3>(static_cast<Eigen::Index>(3 * v)) += by.row(one[v]).transpose();
+  }
+}
+
+/// The expressions (3N x D) of these weights (S x D).
+Eigen::MatrixXd ExampleFit::fitted(const Eigen::MatrixXd& weights, double strength) const {
+  const Eigen::MatrixXd left = poses_ - prior() * weights.transpose();
+  const Eigen::MatrixXd gradients = corrections(left, weights, strength);
+  const auto of_piece = shifts(left, weights, strength);
+  Eigen::MatrixXd result = prior();
+  std::vector<bool> is_given(static_cast<std::size_t>(result.cols()), false);
+  for (std::size_t s = 0; s < examples_.size(); ++s) {
+    const int* expression = std::get_if<int>(&examples_[s].meaning);
+    if (!expression) continue;
+    is_given[*expression] = true;
+    result.col(*expression) = poses_.col(static_cast<Eigen::Index>(s));
+  }
+  parallel_for(static_cast<int>(result.cols()), options_.threads, [&](int j) {
+    if (is_given[j]) return;
+    const auto differs = [j](const auto& shift) { return !shift.second.col(j).isZero(0); };
+    if (gradients.col(j).isZero(0) && std::ranges::none_of(of_piece, differs)) return;
+    const VertexUnknowns unknowns = gradients_.unknowns(fixed(j, left, weights));
+    Eigen::VectorXd field = gradients_.field_of(gradients.col(j), unknowns);
+    add_shifts(field, unknowns.floating, of_piece, j);
+    result.col(j) += field;
+  });
+  return result;
+}
+
+ExampleRig ExampleFit::solve() const {
+  ExampleRig rig{{}, first_weights()};
+  bool is_open = false;
+  for (std::size_t s = 0; s < examples_.size(); ++s) is_open |= looks_for_weights(s);
+  for (int round = 0; is_open && round < options_.rounds; ++round) {
+    report_progress(options_.progress, static_cast<double>(round) / (options_.rounds + 1));
+    const double done = static_cast<double>(round) / options_.rounds;
+    rig.displacements =
+        fitted(rig.weights, options_.prior * (kFirstPrior + (1 - kFirstPrior) * done));
+    double change = 0;
+    for (std::size_t s = 0; s < examples_.size(); ++s) {
+      if (!looks_for_weights(s)) continue;
+      auto row = rig.weights.row(static_cast<Eigen::Index>(s));
+      const Eigen::VectorXd weights = weights_of(s, rig.displacements);
+      change = std::max(change, (weights.transpose() - row).cwiseAbs().maxCoeff());
+      row = weights.transpose();
+    }
+    if (change < kSettled) break;
+  }
+  rig.displacements = fitted(rig.weights, options_.prior);
+  report_progress(options_.progress, 1);
+  return rig;
+}
+
+}  // namespace
+
+ExampleRig fit_to_examples(const BlendshapeModel& transferred,
+                           const std::vector<RigExample>& examples, const Weld& weld,
+                           const ExampleRigOptions& options) {
+  fix_product_blocking();
+  check(transferred, examples, weld, options);
+  if (examples.empty() || transferred.expressions().size() == 0) {
+    return {transferred.expressions().displacements,
+            Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(examples.size()),
+                                  transferred.expressions().size())};
+  }
+  return ExampleFit(transferred, examples, weld, options).solve();
+}
+
+}  // namespace mimetra

@@ -1,0 +1,152 @@
+#include "toolkit/transfer/linear_transfer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+#include <Eigen/Geometry>
+
+#include "toolkit/mesh/errors.h"
+#include "toolkit/mesh/parallel.h"
+#include "toolkit/mesh/product_blocking.h"
+#include "toolkit/model/box_least_squares.h"
+#include "toolkit/model/smooth_weights.h"
+#include "toolkit/regions/regions.h"
+#include "toolkit/transfer/deformation_gradients.h"
+#include "toolkit/transfer/expression_edges.h"
+#include "toolkit/transfer/pairs.h"
+
+namespace mimetra {
+namespace {
+
+/// A frame's solve starts from the weights of the frame before within a block of so many only.
+constexpr int kWeightsPerBlock = 16;
+
+/// What the change of the source's gradients along one of its expressions asks of the target's
+/// vertices: dQ_i V_i, with the weights of the edges, gathered at the corners (3N).
+Eigen::VectorXd pull_of(const Eigen::Ref<const Eigen::VectorXd>& field,
+                        const BlendshapeModel& source, const BlendshapeModel& target,
+                        const DeformationGradients& gradients, const Eigen::Matrix2d& product) {
+  const PositionsView moved(field.data(), source.vertices(), 3);
+  Positions pull = Positions::Zero(target.vertices(), 3);
+  const std::vector<int>& selected = gradients.selected();
+  for (std::size_t s = 0; s < selected.size(); ++s) {
+    Eigen::Matrix3d change = Eigen::Matrix3d::Zero();
+    for (const auto& [triangle, share] : gradients.parts(static_cast<int>(s))) {
+      change += share *
+                triangle_frame_change(edges_of(source.neutral(), gradients.triangles(), triangle),
+                                      edges_of(moved, gradients.triangles(), triangle)) *
+                gradients.inverse_frame(triangle);
+    }
+    const Edges asked =
+        change * edges_of(target.neutral(), target.triangles(), selected[s]) * product;
+    const auto corners = target.triangles().row(selected[s]);
+    pull.row(corners[0]) -= asked.rowwise().sum().transpose();
+    pull.row(corners[1]) += asked.col(0).transpose();
+    pull.row(corners[2]) += asked.col(1).transpose();
+  }
+  return Eigen::Map<const Eigen::VectorXd>(pull.data(), pull.size());
+}
+
+void check_models(const BlendshapeModel& source, const BlendshapeModel& target,
+                  const BlendshapeTransferOptions& options) {
+  check_sizes(source.neutral(), target.neutral(), options.pairing.get());
+  if (source.expressions().size() == 0) throw MismatchError("the source has no expressions");
+  if (target.expressions().size() == 0) throw MismatchError("the target has no expressions");
+}
+
+/// Weights that are smooth over time are solved for between 0 and 1.
+void check_smooth_bounds(const Retargeting& map) {
+  for (const Eigen::Index j : map.free()) {
+    if (map.lower[j] == 0 && map.upper[j] == 1) continue;
+    throw std::invalid_argument("smoothness: the bounds of '" +
+                                map.target_names[static_cast<std::size_t>(j)] +
+                                "' are not 0 and 1, as it needs them");
+  }
+}
+
+}  // namespace
+
+Eigen::Matrix3d triangle_frame_change(const Edges& edges, const Edges& change) {
+  Eigen::Matrix3d result = Eigen::Matrix3d::Zero();
+  result.leftCols<2>() = change;
+  const Eigen::Vector3d first = edges.col(0), second = edges.col(1);
+  const Eigen::Vector3d normal = first.cross(second);
+  const double length = normal.norm();
+  if (!(length > 0)) return result;
+  const Eigen::Vector3d moved =
+      Eigen::Vector3d(change.col(0)).cross(second) + first.cross(Eigen::Vector3d(change.col(1)));
+  // d(n / |n|^(1/2)) = (dn - n (n . dn) / (2 |n|^2)) / |n|^(1/2)
+  result.col(2) =
+      (moved - normal * (normal.dot(moved) / (2 * length * length))) / std::sqrt(length);
+  return result;
+}
+
+Retargeting linear_transfer(const BlendshapeModel& source, const BlendshapeModel& target,
+                            std::vector<int> triangles, const BlendshapeTransferOptions& options) {
+  check_models(source, target, options);
+  fix_product_blocking();
+  const DeformationGradients gradients =
+      gradients_between(source.neutral(), target.triangles(), options.pairing.get(),
+                        with_partners(std::move(triangles), options.pairing.get()));
+  const Eigen::MatrixXd& fields = source.expressions().displacements;
+  const Eigen::Matrix2d product = edge_product(options.edges);
+  Eigen::MatrixXd pulls(3 * static_cast<Eigen::Index>(target.vertices()), fields.cols());
+  parallel_for(static_cast<int>(fields.cols()), options.threads, [&](int j) {
+    pulls.col(j) = pull_of(fields.col(j), source, target, gradients, product);
+  });
+  Retargeting map;
+  map.source_names = source.expressions().names;
+  map.target_names = target.expressions().names;
+  map.linear = target.expressions().displacements.transpose() * pulls;
+  map.gram = gram_matrix(target, gradients.selected(), options.edges);
+  map.lower = map.upper = Eigen::VectorXd::Zero(map.gram.rows());
+  const Eigen::VectorXd all =
+      gram_diagonal(target, all_triangles(target.triangles()), options.edges);
+  for (Eigen::Index j = 0; j < map.upper.size(); ++j) {
+    if (moves_there(map.gram(j, j), all[j])) map.upper[j] = 1;
+  }
+  return map;
+}
+
+Eigen::MatrixXd retargeted(const Retargeting& map, const Eigen::MatrixXd& weights,
+                           const Eigen::VectorXd& times, const BlendshapeTransferOptions& options) {
+  map.check();
+  check_options(options);
+  if (weights.cols() != map.linear.cols()) {
+    throw std::invalid_argument(std::to_string(weights.cols()) +
+                                " weights a frame for a source of " +
+                                std::to_string(map.linear.cols()) + " expressions");
+  }
+  if (options.smoothness > 0) check_smooth_bounds(map);
+  fix_product_blocking();
+  const auto frames = static_cast<int>(weights.rows());
+  const std::vector<Eigen::Index> free = map.free();
+  Eigen::MatrixXd beta = map.lower.transpose().replicate(frames, 1);
+  if (free.empty() || frames == 0) return beta;
+  const double mean_diagonal = map.gram.diagonal()(free).mean();
+  Eigen::MatrixXd system = map.gram;
+  system.diagonal().array() += options.ridge * mean_diagonal;
+  const Eigen::MatrixXd h =
+      (weights * map.linear.transpose()).array() - options.sparsity * mean_diagonal;
+  const int blocks = (frames + kWeightsPerBlock - 1) / kWeightsPerBlock;
+  const auto solve_block = [&](int number) {
+    const int first = number * kWeightsPerBlock;
+    Eigen::VectorXd current = map.lower;
+    for (int f = first; f < std::min(first + kWeightsPerBlock, frames); ++f) {
+      current = box_least_squares(system, h.row(f).transpose(), map.lower, map.upper, current);
+      beta.row(f) = current.transpose();
+    }
+  };
+  parallel_for(blocks, options.threads, solve_block, options.progress);
+  if (options.smoothness > 0) {
+    const double mu = smoothness_penalty(options.smoothness, times, mean_diagonal);
+    const Eigen::MatrixXd part = system(free, free);
+    beta(Eigen::all, free) =
+        smooth_weights({part}, h(Eigen::all, free), times, mu, beta(Eigen::all, free));
+  }
+  return beta;
+}
+
+}  // namespace mimetra

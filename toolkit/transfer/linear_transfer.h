@@ -1,0 +1,34 @@
+#pragma once
+
+#include "toolkit/model/blendshape_model.h"
+#include "toolkit/model/retargeting.h"
+#include "toolkit/transfer/blendshape_transfer.h"
+#include "toolkit/transfer/edges.h"
+
+namespace mimetra {
+
+/// How the frame [e1 e2 n] of a triangle (triangle_frame()) with `edges` e1, e2 changes while these
+/// change by `change`: the derivative of eq. 8. The third column is 0 where there is no area.
+Eigen::Matrix3d triangle_frame_change(const Edges& edges, const Edges& change);
+
+/// The transfer of eq. 10 between two models, linear in the source's weights w: G of
+/// BlendshapeTransfer and H = dh / dw of its right-hand side h at the source's neutral. e1 and e2
+/// are linear in w as they are; the normal is replaced by its derivative. Where w is small the
+/// error of H w falls with its square. Bounds are 0 and 1, and 0 twice for expressions that the
+/// triangles do not show.
+///
+/// `source` stands where the target is and has its connectivity, or is that of the pairing;
+/// `triangles` are rows of target.triangles(). Of the options, ridge, sparsity and smoothness are
+/// those of retargeted(). Throws MismatchError where one of the models has no expression, or the
+/// vertex counts differ; std::invalid_argument for a triangle out of range.
+Retargeting linear_transfer(const BlendshapeModel& source, const BlendshapeModel& target,
+                            std::vector<int> triangles, const BlendshapeTransferOptions& = {});
+
+/// beta for every frame (F x D_t), within the map's bounds, of the source's weights (F x D_s).
+/// Edges and pairing of the options are the map's already; `times` (F, seconds) matter to the
+/// smoothness only. Throws std::invalid_argument for a map that is none, sizes that disagree or
+/// options out of range, and Cancelled. The result does not depend on the number of threads.
+Eigen::MatrixXd retargeted(const Retargeting& map, const Eigen::MatrixXd& weights,
+                           const Eigen::VectorXd& times, const BlendshapeTransferOptions& = {});
+
+}  // namespace mimetra

@@ -1,0 +1,168 @@
+#include "toolkit/transfer/local_weights.h"
+
+#include <algorithm>
+#include <stdexcept>
+#include <string>
+
+#include "toolkit/mesh/errors.h"
+#include "toolkit/mesh/parallel.h"
+#include "toolkit/mesh/product_blocking.h"
+#include "toolkit/model/block_pivoting.h"
+#include "toolkit/model/box_least_squares.h"
+#include "toolkit/regions/regions.h"
+#include "toolkit/transfer/expression_edges.h"
+#include "toolkit/transfer/pairs.h"
+#include "toolkit/transfer/regional_gram.h"
+#include "toolkit/transfer/right_hand_side.h"
+
+namespace mimetra {
+
+namespace {
+
+/// A solve starts from the frame before within such a block only: blocks do not depend on each
+/// other.
+constexpr int kRegionalBlock = RegionalRightHandSide::kLanes;
+
+void check_regional(const Positions& source_rest, const BlendshapeModel& target,
+                    const RegionShares& shares, const LocalWeightsOptions& options) {
+  check_sizes(source_rest, target.neutral(), options.pairing.get());
+  check_options(options);
+  if (target.expressions().size() == 0) throw MismatchError("the target has no expressions");
+  if (shares.rows() == target.vertices()) return;
+  throw std::invalid_argument("shares of " + std::to_string(shares.rows()) +
+                              " vertices, the target has " + std::to_string(target.vertices()));
+}
+
+void check_performance(const FrameSource& performance, int vertices) {
+  if (performance.vertices() == vertices) return;
+  throw MismatchError("the performance has " + std::to_string(performance.vertices()) +
+                      " vertices, its rest pose " + std::to_string(vertices));
+}
+
+}  // namespace
+
+struct LocalWeights::State {
+  State(const Positions& source_rest, const BlendshapeModel& given, const RegionShares& shares,
+        std::vector<int> selected, const LocalWeightsOptions& of_call)
+      : options(of_call),
+        vertices(static_cast<int>(source_rest.rows())),
+        expressions(given.expressions().size()),
+        gradients(gradients_between(source_rest, given.triangles(), of_call.pairing.get(),
+                                    with_partners(std::move(selected), of_call.pairing.get()))),
+        gram(regional_gram(given, shares, gradients.selected(), of_call.edges, of_call.threads)),
+        right_hand_side(source_rest, gradients, given, shares, of_call.edges) {}
+
+  void set_up(const BlendshapeModel& target);
+  /// The weights of one frame, given those of the whole face; `current` is where to start, and
+  /// becomes them. Returns their violation.
+  double solve(const Eigen::VectorXd& h, const Eigen::VectorXd& global,
+               Eigen::VectorXd& current) const;
+
+  LocalWeightsOptions options;
+  int vertices;
+  Eigen::Index expressions;
+  DeformationGradients gradients;
+  Eigen::MatrixXd gram;
+  RegionalRightHandSide right_hand_side;
+  Eigen::VectorXd pull;
+  std::vector<Eigen::Index> seen;
+  Eigen::MatrixXd system;  // gram and pull of those that are seen
+};
+
+/// Which unknowns move anything, and how strongly each is drawn.
+void LocalWeights::State::set_up(const BlendshapeModel& target) {
+  const Eigen::VectorXd full =
+      gram_diagonal(target, all_triangles(target.triangles()), options.edges);
+  pull = Eigen::VectorXd::Zero(gram.rows());
+  for (Eigen::Index first = 0; first < gram.rows(); first += expressions) {
+    std::vector<Eigen::Index> in_region;
+    for (Eigen::Index j = 0; j < expressions; ++j) {
+      if (moves_there(gram(first + j, first + j), full[j])) in_region.push_back(first + j);
+    }
+    if (in_region.empty()) continue;
+    pull(in_region).array() = options.ridge * gram.diagonal()(in_region).mean();
+    seen.insert(seen.end(), in_region.begin(), in_region.end());
+  }
+  system = gram(seen, seen);
+  system.diagonal() += pull(seen);
+}
+
+double LocalWeights::State::solve(const Eigen::VectorXd& h, const Eigen::VectorXd& global,
+                                  Eigen::VectorXd& current) const {
+  const Eigen::VectorXd everywhere = global.replicate(gram.rows() / expressions, 1);
+  const auto unknowns = static_cast<Eigen::Index>(seen.size());
+  const Eigen::VectorXd right = (h + pull.cwiseProduct(everywhere))(seen);
+  const Eigen::VectorXd lower = Eigen::VectorXd::Zero(unknowns);
+  const Eigen::VectorXd upper = Eigen::VectorXd::Ones(unknowns);
+  const Eigen::VectorXd start = (current.size() > 0 ? current : everywhere)(seen);
+  const Eigen::VectorXd found = block_pivoting(system, right, lower, upper, start);
+  // What moves nothing in a region is the whole face's.
+  current = everywhere;
+  current(seen) = found;
+  return box_optimality_violation(system, right, lower, upper, found);
+}
+
+LocalWeights::LocalWeights(const Positions& source_rest, const BlendshapeModel& target,
+                           RegionShares shares, std::vector<int> triangles,
+                           const LocalWeightsOptions& options) {
+  check_regional(source_rest, target, shares, options);
+  fix_product_blocking();
+  state_ = std::make_unique<State>(source_rest, target, shares, std::move(triangles), options);
+  state_->set_up(target);
+}
+
+LocalWeights::~LocalWeights() = default;
+LocalWeights::LocalWeights(LocalWeights&&) noexcept = default;
+LocalWeights& LocalWeights::operator=(LocalWeights&&) noexcept = default;
+
+RegionalWeights LocalWeights::weights(const FrameSource& performance,
+                                      const Eigen::MatrixXd& global) const {
+  const State& state = *state_;
+  check_performance(performance, state.vertices);
+  if (global.rows() != performance.frames() || global.cols() != state.expressions) {
+    throw MismatchError("the weights of the whole face are not those of the performance");
+  }
+  fix_product_blocking();
+  const int frames = performance.frames();
+  const int blocks = (frames + kRegionalBlock - 1) / kRegionalBlock;
+  RegionalWeights result{Eigen::MatrixXd(frames, state.gram.rows())};
+  std::vector<double> violations(frames, 0);
+  parallel_for(
+      blocks, state.options.threads,
+      [&](int number) {
+        const int first = number * kRegionalBlock;
+        const int count = std::min(kRegionalBlock, frames - first);
+        const FrameBlock block(performance, first, count);
+        const Eigen::MatrixXd h = state.right_hand_side(block.poses());
+        Eigen::VectorXd current;
+        for (int row = 0; row < count; ++row) {
+          violations[first + row] =
+              state.solve(h.row(row).transpose(), global.row(first + row).transpose(), current);
+          result.beta.row(first + row) = current.transpose();
+        }
+      },
+      state.options.progress);
+  if (frames > 0) result.violation = std::ranges::max(violations);
+  return result;
+}
+
+const Eigen::MatrixXd& LocalWeights::gram() const {
+  return state_->gram;
+}
+
+const Eigen::VectorXd& LocalWeights::pull() const {
+  return state_->pull;
+}
+
+Eigen::VectorXd LocalWeights::right_hand_side(const Eigen::Ref<const Positions>& frame) const {
+  if (frame.rows() != state_->vertices) {
+    throw MismatchError("the frame has " + std::to_string(frame.rows()) +
+                        " vertices, the rest pose " + std::to_string(state_->vertices));
+  }
+  fix_product_blocking();
+  const Positions copy = frame;
+  const Eigen::Map<const Frames> row(copy.data(), 1, copy.size());
+  return state_->right_hand_side(row).transpose();
+}
+
+}  // namespace mimetra
