@@ -186,6 +186,14 @@ TEST_F(Command, TransferWritesWeightsOfEachRegionThatRegionsOutNumbers) {
             (regions + 1) * performance().names.size());
 }
 
+TEST_F(Command, WeightsOfEachRegionHaveNoPlaceInLiveLink) {
+  const auto result =
+      run("transfer head --weights take.csv head@wide=1 -k 3 --per-region -o o/ --weights-out "
+          "w.livelink.csv");
+  EXPECT_EQ(result.code, 2);
+  EXPECT_THAT(result.err, HasSubstr("Live Link has one weight for each expression"));
+}
+
 TEST_F(Command, EvaluateMeasuresWeightsOfEachRegionBesideTheWholeFaces) {
   const auto result = run("evaluate head --weights take.csv head@wide=1 -k 3 --per-region --json");
   ASSERT_EQ(result.code, 0) << result.err;

@@ -73,6 +73,20 @@ TEST_F(RetargetCommand, SaysWhatAMapDoesNotKeep) {
   EXPECT_GT((weights("plain.csv").weights - weights("w.csv").weights).cwiseAbs().maxCoeff(), 0.05);
 }
 
+TEST_F(RetargetCommand, MakesNoMapThatWouldDropTheTargetsRules) {
+  write("r.json", R"({"expressions": {"left": {"maximum": 0.5}}})");
+  const std::string rules = std::string(kRigs) + "--rules r.json -o w.csv ";
+  for (const std::string kept : {"--map-out", "--matrix-out"}) {
+    const test::CommandResult result = run(rules + kept + " m.csv");
+    EXPECT_NE(result.code, 0);
+    EXPECT_FALSE(listing().contains("w.csv"));
+  }
+  EXPECT_THAT(run(rules + "--map-out m.json").err, HasSubstr("leave them out by --rules none"));
+  done(rules);
+  EXPECT_LE(weights("w.csv").weights.col(0).maxCoeff(), 0.5);
+  done(std::string(kRigs) + "--rules none -o w.csv --map-out m.json --force");
+}
+
 TEST_F(RetargetCommand, TakesAMapFromOneTopologyToAnother) {
   // The target of a quarter of the faces has the bumps of the model at its own vertices.
   const BlendshapeModel fine = model().average();

@@ -89,6 +89,31 @@ TEST_F(SelectionTest, GivesEachTargetItsOwn) {
                "each target has regions of its own");
 }
 
+TEST_F(SelectionTest, ReportsWhatIsLeftWhereDiscsTookTheRoom) {
+  ASSERT_EQ(run("sample -o sample").code, 0);
+  const std::string source = "transfer sample --weights sample/performance.csv --frames 0:10 ";
+  const std::string one = source + "sample@identity001=1 ";
+  const std::string bound = "-k 5 --iterations 2 --triangles 0.1 ";
+  const Json result = report(one + bound + "-o a/ --regions-out own.json");
+  EXPECT_GT(result["targets"][0]["added_regions"].size(), 0U);
+  EXPECT_LE(result["regions"]["triangle_share"], 0.1);
+  EXPECT_EQ(result["targets"][0]["triangle_share"], result["regions"]["triangle_share"]);
+  const Json again = report(one + "--regions own.json --complete 0 -o b/");
+  EXPECT_EQ(again["targets"][0]["de_all"], result["targets"][0]["de_all"]);
+  const std::string two = one + "sample@identity002=1 " + bound;
+  for (const Json& target : report(two + "-o c/")["targets"].get<std::vector<Json>>()) {
+    EXPECT_EQ(target["regions"]["triangle_share"], target["triangle_share"]);
+  }
+  expect_usage(two + "-o d/ --regions-out r.json", "each target has regions of its own");
+}
+
+TEST_F(SelectionTest, ForeseesInADryRunWhatItRefuses) {
+  expect_usage(evaluate("--curve -k 5 --dry-run"), "--curve has rows");
+  expect_usage(evaluate("--select transfer --coverage 0.3 --dry-run"), "--coverage: has no effect");
+  expect_usage(evaluate("--per-region --symmetry 1 --dry-run"), "--symmetry: weights of each");
+  EXPECT_EQ(run(evaluate("--exclusive eyes --dry-run")).code, 4);
+}
+
 TEST_F(SelectionTest, ServesTheTransferBetterThanEnergyOnTheSample) {
   ASSERT_EQ(run("sample -o sample").code, 0);
   const std::string evaluate =
@@ -110,8 +135,8 @@ TEST_F(SelectionTest, RefusesOptionsWithoutEffect) {
   expect_usage(transfer("--regions r.json --triangles 0.2"), "--triangles: no regions");
   expect_usage(transfer("--regions r.json --select energy"), "--select: no regions");
   for (const std::string option :
-       {"--coverage 0.5", "--region support", "--d-min 0.2", "--iterations 3", "--complete 0.1",
-        "--rest first", "--compat splocs2013"}) {
+       {"--coverage 0.5", "--region support", "--drop-rims", "--d-min 0.2", "--iterations 3",
+        "--complete 0.1", "--rest first", "--compat splocs2013"}) {
     const std::string name = option.substr(0, option.find(' '));
     expect_usage(transfer("--select transfer " + option), name);
     expect_usage(transfer("--select transfer " + option), "--select transfer");

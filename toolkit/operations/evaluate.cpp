@@ -136,7 +136,11 @@ Operation evaluate_operation() {
                         "evaluate takes/ actor@identity007=2 -k 10,20,30,40,50 -o table.csv"};
   operation.run = run_evaluate;
   operation.memory = memory_of_evaluate;
-  operation.foresee = check_targets;
+  operation.foresee = [](const Invocation& invocation) {
+    check_rows(invocation);
+    check_solving(invocation.parameters, invocation.inputs.at("target"));
+    check_targets(invocation);
+  };
   return operation;
 }
 

@@ -245,7 +245,9 @@ void check_targets(const Invocation& invocation) {
   const TriMesh from{source.rest(), source.connectivity()};
   const MatchOptions options{.threads = invocation.threads, .notes = warnings_of(invocation)};
   in_command_terms(invocation.parameters, [&] {
+    const SolveOptions solving = solving_parameters().read(invocation.parameters);
     for (const Target& target : targets_of(invocation)) {
+      check_rules(target, solving);
       const BlendshapeModel& model = target.model;
       const TriMesh to{model.neutral(), model.connectivity()};
       if (const auto* markers = std::get_if<std::vector<Marker>>(&target.match)) {

@@ -25,7 +25,7 @@ std::vector<Parameter> match_parameters();
 std::vector<Target> targets_of(const Invocation& invocation, const std::string& source = "source");
 
 /// Throws and warns as a run does of the call's targets before anything is fitted to them: faces,
-/// given markers and correspondences. Markers that would be looked for in drawings are not.
+/// rules, given markers and correspondences. Markers that would be looked for in drawings are not.
 void check_targets(const Invocation& invocation);
 
 /// What a correspondence is worth, for reports and for people.

@@ -174,6 +174,8 @@ std::string in_command_terms(Topic topic, const std::string& text, const Paramet
       return "--only, --without: " + text;
     case Topic::triangle_bound:
       return "--triangles: " + text + " (--radius)";
+    case Topic::discs_beyond_bound:
+      return text + "; a larger --triangles allows more";
     case Topic::few_discs:
       return text + "; a larger --radius makes larger discs";
     case Topic::no_selection:
@@ -341,7 +343,8 @@ void check_solving(const Parameters& parameters, const std::vector<NamedData>& t
         "--smoothness: with --per-region weights are found frame by frame; leave one of them out");
   }
   for (const std::string name : {"symmetry", "exclusive", "rules"}) {
-    if (!parameters.is_set(name)) continue;
+    const bool is_left_out = name == "rules" && parameters.paths(name).empty();
+    if (!parameters.is_set(name) || is_left_out) continue;
     throw UsageError("--" + name +
                      ": weights of each region, --per-region, follow no rules of expressions");
   }

@@ -154,6 +154,11 @@ Retargeted by_meshes(const Invocation& invocation, const WeightTrack& track,
   driven.inputs["source"] = {NamedData{source.name, FieldSequence(animation), source.origin}};
   const Target target = targets_of(driven).front();
   made.target_names = target.model.get().expressions().names;
+  for (const std::string kept : {"map-out", "matrix-out"}) {
+    if (target.rules.empty() || !invocation.wants(kept)) continue;
+    throw MismatchError("--" + kept + ": a map and a matrix keep no rules of expressions, and " +
+                        target.rules.name + " has some; leave them out by --rules none");
+  }
   check_live_link(invocation, "out", made.target_names);
   RetargetOptions options;
   options.source_name = source.name;
@@ -249,19 +254,34 @@ void add_matrix(const Invocation& invocation, const Eigen::MatrixXd& matrix, Ret
                   summary_of(of_clipped));
 }
 
+/// Those of the options that are set.
+std::vector<std::string> set_of(const Parameters& parameters,
+                                const std::vector<std::string>& names) {
+  std::vector<std::string> options;
+  for (const std::string& name : names) {
+    if (parameters.is_set(name)) options.push_back("--" + name);
+  }
+  return options;
+}
+
 /// Says what neither a map nor a matrix keeps of the options.
 void note_options(const Invocation& invocation) {
-  std::vector<std::string> names;
-  for (const std::string name : {"ridge", "l1", "smoothness", "symmetry", "exclusive", "rules"}) {
-    if (invocation.parameters.is_set(name)) names.push_back("--" + name);
+  const std::vector<std::string> again =
+      set_of(invocation.parameters, {"ridge", "l1", "smoothness"});
+  const std::vector<std::string> lost = set_of(invocation.parameters, {"symmetry", "exclusive"});
+  const bool keeps_map = invocation.wants("map-out");
+  if (keeps_map && !again.empty()) {
+    invocation.warn("--map-out: the map does not keep " + joined(again, ", ", " and ") +
+                    "; give them with --map too");
   }
-  if (names.empty()) return;
-  const std::string options = joined(names, ", ", " and ");
-  if (invocation.wants("map-out")) {
-    invocation.warn("--map-out: the map does not keep " + options + "; give them with --map too");
+  if (keeps_map && !lost.empty()) {
+    invocation.warn("--map-out: the map does not keep " + joined(lost, ", ", " and ") +
+                    ", and --map has no such options");
   }
-  if (invocation.wants("matrix-out")) {
-    invocation.warn("--matrix-out: the matrix does not keep " + options);
+  std::vector<std::string> all = again;
+  all.insert(all.end(), lost.begin(), lost.end());
+  if (invocation.wants("matrix-out") && !all.empty()) {
+    invocation.warn("--matrix-out: the matrix does not keep " + joined(all, ", ", " and "));
   }
 }
 

@@ -11,9 +11,10 @@ namespace {
 /// What only regions by energy depend on.
 const std::vector<std::string>& options_of_energy() {
   static const std::vector<std::string> names = {
-      "region",          "coverage",  "component-fields", "complete",  "complete-limit",
-      "d-min",           "d-max",     "sparsity",         "rho",       "iterations",
-      "admm-iterations", "tolerance", "signed",           "precision", "basis-tolerance"};
+      "region",         "coverage",        "drop-rims", "component-fields", "complete",
+      "complete-limit", "d-min",           "d-max",     "sparsity",         "rho",
+      "iterations",     "admm-iterations", "tolerance", "signed",           "precision",
+      "basis-tolerance"};
   return names;
 }
 

@@ -125,11 +125,15 @@ void check_outputs(const Invocation& invocation) {
                    "no regions are looked for with --full or --regions");
   }
   check_selection(invocation);
-  if (options.regions.select == Selector::transfer && invocation.wants("regions-out") &&
+  if (chooses && has_own_regions(options.regions) && invocation.wants("regions-out") &&
       invocation.inputs.at("target").size() > 1) {
-    throw UsageError(
-        "--regions-out: with --select transfer each target has regions of its own; name one "
-        "target, or take the regions of one for all (--regions)");
+    const std::string reason = options.regions.select == Selector::transfer
+                                   ? "with --select transfer each target has"
+                                   : "with --triangles discs of --complete take the place of "
+                                     "others, so that each target has";
+    throw UsageError("--regions-out: " + reason +
+                     " regions of its own; name one target, or take the regions of one for all "
+                     "(--regions)");
   }
   if (invocation.wants("components-out") && !chooses) {
     throw UsageError("--components-out: there are no components with --full or --regions");
@@ -139,6 +143,7 @@ void check_outputs(const Invocation& invocation) {
     if (solves_for_vertices(model_of(target), options.solving.space)) {
       throw UsageError("--weights-out: " + target.name + " is solved for vertices, not weights");
     }
+    if (options.solving.per_region) check_no_live_link(invocation, "weights-out");
     check_live_link(invocation, "weights-out", model_of(target).expressions().names);
   }
 }

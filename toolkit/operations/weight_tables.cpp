@@ -134,6 +134,15 @@ void check_live_link(const Invocation& invocation, const std::string& output,
   }
 }
 
+void check_no_live_link(const Invocation& invocation, const std::string& output) {
+  for (const std::filesystem::path& path : invocation.wanted.at(output)) {
+    if (!is_live_link(path)) continue;
+    throw UsageError(path.string() +
+                     ": Live Link has one weight for each expression, and --per-region one for "
+                     "each region; write .csv or .json");
+  }
+}
+
 void add_weight_formats(OperationTable& table) {
   table.add(Format{.name = "comma-separated values",
                    .kind = DataKind::table,

@@ -26,6 +26,9 @@ bool is_weight_file(const std::filesystem::path& path);
 void check_live_link(const Invocation& invocation, const std::string& output,
                      const std::vector<std::string>& expressions);
 
+/// Throws UsageError where weights of each region are wanted there in Live Link Face's form.
+void check_no_live_link(const Invocation& invocation, const std::string& output);
+
 /// Adds the formats of tables: weights are read and written, others written; and those of a
 /// sequence's weights.
 void add_weight_formats(OperationTable& table);

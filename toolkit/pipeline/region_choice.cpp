@@ -53,6 +53,11 @@ void note_small_parts(Regions& regions, const Notes& notes) {
 
 }  // namespace
 
+bool has_own_regions(const RegionChoiceOptions& options) {
+  return options.select == Selector::transfer ||
+         (options.triangles && options.completion.share > 0);
+}
+
 void refuse_bound(double share, const std::string& reason) {
   throw OptionError(Topic::triangle_bound, percent(share) + " of the triangles: " + reason +
                                                "; allow more, or take "

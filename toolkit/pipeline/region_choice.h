@@ -74,6 +74,10 @@ constexpr double kSmallPart = 0.02;
 /// more.
 Regions choose_regions(const Analysis& analysis, const RegionChoiceOptions& options = {});
 
+/// Whether each of several targets has regions that may hold what another's do not: those that are
+/// chosen for it, and those that make room for its own discs.
+bool has_own_regions(const RegionChoiceOptions& options);
+
 /// Throws OptionError (Topic::triangle_bound) that says why no region fits into a share of the
 /// triangles.
 [[noreturn]] void refuse_bound(double share, const std::string& reason);

@@ -117,7 +117,7 @@ Regions RegionCompleter::operator()(const Regions& regions, const Target& target
              (options_.triangles ? ", and no more than " + percent(*options_.triangles) + " taken"
                                  : "") +
              ", which leaves expressions that are hardly seen",
-         Topic::completion_limit);
+         options_.triangles ? Topic::discs_beyond_bound : Topic::completion_limit);
   }
   return completed.regions;
 }

@@ -124,10 +124,11 @@ void take_over(const Regions& completed, Regions& regions, const Triangles& tria
   regions = with_added(regions, std::move(added), triangles);
 }
 
-/// What the regions of all targets together are.
+/// What the regions of all targets together are; none where each has its own.
 std::optional<Regions> regions_of(const std::vector<TransferredTarget>& targets, Choice& choice,
-                                  const Triangles& triangles) {
-  if (choice.selector) return targets.size() == 1 ? targets.front().regions : std::nullopt;
+                                  const RegionChoiceOptions& options, const Triangles& triangles) {
+  if (targets.size() == 1) return targets.front().regions;
+  if (has_own_regions(options)) return {};
   for (const TransferredTarget& each : targets) {
     if (each.regions) take_over(*each.regions, *choice.regions, triangles);
   }
@@ -238,7 +239,7 @@ TransferResult transfer(const FrameSource& sequence, const std::vector<Target>& 
                               std::move(openings)});
   }
   result.head_motion = source.head_motion;
-  result.regions = regions_of(result.targets, choice, sequence.triangles());
+  result.regions = regions_of(result.targets, choice, options.regions, sequence.triangles());
   result.components = std::move(choice.components);
   result.region_seconds = choice.seconds;
   return result;

@@ -117,7 +117,7 @@ void BlendshapeTransfer::State::set_up(const std::vector<std::string>& names) {
   for (int j = 0; j < static_cast<int>(gram.rows()); ++j) {
     if (options.sparsity > 0 && unknowns.lower[j] < 0) {
       throw MismatchError(options.rules.name + ": '" + names[j] +
-                          "' may be negative, for which sparsity is not defined");
+                          "' may be negative, for which an L1 term is not defined");
     }
     if (!std::ranges::binary_search(seen, Eigen::Index{j})) unknowns.hold(j);
   }
