@@ -1,0 +1,310 @@
+#include "toolkit/correspondence/vertex_map.h"
+
+#include <algorithm>
+#include <functional>
+#include <limits>
+#include <numeric>
+#include <utility>
+
+#include "toolkit/correspondence/face_graph.h"
+#include "toolkit/mesh/errors.h"
+
+namespace mimetra {
+namespace {
+
+/// Half-edges that are followed in all for one part before it counts as too symmetric.
+constexpr double kMostWork = 1e8;
+
+/// A map of half-edges and vertices that grows by whole parts.
+class GraphMap {
+ public:
+  /// With `keeps_faces` each face goes to that of its number only.
+  GraphMap(const FaceGraph& from, int from_vertices, const FaceGraph& to, int to_vertices,
+           bool keeps_faces)
+      : from_(from),
+        to_(to),
+        keeps_faces_(keeps_faces),
+        image_(from.size(), -1),
+        preimage_(to.size(), -1),
+        vertex_image_(from_vertices, -1),
+        vertex_preimage_(to_vertices, -1) {}
+
+  const std::vector<VertexIndex>& vertices() const { return vertex_image_; }
+  const std::vector<VertexIndex>& preimages() const { return vertex_preimage_; }
+
+  /// Maps the part of `half_edge` so that this goes to `image`. False where that does not fit; then
+  /// nothing changes.
+  bool grow(int half_edge, int image) {
+    added_.clear();
+    added_vertices_.clear();
+    if (add(half_edge, image)) {
+      std::size_t done = 0;
+      bool fits = true;
+      for (; fits && done < added_.size(); ++done) fits = follow(added_[done]);
+      if (fits) return true;
+    }
+    undo();
+    return false;
+  }
+
+  /// Takes the last part back.
+  void undo() {
+    for (const int h : added_) preimage_[std::exchange(image_[h], -1)] = -1;
+    for (const VertexIndex v : added_vertices_) {
+      vertex_preimage_[std::exchange(vertex_image_[v], -1)] = -1;
+    }
+  }
+
+  /// Half-edges and vertices of the last part.
+  const std::vector<int>& added() const { return added_; }
+  const std::vector<VertexIndex>& added_vertices() const { return added_vertices_; }
+
+ private:
+  bool add(int h, int g) {
+    if (image_[h] >= 0 || preimage_[g] >= 0) return image_[h] == g;
+    if (from_.kind[h] != to_.kind[g]) return false;
+    if (keeps_faces_ && from_.face[h] != to_.face[g]) return false;
+    const VertexIndex v = from_.vertex[h], w = to_.vertex[g];
+    if (vertex_image_[v] < 0 && vertex_preimage_[w] < 0) {
+      vertex_image_[v] = w;
+      vertex_preimage_[w] = v;
+      added_vertices_.push_back(v);
+    } else if (vertex_image_[v] != w) {
+      return false;
+    }
+    image_[h] = g;
+    preimage_[g] = h;
+    added_.push_back(h);
+    return true;
+  }
+
+  bool follow(int h) {
+    const int g = image_[h];
+    return add(from_.next[h], to_.next[g]) &&
+           (from_.opposite[h] < 0 || add(from_.opposite[h], to_.opposite[g]));
+  }
+
+  const FaceGraph& from_;
+  const FaceGraph& to_;
+  bool keeps_faces_;
+  std::vector<int> image_, preimage_;
+  std::vector<VertexIndex> vertex_image_, vertex_preimage_;
+  std::vector<int> added_;
+  std::vector<VertexIndex> added_vertices_;
+};
+
+/// Vertices that no face holds are paired in ascending order, each with the nearest one left where
+/// positions may decide. \pre as many in both meshes
+std::vector<VertexIndex> with_loose(std::vector<VertexIndex> image,
+                                    const std::vector<VertexIndex>& preimage, const MapSide& from,
+                                    const MapSide& to) {
+  std::vector<VertexIndex> left;
+  for (VertexIndex w = 0; w < to.vertices; ++w) {
+    if (preimage[w] < 0) left.push_back(w);
+  }
+  if (left.empty()) return image;
+  Positions carried;
+  if (from.positions) carried = told_by(image, from, to).apply(*from.positions);
+  for (VertexIndex v = 0; v < from.vertices; ++v) {
+    if (image[v] >= 0) continue;
+    const auto distance = [&](VertexIndex w) {
+      return from.positions ? (carried.row(v) - to.positions->row(w)).squaredNorm() : 0;
+    };
+    const auto nearest = std::ranges::min_element(left, {}, distance);
+    image[v] = *nearest;
+    left.erase(nearest);
+  }
+  return image;
+}
+
+/// Finds the images of one part after another.
+class Search {
+ public:
+  /// Half-edges of the other mesh that may be the image of one.
+  using Candidates = std::function<std::vector<int>(int)>;
+
+  Search(MapSide from, MapSide to, bool keeps_faces)
+      : from_(from),
+        to_(to),
+        graph_(*from.polygons),
+        other_(*to.polygons),
+        map_(graph_, from.vertices, other_, to.vertices, keeps_faces) {}
+
+  const FaceGraph& graph() const { return graph_; }
+  const FaceGraph& other() const { return other_; }
+
+  /// Why there is no map; empty where vertices() has it.
+  std::string run(const std::vector<int>& starts, const Candidates& candidates) {
+    std::vector<int> left = starts;
+    while (!left.empty()) {
+      // Parts that touch one with a known image may have one map only: again until nothing changes.
+      const std::size_t before = left.size();
+      std::vector<int> open;
+      for (const int start : left) {
+        const std::vector<int> images = fitting(start, candidates(start));
+        if (images.empty())
+          return "another mesh: nothing in it is joined and bounded as the faces around " +
+                 at(start);
+        if (images.size() == 1) {
+          map_.grow(start, images.front());
+        } else {
+          open.push_back(start);
+        }
+      }
+      left = std::move(open);
+      if (left.size() == before) return decide_by_positions(left, candidates);
+    }
+    return {};
+  }
+
+  std::vector<VertexIndex> vertices() const {
+    return with_loose(map_.vertices(), map_.preimages(), from_, to_);
+  }
+
+ private:
+  std::string at(int half_edge) const {
+    return "face " + std::to_string(graph_.face[half_edge]) + " of the reference";
+  }
+
+  /// The first images of `start` that fit, up to two.
+  std::vector<int> fitting(int start, const std::vector<int>& candidates) {
+    std::vector<int> images;
+    for (const int candidate : candidates) {
+      if (!map_.grow(start, candidate)) continue;
+      map_.undo();
+      images.push_back(candidate);
+      if (images.size() == 2) break;
+    }
+    return images;
+  }
+
+  /// How far the vertices of the last part are from their images: sum of squares.
+  double distance(const Positions& carried) const {
+    double sum = 0;
+    for (const VertexIndex v : map_.added_vertices()) {
+      sum += (carried.row(v) - to_.positions->row(map_.vertices()[v])).squaredNorm();
+    }
+    return sum;
+  }
+
+  /// The image of `start` that is clearly nearer than all others; -1 where none is.
+  int nearest_image(int start, const std::vector<int>& candidates, const Positions& carried) {
+    int nearest = -1;
+    double least = std::numeric_limits<double>::infinity(), second = least, work = 0;
+    for (const int image : candidates) {
+      if (!map_.grow(start, image)) continue;
+      const double far = distance(carried);
+      work += static_cast<double>(map_.added().size());
+      map_.undo();
+      if (work > kMostWork) return -1;
+      if (far < least) nearest = image;
+      second = std::min(second, std::max(far, least));
+      least = std::min(least, far);
+    }
+    return second > kClearlyFarther * kClearlyFarther * least ? nearest : -1;
+  }
+
+  std::string decide_by_positions(const std::vector<int>& starts, const Candidates& candidates) {
+    const std::string several = "perhaps the same mesh: more than one map of the part around ";
+    if (!from_.positions) return several + at(starts.front()) + " fits: it is symmetric";
+    const Positions carried = told_by(map_.vertices(), from_, to_).apply(*from_.positions);
+    for (const int start : starts) {
+      const int image = nearest_image(start, candidates(start), carried);
+      if (image < 0) {
+        return several + at(start) + " fits: it is symmetric, and positions do not tell which";
+      }
+      map_.grow(start, image);
+    }
+    return {};
+  }
+
+  MapSide from_, to_;
+  FaceGraph graph_, other_;
+  GraphMap map_;
+};
+
+/// A half-edge of each part: that for which `rarity` is least, of equals the lowest.
+template <typename Rarity>
+std::vector<int> starts_of(const FaceGraph& graph, Rarity rarity) {
+  std::vector<bool> seen(graph.size(), false);
+  std::vector<int> starts, part;
+  for (int first = 0; first < graph.size(); ++first) {
+    if (seen[first]) continue;
+    part.assign(1, first);
+    seen[first] = true;
+    int best = first;
+    for (std::size_t done = 0; done < part.size(); ++done) {
+      const int h = part[done];
+      if (std::pair(rarity(h), h) < std::pair(rarity(best), best)) best = h;
+      for (const int to : {graph.next[h], graph.opposite[h]}) {
+        if (to < 0 || seen[to]) continue;
+        seen[to] = true;
+        part.push_back(to);
+      }
+    }
+    starts.push_back(best);
+  }
+  return starts;
+}
+
+}  // namespace
+
+Similarity told_by(const std::vector<VertexIndex>& image, const MapSide& from, const MapSide& to) {
+  std::vector<VertexIndex> known, images;
+  for (VertexIndex v = 0; v < from.vertices; ++v) {
+    if (image[v] < 0) continue;
+    known.push_back(v);
+    images.push_back(image[v]);
+  }
+  try {
+    if (known.size() > 3) {
+      return similarity_fit((*from.positions)(known, Eigen::all),
+                            (*to.positions)(images, Eigen::all));
+    }
+  } catch (const MismatchError&) {
+    // Points on a line tell no similarity.
+  }
+  return {};
+}
+
+std::optional<std::vector<VertexIndex>> map_by_corners(const MapSide& from, const MapSide& to) {
+  if (from.polygons->offsets != to.polygons->offsets || from.vertices != to.vertices) return {};
+  std::vector<VertexIndex> image(from.vertices, -1), preimage(to.vertices, -1);
+  for (std::size_t c = 0; c < from.polygons->corners.size(); ++c) {
+    const VertexIndex v = from.polygons->corners[c], w = to.polygons->corners[c];
+    if (image[v] < 0 && preimage[w] < 0) {
+      image[v] = w;
+      preimage[w] = v;
+    }
+    if (image[v] != w || preimage[w] != v) return {};
+  }
+  return with_loose(std::move(image), preimage, from, to);
+}
+
+std::optional<std::vector<VertexIndex>> map_by_faces(const MapSide& from, const MapSide& to) {
+  if (from.polygons->offsets != to.polygons->offsets) return {};
+  Search search(from, to, true);
+  const auto corners_of_its_face = [&](int start) {
+    const int face = search.graph().face[start];
+    std::vector<int> corners(to.polygons->offsets[face + 1] - to.polygons->offsets[face]);
+    std::iota(corners.begin(), corners.end(), to.polygons->offsets[face]);
+    return corners;
+  };
+  const auto starts = starts_of(search.graph(), [](int h) { return h; });
+  if (!search.run(starts, corners_of_its_face).empty()) return {};
+  return search.vertices();
+}
+
+FoundMap map_by_graph(const MapSide& from, const MapSide& to) {
+  Search search(from, to, false);
+  const Colours colours(search.graph(), search.other());
+  std::vector<std::vector<int>> of_colour(colours.count);
+  for (int g = 0; g < search.other().size(); ++g) of_colour[colours.of_b[g]].push_back(g);
+  const auto candidates = [&](int h) { return of_colour[colours.of_a[h]]; };
+  const auto rarity = [&](int h) { return of_colour[colours.of_a[h]].size(); };
+  const std::string why = search.run(starts_of(search.graph(), rarity), candidates);
+  if (!why.empty()) return {{}, why};
+  return {search.vertices()};
+}
+
+}  // namespace mimetra
