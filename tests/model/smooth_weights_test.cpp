@@ -2,6 +2,7 @@
 #include <random>
 
 #include <gtest/gtest.h>
+#include <Eigen/Eigenvalues>
 
 #include "toolkit/model/box_least_squares.h"
 #include "toolkit/model/smooth_weights.h"
@@ -204,6 +205,34 @@ TEST(SmoothWeights, ConvergeWherePenaltiesAreFarAboveTheData) {
     EXPECT_LT(smooth_optimality_violation({clip.gram}, clip.h, even(120), mu, beta),
               1e-9 + rounding / clip.h.lpNorm<Eigen::Infinity>())
         << frames;
+  }
+}
+
+TEST(SmoothWeights, KnowWhichBoundsHoldInNoiseUnderAStiffPenalty) {
+  // Noise about 0, a second at 60 frames a second: weights leave their bounds by 1e-9 to 1e-3, and
+  // exchanging all that are on the wrong side may go in circles.
+  for (const unsigned seed : {1, 2, 7, 15, 16, 18}) {
+    std::mt19937 generator(seed);
+    std::uniform_real_distribution<double> uniform(-1, 1);
+    const auto drawn = [&](Eigen::Index rows, Eigen::Index columns) -> Eigen::MatrixXd {
+      return Eigen::MatrixXd::NullaryExpr(rows, columns, [&] { return uniform(generator); });
+    };
+    const Eigen::MatrixXd columns = drawn(60, 3);
+    Clip clip{columns.transpose() * columns, {}};
+    clip.h = 0.3 * drawn(40, 3) * clip.gram;
+    const double mu = std::pow(60, 4) * clip.mean_diagonal();
+    const Eigen::MatrixXd beta = smooth(clip, mu);
+    const DenseProblem dense(clip.gram, clip.h, mu);
+    const Eigen::MatrixXd expected =
+        box_least_squares(dense.system, dense.h, dense.lower, dense.upper)
+            .reshaped<Eigen::RowMajor>(40, 3);
+    // Rows of the penalty add up to 16 mu, and a weight is known to half an epsilon.
+    const double rounding = 16 * mu * std::numeric_limits<double>::epsilon() / 2;
+    EXPECT_LT(dense.violation(beta), 1e-9 + rounding / dense.h.lpNorm<Eigen::Infinity>()) << seed;
+    // What such a residual moves weights by, the penalty aside.
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> spectrum(clip.gram);
+    EXPECT_LT((beta - expected).cwiseAbs().maxCoeff(), rounding / spectrum.eigenvalues()[0])
+        << seed;
   }
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -65,17 +66,20 @@ class InteriorPoint {
         rounding_(rounding_of(system, box)),
         unknowns_(std::max(1.0, box.free.sum())),
         x_(box.middle()),
+        below_((box.free > 0).select(x_ - box.lower, 1.0)),
+        above_((box.free > 0).select(box.upper - x_, 1.0)),
         z_(scale * box.free),
         w_(z_) {}
 
-  void solve() {
-    constexpr int kMost = 100;      // 16 to 28 steps are usual
-    constexpr double kGap = 1e-13;  // of the scale: beyond that rounding takes over
+  /// Until products of distances and multipliers are below `gap` of the scale. May be called again
+  /// with a smaller one.
+  void solve(double gap) {
+    constexpr int kMost = 100;  // 16 to 30 steps are usual
     constexpr double kResidual = 1e-11;
     for (int step = 0; step < kMost; ++step) {
       const Array residual = ((system_.product(x_.matrix()) - h_).array() - z_ + w_) * box_.free;
       const bool is_feasible = residual.abs().maxCoeff() < std::max(kResidual * scale_, rounding_);
-      if (is_feasible && gap() < kGap * scale_) return;
+      if (is_feasible && mean_product() < gap * scale_) return;
       advance(residual);
     }
     throw std::runtime_error("temporal smoothing did not converge; take a smaller smoothness");
@@ -84,10 +88,12 @@ class InteriorPoint {
   const Array& solution() const { return x_; }
 
   /// -1 where the lower bound holds, 1 where the upper one does, 0 elsewhere: of a bound's distance
-  /// and its multiplier one goes to 0, and the larger says which.
+  /// and its multiplier one goes to 0, and the larger says which. A distance is worth the
+  /// multiplier that moves a weight so far: far below 1 where the penalty is stiff.
   Array sides() const {
+    const Array stiffness = system_.diagonal().array();
     const Array sides =
-        (above() < w_ / scale_).cast<double>() - (below() < z_ / scale_).cast<double>();
+        (above_ * stiffness < w_).cast<double>() - (below_ * stiffness < z_).cast<double>();
     return (box_.free > 0).select(sides, -1.0);
   }
 
@@ -96,11 +102,9 @@ class InteriorPoint {
     Array x, z, w;
   };
 
-  /// Distances from the bounds; 1 where there is no room between them.
-  Array below() const { return (box_.free > 0).select(x_ - box_.lower, 1.0); }
-  Array above() const { return (box_.free > 0).select(box_.upper - x_, 1.0); }
-
-  double gap() const { return ((below() * z_).sum() + (above() * w_).sum()) / (2 * unknowns_); }
+  double mean_product() const {
+    return ((below_ * z_).sum() + (above_ * w_).sum()) / (2 * unknowns_);
+  }
 
   /// Largest share of the way on which `value` stays positive.
   static double room(const Array& value, const Array& change) {
@@ -109,7 +113,7 @@ class InteriorPoint {
 
   /// Newton direction towards complementarity products of `goal`, corrected by those of `before`.
   Direction direction(const Array& residual, double goal, const Direction* before) const {
-    const Array s = below(), t = above();
+    const Array &s = below_, &t = above_;
     Array p = goal - s * z_, q = goal - t * w_;
     if (before) {
       p -= before->x * before->z;
@@ -125,7 +129,7 @@ class InteriorPoint {
   }
 
   void advance(const Array& residual) {
-    const Array s = below(), t = above();
+    const Array &s = below_, &t = above_;
     system_.factorize((z_ / s + w_ / t + lift_ * box_.free).matrix(), box_.free.matrix());
     const Direction predictor = direction(residual, 0, nullptr);
     const double primal = std::min(room(s, predictor.x), room(t, -predictor.x));
@@ -133,12 +137,14 @@ class InteriorPoint {
     const double predicted = (((s + primal * predictor.x) * (z_ + dual * predictor.z)).sum() +
                               ((t - primal * predictor.x) * (w_ + dual * predictor.w)).sum()) /
                              (2 * unknowns_);
-    const double now = gap();
+    const double now = mean_product();
     const Direction d = direction(residual, now * std::pow(predicted / now, 3), &predictor);
     constexpr double kInside = 0.995;  // keeps every variable strictly inside
     const double step = std::min(
         1.0, kInside * std::min({room(s, d.x), room(t, -d.x), room(z_, d.z), room(w_, d.w)}));
     x_ += step * d.x;
+    below_ += step * d.x;
+    above_ -= step * d.x;
     z_ += step * d.z;
     w_ += step * d.w;
   }
@@ -147,7 +153,11 @@ class InteriorPoint {
   const Rows& h_;
   const Box& box_;
   double lift_, scale_, rounding_, unknowns_;
-  Array x_, z_, w_;
+  Array x_;
+  /// Distances from the bounds, 1 where there is no room between them: kept beside x, as one far
+  /// below x's last place still tells which bounds hold.
+  Array below_, above_;
+  Array z_, w_;
 };
 
 /// Minimum with some unknowns at their bounds, the others near `near`.
@@ -163,9 +173,9 @@ Rows minimum_on(TemporalSystem& system, const Rows& h, const Box& box, const Arr
   return x;
 }
 
-/// Moves bounds until all signs are right. Returns `near` where that does not settle.
-Rows polished(TemporalSystem& system, const Rows& h, const Box& box, Array sides, const Array& near,
-              double scale, double lift) {
+/// Moves bounds until all signs are right; nothing where that does not settle.
+std::optional<Rows> polished(TemporalSystem& system, const Rows& h, const Box& box, Array sides,
+                             const Array& near, double scale, double lift) {
   constexpr int kRounds = 20;
   const double tolerance = std::max(1e-12 * scale, rounding_of(system, box));
   for (int round = 0; round < kRounds; ++round) {
@@ -177,7 +187,7 @@ Rows polished(TemporalSystem& system, const Rows& h, const Box& box, Array sides
     sides = (box.free > 0 && before * pull < -tolerance).select(0.0, sides);
     if ((sides == before).all()) return x;
   }
-  return near.matrix();
+  return {};
 }
 
 void check_counts(const std::vector<Eigen::MatrixXd>& grams, const Eigen::MatrixXd& h,
@@ -224,8 +234,22 @@ Eigen::MatrixXd smooth_weights(const std::vector<Eigen::MatrixXd>& grams, const 
   if (wrong_pull(pull, box, still) == 0) return still.matrix();
   const double scale = std::max(right.lpNorm<Eigen::Infinity>(), pull.abs().maxCoeff());
   InteriorPoint method(system, right, box, scale, lift);
-  method.solve();
-  return polished(system, right, box, method.sides(), method.solution(), scale, lift);
+  // Where the penalty is 10^7 times the data, free weights lie as little as 1e-9 off their bounds:
+  // which bounds hold shows only when the products are far below the rounding of x.
+  const auto polished_here = [&] {
+    return polished(system, right, box, method.sides(), method.solution(), scale, lift);
+  };
+  method.solve(1e-18);
+  if (auto found = polished_here()) return *found;
+  const Array settled = method.solution();
+  try {
+    method.solve(1e-22);
+  } catch (const std::runtime_error&) {
+    // So small a gap is beyond rounding where the penalty is much larger than the data.
+    return settled.matrix();
+  }
+  if (auto found = polished_here()) return *found;
+  return method.solution().matrix();
 }
 
 double smooth_optimality_violation(const std::vector<Eigen::MatrixXd>& grams,

@@ -33,7 +33,9 @@ Eigen::MatrixXd smooth_weights(const std::vector<Eigen::MatrixXd>& grams, const 
                                const Eigen::MatrixXd& single, const WeightBounds& bounds = {});
 
 /// Largest violation of the optimality conditions of that problem by `beta` (F x D): of the bounds,
-/// and of the multipliers relative to |h|_inf (or 1 where h = 0). \pre F >= 3, and sizes as there
+/// and of the multipliers relative to |h|_inf (or 1 where h = 0). The exact minimum, rounded to
+/// double, has up to 4 epsilon mu / |h|_inf at even times, by its own rounding. \pre F >= 3, and
+/// sizes as there
 double smooth_optimality_violation(const std::vector<Eigen::MatrixXd>& grams,
                                    const Eigen::MatrixXd& h, const Eigen::VectorXd& times,
                                    double mu, const Eigen::MatrixXd& beta,

@@ -55,6 +55,14 @@ TemporalSystem::Rows TemporalSystem::product(const Rows& x) const {
   return result;
 }
 
+TemporalSystem::Rows TemporalSystem::diagonal() const {
+  Rows result(frames_, grams_.front().cols());
+  for (Eigen::Index f = 0; f < frames_; ++f) {
+    result.row(f) = gram(f).diagonal().transpose().array() + coupling(f, f);
+  }
+  return result;
+}
+
 double TemporalSystem::norm() const {
   double of_grams = 0, of_couplings = 0;
   for (const Eigen::MatrixXd& gram : grams_) {

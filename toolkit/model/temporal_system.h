@@ -21,6 +21,9 @@ class TemporalSystem {
   /// H x (F x D).
   Rows product(const Rows& x) const;
 
+  /// The diagonal of H (F x D).
+  Rows diagonal() const;
+
   /// A bound of the largest sum of absolute entries in a row of H.
   double norm() const;
 
