@@ -37,6 +37,7 @@ Work admm_work(double frames, double vertices, double count) {
 
 /// What the kernels of one iteration work on.
 struct Kernels {
+  Reduction reduction;
   VertexBlocks<double> X;
   DecompositionOptions options;
   SupportFunction support;
@@ -45,14 +46,17 @@ struct Kernels {
   Frames maps;
 
   Kernels(const MeshSequence& sequence, int count)
-      : X(scaled_motion(sequence, MotionScale::root_mean_square, 0).X),
+      : reduction(sequence.vertices()),
+        X(scaled_motion({sequence.rest(), sequence.triangles(), sequence.positions()},
+                        MotionScale::root_mean_square, reduction)
+              .X),
         options(prepared_options(sequence, count)),
         support(support_function(options.distances, sequence.vertices(), 0.1 * sequence.diameter(),
                                  0.7 * sequence.diameter())),
-        start(greedy_start(X, support, options)),
-        products(initial_components(X, start.components, 0)) {
-    SupportMaps followed(support, count, sequence.vertices(), {});
-    followed.follow(products.C);
+        start(greedy_start(X, support, options, reduction)),
+        products(initial_components(X, start.components, reduction)) {
+    SupportMaps followed(support, count, reduction.part(), {});
+    followed.follow(products.C, reduction);
     maps = followed.maps();
   }
 };
@@ -101,7 +105,9 @@ std::vector<Case> splocs_kernel_cases(const std::string& name, const MeshSequenc
   const UpdateWeights weights{W, W.transpose() * W};
   const AdmmOptions admm{kernels->options.sparsity, kernels->options.rho, kAdmmSteps};
   return {{{kGroup, kStart, size, start_work(frames, vertices, count, settings.machine)},
-           [kernels] { greedy_start(kernels->X, kernels->support, kernels->options); }},
+           [kernels] {
+             greedy_start(kernels->X, kernels->support, kernels->options, kernels->reduction);
+           }},
           {{kGroup, kWeightStep, size, weight_work(frames, count)},
            [kernels, W = Eigen::MatrixXd(W)]() mutable {
              W = updated_weights(std::move(W), kernels->products.P, kernels->products.H, true);
@@ -109,7 +115,7 @@ std::vector<Case> splocs_kernel_cases(const std::string& name, const MeshSequenc
           {{kGroup, kAdmm, size, admm_work(frames, vertices, count)},
            [kernels, weights, admm, components = kernels->products]() mutable {
              components = updated_components(kernels->X, weights, kernels->maps,
-                                             std::move(components), admm);
+                                             std::move(components), admm, kernels->reduction);
            }}};
 }
 

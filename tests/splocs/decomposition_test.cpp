@@ -170,8 +170,8 @@ TEST(Decomposition, HasLessEnergyThanItsStart) {
   const MeshSequence sequence = restless_grid();
   const DecompositionOptions options = grid_options(sequence, 6);
   const LiteralProblem problem = literal_problem(sequence, options);
-  const Start start =
-      greedy_start(VertexBlocks<double>(problem.X), one_by_one(problem.support), options);
+  const Start start = greedy_start(VertexBlocks<double>(problem.X), one_by_one(problem.support),
+                                   options, Reduction(sequence.vertices()));
   const Frames C = start.components.frames();
   double energy = (problem.X - start.weights * C).squaredNorm();
   for (int k = 0; k < options.count; ++k) {

@@ -47,12 +47,18 @@ SupportFunction around_one_bump(const Bumps& bumps) {
                           static_cast<int>(bumps.shape.positions.rows()), 5, 5.5);
 }
 
+/// Of the motion of all vertices.
+Start start_of(const Frames& X, const SupportFunction& support,
+               const DecompositionOptions& options) {
+  return greedy_start(VertexBlocks<double>(X), support, options, Reduction(X.cols() / 3));
+}
+
 TEST(GreedyStart, ExplainsDisjointBumpsCompletely) {
   const Bumps bumps;
   DecompositionOptions options;
   options.count = 3;
   const Frames X = bumps.W * bumps.C;
-  const Start start = greedy_start(VertexBlocks<double>(X), around_one_bump(bumps), options);
+  const Start start = start_of(X, around_one_bump(bumps), options);
   EXPECT_LT((X - start.weights * start.components.frames()).norm(), 1e-13 * X.norm());
 }
 
@@ -64,7 +70,7 @@ TEST(GreedyStart, TakesTheStrongestVertexOfWhatIsLeft) {
       support_function(one_by_one(straight_distances(sequence.rest())), sequence.vertices(), 1, 6);
   const Eigen::Map<const Eigen::RowVectorXd> rest(sequence.rest().data(), sequence.rest().size());
   Frames residual = sequence.positions().rowwise() - rest;
-  const Start start = greedy_start(VertexBlocks<double>(residual), support, options);
+  const Start start = start_of(residual, support, options);
   const Frames C = start.components.frames();
   for (int k = 0; k < options.count; ++k) {
     Eigen::VectorXd energies = Eigen::VectorXd::Zero(sequence.vertices());
@@ -78,8 +84,7 @@ TEST(GreedyStart, StopsWhereNothingIsLeft) {
   const Bumps bumps;
   DecompositionOptions options;
   options.count = 5;
-  const Start start =
-      greedy_start(VertexBlocks<double>(bumps.W * bumps.C), around_one_bump(bumps), options);
+  const Start start = start_of(bumps.W * bumps.C, around_one_bump(bumps), options);
   EXPECT_THAT(std::vector(start.centers.begin() + 3, start.centers.end()), testing::Each(-1));
   EXPECT_TRUE(start.components.frames().bottomRows(2).isZero(0));
   EXPECT_TRUE(start.weights.rightCols(2).isZero(0));
@@ -97,8 +102,8 @@ TEST(GreedyStart, LetsASmallPartGoWithAnother) {
     const double x = bumps.shape.positions(v, 0);
     options.parts.of_vertex.push_back(x < 10 ? 0 : x < 20 ? 1 : 2);
   }
-  const VertexBlocks<double> X(Frames(bumps.W * bumps.C));
-  const Start start = greedy_start(X, around_one_bump(bumps), options);
+  const Frames X = bumps.W * bumps.C;
+  const Start start = start_of(X, around_one_bump(bumps), options);
   EXPECT_EQ(options.parts.of_vertex[start.centers[0]], 0);
   EXPECT_EQ(options.parts.of_vertex[start.centers[1]], 2);
   // All but a thousandth of the second part's motion is told by the first component.
@@ -117,9 +122,9 @@ TEST(GreedyStart, TakesPartsOfFullWeightAsThePaperDoes) {
   for (int v = 0; v < bumps.shape.positions.rows(); ++v) {
     weighted.parts.of_vertex.push_back(bumps.shape.positions(v, 0) < 10 ? 0 : 1);
   }
-  const VertexBlocks<double> X(Frames(bumps.W * bumps.C));
-  const Start one = greedy_start(X, around_one_bump(bumps), options);
-  const Start other = greedy_start(X, around_one_bump(bumps), weighted);
+  const Frames X = bumps.W * bumps.C;
+  const Start one = start_of(X, around_one_bump(bumps), options);
+  const Start other = start_of(X, around_one_bump(bumps), weighted);
   EXPECT_EQ(one.centers, other.centers);
   EXPECT_TRUE(one.components.frames() == other.components.frames());
 }

@@ -25,6 +25,11 @@ Frames fading_motion(int rank) {
   return courses * sizes.asDiagonal() * poses;
 }
 
+std::optional<TimeBasis> basis_of(const Frames& X, double tolerance, int threads) {
+  return time_basis(VertexBlocks<double>(X), X.squaredNorm(), tolerance,
+                    Reduction(X.cols() / 3, threads));
+}
+
 double lost_share(const Frames& X, const TimeBasis& basis) {
   return (X - basis.Q * basis.B.frames()).norm() / X.norm();
 }
@@ -32,7 +37,7 @@ double lost_share(const Frames& X, const TimeBasis& basis) {
 TEST(TimeBasis, LosesNoMoreThanTheTolerance) {
   const Frames X = fading_motion(8);
   for (const double tolerance : {1e-6, 1e-4, 0.03, 0.5}) {
-    const auto basis = time_basis(VertexBlocks<double>(X), X.squaredNorm(), tolerance, 2);
+    const auto basis = basis_of(X, tolerance, 2);
     ASSERT_TRUE(basis);
     EXPECT_LE(lost_share(X, *basis), tolerance);
     EXPECT_TRUE((basis->Q.transpose() * basis->Q).isIdentity(1e-12));
@@ -48,7 +53,7 @@ TEST(TimeBasis, HasNoMorePosesThanNeeded) {
     while (needed > 1 && values.segment(needed - 1, 9 - needed).norm() <= tolerance * X.norm()) {
       --needed;
     }
-    const auto basis = time_basis(VertexBlocks<double>(X), X.squaredNorm(), tolerance, 1);
+    const auto basis = basis_of(X, tolerance, 1);
     ASSERT_TRUE(basis);
     EXPECT_EQ(basis->Q.cols(), needed) << tolerance;
   }
@@ -57,23 +62,23 @@ TEST(TimeBasis, HasNoMorePosesThanNeeded) {
 TEST(TimeBasis, IsFoundUpToHalfAsManyPosesAsFrames) {
   for (const int rank : {33, kFrames / 2}) {
     const Frames X = Frames::Random(kFrames, rank) * Frames::Random(rank, 600);
-    const auto basis = time_basis(VertexBlocks<double>(X), X.squaredNorm(), 1e-6, 1);
+    const auto basis = basis_of(X, 1e-6, 1);
     ASSERT_TRUE(basis) << rank;
     EXPECT_LE(lost_share(X, *basis), 1e-6);
   }
   const Frames short_one = Frames::Random(10, 3) * Frames::Random(3, 600);
-  EXPECT_TRUE(time_basis(VertexBlocks<double>(short_one), short_one.squaredNorm(), 1e-6, 1));
+  EXPECT_TRUE(basis_of(short_one, 1e-6, 1));
 }
 
 TEST(TimeBasis, IsNoneWhereEveryFrameIsNew) {
   const Frames X = Frames::Random(kFrames, 600);
-  EXPECT_FALSE(time_basis(VertexBlocks<double>(X), X.squaredNorm(), 0.01, 1));
+  EXPECT_FALSE(basis_of(X, 0.01, 1));
 }
 
 TEST(TimeBasis, DoesNotDependOnThreads) {
   const Frames X = fading_motion(8);
-  const auto one = time_basis(VertexBlocks<double>(X), X.squaredNorm(), 1e-4, 1);
-  const auto three = time_basis(VertexBlocks<double>(X), X.squaredNorm(), 1e-4, 3);
+  const auto one = basis_of(X, 1e-4, 1);
+  const auto three = basis_of(X, 1e-4, 3);
   ASSERT_TRUE(one && three);
   EXPECT_EQ(one->Q, three->Q);
   EXPECT_EQ(one->B.frames(), three->B.frames());

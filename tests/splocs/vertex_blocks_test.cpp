@@ -9,10 +9,10 @@ namespace mimetra::test {
 namespace {
 
 /// Two whole blocks and a rest.
-constexpr Eigen::Index kMany = 2 * VertexBlocks<double>::kVertices + 5;
+constexpr Eigen::Index kMany = 2 * VertexPart::kBlock + 5;
 
 TEST(VertexBlocks, ComeTogetherAsTheyWere) {
-  for (const Eigen::Index vertices : {Eigen::Index(1), VertexBlocks<double>::kVertices, kMany}) {
+  for (const Eigen::Index vertices : {Eigen::Index(1), VertexPart::kBlock, kMany}) {
     const Frames rows = Frames::Random(4, 3 * vertices);
     EXPECT_EQ(VertexBlocks<double>(rows).frames(), rows);
   }
@@ -33,6 +33,11 @@ TEST(VertexBlocks, RoundToSinglePrecision) {
   EXPECT_EQ(VertexBlocks<double>(rows).cast<float>().frames(), rounded);
 }
 
+Motion motion_of(const MeshSequence& sequence, MotionScale scale) {
+  return scaled_motion({sequence.rest(), sequence.triangles(), sequence.positions()}, scale,
+                       Reduction(sequence.vertices(), 2));
+}
+
 TEST(ScaledMotion, IsTheDisplacementOverItsStandardDeviation) {
   const MeshSequence sequence = restless_grid(30, 20, 6);
   const Eigen::Map<const Eigen::RowVectorXd> rest(sequence.rest().data(), sequence.rest().size());
@@ -40,8 +45,7 @@ TEST(ScaledMotion, IsTheDisplacementOverItsStandardDeviation) {
   const Frames frames = sequence.positions().array() + 1000;
   const Frames X = frames.rowwise() - rest;
   const double deviation = std::sqrt((X.array() - X.mean()).square().mean());
-  const Motion motion =
-      scaled_motion(sequence.with_frames(frames), MotionScale::standard_deviation, 2);
+  const Motion motion = motion_of(sequence.with_frames(frames), MotionScale::standard_deviation);
   // Rounding of a mean of 1000 and of coordinates that lost three digits to it.
   EXPECT_NEAR(motion.scale / deviation, 1, 1e-12);
   EXPECT_LT((motion.X.frames() - X / deviation).norm(), 1e-12 * X.norm() / deviation);
@@ -53,7 +57,7 @@ TEST(ScaledMotion, IsTheDisplacementOverItsRootMeanSquare) {
   const Eigen::Map<const Eigen::RowVectorXd> rest(sequence.rest().data(), sequence.rest().size());
   const Frames X = sequence.positions().rowwise() - rest;
   const double rms = std::sqrt(X.array().square().mean());
-  const Motion motion = scaled_motion(sequence, MotionScale::root_mean_square, 2);
+  const Motion motion = motion_of(sequence, MotionScale::root_mean_square);
   EXPECT_NEAR(motion.scale / rms, 1, 1e-12);
   EXPECT_LT((motion.X.frames() - X / rms).norm(), 1e-12 * X.norm() / rms);
   EXPECT_NEAR(motion.norm2 / static_cast<double>(X.size()), 1, 1e-12);
@@ -61,9 +65,9 @@ TEST(ScaledMotion, IsTheDisplacementOverItsRootMeanSquare) {
 
 TEST(ScaledMotion, RefusesMotionWhoseEnergyIsNoNumber) {
   const MeshSequence sequence = restless_grid(4, 3, 5);
-  EXPECT_THROW(scaled_motion(sequence.with_frames(sequence.positions() * 1e200),
-                             MotionScale::root_mean_square, 1),
-               std::invalid_argument);
+  EXPECT_THROW(
+      motion_of(sequence.with_frames(sequence.positions() * 1e200), MotionScale::root_mean_square),
+      std::invalid_argument);
 }
 
 }  // namespace

@@ -1,12 +1,9 @@
 #include "toolkit/splocs/component_update.h"
 
-#include <functional>
 #include <limits>
 #include <utility>
 
 #include <Eigen/Cholesky>
-
-#include "toolkit/splocs/block_sums.h"
 
 namespace mimetra {
 namespace {
@@ -20,16 +17,24 @@ struct StepMatrices {
   Matrix<Scalar> of_data;       ///< (W^T W + rho I)^-1 W^T, K x R
   Matrix<Scalar> of_splitting;  ///< rho (W^T W + rho I)^-1, K x K
 
-  StepMatrices(const UpdateWeights& W, double rho) {
-    Eigen::MatrixXd system = W.gram;
-    system.diagonal().array() += rho;
-    // Safe to invert: every eigenvalue is at least rho, and W has entries of at most 1.
-    const Eigen::LLT<Eigen::MatrixXd> factor(system);
-    const auto K = system.rows();
-    of_data = factor.solve(W.rows.transpose()).template cast<Scalar>();
-    of_splitting = (rho * factor.solve(Eigen::MatrixXd::Identity(K, K))).template cast<Scalar>();
-  }
+  /// From both side by side.
+  explicit StepMatrices(const Eigen::MatrixXd& both)
+      : of_data(both.leftCols(both.cols() - both.rows()).template cast<Scalar>()),
+        of_splitting(both.rightCols(both.rows()).template cast<Scalar>()) {}
 };
+
+/// Both matrices of a step, K x (R + K).
+Eigen::MatrixXd step_matrices(const UpdateWeights& W, double rho) {
+  Eigen::MatrixXd system = W.gram;
+  system.diagonal().array() += rho;
+  // Safe to invert: every eigenvalue is at least rho, and W has entries of at most 1.
+  const Eigen::LLT<Eigen::MatrixXd> factor(system);
+  const Eigen::Index K = system.rows(), R = W.rows.rows();
+  Eigen::MatrixXd both(K, R + K);
+  both.leftCols(R) = factor.solve(W.rows.transpose());
+  both.rightCols(K) = rho * factor.solve(Eigen::MatrixXd::Identity(K, K));
+  return both;
+}
 
 /// Lengths of a row's n displacement vectors.
 template <typename Row>
@@ -102,50 +107,62 @@ class BlockAdmm {
   Row kept_;
 };
 
-/// What blocks add to a ComponentUpdate's sums.
+/// What the blocks of a run add to a ComponentUpdate's sums, in the precision of the blocks.
 template <typename Scalar>
-struct Sums {
-  Matrix<Scalar> P, H;
-  double penalty = 0;
+class RunSums {
+ public:
+  /// For R rows of X and K components.
+  RunSums(Eigen::Index R, Eigen::Index K)
+      : P_(Matrix<Scalar>::Zero(R, K)),
+        H_(Matrix<Scalar>::Zero(K, K)),
+        penalties_(Eigen::RowVectorXd::Zero(K)) {}
 
   template <typename Block>
-  void add(const Block& X, const Block& C) {
-    if (P.size() == 0) {
-      P.setZero(X.rows(), C.rows());
-      H.setZero(C.rows(), C.rows());
-    }
-    P.noalias() += X * C.transpose();
-    H.noalias() += C * C.transpose();
+  void add_products(const Block& X, const Block& C) {
+    P_.noalias() += X * C.transpose();
+    H_.noalias() += C * C.transpose();
   }
+  void add_penalty(Eigen::Index k, double penalty) { penalties_[k] += penalty; }
+
+  /// P above H above the penalty of each component, (R + K + 1) x K.
+  void write(Eigen::MatrixXd& sums) const {
+    sums << P_.template cast<double>(), H_.template cast<double>(), penalties_;
+  }
+
+ private:
+  Matrix<Scalar> P_, H_;
+  Eigen::RowVectorXd penalties_;
 };
 
 /// Calls `work` for all blocks, and adds up what they give to the sums.
-template <typename Scalar>
-void sum_over_blocks(ComponentUpdate<Scalar>& update, const VertexBlocks<Scalar>& X, int threads,
-                     const std::function<void(int, Sums<Scalar>&)>& work) {
-  const auto parts = sums_over_runs<Sums<Scalar>>(X.count(), threads, work);
+template <typename Scalar, typename Work>
+void sum_over_blocks(ComponentUpdate<Scalar>& update, Eigen::Index R, const Reduction& reduction,
+                     const Work& work) {
   const Eigen::Index K = update.C.rows();
-  update.P = Eigen::MatrixXd::Zero(X.rows(), K);
-  update.H = Eigen::MatrixXd::Zero(K, K);
-  update.penalty = 0;
-  for (const Sums<Scalar>& part : parts) {
-    update.P += part.P.template cast<double>();
-    update.H += part.H.template cast<double>();
-    update.penalty += part.penalty;
-  }
+  const Eigen::MatrixXd sums = reduction.sum(R + K + 1, K, [&](int run, Eigen::MatrixXd& of_run) {
+    RunSums<Scalar> sums_of_run(R, K);
+    const IndexRange blocks = reduction.part().blocks_of(run);
+    for (int b = blocks.first; b < blocks.end; ++b) work(b, sums_of_run);
+    sums_of_run.write(of_run);
+  });
+  if (!reduction.is_first()) return;
+  update.P = sums.topRows(R);
+  update.H = sums.middleRows(R, K);
+  update.penalty = sums.row(R + K).sum();
 }
 
 }  // namespace
 
 template <typename Scalar>
 ComponentUpdate<Scalar> initial_components(const VertexBlocks<Scalar>& X,
-                                           VertexBlocks<Scalar> components, int threads) {
+                                           VertexBlocks<Scalar> components,
+                                           const Reduction& reduction) {
   ComponentUpdate<Scalar> initial;
   initial.C = std::move(components);
-  initial.U = VertexBlocks<Scalar>(initial.C.rows(), initial.C.vertices());
-  sum_over_blocks<Scalar>(initial, X, threads, [&](int b, Sums<Scalar>& sums) {
+  initial.U = VertexBlocks<Scalar>(initial.C.rows(), X.part());
+  sum_over_blocks(initial, X.rows(), reduction, [&](int b, RunSums<Scalar>& sums) {
     initial.U[b] = initial.U.zero_block(b);
-    sums.add(X[b], initial.C[b]);
+    sums.add_products(X[b], initial.C[b]);
   });
   return initial;
 }
@@ -153,34 +170,36 @@ ComponentUpdate<Scalar> initial_components(const VertexBlocks<Scalar>& X,
 template <typename Scalar>
 ComponentUpdate<Scalar> updated_components(const VertexBlocks<Scalar>& X, const UpdateWeights& W,
                                            const Frames& support, ComponentUpdate<Scalar> last,
-                                           const AdmmOptions& options) {
+                                           const AdmmOptions& options, const Reduction& reduction) {
   using Block = typename VertexBlocks<Scalar>::Block;
-  const StepMatrices<Scalar> step(W, options.rho);
+  const StepMatrices<Scalar> step(
+      reduction.on_first([&] { return step_matrices(W, options.rho); }));
   ComponentUpdate<Scalar> update = std::move(last);
-  sum_over_blocks<Scalar>(update, X, options.threads, [&](int b, Sums<Scalar>& sums) {
+  sum_over_blocks(update, X.rows(), reduction, [&](int b, RunSums<Scalar>& sums) {
     const Eigen::Index n = X.size(b);
     const Block Lambda =
         (options.sparsity * support.middleCols(X.first(b), n)).template cast<Scalar>();
     const Block thresholds = Lambda / Scalar(options.rho);
     Block& C = update.C[b];
     BlockAdmm<Scalar>(X[b], step, thresholds).run(options.steps, C, update.U[b]);
-    sums.add(X[b], C);
+    sums.add_products(X[b], C);
     for (Eigen::Index k = 0; k < C.rows(); ++k) {
-      sums.penalty += (Lambda.row(k).array() * lengths(C.row(k).array(), n)).sum();
+      sums.add_penalty(k, (Lambda.row(k).array() * lengths(C.row(k).array(), n)).sum());
     }
   });
   return update;
 }
 
 template ComponentUpdate<double> initial_components(const VertexBlocks<double>&,
-                                                    VertexBlocks<double>, int);
+                                                    VertexBlocks<double>, const Reduction&);
 template ComponentUpdate<float> initial_components(const VertexBlocks<float>&, VertexBlocks<float>,
-                                                   int);
+                                                   const Reduction&);
 template ComponentUpdate<double> updated_components(const VertexBlocks<double>&,
                                                     const UpdateWeights&, const Frames&,
-                                                    ComponentUpdate<double>, const AdmmOptions&);
+                                                    ComponentUpdate<double>, const AdmmOptions&,
+                                                    const Reduction&);
 template ComponentUpdate<float> updated_components(const VertexBlocks<float>&, const UpdateWeights&,
                                                    const Frames&, ComponentUpdate<float>,
-                                                   const AdmmOptions&);
+                                                   const AdmmOptions&, const Reduction&);
 
 }  // namespace mimetra

@@ -6,12 +6,14 @@
 #include <string>
 #include <utility>
 
+#include "toolkit/mesh/diameter.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/near_tie.h"
 #include "toolkit/mesh/product_blocking.h"
 #include "toolkit/mesh/progress.h"
 #include "toolkit/splocs/component_update.h"
 #include "toolkit/splocs/motion.h"
+#include "toolkit/splocs/reduction.h"
 #include "toolkit/splocs/start.h"
 #include "toolkit/splocs/support_maps.h"
 #include "toolkit/splocs/time_basis.h"
@@ -56,17 +58,49 @@ void require_valid(const PartWeights& parts, int vertices) {
           "parts: weights must be from 0 to 1");
 }
 
-void require_decomposable(const MeshSequence& sequence, int count) {
-  const int coordinates = 3 * sequence.vertices();
-  if (count > coordinates) {
-    throw MismatchError(std::to_string(count) + " components of a mesh of " +
-                        std::to_string(sequence.vertices()) + " vertices; at most " +
-                        std::to_string(coordinates));
+/// What each rank was given: one column a rank.
+enum GivenRow { kVertices, kFrames, kCoordinates, kFiniteRest, kGivenRows };
+
+/// On all ranks. Each is asked in turn, since they cannot join anything before they agree on the
+/// number of vertices, and some may own none.
+Eigen::MatrixXd given_to_ranks(const SequencePart& sequence, const Reduction& reduction) {
+  Eigen::MatrixXd given(kGivenRows, reduction.part().ranks());
+  for (int rank = 0; rank < reduction.part().ranks(); ++rank) {
+    given.col(rank) = reduction.on(rank, [&sequence] {
+      return Eigen::Vector4d(
+          static_cast<double>(sequence.rest.rows()), static_cast<double>(sequence.frames.rows()),
+          static_cast<double>(sequence.frames.cols()), sequence.rest.allFinite() ? 1 : 0);
+    });
   }
-  if (sequence.frames() < 2) {
+  return given;
+}
+
+/// Throws the same on all ranks, whichever of them was given what is wrong.
+void require_decomposable(const SequencePart& sequence, int count, const Reduction& reduction) {
+  const auto given = given_to_ranks(sequence, reduction).cast<Eigen::Index>().eval();
+  const Eigen::Index vertices = given(kVertices, 0), frames = given(kFrames, 0);
+  for (int rank = 0; rank < given.cols(); ++rank) {
+    const auto of_rank = given.col(rank);
+    const auto require_of_rank = [rank](Eigen::Index found, Eigen::Index expected,
+                                        const std::string& of_what) {
+      require(found == expected, "rank " + std::to_string(rank) + " has " + std::to_string(found) +
+                                     of_what + ", expected " + std::to_string(expected));
+    };
+    require_of_rank(of_rank[kVertices], vertices, " vertices in its mesh");
+    require_of_rank(of_rank[kFrames], frames, " frames");
+    require_of_rank(of_rank[kCoordinates],
+                    3 * VertexPart(vertices, rank, static_cast<int>(given.cols())).vertices(),
+                    " coordinates a frame");
+  }
+  if (count > 3 * vertices) {
+    throw MismatchError(std::to_string(count) + " components of a mesh of " +
+                        std::to_string(vertices) + " vertices; at most " +
+                        std::to_string(3 * vertices));
+  }
+  if (frames < 2) {
     throw MismatchError("the sequence has one frame; a decomposition needs at least two");
   }
-  require(sequence.rest().allFinite(),
+  require((given.row(kFiniteRest).array() == 1).all(),
           "the rest pose has a coordinate that is not a finite number");
 }
 
@@ -101,27 +135,27 @@ int best_of(const std::vector<double>& energies) {
 /// What is returned of an iteration.
 template <typename Scalar>
 struct Iterate {
-  Eigen::MatrixXd W;
+  Eigen::MatrixXd W;  ///< on the first rank
   VertexBlocks<Scalar> C;
   Frames maps;
 };
 
 /// Alternates between weights and components; fills displacements, weights and support of the
 /// iterate that the options want, energies and what they say. `X` are the motion's frames, or their
-/// coordinates in `basis` where there is one.
+/// coordinates in `basis` where there is one. The first rank alone computes weights.
 template <typename Scalar>
 void alternate(Components& result, double X_norm2, const VertexBlocks<Scalar>& X,
                const std::optional<TimeBasis>& basis, Start start, SupportMaps support,
-               const Progress& progress) {
+               const Progress& progress, const Reduction& reduction) {
   const DecompositionOptions& options = result.options;
-  const AdmmOptions admm{options.sparsity, options.rho, options.admm_iterations, options.threads};
+  const AdmmOptions admm{options.sparsity, options.rho, options.admm_iterations};
   const auto over_frames = [&basis](const Eigen::MatrixXd& P) -> Eigen::MatrixXd {
     return basis ? Eigen::MatrixXd(basis->Q * P) : P;
   };
-  Eigen::MatrixXd W = std::move(start.weights);
+  Eigen::MatrixXd W = std::move(start.weights), P;
   ComponentUpdate<Scalar> components =
-      initial_components(X, std::move(start.components).template cast<Scalar>(), options.threads);
-  Eigen::MatrixXd P = over_frames(components.P);
+      initial_components(X, std::move(start.components).template cast<Scalar>(), reduction);
+  if (reduction.is_first()) P = over_frames(components.P);
   std::vector<double>& energies = result.energies;
   Iterate<Scalar> best;
   for (int iteration = 0; iteration < *options.iterations; ++iteration) {
@@ -134,13 +168,20 @@ void alternate(Components& result, double X_norm2, const VertexBlocks<Scalar>& X
       best.C = components.C;
       best.maps = support.maps();
     }
-    W = updated_weights(std::move(W), P, components.H, options.nonnegative);
-    const UpdateWeights weights{basis ? Eigen::MatrixXd(basis->Q.transpose() * W) : W,
-                                W.transpose() * W};
-    support.follow(components.C);
-    components = updated_components(X, weights, support.maps(), std::move(components), admm);
-    P = over_frames(components.P);
-    energies.push_back(energy(X_norm2, W, weights.gram, P, components.H, components.penalty));
+    UpdateWeights weights;
+    if (reduction.is_first()) {
+      W = updated_weights(std::move(W), P, components.H, options.nonnegative);
+      weights = {basis ? Eigen::MatrixXd(basis->Q.transpose() * W) : W, W.transpose() * W};
+    }
+    support.follow(components.C, reduction);
+    components =
+        updated_components(X, weights, support.maps(), std::move(components), admm, reduction);
+    const Eigen::MatrixXd found = reduction.on_first([&] {
+      P = over_frames(components.P);
+      return Eigen::MatrixXd::Constant(
+          1, 1, energy(X_norm2, W, weights.gram, P, components.H, components.penalty));
+    });
+    energies.push_back(found(0));
     if (options.tolerance > 0 && has_converged(energies, options.tolerance)) break;
   }
   result.converged = has_converged(
@@ -150,42 +191,90 @@ void alternate(Components& result, double X_norm2, const VertexBlocks<Scalar>& X
   result.iteration = returned + 1;
   if (returned == last) best = {std::move(W), std::move(components.C), support.maps()};
   result.displacements = best.C.frames();
-  result.weights = std::move(best.W);
+  result.weights = reduction.everywhere(std::move(best.W));
   result.support = std::move(best.maps);
 }
 
 /// The motion in the precision and the basis that the options want, from the start on.
 void iterate(Components& result, Motion motion, Start start, SupportMaps support,
-             const Progress& progress) {
+             const Progress& progress, const Reduction& reduction) {
   const DecompositionOptions& options = result.options;
   std::optional<TimeBasis> basis;
   if (options.basis_tolerance > 0) {
-    basis = time_basis(motion.X, motion.norm2, options.basis_tolerance, options.threads);
+    basis = time_basis(motion.X, motion.norm2, options.basis_tolerance, reduction);
   }
   // What is not needed any more is released: it is the largest array there is.
   VertexBlocks<double> X = std::move(motion.X);
   if (basis) X = std::move(basis->B);
   if (options.precision == IterationPrecision::single_precision) {
     alternate(result, motion.norm2, std::move(X).cast<float>(), basis, std::move(start),
-              std::move(support), progress);
+              std::move(support), progress, reduction);
   } else {
-    alternate(result, motion.norm2, X, basis, std::move(start), std::move(support), progress);
+    alternate(result, motion.norm2, X, basis, std::move(start), std::move(support), progress,
+              reduction);
   }
 }
 
 /// Finds each component's centre. A component needs both weights and displacements: with one of
 /// them zero it tells nothing, and both are cleared.
-void finish(Components& result) {
+void finish(Components& result, const Reduction& reduction) {
+  const VertexPart& part = reduction.part();
+  const Eigen::VectorXd weights = result.options.parts.of_vertices();
+  result.centers = reduction.argmax(result.count(), [&](int b) {
+    const Eigen::Index first = part.first_of(b), size = part.size_of(b);
+    Eigen::MatrixXd energies(result.count(), size);
+    for (int k = 0; k < result.count(); ++k) {
+      energies.row(k) = vertex_energies(result.displacements.row(k).segment(3 * first, 3 * size));
+    }
+    if (weights.size() > 0) energies *= weights.segment(part.first() + first, size).asDiagonal();
+    return energies;
+  });
   for (int k = 0; k < result.count(); ++k) {
-    const VertexIndex center = strongest_vertex(vertex_energies(result.displacements.row(k)),
-                                                result.options.parts.of_vertices());
-    const bool alive = center >= 0 && !result.weights.col(k).isZero(0);
-    result.centers.push_back(alive ? center : -1);
-    if (alive) continue;
+    if (result.weights.col(k).isZero(0)) result.centers[k] = -1;
+    if (result.centers[k] >= 0) continue;
     result.weights.col(k).setZero();
     result.displacements.row(k).setZero();
   }
   result.displacements *= result.scale;
+}
+
+Components decomposed(const SequencePart& sequence, const DecompositionOptions& options,
+                      const Reduction& reduction) {
+  const VertexPart& part = reduction.part();
+  const auto vertices = static_cast<int>(part.mesh_vertices());
+  require_valid(options);
+  require_decomposable(sequence, options.count, reduction);
+  require_valid(options.parts, vertices);
+  fix_product_blocking();
+  Components result;
+  result.rest = sequence.rest;
+  result.triangles = sequence.triangles;
+  const double size = diameter(sequence.rest);
+  result.d_min = options.d_min.value_or(DecompositionOptions::kMinimumShare * size);
+  result.d_max = options.d_max.value_or(DecompositionOptions::kMaximumShare * size);
+  require_valid(result.d_min, result.d_max);
+  result.options = options;
+  result.options.iterations = options.iterations.value_or(DecompositionOptions::kUsualIterations);
+  result.options.distances = nullptr;
+  result.options.progress = nullptr;
+
+  Motion motion = scaled_motion(sequence, options.scale, reduction);
+  result.scale = motion.scale;
+  const DistanceFunction distances =
+      options.distances ? options.distances
+                        : SurfaceDistances(result.rest, result.triangles, Weld::exact(result.rest),
+                                           GeodesicMethod::heat, options.threads);
+  const SupportFunction support = support_function(distances, vertices, result.d_min, result.d_max);
+  DecompositionOptions of_start = options;
+  const double start_share = kStartIterations / (kStartIterations + *result.options.iterations);
+  of_start.progress = part_of(options.progress, 0, start_share);
+  Start start = greedy_start(motion.X, support, of_start, reduction);
+  iterate(result, std::move(motion), std::move(start),
+          SupportMaps(support, options.count, part, options.parts.of_vertices()),
+          part_of(options.progress, start_share, 1), reduction);
+  finish(result, reduction);
+  report_progress(options.progress, 1);
+  return result;
 }
 
 }  // namespace
@@ -197,39 +286,13 @@ Eigen::VectorXd PartWeights::of_vertices() const {
 }
 
 Components decompose(const MeshSequence& sequence, const DecompositionOptions& options) {
-  require_valid(options);
-  require_decomposable(sequence, options.count);
-  require_valid(options.parts, sequence.vertices());
-  fix_product_blocking();
-  Components result;
-  result.rest = sequence.rest();
-  result.triangles = sequence.triangles();
-  result.d_min = options.d_min.value_or(DecompositionOptions::kMinimumShare * sequence.diameter());
-  result.d_max = options.d_max.value_or(DecompositionOptions::kMaximumShare * sequence.diameter());
-  require_valid(result.d_min, result.d_max);
-  result.options = options;
-  result.options.iterations = options.iterations.value_or(DecompositionOptions::kUsualIterations);
-  result.options.distances = nullptr;
-  result.options.progress = nullptr;
+  return decomposed({sequence.rest(), sequence.triangles(), sequence.positions()}, options,
+                    Reduction(sequence.vertices(), options.threads));
+}
 
-  Motion motion = scaled_motion(sequence, options.scale, options.threads);
-  result.scale = motion.scale;
-  const DistanceFunction distances =
-      options.distances ? options.distances
-                        : SurfaceDistances(result.rest, result.triangles, Weld::exact(result.rest),
-                                           GeodesicMethod::heat, options.threads);
-  const SupportFunction support =
-      support_function(distances, sequence.vertices(), result.d_min, result.d_max);
-  DecompositionOptions of_start = options;
-  const double start_share = kStartIterations / (kStartIterations + *result.options.iterations);
-  of_start.progress = part_of(options.progress, 0, start_share);
-  Start start = greedy_start(motion.X, support, of_start);
-  iterate(result, std::move(motion), std::move(start),
-          SupportMaps(support, options.count, sequence.vertices(), options.parts.of_vertices()),
-          part_of(options.progress, start_share, 1));
-  finish(result);
-  report_progress(options.progress, 1);
-  return result;
+Components decompose_part(const SequencePart& sequence, const DecompositionOptions& options,
+                          const Ranks& ranks) {
+  return decomposed(sequence, options, Reduction(sequence.rest.rows(), options.threads, &ranks));
 }
 
 }  // namespace mimetra

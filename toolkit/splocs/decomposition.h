@@ -9,6 +9,10 @@
 
 namespace mimetra {
 
+class Ranks;
+class Reduction;
+struct SequencePart;
+
 /// Sparse localized deformation components: frame f is rest + sum_k W_fk C_k, approximately.
 struct Components {
   Positions rest;                    ///< N x 3
@@ -46,6 +50,23 @@ struct Components {
 /// Region-based deformation transfer, eq. 6 and 7.
 Components decompose(const MeshSequence& sequence, const DecompositionOptions& options = {});
 
+/// The same on one of several ranks, each with the poses of its own vertices (VertexPart). The mesh
+/// and the options are the whole mesh's and the same on each rank. What is returned is the same on
+/// all ranks, but for displacements (K x 3n) and support (K x n): they are those of the rank's n
+/// vertices.
+///
+/// On ranks whose processors are of one kind, the result is the same bits as on one rank. Elsewhere
+/// it is that up to rounding: each rank computes the diameter of the mesh, the distances and its
+/// own vertices' displacements by itself.
+///
+/// Throws std::invalid_argument also where a rank has other vertices than its own, or a mesh of
+/// another size or other frames than the first rank. What sizes, the rest pose or the motion make
+/// it throw, it throws the same on all ranks. Where one rank alone throws anything else (Cancelled
+/// from its progress, what its distances throw, std::bad_alloc), the others wait for it: who stops
+/// one must stop all.
+Components decompose_part(const SequencePart& sequence, const DecompositionOptions& options,
+                          const Ranks& ranks);
+
 /// How well components tell the sequence.
 struct DecompositionError {
   /// ||X - W C||_F / sqrt(3 N F), unit of the mesh.
@@ -60,6 +81,10 @@ struct DecompositionError {
 
 /// Throws MismatchError where the sizes of sequence and components differ.
 DecompositionError decomposition_error(const MeshSequence& sequence, const Components& components);
+
+/// The same on all ranks of decompose_part(), for what it returned.
+DecompositionError decomposition_error(const SequencePart& sequence, const Components& components,
+                                       const Reduction& reduction);
 
 /// Distance from each centre that holds `share` of its component's energy (K); 0 where it died.
 Eigen::VectorXd energy_radius(const Components& components, const DistanceFunction& distances,

@@ -8,41 +8,57 @@
 #include <string>
 
 #include "toolkit/mesh/errors.h"
+#include "toolkit/mesh/product_blocking.h"
+#include "toolkit/splocs/reduction.h"
 #include "toolkit/splocs/vertex_energies.h"
 
 namespace mimetra {
 namespace {
 
-void require_same_size(const MeshSequence& sequence, const Components& components) {
-  if (components.vertices() != sequence.vertices()) {
+void require_same_size(const SequencePart& sequence, const Components& components,
+                       Eigen::Index vertices) {
+  if (components.vertices() != vertices) {
     throw MismatchError("components of " + std::to_string(components.vertices()) +
-                        " vertices for a sequence of " + std::to_string(sequence.vertices()));
+                        " vertices for a sequence of " + std::to_string(vertices));
   }
-  if (components.weights.rows() != sequence.frames()) {
+  if (components.weights.rows() != sequence.frames.rows()) {
     throw MismatchError("components with weights of " + std::to_string(components.weights.rows()) +
-                        " frames for a sequence of " + std::to_string(sequence.frames()));
+                        " frames for a sequence of " + std::to_string(sequence.frames.rows()));
   }
 }
 
-/// ||X - W C||^2 frame by frame: here the residual itself matters, also where it is rounding.
-double residual_norm2(const MeshSequence& sequence, const Components& components) {
+/// Sums over vertices.
+struct ErrorSums {
+  double residual2 = 0;   ///< ||X - W C||^2
+  double variation2 = 0;  ///< ||X - mean over frames||^2
+  double zeros = 0;       ///< displacements in C that are exactly zero
+};
+
+/// The residual itself, block by block: here it matters also where it is rounding.
+ErrorSums error_sums(const SequencePart& sequence, const Components& components,
+                     const Reduction& reduction) {
+  const VertexPart& part = reduction.part();
   const Eigen::Map<const Eigen::RowVectorXd> rest(components.rest.data(), components.rest.size());
-  double sum = 0;
-  for (int f = 0; f < sequence.frames(); ++f) {
-    Eigen::RowVectorXd residual = sequence.positions().row(f) - rest;
-    residual.noalias() -= components.weights.row(f) * components.displacements;
-    sum += residual.squaredNorm();
-  }
-  return sum;
-}
-
-double sparsity(const Frames& displacements) {
-  Eigen::Index zeros = 0;
-  for (Eigen::Index k = 0; k < displacements.rows(); ++k) {
-    zeros += (vertex_energies(displacements.row(k)).array() == 0).count();
-  }
-  const Eigen::Index all = displacements.size() / 3;
-  return all ? static_cast<double>(zeros) / static_cast<double>(all) : 0;
+  const auto add_block = [&](int b, Eigen::MatrixXd& sums) {
+    const Eigen::Index first = 3 * part.first_of(b), size = 3 * part.size_of(b);
+    const auto frames = sequence.frames.middleCols(first, size);
+    const Frames C = components.displacements.middleCols(first, size);
+    Frames rows = frames.rowwise() - rest.segment(3 * part.first() + first, size);
+    rows.noalias() -= components.weights * C;
+    sums(0) += rows.squaredNorm();
+    const Eigen::RowVectorXd mean = frames.colwise().mean();
+    rows = frames.rowwise() - mean;
+    sums(1) += rows.squaredNorm();
+    for (Eigen::Index k = 0; k < C.rows(); ++k) {
+      sums(2) += static_cast<double>((vertex_energies(C.row(k)).array() == 0).count());
+    }
+  };
+  const Eigen::VectorXd sums =
+      reduction.everywhere(reduction.sum(3, 1, [&](int run, Eigen::MatrixXd& of_run) {
+        const IndexRange blocks = part.blocks_of(run);
+        for (int b = blocks.first; b < blocks.end; ++b) add_block(b, of_run);
+      }));
+  return {sums[0], sums[1], sums[2]};
 }
 
 /// Distance within which `share` of the energy lies (both N); +infinity where the reachable
@@ -67,17 +83,25 @@ double radius_holding(double share, const Eigen::VectorXd& energies,
 }  // namespace
 
 DecompositionError decomposition_error(const MeshSequence& sequence, const Components& components) {
-  require_same_size(sequence, components);
-  const double residual = std::sqrt(residual_norm2(sequence, components));
-  const Frames& frames = sequence.positions();
-  const Eigen::RowVectorXd mean = frames.colwise().mean();
-  const double variation = (frames.rowwise() - mean).norm();
+  return decomposition_error({sequence.rest(), sequence.triangles(), sequence.positions()},
+                             components, Reduction(sequence.vertices()));
+}
+
+DecompositionError decomposition_error(const SequencePart& sequence, const Components& components,
+                                       const Reduction& reduction) {
+  fix_product_blocking();
+  const auto vertices = reduction.part().mesh_vertices();
+  require_same_size(sequence, components, vertices);
+  const ErrorSums sums = error_sums(sequence, components, reduction);
+  const double residual = std::sqrt(sums.residual2), variation = std::sqrt(sums.variation2);
   const double diagonal = box_diagonal(components.rest);
+  const auto displacements = static_cast<double>(vertices) * components.count();
   DecompositionError error;
-  error.rms = residual / std::sqrt(static_cast<double>(frames.size()));
+  error.rms = residual / std::sqrt(3 * static_cast<double>(vertices) *
+                                   static_cast<double>(sequence.frames.rows()));
   error.relative_rms = diagonal > 0 ? error.rms / diagonal : 0;
   error.kg = variation > 0 ? 100 * residual / variation : 0;
-  error.sparsity = sparsity(components.displacements);
+  error.sparsity = displacements > 0 ? sums.zeros / displacements : 0;
   return error;
 }
 

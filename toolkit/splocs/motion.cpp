@@ -1,10 +1,11 @@
 #include "toolkit/splocs/motion.h"
 
-#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
+#include "toolkit/mesh/diameter.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/parallel.h"
 #include "toolkit/mesh/text.h"
@@ -12,45 +13,91 @@
 namespace mimetra {
 namespace {
 
-/// Mean of one frame's displacement coordinates, the sum of squared differences from it, and the
-/// length of the longest displacement.
-struct FrameSpread {
-  double mean = 0;
-  double squares = 0;
-  double furthest = 0;
+/// Of a frame's displacement coordinates, in some vertices: one column each.
+enum SpreadColumn {
+  kMean,
+  kSquares,   ///< sum of squared differences from the mean
+  kFurthest,  ///< length of the longest displacement
+  kCount,     ///< how many coordinates
+  kInfinite,  ///< 1 where a position is not a finite number, else 0
+  kSpreadColumns
 };
 
-std::vector<FrameSpread> spreads(const MeshSequence& sequence, int threads) {
-  const Eigen::Map<const Eigen::RowVectorXd> rest(sequence.rest().data(), sequence.rest().size());
-  std::vector<FrameSpread> spreads(sequence.frames());
-  parallel_for(sequence.frames(), threads, [&](int f) {
-    const Eigen::RowVectorXd displacement = sequence.positions().row(f) - rest;
-    const double mean = displacement.mean();
-    const PositionsView of_vertices(displacement.data(), sequence.vertices(), 3);
-    spreads[f] = {mean, (displacement.array() - mean).square().sum(),
-                  std::sqrt(of_vertices.rowwise().squaredNorm().maxCoeff())};
-  });
+/// The sum of squares of two sets about their common mean follows from both without cancellation.
+///
+/// [Chan, Golub, LeVeque. Updating Formulae and a Pairwise Algorithm for Computing Sample
+/// Variances. COMPSTAT 1982]
+void join_spreads(Eigen::MatrixXd& left, const Eigen::MatrixXd& right) {
+  const Eigen::ArrayXd both = left.col(kCount) + right.col(kCount);
+  const Eigen::ArrayXd difference = right.col(kMean) - left.col(kMean);
+  const Eigen::ArrayXd share = right.col(kCount).array() / both;
+  left.col(kSquares).array() +=
+      right.col(kSquares).array() + difference.square() * share * left.col(kCount).array();
+  left.col(kMean).array() += difference * share;
+  left.col(kFurthest) = left.col(kFurthest).cwiseMax(right.col(kFurthest));
+  left.col(kCount) = both;
+  left.col(kInfinite) = left.col(kInfinite).cwiseMax(right.col(kInfinite));
+}
+
+/// Of the displacements of a block (F x 3m) that came from `positions` of as many vertices.
+Eigen::MatrixXd spreads_of(const VertexBlocks<double>::Block& displacements,
+                           const Eigen::Ref<const Frames, 0, Eigen::OuterStride<>>& positions) {
+  Eigen::MatrixXd spreads(displacements.rows(), kSpreadColumns);
+  for (Eigen::Index f = 0; f < displacements.rows(); ++f) {
+    const auto row = displacements.row(f).array();
+    const double mean = row.mean(), squares = (row - mean).square().sum();
+    const Eigen::Index m = row.size() / 3;
+    const double furthest2 =
+        (row.segment(0, m).square() + row.segment(m, m).square() + row.segment(2 * m, m).square())
+            .maxCoeff();
+    const bool infinite = !std::isfinite(squares) && !positions.row(f).allFinite();
+    spreads.row(f) << mean, squares, std::sqrt(furthest2), static_cast<double>(row.size()),
+        infinite ? 1.0 : 0.0;
+  }
   return spreads;
 }
 
-void require_finite(const MeshSequence& sequence, const std::vector<FrameSpread>& spreads) {
-  for (int f = 0; f < sequence.frames(); ++f) {
-    if (std::isfinite(spreads[f].squares)) continue;
-    const bool overflow = sequence.positions().row(f).allFinite();
+/// Fills X with the displacements, and returns the spread of each frame over the mesh (F x
+/// kSpreadColumns), on all ranks.
+Eigen::MatrixXd displace(VertexBlocks<double>& X, const SequencePart& sequence,
+                         const Reduction& reduction) {
+  const VertexPart& part = reduction.part();
+  const auto of_block = [&](int b) {
+    const Eigen::Index first = X.first(b), m = X.size(b);
+    const auto rest = sequence.rest.middleRows(part.first() + first, m);
+    X[b].resize(X.rows(), 3 * m);
+    for (Eigen::Index f = 0; f < X.rows(); ++f) {
+      const PositionsView frame(sequence.frames.row(f).data() + 3 * first, m, 3);
+      VertexBlocks<double>::by_vertex(X[b], f) = frame - rest;
+    }
+    return spreads_of(X[b], sequence.frames.middleCols(3 * first, 3 * m));
+  };
+  const auto of_run = [&](int run, Eigen::MatrixXd& spreads) {
+    const IndexRange blocks = part.blocks_of(run);
+    spreads = of_block(blocks.first);
+    for (int b = blocks.first + 1; b < blocks.end; ++b) join_spreads(spreads, of_block(b));
+  };
+  return reduction.everywhere(reduction.joined(X.rows(), kSpreadColumns, of_run, join_spreads));
+}
+
+void require_finite(const Eigen::MatrixXd& spreads) {
+  for (Eigen::Index f = 0; f < spreads.rows(); ++f) {
+    if (std::isfinite(spreads(f, kSquares))) continue;
     throw std::invalid_argument(
         "frame " + std::to_string(f) +
-        (overflow ? " is so far from the rest pose that its energy is not a finite number"
-                  : " has a coordinate that is not a finite number"));
+        (spreads(f, kInfinite) == 0
+             ? " is so far from the rest pose that its energy is not a finite number"
+             : " has a coordinate that is not a finite number"));
   }
 }
 
 /// \pre finite spreads
-void require_motion(const MeshSequence& sequence, const std::vector<FrameSpread>& spreads) {
-  const double furthest = std::ranges::max(spreads, {}, &FrameSpread::furthest).furthest;
-  const double size = sequence.diameter();
+void require_motion(const Positions& rest, const Eigen::MatrixXd& spreads) {
+  const double furthest = spreads.col(kFurthest).maxCoeff();
+  const double size = diameter(rest);
   if (furthest > kLeastMotion * size) return;
   std::string found =
-      "nothing moves: all " + std::to_string(sequence.frames()) + " frames are the rest pose";
+      "nothing moves: all " + std::to_string(spreads.rows()) + " frames are the rest pose";
   if (furthest > 0) {
     found += " to " + readable(furthest) + ", " + readable(furthest / size) + " of its diameter";
   }
@@ -70,44 +117,34 @@ double scale_of(MotionScale unit, double mean, double variance) {
   return std::sqrt(variance);
 }
 
-VertexBlocks<double> scaled_blocks(const MeshSequence& sequence, double scale, int threads) {
-  VertexBlocks<double> X(sequence.frames(), sequence.vertices());
-  parallel_for(X.count(), threads, [&](int b) {
-    X[b].resize(X.rows(), 3 * X.size(b));
-    const auto rest = sequence.rest().middleRows(X.first(b), X.size(b));
-    for (int f = 0; f < sequence.frames(); ++f) {
-      VertexBlocks<double>::by_vertex(X[b], f) =
-          (sequence.frame(f).middleRows(X.first(b), X.size(b)) - rest) / scale;
-    }
-  });
-  return X;
-}
-
 }  // namespace
 
-Motion scaled_motion(const MeshSequence& sequence, MotionScale unit, int threads) {
-  const std::vector<FrameSpread> of_frames = spreads(sequence, threads);
-  require_finite(sequence, of_frames);
-  require_motion(sequence, of_frames);
-  const auto coordinates = static_cast<double>(sequence.rest().size());
+Motion scaled_motion(const SequencePart& sequence, MotionScale unit, const Reduction& reduction) {
+  VertexBlocks<double> X(sequence.frames.rows(), reduction.part());
+  const Eigen::MatrixXd spreads = displace(X, sequence, reduction);
+  require_finite(spreads);
+  require_motion(sequence.rest, spreads);
+  const auto coordinates = static_cast<double>(sequence.rest.size());
+  const auto frames = static_cast<double>(spreads.rows());
   double mean = 0;
-  for (const FrameSpread& spread : of_frames) mean += spread.mean / sequence.frames();
+  for (const double of_frame : spreads.col(kMean)) mean += of_frame / frames;
   double squares = 0;
-  for (const FrameSpread& spread : of_frames) {
-    squares += spread.squares + coordinates * (spread.mean - mean) * (spread.mean - mean);
+  for (const auto& spread : spreads.rowwise()) {
+    squares += spread[kSquares] + coordinates * (spread[kMean] - mean) * (spread[kMean] - mean);
   }
-  const double variance = squares / coordinates / sequence.frames();
+  const double variance = squares / coordinates / frames;
   const double scale = scale_of(unit, mean, variance);
   if (scale == 0) {
-    throw MismatchError("nothing moves: all " + std::to_string(sequence.frames()) +
+    throw MismatchError("nothing moves: all " + std::to_string(spreads.rows()) +
                         " frames are the rest pose, shifted by one amount along x, y and z");
   }
-  const double norm2 = coordinates * sequence.frames() * ((variance + mean * mean) / scale / scale);
+  const double norm2 = coordinates * frames * ((variance + mean * mean) / scale / scale);
   if (!std::isfinite(norm2)) {
     throw std::invalid_argument(
         "the frames are so far from the rest pose that their energy is not a finite number");
   }
-  return {scaled_blocks(sequence, scale, threads), scale, norm2};
+  parallel_for(X.count(), reduction.threads(), [&X, scale](int b) { X[b] /= scale; });
+  return {std::move(X), scale, norm2};
 }
 
 }  // namespace mimetra

@@ -1,20 +1,21 @@
 #pragma once
 
 #include "toolkit/splocs/decomposition_options.h"
+#include "toolkit/splocs/reduction.h"
 #include "toolkit/splocs/vertex_blocks.h"
 
 namespace mimetra {
 
 /// A sequence's displacements from its rest pose, divided by their scale.
 struct Motion {
-  VertexBlocks<double> X;  ///< F x 3N
+  VertexBlocks<double> X;  ///< F x 3n
   double scale = 1;        ///< in units of the mesh
-  double norm2 = 0;        ///< ||X||_F^2
+  double norm2 = 0;        ///< ||X||_F^2 over the whole mesh
 };
 
 /// Throws MismatchError where no vertex is further than kLeastMotion of the diameter from the
 /// rest pose in any frame, std::invalid_argument that names the first frame with a coordinate that
-/// is not finite.
-Motion scaled_motion(const MeshSequence& sequence, MotionScale scale, int threads);
+/// is not finite; on every rank the same.
+Motion scaled_motion(const SequencePart& sequence, MotionScale scale, const Reduction& reduction);
 
 }  // namespace mimetra

@@ -29,37 +29,45 @@ Eigen::VectorXd sums_over_axes(const Eigen::RowVectorXd& columns) {
 /// X - W C at the start: kept as X and the components so far, never as a matrix.
 class Residual {
  public:
-  Residual(const VertexBlocks<double>& X, const DecompositionOptions& options)
+  Residual(const VertexBlocks<double>& X, const DecompositionOptions& options,
+           const Reduction& reduction)
       : X_(X),
-        start_{{}, {options.count, X.vertices()}, Eigen::MatrixXd::Zero(X.rows(), options.count)},
+        start_{{}, {options.count, X.part()}, Eigen::MatrixXd::Zero(X.rows(), options.count)},
         energies_(X.vertices()),
         parts_(options.parts),
-        center_weights_(parts_.of_vertices()),
-        threads_(options.threads) {
-    parallel_for(X.count(), threads_, [this](int b) {
-      start_.components[b] = start_.components.zero_block(b);
-      Eigen::RowVectorXd squares = Eigen::RowVectorXd::Zero(X_[b].cols());
-      for (const auto& frame : X_[b].rowwise()) squares += frame.cwiseAbs2();
-      energies_.segment(X_.first(b), X_.size(b)) = sums_over_axes(squares);
-    });
-    nothing_left_ = kNothingLeft * energies_.maxCoeff();
+        reduction_(reduction) {
+    if (!parts_.empty()) {
+      center_weights_ = parts_.of_vertices().segment(X.part().first(), X.vertices());
+    }
+    const auto largest_energy = [this](int run, Eigen::MatrixXd& largest) {
+      const IndexRange blocks = X_.part().blocks_of(run);
+      for (int b = blocks.first; b < blocks.end; ++b) {
+        start_.components[b] = start_.components.zero_block(b);
+        largest(0) = std::max(largest(0), set_energies(b));
+      }
+    };
+    nothing_left_ =
+        kNothingLeft * reduction_.everywhere(reduction_.largest(1, 1, largest_energy))(0);
   }
 
   /// The vertex with the largest residual energy, weighted, or -1 where nothing is left.
   VertexIndex strongest() {
     for (;;) {
-      const VertexIndex v = strongest_vertex(energies_, center_weights_);
-      if (v < 0 || energies_[v] <= nothing_left_) return -1;
+      const VertexIndex v = strongest_vertex(energies_, center_weights_, reduction_);
+      if (v < 0) return -1;
+      const int owner = X_.part().owner(v);
+      const Eigen::Vector2d energy = reduction_.on(
+          owner, [&] { return Eigen::Vector2d(energies_[place(v)], at(v).squaredNorm()); });
+      if (energy[0] <= nothing_left_) return -1;
       // The energies carry the rounding of their updates, relative to what the vertex moved at
       // first: near the end only the residual itself tells whether it is really the largest.
-      const double energy = at(v).squaredNorm();
-      if (energy >= energies_[v]) return v;
-      energies_[v] = energy;
+      if (energy[1] >= energy[0]) return v;
+      if (owner == X_.part().rank()) energies_[place(v)] = energy[1];
     }
   }
 
   /// Residual of vertex v (F x 3). The components are subtracted one by one: X - W C in one go
-  /// rounds differently where they cancel, which shows in the weights.
+  /// rounds differently where they cancel, which shows in the weights. \pre the rank owns v
   Eigen::MatrixX3d at(VertexIndex v) const {
     Eigen::MatrixX3d residual = X_.vertex(v);
     const Eigen::MatrixX3d components = start_.components.vertex(v);
@@ -67,8 +75,8 @@ class Residual {
     return residual;
   }
 
-  /// Adds the component that the weights `w` explain best where `support` is below 1, and on other
-  /// parts of the surface as far as they count for less than the largest.
+  /// Adds the component that the weights `w` explain best where `support` (N) is below 1, and on
+  /// other parts of the surface as far as they count for less than the largest.
   void explain(VertexIndex center, const Eigen::VectorXd& w, Eigen::VectorXd support) {
     for (std::size_t v = 0; v < parts_.of_vertex.size(); ++v) {
       const int part = parts_.of_vertex[v];
@@ -77,11 +85,12 @@ class Residual {
     const int k = size();
     const double ww = w.squaredNorm();
     const Eigen::VectorXd overlap = start_.weights.leftCols(k).transpose() * w;
-    parallel_for(X_.count(), threads_, [&](int b) {
+    parallel_for(X_.count(), reduction_.threads(), [&](int b) {
       VertexBlocks<double>::Block& C = start_.components[b];
       Eigen::RowVectorXd wR = w.transpose() * X_[b];
       wR.noalias() -= overlap.transpose() * C.topRows(k);
-      const Eigen::ArrayXd share = 1 - support.segment(X_.first(b), X_.size(b)).array();
+      const Eigen::ArrayXd share =
+          1 - support.segment(X_.part().first() + X_.first(b), X_.size(b)).array();
       energies_.segment(X_.first(b), X_.size(b)).array() -=
           (2 * share - share.square()) * sums_over_axes(wR.array().square()).array() / ww;
       C.row(k) = wR.array() * share.transpose().replicate(1, 3) / ww;
@@ -98,12 +107,24 @@ class Residual {
  private:
   int size() const { return static_cast<int>(start_.centers.size()); }
 
+  /// Of an own vertex, among the own ones.
+  Eigen::Index place(VertexIndex v) const { return v - X_.part().first(); }
+
+  /// Energies of a block's vertices over all frames; returns the largest.
+  double set_energies(int b) {
+    Eigen::RowVectorXd squares = Eigen::RowVectorXd::Zero(X_[b].cols());
+    for (const auto& frame : X_[b].rowwise()) squares += frame.cwiseAbs2();
+    auto energies = energies_.segment(X_.first(b), X_.size(b));
+    energies = sums_over_axes(squares);
+    return energies.maxCoeff();
+  }
+
   const VertexBlocks<double>& X_;
   Start start_;
-  Eigen::VectorXd energies_;
+  Eigen::VectorXd energies_;  ///< of the own vertices (n)
   const PartWeights& parts_;
-  Eigen::VectorXd center_weights_;
-  int threads_;
+  Eigen::VectorXd center_weights_;  ///< of the own vertices, or empty
+  const Reduction& reduction_;
   double nothing_left_ = 0;
 };
 
@@ -136,14 +157,16 @@ Eigen::VectorXd oriented_weights(const Eigen::VectorXd& w, SignRule rule, bool n
 }
 
 Start greedy_start(const VertexBlocks<double>& X, const SupportFunction& support,
-                   const DecompositionOptions& options) {
-  Residual residual(X, options);
+                   const DecompositionOptions& options, const Reduction& reduction) {
+  Residual residual(X, options, reduction);
   for (int k = 0; k < options.count; ++k) {
     report_progress(options.progress, static_cast<double>(k) / options.count);
     const VertexIndex center = residual.strongest();
     if (center < 0) break;
-    const Eigen::VectorXd w = oriented_weights(strongest_motion(residual.at(center)),
-                                               options.sign_rule, options.nonnegative);
+    const Eigen::VectorXd w = reduction.on(X.part().owner(center), [&] {
+      return oriented_weights(strongest_motion(residual.at(center)), options.sign_rule,
+                              options.nonnegative);
+    });
     residual.explain(center, w, support({&center, 1}).col(0));
   }
   return std::move(residual).start();

@@ -25,35 +25,51 @@ SupportFunction support_function(DistanceFunction distances, int vertices, doubl
   };
 }
 
-SupportMaps::SupportMaps(SupportFunction support, int components, int vertices,
+SupportMaps::SupportMaps(SupportFunction support, int components, const VertexPart& part,
                          Eigen::VectorXd center_weights)
     : support_(std::move(support)),
       center_weights_(std::move(center_weights)),
       centers_(components, -1),
-      maps_(Frames::Ones(components, vertices)) {}
+      maps_(Frames::Ones(components, part.vertices())) {}
 
 template <typename Scalar>
-void SupportMaps::follow(const VertexBlocks<Scalar>& components) {
-  Eigen::VectorXd energies(components.vertices());
+void SupportMaps::follow(const VertexBlocks<Scalar>& components, const Reduction& reduction) {
+  const VertexPart& part = reduction.part();
+  const auto weighted_energies = [&](int b) {
+    Eigen::MatrixXd energies(components.rows(), components.size(b));
+    for (Eigen::Index k = 0; k < components.rows(); ++k) {
+      energies.row(k) = components.by_vertex(components[b], k)
+                            .rowwise()
+                            .squaredNorm()
+                            .transpose()
+                            .template cast<double>();
+    }
+    if (center_weights_.size() > 0) {
+      const auto weights =
+          center_weights_.segment(part.first() + components.first(b), components.size(b));
+      energies *= weights.asDiagonal();
+    }
+    return energies;
+  };
+  const std::vector<VertexIndex> centers =
+      reduction.argmax(static_cast<int>(components.rows()), weighted_energies);
   std::vector<Eigen::Index> moved;
   std::vector<VertexIndex> moved_to;
-  for (Eigen::Index k = 0; k < components.rows(); ++k) {
-    for (int b = 0; b < components.count(); ++b) {
-      energies.segment(components.first(b), components.size(b)) =
-          components.by_vertex(components[b], k).rowwise().squaredNorm().template cast<double>();
-    }
-    const VertexIndex center = strongest_vertex(energies, center_weights_);
-    if (center < 0 || center == centers_[k]) continue;
-    centers_[k] = center;
-    moved.push_back(k);
-    moved_to.push_back(center);
+  for (std::size_t k = 0; k < centers.size(); ++k) {
+    if (centers[k] < 0 || centers[k] == centers_[k]) continue;
+    centers_[k] = centers[k];
+    moved.push_back(static_cast<Eigen::Index>(k));
+    moved_to.push_back(centers[k]);
   }
   if (moved.empty()) return;
   const Eigen::MatrixXd maps = support_(moved_to);
-  for (std::size_t i = 0; i < moved.size(); ++i) maps_.row(moved[i]) = maps.col(i);
+  for (std::size_t i = 0; i < moved.size(); ++i) {
+    maps_.row(moved[i]) =
+        maps.col(static_cast<Eigen::Index>(i)).segment(part.first(), part.vertices());
+  }
 }
 
-template void SupportMaps::follow(const VertexBlocks<double>&);
-template void SupportMaps::follow(const VertexBlocks<float>&);
+template void SupportMaps::follow(const VertexBlocks<double>&, const Reduction&);
+template void SupportMaps::follow(const VertexBlocks<float>&, const Reduction&);
 
 }  // namespace mimetra

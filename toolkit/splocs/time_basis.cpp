@@ -1,13 +1,13 @@
 #include "toolkit/splocs/time_basis.h"
 
 #include <algorithm>
-#include <random>
+#include <cstdint>
 #include <utility>
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/QR>
 
-#include "toolkit/splocs/block_sums.h"
+#include "toolkit/mesh/parallel.h"
 
 namespace mimetra {
 namespace {
@@ -15,45 +15,81 @@ namespace {
 // Poses in the first sketch; each further one has twice as many.
 constexpr Eigen::Index kFirstSketch = 32;
 
-/// Random signs, the same in every run.
-Eigen::MatrixXd random_signs(Eigen::Index rows, Eigen::Index columns, int seed) {
-  std::mt19937 generator(static_cast<std::mt19937::result_type>(seed));
-  return Eigen::MatrixXd::NullaryExpr(rows, columns, [&] { return generator() & 1 ? 1.0 : -1.0; });
+/// The output of SplitMix64 for a state: every bit depends on every bit of it.
+///
+/// [Steele, Lea, Flood. Fast Splittable Pseudorandom Number Generators. OOPSLA 2014]
+std::uint64_t scrambled(std::uint64_t state) {
+  state = (state ^ (state >> 30)) * 0xbf58476d1ce4e5b9u;
+  state = (state ^ (state >> 27)) * 0x94d049bb133111ebu;
+  return state ^ (state >> 31);
+}
+
+/// A random sign for each coordinate of a block's `vertices` and each pose, which depends on these
+/// two alone: x of all vertices, then y, then z (3 vertices x poses). `first` is the first vertex.
+Eigen::MatrixXd random_signs(Eigen::Index first, Eigen::Index vertices, Eigen::Index poses) {
+  constexpr std::uint64_t kStep = 0x9e3779b97f4a7c15u;
+  Eigen::MatrixXd signs(3 * vertices, poses);
+  for (Eigen::Index pose = 0; pose < poses; ++pose) {
+    const std::uint64_t of_pose = scrambled(kStep * (static_cast<std::uint64_t>(pose) + 1));
+    for (Eigen::Index axis = 0; axis < 3; ++axis) {
+      for (Eigen::Index v = 0; v < vertices; ++v) {
+        const auto coordinate = static_cast<std::uint64_t>(3 * (first + v) + axis);
+        signs(axis * vertices + v, pose) = scrambled(of_pose + kStep * coordinate) & 1 ? 1.0 : -1.0;
+      }
+    }
+  }
+  return signs;
 }
 
 /// `poses` random mixtures of the vertices' motions, orthonormalised (F x poses).
-Eigen::MatrixXd sketched_basis(const VertexBlocks<double>& X, Eigen::Index poses, int threads) {
-  const auto parts =
-      sums_over_runs<Eigen::MatrixXd>(X.count(), threads, [&](int b, Eigen::MatrixXd& part) {
-        if (part.size() == 0) part.setZero(X.rows(), poses);
-        part.noalias() += X[b] * random_signs(X[b].cols(), poses, b);
-      });
-  Eigen::MatrixXd sketch = Eigen::MatrixXd::Zero(X.rows(), poses);
-  for (const Eigen::MatrixXd& part : parts) sketch += part;
-  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(sketch);
-  return qr.householderQ() * Eigen::MatrixXd::Identity(X.rows(), poses);
+Eigen::MatrixXd sketched_basis(const VertexBlocks<double>& X, Eigen::Index poses,
+                               const Reduction& reduction) {
+  const VertexPart& part = reduction.part();
+  const Eigen::MatrixXd sketch = reduction.sum(X.rows(), poses, [&](int run, Eigen::MatrixXd& sum) {
+    const IndexRange blocks = part.blocks_of(run);
+    for (int b = blocks.first; b < blocks.end; ++b) {
+      sum.noalias() += X[b] * random_signs(part.first() + X.first(b), X.size(b), poses);
+    }
+  });
+  return reduction.on_first([&]() -> Eigen::MatrixXd {
+    const Eigen::HouseholderQR<Eigen::MatrixXd> qr(sketch);
+    return qr.householderQ() * Eigen::MatrixXd::Identity(X.rows(), poses);
+  });
 }
 
 VertexBlocks<double> coordinates(const Eigen::MatrixXd& Q, const VertexBlocks<double>& X,
                                  int threads) {
-  VertexBlocks<double> B(Q.cols(), X.vertices());
+  VertexBlocks<double> B(Q.cols(), X.part());
   parallel_for(X.count(), threads, [&](int b) { B[b] = Q.transpose() * X[b]; });
   return B;
+}
+
+/// Eigenvalues of B B^T, ascending, and below each its vector.
+Eigen::MatrixXd directions_of(const VertexBlocks<double>& B, const Reduction& reduction) {
+  const Eigen::Index poses = B.rows();
+  const Eigen::MatrixXd gram = reduction.sum(poses, poses, [&](int run, Eigen::MatrixXd& sum) {
+    const IndexRange blocks = reduction.part().blocks_of(run);
+    for (int b = blocks.first; b < blocks.end; ++b) sum.noalias() += B[b] * B[b].transpose();
+  });
+  return reduction.on_first([&] {
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(gram);
+    Eigen::MatrixXd directions(1 + poses, poses);
+    directions << solver.eigenvalues().transpose(), solver.eigenvectors();
+    return directions;
+  });
 }
 
 }  // namespace
 
 std::optional<TimeBasis> time_basis(const VertexBlocks<double>& X, double norm2, double tolerance,
-                                    int threads) {
+                                    const Reduction& reduction) {
   const Eigen::Index most = X.rows() / 2;
   for (Eigen::Index poses = std::min(kFirstSketch, most), tried = 0; poses > tried;
        tried = poses, poses = std::min(2 * poses, most)) {
-    const Eigen::MatrixXd sketch = sketched_basis(X, poses, threads);
-    const VertexBlocks<double> B = coordinates(sketch, X, threads);
-    Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(poses, poses);
-    for (int b = 0; b < B.count(); ++b) gram.noalias() += B[b] * B[b].transpose();
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> directions(gram);
-    const Eigen::VectorXd& energies = directions.eigenvalues();
+    const Eigen::MatrixXd sketch = sketched_basis(X, poses, reduction);
+    const VertexBlocks<double> B = coordinates(sketch, X, reduction.threads());
+    const Eigen::MatrixXd directions = directions_of(B, reduction);
+    const Eigen::VectorXd energies = directions.row(0);
     double lost = norm2 - energies.sum();
     if (lost > tolerance * tolerance * norm2) continue;
     // Energies ascend: what may still be lost is lost from the front.
@@ -61,8 +97,8 @@ std::optional<TimeBasis> time_basis(const VertexBlocks<double>& X, double norm2,
     while (dropped + 1 < poses && lost + energies[dropped] <= tolerance * tolerance * norm2) {
       lost += energies[dropped++];
     }
-    const Eigen::MatrixXd kept = directions.eigenvectors().rightCols(poses - dropped);
-    return TimeBasis{sketch * kept, coordinates(kept, B, threads)};
+    const Eigen::MatrixXd kept = directions.bottomRightCorner(poses, poses - dropped);
+    return TimeBasis{sketch * kept, coordinates(kept, B, reduction.threads())};
   }
   return std::nullopt;
 }

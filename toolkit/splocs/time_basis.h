@@ -2,6 +2,7 @@
 
 #include <optional>
 
+#include "toolkit/splocs/reduction.h"
 #include "toolkit/splocs/vertex_blocks.h"
 
 namespace mimetra {
@@ -9,7 +10,7 @@ namespace mimetra {
 /// Motion in a basis of few poses: X ~ Q B. Products with X need only B then.
 struct TimeBasis {
   Eigen::MatrixXd Q;       ///< F x R, orthonormal columns
-  VertexBlocks<double> B;  ///< Q^T X, R x 3N
+  VertexBlocks<double> B;  ///< Q^T X, R x 3n
 };
 
 /// Smallest tolerance that the sums, which cancel, can tell from zero.
@@ -21,6 +22,6 @@ constexpr double kLeastBasisTolerance = 1e-6;
 ///
 /// [Halko, Martinsson, Tropp. Finding Structure with Randomness. SIAM Review 53(2), 2011]
 std::optional<TimeBasis> time_basis(const VertexBlocks<double>& X, double norm2, double tolerance,
-                                    int threads);
+                                    const Reduction& reduction);
 
 }  // namespace mimetra

@@ -5,32 +5,30 @@
 #include <utility>
 #include <vector>
 
-#include "toolkit/mesh/mesh_sequence.h"
+#include "toolkit/splocs/vertex_part.h"
 
 namespace mimetra {
 
-/// Displacements of all vertices in R rows (R x 3N), cut into blocks of vertices, so that what
-/// happens to one block happens in a core's cache. Internal to the decomposition.
+/// Displacements of the n vertices that a rank owns in R rows (R x 3n), cut into blocks of
+/// vertices, so that what happens to one block happens in a core's cache. On one rank they are all
+/// vertices of the mesh. Internal to the decomposition.
 template <typename Scalar>
 class VertexBlocks {
  public:
-  /// R x 3n: x of the block's n vertices, then y, then z, side by side for vector instructions.
+  /// R x 3m: x of the block's m vertices, then y, then z, side by side for vector instructions.
   using Block = Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-
-  /// Vertices in a block: wide products, and all that ADMM needs of them in a megabyte of cache.
-  /// Fixed, so that sums round the same for every number of threads.
-  static constexpr Eigen::Index kVertices = 192;
 
   VertexBlocks() = default;
   /// Blocks without memory, for whoever fills them one by one.
-  VertexBlocks(Eigen::Index rows, Eigen::Index vertices)
-      : rows_(rows), vertices_(vertices), blocks_((vertices + kVertices - 1) / kVertices) {}
-  /// From R x 3N.
-  explicit VertexBlocks(const Frames& rows) : VertexBlocks(rows.rows(), rows.cols() / 3) {
+  VertexBlocks(Eigen::Index rows, const VertexPart& part)
+      : rows_(rows), part_(part), blocks_(part.blocks()) {}
+  /// All vertices of a mesh, from R x 3N.
+  explicit VertexBlocks(const Frames& rows)
+      : VertexBlocks(rows.rows(), VertexPart(rows.cols() / 3)) {
     for (int b = 0; b < count(); ++b) {
       Block& block = blocks_[b] = zero_block(b);
       for (Eigen::Index row = 0; row < rows_; ++row) {
-        by_vertex(block, row) = PositionsView(rows.row(row).data(), vertices_, 3)
+        by_vertex(block, row) = PositionsView(rows.row(row).data(), vertices(), 3)
                                     .middleRows(first(b), size(b))
                                     .template cast<Scalar>();
       }
@@ -38,17 +36,19 @@ class VertexBlocks {
   }
 
   Eigen::Index rows() const { return rows_; }
-  Eigen::Index vertices() const { return vertices_; }
+  const VertexPart& part() const { return part_; }
+  /// n.
+  Eigen::Index vertices() const { return part_.vertices(); }
   int count() const { return static_cast<int>(blocks_.size()); }
-  /// First vertex of block b, and its number of vertices.
-  Eigen::Index first(int b) const { return b * kVertices; }
-  Eigen::Index size(int b) const { return std::min(kVertices, vertices_ - first(b)); }
+  /// As first_of() and size_of() of the part.
+  Eigen::Index first(int b) const { return part_.first_of(b); }
+  Eigen::Index size(int b) const { return part_.size_of(b); }
 
   Block& operator[](int b) { return blocks_[b]; }
   const Block& operator[](int b) const { return blocks_[b]; }
   Block zero_block(int b) const { return Block::Zero(rows_, 3 * size(b)); }
 
-  /// A row of `block` with one vertex a row, n x 3.
+  /// A row of `block` with one vertex a row, m x 3.
   static auto by_vertex(Block& block, Eigen::Index row) {
     return Eigen::Map<Eigen::Matrix<Scalar, Eigen::Dynamic, 3>>(block.row(row).data(),
                                                                 block.cols() / 3, 3);
@@ -58,18 +58,19 @@ class VertexBlocks {
                                                                       block.cols() / 3, 3);
   }
 
-  /// All rows of one vertex (R x 3).
+  /// All rows of one vertex of the mesh (R x 3). \pre the rank owns it
   Eigen::Matrix<Scalar, Eigen::Dynamic, 3> vertex(VertexIndex v) const {
-    const int b = static_cast<int>(v / kVertices);
-    return blocks_[b](Eigen::all, Eigen::seqN(v - first(b), 3, size(b)));
+    const Eigen::Index place = v - part_.first();
+    const int b = static_cast<int>(place / VertexPart::kBlock);
+    return blocks_[b](Eigen::all, Eigen::seqN(place - first(b), 3, size(b)));
   }
 
-  /// As R x 3N.
+  /// As R x 3n.
   Frames frames() const {
-    Frames frames(rows_, 3 * vertices_);
+    Frames frames(rows_, 3 * vertices());
     for (int b = 0; b < count(); ++b) {
       for (Eigen::Index row = 0; row < rows_; ++row) {
-        Eigen::Map<Positions>(frames.row(row).data(), vertices_, 3).middleRows(first(b), size(b)) =
+        Eigen::Map<Positions>(frames.row(row).data(), vertices(), 3).middleRows(first(b), size(b)) =
             by_vertex(blocks_[b], row).template cast<double>();
       }
     }
@@ -79,7 +80,7 @@ class VertexBlocks {
   /// In another precision; each block is released once it is taken over.
   template <typename Other>
   VertexBlocks<Other> cast() && {
-    VertexBlocks<Other> result(rows_, vertices_);
+    VertexBlocks<Other> result(rows_, part_);
     for (int b = 0; b < count(); ++b) {
       if constexpr (std::is_same_v<Other, Scalar>) {
         result[b] = std::move(blocks_[b]);
@@ -93,7 +94,7 @@ class VertexBlocks {
 
  private:
   Eigen::Index rows_ = 0;
-  Eigen::Index vertices_ = 0;
+  VertexPart part_;
   std::vector<Block> blocks_;
 };
 

@@ -1,21 +1,22 @@
 #include "toolkit/splocs/vertex_energies.h"
 
-#include <algorithm>
-
-#include "toolkit/mesh/near_tie.h"
+#include "toolkit/splocs/reduction.h"
 
 namespace mimetra {
 
 VertexIndex strongest_vertex(const Eigen::Ref<const Eigen::VectorXd>& energies,
                              const Eigen::VectorXd& weights) {
-  const Eigen::VectorXd weighted =
-      weights.size() > 0 ? energies.cwiseProduct(weights) : Eigen::VectorXd(energies);
-  const double largest = weighted.size() > 0 ? weighted.maxCoeff() : 0;
-  if (!(largest > 0)) return -1;
-  const double as_large = (1 - kNearTie) * largest;
-  return static_cast<VertexIndex>(
-      std::ranges::find_if(weighted, [as_large](double x) { return x >= as_large; }) -
-      weighted.begin());
+  return strongest_vertex(energies, weights, Reduction(energies.size()));
+}
+
+VertexIndex strongest_vertex(const Eigen::Ref<const Eigen::VectorXd>& energies,
+                             const Eigen::VectorXd& weights, const Reduction& reduction) {
+  const auto of_block = [&](int b) -> Eigen::MatrixXd {
+    const Eigen::Index first = reduction.part().first_of(b), n = reduction.part().size_of(b);
+    if (weights.size() == 0) return energies.segment(first, n).transpose();
+    return energies.segment(first, n).cwiseProduct(weights.segment(first, n)).transpose();
+  };
+  return reduction.argmax(1, of_block).front();
 }
 
 Eigen::VectorXd vertex_energies(const Eigen::Ref<const Eigen::RowVectorXd>& component) {
