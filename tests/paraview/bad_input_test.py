@@ -167,4 +167,4 @@ class BadInput(HostTest):
 
 
 if __name__ == "__main__":
-    unittest.main()
+    run_tests()

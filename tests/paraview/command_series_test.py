@@ -36,4 +36,4 @@ class CommandSeries(HostTest):
 
 
 if __name__ == "__main__":
-    unittest.main()
+    run_tests()

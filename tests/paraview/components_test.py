@@ -68,4 +68,4 @@ class SparseComponents(HostTest):
 
 
 if __name__ == "__main__":
-    unittest.main()
+    run_tests()

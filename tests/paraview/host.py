@@ -4,6 +4,7 @@ import json
 import os
 import pathlib
 import subprocess
+import sys
 import tempfile
 import unittest
 
@@ -22,6 +23,13 @@ def mimetra(*arguments):
     done = subprocess.run([os.environ["MIMETRA"], *map(str, arguments)], check=True,
                           capture_output=True, text=True)
     return done.stdout
+
+
+def environment_of_its_own(**more):
+    """For a program that is no process of the server that this test may run on."""
+    kept = {name: value for name, value in os.environ.items()
+            if not name.startswith(("OMPI_", "PMIX_", "PMI_"))}
+    return {**kept, **more}
 
 
 class Messages:
@@ -126,6 +134,12 @@ def write_mesh(path, mesh):
     writer.SetInputData(mesh)
     writer.SetDataModeToBinary()  # newer versions of libexpat let VTK read no appended data
     writer.Write()
+
+
+def run_tests():
+    """As unittest.main(), but what passes ends as scripts do: processes of a server end together."""
+    if not unittest.main(exit=False).result.wasSuccessful():
+        sys.exit(1)
 
 
 class HostTest(unittest.TestCase):

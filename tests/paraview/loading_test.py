@@ -85,4 +85,4 @@ class Plugin(HostTest):
 
 
 if __name__ == "__main__":
-    unittest.main()
+    run_tests()

@@ -176,4 +176,4 @@ class Operations(HostTest):
 
 
 if __name__ == "__main__":
-    unittest.main()
+    run_tests()

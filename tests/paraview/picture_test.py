@@ -39,4 +39,4 @@ class Picture(HostTest):
 
 
 if __name__ == "__main__":
-    unittest.main()
+    run_tests()

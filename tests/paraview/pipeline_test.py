@@ -185,4 +185,4 @@ class Pipeline(HostTest):
 
 
 if __name__ == "__main__":
-    unittest.main()
+    run_tests()

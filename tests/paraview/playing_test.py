@@ -69,4 +69,4 @@ class Playing(HostTest):
 
 
 if __name__ == "__main__":
-    unittest.main()
+    run_tests()

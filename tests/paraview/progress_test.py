@@ -69,4 +69,4 @@ class Progress(HostTest):
 
 
 if __name__ == "__main__":
-    unittest.main()
+    run_tests()

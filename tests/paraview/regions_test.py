@@ -134,4 +134,4 @@ class RegionsOfInterest(HostTest):
 
 
 if __name__ == "__main__":
-    unittest.main()
+    run_tests()

@@ -86,4 +86,4 @@ class MimetraSequence(HostTest):
 
 
 if __name__ == "__main__":
-    unittest.main()
+    run_tests()

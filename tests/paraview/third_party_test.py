@@ -178,7 +178,7 @@ class ThirdPartyOperations(HostTest):
         script.write_text("from paraview import simple\nsimple.mimetraSmooth\n")
         path = f"{folder}:{os.environ['MIMETRA_PLUGIN_PATH']}"
         done = subprocess.run([os.environ["PVPYTHON"], str(script)], capture_output=True, text=True,
-                              env={**os.environ, "MIMETRA_PLUGIN_PATH": path})
+                              env=environment_of_its_own(MIMETRA_PLUGIN_PATH=path))
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertIn(f"plugins: {folder}/garbage.so: ", done.stderr)
         self.assertIn("it is left out", done.stderr)
@@ -203,4 +203,4 @@ class ThirdPartyOperations(HostTest):
 
 
 if __name__ == "__main__":
-    unittest.main()
+    run_tests()

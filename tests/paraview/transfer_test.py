@@ -79,6 +79,29 @@ class RegionTransfer(HostTest):
         self.assert_frames(filter, np.load(out))
         self.assertEqual(decompositions(filter), 0)
 
+    def test_takes_a_point_array_as_how_much_of_the_motion_each_vertex_takes(self):
+        source = self.source()
+        count = at(source, 0).GetNumberOfPoints()
+        weights = np.where(np.arange(count) < count // 3, 1.0, np.where(
+            np.arange(count) < count // 2, 0.25, 0.0))
+        listed, out = self.sample / "painted.txt", self.sample / "painted.npy"
+        np.savetxt(listed, weights)
+        regions = self.sample / "painted.pvd"
+        mimetra("transfer", self.sample.take, self.model, "--paint", listed, "--falloff", "0.05",
+                "-o", out, "--regions-out", regions)
+        painted = simple.Calculator(
+            Input=simple.GenerateIds(Input=source), ResultArrayName="lips",
+            Function=f"if(PointIds < {count // 3}, 1, if(PointIds < {count // 2}, 0.25, 0))")
+        filter = simple.RegionTransfer(Input=painted, TargetFile=self.model, Paint="field:lips",
+                                       Falloff="0.05")
+        self.assert_frames(filter, np.load(out))
+        # Files hold fields in single precision.
+        expected = point_array(at(simple.PVDReader(FileName=str(regions)), 0), "weight")
+        np.testing.assert_allclose(point_array(at(filter, 0), "weight"), expected, atol=1e-7)
+        between = np.count_nonzero((expected > 0) & (expected < 1))
+        self.assertGreater(between, count // 2 - count // 3)
+        self.assertEqual(decompositions(filter), 0)
+
     def test_decomposes_once_however_the_solution_changes(self):
         filter = simple.RegionTransfer(Input=self.source(), TargetFile=self.model, K=12)
         shown = [at(filter, time) for time in self.times()]
@@ -143,4 +166,4 @@ class RegionTransfer(HostTest):
 
 
 if __name__ == "__main__":
-    unittest.main()
+    run_tests()

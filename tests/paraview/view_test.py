@@ -45,4 +45,4 @@ class View(HostTest):
 
 
 if __name__ == "__main__":
-    unittest.main()
+    run_tests()

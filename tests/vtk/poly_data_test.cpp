@@ -64,6 +64,12 @@ TEST_F(PolyData, CarriesTheRestPoseToTheLastBit) {
   EXPECT_TRUE(rest_of(*data_, positions, "mesh")->isApprox(rest, 1e-6));  // in single precision
   set_rest(*data_, rest);
   EXPECT_TRUE(*rest_of(*data_, positions, "mesh") == rest);
+  put_rest_on_points(*data_);
+  EXPECT_FALSE(data_->GetFieldData()->HasArray(kRestPose));
+  EXPECT_TRUE(*rest_of(*data_, positions, "mesh") == rest);
+  for (const Field& field : fields_of(*data_, faces())) EXPECT_NE(field.name, kRestPose);
+  set_rest(*data_, {});
+  EXPECT_FALSE(data_->GetPointData()->HasArray(kRestPose));
 }
 
 TEST_F(PolyData, HasNoRestPoseWhereAFilterHasTakenVerticesAway) {

@@ -151,8 +151,11 @@ std::optional<Positions> rest_of(vtkPolyData& data, const Positions& positions,
     return array && array->GetNumberOfComponents() == 3 &&
            array->GetNumberOfTuples() == positions.rows();
   };
-  vtkDataArray* rest = data.GetFieldData()->GetArray(kRestPose);
-  if (of_this_mesh(rest)) return finite(values_of(*rest), name, kVertex);
+  vtkFieldData* const carriers[] = {data.GetPointData(), data.GetFieldData()};
+  for (vtkFieldData* carrier : carriers) {
+    vtkDataArray* rest = carrier->GetArray(kRestPose);
+    if (of_this_mesh(rest)) return finite(values_of(*rest), name, kVertex);
+  }
   vtkDataArray* moved = data.GetPointData()->GetArray(kDisplacement);
   if (of_this_mesh(moved)) return finite(positions - values_of(*moved), name, kVertex);
   return {};
@@ -165,7 +168,7 @@ std::vector<Field> fields_of(vtkPolyData& data, const Connectivity& connectivity
       vtkDataArray* array = vtkDataArray::SafeDownCast(arrays.GetAbstractArray(i));
       if (!array || !array->GetName()) continue;
       const std::string name = array->GetName();
-      if (name == kDisplacement || name == kDisplacementLength) continue;
+      if (name == kDisplacement || name == kDisplacementLength || name == kRestPose) continue;
       const bool integer = array->GetDataType() != VTK_FLOAT && array->GetDataType() != VTK_DOUBLE;
       fields.push_back({name, location, placed(values_of(*array)), integer});
     }
@@ -218,8 +221,16 @@ void add_displacement(vtkPolyData& data, const Eigen::MatrixXd& displacement) {
 }
 
 void set_rest(vtkPolyData& data, const std::optional<Positions>& rest) {
+  data.GetPointData()->RemoveArray(kRestPose);
   data.GetFieldData()->RemoveArray(kRestPose);
   if (rest) data.GetFieldData()->AddArray(double_array(kRestPose, *rest));
+}
+
+void put_rest_on_points(vtkPolyData& data) {
+  vtkDataArray* rest = data.GetFieldData()->GetArray(kRestPose);
+  if (!rest || rest->GetNumberOfTuples() != data.GetNumberOfPoints()) return;
+  data.GetPointData()->AddArray(rest);
+  data.GetFieldData()->RemoveArray(kRestPose);
 }
 
 }  // namespace mimetra

@@ -18,12 +18,12 @@ Positions positions_of(vtkPolyData& data, const std::string& name);
 /// The polygons; vertices and lines are left out. Throws IoError where there are none, or strips.
 Connectivity connectivity_of(vtkPolyData& data, const std::string& name);
 
-/// The rest pose of data at `positions`: the field data kRestPose, or the positions
+/// The rest pose of data at `positions`: the point or field data kRestPose, or the positions
 /// without the point data kDisplacement. Throws IoError where a vertex of it is not finite.
 std::optional<Positions> rest_of(vtkPolyData& data, const Positions& positions,
                                  const std::string& name);
 
-/// All numeric point data, and cell data of the polygons, save displacements.
+/// All numeric point data, and cell data of the polygons, save displacements and rest poses.
 std::vector<Field> fields_of(vtkPolyData& data, const Connectivity& connectivity);
 
 /// A point array (N x c), or nothing.
@@ -43,8 +43,11 @@ constexpr const char* kDisplacement = "displacement";
 constexpr const char* kDisplacementLength = "displacement_length";
 void add_displacement(vtkPolyData& data, const Eigen::MatrixXd& displacement);
 
-/// Field data (N x 3, double) that carry the rest pose along a pipeline.
+/// Field data (N x 3, double) that carry the rest pose along a pipeline. As point data, of the
+/// same name, it stays with its points where they are distributed to several processes.
 constexpr const char* kRestPose = "mimetra_rest";
 void set_rest(vtkPolyData& data, const std::optional<Positions>& rest);
+/// Makes a rest pose that is field data point data.
+void put_rest_on_points(vtkPolyData& data);
 
 }  // namespace mimetra

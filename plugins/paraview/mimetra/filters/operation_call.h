@@ -29,6 +29,11 @@ class OperationCall {
 
   /// True for an input whose fields are looked at.
   bool looks_at_fields(const std::string& input) const;
+  /// What names points by their numbers, as a dialog labels it: a parameter, a file, or another
+  /// mesh than the first, whose points are in the same order; none where nothing does.
+  std::optional<std::string> told_by_numbers() const;
+  /// True where distances do not cross from one vertex to another at its position.
+  bool keeps_vertices_apart() const;
   /// What an input was given, or null.
   const mimetra::Data* given(const std::string& input) const;
   /// Gives an input its value. True where it is another one than before.

@@ -24,12 +24,15 @@ void expect_count(const std::string& name, const char* what, int found, int expe
 
 }  // namespace
 
+std::invalid_argument no_mesh_error(const std::string& found) {
+  return std::invalid_argument("expected a surface of polygons (vtkPolyData), found " + found +
+                               "; apply Extract Surface or Merge Blocks first");
+}
+
 vtkPolyData& mesh_of(vtkDataObject* data) {
   vtkPolyData* mesh = vtkPolyData::SafeDownCast(data);
   if (mesh) return *mesh;
-  throw std::invalid_argument("expected a surface of polygons (vtkPolyData), found " +
-                              std::string(data ? data->GetClassName() : "nothing") +
-                              "; apply Extract Surface or Merge Blocks first");
+  throw no_mesh_error(data ? data->GetClassName() : "nothing");
 }
 
 void TimeSteps::begin(std::vector<double> times, bool with_fields) {

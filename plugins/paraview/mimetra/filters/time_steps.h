@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -8,6 +9,9 @@
 
 class vtkDataObject;
 class vtkPolyData;
+
+/// What is wrong with data of a class that is no mesh.
+std::invalid_argument no_mesh_error(const std::string& found);
 
 /// The mesh of a data object. Throws std::invalid_argument where it is none.
 vtkPolyData& mesh_of(vtkDataObject* data);

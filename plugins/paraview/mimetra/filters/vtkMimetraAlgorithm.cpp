@@ -71,7 +71,7 @@ const Outcome& vtkMimetraAlgorithm::outcome(double begin) {
   return call_->run(std::move(loaded), wanted);
 }
 
-vtkMimetraAlgorithm::Attempt vtkMimetraAlgorithm::attempt(const std::function<void()>& work) {
+Attempt vtkMimetraAlgorithm::attempt(const std::function<void()>& work) {
   try {
     work();
     return Attempt::done;

@@ -9,6 +9,8 @@
 
 #include <MimetraFiltersModule.h>
 
+#include "plugins/paraview/mimetra/filters/attempt.h"
+
 class OperationCall;
 namespace mimetra {
 struct Invocation;
@@ -47,7 +49,6 @@ class MIMETRAFILTERS_EXPORT vtkMimetraAlgorithm : public vtkPolyDataAlgorithm {
   /// The operation's outcome, kept while it holds; its progress is shown from `begin` on. Throws
   /// what the operation throws.
   const mimetra::Outcome& outcome(double begin = 0);
-  enum class Attempt { done, aborted, failed };
   /// Calls `work`; what it throws is shown as an error, save an abort.
   Attempt attempt(const std::function<void()>& work);
   /// Shows progress; false to stop.

@@ -1,5 +1,8 @@
 #include "plugins/paraview/mimetra/filters/vtkMimetraFilter.h"
 
+#include <algorithm>
+#include <new>
+
 #include <vtkAlgorithmOutput.h>
 #include <vtkDataObject.h>
 #include <vtkInformation.h>
@@ -10,6 +13,7 @@
 
 #include "plugins/paraview/mimetra/filters/filter_proxies.h"
 #include "plugins/paraview/mimetra/filters/operation_call.h"
+#include "plugins/paraview/mimetra/filters/piece_exchange.h"
 #include "plugins/paraview/mimetra/filters/time_steps.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/vtk/poly_data.h"
@@ -72,6 +76,9 @@ constexpr double kReading = 0.3;
 vtkMimetraFilter::vtkMimetraFilter(const char* operation, Takes takes)
     : vtkMimetraAlgorithm(std::make_unique<OperationCall>(operation)),
       takes_(takes),
+      exchange_(std::make_unique<PieceExchange>([this](int port, std::optional<double> time) {
+        return Incoming{input_at(port, time), times_of(*GetInputInformation(port, 0))};
+      })),
       steps_(std::make_unique<TimeSteps>()) {
   name_inputs();
 }
@@ -83,8 +90,8 @@ void vtkMimetraFilter::become(std::unique_ptr<OperationCall> call) {
     throw std::invalid_argument(call->operation().name + ": begins with no mesh");
   }
   set_call(std::move(call));
-  collected_.reset();
   name_inputs();
+  forget_inputs();
 }
 
 void vtkMimetraFilter::name_inputs() {
@@ -111,7 +118,7 @@ int vtkMimetraFilter::RequestInformation(vtkInformation*, vtkInformationVector**
   return 1;
 }
 
-int vtkMimetraFilter::RequestUpdateExtent(vtkInformation*, vtkInformationVector** inputs,
+int vtkMimetraFilter::RequestUpdateExtent(vtkInformation* request, vtkInformationVector** inputs,
                                           vtkInformationVector* outputs) {
   vtkInformation* in = inputs[0]->GetInformationObject(0);
   const auto time = asked_time(*in, *outputs->GetInformationObject(0));
@@ -125,15 +132,51 @@ int vtkMimetraFilter::RequestUpdateExtent(vtkInformation*, vtkInformationVector*
       mesh->Remove(Pipeline::UPDATE_TIME_STEP());
     }
   }
+  const int port = std::max(0, request->Get(vtkExecutive::FROM_OUTPUT_PORT()));
+  begun_ = begin_request(*outputs->GetInformationObject(port));
   return 1;
+}
+
+// Now, because a process whose input fails is not asked for data, and all others would wait for it.
+bool vtkMimetraFilter::begin_request(vtkInformation& output) {
+  bool begun = false;
+  attempt([&] {
+    if (exchange_->begin(output)) forget_inputs();
+    const bool updated = !exchange_->in_pieces() || update_inputs();
+    begun = exchange_->all(updated);
+    if (!begun && updated && exchange_->is_first()) {
+      throw IoError("the input", "cannot be read by another process, whose message tells why");
+    }
+  });
+  return begun;
+}
+
+bool vtkMimetraFilter::update_inputs() {
+  for (int port = 0; port < GetNumberOfInputPorts(); ++port) {
+    if (GetNumberOfInputConnections(port) == 0) continue;
+    if (!GetInputExecutive(port, 0)->Update(GetInputConnection(port, 0)->GetIndex())) return false;
+  }
+  return true;
+}
+
+void vtkMimetraFilter::forget_inputs() {
+  collected_.reset();
+  for (MeshPort& each : mesh_ports_) each.given.reset();
 }
 
 int vtkMimetraFilter::RequestData(vtkInformation*, vtkInformationVector** inputs,
                                   vtkInformationVector* outputs) {
   begin_execution();
+  if (!begun_) return 1;
+  if (!exchange_->is_first()) {
+    attempt([&] {
+      if (exchange_->serve(*outputs) == Attempt::aborted) throw Cancelled();
+    });
+    return 1;
+  }
   const vtkMTimeType now = changed_at(GetExecutive());
-  if (failed_at_ == now && takes_ == Takes::all_time_steps) return 1;
-  const Attempt attempted = attempt([&] {
+  const bool fails_again = failed_at_ == now && takes_ == Takes::all_time_steps;
+  const Attempt attempted = fails_again ? Attempt::failed : attempt([&] {
     vtkInformation& in = *inputs[0]->GetInformationObject(0);
     const auto time = asked_time(in, *outputs->GetInformationObject(0));
     give_meshes(inputs);
@@ -141,6 +184,9 @@ int vtkMimetraFilter::RequestData(vtkInformation*, vtkInformationVector** inputs
     compute_and_show(time, outputs);
   });
   failed_at_ = attempted == Attempt::failed ? now : 0;
+  attempt([&] {
+    if (!exchange_->end(attempted, *outputs)) throw std::bad_alloc();
+  });
   return 1;
 }
 
@@ -149,20 +195,57 @@ void vtkMimetraFilter::collect(vtkInformation& in, std::optional<double> shown) 
   const Origin origin = origin_of(0);
   if (all && collected_ == origin) return;
   collected_.reset();
+  exchange_->forget(0);
   if (all) refuse_continuous(in);
   steps_->begin(all ? times_of(in) : std::vector<double>(), call().looks_at_fields(input_));
   while (!steps_->complete()) {
-    steps_->add(input_at(0, all ? steps_->next_time() : shown));
+    steps_->add(exchange_->input_at(0, all ? steps_->next_time() : shown));
     if (!show_progress(kReading * steps_->share())) throw Cancelled();
   }
   call().give(input_, {input_, steps_->taken()});
   collected_ = origin;
 }
 
+void vtkMimetraFilter::expect_order() {
+  bool ordered = true;
+  for (int port = 0; port < GetNumberOfInputPorts(); ++port) {
+    ordered = ordered && exchange_->is_ordered(port);
+  }
+  const auto what = ordered ? std::nullopt : call().told_by_numbers();
+  if (!what) return;
+  throw UsageError("'" + *what + "' goes by the numbers of points, which say nothing while " +
+                   std::to_string(exchange_->processes()) +
+                   " processes hold pieces of the mesh without global ids; use Generate Global "
+                   "Ids before the mesh is distributed, or one process");
+}
+
+void vtkMimetraFilter::tell_of_seams() {
+  std::size_t joined = 0;
+  for (int port = 0; port < GetNumberOfInputPorts(); ++port) joined += exchange_->joined(port);
+  if (joined == 0) return;
+  const std::string found = std::to_string(joined) +
+                            " points at the borders of pieces without global ids are at one "
+                            "position with another piece's";
+  if (call().keeps_vertices_apart()) {
+    throw UsageError(found +
+                     ", and whether 'Weld' none keeps them apart or they are one point "
+                     "cannot be known; use Generate Global Ids before the mesh is "
+                     "distributed, or one process");
+  }
+  if (told_of_ == origin_of(0)) return;
+  told_of_ = origin_of(0);
+  vtkWarningMacro(<< found
+                  << ", and were joined; seams of the mesh itself along these borders are "
+                     "closed, too. Use Generate Global Ids before the mesh is distributed "
+                     "to keep them");
+}
+
 void vtkMimetraFilter::compute_and_show(std::optional<double> time, vtkInformationVector* outputs) {
+  expect_order();
+  tell_of_seams();
   const Outcome& computed = outcome(kReading);
   // Others that share the input may have left it at another time.
-  vtkPolyData& mesh = mesh_of(input_at(0, time));
+  vtkPolyData& mesh = mesh_of(exchange_->input_at(0, time));
   steps_->expect_counts_of(mesh, time);
   const vtkMTimeType now = changed_at(GetExecutive());
   const std::array cells = {mesh.GetNumberOfVerts(), mesh.GetNumberOfLines(),
@@ -207,6 +290,7 @@ void vtkMimetraFilter::give_meshes(vtkInformationVector** inputs) {
     if (each.given == origin) continue;
     each.given.reset();
     each.mesh = nullptr;
+    exchange_->forget(port);
     if (origin == Origin()) {
       call().take_back(each.input);
     } else {
@@ -214,7 +298,7 @@ void vtkMimetraFilter::give_meshes(vtkInformationVector** inputs) {
       const std::string name = "the " + each.input;
       const auto first = first_time_of(*inputs[port]->GetInformationObject(0));
       each.mesh = vtkSmartPointer<vtkPolyData>::New();
-      each.mesh->ShallowCopy(&mesh_of(input_at(port, first)));
+      each.mesh->ShallowCopy(&mesh_of(exchange_->input_at(port, first)));
       call().give(each.input, {name, model_of(*each.mesh, name)});
     }
     each.given = origin;

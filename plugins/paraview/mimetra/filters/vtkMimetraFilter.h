@@ -11,13 +11,14 @@
 
 #include "plugins/paraview/mimetra/filters/vtkMimetraAlgorithm.h"
 
+class PieceExchange;
 class TimeSteps;
 class vtkAlgorithmOutput;
 class vtkDataObject;
 
 /// A filter that gives its operation all time steps of its input as one sequence (or, for some, the
 /// one that is shown), and meshes at further ports as models; it shows what came of it at the time
-/// asked for.
+/// asked for. On a server of several processes the first one does so, for the pieces of all.
 class MIMETRAFILTERS_EXPORT vtkMimetraFilter : public vtkMimetraAlgorithm {
  public:
   vtkTypeMacro(vtkMimetraFilter, vtkMimetraAlgorithm);
@@ -66,10 +67,22 @@ class MIMETRAFILTERS_EXPORT vtkMimetraFilter : public vtkMimetraAlgorithm {
   };
 
   Origin origin_of(int port);
-  /// What comes in at a port, brought to a time where it has times. Throws IoError where it cannot
-  /// be had.
+  /// What comes in at a port of this process, brought to a time where it has times. Throws IoError
+  /// where it cannot be had.
   vtkDataObject* input_at(int port, std::optional<double> time);
   void name_inputs();
+  /// By each process: whether this request is for a piece, and brings what comes in up to date.
+  /// False, on all processes, where one of them cannot.
+  bool begin_request(vtkInformation& output);
+  bool update_inputs();
+  /// Forgets what came in before.
+  void forget_inputs();
+  /// Throws UsageError where the operation is told points by their numbers, which say nothing where
+  /// the mesh is in pieces without global ids.
+  void expect_order();
+  /// Warns, once for an input, where points without global ids were joined by their positions.
+  /// Throws UsageError where the operation keeps apart what is at one position.
+  void tell_of_seams();
   /// Gives the operation what comes in at further ports.
   void give_meshes(vtkInformationVector** inputs);
   /// Gives the operation the input's time steps, where they are others than before, or the one that
@@ -80,8 +93,11 @@ class MIMETRAFILTERS_EXPORT vtkMimetraFilter : public vtkMimetraAlgorithm {
   std::string input_;
   std::vector<MeshPort> mesh_ports_;
   Takes takes_;
+  std::unique_ptr<PieceExchange> exchange_;
+  bool begun_ = true;
   std::unique_ptr<TimeSteps> steps_;
   std::optional<Origin> collected_;
+  std::optional<Origin> told_of_;  ///< the input whose seams were joined
   vtkMTimeType failed_at_ = 0;
   vtkMTimeType prepared_at_ = 0;
   std::array<vtkIdType, 3> prepared_cells_ = {};  ///< vertices, lines, and all

@@ -1,15 +1,20 @@
 #include "plugins/paraview/mimetra/filters/vtkMimetraSequence.h"
 
+#include <optional>
+
 #include <vtkInformation.h>
 #include <vtkInformationVector.h>
+#include <vtkMultiProcessController.h>
 #include <vtkObjectFactory.h>
 #include <vtkPolyData.h>
 #include <vtkStreamingDemandDrivenPipeline.h>
 
 #include "plugins/paraview/mimetra/filters/host_output.h"
 #include "plugins/paraview/mimetra/filters/operation_call.h"
+#include "plugins/paraview/mimetra/filters/parcel.h"
 #include "plugins/paraview/mimetra/filters/reading.h"
 #include "plugins/paraview/mimetra/filters/time_steps.h"
+#include "toolkit/mesh/errors.h"
 #include "toolkit/operations/operation.h"
 #include "toolkit/vtk/poly_data.h"
 
@@ -31,26 +36,49 @@ vtkMimetraSequence::vtkMimetraSequence()
   SetNumberOfInputPorts(0);
 }
 
-void vtkMimetraSequence::read() {
+std::vector<double> vtkMimetraSequence::read() {
   const FieldSequence& read = sequence_of(outcome());
   make_mesh(*mesh_, read.sequence(), read.fields);
+  const Eigen::VectorXd& times = read.sequence().times();
+  if (read.sequence().frames() == 1) return {};
+  return {times.begin(), times.end()};
+}
+
+void vtkMimetraSequence::read_by_first() {
+  vtkMultiProcessController* controller = vtkMultiProcessController::GetGlobalController();
+  std::optional<Processes> processes;
+  if (controller && controller->GetNumberOfProcesses() > 1) processes.emplace(*controller);
+  times_.clear();
+  Attempt attempted = Attempt::done;
+  if (!processes || processes->is_first()) attempted = attempt([this] { times_ = read(); });
+  if (!processes) return;
+  vtkMultiProcessStream words;
+  words << static_cast<int>(attempted) << static_cast<int>(times_.size());
+  for (const double time : times_) words << time;
+  words = processes->told(words);
+  if (processes->is_first()) return;
+  int how = 0, count = 0;
+  words >> how >> count;
+  times_.resize(static_cast<std::size_t>(count));
+  for (double& time : times_) words >> time;
+  attempt([how] {
+    if (static_cast<Attempt>(how) == Attempt::aborted) throw Cancelled();
+  });
 }
 
 int vtkMimetraSequence::RequestInformation(vtkInformation*, vtkInformationVector**,
                                            vtkInformationVector* outputs) {
   begin_execution();
-  if (read_at_ != GetMTime()) attempt([this] { read(); });
+  if (read_at_ != GetMTime()) read_by_first();
   read_at_ = GetMTime();
   vtkInformation* out = outputs->GetInformationObject(0);
-  if (!call().is_done() || sequence_of(call().outcome()).sequence().frames() == 1) {
+  if (times_.empty()) {
     out->Remove(Pipeline::TIME_STEPS());
     out->Remove(Pipeline::TIME_RANGE());
     return 1;
   }
-  const Eigen::VectorXd& times = sequence_of(call().outcome()).sequence().times();
-  const int count = static_cast<int>(times.size());
-  const double range[] = {times[0], times[count - 1]};
-  out->Set(Pipeline::TIME_STEPS(), times.data(), count);
+  const double range[] = {times_.front(), times_.back()};
+  out->Set(Pipeline::TIME_STEPS(), times_.data(), static_cast<int>(times_.size()));
   out->Set(Pipeline::TIME_RANGE(), range, 2);
   return 1;
 }
@@ -65,6 +93,9 @@ int vtkMimetraSequence::RequestData(vtkInformation*, vtkInformationVector**,
   vtkPolyData* output = vtkPolyData::GetData(outputs);
   output->ShallowCopy(mesh_);
   set_positions(*output, sequence.frame(frame), Precision::double_precision);
+  // Filters that distribute the mesh take point data along.
+  vtkMultiProcessController* controller = vtkMultiProcessController::GetGlobalController();
+  if (controller && controller->GetNumberOfProcesses() > 1) put_rest_on_points(*output);
   output->GetInformation()->Set(vtkDataObject::DATA_TIME_STEP(), sequence.times()[frame]);
   return 1;
 }

@@ -30,7 +30,10 @@ std::vector<std::string> vtkMimetraTransfer::wanted_outputs(const Invocation& in
   std::vector<std::string> wanted;
   const bool full = invocation.parameters.flag("full");
   if (!full) wanted.push_back("regions-out");
-  if (!full && !invocation.inputs.contains("regions")) wanted.push_back("components-out");
+  const bool painted = invocation.parameters.optional_text("paint").has_value();
+  if (!full && !painted && !invocation.inputs.contains("regions")) {
+    wanted.push_back("components-out");
+  }
   if (!solves_for_vertices(invocation.parameters, model)) {
     wanted.push_back("weights-out");
   }

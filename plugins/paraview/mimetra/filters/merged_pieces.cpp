@@ -1,0 +1,268 @@
+#include "plugins/paraview/mimetra/filters/merged_pieces.h"
+
+#include <algorithm>
+#include <array>
+#include <numeric>
+#include <optional>
+#include <string>
+#include <tuple>
+#include <utility>
+
+#include <vtkCellArray.h>
+#include <vtkCellData.h>
+#include <vtkDataArray.h>
+#include <vtkIdList.h>
+#include <vtkNew.h>
+
+#include "plugins/paraview/mimetra/filters/piece_data.h"
+#include "toolkit/mesh/errors.h"
+
+using namespace mimetra;
+
+namespace {
+
+constexpr const char* kNumberThem = "; use Generate Global Ids before the mesh is distributed";
+
+/// VTK numbers cells in this order.
+std::array<vtkCellArray*, 4> cell_arrays(vtkPolyData& mesh) {
+  return {mesh.GetVerts(), mesh.GetLines(), mesh.GetPolys(), mesh.GetStrips()};
+}
+
+std::size_t as_index(vtkIdType id) {
+  return static_cast<std::size_t>(id);
+}
+
+/// A cell of a piece, on points of the mesh.
+struct Cell {
+  PieceElement from = {};
+  int kind = 0;  ///< index of cell_arrays()
+  vtkTypeInt64 id = 0;
+  std::vector<vtkIdType> corners = {};  ///< in their order
+  std::vector<vtkIdType> sorted = {};
+};
+
+std::string name_of(const Cell& cell) {
+  return "cell " + std::to_string(cell.from.index) + " of process " +
+         std::to_string(cell.from.piece);
+}
+
+/// Throws MismatchError where cells use points that are not there.
+void expect_valid(vtkPolyData& piece, std::size_t number) {
+  for (vtkCellArray* cells : cell_arrays(piece)) {
+    vtkNew<vtkIdList> corners;
+    bool fits = cells->IsValid();
+    for (vtkIdType i = 0; fits && i < cells->GetNumberOfCells(); ++i) {
+      cells->GetCellAtId(i, corners);
+      fits = std::ranges::all_of(*corners, [&](vtkIdType corner) {
+        return corner >= 0 && corner < piece.GetNumberOfPoints();
+      });
+    }
+    if (!fits) {
+      throw MismatchError("the cells of process " + std::to_string(number) +
+                          " use points that it does not have");
+    }
+  }
+}
+
+/// Own cells, or the ghosts, of all pieces.
+std::vector<Cell> cells_of(const Pieces& pieces, const std::vector<Places>& points, bool ghosts) {
+  std::vector<Cell> cells;
+  for (std::size_t piece = 0; piece < pieces.size(); ++piece) {
+    vtkDataArray* ids = pieces[piece]->GetCellData()->GetGlobalIds();
+    vtkNew<vtkIdList> corners;
+    vtkIdType index = 0;
+    int kind = 0;
+    for (vtkCellArray* array : cell_arrays(*pieces[piece])) {
+      for (vtkIdType i = 0; i < array->GetNumberOfCells(); ++i, ++index) {
+        if (is_ghost_cell(*pieces[piece], index) != ghosts) continue;
+        array->GetCellAtId(i, corners);
+        Cell cell{{piece, index}, kind, ids ? id_at(*ids, index) : 0};
+        for (const vtkIdType corner : *corners) {
+          cell.corners.push_back(points[piece][as_index(corner)]);
+        }
+        cell.sorted = cell.corners;
+        std::ranges::sort(cell.sorted);
+        cells.push_back(std::move(cell));
+      }
+      ++kind;
+    }
+  }
+  return cells;
+}
+
+/// Cells by what they are made of.
+class CellFinder {
+ public:
+  explicit CellFinder(const std::vector<Cell>& cells) : cells_(cells), order_(cells.size()) {
+    std::iota(order_.begin(), order_.end(), 0);
+    std::ranges::stable_sort(order_, {}, [this](std::size_t i) { return key(cells_[i]); });
+  }
+
+  /// The first of the cells with the points of this one, or none.
+  std::optional<std::size_t> first_like(const Cell& cell) const {
+    const auto found = std::ranges::lower_bound(order_, key(cell), {},
+                                                [this](std::size_t i) { return key(cells_[i]); });
+    if (found == order_.end() || key(cells_[*found]) != key(cell)) return {};
+    return *found;
+  }
+
+ private:
+  static std::tuple<int, const std::vector<vtkIdType>&> key(const Cell& cell) {
+    return {cell.kind, cell.sorted};
+  }
+
+  const std::vector<Cell>& cells_;
+  std::vector<std::size_t> order_;
+};
+
+bool all_have_cell_ids(const Pieces& pieces) {
+  return std::ranges::all_of(pieces, [](const auto& piece) {
+    return piece->GetNumberOfCells() == 0 || piece->GetCellData()->GetGlobalIds();
+  });
+}
+
+/// Throws MismatchError where a cell is another process's too: cells on purpose at one place cannot
+/// be told from copies. Vertices are not looked at: they lie on seams.
+void expect_no_copies(const std::vector<Cell>& cells) {
+  const CellFinder finder(cells);
+  for (const Cell& cell : cells) {
+    const Cell& first = cells[*finder.first_like(cell)];
+    if (cell.corners.size() < 2 || first.from.piece == cell.from.piece) continue;
+    throw MismatchError(name_of(first) + " and " + name_of(cell) +
+                        " have the same points, but neither is marked as a ghost; distribute the "
+                        "mesh with each cell in one piece");
+  }
+}
+
+/// In the order of ids; without ids of cells, in one that does not depend on the pieces where
+/// points have ids, else by pieces.
+std::vector<Cell> ordered(std::vector<Cell> cells, bool by_ids, bool by_points) {
+  std::ranges::stable_sort(cells, {}, [&](const Cell& cell) {
+    return std::pair(cell.kind, by_ids ? cell.id : vtkTypeInt64{0});
+  });
+  if (!by_ids && by_points) {
+    std::ranges::stable_sort(cells, [](const Cell& a, const Cell& b) {
+      return std::tie(a.kind, a.sorted) < std::tie(b.kind, b.sorted);
+    });
+  }
+  const auto same = [](const Cell& a, const Cell& b) { return a.kind == b.kind && a.id == b.id; };
+  const auto twice = by_ids ? std::ranges::adjacent_find(cells, same) : cells.end();
+  if (twice == cells.end()) return cells;
+  throw MismatchError("global id " + std::to_string(twice->id) + " names " + name_of(*twice) +
+                      " and " + name_of(*std::next(twice)) + "; expected one for each cell");
+}
+
+std::vector<Places> places_of(const Pieces& pieces, const std::vector<Cell>& cells,
+                              const std::vector<Cell>& ghosts) {
+  std::vector<Places> places;
+  for (const auto& piece : pieces) places.emplace_back(as_index(piece->GetNumberOfCells()));
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    const PieceElement& from = cells[i].from;
+    places[from.piece][as_index(from.index)] = static_cast<vtkIdType>(i);
+  }
+  const CellFinder finder(cells);
+  for (const Cell& ghost : ghosts) {
+    const auto owner = finder.first_like(ghost);
+    if (!owner) {
+      throw MismatchError(name_of(ghost) + " is a ghost of no process" + kNumberThem);
+    }
+    places[ghost.from.piece][as_index(ghost.from.index)] = static_cast<vtkIdType>(*owner);
+  }
+  return places;
+}
+
+void set_cells(vtkPolyData& mesh, const std::vector<Cell>& cells) {
+  std::array<vtkNew<vtkCellArray>, 4> arrays;
+  for (const Cell& cell : cells) {
+    arrays[static_cast<std::size_t>(cell.kind)]->InsertNextCell(
+        static_cast<vtkIdType>(cell.corners.size()), cell.corners.data());
+  }
+  mesh.SetVerts(arrays[0]);
+  mesh.SetLines(arrays[1]);
+  mesh.SetPolys(arrays[2]);
+  mesh.SetStrips(arrays[3]);
+}
+
+bool same_cells(vtkPolyData& a, vtkPolyData& b) {
+  const auto same = [](vtkCellArray* x, vtkCellArray* y) {
+    if (x->GetNumberOfCells() != y->GetNumberOfCells()) return false;
+    vtkNew<vtkIdList> left, right;
+    for (vtkIdType i = 0; i < x->GetNumberOfCells(); ++i) {
+      x->GetCellAtId(i, left);
+      y->GetCellAtId(i, right);
+      if (!std::ranges::equal(*left, *right)) return false;
+    }
+    return true;
+  };
+  return a.GetNumberOfPoints() == b.GetNumberOfPoints() &&
+         std::ranges::equal(cell_arrays(a), cell_arrays(b), same);
+}
+
+std::vector<std::size_t> with_points(const Pieces& pieces) {
+  std::vector<std::size_t> found;
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    if (pieces[i]->GetNumberOfPoints() > 0) found.push_back(i);
+  }
+  return found;
+}
+
+/// The mesh is a piece as it is.
+MergedPieces whole_piece(Pieces pieces, std::size_t only) {
+  MergedPieces merged{pieces[only]};
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    merged.points.places.emplace_back(as_index(i == only ? pieces[i]->GetNumberOfPoints() : 0));
+    merged.cells.emplace_back(as_index(i == only ? pieces[i]->GetNumberOfCells() : 0));
+    std::iota(merged.points.places.back().begin(), merged.points.places.back().end(), 0);
+    std::iota(merged.cells.back().begin(), merged.cells.back().end(), 0);
+  }
+  merged.points.named = true;
+  merged.pieces = std::move(pieces);
+  return merged;
+}
+
+/// Throws MismatchError where pieces are not those of before.
+void expect_same_pieces(const Pieces& pieces, const Pieces& before) {
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    if (same_cells(*pieces[i], *before[i])) continue;
+    throw MismatchError("process " + std::to_string(i) +
+                        " holds another piece than before, and which points are which cannot be "
+                        "known" +
+                        kNumberThem);
+  }
+}
+
+void merge_cells(MergedPieces& merged) {
+  const Pieces& pieces = merged.pieces;
+  std::vector<Cell> cells = cells_of(pieces, merged.points.places, false);
+  expect_no_copies(cells);
+  cells = ordered(std::move(cells), all_have_cell_ids(pieces), merged.points.named);
+  merged.cells = places_of(pieces, cells, cells_of(pieces, merged.points.places, true));
+  set_cells(*merged.mesh, cells);
+  std::vector<PieceElement> holders;
+  for (const Cell& cell : cells) holders.push_back(cell.from);
+  merge_data(*merged.mesh, pieces, merged.points.holders, holders);
+}
+
+}  // namespace
+
+MergedPieces merged(Pieces pieces, const MergedPieces* before) {
+  const std::vector<std::size_t> filled = with_points(pieces);
+  const bool follows = before && !before->points.named;
+  if (filled.size() < 2 && !follows) {
+    return whole_piece(std::move(pieces), filled.empty() ? 0 : filled.front());
+  }
+  for (std::size_t i = 0; i < pieces.size(); ++i) expect_valid(*pieces[i], i);
+  expect_finite(pieces);
+  MergedPieces merged{vtkSmartPointer<vtkPolyData>::New()};
+  if (follows) {
+    expect_same_pieces(pieces, before->pieces);
+    expect_joined(pieces, before->points.places);
+    merged.points = before->points;
+  } else {
+    merged.points = joined_points(pieces);
+  }
+  if (before && !follows && !merged.points.named) expect_same_pieces(pieces, before->pieces);
+  merged.pieces = std::move(pieces);
+  merge_cells(merged);
+  return merged;
+}

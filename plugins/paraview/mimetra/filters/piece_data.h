@@ -1,0 +1,19 @@
+#pragma once
+
+#include <vector>
+
+#include <vtkSmartPointer.h>
+
+#include "plugins/paraview/mimetra/filters/piece_points.h"
+
+class vtkDataArray;
+
+/// Gives `mesh` the data of the pieces that hold its points and cells: positions, point and cell
+/// data that all pieces with points have as numbers of one type, and field data of the first of
+/// them. Throws MismatchError where a rest pose is field data, whose rows may be any points, and
+/// where only some pieces have one, or displacements.
+void merge_data(vtkPolyData& mesh, const Pieces& pieces, const std::vector<PieceElement>& points,
+                const std::vector<PieceElement>& cells);
+
+/// The rows of an array at places, with its name, type and components.
+vtkSmartPointer<vtkDataArray> rows_at(vtkDataArray& array, const Places& places);

@@ -1,0 +1,396 @@
+#include "plugins/paraview/mimetra/filters/piece_exchange.h"
+
+#include <algorithm>
+#include <exception>
+#include <new>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include <vtkDataObject.h>
+#include <vtkDataSet.h>
+#include <vtkInformation.h>
+#include <vtkInformationDoubleKey.h>
+#include <vtkInformationVector.h>
+#include <vtkMultiBlockDataSet.h>
+#include <vtkMultiProcessController.h>
+#include <vtkNew.h>
+#include <vtkStreamingDemandDrivenPipeline.h>
+
+#include "plugins/paraview/mimetra/filters/piece_answer.h"
+#include "plugins/paraview/mimetra/filters/time_steps.h"
+#include "toolkit/mesh/errors.h"
+#include "toolkit/operations/parameter.h"
+#include "toolkit/vtk/poly_data.h"
+
+using namespace mimetra;
+using Pipeline = vtkStreamingDemandDrivenPipeline;
+
+namespace {
+
+/// What the first process says to the others.
+enum class Order { gather, end };
+
+/// What a process has at a port.
+enum class Held { mesh, nothing, no_mesh, unreadable };
+
+/// Where a mesh of an output is.
+constexpr int kOnFirst = -1;
+
+int number_of(auto value) {
+  return static_cast<int>(value);
+}
+
+/// Without points or cells, its type does not matter. Sources that have data on the first process
+/// only leave an object of no particular kind elsewhere.
+bool is_nothing(vtkDataObject* data) {
+  vtkDataSet* set = vtkDataSet::SafeDownCast(data);
+  return !data || data->GetDataObjectType() == VTK_DATA_OBJECT ||
+         (set && set->GetNumberOfPoints() == 0 && set->GetNumberOfCells() == 0);
+}
+
+std::string class_of(vtkDataObject* data) {
+  return data ? data->GetClassName() : "nothing";
+}
+
+/// What a process says of its piece.
+struct Report {
+  Held held = Held::unreadable;
+  std::string type = {};
+  bool has_points = false;
+  std::vector<double> steps = {};   ///< the times that it could be had at
+  std::optional<double> time = {};  ///< the one that it is of
+};
+
+Report report_of(const Incoming& incoming) {
+  vtkPolyData* mesh = vtkPolyData::SafeDownCast(incoming.data);
+  Report report{Held::no_mesh, class_of(incoming.data)};
+  // A surface without points is refused as one of one process is, where nobody has any.
+  if (mesh) {
+    report.held = Held::mesh;
+    report.has_points = mesh->GetNumberOfPoints() > 0;
+  } else if (is_nothing(incoming.data)) {
+    report.held = Held::nothing;
+  }
+  report.steps = incoming.steps;
+  vtkInformation* about = incoming.data ? incoming.data->GetInformation() : nullptr;
+  if (about && about->Has(vtkDataObject::DATA_TIME_STEP())) {
+    report.time = about->Get(vtkDataObject::DATA_TIME_STEP());
+  }
+  return report;
+}
+
+void put_report(vtkMultiProcessStream& words, const Report& report) {
+  words << number_of(report.held) << report.type << number_of(report.has_points)
+        << number_of(report.steps.size());
+  for (const double step : report.steps) words << step;
+  words << number_of(report.time.has_value()) << report.time.value_or(0);
+}
+
+Report taken_report(vtkMultiProcessStream& words) {
+  Report report;
+  int held = 0, has_points = 0, steps = 0, has_time = 0;
+  double time = 0;
+  words >> held >> report.type >> has_points >> steps;
+  report.held = static_cast<Held>(held);
+  report.has_points = has_points == 1;
+  report.steps.resize(static_cast<std::size_t>(steps));
+  for (double& step : report.steps) words >> step;
+  words >> has_time >> time;
+  if (has_time == 1) report.time = time;
+  return report;
+}
+
+/// Of the pieces that processes say they have. Throws as the header says.
+void expect_meshes(const std::vector<Report>& reports, std::optional<double> time) {
+  bool any_mesh = false;
+  std::string stranger, nothing;
+  for (std::size_t process = 0; process < reports.size(); ++process) {
+    const std::string& type = reports[process].type;
+    switch (reports[process].held) {
+      case Held::mesh:
+        any_mesh = true;
+        break;
+      case Held::nothing:
+        if (nothing.empty()) nothing = type;
+        break;
+      case Held::no_mesh:
+        if (stranger.empty()) stranger = type;
+        break;
+      case Held::unreadable:
+        throw IoError(time ? "time " + to_text(*time) : "the mesh",
+                      "cannot be read by process " + std::to_string(process) +
+                          "; the message before tells why");
+    }
+  }
+  if (stranger.empty() && !any_mesh) stranger = nothing;
+  if (!stranger.empty()) throw no_mesh_error(stranger);
+}
+
+std::string described(const std::vector<double>& steps) {
+  if (steps.empty()) return "none";
+  return std::to_string(steps.size()) + ", from " + to_text(steps.front()) + " to " +
+         to_text(steps.back());
+}
+
+/// Pieces of different times are no mesh. Throws MismatchError for them; processes without points
+/// are not looked at, save the first, which says what times there are.
+void expect_one_time(const std::vector<Report>& reports) {
+  const std::vector<double>& steps = reports.front().steps;
+  const Report* first = nullptr;  // with points, and a time
+  for (std::size_t process = 0; process < reports.size(); ++process) {
+    const Report& report = reports[process];
+    if (!report.has_points) continue;
+    const std::string name = "process " + std::to_string(process);
+    if (report.steps != steps) {
+      throw MismatchError("the time steps of " + name + " (" + described(report.steps) +
+                          ") are not those of process 0 (" + described(steps) +
+                          "); give all processes a series of the same times");
+    }
+    if (!report.time) continue;
+    if (!first) first = &report;
+    if (*report.time == *first->time) continue;
+    throw MismatchError(name + " has a piece of time " + to_text(*report.time) + ", process " +
+                        std::to_string(first - reports.data()) + " of time " +
+                        to_text(*first->time) + "; give all processes a series of the same times");
+  }
+}
+
+/// The meshes of an output, at most one where it is no composite.
+std::vector<vtkPolyData*> meshes_of(vtkDataObject* output) {
+  if (auto* mesh = vtkPolyData::SafeDownCast(output)) return {mesh};
+  std::vector<vtkPolyData*> meshes;
+  auto* blocks = vtkMultiBlockDataSet::SafeDownCast(output);
+  for (unsigned i = 0; blocks && i < blocks->GetNumberOfBlocks(); ++i) {
+    meshes.push_back(vtkPolyData::SafeDownCast(blocks->GetBlock(i)));
+  }
+  return meshes;
+}
+
+void put_blocks(Parcel& parcel, vtkMultiBlockDataSet& blocks) {
+  parcel.words << number_of(blocks.GetNumberOfBlocks());
+  for (unsigned i = 0; i < blocks.GetNumberOfBlocks(); ++i) {
+    const char* name = blocks.GetMetaData(i)->Get(vtkCompositeDataSet::NAME());
+    parcel.words << std::string(name ? name : "");
+  }
+}
+
+/// Makes the blocks, save on the first process, which has them.
+void take_blocks(Parcel& parcel, vtkMultiBlockDataSet& blocks) {
+  int count = 0;
+  parcel.words >> count;
+  for (unsigned i = 0; i < static_cast<unsigned>(count); ++i) {
+    std::string name;
+    parcel.words >> name;
+    if (blocks.GetBlock(i)) continue;
+    vtkNew<vtkPolyData> block;
+    blocks.SetBlock(i, block);
+    blocks.GetMetaData(i)->Set(vtkCompositeDataSet::NAME(), name.c_str());
+  }
+}
+
+void put_time(Parcel& parcel, vtkDataObject& output) {
+  vtkInformation& about = *output.GetInformation();
+  const bool has_time = about.Has(vtkDataObject::DATA_TIME_STEP()) != 0;
+  parcel.words << (has_time ? 1 : 0)
+               << (has_time ? about.Get(vtkDataObject::DATA_TIME_STEP()) : 0.0);
+}
+
+void take_time(Parcel& parcel, vtkDataObject& output) {
+  int has_time = 0;
+  double time = 0;
+  parcel.words >> has_time >> time;
+  vtkInformation& about = *output.GetInformation();
+  about.Remove(vtkDataObject::DATA_TIME_STEP());
+  if (has_time == 1) about.Set(vtkDataObject::DATA_TIME_STEP(), time);
+}
+
+/// What cannot be given to all is not left on one.
+void empty(vtkInformationVector& outputs) {
+  for (int port = 0; port < outputs.GetNumberOfInformationObjects(); ++port) {
+    if (vtkDataObject* output = vtkDataObject::GetData(&outputs, port)) output->Initialize();
+  }
+}
+
+}  // namespace
+
+bool PieceExchange::begin(vtkInformation& output) {
+  const bool was_in_pieces = in_pieces();
+  processes_.reset();
+  const int pieces = output.Has(Pipeline::UPDATE_NUMBER_OF_PIECES())
+                         ? output.Get(Pipeline::UPDATE_NUMBER_OF_PIECES())
+                         : 1;
+  if (pieces <= 1) return was_in_pieces;
+  vtkMultiProcessController* controller = vtkMultiProcessController::GetGlobalController();
+  const bool shared =
+      controller && controller->GetNumberOfProcesses() == pieces &&
+      output.Get(Pipeline::UPDATE_PIECE_NUMBER()) == controller->GetLocalProcessId();
+  if (!shared) {
+    throw std::invalid_argument(
+        "expected a piece of the mesh on each process, found one of " + std::to_string(pieces) +
+        " pieces on " + std::to_string(controller ? controller->GetNumberOfProcesses() : 1) +
+        " processes; ask for the whole mesh");
+  }
+  processes_.emplace(*controller);
+  return !was_in_pieces;
+}
+
+std::optional<std::vector<Parcel>> PieceExchange::gather(int port, std::optional<double> time) {
+  Report report;
+  vtkPolyData* mesh = nullptr;
+  try {
+    const Incoming incoming = input_(port, time);
+    mesh = vtkPolyData::SafeDownCast(incoming.data);
+    report = report_of(incoming);
+  } catch (const std::exception&) {
+    mesh = nullptr;  // which the first process says for all
+  }
+  std::optional<Parcel> parcel;
+  try {
+    const auto piece = vtkSmartPointer<vtkPolyData>::New();
+    if (mesh) piece->ShallowCopy(mesh);
+    parcel = packed(*piece);
+    Parcel header;
+    put_report(header.words, report);
+    parcel->words = header.words << parcel->words;
+    pieces_[port] = piece;
+  } catch (const std::bad_alloc&) {
+    parcel.reset();
+  }
+  return processes_->gather(std::move(parcel));
+}
+
+vtkDataObject* PieceExchange::input_at(int port, std::optional<double> time) {
+  if (!processes_) return input_(port, time).data;
+  vtkMultiProcessStream order;
+  order << number_of(Order::gather) << port << (time ? 1 : 0) << time.value_or(0);
+  processes_->told(order);
+  std::optional<std::vector<Parcel>> parcels = gather(port, time);
+  if (!parcels) throw std::bad_alloc();
+  std::vector<Report> reports;
+  for (Parcel& parcel : *parcels) reports.push_back(taken_report(parcel.words));
+  expect_meshes(reports, time);
+  expect_one_time(reports);
+  Pieces pieces;
+  for (Parcel& parcel : *parcels) {
+    vtkMultiProcessStream piece;
+    parcel.words >> piece;
+    parcel.words = piece;
+    pieces.push_back(unpacked(parcel));
+  }
+  const auto before = merged_.find(port);
+  MergedPieces found =
+      merged(std::move(pieces), before == merged_.end() ? nullptr : &before->second);
+  vtkPolyData* mesh = found.mesh;
+  if (pieces_.at(port)->GetInformation()->Has(vtkDataObject::DATA_TIME_STEP())) {
+    mesh->GetInformation()->CopyEntry(pieces_.at(port)->GetInformation(),
+                                      vtkDataObject::DATA_TIME_STEP());
+  }
+  merged_[port] = std::move(found);
+  return mesh;
+}
+
+bool PieceExchange::is_ordered(int port) const {
+  const auto found = merged_.find(port);
+  return !processes_ || found == merged_.end() || found->second.points.named;
+}
+
+std::size_t PieceExchange::joined(int port) const {
+  const auto found = merged_.find(port);
+  return !processes_ || found == merged_.end() ? 0 : found->second.points.joined;
+}
+
+bool PieceExchange::end(Attempt how, vtkInformationVector& outputs) {
+  if (!processes_) return true;
+  std::vector<Parcel> parcels;
+  std::exception_ptr failure;
+  try {
+    parcels.resize(static_cast<std::size_t>(processes_->count()));
+    for (std::size_t i = 0; how == Attempt::done && i < parcels.size(); ++i) {
+      put_outputs(parcels[i], outputs, i);
+    }
+  } catch (const std::exception&) {
+    failure = std::current_exception();
+  }
+  // The others wait for it, whatever went wrong.
+  vtkMultiProcessStream order;
+  order << number_of(Order::end) << number_of(failure ? Attempt::failed : how);
+  processes_->told(order);
+  if (!failure && how != Attempt::done) return true;
+  const bool is_shared = !failure && share(std::move(parcels), outputs);
+  if (!is_shared) empty(outputs);
+  if (failure) std::rethrow_exception(failure);
+  return is_shared;
+}
+
+Attempt PieceExchange::serve(vtkInformationVector& outputs) {
+  for (;;) {
+    vtkMultiProcessStream words = processes_->told({});
+    int order = 0;
+    words >> order;
+    if (order == number_of(Order::gather)) {
+      int port = 0, has_time = 0;
+      double time = 0;
+      words >> port >> has_time >> time;
+      gather(port, has_time == 1 ? std::optional(time) : std::nullopt);
+      continue;
+    }
+    int how = 0;
+    words >> how;
+    const auto end = static_cast<Attempt>(how);
+    return end == Attempt::done && !share({}, outputs) ? Attempt::failed : end;
+  }
+}
+
+bool PieceExchange::share(std::vector<Parcel> parcels, vtkInformationVector& outputs) {
+  std::optional<Parcel> mine = processes_->scatter(std::move(parcels));
+  if (!mine) return false;
+  try {
+    take_outputs(*mine, outputs);
+  } catch (const std::exception&) {
+    empty(outputs);
+    throw;
+  }
+  return true;
+}
+
+void PieceExchange::put_outputs(Parcel& parcel, vtkInformationVector& outputs,
+                                std::size_t process) const {
+  for (int port = 0; port < outputs.GetNumberOfInformationObjects(); ++port) {
+    vtkDataObject* output = vtkDataObject::GetData(&outputs, port);
+    if (auto* blocks = vtkMultiBlockDataSet::SafeDownCast(output)) put_blocks(parcel, *blocks);
+    for (vtkPolyData* mesh : meshes_of(output)) put_mesh(parcel, *mesh, process);
+    put_time(parcel, *output);
+  }
+}
+
+void PieceExchange::take_outputs(Parcel& parcel, vtkInformationVector& outputs) {
+  for (int port = 0; port < outputs.GetNumberOfInformationObjects(); ++port) {
+    vtkDataObject* output = vtkDataObject::GetData(&outputs, port);
+    if (auto* blocks = vtkMultiBlockDataSet::SafeDownCast(output)) take_blocks(parcel, *blocks);
+    for (vtkPolyData* mesh : meshes_of(output)) take_mesh(parcel, *mesh);
+    take_time(parcel, *output);
+  }
+}
+
+void PieceExchange::put_mesh(Parcel& parcel, vtkPolyData& output, std::size_t process) const {
+  const auto under = std::ranges::find_if(
+      merged_, [&](const auto& each) { return lies_on(output, *each.second.mesh); });
+  parcel.words << (under == merged_.end() ? kOnFirst : under->first);
+  if (under != merged_.end()) {
+    put_answer(parcel, output, under->second, process);
+    return;
+  }
+  put_rest_on_points(output);
+  if (process > 0) put_nothing(parcel, output);
+}
+
+void PieceExchange::take_mesh(Parcel& parcel, vtkPolyData& output) {
+  int port = kOnFirst;
+  parcel.words >> port;
+  if (port != kOnFirst) {
+    take_answer(parcel, *pieces_.at(port), output);
+  } else if (!is_first()) {
+    take_nothing(parcel, output);
+  }
+}

@@ -1,0 +1,487 @@
+#include "plugins/paraview/mimetra/filters/merged_pieces.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <numeric>
+#include <random>
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <vtkCellArray.h>
+#include <vtkCellData.h>
+#include <vtkDataSetAttributes.h>
+#include <vtkDoubleArray.h>
+#include <vtkFieldData.h>
+#include <vtkIdList.h>
+#include <vtkIdTypeArray.h>
+#include <vtkNew.h>
+#include <vtkPointData.h>
+#include <vtkPoints.h>
+#include <vtkUnsignedCharArray.h>
+
+#include "plugins/paraview/mimetra/filters/piece_answer.h"
+#include "toolkit/mesh/errors.h"
+#include "toolkit/vtk/poly_data.h"
+
+using namespace mimetra;
+using testing::HasSubstr;
+using Mesh = vtkSmartPointer<vtkPolyData>;
+
+namespace {
+
+constexpr int kSize = 5;
+
+template <typename Array>
+vtkSmartPointer<Array> numbers(const char* name, vtkIdType count,
+                               const std::function<double(vtkIdType)>& value) {
+  const auto array = vtkSmartPointer<Array>::New();
+  array->SetName(name);
+  array->SetNumberOfTuples(count);
+  for (vtkIdType i = 0; i < count; ++i) array->SetTuple1(i, value(i));
+  return array;
+}
+
+/// A bent square of quads, with point data `at` and cell data `on`, their own numbers.
+Mesh square() {
+  const auto mesh = Mesh::New();
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  for (int row = 0; row < kSize; ++row) {
+    for (int column = 0; column < kSize; ++column) {
+      points->InsertNextPoint(column, row, std::sin(row * 0.7 + column));
+    }
+  }
+  mesh->SetPoints(points);
+  vtkNew<vtkCellArray> quads;
+  for (int row = 0; row + 1 < kSize; ++row) {
+    for (int column = 0; column + 1 < kSize; ++column) {
+      const vtkIdType v = row * kSize + column;
+      quads->InsertNextCell({v, v + 1, v + kSize + 1, v + kSize});
+    }
+  }
+  mesh->SetPolys(quads);
+  const auto itself = [](vtkIdType i) { return static_cast<double>(i); };
+  mesh->GetPointData()->AddArray(
+      numbers<vtkDoubleArray>("at", points->GetNumberOfPoints(), itself));
+  mesh->GetCellData()->AddArray(numbers<vtkDoubleArray>("on", quads->GetNumberOfCells(), itself));
+  return mesh;
+}
+
+enum class Ids { none, points, points_and_cells };
+
+/// Cells of a mesh, in an order, with the points that they use in the order of their use.
+Mesh piece_of(vtkPolyData& mesh, const std::vector<vtkIdType>& cells, Ids ids = Ids::none) {
+  const auto piece = Mesh::New();
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  vtkNew<vtkCellArray> quads;
+  std::vector<vtkIdType> from;
+  vtkNew<vtkIdList> corners;
+  for (const vtkIdType cell : cells) {
+    mesh.GetPolys()->GetCellAtId(cell, corners);
+    for (vtkIdType i = 0; i < corners->GetNumberOfIds(); ++i) {
+      const vtkIdType point = corners->GetId(i);
+      const auto known = std::ranges::find(from, point);
+      corners->SetId(i, known - from.begin());
+      if (known != from.end()) continue;
+      from.push_back(point);
+      points->InsertNextPoint(mesh.GetPoint(point));
+    }
+    quads->InsertNextCell(corners);
+  }
+  piece->SetPoints(points);
+  piece->SetPolys(quads);
+  const auto count = static_cast<vtkIdType>(from.size());
+  const auto of_point = [&](vtkIdType i) { return static_cast<double>(from[std::size_t(i)]); };
+  const auto of_cell = [&](vtkIdType i) { return static_cast<double>(cells[std::size_t(i)]); };
+  const auto all = static_cast<vtkIdType>(cells.size());
+  piece->GetPointData()->AddArray(numbers<vtkDoubleArray>("at", count, of_point));
+  piece->GetCellData()->AddArray(numbers<vtkDoubleArray>("on", all, of_cell));
+  if (ids != Ids::none) {
+    piece->GetPointData()->SetGlobalIds(numbers<vtkIdTypeArray>("ids", count, of_point));
+  }
+  if (ids == Ids::points_and_cells) {
+    piece->GetCellData()->SetGlobalIds(numbers<vtkIdTypeArray>("ids", all, of_cell));
+  }
+  return piece;
+}
+
+/// Each cell in a piece of its own choice; the last piece is empty.
+Pieces scattered(vtkPolyData& mesh, unsigned seed, Ids ids) {
+  std::mt19937 random(seed);
+  std::array<std::vector<vtkIdType>, 3> cells;
+  std::vector<vtkIdType> order(static_cast<std::size_t>(mesh.GetNumberOfCells()));
+  std::iota(order.begin(), order.end(), 0);
+  std::shuffle(order.begin(), order.end(), random);
+  for (const vtkIdType cell : order) cells[random() % cells.size()].push_back(cell);
+  Pieces pieces;
+  for (const auto& each : cells) pieces.push_back(piece_of(mesh, each, ids));
+  pieces.push_back(Mesh::New());
+  return pieces;
+}
+
+/// The halves of the square.
+Pieces halves(Ids ids = Ids::none) {
+  const Mesh mesh = square();
+  return {piece_of(*mesh, {0, 1, 2, 3, 4, 5, 6, 7}, ids),
+          piece_of(*mesh, {8, 9, 10, 11, 12, 13, 14, 15}, ids)};
+}
+
+void mark_ghosts(vtkDataSetAttributes& attributes, vtkIdType count, vtkIdType first) {
+  vtkNew<vtkUnsignedCharArray> ghosts;
+  ghosts->SetName(vtkDataSetAttributes::GhostArrayName());
+  for (vtkIdType i = 0; i < count; ++i) ghosts->InsertNextValue(i < first ? 0 : 1);
+  attributes.AddArray(ghosts);
+}
+
+double value(vtkDataSetAttributes& attributes, const char* name, vtkIdType i) {
+  return attributes.GetArray(name)->GetTuple1(i);
+}
+
+std::vector<vtkIdType> corners_of(vtkPolyData& mesh, vtkIdType cell) {
+  vtkNew<vtkIdList> corners;
+  mesh.GetPolys()->GetCellAtId(cell, corners);
+  return {corners->begin(), corners->end()};
+}
+
+void move(vtkPolyData& mesh, vtkIdType point, double by) {
+  std::array<double, 3> position = {};
+  mesh.GetPoint(point, position.data());
+  position[0] += by;
+  mesh.GetPoints()->SetPoint(point, position.data());
+}
+
+/// The point of a piece that is a point of the whole.
+vtkIdType local(vtkPolyData& piece, double number) {
+  for (vtkIdType i = 0; i < piece.GetNumberOfPoints(); ++i) {
+    if (value(*piece.GetPointData(), "at", i) == number) return i;
+  }
+  return -1;
+}
+
+std::string refusal(const Pieces& pieces, const MergedPieces* before = nullptr) {
+  try {
+    merged(pieces, before);
+  } catch (const MismatchError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+/// Whatever the order is: every point and cell of the pieces is found in it once.
+void expect_square(const MergedPieces& found) {
+  const Mesh whole = square();
+  ASSERT_EQ(found.mesh->GetNumberOfPoints(), whole->GetNumberOfPoints());
+  ASSERT_EQ(found.mesh->GetNumberOfCells(), whole->GetNumberOfCells());
+  for (vtkIdType i = 0; i < found.mesh->GetNumberOfPoints(); ++i) {
+    const auto at = static_cast<vtkIdType>(value(*found.mesh->GetPointData(), "at", i));
+    for (int axis = 0; axis < 3; ++axis) {
+      EXPECT_EQ(found.mesh->GetPoint(i)[axis], whole->GetPoint(at)[axis]);
+    }
+  }
+  for (vtkIdType cell = 0; cell < found.mesh->GetNumberOfCells(); ++cell) {
+    std::vector<vtkIdType> corners;
+    for (const vtkIdType corner : corners_of(*found.mesh, cell)) {
+      corners.push_back(static_cast<vtkIdType>(value(*found.mesh->GetPointData(), "at", corner)));
+    }
+    const auto on = static_cast<vtkIdType>(value(*found.mesh->GetCellData(), "on", cell));
+    EXPECT_EQ(corners, corners_of(*whole, on));
+  }
+  for (std::size_t p = 0; p < found.pieces.size(); ++p) {
+    for (vtkIdType i = 0; i < found.pieces[p]->GetNumberOfPoints(); ++i) {
+      EXPECT_EQ(value(*found.pieces[p]->GetPointData(), "at", i),
+                value(*found.mesh->GetPointData(), "at", found.points.places[p][std::size_t(i)]));
+    }
+    for (vtkIdType i = 0; i < found.pieces[p]->GetNumberOfCells(); ++i) {
+      EXPECT_EQ(value(*found.pieces[p]->GetCellData(), "on", i),
+                value(*found.mesh->GetCellData(), "on", found.cells[p][std::size_t(i)]));
+    }
+  }
+}
+
+}  // namespace
+
+TEST(MergedPieces, AreTheMeshItselfWhereOnePieceHoldsIt) {
+  const Mesh mesh = square();
+  const MergedPieces found = merged({Mesh::New(), mesh, Mesh::New()}, nullptr);
+  EXPECT_EQ(found.mesh, mesh);
+  EXPECT_TRUE(found.points.named);
+  expect_square(found);
+}
+
+TEST(MergedPieces, AreTheMeshInItsOrderWhereGlobalIdsSayIt) {
+  const Mesh mesh = square();
+  for (unsigned seed = 0; seed < 20; ++seed) {
+    const MergedPieces found = merged(scattered(*mesh, seed, Ids::points_and_cells), nullptr);
+    EXPECT_TRUE(found.points.named);
+    expect_square(found);
+    for (vtkIdType i = 0; i < mesh->GetNumberOfPoints(); ++i) {
+      EXPECT_EQ(value(*found.mesh->GetPointData(), "at", i), static_cast<double>(i));
+    }
+    for (vtkIdType i = 0; i < mesh->GetNumberOfCells(); ++i) {
+      EXPECT_EQ(corners_of(*found.mesh, i), corners_of(*mesh, i));
+    }
+  }
+}
+
+TEST(MergedPieces, AreInOneOrderHoweverTheyAreCutWherePointsHaveIds) {
+  const Mesh mesh = square();
+  const MergedPieces first = merged(scattered(*mesh, 1, Ids::points), nullptr);
+  for (unsigned seed = 2; seed < 20; ++seed) {
+    const MergedPieces found = merged(scattered(*mesh, seed, Ids::points), nullptr);
+    expect_square(found);
+    for (vtkIdType i = 0; i < mesh->GetNumberOfCells(); ++i) {
+      EXPECT_EQ(corners_of(*found.mesh, i), corners_of(*first.mesh, i));
+    }
+  }
+}
+
+TEST(MergedPieces, AreJoinedAtSeamsWithoutIdsInTheOrderOfThePieces) {
+  const Mesh mesh = square();
+  for (unsigned seed = 0; seed < 20; ++seed) {
+    const MergedPieces found = merged(scattered(*mesh, seed, Ids::none), nullptr);
+    EXPECT_FALSE(found.points.named);
+    expect_square(found);
+  }
+  Places first = merged(halves(), nullptr).points.places.front();
+  EXPECT_TRUE(std::ranges::is_sorted(first));
+  EXPECT_EQ(first.back(), 3 * kSize - 1);
+}
+
+TEST(MergedPieces, AreJoinedWherePositionsDifferByRounding) {
+  Pieces pieces = halves();
+  move(*pieces[1], local(*pieces[1], 2 * kSize), 1e-7);
+  EXPECT_EQ(merged(pieces, nullptr).mesh->GetNumberOfPoints(), kSize * kSize);
+  EXPECT_EQ(merged(pieces, nullptr).points.joined, std::size_t{kSize});
+  EXPECT_EQ(merged(halves(Ids::points), nullptr).points.joined, 0U);
+  move(*pieces[1], local(*pieces[1], 2 * kSize), 1e-4);
+  EXPECT_EQ(merged(pieces, nullptr).mesh->GetNumberOfPoints(), kSize * kSize + 1);
+}
+
+TEST(MergedPieces, KeepApartWhatOnePieceKeepsApart) {
+  Pieces pieces = halves();
+  // A slit that is closed: two border points of one piece at one position, far from the other.
+  pieces[0]->GetPoints()->SetPoint(local(*pieces[0], 1), pieces[0]->GetPoint(local(*pieces[0], 0)));
+  EXPECT_EQ(merged(pieces, nullptr).mesh->GetNumberOfPoints(), kSize * kSize);
+  EXPECT_EQ(refusal(pieces), "");
+}
+
+TEST(MergedPieces, AreRefusedWhereWhichPointIsWhichCannotBeKnown) {
+  Pieces pieces = halves();
+  pieces[0]->GetPoints()->SetPoint(local(*pieces[0], 0),
+                                   pieces[0]->GetPoint(local(*pieces[0], 2 * kSize)));
+  EXPECT_THAT(refusal(pieces), HasSubstr("which of them it is cannot be known"));
+  EXPECT_THAT(refusal(pieces), HasSubstr("Generate Global Ids"));
+}
+
+TEST(MergedPieces, AreRefusedWhereAnInnerPointOfOneIsAtAPointOfAnother) {
+  Pieces pieces = halves();
+  const std::array<double, 3> inner = {1, 1, std::sin(0.7 + 1)};
+  pieces[1]->GetPoints()->SetPoint(local(*pieces[1], kSize * kSize - 1), inner.data());
+  EXPECT_THAT(refusal(pieces), HasSubstr("not at the border of both pieces"));
+}
+
+TEST(MergedPieces, LoseGhostsWhichKeepTheirPlaces) {
+  const Mesh mesh = square();
+  for (const Ids ids : {Ids::none, Ids::points, Ids::points_and_cells}) {
+    Pieces pieces = {piece_of(*mesh, {0, 1, 2, 3, 4, 5, 6, 7, 8, 9}, ids),
+                     piece_of(*mesh, {8, 9, 10, 11, 12, 13, 14, 15, 7, 6}, ids)};
+    EXPECT_THAT(refusal(pieces), HasSubstr("ghost"));
+    for (const auto& piece : pieces) mark_ghosts(*piece->GetCellData(), 10, 8);
+    expect_square(merged(pieces, nullptr));
+    // Marked points, too; the first piece owns the seam.
+    mark_ghosts(*pieces[0]->GetPointData(), pieces[0]->GetNumberOfPoints(), 3 * kSize);
+    const MergedPieces found = merged(pieces, nullptr);
+    expect_square(found);
+    EXPECT_FALSE(found.mesh->GetPointData()->HasArray(vtkDataSetAttributes::GhostArrayName()));
+    EXPECT_FALSE(found.mesh->GetCellData()->HasArray(vtkDataSetAttributes::GhostArrayName()));
+  }
+}
+
+TEST(MergedPieces, AreRefusedWithAGhostOfNobody) {
+  const Mesh mesh = square();
+  Pieces pieces = {piece_of(*mesh, {0, 1, 2, 3, 8}), piece_of(*mesh, {4, 5, 6, 7})};
+  mark_ghosts(*pieces[0]->GetCellData(), 5, 4);
+  EXPECT_THAT(refusal(pieces), HasSubstr("is a ghost of no process"));
+}
+
+TEST(MergedPieces, AreRefusedWhereIdsContradict) {
+  Pieces pieces = halves(Ids::points);
+  pieces[1]->GetPointData()->GetGlobalIds()->SetTuple1(0, 0);
+  EXPECT_THAT(refusal(pieces), HasSubstr("which are at different positions"));
+  pieces = halves(Ids::points);
+  pieces[1]->GetPointData()->GetGlobalIds()->SetTuple1(0, 24);
+  EXPECT_THAT(refusal(pieces), HasSubstr("global id 24 names point"));
+  pieces = halves(Ids::points_and_cells);
+  pieces[1]->GetCellData()->GetGlobalIds()->SetTuple1(0, 3);
+  EXPECT_THAT(refusal(pieces), HasSubstr("global id 3 names cell"));
+}
+
+TEST(MergedPieces, AreRefusedWhereIdsLeaveASeamOpenThatRoundingMade) {
+  Pieces pieces = halves(Ids::points);
+  const vtkIdType seam = local(*pieces[1], 2 * kSize);
+  pieces[1]->GetPointData()->GetGlobalIds()->SetTuple1(seam, 100);
+  EXPECT_EQ(merged(pieces, nullptr).mesh->GetNumberOfPoints(), kSize * kSize + 1);
+  move(*pieces[1], seam, 1e-7);
+  EXPECT_THAT(refusal(pieces), HasSubstr("nearly at one position"));
+}
+
+TEST(MergedPieces, AreRefusedWithPositionsThatAreNoNumbers) {
+  Pieces pieces = halves();
+  move(*pieces[1], 3, std::numeric_limits<double>::quiet_NaN());
+  EXPECT_THAT(refusal(pieces), HasSubstr("point 3 of process 1 is not finite"));
+}
+
+TEST(MergedPieces, AreFollowedOverTime) {
+  const Mesh mesh = square();
+  const MergedPieces before = merged(halves(), nullptr);
+  Pieces later = halves();
+  for (const auto& piece : later) {
+    for (vtkIdType i = 0; i < piece->GetNumberOfPoints(); ++i) {
+      move(*piece, i, value(*piece->GetPointData(), "at", i));
+    }
+  }
+  const MergedPieces found = merged(later, &before);
+  EXPECT_EQ(found.points.places, before.points.places);
+  EXPECT_EQ(found.points.joined, std::size_t{kSize});
+  Pieces broken = halves();
+  const vtkIdType inner = local(*broken[1], kSize * kSize - 1);
+  move(*broken[1], inner, std::numeric_limits<double>::infinity());
+  EXPECT_THAT(refusal(broken, &before), HasSubstr("is not finite"));
+  move(*later[1], local(*later[1], 2 * kSize + 1), 0.5);
+  EXPECT_THAT(refusal(later, &before), HasSubstr("have parted"));
+  EXPECT_THAT(refusal(scattered(*mesh, 3, Ids::none), &before), HasSubstr("another piece"));
+  EXPECT_THAT(refusal({mesh, Mesh::New()}, &before), HasSubstr("another piece"));
+  const MergedPieces alone = merged({mesh, Mesh::New()}, nullptr);
+  EXPECT_THAT(refusal(halves(), &alone), HasSubstr("another piece"));
+  const MergedPieces named = merged(scattered(*mesh, 3, Ids::points), nullptr);
+  expect_square(merged(scattered(*mesh, 4, Ids::points), &named));
+}
+
+namespace {
+
+/// Numbers of the whole square's rows, or of a piece's points, as an array of three components.
+vtkSmartPointer<vtkDoubleArray> vectors(const char* name, vtkIdType rows,
+                                        const std::function<double(vtkIdType)>& row) {
+  const auto array = vtkSmartPointer<vtkDoubleArray>::New();
+  array->SetName(name);
+  array->SetNumberOfComponents(3);
+  for (vtkIdType i = 0; i < rows; ++i) array->InsertNextTuple3(row(i), 0, 0);
+  return array;
+}
+
+vtkSmartPointer<vtkDoubleArray> own_numbers(const char* name, vtkPolyData& piece) {
+  return vectors(name, piece.GetNumberOfPoints(),
+                 [&](vtkIdType i) { return value(*piece.GetPointData(), "at", i); });
+}
+
+}  // namespace
+
+TEST(MergedPieces, BringARestPoseOnPointsAlong) {
+  for (const Ids ids : {Ids::none, Ids::points}) {
+    Pieces pieces = halves(ids);
+    for (const auto& piece : pieces) {
+      piece->GetPointData()->AddArray(own_numbers(kRestPose, *piece));
+    }
+    const MergedPieces found = merged(pieces, nullptr);
+    const auto rest = rest_of(*found.mesh, positions_of(*found.mesh, "mesh"), "mesh");
+    ASSERT_TRUE(rest);
+    for (vtkIdType i = 0; i < found.mesh->GetNumberOfPoints(); ++i) {
+      EXPECT_EQ((*rest)(i, 0), value(*found.mesh->GetPointData(), "at", i));
+    }
+  }
+}
+
+TEST(MergedPieces, AreRefusedWithARestPoseThatStayedBehind) {
+  // Rows of the whole mesh, whatever the ids are: they may have been made after it was distributed.
+  const auto whole =
+      vectors(kRestPose, kSize * kSize, [](vtkIdType i) { return static_cast<double>(i); });
+  for (const Ids ids : {Ids::none, Ids::points, Ids::points_and_cells}) {
+    Pieces pieces = halves(ids);
+    pieces[1]->GetFieldData()->AddArray(whole);
+    EXPECT_THAT(refusal(pieces), HasSubstr("the rest pose is field data (mimetra_rest)"));
+    EXPECT_THAT(refusal(pieces), HasSubstr("read the file by mimetra Sequence"));
+    // As many rows as the piece has points may be those of another piece.
+    pieces = halves(ids);
+    for (const auto& piece : pieces) {
+      piece->GetFieldData()->AddArray(own_numbers(kRestPose, *piece));
+    }
+    EXPECT_THAT(refusal(pieces), HasSubstr("the rest pose is field data (mimetra_rest)"));
+  }
+}
+
+TEST(MergedPieces, AreRefusedWithRestPosesOfSomeOnly) {
+  for (const char* name : {kRestPose, kDisplacement}) {
+    Pieces pieces = halves();
+    pieces[1]->GetPointData()->AddArray(own_numbers(name, *pieces[1]));
+    EXPECT_THAT(refusal(pieces),
+                HasSubstr("the point data " + std::string(name) + " of process 1 are not on all"));
+    pieces[0]->GetPointData()->AddArray(own_numbers(name, *pieces[0]));
+    EXPECT_EQ(refusal(pieces), "");
+  }
+}
+
+TEST(MergedPieces, KnowIdsThatDoublesCannotTellApart) {
+  constexpr vtkIdType kLarge = vtkIdType{1} << 53;  // and the next one is no double
+  const auto shift = [](vtkDataArray* ids) {
+    auto& whole = *vtkIdTypeArray::SafeDownCast(ids);
+    for (vtkIdType i = 0; i < whole.GetNumberOfTuples(); ++i) {
+      whole.SetValue(i, whole.GetValue(i) + kLarge);
+    }
+  };
+  Pieces pieces = halves(Ids::points_and_cells);
+  for (const auto& piece : pieces) {
+    shift(piece->GetPointData()->GetGlobalIds());
+    shift(piece->GetCellData()->GetGlobalIds());
+  }
+  const MergedPieces found = merged(pieces, nullptr);
+  expect_square(found);
+  for (vtkIdType i = 0; i < found.mesh->GetNumberOfPoints(); ++i) {
+    EXPECT_EQ(value(*found.mesh->GetPointData(), "at", i), static_cast<double>(i));
+  }
+}
+
+TEST(PieceAnswer, GivesEachPieceItsRowsAndLeavesTheRest) {
+  for (const Ids ids : {Ids::none, Ids::points_and_cells}) {
+    const Mesh mesh = square();
+    const MergedPieces found = merged(scattered(*mesh, 5, ids), nullptr);
+    vtkNew<vtkPolyData> output;
+    output->ShallowCopy(found.mesh);
+    vtkDataSetAttributes& on_points = *output->GetPointData();
+    const auto twice = [&](vtkIdType i) { return 2 * value(*found.mesh->GetPointData(), "at", i); };
+    on_points.AddArray(numbers<vtkDoubleArray>("twice", output->GetNumberOfPoints(), twice));
+    output->GetCellData()->RemoveArray("on");
+    ASSERT_TRUE(lies_on(*output, *found.mesh));
+    for (std::size_t p = 0; p < found.pieces.size(); ++p) {
+      vtkPolyData& piece = *found.pieces[p];
+      Parcel parcel;
+      put_answer(parcel, *output, found, p);
+      vtkNew<vtkPolyData> shown;
+      take_answer(parcel, piece, *shown);
+      EXPECT_EQ(shown->GetPolys(), piece.GetPolys());
+      EXPECT_EQ(shown->GetPoints(), piece.GetPoints());
+      EXPECT_EQ(shown->GetPointData()->GetArray("at"), piece.GetPointData()->GetArray("at"));
+      EXPECT_FALSE(shown->GetCellData()->HasArray("on"));
+      for (vtkIdType i = 0; i < shown->GetNumberOfPoints(); ++i) {
+        EXPECT_EQ(value(*shown->GetPointData(), "twice", i),
+                  2 * value(*piece.GetPointData(), "at", i));
+      }
+    }
+  }
+}
+
+TEST(Parcel, GivesBackThePieceThatWasPutIn) {
+  const Pieces pieces = halves(Ids::points_and_cells);
+  Parcel parcel = packed(*pieces[1]);
+  const Mesh found = unpacked(parcel);
+  EXPECT_EQ(found->GetNumberOfPoints(), pieces[1]->GetNumberOfPoints());
+  EXPECT_EQ(corners_of(*found, 3), corners_of(*pieces[1], 3));
+  EXPECT_EQ(found->GetPointData()->GetGlobalIds()->GetTuple1(4),
+            pieces[1]->GetPointData()->GetGlobalIds()->GetTuple1(4));
+  EXPECT_EQ(value(*found->GetCellData(), "on", 2), value(*pieces[1]->GetCellData(), "on", 2));
+}

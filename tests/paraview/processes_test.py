@@ -1,0 +1,302 @@
+"""Filters on a server of several processes: what one process gives, or a refusal, never else."""
+
+import unittest
+
+from paraview import servermanager
+from vtkmodules.vtkFiltersCore import vtkAppendPolyData
+
+from host import *
+
+ERROR = "ERR"
+
+
+def numbered(source):
+    """With global ids of points and cells, in the order that one process knows, which are also the
+    point data `number`, as blocks lose their ids where they are put together."""
+    named = simple.GenerateGlobalIds(Input=source)
+    return simple.Calculator(Input=named, Function="GlobalPointIds", ResultArrayName="number")
+
+
+def distributed(source):
+    return simple.ExtractSurface(Input=simple.RedistributeDataSet(Input=source))
+
+
+def with_ghosts(source):
+    return simple.GhostCellsGenerator(Input=distributed(source), BuildIfRequired=0,
+                                      MinimumNumberOfGhosts=2)
+
+
+def in_one(blocks):
+    together = vtkAppendPolyData()
+    leaves = blocks.NewIterator()
+    while not leaves.IsDoneWithTraversal():
+        together.AddInputData(leaves.GetCurrentDataObject())
+        leaves.GoToNextItem()
+    together.Update()
+    return together.GetOutput()
+
+
+def fetched(proxy, time=0):
+    """The pieces of all processes, one after the other."""
+    proxy.UpdatePipeline(time)
+    data = servermanager.Fetch(proxy)
+    return in_one(data) if data.IsA("vtkCompositeDataSet") else data
+
+
+def largest_piece(proxy):
+    """How many points of the mesh the process has that has most of them."""
+    ids = point_array(fetched(simple.ProcessIdScalars(Input=proxy)), "ProcessId")
+    return np.bincount(ids.astype(int)).max()
+
+
+class Processes(HostTest):
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        cls.target = cls.sample / "target.ply"
+        mimetra("convert", f"{cls.sample.head}@identity002=1", "-o", cls.target)
+
+    def take(self):
+        return simple.mimetraSequence(FileName=str(self.sample.take))
+
+    def by_id(self, values, ids, count):
+        """In the order of ids; what several processes have, they have alike."""
+        unique, first, which = np.unique(ids, return_index=True, return_inverse=True)
+        self.assertEqual(list(unique), list(range(count)))
+        self.assertEqual(values.tobytes(), values[first][which].tobytes())
+        return values[first]
+
+    def assert_as_alone(self, alone, shared, names=(), on_cells=(), times=(0, 3)):
+        """The outputs of a filter of the whole take, and of pieces with ids."""
+        for time in times:
+            expected, found = fetched(alone, time), fetched(shared, time)
+            ids, count = point_array(found, "number"), expected.GetNumberOfPoints()
+            self.assert_same(self.by_id(points(found), ids, count), points(expected))
+            for name in names:
+                values = self.by_id(point_array(found, name), ids, count)
+                self.assert_same(values, point_array(expected, name), name)
+            for name in on_cells:
+                values = self.by_id(cell_array(found, name), cell_array(found, "GlobalCellIds"),
+                                    expected.GetNumberOfCells())
+                self.assert_same(values, cell_array(expected, name), name)
+
+    def assert_refused(self, filter, words, time=0):
+        with Messages() as messages:
+            self.assertEqual(fetched(filter, time).GetNumberOfPoints(), 0)
+        self.assertIn(words, messages.text)
+        self.assertEqual(messages.text.count(ERROR), 1, messages.text)
+
+    def test_pieces_are_really_on_several_processes(self):
+        whole = fetched(self.take()).GetNumberOfPoints()
+        self.assertEqual(largest_piece(self.take()), whole)
+        self.assertLess(largest_piece(distributed(self.take())), 0.9 * whole)
+
+    def test_geodesic_distances_are_those_of_one_process(self):
+        alone = simple.GeodesicDistance(Input=self.take(), Source="100,2000")
+        for pieces in [distributed, with_ghosts]:
+            shared = simple.GeodesicDistance(Input=pieces(numbered(self.take())),
+                                             Source="100,2000")
+            self.assert_as_alone(alone, shared, ["distance", "support"])
+
+    def test_regions_are_those_of_one_process(self):
+        alone = simple.RegionsofInterest(Input=self.take(), K=5, DisplayedRegion=2)
+        names = ["region", "region_count", "roi", "displacement", "displayed_region"]
+        for pieces in [distributed, with_ghosts]:
+            shared = simple.RegionsofInterest(Input=pieces(numbered(self.take())), K=5,
+                                              DisplayedRegion=2)
+            self.assert_as_alone(alone, shared, names, ["in_L"])
+            self.assertEqual(decompositions(shared), 1)
+
+    def test_transferred_meshes_are_those_of_one_process(self):
+        def still():
+            return simple.mimetraSequence(FileName=str(self.target))
+        alone = simple.RegionTransfer(Input=self.take(), Target=still(), K=5)
+        shared = simple.RegionTransfer(Input=distributed(numbered(self.take())), K=5,
+                                       Target=distributed(numbered(still())))
+        self.assert_as_alone(alone, shared, ["region", "roi", "displacement"], ["in_L"])
+        model = f"{self.sample.head}@identity002=1"
+        alone = simple.RegionTransfer(Input=self.take(), TargetFile=model, K=5)
+        shared = simple.RegionTransfer(Input=distributed(numbered(self.take())), K=5,
+                                       TargetFile=model)
+        self.assert_as_alone(alone, shared, ["roi"])
+        expected, found = at(alone, port=1), at(shared, port=1)
+        self.assertGreater(expected.GetNumberOfColumns(), 1)
+        for i in range(expected.GetNumberOfColumns()):
+            name = expected.GetColumnName(i)
+            self.assert_same(column(found, name), column(expected, name), name)
+
+    def test_components_are_those_of_one_process(self):
+        alone = simple.SparseComponents(Input=self.take(), K=3)
+        shared = simple.SparseComponents(Input=distributed(numbered(self.take())), K=3)
+        for k in range(3):
+            blocks = [simple.ExtractSurface(Input=simple.ExtractBlock(
+                Input=each, Selectors=[f"/Root/component_{k}"])) for each in [alone, shared]]
+            self.assert_as_alone(*blocks, ["support", "displacement"], times=[0])
+
+    def test_aligned_meshes_are_those_of_one_process(self):
+        alone = simple.mimetraAlign(Input=self.take())
+        self.assert_as_alone(alone, simple.mimetraAlign(Input=distributed(numbered(self.take()))))
+
+    def test_reports_and_tables_are_those_of_one_process(self):
+        for name in ["mimetraInfo", "mimetraCheck"]:
+            alone, shared = (getattr(simple, name)(Input=source)
+                             for source in [self.take(), distributed(numbered(self.take()))])
+            expected, found = fetched(alone), fetched(shared)
+            self.assertGreater(expected.GetNumberOfRows(), 1)
+            for row in range(expected.GetNumberOfRows()):
+                self.assertEqual(found.GetValue(row, 1).ToString(),
+                                 expected.GetValue(row, 1).ToString())
+        alone, shared = (simple.mimetraEvaluate(Input=source, TargetFile=str(self.sample.head),
+                                                K="3,5")
+                         for source in [self.take(), distributed(numbered(self.take()))])
+        expected, found = fetched(alone), fetched(shared)
+        self.assertGreater(expected.GetNumberOfRows(), 0)
+        for i in range(expected.GetNumberOfColumns()):
+            name = expected.GetColumnName(i)
+            for row in range(expected.GetNumberOfRows()):
+                if "second" not in name:
+                    self.assertEqual(found.GetValueByName(row, name).ToString(),
+                                     expected.GetValueByName(row, name).ToString(), name)
+
+    def test_filters_go_on_from_pieces_of_pieces(self):
+        def chain(source):
+            return simple.GeodesicDistance(Input=simple.RegionsofInterest(
+                Input=simple.mimetraAlign(Input=source), K=3))
+        self.assert_as_alone(chain(self.take()), chain(distributed(numbered(self.take()))),
+                             ["distance", "region"])
+
+    def test_pieces_without_ids_give_the_same_regions(self):
+        series = simple.Calculator(Input=self.series_of("bare", moving(size=20)),
+                                   Function="coordsX + 20 * coordsY", ResultArrayName="number")
+        alone = simple.RegionsofInterest(Input=series, K=2)
+        shared = simple.RegionsofInterest(Input=distributed(series), K=2)
+        self.assert_as_alone(alone, shared, ["number", "region", "roi", "displacement"])
+
+    def test_numbers_of_points_are_refused_without_ids(self):
+        series = distributed(self.series_of("unnamed", moving(size=20)))
+        self.assert_refused(simple.GeodesicDistance(Input=series),
+                            "'Source' goes by the numbers of points")
+        self.assert_refused(simple.RegionTransfer(Input=series, TargetFile=str(self.sample.head)),
+                            "'Target' goes by the numbers of points")
+
+    def test_the_rest_pose_goes_with_its_points(self):
+        alone = simple.RegionsofInterest(Input=self.take(), K=5)
+        # These ids count the points in another order than the file.
+        late = simple.GenerateGlobalIds(Input=distributed(numbered(self.take())))
+        shared = simple.RegionsofInterest(Input=late, K=5)
+        again = simple.RegionsofInterest(Input=distributed(shared), K=5)
+        for time in [0, 3]:
+            expected = point_array(fetched(alone, time), "displacement")
+            for filter in [shared, again]:
+                found = fetched(filter, time)
+                ids = point_array(found, "number").astype(int)
+                self.assertEqual(len(np.unique(ids)), len(expected))
+                self.assert_same(point_array(found, "displacement"), expected[ids])
+
+    def test_a_rest_pose_that_stayed_behind_is_refused(self):
+        meshes = moving(size=20)
+        for mesh in meshes:
+            rest = numpy_to_vtk(points(meshes[0]), deep=True)
+            rest.SetName("mimetra_rest")
+            mesh.GetFieldData().AddArray(rest)
+        series = self.series_of("with_rest", meshes)
+        self.assertGreater(fetched(simple.RegionsofInterest(Input=series, K=2)
+                                   ).GetNumberOfPoints(), 0)
+        for pieces in [distributed(series), distributed(simple.GenerateGlobalIds(Input=series)),
+                       simple.GenerateGlobalIds(Input=distributed(series))]:
+            self.assert_refused(simple.RegionsofInterest(Input=pieces, K=2),
+                                "the rest pose is field data (mimetra_rest)")
+
+    def strips(self, steps, shown="time"):
+        """Of each process a strip of a bump that goes along all; `steps` and the time of what
+        comes out are Python, of the process `p`."""
+        source = simple.ProgrammableSource(OutputDataSetType="vtkPolyData")
+        begin = ("from vtkmodules.vtkParallelCore import vtkMultiProcessController as Controller\n"
+                 "p = Controller.GetGlobalController().GetLocalProcessId()\n"
+                 "executive = self.GetExecutive()\n"
+                 "out = executive.GetOutputInformation(0)\n")
+        source.ScriptRequestInformation = begin + (
+            "out.Set(self.CAN_HANDLE_PIECE_REQUEST(), 1)\n"
+            "out.Remove(executive.TIME_STEPS())\n"
+            "out.Remove(executive.TIME_RANGE())\n"
+            f"steps = [float(step) for step in {steps}]\n"
+            "for step in steps: out.Append(executive.TIME_STEPS(), step)\n"
+            "if steps: out.Set(executive.TIME_RANGE(), [steps[0], steps[-1]], 2)\n")
+        source.Script = begin + (
+            "import numpy as np\n"
+            "from vtkmodules.vtkCommonCore import vtkPoints\n"
+            "from vtkmodules.vtkCommonDataModel import vtkCellArray\n"
+            "asked = executive.UPDATE_TIME_STEP()\n"
+            "time = out.Get(asked) if out.Has(asked) else 0.0\n"
+            "points, quads = vtkPoints(), vtkCellArray()\n"
+            "for i in range(30):\n"
+            "    x, y = 5.0 * p + i % 6, float(i // 6)\n"
+            "    points.InsertNextPoint(x, y, np.exp(-(x - 2 - time)**2 - (y - 2)**2))\n"
+            "    if i % 6 < 5 and i < 24: quads.InsertNextCell(4, [i, i + 1, i + 7, i + 6])\n"
+            "mesh = self.GetPolyDataOutput()\n"
+            "mesh.SetPoints(points)\n"
+            "mesh.SetPolys(quads)\n"
+            f"mesh.GetInformation().Set(mesh.DATA_TIME_STEP(), float({shown}))\n")
+        return source
+
+    def test_pieces_of_different_times_are_refused(self):
+        fits = fetched(simple.RegionsofInterest(Input=self.strips("range(4)"), K=2), 3)
+        self.assertGreaterEqual(fits.GetNumberOfPoints(), 55)
+        for steps in ["range(4 if p == 0 else 2)", "range(4 if p == 0 else 0)",
+                      "[0, 1, 2 + p, 5]"]:
+            self.assert_refused(simple.RegionsofInterest(Input=self.strips(steps), K=2),
+                                "the time steps of process 1")
+        late = self.strips("range(4)", shown="time if p == 0 or time < 1 else 1")
+        self.assert_refused(simple.RegionsofInterest(Input=late, K=2),
+                            "process 1 has a piece of time 1, process 0 of time 2")
+
+    def test_points_that_positions_join_are_named_once(self):
+        series = self.series_of("cut", moving(size=20))
+        filter = simple.RegionsofInterest(Input=distributed(series), K=2)
+        with Messages() as messages:
+            self.assertGreater(fetched(filter, 0).GetNumberOfPoints(), 0)
+            fetched(filter, 1)
+            filter.K = 3
+            fetched(filter, 1)
+        self.assertEqual(messages.text.count("and were joined"), 1, messages.text)
+        self.assert_refused(simple.RegionsofInterest(Input=distributed(series), K=2, Weld="none"),
+                            "whether 'Weld' none keeps them apart")
+        named = simple.RegionsofInterest(
+            Input=distributed(simple.GenerateGlobalIds(Input=series)), K=2, Weld="none")
+        with Messages() as messages:
+            self.assertGreater(fetched(named).GetNumberOfPoints(), 0)
+        self.assertNotIn("joined", messages.text)
+
+    def test_what_one_process_refuses_is_refused_once(self):
+        self.assert_refused(simple.RegionsofInterest(Input=distributed(numbered(self.take())),
+                                                     K=10**6), "components asked for")
+        filter = simple.GeodesicDistance(Input=simple.RedistributeDataSet(Input=self.take()))
+        self.assert_refused(filter, "found vtkUnstructuredGrid; apply Extract Surface")
+        # And then it works.
+        filter.Input = self.take()
+        self.assertGreater(fetched(filter).GetNumberOfPoints(), 0)
+
+    def test_a_sphere_is_measured_across_its_pieces(self):
+        sphere = simple.Sphere(ThetaResolution=64, PhiResolution=64)
+        self.assert_refused(simple.GeodesicDistance(Input=sphere), "'Source' goes by the numbers")
+        named = simple.GeodesicDistance(Input=simple.GenerateGlobalIds(Input=sphere,
+                                                                       Tolerance=1e-6))
+        if servermanager.ActiveConnection.GetNumberOfDataPartitions() == 2:
+            # As the test of one process: half the circumference.
+            distance = point_array(fetched(named), "distance")
+            self.assertAlmostEqual(distance.max(), np.pi / 2, delta=0.05 * np.pi / 2)
+        else:  # the tolerance does not reach from the first process to the last
+            self.assert_refused(named, "nearly at one position")
+        open_seam = simple.GenerateGlobalIds(Input=sphere)
+        self.assert_refused(simple.GeodesicDistance(Input=open_seam), "nearly at one position")
+
+    def test_empty_pieces_pass_silently(self):
+        with Messages() as messages:
+            for name in ["GeodesicDistance", "RegionsofInterest", "mimetraAlign"]:
+                filter = getattr(simple, name)(Input=self.take())
+                self.assertGreater(fetched(filter, 2).GetNumberOfPoints(), 0)
+        self.assertNotIn(ERROR, messages.text)
+
+
+if __name__ == "__main__":
+    run_tests()
