@@ -13,6 +13,8 @@ if(MIMETRA_FILES)
   mimetra_package(nlohmann_json)
   mimetra_package(libzip)
   mimetra_package(ZLIB)
+  mimetra_package(PNG)
+  mimetra_package(JPEG)
   mimetra_package(meshoptimizer CONFIG)
   # Without Draco, files that it compressed are refused by what they are.
   option(MIMETRA_DRACO "Read meshes that Draco compressed, where it is installed" ON)

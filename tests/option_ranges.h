@@ -13,6 +13,8 @@ template <typename Value>
 void set_option(Value& value, double number) {
   if constexpr (std::is_same_v<Value, Length>) {
     value.value = number;
+  } else if constexpr (std::is_same_v<Value, std::optional<Length>>) {
+    value = Length{number};
   } else if constexpr (std::is_same_v<Value, std::vector<int>>) {
     value = {static_cast<int>(number)};
   } else if constexpr (std::is_same_v<Value, bool> || NamedChoice<Value>) {

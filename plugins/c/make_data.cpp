@@ -6,6 +6,7 @@
 #include "plugins/c/given_arrays.h"
 #include "plugins/c/shown_arrays.h"
 #include "plugins/c/utf8.h"
+#include "toolkit/io/painting_file.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/operations/parameter.h"
 
@@ -136,6 +137,16 @@ Components components_of(GivenArrays& given) {
   return components;
 }
 
+/// The field `weight` of regions with a soft border, which is made of it; null without.
+const mimetra_array* weights_among(const GivenArrays& given) {
+  for (const mimetra_array& array : given.all()) {
+    if (array.location == MIMETRA_ON_VERTICES && std::string_view(array.name) == "weight") {
+      return &array;
+    }
+  }
+  return nullptr;
+}
+
 RegionData regions_of(GivenArrays& given, const Base& base) {
   const std::vector<std::uint8_t> masks = given.bytes("masks", "R x N");
   const int vertices = given.size('N');
@@ -145,7 +156,13 @@ RegionData regions_of(GivenArrays& given, const Base& base) {
     const auto n = static_cast<std::size_t>(vertices);
     if (masks[i]) lists[i / n].push_back(static_cast<VertexIndex>(i % n));
   }
-  return {regions_from_vertices(vertices, connectivity->triangles, lists), {}, connectivity};
+  Regions regions = regions_from_vertices(vertices, connectivity->triangles, lists);
+  if (const mimetra_array* const array = weights_among(given)) {
+    const Eigen::VectorXd weights = given.numbers(*array, "N", true).reshaped();
+    check_painting(given.subject() + ": array 'weight'", weights);
+    regions = with_weights(std::move(regions), weights, connectivity->triangles);
+  }
+  return {std::move(regions), {}, connectivity};
 }
 
 Field field_of(GivenArrays& given, const mimetra_array& array) {
@@ -352,7 +369,10 @@ NamedData derived_data(const NamedData& base, const mimetra_array* const* arrays
                          face_names().contains(array.name);
     const bool is_changed = std::ranges::any_of(
         changes.all(), [&](const mimetra_array& other) { return is_same_place(array, other); });
-    if (!is_face && !is_changed) all.push_back(&array);
+    // Weights are of the regions that they came with.
+    const bool is_old_weight =
+        kind == MIMETRA_REGIONS && changes.has("masks") && std::string_view(array.name) == "weight";
+    if (!is_face && !is_changed && !is_old_weight) all.push_back(&array);
   }
   for (const mimetra_array& array : changes.all()) all.push_back(&array);
   all.push_back(nullptr);

@@ -183,7 +183,9 @@ typedef struct mimetra_array {
  *               Without expressions it is a mesh
  *   components  rest N x 3, triangles, displacements K x N x 3, [weights F x K], centers I32 K
  *               (-1: it died), [support K x N], [energies], [scale 1], [d_min 1], [d_max 1]
- *   regions     masks U8 R x N, triangles or faces | centers I32 R, radii R, energies R,
+ *   regions     masks U8 R x N, triangles or faces, [weight N on vertices: the share of the motion
+ *               that each takes, 0 to 1, where the border is soft; other masks leave it out of what
+ *               is derived] | centers I32 R, radii R, energies R,
  *               energy_shares R, vertex_energy N, faces of a mesh that they are shown on, and
  *               fields: region I32 N (strongest region, -1 outside), region_count I32 N, roi I32 N
  *               (0/1), in_L I32 T (0/1), ...; centers, radii and energies say nothing of regions

@@ -265,12 +265,14 @@ void run_steady(const fs::path&, bool quick) {
   std::printf("%s\n", table_of(steady_rows(subject, quick)).c_str());
 }
 
-/// The same subjects, and a target that cannot follow what one half of a face does.
+/// The same subjects, and two that the weights of a whole face cannot follow: a source whose
+/// quarters move by themselves, and a target without what one half of a face does.
 void run_per_region(const fs::path&, bool quick) {
   std::vector<Subject> subjects;
   if (!quick) {
     constexpr int kTalking = 300;
-    for (auto& found : {surrey(), ict(kTalking), bent_facecap(), symmetric_ict(kTalking)}) {
+    for (auto& found :
+         {surrey(), quartered_surrey(), ict(kTalking), bent_facecap(), symmetric_ict(kTalking)}) {
       if (found) subjects.push_back(*found);
     }
   }

@@ -10,6 +10,8 @@
 #include "tests/test_folders.h"
 #include "toolkit/io/model_file.h"
 #include "toolkit/io/weight_file.h"
+#include "toolkit/mesh/diameter.h"
+#include "toolkit/model/regional_animation.h"
 
 namespace mimetra::bench {
 namespace {
@@ -106,6 +108,37 @@ BlendshapeModel without_sides(const BlendshapeModel& model) {
   return {model.shared_connectivity(), model.neutral(), std::move(basis)};
 }
 
+/// Left and right, above and below, with soft borders of a fifth of the diameter between them.
+RegionShares quarters_of(const Positions& neutral) {
+  const Eigen::RowVector3d center = neutral.colwise().mean();
+  const double border = 0.2 * diameter(neutral);
+  const auto share = [&](Eigen::Index v, int axis) {
+    const double t = std::clamp((neutral(v, axis) - center[axis]) / border + 0.5, 0.0, 1.0);
+    return t * t * (3 - 2 * t);
+  };
+  Eigen::MatrixXd shares(neutral.rows(), 4);
+  for (Eigen::Index v = 0; v < neutral.rows(); ++v) {
+    const double right = share(v, 0), up = share(v, 1);
+    shares.row(v) << right * up, right * (1 - up), (1 - right) * up, (1 - right) * (1 - up);
+  }
+  return shares.sparseView(1, 0);
+}
+
+/// The weights of four quarters: each is a quarter of the clip ahead of the one before, and gives
+/// every weight to the next expression.
+Eigen::MatrixXd in_quarters(const Eigen::MatrixXd& beta) {
+  const Eigen::Index frames = beta.rows(), expressions = beta.cols();
+  Eigen::MatrixXd result(frames, 4 * expressions);
+  for (Eigen::Index q = 0; q < 4; ++q) {
+    for (Eigen::Index f = 0; f < frames; ++f) {
+      for (Eigen::Index j = 0; j < expressions; ++j) {
+        result(f, q * expressions + j) = beta((f + q * frames / 4) % frames, (j + q) % expressions);
+      }
+    }
+  }
+  return result;
+}
+
 /// Stretched, and bent forwards above and below.
 Positions bent(const Positions& positions) {
   Positions result = positions;
@@ -143,6 +176,24 @@ Subject head(int splits, int frames) {
 std::optional<Subject> surrey() {
   return captured("Surrey", "sfm", "@0=1,1=-1", "@0=-1,2=1.5", "six-expressions-25fps-100.csv",
                   100);
+}
+
+std::optional<Subject> quartered_surrey() {
+  const auto folder = test::shared_path("data/sfm");
+  const auto weights = test::shared_path("data/captures/six-expressions-25fps-100.csv");
+  if (!std::filesystem::exists(folder) || !std::filesystem::exists(weights)) return {};
+  const auto person = [&](const char* identity) {
+    return std::make_shared<const BlendshapeModel>(read_blendshapes(folder.string() + identity));
+  };
+  const auto actor = person("@0=1,1=-1"), other = person("@0=-1,2=1.5");
+  const WeightTrack track = read_weights(weights);
+  const Eigen::MatrixXd beta = in_quarters(weights_for(track, actor->expressions().names));
+  const RegionShares shares = quarters_of(actor->neutral());
+  const auto performed = [&](const std::shared_ptr<const BlendshapeModel>& model) {
+    return MeshSequence(RegionalAnimation(model, shares, beta, track.times));
+  };
+  return Subject{"Surrey, in quarters", performed(actor), *other, folder.string() + "@0=-1,2=1.5",
+                 performed(other)};
 }
 
 std::optional<Subject> ict(int frames) {

@@ -24,7 +24,10 @@ struct Subject {
 Subject head(int splits, int frames);
 
 /// The models beside the project, where they are.
-std::optional<Subject> surrey();         ///< 100 frames x 3448, 6 expressions
+std::optional<Subject> surrey();  ///< 100 frames x 3448, 6 expressions
+/// The first clip's six expressions moving in four quarters of the face at different times, which
+/// weights of a whole face cannot follow.
+std::optional<Subject> quartered_surrey();
 std::optional<Subject> ict(int frames);  ///< x 6706, 53 expressions; at most 1200 frames
 
 /// The first frames of ict() by a target that knows only expressions of both halves together, which

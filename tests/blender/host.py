@@ -14,7 +14,7 @@ import numpy as np
 bpy.ops.preferences.addon_install(filepath=os.environ["ADDON_ZIP"], overwrite=True)
 bpy.ops.preferences.addon_enable(module="mimetra_blender")
 
-from mimetra_blender import mimetra, sources  # noqa: E402  (there now)
+from mimetra_blender import mimetra, properties, sources  # noqa: E402  (there now)
 
 FRAMES = range(1, 122, 10)
 LAST = 120

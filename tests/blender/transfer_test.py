@@ -1,8 +1,10 @@
 """Transfer onto shape keys: the weights of the command, keyed."""
 
+import json
+
 import bpy
 import numpy as np
-from host import LAST, HostTest, column, command, mimetra, run_tests
+from host import LAST, HostTest, column, command, mimetra, properties, run_tests, sources
 
 
 class Transfer(HostTest):
@@ -47,6 +49,59 @@ class Transfer(HostTest):
     def test_uses_all_triangles_where_asked(self):
         bpy.ops.mimetra.transfer(target="target", full=True)
         self.assert_performs(*self.expected("--full"))
+
+    def painted(self):
+        """A vertex group of the source, and a file with its weights."""
+        group = self.source.vertex_groups.new(name="mouth")
+        heights = sources.coordinates(self.source.data.vertices)[:, 1]
+        weights = np.select([heights < np.quantile(heights, 0.3),
+                             heights < np.quantile(heights, 0.5)], [1.0, 0.25], 0.0)
+        for weight in (1.0, 0.25):
+            group.add(np.flatnonzero(weights == weight).tolist(), weight, "REPLACE")
+        path = self.path / "mouth.txt"
+        np.savetxt(path, weights)
+        return weights, path
+
+    def test_paints_by_a_vertex_group_of_its_plain_name(self):
+        weights, path = self.painted()
+        out = self.path / "painted.npy"
+        command("transfer", self.take, self.actor, "--paint", path, "--falloff", 0.05, "-o", out,
+                "--regions-out", self.path / "painted.json")
+        expected = json.loads((self.path / "painted.json").read_text())["weights"]
+        for name in ("mouth", "field:mouth"):
+            answer = bpy.ops.mimetra.transfer(target="target", paint=name, falloff=0.05,
+                                              regions_out=True)
+            self.assertEqual(answer, {"FINISHED"})
+            self.assert_moves_like(self.target, np.load(out))
+            shown = np.empty(len(weights), np.float32)
+            self.source.data.attributes["mimetra weight"].data.foreach_get("value", shown)
+            # Distances are along vertices in single precision.
+            np.testing.assert_allclose(shown, expected, atol=1e-4)
+            np.testing.assert_array_equal(shown == 1, weights == 1)
+
+    def test_vertex_groups_say_where_regions_may_lie(self):
+        weights, _ = self.painted()
+        bpy.ops.mimetra.regions(k=4, only="mouth")
+        inside = np.empty(len(weights), np.int32)
+        self.source.data.attributes["mimetra roi"].data.foreach_get("value", inside)
+        self.assertTrue(inside.any())
+        self.assertFalse(inside[weights == 0].any())
+
+    def test_names_vertex_groups_that_are_not_there(self):
+        self.painted()
+        self.assert_fails("field 'nose' is not there; there are mouth", bpy.ops.mimetra.transfer,
+                          target="target", paint="field:nose")
+
+    def test_refuses_an_absolute_length_that_is_not_set(self):
+        self.assert_fails("falloff: is to be absolute, and no length is set",
+                          bpy.ops.mimetra.transfer, target="target", full=False,
+                          falloff_absolute=True)
+
+    def test_reads_the_vertex_groups_that_are_named(self):
+        groups = ("mouth", "nose")
+        for values, expected in (((None, 3, "mouth.txt"), ()), (("field:mouth",), ("mouth",)),
+                                 (("field:chin",), groups)):
+            self.assertEqual(properties.groups_among(values, groups), expected)
 
     def test_leaves_the_scene_as_it_was(self):
         before = self.shown(self.source, 14)

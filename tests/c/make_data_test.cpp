@@ -149,6 +149,26 @@ TEST(DerivedData, KeepsTheMeshOfRegions) {
   EXPECT_EQ(derived(bare, {two_masks}).faces, sequence.shared_connectivity());
 }
 
+TEST(DerivedData, KeepsTheWeightsOfRegionsUnlessTheirMasksChange) {
+  const MeshSequence sequence = moving_take();
+  Eigen::VectorXd weights = Eigen::VectorXd::Zero(kVertices);
+  weights[0] = 1;
+  weights[1] = 0.5;
+  const Regions regions = painted_region(weights, sequence.triangles());
+  const RegionData base{regions, {sequence, fields_of(regions), true}};
+  EXPECT_EQ(derived(base, {}).regions.weights, weights);
+  weights[1] = 0.25;
+  const mimetra_array changed =
+      array("weight", MIMETRA_F64, {kVertices}, weights.data(), MIMETRA_ON_VERTICES);
+  EXPECT_EQ(derived(base, {changed}).regions.weights, weights);
+  const std::uint8_t masks[kVertices] = {1, 1, 1, 0};
+  const mimetra_array mask = array("masks", MIMETRA_U8, {1, kVertices}, masks);
+  EXPECT_EQ(derived(base, {mask}).regions.weights.size(), 0);
+  weights[1] = 2;
+  EXPECT_THAT([&] { derived(base, {changed}); },
+              ThrowsMessage<IoError>(HasSubstr("array 'weight': vertex 1 has the weight 2")));
+}
+
 TEST(DerivedData, TellsFieldsOnVerticesFromThoseOnTriangles) {
   const MeshSequence sequence = moving_take();
   const FieldSequence base(

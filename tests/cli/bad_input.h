@@ -37,6 +37,7 @@ std::vector<BadInput> eos_cases();
 std::vector<BadInput> component_cases();
 std::vector<BadInput> fit_cases();
 std::vector<BadInput> region_cases();
+std::vector<BadInput> paint_cases();
 std::vector<BadInput> json_cases();
 std::vector<BadInput> match_cases();
 std::vector<BadInput> rig_cases();

@@ -13,13 +13,13 @@ using test::BadInput;
 
 std::vector<BadInput> all_cases() {
   std::vector<BadInput> all;
-  for (const auto& cases : {test::mesh_cases(),     test::sequence_cases(), test::array_cases(),
-                            test::hdf5_cases(),     test::scene_cases(),    test::model_cases(),
-                            test::weight_cases(),   test::eos_cases(),      test::component_cases(),
-                            test::region_cases(),   test::json_cases(),     test::motion_cases(),
-                            test::geometry_cases(), test::request_cases(),  test::output_cases(),
-                            test::hostile_cases(),  test::fit_cases(),      test::match_cases(),
-                            test::retarget_cases(), test::rig_cases()}) {
+  for (const auto& cases : {test::mesh_cases(),   test::sequence_cases(), test::array_cases(),
+                            test::hdf5_cases(),   test::scene_cases(),    test::model_cases(),
+                            test::weight_cases(), test::eos_cases(),      test::component_cases(),
+                            test::region_cases(), test::paint_cases(),    test::json_cases(),
+                            test::motion_cases(), test::geometry_cases(), test::request_cases(),
+                            test::output_cases(), test::hostile_cases(),  test::fit_cases(),
+                            test::match_cases(),  test::retarget_cases(), test::rig_cases()}) {
     all.insert(all.end(), cases.begin(), cases.end());
   }
   return all;
@@ -57,11 +57,35 @@ TEST_P(BadInputTest, GivesItsExitCodeAndMessageAndLeavesNothing) {
   }
 }
 
+/// What is wrong with weights, maps, examples and markers is foreseen.
+class ForeseenTest : public BadInputTest {};
+
+TEST_P(ForeseenTest, IsRefusedByADryRunAsByTheRun) {
+  const BadInput& bad = GetParam();
+  if (bad.make) bad.make(folder_);
+  const auto before = contents();
+  const auto result = run(bad.arguments + " --dry-run", bad.prefix);
+  EXPECT_EQ(result.code, bad.code) << bad.arguments << '\n' << result.err;
+  if (bad.code != 0) {
+    for (const std::string& part : bad.says) EXPECT_THAT(result.err, testing::HasSubstr(part));
+  }
+  EXPECT_EQ(contents(), before);
+}
+
+std::vector<BadInput> foreseen_cases() {
+  std::vector<BadInput> all;
+  for (const auto& cases : {test::match_cases(), test::retarget_cases(), test::rig_cases()}) {
+    all.insert(all.end(), cases.begin(), cases.end());
+  }
+  return all;
+}
+
 std::string name_of(const testing::TestParamInfo<BadInput>& info) {
   return info.param.subject + "__" + info.param.kind;
 }
 
 INSTANTIATE_TEST_SUITE_P(Every, BadInputTest, testing::ValuesIn(all_cases()), name_of);
+INSTANTIATE_TEST_SUITE_P(Every, ForeseenTest, testing::ValuesIn(foreseen_cases()), name_of);
 
 /// Shown by `ctest -V -R TableOfBadInput`; the same table is in docs/errors.md in words.
 TEST(TableOfBadInput, NamesEachCaseOnceAndKnowsItsExitCode) {

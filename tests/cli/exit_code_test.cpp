@@ -60,7 +60,8 @@ TEST_F(ExitCode, Is2ForAnOutputThatTheRequestCannotMake) {
 
 TEST_F(ExitCode, Is2ForOptionsThatWeightsOfEachRegionDoNotFollow) {
   const std::string source = "transfer head --weights take.csv head -k 2 -o x ";
-  expect_failure(source + "--falloff 0.2", 2, "--falloff: is about weights of each region");
+  expect_failure(source + "--outside-weight 0.3", 2, "--outside-weight: is about --outside");
+  expect_failure(source + "--outside fixed --outside-smoothness 1", 2, "--outside-smoothness: is");
   expect_failure(source + "--region-ridge 2", 2, "--region-ridge: is about weights of each");
   expect_failure(source + "--per-region --space vertex", 2, "head is solved for vertices");
   expect_failure(source + "--per-region --full", 2, "--per-region: there are no regions");
@@ -68,8 +69,8 @@ TEST_F(ExitCode, Is2ForOptionsThatWeightsOfEachRegionDoNotFollow) {
   expect_failure(source + "--per-region --complete 0.2", 2, "--complete: with --per-region");
   expect_failure(source + "--per-region --region-ridge 0", 2, "--region-ridge: expected");
   expect_failure(source + "--per-region --falloff 12", 2, "12abs");
-  expect_failure("evaluate head --weights take.csv head -k 2 --falloff 0.2", 2,
-                 "--falloff: is about weights of each region");
+  expect_failure("evaluate head --weights take.csv head -k 2 --region-ridge 2", 2,
+                 "--region-ridge: is about weights of each region");
 }
 
 TEST_F(ExitCode, Is3ForAMissingFileOfAnyOption) {

@@ -87,6 +87,40 @@ TEST_F(RetargetCommand, MakesNoMapThatWouldDropTheTargetsRules) {
   done(std::string(kRigs) + "--rules none -o w.csv --map-out m.json --force");
 }
 
+TEST_F(RetargetCommand, ForeseesInADryRunWhatItRefuses) {
+  write("r.json", R"({"expressions": {"left": {"maximum": 0.5}}})");
+  const std::string refused[] = {"--rules r.json --map-out m.json", "--rules no.json",
+                                 "--exclusive eyes", "--symmetry 1"};
+  for (const std::string& options : refused) {
+    const auto planned = run(std::string(kRigs) + "-o w.csv --dry-run " + options);
+    const auto made = run(std::string(kRigs) + "-o w.csv " + options);
+    EXPECT_NE(made.code, 0) << options;
+    EXPECT_EQ(planned.code, made.code) << options;
+    EXPECT_EQ(planned.err, made.err) << options;
+  }
+  EXPECT_EQ(done(std::string(kRigs) + "-o w.csv --dry-run --rules r.json").code, 0);
+  EXPECT_FALSE(listing().contains("w.csv"));
+}
+
+TEST_F(RetargetCommand, EasesWeightsWithinTheBoundsOfAMap) {
+  done(std::string(kRigs) + "-o w.csv --map-out map.json");
+  std::string map = text_of(folder_ / "map.json");
+  const std::size_t upper = map.find("1", map.find("\"upper\""));
+  map.replace(upper, map.find_first_of(",\n]", upper) - upper, "0.25");
+  write("low.json", map);
+  done("retarget --map low.json --weights take.csv --smoothness 0.01 -o eased.csv");
+  EXPECT_EQ(weights("eased.csv").weights.col(0).maxCoeff(), 0.25);
+  const std::size_t lower = map.find("0", map.find("\"lower\""));
+  map.replace(lower, map.find_first_of(",\n]", lower) - lower, "-0.5");
+  write("negative.json", map);
+  for (const std::string mode : {"", " --dry-run"}) {
+    const auto result =
+        run("retarget --map negative.json --weights take.csv --l1 0.1 -o x.csv" + mode);
+    EXPECT_EQ(result.code, 4) << mode;
+    EXPECT_THAT(result.err, HasSubstr("negative.json: 'left' may be negative")) << mode;
+  }
+}
+
 TEST_F(RetargetCommand, TakesAMapFromOneTopologyToAnother) {
   // The target of a quarter of the faces has the bumps of the model at its own vertices.
   const BlendshapeModel fine = model().average();
@@ -109,6 +143,8 @@ TEST_F(RetargetCommand, TakesAMapFromOneTopologyToAnother) {
   // Bumps of three edges' radius are cut off by the coarse faces, and by the pairs' means.
   EXPECT_LE(report["shared"]["mean"], 0.1);
   EXPECT_LE(report["map"]["largest"], 0.1);
+  done("retarget head small --weights take.csv --correspondence w.correspondence.json -o v.csv");
+  EXPECT_EQ(text_of(folder_ / "v.csv"), text_of(folder_ / "w.csv"));
 }
 
 TEST_F(RetargetCommand, TakesFramesAndARate) {

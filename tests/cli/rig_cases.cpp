@@ -98,7 +98,7 @@ std::vector<BadInput> rig_cases() {
        examples("left.ply"),
        "rig double.ply double.ply -o out",
        4,
-       {"the source has no expressions"}},
+       {"double: the source has no expressions"}},
       {"rig_of_other_faces",
        "rig",
        [](const fs::path& folder) { write_bytes_to(folder / "small.obj", small_patch()); },

@@ -144,6 +144,17 @@ TEST_F(RigCommand, TakesATargetOfOtherFaces) {
   for (const auto& each : report["expressions"]) {
     EXPECT_GT(each["largest_displacement"].get<double>(), 0.5);
   }
+  for (const std::string out : {"again", "again.glb"}) {
+    const auto again = run("rig head small.obj --correspondence out/correspondence.json -o " + out);
+    EXPECT_EQ(again.code, 0) << again.err;
+  }
+  EXPECT_EQ(text_of(folder_ / "again/expressions/top.ply"),
+            text_of(folder_ / "out/expressions/top.ply"));
+  EXPECT_EQ(text_of(folder_ / "again.correspondence.json"),
+            text_of(folder_ / "out/correspondence.json"));
+  write("x.correspondence.json", "mine");
+  EXPECT_THAT(run("rig head small.obj --markers m.txt -o x.glb --dry-run").err,
+              HasSubstr("x.correspondence.json: stands without 'x.glb'"));
 }
 
 }  // namespace

@@ -110,6 +110,56 @@ TEST_F(RulesTest, SayWhichTargetsAnOptionOfWeightsLeavesOut) {
   EXPECT_THAT(result.err, HasSubstr("--ridge: neutral is solved for vertices"));
 }
 
+TEST_F(RulesTest, OfEachTargetMayBeAFileNoneOrFound) {
+  std::filesystem::copy_file(folder_ / "low.json", folder_ / "head/rules.json");
+  const auto made = [&](const std::string& rules) {
+    const auto result =
+        run("transfer head --weights take.csv head@wide=1 head@wide=2 --full -o o/ "
+            "--weights-out w.csv --force --rules " +
+            rules);
+    EXPECT_EQ(result.code, 0) << rules << '\n' << result.err;
+    std::vector<double> most;
+    for (const std::string name : {"w-head@wide=1.csv", "w-head@wide=2.csv"}) {
+      most.push_back(largest(text_of(folder_ / name), kTop));
+    }
+    return most;
+  };
+  const std::vector<double> free = made("none");
+  ASSERT_GT(free[0], 0.5);
+  ASSERT_GT(free[1], 0.5);
+  EXPECT_EQ(made("low.json,none"), (std::vector{0.25, free[1]}));
+  EXPECT_EQ(made("none,low.json"), (std::vector{free[0], 0.25}));
+  EXPECT_EQ(made("auto,none"), (std::vector{0.25, free[1]}));
+  EXPECT_EQ(made("auto"), (std::vector{0.25, 0.25}));
+}
+
+TEST_F(RulesTest, RefuseAnotherNumberThanThatOfTheTargets) {
+  const std::string two = "head@wide=2 -o o/ --rules ";
+  expect_failure(two + "low.json,none,auto", 2,
+                 "--rules: 3 files or words (auto or none), expected");
+  expect_failure(two + "low.json,", 2, "--rules: expected names between commas, found 'low.json,'");
+  expect_failure(two + "low.json,no.json", 3, "no.json");
+  expect_failure("--space vertex -o x.npy --markers ,", 2, "--markers: expected names between");
+}
+
+TEST_F(RulesTest, SayWhichFilesDoNotAct) {
+  const std::string both =
+      "transfer head --weights take.csv head@wide=1 head/neutral.ply --full -o o/ --force --rules ";
+  const auto acts = run(both + "low.json,none");
+  EXPECT_EQ(acts.code, 0) << acts.err;
+  EXPECT_THAT(acts.err, Not(HasSubstr("does not act")));
+  EXPECT_THAT(run(both + "low.json,low.json").err, HasSubstr("--rules: neutral is solved for"));
+  EXPECT_EQ(run(both + "none,low.json").code, 2);
+}
+
+TEST_F(RulesTest, SayWhatWouldBeMissingWithoutThem) {
+  write("still.json", R"({"expressions": {"top": {"maximum": 0.01}, "left": {"maximum": 0.01},
+                          "right": {"maximum": 0.01}}})");
+  const auto result = run(kTransfer + "--rules still.json -o x.npy");
+  EXPECT_EQ(result.code, 0) << result.err;
+  EXPECT_THAT(result.err, HasSubstr("of the deformation is missing; without --rules "));
+}
+
 TEST_F(RulesTest, DrawPairsTogether) {
   write("pairs.json", R"({"pairs": [["left", "right"]]})");
   const auto difference = [&](const std::string& arguments, const std::string& name) {

@@ -112,6 +112,20 @@ TEST_F(SelectionTest, ForeseesInADryRunWhatItRefuses) {
   expect_usage(evaluate("--select transfer --coverage 0.3 --dry-run"), "--coverage: has no effect");
   expect_usage(evaluate("--per-region --symmetry 1 --dry-run"), "--symmetry: weights of each");
   EXPECT_EQ(run(evaluate("--exclusive eyes --dry-run")).code, 4);
+  expect_usage(regions("--select transfer --dry-run"), "--target MODEL");
+  expect_usage(regions("--select transfer --target head --coverage 0.3 --dry-run"), "--coverage");
+  ASSERT_EQ(run("convert head -o mesh.ply").code, 0);
+  EXPECT_EQ(run(regions("--select transfer --target mesh.ply --dry-run")).code, 4);
+  write("square.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nf 1 2 3\nf 2 4 3\n");
+  EXPECT_EQ(run(regions("--select transfer --target square.obj --dry-run")).code, 4);
+  EXPECT_EQ(run(regions("--only group:no --dry-run")).code, run(regions("--only group:no")).code);
+  EXPECT_EQ(run(transfer("--only group:no --dry-run")).code, run(transfer("--only group:no")).code);
+  EXPECT_NE(run(transfer("--only group:no --dry-run")).code, 0);
+  write("r.vtp.series", "mine");
+  const auto planned = run("regions head --weights take.csv -k 2 -o r.pvd --dry-run");
+  EXPECT_EQ(planned.code, 0) << planned.err;
+  EXPECT_THAT(planned.err, HasSubstr("r.vtp.series: stands without 'r.pvd'"));
+  EXPECT_FALSE(listing().contains("r.json"));
 }
 
 TEST_F(SelectionTest, ServesTheTransferBetterThanEnergyOnTheSample) {

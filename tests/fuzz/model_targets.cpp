@@ -9,6 +9,7 @@
 #include "tests/fuzz/values.h"
 #include "toolkit/io/bytes.h"
 #include "toolkit/io/eos.h"
+#include "toolkit/io/live_link.h"
 #include "toolkit/io/mesh_file.h"
 #include "toolkit/io/meshopt_codec.h"
 #include "toolkit/io/model_file.h"
@@ -166,12 +167,14 @@ std::vector<Target> model_targets() {
       {"weights_csv",
        "w.csv",
        [](const fs::path& file) {
-         weights_for(read_weights(file), {"smile", "brow_L", "jaw"});
+         const WeightTrack track = read_weights(file);
+         weights_for(track, {"smile", "brow_L", "jaw"});
+         if (has_live_link_names(track.names)) live_link_csv(track);
        },
        {[](const fs::path& file) {
           write_weights(file, std::get<ModelData>(value_of(DataKind::model)).performance, true);
         },
-        text("Timecode,BlendshapeCount,smile\n00:00:01:02.500,1,0.5\n00:00:01:03.500,1,0.25\n")}},
+        text("Timecode,BlendshapeCount,JawOpen\n00:00:01:02.500,1,0.5\n00:00:01:03.500,1,0.25\n")}},
       {"weights_json",
        "w.json",
        [](const fs::path& file) {

@@ -5,13 +5,20 @@
 #include "fitting/landmark_mapping.h"
 #include "tests/fuzz/fuzz_target.h"
 #include "tests/fuzz/values.h"
+#include "tests/image_bytes.h"
 #include "toolkit/io/correspondence_file.h"
+#include "toolkit/io/example_folder.h"
 #include "toolkit/io/frame_files.h"
 #include "toolkit/io/json_text.h"
 #include "toolkit/io/marker_file.h"
+#include "toolkit/io/mesh_file.h"
 #include "toolkit/io/model_file.h"
+#include "toolkit/io/painting_file.h"
+#include "toolkit/io/retargeting_file.h"
+#include "toolkit/io/rules_file.h"
 #include "toolkit/io/sequence_file.h"
 #include "toolkit/io/whole_file.h"
+#include "toolkit/model/retargeting.h"
 #include "toolkit/operations/manifest.h"
 #include "toolkit/operations/operation.h"
 #include "toolkit/operations/option_file.h"
@@ -70,6 +77,23 @@ void read_file_list(const fs::path& file) {
   list_written_files(file.parent_path());
 }
 
+/// A painting of two triangles with texture coordinates.
+void read_triangles_painting(const fs::path& file) {
+  static const Connectivity mesh = [] {
+    Triangles triangles(2, 3);
+    triangles << 0, 1, 2, 0, 2, 3;
+    Connectivity made = Connectivity::from_triangles(4, triangles);
+    made.texture.coordinates = {{0, 0}, {1, 0.5}, {-3.5, 7}, {0.25, 1}};
+    made.texture.corners = made.polygons.corners;
+    return made;
+  }();
+  read_painting(file, mesh);
+}
+
+std::string white_png() {
+  return test::png_bytes(2, 2, PNG_FORMAT_GRAY, std::vector<std::uint8_t>(4, 255));
+}
+
 /// The times beside an array.
 void read_times(const fs::path& file) {
   static const fs::path take = [&file] {
@@ -86,6 +110,32 @@ void write_correspondence(const fs::path& file) {
   write_bytes(file, correspondence_json(Correspondence::identity(
                                             static_cast<int>(grid().connectivity.triangles.rows())),
                                         grid().connectivity, grid().connectivity));
+}
+
+/// What is read is written again, and applied.
+void read_map(const fs::path& file) {
+  const Retargeting map = parse_retargeting(file.string(), read_file(file));
+  retargeting_json(map);
+  plain_matrix_csv(map, plain_matrix(map));
+}
+
+void write_map(const fs::path& file) {
+  const Retargeting map{.source_names = {"smile", "jaw", "brow"},
+                        .target_names = {"smile_L", "jawOpen"},
+                        .gram = Eigen::MatrixXd{{2, 0.5}, {0.5, 1}},
+                        .linear = Eigen::MatrixXd{{1, 0, 0.25}, {0, 1, 0}},
+                        .lower = Eigen::VectorXd::Zero(2),
+                        .upper = Eigen::VectorXd::Ones(2)};
+  write_bytes(file, retargeting_json(map));
+}
+
+/// Weights of poses that lie beside the file.
+void read_poses(const fs::path& file) {
+  const fs::path folder = file.parent_path();
+  for (const char* mesh : {"a.ply", "b.ply"}) {
+    if (!fs::exists(folder / mesh)) write_mesh(folder / mesh, grid());
+  }
+  read_examples(folder, grid().connectivity, "actor");
 }
 
 }  // namespace
@@ -126,6 +176,13 @@ std::vector<Target> text_targets() {
              read_correspondence(file, grid().connectivity, grid().connectivity);
            },
            {write_correspondence}},
+          {"rules",
+           "rules.json",
+           [](const fs::path& file) { read_rules(file); },
+           {text(R"({"pairs": [["browUpLeft", "browUpRight"]], "exclusive": [["up", "down"]],)"
+                 R"( "expressions": {"jaw": {"minimum": 0, "maximum": 0.8, "gain": 1.2}}})")}},
+          {"retargeting", "rigs.map.json", read_map, {write_map}},
+          {"examples", "examples.csv", read_poses, {text("mesh,smile,jaw\na,0.5,0\nb,0,1\n")}},
           {"model_name",
            "name.txt",
            [](const fs::path& file) { ModelSpec::parse(read_file(file)).name(); },
@@ -139,7 +196,14 @@ std::vector<Target> text_targets() {
            [](const fs::path& file) {
              named_vertices(read_file(file), std::get<FieldSequence>(value_of(DataKind::sequence)));
            },
-           {text("component:0"), text("group:lips"), text("field:heat")}}};
+           {text("component:0"), text("group:lips"), text("field:heat")}},
+          {"painting_png", "p.png", read_triangles_painting, {text(white_png())}},
+          {"painting_jpeg",
+           "p.jpg",
+           read_triangles_painting,
+           {text(test::jpeg_bytes(3, 2, {0, 255, 9, 90, 80, 7}))}},
+          {"painting_list", "p.txt", read_triangles_painting, {text("1 0.5 0 1e-3\n")}},
+          {"painting_table", "p.csv", read_triangles_painting, {text("vertex,weight\n2,0.5\n")}}};
 }
 
 }  // namespace mimetra::fuzz

@@ -44,7 +44,7 @@ void put_matrix(std::string& bytes, const Eigen::MatrixXf& matrix) {
   for (const float value : matrix.reshaped()) put(bytes, value);
 }
 
-EosBytes eos_bytes(std::uint32_t version = 1) {
+EosBytes eos_bytes(std::uint32_t version = 1, int textured = 1) {
   EosBytes bytes;
   put(bytes.shape, version);
   put_matrix(bytes.shape, Eigen::VectorXf::LinSpaced(9, 0, 8));
@@ -56,9 +56,11 @@ EosBytes eos_bytes(std::uint32_t version = 1) {
   put_matrix(bytes.shape, Eigen::MatrixXf(0, 0));
   put_matrix(bytes.shape, Eigen::MatrixXf::Zero(1, 1));
   put(bytes.shape, std::uint64_t{0});
-  put(bytes.shape, std::uint64_t{1});
-  put(bytes.shape, 0.5);
-  put(bytes.shape, 0.25);
+  put(bytes.shape, std::uint64_t(textured));
+  for (int i = 0; i < textured; ++i) {
+    put(bytes.shape, 0.5 + 0.125 * i);
+    put(bytes.shape, 0.25);
+  }
   put(bytes.expressions, std::uint64_t{1});
   put(bytes.expressions, std::uint64_t{5});
   bytes.expressions += "anger";
@@ -249,6 +251,30 @@ TEST_F(Model, EosPairIsScaledByStandardDeviations) {
   EXPECT_EQ(model.identities().displacements.col(0), Eigen::VectorXd::Constant(9, 0.5 * 2));
   EXPECT_EQ(model.identities().displacements.col(1), Eigen::VectorXd::Constant(9, 0.5 * 3));
   EXPECT_EQ(model.expressions().names, (std::vector<std::string>{"anger"}));
+}
+
+TEST_F(Model, EosPairHasTheTextureOfItsVerticesWithVUp) {
+  const EosBytes bytes = eos_bytes(1, 3);
+  write("sfm_shape.bin", bytes.shape);
+  write("expression_blendshapes.bin", bytes.expressions);
+  const Connectivity faces = read_model(folder_.path()).connectivity();
+  EXPECT_EQ(faces.texture.corners, faces.polygons.corners);
+  ASSERT_EQ(faces.texture.coordinates.size(), 3u);
+  EXPECT_EQ(faces.texture.coordinates[2], Eigen::Vector2d(0.75, 0.75));
+  // Of one for three vertices it is not known whose it is.
+  write("sfm_shape.bin", eos_bytes().shape);
+  EXPECT_TRUE(read_model(folder_.path()).connectivity().texture.coordinates.empty());
+}
+
+TEST_F(Model, EosTextureThatIsNotFiniteIsRefused) {
+  EosBytes bytes = eos_bytes();
+  const double infinite = std::numeric_limits<double>::infinity();
+  std::memcpy(bytes.shape.data() + bytes.shape.size() - sizeof infinite, &infinite,
+              sizeof infinite);
+  write("sfm_shape.bin", bytes.shape);
+  write("expression_blendshapes.bin", bytes.expressions);
+  EXPECT_THAT(message_of([&] { read_model(folder_.path()); }),
+              HasSubstr("a number of the texture coordinates is not finite"));
 }
 
 TEST_F(Model, EosPairIsFoundByItsContentToo) {

@@ -109,5 +109,46 @@ TEST_F(RegionsFile, WhatIsNoRegionSetIsAnError) {
   EXPECT_THROW(read_regions(folder_ / "missing.json", 20, shape_.triangles), IoError);
 }
 
+TEST_F(RegionsFile, WeightsSayWhatIsInside) {
+  std::string list = "[0, 0.25";
+  for (int v = 2; v < 20; ++v) list += v == 6 ? ", 1" : ", 0";
+  const Regions soft =
+      read("s.json", R"({"regions": [{"vertices": [2, 6]}], "weights": )" + list + "]}");
+  EXPECT_EQ(soft.vertex_count(), 2);
+  EXPECT_TRUE(soft.inside[1] && soft.inside[6] && !soft.inside[2]);
+  const Regions again = read("t.json", regions_json(soft));
+  EXPECT_EQ(again.weights, soft.weights);
+  EXPECT_EQ(again.inside, soft.inside);
+}
+
+TEST_F(RegionsFile, WrongWeightsAreNamed) {
+  const auto message = [this](const std::string& weights) {
+    return [=, this] {
+      read("w.json", R"({"regions": [{"vertices": [2]}], "weights": )" + weights + "}");
+    };
+  };
+  using testing::HasSubstr;
+  EXPECT_THAT(message("7"),
+              testing::ThrowsMessage<IoError>(
+                  HasSubstr("w.json: \"weights\": expected a number for each vertex, found 7")));
+  EXPECT_THAT(message("[1, 0]"), testing::ThrowsMessage<MismatchError>(
+                                     HasSubstr("\"weights\" of 2 vertices, expected 20")));
+  std::string list = "[1";
+  for (int v = 1; v < 20; ++v) list += v == 3 ? ", \"a\"" : ", 0";
+  EXPECT_THAT(message(list + "]"), testing::ThrowsMessage<IoError>(HasSubstr(
+                                       "\"weights\": vertex 3: expected a number, found \"a\"")));
+  EXPECT_THAT([this] { read("x.json", "{"); },
+              testing::ThrowsMessage<IoError>(HasSubstr("\"weights\"")));
+}
+
+TEST_F(RegionsFile, AnEnergyThatIsNotKnownIsNull) {
+  const Regions regions = regions_from_vertices(20, shape_.triangles, {{1, 2, 6}});
+  const std::string text = regions_json(regions);
+  EXPECT_THAT(text, testing::HasSubstr("\"energy_share\": null"));
+  const Regions again = read("r.json", text);
+  EXPECT_FALSE(again.energy_is_known());
+  EXPECT_EQ(again.energy_share, 0);
+}
+
 }  // namespace
 }  // namespace mimetra

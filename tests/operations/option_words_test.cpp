@@ -27,6 +27,13 @@ TEST(OptionWords, AreThoseOfTheHost) {
             "use option 'overwrite'; write option 'out' NAME");
 }
 
+TEST(OptionWords, LeaveUnknownOptionsAsTheyWereTyped) {
+  const std::string typed = "transfer: unknown option --overwrite; there is --force";
+  EXPECT_EQ(command(typed), typed);
+  EXPECT_EQ(library("x: unknown option --force; see --out"),
+            "x: unknown option --force; see option 'out'");
+}
+
 TEST(OptionWords, AreNotSeenInOtherText) {
   for (const std::string text : {"a -- b", "take--7.obj", "at -3.5 and -1e-3", "x-k", "- k", "-",
                                  "option 'Mine'", "option '", "--", "well-known", "---"}) {

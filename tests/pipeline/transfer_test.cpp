@@ -127,9 +127,29 @@ TEST_F(TransferTest, SaysWhereTheResultIsNotUsable) {
       "rois", regions_from_vertices(actor_.vertices(), actor_.triangles(), {{10, 11, 12}})};
   const TransferredTarget torn = to(mesh_);
   EXPECT_GT(missed_share(torn.error), 0.5);
-  ASSERT_TRUE(noted.has(Topic::poor_condition));
-  EXPECT_THAT(noted.notes.back().text, HasSubstr("actor: the result may not be usable: "));
-  EXPECT_THAT(noted.notes.back().text, HasSubstr("% of the deformation is missing"));
+  const auto found = std::ranges::find(noted.notes, Topic::poor_condition, &Note::topic);
+  ASSERT_NE(found, noted.notes.end());
+  EXPECT_THAT(found->text, HasSubstr("actor: the result may not be usable: "));
+  EXPECT_THAT(found->text, HasSubstr("% of the deformation is missing"));
+  EXPECT_TRUE(noted.has(Topic::visible_crease));
+}
+
+TEST_F(TransferTest, SaysWhatWouldBeMissingWithoutTheOptionsThatHoldIt) {
+  test::Noted noted;
+  options_.notes = noted.sink();
+  options_.full = true;
+  options_.solving.smoothness = 1e-3;
+  Target held{"actor", actor_};
+  held.rules.name = "low.json";
+  for (const std::string& name : actor_.expressions().names) {
+    held.rules.expressions[name].maximum = 0.01;
+  }
+  const TransferResult result = transfer(source_, {held}, options_);
+  EXPECT_GT(missed_share(result.targets.front().error), 0.5);
+  ASSERT_FALSE(noted.notes.empty());
+  EXPECT_THAT(noted.notes.back().text,
+              HasSubstr("; without option 'smoothness' and option 'rules' "));
+  EXPECT_THAT(noted.notes.back().text, HasSubstr("the result is usable"));
 }
 
 /// Regions that show little of most expressions.

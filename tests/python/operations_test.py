@@ -37,6 +37,27 @@ class Operations(SampleTest):
         result = mimetra.transfer(self.arrays, (still.positions[0], still.faces), k=12)
         self.assert_same(result.out.positions, np.load(out))
 
+    def test_paints_by_a_field_as_the_command_does_by_a_list(self):
+        count = self.arrays.rest.shape[0]
+        lips = np.select([np.arange(count) < count // 3, np.arange(count) < count // 2],
+                         [1.0, 0.25], 0.0)
+        listed, out = self.path / "lips.txt", self.path / "painted.npy"
+        np.savetxt(listed, lips)
+        regions = self.path / "painted.json"
+        command("transfer", self.take, self.actor, "--paint", listed, "--falloff", 0.05, "-o", out,
+                "--regions-out", regions)
+        painted = mimetra.Sequence(self.arrays.positions, self.arrays.faces, self.arrays.times,
+                                   self.arrays.rest, on_vertices={"lips": lips})
+        result = mimetra.transfer(painted, self.actor, paint="field:lips", falloff=0.05,
+                                  regions_out=True)
+        self.assert_same(result.out.positions, np.load(out))
+        expected = np.array(json.loads(regions.read_text())["weights"])
+        self.assert_same(np.asarray(result.out.weight), expected)
+        self.assert_same(np.asarray(result.regions_out.weight), expected)
+        self.assertEqual(result.report["targets"][0]["weight"]["one"], int((expected == 1).sum()))
+        with self.assertRaisesRegex(mimetra.Mismatch, "field 'lip' is not there"):
+            mimetra.transfer(painted, self.actor, paint="field:lip")
+
     def test_a_model_with_identities_stands_for_its_mean_as_a_target(self):
         out = self.path / "mean.npy"
         command("transfer", self.take, self.head, "-k", 4, "-o", out)

@@ -156,5 +156,30 @@ TEST(TransferError, SaysWhichShareOfTheDeformationIsMissing) {
   EXPECT_EQ(missed_share(transfer_error(still, still, all)), 0);
 }
 
+TEST(TransferError, MissesNothingWhereVerticesTakeTheShareThatTheyAreToTake) {
+  const BlendshapeModel model = test::model_on(test::patch(), 3);
+  const Eigen::MatrixXd weights = test::random_weights(3, 3);
+  const MeshSequence source = model.animate(weights), half = model.animate(weights / 2);
+  const std::vector<int> all = all_triangles(source.triangles());
+  EXPECT_NEAR(missed_share(transfer_error(source, half, all)), 0.25, 1e-12);
+  const TransferErrorOptions halved{.weights = Eigen::VectorXd::Constant(source.vertices(), 0.5)};
+  const TransferError error = transfer_error(source, half, all, halved);
+  EXPECT_LT(missed_share(error), 1e-20);
+  EXPECT_NEAR(error.de_all, error.de_still, 1e-12 * error.de_all);
+}
+
+TEST(TransferError, InsideIsThatOfTrianglesThatTakeAll) {
+  const BlendshapeModel model = test::model_on(test::patch(), 3);
+  const MeshSequence source = model.animate(test::random_weights(3, 3));
+  const MeshSequence still = model.animate(Eigen::MatrixXd::Zero(3, 3));
+  const std::vector<int> all = all_triangles(source.triangles());
+  TransferErrorOptions options{.weights = Eigen::VectorXd::Constant(source.vertices(), 0.5)};
+  EXPECT_EQ(transfer_error(source, still, all, options).de_inside, 0);
+  for (const VertexIndex v : source.triangles().row(2)) options.weights[v] = 1;
+  const TransferError error = transfer_error(source, still, all, options);
+  EXPECT_EQ(error.de_inside, error.per_triangle[2]);
+  EXPECT_EQ(transfer_error(source, still, {1}).de_inside, error.per_triangle[1]);
+}
+
 }  // namespace
 }  // namespace mimetra

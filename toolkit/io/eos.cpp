@@ -38,9 +38,18 @@ class BinaryCursor {
     return value;
   }
 
-  void skip(std::uint64_t count, std::uint64_t size, const char* what) {
-    if (count > (bytes_.size() - at_) / size) fail_short(what);
-    at_ += count * size;
+  /// TEX: uint64 n, then n x 2 float64, of which v points down as the rows of a picture do.
+  std::vector<Eigen::Vector2d> texture_coordinates() {
+    const char* const what = "the texture coordinates";
+    const auto count = number<std::uint64_t>(what);
+    if (count > (bytes_.size() - at_) / (2 * sizeof(double))) fail_short(what);
+    std::vector<Eigen::Vector2d> coordinates(count);
+    for (Eigen::Vector2d& uv : coordinates) {
+      uv.x() = number<double>(what);
+      uv.y() = 1 - number<double>(what);
+      if (!uv.allFinite()) fail(std::string("a number of ") + what + " is not finite");
+    }
+    return coordinates;
   }
 
   /// MAT: int32 rows, int32 columns, float32 column-major.
@@ -90,6 +99,7 @@ struct ShapeModel {
   Positions mean;
   ShapeBasis basis;
   Triangles triangles;
+  std::vector<Eigen::Vector2d> texture;
 };
 
 ShapeModel read_shape(const std::filesystem::path& path) {
@@ -112,13 +122,23 @@ ShapeModel read_shape(const std::filesystem::path& path) {
   file.matrix("the colour basis");
   file.matrix("the colour eigenvalues");
   file.triangles();
-  file.skip(file.number<std::uint64_t>("the texture coordinates"), 2 * sizeof(double),
-            "the texture coordinates");
+  model.texture = file.texture_coordinates();
   file.expect_end();
   model.mean = Eigen::Map<const Positions>(mean.data(), mean.rows() / 3, 3);
   model.basis.displacements = basis * variances.col(0).cwiseSqrt().asDiagonal();
   for (Eigen::Index i = 0; i < basis.cols(); ++i) model.basis.names.push_back(std::to_string(i));
   return model;
+}
+
+/// The faces, with texture coordinates where there is one for each vertex; others are of no known
+/// vertices.
+Connectivity textured_faces(const ShapeModel& model) {
+  const int vertices = static_cast<int>(model.mean.rows());
+  Connectivity connectivity = Connectivity::from_triangles(vertices, model.triangles);
+  if (model.texture.size() == static_cast<std::size_t>(vertices)) {
+    connectivity.texture = {model.texture, connectivity.polygons.corners};
+  }
+  return connectivity;
 }
 
 ShapeBasis read_expressions(const std::filesystem::path& path, Eigen::Index coordinates) {
@@ -165,8 +185,7 @@ MorphableModel read_eos(const std::filesystem::path& shape,
   ShapeModel model = read_shape(shape);
   ShapeBasis basis = read_expressions(expressions, model.mean.size());
   try {
-    auto connectivity = std::make_shared<Connectivity>(
-        Connectivity::from_triangles(static_cast<int>(model.mean.rows()), model.triangles));
+    auto connectivity = std::make_shared<Connectivity>(textured_faces(model));
     return MorphableModel(std::move(connectivity), std::move(model.mean), std::move(model.basis),
                           std::move(basis));
   } catch (const std::invalid_argument& error) {

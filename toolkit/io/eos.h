@@ -7,7 +7,8 @@
 namespace mimetra {
 
 /// Reads a pair of files of the eos library: the shape model (version 1) and its expressions.
-/// Throws IoError that names the version of a later one. Internal to model_file.h.
+/// Texture coordinates are kept where there is one for each vertex. Throws IoError that names the
+/// version of a later one. Internal to model_file.h.
 MorphableModel read_eos(const std::filesystem::path& shape,
                         const std::filesystem::path& expressions);
 

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "toolkit/io/json_text.h"
+#include "toolkit/io/painting_file.h"
 #include "toolkit/io/text_cursor.h"
 #include "toolkit/io/whole_file.h"
 #include "toolkit/mesh/errors.h"
@@ -19,7 +20,8 @@ namespace {
 
 using Lists = std::vector<std::vector<VertexIndex>>;
 
-constexpr const char* kJsonForm = R"({"regions": [{"vertices": [...]}]})";
+constexpr const char* kJsonForm =
+    R"({"regions": [{"vertices": [...]}]}, beside them "weights": [...] of a soft border)";
 
 /// A vertex of a mesh of `vertices`. Checked before it is narrowed: 2^32 is not vertex 0.
 VertexIndex vertex_of(const std::string& path, long long number, int vertices) {
@@ -49,6 +51,12 @@ double radius_of(const Json& entry) {
   return radius.is_null() ? std::numeric_limits<double>::infinity() : radius.get<double>();
 }
 
+/// The share of the motion energy, which is null where it is not known.
+double share_of(const Json& entry) {
+  const Json share = entry.value("energy_share", Json(nullptr));
+  return share.is_null() ? 0 : share.get<double>();
+}
+
 /// A number with a fraction or beyond all integers is not cut to one.
 long long integer_of(const std::string& path, const Json& entry, const char* key,
                      long long fallback) {
@@ -66,7 +74,7 @@ void read_details(const std::string& path, const Json& entry, int vertices, Regi
   if (std::in_range<int>(component)) region.component = static_cast<int>(component);
   region.radius = radius_of(entry);
   region.energy = entry.value("energy", region.energy);
-  region.energy_share = entry.value("energy_share", region.energy_share);
+  region.energy_share = share_of(entry);
   region.added_for = entry.value("added_for", region.added_for);
 }
 
@@ -76,6 +84,28 @@ void check_mesh(const std::string& path, const Json& json, int vertices) {
   if (stated == vertices) return;
   throw MismatchError(path + ": regions of a mesh of " + std::to_string(stated) +
                       " vertices, expected " + std::to_string(vertices));
+}
+
+Eigen::VectorXd weights_of(const std::string& path, const Json& list, int vertices) {
+  const std::string place = path + ": \"weights\"";
+  if (!list.is_array()) {
+    throw IoError(place, "expected a number for each vertex, found " + short_text(list));
+  }
+  if (list.size() != static_cast<std::size_t>(vertices)) {
+    throw MismatchError(place + " of " + std::to_string(list.size()) + " vertices, expected " +
+                        std::to_string(vertices));
+  }
+  Eigen::VectorXd weights(vertices);
+  for (int v = 0; v < vertices; ++v) {
+    const Json& weight = list[static_cast<std::size_t>(v)];
+    if (!weight.is_number()) {
+      throw IoError(place, "vertex " + std::to_string(v) + ": expected a number, found " +
+                               short_text(weight));
+    }
+    weights[v] = weight.get<double>();
+  }
+  check_painting(place, weights);
+  return weights;
 }
 
 Regions regions_of_json(const std::string& path, const std::string& text, int vertices,
@@ -92,7 +122,11 @@ Regions regions_of_json(const std::string& path, const std::string& text, int ve
     for (std::size_t k = 0; k < lists.size(); ++k) {
       read_details(path, entries[k], vertices, regions.regions[k]);
     }
-    if (json.is_object()) regions.energy_share = json.value("energy_share", regions.energy_share);
+    if (json.contains("weights")) {
+      const Eigen::VectorXd weights = weights_of(path, json.at("weights"), vertices);
+      regions = with_weights(std::move(regions), weights, triangles);
+    }
+    if (json.is_object()) regions.energy_share = share_of(json);
     return regions;
   } catch (const Json::exception& error) {
     throw IoError(path, std::string("expected ") + kJsonForm + ": " + error.what());
@@ -163,25 +197,30 @@ Regions read_regions(const std::filesystem::path& path, int vertices, const Tria
 }
 
 std::string regions_json(const Regions& regions) {
+  const auto known = [&regions](double share) {
+    return regions.energy_is_known() ? Json(share) : Json(nullptr);
+  };
   Json list = Json::array();
   for (const Region& region : regions.regions) {
     list.push_back({{"component", region.component},
                     {"center", region.center},
                     {"radius", region.radius},
                     {"energy", region.energy},
-                    {"energy_share", region.energy_share}});
+                    {"energy_share", known(region.energy_share)}});
     if (!region.added_for.empty()) list.back()["added_for"] = region.added_for;
     list.back()["vertices"] = region.vertices;
   }
-  return json_text(Json{{"regions", list},
-                        {"mesh_vertices", regions.vertices},
-                        {"vertices", regions.vertex_count()},
-                        {"triangles", regions.triangles},
-                        {"vertex_share", regions.vertex_share()},
-                        {"triangle_share", regions.triangle_share()},
-                        {"energy_share", regions.energy_share}},
-                   1) +
-         '\n';
+  Json json = {{"regions", list},
+               {"mesh_vertices", regions.vertices},
+               {"vertices", regions.vertex_count()},
+               {"triangles", regions.triangles},
+               {"vertex_share", regions.vertex_share()},
+               {"triangle_share", regions.triangle_share()},
+               {"energy_share", known(regions.energy_share)}};
+  if (regions.weights.size() > 0) {
+    json["weights"] = std::vector<double>(regions.weights.begin(), regions.weights.end());
+  }
+  return json_text(json, 1) + '\n';
 }
 
 std::string regions_csv(const Regions& regions) {

@@ -7,14 +7,16 @@
 
 namespace mimetra {
 
-/// Reads a region set for a mesh of `vertices`: .json ({"regions": [{"vertices": [..]}]} or a list
-/// of vertex lists), .csv (columns vertex,region) or .txt (one vertex index a line, 0-based, or a
-/// mask of N zeros and ones). Throws IoError; MismatchError for an index outside the mesh,
-/// or for regions or a mask of a mesh with another number of vertices.
+/// Reads a region set for a mesh of `vertices`: .json ({"regions": [{"vertices": [..]}]}, with
+/// "weights" of all vertices where the border is soft, or a list of vertex lists), .csv (columns
+/// vertex,region) or .txt (one vertex index a line, 0-based, or a mask of N zeros and ones). Throws
+/// IoError; MismatchError for an index outside the mesh, or for regions, weights or a mask of a
+/// mesh with another number of vertices; of weights what check_painting() throws.
 Regions read_regions(const std::filesystem::path& path, int vertices, const Triangles& triangles);
 
 /// The content of a .json file (each region with its centre, radius and energies, the number of
-/// vertices of the mesh, the shares of the whole) and of a .csv file (vertex,region).
+/// vertices of the mesh, the shares of the whole, the weights of a soft border) and of a .csv file
+/// (vertex,region).
 std::string regions_json(const Regions& regions);
 std::string regions_csv(const Regions& regions);
 

@@ -15,4 +15,9 @@ std::filesystem::path other_of_name(const std::filesystem::path& sequence);
 /// another content, is known when it is written.
 std::vector<std::string> refused_companions(const std::filesystem::path& sequence, bool overwrite);
 
+/// The same of a model, regions or a table, whose parts are those of the format alone (.gltf, .pvd)
+/// and, where it may be paired, a correspondence.
+std::vector<std::string> refused_parts(const std::filesystem::path& file, bool overwrite,
+                                       bool may_be_paired);
+
 }  // namespace mimetra

@@ -30,4 +30,10 @@ void check_number(std::string_view name, const Range& range, double number) {
                               text_of(range));
 }
 
+void check_length(std::string_view name, const Range& range, const Length& length) {
+  Range allowed = {range.minimum.value_or(0), range.maximum};
+  if (!length.absolute) allowed.maximum = range.maximum.value_or(Length::kLargestShare);
+  check_number(name, allowed, length.value);
+}
+
 }  // namespace mimetra

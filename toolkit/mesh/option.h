@@ -42,6 +42,10 @@ struct Option {
 /// Throws std::invalid_argument that names the option and its range unless that holds the number.
 void check_number(std::string_view name, const Range& range, double number);
 
+/// The same for a length, which is not negative, and as a share no larger than
+/// Length::kLargestShare.
+void check_length(std::string_view name, const Range& range, const Length& length);
+
 /// Throws std::invalid_argument for a number out of its range, and for an enum that has no such
 /// value.
 template <typename Options, typename Value>
@@ -51,9 +55,9 @@ void check_option(const Options& options, const Option<Options, Value>& option) 
     if (!choice_name(value).empty()) return;
     throw std::invalid_argument(std::string(option.name) + ": no such choice");
   } else if constexpr (std::is_same_v<Value, Length>) {
-    Range range = {option.range.minimum.value_or(0), option.range.maximum};
-    if (!value.absolute) range.maximum = range.maximum.value_or(Length::kLargestShare);
-    check_number(option.name, range, value.value);
+    check_length(option.name, option.range, value);
+  } else if constexpr (std::is_same_v<Value, std::optional<Length>>) {
+    if (value) check_length(option.name, option.range, *value);
   } else if constexpr (std::is_same_v<Value, std::optional<double>> ||
                        std::is_same_v<Value, std::optional<int>>) {
     if (value) check_number(option.name, option.range, *value);

@@ -73,4 +73,16 @@ MeshSequence BlendshapeModel::animate(const Eigen::MatrixXd& weights, Eigen::Vec
   return {connectivity_, std::move(frames), std::move(times), neutral_};
 }
 
+BlendshapeModel faded(const BlendshapeModel& model, const Eigen::VectorXd& shares) {
+  if (shares.size() != model.vertices()) {
+    throw std::invalid_argument(std::to_string(shares.size()) + " shares for a model of " +
+                                std::to_string(model.vertices()) + " vertices");
+  }
+  ShapeBasis expressions = model.expressions();
+  for (Eigen::Index v = 0; v < shares.size(); ++v) {
+    expressions.displacements.middleRows<3>(3 * v) *= shares[v];
+  }
+  return {model.shared_connectivity(), model.neutral(), std::move(expressions)};
+}
+
 }  // namespace mimetra

@@ -50,4 +50,9 @@ class BlendshapeModel {
   ShapeBasis expressions_;
 };
 
+/// The model whose expressions move each vertex by a share of what they do (N):
+/// pose(v) = neutral(v) + shares_v sum_j beta_j dV_j(v). Where the share is 0 poses are the
+/// neutral, bit by bit. Throws std::invalid_argument for another number of shares.
+BlendshapeModel faded(const BlendshapeModel& model, const Eigen::VectorXd& shares);
+
 }  // namespace mimetra

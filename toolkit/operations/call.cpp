@@ -238,14 +238,15 @@ void Call::foresee() const {
   if (request_.operation->foresee) request_.operation->foresee(invocation_);
   for (const Output& output : request_.operation->outputs) {
     const auto targets = paths_.find(output.name);
-    if (targets == paths_.end() || output.kind != DataKind::sequence) continue;
+    if (targets == paths_.end()) continue;
     const Destination asked = *destination_of(output);
     const bool is_folder = table_.writes_folder(output, asked.path);
     for (const auto& target : targets->second) {
-      for (const std::string& refusal :
-           refused_companions(is_folder ? target / "" : target, asked.overwrite)) {
-        invocation_.warn(refusal);
-      }
+      const auto path = is_folder ? target / "" : target;
+      const std::vector<std::string> refusals =
+          output.kind == DataKind::sequence ? refused_companions(path, asked.overwrite)
+                                            : refused_parts(path, asked.overwrite, output.paired);
+      for (const std::string& refusal : refusals) invocation_.warn(refusal);
     }
   }
 }

@@ -6,6 +6,7 @@
 #include "toolkit/operations/evaluation_table.h"
 #include "toolkit/operations/json.h"
 #include "toolkit/operations/match_parameters.h"
+#include "toolkit/operations/paint_parameter.h"
 #include "toolkit/operations/pipeline_parameters.h"
 #include "toolkit/operations/selection_parameters.h"
 #include "toolkit/operations/toolkit_operations.h"
@@ -38,7 +39,7 @@ std::string text_of(const std::vector<EvaluationRow>& rows) {
   std::string text =
       "   K  vertices  triangles   share    radius       DE all   MPE all      DE in L  MPE in L  "
       "regions s"
-      "  transfer s        by\n";
+      "  transfer s       leak    crease        by\n";
   const auto cell = [](const std::string& content, int width) {
     return std::string(std::max<std::size_t>(width, content.size()) - content.size(), ' ') +
            content;
@@ -56,6 +57,7 @@ std::string text_of(const std::vector<EvaluationRow>& rows) {
             digits(row.de_all, 6, 13) + decimals(row.mpe_all, 3, 10) +
             digits(row.de_region, 6, 13) + decimals(row.mpe_region, 3, 10) +
             decimals(row.decompose_seconds, 3, 11) + decimals(row.transfer_seconds, 3, 12) +
+            digits(row.leak, 4, 11) + decimals(row.crease, 2, 10) +
             cell(row.by ? std::string(choice_name(*row.by)) : "-", 10) + '\n';
   }
   return text;
@@ -63,6 +65,7 @@ std::string text_of(const std::vector<EvaluationRow>& rows) {
 
 /// Options that the others leave without an effect.
 void check_rows(const Invocation& invocation) {
+  check_paint(invocation);
   if (invocation.parameters.flag("curve")) {
     refuse_options(invocation.parameters, {"select", "triangles", "k", "coverage"},
                    "--curve has rows by energy and for the transfer, at shares of its own");
@@ -86,6 +89,7 @@ Outcome run_evaluate(const Invocation& invocation) {
   if (options.regions.select == Selector::transfer && !invocation.parameters.is_set("k")) {
     options.counts = {};
   }
+  options.given = painted_region_of(invocation);
   options.threads = invocation.threads;
   options.progress = invocation.progress;
   options.notes = warnings_of(invocation);
@@ -109,8 +113,9 @@ double memory_of_evaluate(const Invocation& invocation) {
   const bool selects = options.regions.select == Selector::transfer;
   const int most = options.curve ? EvaluationOptions::kCurveComponents
                                  : *std::ranges::max_element(options.counts);
+  const bool decomposes = !selects && !invocation.parameters.optional_text("paint");
   const double analysis =
-      selects ? 0 : analysis_bytes(invocation, invocation.input("source"), most);
+      !decomposes ? 0 : analysis_bytes(invocation, invocation.input("source"), most);
   const double selection = selects || options.curve ? selection_bytes(sequence, target) : 0;
   const double regional =
       options.solving.per_region ? regional_bytes(sequence, target, most, options.solving) : 0;
@@ -130,6 +135,7 @@ Operation evaluate_operation() {
   operation.inputs.front().fields = true;
   operation.outputs = {{"out", DataKind::table, "the table", true}};
   operation.parameters = evaluation_parameters().declared();
+  operation.parameters.push_back(paint_parameter());
   const std::vector<Parameter> matching = match_parameters();
   operation.parameters.insert(operation.parameters.end(), matching.begin(), matching.end());
   operation.examples = {"evaluate take.npy actor/ -k 10,30,40",
@@ -139,6 +145,8 @@ Operation evaluate_operation() {
   operation.foresee = [](const Invocation& invocation) {
     check_rows(invocation);
     check_solving(invocation.parameters, invocation.inputs.at("target"));
+    evaluation_parameters(&invocation.get<FieldSequence>("source")).read(invocation.parameters);
+    painted_region_of(invocation);
     check_targets(invocation);
   };
   return operation;

@@ -256,6 +256,14 @@ void add_model_formats(OperationTable& table) {
                    .read = read_model_data});
 }
 
+/// What a list of vertices leaves out of regions with a soft border.
+std::vector<std::string> lost_weights(const Data& data, const std::filesystem::path& target) {
+  if (std::get<RegionData>(data).regions.weights.size() == 0) return {};
+  return {target.string() +
+          ": this format holds no weights of vertices; written without, .json and .vtp hold them, "
+          "which --regions takes"};
+}
+
 }  // namespace
 
 Paths write_with_extra(const WriteRequest& request, const std::function<Paths()>& write) {
@@ -315,7 +323,8 @@ void add_formats(OperationTable& table) {
                    .extensions = {".csv"},
                    .read = read_regions_data,
                    .write = writer_of<RegionData>(
-                       [](const RegionData& data) { return regions_csv(data.regions); })});
+                       [](const RegionData& data) { return regions_csv(data.regions); }),
+                   .losses = lost_weights});
   table.add(Format{.name = "list of vertices, or mask",
                    .kind = DataKind::regions,
                    .extensions = {".txt"},

@@ -1,5 +1,6 @@
 #include "toolkit/operations/match_parameters.h"
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <optional>
@@ -44,15 +45,19 @@ Parameter several(std::string name, std::string help, std::vector<std::string> w
 constexpr std::string_view kAuto = "auto";
 constexpr std::string_view kNone = "none";
 
-/// The file of each target; none where none is named.
-std::vector<std::string> file_of_each(const Parameters& parameters, const std::string& name,
-                                      std::size_t targets) {
-  std::vector<std::string> files = parameters.paths(name);
-  if (files.size() == 1) files.resize(targets, files.front());
-  if (files.empty() || files.size() == targets) return files;
-  throw UsageError("--" + name + ": " + std::to_string(files.size()) +
-                   " files, expected one for all targets or one for each of " +
-                   std::to_string(targets) + ", between commas");
+/// What is named for each target: a file, or a word that stands for one, the first where nothing
+/// is; none where there are no words.
+std::vector<std::string> named_for_each(const Parameters& parameters, const std::string& name,
+                                        std::size_t targets) {
+  const std::vector<std::string>& words = parameters.find(name)->choices;
+  std::vector<std::string> named = parameters.listed(name);
+  if (named.empty() && !words.empty()) named = {words.front()};
+  if (named.size() == 1) named.resize(targets, named.front());
+  if (named.empty() || named.size() == targets) return named;
+  throw UsageError("--" + name + ": " + std::to_string(named.size()) + " files" +
+                   (words.empty() ? "" : " or words (" + joined(words, ", ", " or ") + ")") +
+                   ", expected one for all targets or one for each of " + std::to_string(targets) +
+                   ", between commas");
 }
 
 /// Of a sequence or a model.
@@ -107,55 +112,86 @@ bool has_no_weights(const Parameters& parameters, const BlendshapeModel& model) 
   return model.expressions().size() == 0;
 }
 
+/// The rules that are found beside a target; none where they cannot act.
+WeightRules found_rules(const Invocation& invocation, const NamedData& target) {
+  const Parameters& parameters = invocation.parameters;
+  if (has_no_weights(parameters, std::get<ModelData>(target.data).model.average())) return {};
+  const auto found = rules_beside(target.origin.path);
+  if (!found) return {};
+  if (parameters.find("per-region") && parameters.flag("per-region")) {
+    invocation.warn(target.name + ": weights of each region do not follow the rules in its folder");
+    return {};
+  }
+  WeightRules rules = read_rules(*found);
+  invocation.warn(target.name + ": takes the rules in its folder (" + summary_of(rules) +
+                  "); --rules none leaves them out");
+  return rules;
+}
+
 /// The rules of each target, read even where they do not act.
 std::vector<WeightRules> rules_of(const Invocation& invocation) {
-  const Parameters& parameters = invocation.parameters;
   const std::vector<NamedData>& targets = invocation.inputs.at("target");
-  const auto files = file_of_each(parameters, "rules", targets.size());
-  std::vector<WeightRules> rules(targets.size());
+  const auto named = named_for_each(invocation.parameters, "rules", targets.size());
+  std::vector<WeightRules> rules;
   for (std::size_t t = 0; t < targets.size(); ++t) {
-    if (!files.empty()) {
-      rules[t] = read_rules(files[t]);
-      continue;
+    if (named[t] == kNone) {
+      rules.emplace_back();
+    } else {
+      rules.push_back(named[t] == kAuto ? found_rules(invocation, targets[t])
+                                        : read_rules(named[t]));
     }
-    const BlendshapeModel& model = std::get<ModelData>(targets[t].data).model.average();
-    if (parameters.text("rules") == kNone || has_no_weights(parameters, model)) continue;
-    const auto found = rules_beside(targets[t].origin.path);
-    if (!found) continue;
-    if (parameters.find("per-region") && parameters.flag("per-region")) {
-      invocation.warn(targets[t].name +
-                      ": weights of each region do not follow the rules in its folder");
-      continue;
-    }
-    rules[t] = read_rules(*found);
-    invocation.warn(targets[t].name + ": takes the rules in its folder (" + summary_of(rules[t]) +
-                    "); --rules none leaves them out");
   }
   return rules;
 }
 
-/// Options of weights are refused where no target has any, and said to leave out those that have
-/// none.
-void check_weight_options(const Invocation& invocation) {
+/// The targets for which an option of weights is asked for, and where it does not act.
+struct WeightOptionTargets {
+  std::size_t asked = 0;
+  std::vector<std::string> without = {};
+};
+
+WeightOptionTargets targets_with(const Invocation& invocation, const std::string& option) {
   const Parameters& parameters = invocation.parameters;
   const std::vector<NamedData>& targets = invocation.inputs.at("target");
-  std::vector<std::string> without;
-  for (const NamedData& target : targets) {
-    const BlendshapeModel& model = std::get<ModelData>(target.data).model.average();
-    if (has_no_weights(parameters, model)) without.push_back(target.name);
+  const bool is_set = parameters.value(option) != parameters.find(option)->fallback;
+  const auto rules = named_for_each(parameters, "rules", targets.size());
+  WeightOptionTargets found;
+  for (std::size_t t = 0; t < targets.size(); ++t) {
+    const bool has_file = rules[t] != kAuto && rules[t] != kNone;
+    if (option == "rules" ? !has_file : !is_set) continue;
+    ++found.asked;
+    const BlendshapeModel& model = std::get<ModelData>(targets[t].data).model.average();
+    if (has_no_weights(parameters, model)) found.without.push_back(targets[t].name);
   }
-  if (without.empty()) return;
+  return found;
+}
+
+/// Options of weights are refused where no target that they are for has any, and said to leave out
+/// those that have none.
+void check_weight_options(const Invocation& invocation) {
   for (const std::string name : {"ridge", "l1", "symmetry", "exclusive", "rules"}) {
-    const ParameterValue& value = parameters.value(name);
-    const bool is_asked_for = value != parameters.find(name)->fallback &&
-                              (name != "rules" || parameters.text(name) != kNone);
-    if (!is_asked_for) continue;
+    const auto [asked, without] = targets_with(invocation, name);
+    if (without.empty()) continue;
     const std::string verb = without.size() == 1 ? " is" : " are";
     const std::string message = "--" + name + ": " + joined(without, ", ", " and ") + verb +
                                 " solved for vertices, not weights";
-    if (without.size() == targets.size()) throw UsageError(message);
+    if (without.size() == asked) throw UsageError(message);
     invocation.warn(message + "; it does not act there");
   }
+}
+
+/// What pairs one target with the source by markers that were named.
+void take_markers(const Invocation& invocation, const Connectivity& source, const std::string& file,
+                  Target& target) {
+  MarkerFile read = read_marker_file(file, invocation.parameters.integer("index-base"));
+  if (same_faces(source, target.model.get().connectivity())) {
+    invocation.warn(target.name + ": has the source's faces; markers are left out");
+    return;
+  }
+  for (const int line : read.lines) {
+    target.marker_places.push_back(file + ", line " + std::to_string(line));
+  }
+  target.match = std::move(read.markers);
 }
 
 }  // namespace
@@ -170,9 +206,9 @@ std::vector<Parameter> pairing_parameters() {
       several(
           "markers",
           "for a target of other faces: pairs of vertices, source and target, that are the same "
-          "point of a face; one file for all targets, or one for each between commas; auto: "
-          "landmarks that are found in drawings of both, or that a landmarks68.txt beside both "
-          "names",
+          "point of a face; one file for all targets, or one for each between commas; auto, also "
+          "between these: landmarks that are found in drawings of both, or that a landmarks68.txt "
+          "beside both names",
           {std::string(kAuto)}),
       several(
           "correspondence",
@@ -188,7 +224,7 @@ std::vector<Parameter> match_parameters() {
       several("rules",
               "what is known of the target's expressions, as JSON: pairs, groups that exclude each "
               "other, limits, gains and offsets; one file for all targets, or one for each between "
-              "commas; auto: rules.json in a model's folder",
+              "commas, also auto (rules.json in a model's folder) or none",
               {std::string(kAuto), std::string(kNone)}));
   return parameters;
 }
@@ -196,13 +232,14 @@ std::vector<Parameter> match_parameters() {
 std::vector<Target> targets_of(const Invocation& invocation, const std::string& source_name) {
   const Parameters& parameters = invocation.parameters;
   const std::vector<NamedData>& given = invocation.inputs.at("target");
-  const auto markers = file_of_each(parameters, "markers", given.size());
-  const auto pairs = file_of_each(parameters, "correspondence", given.size());
-  if (!markers.empty() && !pairs.empty()) {
+  const auto markers = named_for_each(parameters, "markers", given.size());
+  const auto pairs = named_for_each(parameters, "correspondence", given.size());
+  const bool has_markers = !parameters.paths("markers").empty();
+  if (has_markers && !pairs.empty()) {
     throw UsageError(
         "--markers and --correspondence: only one of them tells what belongs together");
   }
-  if (markers.empty() && parameters.is_set("index-base")) {
+  if (!has_markers && parameters.is_set("index-base")) {
     throw UsageError("--index-base: there are no vertices to count without --markers");
   }
   std::vector<WeightRules> rules(given.size());
@@ -210,7 +247,8 @@ std::vector<Target> targets_of(const Invocation& invocation, const std::string& 
     rules = rules_of(invocation);
     check_weight_options(invocation);
   }
-  if (parameters.flag("ignore-files") && (!markers.empty() || !pairs.empty())) {
+  const bool looks = pairs.empty() && std::ranges::find(markers, kAuto) != markers.end();
+  if (parameters.flag("ignore-files") && !looks) {
     throw UsageError("--ignore-files: nothing is looked for with --markers or --correspondence");
   }
   const Connectivity& source = faces_of(invocation.input(source_name).data);
@@ -221,32 +259,23 @@ std::vector<Target> targets_of(const Invocation& invocation, const std::string& 
     targets.push_back({given[t].name, model});
     Target& target = targets.back();
     target.rules = std::move(rules[t]);
-    if (!markers.empty()) {
-      MarkerFile read = read_marker_file(markers[t], parameters.integer("index-base"));
-      if (same_faces(source, model.connectivity())) {
-        invocation.warn(given[t].name + ": has the source's faces; markers are left out");
-      } else {
-        for (const int line : read.lines) {
-          target.marker_places.push_back(markers[t] + ", line " + std::to_string(line));
-        }
-        target.match = std::move(read.markers);
-      }
-    }
-    if (markers.empty() && pairs.empty()) target.match = markers_to(given[t]);
     if (!pairs.empty()) {
       target.match = read_correspondence(pairs[t], source, model.connectivity());
+    } else if (markers[t] == kAuto) {
+      target.match = markers_to(given[t]);
+    } else {
+      take_markers(invocation, source, markers[t], target);
     }
   }
   return targets;
 }
 
-void check_targets(const Invocation& invocation) {
-  const FrameSource& source = *invocation.get<FieldSequence>("source").frames;
+void check_targets(const Invocation& invocation, const std::vector<Target>& targets,
+                   const FrameSource& source, const SolveOptions& solving) {
   const TriMesh from{source.rest(), source.connectivity()};
   const MatchOptions options{.threads = invocation.threads, .notes = warnings_of(invocation)};
   in_command_terms(invocation.parameters, [&] {
-    const SolveOptions solving = solving_parameters().read(invocation.parameters);
-    for (const Target& target : targets_of(invocation)) {
+    for (const Target& target : targets) {
       check_rules(target, solving);
       const BlendshapeModel& model = target.model;
       const TriMesh to{model.neutral(), model.connectivity()};
@@ -263,6 +292,11 @@ void check_targets(const Invocation& invocation) {
       }
     }
   });
+}
+
+void check_targets(const Invocation& invocation) {
+  check_targets(invocation, targets_of(invocation), *invocation.get<FieldSequence>("source").frames,
+                solving_parameters().read(invocation.parameters));
 }
 
 Json json_of(const MatchReport& match) {

@@ -26,6 +26,9 @@ std::vector<Target> targets_of(const Invocation& invocation, const std::string& 
 
 /// Throws and warns as a run does of the call's targets before anything is fitted to them: faces,
 /// rules, given markers and correspondences. Markers that would be looked for in drawings are not.
+void check_targets(const Invocation& invocation, const std::vector<Target>& targets,
+                   const FrameSource& source, const SolveOptions& solving);
+/// The same of targets_of() and what else the call says.
 void check_targets(const Invocation& invocation);
 
 /// What a correspondence is worth, for reports and for people.

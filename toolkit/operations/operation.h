@@ -53,6 +53,8 @@ struct Output {
   bool fields = false;
   /// The formats that it is written in, where its kind has others too; "" is a folder.
   std::vector<std::string> extensions = {};
+  /// A correspondence is written beside it where source and target are paired.
+  bool paired = false;
   /// A table of blendshape weights, or a sequence that may be written as the weights that drive it.
   bool weights = false;
 };

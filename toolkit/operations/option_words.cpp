@@ -8,6 +8,8 @@ namespace mimetra {
 namespace {
 
 constexpr std::string_view kQuoted = "option '";
+/// What somebody typed follows it, which stays as it is.
+constexpr std::string_view kUnknown = "unknown option ";
 
 bool is_of_a_name(char c) {
   return (c >= 'a' && c <= 'z') || c == '-';
@@ -53,7 +55,7 @@ std::string with_options_spelled(const std::string& message,
   std::string text;
   for (std::size_t at = 0; at < message.size();) {
     const Mention mention = mention_at(message, at);
-    if (mention.name.empty()) {
+    if (mention.name.empty() || text.ends_with(kUnknown)) {
       text += message[at++];
     } else {
       text += spelled(mention.name == "force" ? "overwrite" : mention.name);

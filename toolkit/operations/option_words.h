@@ -7,7 +7,7 @@ namespace mimetra {
 
 /// A message in a host's words: what it says of options, "option 'overwrite'" as the libraries say
 /// or "--source-rest" and "-k" as operations do, as `spelled` has it, given the name without
-/// dashes.
+/// dashes. An unknown option stays as it was typed.
 std::string with_options_spelled(const std::string& message,
                                  const std::function<std::string(const std::string&)>& spelled);
 

@@ -7,15 +7,24 @@
 
 namespace mimetra {
 
-namespace {
-
-/// Whether a text is one of the words that stand beside paths; "group:NAME" is where "group:..."
-/// is.
 bool is_word(const Parameter& parameter, const std::string& text) {
   return std::ranges::any_of(parameter.choices, [&text](const std::string& word) {
     const std::size_t colon = word.find(':');
     return colon == std::string::npos ? word == text : text.starts_with(word.substr(0, colon + 1));
   });
+}
+
+namespace {
+
+/// "a," is "a" and an empty one; nothing holds none.
+std::vector<std::string> between_commas(const std::string& text) {
+  std::vector<std::string> parts;
+  for (std::size_t begin = 0; !text.empty() && begin <= text.size();) {
+    const std::size_t comma = std::min(text.find(',', begin), text.size());
+    parts.push_back(text.substr(begin, comma - begin));
+    begin = comma + 1;
+  }
+  return parts;
 }
 
 std::string shortest(double number) {
@@ -79,8 +88,9 @@ std::string expected_text(const Parameter& parameter) {
       return "one of " + list;
     }
     case ParameterKind::text:
-    case ParameterKind::file:
       return "text";
+    case ParameterKind::file:
+      return parameter.several ? "names between commas" : "text";
   }
   return "";
 }
@@ -143,8 +153,12 @@ bool is_sound(const Parameter& parameter, const ParameterValue& value) {
       return text && std::ranges::find(parameter.choices, *text) != parameter.choices.end();
     }
     case ParameterKind::text:
-    case ParameterKind::file:
       return std::holds_alternative<std::string>(value);
+    case ParameterKind::file: {
+      const auto* text = std::get_if<std::string>(&value);
+      const bool is_list = text && parameter.several;
+      return text && (!is_list || std::ranges::none_of(between_commas(*text), &std::string::empty));
+    }
   }
   return false;
 }
@@ -254,13 +268,15 @@ std::vector<std::string> Parameters::files() const {
 }
 
 std::vector<std::string> Parameters::paths(const std::string& name) const {
-  const auto text = optional_text(name);
-  if (!text || is_word(*find(name), *text)) return {};
-  if (!find(name)->several) return {*text};
-  std::vector<std::string> paths;
-  std::istringstream rest(*text);
-  for (std::string path; std::getline(rest, path, ',');) paths.push_back(path);
+  std::vector<std::string> paths = listed(name);
+  std::erase_if(paths, [&](const std::string& text) { return is_word(*find(name), text); });
   return paths;
+}
+
+std::vector<std::string> Parameters::listed(const std::string& name) const {
+  const auto text = optional_text(name);
+  if (!text) return {};
+  return find(name)->several ? between_commas(*text) : std::vector<std::string>{*text};
 }
 
 int Parameters::integer(const std::string& name) const {

@@ -44,7 +44,7 @@ struct Parameter {
   std::optional<double> minimum = {};
   std::optional<double> maximum = {};
   std::vector<std::string> choices = {};
-  bool several = false;  ///< of a file: several paths between commas
+  bool several = false;  ///< of a file: several paths, or `choices`, between commas
 
   /// `--radius` or `-k`.
   std::string option() const;
@@ -52,6 +52,9 @@ struct Parameter {
   std::string minimum_text() const;
   std::string maximum_text() const;
 };
+
+/// True for one of the words that stand beside paths; "group:NAME" is where "group:..." is.
+bool is_word(const Parameter& parameter, const std::string& text);
 
 /// A choice among the values of an enum.
 template <NamedChoice Enum>
@@ -101,6 +104,8 @@ class Parameters {
   std::vector<std::string> files() const;
   /// Those of one parameter of files; none where none is set.
   std::vector<std::string> paths(const std::string& name) const;
+  /// What stands between commas, or by default there: paths, and words that stand beside them.
+  std::vector<std::string> listed(const std::string& name) const;
   const ParameterValue& value(const std::string& name) const;
 
   bool flag(const std::string& name) const { return std::get<bool>(value(name)); }

@@ -116,7 +116,9 @@ BoundParameters<SolveOptions> regional_parameters() {
   list.add("per-region", SolveOptions::kPerRegion,
            "give each region blendshape weights of its own, found together on all triangles")
       .add("falloff", SolveOptions::kFalloff,
-           "per region: distance from a region's rim over which its weights fade out")
+           "distance from the rim of the regions, or of what is painted 1, over which the motion "
+           "that vertices take fades out; with --per-region a region's weights do, over " +
+               to_text(SolveOptions::kUsualFalloff) + " unless it is given")
       .add(&SolveOptions::local, local);
   return list;
 }
@@ -127,7 +129,10 @@ BoundParameters<VertexTransferOptions> vertex_parameters() {
   list.add("triangle-weight", Options::kTriangleWeight,
            "vertex space: every triangle alike, or by area")
       .add("outside", Options::kOutside,
-           "vertex space: vertices outside the regions stay, or triangles there keep their shape")
+           "outside the regions, vertex space: vertices stay, or triangles keep their shape; "
+           "blendshape space: expressions move the whole face. Where the border is soft, vertices "
+           "of "
+           "weight 0 stay in both")
       .add("outside-weight", Options::kOutsideWeight, "weight of --outside identity")
       .add("outside-smoothness", Options::kOutsideSmoothness, "smoothness of --outside identity")
       .add({"anchor", ParameterKind::text, std::string(choice_name(AnchorWord::source)),
@@ -161,6 +166,9 @@ std::string in_command_terms(Topic topic, const std::string& text, const Paramet
       return text + "; use --align stable";
     case Topic::poor_condition:
       if (!parameters.find("full")) return text;
+      if (parameters.is_set("paint")) {
+        return text + "; paint a wider border or more of the face, or use --full";
+      }
       return text + "; take more regions (-k, --radius) or --full";
     case Topic::completed_regions:
       return text + "; --complete 0 leaves them as they are";
@@ -193,6 +201,16 @@ std::string in_command_terms(Topic topic, const std::string& text, const Paramet
       return "--anchor: " + text;
     case Topic::held_anchor:
       return "--anchor: " + text + "; use --outside identity or --full";
+    case Topic::anchor_and_weights:
+      return "--anchor: " + text + "; use --full";
+    case Topic::soft_outside:
+      return "--outside: " + text + "; use --outside fixed";
+    case Topic::visible_crease:
+      if (parameters.is_set("falloff")) return text + "; use a larger --falloff";
+      if (parameters.is_set("paint")) {
+        return text + "; paint a wider border, or let it fade by --falloff";
+      }
+      return text + "; --falloff 0.1 lets the motion fade, a larger one more softly";
     case Topic::other_faces:
       if (!parameters.find("markers")) return text;
       return text +
@@ -201,6 +219,8 @@ std::string in_command_terms(Topic topic, const std::string& text, const Paramet
              "run";
     case Topic::shifted_markers:
       return text + "; use --index-base " + (parameters.integer("index-base") == 0 ? "1" : "0");
+    case Topic::no_full_weight:
+      return "--falloff: " + text + "; leave it out, or give some vertices the weight 1";
     case Topic::poor_match:
       return text;
   }
@@ -330,12 +350,29 @@ BoundParameters<SolveOptions> solving_parameters() {
   return list;
 }
 
+/// Regions that fade out take more of the face than were chosen.
+void check_falloff(const Parameters& parameters) {
+  if (!parameters.is_set("falloff")) return;
+  if (parameters.is_set("triangles")) {
+    throw UsageError(
+        "--triangles: bounds the regions without the border that --falloff adds; leave one of them "
+        "out");
+  }
+  if (parameters.choice<Selector>("select") == Selector::transfer) {
+    throw UsageError(
+        "--select transfer: chooses regions by which expressions move the whole face; with "
+        "--falloff they move the regions only; use --select energy");
+  }
+}
+
 void check_solving(const Parameters& parameters, const std::vector<NamedData>& targets) {
+  if (parameters.choice<Outside>("outside") != Outside::identity) {
+    refuse_options(parameters, {"outside-weight", "outside-smoothness"},
+                   "is about --outside identity");
+  }
   if (!parameters.flag("per-region")) {
-    for (const std::string name : {"falloff", "region-ridge"}) {
-      if (!parameters.is_set(name)) continue;
-      throw UsageError("--" + name + ": is about weights of each region, --per-region");
-    }
+    check_falloff(parameters);
+    refuse_options(parameters, {"region-ridge"}, "is about weights of each region, --per-region");
     return;
   }
   if (parameters.number("smoothness") > 0) {
@@ -421,6 +458,8 @@ void refuse(const OptionError& error, const Parameters& parameters) {
       throw UsageError("--d-min: expected less than --d-max, found " + parameters.text("d-min") +
                        " and " + parameters.text("d-max"));
     case Topic::held_anchor:
+    case Topic::anchor_and_weights:
+    case Topic::soft_outside:
       throw UsageError(text);
     default:
       throw MismatchError(text);

@@ -36,8 +36,8 @@ BoundParameters<SolveOptions> solving_parameters();
 BoundParameters<SolveOptions> axes_parameters();
 BoundParameters<BlendshapeTransferOptions> blendshape_parameters();
 
-/// Throws UsageError for options of a solve that would do nothing beside others: those of weights
-/// of each region without --per-region, and with it those that such weights do not follow, also
+/// Throws UsageError for options of a solve that would do nothing beside others: --region-ridge
+/// without --per-region, and with it those that such weights do not follow, also
 /// for `targets` that are solved for vertices.
 void check_solving(const Parameters& parameters, const std::vector<NamedData>& targets);
 

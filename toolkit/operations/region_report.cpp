@@ -8,11 +8,15 @@ namespace mimetra {
 
 namespace {
 
-Json report_of(const Region& region) {
+Json known_share(double share, bool is_known) {
+  return is_known ? Json(share) : Json(nullptr);
+}
+
+Json report_of(const Region& region, bool energy_is_known) {
   Json json = {{"center", region.center},
                {"radius", region.radius},
                {"vertices", region.vertices.size()},
-               {"energy_share", region.energy_share},
+               {"energy_share", known_share(region.energy_share, energy_is_known)},
                {"component", region.component}};
   if (region.surface_part >= 0) {
     json["surface_component"] = region.surface_part;
@@ -27,29 +31,37 @@ Json report_of(const Region& region) {
 Json added_regions(const Regions& regions) {
   Json list = Json::array();
   for (const Region& region : regions.regions) {
-    if (!region.added_for.empty()) list.push_back(report_of(region));
+    if (!region.added_for.empty()) {
+      list.push_back(report_of(region, regions.energy_is_known()));
+    }
   }
   return list;
 }
 
 Json report_of(const Regions& regions) {
   Json list = Json::array();
-  for (const Region& region : regions.regions) list.push_back(report_of(region));
+  for (const Region& region : regions.regions) {
+    list.push_back(report_of(region, regions.energy_is_known()));
+  }
   return {{"regions", list},
           {"vertices", regions.vertex_count()},
           {"triangles", regions.triangles.size()},
           {"vertex_share", regions.vertex_share()},
           {"triangle_share", regions.triangle_share()},
-          {"energy_share", regions.energy_share},
+          {"energy_share", known_share(regions.energy_share, regions.energy_is_known())},
           {"notes", regions.notes}};
 }
 
 std::string summary_of(const Regions& regions) {
-  return std::to_string(regions.regions.size()) + " regions hold " +
-         std::to_string(regions.vertex_count()) + " vertices (" + percent(regions.vertex_share()) +
-         "), " + std::to_string(regions.triangles.size()) + " triangles (" +
-         percent(regions.triangle_share()) + ") and " + percent(regions.energy_share) +
-         " of the motion energy\n";
+  const std::string vertices = std::to_string(regions.vertex_count()) + " vertices (" +
+                               percent(regions.vertex_share()) + ")";
+  const std::string triangles = std::to_string(regions.triangles.size()) + " triangles (" +
+                                percent(regions.triangle_share()) + ")";
+  return std::to_string(regions.regions.size()) + " regions hold " + vertices +
+         (regions.energy_is_known()
+              ? ", " + triangles + " and " + percent(regions.energy_share) + " of the motion energy"
+              : " and " + triangles) +
+         "\n";
 }
 
 }  // namespace mimetra

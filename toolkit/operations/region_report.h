@@ -7,7 +7,8 @@
 
 namespace mimetra {
 
-/// What operations report about regions: keys regions, vertices, triangles, vertex_share, ...
+/// What operations report about regions: keys regions, vertices, triangles, vertex_share, ...;
+/// energy_share is null where it is not known.
 Json report_of(const Regions& regions);
 /// The same for people, one line.
 std::string summary_of(const Regions& regions);

@@ -126,7 +126,8 @@ std::filesystem::path series_of(const Invocation& invocation) {
   throw UsageError("--paraview: needs regions that ParaView opens, with -o NAME.pvd or NAME.vtp");
 }
 
-Outcome run_regions(const Invocation& invocation) {
+/// Refuses what the run cannot do, before it is done.
+RegionsCall read_regions_call(const Invocation& invocation) {
   if (invocation.wants("paraview")) series_of(invocation);
   check_choice(invocation);
   RegionsCall call =
@@ -141,6 +142,22 @@ Outcome run_regions(const Invocation& invocation) {
                         ": holds no support maps, which --component-fields writes; decompose the "
                         "sequence again");
   }
+  return call;
+}
+
+void foresee_regions(const Invocation& invocation) {
+  const RegionsCall call = read_regions_call(invocation);
+  const FrameSource& sequence = *invocation.get<FieldSequence>("sequence").frames;
+  if (const auto given = given_components(invocation)) check_components(*given, sequence);
+  if (call.regions.select != Selector::transfer) return;
+  const std::vector<Target> targets = targets_of(invocation, "sequence");
+  check_targets(invocation, targets, sequence, {});
+  in_command_terms(invocation.parameters,
+                   [&] { check_selection(targets.front(), call.regions, Space::automatic); });
+}
+
+Outcome run_regions(const Invocation& invocation) {
+  const RegionsCall call = read_regions_call(invocation);
   const Found found = in_command_terms(invocation.parameters, [&] {
     return call.regions.select == Selector::transfer ? found_for_transfer(invocation, call)
                                                      : found_by_energy(invocation, call);
@@ -194,6 +211,7 @@ Operation regions_operation() {
   operation.examples = {"regions takes/ -k 30 -o rois/take.pvd --paraview view.py",
                         "regions take.npy --coverage 0.8 --radius 12abs -o rois.json"};
   operation.run = run_regions;
+  operation.foresee = foresee_regions;
   operation.memory = [](const Invocation& invocation) {
     if (invocation.parameters.choice<Selector>("select") == Selector::transfer) {
       const auto* target = invocation.find<ModelData>("target");

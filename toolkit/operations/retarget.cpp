@@ -3,6 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "toolkit/io/correspondence_file.h"
 #include "toolkit/io/frame_files.h"
 #include "toolkit/io/retargeting_file.h"
 #include "toolkit/mesh/errors.h"
@@ -36,6 +37,8 @@ struct Retargeted {
   Eigen::MatrixXd driving = {};  ///< the source's weights (F x D_s)
   Eigen::MatrixXd weights = {};  ///< the target's (F x D_t)
   std::optional<Retargeting> map = {};
+  /// As a file, where the rigs' faces differ.
+  std::optional<std::string> correspondence = {};
   bool by_map = false;
   Json report = Json::object();
   std::string summary = {};
@@ -111,15 +114,28 @@ void drive_source(const Invocation& invocation, const WeightTrack& track, Retarg
   made.report["undriven"] = match.undriven_expressions;
 }
 
-Retargeted by_map(const Invocation& invocation, const WeightTrack& track,
-                  const BlendshapeTransferOptions& options) {
+/// A call by a map, before it is solved.
+Retargeted read_map(const Invocation& invocation, const WeightTrack& track,
+                    const BlendshapeTransferOptions& options) {
+  const std::string& name = invocation.input("map").name;
   Retargeted made;
   made.by_map = true;
-  made.map = parse_retargeting(invocation.input("map").name, invocation.get<Document>("map").text);
+  made.map = parse_retargeting(name, invocation.get<Document>("map").text);
+  try {
+    check_map(*made.map, options);
+  } catch (const MismatchError& error) {
+    throw MismatchError(name + ": " + error.what());
+  }
   made.source_names = made.map->source_names;
   made.target_names = made.map->target_names;
   check_live_link(invocation, "out", made.target_names);
   drive_source(invocation, track, made);
+  return made;
+}
+
+Retargeted by_map(const Invocation& invocation, const WeightTrack& track,
+                  const BlendshapeTransferOptions& options) {
+  Retargeted made = read_map(invocation, track, options);
   const bool timed = track.times.size() > 0;
   made.weights = retargeted(
       *made.map, made.driving,
@@ -138,8 +154,15 @@ void add_transfer(const TransferredTarget& transferred, Retargeted& made) {
                   summary_of(transferred.openings);
 }
 
-Retargeted by_meshes(const Invocation& invocation, const WeightTrack& track,
-                     const SolveOptions& solving) {
+/// A call by meshes, before it is solved.
+struct Driven {
+  std::shared_ptr<const Animation> animation;
+  /// Its source is that.
+  Invocation invocation;
+  Retargeted made = {};
+};
+
+Driven driven_source(const Invocation& invocation, const WeightTrack& track) {
   const auto model =
       std::make_shared<const BlendshapeModel>(invocation.get<ModelData>("source").model.average());
   const NamedData& source = invocation.input("source");
@@ -152,24 +175,40 @@ Retargeted by_meshes(const Invocation& invocation, const WeightTrack& track,
   const auto animation = std::make_shared<const Animation>(model, made.driving, track.times);
   Invocation driven = invocation;
   driven.inputs["source"] = {NamedData{source.name, FieldSequence(animation), source.origin}};
-  const Target target = targets_of(driven).front();
-  made.target_names = target.model.get().expressions().names;
+  return {animation, std::move(driven), std::move(made)};
+}
+
+/// Refuses outputs that cannot be made for this target.
+void check_wanted(const Invocation& invocation, const Target& target) {
   for (const std::string kept : {"map-out", "matrix-out"}) {
     if (target.rules.empty() || !invocation.wants(kept)) continue;
     throw MismatchError("--" + kept + ": a map and a matrix keep no rules of expressions, and " +
                         target.rules.name + " has some; leave them out by --rules none");
   }
-  check_live_link(invocation, "out", made.target_names);
+  check_live_link(invocation, "out", target.model.get().expressions().names);
+}
+
+Retargeted by_meshes(const Invocation& invocation, const WeightTrack& track,
+                     const SolveOptions& solving) {
+  Driven driven = driven_source(invocation, track);
+  const Target target = targets_of(driven.invocation).front();
+  check_wanted(invocation, target);
+  Retargeted made = std::move(driven.made);
+  made.target_names = target.model.get().expressions().names;
   RetargetOptions options;
-  options.source_name = source.name;
+  options.source_name = invocation.input("source").name;
   options.solving = solving;
   options.keep_map = invocation.wants("map-out") || invocation.wants("matrix-out");
   options.threads = invocation.threads;
   options.progress = invocation.progress;
   options.notes = warnings_of(invocation);
-  RetargetResult result = retarget(*animation, target, options);
+  RetargetResult result = retarget(*driven.animation, target, options);
   made.weights = result.transferred.solution.weights();
   made.map = std::move(result.map);
+  if (const auto& pairing = result.transferred.pairing) {
+    made.correspondence = correspondence_json(
+        pairing->triangles(), driven.animation->connectivity(), target.model.get().connectivity());
+  }
   add_transfer(result.transferred, made);
   return made;
 }
@@ -285,24 +324,52 @@ void note_options(const Invocation& invocation) {
   }
 }
 
+/// What a call asks for.
+struct RetargetCall {
+  SolveOptions solving;
+  BlendshapeTransferOptions of_map;
+  WeightTrack track;
+};
+
+RetargetCall read_call(const Invocation& invocation) {
+  check_request(invocation);
+  RetargetCall call;
+  call.solving = retarget_parameters().read(invocation.parameters);
+  call.of_map = call.solving.blendshape;
+  call.of_map.threads = invocation.threads;
+  call.of_map.smoothness = call.solving.smoothness;
+  call.track = chosen_track(invocation);
+  note_options(invocation);
+  return call;
+}
+
+void foresee_retarget(const Invocation& invocation) {
+  const RetargetCall call = read_call(invocation);
+  if (invocation.find<Document>("map")) {
+    read_map(invocation, call.track, call.of_map);
+    return;
+  }
+  const Driven driven = driven_source(invocation, call.track);
+  const std::vector<Target> targets = targets_of(driven.invocation);
+  check_wanted(invocation, targets.front());
+  check_rigs(*driven.animation, targets.front(), invocation.input("source").name);
+  check_targets(driven.invocation, targets, *driven.animation, call.solving);
+}
+
 Outcome run_retarget(const Invocation& invocation) {
   const Stopwatch stopwatch;
-  check_request(invocation);
-  SolveOptions solving = retarget_parameters().read(invocation.parameters);
-  BlendshapeTransferOptions of_map = solving.blendshape;
-  of_map.threads = invocation.threads;
-  of_map.smoothness = solving.smoothness;
-  const WeightTrack track = chosen_track(invocation);
-  note_options(invocation);
+  const RetargetCall call = read_call(invocation);
+  const WeightTrack& track = call.track;
   Retargeted made = in_command_terms(invocation.parameters, [&] {
-    return invocation.find<Document>("map") ? by_map(invocation, track, of_map)
-                                            : by_meshes(invocation, track, solving);
+    return invocation.find<Document>("map") ? by_map(invocation, track, call.of_map)
+                                            : by_meshes(invocation, track, call.solving);
   });
   add_weights(invocation, made);
-  add_map(invocation, track, of_map, made);
+  add_map(invocation, track, call.of_map, made);
   Outcome outcome;
-  outcome.outputs["out"].push_back(
-      {"", weight_table(WeightTrack{made.target_names, made.weights, track.times})});
+  NamedData out{"", weight_table(WeightTrack{made.target_names, made.weights, track.times})};
+  if (made.correspondence) out.beside[".correspondence.json"] = std::move(*made.correspondence);
+  outcome.outputs["out"].push_back(std::move(out));
   if (invocation.wants("map-out")) {
     outcome.outputs["map-out"].push_back({"", Document{retargeting_json(*made.map)}});
   }
@@ -340,7 +407,7 @@ Operation declared_operation() {
                         "what can be applied to later weights without the models", true},
                        {"matrix-out", DataKind::document,
                         "a plain matrix, without bounds, for programs that take no more", true}};
-  operation.outputs[0].weights = true;
+  operation.outputs[0].weights = operation.outputs[0].paired = true;
   operation.outputs[1].extensions = {".json"};
   operation.outputs[2].extensions = {".csv"};
   return operation;
@@ -358,6 +425,7 @@ Operation retarget_operation() {
       "retarget actor/ double.glb --weights talk.csv -o talk_double.csv --map-out map.json",
       "retarget --map map.json --weights take.csv -o take_double.livelink.csv"};
   operation.run = run_retarget;
+  operation.foresee = foresee_retarget;
   return operation;
 }
 

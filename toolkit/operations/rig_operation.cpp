@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "toolkit/io/correspondence_file.h"
 #include "toolkit/io/example_folder.h"
 #include "toolkit/mesh/stopwatch.h"
 #include "toolkit/mesh/suggestion.h"
@@ -197,10 +198,26 @@ std::string summary_of(const Rig& made, const std::string& target) {
          (made.match ? "; " + summary_of(*made.match) : "") + '\n';
 }
 
-Outcome run_rig(const Invocation& invocation) {
-  const Stopwatch stopwatch;
+RigCall read_rig_call(const Invocation& invocation) {
   RigCall call = rig_parameters().read(invocation.parameters);
   check_rig_options(invocation, call);
+  const NamedData& source = invocation.input("source");
+  if (person_of(source).expressions().size() == 0) {
+    throw MismatchError(source.name + ": the source has no expressions");
+  }
+  return call;
+}
+
+void foresee_rig(const Invocation& invocation) {
+  const RigCall call = read_rig_call(invocation);
+  examples_of(invocation, call);
+  check_targets(invocation, targets_of(invocation),
+                *frame_of_each_expression(person_of(invocation.input("source"))), call.rig.solving);
+}
+
+Outcome run_rig(const Invocation& invocation) {
+  const Stopwatch stopwatch;
+  RigCall call = read_rig_call(invocation);
   const NamedData& target = invocation.input("target");
   const std::vector<RigExample> examples = examples_of(invocation, call);
   call.rig.threads = invocation.threads;
@@ -215,7 +232,14 @@ Outcome run_rig(const Invocation& invocation) {
   report["seconds"] = stopwatch.seconds();
   outcome.report = json_text(report);
   outcome.summary = summary_of(made, target.name);
-  outcome.outputs["out"].push_back({"", ModelData{MorphableModel(std::move(made.model)), {}, {}}});
+  NamedData out;
+  if (made.pairing) {
+    out.beside[".correspondence.json"] = correspondence_json(
+        made.pairing->triangles(), person_of(invocation.input("source")).connectivity(),
+        made.model.connectivity());
+  }
+  out.data = ModelData{MorphableModel(std::move(made.model)), {}, {}};
+  outcome.outputs["out"].push_back(std::move(out));
   return outcome;
 }
 
@@ -233,12 +257,14 @@ Operation rig_operation() {
       {"source", DataKind::model, "model that has the expressions"},
       {"target", DataKind::model, "mesh, or model that has some of them, which it keeps"}};
   operation.outputs = {{"out", DataKind::model, "the target with all expressions"}};
+  operation.outputs.front().paired = true;
   operation.parameters = rig_parameters().declared();
   const std::vector<Parameter> matching = pairing_parameters();
   operation.parameters.insert(operation.parameters.end(), matching.begin(), matching.end());
   operation.examples = {"rig actor/ double.ply -o double/",
                         "rig actor/ double.ply --examples double_scans/ -o double.glb"};
   operation.run = run_rig;
+  operation.foresee = foresee_rig;
   operation.memory = memory_of_rig;
   return operation;
 }

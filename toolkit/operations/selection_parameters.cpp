@@ -6,9 +6,6 @@
 
 namespace mimetra {
 
-namespace {
-
-/// What only regions by energy depend on.
 const std::vector<std::string>& options_of_energy() {
   static const std::vector<std::string> names = {
       "region",         "coverage",        "drop-rims", "component-fields", "complete",
@@ -17,8 +14,6 @@ const std::vector<std::string>& options_of_energy() {
       "basis-tolerance"};
   return names;
 }
-
-}  // namespace
 
 BoundParameters<RegionChoiceOptions> selection_parameters() {
   using Options = RegionChoiceOptions;

@@ -13,6 +13,9 @@ BoundParameters<RegionChoiceOptions> selection_parameters();
 /// number of them where nobody says so.
 RegionChoiceOptions with_most_discs(RegionChoiceOptions options, const Parameters& parameters);
 
+/// Options that only regions by energy depend on.
+const std::vector<std::string>& options_of_energy();
+
 /// Throws UsageError where options of the call exclude each other or would have no effect: those of
 /// a decomposition where regions are chosen for the transfer, and vertices to solve for.
 void check_selection(const Invocation& invocation);

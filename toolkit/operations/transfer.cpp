@@ -10,6 +10,7 @@
 #include "toolkit/operations/formats.h"
 #include "toolkit/operations/json.h"
 #include "toolkit/operations/match_parameters.h"
+#include "toolkit/operations/paint_parameter.h"
 #include "toolkit/operations/pipeline_parameters.h"
 #include "toolkit/operations/region_report.h"
 #include "toolkit/operations/selection_parameters.h"
@@ -48,7 +49,9 @@ TransferOptions options_of(const Invocation& invocation) {
       transfer_parameters(&std::get<FieldSequence>(source.data)).read(invocation.parameters);
   options.source = described(std::move(options.source), source);
   options.regions = with_most_discs(std::move(options.regions), invocation.parameters);
-  if (const RegionData* regions = invocation.find<RegionData>("regions")) {
+  if (auto painted = painted_region_of(invocation)) {
+    options.given = std::move(*painted);
+  } else if (const RegionData* regions = invocation.find<RegionData>("regions")) {
     options.given = GivenRegions{invocation.input("regions").name, regions->regions};
   } else if (auto components = given_components(invocation)) {
     options.given = std::move(*components);
@@ -65,16 +68,18 @@ NamedData weights_of(const NamedData& target, const Solution& solution) {
 }
 
 /// `has_own_regions` where the source's are not those of this target.
-Json report_of(const NamedData& target, const TransferredTarget& transferred,
-               bool has_own_regions) {
-  const auto& [solution, regions, similarity, error, pairing, match, error_seconds, openings] =
-      transferred;
+Json report_of(const NamedData& target, const TransferredTarget& transferred, bool has_own_regions,
+               const Parameters& parameters) {
+  const auto& [solution, regions, similarity, error, pairing, match, error_seconds, openings,
+               weights] = transferred;
   Json json = {{"name", target.name},          {"output", nullptr},  {"de_all", error.de_all},
                {"de_region", error.de_region}, {"leak", error.leak}, {"flipped", error.flipped},
                {"seconds", solution.seconds}};
   json["error_seconds"] = error_seconds;
   if (match) json["correspondence"] = json_of(*match);
   json["missed"] = missed_share(error);
+  json["crease"] = error.crease;
+  json["largest_crease"] = error.largest_crease;
   if (!openings.empty()) json["openings"] = json_of(openings);
   json["axes"] = {{"angle", similarity.angle()},
                   {"scale", similarity.scale},
@@ -87,6 +92,10 @@ Json report_of(const NamedData& target, const TransferredTarget& transferred,
     json["triangle_share"] = regions->triangle_share();
     json["added_regions"] = added_regions(*regions);
     if (has_own_regions) json["regions"] = report_of(*regions);
+  }
+  if (weights.size() > 0) {
+    json["weight"] = weights_report(weights, parameters);
+    json["de_inside"] = error.de_inside;
   }
   if (solution.regional) {
     json["per_region"] = {{"regions", solution.regional->shares().cols() - 1},
@@ -101,25 +110,36 @@ Json report_of(const NamedData& target, const TransferredTarget& transferred,
 }
 
 std::string summary_of(const NamedData& target, const TransferredTarget& transferred) {
-  const auto& [solution, regions, similarity, error, pairing, match, error_seconds, openings] =
-      transferred;
+  const auto& [solution, regions, similarity, error, pairing, match, error_seconds, openings,
+               weights] = transferred;
   return target.name + ": DE " + readable(error.de_all) + " over all triangles, " +
-         readable(error.de_region) + " over the regions; leak " + readable(error.leak) + ", " +
-         std::to_string(error.flipped) + " flipped triangles; " + readable(solution.seconds) +
-         " s" + (match ? "; " + summary_of(*match) : "") + '\n' + summary_of(openings);
+         readable(error.de_region) + " over the regions; leak " + readable(error.leak) +
+         ", crease " + readable(error.crease, 2) + " degrees, " + std::to_string(error.flipped) +
+         " flipped triangles; " + readable(solution.seconds) + " s" +
+         (match ? "; " + summary_of(*match) : "") + '\n' + summary_of(openings);
+}
+
+/// False where the call names them, or all triangles.
+bool looks_for_regions(const Invocation& invocation) {
+  return !invocation.parameters.flag("full") && !invocation.find<RegionData>("regions") &&
+         !invocation.parameters.optional_text("paint");
 }
 
 /// Refuses outputs that this request cannot make, before anything is computed.
 void check_outputs(const Invocation& invocation) {
   const TransferOptions options = transfer_parameters().read(invocation.parameters);
+  check_paint(invocation);
   check_solving(invocation.parameters, invocation.inputs.at("target"));
-  if (options.full && options.solving.per_region) {
-    throw UsageError("--per-region: there are no regions with --full");
+  if (options.full) {
+    refuse_options(invocation.parameters, {"falloff"}, "there are no regions with --full");
+    if (options.solving.per_region) {
+      throw UsageError("--per-region: there are no regions with --full");
+    }
   }
   if (invocation.wants("regions-out") && options.full) {
     throw UsageError("--regions-out: there are no regions with --full");
   }
-  const bool chooses = !options.full && !invocation.find<RegionData>("regions");
+  const bool chooses = looks_for_regions(invocation);
   if (!chooses) {
     refuse_options(invocation.parameters, {"only", "without", "select", "triangles", "drop-rims"},
                    "no regions are looked for with --full or --regions");
@@ -148,6 +168,19 @@ void check_outputs(const Invocation& invocation) {
   }
 }
 
+void foresee_transfer(const Invocation& invocation) {
+  check_outputs(invocation);
+  const FrameSource& source = *invocation.get<FieldSequence>("source").frames;
+  const TransferOptions options = options_of(invocation);
+  if (const auto* regions = std::get_if<GivenRegions>(&options.given)) {
+    check_regions(*regions, source);
+  }
+  if (const auto* components = std::get_if<GivenComponents>(&options.given)) {
+    check_components(*components, source);
+  }
+  check_targets(invocation);
+}
+
 /// What each target's results are, in the order of the targets.
 void add_targets(Outcome& outcome, Json& report, const Invocation& invocation,
                  TransferResult& result) {
@@ -158,12 +191,17 @@ void add_targets(Outcome& outcome, Json& report, const Invocation& invocation,
   for (std::size_t t = 0; t < targets.size(); ++t) {
     TransferredTarget& transferred = result.targets[t];
     const bool has_own_regions = transferred.regions && !result.regions;
-    reports.push_back(report_of(targets[t], transferred, has_own_regions));
+    reports.push_back(report_of(targets[t], transferred, has_own_regions, invocation.parameters));
     if (is_written) reports.back()["output"] = paths->second.at(t).string();
     if (has_own_regions) outcome.summary += summary_of(*transferred.regions);
     outcome.summary += summary_of(targets[t], transferred);
     Solution& solution = transferred.solution;
     if (invocation.wants("weights-out") && solution.weights().size() > 0) {
+      if (transferred.weights.size() > 0) {
+        invocation.warn(targets[t].name +
+                        ": its weights drive expressions that fade out where its field 'weight' "
+                        "does; the whole face would move by them");
+      }
       outcome.outputs["weights-out"].push_back(weights_of(targets[t], solution));
     }
     const FieldSequence& source = invocation.get<FieldSequence>("source");
@@ -172,12 +210,16 @@ void add_targets(Outcome& outcome, Json& report, const Invocation& invocation,
     std::vector<NamedData>& all = outcome.outputs["out"];
     all.push_back({targets[t].name, FieldSequence()});
     NamedData& out = all.back();
+    // A host that takes values shows them; formats write them where they hold fields.
+    std::vector<Field>& shown = is_written ? out.more_fields : made.fields;
     if (transferred.pairing) {
       const Correspondence& pairs = transferred.pairing->triangles();
-      // A host that takes values shows them; formats write them where they hold fields.
-      (is_written ? out.more_fields : made.fields) = fields_of(pairs);
+      shown = fields_of(pairs);
       out.beside[".correspondence.json"] =
           correspondence_json(pairs, source.frames->connectivity(), made.frames->connectivity());
+    }
+    if (transferred.weights.size() > 0) {
+      shown.push_back({"weight", Field::Location::vertices, std::move(transferred.weights)});
     }
     out.data = std::move(made);
   }
@@ -220,8 +262,7 @@ Outcome run_transfer(const Invocation& invocation) {
 
 /// True where the run decomposes the source to find regions.
 bool looks_for_components(const Invocation& invocation) {
-  return !invocation.parameters.flag("full") && !invocation.find<RegionData>("regions") &&
-         !invocation.find<Components>("components") &&
+  return looks_for_regions(invocation) && !invocation.find<Components>("components") &&
          invocation.parameters.choice<Selector>("select") == Selector::energy;
 }
 
@@ -283,8 +324,10 @@ Operation transfer_operation() {
       {"regions-out", DataKind::regions, "the regions, as .pvd over time", true},
       components_output(),
       {"weights-out", DataKind::table, "blendshape weights", true, true}};
+  operation.outputs.front().paired = true;
   operation.outputs.back().weights = true;
   operation.parameters = transfer_parameters().declared();
+  operation.parameters.push_back(paint_parameter());
   const std::vector<Parameter> matching = match_parameters();
   operation.parameters.insert(operation.parameters.end(), matching.begin(), matching.end());
   operation.examples = {
@@ -295,10 +338,7 @@ Operation transfer_operation() {
   operation.all_frames_for = [](const Invocation& invocation) {
     return looks_for_components(invocation) ? "the decomposition" : "";
   };
-  operation.foresee = [](const Invocation& invocation) {
-    check_outputs(invocation);
-    check_targets(invocation);
-  };
+  operation.foresee = foresee_transfer;
   return operation;
 }
 

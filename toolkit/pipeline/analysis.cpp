@@ -218,8 +218,7 @@ Analysis analyse(const Source& source, const AnalysisOptions& options) {
           options.distances.welding};
 }
 
-Analysis analysis_of(const GivenComponents& given, const FrameSource& sequence,
-                     const AnalysisOptions& options) {
+void check_components(const GivenComponents& given, const FrameSource& sequence) {
   const Components& components = given.components;
   if (components.weights.size() == 0) {
     throw MismatchError(given.name +
@@ -236,6 +235,12 @@ Analysis analysis_of(const GivenComponents& given, const FrameSource& sequence,
   if (std::ranges::all_of(components.centers, [](VertexIndex center) { return center < 0; })) {
     throw MismatchError(given.name + ": no component moves a vertex, so that there is no region");
   }
+}
+
+Analysis analysis_of(const GivenComponents& given, const FrameSource& sequence,
+                     const AnalysisOptions& options) {
+  check_components(given, sequence);
+  const Components& components = given.components;
   SurfaceDistances distances =
       distances_along(components.rest, components.triangles, distance_options(options));
   check_inside(options.inside, components.vertices());

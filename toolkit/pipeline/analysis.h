@@ -160,10 +160,13 @@ struct GivenComponents {
   Components components;
 };
 
+/// Throws MismatchError where they hold no weights, are of another mesh than the sequence, or all
+/// of them died.
+void check_components(const GivenComponents& given, const FrameSource& sequence);
+
 /// The same for components that are known already: of the options only the distances count, and
 /// where regions may lie, which moves the centres outside to the strongest vertices inside. Throws
-/// MismatchError where they hold no weights, are of another mesh than the sequence, or all of them
-/// died.
+/// as check_components().
 Analysis analysis_of(const GivenComponents& given, const FrameSource& sequence,
                      const AnalysisOptions& options = {});
 

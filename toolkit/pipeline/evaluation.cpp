@@ -6,8 +6,10 @@
 
 #include "toolkit/mesh/stopwatch.h"
 #include "toolkit/pipeline/joint_motion.h"
+#include "toolkit/pipeline/region_border.h"
 #include "toolkit/pipeline/region_completer.h"
 #include "toolkit/pipeline/region_selector.h"
+#include "toolkit/pipeline/solution_error.h"
 
 namespace mimetra {
 
@@ -31,12 +33,15 @@ EvaluatedTransfer solved(const Source& source, const Target& target, const Selec
                          const SolveOptions& options) {
   const PlacedSource placed = placed_at(target, source, options);
   EvaluatedTransfer result{{}, solve(placed.source, target, selection, options), {}};
-  result.error = transfer_error(
-      *placed.source.sequence, *result.solution.sequence, selection.triangles,
-      {.edges = options.edges, .pairing = target.pairing, .threads = options.threads});
+  SolveOptions of_error = options;
+  of_error.progress = {};
+  result.error = error_of(result.solution, placed.source, target, selection, of_error);
   result.row.de_all = result.error.de_all;
   result.row.de_region = result.error.de_region;
   result.row.transfer_seconds = result.solution.seconds;
+  result.row.leak = result.error.leak;
+  result.row.crease = result.error.crease;
+  result.row.largest_crease = result.error.largest_crease;
   return result;
 }
 
@@ -68,13 +73,14 @@ EvaluatedTransfer evaluate_full(const Source& source, const Target& target,
 EvaluatedTransfer evaluate_by(const Regions& regions, const EvaluatedTransfer& full,
                               const Source& source, const Target& target,
                               const SolveOptions& options) {
-  const Selection selection = selection_of(regions, target);
+  const Selection selection = bordered_selection(regions, target, options);
   EvaluatedTransfer result = solved(source, target, selection, options);
   EvaluationRow& row = result.row;
-  row.vertices = regions.vertex_count();
-  row.triangles = static_cast<int>(regions.triangles.size());
-  row.vertex_share = regions.vertex_share();
-  row.triangle_share = regions.triangle_share();
+  const Regions bordered = with_border(regions, selection, target);
+  row.vertices = bordered.vertex_count();
+  row.triangles = static_cast<int>(bordered.triangles.size());
+  row.vertex_share = bordered.vertex_share();
+  row.triangle_share = bordered.triangle_share();
   row.radius = common_radius(regions);
   const double size = result.solution.sequence->diameter();
   row.mpe_all = percentage_error(full.error.de_all, row.de_all, size);
@@ -110,6 +116,17 @@ class Rows {
     source_ = prepare_source(sequence, options_.source);
     options_.solving.progress = next_part(0, 1);
     full_ = evaluate_full(source_, target_, options_.solving);
+  }
+
+  /// A row of regions that are known already, completed for the target.
+  void add_given(const GivenRegions& given) {
+    check_regions(given, *source_.sequence);
+    if (options_.solving.per_region) check_hard(given);
+    options_.solving.progress = next_part(0, 1);
+    RegionCompleter completion(source_.sequence->rest(), source_.sequence->triangles(),
+                               options_.regions, options_.analysis);
+    const Regions regions = completion(given.regions, target_, options_.solving);
+    rows_.push_back(evaluate_by(regions, full_, source_, target_, options_.solving).row);
   }
 
   /// A row of the strongest regions of k components.
@@ -181,6 +198,7 @@ class Rows {
   }
 
   static double number_of_rows(const EvaluationOptions& options) {
+    if (options.given) return 1;
     if (options.curve) return 2 * static_cast<double>(kCurveShares.size());
     return std::max(1.0, static_cast<double>(options.counts.size()));
   }
@@ -231,7 +249,9 @@ std::vector<EvaluationRow> evaluate(const MeshSequence& sequence, const Target& 
   check_options(options);
   check_options(options.regions);
   Rows rows(sequence, target, options);
-  if (options.curve) {
+  if (options.given) {
+    rows.add_given(*options.given);
+  } else if (options.curve) {
     rows.add_energy_curve();
     rows.add_transfer_curve();
   } else if (options.regions.select == Selector::energy) {

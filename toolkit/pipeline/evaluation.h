@@ -28,6 +28,10 @@ struct EvaluationRow {
   std::optional<double> decompose_seconds;  ///< decomposition and choice of regions
   double transfer_seconds = 0;
   std::optional<bool> converged = {};  ///< the decomposition; none where there was none
+  /// Of TransferError, on the target.
+  double leak = 0;
+  double crease = 0;
+  double largest_crease = 0;
 };
 
 /// A transfer, and how far it is from the source's deformation.
@@ -41,8 +45,8 @@ struct EvaluatedTransfer {
 EvaluatedTransfer evaluate_full(const Source& source, const Target& target,
                                 const SolveOptions& options = {});
 
-/// The transfer by regions, beside the one by all triangles. \pre a MatchedTarget. Throws as
-/// solve().
+/// The transfer by regions, beside the one by all triangles. \pre a MatchedTarget. Throws what
+/// bordered_selection() and solve() throw.
 EvaluatedTransfer evaluate_by(const Regions& regions, const EvaluatedTransfer& full,
                               const Source& source, const Target& target,
                               const SolveOptions& options = {});
@@ -55,6 +59,8 @@ struct EvaluationOptions {
   /// strongest regions, and those that are chosen for the transfer. The regions' choice and bound
   /// do not count.
   bool curve = false;
+  /// One row by these regions instead.
+  std::optional<GivenRegions> given = {};
   /// Of the parts; their threads, progress and notes are those of the evaluation, and the number of
   /// components is each of `counts`.
   SourceOptions source = {};
@@ -76,7 +82,7 @@ struct EvaluationOptions {
 
 /// The paper's Table I: a row for each number of components, or of discs, and one by all triangles,
 /// which is the last. Throws what prepare_source(), MatchedTarget(), analyse(), choose_regions(),
-/// RegionSelector and solve() throw.
+/// check_regions(), check_hard(), RegionSelector, bordered_selection() and solve() throw.
 std::vector<EvaluationRow> evaluate(const MeshSequence& source, const Target& target,
                                     const EvaluationOptions& options = {});
 

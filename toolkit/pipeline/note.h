@@ -35,8 +35,12 @@ enum class Topic {
   no_exclusives,       ///< among the target's expressions, of those that names tell
   anchor_vertex,       ///< one that the mesh does not have
   held_anchor,         ///< an anchor where fixed vertices hold the mesh
+  anchor_and_weights,  ///< the same where they are those of weight 0
+  soft_outside,        ///< Outside::identity where the regions' border is soft
+  visible_crease,      ///< the surface bends at the regions' border as the source does not
   other_faces,         ///< a target has not the source's faces, and nothing pairs them
   shifted_markers,     ///< markers fit much better as vertices one lower or higher
+  no_full_weight,      ///< no vertex takes all of the motion, from which a border could fade out
   poor_match           ///< source and target are hardly paired
 };
 

@@ -97,6 +97,9 @@ struct Selection {
   std::vector<bool> inside;    ///< vertices inside the regions (N); empty for all
   /// Vertices of each region, in the regions' order; none for all triangles.
   std::vector<std::vector<VertexIndex>> regions = {};
+  /// Share of the wanted motion that each vertex takes (N), in [0, 1]; empty where the regions'
+  /// border is hard. Vertices inside are those above 0, and L holds all triangles with one of them.
+  Eigen::VectorXd weights = {};
 };
 
 Selection selection_of(const Regions& regions);

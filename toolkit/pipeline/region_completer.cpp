@@ -86,7 +86,9 @@ CompletedRegions RegionCompleter::completed_within(double bound, const Regions& 
 
 Regions RegionCompleter::operator()(const Regions& regions, const Target& target,
                                     const SolveOptions& options) {
-  if (options.per_region || solves_for_vertices(target.model, options.space)) return regions;
+  const bool is_soft = regions.weights.size() > 0;
+  if (is_soft || options.per_region || solves_for_vertices(target.model, options.space))
+    return regions;
   if (!search_) {
     search_.emplace(rest_, triangles_, distances_,
                     kAddedRadius * options_.radius.in(diameter(rest_)), inside_);

@@ -18,7 +18,8 @@ class RegionCompleter {
   RegionCompleter(const Analysis& analysis, const RegionChoiceOptions& options);
 
   /// The regions themselves where a target is solved for vertices, or for weights of each region,
-  /// which look at all triangles. Where the options bound the share of the triangles, the weakest
+  /// which look at all triangles; and those whose border is soft, which somebody painted as they
+  /// are. Where the options bound the share of the triangles, the weakest
   /// regions make room for the discs that are added, the last one apart, beside which as many are
   /// added as fit. Notes, under the target's name, what was added and left out
   /// (Topic::completed_regions). Throws what completed() throws.

@@ -39,14 +39,18 @@ Retargeting map_between(const Animation& source, const Target& target,
 
 }  // namespace
 
-RetargetResult retarget(const Animation& source, const Target& target,
-                        const RetargetOptions& options) {
+void check_rigs(const Animation& source, const Target& target, const std::string& source_name) {
   if (source.model().expressions().size() == 0) {
-    throw MismatchError(options.source_name + ": has no expressions, so there are no weights");
+    throw MismatchError(source_name + ": has no expressions, so there are no weights");
   }
   if (target.model.get().expressions().size() == 0) {
     throw MismatchError(target.name + ": has no expressions that could have weights");
   }
+}
+
+RetargetResult retarget(const Animation& source, const Target& target,
+                        const RetargetOptions& options) {
+  check_rigs(source, target, options.source_name);
   TransferOptions of_transfer;
   of_transfer.full = true;
   of_transfer.source.name = options.source_name;

@@ -29,11 +29,14 @@ struct RetargetResult {
   std::optional<Retargeting> map = {};
 };
 
+/// Throws MismatchError where one of the models has no expressions.
+void check_rigs(const Animation& source, const Target& target, const std::string& source_name);
+
 /// Weights of one rig become weights of another through their meshes: transfer() over all triangles
 /// from the source's poses to the target's expressions, paired where faces differ.
 ///
-/// The map's weights are retargeted() from the source's (F x D_s). Throws MismatchError where one
-/// of the models has no expressions, and what transfer() throws. Notes what transfer() notes.
+/// The map's weights are retargeted() from the source's (F x D_s). Throws what check_rigs() and
+/// transfer() throw. Notes what transfer() notes.
 RetargetResult retarget(const Animation& source, const Target& target,
                         const RetargetOptions& options = {});
 

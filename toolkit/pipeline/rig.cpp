@@ -20,14 +20,6 @@ constexpr double kStill = 1e-4;
 /// Transfer and examples as progress shows them.
 constexpr double kTransferPart = 0.5;
 
-/// Each expression at weight 1 is one frame.
-std::shared_ptr<const Animation> frame_of_each_expression(const BlendshapeModel& source) {
-  const int count = source.expressions().size();
-  if (count == 0) throw MismatchError("the source has no expressions");
-  return std::make_shared<const Animation>(std::make_shared<const BlendshapeModel>(source),
-                                           Eigen::MatrixXd::Identity(count, count));
-}
-
 /// What an expression moves on the source: vertices, and triangles with one of them.
 Regions moving_part(const Positions& rest, const PositionsView& pose, const Triangles& triangles) {
   const Eigen::VectorXd distances = (pose - rest).rowwise().norm();
@@ -228,6 +220,13 @@ void note_usability(const Rig& rig, const Target& target, const Notes& notes) {
 
 }  // namespace
 
+std::shared_ptr<const Animation> frame_of_each_expression(const BlendshapeModel& source) {
+  const int count = source.expressions().size();
+  if (count == 0) throw MismatchError("the source has no expressions");
+  return std::make_shared<const Animation>(std::make_shared<const BlendshapeModel>(source),
+                                           Eigen::MatrixXd::Identity(count, count));
+}
+
 Rig rig(const BlendshapeModel& source, const Target& given, std::vector<RigExample> examples,
         const RigOptions& options) {
   check_options(options.solving);
@@ -261,6 +260,7 @@ Rig rig(const BlendshapeModel& source, const Target& given, std::vector<RigExamp
   result.expressions = described(result.model, transfer.displacements(), examples);
   result.similarity = placed.similarity;
   result.match = matched.report();
+  result.pairing = target.pairing;
   result.missed = missed_by(transferred, sequence, target, options.threads);
   count_flipped(result, sequence, target, options.threads);
   note_usability(result, target, options.notes);

@@ -61,8 +61,12 @@ struct Rig {
   Eigen::MatrixXd weights;                ///< of the examples (S x the source's expressions)
   Similarity similarity;                  ///< from the source's neutral to the target's
   std::optional<MatchReport> match = {};  ///< where the faces differ
+  std::shared_ptr<const Pairing> pairing = {};  ///< of these faces; null where they are the same
   double missed = 0;  ///< share of the source's deformation that the transferred expressions lack
 };
+
+/// The source's expressions at weight 1, a frame each. Throws MismatchError where it has none.
+std::shared_ptr<const Animation> frame_of_each_expression(const BlendshapeModel& source);
 
 /// The full set of a source's expressions on a target, a neutral mesh or a model that has only
 /// some, which are then their true shapes.
@@ -72,7 +76,7 @@ struct Rig {
 /// is about the source's expressions. Notes examples that do not move, expressions that do not, and
 /// a rig that is likely not usable.
 ///
-/// Throws MismatchError for a source without expressions, what MatchedTarget(), placed_at(),
+/// Throws what frame_of_each_expression(), MatchedTarget(), placed_at(),
 /// closed_seams(), VertexTransfer and fit_to_examples() throw; Cancelled.
 Rig rig(const BlendshapeModel& source, const Target& target, std::vector<RigExample> examples = {},
         const RigOptions& options = {});

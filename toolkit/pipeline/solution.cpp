@@ -16,6 +16,7 @@
 #include "toolkit/pipeline/target_notes.h"
 #include "toolkit/transfer/following_parts.h"
 #include "toolkit/transfer/seams.h"
+#include "toolkit/transfer/soft_border.h"
 
 namespace mimetra {
 
@@ -30,8 +31,8 @@ constexpr double kUnsmoothedShare = 0.9;
 constexpr double kGlobalShare = 0.2;
 
 RegionalOptions regional_options(const Target& target, const SolveOptions& options) {
-  RegionalOptions of_regions{target.name, options.falloff, options.distances, options.local,
-                             options.notes};
+  RegionalOptions of_regions{target.name, options.falloff.value_or(SolveOptions::kUsualFalloff),
+                             options.distances, options.local, options.notes};
   of_regions.distances.threads = of_regions.local.threads = options.threads;
   of_regions.local.edges = options.edges;
   of_regions.local.pairing = target.pairing;
@@ -50,6 +51,8 @@ Solution solve_blendshapes(const Source& source, const Target& target, const Sel
   of_space.pairing = target.pairing;
   of_space.smoothness = options.smoothness;
   of_space.rules = target.rules;
+  const bool is_soft = selection.weights.size() > 0;
+  if (is_soft) of_space.triangle_weights = triangle_weights(model.triangles(), selection.weights);
   const FrameSource& performance = *source.sequence;
   const bool regional = options.per_region && !selection.regions.empty();
   if (regional) of_space.progress = part_of(options.progress, 0, kGlobalShare);
@@ -66,7 +69,8 @@ Solution solve_blendshapes(const Source& source, const Target& target, const Sel
     solution.sequence = solution.regional;
   } else {
     solution.animation = std::make_shared<const Animation>(
-        std::make_shared<const BlendshapeModel>(model), beta, performance.known_times());
+        std::make_shared<const BlendshapeModel>(is_soft ? faded(model, selection.weights) : model),
+        beta, performance.known_times());
     solution.sequence = solution.animation;
   }
   solution.seconds = stopwatch.seconds();
@@ -110,9 +114,30 @@ void check_anchor(const VertexTransferOptions& options, const Target& target,
                             "surface around it; name a vertex of that");
     }
   }
+  if (selection.weights.size() > 0) {
+    if (selection.weights.minCoeff() > 0) return;
+    throw OptionError(Topic::anchor_and_weights, "vertices of weight 0 are fixed already");
+  }
   const bool all = selection.triangles.size() == static_cast<std::size_t>(model.triangles().rows());
   if (options.outside == Outside::fixed && !all) {
     throw OptionError(Topic::held_anchor, "vertices outside the regions are fixed already");
+  }
+}
+
+/// Throws for weights of a selection that are none, or that other options contradict.
+void check_soft_border(const Target& target, const Selection& selection,
+                       const SolveOptions& options) {
+  if (selection.weights.size() == 0) return;
+  check_weights(selection.weights, target.model.get().vertices());
+  if (options.per_region) {
+    throw std::invalid_argument(
+        "per_region: weights of each region fade by the falloff; a selection has none beside");
+  }
+  if (options.vertex.outside == Outside::identity &&
+      solves_for_vertices(target.model, options.space)) {
+    throw OptionError(Topic::soft_outside,
+                      "triangles that keep their shape hold nothing, but a soft border ends where "
+                      "vertices stay");
   }
 }
 
@@ -131,14 +156,13 @@ Solution solve_vertices(const Source& source, const Target& target, const Select
   const BlendshapeModel& model = target.model;
   VertexTransferOptions of_space = options.vertex;
   of_space.inside = selection.inside;
+  of_space.weights = selection.weights;
   of_space.threads = options.threads;
   check_anchor(of_space, target, selection);
   const FrameSource& performance = *source.sequence;
   of_space.pairing = target.pairing;
-  const BlockOptions of_seams{options.threads, part_of(options.progress, 0, kSeamShare)};
-  of_space.weld = target.pairing ? closed_seams(performance, model.neutral(), model.triangles(),
-                                                *target.pairing, of_seams)
-                                 : closed_seams(performance, model.neutral(), of_seams);
+  of_space.weld =
+      closed_seams_of(source, target, {options.threads, part_of(options.progress, 0, kSeamShare)});
   const bool smooths = options.smoothness > 0;
   const double solved = smooths ? kUnsmoothedShare : 1;
   of_space.progress = part_of(options.progress, kSeamShare, solved);
@@ -454,6 +478,14 @@ PlacedSource placed_at(const Target& target, const Source& source, const SolveOp
   return placed;
 }
 
+Weld closed_seams_of(const Source& source, const Target& target, const BlockOptions& options) {
+  const FrameSource& performance = *source.sequence;
+  const BlendshapeModel& model = target.model;
+  return target.pairing ? closed_seams(performance, model.neutral(), model.triangles(),
+                                       *target.pairing, options)
+                        : closed_seams(performance, model.neutral(), options);
+}
+
 Solution solve(const Source& source, const Target& target, const Selection& selection,
                const SolveOptions& options) {
   check_options(options);
@@ -462,6 +494,7 @@ Solution solve(const Source& source, const Target& target, const Selection& sele
     throw OptionError(Topic::no_expressions, target.name + ": has no expressions");
   }
   check_rules(target, options);
+  check_soft_border(target, selection, options);
   return solves_for_vertices(model, options.space)
              ? solve_vertices(source, target, selection, options)
              : solve_blendshapes(source, target, selection, options);

@@ -96,8 +96,10 @@ struct SolveOptions {
   /// Blendshape space: each region has weights of its own, and what lies around them too; all
   /// triangles are looked at.
   bool per_region = false;
-  /// Geodesic distance from a region's rim over which its weights fade out, on the target.
-  Length falloff = Length::share(0.1);
+  /// Geodesic distance from a region's rim over which it fades out, on the target: the weights of
+  /// each region (there kUsualFalloff where none is given), otherwise the motion that vertices
+  /// take (bordered_selection()); without it a region's border is hard.
+  std::optional<Length> falloff = {};
   /// Its threads, progress, edges and pairing are those of the solve.
   LocalWeightsOptions local = {};
   /// By which that is measured; of a transfer those of the analysis. Threads are those of the
@@ -107,6 +109,8 @@ struct SolveOptions {
   int threads = 0;
   Progress progress = {};
   Notes notes = {};
+
+  static constexpr Length kUsualFalloff = Length::share(0.1);
 
   static constexpr Option kSpace{"space", &SolveOptions::space};
   static constexpr Option kAxes{"axes", &SolveOptions::axes};
@@ -140,7 +144,8 @@ struct Solution {
   /// Of solve(): without head motion, the rest pose is the neutral. Its frames are computed when
   /// they are read, or stored; it does not need the source or the target any more.
   std::shared_ptr<const FrameSource> sequence;
-  /// The same where weights drive it; null in vertex space.
+  /// The same where weights drive it; null in vertex space. Its model is faded() where the
+  /// selection has weights.
   std::shared_ptr<const Animation> animation;
   /// The same where each region has weights of its own, else null.
   std::shared_ptr<const RegionalAnimation> regional;
@@ -228,6 +233,9 @@ Selection selection_of(const Regions& regions, const Target& target);
 /// All triangles of the target.
 Selection whole(const Target& target);
 
+/// closed_seams() of a source and a target. \pre as of solve()
+Weld closed_seams_of(const Source& source, const Target& target, const BlockOptions& = {});
+
 /// Solves on the selected triangles in blendshape or vertex space; in vertex space closed_seams()
 /// stay closed. Notes, under the target's name, expressions that the triangles do not or hardly
 /// show (Topic::poor_condition where they do not tell them apart), triangles without area or that a
@@ -238,10 +246,17 @@ Selection whole(const Target& target);
 /// Where each region has weights of its own, they are found on all triangles and drawn towards
 /// those of the whole face, which ridge and sparsity shape; a selection without regions has those.
 ///
-/// Throws OptionError (Topic::no_expressions, Topic::anchor_vertex, Topic::held_anchor) and what
-/// check_rules(), BlendshapeTransfer, LocalWeights, closed_seams(), VertexTransfer, reading the
-/// source and FrameStore throw; std::invalid_argument where each region is to have weights of its
-/// own that are smooth over time, or a target has none.
+/// Where the selection has weights, vertices take that share of the motion. In vertex space it
+/// fades as SoftBorder describes. In blendshape space triangle i counts phi_i times, the mean of
+/// its corners' weights, and the result is neutral + phi_v sum_j beta_j dV_j: that of faded()
+/// expressions, not the model's at these weights.
+///
+/// Throws OptionError (Topic::no_expressions, Topic::anchor_vertex, Topic::held_anchor,
+/// Topic::anchor_and_weights, Topic::soft_outside) and what check_rules(), BlendshapeTransfer,
+/// LocalWeights, closed_seams(), VertexTransfer, reading the source and FrameStore throw;
+/// std::invalid_argument where each region is to have weights of its own that are smooth over time,
+/// or a target has none, or the selection has weights too; and for weights that are not in [0, 1],
+/// one a vertex.
 Solution solve(const Source& source, const Target& target, const Selection& selection,
                const SolveOptions& options = {});
 

@@ -6,8 +6,10 @@
 #include "toolkit/mesh/stopwatch.h"
 #include "toolkit/mesh/text.h"
 #include "toolkit/pipeline/joint_motion.h"
+#include "toolkit/pipeline/region_border.h"
 #include "toolkit/pipeline/region_completer.h"
 #include "toolkit/pipeline/region_selector.h"
+#include "toolkit/pipeline/solution_error.h"
 #include "toolkit/pipeline/usability.h"
 
 namespace mimetra {
@@ -135,20 +137,52 @@ std::optional<Regions> regions_of(const std::vector<TransferredTarget>& targets,
   return std::move(choice.regions);
 }
 
-/// Says where a result is not usable, by its error before head motion is given back.
-void note_usability(const Target& target, const TransferError& error,
-                    const TransferOptions& options) {
-  std::string wrong;
-  if (missed_share(error) > kUnusableMissedShare) {
-    wrong = percent(missed_share(error)) + " of the deformation is missing";
+/// A target's solve and what it takes its error over.
+struct TargetSolve {
+  const PlacedSource& placed;
+  const Target& target;
+  const Selection& selection;
+  const SolveOptions& options;
+
+  TransferError error(const Solution& solution, const Progress& progress) const {
+    SolveOptions of_error = options;
+    of_error.progress = progress;
+    return error_of(solution, placed.source, target, selection, of_error);
   }
-  if (flipped_share(error) > kUnusableFlippedShare) {
-    wrong += (wrong.empty() ? "" : ", and ") +
-             readable(error.flipped / double(error.per_frame.size()), 2) +
-             " triangles a frame are flipped";
+
+  /// Without what holds the target off the source; says nothing.
+  TransferError error_without_holds(const Progress& progress) const {
+    SolveOptions free = without_holds(options);
+    free.notes = {};
+    free.progress = progress;
+    const Target unruled = without_holds(target);
+    return error(solve(placed.source, unruled, selection, free), progress);
   }
+};
+
+/// Says where a result is not usable, by its error before head motion is given back, and what may
+/// have made it so. Weights are found once more without the options that hold them.
+void note_usability(const TargetSolve& solved, const TransferError& error,
+                    const TransferOptions& options, const Progress& progress) {
+  const Target& target = solved.target;
+  const std::string wrong = unusable_by(error);
   if (wrong.empty()) return;
-  const std::string text = target.name + ": the result may not be usable: " + wrong;
+  std::string text = target.name + ": the result may not be usable: " + wrong;
+  const std::vector<std::string> holds = holding_options(target, solved.options);
+  if (!holds.empty()) {
+    const std::string names = joined(holds, ", ", " and ");
+    if (solves_for_vertices(target.model, solved.options.space)) {
+      text += "; " + names + " is on, which damps motion";
+    } else {
+      const TransferError free = solved.error_without_holds(progress);
+      if (unusable_by(free).empty()) {
+        note(options.notes, text + "; without " + names + ' ' + percent(missed_share(free)) +
+                                " of the deformation is missing, and the result is usable");
+        return;
+      }
+      text += "; without " + names + " still " + unusable_by(free);
+    }
+  }
   if (!options.full) {
     note(options.notes, text, Topic::poor_condition);
   } else if (target.pairing) {
@@ -162,19 +196,37 @@ void note_usability(const Target& target, const TransferError& error,
   }
 }
 
-/// Of a target for which markers were looked for. Says what does not close.
+/// Of an opening's width: rounding.
+constexpr double kNoMotion = 1e-9;
+
+/// Of a target for which markers were looked for. Says what does not close, but for what the
+/// regions' border lets not move at all.
 std::vector<ComparedOpening> openings_on(const MatchedTarget& target, const FrameSource& source,
-                                         const Solution& solution, const TransferOptions& options) {
+                                         const Solution& solution, const Selection& selection,
+                                         const TransferOptions& options) {
   if (!target.report() || !target.report()->found) return {};
   std::vector<ComparedOpening> openings = compared_openings(
       source, *solution.sequence, *target.report()->found, {.threads = options.threads});
   for (const ComparedOpening& opening : openings) {
-    if (!opening.stays_open()) continue;
+    const bool is_held = std::ranges::count(selection.inside, false) > 0 &&
+                         opening.target_most - opening.target_least < kNoMotion;
+    if (is_held || !opening.stays_open()) continue;
     note(options.notes, (*target).name + ": the " + std::string(opening.name) +
                             " closes on the source, here " + percent(opening.target_least) +
                             " of its width stay open; look at it, and add markers around it");
   }
   return openings;
+}
+
+void check_border(const TransferOptions& options) {
+  if (options.full && options.solving.per_region) {
+    throw std::invalid_argument("per_region: a full transfer has no regions");
+  }
+  if (options.full && options.solving.falloff) {
+    throw std::invalid_argument("falloff: a full transfer has no regions");
+  }
+  const auto* given = std::get_if<GivenRegions>(&options.given);
+  if (given && options.solving.per_region) check_hard(*given);
 }
 
 }  // namespace
@@ -187,9 +239,7 @@ bool decomposes(const TransferOptions& options) {
 TransferResult transfer(const FrameSource& sequence, const std::vector<Target>& given,
                         const TransferOptions& options) {
   check_options(options);
-  if (options.full && options.solving.per_region) {
-    throw std::invalid_argument("per_region: a full transfer has no regions");
-  }
+  check_border(options);
   const std::vector<MatchedTarget> matched = matched_targets(sequence, given, options);
   std::vector<Target> targets;
   for (const MatchedTarget& target : matched) {
@@ -220,23 +270,25 @@ TransferResult transfer(const FrameSource& sequence, const std::vector<Target>& 
     const PlacedSource placed = placed_at(target, source, of_solving);
     std::optional<Regions> regions = regions_for(target, placed.source, choice, of_solving);
     of_solving.progress = part_of(until_error, solved, 1);
-    const Selection selection = regions ? selection_of(*regions, target) : whole(target);
+    const Selection selection =
+        regions ? bordered_selection(*regions, target, of_solving) : whole(target);
+    if (regions) regions = with_border(std::move(*regions), selection, target);
     Solution solution = solve(placed.source, target, selection, of_solving);
     const Stopwatch of_error;
-    TransferError error =
-        transfer_error(*placed.source.sequence, *solution.sequence, selection.triangles,
-                       {.edges = of_solving.edges,
-                        .pairing = target.pairing,
-                        .threads = options.threads,
-                        .progress = part_of(progress, kSolveShare, 1)});
+    const TargetSolve of_target{placed, target, selection, of_solving};
+    TransferError error = of_target.error(solution, part_of(progress, kSolveShare, 1));
     const double error_seconds = of_error.seconds();
-    note_usability(target, error, options);
+    note_usability(of_target, error, options, part_of(progress, 1, 1));
+    // Expressions that do not fade move the whole face: where regions end nothing does.
+    if (solution.weights().size() == 0 || selection.weights.size() > 0) {
+      note_crease(error, target, options.notes);
+    }
     std::vector<ComparedOpening> openings =
-        openings_on(matched[t], *placed.source.sequence, solution, options);
+        openings_on(matched[t], *placed.source.sequence, solution, selection, options);
     if (give_back) solution.sequence = with_head_motion(solution.sequence, placed.source.motion);
     result.targets.push_back({std::move(solution), std::move(regions), placed.similarity,
                               std::move(error), target.pairing, matched[t].report(), error_seconds,
-                              std::move(openings)});
+                              std::move(openings), selection.weights});
   }
   result.head_motion = source.head_motion;
   result.regions = regions_of(result.targets, choice, options.regions, sequence.triangles());

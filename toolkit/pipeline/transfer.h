@@ -32,7 +32,8 @@ struct TransferOptions {
   bool full = false;
   RemovedMotion head_motion = RemovedMotion::keep;
   /// Regions, or components to find them by, that are known already; otherwise the source is
-  /// decomposed.
+  /// decomposed. Regions with a soft border of their own are taken as they are: no discs complete
+  /// them.
   std::variant<std::monostate, GivenRegions, GivenComponents> given = {};
   /// Of the parts; their threads, progress and notes are those of the transfer.
   SourceOptions source = {};
@@ -54,7 +55,8 @@ struct TransferredTarget {
   /// Its sequence has the source's head motion where that was taken out and is kept; its neutral is
   /// then not its rest pose.
   Solution solution;
-  /// Those of the source, completed for this target, or chosen for it; none for all triangles.
+  /// Those of the source, completed for this target, or chosen for it, with their border on it
+  /// (with_border()); none for all triangles.
   std::optional<Regions> regions;
   /// From the source's rest pose to the target's.
   Similarity similarity;
@@ -66,6 +68,8 @@ struct TransferredTarget {
   double error_seconds = 0;  ///< what measuring the error took
   /// Eyes and mouth, where markers were looked for.
   std::vector<ComparedOpening> openings = {};
+  /// As in Selection: what share of the motion the target's vertices take; empty for a hard border.
+  Eigen::VectorXd weights = {};
 };
 
 struct TransferResult {
@@ -88,13 +92,16 @@ bool decomposes(const TransferOptions& options);
 /// reads the source in blocks, several times, and holds no more of it; the result does not need it.
 ///
 /// Notes a result that is likely not usable, because much of the deformation is missing or many
-/// triangles are flipped (Topic::poor_condition where there are regions), and eyes and mouths that
-/// close on the source only.
+/// triangles are flipped (Topic::poor_condition where there are regions). Where options hold the
+/// weights off the source (smoothness, ridge, sparsity, rules and the like), these are named, and
+/// it is solved once more without them to say what that gives. Notes a crease at the regions'
+/// border (Topic::visible_crease), and eyes and mouths that close on the source only.
 ///
-/// Throws std::invalid_argument for a full transfer by weights of each region, and what
+/// Throws std::invalid_argument for a full transfer by weights of each region or with a falloff,
+/// for weights of each region where the given ones have a border of their own, and what
 /// prepare_source(), MatchedTarget(), analyse(), analysis_of(), check_regions(), choose_regions(),
-/// RegionSelector and solve() throw; Cancelled. A target that does not fit is refused before
-/// anything is computed.
+/// RegionSelector, bordered_selection() and solve() throw; Cancelled. A target that does not fit is
+/// refused before anything is computed.
 TransferResult transfer(const FrameSource& source, const std::vector<Target>& targets,
                         const TransferOptions& options = {});
 

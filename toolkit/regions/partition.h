@@ -1,26 +1,19 @@
 #pragma once
 
-#include <functional>
-#include <span>
 #include <vector>
 
 #include <Eigen/SparseCore>
 
-#include "toolkit/mesh/weld.h"
+#include "toolkit/regions/falloff.h"
 
 namespace mimetra {
-
-/// Distances from the nearest of some vertices to all vertices (N), +infinity where there is no
-/// way.
-using NearestDistance = std::function<Eigen::VectorXd(std::span<const VertexIndex>)>;
 
 /// How much each of K regions, and what lies around them, counts at each vertex: N x (K + 1), the
 /// last column is the background's. Rows are not negative and add up to 1.
 ///
-/// A region's bump is 1 in it and falls to 0 at the distance `falloff` from its rim along the
-/// surface, as (1 - t)^2 (1 + 2 t), whose slope is 0 at both ends. The background has prod (1 -
-/// bump) over all regions; they divide the rest in proportion to their bumps. Where distances are
-/// smooth, so are all columns.
+/// A region's bump is 1 in it and fades out to 0 at the distance `falloff` from its rim along the
+/// surface (fading_out()). The background has prod (1 - bump) over all regions; they divide the
+/// rest in proportion to their bumps. Where distances are smooth, so are all columns.
 ///
 /// `regions` are lists of vertices; what a region holds of a welded place it holds of all of it. A
 /// region without a rim (a whole connected part) ends where it ends. Throws std::invalid_argument

@@ -33,6 +33,9 @@ std::vector<Field> fields_of(const Regions& regions) {
   if (!added.isZero(0)) {
     fields.push_back(integer_field("added", Field::Location::vertices, added));
   }
+  if (regions.weights.size() > 0) {
+    fields.push_back({"weight", Field::Location::vertices, regions.weights});
+  }
   return fields;
 }
 

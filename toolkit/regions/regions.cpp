@@ -186,12 +186,22 @@ double energy_inside(const Eigen::VectorXd& vertex_energy, const std::vector<boo
   return sum;
 }
 
-/// Fills what follows from the vertices of the regions: the union, L and the shares.
+std::vector<bool> above_zero(const Eigen::VectorXd& weights) {
+  std::vector<bool> above(weights.size());
+  for (Eigen::Index v = 0; v < weights.size(); ++v) above[v] = weights[v] > 0;
+  return above;
+}
+
+/// Fills what follows from the vertices of the regions, and from their weights where there are any:
+/// the union, L and the shares.
 void complete(Regions& regions, const Triangles& triangles) {
-  regions.inside.assign(regions.vertices, false);
+  const bool hard = regions.weights.size() == 0;
+  regions.inside = hard ? std::vector<bool>(regions.vertices, false) : above_zero(regions.weights);
   const bool known = regions.vertex_energy.size() > 0;
   for (Region& region : regions.regions) {
-    for (const VertexIndex v : region.vertices) regions.inside[v] = true;
+    for (const VertexIndex v : region.vertices) {
+      if (hard) regions.inside[v] = true;
+    }
     if (known) region.energy_share = regions.vertex_energy(region.vertices).sum();
   }
   regions.energy_share = known ? energy_inside(regions.vertex_energy, regions.inside) : 0;
@@ -325,6 +335,40 @@ Regions regions_from_vertices(int vertices, const Triangles& triangles,
   }
   complete(regions, triangles);
   return regions;
+}
+
+Regions with_weights(Regions regions, const Eigen::VectorXd& weights, const Triangles& triangles) {
+  if (weights.size() != regions.vertices) {
+    throw std::invalid_argument("weights of " + std::to_string(weights.size()) +
+                                " vertices, expected " + std::to_string(regions.vertices));
+  }
+  for (Eigen::Index v = 0; v < weights.size(); ++v) {
+    if (weights[v] >= 0 && weights[v] <= 1) continue;
+    throw std::invalid_argument("the weight of vertex " + std::to_string(v) + " is " +
+                                readable(weights[v]) + "; it must be in [0, 1]");
+  }
+  const double known_share = regions.energy_share;
+  regions.weights = weights;
+  complete(regions, triangles);
+  if (regions.vertex_energy.size() == 0) regions.energy_share = known_share;
+  return regions;
+}
+
+Regions painted_region(const Eigen::VectorXd& weights, const Triangles& triangles) {
+  if (!(weights.array() > 0).any()) {
+    throw std::invalid_argument("the weights of all vertices are 0; one must be above");
+  }
+  Regions regions;
+  regions.vertices = static_cast<int>(weights.size());
+  std::vector<VertexIndex>& painted = regions.regions.emplace_back().vertices;
+  for (VertexIndex v = 0; v < regions.vertices; ++v) {
+    if (weights[v] > 0) painted.push_back(v);
+  }
+  return with_weights(std::move(regions), weights, triangles);
+}
+
+std::vector<int> triangles_in(const Eigen::VectorXd& weights, const Triangles& triangles) {
+  return triangles_touching(above_zero(weights), triangles);
 }
 
 std::vector<int> all_triangles(const Triangles& triangles) {

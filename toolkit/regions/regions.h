@@ -75,14 +75,20 @@ struct Regions {
   std::vector<bool> inside;    ///< vertex is in the union (N)
   std::vector<int> triangles;  ///< L: triangles with a vertex in the union, ascending
   int all_triangles = 0;       ///< M of the mesh
-  double energy_share = 0;     ///< share of the motion energy that the union holds
+  double energy_share = 0;     ///< share of the motion energy that the union holds, 0 if unknown
   /// Share of the motion energy on each vertex (N); empty for regions that were read.
   Eigen::VectorXd vertex_energy;
   /// What the user should know: components with one centre were merged, the coverage asked for was
   /// not reached, a component died.
   std::vector<std::string> notes;
+  /// Share of the motion that each vertex takes (N), in [0, 1], where the border is soft: vertices
+  /// inside are then those that take some, while `regions` may hold only those that take all of it.
+  /// Empty for a hard border.
+  Eigen::VectorXd weights = {};
 
   int vertex_count() const;
+  /// False for regions that were painted or read without it.
+  bool energy_is_known() const { return vertex_energy.size() > 0 || energy_share > 0; }
   double vertex_share() const { return vertices ? double(vertex_count()) / vertices : 0; }
   double triangle_share() const {
     return all_triangles ? double(triangles.size()) / all_triangles : 0;
@@ -115,12 +121,23 @@ Regions with_added(const Regions& regions, std::vector<Region> added, const Tria
 Regions regions_from_vertices(int vertices, const Triangles& triangles,
                               const std::vector<std::vector<VertexIndex>>& lists);
 
+/// One region, of the vertices that take a share of the motion: `weights` (N), each in [0, 1], of
+/// which one is above 0. Throws std::invalid_argument for others.
+Regions painted_region(const Eigen::VectorXd& weights, const Triangles& triangles);
+
+/// Regions with a soft border: the vertices of weight above 0 are inside, and no others. Throws
+/// std::invalid_argument unless there is a weight in [0, 1] for each vertex.
+Regions with_weights(Regions regions, const Eigen::VectorXd& weights, const Triangles& triangles);
+
+/// Triangles with a corner of weight above 0, ascending.
+std::vector<int> triangles_in(const Eigen::VectorXd& weights, const Triangles& triangles);
+
 /// Every triangle of a mesh: the regions of a full transfer.
 std::vector<int> all_triangles(const Triangles& triangles);
 
 /// Fields `region` (index of the strongest region, -1 outside), `region_count`, `roi` (0/1) on
 /// vertices and `in_L` on triangles; `added` (1 in added regions only) on vertices where there are
-/// any.
+/// any, and `weight` on vertices where the border is soft.
 std::vector<Field> fields_of(const Regions& regions);
 
 /// `support_k` (support map) and `component_k` (displacement vectors, unit of the mesh) of the

@@ -42,11 +42,12 @@ BoundParameters<ReportCall> report_parameters() {
 void check_pictures(const Invocation& invocation) {
   const RunRead& run = *invocation.input("run").origin.run;
   const std::string manifest = run.record.manifest.string();
-  if (invocation.wants("gallery") && run.invocation.find<RegionData>("regions")) {
+  const Parameters& parameters = run.invocation.parameters;
+  const bool is_painted = parameters.find("paint") && parameters.is_set("paint");
+  if (invocation.wants("gallery") && (is_painted || run.invocation.find<RegionData>("regions"))) {
     throw MismatchError("--gallery: " + manifest +
                         " is a run by given regions, which have no components");
   }
-  const Parameters& parameters = run.invocation.parameters;
   const bool selects =
       parameters.find("select") && parameters.choice<Selector>("select") == Selector::transfer;
   if (selects && run.record.operation == "regions") {

@@ -98,7 +98,7 @@ class PageText {
     add("vertices", std::to_string(study_.sequence.vertices()));
     add("regions", std::to_string(regions.regions.size()));
     add("triangles inside", percent(regions.triangle_share()));
-    if (regions.vertex_energy.size() > 0) {
+    if (regions.energy_is_known()) {
       add("motion inside", percent(regions.energy_share));
     }
     if (study_.transfer) {
@@ -179,7 +179,8 @@ class PageText {
               cell(region.component >= 0 ? std::to_string(region.component) : "") +
               cell(region.center >= 0 ? std::to_string(region.center) : "") +
               cell(readable(region.radius, 3)) + cell(std::to_string(region.vertices.size())) +
-              cell(percent(region.energy_share)) + "</tr>\n";
+              cell(study_.regions.energy_is_known() ? percent(region.energy_share) : "") +
+              "</tr>\n";
     }
     return "<details>\n<summary>All regions</summary>\n<table>\n<thead><tr><th>region</th>"
            "<th>component</th><th>centre vertex</th><th>radius</th><th>vertices</th><th>motion "

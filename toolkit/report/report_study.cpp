@@ -7,6 +7,7 @@
 
 #include "toolkit/mesh/stopwatch.h"
 #include "toolkit/operations/match_parameters.h"
+#include "toolkit/operations/paint_parameter.h"
 #include "toolkit/operations/pipeline_parameters.h"
 #include "toolkit/operations/selection_parameters.h"
 #include "toolkit/pipeline/joint_motion.h"
@@ -97,6 +98,10 @@ class RunSteps {
   }
 
   Found regions_as_run(const Progress& progress) const {
+    const bool may_be_painted = call_.parameters.find("paint") != nullptr;
+    if (const auto painted = may_be_painted ? painted_region_of(call_) : std::nullopt) {
+      return as_given(painted->regions);
+    }
     if (const RegionData* given = call_.find<RegionData>("regions")) {
       return as_given(given->regions);
     }

@@ -5,6 +5,7 @@
 #include <numeric>
 #include <optional>
 #include <stdexcept>
+#include <string>
 
 #include <Eigen/Eigenvalues>
 
@@ -48,6 +49,14 @@ void check(const Positions& source_rest, const BlendshapeModel& target,
            const BlendshapeTransferOptions& options) {
   check_sizes(source_rest, target.neutral(), options.pairing.get());
   check_options(options);
+  const Eigen::VectorXd& weights = options.triangle_weights;
+  if (weights.size() == 0) return;
+  if (weights.size() != target.triangles().rows() || !weights.allFinite() ||
+      weights.minCoeff() < 0) {
+    throw std::invalid_argument("triangle_weights: expected one that is not negative for each of " +
+                                std::to_string(target.triangles().rows()) + " triangles, found " +
+                                std::to_string(weights.size()));
+  }
 }
 
 }  // namespace
@@ -57,8 +66,8 @@ struct BlendshapeTransfer::State {
         const BlendshapeTransferOptions& given)
       : gradients(gradients_between(source_rest, target.triangles(), given.pairing.get(),
                                     with_partners(std::move(selected), given.pairing.get()))),
-        gram(gram_matrix(target, gradients.selected(), given.edges)),
-        right_hand_side(source_rest, gradients, target, given.edges),
+        gram(gram_matrix(target, gradients.selected(), given.edges, given.triangle_weights)),
+        right_hand_side(source_rest, gradients, target, given.edges, given.triangle_weights),
         vertices(static_cast<int>(source_rest.rows())),
         options(given),
         rules(target.expressions().names, given.rules, given.exclusive) {}

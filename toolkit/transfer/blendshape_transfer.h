@@ -34,6 +34,8 @@ struct BlendshapeTransferOptions {
   /// Of source and target where their faces differ, or null. Triangles without partner show
   /// nothing, also those of L.
   std::shared_ptr<const Pairing> pairing = {};
+  /// How often the square of each triangle counts (M), >= 0; empty for once.
+  Eigen::VectorXd triangle_weights = {};
   /// 0 for all there are; the result does not depend on it.
   int threads = 0;
   /// Of weights().
@@ -82,7 +84,7 @@ class BlendshapeTransfer {
   /// rows of target.triangles(). Throws MismatchError where the vertex counts differ or the target
   /// has no expression that moves in `triangles`, for rules that do not fit the target
   /// (ExpressionRules) and for a sparsity of weights that may be negative by rule,
-  /// std::invalid_argument for a triangle or an option out of range.
+  /// std::invalid_argument for a triangle or an option out of range, weights of triangles too.
   BlendshapeTransfer(const Positions& source_rest, const BlendshapeModel& target,
                      std::vector<int> triangles, const BlendshapeTransferOptions& = {});
   ~BlendshapeTransfer();

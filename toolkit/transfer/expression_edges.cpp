@@ -1,6 +1,7 @@
 #include "toolkit/transfer/expression_edges.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace mimetra {
 
@@ -40,11 +41,20 @@ void for_edge_rows(const BlendshapeModel& target, std::span<const int> triangles
 }
 
 Eigen::MatrixXd gram_matrix(const BlendshapeModel& target, std::span<const int> triangles,
-                            EdgeSum sum) {
+                            EdgeSum sum, const Eigen::VectorXd& weights) {
   const Eigen::Index d = target.expressions().size();
   Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(d, d);
-  for_edge_rows(target, triangles, sum, [&gram](const Eigen::MatrixXd& rows) {
-    gram.selfadjointView<Eigen::Lower>().rankUpdate(rows.transpose());
+  auto next = triangles.begin();
+  for_edge_rows(target, triangles, sum, [&](const Eigen::MatrixXd& rows) {
+    if (weights.size() == 0) {
+      gram.selfadjointView<Eigen::Lower>().rankUpdate(rows.transpose());
+      return;
+    }
+    Eigen::MatrixXd weighted = rows;
+    for (Eigen::Index first = 0; first < rows.rows(); first += 6) {
+      weighted.middleRows<6>(first) *= std::sqrt(weights[*next++]);
+    }
+    gram.selfadjointView<Eigen::Lower>().rankUpdate(weighted.transpose());
   });
   return gram.selfadjointView<Eigen::Lower>();
 }

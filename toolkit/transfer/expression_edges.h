@@ -18,9 +18,10 @@ Eigen::MatrixXd edge_rows(const BlendshapeModel& target, std::span<const int> tr
 void for_edge_rows(const BlendshapeModel& target, std::span<const int> triangles, EdgeSum sum,
                    const std::function<void(const Eigen::MatrixXd&)>& work);
 
-/// A^T A of eq. 11 (D x D).
+/// A^T A of eq. 11 (D x D). Where `weights` are given, the square of triangle i counts weights[i]
+/// times (M).
 Eigen::MatrixXd gram_matrix(const BlendshapeModel& target, std::span<const int> triangles,
-                            EdgeSum sum);
+                            EdgeSum sum, const Eigen::VectorXd& weights = {});
 
 /// Its diagonal (D): how much each expression moves on the triangles.
 Eigen::VectorXd gram_diagonal(const BlendshapeModel& target, std::span<const int> triangles,

@@ -56,16 +56,6 @@ void check_models(const BlendshapeModel& source, const BlendshapeModel& target,
   if (target.expressions().size() == 0) throw MismatchError("the target has no expressions");
 }
 
-/// Weights that are smooth over time are solved for between 0 and 1.
-void check_smooth_bounds(const Retargeting& map) {
-  for (const Eigen::Index j : map.free()) {
-    if (map.lower[j] == 0 && map.upper[j] == 1) continue;
-    throw std::invalid_argument("smoothness: the bounds of '" +
-                                map.target_names[static_cast<std::size_t>(j)] +
-                                "' are not 0 and 1, as it needs them");
-  }
-}
-
 }  // namespace
 
 Eigen::Matrix3d triangle_frame_change(const Edges& edges, const Edges& change) {
@@ -110,16 +100,25 @@ Retargeting linear_transfer(const BlendshapeModel& source, const BlendshapeModel
   return map;
 }
 
-Eigen::MatrixXd retargeted(const Retargeting& map, const Eigen::MatrixXd& weights,
-                           const Eigen::VectorXd& times, const BlendshapeTransferOptions& options) {
+void check_map(const Retargeting& map, const BlendshapeTransferOptions& options) {
   map.check();
   check_options(options);
+  if (options.sparsity == 0) return;
+  for (Eigen::Index j = 0; j < map.lower.size(); ++j) {
+    if (map.lower[j] >= 0) continue;
+    throw MismatchError("'" + map.target_names[static_cast<std::size_t>(j)] +
+                        "' may be negative, for which an L1 term is not defined");
+  }
+}
+
+Eigen::MatrixXd retargeted(const Retargeting& map, const Eigen::MatrixXd& weights,
+                           const Eigen::VectorXd& times, const BlendshapeTransferOptions& options) {
+  check_map(map, options);
   if (weights.cols() != map.linear.cols()) {
     throw std::invalid_argument(std::to_string(weights.cols()) +
                                 " weights a frame for a source of " +
                                 std::to_string(map.linear.cols()) + " expressions");
   }
-  if (options.smoothness > 0) check_smooth_bounds(map);
   fix_product_blocking();
   const auto frames = static_cast<int>(weights.rows());
   const std::vector<Eigen::Index> free = map.free();
@@ -142,9 +141,9 @@ Eigen::MatrixXd retargeted(const Retargeting& map, const Eigen::MatrixXd& weight
   parallel_for(blocks, options.threads, solve_block, options.progress);
   if (options.smoothness > 0) {
     const double mu = smoothness_penalty(options.smoothness, times, mean_diagonal);
-    const Eigen::MatrixXd part = system(free, free);
-    beta(Eigen::all, free) =
-        smooth_weights({part}, h(Eigen::all, free), times, mu, beta(Eigen::all, free));
+    beta = smooth_weights(
+        {std::move(system)}, h, times, mu, beta,
+        {map.lower.transpose().replicate(frames, 1), map.upper.transpose().replicate(frames, 1)});
   }
   return beta;
 }

@@ -24,10 +24,15 @@ Eigen::Matrix3d triangle_frame_change(const Edges& edges, const Edges& change);
 Retargeting linear_transfer(const BlendshapeModel& source, const BlendshapeModel& target,
                             std::vector<int> triangles, const BlendshapeTransferOptions& = {});
 
+/// Throws what retargeted() throws of a map and options: std::invalid_argument for a map that is
+/// none and for options out of range, MismatchError for sparsity of an expression that may be
+/// negative.
+void check_map(const Retargeting& map, const BlendshapeTransferOptions& options);
+
 /// beta for every frame (F x D_t), within the map's bounds, of the source's weights (F x D_s).
 /// Edges and pairing of the options are the map's already; `times` (F, seconds) matter to the
-/// smoothness only. Throws std::invalid_argument for a map that is none, sizes that disagree or
-/// options out of range, and Cancelled. The result does not depend on the number of threads.
+/// smoothness only. Throws as check_map(), std::invalid_argument for sizes that disagree, and
+/// Cancelled. The result does not depend on the number of threads.
 Eigen::MatrixXd retargeted(const Retargeting& map, const Eigen::MatrixXd& weights,
                            const Eigen::VectorXd& times, const BlendshapeTransferOptions& = {});
 

@@ -8,14 +8,15 @@ namespace mimetra {
 
 namespace {
 
-/// V_i G of the selected triangles.
+/// V_i G of the selected triangles, times their weights (M) where they have some.
 std::vector<Edges> neutral_edges(const BlendshapeModel& target, const std::vector<int>& selected,
-                                 EdgeSum sum) {
+                                 EdgeSum sum, const Eigen::VectorXd& weights = {}) {
   const Eigen::Matrix2d product = edge_product(sum);
   std::vector<Edges> edges;
   edges.reserve(selected.size());
   for (const int triangle : selected) {
     edges.push_back(edges_of(target.neutral(), target.triangles(), triangle).lazyProduct(product));
+    if (weights.size() > 0) edges.back() *= weights[triangle];
   }
   return edges;
 }
@@ -78,9 +79,10 @@ Positions pull_at_rest(const BlendshapeModel& target, const std::vector<int>& se
 }  // namespace
 
 RightHandSide::RightHandSide(const Positions& rest, const DeformationGradients& gradients,
-                             const BlendshapeModel& target, EdgeSum sum)
+                             const BlendshapeModel& target, EdgeSum sum,
+                             const Eigen::VectorXd& weights)
     : pull_(rest, gradients.triangles(), target.triangles(), gradients,
-            neutral_edges(target, gradients.selected(), sum),
+            neutral_edges(target, gradients.selected(), sum, weights),
             numbered_vertices(target, gradients.selected())),
       basis_(rows_at(target.expressions().displacements,
                      numbered_vertices(target, gradients.selected()))) {}

@@ -18,9 +18,10 @@ class RightHandSide {
  public:
   static constexpr int kLanes = VertexPull::kLanes;
 
-  /// `rest` N x 3, of the source; `gradients` are those of the target's triangles at `rest`.
+  /// `rest` N x 3, of the source; `gradients` are those of the target's triangles at `rest`. Where
+  /// `weights` are given, the square of triangle i counts weights[i] times (M).
   RightHandSide(const Positions& rest, const DeformationGradients& gradients,
-                const BlendshapeModel& target, EdgeSum sum);
+                const BlendshapeModel& target, EdgeSum sum, const Eigen::VectorXd& weights = {});
 
   /// One row a frame (F x D). \pre 1 <= frames.rows() <= kLanes, frames.cols() == 3N of the source
   Eigen::MatrixXd operator()(const Eigen::Ref<const Frames>& frames) const;

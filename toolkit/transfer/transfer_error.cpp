@@ -9,9 +9,11 @@
 
 #include "toolkit/mesh/errors.h"
 #include "toolkit/regions/regions.h"
+#include "toolkit/transfer/border_crease.h"
 #include "toolkit/transfer/deformation_gradients.h"
 #include "toolkit/transfer/edges.h"
 #include "toolkit/transfer/pairs.h"
+#include "toolkit/transfer/soft_border.h"
 
 namespace mimetra {
 
@@ -92,19 +94,55 @@ void check(const FrameSource& source, const FrameSource& result, const std::vect
   }
 }
 
-/// The vertices that are in no selected triangle; only those that the source's motion carries.
+/// The vertices that are in no selected triangle, or of weight 0; only those that the source's
+/// motion carries.
 std::vector<VertexIndex> outside_of(const std::vector<int>& selected, const FrameSource& result,
-                                    const Pairing* pairing) {
+                                    const TransferErrorOptions& options) {
   std::vector<bool> inside(result.vertices(), false);
   for (const int triangle : selected) {
     for (const VertexIndex vertex : result.triangles().row(triangle)) inside[vertex] = true;
   }
+  for (VertexIndex v = 0; v < options.weights.size(); ++v) inside[v] = options.weights[v] > 0;
   std::vector<VertexIndex> outside;
   for (int v = 0; v < result.vertices(); ++v) {
-    const bool is_carried = !pairing || !pairing->carriers(v).empty();
+    const bool is_carried = !options.pairing || !options.pairing->carriers(v).empty();
     if (!inside[v] && is_carried) outside.push_back(v);
   }
   return outside;
+}
+
+/// Of the wanted motion (M), where vertices have weights.
+Eigen::VectorXd shares_of(const FrameSource& result, const TransferErrorOptions& options) {
+  if (options.weights.size() == 0) return {};
+  check_weights(options.weights, result.vertices());
+  return triangle_weights(result.triangles(), options.weights);
+}
+
+/// The border that the options describe.
+BorderCrease crease_of(const FrameSource& result, const std::vector<int>& counted,
+                       const TransferErrorOptions& options) {
+  Eigen::VectorXd weights = options.weights;
+  if (weights.size() == 0) {
+    weights.resize(static_cast<Eigen::Index>(options.inside.size()));
+    for (std::size_t v = 0; v < options.inside.size(); ++v) {
+      weights[static_cast<Eigen::Index>(v)] = options.inside[v];
+    }
+  }
+  if (weights.size() == 0) weights = Eigen::VectorXd::Ones(result.vertices());
+  check_weights(weights, result.vertices());
+  const Triangles& triangles = result.triangles();
+  std::vector<bool> counts(triangles.rows(), false);
+  for (const int t : counted) counts[t] = true;
+  const bool is_welded = !options.weld.representative.empty();
+  return {result.rest(), is_welded ? options.weld.welded(triangles) : triangles,
+          triangle_weights(triangles, weights), counts};
+}
+
+/// 0 for no triangles.
+double mean_over(const Eigen::VectorXd& of_triangles, const std::vector<int>& triangles) {
+  double mean = 0;
+  for (const int triangle : triangles) mean += of_triangles[triangle] / double(triangles.size());
+  return mean;
 }
 
 bool is_flipped(const Edges& wanted, const Edges& found) {
@@ -121,32 +159,51 @@ class FrameErrors {
         triangles_(result.triangles()),
         counted_(with_partners(all_triangles(triangles_), options.pairing.get())),
         rest_(result.rest()),
-        outside_(outside_of(selected, result, options.pairing.get())) {}
+        shares_(shares_of(result, options)),
+        outside_(outside_of(selected, result, options)),
+        crease_(crease_of(result, counted_, options)) {
+    if (shares_.size() > 0) largest_share_ = shares_.maxCoeff();
+  }
+
+  /// Those of some triangles of which all corners take all of the motion.
+  std::vector<int> taking_all(std::vector<int> triangles) const {
+    if (shares_.size() == 0) return triangles;
+    std::erase_if(triangles, [this](int triangle) { return shares_[triangle] < 1; });
+    return triangles;
+  }
 
   /// Triangles that count.
   int counted() const { return static_cast<int>(counted_.size()); }
 
   struct Measured {
     double sum = 0;    ///< of the squared errors of all triangles
+    double share = 0;  ///< of those against the share that is asked for
     double still = 0;  ///< of those at rest
     double leak = 0;   ///< squared
     int flipped = 0;
+    BorderCrease::Excess crease;
   };
 
   /// `squares` are the errors of the triangles (M), which are 0 before.
   Measured operator()(const PositionsView& source, const PositionsView& result,
                       Eigen::Ref<Eigen::RowVectorXd> squares) const {
     Measured measured;
-    const std::vector<Edges> wanted = wanted_change_(source);
+    std::vector<Edges> wanted = wanted_change_(source);
     for (const int t : counted_) {
       const Edges neutral = edges_of(rest_, triangles_, t);
       const Edges found = edges_of(result, triangles_, t);
       const double squared = sum_of_squares(wanted[t] - (found - neutral));
       squares[t] = squared;
       measured.sum += squared;
-      measured.still += sum_of_squares(wanted[t]);
-      if (is_flipped(neutral + wanted[t], found)) ++measured.flipped;
+      const Edges asked = shares_.size() > 0 ? Edges(shares_[t] * wanted[t]) : wanted[t];
+      if (tells_what_is_missing(t)) {
+        measured.share += sum_of_squares(asked - (found - neutral));
+        measured.still += sum_of_squares(asked);
+      }
+      wanted[t] += neutral;
+      if (is_flipped(neutral + asked, found)) ++measured.flipped;
     }
+    measured.crease = crease_(wanted, result);
     for (const VertexIndex v : outside_) {
       measured.leak = std::max(measured.leak, (result.row(v) - rest_.row(v)).squaredNorm());
     }
@@ -154,6 +211,12 @@ class FrameErrors {
   }
 
  private:
+  /// No gradients fade out as the shares do: where some triangles take all of the motion, only
+  /// they tell.
+  bool tells_what_is_missing(int triangle) const {
+    return shares_.size() == 0 || largest_share_ < 1 || shares_[triangle] == 1;
+  }
+
   double sum_of_squares(const Edges& change) const {
     return change.lazyProduct(factor_).squaredNorm();
   }
@@ -163,7 +226,10 @@ class FrameErrors {
   const Triangles& triangles_;
   std::vector<int> counted_;
   const Positions& rest_;
+  Eigen::VectorXd shares_;  // that triangles take; none where all take all
+  double largest_share_ = 1;
   std::vector<VertexIndex> outside_;
+  BorderCrease crease_;
 };
 
 }  // namespace
@@ -191,19 +257,23 @@ TransferError transfer_error(const FrameSource& source, const FrameSource& resul
   for (int f = 0; f < source.frames(); ++f) {
     error.per_frame[f] = frames[f].sum;
     error.flipped += frames[f].flipped;
+    error.de_share += frames[f].share;
     error.de_still += frames[f].still;
     leak = std::max(leak, frames[f].leak);
+    error.crease = std::max(error.crease, frames[f].crease.rms);
+    error.largest_crease = std::max(error.largest_crease, frames[f].crease.largest);
   }
   error.leak = std::sqrt(leak);
   error.triangles = count;
   error.per_frame /= std::max(count, 1);
   error.per_triangle /= source.frames();
   error.de_all = error.per_frame.mean();
-  error.de_still /= static_cast<double>(std::max(count, 1)) * source.frames();
+  const double summands = static_cast<double>(std::max(count, 1)) * source.frames();
+  error.de_share /= summands;
+  error.de_still /= summands;
   const std::vector<int> region = with_partners(selected, options.pairing.get());
-  for (const int triangle : region) {
-    error.de_region += error.per_triangle[triangle] / double(region.size());
-  }
+  error.de_region = mean_over(error.per_triangle, region);
+  error.de_inside = mean_over(error.per_triangle, errors_of.taking_all(region));
   return error;
 }
 
@@ -213,7 +283,7 @@ double flipped_share(const TransferError& error) {
 }
 
 double missed_share(const TransferError& error) {
-  return error.de_still > 0 ? error.de_all / error.de_still : 0;
+  return error.de_still > 0 ? error.de_share / error.de_still : 0;
 }
 
 double mean_percentage_error(double full, double k) {

@@ -5,6 +5,7 @@
 
 #include "toolkit/correspondence/pairing.h"
 #include "toolkit/mesh/mesh_sequence.h"
+#include "toolkit/mesh/weld.h"
 #include "toolkit/transfer/edges.h"
 
 namespace mimetra {
@@ -16,17 +17,27 @@ struct TransferError {
   /// 12), a sum over edges (EdgeSum), unit of length squared.
   double de_all = 0;
   double de_region = 0;
-  /// What DE over all triangles is of a result that stays at rest: the deformation that is asked
-  /// for.
+  /// DE over the triangles of which all corners take all of the deformation; de_region where
+  /// vertices have no weights.
+  double de_inside = 0;
+  /// DE against the share of the deformation that vertices are to take, and what that is of a
+  /// result that stays at rest: what is asked for. Summed over the triangles that take all of it,
+  /// or, where none does or vertices have no weights, over all; divided by the number of all.
+  double de_share = 0;
   double de_still = 0;
   Eigen::VectorXd per_frame;     ///< mean over all triangles (F)
   Eigen::VectorXd per_triangle;  ///< mean over frames (M), 0 for those that do not count
   int triangles = 0;             ///< those that count
   /// Largest displacement from the target's rest of a vertex in no triangle of L, over all frames;
-  /// length.
+  /// where vertices have weights, of one of weight 0; length.
   double leak = 0;
+  /// How much more the surface bends at the regions' border than the source asks for, in degrees
+  /// (BorderCrease): RMS over the border, and the largest; each in the frame where it is largest. 0
+  /// without a border.
+  double crease = 0;
+  double largest_crease = 0;
   /// Triangles, over all frames, that turned by more than 90 degrees against where the source's
-  /// gradient wants them.
+  /// gradient, or the share of it that is asked for, wants them.
   int flipped = 0;
 };
 
@@ -34,6 +45,13 @@ struct TransferErrorOptions {
   EdgeSum edges = EdgeSum::all;
   /// Of source and target where their faces differ, or null.
   std::shared_ptr<const Pairing> pairing = {};
+  /// Vertices inside the regions (N), whose border may be a crease; empty for no border.
+  std::vector<bool> inside = {};
+  /// Share of the wanted motion of each vertex (N) where the border is soft; instead of `inside`.
+  Eigen::VectorXd weights = {};
+  /// Vertices that are one point of the target's surface (N), so that a border on a seam is seen;
+  /// by default none are.
+  Weld weld = {};
   /// 0 for all there are; the result does not depend on it.
   int threads = 0;
   Progress progress = {};
@@ -42,8 +60,9 @@ struct TransferErrorOptions {
 /// `result` is the transferred sequence before head motion is given back; its rest pose is the
 /// target's neutral. `source` F frames with its neutral as rest. `selected` = L, rows of the
 /// target's triangles. Throws MismatchError where sizes differ, std::invalid_argument for a row out
-/// of range, what reading throws, and Cancelled. A degenerate source triangle is measured against
-/// what stands in for it in the transfer. The result does not depend on the number of threads.
+/// of range or weights that are not in [0, 1], what reading throws, and Cancelled. A degenerate
+/// source triangle is measured against what stands in for it in the transfer. The result does not
+/// depend on the number of threads.
 TransferError transfer_error(const FrameSource& source, const FrameSource& result,
                              const std::vector<int>& selected,
                              const TransferErrorOptions& options = {});
@@ -51,8 +70,8 @@ TransferError transfer_error(const FrameSource& source, const FrameSource& resul
 /// Flipped triangles of all in all frames.
 double flipped_share(const TransferError& error);
 
-/// The share of the deformation, by DE over all triangles, that the result lacks: 0 is exact, 1 is
-/// no better than none. 0 where none is asked for.
+/// The share of the deformation that is asked for, by de_share, that the result lacks: 0 is exact,
+/// 1 is no better than none. 0 where none is asked for.
 double missed_share(const TransferError& error);
 
 /// Mean percentage error 100 (full - k) / full, signed: negative is worse than full (eq. 13). 0

@@ -71,16 +71,21 @@ class Slots {
 
 VertexPull::VertexPull(const Positions& rest, const Triangles& source, const Triangles& target,
                        const DeformationGradients& gradients, const std::vector<Edges>& vectors,
-                       const std::vector<int>& row_of_vertex) {
+                       const std::vector<int>& row_of_vertex,
+                       const std::vector<Crossing>& crossings) {
   if (!row_of_vertex.empty()) rows_ = std::ranges::max(row_of_vertex) + 1;
   Slots from(source, rest.rows()), to(target, row_of_vertex.size());
-  for (std::size_t s = 0; s < vectors.size(); ++s) {
-    if (vectors[s].isZero(0)) continue;
-    for (const auto& [triangle, share] : gradients.parts(static_cast<int>(s))) {
-      terms_.push_back({from(triangle), to(gradients.selected()[s]),
-                        share * gradients.inverse_frame(triangle) * vectors[s]});
+  const auto add_terms = [&](const Crossing& crossing) {
+    if (crossing.vectors.isZero(0)) return;
+    for (const auto& [triangle, share] : gradients.parts(crossing.selected)) {
+      terms_.push_back({from(triangle), to(crossing.triangle),
+                        share * gradients.inverse_frame(triangle) * crossing.vectors});
     }
+  };
+  for (std::size_t s = 0; s < vectors.size(); ++s) {
+    add_terms({static_cast<int>(s), gradients.selected()[s], vectors[s]});
   }
+  for (const Crossing& crossing : crossings) add_terms(crossing);
   vertices_ = from.vertices();
   for (const VertexIndex vertex : to.vertices()) row_of_slot_.push_back(row_of_vertex[vertex]);
   const Rows at_rest = sums(gather(Eigen::Map<const Frames>(rest.data(), 1, rest.size())));

@@ -22,13 +22,21 @@ class VertexPull {
   /// A row holds x of each frame, then y, then z.
   using Rows = Eigen::Matrix<double, Eigen::Dynamic, kWidth, Eigen::RowMajor>;
 
+  /// What the gradient of a selected triangle asks of the corners of another triangle a b c of the
+  /// target: x_b and x_c; x_a = -x_b - x_c.
+  struct Crossing {
+    int selected;  ///< place in the gradients' list
+    int triangle;
+    Edges vectors;
+  };
+
   /// `rest` N x 3 and `source` of the source, `gradients` those of `target` (M x 3) at `rest`.
   /// `vectors` holds, for each selected triangle a b c of the target, x_ib and x_ic;
   /// x_ia = -x_ib - x_ic. `row_of_vertex` says where the sum of a vertex of the target goes; -1 for
-  /// nowhere. Sums that go to one row are added.
+  /// nowhere. Sums that go to one row are added. `crossings` are added to them.
   VertexPull(const Positions& rest, const Triangles& source, const Triangles& target,
              const DeformationGradients& gradients, const std::vector<Edges>& vectors,
-             const std::vector<int>& row_of_vertex);
+             const std::vector<int>& row_of_vertex, const std::vector<Crossing>& crossings = {});
 
   /// One row for each number in row_of_vertex; lanes beyond the last frame repeat it.
   /// \pre 1 <= frames.rows() <= kLanes, frames.cols() == 3N of the source

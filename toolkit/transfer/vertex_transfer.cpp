@@ -18,6 +18,8 @@
 #include "toolkit/transfer/following_parts.h"
 #include "toolkit/transfer/gradient_system.h"
 #include "toolkit/transfer/pairs.h"
+#include "toolkit/transfer/smooth_edges.h"
+#include "toolkit/transfer/soft_border.h"
 #include "toolkit/transfer/vertex_pull.h"
 #include "toolkit/transfer/vertex_unknowns.h"
 
@@ -42,6 +44,14 @@ void check_options(const VertexTransferOptions& options, Eigen::Index vertices) 
                                 std::to_string(vertices) + " vertices, found " +
                                 std::to_string(options.inside.size()));
   }
+  if (options.weights.size() > 0) {
+    check_weights(options.weights, vertices);
+    if (options.outside == Outside::identity) {
+      throw std::invalid_argument(
+          "outside: triangles that keep their shape hold no vertex, and with weights those of "
+          "weight 0 stay; take Outside::fixed");
+    }
+  }
   if (options.anchor == Anchor::vertex &&
       (options.anchor_vertex < 0 || options.anchor_vertex >= vertices)) {
     throw std::invalid_argument("anchor vertex " + std::to_string(options.anchor_vertex) +
@@ -63,11 +73,18 @@ void check(const Positions& source_rest, const Positions& target_rest, const Tri
   options.weld.check(target_rest);
 }
 
-/// With an entry of the weld for each vertex, and as the anchor the lowest of those that are one.
+/// With an entry of the weld for each vertex, as the anchor the lowest of those that are one, and
+/// those inside as the weights tell.
 VertexTransferOptions completed(VertexTransferOptions options, Eigen::Index vertices) {
   std::vector<VertexIndex>& one = options.weld.representative;
   if (one.empty()) options.weld = Weld::none(static_cast<int>(vertices));
   if (options.anchor == Anchor::vertex) options.anchor_vertex = one[options.anchor_vertex];
+  if (options.weights.size() > 0) {
+    options.inside.resize(one.size());
+    for (VertexIndex v = 0; v < vertices; ++v) options.inside[v] = options.weights[v] > 0;
+    // All or nothing is a hard border: one row of triangles is no room for a soft one.
+    if ((options.weights.array() == 0 || options.weights.array() == 1).all()) options.weights = {};
+  }
   return options;
 }
 
@@ -109,9 +126,11 @@ struct VertexTransfer::State {
 
   std::vector<int> uncollapsed(std::vector<int> selected) const;
   void weigh();
+  double wanted_weight(int triangle) const;
   void fix();
   Triplets stiffness() const;
-  void add_smoothness(Triplets& entries) const;
+  double smoothness_across(int triangle, int neighbor) const;
+  std::vector<SmoothEdge> smooth_edges() const;
   void factor();
   void prepare_pull(const DeformationGradients& gradients);
   Row shift_of(const FloatingPiece& piece, const Eigen::Ref<const Frames>& frames,
@@ -130,6 +149,8 @@ struct VertexTransfer::State {
   Triangles triangles,
       welded;  // of the target: as given, and on the lowest of vertices that are one
   std::optional<FollowingParts> following;
+  std::optional<SoftBorder> border;
+  std::vector<SmoothEdge> edges;
   std::vector<bool> in_l;       // of each triangle
   std::vector<double> weights;  // of each triangle; 0 where it takes no part
   std::vector<bool> fixed;      // of each vertex
@@ -151,6 +172,7 @@ VertexTransfer::State::State(const Positions& source, const Positions& target,
       triangles(faces),
       welded(options.weld.welded(faces)) {
   if (pairing) following.emplace(target_rest, triangles, options.weld, *pairing);
+  if (options.weights.size() > 0) border.emplace(target_rest, triangles, options.weights);
   const std::vector<int> solved = uncollapsed(selected);
   // Welded only to find neighbours across seams: at rest both are the same.
   const Triangles source_faces = welded_source(welded, options.weld, pairing);
@@ -182,13 +204,20 @@ std::vector<int> VertexTransfer::State::uncollapsed(std::vector<int> selected) c
   return selected;
 }
 
+/// By what is known of a triangle, whatever its shape.
+double VertexTransfer::State::wanted_weight(int triangle) const {
+  if (following && following->vertices()[triangles(triangle, 0)]) return 0;
+  if (!in_l[triangle]) return options.outside == Outside::identity ? options.outside_weight : 0;
+  const bool is_shown = !pairing || pairing->triangles().has_partner(triangle);
+  const double weight = is_shown ? 1 : options.outside_weight;
+  if (!border) return weight;
+  return border->share(triangle) > 0 ? weight * border->stiffness(triangle) : 0;
+}
+
 void VertexTransfer::State::weigh() {
-  const double outside = options.outside == Outside::identity ? options.outside_weight : 0;
-  weights.assign(triangles.rows(), outside);
+  weights.assign(triangles.rows(), 0);
   for (int t = 0; t < triangles.rows(); ++t) {
-    const bool is_shown = !pairing || pairing->triangles().has_partner(t);
-    if (in_l[t]) weights[t] = is_shown ? 1 : options.outside_weight;
-    if (following && following->vertices()[triangles(t, 0)]) weights[t] = 0;
+    weights[t] = wanted_weight(t);
     if (weights[t] == 0) continue;
     if (collapses(t)) {
       weights[t] = 0;
@@ -258,31 +287,45 @@ Triplets VertexTransfer::State::stiffness() const {
   return entries;
 }
 
-/// Squared differences of displacement gradients across edges with a triangle outside L. They act
-/// on displacements and not on T_i - T_j, because there the fourth vertices of both triangles would
-/// have to drop out together: without them even the rest pose would move.
-void VertexTransfer::State::add_smoothness(Triplets& entries) const {
+/// How much the displacement gradients of two neighbours want to be equal: across edges with a
+/// triangle outside L, or of a soft border.
+double VertexTransfer::State::smoothness_across(int triangle, int neighbor) const {
+  if (border) {
+    // What stays is flat, and wants its neighbours to begin so.
+    const auto takes_part = [this](int t) { return weights[t] > 0 || border->share(t) == 0; };
+    if (!takes_part(triangle) || !takes_part(neighbor)) return 0;
+    if (weights[triangle] == 0 && weights[neighbor] == 0) return 0;
+    return border->smoothness(triangle, neighbor);
+  }
+  if ((in_l[triangle] && in_l[neighbor]) || weights[triangle] == 0 || weights[neighbor] == 0) {
+    return 0;
+  }
+  return options.outside_smoothness;
+}
+
+std::vector<SmoothEdge> VertexTransfer::State::smooth_edges() const {
+  std::vector<SmoothEdge> found;
+  const bool is_smooth = options.outside == Outside::identity && options.outside_smoothness > 0;
+  if (!is_smooth && !border) return found;
   const bool by_area = options.triangle_weight == TriangleWeight::area;
   const auto neighbors = triangle_neighbors(static_cast<int>(target_rest.rows()), welded);
   for (int t = 0; t < triangles.rows(); ++t) {
     for (const int other : neighbors[t]) {
-      if (other < t || (in_l[t] && in_l[other]) || weights[t] == 0 || weights[other] == 0) continue;
-      Eigen::Matrix<double, 3, 6> difference;
-      difference << hat_gradients(target_rest, triangles, t),
-          -hat_gradients(target_rest, triangles, other);
-      const auto here = unknowns_of(t), there = unknowns_of(other);
+      const double smoothness = other < t ? 0 : smoothness_across(t, other);
+      if (smoothness == 0) continue;
       const double scale =
           by_area ? (area(target_rest, triangles, t) + area(target_rest, triangles, other)) / 2 : 1;
-      add_products<6>(difference, options.outside_smoothness * scale,
-                      {here[0], here[1], here[2], there[0], there[1], there[2]}, entries);
+      found.push_back({t, other, smoothness * scale});
     }
   }
+  return found;
 }
 
 void VertexTransfer::State::factor() {
   Triplets entries = stiffness();
-  if (options.outside == Outside::identity && options.outside_smoothness > 0) {
-    add_smoothness(entries);
+  edges = smooth_edges();
+  for (const SmoothEdge& edge : edges) {
+    add_smoothness(target_rest, triangles, edge, unknowns.of_vertex, entries);
   }
   solver = factor_of(entries, unknowns.count);
   for (int& unknown : unknowns.of_vertex) {
@@ -295,13 +338,21 @@ void VertexTransfer::State::prepare_pull(const DeformationGradients& gradients) 
   for (std::size_t s = 0; s < vectors.size(); ++s) {
     const int triangle = gradients.selected()[s];
     if (weights[triangle] == 0) continue;
-    vectors[s] = weights[triangle] * hat_gradients(target_rest, triangles, triangle).rightCols<2>();
+    const double wanted = border ? weights[triangle] * border->share(triangle) : weights[triangle];
+    vectors[s] = wanted * hat_gradients(target_rest, triangles, triangle).rightCols<2>();
+  }
+  std::vector<VertexPull::Crossing> crossings;
+  if (border) {
+    PullOverBorder over = pull_over_border(target_rest, triangles, *border, edges, gradients);
+    for (std::size_t s = 0; s < vectors.size(); ++s) vectors[s] += over.own[s];
+    crossings = std::move(over.crossings);
   }
   pull.emplace(source_rest, pairing ? pairing->source_triangles() : triangles, triangles, gradients,
-               vectors, unknowns.of_vertex);
+               vectors, unknowns.of_vertex, crossings);
 }
 
-/// Where its anchor wants a floating piece whose pin stayed in place.
+/// Where its anchor wants a floating piece whose pin stayed in place. Vertices that take a share of
+/// the motion take it of the source's, too.
 Row VertexTransfer::State::shift_of(const FloatingPiece& piece,
                                     const Eigen::Ref<const Frames>& frames,
                                     const Rows& displacement) const {
@@ -316,12 +367,13 @@ Row VertexTransfer::State::shift_of(const FloatingPiece& piece,
   std::vector<Pairing::Carrier> carriers;
   std::size_t carried = 0;
   for (const VertexIndex v : piece.vertices) {
+    const double share = border ? options.weights[v] : 1;
     if (anchor == Anchor::source_motion && pairing) {
       const auto more = pairing->carriers(v);
-      carriers.insert(carriers.end(), more.begin(), more.end());
+      for (const auto& [carrier, weight] : more) carriers.push_back({carrier, share * weight});
       if (more.empty()) continue;
     } else if (anchor == Anchor::source_motion) {
-      carriers.push_back({v, 1});
+      carriers.push_back({v, share});
     }
     ++carried;
     if (unknowns.of_vertex[v] >= 0) shift -= displacement.row(unknowns.of_vertex[v]);

@@ -61,6 +61,9 @@ struct VertexTransferOptions {
   /// Vertices that Outside::fixed lets move (N): those inside the regions. By default the vertices
   /// all of whose triangles are in L.
   std::vector<bool> inside = {};
+  /// Share of the wanted motion that each vertex takes (N), in [0, 1], where the border of the
+  /// regions is soft; empty where it is hard. Vertices of weight 0 are those that are not inside.
+  Eigen::VectorXd weights = {};
   /// Vertices that are one point of the surface and move as one (N), such as closed_seams(); by
   /// default none are. Where one of them is fixed, all are.
   Weld weld = {};
@@ -108,13 +111,19 @@ struct VertexTransferOptions {
 /// a mouth's inside does not hold the lips; connected parts without any take no part in the solve
 /// and move with the surface around them (FollowingParts), whether they are in L or not.
 ///
+/// Where vertices take a share of the motion (VertexTransferOptions::weights), the deformation
+/// fades as SoftBorder describes: weights of 1 everywhere give what none give, bit by bit, and
+/// vertices of weight 0 stay exactly, but those that follow. A piece without such vertices has that
+/// share of the source's motion, too.
+///
 /// [Sumner, Popovic. Deformation Transfer for Triangle Meshes. ACM TOG 23(3), 2004]
 class VertexTransfer {
  public:
-  /// `source_rest`, `target_rest` N x 3; `selected` are rows of the target's `triangles` (M x 3).
+  /// `source_rest`, `target_rest` N x 3; `selected` are rows of the target's `triangles` (M x 3),
+  /// with weights those that have a corner of weight above 0.
   /// Throws MismatchError where vertex counts differ, std::invalid_argument for options out of
-  /// range, an explicit anchor where vertices are fixed, an index out of range, or vertices that
-  /// are one but lie apart in a rest pose.
+  /// range, an explicit anchor where vertices are fixed, an index out of range, vertices that are
+  /// one but lie apart in a rest pose, or weights together with Outside::identity.
   VertexTransfer(const Positions& source_rest, const Positions& target_rest,
                  const Triangles& triangles, std::vector<int> selected,
                  const VertexTransferOptions& = {});

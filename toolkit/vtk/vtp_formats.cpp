@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "toolkit/io/frame_files.h"
+#include "toolkit/io/painting_file.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/progress.h"
 #include "toolkit/mesh/text.h"
@@ -73,7 +74,21 @@ std::vector<std::filesystem::path> write_region_data(const Data& data,
                       ": the regions come without a mesh to show them on; write .json or .csv");
 }
 
-/// One region: the vertices where the field `roi` is not 0.
+/// The field `weight` of regions with a soft border (N); empty where there is none.
+Eigen::VectorXd weights_of_vtp(const std::filesystem::path& path) {
+  const std::optional<Eigen::MatrixXd> field = find_vtp_field(path, "weight");
+  if (!field) return {};
+  const std::string place = path.string() + ": field 'weight'";
+  if (field->cols() != 1) {
+    throw MismatchError(place + " holds " + std::to_string(field->cols()) +
+                        " numbers for each vertex, expected one");
+  }
+  check_painting(place, field->col(0));
+  return field->col(0);
+}
+
+/// One region: the vertices where the field `roi` is not 0, and what the field `weight` says of its
+/// border.
 Regions region_of_vtp(const std::filesystem::path& path, int vertices, const Triangles& triangles) {
   const Eigen::MatrixXd mask = read_vtp_field(path, "roi");
   if (mask.rows() != vertices) {
@@ -88,7 +103,9 @@ Regions region_of_vtp(const std::filesystem::path& path, int vertices, const Tri
     }
     if (mask(v, 0) != 0) inside.push_back(v);
   }
-  return regions_from_vertices(vertices, triangles, {inside});
+  Regions regions = regions_from_vertices(vertices, triangles, {inside});
+  const Eigen::VectorXd weights = weights_of_vtp(path);
+  return weights.size() > 0 ? with_weights(std::move(regions), weights, triangles) : regions;
 }
 
 ReadValue read_region_data(const std::string& text, const ReadRequest& request) {

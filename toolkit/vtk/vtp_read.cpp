@@ -174,4 +174,8 @@ Eigen::MatrixXd read_vtp_field(const fs::path& path, const std::string& name) {
                                    (known.empty() ? "none" : known));
 }
 
+std::optional<Eigen::MatrixXd> find_vtp_field(const fs::path& path, const std::string& name) {
+  return point_values(*read_poly_data(path), name);
+}
+
 }  // namespace mimetra

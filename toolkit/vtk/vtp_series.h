@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -72,5 +73,9 @@ std::vector<std::filesystem::path> vtp_series_files(const std::filesystem::path&
 /// A field on the vertices of a .vtp file (N x c). Throws IoError where the file or field is
 /// missing.
 Eigen::MatrixXd read_vtp_field(const std::filesystem::path& path, const std::string& name);
+
+/// The same; nothing where the field is missing.
+std::optional<Eigen::MatrixXd> find_vtp_field(const std::filesystem::path& path,
+                                              const std::string& name);
 
 }  // namespace mimetra

@@ -124,7 +124,9 @@ class _Run:
         if port in properties.object_inputs(self._operation):
             if port.kind is mimetra.Model:
                 return sources.model(subject)
-            return (yield from sources.sequence(context, subject, frames))
+            groups = self._groups(subject) if port.fields else ()
+            return (yield from sources.sequence(context, subject, frames,
+                                                groups=groups))
         text = getattr(self, properties.property_name(port.name))
         path = bpy.path.abspath(text)
         if port.kind is mimetra.Regions and text and not os.path.isfile(path):
@@ -133,6 +135,13 @@ class _Run:
             raise mimetra.UsageError(f"{self._operation.name}: expected a path as {port.name}:"
                                      f" {port.help}")
         return path or None
+
+    def _groups(self, subject):
+        """The vertex groups of an object that parameters name."""
+        groups = subject.vertex_groups.keys()
+        return properties.groups_among(
+            [properties.value_of(parameter, self.properties, groups)
+             for parameter in properties.parameters_of(self._operation)], groups)
 
     def _inputs(self, context, frames):
         """Yields the share done; returns the inputs by name, and the objects they are of."""
@@ -153,8 +162,11 @@ class _Run:
     def _options(self, objects):
         """The parameters that were set, and the optional outputs that are wanted."""
         options = {}
+        active = properties.active_input(self._operation)
+        source = objects.get(mimetra.python_name(active.name)) if active else None
+        groups = source.vertex_groups.keys() if source else ()
         for parameter in properties.parameters_of(self._operation):
-            value = properties.value_of(parameter, self.properties)
+            value = properties.value_of(parameter, self.properties, groups)
             if value is not None:
                 options[mimetra.python_name(parameter.name)] = value
         # Vertices that are solved for have no weights.

@@ -38,18 +38,17 @@ def _is_main_output(port):
 
 def _draw_parameter(layout, group, parameter):
     name = properties.property_name(parameter.name)
-    if parameter.kind == "length":
-        row = layout.row(align=True)
-        row.prop(group, name)
-        row.prop(group, f"{name}_absolute", text="", icon="DRIVER_DISTANCE")
-    elif properties.is_optional_number(parameter):
+    if properties.is_optional_number(parameter):
         row = layout.row(align=True, heading=group.bl_rna.properties[name].name)
         row.prop(group, f"use_{name}")
-        field = row.row()
+        field = row.row(align=True)
         field.enabled = getattr(group, f"use_{name}")
         field.prop(group, name, text="")
     else:
-        layout.prop(group, name)
+        field = layout.row(align=True)
+        field.prop(group, name)
+    if parameter.kind == "length":
+        field.prop(group, f"{name}_absolute", text="", icon="DRIVER_DISTANCE")
 
 
 class _OperationPanel(_Panel):

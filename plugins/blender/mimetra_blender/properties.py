@@ -11,6 +11,7 @@ from . import mimetra
 SHOWN = (mimetra.Sequence, mimetra.Model, mimetra.Components, mimetra.Regions, mimetra.Table,
          mimetra.Pictures)
 _OPEN = 2**31 - 1
+_FIELD = "field:NAME"  # the choice of parameters that take a vertex field
 _UNSET = "DEFAULT"  # of choices without one; names of the table have small letters
 # Names that parameters cannot have: of properties below, and of Blender's.
 _OWN = {"frame_start", "frame_end", "frame_step", "use_frames", "cache_format", "cache_folder",
@@ -51,7 +52,7 @@ def is_object(operation, port):
 
 def is_optional_number(parameter):
     """True where a number may be left out, so that it needs a switch beside it."""
-    return parameter.kind in ("integer", "number") and parameter.default is None
+    return parameter.kind in ("integer", "number", "length") and parameter.default is None
 
 
 def parameters_of(operation):
@@ -84,8 +85,9 @@ def _choice(parameter, common):
 
 def _length(parameter, common):
     """A share of the diameter; the switch beside it makes it a length of the mesh."""
-    return FloatProperty(default=_share(parameter.default), min=max(parameter.minimum or 0, 0),
-                         soft_max=1, precision=3, **common)
+    minimum = max(parameter.minimum or 0, 0)
+    return FloatProperty(default=max(_share(parameter.default), minimum), min=minimum, soft_max=1,
+                         precision=3, **common)
 
 
 def _share(default):
@@ -95,9 +97,17 @@ def _share(default):
 def _path(parameter, common):
     if not parameter.choices:
         return StringProperty(subtype="FILE_PATH", **common)
-    choices = parameter.choices
     return StringProperty(default=parameter.default or "", search_options={"SUGGESTION"},
-                          search=lambda _, context, text: choices, **common)
+                          search=lambda _, context, text: _suggestions(parameter, context),
+                          **common)
+
+
+def _suggestions(parameter, context):
+    """The words that stand beside paths; for a vertex field the active object's groups."""
+    subject = context.active_object
+    takes_groups = _FIELD in parameter.choices and subject and subject.type == "MESH"
+    groups = [group.name for group in subject.vertex_groups] if takes_groups else []
+    return [*groups, *parameter.choices]
 
 
 def _properties_of(parameter, options):
@@ -195,12 +205,26 @@ def annotations_of(operation, *, pointers):
     return made
 
 
-def value_of(parameter, properties):
-    """A parameter for the library; None where the user left it as it is."""
+def groups_among(values, groups):
+    """The vertex groups that parameters name as fields; all of them where a name is of none, whose
+    message lists those that are there."""
+    prefix = _FIELD.removesuffix("NAME")
+    naming = [value for value in values if isinstance(value, str) and prefix in value]
+    named = tuple(group for group in groups if any(group in value for value in naming))
+    return named if named or not naming else tuple(groups)
+
+
+def value_of(parameter, properties, groups=()):
+    """A parameter for the library; None where the user left it as it is. The names of vertex
+    groups stand for their fields."""
     name = property_name(parameter.name)
     absolute = parameter.kind == "length" and getattr(properties, f"{name}_absolute")
-    if not properties.is_property_set(name) and not absolute:
-        return None
+    if not properties.is_property_set(name):
+        if not absolute:
+            return None
+        if parameter.default is None:
+            raise mimetra.UsageError(f"{parameter.name}: is to be absolute, and no length is set;"
+                                     " set one, or switch Absolute off")
     value = getattr(properties, name)
     if parameter.kind == "length":
         return f"{np.float32(value)}{'abs' if absolute else ''}"
@@ -208,6 +232,8 @@ def value_of(parameter, properties):
         return str(np.float32(value))  # what was typed, not its nearest double
     if value == _UNSET:
         return None
+    if value in groups and _FIELD in parameter.choices:
+        return _FIELD.replace("NAME", value)
     if isinstance(value, str):
         known = not value or value in parameter.choices or parameter.kind != "path"
         return (value if known else bpy.path.abspath(value)) or None

@@ -16,7 +16,7 @@ def copy(settings, operation, operator):
     for parameter in properties.parameters_of(operation):
         if properties.is_optional_number(parameter):
             name = properties.property_name(parameter.name)
-            switches[name] = f"use_{name}"
+            switches[name] = switches[f"{name}_absolute"] = f"use_{name}"
     for name in properties.annotations_of(operation, pointers=False):
         wanted = getattr(settings, switches[name]) if name in switches else \
             settings.is_property_set(name)

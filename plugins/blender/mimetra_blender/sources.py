@@ -69,8 +69,9 @@ def _pose(context, subject, frame):
         evaluated.to_mesh_clear()
 
 
-def sequence(context, subject, frames):
-    """Yields the share done; returns an object's poses at frames as it is evaluated."""
+def sequence(context, subject, frames, *, groups=()):
+    """Yields the share done; returns an object's poses at frames as it is evaluated, with the
+    weights of the vertex groups of these names as fields."""
     scene = context.scene
     if subject.show_only_shape_key and subject.data.shape_keys:
         raise mimetra.BadInput(f"{subject.name}: shows only the shape key"
@@ -87,17 +88,20 @@ def sequence(context, subject, frames):
     rate = scene.render.fps / scene.render.fps_base
     return mimetra.Sequence(np.stack(poses), faces_of(subject.data),
                             times=np.array(frames) / rate, rest=rest_of(subject.data),
+                            on_vertices=_group_weights(subject, groups),
                             name=subject.name)
 
 
-def _group_weights(subject, name):
-    """A vertex group's weights, 0 outside."""
-    index = subject.vertex_groups[name].index
-    weights = np.zeros(len(subject.data.vertices))
+def _group_weights(subject, names):
+    """The weights of vertex groups by their names, 0 outside."""
+    if not names:
+        return {}
+    groups = {group.index: group.name for group in subject.vertex_groups if group.name in names}
+    weights = {name: np.zeros(len(subject.data.vertices)) for name in groups.values()}
     for vertex in subject.data.vertices:
         for group in vertex.groups:
-            if group.group == index:
-                weights[vertex.index] = group.weight
+            if group.group in groups:
+                weights[groups[group.group]][vertex.index] = group.weight
     return weights
 
 
@@ -105,7 +109,7 @@ def _displacement(subject, key):
     """What a shape key adds at value 1."""
     moved = coordinates(key.data).astype(float) - coordinates(key.relative_key.data)
     if key.vertex_group in subject.vertex_groups:
-        moved *= _group_weights(subject, key.vertex_group)[:, None]
+        moved *= _group_weights(subject, [key.vertex_group])[key.vertex_group][:, None]
     return moved
 
 
@@ -133,5 +137,6 @@ def regions(subject, prefix):
     if not names:
         raise mimetra.BadInput(f"{subject.name}: no vertex group begins with '{prefix}', and there"
                                " is no such file")
-    masks = [_group_weights(subject, name) > 0 for name in names]
-    return mimetra.Regions(np.stack(masks), faces_of(subject.data), name=prefix)
+    weights = _group_weights(subject, names)
+    masks = np.stack([weights[name] > 0 for name in names])
+    return mimetra.Regions(masks, faces_of(subject.data), name=prefix)

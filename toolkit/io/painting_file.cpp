@@ -1,0 +1,181 @@
+#include "toolkit/io/painting_file.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <optional>
+
+#include "toolkit/io/brightness.h"
+#include "toolkit/io/csv.h"
+#include "toolkit/io/text_cursor.h"
+#include "toolkit/io/whole_file.h"
+#include "toolkit/mesh/errors.h"
+#include "toolkit/mesh/face_groups.h"
+#include "toolkit/mesh/text.h"
+
+namespace mimetra {
+
+namespace {
+
+/// The mean of what is added, one after the other: bit by bit the same where all are.
+struct RunningMean {
+  double value = 0;
+  int count = 0;
+
+  void add(double more) { value += (more - value) / ++count; }
+};
+
+/// Refuses what could be looked up nowhere.
+void check_texture(const std::string& path, const Connectivity& mesh, const std::string& name) {
+  const TextureCoordinates& texture = mesh.texture;
+  if (texture.coordinates.empty()) {
+    throw MismatchError(path +
+                        ": the mesh has no texture coordinates at which a picture could be looked "
+                        "up; paint a vertex field or list weights of vertices, or name a source "
+                        "whose files hold texture coordinates");
+  }
+  for (std::size_t corner = 0; corner < texture.corners.size(); ++corner) {
+    if (texture.corners[corner] < 0) continue;
+    const Eigen::Vector2d& uv =
+        texture.coordinates[static_cast<std::size_t>(texture.corners[corner])];
+    if (uv.allFinite()) continue;
+    throw IoError(name, "texture coordinate " + std::to_string(texture.corners[corner]) +
+                            " (from 0), of vertex " +
+                            std::to_string(mesh.polygons.corners[corner]) + ", is (" +
+                            readable(uv.x()) + ", " + readable(uv.y()) + "), at which " + path +
+                            " cannot be looked up; expected finite numbers");
+  }
+}
+
+/// What the picture may be looked up wrongly for: other tiles and materials may have pictures of
+/// their own.
+std::vector<std::string> notes_on_texture(const std::string& path, const Connectivity& mesh) {
+  std::vector<std::string> notes;
+  const auto beyond =
+      std::ranges::count_if(mesh.texture.coordinates, [](const Eigen::Vector2d& uv) {
+        return uv.allFinite() && Brightness::is_beyond(uv.x(), uv.y());
+      });
+  if (beyond > 0) {
+    notes.push_back(path + ": " + std::to_string(beyond) + " of " +
+                    std::to_string(mesh.texture.coordinates.size()) +
+                    " texture coordinates lie outside [0, 1], where the picture is repeated, also "
+                    "where tiles (UDIM) have pictures of their own");
+  }
+  std::vector<std::string> materials;
+  for (const NamedFaces& of_material : named_faces(mesh, FaceGroupKind::material)) {
+    materials.push_back(of_material.name);
+  }
+  if (materials.size() > 1) {
+    notes.push_back(path + ": is looked up for all materials of the mesh, " + listed(materials) +
+                    ", also where they have pictures of their own");
+  }
+  return notes;
+}
+
+Painting painting_of_picture(const std::string& path, const Connectivity& mesh,
+                             const std::string& mesh_name) {
+  check_texture(path, mesh, mesh_name);
+  Brightness picture = read_brightness(path);
+  const TextureCoordinates& texture = mesh.texture;
+  std::vector<std::optional<double>> known(texture.coordinates.size());
+  std::vector<RunningMean> means(mesh.vertices);
+  for (std::size_t corner = 0; corner < texture.corners.size(); ++corner) {
+    if (texture.corners[corner] < 0) continue;
+    const auto index = static_cast<std::size_t>(texture.corners[corner]);
+    if (!known[index]) {
+      const Eigen::Vector2d& uv = texture.coordinates[index];
+      known[index] = picture.at(uv.x(), uv.y());
+    }
+    means[mesh.polygons.corners[corner]].add(*known[index]);
+  }
+  Painting painting{Eigen::VectorXd::Zero(mesh.vertices), std::move(picture.notes)};
+  for (int v = 0; v < mesh.vertices; ++v) painting.weights[v] = means[v].value;
+  std::ranges::move(notes_on_texture(path, mesh), std::back_inserter(painting.notes));
+  const auto bare = std::ranges::count(means, 0, &RunningMean::count);
+  if (bare > 0) {
+    painting.notes.push_back(path + ": " + std::to_string(bare) +
+                             " vertices have no texture coordinates and take nothing of the "
+                             "motion");
+  }
+  return painting;
+}
+
+Eigen::VectorXd weights_of_list(const std::string& path, int vertices) {
+  const std::string text = read_file(path);
+  TextCursor cursor(path, without_byte_order_mark(text), {.comments = true});
+  std::vector<double> weights;
+  for (auto word = cursor.word_anywhere(); !word.empty(); word = cursor.word_anywhere()) {
+    weights.push_back(cursor.number(word, "a weight"));
+  }
+  if (weights.size() != static_cast<std::size_t>(vertices)) {
+    throw MismatchError(path + ": weights of " + std::to_string(weights.size()) +
+                        " vertices, expected " + std::to_string(vertices) + " as in the source");
+  }
+  return Eigen::Map<const Eigen::VectorXd>(weights.data(), vertices);
+}
+
+Eigen::VectorXd weights_of_table(const std::string& path, int vertices) {
+  CsvReader reader(path);
+  if (reader.names() != std::vector<std::string_view>{"vertex", "weight"}) {
+    reader.fail("expected the columns vertex,weight");
+  }
+  Eigen::VectorXd weights = Eigen::VectorXd::Zero(vertices);
+  std::vector<bool> is_known(vertices, false);
+  while (reader.next_row()) {
+    const double number = reader.number(0);
+    if (number != std::floor(number)) {
+      reader.fail("expected a vertex, found " + std::string(reader.field(0)));
+    }
+    if (!(number >= 0 && number < vertices)) {
+      throw MismatchError(path + ": vertex " + std::string(reader.field(0)) +
+                          "; the mesh has vertices 0 to " + std::to_string(vertices - 1));
+    }
+    const auto vertex = static_cast<VertexIndex>(number);
+    if (is_known[vertex]) reader.fail("vertex " + std::to_string(vertex) + " occurs twice");
+    is_known[vertex] = true;
+    weights[vertex] = reader.number(1);
+  }
+  return weights;
+}
+
+/// What weights that are not in [0, 1] may be instead.
+std::string other_unit(const Eigen::VectorXd& weights) {
+  constexpr double kPercent = 100, kByte = 255;
+  if (!weights.allFinite() || weights.minCoeff() < 0) return "";
+  if (weights.maxCoeff() <= kPercent) return "; divide them by 100 if they are in percent";
+  if (weights.maxCoeff() <= kByte) return "; divide them by 255 if they are a picture's";
+  return "";
+}
+
+}  // namespace
+
+Painting read_painting(const std::filesystem::path& path, const Connectivity& mesh,
+                       const std::string& mesh_name) {
+  const std::string name = path.string(), extension = lower_extension(path);
+  Painting painting;
+  const std::vector<std::string> pictures = brightness_extensions();
+  if (std::ranges::find(pictures, extension) != pictures.end()) {
+    painting = painting_of_picture(name, mesh, mesh_name);
+  } else if (extension == ".txt") {
+    painting.weights = weights_of_list(name, mesh.vertices);
+  } else if (extension == ".csv") {
+    painting.weights = weights_of_table(name, mesh.vertices);
+  } else {
+    throw IoError(name, "expected a painting in " + joined(pictures, ", ") + ", .csv or .txt");
+  }
+  check_painting(name, painting.weights);
+  return painting;
+}
+
+void check_painting(const std::string& name, const Eigen::VectorXd& weights) {
+  for (Eigen::Index v = 0; v < weights.size(); ++v) {
+    if (weights[v] >= 0 && weights[v] <= 1) continue;
+    throw IoError(name, "vertex " + std::to_string(v) + " has the weight " + readable(weights[v]) +
+                            ", expected 0 to 1" + other_unit(weights));
+  }
+  if (!(weights.array() > 0).any()) {
+    throw IoError(name, "no vertex has a weight above 0, so that nothing would move; paint some");
+  }
+}
+
+}  // namespace mimetra

@@ -1,0 +1,128 @@
+#include "toolkit/operations/paint_parameter.h"
+
+#include <algorithm>
+
+#include <nlohmann/json.hpp>
+
+#include "toolkit/io/painting_file.h"
+#include "toolkit/mesh/suggestion.h"
+#include "toolkit/mesh/text.h"
+#include "toolkit/operations/selection_parameters.h"
+
+namespace mimetra {
+
+namespace {
+
+constexpr std::string_view kField = "field:";
+
+/// Names of fields that could be painted.
+std::vector<std::string> scalar_fields(const std::vector<Field>& fields) {
+  std::vector<std::string> names;
+  for (const Field& field : fields) {
+    const bool is_scalar = field.location == Field::Location::vertices && field.values.cols() == 1;
+    if (is_scalar) names.push_back(field.name);
+  }
+  return names;
+}
+
+/// The weights that a field of the sequence holds.
+Painting painting_of_field(const std::string& name, const NamedData& source) {
+  const std::vector<Field>& fields = std::get<FieldSequence>(source.data).fields;
+  const std::string place = source.name + ": field '" + name + "'";
+  const auto found = std::ranges::find_if(fields, [&name](const Field& field) {
+    return field.name == name && field.location == Field::Location::vertices;
+  });
+  if (found == fields.end()) {
+    const bool on_triangles = std::ranges::find(fields, name, &Field::name) != fields.end();
+    const std::vector<std::string> known = scalar_fields(fields);
+    throw MismatchError(
+        place + (on_triangles ? " lies on triangles, expected one on vertices" : " is not there") +
+        (known.empty() ? "; the sequence has none that could be painted"
+                       : "; there are " + listed(known) + suggestion_for(name, known)));
+  }
+  if (found->values.cols() != 1) {
+    throw MismatchError(place + " holds " + std::to_string(found->values.cols()) +
+                        " numbers for each vertex, expected one");
+  }
+  Painting painting{found->values.col(0)};
+  check_painting(place, painting.weights);
+  return painting;
+}
+
+Painting painting_of(const std::string& text, const NamedData& source) {
+  if (text.starts_with(kField)) return painting_of_field(text.substr(kField.size()), source);
+  return read_painting(text, std::get<FieldSequence>(source.data).frames->connectivity(),
+                       source.name);
+}
+
+}  // namespace
+
+Parameter paint_parameter() {
+  return {"paint",
+          ParameterKind::file,
+          {},
+          "regions as somebody painted them: how much of the motion each vertex of the source "
+          "takes, 0 to 1; a vertex field, a picture in the source's texture space (.png or .jpg, "
+          "black to white), a number for each vertex (.txt) or columns vertex,weight (.csv)",
+          "",
+          {},
+          {},
+          {std::string(kField) + "NAME"}};
+}
+
+void check_paint(const Invocation& invocation) {
+  const Parameters& parameters = invocation.parameters;
+  const RegionData* const given = invocation.find<RegionData>("regions");
+  if (given && given->regions.weights.size() > 0) {
+    const std::string& name = invocation.input("regions").name;
+    if (parameters.flag("per-region")) {
+      throw UsageError("--per-region: " + name +
+                       " holds weights of vertices, which say how much of the motion each takes; "
+                       "weights of each region move the whole face");
+    }
+    refuse_options(parameters, {"complete", "complete-limit"},
+                   name + " holds weights of vertices and is taken as it is");
+  }
+  if (!parameters.optional_text("paint")) return;
+  const std::string reason = "the regions are those of --paint";
+  refuse_options(parameters,
+                 {"full", "k", "curve", "select", "triangles", "only", "without", "radius", "rest"},
+                 reason);
+  refuse_options(parameters, options_of_energy(), reason);
+  for (const char* const name : {"regions", "components"}) {
+    if (!invocation.inputs.contains(name) || invocation.inputs.at(name).empty()) continue;
+    throw UsageError("--" + std::string(name) + ": " + reason + "; leave one of them out");
+  }
+  if (invocation.wants("components-out")) {
+    throw UsageError("--components-out: there are no components with --paint");
+  }
+  if (parameters.flag("per-region")) {
+    throw UsageError(
+        "--per-region: weights of each region move the whole face, and --paint says how much of "
+        "the motion each vertex takes; name hard regions instead, --regions");
+  }
+}
+
+std::optional<GivenRegions> painted_region_of(const Invocation& invocation) {
+  const auto text = invocation.parameters.optional_text("paint");
+  if (!text) return {};
+  const NamedData& source = invocation.input("source");
+  Painting painting = painting_of(*text, source);
+  for (const std::string& note : painting.notes) invocation.warn(note);
+  const Triangles& triangles = std::get<FieldSequence>(source.data).frames->triangles();
+  return GivenRegions{*text, painted_region(painting.weights, triangles)};
+}
+
+Json weights_report(const Eigen::VectorXd& weights, const Parameters& parameters) {
+  const auto json_of = [](const std::optional<std::string>& text) {
+    return text ? Json(*text) : Json(nullptr);
+  };
+  const auto ones = (weights.array() == 1).count(), zeros = (weights.array() == 0).count();
+  return {{"paint", json_of(parameters.optional_text("paint"))},
+          {"falloff", json_of(parameters.optional_text("falloff"))},
+          {"one", ones},
+          {"between", weights.size() - ones - zeros},
+          {"zero", zeros}};
+}
+
+}  // namespace mimetra

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <optional>
+
+#include "toolkit/operations/json.h"
+#include "toolkit/operations/operation.h"
+#include "toolkit/pipeline/region_choice.h"
+
+namespace mimetra {
+
+/// --paint: how much of the motion each vertex of the source takes, from `field:NAME`, a picture,
+/// or a list; see read_painting().
+Parameter paint_parameter();
+
+/// Throws UsageError where --paint and an option or input that looks for regions or names others
+/// are given, which it names, or weights of each region.
+void check_paint(const Invocation& invocation);
+
+/// The region that --paint makes of the source's vertices; none where it is not given. Warns of
+/// what the painting's notes say. Throws MismatchError for a field that is not there or holds more
+/// than a number for each vertex, and what read_painting() and check_painting() throw.
+std::optional<GivenRegions> painted_region_of(const Invocation& invocation);
+
+/// Where the weights of a target's vertices came from, and how many are 1, between and 0.
+Json weights_report(const Eigen::VectorXd& weights, const Parameters& parameters);
+
+}  // namespace mimetra

@@ -1,0 +1,35 @@
+#pragma once
+
+#include "toolkit/pipeline/solution.h"
+
+/// The soft border of regions: that of a painting, and what --falloff adds.
+namespace mimetra {
+
+/// Throws std::invalid_argument where regions that are to have weights of their own each
+/// (SolveOptions::per_region) say how much of the motion their vertices take.
+void check_hard(const GivenRegions& given);
+
+/// Weights of a source's vertices on a target (N each): each takes the mean of its carriers', by
+/// their shares. One without carriers that is connected with one that has some takes the weight
+/// that lies most evenly between those around it (the least sum of squared differences along
+/// edges); others take 0. `weld` and `triangles` (M x 3) are the target's; a place of which a
+/// vertex has carriers is between no others.
+Eigen::VectorXd carried_weights(const Eigen::VectorXd& weights, const Pairing& pairing,
+                                const Weld& weld, const Triangles& triangles);
+
+/// What a transfer by regions of the source looks at on a target: selection_of(), with the weights
+/// that the regions have there, faded out around the vertices of weight 1 over the falloff of the
+/// options. Without both, and with weights of each region, whose falloff is their own, the border
+/// is hard.
+///
+/// Throws OptionError (Topic::no_full_weight) where nothing has the weight 1 that could fade out,
+/// MismatchError where no vertex of the target has a weight, std::invalid_argument for a falloff
+/// out of range, and what distances_along() throws. \pre a MatchedTarget
+Selection bordered_selection(const Regions& regions, const Target& target,
+                             const SolveOptions& options);
+
+/// Regions of the source with the border that they have on a target of the same faces; for a paired
+/// one they are what they were.
+Regions with_border(Regions regions, const Selection& selection, const Target& target);
+
+}  // namespace mimetra

@@ -1,0 +1,86 @@
+#include "toolkit/transfer/soft_border.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+#include <Eigen/Geometry>
+
+#include "toolkit/mesh/diameter.h"
+#include "toolkit/mesh/text.h"
+#include "toolkit/transfer/deformation_gradients.h"
+#include "toolkit/transfer/edges.h"
+#include "toolkit/transfer/gradient_system.h"
+
+namespace mimetra {
+
+namespace {
+
+/// Weights that change by more than this over the diameter are a border: a fade of half the
+/// diameter is one, what rounding to 8 bits leaves of a constant is hardly any.
+constexpr double kBorderSlope = 2;
+
+}  // namespace
+
+Eigen::VectorXd triangle_weights(const Triangles& triangles, const Eigen::VectorXd& weights) {
+  Eigen::VectorXd means(triangles.rows());
+  for (int t = 0; t < triangles.rows(); ++t) {
+    // Of three equal numbers this is that number.
+    const double a = weights[triangles(t, 0)];
+    means[t] = a + ((weights[triangles(t, 1)] - a) + (weights[triangles(t, 2)] - a)) / 3;
+  }
+  return means;
+}
+
+void check_weights(const Eigen::VectorXd& weights, Eigen::Index vertices) {
+  if (weights.size() != vertices) {
+    throw std::invalid_argument("weights: expected one for each of " + std::to_string(vertices) +
+                                " vertices, found " + std::to_string(weights.size()));
+  }
+  for (Eigen::Index v = 0; v < vertices; ++v) {
+    if (weights[v] >= 0 && weights[v] <= 1) continue;
+    throw std::invalid_argument("weights: that of vertex " + std::to_string(v) + " is " +
+                                readable(weights[v]) + ", expected 0 to 1");
+  }
+}
+
+SoftBorder::SoftBorder(const Positions& rest, const Triangles& triangles,
+                       const Eigen::VectorXd& weights)
+    : shares_(triangle_weights(triangles, weights)),
+      border_(Eigen::VectorXd::Zero(triangles.rows())),
+      sizes_(Eigen::VectorXd::Zero(triangles.rows())),
+      counts_(Eigen::VectorXd::Zero(triangles.rows())) {
+  const double steepest = kBorderSlope / diameter(rest);
+  double slopes = 0, squares = 0;
+  for (int t = 0; t < triangles.rows(); ++t) {
+    counts_[t] = target_share(quality_of(rest, triangles, t));
+    if (counts_[t] == 0) continue;
+    const Edges edges = edges_of(rest, triangles, t);
+    const double twice_area = edges.col(0).cross(edges.col(1)).norm();
+    sizes_[t] = std::sqrt(twice_area);
+    const double a = weights[triangles(t, 0)];
+    const Eigen::Vector2d differences(weights[triangles(t, 1)] - a, weights[triangles(t, 2)] - a);
+    const Eigen::Vector3d gradient = hat_gradients(rest, triangles, t).rightCols<2>() * differences;
+    const double slope = gradient.norm();
+    border_[t] = std::min(1.0, slope / steepest);
+    slopes += counts_[t] * twice_area * slope;
+    squares += counts_[t] * twice_area * slope * slope;
+  }
+  // Wider than what is a border at all it would smooth a whole surface whose weights are rounded.
+  if (squares > 0) width_ = std::min(slopes / squares, 1 / steepest);
+}
+
+double SoftBorder::stiffness(int triangle) const {
+  return std::pow(kSlack, border_[triangle]);
+}
+
+double SoftBorder::smoothness(int triangle, int neighbor) const {
+  const double counts = std::min(counts_[triangle], counts_[neighbor]);
+  if (counts == 0) return 0;
+  const double bend = kBend * width_;
+  return counts * std::max(border_[triangle], border_[neighbor]) * kSlack * bend * bend /
+         (sizes_[triangle] * sizes_[neighbor]);
+}
+
+}  // namespace mimetra

@@ -1,0 +1,50 @@
+#pragma once
+
+#include "toolkit/mesh/tri_mesh.h"
+
+namespace mimetra {
+
+/// Mean of the corners' weights of each triangle (M); `weights` of the vertices (N).
+Eigen::VectorXd triangle_weights(const Triangles& triangles, const Eigen::VectorXd& weights);
+
+/// Throws std::invalid_argument, which begins with `weights`, unless there is one weight in [0, 1]
+/// for each of so many vertices.
+void check_weights(const Eigen::VectorXd& weights, Eigen::Index vertices);
+
+/// The border of regions in the vertex solve where vertices take a share of the wanted motion.
+///
+/// With phi_i the mean of its corners' weights, triangle i wants the displacement gradient
+/// phi_i (Q_i - I), and vertices of weight 0 stay. Where the weights change, that is no gradient of
+/// any motion, and something must give: those triangles count less, by a factor that falls to
+/// kSlack, and across their edges gradients want to differ as phi_i (Q_i - I) do, so that neither
+/// end of the border is a crease. Where the weights are constant nothing is changed.
+///
+/// How much a triangle is of the border: b_i = min(1, |grad phi_i| diameter / 2). Smoothness is
+/// that of a plate which bends over the length kBend l, whatever the size of triangles: l is the
+/// border's width, the mean of |grad phi| over that of its square, at most diameter / 2.
+class SoftBorder {
+ public:
+  /// `rest` N x 3, `triangles` M x 3, `weights` N in [0, 1]. Degenerate triangles are of no border.
+  SoftBorder(const Positions& rest, const Triangles& triangles, const Eigen::VectorXd& weights);
+
+  /// phi_i: the share of the wanted motion.
+  double share(int triangle) const { return shares_[triangle]; }
+  /// How much a triangle counts: kSlack^b, 1 where the weights are constant.
+  double stiffness(int triangle) const;
+  /// Of squared differences of the displacement gradients of two neighbours; 0 where neither is of
+  /// the border.
+  double smoothness(int triangle, int neighbor) const;
+
+  /// Measured on real faces: less lets the region's own gradients win, but bends the border more.
+  static constexpr double kSlack = 0.03;
+  static constexpr double kBend = 0.55;
+
+ private:
+  Eigen::VectorXd shares_;
+  Eigen::VectorXd border_;  // b_i
+  Eigen::VectorXd sizes_;   // of triangles, length
+  Eigen::VectorXd counts_;  // target_share() of triangles
+  double width_ = 0;        // l
+};
+
+}  // namespace mimetra
