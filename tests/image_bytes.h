@@ -32,8 +32,9 @@ std::string png_bytes(int width, int height, std::uint32_t format, const std::ve
   return bytes;
 }
 
-/// A grey JPEG file of the best quality.
-inline std::string jpeg_bytes(int width, int height, std::vector<std::uint8_t> grey) {
+/// A grey JPEG file of the best quality; in scans of its own each is a bit of one frequency.
+inline std::string jpeg_bytes(int width, int height, std::vector<std::uint8_t> grey,
+                              bool in_scans = false) {
   jpeg_compress_struct state = {};
   jpeg_error_mgr errors = {};
   state.err = jpeg_std_error(&errors);
@@ -47,6 +48,15 @@ inline std::string jpeg_bytes(int width, int height, std::vector<std::uint8_t> g
   state.in_color_space = JCS_GRAYSCALE;
   jpeg_set_defaults(&state);
   jpeg_set_quality(&state, 100, TRUE);
+  std::vector<jpeg_scan_info> scans = {{1, {0}, 0, 0, 0, 0}};
+  for (int frequency = 1; frequency < DCTSIZE2; ++frequency) {
+    scans.push_back({1, {0}, frequency, frequency, 0, 1});
+    scans.push_back({1, {0}, frequency, frequency, 1, 0});
+  }
+  if (in_scans) {
+    state.scan_info = scans.data();
+    state.num_scans = static_cast<int>(scans.size());
+  }
   jpeg_start_compress(&state, TRUE);
   for (int y = 0; y < height; ++y) {
     JSAMPROW row = grey.data() + static_cast<std::ptrdiff_t>(y) * width;

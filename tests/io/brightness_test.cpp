@@ -185,14 +185,57 @@ TEST_F(BrightnessTest, IsRefusedForDamagedPixels) {
   EXPECT_THAT([&] { read(png); }, ThrowsMessage<IoError>(HasSubstr("is a damaged PNG file")));
 }
 
+std::string big_endian(std::uint32_t number) {
+  std::string bytes;
+  for (int shift = 24; shift >= 0; shift -= 8) bytes += static_cast<char>(number >> shift);
+  return bytes;
+}
+
+/// The sum that ends a chunk, of its name and content.
+std::string checksum(const std::string& chunk) {
+  return big_endian(static_cast<std::uint32_t>(
+      crc32(0, reinterpret_cast<const unsigned char*>(chunk.data()), uInt(chunk.size()))));
+}
+
+/// A picture with one more chunk before its pixels.
+std::string with_chunk(std::string png, const std::string& name, const std::string& content) {
+  return png.insert(png.find("IDAT") - 4, big_endian(static_cast<std::uint32_t>(content.size())) +
+                                              name + content + checksum(name + content));
+}
+
+TEST_F(BrightnessTest, IsThatOfPixelsWhateverElseThePictureHolds) {
+  std::string png = png_bytes(2, 1, PNG_FORMAT_GRAY, Bytes{51, 255});
+  png = with_chunk(png, "tEXt", "Comment" + std::string(9 << 20, '\0'));
+  // That this text cannot be unpacked shows that none is: it could be a thousand times as long.
+  png = with_chunk(png, "zTXt", "Comment" + std::string(2, '\0') + "not packed");
+  EXPECT_THAT(pixels_of(read(png)), ElementsAre(51 * 257, 65535));
+}
+
+TEST_F(BrightnessTest, IsRefusedForDamagedOpacity) {
+  const Bytes palette = {0, 0, 0, 90, 90, 90, 255, 255, 255};
+  const std::string opaque = png_bytes(3, 1, PNG_FORMAT_RGB_COLORMAP, Bytes{2, 0, 1}, palette);
+  const std::string clear = with_chunk(opaque, "tRNS", std::string("\xff\x33\0", 3));
+  EXPECT_THAT(pixels_of(read(clear)), ElementsAre(0, 0, 90 * 257 / 5));
+  std::string damaged = clear;
+  damaged[damaged.find("tRNS") + 4] ^= 1;
+  EXPECT_THAT([&] { read(damaged); },
+              ThrowsMessage<IoError>(HasSubstr("is a damaged PNG file (tRNS: CRC error)")));
+  EXPECT_THAT([&] { read(with_chunk(opaque, "tRNS", "1234")); },
+              ThrowsMessage<IoError>(HasSubstr("is a damaged PNG file (tRNS: ")));
+}
+
+TEST_F(BrightnessTest, IsRefusedForAPictureOfMoreScansThanEncodersMake) {
+  const Bytes grey(16 * 8, 90);
+  EXPECT_THAT([&] { read(test::jpeg_bytes(16, 8, grey, true)); },
+              ThrowsMessage<IoError>(HasSubstr("more than 100 scans")));
+}
+
 TEST_F(BrightnessTest, IsRefusedForSizesThatCannotBe) {
   std::string png = png_bytes(5, 4, PNG_FORMAT_GRAY, Bytes(20, 7));
   // Width and height, and the checksum of the header, which libpng looks at before the size.
   const auto resize = [&png](const std::string& width_and_height) {
     png.replace(16, 8, width_and_height);
-    const auto sum = static_cast<std::uint32_t>(
-        crc32(0, reinterpret_cast<const unsigned char*>(png.data()) + 12, 17));
-    for (int i = 0; i < 4; ++i) png[29 + i] = static_cast<char>(sum >> (24 - 8 * i));
+    png.replace(29, 4, checksum(png.substr(12, 17)));
   };
   resize(std::string("\0\x01\0\0\0\x01\0\0", 8));
   EXPECT_THAT([&] { read(png); }, ThrowsMessage<IoError>(HasSubstr("65536 x 65536 pixels")));

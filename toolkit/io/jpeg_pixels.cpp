@@ -30,6 +30,8 @@ class JpegDecoder {
   bool read_header() {
     if (setjmp(on_error_)) return false;
     jpeg_create_decompress(&state_);
+    progress_.progress_monitor = refuse_many_scans;
+    state_.progress = &progress_;
     jpeg_mem_src(&state_, reinterpret_cast<const unsigned char*>(bytes_.data()),
                  static_cast<unsigned long>(bytes_.size()));
     jpeg_read_header(&state_, TRUE);
@@ -80,9 +82,20 @@ class JpegDecoder {
     if (level < 0) fail(state);
   }
 
+  /// Scans of a few bytes each go over all blocks: encoders make ten, the most careful of them some
+  /// dozens.
+  static void refuse_many_scans(j_common_ptr state) {
+    constexpr int kMostScans = 100;
+    if (reinterpret_cast<j_decompress_ptr>(state)->input_scan_number <= kMostScans) return;
+    auto& self = *static_cast<JpegDecoder*>(state->client_data);
+    std::snprintf(self.message_.data(), self.message_.size(), "more than %d scans", kMostScans);
+    longjmp(self.on_error_, 1);
+  }
+
   const std::string& bytes_;
   std::vector<unsigned char> row_;
   jpeg_decompress_struct state_ = {};
+  jpeg_progress_mgr progress_ = {};
   jpeg_error_mgr errors_ = {};
   std::jmp_buf on_error_ = {};
   std::array<char, JMSG_LENGTH_MAX> message_ = {};

@@ -24,6 +24,13 @@ class PngDecoder {
       throw std::bad_alloc();
     }
     png_set_read_fn(png_, this, read);
+    // Texts and profiles are read over, however long: packed, they may be a thousand times longer.
+    constexpr int kAllButPixelsAndOpacity = -1, kUnlimited = 0;
+    png_set_keep_unknown_chunks(png_, PNG_HANDLE_CHUNK_NEVER, nullptr, kAllButPixelsAndOpacity);
+    png_set_chunk_malloc_max(png_, kUnlimited);
+    // What libpng would mend or leave out, as a damaged palette or opacity, makes other weights.
+    png_set_benign_errors(png_, 0);
+    png_set_crc_action(png_, PNG_CRC_ERROR_QUIT, PNG_CRC_ERROR_QUIT);
   }
   PngDecoder(const PngDecoder&) = delete;
   PngDecoder& operator=(const PngDecoder&) = delete;
