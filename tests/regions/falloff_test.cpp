@@ -159,7 +159,7 @@ TEST(PaintedRegion, RefusesOtherWeights) {
         [&grid, weight] { painted_region(weight * Eigen::VectorXd::Unit(12, 5), grid.triangles); };
   };
   EXPECT_THAT(message(1.5), ThrowsMessage<std::invalid_argument>(
-                                HasSubstr("the weight of vertex 5 is 1.5; it must be in [0, 1]")));
+                                HasSubstr("weights: that of vertex 5 is 1.5, expected 0 to 1")));
   EXPECT_THAT(message(0), ThrowsMessage<std::invalid_argument>(HasSubstr("are 0")));
 }
 
@@ -177,7 +177,8 @@ TEST(WithWeights, AddsToHardRegionsWhatTheirBorderHolds) {
   EXPECT_EQ(moved.vertex_count(), 1);
   EXPECT_FALSE(moved.inside[0]);
   EXPECT_THAT([&] { with_weights(hard, Eigen::VectorXd::Ones(3), grid.triangles); },
-              ThrowsMessage<std::invalid_argument>("weights of 3 vertices, expected 12"));
+              ThrowsMessage<std::invalid_argument>(
+                  "weights: expected one for each of 12 vertices, found 3"));
 }
 
 }  // namespace

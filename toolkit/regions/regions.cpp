@@ -337,16 +337,20 @@ Regions regions_from_vertices(int vertices, const Triangles& triangles,
   return regions;
 }
 
-Regions with_weights(Regions regions, const Eigen::VectorXd& weights, const Triangles& triangles) {
-  if (weights.size() != regions.vertices) {
-    throw std::invalid_argument("weights of " + std::to_string(weights.size()) +
-                                " vertices, expected " + std::to_string(regions.vertices));
+void check_weights(const Eigen::VectorXd& weights, Eigen::Index vertices) {
+  if (weights.size() != vertices) {
+    throw std::invalid_argument("weights: expected one for each of " + std::to_string(vertices) +
+                                " vertices, found " + std::to_string(weights.size()));
   }
-  for (Eigen::Index v = 0; v < weights.size(); ++v) {
+  for (Eigen::Index v = 0; v < vertices; ++v) {
     if (weights[v] >= 0 && weights[v] <= 1) continue;
-    throw std::invalid_argument("the weight of vertex " + std::to_string(v) + " is " +
-                                readable(weights[v]) + "; it must be in [0, 1]");
+    throw std::invalid_argument("weights: that of vertex " + std::to_string(v) + " is " +
+                                readable(weights[v]) + ", expected 0 to 1");
   }
+}
+
+Regions with_weights(Regions regions, const Eigen::VectorXd& weights, const Triangles& triangles) {
+  check_weights(weights, regions.vertices);
   const double known_share = regions.energy_share;
   regions.weights = weights;
   complete(regions, triangles);

@@ -121,12 +121,16 @@ Regions with_added(const Regions& regions, std::vector<Region> added, const Tria
 Regions regions_from_vertices(int vertices, const Triangles& triangles,
                               const std::vector<std::vector<VertexIndex>>& lists);
 
+/// Throws std::invalid_argument, which begins with `weights`, unless there is one weight in [0, 1]
+/// for each of so many vertices.
+void check_weights(const Eigen::VectorXd& weights, Eigen::Index vertices);
+
 /// One region, of the vertices that take a share of the motion: `weights` (N), each in [0, 1], of
 /// which one is above 0. Throws std::invalid_argument for others.
 Regions painted_region(const Eigen::VectorXd& weights, const Triangles& triangles);
 
 /// Regions with a soft border: the vertices of weight above 0 are inside, and no others. Throws
-/// std::invalid_argument unless there is a weight in [0, 1] for each vertex.
+/// what check_weights() throws.
 Regions with_weights(Regions regions, const Eigen::VectorXd& weights, const Triangles& triangles);
 
 /// Triangles with a corner of weight above 0, ascending.

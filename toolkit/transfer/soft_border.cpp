@@ -2,13 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
-#include <string>
 
 #include <Eigen/Geometry>
 
 #include "toolkit/mesh/diameter.h"
-#include "toolkit/mesh/text.h"
 #include "toolkit/transfer/deformation_gradients.h"
 #include "toolkit/transfer/edges.h"
 #include "toolkit/transfer/gradient_system.h"
@@ -31,18 +28,6 @@ Eigen::VectorXd triangle_weights(const Triangles& triangles, const Eigen::Vector
     means[t] = a + ((weights[triangles(t, 1)] - a) + (weights[triangles(t, 2)] - a)) / 3;
   }
   return means;
-}
-
-void check_weights(const Eigen::VectorXd& weights, Eigen::Index vertices) {
-  if (weights.size() != vertices) {
-    throw std::invalid_argument("weights: expected one for each of " + std::to_string(vertices) +
-                                " vertices, found " + std::to_string(weights.size()));
-  }
-  for (Eigen::Index v = 0; v < vertices; ++v) {
-    if (weights[v] >= 0 && weights[v] <= 1) continue;
-    throw std::invalid_argument("weights: that of vertex " + std::to_string(v) + " is " +
-                                readable(weights[v]) + ", expected 0 to 1");
-  }
 }
 
 SoftBorder::SoftBorder(const Positions& rest, const Triangles& triangles,

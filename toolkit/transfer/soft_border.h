@@ -7,10 +7,6 @@ namespace mimetra {
 /// Mean of the corners' weights of each triangle (M); `weights` of the vertices (N).
 Eigen::VectorXd triangle_weights(const Triangles& triangles, const Eigen::VectorXd& weights);
 
-/// Throws std::invalid_argument, which begins with `weights`, unless there is one weight in [0, 1]
-/// for each of so many vertices.
-void check_weights(const Eigen::VectorXd& weights, Eigen::Index vertices);
-
 /// The border of regions in the vertex solve where vertices take a share of the wanted motion.
 ///
 /// With phi_i the mean of its corners' weights, triangle i wants the displacement gradient

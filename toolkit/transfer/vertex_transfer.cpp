@@ -14,6 +14,7 @@
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/inspection.h"
 #include "toolkit/mesh/parallel.h"
+#include "toolkit/regions/regions.h"
 #include "toolkit/transfer/deformation_gradients.h"
 #include "toolkit/transfer/following_parts.h"
 #include "toolkit/transfer/gradient_system.h"
