@@ -383,6 +383,30 @@ TEST(WeightedFit, ByWeightsOfOneIsTheUnweightedBitByBit) {
   }
 }
 
+TEST(WeightedFit, SeesAsMuchByOneSmallWeightAsByNone) {
+  const BlendshapeModel model = test::model_on(patch(), 3);
+  const std::vector<int> half = test::half_of(model.triangles());
+  const BlendshapeTransfer plain(model.neutral(), model, half);
+  for (const double weight : {0.04, 1e-6}) {
+    const BlendshapeTransfer light(model.neutral(), model, half,
+                                   {.triangle_weights = Eigen::VectorXd::Constant(128, weight)});
+    EXPECT_EQ(light.conditions().weakly_seen, plain.conditions().weakly_seen) << weight;
+    EXPECT_EQ(light.conditions().unseen, plain.conditions().unseen) << weight;
+  }
+}
+
+TEST(WeightedFit, HardlySeesWhatMovesWhereWeightsAreSmall) {
+  const BlendshapeModel model = test::model_on(patch(), 3);
+  const std::vector<int> all = all_triangles(model.triangles());
+  EXPECT_THAT(BlendshapeTransfer(model.neutral(), model, all).conditions().weakly_seen,
+              testing::IsEmpty());
+  // Of the three, shape0 alone moves triangle 0.
+  Eigen::VectorXd weights = Eigen::VectorXd::Constant(128, 0.01);
+  weights[0] = 1;
+  const BlendshapeTransfer light(model.neutral(), model, all, {.triangle_weights = weights});
+  EXPECT_THAT(light.conditions().weakly_seen, testing::ElementsAre("shape1", "shape2"));
+}
+
 TEST(WeightedFit, RefusesWeightsThatAreNone) {
   const BlendshapeModel model = test::model_on(patch(), 3);
   const auto with = [&model](const Eigen::VectorXd& weights) {

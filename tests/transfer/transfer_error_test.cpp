@@ -174,7 +174,7 @@ TEST(TransferError, InsideIsThatOfTrianglesThatTakeAll) {
   const MeshSequence still = model.animate(Eigen::MatrixXd::Zero(3, 3));
   const std::vector<int> all = all_triangles(source.triangles());
   TransferErrorOptions options{.weights = Eigen::VectorXd::Constant(source.vertices(), 0.5)};
-  EXPECT_EQ(transfer_error(source, still, all, options).de_inside, 0);
+  EXPECT_FALSE(transfer_error(source, still, all, options).de_inside);
   for (const VertexIndex v : source.triangles().row(2)) options.weights[v] = 1;
   const TransferError error = transfer_error(source, still, all, options);
   EXPECT_EQ(error.de_inside, error.per_triangle[2]);

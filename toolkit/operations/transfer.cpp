@@ -95,7 +95,7 @@ Json report_of(const NamedData& target, const TransferredTarget& transferred, bo
   }
   if (weights.size() > 0) {
     json["weight"] = weights_report(weights, parameters);
-    json["de_inside"] = error.de_inside;
+    json["de_inside"] = error.de_inside ? Json(*error.de_inside) : Json(nullptr);
   }
   if (solution.regional) {
     json["per_region"] = {{"regions", solution.regional->shares().cols() - 1},

@@ -92,8 +92,11 @@ struct BlendshapeTransfer::State {
 
 /// Which expressions L sees, and how well it tells them apart.
 void BlendshapeTransfer::State::judge(const BlendshapeModel& target) {
-  const Eigen::VectorXd full =
-      gram_diagonal(target, all_triangles(target.triangles()), options.edges);
+  Eigen::VectorXd full = gram_diagonal(target, all_triangles(target.triangles()), options.edges);
+  // As if all triangles counted as those of L that count most: a fit does not depend on the scale.
+  const Eigen::VectorXd& counts = options.triangle_weights;
+  const std::vector<int>& in_l = gradients.selected();
+  if (counts.size() > 0 && !in_l.empty()) full *= counts(in_l).maxCoeff();
   const std::vector<std::string>& names = target.expressions().names;
   for (Eigen::Index j = 0; j < gram.rows(); ++j) {
     if (!moves_there(gram(j, j), full[j])) {

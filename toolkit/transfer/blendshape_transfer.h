@@ -61,7 +61,7 @@ constexpr double kPoorCondition = 1e5;
 struct BlendshapeConditions {
   /// Columns with no motion in L: their weight is 0 in every frame, or what their rule makes of it.
   std::vector<std::string> unseen;
-  /// Columns with G_L,jj < 0.05 G_jj.
+  /// Columns with G_L,jj < 0.05 G_jj, where all triangles count in G as those of L that count most.
   std::vector<std::string> weakly_seen;
   /// Condition number of G_L over the columns that are seen.
   double condition = 1;

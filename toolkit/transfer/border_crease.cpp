@@ -56,6 +56,7 @@ struct Side {
 BorderCrease::BorderCrease(const Positions& rest, const Triangles& triangles,
                            const Eigen::VectorXd& weights, const std::vector<bool>& counts)
     : triangles_(triangles) {
+  if (weights.size() == 0 || weights.minCoeff() == weights.maxCoeff()) return;
   std::map<std::pair<VertexIndex, VertexIndex>, std::vector<Side>> sides;
   for (int t = 0; t < triangles.rows(); ++t) {
     if (!counts[t] || quality_of(rest, triangles, t) < kDegenerateQuality) continue;

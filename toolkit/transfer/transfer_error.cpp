@@ -273,7 +273,8 @@ TransferError transfer_error(const FrameSource& source, const FrameSource& resul
   error.de_still /= summands;
   const std::vector<int> region = with_partners(selected, options.pairing.get());
   error.de_region = mean_over(error.per_triangle, region);
-  error.de_inside = mean_over(error.per_triangle, errors_of.taking_all(region));
+  const std::vector<int> inside = errors_of.taking_all(region);
+  if (!inside.empty()) error.de_inside = mean_over(error.per_triangle, inside);
   return error;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "toolkit/correspondence/pairing.h"
@@ -17,9 +18,9 @@ struct TransferError {
   /// 12), a sum over edges (EdgeSum), unit of length squared.
   double de_all = 0;
   double de_region = 0;
-  /// DE over the triangles of which all corners take all of the deformation; de_region where
-  /// vertices have no weights.
-  double de_inside = 0;
+  /// DE over the triangles of L of which all corners take all of the deformation, none where no
+  /// triangle does; de_region where vertices have no weights.
+  std::optional<double> de_inside;
   /// DE against the share of the deformation that vertices are to take, and what that is of a
   /// result that stays at rest: what is asked for. Summed over the triangles that take all of it,
   /// or, where none does or vertices have no weights, over all; divided by the number of all.
