@@ -97,6 +97,10 @@ class Transfer(HostTest):
                           bpy.ops.mimetra.transfer, target="target", full=False,
                           falloff_absolute=True)
 
+    def test_begins_a_falloff_at_a_length_that_can_be_seen(self):
+        falloff = bpy.ops.mimetra.transfer.get_rna_type().properties["falloff"]
+        self.assertAlmostEqual(falloff.default, 0.1)
+
     def test_reads_the_vertex_groups_that_are_named(self):
         groups = ("mouth", "nose")
         for values, expected in (((None, 3, "mouth.txt"), ()), (("field:mouth",), ("mouth",)),

@@ -85,13 +85,13 @@ def _choice(parameter, common):
 
 def _length(parameter, common):
     """A share of the diameter; the switch beside it makes it a length of the mesh."""
-    minimum = max(parameter.minimum or 0, 0)
-    return FloatProperty(default=max(_share(parameter.default), minimum), min=minimum, soft_max=1,
-                         precision=3, **common)
+    return FloatProperty(default=_share(parameter.default), min=max(parameter.minimum or 0, 0),
+                         soft_max=1, precision=3, **common)
 
 
 def _share(default):
-    return float(default) if default and not default.endswith("abs") else 0.0
+    """Of a length that has none, what is of use on a face when it is switched on."""
+    return float(default) if default and not default.endswith("abs") else 0.1
 
 
 def _path(parameter, common):
