@@ -12,8 +12,9 @@ Eigen::VectorXd triangle_weights(const Triangles& triangles, const Eigen::Vector
 /// With phi_i the mean of its corners' weights, triangle i wants the displacement gradient
 /// phi_i (Q_i - I), and vertices of weight 0 stay. Where the weights change, that is no gradient of
 /// any motion, and something must give: those triangles count less, by a factor that falls to
-/// kSlack, and across their edges gradients want to differ as phi_i (Q_i - I) do, so that neither
-/// end of the border is a crease. Where the weights are constant nothing is changed.
+/// kSlack, and across their edges gradients want to differ as phi_i (Q_i - I) do, so that the
+/// surface bends over the border's width and not at its ends; a border that is narrow for the
+/// motion still creases. Where the weights are constant nothing is changed.
 ///
 /// How much a triangle is of the border: b_i = min(1, |grad phi_i| diameter / 2). Smoothness is
 /// that of a plate which bends over the length kBend l, whatever the size of triangles: l is the
