@@ -266,6 +266,43 @@ TEST_F(CarriedWeights, AreNoneOnPartsWithoutPartner) {
   EXPECT_EQ(found.tail(4).maxCoeff(), 0);
 }
 
+TEST_F(CarriedWeights, OfPartsThatFollowAreThoseOfTheSurfaceAround) {
+  // A pebble over each end of the target, of which the source has none.
+  test::Shape pebble = test::octahedron();
+  pebble.positions *= 0.2;
+  test::Shape left = pebble, right = pebble;
+  left.positions.rowwise() += Eigen::RowVector3d(1, 3, 0.4);
+  right.positions.rowwise() += Eigen::RowVector3d(5, 3, 0.4);
+  const test::Shape all = test::both(test::both(fine_, left), right);
+  Correspondence pairs;
+  pairs.source_triangles = static_cast<int>(coarse_.triangles.rows());
+  for (int t = 0; t < all.triangles.rows(); ++t) {
+    if (t < fine_.triangles.rows()) pairs.parts.push_back({t / 4, 1.0});
+    pairs.offsets.push_back(static_cast<int>(pairs.parts.size()));
+  }
+  pairs.residuals = Eigen::VectorXd::Zero(all.triangles.rows());
+  const BlendshapeModel model(test::connectivity_of(all), all.positions,
+                              ShapeBasis{{}, Eigen::MatrixXd(all.positions.size(), 0)});
+  Target target{"with pebbles", model};
+  target.pairing =
+      std::make_shared<const Pairing>(test::mesh_of(coarse_), test::mesh_of(all), std::move(pairs));
+  const Eigen::VectorXd ramp = (coarse_.positions.col(0).array() - 1.5).max(0).min(1);
+  const Eigen::Index face = fine_.positions.rows();
+  const Eigen::VectorXd found =
+      bordered_selection(painted_region(ramp, coarse_.triangles), target, {}).weights;
+  // What is near them has these weights.
+  EXPECT_TRUE((found.segment(face, 6).array() == found[face]).all());
+  EXPECT_NEAR(found[face], 0, 0.1);
+  EXPECT_TRUE((found.tail(6).array() == 1).all());
+
+  SolveOptions fades;
+  fades.falloff = Length::share(0.2);
+  const Regions hard = regions_from_vertices(49, coarse_.triangles, {{26, 27, 33, 34}});
+  const Eigen::VectorXd faded = bordered_selection(hard, target, fades).weights;
+  EXPECT_GT(faded.tail(6).minCoeff(), 0.3);
+  EXPECT_EQ(faded.segment(face, 6).maxCoeff(), 0);
+}
+
 TEST_F(CarriedWeights, AreWhatAPairedTargetTakes) {
   const MeshSequence take(*test::connectivity_of(coarse_),
                           Positions(coarse_.positions).reshaped<Eigen::RowMajor>().transpose());

@@ -9,6 +9,7 @@
 #include "toolkit/mesh/diameter.h"
 #include "toolkit/mesh/text.h"
 #include "toolkit/regions/falloff.h"
+#include "toolkit/transfer/following_parts.h"
 
 namespace mimetra {
 
@@ -163,6 +164,10 @@ Selection bordered_selection(const Regions& regions, const Target& target,
                    [&distances](std::span<const VertexIndex> sources) {
                      return distances.from_nearest(sources);
                    });
+  }
+  if (target.pairing) {
+    weights = FollowingParts(model.neutral(), model.triangles(), weld, *target.pairing)
+                  .with_surface(std::move(weights));
   }
   selection.triangles = triangles_in(weights, model.triangles());
   for (Eigen::Index v = 0; v < weights.size(); ++v) selection.inside[v] = weights[v] > 0;

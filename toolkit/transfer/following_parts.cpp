@@ -104,4 +104,15 @@ void FollowingParts::place(Eigen::Map<Positions> pose) const {
   }
 }
 
+Eigen::VectorXd FollowingParts::with_surface(Eigen::VectorXd weights) const {
+  for (const Part& part : parts_) {
+    const Eigen::VectorXd around = weights(part.around);
+    // Bit by bit theirs where they agree.
+    const double least = around.minCoeff();
+    const double mean = part.counts.dot((around.array() - least).matrix()) / part.counts.sum();
+    weights(part.vertices).setConstant(std::min(least + mean, 1.0));
+  }
+  return weights;
+}
+
 }  // namespace mimetra

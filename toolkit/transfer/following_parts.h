@@ -24,6 +24,8 @@ class FollowingParts {
   const std::vector<bool>& vertices() const { return is_following_; }
   /// A pose whose other vertices are where they belong, with these parts where they follow to.
   void place(Eigen::Map<Positions> pose) const;
+  /// Weights of vertices (N) with those of each part replaced by one, the mean of what is around.
+  Eigen::VectorXd with_surface(Eigen::VectorXd weights) const;
 
  private:
   struct Part {
