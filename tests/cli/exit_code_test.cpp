@@ -60,7 +60,8 @@ TEST_F(ExitCode, Is2ForAnOutputThatTheRequestCannotMake) {
 
 TEST_F(ExitCode, Is2ForOptionsThatWeightsOfEachRegionDoNotFollow) {
   const std::string source = "transfer head --weights take.csv head -k 2 -o x ";
-  expect_failure(source + "--outside-weight 0.3", 2, "--outside-weight: is about --outside");
+  expect_failure(source + "--outside-weight 0.3", 2,
+                 "--outside-weight: is about --outside identity, or targets of other faces");
   expect_failure(source + "--outside fixed --outside-smoothness 1", 2, "--outside-smoothness: is");
   expect_failure(source + "--region-ridge 2", 2, "--region-ridge: is about weights of each");
   expect_failure(source + "--per-region --space vertex", 2, "head is solved for vertices");

@@ -217,18 +217,61 @@ TEST_F(PaintTest, IsWhatAFalloffFadesOutAround) {
   std::string half;
   for (int v = 0; v < kSide * kSide; ++v) half += "0.5\n";
   write("half.txt", half);
-  const test::CommandResult nothing_full = run(transfer("--paint half.txt --falloff 0.2"));
-  EXPECT_EQ(nothing_full.code, 4);
-  EXPECT_THAT(nothing_full.err, AllOf(HasSubstr("--falloff: "), HasSubstr("0.5"),
-                                      HasSubstr("give some vertices the weight 1")));
+  for (const std::string& call : {transfer(""), evaluate("")}) {
+    expect_failure(call + "--paint half.txt --falloff 0.2", 4,
+                   {"--falloff: half.txt: no vertex has the weight 1", "the largest is 0.5",
+                    "give some vertices the weight 1"});
+  }
   expect_failure(transfer("--full --falloff 0.2"), 2, {"--falloff: there are no regions"});
+  expect_failure(evaluate("--curve --falloff 0.2"), 2, {"--falloff: --curve has rows at shares"});
+}
+
+TEST_F(PaintTest, HasNoSoftBorderWhereTrianglesOutsideKeepTheirShape) {
+  ASSERT_EQ(run(transfer("--paint w.csv") + " --regions-out soft.json").code, 0);
+  const std::vector<std::string> says = {"--outside: triangles that keep their shape hold nothing",
+                                         "use --outside fixed"};
+  const std::string outside = " --space vertex --outside identity";
+  for (const std::string soft : {"--paint w.csv", "--falloff 0.2", "--regions soft.json"}) {
+    expect_failure(transfer(soft + outside), 2, says);
+  }
+  for (const std::string soft : {"--paint w.csv", "--falloff 0.2"}) {
+    expect_failure(evaluate(soft + outside), 2, says);
+  }
+  // A region's own weights fade in blendshape space only; there nothing is outside.
+  EXPECT_EQ(run(transfer("--paint w.csv --outside identity")).code, 0);
+}
+
+TEST_F(PaintTest, SaysWhatMakesACreaseLessVisible) {
+  // A region in the middle of a bump.
+  write("r.txt", "48\n49\n63\n64\n");
+  const std::string call =
+      "transfer head --weights take.csv head@wide=1 -o out.npy --force --space vertex "
+      "--complete 0 ";
+  const auto says = [&](const std::string& options) {
+    const test::CommandResult result = run(call + options);
+    EXPECT_EQ(result.code, 0) << result.err;
+    return result.err;
+  };
+  EXPECT_THAT(says("--regions r.txt"), HasSubstr("; --falloff 0.1 lets the motion fade"));
+  EXPECT_THAT(says("--regions r.txt --falloff 0.01"), HasSubstr("; use a larger --falloff"));
+  EXPECT_THAT(says("--regions r.txt --outside identity --outside-weight 10"),
+              HasSubstr("; --falloff 0.1 without --outside identity lets the motion fade"));
+  EXPECT_THAT(says("-k 2 --radius 0.1 --triangles 0.2"),
+              HasSubstr("; --falloff 0.1 without --triangles lets the motion fade"));
 }
 
 TEST_F(PaintTest, IsToBeLargerWhereExpressionsAreHardlySeen) {
   write("few.csv", "vertex,weight\n48,1\n");
   const test::CommandResult result = run(transfer("--paint few.csv"));
   EXPECT_EQ(result.code, 0);
-  EXPECT_THAT(result.err, HasSubstr("; paint more, or use --full"));
+  EXPECT_THAT(result.err, HasSubstr("; paint a wider border or more of the face, or use --full"));
+  write("few.txt", "48\n");
+  const test::CommandResult faded =
+      run("transfer head --weights take.csv head@wide=1 -o out.npy --force --regions few.txt "
+          "--complete 0 --falloff 0.01");
+  EXPECT_EQ(faded.code, 0);
+  EXPECT_THAT(faded.err, HasSubstr("; take a larger --falloff, more regions (-k, --radius) or "
+                                   "--full instead"));
 }
 
 TEST_F(PaintTest, ReportsARunAsItWas) {

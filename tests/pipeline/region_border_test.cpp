@@ -153,6 +153,34 @@ TEST_F(RegionBorder, IsRefusedWhereNothingCouldFollowIt) {
       ThrowsMessage<std::invalid_argument>(HasSubstr("per_region: painting says how much")));
 }
 
+TEST_F(RegionBorder, IsRefusedBeforeAnythingIsComputed) {
+  const Regions half = painted_region(0.5 * ramp(take_.rest()), take_.triangles());
+  const GivenRegions given{"half", half};
+  const Target actor{"actor", actor_};
+  SolveOptions options = with_falloff(Length::share(0.2));
+  EXPECT_THAT([&] { check_border(&given, actor, options); },
+              ThrowsMessage<OptionError>(HasSubstr("half: no vertex has the weight 1")));
+  EXPECT_EQ(test::topic_of([&] { check_border(&given, actor, options); }), Topic::no_full_weight);
+  EXPECT_NO_THROW(check_border(nullptr, actor, options));
+  options.vertex.outside = Outside::identity;
+  EXPECT_NO_THROW(check_border(nullptr, actor, options));
+  options.space = Space::vertex;
+  EXPECT_EQ(test::topic_of([&] { check_border(nullptr, actor, options); }), Topic::soft_outside);
+  options.falloff = {};
+  EXPECT_NO_THROW(check_border(nullptr, actor, options));
+  EXPECT_EQ(test::topic_of([&] { check_border(&given, actor, options); }), Topic::soft_outside);
+
+  // Nothing is asked of the sequence.
+  const auto stopped = [](double) -> bool { throw std::logic_error("something was computed"); };
+  TransferOptions of_transfer{.progress = stopped};
+  of_transfer.solving = options;
+  of_transfer.solving.falloff = Length::share(0.2);
+  EXPECT_EQ(test::topic_of([&] { transfer(take_, {actor}, of_transfer); }), Topic::soft_outside);
+  EvaluationOptions of_rows{.progress = stopped};
+  of_rows.solving = of_transfer.solving;
+  EXPECT_EQ(test::topic_of([&] { evaluate(take_, actor, of_rows); }), Topic::soft_outside);
+}
+
 TEST_F(RegionBorder, IsEvaluatedInARowOfItsOwn) {
   EvaluationOptions options{.given = GivenRegions{"painting", painted_}};
   const std::vector<EvaluationRow> rows = evaluate(take_, {"actor", actor_}, options);

@@ -180,6 +180,21 @@ TEST(Report, ShowsATargetOfOtherFaces) {
   EXPECT_FALSE(report_page(shown, {}, "", {}).html.empty());
 }
 
+TEST(Report, OfAnEvaluatedPaintingHasItsRowsOnly) {
+  const test::TemporaryFolder folder;
+  std::string list;
+  for (int v = 0; v < 225; ++v) list += v < 75 ? "1\n" : "0\n";
+  std::ofstream(folder / "w.txt") << list;
+  const RunRead run =
+      run_of("evaluate", "actor", {{"paint", (folder / "w.txt").string()}, {"falloff", "0.2"}});
+  const ReportStudy found = study(test::named(run), {}, {}, {});
+  const std::vector<EvaluationRow>& rows = found.transfer->rows;
+  ASSERT_EQ(rows.size(), 2U);
+  // Five rows of vertices are painted, and the border reaches beyond.
+  EXPECT_GT(found.regions.triangle_share(), 6.0 / 14);
+  EXPECT_EQ(found.regions.triangle_share(), rows[0].triangle_share);
+}
+
 TEST(Report, KeepsAnyLimit) {
   const ReportStudy found =
       study(test::named(run_of("transfer", "actor", {{"k", std::int64_t{3}}})), {2}, {}, {});

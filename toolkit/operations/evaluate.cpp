@@ -69,6 +69,11 @@ void check_rows(const Invocation& invocation) {
   if (invocation.parameters.flag("curve")) {
     refuse_options(invocation.parameters, {"select", "triangles", "k", "coverage"},
                    "--curve has rows by energy and for the transfer, at shares of its own");
+    if (!invocation.parameters.flag("per-region")) {
+      refuse_options(invocation.parameters, {"falloff"},
+                     "--curve has rows at shares of the triangles, and for a transfer that moves "
+                     "the whole face; a border holds more, and moves the regions only");
+    }
   }
   check_selection(invocation);
   if (invocation.parameters.flag("curve") &&
@@ -81,7 +86,7 @@ void check_rows(const Invocation& invocation) {
 
 Outcome run_evaluate(const Invocation& invocation) {
   check_rows(invocation);
-  check_solving(invocation.parameters, invocation.inputs.at("target"));
+  check_solving(invocation);
   const MeshSequence& sequence = invocation.sequence("source");
   EvaluationOptions options =
       evaluation_parameters(&invocation.get<FieldSequence>("source")).read(invocation.parameters);
@@ -144,9 +149,11 @@ Operation evaluate_operation() {
   operation.memory = memory_of_evaluate;
   operation.foresee = [](const Invocation& invocation) {
     check_rows(invocation);
-    check_solving(invocation.parameters, invocation.inputs.at("target"));
-    evaluation_parameters(&invocation.get<FieldSequence>("source")).read(invocation.parameters);
-    painted_region_of(invocation);
+    check_solving(invocation);
+    const EvaluationOptions options =
+        evaluation_parameters(&invocation.get<FieldSequence>("source")).read(invocation.parameters);
+    const auto painted = painted_region_of(invocation);
+    check_border(invocation, painted ? &*painted : nullptr, options.solving);
     check_targets(invocation);
   };
   return operation;

@@ -1,11 +1,15 @@
 #include "toolkit/operations/pipeline_parameters.h"
 
+#include <algorithm>
+
 #include <nlohmann/json.hpp>
 
+#include "toolkit/mesh/text.h"
 #include "toolkit/operations/parameter_files.h"
 #include "toolkit/operations/selection_parameters.h"
 #include "toolkit/operations/vertex_sets.h"
 #include "toolkit/pipeline/memory.h"
+#include "toolkit/pipeline/region_border.h"
 
 namespace mimetra {
 
@@ -133,13 +137,28 @@ BoundParameters<VertexTransferOptions> vertex_parameters() {
            "blendshape space: expressions move the whole face. Where the border is soft, vertices "
            "of "
            "weight 0 stay in both")
-      .add("outside-weight", Options::kOutsideWeight, "weight of --outside identity")
+      .add("outside-weight", Options::kOutsideWeight,
+           "weight of triangles that keep their shape: those of --outside identity, and those of a "
+           "target of other faces that have no partner")
       .add("outside-smoothness", Options::kOutsideSmoothness, "smoothness of --outside identity")
       .add({"anchor", ParameterKind::text, std::string(choice_name(AnchorWord::source)),
             "vertex space: what holds a piece in place: source (its motion), centroid, or a "
             "vertex"},
            apply_anchor);
   return list;
+}
+
+/// What makes a crease at the regions' border less visible.
+std::string softer_border(const Parameters& parameters) {
+  if (parameters.is_set("falloff")) return "use a larger --falloff";
+  if (parameters.is_set("paint")) return "paint a wider border, or let it fade by --falloff";
+  std::vector<std::string> excluded;
+  if (parameters.choice<Outside>("outside") == Outside::identity) {
+    excluded.emplace_back("--outside identity");
+  }
+  if (parameters.is_set("triangles")) excluded.emplace_back("--triangles");
+  const std::string without = excluded.empty() ? "" : " without " + joined(excluded, ", ", " and ");
+  return "--falloff 0.1" + without + " lets the motion fade, a larger one more softly";
 }
 
 /// A text of the pipeline, and how the command helps it.
@@ -168,6 +187,9 @@ std::string in_command_terms(Topic topic, const std::string& text, const Paramet
       if (!parameters.find("full")) return text;
       if (parameters.is_set("paint")) {
         return text + "; paint a wider border or more of the face, or use --full";
+      }
+      if (parameters.is_set("falloff") && !parameters.flag("per-region")) {
+        return text + "; take a larger --falloff, more regions (-k, --radius) or --full instead";
       }
       return text + "; take more regions (-k, --radius) or --full";
     case Topic::completed_regions:
@@ -206,11 +228,7 @@ std::string in_command_terms(Topic topic, const std::string& text, const Paramet
     case Topic::soft_outside:
       return "--outside: " + text + "; use --outside fixed";
     case Topic::visible_crease:
-      if (parameters.is_set("falloff")) return text + "; use a larger --falloff";
-      if (parameters.is_set("paint")) {
-        return text + "; paint a wider border, or let it fade by --falloff";
-      }
-      return text + "; --falloff 0.1 lets the motion fade, a larger one more softly";
+      return text + "; " + softer_border(parameters);
     case Topic::other_faces:
       if (!parameters.find("markers")) return text;
       return text +
@@ -365,11 +383,27 @@ void check_falloff(const Parameters& parameters) {
   }
 }
 
-void check_solving(const Parameters& parameters, const std::vector<NamedData>& targets) {
-  if (parameters.choice<Outside>("outside") != Outside::identity) {
-    refuse_options(parameters, {"outside-weight", "outside-smoothness"},
-                   "is about --outside identity");
-  }
+/// Whether triangles of a target may have no partner in the source.
+bool pairs_targets(const Invocation& invocation) {
+  if (!invocation.parameters.paths("correspondence").empty()) return true;
+  const Connectivity& faces = invocation.get<FieldSequence>("source").frames->connectivity();
+  return std::ranges::any_of(invocation.inputs.at("target"), [&faces](const NamedData& target) {
+    return !same_faces(faces, std::get<ModelData>(target.data).model.connectivity());
+  });
+}
+
+void check_outside(const Invocation& invocation) {
+  const Parameters& parameters = invocation.parameters;
+  if (parameters.choice<Outside>("outside") == Outside::identity) return;
+  refuse_options(parameters, {"outside-smoothness"}, "is about --outside identity");
+  if (pairs_targets(invocation)) return;
+  refuse_options(parameters, {"outside-weight"},
+                 "is about --outside identity, or targets of other faces than the source's");
+}
+
+void check_solving(const Invocation& invocation) {
+  const Parameters& parameters = invocation.parameters;
+  check_outside(invocation);
   if (!parameters.flag("per-region")) {
     check_falloff(parameters);
     refuse_options(parameters, {"region-ridge"}, "is about weights of each region, --per-region");
@@ -390,11 +424,21 @@ void check_solving(const Parameters& parameters, const std::vector<NamedData>& t
     throw UsageError("--" + name +
                      ": with --per-region all triangles are looked at, and no discs are added");
   }
-  for (const NamedData& target : targets) {
+  for (const NamedData& target : invocation.inputs.at("target")) {
     const BlendshapeModel& model = std::get<ModelData>(target.data).model.average();
     if (!solves_for_vertices(parameters, model)) continue;
     throw UsageError("--per-region: " + target.name + " is solved for vertices, not weights");
   }
+}
+
+void check_border(const Invocation& invocation, const GivenRegions* given,
+                  const SolveOptions& options) {
+  in_command_terms(invocation.parameters, [&] {
+    for (const NamedData& target : invocation.inputs.at("target")) {
+      const BlendshapeModel& model = std::get<ModelData>(target.data).model.average();
+      check_border(given, Target{target.name, model}, options);
+    }
+  });
 }
 
 SourceOptions described(SourceOptions options, const NamedData& input) {

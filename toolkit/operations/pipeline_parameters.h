@@ -36,10 +36,14 @@ BoundParameters<SolveOptions> solving_parameters();
 BoundParameters<SolveOptions> axes_parameters();
 BoundParameters<BlendshapeTransferOptions> blendshape_parameters();
 
-/// Throws UsageError for options of a solve that would do nothing beside others: --region-ridge
-/// without --per-region, and with it those that such weights do not follow, also
-/// for `targets` that are solved for vertices.
-void check_solving(const Parameters& parameters, const std::vector<NamedData>& targets);
+/// Throws UsageError for options of a solve that would do nothing beside others: those of triangles
+/// outside where there are none, --region-ridge without --per-region, and with it those that such
+/// weights do not follow, also for targets that are solved for vertices.
+void check_solving(const Invocation& invocation);
+
+/// Throws what check_border() throws for the targets of a call, as the command says it.
+void check_border(const Invocation& invocation, const GivenRegions* given,
+                  const SolveOptions& options);
 
 /// The options, with what an input that is a sequence says of itself.
 SourceOptions described(SourceOptions options, const NamedData& input);

@@ -129,7 +129,7 @@ bool looks_for_regions(const Invocation& invocation) {
 void check_outputs(const Invocation& invocation) {
   const TransferOptions options = transfer_parameters().read(invocation.parameters);
   check_paint(invocation);
-  check_solving(invocation.parameters, invocation.inputs.at("target"));
+  check_solving(invocation);
   if (options.full) {
     refuse_options(invocation.parameters, {"falloff"}, "there are no regions with --full");
     if (options.solving.per_region) {
@@ -172,9 +172,9 @@ void foresee_transfer(const Invocation& invocation) {
   check_outputs(invocation);
   const FrameSource& source = *invocation.get<FieldSequence>("source").frames;
   const TransferOptions options = options_of(invocation);
-  if (const auto* regions = std::get_if<GivenRegions>(&options.given)) {
-    check_regions(*regions, source);
-  }
+  const auto* regions = std::get_if<GivenRegions>(&options.given);
+  if (regions) check_regions(*regions, source);
+  check_border(invocation, regions, options.solving);
   if (const auto* components = std::get_if<GivenComponents>(&options.given)) {
     check_components(*components, source);
   }

@@ -76,11 +76,11 @@ EvaluatedTransfer evaluate_by(const Regions& regions, const EvaluatedTransfer& f
   const Selection selection = bordered_selection(regions, target, options);
   EvaluatedTransfer result = solved(source, target, selection, options);
   EvaluationRow& row = result.row;
-  const Regions bordered = with_border(regions, selection, target);
-  row.vertices = bordered.vertex_count();
-  row.triangles = static_cast<int>(bordered.triangles.size());
-  row.vertex_share = bordered.vertex_share();
-  row.triangle_share = bordered.triangle_share();
+  result.regions = with_border(regions, selection, target);
+  row.vertices = result.regions.vertex_count();
+  row.triangles = static_cast<int>(result.regions.triangles.size());
+  row.vertex_share = result.regions.vertex_share();
+  row.triangle_share = result.regions.triangle_share();
   row.radius = common_radius(regions);
   const double size = result.solution.sequence->diameter();
   row.mpe_all = percentage_error(full.error.de_all, row.de_all, size);
@@ -112,6 +112,7 @@ class Rows {
       check_selection(target_, of_transfer, options.solving.space);
     }
     check_rules(target_, options_.solving);
+    check_border(options.given ? &*options.given : nullptr, target_, options_.solving);
     options_.source.joint = joint_search({target_}, options_.solving);
     source_ = prepare_source(sequence, options_.source);
     options_.solving.progress = next_part(0, 1);
@@ -121,7 +122,6 @@ class Rows {
   /// A row of regions that are known already, completed for the target.
   void add_given(const GivenRegions& given) {
     check_regions(given, *source_.sequence);
-    if (options_.solving.per_region) check_hard(given);
     options_.solving.progress = next_part(0, 1);
     RegionCompleter completion(source_.sequence->rest(), source_.sequence->triangles(),
                                options_.regions, options_.analysis);

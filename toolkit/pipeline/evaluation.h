@@ -39,6 +39,8 @@ struct EvaluatedTransfer {
   EvaluationRow row;
   Solution solution;
   TransferError error;
+  /// Of the source, with_border() that they have; none of a transfer by all triangles.
+  Regions regions = {};
 };
 
 /// The transfer by all triangles. \pre a MatchedTarget. Throws as solve().
@@ -82,7 +84,7 @@ struct EvaluationOptions {
 
 /// The paper's Table I: a row for each number of components, or of discs, and one by all triangles,
 /// which is the last. Throws what prepare_source(), MatchedTarget(), analyse(), choose_regions(),
-/// check_regions(), check_hard(), RegionSelector, bordered_selection() and solve() throw.
+/// check_regions(), check_border(), RegionSelector, bordered_selection() and solve() throw.
 std::vector<EvaluationRow> evaluate(const MeshSequence& source, const Target& target,
                                     const EvaluationOptions& options = {});
 

@@ -100,13 +100,28 @@ void fill_gaps(Eigen::VectorXd& of_places, const std::vector<bool>& known,
   }
 }
 
+/// Throws where there is nothing around which something could fade out.
+void check_full_weight(const std::string& name, const Eigen::VectorXd& weights) {
+  if ((weights.array() == 1).any()) return;
+  throw OptionError(Topic::no_full_weight,
+                    name +
+                        ": no vertex has the weight 1, around which a region could fade out; the "
+                        "largest is " +
+                        readable(weights.maxCoeff()));
+}
+
 }  // namespace
 
-void check_hard(const GivenRegions& given) {
-  if (given.regions.weights.size() == 0) return;
-  throw std::invalid_argument("per_region: " + given.name +
-                              " says how much of the motion each vertex takes; with weights of "
-                              "each region it takes all of it");
+void check_border(const GivenRegions* given, const Target& target, const SolveOptions& options) {
+  const bool is_painted = given && given->regions.weights.size() > 0;
+  if (options.per_region && is_painted) {
+    throw std::invalid_argument("per_region: " + given->name +
+                                " says how much of the motion each vertex takes; with weights of "
+                                "each region it takes all of it");
+  }
+  if (options.per_region || (!is_painted && !options.falloff)) return;
+  check_soft_border(target, options);
+  if (is_painted && options.falloff) check_full_weight(given->name, given->regions.weights);
 }
 
 Eigen::VectorXd carried_weights(const Eigen::VectorXd& weights, const Pairing& pairing,
@@ -148,13 +163,7 @@ Selection bordered_selection(const Regions& regions, const Target& target,
   }
   if (fades) {
     check_option(options, SolveOptions::kFalloff);
-    if (!(weights.array() == 1).any()) {
-      throw OptionError(Topic::no_full_weight,
-                        target.name +
-                            ": no vertex has the weight 1, around which a region could "
-                            "fade out; the largest is " +
-                            readable(weights.maxCoeff()));
-    }
+    check_full_weight(target.name, weights);
     DistanceOptions of_distances = options.distances;
     of_distances.threads = options.threads;
     const SurfaceDistances distances =

@@ -5,9 +5,12 @@
 /// The soft border of regions: that of a painting, and what --falloff adds.
 namespace mimetra {
 
-/// Throws std::invalid_argument where regions that are to have weights of their own each
-/// (SolveOptions::per_region) say how much of the motion their vertices take.
-void check_hard(const GivenRegions& given);
+/// Refuses, before anything is computed, a border that a transfer cannot have; `given` are regions
+/// that are known already, or null. Throws what check_soft_border() throws where the border is
+/// soft, OptionError (Topic::no_full_weight) where the regions have no weight 1 around which they
+/// could fade out, and std::invalid_argument where regions that are to have weights of their own
+/// each (SolveOptions::per_region) say how much of the motion their vertices take.
+void check_border(const GivenRegions* given, const Target& target, const SolveOptions& options);
 
 /// Weights of a source's vertices on a target (N each): each takes the mean of its carriers', by
 /// their shares. One without carriers that is connected with one that has some takes the weight

@@ -125,20 +125,15 @@ void check_anchor(const VertexTransferOptions& options, const Target& target,
 }
 
 /// Throws for weights of a selection that are none, or that other options contradict.
-void check_soft_border(const Target& target, const Selection& selection,
-                       const SolveOptions& options) {
+void check_weights_of(const Selection& selection, const Target& target,
+                      const SolveOptions& options) {
   if (selection.weights.size() == 0) return;
   check_weights(selection.weights, target.model.get().vertices());
   if (options.per_region) {
     throw std::invalid_argument(
         "per_region: weights of each region fade by the falloff; a selection has none beside");
   }
-  if (options.vertex.outside == Outside::identity &&
-      solves_for_vertices(target.model, options.space)) {
-    throw OptionError(Topic::soft_outside,
-                      "triangles that keep their shape hold nothing, but a soft border ends where "
-                      "vertices stay");
-  }
+  check_soft_border(target, options);
 }
 
 /// The connected parts that some vertices are, ascending.
@@ -330,6 +325,14 @@ bool solves_for_vertices(const BlendshapeModel& target, Space space) {
   return space == Space::vertex || target.expressions().size() == 0;
 }
 
+void check_soft_border(const Target& target, const SolveOptions& options) {
+  if (options.vertex.outside != Outside::identity) return;
+  if (!solves_for_vertices(target.model, options.space)) return;
+  throw OptionError(Topic::soft_outside,
+                    "triangles that keep their shape hold nothing, but a soft border ends where "
+                    "vertices stay");
+}
+
 namespace {
 
 /// Throws std::invalid_argument where such weights cannot be found as the options say.
@@ -494,7 +497,7 @@ Solution solve(const Source& source, const Target& target, const Selection& sele
     throw OptionError(Topic::no_expressions, target.name + ": has no expressions");
   }
   check_rules(target, options);
-  check_soft_border(target, selection, options);
+  check_weights_of(selection, target, options);
   return solves_for_vertices(model, options.space)
              ? solve_vertices(source, target, selection, options)
              : solve_blendshapes(source, target, selection, options);

@@ -227,6 +227,10 @@ class MatchedTarget {
   std::optional<MatchReport> report_;
 };
 
+/// Throws OptionError (Topic::soft_outside) where the border of regions is soft and, in vertex
+/// space, triangles outside are to keep their shape.
+void check_soft_border(const Target& target, const SolveOptions& options);
+
 /// What a transfer by regions of the source looks at on a target: where faces differ, the triangles
 /// over theirs (triangles_over()) and in gaps between them. \pre a MatchedTarget
 Selection selection_of(const Regions& regions, const Target& target);

@@ -218,15 +218,13 @@ std::vector<ComparedOpening> openings_on(const MatchedTarget& target, const Fram
   return openings;
 }
 
-void check_border(const TransferOptions& options) {
+void check_full(const TransferOptions& options) {
   if (options.full && options.solving.per_region) {
     throw std::invalid_argument("per_region: a full transfer has no regions");
   }
   if (options.full && options.solving.falloff) {
     throw std::invalid_argument("falloff: a full transfer has no regions");
   }
-  const auto* given = std::get_if<GivenRegions>(&options.given);
-  if (given && options.solving.per_region) check_hard(*given);
 }
 
 }  // namespace
@@ -239,7 +237,7 @@ bool decomposes(const TransferOptions& options) {
 TransferResult transfer(const FrameSource& sequence, const std::vector<Target>& given,
                         const TransferOptions& options) {
   check_options(options);
-  check_border(options);
+  check_full(options);
   const std::vector<MatchedTarget> matched = matched_targets(sequence, given, options);
   std::vector<Target> targets;
   for (const MatchedTarget& target : matched) {
@@ -250,7 +248,10 @@ TransferResult transfer(const FrameSource& sequence, const std::vector<Target>& 
   of_solving.threads = options.threads;
   of_solving.notes = options.notes;
   of_solving.edges = edge_sum(options.analysis.compatibility);
-  for (const Target& target : targets) check_rules(target, of_solving);
+  for (const Target& target : targets) {
+    check_rules(target, of_solving);
+    check_border(std::get_if<GivenRegions>(&options.given), target, of_solving);
+  }
   of_solving.distances = options.analysis.distances;
   const Source source = source_of(sequence, targets, options, of_solving);
   Choice choice = choose(source, options);

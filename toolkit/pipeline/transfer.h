@@ -98,10 +98,9 @@ bool decomposes(const TransferOptions& options);
 /// border (Topic::visible_crease), and eyes and mouths that close on the source only.
 ///
 /// Throws std::invalid_argument for a full transfer by weights of each region or with a falloff,
-/// for weights of each region where the given ones have a border of their own, and what
-/// prepare_source(), MatchedTarget(), analyse(), analysis_of(), check_regions(), choose_regions(),
-/// RegionSelector, bordered_selection() and solve() throw; Cancelled. A target that does not fit is
-/// refused before anything is computed.
+/// and what prepare_source(), MatchedTarget(), analyse(), analysis_of(), check_regions(),
+/// check_border(), choose_regions(), RegionSelector, bordered_selection() and solve() throw;
+/// Cancelled. A target that does not fit is refused before anything is computed.
 TransferResult transfer(const FrameSource& source, const std::vector<Target>& targets,
                         const TransferOptions& options = {});
 

@@ -276,6 +276,7 @@ ReportedTransfer transferred(const RunSteps& steps, const Target& to, RunSteps::
       apart_from(notes, [&] { return steps.full(to, part_of(progress, 0, 0.1)); });
   main.regions = steps.completed(main, to);
   EvaluatedTransfer by_regions = steps.by(main.regions, full, to, part_of(progress, 0.1, 0.2));
+  main.regions = std::move(by_regions.regions);
   transfer.expressions = by_regions.solution.weight_names();
   const EvaluationRow main_row = completed(by_regions.row, main, steps);
   transfer.rows.push_back(main_row);
@@ -308,9 +309,11 @@ ReportedTransfer transferred(const RunSteps& steps, const Target& to, RunSteps::
   return transfer;
 }
 
-/// Numbers of components in the table: those asked for, and those of an evaluation.
+/// Numbers of components in the table: those asked for, and those of an evaluation that is not by
+/// a painting.
 std::vector<int> all_counts(std::vector<int> counts, const Parameters& parameters) {
   if (parameters.find("k")->kind != ParameterKind::integer_list) return counts;
+  if (parameters.optional_text("paint")) return counts;
   const auto& own = parameters.integers("k");
   counts.insert(counts.end(), own.begin(), own.end());
   return counts;
