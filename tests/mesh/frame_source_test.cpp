@@ -199,6 +199,50 @@ TEST(SumOverFrames, EndsWhereProgressAsksForIt) {
       Cancelled);
 }
 
+/// Whatever a source is made of, some vertices of it are those of whole frames.
+void expect_vertices_of(const FrameSource& source) {
+  const Frames all = source.read(1, 3);
+  for (const auto& [vertex, count] : {std::pair(0, 5), std::pair(1, 2), std::pair(4, 1)}) {
+    Frames some(3, 3 * count);
+    source.read_vertices(1, vertex, FramesView(some.data(), 3, some.cols()));
+    EXPECT_TRUE(some == all.middleCols(3 * vertex, some.cols())) << vertex;
+  }
+}
+
+TEST(FrameSource, ReadsSomeVertices) {
+  const auto source = std::make_shared<const Counted>(6, 5);
+  const auto in_memory = std::make_shared<const MeshSequence>(*source);
+  expect_vertices_of(*source);
+  expect_vertices_of(*in_memory);
+  expect_vertices_of(*with_rest(in_memory, Positions::Ones(5, 3)));
+  expect_vertices_of(*selected(in_memory, {5, 0, 1, 3}));
+  expect_vertices_of(*some_vertices(source, 0, 5));
+  EXPECT_TRUE(in_memory->reads_vertices());
+  EXPECT_FALSE(source->reads_vertices());
+}
+
+TEST(FrameSource, NamesVerticesThatAreNotThere) {
+  const auto source = std::make_shared<const Counted>(5, 4);
+  Frames room(1, 6);
+  EXPECT_THAT([&] { source->read_vertices(0, 3, FramesView(room.data(), 1, 6)); },
+              ThrowsMessage<std::out_of_range>(HasSubstr("vertices 3 to 4 of a mesh of 4")));
+  EXPECT_THAT([&] { source->read_vertices(0, 0, FramesView(room.data(), 1, 5)); },
+              ThrowsMessage<std::invalid_argument>(HasSubstr("three a vertex")));
+  EXPECT_THROW(some_vertices(source, 2, 3), std::out_of_range);
+}
+
+TEST(SomeVertices, AreASourceOfTheirOwn) {
+  const auto source = std::make_shared<const Counted>(6, 5, Positions::Random(5, 3));
+  const auto some = some_vertices(source, 1, 3);
+  EXPECT_EQ(some->vertices(), 3);
+  EXPECT_EQ(some->frames(), 6);
+  EXPECT_TRUE(some->rest() == source->rest().middleRows(1, 3));
+  EXPECT_TRUE(some->read(2, 2) == source->read(2, 2).middleCols(3, 9));
+  Frames last(1, 3);
+  some->read_vertices(4, 2, FramesView(last.data(), 1, 3));
+  EXPECT_TRUE(last == source->read(4, 1).middleCols(9, 3));
+}
+
 /// Numbers of all sizes, so that every order of adding them gives other digits.
 class Uneven : public FrameSource {
  public:

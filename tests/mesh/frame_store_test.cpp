@@ -55,6 +55,15 @@ TEST_P(FrameStoreTest, GivesBackWhatSeveralThreadsWrote) {
   EXPECT_TRUE(store.times() == sequence.times());
 }
 
+TEST_P(FrameStoreTest, GivesBackSomeVertices) {
+  const MeshSequence sequence = numbered(9, 7);
+  FrameStore store(sequence.header(), GetParam());
+  store.write(0, sequence.positions());
+  Frames some(4, 6);
+  store.read_vertices(3, 5, FramesView(some.data(), 4, 6));
+  EXPECT_TRUE(some == sequence.positions().block(3, 15, 4, 6));
+}
+
 TEST_P(FrameStoreTest, LeavesNoNameInTheFolder) {
   const MeshSequence sequence = numbered(9, 2);
   FrameStore store(sequence.header(), GetParam());
@@ -100,7 +109,7 @@ TEST(FrameStore, SaysThatThereIsNoRoom) {
   const test::TemporaryFolder folder;
   const TemporaryFiles here(folder.path());
   EXPECT_EXIT(store_on_a_small_disk(numbered(100, 100)), testing::ExitedWithCode(5),
-              "cannot keep the frames of this run for a while: File too large; set TMPDIR");
+              "cannot keep the numbers of this run for a while: File too large; set TMPDIR");
 }
 
 TEST(Stored, IsTheSourceItselfWhereThatIsQuick) {

@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <Eigen/LU>
+
 #include "tests/shapes.h"
 #include "toolkit/mesh/mesh_sequence.h"
 

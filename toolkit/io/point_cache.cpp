@@ -26,13 +26,13 @@ bool all_finite(std::span<const double> values) {
   return (carried & kSign) == 0;
 }
 
-void check_finite(const fs::path& path, int first, const FramesView& poses) {
+void check_finite(const fs::path& path, int first, VertexIndex vertex, const FramesView& poses) {
   const std::span<const double> values(poses.data(), static_cast<std::size_t>(poses.size()));
   if (all_finite(values)) return;
   const auto bad = std::ranges::find_if(values, [](double value) { return !std::isfinite(value); });
   const Eigen::Index at = bad - values.begin();
   throw IoError(path.string(), "frame " + std::to_string(first + at / poses.cols()) + ": vertex " +
-                                   std::to_string(at % poses.cols() / 3) +
+                                   std::to_string(vertex + at % poses.cols() / 3) +
                                    " has no finite position");
 }
 
@@ -52,9 +52,13 @@ class CachedFrames : public FrameSource {
       : FrameSource(std::move(header)), cache_(std::move(cache)) {}
 
   bool is_quick() const override { return true; }
+  bool reads_vertices() const override { return cache_->reads_vertices(); }
 
  private:
   void read_frames(int first, FramesView poses) const override { cache_->read(first, poses); }
+  void read_some_vertices(int first, VertexIndex vertex, FramesView poses) const override {
+    cache_->read_vertices(first, vertex, poses);
+  }
 
   std::unique_ptr<const PointCache> cache_;
 };
@@ -143,7 +147,20 @@ class PointCacheSink : public FrameSink {
 
 void PointCache::read(int first, FramesView poses) const {
   read_values(first, poses);
-  check_finite(path_, first, poses);
+  check_finite(path_, first, 0, poses);
+}
+
+void PointCache::read_vertices(int first, VertexIndex vertex, FramesView poses) const {
+  read_some_values(first, vertex, poses);
+  check_finite(path_, first, vertex, poses);
+}
+
+void PointCache::read_some_values(int first, VertexIndex vertex, FramesView poses) const {
+  Frames frame(1, 3 * Eigen::Index{vertices_});
+  for (Eigen::Index row = 0; row < poses.rows(); ++row) {
+    read_values(first + static_cast<int>(row), FramesView(frame.data(), 1, frame.cols()));
+    poses.row(row) = frame.row(0).segment(3 * Eigen::Index{vertex}, poses.cols());
+  }
 }
 
 void StoredFloats::read(const InputBytes& file, std::size_t first, std::span<double> values) const {
@@ -199,6 +216,15 @@ void StoredPointCache::read_values(int first, FramesView poses) const {
   const std::size_t columns = 3 * static_cast<std::size_t>(vertices_);
   positions_.read(*file_, columns * static_cast<std::size_t>(first),
                   {poses.data(), static_cast<std::size_t>(poses.size())});
+}
+
+void StoredPointCache::read_some_values(int first, VertexIndex vertex, FramesView poses) const {
+  const std::size_t columns = 3 * static_cast<std::size_t>(vertices_);
+  for (Eigen::Index row = 0; row < poses.rows(); ++row) {
+    const auto frame = static_cast<std::size_t>(first + row);
+    positions_.read(*file_, columns * frame + 3 * static_cast<std::size_t>(vertex),
+                    {poses.row(row).data(), static_cast<std::size_t>(poses.cols())});
+  }
 }
 
 OpenSequence open_point_cache(std::unique_ptr<const PointCache> cache, const SequenceSource& source,

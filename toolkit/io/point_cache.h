@@ -34,6 +34,10 @@ class PointCache {
   /// Frames from `first` on (x 3N). From several threads. Throws IoError, also for a position that
   /// is not finite.
   void read(int first, FramesView poses) const;
+  /// The same of the vertices from `vertex` on (x 3n).
+  void read_vertices(int first, VertexIndex vertex, FramesView poses) const;
+  /// True where these are found without reading whole frames.
+  virtual bool reads_vertices() const { return false; }
 
  protected:
   explicit PointCache(std::filesystem::path path) : path_(std::move(path)) {}
@@ -47,6 +51,7 @@ class PointCache {
 
  private:
   virtual void read_values(int first, FramesView poses) const = 0;
+  virtual void read_some_values(int first, VertexIndex vertex, FramesView poses) const;
 };
 
 /// Floating-point numbers that stand one after the other in a file.
@@ -63,6 +68,9 @@ struct StoredFloats {
 
 /// A cache whose positions stand frame after frame, x y z of each vertex.
 class StoredPointCache : public PointCache {
+ public:
+  bool reads_vertices() const override { return true; }
+
  protected:
   StoredPointCache(const std::filesystem::path& path, std::unique_ptr<const InputBytes> file)
       : PointCache(path), file_(std::move(file)) {}
@@ -77,6 +85,7 @@ class StoredPointCache : public PointCache {
 
  private:
   void read_values(int first, FramesView poses) const override;
+  void read_some_values(int first, VertexIndex vertex, FramesView poses) const override;
 };
 
 /// What a file holds besides a cache.

@@ -23,15 +23,29 @@ class SelectedFrames : public FrameSource {
   }
 
   bool is_quick() const override { return source_->is_quick(); }
+  bool reads_vertices() const override { return source_->reads_vertices(); }
 
  private:
-  /// Neighbours are read together.
   void read_frames(int first, FramesView poses) const override {
+    for_each_stretch(first, poses, [this](int start, FramesView neighbours) {
+      source_->read(start, neighbours);
+    });
+  }
+
+  void read_some_vertices(int first, VertexIndex vertex, FramesView poses) const override {
+    for_each_stretch(first, poses, [this, vertex](int start, FramesView neighbours) {
+      source_->read_vertices(start, vertex, neighbours);
+    });
+  }
+
+  /// Neighbours are read together.
+  template <typename Read>
+  void for_each_stretch(int first, FramesView poses, const Read& read) const {
     for (Eigen::Index row = 0; row < poses.rows();) {
       const int start = chosen_at(first + row);
       Eigen::Index count = 1;
       while (row + count < poses.rows() && chosen_at(first + row + count) == start + count) ++count;
-      source_->read(start, FramesView(poses.row(row).data(), count, poses.cols()));
+      read(start, FramesView(poses.row(row).data(), count, poses.cols()));
       row += count;
     }
   }
@@ -61,11 +75,42 @@ class RestedFrames : public FrameSource {
 
   std::shared_ptr<const Frames> in_memory() const override { return source_->in_memory(); }
   bool is_quick() const override { return source_->is_quick(); }
+  bool reads_vertices() const override { return source_->reads_vertices(); }
 
  private:
   void read_frames(int first, FramesView poses) const override { source_->read(first, poses); }
+  void read_some_vertices(int first, VertexIndex vertex, FramesView poses) const override {
+    source_->read_vertices(first, vertex, poses);
+  }
 
   std::shared_ptr<const FrameSource> source_;
+};
+
+/// Some vertices of another source.
+class VertexFrames : public FrameSource {
+ public:
+  VertexFrames(std::shared_ptr<const FrameSource> source, VertexIndex first, int count)
+      : FrameSource(source->header()), source_(std::move(source)), first_(first) {
+    source_->check_vertices(first, count);
+    Connectivity points;
+    points.vertices = count;
+    header_.connectivity = std::make_shared<const Connectivity>(std::move(points));
+    header_.rest = Positions(source_->rest().middleRows(first, count));
+  }
+
+  bool is_quick() const override { return source_->is_quick(); }
+  bool reads_vertices() const override { return source_->reads_vertices(); }
+
+ private:
+  void read_frames(int first, FramesView poses) const override {
+    source_->read_vertices(first, first_, poses);
+  }
+  void read_some_vertices(int first, VertexIndex vertex, FramesView poses) const override {
+    source_->read_vertices(first, first_ + vertex, poses);
+  }
+
+  std::shared_ptr<const FrameSource> source_;
+  VertexIndex first_;
 };
 
 /// Frames that fill `bytes`.
@@ -118,6 +163,30 @@ Frames FrameSource::read(int first, int count) const {
   return poses;
 }
 
+void FrameSource::check_vertices(VertexIndex first, Eigen::Index count) const {
+  if (first >= 0 && count >= 0 && first + count <= vertices()) return;
+  throw std::out_of_range("vertices " + std::to_string(first) + " to " +
+                          std::to_string(first + count - 1) + " of a mesh of " +
+                          std::to_string(vertices()));
+}
+
+void FrameSource::read_vertices(int first, VertexIndex vertex, FramesView poses) const {
+  check_run(first, poses.rows());
+  if (poses.cols() % 3 != 0) {
+    throw std::invalid_argument("room for " + std::to_string(poses.cols()) +
+                                " coordinates a frame, expected three a vertex");
+  }
+  check_vertices(vertex, poses.cols() / 3);
+  if (poses.size() > 0) read_some_vertices(first, vertex, poses);
+}
+
+void FrameSource::read_some_vertices(int first, VertexIndex vertex, FramesView poses) const {
+  for (Eigen::Index row = 0; row < poses.rows(); ++row) {
+    const FrameBlock frame(*this, first + static_cast<int>(row), 1);
+    poses.row(row) = frame.poses().row(0).segment(3 * vertex, poses.cols());
+  }
+}
+
 FrameBlock::FrameBlock(const FrameSource& source, int first, int count)
     : poses_(nullptr, 0, 3 * Eigen::Index{source.vertices()}) {
   const Frames* all = source.in_memory().get();
@@ -142,6 +211,11 @@ std::shared_ptr<const FrameSource> selected(std::shared_ptr<const FrameSource> s
 std::shared_ptr<const FrameSource> with_rest(std::shared_ptr<const FrameSource> source,
                                              std::optional<Positions> rest) {
   return std::make_shared<const RestedFrames>(std::move(source), std::move(rest));
+}
+
+std::shared_ptr<const FrameSource> some_vertices(std::shared_ptr<const FrameSource> source,
+                                                 VertexIndex first, int count) {
+  return std::make_shared<const VertexFrames>(std::move(source), first, count);
 }
 
 void for_each_run(const FrameSource& source, const BlockOptions& options,

@@ -71,14 +71,21 @@ class FrameSource {
   /// True where reading frames again costs hardly more than copying them: they are in memory, are
   /// stored as numbers, or follow from a product. Who reads others many times keeps them: stored().
   virtual bool is_quick() const { return false; }
+  /// True where reading some vertices costs what their share of the frames costs.
+  virtual bool reads_vertices() const { return false; }
 
   /// The frames `first` .. first + poses.rows() - 1 (rows x 3N); any run of frames gives the same
   /// numbers. May be called from several threads. Throws std::out_of_range for frames that are not
   /// there, std::invalid_argument unless the rows have 3N columns, and what reading throws.
   void read(int first, FramesView poses) const;
   Frames read(int first, int count) const;
+  /// Of the same frames the vertices `vertex` .. vertex + n - 1 (rows x 3n): the same numbers.
+  /// Throws as read(), std::out_of_range for vertices that are not there.
+  void read_vertices(int first, VertexIndex vertex, FramesView poses) const;
   /// Throws std::out_of_range unless the frames `first` .. first + count - 1 are there.
   void check_run(int first, Eigen::Index count) const;
+  /// Throws std::out_of_range unless the vertices `first` .. first + count - 1 are there.
+  void check_vertices(VertexIndex first, Eigen::Index count) const;
 
  protected:
   FrameSource() = default;
@@ -93,6 +100,8 @@ class FrameSource {
  private:
   /// \pre the frames are there and `poses` has 3N columns
   virtual void read_frames(int first, FramesView poses) const = 0;
+  /// By default frames are read as a whole. \pre the frames and vertices are there
+  virtual void read_some_vertices(int first, VertexIndex vertex, FramesView poses) const;
 };
 
 /// Takes the poses of a sequence whose header it knows.
@@ -137,6 +146,11 @@ std::shared_ptr<const FrameSource> selected(std::shared_ptr<const FrameSource> s
 /// frame stands in. Throws std::invalid_argument for another number of vertices.
 std::shared_ptr<const FrameSource> with_rest(std::shared_ptr<const FrameSource> source,
                                              std::optional<Positions> rest);
+
+/// The vertices `first` .. first + count - 1 of a source, without faces. Throws std::out_of_range
+/// for vertices that are not there.
+std::shared_ptr<const FrameSource> some_vertices(std::shared_ptr<const FrameSource> source,
+                                                 VertexIndex first, int count);
 
 struct BlockOptions {
   /// 0 for all there are.

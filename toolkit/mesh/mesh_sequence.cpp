@@ -103,4 +103,8 @@ void MeshSequence::read_frames(int first, FramesView poses) const {
   poses = frames_->middleRows(first, poses.rows());
 }
 
+void MeshSequence::read_some_vertices(int first, VertexIndex vertex, FramesView poses) const {
+  poses = frames_->block(first, 3 * Eigen::Index{vertex}, poses.rows(), poses.cols());
+}
+
 }  // namespace mimetra

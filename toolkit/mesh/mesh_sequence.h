@@ -31,6 +31,7 @@ class MeshSequence : public FrameSource {
   const Frames& positions() const { return *frames_; }
   std::shared_ptr<const Frames> in_memory() const override { return frames_; }
   bool is_quick() const override { return true; }
+  bool reads_vertices() const override { return true; }
 
   /// Frames first, first + step, ... before `last`. Throws std::invalid_argument unless
   /// 0 <= first < last <= frames() and step >= 1.
@@ -46,6 +47,7 @@ class MeshSequence : public FrameSource {
                std::optional<Positions> rest);
 
   void read_frames(int first, FramesView poses) const override;
+  void read_some_vertices(int first, VertexIndex vertex, FramesView poses) const override;
 
   std::shared_ptr<const Frames> frames_ = std::make_shared<Frames>();
 };
