@@ -38,7 +38,7 @@ Work admm_work(double frames, double vertices, double count) {
 /// What the kernels of one iteration work on.
 struct Kernels {
   Reduction reduction;
-  VertexBlocks<double> X;
+  std::unique_ptr<BlockSource<double>> X;
   DecompositionOptions options;
   SupportFunction support;
   Start start;
@@ -47,14 +47,14 @@ struct Kernels {
 
   Kernels(const MeshSequence& sequence, int count)
       : reduction(sequence.vertices()),
-        X(scaled_motion({sequence.rest(), sequence.triangles(), sequence.positions()},
+        X(scaled_motion({sequence.rest(), sequence.triangles(), sequence},
                         MotionScale::root_mean_square, reduction)
               .X),
         options(prepared_options(sequence, count)),
         support(support_function(options.distances, sequence.vertices(), 0.1 * sequence.diameter(),
                                  0.7 * sequence.diameter())),
-        start(greedy_start(X, support, options, reduction)),
-        products(initial_components(X, start.components, reduction)) {
+        start(greedy_start(*X, support, options, reduction)),
+        products(initial_components(*X, start.components, reduction)) {
     SupportMaps followed(support, count, reduction.part(), {});
     followed.follow(products.C, reduction);
     maps = followed.maps();
@@ -106,7 +106,7 @@ std::vector<Case> splocs_kernel_cases(const std::string& name, const MeshSequenc
   const AdmmOptions admm{kernels->options.sparsity, kernels->options.rho, kAdmmSteps};
   return {{{kGroup, kStart, size, start_work(frames, vertices, count, settings.machine)},
            [kernels] {
-             greedy_start(kernels->X, kernels->support, kernels->options, kernels->reduction);
+             greedy_start(*kernels->X, kernels->support, kernels->options, kernels->reduction);
            }},
           {{kGroup, kWeightStep, size, weight_work(frames, count)},
            [kernels, W = Eigen::MatrixXd(W)]() mutable {
@@ -114,7 +114,7 @@ std::vector<Case> splocs_kernel_cases(const std::string& name, const MeshSequenc
            }},
           {{kGroup, kAdmm, size, admm_work(frames, vertices, count)},
            [kernels, weights, admm, components = kernels->products]() mutable {
-             components = updated_components(kernels->X, weights, kernels->maps,
+             components = updated_components(*kernels->X, weights, kernels->maps,
                                              std::move(components), admm, kernels->reduction);
            }}};
 }

@@ -42,6 +42,11 @@ TEST_F(ExitCode, Is2ForAValueThatIsWrongWhateverTheData) {
   expect_failure("decompose head --weights take.csv -k 0 -o c.h5", 2, "-k: expected");
   expect_failure("decompose head --weights take.csv --d-min 0.8 -o c.h5", 2, "--d-min");
   expect_failure("decompose head --weights take.csv -o c.txt", 2, ".h5");
+  for (const std::string memory : {"much", "-1G", "0", "4X", "nan"}) {
+    expect_failure("decompose head --weights take.csv -o c.h5 --memory " + memory, 2,
+                   "--memory: expected a number with the unit k, M, G or T, such as 4G, found '" +
+                       memory + "'");
+  }
   expect_failure("transfer head --weights take.csv head -o x --region ball", 2, "disc, support");
   expect_failure("info head --weights take.csv --frames 5:2", 2, "5:2");
 }
@@ -94,6 +99,8 @@ TEST_F(ExitCode, Is3ForAnInputThatIsWrongInItself) {
 TEST_F(ExitCode, Is4ForInputsThatContradictEachOtherOrTheRequest) {
   expect_failure("decompose head --weights take.csv -k 226 -o c.h5", 4, "225 vertices");
   expect_failure("decompose head -k 2 -o c.h5", 4, "frame");
+  expect_failure("decompose head --weights take.csv -k 2 -o c.h5 --memory 1M", 4,
+                 "--memory: what is left of it, 0 GB, does not hold a decomposition of 12 frames");
   write("other.csv", "time,smile\n0,1\n");
   expect_failure("info head --weights other.csv", 4, "smile");
   write("small.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");

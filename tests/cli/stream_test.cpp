@@ -6,6 +6,7 @@
 #include "tests/cli/command_fixture.h"
 #include "toolkit/io/array_file.h"
 #include "toolkit/io/mesh_file.h"
+#include "toolkit/io/whole_file.h"
 
 namespace mimetra {
 namespace {
@@ -84,12 +85,34 @@ TEST_F(Streamed, TransfersKeepFramesInAFolderThatThereMustBe) {
   const auto result =
       run("transfer long.npy sheet.ply --align none --full -o a.npy", "TMPDIR=missing");
   EXPECT_EQ(result.code, 5);
-  EXPECT_THAT(result.err, testing::AllOf(HasSubstr("missing: cannot keep the frames"),
+  EXPECT_THAT(result.err, testing::AllOf(HasSubstr("missing: cannot keep the numbers"),
                                          HasSubstr("set TMPDIR to a folder")));
   EXPECT_FALSE(listing().contains("a.npy"));
 }
 
-TEST_F(Streamed, PlansSayWhichStepHasAllFramesInMemory) {
+TEST_F(Streamed, DecompositionsKeepWithinTheMemoryAllowed) {
+  write_take("long", kLong);
+  const std::string decompose = "decompose long.npy --align none -k 2 --iterations 2 ";
+  ASSERT_EQ(run(decompose + "-o a.h5").code, 0);
+  const auto planned = [this](const std::string& arguments) {
+    return json::parse(run(arguments + " --dry-run --json", "TMPDIR=tmp").out);
+  };
+  const double in_memory = planned(decompose + "-o b.h5").at("memory_bytes");
+  // Too little for the frames, by more than what the program has differs from run to run.
+  const double allowed = in_memory - 1e6 * kMore;
+  const std::string bounded =
+      decompose + "--memory " + std::to_string(std::llround(allowed)) + " -o b.h5";
+  const json plan = planned(bounded);
+  EXPECT_GT(plan.at("scratch_bytes").get<double>(), 1e6 * kMore);
+  EXPECT_LT(plan.at("memory_bytes").get<double>(), in_memory - 0.5e6 * kMore);
+  EXPECT_THAT(run(bounded + " --dry-run", "TMPDIR=tmp").out,
+              HasSubstr("tmp (set TMPDIR for another folder), while it runs\n"));
+  ASSERT_EQ(run(bounded, "TMPDIR=tmp").code, 0);
+  EXPECT_EQ(read_file(folder_ / "a.h5"), read_file(folder_ / "b.h5"));
+  EXPECT_THAT(listing("tmp"), testing::IsEmpty());
+}
+
+TEST_F(Streamed, PlansSayWhatIsReadAsAWhole) {
   ASSERT_EQ(run("regions head --weights take.csv -k 2 -o r.json").code, 0);
   const auto plan_of = [this](const std::string& arguments) {
     return json::parse(run(arguments + " --dry-run --json").out);
@@ -98,12 +121,14 @@ TEST_F(Streamed, PlansSayWhichStepHasAllFramesInMemory) {
     return plan_of(arguments).at("inputs").at(0).at("in_memory").get<bool>();
   };
   const std::string transfer = "transfer head --weights take.csv head -o a.npy ";
-  EXPECT_TRUE(reads_all(transfer));
-  EXPECT_FALSE(reads_all(transfer + "--full"));
+  EXPECT_FALSE(reads_all(transfer));
   EXPECT_FALSE(reads_all(transfer + "--regions r.json"));
+  EXPECT_FALSE(reads_all("decompose head --weights take.csv -k 2 -o c.h5"));
+  EXPECT_FALSE(reads_all("regions head --weights take.csv -k 2 -o s.json"));
   EXPECT_FALSE(reads_all("align head --weights take.csv -o a.npy"));
-  EXPECT_THAT(run(transfer + "--dry-run").out,
-              HasSubstr("12 frames of 225 vertices, all in memory for the decomposition\n"));
+  EXPECT_TRUE(reads_all("evaluate head --weights take.csv head -k 2"));
+  EXPECT_THAT(run("evaluate head --weights take.csv head -k 2 --dry-run").out,
+              HasSubstr("12 frames of 225 vertices, all in memory\n"));
 }
 
 TEST_F(Streamed, RegionsAreShownOnTheirSource) {

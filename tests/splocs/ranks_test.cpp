@@ -1,5 +1,7 @@
 #include <functional>
 #include <limits>
+#include <mutex>
+#include <set>
 
 #include <gmock/gmock.h>
 
@@ -19,15 +21,25 @@ Frames frames_of(const VertexPart& part, const MeshSequence& sequence) {
   return sequence.positions().middleCols(3 * part.first(), 3 * part.vertices());
 }
 
+/// Vertices without faces that move so.
+MeshSequence points_of(Frames frames) {
+  const auto vertices = static_cast<int>(frames.cols() / 3);
+  return {Connectivity::from_triangles(vertices, Triangles(0, 3)), std::move(frames)};
+}
+
+MeshSequence points_of(const VertexPart& part, const MeshSequence& sequence) {
+  return points_of(frames_of(part, sequence));
+}
+
 /// What each rank returns.
 std::vector<Components> decomposed_on(int ranks, const MeshSequence& sequence,
                                       const DecompositionOptions& options) {
   std::vector<Components> parts(ranks);
   on_ranks(ranks, [&](const Ranks& rank) {
     const VertexPart part(sequence.vertices(), rank.rank(), ranks);
-    const Frames frames = frames_of(part, sequence);
+    const MeshSequence points = points_of(part, sequence);
     parts[rank.rank()] =
-        decompose_part({sequence.rest(), sequence.triangles(), frames}, options, rank);
+        decompose_part({sequence.rest(), sequence.triangles(), points}, options, rank);
   });
   return parts;
 }
@@ -168,8 +180,8 @@ TEST(Ranks, SendInAnIterationWhatTheDocumentationSays) {
                ranks,
                [&](const Ranks& rank) {
                  const VertexPart part(sequence.vertices(), rank.rank(), ranks);
-                 const Frames frames = frames_of(part, sequence);
-                 decompose_part({sequence.rest(), sequence.triangles(), frames}, options, rank);
+                 const MeshSequence points = points_of(part, sequence);
+                 decompose_part({sequence.rest(), sequence.triangles(), points}, options, rank);
                })
         .numbers;
   };
@@ -207,8 +219,8 @@ TEST(Ranks, MeasureTheSameError) {
   for (const int ranks : {2, 3, 7}) {
     on_ranks(ranks, [&](const Ranks& rank) {
       const Reduction reduction(sequence.vertices(), 1, &rank);
-      const Frames frames = frames_of(reduction.part(), sequence);
-      const SequencePart part{sequence.rest(), sequence.triangles(), frames};
+      const MeshSequence points = points_of(reduction.part(), sequence);
+      const SequencePart part{sequence.rest(), sequence.triangles(), points};
       const DecompositionError error =
           decomposition_error(part, decompose_part(part, options, rank), reduction);
       EXPECT_EQ(error.rms, whole.rms);
@@ -217,6 +229,43 @@ TEST(Ranks, MeasureTheSameError) {
       EXPECT_EQ(error.sparsity, whole.sparsity);
     });
   }
+}
+
+TEST(Ranks, ReadTheirOwnVerticesOfASharedSequence) {
+  const MeshSequence sequence = many_blocks();
+  const DecompositionOptions options = grid_options(sequence, 6);
+  const Components whole = decompose(sequence, options);
+  const DecompositionError error = decomposition_error(sequence, whole);
+  for (const int ranks : {1, 2, 3, 7}) {
+    on_ranks(ranks, [&](const Ranks& rank) {
+      const Components found = decompose(sequence, options, rank);
+      EXPECT_TRUE(equal_bytes(found.displacements, whole.displacements));
+      EXPECT_TRUE(equal_bytes(found.support, whole.support));
+      EXPECT_TRUE(equal_bytes(found.weights, whole.weights));
+      EXPECT_EQ(found.centers, whole.centers);
+      EXPECT_EQ(found.energies, whole.energies);
+      EXPECT_EQ(decomposition_error(sequence, found, rank).rms, error.rms);
+    });
+  }
+}
+
+TEST(Ranks, ComputeEachDistanceOnce) {
+  const MeshSequence sequence = many_blocks();
+  DecompositionOptions options = grid_options(sequence, 6);
+  std::mutex mutex;
+  std::multiset<VertexIndex> alone, together;
+  const auto counted = [&mutex, distances = options.distances](std::multiset<VertexIndex>& asked) {
+    return [&mutex, &asked, distances](std::span<const VertexIndex> sources) {
+      const std::lock_guard lock(mutex);
+      asked.insert(sources.begin(), sources.end());
+      return distances(sources);
+    };
+  };
+  options.distances = counted(alone);
+  decompose(sequence, options);
+  options.distances = counted(together);
+  on_ranks(3, [&](const Ranks& rank) { decompose(sequence, options, rank); });
+  EXPECT_EQ(together, alone);
 }
 
 /// What one rank is given.
@@ -236,8 +285,8 @@ std::vector<std::string> messages_on(
                 frames_of(VertexPart(sequence.vertices(), rank.rank(), ranks), sequence)};
     change(rank.rank(), given);
     try {
-      decompose_part({given.rest, sequence.triangles(), given.frames}, grid_options(sequence, 2),
-                     rank);
+      decompose_part({given.rest, sequence.triangles(), points_of(given.frames)},
+                     grid_options(sequence, 2), rank);
     } catch (const Error& error) {
       messages[rank.rank()] = error.what();
     }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <sstream>
 
 #include <nlohmann/json.hpp>
@@ -55,7 +56,6 @@ std::string megabytes(double bytes) {
 }
 
 Outcome planned(const Operation& operation, const Invocation& invocation) {
-  const std::string step = operation.all_frames_for ? operation.all_frames_for(invocation) : "";
   const double computing = operation.memory ? operation.memory(invocation) : 0;
   Json inputs = Json::array(), outputs = Json::array();
   std::ostringstream text;
@@ -64,14 +64,13 @@ Outcome planned(const Operation& operation, const Invocation& invocation) {
     const auto given = invocation.inputs.find(input.name);
     if (given == invocation.inputs.end()) continue;
     for (const NamedData& value : given->second) {
-      const bool brought = input.streamed && !step.empty();
-      const bool in_memory = brought || is_in_memory(value.data);
+      const bool in_memory = is_in_memory(value.data);
       inputs.push_back({{"input", input.name},
                         {"name", value.name},
                         {"size", size_of(value)},
                         {"in_memory", in_memory}});
       text << "  reads   " << value.name << ": " << size_of(value)
-           << (in_memory ? ", all in memory" : "") << (brought ? " for " + step : "") << '\n';
+           << (in_memory ? ", all in memory" : "") << '\n';
     }
   }
   for (const auto& [name, paths] : invocation.wanted) {
@@ -84,11 +83,18 @@ Outcome planned(const Operation& operation, const Invocation& invocation) {
   const double peak = std::max(use.peak, use.now + computing);
   text << "  memory  " << megabytes(peak) << ", of which " << megabytes(use.now)
        << " hold program and inputs\n";
+  const double scratch = operation.scratch ? operation.scratch(invocation) : 0;
+  if (scratch > 0) {
+    text << "  scratch " << megabytes(scratch) << " in "
+         << std::filesystem::temp_directory_path().string()
+         << " (set TMPDIR for another folder), while it runs\n";
+  }
   return {{},
           json_text(Json{{"operation", operation.name},
                          {"inputs", inputs},
                          {"outputs", outputs},
-                         {"memory_bytes", peak}}),
+                         {"memory_bytes", peak},
+                         {"scratch_bytes", scratch}}),
           text.str()};
 }
 

@@ -1,9 +1,12 @@
+#include <chrono>
 #include <csignal>
 #include <exception>
 #include <iostream>
 #include <new>
+#include <sstream>
+#include <thread>
 
-#include <spdlog/sinks/stdout_sinks.h>
+#include <spdlog/sinks/ostream_sink.h>
 #include <spdlog/spdlog.h>
 
 #include "plugins/c/plugins.h"
@@ -29,6 +32,9 @@
 #ifdef MIMETRA_HAS_FITTING
 #include "fitting/fit_operation.h"
 #endif
+#ifdef MIMETRA_HAS_MPI
+#include "toolkit/cli/mpi_ranks.h"
+#endif
 
 namespace {
 
@@ -42,7 +48,14 @@ enum ExitCode {
   kInterrupted = 130
 };
 
-void log_to_stderr(const mimetra::cli::Request& request) {
+/// Where messages go.
+void say_to(std::ostream& stream) {
+  spdlog::set_default_logger(std::make_shared<spdlog::logger>(
+      "mimetra", std::make_shared<spdlog::sinks::ostream_sink_st>(stream, true)));
+  spdlog::set_pattern("%n: %l: %v");
+}
+
+void set_level(const mimetra::cli::Request& request) {
   spdlog::set_level(request.quiet     ? spdlog::level::err
                     : request.verbose ? spdlog::level::info
                                       : spdlog::level::warn);
@@ -58,7 +71,7 @@ mimetra::cli::ParsedLine parse(const mimetra::OperationTable& table,
   };
   try {
     mimetra::cli::ParsedLine line = mimetra::cli::parse_command_line(table, arguments);
-    if (line.request) log_to_stderr(*line.request);
+    if (line.request) set_level(*line.request);
     warn();
     return line;
   } catch (...) {
@@ -85,18 +98,19 @@ void add_built(mimetra::OperationTable& table) {
   mimetra::cli::add_manual(table);
 }
 
-int run(const std::vector<std::string>& arguments) {
+int run(const std::vector<std::string>& arguments, const mimetra::Ranks* ranks) {
   mimetra::OperationTable table;
   add_built(table);
   const std::vector<std::string> left_out = mimetra::add_plugins(table, mimetra::plugin_folders());
   const mimetra::cli::ParsedLine line = parse(table, arguments, left_out);
   if (!line.request) {
+    if (ranks && ranks->rank() > 0) return kDone;
     if (!(std::cout << line.text << std::flush)) {
       throw mimetra::OutputError("standard output", "cannot be written");
     }
     return kDone;
   }
-  mimetra::cli::run_command(table, *line.request);
+  mimetra::cli::run_command(table, *line.request, ranks);
   return kDone;
 }
 
@@ -124,14 +138,10 @@ void take_signals() {
   std::signal(SIGXFSZ, SIG_IGN);
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
-  spdlog::set_default_logger(spdlog::stderr_logger_st("mimetra"));
-  spdlog::set_pattern("%n: %l: %v");
-  take_signals();
+/// Returns the exit code of a run, whose error it has said.
+int exit_code_of(const std::vector<std::string>& arguments, const mimetra::Ranks* ranks) {
   try {
-    return run({argv + 1, argv + argc});
+    return run(arguments, ranks);
   } catch (const mimetra::UsageError& error) {
     return fail(kUsage, error);
   } catch (const mimetra::MismatchError& error) {
@@ -150,4 +160,35 @@ int main(int argc, char** argv) {
   } catch (const std::exception& error) {
     return fail(kFailed, error);
   }
+}
+
+#ifdef MIMETRA_HAS_MPI
+/// As one of the processes that mpirun started: one that fails ends all of them.
+int shared_exit_code(const std::vector<std::string>& arguments) {
+  const mimetra::cli::MpiRanks ranks;
+  // What all find wrong, the first says.
+  const bool is_first = ranks.rank() == 0;
+  std::ostringstream said;
+  if (!is_first) say_to(said);
+  const int code = exit_code_of(arguments, &ranks);
+  if (code == kDone || ranks.count() == 1) return code;
+  if (!is_first) {
+    std::this_thread::sleep_for(std::chrono::seconds(2));
+    std::cerr << said.str() << std::flush;
+  }
+  ranks.end_all(code);
+}
+#endif
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  say_to(std::cerr);
+  take_signals();
+  const std::vector<std::string> arguments(argv + 1, argv + argc);
+#ifdef MIMETRA_HAS_MPI
+  return shared_exit_code(arguments);
+#else
+  return exit_code_of(arguments, nullptr);
+#endif
 }

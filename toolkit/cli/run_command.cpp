@@ -87,6 +87,19 @@ void print_result(const Request& request, const Outcome& outcome,
   if (!std::cout.flush()) throw OutputError("standard output", "cannot be written");
 }
 
+/// Computes what the operation shares, in silence.
+void help_first(const OperationTable& table, const Request& request, const Ranks& ranks) {
+  if (!request.operation->shared || request.dry_run) return;
+  CallRequest asked = call_of(request);
+  asked.destinations.clear();
+  asked.ranks = &ranks;
+  asked.progress = [](double) { return !interrupted; };
+  asked.log = [](LogLevel, const std::string&) {};
+  Call call(table, std::move(asked));
+  call.load();
+  call.run();
+}
+
 /// What a run that wrote something has cost.
 std::string cost(const Call& call) {
   const FinishedRun& run = call.finished();
@@ -101,9 +114,11 @@ void interrupt() {
   interrupted = true;
 }
 
-void run_command(const OperationTable& table, const Request& request) {
+void run_command(const OperationTable& table, const Request& request, const Ranks* ranks) {
+  if (ranks && ranks->rank() > 0) return help_first(table, request, *ranks);
   Bar bar("mimetra " + request.operation->name, shows_bar(request));
   CallRequest asked = call_of(request);
+  asked.ranks = ranks;
   asked.progress = [&bar](double share) { return bar.update(share); };
   std::vector<std::string> warnings;
   asked.log = [&bar, &warnings](LogLevel level, const std::string& text) {

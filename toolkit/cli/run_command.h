@@ -1,6 +1,7 @@
 #pragma once
 
 #include "toolkit/cli/command_line.h"
+#include "toolkit/splocs/reduction.h"
 
 namespace mimetra::cli {
 
@@ -8,7 +9,8 @@ namespace mimetra::cli {
 void interrupt();
 
 /// Reads the inputs, runs the operation, writes outputs and manifest, prints the result on stdout
-/// and everything else on stderr. Throws what these throw.
-void run_command(const OperationTable& table, const Request& request);
+/// and everything else on stderr. Of several ranks all call it; what they share they compute
+/// together, and the first alone does all else. Throws what these throw.
+void run_command(const OperationTable& table, const Request& request, const Ranks* ranks = nullptr);
 
 }  // namespace mimetra::cli

@@ -230,6 +230,7 @@ void Call::load() {
   invocation_.progress = part_of(request_.progress, read_until, write_from);
   invocation_.log = request_.log;
   invocation_.threads = request_.threads;
+  invocation_.ranks = request_.ranks;
   invocation_.landmark_finder = table_.landmark_finder();
   finished_.read_seconds = stopwatch.seconds();
 }

@@ -40,6 +40,8 @@ struct CallRequest {
   bool may_stream = false;
   /// 0 for all there are.
   int threads = 0;
+  /// Of a program that several processes run, all of which make this call.
+  const Ranks* ranks = nullptr;
   Progress progress = {};
   Log log = {};
   /// For the manifest: the command line, and files that were read for it besides the inputs.

@@ -40,35 +40,52 @@ Table weight_table(const Components& components, const Eigen::VectorXd& times) {
   return table;
 }
 
-/// The sequence as far as it was decomposed: vertices that are not `inside` stay at rest.
-MeshSequence moving_inside(const MeshSequence& sequence, const std::vector<bool>& inside) {
-  if (inside.empty()) return sequence;
-  Frames frames = sequence.positions();
-  for (VertexIndex v = 0; v < sequence.vertices(); ++v) {
-    if (!inside[v]) frames.middleCols(3 * v, 3).rowwise() = sequence.rest().row(v);
+/// A sequence as far as it was decomposed: vertices that are not `inside` stay at rest.
+class MovingInside : public FrameSource {
+ public:
+  MovingInside(std::shared_ptr<const FrameSource> whole, std::vector<bool> inside)
+      : FrameSource(whole->header()), whole_(std::move(whole)), inside_(std::move(inside)) {}
+
+  bool is_quick() const override { return whole_->is_quick(); }
+
+ private:
+  void read_frames(int first, FramesView poses) const override {
+    whole_->read(first, poses);
+    for (VertexIndex v = 0; v < vertices(); ++v) {
+      if (!inside_[v]) poses.middleCols(3 * v, 3).rowwise() = rest().row(v);
+    }
   }
-  return sequence.with_frames(std::move(frames));
+
+  std::shared_ptr<const FrameSource> whole_;
+  std::vector<bool> inside_;
+};
+
+std::shared_ptr<const FrameSource> moving_inside(std::shared_ptr<const FrameSource> sequence,
+                                                 const std::vector<bool>& inside) {
+  if (inside.empty()) return sequence;
+  return std::make_shared<const MovingInside>(std::move(sequence), inside);
 }
 
 Outcome run_decompose(const Invocation& invocation) {
-  const MeshSequence& sequence = invocation.sequence("sequence");
-  DecomposeCall call =
-      decompose_parameters(&invocation.get<FieldSequence>("sequence")).read(invocation.parameters);
+  const FieldSequence& sequence = invocation.get<FieldSequence>("sequence");
+  DecomposeCall call = decompose_parameters(&sequence).read(invocation.parameters);
   call.analysis.threads = invocation.threads;
+  call.analysis.ranks = invocation.ranks;
   call.analysis.progress = invocation.progress;
   call.analysis.notes = warnings_of(invocation);
   call.source = described(std::move(call.source), invocation.input("sequence"));
   call.source.notes = call.analysis.notes;
   call.source.threads = invocation.threads;
   auto [still, analysis] = in_command_terms(invocation.parameters, [&] {
-    Source source = prepare_source(sequence, call.source);
+    Source source = prepare_source(sequence.frames, call.source);
     Analysis found = analyse(source, call.analysis);
     return std::pair(std::move(source), std::move(found));
   });
   const Components& components = analysis.components;
-  const DecompositionError error = decomposition_error(
-      moving_inside(MeshSequence(*still.sequence).with_rest(components.rest), analysis.inside),
-      components);
+  const auto moving = moving_inside(with_rest(still.sequence, components.rest), analysis.inside);
+  const DecompositionError error = invocation.ranks
+                                       ? decomposition_error(*moving, components, *invocation.ranks)
+                                       : decomposition_error(*moving, components);
   const auto dead = std::ranges::count(components.centers, -1);
   if (dead > 0) {
     invocation.warn(std::to_string(dead) + " of " + std::to_string(components.count()) +
@@ -108,16 +125,21 @@ Operation decompose_operation() {
   operation.name = "decompose";
   operation.summary = "Sparse localized deformation components of a sequence";
   operation.inputs = {{"sequence", DataKind::sequence, "sequence to decompose"}};
-  operation.inputs.front().fields = true;
+  operation.inputs.front().streamed = operation.inputs.front().fields = true;
   operation.outputs = {{"out", DataKind::components, "the components"},
                        {"weights-out", DataKind::table, "weights over time", true}};
   operation.parameters = decompose_parameters().declared();
   operation.examples = {"decompose takes/ -k 30 -o take.h5",
                         "decompose take.npy -k 50 --compat splocs2013 -o take.h5"};
   operation.run = run_decompose;
-  operation.memory = [](const Invocation& invocation) {
-    return analysis_bytes(invocation, invocation.input("sequence"),
-                          invocation.parameters.integer("k"));
+  operation.shared = true;
+  const auto plan = [](const Invocation& invocation) {
+    return analysis_plan(invocation, *invocation.get<FieldSequence>("sequence").frames,
+                         invocation.parameters.integer("k"));
+  };
+  operation.memory = [plan](const Invocation& invocation) { return plan(invocation).bytes; };
+  operation.scratch = [plan](const Invocation& invocation) {
+    return plan(invocation).scratch_bytes;
   };
   return operation;
 }

@@ -119,8 +119,7 @@ double memory_of_evaluate(const Invocation& invocation) {
   const int most = options.curve ? EvaluationOptions::kCurveComponents
                                  : *std::ranges::max_element(options.counts);
   const bool decomposes = !selects && !invocation.parameters.optional_text("paint");
-  const double analysis =
-      !decomposes ? 0 : analysis_bytes(invocation, invocation.input("source"), most);
+  const double analysis = !decomposes ? 0 : analysis_plan(invocation, sequence, most).bytes;
   const double selection = selects || options.curve ? selection_bytes(sequence, target) : 0;
   const double regional =
       options.solving.per_region ? regional_bytes(sequence, target, most, options.solving) : 0;

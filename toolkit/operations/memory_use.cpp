@@ -1,23 +1,56 @@
 #include "toolkit/operations/memory_use.h"
 
+#include <algorithm>
 #include <fstream>
+#include <limits>
+#include <map>
 #include <sstream>
 #include <string>
 
 namespace mimetra {
+namespace {
 
-MemoryUse MemoryUse::of_this_process() {
-  MemoryUse use;
-  std::ifstream status("/proc/self/status");
-  for (std::string line; std::getline(status, line);) {
+constexpr double kKilobyte = 1024;
+
+/// "NAME: NUMBER kB" lines, in bytes.
+std::map<std::string, double> kilobytes_in(const std::string& path) {
+  std::map<std::string, double> bytes;
+  std::ifstream file(path);
+  for (std::string line; std::getline(file, line);) {
     std::istringstream words(line);
     std::string name;
     double kilobytes = 0;
     words >> name >> kilobytes;
-    if (name == "VmRSS:") use.now = 1024 * kilobytes;
-    if (name == "VmHWM:") use.peak = 1024 * kilobytes;
+    bytes[name] = kKilobyte * kilobytes;
   }
-  return use;
+  return bytes;
+}
+
+/// What a control group may still take; +infinity without a limit.
+double left_in_group() {
+  std::ifstream limit("/sys/fs/cgroup/memory.max"), use("/sys/fs/cgroup/memory.current");
+  double most = 0, now = 0;
+  if (!(limit >> most) || !(use >> now)) return std::numeric_limits<double>::infinity();
+  return std::max(0.0, most - now);
+}
+
+}  // namespace
+
+MemoryUse MemoryUse::of_this_process() {
+  const auto bytes = kilobytes_in("/proc/self/status");
+  const auto of = [&bytes](const char* name) {
+    const auto found = bytes.find(name);
+    return found == bytes.end() ? 0 : found->second;
+  };
+  return {of("VmRSS:"), of("VmHWM:")};
+}
+
+double available_memory() {
+  const auto bytes = kilobytes_in("/proc/meminfo");
+  const auto available = bytes.find("MemAvailable:");
+  const double of_machine =
+      available == bytes.end() ? std::numeric_limits<double>::infinity() : available->second;
+  return std::min(of_machine, left_in_group());
 }
 
 }  // namespace mimetra

@@ -11,4 +11,8 @@ struct MemoryUse {
   static MemoryUse of_this_process();
 };
 
+/// Bytes that the machine, or the group of processes that this one is confined with, has left
+/// besides what this process has; +infinity where the system does not tell.
+double available_memory();
+
 }  // namespace mimetra

@@ -17,6 +17,8 @@
 
 namespace mimetra {
 
+class Ranks;
+
 /// Something an operation works on.
 struct Input {
   std::string name;  ///< "source"; an optional or named one is the option --NAME
@@ -75,6 +77,8 @@ struct Invocation {
   Progress progress;
   Log log;
   int threads = 0;  ///< 0 for all there are; results do not depend on it
+  /// Of an operation that is shared by several processes; results do not depend on them, either.
+  const Ranks* ranks = nullptr;
   /// The program's; empty where it cannot find faces.
   LandmarkFinder landmark_finder = {};
 
@@ -124,10 +128,12 @@ struct Operation {
   std::vector<Parameter> parameters;
   std::vector<std::string> examples;  ///< two command lines without the program's name
   std::function<Outcome(const Invocation&)> run;
+  /// Several processes decompose the sequence together; all else each does for itself.
+  bool shared = false;
   /// Bytes that it takes at its peak besides what it is given; none where that is little.
   std::function<double(const Invocation&)> memory = {};
-  /// The step that has all frames of streamed inputs in memory, "the decomposition"; "" for none.
-  std::function<std::string(const Invocation&)> all_frames_for = {};
+  /// Bytes that it keeps in a file without a name meanwhile, in the folder for temporary files.
+  std::function<double(const Invocation&)> scratch = {};
   /// For who asks what a run would do: throws and warns as it would of its inputs, without
   /// computing.
   std::function<void(const Invocation&)> foresee = {};

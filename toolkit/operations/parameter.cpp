@@ -296,6 +296,22 @@ std::optional<std::string> Parameters::optional_text(const std::string& name) co
   return text ? std::optional(*text) : std::nullopt;
 }
 
+std::optional<double> Parameters::bytes(const std::string& name) const {
+  const auto given = optional_text(name);
+  if (!given) return {};
+  constexpr std::string_view kUnits = "kMGT";
+  std::string_view text = *given;
+  if (text.ends_with('B')) text.remove_suffix(1);
+  const auto power = text.empty() ? kUnits.npos : kUnits.find(text.back());
+  if (power != kUnits.npos) text.remove_suffix(1);
+  const auto number = parse_number<double>(text);
+  const double unit = power == kUnits.npos ? 1 : std::pow(1e3, static_cast<double>(power + 1));
+  if (number && *number > 0 && std::isfinite(*number * unit)) return *number * unit;
+  throw UsageError("--" + name +
+                   ": expected a number with the unit k, M, G or T, such as 4G, found '" + *given +
+                   "'");
+}
+
 Length Parameters::length(const std::string& name) const {
   return *parse_length(text(name));
 }

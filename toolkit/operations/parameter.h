@@ -121,6 +121,9 @@ class Parameters {
     throw std::invalid_argument("parameter '" + name + "': no such choice as '" + text(name) + "'");
   }
   Length length(const std::string& name) const;
+  /// "4G" or "500M" in bytes (k, M, G and T are powers of 1000); nothing where none is given.
+  /// Throws UsageError for any other text.
+  std::optional<double> bytes(const std::string& name) const;
 
  private:
   std::vector<Parameter> declared_;

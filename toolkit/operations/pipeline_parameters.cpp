@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "toolkit/mesh/text.h"
+#include "toolkit/operations/memory_use.h"
 #include "toolkit/operations/parameter_files.h"
 #include "toolkit/operations/selection_parameters.h"
 #include "toolkit/operations/vertex_sets.h"
@@ -84,6 +85,21 @@ BoundParameters<DecompositionOptions> decomposition_parameters() {
            "iterate on as few poses over time as leave out this share of the motion, 1e-6 or "
            "more; 0 on all");
   return list;
+}
+
+Parameter memory_parameter() {
+  return {"memory",
+          ParameterKind::text,
+          {},
+          "memory that the run may take, such as 4G or 500M: motion that is larger is kept in a "
+          "file while the run lasts, or read again; the result is the same; default what the "
+          "machine has left"};
+}
+
+/// What a run may take besides what its process has.
+double memory_for(const Parameters& parameters) {
+  const auto allowed = parameters.bytes("memory");
+  return allowed ? std::max(0.0, *allowed - MemoryUse::of_this_process().now) : available_memory();
 }
 
 /// Vertices where regions may lie, named by `options` of one name; not read without a sequence.
@@ -303,7 +319,10 @@ BoundParameters<AnalysisOptions> analysis_parameters(const FieldSequence* sequen
            "splocs2013: follow the reference implementation to the letter; paper: also sum eq. 10 "
            "and 12 over two edges of each triangle")
       .add(&AnalysisOptions::distances, distance_parameters())
-      .add(place_parameters(sequence));
+      .add(place_parameters(sequence))
+      .add(memory_parameter(), [](const Parameters& parameters, AnalysisOptions& options) {
+        options.decomposition.memory = memory_for(parameters);
+      });
   return list;
 }
 
@@ -478,15 +497,17 @@ Json json_of(const HeadMotionTaken& motion) {
   return json;
 }
 
-double analysis_bytes(const Invocation& invocation, const NamedData& source, int count) {
-  if (invocation.find<Components>("components")) return 0;
-  const SourceOptions options =
-      described(alignment_parameters().read(invocation.parameters), source);
-  const FrameSource& frames = *std::get<FieldSequence>(source.data).frames;
+DecompositionPlan analysis_plan(const Invocation& invocation, const FrameSource& source,
+                                int count) {
+  DecompositionPlan plan;
+  if (invocation.find<Components>("components")) return plan;
   AnalysisOptions analysis = analysis_parameters().read(invocation.parameters);
   analysis.decomposition.count = count;
-  return alignment_bytes(frames, options) +
-         analysis_bytes(frames, component_count(frames, analysis));
+  analysis.threads = invocation.threads;
+  plan = analysis_plan(source, analysis);
+  plan.bytes += stored_bytes(source);
+  if (!source.is_quick()) plan.scratch_bytes += frame_bytes(source) - stored_bytes(source);
+  return plan;
 }
 
 Notes warnings_of(const Invocation& invocation) {

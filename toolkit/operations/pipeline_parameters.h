@@ -7,6 +7,7 @@
 #include "toolkit/operations/operation.h"
 #include "toolkit/pipeline/evaluation.h"
 #include "toolkit/pipeline/transfer.h"
+#include "toolkit/splocs/decomposition_plan.h"
 
 namespace mimetra {
 
@@ -60,9 +61,10 @@ Json json_of(const HeadMotionTaken& motion);
 /// True for the vertex space of --space, and where a target has no expressions to solve for.
 bool solves_for_vertices(const Parameters& parameters, const BlendshapeModel& target);
 
-/// Bytes of the decomposition of a sequence, of which `count` components are asked for, alignment
-/// included; 0 for components that are given.
-double analysis_bytes(const Invocation& invocation, const NamedData& source, int count);
+/// How the decomposition of a sequence, of which `count` components are asked for, keeps within
+/// --memory; what is kept of frames that are slow to read is included. Nothing for components that
+/// are given.
+DecompositionPlan analysis_plan(const Invocation& invocation, const FrameSource& source, int count);
 
 /// Notes become warnings that name the options which help.
 Notes warnings_of(const Invocation& invocation);

@@ -59,11 +59,12 @@ SourceOptions source_options(const Invocation& invocation, const RegionsCall& ca
 
 /// By components that are given, or those of the sequence without its motion.
 Found found_by_energy(const Invocation& invocation, const RegionsCall& call) {
-  const MeshSequence& sequence = invocation.sequence("sequence");
+  const std::shared_ptr<const FrameSource>& sequence =
+      invocation.get<FieldSequence>("sequence").frames;
   Found found;
   const auto analysis = [&] {
     if (const auto given = given_components(invocation)) {
-      return analysis_of(*given, sequence, call.analysis);
+      return analysis_of(*given, *sequence, call.analysis);
     }
     const Source source = prepare_source(sequence, source_options(invocation, call));
     found.head_motion = source.head_motion;
@@ -78,10 +79,11 @@ Found found_by_energy(const Invocation& invocation, const RegionsCall& call) {
 /// By what they tell of the target's expressions.
 Found found_for_transfer(const Invocation& invocation, const RegionsCall& call) {
   const Stopwatch stopwatch;
-  const MeshSequence& sequence = invocation.sequence("sequence");
+  const std::shared_ptr<const FrameSource>& sequence =
+      invocation.get<FieldSequence>("sequence").frames;
   SourceOptions of_source = source_options(invocation, call);
-  const MatchedTarget matched(sequence, targets_of(invocation, "sequence").front(),
-                              {.source_rest = asked_rest(sequence, of_source),
+  const MatchedTarget matched(*sequence, targets_of(invocation, "sequence").front(),
+                              {.source_rest = asked_rest(*sequence, of_source),
                                .threads = invocation.threads,
                                .notes = of_source.notes});
   check_selection(*matched, call.regions, Space::automatic);
@@ -135,6 +137,7 @@ RegionsCall read_regions_call(const Invocation& invocation) {
   call.regions = with_most_discs(std::move(call.regions), invocation.parameters);
   call.regions.notes = call.analysis.notes = warnings_of(invocation);
   call.analysis.threads = invocation.threads;
+  call.analysis.ranks = invocation.ranks;
   call.analysis.progress = invocation.progress;
   const Components* given = invocation.find<Components>("components");
   if (call.component_fields && given && given->support.size() == 0) {
@@ -199,7 +202,7 @@ Operation regions_operation() {
       {"sequence", DataKind::sequence, "sequence whose moving regions are looked for"},
       {"components", DataKind::components, "components of an earlier decompose", true},
       {"target", DataKind::model, "who receives the motion, for --select transfer", true}};
-  operation.inputs.front().fields = true;
+  operation.inputs.front().streamed = operation.inputs.front().fields = true;
   operation.outputs = {{"out", DataKind::regions, "the regions, as .pvd over time"},
                        components_output(),
                        {"paraview", DataKind::document,
@@ -211,14 +214,22 @@ Operation regions_operation() {
   operation.examples = {"regions takes/ -k 30 -o rois/take.pvd --paraview view.py",
                         "regions take.npy --coverage 0.8 --radius 12abs -o rois.json"};
   operation.run = run_regions;
+  operation.shared = true;
   operation.foresee = foresee_regions;
-  operation.memory = [](const Invocation& invocation) {
-    if (invocation.parameters.choice<Selector>("select") == Selector::transfer) {
-      const auto* target = invocation.find<ModelData>("target");
-      return target ? selection_bytes(invocation.sequence("sequence"), target->model.average()) : 0;
+  const auto plan = [](const Invocation& invocation) {
+    const FrameSource& sequence = *invocation.get<FieldSequence>("sequence").frames;
+    if (invocation.parameters.choice<Selector>("select") == Selector::energy) {
+      return analysis_plan(invocation, sequence, invocation.parameters.integer("k"));
     }
-    return analysis_bytes(invocation, invocation.input("sequence"),
-                          invocation.parameters.integer("k"));
+    DecompositionPlan selection;
+    if (const auto* target = invocation.find<ModelData>("target")) {
+      selection.bytes = selection_bytes(sequence, target->model.average());
+    }
+    return selection;
+  };
+  operation.memory = [plan](const Invocation& invocation) { return plan(invocation).bytes; };
+  operation.scratch = [plan](const Invocation& invocation) {
+    return plan(invocation).scratch_bytes;
   };
   return operation;
 }

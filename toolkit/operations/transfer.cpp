@@ -277,19 +277,21 @@ int region_count(const Invocation& invocation, const TransferOptions& options) {
   return options.analysis.decomposition.count;
 }
 
-/// Decomposition, for which all frames are there, then one target after the other, whose results
-/// are kept.
+/// Of the decomposition; nothing where there is none.
+DecompositionPlan plan_of(const Invocation& invocation) {
+  if (!looks_for_components(invocation)) return {};
+  return analysis_plan(
+      invocation, *invocation.get<FieldSequence>("source").frames,
+      transfer_parameters().read(invocation.parameters).analysis.decomposition.count);
+}
+
+/// Decomposition, then one target after the other, whose results are kept.
 double memory_of_transfer(const Invocation& invocation) {
-  const NamedData& source = invocation.input("source");
   const FieldSequence& held = invocation.get<FieldSequence>("source");
   TransferOptions options = transfer_parameters().read(invocation.parameters);
   options.solving.threads = invocation.threads;
   const FrameSource& frames = *held.frames;
-  const bool decomposes = looks_for_components(invocation);
-  const double loaded = decomposes && !held.is_in_memory() ? frame_bytes(frames) : 0;
-  const double analysis =
-      decomposes ? analysis_bytes(invocation, source, options.analysis.decomposition.count) : 0;
-  double solutions = decomposes ? 0 : stored_bytes(frames), most_selection = 0;
+  double solutions = stored_bytes(frames), most_selection = 0;
   for (const NamedData& target : invocation.inputs.at("target")) {
     solutions += solution_bytes(frames, model_of(target), options.solving);
     if (options.regions.select == Selector::transfer) {
@@ -302,7 +304,7 @@ double memory_of_transfer(const Invocation& invocation) {
     // Results of a source in memory are there, too.
     if (held.is_in_memory()) solutions += frame_bytes(frames);
   }
-  return loaded + std::max(analysis, solutions + most_selection);
+  return std::max(plan_of(invocation).bytes, solutions + most_selection);
 }
 
 }  // namespace
@@ -335,8 +337,8 @@ Operation transfer_operation() {
       "transfer take.npy actor@identity007=2 double/ --full -o results/"};
   operation.run = run_transfer;
   operation.memory = memory_of_transfer;
-  operation.all_frames_for = [](const Invocation& invocation) {
-    return looks_for_components(invocation) ? "the decomposition" : "";
+  operation.scratch = [](const Invocation& invocation) {
+    return plan_of(invocation).scratch_bytes;
   };
   operation.foresee = foresee_transfer;
   return operation;

@@ -20,24 +20,29 @@ Positions aligned(const Positions& rest, const Source& source) {
   return rigid_fit(rest, source.sequence->rest()).apply(rest);
 }
 
-/// The source in memory, with the rest pose of the decomposition.
-MeshSequence work_of(const Source& source, const AnalysisOptions& options) {
-  const MeshSequence sequence(*source.sequence, {.threads = options.threads});
+Positions first_pose(const FrameSource& sequence) {
+  return FrameBlock(sequence, 0, 1).frame(0);
+}
+
+/// The source with the rest pose of the decomposition.
+std::shared_ptr<const FrameSource> work_of(const Source& source, const AnalysisOptions& options) {
+  const std::shared_ptr<const FrameSource>& sequence = source.sequence;
   const bool reference = options.compatibility != Compatibility::none;
   if (!options.rest) {
-    return reference && !source.rest_is_given ? sequence.with_rest(sequence.frame(0)) : sequence;
+    return reference && !source.rest_is_given ? with_rest(sequence, first_pose(*sequence))
+                                              : sequence;
   }
   if (const auto* given = std::get_if<Positions>(&*options.rest)) {
-    return sequence.with_rest(given->rows() == sequence.vertices() ? aligned(*given, source)
-                                                                   : *given);
+    return with_rest(sequence,
+                     given->rows() == sequence->vertices() ? aligned(*given, source) : *given);
   }
   switch (std::get<RestPose>(*options.rest)) {
     case RestPose::first:
-      return sequence.with_rest(sequence.frame(0));
+      return with_rest(sequence, first_pose(*sequence));
     case RestPose::mean:
       break;
   }
-  return sequence.with_rest(mean_pose(sequence));
+  return with_rest(sequence, mean_pose(*sequence));
 }
 
 /// Longest side that any single frame's bounding box has: the reference's unit of length.
@@ -53,7 +58,7 @@ double largest_frame_extent(const FrameSource& sequence) {
 /// reported: well above float32 rounding, well below what one sees.
 constexpr double kPartingShare = 1e-4;
 
-void note_parting(const MeshSequence& sequence, const AnalysisOptions& options) {
+void note_parting(const FrameSource& sequence, const AnalysisOptions& options) {
   if (options.distances.welding == Welding::none) return;
   const auto parting =
       parting_vertices(sequence, Weld::exact(sequence.rest()), kPartingShare * sequence.diameter(),
@@ -84,13 +89,19 @@ void check_inside(const std::vector<bool>& inside, int vertices) {
   }
 }
 
-Components decomposed_inside(const MeshSequence& work, const std::vector<bool>& inside,
-                             DecompositionOptions options) {
-  if (inside.empty()) return decompose(work, options);
+Components decomposed(const FrameSource& work, const DecompositionOptions& options,
+                      const Ranks* ranks) {
+  return ranks ? decompose(work, options, *ranks) : decompose(work, options);
+}
+
+Components decomposed_inside(const std::shared_ptr<const FrameSource>& work,
+                             const std::vector<bool>& inside, DecompositionOptions options,
+                             const Ranks* ranks) {
+  if (inside.empty()) return decomposed(*work, options, ranks);
   const Cutout cutout(inside);
   options.distances = cutout.of(options.distances);
   if (!options.parts.empty()) options.parts.of_vertex = cutout.of(options.parts.of_vertex);
-  return cutout.put_back(decompose(cutout.of(work), options), work);
+  return cutout.put_back(decomposed(*cutout.of(work), options, ranks), *work);
 }
 
 /// Components whose centres are inside; one that moves nothing there has none.
@@ -176,7 +187,8 @@ int component_count(const FrameSource& sequence, const AnalysisOptions& options)
 Analysis analyse(const Source& source, const AnalysisOptions& options) {
   const Stopwatch stopwatch;
   check_options(options);
-  const MeshSequence work = work_of(source, options);
+  const std::shared_ptr<const FrameSource> sequence = work_of(source, options);
+  const FrameSource& work = *sequence;
   DecompositionOptions decomposition = options.decomposition;
   if (decomposition.count > work.vertices()) {
     throw OptionError(Topic::component_count, std::to_string(decomposition.count) +
@@ -213,7 +225,7 @@ Analysis analyse(const Source& source, const AnalysisOptions& options) {
   decomposition.distances = distances;
   decomposition.threads = options.threads;
   decomposition.progress = options.progress;
-  Components components = decomposed_inside(work, options.inside, decomposition);
+  Components components = decomposed_inside(sequence, options.inside, decomposition, options.ranks);
   return {std::move(components), std::move(distances), options.inside, stopwatch.seconds(),
           options.distances.welding};
 }

@@ -10,6 +10,8 @@
 
 namespace mimetra {
 
+class Ranks;
+
 /// Which vertices count as one for distances.
 enum class Welding {
   exact,  ///< those at one place (UV seams)
@@ -114,6 +116,9 @@ struct AnalysisOptions {
   DistanceOptions distances = {};
   /// 0 for all there are; the result does not depend on it.
   int threads = 0;
+  /// Processes that decompose together: all call analyse() with the same source and options, and
+  /// get the same.
+  const Ranks* ranks = nullptr;
   Progress progress = {};
   Notes notes = {};
 

@@ -5,14 +5,30 @@
 namespace mimetra {
 namespace {
 
-/// The coordinates of some vertices in rows of poses: R x 3N becomes R x 3n.
-Frames gathered(const Frames& poses, const std::vector<VertexIndex>& vertices) {
-  Frames result(poses.rows(), 3 * vertices.size());
-  for (std::size_t i = 0; i < vertices.size(); ++i) {
-    result.middleCols(3 * i, 3) = poses.middleCols(3 * vertices[i], 3);
+/// Some vertices of another source.
+class KeptVertices : public FrameSource {
+ public:
+  KeptVertices(std::shared_ptr<const FrameSource> whole, std::vector<VertexIndex> kept,
+               Connectivity connectivity)
+      : FrameSource(whole->header()), whole_(std::move(whole)), kept_(std::move(kept)) {
+    header_.connectivity = std::make_shared<const Connectivity>(std::move(connectivity));
+    header_.rest = Positions(whole_->rest()(kept_, Eigen::all));
+    header_.rest_is_known = true;
   }
-  return result;
-}
+
+  bool is_quick() const override { return whole_->is_quick(); }
+
+ private:
+  void read_frames(int first, FramesView poses) const override {
+    const FrameBlock whole(*whole_, first, static_cast<int>(poses.rows()));
+    for (std::size_t i = 0; i < kept_.size(); ++i) {
+      poses.middleCols(3 * i, 3) = whole.poses().middleCols(3 * kept_[i], 3);
+    }
+  }
+
+  std::shared_ptr<const FrameSource> whole_;
+  std::vector<VertexIndex> kept_;
+};
 
 }  // namespace
 
@@ -24,19 +40,19 @@ Cutout::Cutout(const std::vector<bool>& inside) : position_(inside.size(), -1) {
   }
 }
 
-MeshSequence Cutout::of(const MeshSequence& whole) const {
+std::shared_ptr<const FrameSource> Cutout::of(std::shared_ptr<const FrameSource> whole) const {
   std::vector<int> triangles;
-  for (int t = 0; t < whole.triangles().rows(); ++t) {
-    const auto corners = whole.triangles().row(t);
+  for (int t = 0; t < whole->triangles().rows(); ++t) {
+    const auto corners = whole->triangles().row(t);
     if (position_[corners[0]] >= 0 && position_[corners[1]] >= 0 && position_[corners[2]] >= 0) {
       triangles.push_back(t);
     }
   }
-  const Triangles kept = whole.triangles()(triangles, Eigen::all).unaryExpr([this](VertexIndex v) {
+  const Triangles kept = whole->triangles()(triangles, Eigen::all).unaryExpr([this](VertexIndex v) {
     return position_[v];
   });
-  return {Connectivity::from_triangles(vertices(), kept), gathered(whole.positions(), kept_),
-          whole.known_times(), Positions(whole.rest()(kept_, Eigen::all))};
+  return std::make_shared<const KeptVertices>(std::move(whole), kept_,
+                                              Connectivity::from_triangles(vertices(), kept));
 }
 
 DistanceFunction Cutout::of(DistanceFunction distances) const {
@@ -53,7 +69,7 @@ std::vector<int> Cutout::of(const std::vector<int>& values) const {
   return kept;
 }
 
-Components Cutout::put_back(Components components, const MeshSequence& whole) const {
+Components Cutout::put_back(Components components, const FrameSource& whole) const {
   const Frames displacements = std::exchange(components.displacements,
                                              Frames::Zero(components.count(), whole.rest().size()));
   const Eigen::MatrixXd support = std::exchange(

@@ -15,14 +15,14 @@ class Cutout {
 
   int vertices() const { return static_cast<int>(kept_.size()); }
   /// Frames and rest pose of the kept vertices (n), and the triangles that have no others.
-  MeshSequence of(const MeshSequence& whole) const;
+  std::shared_ptr<const FrameSource> of(std::shared_ptr<const FrameSource> whole) const;
   /// Distances between kept vertices, of `distances` between all of them.
   DistanceFunction of(DistanceFunction distances) const;
   /// The kept entries (n) of one value a vertex (N).
   std::vector<int> of(const std::vector<int>& values) const;
   /// Components of the kept vertices as components of the whole mesh: zero outside, where the
   /// support maps are 1.
-  Components put_back(Components components, const MeshSequence& whole) const;
+  Components put_back(Components components, const FrameSource& whole) const;
 
  private:
   std::vector<VertexIndex> kept_;      ///< ascending (n)

@@ -21,9 +21,6 @@ constexpr double kFactorsPerVertex = 2000;
 constexpr double kPullPerTriangle = 72;
 constexpr double kLanesPerVertex = 5 * 3 * 16 * kNumber;
 
-/// Components have so many different centres on their way that their distances are kept.
-constexpr double kCentersPerComponent = 4;
-
 /// What a FrameStore has in memory: more frames are in its file.
 double kept_bytes(double all) {
   return all > static_cast<double>(FrameStore::kMemoryBytes) ? 0 : all;
@@ -39,16 +36,11 @@ double stored_bytes(const FrameSource& sequence) {
   return sequence.is_quick() ? 0 : kept_bytes(frame_bytes(sequence));
 }
 
-double alignment_bytes(const FrameSource& sequence, const SourceOptions& options) {
-  return takes_out_motion(sequence, options) ? frame_bytes(sequence) : 0;
-}
-
-double analysis_bytes(const FrameSource& sequence, int count) {
-  const double vertices = sequence.vertices();
-  const double components = 3 * count * 3 * vertices;  // C, the best so far, the dual variable
-  const double maps = (2 + kCentersPerComponent) * count * vertices;
-  // The displacements are as many numbers as the frames.
-  return kFactorsPerVertex * vertices + frame_bytes(sequence) + kNumber * (components + maps);
+DecompositionPlan analysis_plan(const FrameSource& sequence, const AnalysisOptions& options) {
+  DecompositionOptions decomposition = options.decomposition;
+  decomposition.count = component_count(sequence, options);
+  decomposition.threads = options.threads;
+  return planned_decomposition(sequence, VertexPart(sequence.vertices()), decomposition);
 }
 
 double selection_bytes(const FrameSource& sequence, const BlendshapeModel& target) {

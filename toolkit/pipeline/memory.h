@@ -1,6 +1,8 @@
 #pragma once
 
+#include "toolkit/pipeline/analysis.h"
 #include "toolkit/pipeline/solution.h"
+#include "toolkit/splocs/decomposition_plan.h"
 
 namespace mimetra {
 
@@ -13,11 +15,8 @@ double frame_bytes(const FrameSource& sequence);
 /// What stored() has in memory; 0 for a source that is quick to read.
 double stored_bytes(const FrameSource& sequence);
 
-/// All frames without head motion; 0 where none is taken out.
-double alignment_bytes(const FrameSource& sequence, const SourceOptions& options);
-
-/// A decomposition into `count` components, alignment not included.
-double analysis_bytes(const FrameSource& sequence, int count);
+/// How analyse() keeps within the memory of its options. Throws as planned_decomposition().
+DecompositionPlan analysis_plan(const FrameSource& sequence, const AnalysisOptions& options);
 
 /// The choice of regions for a transfer to `target`.
 double selection_bytes(const FrameSource& sequence, const BlendshapeModel& target);

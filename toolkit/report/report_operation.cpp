@@ -131,7 +131,7 @@ double memory(const Invocation& invocation) {
   const ReportCall report = report_parameters().read(invocation.parameters);
   const int most = std::max(main_count(call.parameters), *std::ranges::max_element(report.counts));
   const double analysis =
-      drawing_bytes(sequence.vertices(), most) + analysis_bytes(call, source, most);
+      drawing_bytes(sequence.vertices(), most) + analysis_plan(call, sequence, most).bytes;
   if (!call.inputs.contains("target")) return analysis;
   SolveOptions options = solving_parameters().read(call.parameters);
   options.threads = call.threads;

@@ -154,7 +154,7 @@ void sum_over_blocks(ComponentUpdate<Scalar>& update, Eigen::Index R, const Redu
 }  // namespace
 
 template <typename Scalar>
-ComponentUpdate<Scalar> initial_components(const VertexBlocks<Scalar>& X,
+ComponentUpdate<Scalar> initial_components(const BlockSource<Scalar>& X,
                                            VertexBlocks<Scalar> components,
                                            const Reduction& reduction) {
   ComponentUpdate<Scalar> initial;
@@ -162,13 +162,13 @@ ComponentUpdate<Scalar> initial_components(const VertexBlocks<Scalar>& X,
   initial.U = VertexBlocks<Scalar>(initial.C.rows(), X.part());
   sum_over_blocks(initial, X.rows(), reduction, [&](int b, RunSums<Scalar>& sums) {
     initial.U[b] = initial.U.zero_block(b);
-    sums.add_products(X[b], initial.C[b]);
+    sums.add_products(*X.block(b), initial.C[b]);
   });
   return initial;
 }
 
 template <typename Scalar>
-ComponentUpdate<Scalar> updated_components(const VertexBlocks<Scalar>& X, const UpdateWeights& W,
+ComponentUpdate<Scalar> updated_components(const BlockSource<Scalar>& X, const UpdateWeights& W,
                                            const Frames& support, ComponentUpdate<Scalar> last,
                                            const AdmmOptions& options, const Reduction& reduction) {
   using Block = typename VertexBlocks<Scalar>::Block;
@@ -180,9 +180,10 @@ ComponentUpdate<Scalar> updated_components(const VertexBlocks<Scalar>& X, const 
     const Block Lambda =
         (options.sparsity * support.middleCols(X.first(b), n)).template cast<Scalar>();
     const Block thresholds = Lambda / Scalar(options.rho);
+    const auto of_block = X.block(b);
     Block& C = update.C[b];
-    BlockAdmm<Scalar>(X[b], step, thresholds).run(options.steps, C, update.U[b]);
-    sums.add_products(X[b], C);
+    BlockAdmm<Scalar>(*of_block, step, thresholds).run(options.steps, C, update.U[b]);
+    sums.add_products(*of_block, C);
     for (Eigen::Index k = 0; k < C.rows(); ++k) {
       sums.add_penalty(k, (Lambda.row(k).array() * lengths(C.row(k).array(), n)).sum());
     }
@@ -190,15 +191,15 @@ ComponentUpdate<Scalar> updated_components(const VertexBlocks<Scalar>& X, const 
   return update;
 }
 
-template ComponentUpdate<double> initial_components(const VertexBlocks<double>&,
+template ComponentUpdate<double> initial_components(const BlockSource<double>&,
                                                     VertexBlocks<double>, const Reduction&);
-template ComponentUpdate<float> initial_components(const VertexBlocks<float>&, VertexBlocks<float>,
+template ComponentUpdate<float> initial_components(const BlockSource<float>&, VertexBlocks<float>,
                                                    const Reduction&);
-template ComponentUpdate<double> updated_components(const VertexBlocks<double>&,
+template ComponentUpdate<double> updated_components(const BlockSource<double>&,
                                                     const UpdateWeights&, const Frames&,
                                                     ComponentUpdate<double>, const AdmmOptions&,
                                                     const Reduction&);
-template ComponentUpdate<float> updated_components(const VertexBlocks<float>&, const UpdateWeights&,
+template ComponentUpdate<float> updated_components(const BlockSource<float>&, const UpdateWeights&,
                                                    const Frames&, ComponentUpdate<float>,
                                                    const AdmmOptions&, const Reduction&);
 

@@ -31,7 +31,7 @@ struct UpdateWeights {
 
 /// Products of components (K x 3n) that ADMM has not seen yet: U = 0.
 template <typename Scalar>
-ComponentUpdate<Scalar> initial_components(const VertexBlocks<Scalar>& X,
+ComponentUpdate<Scalar> initial_components(const BlockSource<Scalar>& X,
                                            VertexBlocks<Scalar> components,
                                            const Reduction& reduction);
 
@@ -41,7 +41,7 @@ ComponentUpdate<Scalar> initial_components(const VertexBlocks<Scalar>& X,
 ///
 /// [Neumann et al. Sparse Localized Deformation Components. ACM TOG 32(6), 2013], eq. 7 to 9
 template <typename Scalar>
-ComponentUpdate<Scalar> updated_components(const VertexBlocks<Scalar>& X, const UpdateWeights& W,
+ComponentUpdate<Scalar> updated_components(const BlockSource<Scalar>& X, const UpdateWeights& W,
                                            const Frames& support, ComponentUpdate<Scalar> last,
                                            const AdmmOptions& options, const Reduction& reduction);
 

@@ -12,6 +12,7 @@
 #include "toolkit/mesh/product_blocking.h"
 #include "toolkit/mesh/progress.h"
 #include "toolkit/splocs/component_update.h"
+#include "toolkit/splocs/decomposition_plan.h"
 #include "toolkit/splocs/motion.h"
 #include "toolkit/splocs/reduction.h"
 #include "toolkit/splocs/start.h"
@@ -67,9 +68,9 @@ Eigen::MatrixXd given_to_ranks(const SequencePart& sequence, const Reduction& re
   Eigen::MatrixXd given(kGivenRows, reduction.part().ranks());
   for (int rank = 0; rank < reduction.part().ranks(); ++rank) {
     given.col(rank) = reduction.on(rank, [&sequence] {
-      return Eigen::Vector4d(
-          static_cast<double>(sequence.rest.rows()), static_cast<double>(sequence.frames.rows()),
-          static_cast<double>(sequence.frames.cols()), sequence.rest.allFinite() ? 1 : 0);
+      return Eigen::Vector4d(static_cast<double>(sequence.rest.rows()),
+                             static_cast<double>(sequence.frames.frames()),
+                             3.0 * sequence.frames.vertices(), sequence.rest.allFinite() ? 1 : 0);
     });
   }
   return given;
@@ -144,7 +145,7 @@ struct Iterate {
 /// iterate that the options want, energies and what they say. `X` are the motion's frames, or their
 /// coordinates in `basis` where there is one. The first rank alone computes weights.
 template <typename Scalar>
-void alternate(Components& result, double X_norm2, const VertexBlocks<Scalar>& X,
+void alternate(Components& result, double X_norm2, const BlockSource<Scalar>& X,
                const std::optional<TimeBasis>& basis, Start start, SupportMaps support,
                const Progress& progress, const Reduction& reduction) {
   const DecompositionOptions& options = result.options;
@@ -195,23 +196,37 @@ void alternate(Components& result, double X_norm2, const VertexBlocks<Scalar>& X
   result.support = std::move(best.maps);
 }
 
+/// The same motion in single precision; each block is released once it is taken over.
+std::unique_ptr<BlockSource<float>> in_single_precision(KeptBlocks<double>& X, MotionPlace place) {
+  auto result = kept_blocks<float>(place, X.rows(), X.part());
+  for (int b = 0; b < X.count(); ++b) result->put(b, X.take(b).cast<float>());
+  return result;
+}
+
 /// The motion in the precision and the basis that the options want, from the start on.
 void iterate(Components& result, Motion motion, Start start, SupportMaps support,
-             const Progress& progress, const Reduction& reduction) {
+             const Progress& progress, const Reduction& reduction, const DecompositionPlan& plan) {
   const DecompositionOptions& options = result.options;
   std::optional<TimeBasis> basis;
   if (options.basis_tolerance > 0) {
-    basis = time_basis(motion.X, motion.norm2, options.basis_tolerance, reduction);
+    basis = time_basis(*motion.X, motion.norm2, options.basis_tolerance, reduction, plan.poses);
   }
-  // What is not needed any more is released: it is the largest array there is.
-  VertexBlocks<double> X = std::move(motion.X);
-  if (basis) X = std::move(basis->B);
+  MotionPlace place = plan.place;
+  if (basis) {
+    // What is not needed any more is released: it is the largest array there is.
+    auto B = std::make_unique<VertexBlocks<double>>(std::move(basis->B));
+    motion.kept = B.get();
+    motion.X = std::move(B);
+    place = MotionPlace::memory;
+  }
   if (options.precision == IterationPrecision::single_precision) {
-    alternate(result, motion.norm2, std::move(X).cast<float>(), basis, std::move(start),
-              std::move(support), progress, reduction);
-  } else {
-    alternate(result, motion.norm2, X, basis, std::move(start), std::move(support), progress,
+    const auto X = in_single_precision(*motion.kept, place);
+    motion.X.reset();
+    alternate(result, motion.norm2, *X, basis, std::move(start), std::move(support), progress,
               reduction);
+  } else {
+    alternate(result, motion.norm2, *motion.X, basis, std::move(start), std::move(support),
+              progress, reduction);
   }
 }
 
@@ -239,11 +254,14 @@ void finish(Components& result, const Reduction& reduction) {
 }
 
 Components decomposed(const SequencePart& sequence, const DecompositionOptions& options,
-                      const Reduction& reduction) {
-  const VertexPart& part = reduction.part();
-  const auto vertices = static_cast<int>(part.mesh_vertices());
+                      const Ranks* ranks = nullptr) {
+  Reduction reduction(sequence.rest.rows(), options.threads, ranks);
+  const auto vertices = static_cast<int>(reduction.part().mesh_vertices());
   require_valid(options);
   require_decomposable(sequence, options.count, reduction);
+  const VertexPart part = reduction.part();
+  const DecompositionPlan plan = planned_decomposition(sequence.frames, part, options);
+  reduction = Reduction(part.mesh_vertices(), plan.threads, ranks);
   require_valid(options.parts, vertices);
   fix_product_blocking();
   Components result;
@@ -258,7 +276,7 @@ Components decomposed(const SequencePart& sequence, const DecompositionOptions& 
   result.options.distances = nullptr;
   result.options.progress = nullptr;
 
-  Motion motion = scaled_motion(sequence, options.scale, reduction);
+  Motion motion = scaled_motion(sequence, options.scale, reduction, plan.place);
   result.scale = motion.scale;
   const DistanceFunction distances =
       options.distances ? options.distances
@@ -268,13 +286,45 @@ Components decomposed(const SequencePart& sequence, const DecompositionOptions& 
   DecompositionOptions of_start = options;
   const double start_share = kStartIterations / (kStartIterations + *result.options.iterations);
   of_start.progress = part_of(options.progress, 0, start_share);
-  Start start = greedy_start(motion.X, support, of_start, reduction);
+  Start start = greedy_start(*motion.X, support, of_start, reduction);
   iterate(result, std::move(motion), std::move(start),
           SupportMaps(support, options.count, part, options.parts.of_vertices()),
-          part_of(options.progress, start_share, 1), reduction);
+          part_of(options.progress, start_share, 1), reduction, plan);
   finish(result, reduction);
   report_progress(options.progress, 1);
   return result;
+}
+
+/// Distances are dealt out to the ranks by vertex, so that each is computed once and kept there.
+DistanceFunction dealt(DistanceFunction distances, const Reduction& reduction) {
+  return [distances = std::move(distances), &reduction](std::span<const VertexIndex> sources) {
+    const int ranks = reduction.part().ranks();
+    Eigen::MatrixXd all(reduction.part().mesh_vertices(), sources.size());
+    for (int rank = 0; rank < ranks; ++rank) {
+      std::vector<VertexIndex> share;
+      std::vector<int> columns;
+      for (std::size_t s = 0; s < sources.size(); ++s) {
+        if (sources[s] % ranks != rank) continue;
+        share.push_back(sources[s]);
+        columns.push_back(static_cast<int>(s));
+      }
+      if (share.empty()) continue;
+      all(Eigen::all, columns) = reduction.on(rank, [&] { return distances(share); });
+    }
+    return all;
+  };
+}
+
+/// Columns of all ranks side by side, on each: every vertex has `width`.
+Eigen::MatrixXd gathered(const Eigen::MatrixXd& own, int width, const Reduction& reduction) {
+  const VertexPart& part = reduction.part();
+  Eigen::MatrixXd all(own.rows(), width * part.mesh_vertices());
+  for (int rank = 0; rank < part.ranks(); ++rank) {
+    const VertexPart of_rank(part.mesh_vertices(), rank, part.ranks());
+    all.middleCols(width * of_rank.first(), width * of_rank.vertices()) =
+        reduction.on(rank, [&own] { return own; });
+  }
+  return all;
 }
 
 }  // namespace
@@ -285,14 +335,26 @@ Eigen::VectorXd PartWeights::of_vertices() const {
   return result;
 }
 
-Components decompose(const MeshSequence& sequence, const DecompositionOptions& options) {
-  return decomposed({sequence.rest(), sequence.triangles(), sequence.positions()}, options,
-                    Reduction(sequence.vertices(), options.threads));
+Components decompose(const FrameSource& sequence, const DecompositionOptions& options) {
+  return decomposed({sequence.rest(), sequence.triangles(), sequence}, options);
+}
+
+Components decompose(const FrameSource& sequence, const DecompositionOptions& options,
+                     const Ranks& ranks) {
+  const Reduction reduction(sequence.vertices(), 1, &ranks);
+  const auto own = own_vertices(sequence, reduction.part());
+  DecompositionOptions shared = options;
+  if (shared.distances) shared.distances = dealt(shared.distances, reduction);
+  Components components =
+      decompose_part({sequence.rest(), sequence.triangles(), *own}, shared, ranks);
+  components.displacements = gathered(components.displacements, 3, reduction);
+  components.support = gathered(components.support, 1, reduction);
+  return components;
 }
 
 Components decompose_part(const SequencePart& sequence, const DecompositionOptions& options,
                           const Ranks& ranks) {
-  return decomposed(sequence, options, Reduction(sequence.rest.rows(), options.threads, &ranks));
+  return decomposed(sequence, options, &ranks);
 }
 
 }  // namespace mimetra

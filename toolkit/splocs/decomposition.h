@@ -41,14 +41,16 @@ struct Components {
 /// and returns the iterate of least energy unless the options want the last.
 ///
 /// Every product with X is with K columns (P = X C^T, W^T X); the residual is never formed. The
-/// result is the same for every number of threads. The rest pose is the sequence's.
+/// result is the same for every number of threads and bound of memory. The rest pose is the
+/// sequence's.
 ///
-/// Throws MismatchError where count > 3N, where there is one frame only, or nothing moves by more
-/// than kLeastMotion; std::invalid_argument for options out of range; Cancelled.
+/// Throws MismatchError where count > 3N, where there is one frame only, nothing moves by more than
+/// kLeastMotion, or options.memory is too little; std::invalid_argument for options out of range;
+/// what reading throws, OutputError where motion cannot be kept in a file; Cancelled.
 ///
 /// [Neumann et al. Sparse Localized Deformation Components. ACM TOG 32(6), 2013], eq. 1 to 9;
 /// Region-based deformation transfer, eq. 6 and 7.
-Components decompose(const MeshSequence& sequence, const DecompositionOptions& options = {});
+Components decompose(const FrameSource& sequence, const DecompositionOptions& options = {});
 
 /// The same on one of several ranks, each with the poses of its own vertices (VertexPart). The mesh
 /// and the options are the whole mesh's and the same on each rank. What is returned is the same on
@@ -67,6 +69,12 @@ Components decompose(const MeshSequence& sequence, const DecompositionOptions& o
 Components decompose_part(const SequencePart& sequence, const DecompositionOptions& options,
                           const Ranks& ranks);
 
+/// The same on ranks that can all read the whole sequence, of which each reads its own vertices
+/// only; distances that the options have are computed by one rank each. What is returned is the
+/// whole, on all ranks.
+Components decompose(const FrameSource& sequence, const DecompositionOptions& options,
+                     const Ranks& ranks);
+
 /// How well components tell the sequence.
 struct DecompositionError {
   /// ||X - W C||_F / sqrt(3 N F), unit of the mesh.
@@ -79,8 +87,13 @@ struct DecompositionError {
   double sparsity = 0;
 };
 
-/// Throws MismatchError where the sizes of sequence and components differ.
-DecompositionError decomposition_error(const MeshSequence& sequence, const Components& components);
+/// Within the memory of the components' options. Throws MismatchError where the sizes of sequence
+/// and components differ, what reading throws.
+DecompositionError decomposition_error(const FrameSource& sequence, const Components& components);
+
+/// The same on ranks that can all read the whole sequence.
+DecompositionError decomposition_error(const FrameSource& sequence, const Components& components,
+                                       const Ranks& ranks);
 
 /// The same on all ranks of decompose_part(), for what it returned.
 DecompositionError decomposition_error(const SequencePart& sequence, const Components& components,

@@ -9,6 +9,7 @@
 
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/product_blocking.h"
+#include "toolkit/splocs/motion_blocks.h"
 #include "toolkit/splocs/reduction.h"
 #include "toolkit/splocs/vertex_energies.h"
 
@@ -21,9 +22,9 @@ void require_same_size(const SequencePart& sequence, const Components& component
     throw MismatchError("components of " + std::to_string(components.vertices()) +
                         " vertices for a sequence of " + std::to_string(vertices));
   }
-  if (components.weights.rows() != sequence.frames.rows()) {
+  if (components.weights.rows() != sequence.frames.frames()) {
     throw MismatchError("components with weights of " + std::to_string(components.weights.rows()) +
-                        " frames for a sequence of " + std::to_string(sequence.frames.rows()));
+                        " frames for a sequence of " + std::to_string(sequence.frames.frames()));
   }
 }
 
@@ -34,31 +35,52 @@ struct ErrorSums {
   double zeros = 0;       ///< displacements in C that are exactly zero
 };
 
+/// Components in the vertices of a block, as its rows lie (K x 3m).
+VertexBlocks<double>::Block block_of(const Frames& C, const BlockSource<double>& X, int b) {
+  VertexBlocks<double>::Block block(C.rows(), 3 * X.size(b));
+  for (Eigen::Index k = 0; k < C.rows(); ++k) {
+    VertexBlocks<double>::by_vertex(block, k) =
+        PositionsView(C.row(k).data() + 3 * X.first(b), X.size(b), 3);
+  }
+  return block;
+}
+
 /// The residual itself, block by block: here it matters also where it is rounding.
-ErrorSums error_sums(const SequencePart& sequence, const Components& components,
+ErrorSums error_sums(const BlockSource<double>& X, const Components& components,
                      const Reduction& reduction) {
-  const VertexPart& part = reduction.part();
-  const Eigen::Map<const Eigen::RowVectorXd> rest(components.rest.data(), components.rest.size());
   const auto add_block = [&](int b, Eigen::MatrixXd& sums) {
-    const Eigen::Index first = 3 * part.first_of(b), size = 3 * part.size_of(b);
-    const auto frames = sequence.frames.middleCols(first, size);
-    const Frames C = components.displacements.middleCols(first, size);
-    Frames rows = frames.rowwise() - rest.segment(3 * part.first() + first, size);
+    const auto C = block_of(components.displacements, X, b);
+    const auto motion = X.block(b);
+    VertexBlocks<double>::Block rows = *motion;
     rows.noalias() -= components.weights * C;
     sums(0) += rows.squaredNorm();
-    const Eigen::RowVectorXd mean = frames.colwise().mean();
-    rows = frames.rowwise() - mean;
+    const Eigen::RowVectorXd mean = motion->colwise().mean();
+    rows = motion->rowwise() - mean;
     sums(1) += rows.squaredNorm();
     for (Eigen::Index k = 0; k < C.rows(); ++k) {
-      sums(2) += static_cast<double>((vertex_energies(C.row(k)).array() == 0).count());
+      const auto lengths = VertexBlocks<double>::by_vertex(C, k).rowwise().squaredNorm();
+      sums(2) += static_cast<double>((lengths.array() == 0).count());
     }
   };
   const Eigen::VectorXd sums =
       reduction.everywhere(reduction.sum(3, 1, [&](int run, Eigen::MatrixXd& of_run) {
-        const IndexRange blocks = part.blocks_of(run);
+        const IndexRange blocks = reduction.part().blocks_of(run);
         for (int b = blocks.first; b < blocks.end; ++b) add_block(b, of_run);
       }));
   return {sums[0], sums[1], sums[2]};
+}
+
+/// Each block is needed once: it is read from the sequence where that is no waste.
+std::unique_ptr<BlockSource<double>> motion_of(const SequencePart& sequence,
+                                               const Components& components,
+                                               const Reduction& reduction) {
+  const SequencePart part{components.rest, sequence.triangles, sequence.frames};
+  if (sequence.frames.reads_vertices()) {
+    return std::make_unique<SequenceBlocks>(part, reduction.part());
+  }
+  const DecompositionPlan plan =
+      planned_decomposition(sequence.frames, reduction.part(), components.options);
+  return kept_displacements(part, reduction.part(), plan.place, reduction.threads());
 }
 
 /// Distance within which `share` of the energy lies (both N); +infinity where the reachable
@@ -82,9 +104,23 @@ double radius_holding(double share, const Eigen::VectorXd& energies,
 
 }  // namespace
 
-DecompositionError decomposition_error(const MeshSequence& sequence, const Components& components) {
-  return decomposition_error({sequence.rest(), sequence.triangles(), sequence.positions()},
-                             components, Reduction(sequence.vertices()));
+DecompositionError decomposition_error(const FrameSource& sequence, const Components& components) {
+  const VertexPart all(sequence.vertices());
+  const int threads = planned_decomposition(sequence, all, components.options).threads;
+  return decomposition_error({sequence.rest(), sequence.triangles(), sequence}, components,
+                             Reduction(sequence.vertices(), threads));
+}
+
+DecompositionError decomposition_error(const FrameSource& sequence, const Components& components,
+                                       const Ranks& ranks) {
+  const VertexPart part(sequence.vertices(), ranks.rank(), ranks.count());
+  const auto own = own_vertices(sequence, part);
+  const int threads = planned_decomposition(*own, part, components.options).threads;
+  Components of_part = components;
+  of_part.displacements =
+      components.displacements.middleCols(3 * part.first(), 3 * part.vertices());
+  return decomposition_error({sequence.rest(), sequence.triangles(), *own}, of_part,
+                             Reduction(sequence.vertices(), threads, &ranks));
 }
 
 DecompositionError decomposition_error(const SequencePart& sequence, const Components& components,
@@ -92,13 +128,14 @@ DecompositionError decomposition_error(const SequencePart& sequence, const Compo
   fix_product_blocking();
   const auto vertices = reduction.part().mesh_vertices();
   require_same_size(sequence, components, vertices);
-  const ErrorSums sums = error_sums(sequence, components, reduction);
+  const ErrorSums sums =
+      error_sums(*motion_of(sequence, components, reduction), components, reduction);
   const double residual = std::sqrt(sums.residual2), variation = std::sqrt(sums.variation2);
   const double diagonal = box_diagonal(components.rest);
   const auto displacements = static_cast<double>(vertices) * components.count();
   DecompositionError error;
   error.rms = residual / std::sqrt(3 * static_cast<double>(vertices) *
-                                   static_cast<double>(sequence.frames.rows()));
+                                   static_cast<double>(sequence.frames.frames()));
   error.relative_rms = diagonal > 0 ? error.rms / diagonal : 0;
   error.kg = variation > 0 ? 100 * residual / variation : 0;
   error.sparsity = displacements > 0 ? sums.zeros / displacements : 0;

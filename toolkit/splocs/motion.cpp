@@ -19,7 +19,7 @@ enum SpreadColumn {
   kSquares,   ///< sum of squared differences from the mean
   kFurthest,  ///< length of the longest displacement
   kCount,     ///< how many coordinates
-  kInfinite,  ///< 1 where a position is not a finite number, else 0
+  kInfinite,  ///< 1 where a coordinate is not a finite number, else 0
   kSpreadColumns
 };
 
@@ -39,9 +39,8 @@ void join_spreads(Eigen::MatrixXd& left, const Eigen::MatrixXd& right) {
   left.col(kInfinite) = left.col(kInfinite).cwiseMax(right.col(kInfinite));
 }
 
-/// Of the displacements of a block (F x 3m) that came from `positions` of as many vertices.
-Eigen::MatrixXd spreads_of(const VertexBlocks<double>::Block& displacements,
-                           const Eigen::Ref<const Frames, 0, Eigen::OuterStride<>>& positions) {
+/// Of the displacements of a block (F x 3m).
+Eigen::MatrixXd spreads_of(const VertexBlocks<double>::Block& displacements) {
   Eigen::MatrixXd spreads(displacements.rows(), kSpreadColumns);
   for (Eigen::Index f = 0; f < displacements.rows(); ++f) {
     const auto row = displacements.row(f).array();
@@ -50,32 +49,21 @@ Eigen::MatrixXd spreads_of(const VertexBlocks<double>::Block& displacements,
     const double furthest2 =
         (row.segment(0, m).square() + row.segment(m, m).square() + row.segment(2 * m, m).square())
             .maxCoeff();
-    const bool infinite = !std::isfinite(squares) && !positions.row(f).allFinite();
+    const bool infinite = !std::isfinite(squares) && !row.allFinite();
     spreads.row(f) << mean, squares, std::sqrt(furthest2), static_cast<double>(row.size()),
         infinite ? 1.0 : 0.0;
   }
   return spreads;
 }
 
-/// Fills X with the displacements, and returns the spread of each frame over the mesh (F x
-/// kSpreadColumns), on all ranks.
-Eigen::MatrixXd displace(VertexBlocks<double>& X, const SequencePart& sequence,
-                         const Reduction& reduction) {
-  const VertexPart& part = reduction.part();
-  const auto of_block = [&](int b) {
-    const Eigen::Index first = X.first(b), m = X.size(b);
-    const auto rest = sequence.rest.middleRows(part.first() + first, m);
-    X[b].resize(X.rows(), 3 * m);
-    for (Eigen::Index f = 0; f < X.rows(); ++f) {
-      const PositionsView frame(sequence.frames.row(f).data() + 3 * first, m, 3);
-      VertexBlocks<double>::by_vertex(X[b], f) = frame - rest;
-    }
-    return spreads_of(X[b], sequence.frames.middleCols(3 * first, 3 * m));
-  };
+/// The spread of each frame over the mesh (F x kSpreadColumns), on all ranks.
+Eigen::MatrixXd spreads_of(const BlockSource<double>& X, const Reduction& reduction) {
   const auto of_run = [&](int run, Eigen::MatrixXd& spreads) {
-    const IndexRange blocks = part.blocks_of(run);
-    spreads = of_block(blocks.first);
-    for (int b = blocks.first + 1; b < blocks.end; ++b) join_spreads(spreads, of_block(b));
+    const IndexRange blocks = reduction.part().blocks_of(run);
+    spreads = spreads_of(*X.block(blocks.first));
+    for (int b = blocks.first + 1; b < blocks.end; ++b) {
+      join_spreads(spreads, spreads_of(*X.block(b)));
+    }
   };
   return reduction.everywhere(reduction.joined(X.rows(), kSpreadColumns, of_run, join_spreads));
 }
@@ -119,9 +107,15 @@ double scale_of(MotionScale unit, double mean, double variance) {
 
 }  // namespace
 
-Motion scaled_motion(const SequencePart& sequence, MotionScale unit, const Reduction& reduction) {
-  VertexBlocks<double> X(sequence.frames.rows(), reduction.part());
-  const Eigen::MatrixXd spreads = displace(X, sequence, reduction);
+Motion scaled_motion(const SequencePart& sequence, MotionScale unit, const Reduction& reduction,
+                     MotionPlace place) {
+  const VertexPart& part = reduction.part();
+  std::unique_ptr<KeptBlocks<double>> kept;
+  if (place != MotionPlace::sequence) {
+    kept = kept_displacements(sequence, part, place, reduction.threads());
+  }
+  const Eigen::MatrixXd spreads =
+      kept ? spreads_of(*kept, reduction) : spreads_of(SequenceBlocks(sequence, part), reduction);
   require_finite(spreads);
   require_motion(sequence.rest, spreads);
   const auto coordinates = static_cast<double>(sequence.rest.size());
@@ -143,8 +137,16 @@ Motion scaled_motion(const SequencePart& sequence, MotionScale unit, const Reduc
     throw std::invalid_argument(
         "the frames are so far from the rest pose that their energy is not a finite number");
   }
-  parallel_for(X.count(), reduction.threads(), [&X, scale](int b) { X[b] /= scale; });
-  return {std::move(X), scale, norm2};
+  if (!kept) {
+    return {std::make_unique<SequenceBlocks>(sequence, part, scale), nullptr, scale, norm2};
+  }
+  parallel_for(kept->count(), reduction.threads(), [&kept, scale](int b) {
+    KeptBlocks<double>::Block block = kept->take(b);
+    block /= scale;
+    kept->put(b, std::move(block));
+  });
+  KeptBlocks<double>* const blocks = kept.get();
+  return {std::move(kept), blocks, scale, norm2};
 }
 
 }  // namespace mimetra

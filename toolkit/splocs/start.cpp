@@ -29,7 +29,7 @@ Eigen::VectorXd sums_over_axes(const Eigen::RowVectorXd& columns) {
 /// X - W C at the start: kept as X and the components so far, never as a matrix.
 class Residual {
  public:
-  Residual(const VertexBlocks<double>& X, const DecompositionOptions& options,
+  Residual(const BlockSource<double>& X, const DecompositionOptions& options,
            const Reduction& reduction)
       : X_(X),
         start_{{}, {options.count, X.part()}, Eigen::MatrixXd::Zero(X.rows(), options.count)},
@@ -87,7 +87,7 @@ class Residual {
     const Eigen::VectorXd overlap = start_.weights.leftCols(k).transpose() * w;
     parallel_for(X_.count(), reduction_.threads(), [&](int b) {
       VertexBlocks<double>::Block& C = start_.components[b];
-      Eigen::RowVectorXd wR = w.transpose() * X_[b];
+      Eigen::RowVectorXd wR = w.transpose() * *X_.block(b);
       wR.noalias() -= overlap.transpose() * C.topRows(k);
       const Eigen::ArrayXd share =
           1 - support.segment(X_.part().first() + X_.first(b), X_.size(b)).array();
@@ -112,14 +112,15 @@ class Residual {
 
   /// Energies of a block's vertices over all frames; returns the largest.
   double set_energies(int b) {
-    Eigen::RowVectorXd squares = Eigen::RowVectorXd::Zero(X_[b].cols());
-    for (const auto& frame : X_[b].rowwise()) squares += frame.cwiseAbs2();
+    const auto X = X_.block(b);
+    Eigen::RowVectorXd squares = Eigen::RowVectorXd::Zero(X->cols());
+    for (const auto& frame : X->rowwise()) squares += frame.cwiseAbs2();
     auto energies = energies_.segment(X_.first(b), X_.size(b));
     energies = sums_over_axes(squares);
     return energies.maxCoeff();
   }
 
-  const VertexBlocks<double>& X_;
+  const BlockSource<double>& X_;
   Start start_;
   Eigen::VectorXd energies_;  ///< of the own vertices (n)
   const PartWeights& parts_;
@@ -156,7 +157,7 @@ Eigen::VectorXd oriented_weights(const Eigen::VectorXd& w, SignRule rule, bool n
   return feasible_weights(prefers_negative(w) ? Eigen::VectorXd(-w) : w, nonnegative);
 }
 
-Start greedy_start(const VertexBlocks<double>& X, const SupportFunction& support,
+Start greedy_start(const BlockSource<double>& X, const SupportFunction& support,
                    const DecompositionOptions& options, const Reduction& reduction) {
   Residual residual(X, options, reduction);
   for (int k = 0; k < options.count; ++k) {

@@ -20,7 +20,7 @@ struct Start {
 /// around it. X is F x 3n; `reduction` over the same part.
 ///
 /// [Neumann et al. Sparse Localized Deformation Components. ACM TOG 32(6), 2013], section 4.2
-Start greedy_start(const VertexBlocks<double>& X, const SupportFunction& support,
+Start greedy_start(const BlockSource<double>& X, const SupportFunction& support,
                    const DecompositionOptions& options, const Reduction& reduction);
 
 /// Feasible weights of a start from `w` (F) or from -w, whichever `rule` prefers.

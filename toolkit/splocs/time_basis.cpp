@@ -42,13 +42,13 @@ Eigen::MatrixXd random_signs(Eigen::Index first, Eigen::Index vertices, Eigen::I
 }
 
 /// `poses` random mixtures of the vertices' motions, orthonormalised (F x poses).
-Eigen::MatrixXd sketched_basis(const VertexBlocks<double>& X, Eigen::Index poses,
+Eigen::MatrixXd sketched_basis(const BlockSource<double>& X, Eigen::Index poses,
                                const Reduction& reduction) {
   const VertexPart& part = reduction.part();
   const Eigen::MatrixXd sketch = reduction.sum(X.rows(), poses, [&](int run, Eigen::MatrixXd& sum) {
     const IndexRange blocks = part.blocks_of(run);
     for (int b = blocks.first; b < blocks.end; ++b) {
-      sum.noalias() += X[b] * random_signs(part.first() + X.first(b), X.size(b), poses);
+      sum.noalias() += *X.block(b) * random_signs(part.first() + X.first(b), X.size(b), poses);
     }
   });
   return reduction.on_first([&]() -> Eigen::MatrixXd {
@@ -57,10 +57,10 @@ Eigen::MatrixXd sketched_basis(const VertexBlocks<double>& X, Eigen::Index poses
   });
 }
 
-VertexBlocks<double> coordinates(const Eigen::MatrixXd& Q, const VertexBlocks<double>& X,
+VertexBlocks<double> coordinates(const Eigen::MatrixXd& Q, const BlockSource<double>& X,
                                  int threads) {
   VertexBlocks<double> B(Q.cols(), X.part());
-  parallel_for(X.count(), threads, [&](int b) { B[b] = Q.transpose() * X[b]; });
+  parallel_for(X.count(), threads, [&](int b) { B[b] = Q.transpose() * *X.block(b); });
   return B;
 }
 
@@ -81,9 +81,9 @@ Eigen::MatrixXd directions_of(const VertexBlocks<double>& B, const Reduction& re
 
 }  // namespace
 
-std::optional<TimeBasis> time_basis(const VertexBlocks<double>& X, double norm2, double tolerance,
-                                    const Reduction& reduction) {
-  const Eigen::Index most = X.rows() / 2;
+std::optional<TimeBasis> time_basis(const BlockSource<double>& X, double norm2, double tolerance,
+                                    const Reduction& reduction, Eigen::Index most) {
+  most = std::min(most, X.rows() / 2);
   for (Eigen::Index poses = std::min(kFirstSketch, most), tried = 0; poses > tried;
        tried = poses, poses = std::min(2 * poses, most)) {
     const Eigen::MatrixXd sketch = sketched_basis(X, poses, reduction);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <optional>
 
 #include "toolkit/splocs/reduction.h"
@@ -17,11 +18,13 @@ struct TimeBasis {
 constexpr double kLeastBasisTolerance = 1e-6;
 
 /// A basis with ||X - Q B||_F <= tolerance ||X||_F, found by random projections with a fixed seed;
-/// nothing where it would need more than half as many poses as X has frames. `norm2` is ||X||_F^2.
+/// nothing where it would need more than `most` poses, or than half as many as X has frames.
+/// `norm2` is ||X||_F^2.
 /// \pre tolerance >= kLeastBasisTolerance
 ///
 /// [Halko, Martinsson, Tropp. Finding Structure with Randomness. SIAM Review 53(2), 2011]
-std::optional<TimeBasis> time_basis(const VertexBlocks<double>& X, double norm2, double tolerance,
-                                    const Reduction& reduction);
+std::optional<TimeBasis> time_basis(const BlockSource<double>& X, double norm2, double tolerance,
+                                    const Reduction& reduction,
+                                    Eigen::Index most = std::numeric_limits<Eigen::Index>::max());
 
 }  // namespace mimetra

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <algorithm>
+#include <memory>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -11,42 +11,29 @@ namespace mimetra {
 
 /// Displacements of the n vertices that a rank owns in R rows (R x 3n), cut into blocks of
 /// vertices, so that what happens to one block happens in a core's cache. On one rank they are all
-/// vertices of the mesh. Internal to the decomposition.
+/// vertices of the mesh. Where the blocks are kept is open: they may be more than memory holds.
+/// Internal to the decomposition.
 template <typename Scalar>
-class VertexBlocks {
+class BlockSource {
  public:
   /// R x 3m: x of the block's m vertices, then y, then z, side by side for vector instructions.
   using Block = Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-  VertexBlocks() = default;
-  /// Blocks without memory, for whoever fills them one by one.
-  VertexBlocks(Eigen::Index rows, const VertexPart& part)
-      : rows_(rows), part_(part), blocks_(part.blocks()) {}
-  /// All vertices of a mesh, from R x 3N.
-  explicit VertexBlocks(const Frames& rows)
-      : VertexBlocks(rows.rows(), VertexPart(rows.cols() / 3)) {
-    for (int b = 0; b < count(); ++b) {
-      Block& block = blocks_[b] = zero_block(b);
-      for (Eigen::Index row = 0; row < rows_; ++row) {
-        by_vertex(block, row) = PositionsView(rows.row(row).data(), vertices(), 3)
-                                    .middleRows(first(b), size(b))
-                                    .template cast<Scalar>();
-      }
-    }
-  }
+  virtual ~BlockSource() = default;
 
   Eigen::Index rows() const { return rows_; }
   const VertexPart& part() const { return part_; }
   /// n.
   Eigen::Index vertices() const { return part_.vertices(); }
-  int count() const { return static_cast<int>(blocks_.size()); }
+  int count() const { return part_.blocks(); }
   /// As first_of() and size_of() of the part.
   Eigen::Index first(int b) const { return part_.first_of(b); }
   Eigen::Index size(int b) const { return part_.size_of(b); }
-
-  Block& operator[](int b) { return blocks_[b]; }
-  const Block& operator[](int b) const { return blocks_[b]; }
   Block zero_block(int b) const { return Block::Zero(rows_, 3 * size(b)); }
+
+  /// Block b as it is kept in memory, or read for the caller. From several threads. Throws what
+  /// reading throws.
+  virtual std::shared_ptr<const Block> block(int b) const = 0;
 
   /// A row of `block` with one vertex a row, m x 3.
   static auto by_vertex(Block& block, Eigen::Index row) {
@@ -62,14 +49,84 @@ class VertexBlocks {
   Eigen::Matrix<Scalar, Eigen::Dynamic, 3> vertex(VertexIndex v) const {
     const Eigen::Index place = v - part_.first();
     const int b = static_cast<int>(place / VertexPart::kBlock);
-    return blocks_[b](Eigen::all, Eigen::seqN(place - first(b), 3, size(b)));
+    return (*block(b))(Eigen::all, Eigen::seqN(place - first(b), 3, size(b)));
   }
+
+ protected:
+  BlockSource() = default;
+  BlockSource(Eigen::Index rows, const VertexPart& part) : rows_(rows), part_(part) {}
+  BlockSource(const BlockSource&) = default;
+  BlockSource(BlockSource&&) = default;
+  BlockSource& operator=(const BlockSource&) = default;
+  BlockSource& operator=(BlockSource&&) = default;
+
+ private:
+  Eigen::Index rows_ = 0;
+  VertexPart part_;
+};
+
+/// Blocks that are filled and changed. Different blocks, and different rows of one, from several
+/// threads.
+template <typename Scalar>
+class KeptBlocks : public BlockSource<Scalar> {
+ public:
+  using typename BlockSource<Scalar>::Block;
+
+  /// Rows of block b from `row` on.
+  virtual void put_rows(int b, Eigen::Index row, const Block& rows) = 0;
+  virtual void put(int b, Block block) = 0;
+  /// Block b, which is not kept any more.
+  virtual Block take(int b) = 0;
+
+ protected:
+  using BlockSource<Scalar>::BlockSource;
+};
+
+/// Blocks in memory.
+template <typename Scalar>
+class VertexBlocks : public KeptBlocks<Scalar> {
+ public:
+  using typename BlockSource<Scalar>::Block;
+  using BlockSource<Scalar>::rows, BlockSource<Scalar>::count, BlockSource<Scalar>::first,
+      BlockSource<Scalar>::size, BlockSource<Scalar>::vertices, BlockSource<Scalar>::by_vertex,
+      BlockSource<Scalar>::zero_block;
+
+  VertexBlocks() = default;
+  /// Blocks without memory, for whoever fills them one by one.
+  VertexBlocks(Eigen::Index rows, const VertexPart& part)
+      : KeptBlocks<Scalar>(rows, part), blocks_(part.blocks()) {}
+  /// All vertices of a mesh, from R x 3N.
+  explicit VertexBlocks(const Frames& frames)
+      : VertexBlocks(frames.rows(), VertexPart(frames.cols() / 3)) {
+    for (int b = 0; b < count(); ++b) {
+      Block& block = blocks_[b] = zero_block(b);
+      for (Eigen::Index row = 0; row < rows(); ++row) {
+        by_vertex(block, row) = PositionsView(frames.row(row).data(), vertices(), 3)
+                                    .middleRows(first(b), size(b))
+                                    .template cast<Scalar>();
+      }
+    }
+  }
+
+  Block& operator[](int b) { return blocks_[b]; }
+  const Block& operator[](int b) const { return blocks_[b]; }
+
+  /// \pre this outlives it
+  std::shared_ptr<const Block> block(int b) const override {
+    return {std::shared_ptr<const Block>(), &blocks_[b]};
+  }
+  /// \pre the block has memory
+  void put_rows(int b, Eigen::Index row, const Block& rows) override {
+    blocks_[b].middleRows(row, rows.rows()) = rows;
+  }
+  void put(int b, Block block) override { blocks_[b] = std::move(block); }
+  Block take(int b) override { return std::exchange(blocks_[b], Block()); }
 
   /// As R x 3n.
   Frames frames() const {
-    Frames frames(rows_, 3 * vertices());
+    Frames frames(rows(), 3 * vertices());
     for (int b = 0; b < count(); ++b) {
-      for (Eigen::Index row = 0; row < rows_; ++row) {
+      for (Eigen::Index row = 0; row < rows(); ++row) {
         Eigen::Map<Positions>(frames.row(row).data(), vertices(), 3).middleRows(first(b), size(b)) =
             by_vertex(blocks_[b], row).template cast<double>();
       }
@@ -80,21 +137,18 @@ class VertexBlocks {
   /// In another precision; each block is released once it is taken over.
   template <typename Other>
   VertexBlocks<Other> cast() && {
-    VertexBlocks<Other> result(rows_, part_);
+    VertexBlocks<Other> result(rows(), this->part());
     for (int b = 0; b < count(); ++b) {
       if constexpr (std::is_same_v<Other, Scalar>) {
-        result[b] = std::move(blocks_[b]);
+        result[b] = take(b);
       } else {
-        result[b] = blocks_[b].template cast<Other>();
-        blocks_[b].resize(0, 0);
+        result[b] = take(b).template cast<Other>();
       }
     }
     return result;
   }
 
  private:
-  Eigen::Index rows_ = 0;
-  VertexPart part_;
   std::vector<Block> blocks_;
 };
 

@@ -61,4 +61,11 @@ IndexRange VertexPart::mesh_blocks_of(int run) const {
   return dealt_to(run, mesh_runs_, mesh_blocks());
 }
 
+std::shared_ptr<const FrameSource> own_vertices(const FrameSource& sequence,
+                                                const VertexPart& part) {
+  const std::shared_ptr<const FrameSource> whole(std::shared_ptr<const FrameSource>(), &sequence);
+  return some_vertices(whole, static_cast<VertexIndex>(part.first()),
+                       static_cast<int>(part.vertices()));
+}
+
 }  // namespace mimetra

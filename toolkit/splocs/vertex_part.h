@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "toolkit/mesh/mesh_sequence.h"
+#include "toolkit/mesh/frame_source.h"
 
 namespace mimetra {
 
@@ -67,11 +67,15 @@ class VertexPart {
   IndexRange blocks_;
 };
 
+/// The vertices of a sequence that a rank owns. \pre the sequence outlives it
+std::shared_ptr<const FrameSource> own_vertices(const FrameSource& sequence,
+                                                const VertexPart& part);
+
 /// What one rank holds of a sequence; it keeps references.
 struct SequencePart {
   const Positions& rest;       ///< of all vertices of the mesh, N x 3
   const Triangles& triangles;  ///< of the mesh, M x 3
-  const Frames& frames;        ///< of the rank's VertexPart of n vertices, F x 3n
+  const FrameSource& frames;   ///< F poses of the n vertices of the rank's VertexPart
 };
 
 }  // namespace mimetra

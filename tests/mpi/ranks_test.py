@@ -1,0 +1,143 @@
+"""The command on several processes of mpirun: the same bytes as on one, and no output of a run that
+one of them cannot finish.
+
+usage: ranks_test.py MIMETRA"""
+
+import json
+import os
+import pathlib
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+MIMETRA = pathlib.Path(sys.argv.pop(1)).resolve()
+# As many as there are, whatever the machine has, and by whoever runs the tests.
+MPIRUN = ["mpirun", "--oversubscribe", "--allow-run-as-root"]
+
+
+class Ranks(unittest.TestCase):
+    def setUp(self):
+        self._folder = tempfile.TemporaryDirectory()
+        self.folder = pathlib.Path(self._folder.name)
+        self.run_on(1, "sample", "-o", "sample")
+        self.run_on(1, "convert", "sample/model", "--weights", "sample/performance.csv",
+                    "-o", "take.npy")
+
+    def tearDown(self):
+        self._folder.cleanup()
+
+    def command(self, ranks, *arguments):
+        return [*MPIRUN, "-n", str(ranks), str(MIMETRA), *arguments]
+
+    def start(self, ranks, *arguments):
+        return subprocess.Popen(self.command(ranks, *arguments), cwd=self.folder, text=True,
+                                stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+
+    def run_on(self, ranks, *arguments, code=0):
+        result = subprocess.run(self.command(ranks, *arguments), cwd=self.folder, text=True,
+                                capture_output=True, timeout=300)
+        self.assertEqual(result.returncode, code, result.stderr)
+        return result
+
+    def bytes_of(self, name):
+        return (self.folder / name).read_bytes()
+
+    def names(self):
+        return sorted(str(path.relative_to(self.folder)) for path in self.folder.rglob("*"))
+
+    def test_components_are_the_same_bytes_on_any_number_of_ranks(self):
+        self.run_on(1, "decompose", "take.npy", "-k", "8", "-o", "one.h5")
+        for ranks in (2, 3, 4):
+            name = f"{ranks}.h5"
+            self.run_on(ranks, "decompose", "take.npy", "-k", "8", "-o", name)
+            self.assertEqual(self.bytes_of(name), self.bytes_of("one.h5"), name)
+
+    def test_components_do_not_depend_on_the_memory_of_ranks(self):
+        self.run_on(1, "decompose", "take.npy", "-k", "8", "-o", "one.h5")
+        plan = json.loads(self.run_on(2, "decompose", "take.npy", "-k", "8", "-o", "two.h5",
+                                      "--dry-run", "--json").stdout)
+        less = int(plan["memory_bytes"] - 8e6)
+        self.run_on(2, "decompose", "take.npy", "-k", "8", "-o", "two.h5", "--memory", str(less))
+        self.assertEqual(self.bytes_of("two.h5"), self.bytes_of("one.h5"))
+
+    def test_regions_are_the_same_bytes_on_any_number_of_ranks(self):
+        self.run_on(1, "regions", "take.npy", "-k", "8", "-o", "one.json")
+        self.run_on(3, "regions", "take.npy", "-k", "8", "-o", "three.json")
+        self.assertEqual(self.bytes_of("three.json"), self.bytes_of("one.json"))
+
+    def test_transfers_and_other_operations_are_those_of_one_rank(self):
+        self.run_on(1, "transfer", "take.npy", "sample/model", "-k", "4", "-o", "one.npy")
+        self.run_on(2, "transfer", "take.npy", "sample/model", "-k", "4", "-o", "two.npy")
+        self.assertEqual(self.bytes_of("two.npy"), self.bytes_of("one.npy"))
+        self.run_on(2, "convert", "take.npy", "-o", "again.npy")
+        self.assertEqual(self.bytes_of("again.npy"), self.bytes_of("take.npy"))
+
+    def test_the_first_rank_alone_prints(self):
+        result = self.run_on(3, "decompose", "take.npy", "-k", "4", "-o", "c.h5", "--json")
+        self.assertEqual(json.loads(result.stdout)["components"], 4)
+        self.assertEqual(self.run_on(3, "--version").stdout.count("mimetra"), 1)
+
+    def test_what_all_find_wrong_the_first_says(self):
+        before = self.names()
+        result = self.run_on(3, "decompose", "missing.npy", "-k", "4", "-o", "c.h5", code=3)
+        self.assertEqual(result.stderr.count("missing.npy"), 1, result.stderr)
+        result = self.run_on(3, "decompose", "take.npy", "-k", "0", "-o", "c.h5", code=2)
+        self.assertEqual(result.stderr.count("-k: expected"), 1, result.stderr)
+        self.assertEqual(self.names(), before)
+
+    def test_a_rank_without_the_input_ends_the_run(self):
+        before = self.names()
+        script = self.folder / "elsewhere.sh"
+        script.write_text(f'#!/bin/sh\n[ "$OMPI_COMM_WORLD_RANK" = 1 ] && cd "{tempfile.gettempdir()}"\n'
+                          f'exec "{MIMETRA}" "$@"\n')
+        script.chmod(0o755)
+        started = time.monotonic()
+        result = subprocess.run([*MPIRUN, "-n", "2", str(script), "decompose", "take.npy", "-k", "4",
+                                 "-o", "c.h5"], cwd=self.folder, text=True, capture_output=True,
+                                timeout=60)
+        script.unlink()
+        self.assertLess(time.monotonic() - started, 10)
+        self.assertEqual(result.returncode, 3, result.stderr)
+        self.assertIn("take.npy", result.stderr)
+        self.assertEqual(self.names(), before)
+
+    def test_a_rank_that_is_killed_ends_the_run(self):
+        before = self.names()
+        process = self.start(3, "decompose", "take.npy", "-k", "30", "--iterations", "100000",
+                             "--tolerance", "0", "-o", "c.h5")
+        victim = None
+        while victim is None:
+            time.sleep(0.5)
+            self.assertIsNone(process.poll())
+            found = subprocess.run(["pgrep", "-f", "iterations 100000 --tolerance 0"], text=True,
+                                   capture_output=True).stdout.split()
+            own = [int(pid) for pid in found
+                   if os.path.exists(f"/proc/{pid}/exe")
+                   and os.path.realpath(f"/proc/{pid}/exe") == str(MIMETRA)]
+            victim = own[-1] if len(own) == 3 else None
+        time.sleep(1)
+        os.kill(victim, signal.SIGKILL)
+        started = time.monotonic()
+        process.communicate(timeout=60)
+        self.assertLess(time.monotonic() - started, 10)
+        self.assertNotEqual(process.returncode, 0)
+        self.assertEqual(self.names(), before)
+
+    def test_a_full_disk_ends_the_run(self):
+        before = self.names()
+        limited = f'ulimit -f 1; exec {" ".join(MPIRUN)} -n 2 "{MIMETRA}" ' \
+                  "decompose take.npy -k 4 -o c.h5"
+        started = time.monotonic()
+        result = subprocess.run(["bash", "-c", limited], cwd=self.folder, text=True,
+                                capture_output=True, timeout=60)
+        self.assertLess(time.monotonic() - started, 20)
+        self.assertEqual(result.returncode, 5, result.stderr)
+        self.assertIn("c.h5", result.stderr)
+        self.assertEqual(self.names(), before)
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2)

@@ -1,0 +1,142 @@
+#include <gmock/gmock.h>
+
+#include "tests/cache_sizes.h"
+#include "tests/splocs/synthetic.h"
+#include "tests/streams.h"
+#include "toolkit/mesh/errors.h"
+#include "toolkit/splocs/decomposition_plan.h"
+
+/// Decompositions of motion that the memory allowed does not hold, against those that it does: the
+/// same bytes.
+namespace mimetra::test {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::ThrowsMessage;
+
+/// 79 blocks of vertices in 64 runs: the motion is larger than all else.
+MeshSequence long_take() {
+  return restless_grid(140, 108, 24);
+}
+
+DecompositionPlan plan_of(const FrameSource& frames, const DecompositionOptions& options) {
+  return planned_decomposition(frames, VertexPart(frames.vertices()), options);
+}
+
+double motion_bytes(const FrameSource& frames) {
+  return 24.0 * frames.frames() * frames.vertices();
+}
+
+/// As much as everything but the motion takes.
+DecompositionOptions within_less(DecompositionOptions options, const FrameSource& frames) {
+  options.memory = plan_of(frames, options).bytes - motion_bytes(frames) / 2;
+  return options;
+}
+
+void expect_same_bytes(const Components& found, const Components& expected) {
+  EXPECT_TRUE(equal_bytes(found.displacements, expected.displacements));
+  EXPECT_TRUE(equal_bytes(found.weights, expected.weights));
+  EXPECT_TRUE(equal_bytes(found.support, expected.support));
+  EXPECT_EQ(found.energies, expected.energies);
+  EXPECT_EQ(found.centers, expected.centers);
+  EXPECT_EQ(found.scale, expected.scale);
+}
+
+class MemoryTest : public testing::Test {
+ protected:
+  MemoryTest() : sequence_(long_take()), options_(grid_options(sequence_, 4)) {
+    options_.iterations = 4;
+    options_.threads = 2;
+  }
+
+  /// Of frames in memory and of those that are read, whatever place the motion has.
+  void expect_same_bytes_in(MotionPlace place) {
+    const Components expected = decompose(sequence_, options_);
+    ASSERT_EQ(plan_of(sequence_, options_).place, MotionPlace::memory);
+    const DecompositionOptions bounded = within_less(options_, sequence_);
+    ASSERT_EQ(plan_of(sequence_, bounded).place, place);
+    expect_same_bytes(decompose(sequence_, bounded), expected);
+    expect_same_bytes(decompose(*streamed(sequence_), bounded), expected);
+  }
+
+  MeshSequence sequence_;
+  DecompositionOptions options_;
+};
+
+TEST_F(MemoryTest, DoesNotChangeTheResult) {
+  expect_same_bytes_in(MotionPlace::scratch);
+}
+
+TEST_F(MemoryTest, DoesNotChangeTheResultInSinglePrecision) {
+  options_.precision = IterationPrecision::single_precision;
+  expect_same_bytes_in(MotionPlace::scratch);
+}
+
+TEST_F(MemoryTest, DoesNotChangeTheResultInABasisOfTime) {
+  options_.basis_tolerance = 0.3;
+  expect_same_bytes_in(MotionPlace::scratch);
+}
+
+TEST_F(MemoryTest, DoesNotChangeTheResultWhereTheSequenceIsReadAgain) {
+  // A pass for the component of the start, and one for the iteration: a file would not pay.
+  options_.count = 1;
+  options_.iterations = 1;
+  expect_same_bytes_in(MotionPlace::sequence);
+}
+
+TEST_F(MemoryTest, DoesNotChangeTheError) {
+  const Components components = decompose(sequence_, options_);
+  const DecompositionError expected = decomposition_error(sequence_, components);
+  Components bounded = components;
+  bounded.options = within_less(options_, sequence_);
+  const DecompositionError found = decomposition_error(*streamed(sequence_), bounded);
+  EXPECT_EQ(found.rms, expected.rms);
+  EXPECT_EQ(found.kg, expected.kg);
+  EXPECT_EQ(found.sparsity, expected.sparsity);
+}
+
+TEST_F(MemoryTest, IsNeverMoreThanAllowed) {
+  for (const double less : {0.0, 0.2, 0.7, 1.0}) {
+    DecompositionOptions bounded = options_;
+    bounded.memory = plan_of(sequence_, options_).bytes - less * motion_bytes(sequence_);
+    const DecompositionPlan plan = plan_of(sequence_, bounded);
+    EXPECT_LE(plan.bytes, *bounded.memory);
+    EXPECT_EQ(plan.scratch_bytes, plan.place == MotionPlace::scratch ? motion_bytes(sequence_) : 0);
+  }
+}
+
+TEST_F(MemoryTest, HoldsFewerThreadsWhereThereIsLess) {
+  options_.threads = 8;
+  const double without_motion = plan_of(sequence_, options_).bytes - motion_bytes(sequence_);
+  int threads = 8;
+  for (const double less : {0.1, 0.2, 0.3, 0.4}) {
+    DecompositionOptions bounded = options_;
+    // Each thread holds two of 79 blocks.
+    bounded.memory = without_motion - less * 8 * 2 / 79 * motion_bytes(sequence_);
+    const DecompositionPlan plan = plan_of(sequence_, bounded);
+    EXPECT_LE(plan.threads, threads);
+    threads = plan.threads;
+  }
+  EXPECT_LT(threads, 8);
+}
+
+TEST_F(MemoryTest, IsRefusedWhereItHoldsNotOneBlock) {
+  options_.memory = 1e6;
+  EXPECT_THAT([this] { decompose(sequence_, options_); },
+              ThrowsMessage<MismatchError>(
+                  AllOf(HasSubstr("option 'memory': what is left of it, 0.001 GB, does not hold a "
+                                  "decomposition of 24 frames into 4 components: at least"),
+                        HasSubstr("take fewer components or frames"))));
+}
+
+TEST_F(MemoryTest, IsReadAgainOnlyWhereVerticesCanBeRead) {
+  options_.count = 1;
+  options_.iterations = 1;
+  const DecompositionOptions bounded = within_less(options_, sequence_);
+  EXPECT_EQ(plan_of(sequence_, bounded).place, MotionPlace::sequence);
+  EXPECT_EQ(plan_of(*streamed(sequence_), bounded).place, MotionPlace::scratch);
+}
+
+}  // namespace
+}  // namespace mimetra::test

@@ -1,0 +1,61 @@
+#include "toolkit/cli/mpi_ranks.h"
+
+#include <algorithm>
+#include <cstdlib>
+
+#include <mpi.h>
+
+namespace mimetra::cli {
+namespace {
+
+/// Numbers of one message: MPI counts them by ints.
+constexpr std::size_t kMost = std::size_t{1} << 27;
+
+/// Calls `pass` with all numbers, in pieces that one message takes.
+template <typename Number, typename Pass>
+void in_pieces(std::span<Number> numbers, const Pass& pass) {
+  for (std::size_t done = 0; done < numbers.size(); done += kMost) {
+    const std::size_t count = std::min(kMost, numbers.size() - done);
+    pass(numbers.data() + done, static_cast<int>(count));
+  }
+}
+
+}  // namespace
+
+MpiRanks::MpiRanks() {
+  // Only this thread talks to others.
+  int provided = MPI_THREAD_SINGLE;
+  MPI_Init_thread(nullptr, nullptr, MPI_THREAD_FUNNELED, &provided);
+  MPI_Comm_rank(MPI_COMM_WORLD, &rank_);
+  MPI_Comm_size(MPI_COMM_WORLD, &count_);
+}
+
+MpiRanks::~MpiRanks() {
+  MPI_Barrier(MPI_COMM_WORLD);
+  MPI_Finalize();
+}
+
+void MpiRanks::send(int to, std::span<const double> numbers) const {
+  in_pieces(numbers, [to](const double* data, int count) {
+    MPI_Send(data, count, MPI_DOUBLE, to, 0, MPI_COMM_WORLD);
+  });
+}
+
+void MpiRanks::receive(int from, std::span<double> numbers) const {
+  in_pieces(numbers, [from](double* data, int count) {
+    MPI_Recv(data, count, MPI_DOUBLE, from, 0, MPI_COMM_WORLD, MPI_STATUS_IGNORE);
+  });
+}
+
+void MpiRanks::broadcast(int from, std::span<double> numbers) const {
+  in_pieces(numbers, [from](double* data, int count) {
+    MPI_Bcast(data, count, MPI_DOUBLE, from, MPI_COMM_WORLD);
+  });
+}
+
+void MpiRanks::end_all(int code) const {
+  MPI_Abort(MPI_COMM_WORLD, code);
+  std::_Exit(code);
+}
+
+}  // namespace mimetra::cli

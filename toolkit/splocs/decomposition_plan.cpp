@@ -1,0 +1,125 @@
+#include "toolkit/splocs/decomposition_plan.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <thread>
+
+#include "toolkit/mesh/errors.h"
+#include "toolkit/mesh/text.h"
+
+namespace mimetra {
+namespace {
+
+constexpr double kNumber = sizeof(double);
+
+/// The factors of a mesh's sparse systems and its adjacency: measured on faces of 3 to 7 thousand
+/// vertices, where fill-in grows little.
+constexpr double kFactorsPerVertex = 2000;
+
+/// Components have so many different centres on their way that their distances are kept.
+constexpr double kCentersPerComponent = 4;
+
+/// Blocks of motion that a thread holds: one that is read, and what is made of it.
+constexpr double kBlocksPerThread = 2;
+
+/// Sums of a run that a thread holds (P, H and penalties): in the precision of the loop, in double,
+/// and what they are joined with.
+constexpr double kSumsPerThread = 3;
+
+/// Levels of the tree along which 64 runs are joined: each may hold one matrix.
+constexpr double kLevels = 6;
+
+/// Matrices of frames x components: weights, the best so far, those in a basis, P twice, and what a
+/// step makes of them.
+constexpr double kWeightMatrices = 6;
+
+/// Reading the motion once more from a sequence, and writing it, in times of reading it once from
+/// a file: measured (docs/large-data.md).
+constexpr double kReadAgain = 2, kWriteOnce = 4;
+
+struct Sizes {
+  double frames, vertices, mesh_vertices, count;
+
+  double motion() const { return kNumber * frames * 3 * vertices; }
+  double block() const {
+    return kNumber * frames * 3 * std::min<double>(VertexPart::kBlock, vertices);
+  }
+  double sums() const { return kNumber * (frames + count + 1) * count; }
+  /// What does not depend on the number of threads.
+  double fixed() const {
+    const double components = 3 * count * 3 * vertices;  // C, the best so far, the dual variable
+    const double maps = 2 * count * vertices + kCentersPerComponent * count * mesh_vertices;
+    return kFactorsPerVertex * mesh_vertices +
+           kNumber * (components + maps + kWeightMatrices * frames * count) + kLevels * sums();
+  }
+  double per_thread() const { return kBlocksPerThread * block() + kSumsPerThread * sums(); }
+};
+
+int threads_of(const DecompositionOptions& options) {
+  if (options.threads > 0) return options.threads;
+  return std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+}
+
+/// Passes over the motion: the start takes one for each component, an iteration one.
+double passes(const DecompositionOptions& options) {
+  const int iterations = options.iterations.value_or(DecompositionOptions::kUsualIterations);
+  return options.count + (options.basis_tolerance > 0 ? 4 : iterations);
+}
+
+bool disk_has_room(double bytes) {
+  std::error_code error;
+  const auto folder = std::filesystem::temp_directory_path(error);
+  if (error) return false;
+  const auto space = std::filesystem::space(folder, error);
+  return !error && static_cast<double>(space.available) > bytes;
+}
+
+MotionPlace place_outside_memory(const FrameSource& frames, double bytes,
+                                 const DecompositionOptions& options) {
+  // In single precision the motion is rounded once.
+  if (!frames.reads_vertices() || options.precision == IterationPrecision::single_precision) {
+    return MotionPlace::scratch;
+  }
+  const double again = kReadAgain * passes(options), kept = kWriteOnce + passes(options);
+  return again < kept || !disk_has_room(bytes) ? MotionPlace::sequence : MotionPlace::scratch;
+}
+
+std::string gigabytes(double bytes) {
+  return readable(bytes / 1e9, 2) + " GB";
+}
+
+}  // namespace
+
+DecompositionPlan planned_decomposition(const FrameSource& frames, const VertexPart& part,
+                                        const DecompositionOptions& options) {
+  const Sizes sizes{static_cast<double>(frames.frames()), static_cast<double>(part.vertices()),
+                    static_cast<double>(part.mesh_vertices()), static_cast<double>(options.count)};
+  const int threads = threads_of(options);
+  DecompositionPlan plan;
+  plan.threads = options.threads;
+  plan.poses = frames.frames() / 2;
+  plan.bytes = sizes.fixed() + sizes.motion() + threads * sizes.per_thread();
+  if (!options.memory || plan.bytes <= *options.memory) return plan;
+
+  const double free = *options.memory - sizes.fixed();
+  if (free < sizes.per_thread()) {
+    throw MismatchError("option 'memory': what is left of it, " + gigabytes(*options.memory) +
+                        ", does not hold a decomposition of " + std::to_string(frames.frames()) +
+                        " frames into " + std::to_string(options.count) + " components: at least " +
+                        gigabytes(sizes.fixed() + sizes.per_thread()) +
+                        " are needed; allow more, or take fewer components or frames");
+  }
+  plan.threads = std::min(threads, static_cast<int>(free / sizes.per_thread()));
+  plan.bytes = sizes.fixed() + plan.threads * sizes.per_thread();
+  plan.place = place_outside_memory(frames, sizes.motion(), options);
+  if (plan.place == MotionPlace::scratch) plan.scratch_bytes = sizes.motion();
+  // A basis, the motion in it, and both again where fewer poses do.
+  const double of_pose = kNumber * 2 * (sizes.frames + 3 * sizes.vertices);
+  plan.poses =
+      std::min(plan.poses,
+               static_cast<Eigen::Index>(std::max(0.0, (*options.memory - plan.bytes) / of_pose)));
+  return plan;
+}
+
+}  // namespace mimetra

@@ -1,0 +1,37 @@
+#pragma once
+
+#include "toolkit/splocs/decomposition_options.h"
+#include "toolkit/splocs/vertex_part.h"
+
+namespace mimetra {
+
+/// Where a motion's blocks are between their uses.
+enum class MotionPlace {
+  memory,
+  scratch,  ///< in a file without a name, in std::filesystem::temp_directory_path()
+  sequence  ///< where they came from: they are read and made anew
+};
+
+/// How a decomposition keeps within DecompositionOptions::memory.
+struct DecompositionPlan {
+  MotionPlace place = MotionPlace::memory;
+  /// That work at a time, each on a block of 192 vertices over all frames; 0 for all there are.
+  int threads = 0;
+  /// Poses that a basis in time may have.
+  Eigen::Index poses = 0;
+  /// At the peak, besides what the caller holds: arrays that grow with frames, vertices or
+  /// components.
+  double bytes = 0;
+  /// In the file.
+  double scratch_bytes = 0;
+};
+
+/// For the poses of the vertices that a rank owns, F x 3n, on a mesh of part.mesh_vertices().
+/// Where the motion does not fit, it is read again for every pass if that is cheaper than to write
+/// it once and read it from a file (docs/large-data.md), or the file's disk has no room.
+///
+/// Throws MismatchError where one thread alone takes more than options.memory.
+DecompositionPlan planned_decomposition(const FrameSource& frames, const VertexPart& part,
+                                        const DecompositionOptions& options);
+
+}  // namespace mimetra

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <memory>
+
+#include "toolkit/mesh/scratch_file.h"
+#include "toolkit/splocs/decomposition_plan.h"
+#include "toolkit/splocs/vertex_blocks.h"
+
+/// Blocks of a motion that is larger than memory. Internal to the decomposition.
+namespace mimetra {
+
+/// Blocks in a ScratchFile, one after the other, each row after row.
+template <typename Scalar>
+class ScratchBlocks : public KeptBlocks<Scalar> {
+ public:
+  using typename BlockSource<Scalar>::Block;
+
+  /// Throws OutputError.
+  ScratchBlocks(Eigen::Index rows, const VertexPart& part) : KeptBlocks<Scalar>(rows, part) {}
+
+  std::shared_ptr<const Block> block(int b) const override {
+    return std::make_shared<const Block>(read(b));
+  }
+  void put_rows(int b, Eigen::Index row, const Block& rows) override;
+  void put(int b, Block block) override { put_rows(b, 0, block); }
+  Block take(int b) override { return read(b); }
+
+ private:
+  Block read(int b) const;
+  std::size_t byte_of(int b, Eigen::Index row) const;
+
+  ScratchFile file_;
+};
+
+/// Blocks with memory, or in a file. \pre the place is one of the two
+template <typename Scalar>
+std::unique_ptr<KeptBlocks<Scalar>> kept_blocks(MotionPlace place, Eigen::Index rows,
+                                                const VertexPart& part);
+
+/// Displacements of a part of a sequence from its rest pose, divided by `scale`, read anew for each
+/// use. The sequence outlives it.
+class SequenceBlocks : public BlockSource<double> {
+ public:
+  SequenceBlocks(const SequencePart& sequence, const VertexPart& part, double scale = 1);
+
+  std::shared_ptr<const Block> block(int b) const override;
+
+ private:
+  SequencePart sequence_;
+  double scale_;
+};
+
+/// Displacements of a part of a sequence from its rest pose (F x 3n), by `threads` threads. Throws
+/// what reading throws, OutputError. \pre as kept_blocks()
+std::unique_ptr<KeptBlocks<double>> kept_displacements(const SequencePart& sequence,
+                                                       const VertexPart& part, MotionPlace place,
+                                                       int threads);
+
+}  // namespace mimetra
