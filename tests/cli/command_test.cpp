@@ -73,7 +73,7 @@ TEST_F(Command, DryRunSaysWhatIsReadIntoMemoryAsAWhole) {
     return json::parse(run(arguments + " --dry-run --json").out).at("inputs").at(0);
   };
   EXPECT_EQ(plan_of("convert head --weights take.csv -o a.npy").at("in_memory"), false);
-  EXPECT_EQ(plan_of("evaluate head --weights take.csv head -k 2").at("in_memory"), true);
+  EXPECT_EQ(plan_of("render head --weights take.csv -o a.png").at("in_memory"), true);
 }
 
 TEST_F(Command, ConvertsThroughEveryFormatOfOneFile) {

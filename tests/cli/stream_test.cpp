@@ -126,8 +126,9 @@ TEST_F(Streamed, PlansSayWhatIsReadAsAWhole) {
   EXPECT_FALSE(reads_all("decompose head --weights take.csv -k 2 -o c.h5"));
   EXPECT_FALSE(reads_all("regions head --weights take.csv -k 2 -o s.json"));
   EXPECT_FALSE(reads_all("align head --weights take.csv -o a.npy"));
-  EXPECT_TRUE(reads_all("evaluate head --weights take.csv head -k 2"));
-  EXPECT_THAT(run("evaluate head --weights take.csv head -k 2 --dry-run").out,
+  EXPECT_FALSE(reads_all("evaluate head --weights take.csv head -k 2"));
+  EXPECT_TRUE(reads_all("render head --weights take.csv -o a.png"));
+  EXPECT_THAT(run("render head --weights take.csv -o a.png --dry-run").out,
               HasSubstr("12 frames of 225 vertices, all in memory\n"));
 }
 

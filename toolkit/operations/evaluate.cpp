@@ -87,7 +87,7 @@ void check_rows(const Invocation& invocation) {
 Outcome run_evaluate(const Invocation& invocation) {
   check_rows(invocation);
   check_solving(invocation);
-  const MeshSequence& sequence = invocation.sequence("source");
+  const FrameSource& sequence = *invocation.get<FieldSequence>("source").frames;
   EvaluationOptions options =
       evaluation_parameters(&invocation.get<FieldSequence>("source")).read(invocation.parameters);
   options.source = described(options.source, invocation.input("source"));
@@ -109,22 +109,36 @@ Outcome run_evaluate(const Invocation& invocation) {
   return outcome;
 }
 
+int most_components(const EvaluationOptions& options) {
+  return options.curve ? EvaluationOptions::kCurveComponents
+                       : *std::ranges::max_element(options.counts);
+}
+
+/// Of the largest decomposition; nothing where there is none.
+DecompositionPlan plan_of(const Invocation& invocation) {
+  const EvaluationOptions options = evaluation_parameters().read(invocation.parameters);
+  if (options.regions.select == Selector::transfer ||
+      invocation.parameters.optional_text("paint")) {
+    return {};
+  }
+  return analysis_plan(invocation, *invocation.get<FieldSequence>("source").frames,
+                       most_components(options));
+}
+
 /// One decomposition after the other, each followed by a transfer.
 double memory_of_evaluate(const Invocation& invocation) {
-  const MeshSequence& sequence = invocation.sequence("source");
+  const FrameSource& sequence = *invocation.get<FieldSequence>("source").frames;
   EvaluationOptions options = evaluation_parameters().read(invocation.parameters);
   options.solving.threads = invocation.threads;
   const BlendshapeModel& target = invocation.get<ModelData>("target").model.average();
   const bool selects = options.regions.select == Selector::transfer;
-  const int most = options.curve ? EvaluationOptions::kCurveComponents
-                                 : *std::ranges::max_element(options.counts);
-  const bool decomposes = !selects && !invocation.parameters.optional_text("paint");
-  const double analysis = !decomposes ? 0 : analysis_plan(invocation, sequence, most).bytes;
+  const int most = most_components(options);
   const double selection = selects || options.curve ? selection_bytes(sequence, target) : 0;
   const double regional =
       options.solving.per_region ? regional_bytes(sequence, target, most, options.solving) : 0;
   return std::max(
-      {analysis, selection, 2 * solution_bytes(sequence, target, options.solving) + regional});
+      {plan_of(invocation).bytes, selection,
+       stored_bytes(sequence) + 2 * solution_bytes(sequence, target, options.solving) + regional});
 }
 
 }  // namespace
@@ -136,7 +150,7 @@ Operation evaluate_operation() {
   operation.inputs = {
       {"source", DataKind::sequence, "sequence whose deformation is transferred"},
       {"target", DataKind::model, "model (MODEL or MODEL@identity=1.5) or mesh that receives it"}};
-  operation.inputs.front().fields = true;
+  operation.inputs.front().streamed = operation.inputs.front().fields = true;
   operation.outputs = {{"out", DataKind::table, "the table", true}};
   operation.parameters = evaluation_parameters().declared();
   operation.parameters.push_back(paint_parameter());
@@ -146,6 +160,9 @@ Operation evaluate_operation() {
                         "evaluate takes/ actor@identity007=2 -k 10,20,30,40,50 -o table.csv"};
   operation.run = run_evaluate;
   operation.memory = memory_of_evaluate;
+  operation.scratch = [](const Invocation& invocation) {
+    return plan_of(invocation).scratch_bytes;
+  };
   operation.foresee = [](const Invocation& invocation) {
     check_rows(invocation);
     check_solving(invocation);

@@ -98,7 +98,7 @@ constexpr std::array kCurveShares = {0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8};
 /// Makes the rows of one evaluation, one after the other.
 class Rows {
  public:
-  Rows(const MeshSequence& sequence, const Target& given, const EvaluationOptions& options)
+  Rows(const FrameSource& sequence, const Target& given, const EvaluationOptions& options)
       : options_(with_common(options)),
         steps_(1 + number_of_rows(options)),
         matched_(sequence, given,
@@ -114,7 +114,10 @@ class Rows {
     check_rules(target_, options_.solving);
     check_border(options.given ? &*options.given : nullptr, target_, options_.solving);
     options_.source.joint = joint_search({target_}, options_.solving);
-    source_ = prepare_source(sequence, options_.source);
+    // Nothing that is returned keeps it.
+    source_ = prepare_source(
+        std::shared_ptr<const FrameSource>(std::shared_ptr<const FrameSource>(), &sequence),
+        options_.source);
     options_.solving.progress = next_part(0, 1);
     full_ = evaluate_full(source_, target_, options_.solving);
   }
@@ -244,7 +247,7 @@ class Rows {
 
 }  // namespace
 
-std::vector<EvaluationRow> evaluate(const MeshSequence& sequence, const Target& target,
+std::vector<EvaluationRow> evaluate(const FrameSource& sequence, const Target& target,
                                     const EvaluationOptions& options) {
   check_options(options);
   check_options(options.regions);

@@ -85,7 +85,7 @@ struct EvaluationOptions {
 /// The paper's Table I: a row for each number of components, or of discs, and one by all triangles,
 /// which is the last. Throws what prepare_source(), MatchedTarget(), analyse(), choose_regions(),
 /// check_regions(), check_border(), RegionSelector, bordered_selection() and solve() throw.
-std::vector<EvaluationRow> evaluate(const MeshSequence& source, const Target& target,
+std::vector<EvaluationRow> evaluate(const FrameSource& source, const Target& target,
                                     const EvaluationOptions& options = {});
 
 }  // namespace mimetra

@@ -80,11 +80,6 @@ Source source_of(const FrameSource& sequence, const std::vector<Target>& targets
   of_source.notes = options.notes;
   of_source.progress = part_of(options.progress, 0, kSourceShare);
   of_source.joint = joint_search(targets, of_solving);
-  if (decomposes(options)) {
-    const BlockOptions reading{options.threads, part_of(of_source.progress, 0, 0.5)};
-    of_source.progress = part_of(of_source.progress, 0.5, 1);
-    given = std::make_shared<const MeshSequence>(sequence, reading);
-  }
   return prepare_source(std::move(given), of_source);
 }
 
@@ -228,11 +223,6 @@ void check_full(const TransferOptions& options) {
 }
 
 }  // namespace
-
-bool decomposes(const TransferOptions& options) {
-  return !options.full && std::holds_alternative<std::monostate>(options.given) &&
-         options.regions.select == Selector::energy;
-}
 
 TransferResult transfer(const FrameSource& sequence, const std::vector<Target>& given,
                         const TransferOptions& options) {

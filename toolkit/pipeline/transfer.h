@@ -82,14 +82,11 @@ struct TransferResult {
   double region_seconds = 0;             ///< decomposition and choice of regions, for all targets
 };
 
-/// True where regions are looked for: then all frames are in memory.
-bool decomposes(const TransferOptions& options);
-
 /// The main job: transfers the deformation of a sequence to each of some targets. The rest pose and
 /// the head motion of the source are settled, its regions found, and the target's poses solved for
 /// on their triangles, or those that are paired with them. What depends on the source only is done
-/// once. Unless it decomposes(), it
-/// reads the source in blocks, several times, and holds no more of it; the result does not need it.
+/// once. The source is read in blocks, several times, and no more of it is held than a
+/// decomposition within its options' memory does; the result does not need it.
 ///
 /// Notes a result that is likely not usable, because much of the deformation is missing or many
 /// triangles are flipped (Topic::poor_condition where there are regions). Where options hold the

@@ -34,8 +34,8 @@ std::size_t ScratchBlocks<Scalar>::byte_of(int b, Eigen::Index row) const {
 }
 
 template <typename Scalar>
-void ScratchBlocks<Scalar>::put_rows(int b, Eigen::Index row, const Block& rows) {
-  file_.write(byte_of(b, row), std::as_bytes(numbers_of(rows)));
+void ScratchBlocks<Scalar>::put_rows(int b, Eigen::Index row, const Block& values) {
+  file_.write(byte_of(b, row), std::as_bytes(numbers_of(values)));
 }
 
 template <typename Scalar>

@@ -16,12 +16,13 @@ class ScratchBlocks : public KeptBlocks<Scalar> {
   using typename BlockSource<Scalar>::Block;
 
   /// Throws OutputError.
-  ScratchBlocks(Eigen::Index rows, const VertexPart& part) : KeptBlocks<Scalar>(rows, part) {}
+  ScratchBlocks(Eigen::Index row_count, const VertexPart& part)
+      : KeptBlocks<Scalar>(row_count, part) {}
 
   std::shared_ptr<const Block> block(int b) const override {
     return std::make_shared<const Block>(read(b));
   }
-  void put_rows(int b, Eigen::Index row, const Block& rows) override;
+  void put_rows(int b, Eigen::Index row, const Block& values) override;
   void put(int b, Block block) override { put_rows(b, 0, block); }
   Block take(int b) override { return read(b); }
 

@@ -73,7 +73,7 @@ class KeptBlocks : public BlockSource<Scalar> {
   using typename BlockSource<Scalar>::Block;
 
   /// Rows of block b from `row` on.
-  virtual void put_rows(int b, Eigen::Index row, const Block& rows) = 0;
+  virtual void put_rows(int b, Eigen::Index row, const Block& values) = 0;
   virtual void put(int b, Block block) = 0;
   /// Block b, which is not kept any more.
   virtual Block take(int b) = 0;
@@ -93,8 +93,8 @@ class VertexBlocks : public KeptBlocks<Scalar> {
 
   VertexBlocks() = default;
   /// Blocks without memory, for whoever fills them one by one.
-  VertexBlocks(Eigen::Index rows, const VertexPart& part)
-      : KeptBlocks<Scalar>(rows, part), blocks_(part.blocks()) {}
+  VertexBlocks(Eigen::Index row_count, const VertexPart& part)
+      : KeptBlocks<Scalar>(row_count, part), blocks_(part.blocks()) {}
   /// All vertices of a mesh, from R x 3N.
   explicit VertexBlocks(const Frames& frames)
       : VertexBlocks(frames.rows(), VertexPart(frames.cols() / 3)) {
@@ -116,8 +116,8 @@ class VertexBlocks : public KeptBlocks<Scalar> {
     return {std::shared_ptr<const Block>(), &blocks_[b]};
   }
   /// \pre the block has memory
-  void put_rows(int b, Eigen::Index row, const Block& rows) override {
-    blocks_[b].middleRows(row, rows.rows()) = rows;
+  void put_rows(int b, Eigen::Index row, const Block& values) override {
+    blocks_[b].middleRows(row, values.rows()) = values;
   }
   void put(int b, Block block) override { blocks_[b] = std::move(block); }
   Block take(int b) override { return std::exchange(blocks_[b], Block()); }
