@@ -115,7 +115,7 @@ int most_components(const EvaluationOptions& options) {
 }
 
 /// Of the largest decomposition; nothing where there is none.
-DecompositionPlan plan_of(const Invocation& invocation) {
+DecompositionPlan plan_of_evaluation(const Invocation& invocation) {
   const EvaluationOptions options = evaluation_parameters().read(invocation.parameters);
   if (options.regions.select == Selector::transfer ||
       invocation.parameters.optional_text("paint")) {
@@ -137,7 +137,7 @@ double memory_of_evaluate(const Invocation& invocation) {
   const double regional =
       options.solving.per_region ? regional_bytes(sequence, target, most, options.solving) : 0;
   return std::max(
-      {plan_of(invocation).bytes, selection,
+      {plan_of_evaluation(invocation).bytes, selection,
        stored_bytes(sequence) + 2 * solution_bytes(sequence, target, options.solving) + regional});
 }
 
@@ -161,7 +161,7 @@ Operation evaluate_operation() {
   operation.run = run_evaluate;
   operation.memory = memory_of_evaluate;
   operation.scratch = [](const Invocation& invocation) {
-    return plan_of(invocation).scratch_bytes;
+    return plan_of_evaluation(invocation).scratch_bytes;
   };
   operation.foresee = [](const Invocation& invocation) {
     check_rows(invocation);

@@ -278,7 +278,7 @@ int region_count(const Invocation& invocation, const TransferOptions& options) {
 }
 
 /// Of the decomposition; nothing where there is none.
-DecompositionPlan plan_of(const Invocation& invocation) {
+DecompositionPlan plan_of_transfer(const Invocation& invocation) {
   if (!looks_for_components(invocation)) return {};
   return analysis_plan(
       invocation, *invocation.get<FieldSequence>("source").frames,
@@ -304,7 +304,7 @@ double memory_of_transfer(const Invocation& invocation) {
     // Results of a source in memory are there, too.
     if (held.is_in_memory()) solutions += frame_bytes(frames);
   }
-  return std::max(plan_of(invocation).bytes, solutions + most_selection);
+  return std::max(plan_of_transfer(invocation).bytes, solutions + most_selection);
 }
 
 }  // namespace
@@ -338,7 +338,7 @@ Operation transfer_operation() {
   operation.run = run_transfer;
   operation.memory = memory_of_transfer;
   operation.scratch = [](const Invocation& invocation) {
-    return plan_of(invocation).scratch_bytes;
+    return plan_of_transfer(invocation).scratch_bytes;
   };
   operation.foresee = foresee_transfer;
   return operation;
