@@ -309,7 +309,7 @@ const std::vector<FolderRule>& folder_rules() {
          {"mesh", "splocs", "io", "operations", "vtk", "pictures", "report", "fitting", "samples",
           "c"},
          {"CLI11", "spdlog", "fmt", "JSON", "MPI"}},
-        {"paraview", "plugins/paraview", {"mesh", "operations", "vtk", "c"}, {}, true},
+        {"paraview", "plugins/paraview", {"mesh", "pipeline", "operations", "vtk", "c"}, {}, true},
         {"meshlab", "plugins/meshlab", {"operations", "c"}, {}, true},
         {"blender", "plugins/blender", {"operations", "c"}, {}, true},
     };
