@@ -65,5 +65,4 @@ if(BUILD_TESTING)
     # Tests read what is written by HDF5's own library, and the other way round.
     find_package(HDF5 REQUIRED COMPONENTS C)
   endif()
-  include(GoogleTest)
 endif()

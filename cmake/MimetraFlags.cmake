@@ -37,6 +37,10 @@ if(MIMETRA_SANITIZE)
                               -fno-omit-frame-pointer)
   add_compile_options(${MIMETRA_SANITIZER_FLAGS})
   add_link_options(-fsanitize=address,undefined)
+  # Their tables hold millions of addresses: at a place that is fixed, programs start in half of the
+  # time.
+  target_link_options(mimetra_flags INTERFACE
+                      $<$<STREQUAL:$<TARGET_PROPERTY:TYPE>,EXECUTABLE>:-no-pie>)
 endif()
 if(MIMETRA_SANITIZE_THREADS)
   add_compile_options(-fsanitize=thread -fno-omit-frame-pointer)

@@ -70,11 +70,23 @@ function(mimetra_library name)
   mimetra_component(${name} USES ${uses} PACKAGES ${ARG_PACKAGES})
 endfunction()
 
-# mimetra_test(NAME SOURCES ... USES ...): one GoogleTest program, one ctest entry per test.
+# mimetra_test(NAME SOURCES ... USES ... [PROCESSES ...]): one GoogleTest program, whose tests are
+# dealt out to so many processes, each of which is one of ctest's: with sanitizers a program takes
+# longer to start than most tests do.
 function(mimetra_test name)
-  cmake_parse_arguments(ARG "" "" "SOURCES;USES" ${ARGN})
+  cmake_parse_arguments(ARG "" "PROCESSES" "SOURCES;USES" ${ARGN})
   add_executable(${name}_test ${ARG_SOURCES})
   target_link_libraries(${name}_test PRIVATE ${ARG_USES} mimetra_flags mimetra_test_folders
                                              GTest::gmock GTest::gtest_main)
-  gtest_discover_tests(${name}_test NO_PRETTY_VALUES DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 600)
+  if(NOT ARG_PROCESSES)
+    set(ARG_PROCESSES 4)
+  endif()
+  foreach(process RANGE 1 ${ARG_PROCESSES})
+    math(EXPR index "${process} - 1")
+    add_test(NAME ${name}.${process}_of_${ARG_PROCESSES} COMMAND ${name}_test --gtest_brief=1)
+    set_tests_properties(
+      ${name}.${process}_of_${ARG_PROCESSES}
+      PROPERTIES ENVIRONMENT "GTEST_TOTAL_SHARDS=${ARG_PROCESSES};GTEST_SHARD_INDEX=${index}"
+                 TIMEOUT 900)
+  endforeach()
 endfunction()

@@ -87,7 +87,8 @@ std::string name_of(const testing::TestParamInfo<BadInput>& info) {
 INSTANTIATE_TEST_SUITE_P(Every, BadInputTest, testing::ValuesIn(all_cases()), name_of);
 INSTANTIATE_TEST_SUITE_P(Every, ForeseenTest, testing::ValuesIn(foreseen_cases()), name_of);
 
-/// Shown by `ctest -V -R TableOfBadInput`; the same table is in docs/errors.md in words.
+/// Shown by `cli_test --gtest_filter='TableOfBadInput*'`; the same table is in docs/errors.md in
+/// words.
 TEST(TableOfBadInput, NamesEachCaseOnceAndKnowsItsExitCode) {
   std::map<std::string, std::map<std::string, int>> table;
   for (const BadInput& bad : all_cases()) {
