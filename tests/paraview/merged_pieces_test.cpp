@@ -210,8 +210,52 @@ TEST(MergedPieces, AreTheMeshItselfWhereOnePieceHoldsIt) {
   const Mesh mesh = square();
   const MergedPieces found = merged({Mesh::New(), mesh, Mesh::New()}, nullptr);
   EXPECT_EQ(found.mesh, mesh);
-  EXPECT_TRUE(found.points.named);
+  EXPECT_TRUE(found.points.counted);
   expect_square(found);
+}
+
+TEST(MergedPieces, AreInTheOrderOfIdsWhereOneProcessWasGivenAll) {
+  const Mesh mesh = square();
+  const std::vector<vtkIdType> backwards = {15, 14, 13, 12, 11, 10, 9, 8, 7, 6, 5, 4, 3, 2, 1, 0};
+  const Mesh piece = piece_of(*mesh, backwards, Ids::points_and_cells);
+  const MergedPieces found = merged({Mesh::New(), piece}, nullptr);
+  EXPECT_TRUE(found.points.counted);
+  expect_square(found);
+  for (vtkIdType i = 0; i < mesh->GetNumberOfPoints(); ++i) {
+    EXPECT_EQ(value(*found.mesh->GetPointData(), "at", i), static_cast<double>(i));
+  }
+}
+
+TEST(MergedPieces, AreRefusedWhereOneProcessWasGivenAPointTwice) {
+  const Mesh piece = piece_of(*square(), {0, 1, 2, 3}, Ids::points);
+  vtkDataArray& ids = *piece->GetPointData()->GetGlobalIds();
+  ids.SetTuple1(3, ids.GetTuple1(2));
+  EXPECT_THAT(refusal({piece, Mesh::New()}), HasSubstr("expected one for each point"));
+}
+
+TEST(MergedPieces, LoseGhostsOfOneProcessThatWasGivenAll) {
+  const Mesh mesh = square();
+  std::vector<vtkIdType> cells(16);
+  std::iota(cells.begin(), cells.end(), 0);
+  cells.push_back(3);  // a copy, marked as one
+  for (const Ids ids : {Ids::none, Ids::points}) {
+    const Mesh piece = piece_of(*mesh, cells, ids);
+    mark_ghosts(*piece->GetCellData(), 17, 16);
+    expect_square(merged({piece, Mesh::New()}, nullptr));
+  }
+}
+
+TEST(MergedPieces, AreCountedByIdsWithoutGapsOnly) {
+  const Mesh mesh = square();
+  EXPECT_TRUE(merged(halves(Ids::points), nullptr).points.counted);
+  EXPECT_FALSE(merged(halves(), nullptr).points.counted);
+  const Pieces later = {piece_of(*mesh, {4, 5, 6, 7}, Ids::points),
+                        piece_of(*mesh, {8, 9, 10, 11}, Ids::points)};
+  EXPECT_FALSE(merged(later, nullptr).points.counted);
+  const Pieces gap = {piece_of(*mesh, {0, 1, 2, 3}, Ids::points),
+                      piece_of(*mesh, {12, 13, 14, 15}, Ids::points)};
+  EXPECT_TRUE(merged(gap, nullptr).points.named);
+  EXPECT_FALSE(merged(gap, nullptr).points.counted);
 }
 
 TEST(MergedPieces, AreTheMeshInItsOrderWhereGlobalIdsSayIt) {
@@ -361,6 +405,31 @@ TEST(MergedPieces, AreFollowedOverTime) {
   EXPECT_THAT(refusal(halves(), &alone), HasSubstr("another piece"));
   const MergedPieces named = merged(scattered(*mesh, 3, Ids::points), nullptr);
   expect_square(merged(scattered(*mesh, 4, Ids::points), &named));
+}
+
+TEST(MergedPieces, ShareTheirCellsWhereOnlyPositionsAreOthers) {
+  for (const Ids ids : {Ids::none, Ids::points, Ids::points_and_cells}) {
+    const MergedPieces before = merged(halves(ids), nullptr);
+    Pieces later = halves(ids);
+    for (const auto& piece : later) {
+      for (vtkIdType i = 0; i < piece->GetNumberOfPoints(); ++i) move(*piece, i, 2);
+    }
+    const MergedPieces found = merged(later, &before);
+    EXPECT_EQ(found.mesh->GetPolys(), before.mesh->GetPolys());
+    EXPECT_EQ(found.points.counted, before.points.counted);
+    for (vtkIdType i = 0; i < found.mesh->GetNumberOfPoints(); ++i) {
+      EXPECT_EQ(found.mesh->GetPoint(i)[0], value(*found.mesh->GetPointData(), "at", i) -
+                                                kSize * before.mesh->GetPoint(i)[1] + 2);
+    }
+  }
+  const MergedPieces before = merged(halves(Ids::points), nullptr);
+  Pieces renamed = halves(Ids::points);
+  for (const auto& piece : renamed) {
+    vtkDataArray& ids = *piece->GetPointData()->GetGlobalIds();
+    for (vtkIdType i = 0; i < ids.GetNumberOfTuples(); ++i) ids.SetTuple1(i, 24 - ids.GetTuple1(i));
+  }
+  expect_square(merged(renamed, &before));
+  EXPECT_EQ(value(*merged(renamed, &before).mesh->GetPointData(), "at", 0), 24);
 }
 
 namespace {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstring>
 #include <numeric>
 #include <optional>
 #include <string>
@@ -13,6 +14,8 @@
 #include <vtkDataArray.h>
 #include <vtkIdList.h>
 #include <vtkNew.h>
+#include <vtkPointData.h>
+#include <vtkUnsignedCharArray.h>
 
 #include "plugins/paraview/mimetra/filters/piece_data.h"
 #include "toolkit/mesh/errors.h"
@@ -20,8 +23,6 @@
 using namespace mimetra;
 
 namespace {
-
-constexpr const char* kNumberThem = "; use Generate Global Ids before the mesh is distributed";
 
 /// VTK numbers cells in this order.
 std::array<vtkCellArray*, 4> cell_arrays(vtkPolyData& mesh) {
@@ -68,15 +69,16 @@ void expect_valid(vtkPolyData& piece, std::size_t number) {
 std::vector<Cell> cells_of(const Pieces& pieces, const std::vector<Places>& points, bool ghosts) {
   std::vector<Cell> cells;
   for (std::size_t piece = 0; piece < pieces.size(); ++piece) {
-    vtkDataArray* ids = pieces[piece]->GetCellData()->GetGlobalIds();
+    vtkDataArray* array = pieces[piece]->GetCellData()->GetGlobalIds();
+    const auto ids = array ? ids_of(*array) : std::vector<vtkTypeInt64>();
     vtkNew<vtkIdList> corners;
     vtkIdType index = 0;
     int kind = 0;
-    for (vtkCellArray* array : cell_arrays(*pieces[piece])) {
-      for (vtkIdType i = 0; i < array->GetNumberOfCells(); ++i, ++index) {
+    for (vtkCellArray* own : cell_arrays(*pieces[piece])) {
+      for (vtkIdType i = 0; i < own->GetNumberOfCells(); ++i, ++index) {
         if (is_ghost_cell(*pieces[piece], index) != ghosts) continue;
-        array->GetCellAtId(i, corners);
-        Cell cell{{piece, index}, kind, ids ? id_at(*ids, index) : 0};
+        own->GetCellAtId(i, corners);
+        Cell cell{{piece, index}, kind, ids.empty() ? 0 : ids[as_index(index)]};
         for (const vtkIdType corner : *corners) {
           cell.corners.push_back(points[piece][as_index(corner)]);
         }
@@ -160,11 +162,12 @@ std::vector<Places> places_of(const Pieces& pieces, const std::vector<Cell>& cel
     const PieceElement& from = cells[i].from;
     places[from.piece][as_index(from.index)] = static_cast<vtkIdType>(i);
   }
+  if (ghosts.empty()) return places;
   const CellFinder finder(cells);
   for (const Cell& ghost : ghosts) {
     const auto owner = finder.first_like(ghost);
     if (!owner) {
-      throw MismatchError(name_of(ghost) + " is a ghost of no process" + kNumberThem);
+      throw MismatchError(name_of(ghost) + " is a ghost of no process; " + kNumberThem);
     }
     places[ghost.from.piece][as_index(ghost.from.index)] = static_cast<vtkIdType>(*owner);
   }
@@ -183,52 +186,59 @@ void set_cells(vtkPolyData& mesh, const std::vector<Cell>& cells) {
   mesh.SetStrips(arrays[3]);
 }
 
-bool same_cells(vtkPolyData& a, vtkPolyData& b) {
-  const auto same = [](vtkCellArray* x, vtkCellArray* y) {
-    if (x->GetNumberOfCells() != y->GetNumberOfCells()) return false;
-    vtkNew<vtkIdList> left, right;
-    for (vtkIdType i = 0; i < x->GetNumberOfCells(); ++i) {
-      x->GetCellAtId(i, left);
-      y->GetCellAtId(i, right);
-      if (!std::ranges::equal(*left, *right)) return false;
-    }
-    return true;
+bool same_array(vtkDataArray* a, vtkDataArray* b) {
+  if (a == b) return true;
+  if (!a || !b || a->GetDataType() != b->GetDataType()) return false;
+  const vtkIdType values = a->GetNumberOfValues();
+  if (values != b->GetNumberOfValues()) return false;
+  const auto bytes = as_index(values * a->GetDataTypeSize());
+  return bytes == 0 || std::memcmp(a->GetVoidPointer(0), b->GetVoidPointer(0), bytes) == 0;
+}
+
+/// True where pieces of two times have the same cells, ids and ghosts.
+bool same_piece(const vtkSmartPointer<vtkPolyData>& a, const vtkSmartPointer<vtkPolyData>& b) {
+  const auto same_cells = [](vtkCellArray* x, vtkCellArray* y) {
+    return same_array(x->GetOffsetsArray(), y->GetOffsetsArray()) &&
+           same_array(x->GetConnectivityArray(), y->GetConnectivityArray());
   };
-  return a.GetNumberOfPoints() == b.GetNumberOfPoints() &&
-         std::ranges::equal(cell_arrays(a), cell_arrays(b), same);
+  return a->GetNumberOfPoints() == b->GetNumberOfPoints() &&
+         std::ranges::equal(cell_arrays(*a), cell_arrays(*b), same_cells) &&
+         same_array(a->GetPointData()->GetGlobalIds(), b->GetPointData()->GetGlobalIds()) &&
+         same_array(a->GetCellData()->GetGlobalIds(), b->GetCellData()->GetGlobalIds()) &&
+         same_array(a->GetPointGhostArray(), b->GetPointGhostArray()) &&
+         same_array(a->GetCellGhostArray(), b->GetCellGhostArray());
 }
 
-std::vector<std::size_t> with_points(const Pieces& pieces) {
-  std::vector<std::size_t> found;
-  for (std::size_t i = 0; i < pieces.size(); ++i) {
-    if (pieces[i]->GetNumberOfPoints() > 0) found.push_back(i);
+bool is_whole(const Pieces& pieces) {
+  const auto has_points = [](const auto& piece) { return piece->GetNumberOfPoints() > 0; };
+  const auto filled = std::ranges::count_if(pieces, has_points);
+  return filled == 0 || (filled == 1 && !is_part(**std::ranges::find_if(pieces, has_points)));
+}
+
+/// The mesh is the piece with points as it is, or nothing.
+MergedPieces whole_piece(Pieces pieces) {
+  MergedPieces merged{pieces.front()};
+  for (const auto& piece : pieces) {
+    if (piece->GetNumberOfPoints() > 0) merged.mesh = piece;
   }
-  return found;
-}
-
-/// The mesh is a piece as it is.
-MergedPieces whole_piece(Pieces pieces, std::size_t only) {
-  MergedPieces merged{pieces[only]};
-  for (std::size_t i = 0; i < pieces.size(); ++i) {
-    merged.points.places.emplace_back(as_index(i == only ? pieces[i]->GetNumberOfPoints() : 0));
-    merged.cells.emplace_back(as_index(i == only ? pieces[i]->GetNumberOfCells() : 0));
+  for (const auto& piece : pieces) {
+    const bool is_mesh = piece == merged.mesh;
+    merged.points.places.emplace_back(as_index(is_mesh ? piece->GetNumberOfPoints() : 0));
+    merged.cells.emplace_back(as_index(is_mesh ? piece->GetNumberOfCells() : 0));
     std::iota(merged.points.places.back().begin(), merged.points.places.back().end(), 0);
     std::iota(merged.cells.back().begin(), merged.cells.back().end(), 0);
   }
-  merged.points.named = true;
+  merged.points.named = merged.points.counted = true;
   merged.pieces = std::move(pieces);
   return merged;
 }
 
-/// Throws MismatchError where pieces are not those of before.
-void expect_same_pieces(const Pieces& pieces, const Pieces& before) {
-  for (std::size_t i = 0; i < pieces.size(); ++i) {
-    if (same_cells(*pieces[i], *before[i])) continue;
-    throw MismatchError("process " + std::to_string(i) +
-                        " holds another piece than before, and which points are which cannot be "
-                        "known" +
-                        kNumberThem);
-  }
+[[noreturn]] void refuse_others(const Pieces& pieces, const Pieces& before) {
+  const auto other = std::ranges::mismatch(pieces, before, same_piece).in1;
+  throw MismatchError("process " + std::to_string(other - pieces.begin()) +
+                      " holds another piece than before, and which points are which cannot be "
+                      "known; " +
+                      kNumberThem);
 }
 
 void merge_cells(MergedPieces& merged) {
@@ -238,31 +248,40 @@ void merge_cells(MergedPieces& merged) {
   cells = ordered(std::move(cells), all_have_cell_ids(pieces), merged.points.named);
   merged.cells = places_of(pieces, cells, cells_of(pieces, merged.points.places, true));
   set_cells(*merged.mesh, cells);
-  std::vector<PieceElement> holders;
-  for (const Cell& cell : cells) holders.push_back(cell.from);
-  merge_data(*merged.mesh, pieces, merged.points.holders, holders);
+  for (const Cell& cell : cells) merged.cell_holders.push_back(cell.from);
+}
+
+/// Of the same pieces, at another time.
+MergedPieces followed(Pieces pieces, const MergedPieces& before) {
+  expect_joined(pieces, before.points.places);
+  MergedPieces merged = before;
+  merged.mesh = vtkSmartPointer<vtkPolyData>::New();
+  merged.mesh->SetVerts(before.mesh->GetVerts());
+  merged.mesh->SetLines(before.mesh->GetLines());
+  merged.mesh->SetPolys(before.mesh->GetPolys());
+  merged.mesh->SetStrips(before.mesh->GetStrips());
+  merged.pieces = std::move(pieces);
+  return merged;
 }
 
 }  // namespace
 
 MergedPieces merged(Pieces pieces, const MergedPieces* before) {
-  const std::vector<std::size_t> filled = with_points(pieces);
-  const bool follows = before && !before->points.named;
-  if (filled.size() < 2 && !follows) {
-    return whole_piece(std::move(pieces), filled.empty() ? 0 : filled.front());
-  }
+  const bool as_before = before && std::ranges::equal(pieces, before->pieces, same_piece);
+  const bool is_another = before && !as_before;
+  if (is_another && !before->points.named) refuse_others(pieces, before->pieces);
+  if (is_whole(pieces)) return whole_piece(std::move(pieces));
   for (std::size_t i = 0; i < pieces.size(); ++i) expect_valid(*pieces[i], i);
   expect_finite(pieces);
   MergedPieces merged{vtkSmartPointer<vtkPolyData>::New()};
-  if (follows) {
-    expect_same_pieces(pieces, before->pieces);
-    expect_joined(pieces, before->points.places);
-    merged.points = before->points;
+  if (as_before) {
+    merged = followed(std::move(pieces), *before);
   } else {
     merged.points = joined_points(pieces);
+    if (is_another && !merged.points.named) refuse_others(pieces, before->pieces);
+    merged.pieces = std::move(pieces);
+    merge_cells(merged);
   }
-  if (before && !follows && !merged.points.named) expect_same_pieces(pieces, before->pieces);
-  merged.pieces = std::move(pieces);
-  merge_cells(merged);
+  merge_data(*merged.mesh, merged.pieces, merged.points.holders, merged.cell_holders);
   return merged;
 }

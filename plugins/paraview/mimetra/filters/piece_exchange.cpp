@@ -292,7 +292,7 @@ vtkDataObject* PieceExchange::input_at(int port, std::optional<double> time) {
 
 bool PieceExchange::is_ordered(int port) const {
   const auto found = merged_.find(port);
-  return !processes_ || found == merged_.end() || found->second.points.named;
+  return !processes_ || found == merged_.end() || found->second.points.counted;
 }
 
 std::size_t PieceExchange::joined(int port) const {

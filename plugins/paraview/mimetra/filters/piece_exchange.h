@@ -47,8 +47,7 @@ class PieceExchange {
   vtkDataObject* input_at(int port, std::optional<double> time);
   /// On the first: what comes in at a port from now on is another mesh.
   void forget(int port) { merged_.erase(port); }
-  /// On the first: true where the points of a mesh are in an order that other pieces would have
-  /// too.
+  /// On the first: true where the numbers of a mesh's points are those that one process knows.
   bool is_ordered(int port) const;
   /// On the first: points of a mesh that became one with others by their positions alone.
   std::size_t joined(int port) const;

@@ -29,9 +29,6 @@ namespace {
 
 constexpr double kSeamWidth = 1e-6;
 constexpr vtkIdType kNowhere = -1;
-constexpr const char* kNameThem =
-    "; name the points by the filter Generate Global Ids before they are distributed, or use one "
-    "process";
 
 using Point = std::array<double, 3>;
 
@@ -186,17 +183,26 @@ void add_holder(const Pieces& pieces, PiecePoints& joined, const PieceElement& p
 
 // By global ids
 
-vtkDataArray* ids_of(vtkPolyData& piece) {
-  return piece.GetPointData()->GetGlobalIds();
+/// Of each piece.
+using PieceIds = std::vector<std::vector<vtkTypeInt64>>;
+
+PieceIds ids_of(const Pieces& pieces) {
+  PieceIds ids;
+  for (const auto& piece : pieces) {
+    vtkDataArray* array = piece->GetPointData()->GetGlobalIds();
+    ids.push_back(array ? ids_of(*array) : std::vector<vtkTypeInt64>());
+  }
+  return ids;
 }
 
-vtkTypeInt64 id_of(const Pieces& pieces, const PieceElement& point) {
-  return id_at(*ids_of(*pieces[point.piece]), point.index);
+vtkTypeInt64 id_of(const PieceIds& ids, const PieceElement& point) {
+  return ids[point.piece][static_cast<std::size_t>(point.index)];
 }
 
 /// Throws MismatchError where two points cannot have one id.
-void expect_same(const Pieces& pieces, const PieceElement& a, const PieceElement& b, double width) {
-  const std::string id = "global id " + std::to_string(id_of(pieces, a));
+void expect_same(const Pieces& pieces, vtkTypeInt64 number, const PieceElement& a,
+                 const PieceElement& b, double width) {
+  const std::string id = "global id " + std::to_string(number);
   if (a.piece == b.piece) {
     throw MismatchError(id + " names point " + std::to_string(a.index) + " and " +
                         std::to_string(b.index) + " of process " + std::to_string(a.piece) +
@@ -211,7 +217,8 @@ void expect_same(const Pieces& pieces, const PieceElement& a, const PieceElement
 /// Ids that were made for pieces may leave seams open that computing in pieces made: nearly, but
 /// not exactly, at one position. Where they are exactly at one, ids say on purpose that they are
 /// two.
-void expect_no_open_seams(const Pieces& pieces, const std::vector<Uses>& uses) {
+void expect_no_open_seams(const Pieces& pieces, const std::vector<Uses>& uses,
+                          const PieceIds& ids) {
   const PointFinder borders(pieces, points_where(pieces, [&](std::size_t piece, std::size_t i) {
                               return uses[piece].own[i] && uses[piece].border[i];
                             }));
@@ -219,7 +226,7 @@ void expect_no_open_seams(const Pieces& pieces, const std::vector<Uses>& uses) {
     const Point position = position_of(pieces, point);
     for (const std::size_t index : borders.near(position)) {
       const PieceElement& other = borders.points()[index];
-      if (other.piece <= point.piece || id_of(pieces, other) == id_of(pieces, point)) continue;
+      if (other.piece <= point.piece || id_of(ids, other) == id_of(ids, point)) continue;
       if (distance(position, position_of(pieces, other)) == 0) continue;
       throw MismatchError(name_of(point) + " and " + name_of(other) +
                           " are nearly at one position, but have different global ids; give "
@@ -230,27 +237,30 @@ void expect_no_open_seams(const Pieces& pieces, const std::vector<Uses>& uses) {
 }
 
 PiecePoints joined_by_ids(const Pieces& pieces, const std::vector<Uses>& uses) {
-  PiecePoints joined{no_places(pieces), {}, true, 0};
+  PiecePoints joined{no_places(pieces), {}, true};
+  const PieceIds ids = ids_of(pieces);
   std::vector<PieceElement> own = points_where(
       pieces, [&](std::size_t piece, std::size_t i) { return bool{uses[piece].own[i]}; });
-  std::ranges::stable_sort(own, {}, [&](const PieceElement& p) { return id_of(pieces, p); });
+  std::ranges::stable_sort(own, {}, [&](const PieceElement& p) { return id_of(ids, p); });
   const double width = seam_width(pieces);
-  std::vector<vtkTypeInt64> ids;
+  std::vector<vtkTypeInt64> known;
   for (std::size_t i = 0; i < own.size(); ++i) {
-    const vtkTypeInt64 id = id_of(pieces, own[i]);
-    if (ids.empty() || ids.back() != id) {
-      ids.push_back(id);
+    const vtkTypeInt64 id = id_of(ids, own[i]);
+    if (known.empty() || known.back() != id) {
+      known.push_back(id);
     } else {
-      expect_same(pieces, own[i - 1], own[i], width);
+      expect_same(pieces, id, own[i - 1], own[i], width);
     }
-    add_holder(pieces, joined, own[i], static_cast<vtkIdType>(ids.size()) - 1);
+    add_holder(pieces, joined, own[i], static_cast<vtkIdType>(known.size()) - 1);
   }
-  expect_no_open_seams(pieces, uses);
+  const auto count = static_cast<vtkTypeInt64>(known.size());
+  joined.counted = count == 0 || (known.front() == 0 && known.back() == count - 1);
+  expect_no_open_seams(pieces, uses, ids);
   for (const PieceElement& ghost : points_where(
            pieces, [&](std::size_t piece, std::size_t i) { return !uses[piece].own[i]; })) {
-    const auto found = std::ranges::lower_bound(ids, id_of(pieces, ghost));
-    if (found == ids.end() || *found != id_of(pieces, ghost)) refuse_ghost(ghost, "of no process");
-    place_of(joined.places, ghost) = found - ids.begin();
+    const auto found = std::ranges::lower_bound(known, id_of(ids, ghost));
+    if (found == known.end() || *found != id_of(ids, ghost)) refuse_ghost(ghost, "of no process");
+    place_of(joined.places, ghost) = found - known.begin();
   }
   return joined;
 }
@@ -287,8 +297,8 @@ void expect_one_of_each(const Groups& groups, const std::vector<PieceElement>& p
     if (members[i].first != members[i - 1].first || a.piece != b.piece) continue;
     throw MismatchError(name_of(a) + " and point " + std::to_string(b.index) +
                         " are at one position, where another process has a point too: which of "
-                        "them it is cannot be known" +
-                        kNameThem);
+                        "them it is cannot be known; " +
+                        kNumberThem);
   }
 }
 
@@ -312,8 +322,8 @@ Groups seams(const Pieces& pieces, const std::vector<Uses>& uses, const PointFin
       if (!one_is_loose && !(is_border(uses, points[i]) && is_border(uses, points[other]))) {
         throw MismatchError(name_of(points[i]) + " and " + name_of(points[other]) +
                             " are at one position, but not at the border of both pieces: whether "
-                            "they are one point, marked as no ghost, or two cannot be known" +
-                            kNameThem);
+                            "they are one point, marked as no ghost, or two cannot be known; " +
+                            kNumberThem);
       }
       groups.unite(i, other);
     }
@@ -323,7 +333,7 @@ Groups seams(const Pieces& pieces, const std::vector<Uses>& uses, const PointFin
 }
 
 PiecePoints joined_by_positions(const Pieces& pieces, const std::vector<Uses>& uses) {
-  PiecePoints joined{no_places(pieces), {}, false, 0};
+  PiecePoints joined{no_places(pieces), {}};
   const PointFinder finder(pieces, points_where(pieces, [&](std::size_t piece, std::size_t i) {
                              return bool{uses[piece].own[i]};
                            }));
@@ -351,8 +361,23 @@ PiecePoints joined_by_positions(const Pieces& pieces, const std::vector<Uses>& u
 
 }  // namespace
 
-vtkTypeInt64 id_at(vtkDataArray& ids, vtkIdType index) {
-  return ids.GetVariantValue(index).ToTypeInt64();
+std::vector<vtkTypeInt64> ids_of(vtkDataArray& ids) {
+  std::vector<vtkTypeInt64> numbers;
+  for (vtkIdType i = 0; i < ids.GetNumberOfTuples(); ++i) {
+    numbers.push_back(ids.GetVariantValue(i).ToTypeInt64());
+  }
+  return numbers;
+}
+
+bool is_part(vtkPolyData& piece) {
+  if (piece.GetPointData()->GetGlobalIds()) return true;
+  for (vtkIdType i = 0; i < piece.GetNumberOfPoints(); ++i) {
+    if (is_ghost_point(piece, i)) return true;
+  }
+  for (vtkIdType i = 0; i < piece.GetNumberOfCells(); ++i) {
+    if (is_ghost_cell(piece, i)) return true;
+  }
+  return false;
 }
 
 void expect_finite(const Pieces& pieces) {
@@ -385,7 +410,7 @@ PiecePoints joined_points(const Pieces& pieces) {
   bool named = true;
   for (const auto& piece : pieces) {
     uses.push_back(uses_of(*piece));
-    named = named && (piece->GetNumberOfPoints() == 0 || ids_of(*piece));
+    named = named && (piece->GetNumberOfPoints() == 0 || piece->GetPointData()->GetGlobalIds());
   }
   return named ? joined_by_ids(pieces, uses) : joined_by_positions(pieces, uses);
 }
@@ -403,7 +428,7 @@ void expect_joined(const Pieces& pieces, const std::vector<Places>& places) {
         continue;
       }
       throw MismatchError(name_of(*first[place]) + " and " + name_of(point) +
-                          " were at one position before and have parted" + kNameThem);
+                          " were at one position before and have parted; " + kNumberThem);
     }
   }
 }

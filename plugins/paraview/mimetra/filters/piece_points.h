@@ -25,11 +25,20 @@ struct PiecePoints {
   std::vector<Places> places;         ///< of each piece's points
   std::vector<PieceElement> holders;  ///< of each point of the mesh, who is asked for its data
   bool named = false;                 ///< by global ids, in whose order the points are
-  std::size_t joined = 0;             ///< points of pieces that became others', by position
+  bool counted = false;    ///< those are 0, 1, 2, ..., so that numbers of points name them
+  std::size_t joined = 0;  ///< points of pieces that became others', by position
 };
 
-/// A global id, which may be too large for a double.
-vtkTypeInt64 id_at(vtkDataArray& ids, vtkIdType index);
+/// What to do about pieces that cannot be put together as they are.
+constexpr const char* kNumberThem =
+    "use Generate Global Ids before the mesh is distributed, or one process";
+
+/// Global ids, which may be too large for a double.
+std::vector<vtkTypeInt64> ids_of(vtkDataArray& ids);
+
+/// True for a piece that may be a part of a mesh even where no other process holds any of it: its
+/// points have global ids, or some of its points or cells are marked as another process's.
+bool is_part(vtkPolyData& piece);
 
 /// Throws MismatchError where a position is not finite.
 void expect_finite(const Pieces& pieces);

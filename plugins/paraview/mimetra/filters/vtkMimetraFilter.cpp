@@ -213,10 +213,11 @@ void vtkMimetraFilter::expect_order() {
   }
   const auto what = ordered ? std::nullopt : call().told_by_numbers();
   if (!what) return;
-  throw UsageError("'" + *what + "' goes by the numbers of points, which say nothing while " +
-                   std::to_string(exchange_->processes()) +
-                   " processes hold pieces of the mesh without global ids; use Generate Global "
-                   "Ids before the mesh is distributed, or one process");
+  throw UsageError(
+      "'" + *what + "' goes by the numbers of points, which say nothing while " +
+      std::to_string(exchange_->processes()) +
+      " processes hold pieces of the mesh without global ids 0, 1, 2, ... of its points; " +
+      kNumberThem);
 }
 
 void vtkMimetraFilter::tell_of_seams() {
@@ -229,15 +230,15 @@ void vtkMimetraFilter::tell_of_seams() {
   if (call().keeps_vertices_apart()) {
     throw UsageError(found +
                      ", and whether 'Weld' none keeps them apart or they are one point "
-                     "cannot be known; use Generate Global Ids before the mesh is "
-                     "distributed, or one process");
+                     "cannot be known; " +
+                     kNumberThem);
   }
   if (told_of_ == origin_of(0)) return;
   told_of_ = origin_of(0);
   vtkWarningMacro(<< found
                   << ", and were joined; seams of the mesh itself along these borders are "
-                     "closed, too. Use Generate Global Ids before the mesh is distributed "
-                     "to keep them");
+                     "closed, too. To keep them, "
+                  << kNumberThem);
 }
 
 void vtkMimetraFilter::compute_and_show(std::optional<double> time, vtkInformationVector* outputs) {
