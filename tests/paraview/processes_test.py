@@ -207,9 +207,9 @@ class Processes(HostTest):
             self.assert_refused(simple.RegionsofInterest(Input=pieces, K=2),
                                 "the rest pose is field data (mimetra_rest)")
 
-    def strips(self, steps, shown="time"):
-        """Of each process a strip of a bump that goes along all; `steps` and the time of what
-        comes out are Python, of the process `p`."""
+    def strips(self, steps, shown="time", held="True"):
+        """Of each process a strip of a bump that goes along all; `steps`, the time of what comes
+        out and whether anything does are Python, of the process `p`."""
         source = simple.ProgrammableSource(OutputDataSetType="vtkPolyData")
         begin = ("from vtkmodules.vtkParallelCore import vtkMultiProcessController as Controller\n"
                  "p = Controller.GetGlobalController().GetLocalProcessId()\n"
@@ -228,15 +228,16 @@ class Processes(HostTest):
             "from vtkmodules.vtkCommonDataModel import vtkCellArray\n"
             "asked = executive.UPDATE_TIME_STEP()\n"
             "time = out.Get(asked) if out.Has(asked) else 0.0\n"
+            "mesh = self.GetPolyDataOutput()\n"
+            f"mesh.GetInformation().Set(mesh.DATA_TIME_STEP(), float({shown}))\n"
+            f"if not ({held}): return\n"
             "points, quads = vtkPoints(), vtkCellArray()\n"
             "for i in range(30):\n"
             "    x, y = 5.0 * p + i % 6, float(i // 6)\n"
             "    points.InsertNextPoint(x, y, np.exp(-(x - 2 - time)**2 - (y - 2)**2))\n"
             "    if i % 6 < 5 and i < 24: quads.InsertNextCell(4, [i, i + 1, i + 7, i + 6])\n"
-            "mesh = self.GetPolyDataOutput()\n"
             "mesh.SetPoints(points)\n"
-            "mesh.SetPolys(quads)\n"
-            f"mesh.GetInformation().Set(mesh.DATA_TIME_STEP(), float({shown}))\n")
+            "mesh.SetPolys(quads)\n")
         return source
 
     def test_pieces_of_different_times_are_refused(self):
@@ -244,11 +245,15 @@ class Processes(HostTest):
         self.assertGreaterEqual(fits.GetNumberOfPoints(), 55)
         for steps in ["range(4 if p == 0 else 2)", "range(4 if p == 0 else 0)",
                       "[0, 1, 2 + p, 5]"]:
-            self.assert_refused(simple.RegionsofInterest(Input=self.strips(steps), K=2),
-                                "the time steps of process 1")
+            filter = simple.RegionsofInterest(Input=self.strips(steps), K=2)
+            self.assert_refused(filter, "the time steps of process 1")
+            for time in [1, 0]:
+                self.assertEqual(fetched(filter, time).GetNumberOfPoints(), 0)
         late = self.strips("range(4)", shown="time if p == 0 or time < 1 else 1")
-        self.assert_refused(simple.RegionsofInterest(Input=late, K=2),
-                            "process 1 has a piece of time 1, process 0 of time 2")
+        filter = simple.RegionsofInterest(Input=late, K=2)
+        self.assert_refused(filter, "process 1 has a piece of time 1, process 0 of time 2")
+        for time in [2, 1, 3]:
+            self.assertEqual(fetched(filter, time).GetNumberOfPoints(), 0)
 
     def test_points_that_positions_join_are_named_once(self):
         series = self.series_of("cut", moving(size=20))
@@ -266,6 +271,37 @@ class Processes(HostTest):
         with Messages() as messages:
             self.assertGreater(fetched(named).GetNumberOfPoints(), 0)
         self.assertNotIn("joined", messages.text)
+
+    def test_times_that_only_the_first_process_knows_are_shown_by_all(self):
+        known = self.strips("range(4 if p == 0 else 0)", held="p == 0")
+        filter = simple.RegionsofInterest(Input=known, K=2)
+        for shown in [filter, distributed(filter)]:
+            for time in [0, 3, 1]:
+                found = points(fetched(shown, time))
+                self.assertEqual(found[found[:, 2].argmax(), 0], 2 + time)
+
+    def test_shows_the_time_of_the_pieces_with_points(self):
+        last = "p == Controller.GetGlobalController().GetNumberOfProcesses() - 1"
+        source = self.strips("range(4)", shown=f"time if {last} else 0", held=last)
+        filter = simple.RegionsofInterest(Input=source, K=2)
+        first = points(fetched(filter, 0))
+        found = fetched(filter, 3)
+        moved = (points(found) - first).astype(np.float32)
+        self.assertGreater(np.abs(moved).max(), 0)
+        self.assert_same(point_array(found, "displacement"), moved)
+
+    def test_numbers_of_points_are_refused_where_ids_have_gaps(self):
+        some = simple.Threshold(Input=distributed(numbered(self.take())),
+                                Scalars=["POINTS", "number"], LowerThreshold=50,
+                                UpperThreshold=1e9)
+        self.assert_refused(simple.GeodesicDistance(Input=simple.ExtractSurface(Input=some)),
+                            "'Source' goes by the numbers of points")
+
+    def test_pieces_that_one_process_was_given_are_refused_where_points_come_twice(self):
+        together = simple.AggregateDataset(Input=distributed(numbered(self.take())),
+                                           NumberOfTargetProcesses=1)
+        self.assert_refused(simple.GeodesicDistance(Input=together, Source="100"),
+                            "expected one for each point")
 
     def test_what_one_process_refuses_is_refused_once(self):
         self.assert_refused(simple.RegionsofInterest(Input=distributed(numbered(self.take())),

@@ -33,6 +33,7 @@ class Server:
         end = time.monotonic() + SECONDS_TO_START
         while "Accepting connection" not in self.log.read_text():
             if time.monotonic() > end or self.process.poll() is not None:
+                self.end()
                 raise RuntimeError(self.log.read_text())
             time.sleep(0.1)
         simple.Connect("localhost", port)
@@ -42,6 +43,9 @@ class Server:
 
     def close(self):
         simple.Disconnect()
+        self.end()
+
+    def end(self):
         self.process.terminate()
         self.process.wait(timeout=SECONDS_TO_START)
 

@@ -132,6 +132,19 @@ Parcel Parcel::laid_out(vtkMultiProcessStream& header) {
   return parcel;
 }
 
+void put_times(vtkMultiProcessStream& words, const std::vector<double>& times) {
+  words << static_cast<int>(times.size());
+  for (const double time : times) words << time;
+}
+
+std::vector<double> taken_times(vtkMultiProcessStream& words) {
+  int count = 0;
+  words >> count;
+  std::vector<double> times(static_cast<std::size_t>(count));
+  for (double& time : times) words >> time;
+  return times;
+}
+
 Parcel packed(vtkPolyData& piece) {
   Parcel parcel;
   const bool has_points = piece.GetPoints() != nullptr;
@@ -209,21 +222,39 @@ void Processes::receive(Parcel& parcel, int from) {
   }
 }
 
+bool Processes::announce(const Parcel* parcel, int to) {
+  vtkMultiProcessStream header;
+  try {
+    if (parcel) header = parcel->header();
+  } catch (const std::bad_alloc&) {
+    header.Reset();
+  }
+  controller_->Send(header, to, kTag);
+  return !header.Empty();
+}
+
+std::optional<Parcel> Processes::announced(int from) {
+  vtkMultiProcessStream header;
+  controller_->Receive(header, from, kTag);
+  if (header.Empty()) return {};
+  try {
+    return Parcel::laid_out(header);
+  } catch (const std::bad_alloc&) {
+    return {};
+  }
+}
+
 std::optional<std::vector<Parcel>> Processes::gather(std::optional<Parcel> mine) {
   bool ready = mine.has_value();
   std::vector<Parcel> parcels;
   if (!is_first()) {
-    controller_->Send(mine.value_or(Parcel()).header(), kFirst, kTag);
+    ready = announce(mine ? &*mine : nullptr, kFirst);
   } else {
     parcels.push_back(mine.value_or(Parcel()));
     for (int from = 1; from < count(); ++from) {
-      vtkMultiProcessStream header;
-      controller_->Receive(header, from, kTag);
-      try {
-        parcels.push_back(Parcel::laid_out(header));
-      } catch (const std::bad_alloc&) {
-        ready = false;
-      }
+      std::optional<Parcel> other = announced(from);
+      ready = ready && other;
+      parcels.push_back(std::move(other).value_or(Parcel()));
     }
   }
   if (!all(ready)) return {};
@@ -237,16 +268,10 @@ std::optional<std::vector<Parcel>> Processes::gather(std::optional<Parcel> mine)
 std::optional<Parcel> Processes::scatter(std::vector<Parcel> parcels) {
   std::optional<Parcel> mine;
   if (!is_first()) {
-    vtkMultiProcessStream header;
-    controller_->Receive(header, kFirst, kTag);
-    try {
-      mine = Parcel::laid_out(header);
-    } catch (const std::bad_alloc&) {
-      mine.reset();
-    }
+    mine = announced(kFirst);
   } else {
     for (std::size_t to = 1; to < parcels.size(); ++to) {
-      controller_->Send(parcels[to].header(), static_cast<int>(to), kTag);
+      announce(&parcels[to], static_cast<int>(to));
     }
     mine = std::move(parcels.front());
   }

@@ -32,6 +32,9 @@ class Parcel {
   std::size_t next_ = 0;
 };
 
+void put_times(vtkMultiProcessStream& words, const std::vector<double>& times);
+std::vector<double> taken_times(vtkMultiProcessStream& words);
+
 /// A piece of a mesh with its point, cell and field data that are numbers.
 Parcel packed(vtkPolyData& piece);
 vtkSmartPointer<vtkPolyData> unpacked(Parcel& parcel);
@@ -55,6 +58,11 @@ class Processes {
   std::optional<Parcel> scatter(std::vector<Parcel> parcels);
 
  private:
+  /// What makes room for a parcel goes ahead of it. False where there is none, or no memory, which
+  /// the other process then learns.
+  bool announce(const Parcel* parcel, int to);
+  /// No value where none was announced, or there is no memory for it.
+  std::optional<Parcel> announced(int from);
   void send(const Parcel& parcel, int to);
   void receive(Parcel& parcel, int from);
 

@@ -81,21 +81,19 @@ Report report_of(const Incoming& incoming) {
 }
 
 void put_report(vtkMultiProcessStream& words, const Report& report) {
-  words << number_of(report.held) << report.type << number_of(report.has_points)
-        << number_of(report.steps.size());
-  for (const double step : report.steps) words << step;
+  words << number_of(report.held) << report.type << number_of(report.has_points);
+  put_times(words, report.steps);
   words << number_of(report.time.has_value()) << report.time.value_or(0);
 }
 
 Report taken_report(vtkMultiProcessStream& words) {
   Report report;
-  int held = 0, has_points = 0, steps = 0, has_time = 0;
+  int held = 0, has_points = 0, has_time = 0;
   double time = 0;
-  words >> held >> report.type >> has_points >> steps;
+  words >> held >> report.type >> has_points;
   report.held = static_cast<Held>(held);
   report.has_points = has_points == 1;
-  report.steps.resize(static_cast<std::size_t>(steps));
-  for (double& step : report.steps) words >> step;
+  report.steps = taken_times(words);
   words >> has_time >> time;
   if (has_time == 1) report.time = time;
   return report;
@@ -133,9 +131,10 @@ std::string described(const std::vector<double>& steps) {
          to_text(steps.back());
 }
 
-/// Pieces of different times are no mesh. Throws MismatchError for them; processes without points
-/// are not looked at, save the first, which says what times there are.
-void expect_one_time(const std::vector<Report>& reports) {
+/// The time of the mesh, where pieces have one. Throws MismatchError for pieces of different times,
+/// which are no mesh; processes without points are not looked at, save the first, which says what
+/// times there are.
+std::optional<double> one_time_of(const std::vector<Report>& reports) {
   const std::vector<double>& steps = reports.front().steps;
   const Report* first = nullptr;  // with points, and a time
   for (std::size_t process = 0; process < reports.size(); ++process) {
@@ -154,6 +153,7 @@ void expect_one_time(const std::vector<Report>& reports) {
                         std::to_string(first - reports.data()) + " of time " +
                         to_text(*first->time) + "; give all processes a series of the same times");
   }
+  return first ? first->time : std::nullopt;
 }
 
 /// The meshes of an output, at most one where it is no composite.
@@ -205,14 +205,20 @@ void take_time(Parcel& parcel, vtkDataObject& output) {
   if (has_time == 1) about.Set(vtkDataObject::DATA_TIME_STEP(), time);
 }
 
-/// What cannot be given to all is not left on one.
-void empty(vtkInformationVector& outputs) {
+}  // namespace
+
+void empty_outputs(vtkInformationVector& outputs) {
   for (int port = 0; port < outputs.GetNumberOfInformationObjects(); ++port) {
-    if (vtkDataObject* output = vtkDataObject::GetData(&outputs, port)) output->Initialize();
+    vtkInformation& asked = *outputs.GetInformationObject(port);
+    vtkDataObject* output = vtkDataObject::GetData(&outputs, port);
+    if (!output) continue;
+    output->Initialize();
+    vtkInformation& about = *output->GetInformation();
+    about.Remove(vtkDataObject::DATA_TIME_STEP());
+    if (!asked.Has(Pipeline::UPDATE_TIME_STEP())) continue;
+    about.Set(vtkDataObject::DATA_TIME_STEP(), asked.Get(Pipeline::UPDATE_TIME_STEP()));
   }
 }
-
-}  // namespace
 
 bool PieceExchange::begin(vtkInformation& output) {
   const bool was_in_pieces = in_pieces();
@@ -270,7 +276,7 @@ vtkDataObject* PieceExchange::input_at(int port, std::optional<double> time) {
   std::vector<Report> reports;
   for (Parcel& parcel : *parcels) reports.push_back(taken_report(parcel.words));
   expect_meshes(reports, time);
-  expect_one_time(reports);
+  const std::optional<double> shown = one_time_of(reports);
   Pieces pieces;
   for (Parcel& parcel : *parcels) {
     vtkMultiProcessStream piece;
@@ -282,10 +288,7 @@ vtkDataObject* PieceExchange::input_at(int port, std::optional<double> time) {
   MergedPieces found =
       merged(std::move(pieces), before == merged_.end() ? nullptr : &before->second);
   vtkPolyData* mesh = found.mesh;
-  if (pieces_.at(port)->GetInformation()->Has(vtkDataObject::DATA_TIME_STEP())) {
-    mesh->GetInformation()->CopyEntry(pieces_.at(port)->GetInformation(),
-                                      vtkDataObject::DATA_TIME_STEP());
-  }
+  if (shown) mesh->GetInformation()->Set(vtkDataObject::DATA_TIME_STEP(), *shown);
   merged_[port] = std::move(found);
   return mesh;
 }
@@ -316,11 +319,10 @@ bool PieceExchange::end(Attempt how, vtkInformationVector& outputs) {
   vtkMultiProcessStream order;
   order << number_of(Order::end) << number_of(failure ? Attempt::failed : how);
   processes_->told(order);
-  if (!failure && how != Attempt::done) return true;
-  const bool is_shared = !failure && share(std::move(parcels), outputs);
-  if (!is_shared) empty(outputs);
+  const bool is_shared = !failure && how == Attempt::done && share(std::move(parcels), outputs);
+  if (!is_shared) empty_outputs(outputs);
   if (failure) std::rethrow_exception(failure);
-  return is_shared;
+  return is_shared || how != Attempt::done;
 }
 
 Attempt PieceExchange::serve(vtkInformationVector& outputs) {
@@ -338,20 +340,23 @@ Attempt PieceExchange::serve(vtkInformationVector& outputs) {
     int how = 0;
     words >> how;
     const auto end = static_cast<Attempt>(how);
-    return end == Attempt::done && !share({}, outputs) ? Attempt::failed : end;
+    const bool is_shared = end == Attempt::done && share({}, outputs);
+    if (!is_shared) empty_outputs(outputs);
+    return is_shared || end != Attempt::done ? end : Attempt::failed;
   }
 }
 
 bool PieceExchange::share(std::vector<Parcel> parcels, vtkInformationVector& outputs) {
   std::optional<Parcel> mine = processes_->scatter(std::move(parcels));
   if (!mine) return false;
+  bool is_taken = false;
   try {
     take_outputs(*mine, outputs);
-  } catch (const std::exception&) {
-    empty(outputs);
-    throw;
+    is_taken = true;
+  } catch (const std::bad_alloc&) {
+    is_taken = false;  // which the first process says for all
   }
-  return true;
+  return all(is_taken);
 }
 
 void PieceExchange::put_outputs(Parcel& parcel, vtkInformationVector& outputs,

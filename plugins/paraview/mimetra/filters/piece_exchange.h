@@ -20,6 +20,10 @@ struct Incoming {
   std::vector<double> steps = {};  ///< the times at which it could be had
 };
 
+/// What cannot be given to all processes is not left on one. The outputs are of the time that was
+/// asked for, on all: VTK goes by it when it decides whether a process is asked again.
+void empty_outputs(vtkInformationVector& outputs);
+
 /// Runs a filter that needs whole meshes on a server of several processes, each of which holds a
 /// piece: the first one works, on meshes merged from all pieces, and the others do what it says.
 /// Of one process, nothing is exchanged.
@@ -53,8 +57,8 @@ class PieceExchange {
   std::size_t joined(int port) const;
 
   /// On the first: gives the others their pieces of the outputs, and keeps its own. False where
-  /// memory did not suffice on some process. There is nothing in the outputs then, and where it
-  /// throws.
+  /// memory did not suffice on some process. There is nothing in the outputs of any process then,
+  /// where it throws, and where nothing was done.
   bool end(Attempt how, vtkInformationVector& outputs);
   /// On the others: does what the first says to its end.
   Attempt serve(vtkInformationVector& outputs);
@@ -62,7 +66,7 @@ class PieceExchange {
  private:
   /// By all: the pieces at a port on the first.
   std::optional<std::vector<Parcel>> gather(int port, std::optional<double> time);
-  /// By all: their pieces of the outputs.
+  /// By all: their pieces of the outputs. False on all where memory did not suffice on one.
   bool share(std::vector<Parcel> parcels, vtkInformationVector& outputs);
 
   void put_outputs(Parcel& parcel, vtkInformationVector& outputs, std::size_t process) const;

@@ -76,7 +76,7 @@ Attempt vtkMimetraAlgorithm::attempt(const std::function<void()>& work) {
     work();
     return Attempt::done;
   } catch (const Cancelled&) {
-    aborted_ = true;
+    begin_anew();
     return Attempt::aborted;
   } catch (const std::bad_alloc&) {
     vtkErrorMacro(<< "not enough memory; take fewer time steps");
@@ -95,8 +95,7 @@ int vtkMimetraAlgorithm::ComputePipelineMTime(vtkInformation* request,
                                               vtkInformationVector** inputs,
                                               vtkInformationVector* outputs, int port,
                                               vtkMTimeType* changed) {
-  // What was aborted is no result: the next update begins anew, at the same time too.
-  if (std::exchange(aborted_, false)) Modified();
+  if (std::exchange(begins_anew_, false)) Modified();
   return Superclass::ComputePipelineMTime(request, inputs, outputs, port, changed);
 }
 

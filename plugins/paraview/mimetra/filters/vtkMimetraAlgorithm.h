@@ -53,6 +53,8 @@ class MIMETRAFILTERS_EXPORT vtkMimetraAlgorithm : public vtkPolyDataAlgorithm {
   Attempt attempt(const std::function<void()>& work);
   /// Shows progress; false to stop.
   bool show_progress(double share);
+  /// What comes out is no result: the next update begins anew, at the same time too.
+  void begin_anew() { begins_anew_ = true; }
   /// Forgets an abort of an earlier execution.
   void begin_execution();
 
@@ -61,5 +63,5 @@ class MIMETRAFILTERS_EXPORT vtkMimetraAlgorithm : public vtkPolyDataAlgorithm {
   void operator=(const vtkMimetraAlgorithm&) = delete;
 
   std::unique_ptr<OperationCall> call_;
-  bool aborted_ = false;
+  bool begins_anew_ = false;
 };

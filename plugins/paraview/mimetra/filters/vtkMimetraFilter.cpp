@@ -7,12 +7,15 @@
 #include <vtkDataObject.h>
 #include <vtkInformation.h>
 #include <vtkInformationDoubleKey.h>
+#include <vtkInformationDoubleVectorKey.h>
 #include <vtkInformationVector.h>
+#include <vtkMultiProcessController.h>
 #include <vtkPolyData.h>
 #include <vtkStreamingDemandDrivenPipeline.h>
 
 #include "plugins/paraview/mimetra/filters/filter_proxies.h"
 #include "plugins/paraview/mimetra/filters/operation_call.h"
+#include "plugins/paraview/mimetra/filters/parcel.h"
 #include "plugins/paraview/mimetra/filters/piece_exchange.h"
 #include "plugins/paraview/mimetra/filters/time_steps.h"
 #include "toolkit/mesh/errors.h"
@@ -29,10 +32,27 @@ vtkMTimeType changed_at(vtkExecutive* executive) {
   return pipeline ? pipeline->GetPipelineMTime() : 0;
 }
 
-std::vector<double> times_of(vtkInformation& info) {
-  if (!info.Has(Pipeline::TIME_STEPS())) return {};
-  const double* times = info.Get(Pipeline::TIME_STEPS());
-  return {times, times + info.Length(Pipeline::TIME_STEPS())};
+std::vector<double> times_of(vtkInformation& info,
+                             vtkInformationDoubleVectorKey* key = Pipeline::TIME_STEPS()) {
+  if (!info.Has(key)) return {};
+  const double* times = info.Get(key);
+  return {times, times + info.Length(key)};
+}
+
+/// By all processes: gives an output the times that it has on the first. VTK asks no process again
+/// that knows of none.
+void share_times(vtkInformation& output) {
+  vtkMultiProcessController* controller = vtkMultiProcessController::GetGlobalController();
+  if (!controller || controller->GetNumberOfProcesses() == 1) return;
+  const std::array keys = {Pipeline::TIME_STEPS(), Pipeline::TIME_RANGE()};
+  vtkMultiProcessStream words;
+  for (auto* key : keys) put_times(words, times_of(output, key));
+  words = Processes(*controller).told(words);
+  for (auto* key : keys) {
+    const std::vector<double> times = taken_times(words);
+    output.Remove(key);
+    if (!times.empty()) output.Set(key, times.data(), static_cast<int>(times.size()));
+  }
 }
 
 /// The time at which what moves comes out, whichever output asks; what stands still is made of the
@@ -111,9 +131,13 @@ int vtkMimetraFilter::FillInputPortInformation(int port, vtkInformation* info) {
 int vtkMimetraFilter::RequestInformation(vtkInformation*, vtkInformationVector**,
                                          vtkInformationVector* outputs) {
   for (int port = 0; port < outputs->GetNumberOfInformationObjects(); ++port) {
-    if (moves(port)) continue;
-    outputs->GetInformationObject(port)->Remove(Pipeline::TIME_STEPS());
-    outputs->GetInformationObject(port)->Remove(Pipeline::TIME_RANGE());
+    vtkInformation& output = *outputs->GetInformationObject(port);
+    if (moves(port)) {
+      share_times(output);
+    } else {
+      output.Remove(Pipeline::TIME_STEPS());
+      output.Remove(Pipeline::TIME_RANGE());
+    }
   }
   return 1;
 }
@@ -134,29 +158,54 @@ int vtkMimetraFilter::RequestUpdateExtent(vtkInformation* request, vtkInformatio
   }
   const int port = std::max(0, request->Get(vtkExecutive::FROM_OUTPUT_PORT()));
   begun_ = begin_request(*outputs->GetInformationObject(port));
+  // A process whose input fails may not be asked for data.
+  if (!begun_) empty_outputs(*outputs);
   return 1;
 }
 
-// Now, because a process whose input fails is not asked for data, and all others would wait for it.
+// Now, because VTK does not ask a process for data whose input fails, and all others would wait for
+// it. It is asked again at the next update, and so all must be; that they fail again is not said.
 bool vtkMimetraFilter::begin_request(vtkInformation& output) {
   bool begun = false;
   attempt([&] {
     if (exchange_->begin(output)) forget_inputs();
+    // Whatever went wrong with it, all wait here.
     const bool updated = !exchange_->in_pieces() || update_inputs();
     begun = exchange_->all(updated);
-    if (!begun && updated && exchange_->is_first()) {
+    failed_.reset();
+    if (begun) return;
+    failed_ = asked();
+    begin_anew();
+    if (updated && exchange_->is_first()) {
       throw IoError("the input", "cannot be read by another process, whose message tells why");
     }
   });
   return begun;
 }
 
+// VTK takes what failed for done: asked for the same again, it succeeds, without data.
 bool vtkMimetraFilter::update_inputs() {
+  bool updated = failed_ != asked();
+  const Attempt attempted = attempt([&] {
+    for (int port = 0; port < GetNumberOfInputPorts(); ++port) {
+      if (GetNumberOfInputConnections(port) == 0) continue;
+      const int index = GetInputConnection(port, 0)->GetIndex();
+      if (!GetInputExecutive(port, 0)->Update(index)) updated = false;
+    }
+  });
+  return updated && attempted == Attempt::done;
+}
+
+std::vector<vtkMimetraFilter::Asked> vtkMimetraFilter::asked() {
+  std::vector<Asked> all;
   for (int port = 0; port < GetNumberOfInputPorts(); ++port) {
+    Asked& each = all.emplace_back(origin_of(port));
     if (GetNumberOfInputConnections(port) == 0) continue;
-    if (!GetInputExecutive(port, 0)->Update(GetInputConnection(port, 0)->GetIndex())) return false;
+    vtkInformation& info = *GetInputInformation(port, 0);
+    if (!info.Has(Pipeline::UPDATE_TIME_STEP())) continue;
+    each.time = info.Get(Pipeline::UPDATE_TIME_STEP());
   }
-  return true;
+  return all;
 }
 
 void vtkMimetraFilter::forget_inputs() {
@@ -167,7 +216,10 @@ void vtkMimetraFilter::forget_inputs() {
 int vtkMimetraFilter::RequestData(vtkInformation*, vtkInformationVector** inputs,
                                   vtkInformationVector* outputs) {
   begin_execution();
-  if (!begun_) return 1;
+  if (!begun_) {
+    empty_outputs(*outputs);
+    return 1;
+  }
   if (!exchange_->is_first()) {
     attempt([&] {
       if (exchange_->serve(*outputs) == Attempt::aborted) throw Cancelled();
@@ -275,7 +327,9 @@ vtkDataObject* vtkMimetraFilter::input_at(int port, std::optional<double> time) 
     vtkExecutive* upstream = GetInputExecutive(port, 0);
     const int index = GetInputConnection(port, 0)->GetIndex();
     upstream->GetOutputInformation(index)->Set(Pipeline::UPDATE_TIME_STEP(), *time);
-    if (!upstream->Update(index)) {
+    const std::vector<Asked> asked_now = asked();
+    if (failed_ == asked_now || !upstream->Update(index)) {
+      failed_ = asked_now;
       throw IoError("time " + to_text(*time), "cannot be read; the message before tells why");
     }
   }

@@ -67,6 +67,13 @@ class MIMETRAFILTERS_EXPORT vtkMimetraFilter : public vtkMimetraAlgorithm {
   };
 
   Origin origin_of(int port);
+  /// What is asked of the input at a port.
+  struct Asked {
+    Origin origin = {};
+    std::optional<double> time = {};
+    bool operator==(const Asked&) const = default;
+  };
+
   /// What comes in at a port of this process, brought to a time where it has times. Throws IoError
   /// where it cannot be had.
   vtkDataObject* input_at(int port, std::optional<double> time);
@@ -75,6 +82,8 @@ class MIMETRAFILTERS_EXPORT vtkMimetraFilter : public vtkMimetraAlgorithm {
   /// False, on all processes, where one of them cannot.
   bool begin_request(vtkInformation& output);
   bool update_inputs();
+  /// Of all ports.
+  std::vector<Asked> asked();
   /// Forgets what came in before.
   void forget_inputs();
   /// Throws UsageError where the operation is told points by their numbers, which say nothing where
@@ -95,6 +104,7 @@ class MIMETRAFILTERS_EXPORT vtkMimetraFilter : public vtkMimetraAlgorithm {
   Takes takes_;
   std::unique_ptr<PieceExchange> exchange_;
   bool begun_ = true;
+  std::optional<std::vector<Asked>> failed_;  ///< what could not be had
   std::unique_ptr<TimeSteps> steps_;
   std::optional<Origin> collected_;
   std::optional<Origin> told_of_;  ///< the input whose seams were joined

@@ -53,14 +53,13 @@ void vtkMimetraSequence::read_by_first() {
   if (!processes || processes->is_first()) attempted = attempt([this] { times_ = read(); });
   if (!processes) return;
   vtkMultiProcessStream words;
-  words << static_cast<int>(attempted) << static_cast<int>(times_.size());
-  for (const double time : times_) words << time;
+  words << static_cast<int>(attempted);
+  put_times(words, times_);
   words = processes->told(words);
   if (processes->is_first()) return;
-  int how = 0, count = 0;
-  words >> how >> count;
-  times_.resize(static_cast<std::size_t>(count));
-  for (double& time : times_) words >> time;
+  int how = 0;
+  words >> how;
+  times_ = taken_times(words);
   attempt([how] {
     if (static_cast<Attempt>(how) == Attempt::aborted) throw Cancelled();
   });
