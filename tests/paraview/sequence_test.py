@@ -52,6 +52,18 @@ class MimetraSequence(HostTest):
         self.assertEqual(len(source.TimestepValues), 0)
         self.assertGreater(at(source).GetNumberOfPolys(), 4000)
 
+    def test_knows_the_rest_pose_of_what_a_filter_leaves(self):
+        source = simple.mimetraSequence(FileName=f"{self.sample.head}@identity001=1",
+                                        Weights=str(self.sample.weights), Frames="30:120:10")
+        side = simple.Calculator(Input=source, Function="mimetra_rest_X")
+        half = simple.ExtractSurface(Input=simple.Threshold(
+            Input=side, Scalars=["POINTS", "Result"], LowerThreshold=0, UpperThreshold=1e9))
+        found = at(simple.RegionsofInterest(Input=half, K=2), source.TimestepValues[0])
+        self.assertLess(found.GetNumberOfPoints(), at(source).GetNumberOfPoints())
+        moved = (points(found) - point_array(found, "mimetra_rest")).astype(np.float32)
+        self.assertGreater(np.abs(moved).max(), 0)
+        self.assert_same(point_array(found, "displacement"), moved)
+
     def test_keeps_polygons(self):
         mesh = self.sample / "pentagon.obj"
         mesh.write_text("v 0 0 0\nv 2 0 0\nv 3 1 0\nv 1 2 0\nv -1 1 0\nv 0 0 1\n"

@@ -128,7 +128,7 @@ class ThirdPartyOperations(HostTest):
         source = simple.mimetraSequence(FileName=str(self.sample.head),
                                         Weights=str(self.sample.weights))
         found = at(simple.mimetraSmooth(Input=source, Strength=0.25), 1)
-        rest = vtk_to_numpy(found.GetFieldData().GetArray("mimetra_rest"))
+        rest = point_array(found, "mimetra_rest")
         self.assert_same(point_array(found, "displacement"),
                          (points(found) - rest).astype(np.float32))
 

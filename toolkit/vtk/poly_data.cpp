@@ -223,14 +223,7 @@ void add_displacement(vtkPolyData& data, const Eigen::MatrixXd& displacement) {
 void set_rest(vtkPolyData& data, const std::optional<Positions>& rest) {
   data.GetPointData()->RemoveArray(kRestPose);
   data.GetFieldData()->RemoveArray(kRestPose);
-  if (rest) data.GetFieldData()->AddArray(double_array(kRestPose, *rest));
-}
-
-void put_rest_on_points(vtkPolyData& data) {
-  vtkDataArray* rest = data.GetFieldData()->GetArray(kRestPose);
-  if (!rest || rest->GetNumberOfTuples() != data.GetNumberOfPoints()) return;
-  data.GetPointData()->AddArray(rest);
-  data.GetFieldData()->RemoveArray(kRestPose);
+  if (rest) data.GetPointData()->AddArray(double_array(kRestPose, *rest));
 }
 
 }  // namespace mimetra

@@ -18,8 +18,9 @@ Positions positions_of(vtkPolyData& data, const std::string& name);
 /// The polygons; vertices and lines are left out. Throws IoError where there are none, or strips.
 Connectivity connectivity_of(vtkPolyData& data, const std::string& name);
 
-/// The rest pose of data at `positions`: the point or field data kRestPose, or the positions
-/// without the point data kDisplacement. Throws IoError where a vertex of it is not finite.
+/// The rest pose of data at `positions`: the point data kRestPose, field data of this name, which
+/// files of earlier versions have, or the positions without the point data kDisplacement. Throws
+/// IoError where a vertex of it is not finite.
 std::optional<Positions> rest_of(vtkPolyData& data, const Positions& positions,
                                  const std::string& name);
 
@@ -43,11 +44,9 @@ constexpr const char* kDisplacement = "displacement";
 constexpr const char* kDisplacementLength = "displacement_length";
 void add_displacement(vtkPolyData& data, const Eigen::MatrixXd& displacement);
 
-/// Field data (N x 3, double) that carry the rest pose along a pipeline. As point data, of the
-/// same name, it stays with its points where they are distributed to several processes.
+/// Point data (N x 3, double) that carry the rest pose along a pipeline, and stay with their points
+/// where a filter takes some away or distributes them.
 constexpr const char* kRestPose = "mimetra_rest";
 void set_rest(vtkPolyData& data, const std::optional<Positions>& rest);
-/// Makes a rest pose that is field data point data.
-void put_rest_on_points(vtkPolyData& data);
 
 }  // namespace mimetra

@@ -17,9 +17,6 @@ using namespace mimetra;
 
 namespace {
 
-/// What becomes of the rest pose.
-enum class Rest { stays, goes, is_another };
-
 void put_names(Parcel& parcel, const std::vector<std::string>& names) {
   parcel.words << static_cast<int>(names.size());
   for (const std::string& name : names) parcel.words << name;
@@ -72,11 +69,6 @@ void take_changes(Parcel& parcel, vtkDataSetAttributes& attributes) {
   take_scalars(parcel, attributes);
 }
 
-Rest becomes_of(vtkDataArray* made, vtkDataArray* given) {
-  if (made == given) return Rest::stays;
-  return made ? Rest::is_another : Rest::goes;
-}
-
 void put_empty(Parcel& parcel, vtkDataSetAttributes& attributes) {
   std::vector<vtkDataArray*> arrays;
   for (int i = 0; i < attributes.GetNumberOfArrays(); ++i) {
@@ -110,10 +102,7 @@ void put_answer(Parcel& parcel, vtkPolyData& output, const MergedPieces& merged,
   if (moved) parcel.put(rows_at(*output.GetPoints()->GetData(), points));
   put_changes(parcel, *output.GetPointData(), *merged.mesh->GetPointData(), points);
   put_changes(parcel, *output.GetCellData(), *merged.mesh->GetCellData(), merged.cells[piece]);
-  vtkDataArray* rest = output.GetFieldData()->GetArray(kRestPose);
-  const Rest becomes = becomes_of(rest, merged.mesh->GetFieldData()->GetArray(kRestPose));
-  parcel.words << static_cast<int>(becomes);
-  if (becomes == Rest::is_another) parcel.put(rows_at(*rest, points));
+  parcel.words << output.GetFieldData()->HasArray(kRestPose);
 }
 
 void take_answer(Parcel& parcel, vtkPolyData& piece, vtkPolyData& output) {
@@ -127,11 +116,9 @@ void take_answer(Parcel& parcel, vtkPolyData& piece, vtkPolyData& output) {
   }
   take_changes(parcel, *output.GetPointData());
   take_changes(parcel, *output.GetCellData());
-  int rest = 0;
-  parcel.words >> rest;
-  const auto becomes = static_cast<Rest>(rest);
-  if (becomes != Rest::stays) output.GetFieldData()->RemoveArray(kRestPose);
-  if (becomes == Rest::is_another) output.GetPointData()->AddArray(parcel.take());
+  int rest_stays = 0;
+  parcel.words >> rest_stays;
+  if (rest_stays == 0) output.GetFieldData()->RemoveArray(kRestPose);
 }
 
 void put_nothing(Parcel& parcel, vtkPolyData& output) {

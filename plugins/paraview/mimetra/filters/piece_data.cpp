@@ -116,8 +116,8 @@ void expect_no_rest_in_fields(const Pieces& pieces) {
     if (on_points || !piece->GetFieldData()->HasArray(kRestPose)) continue;
     throw MismatchError("the rest pose is field data (" + std::string(kRestPose) +
                         "), and which of its points the pieces of several processes hold cannot "
-                        "be known; read the file by mimetra Sequence, which makes it point data "
-                        "here, or leave it out by Pass Arrays");
+                        "be known; read the file by mimetra Sequence, which makes it point data, "
+                        "or leave it out by Pass Arrays");
   }
 }
 

@@ -386,7 +386,6 @@ void PieceExchange::put_mesh(Parcel& parcel, vtkPolyData& output, std::size_t pr
     put_answer(parcel, output, under->second, process);
     return;
   }
-  put_rest_on_points(output);
   if (process > 0) put_nothing(parcel, output);
 }
 

@@ -92,9 +92,6 @@ int vtkMimetraSequence::RequestData(vtkInformation*, vtkInformationVector**,
   vtkPolyData* output = vtkPolyData::GetData(outputs);
   output->ShallowCopy(mesh_);
   set_positions(*output, sequence.frame(frame), Precision::double_precision);
-  // Filters that distribute the mesh take point data along.
-  vtkMultiProcessController* controller = vtkMultiProcessController::GetGlobalController();
-  if (controller && controller->GetNumberOfProcesses() > 1) put_rest_on_points(*output);
   output->GetInformation()->Set(vtkDataObject::DATA_TIME_STEP(), sequence.times()[frame]);
   return 1;
 }
