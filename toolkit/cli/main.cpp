@@ -171,6 +171,7 @@ int shared_exit_code(const std::vector<std::string>& arguments) {
   std::ostringstream said;
   if (!is_first) say_to(said);
   const int code = exit_code_of(arguments, &ranks);
+  if (!is_first) say_to(std::cerr);
   if (code == kDone || ranks.count() == 1) return code;
   if (!is_first) {
     std::this_thread::sleep_for(std::chrono::seconds(2));
