@@ -544,6 +544,20 @@ TEST(PieceAnswer, GivesEachPieceItsRowsAndLeavesTheRest) {
   }
 }
 
+TEST(Parcel, HasRoomForWordsOfAnyLength) {
+  std::vector<double> times(10000);
+  std::iota(times.begin(), times.end(), 0);
+  vtkMultiProcessStream inner, outer;
+  put_times(inner, times);
+  put_words(outer, inner);
+  outer << 7;
+  vtkMultiProcessStream found = taken_words(outer);
+  EXPECT_EQ(taken_times(found), times);
+  int after = 0;
+  outer >> after;
+  EXPECT_EQ(after, 7);
+}
+
 TEST(Parcel, GivesBackThePieceThatWasPutIn) {
   const Pieces pieces = halves(Ids::points_and_cells);
   Parcel parcel = packed(*pieces[1]);

@@ -119,7 +119,7 @@ vtkMultiProcessStream Parcel::header() const {
   vtkMultiProcessStream header;
   header << static_cast<int>(arrays_.size());
   for (const auto& array : arrays_) describe(header, *array);
-  header << words;
+  put_words(header, words);
   return header;
 }
 
@@ -128,8 +128,21 @@ Parcel Parcel::laid_out(vtkMultiProcessStream& header) {
   int count = 0;
   header >> count;
   for (int i = 0; i < count; ++i) parcel.arrays_.push_back(as_described(header));
-  header >> parcel.words;
+  parcel.words = taken_words(header);
   return parcel;
+}
+
+void put_words(vtkMultiProcessStream& words, const vtkMultiProcessStream& inner) {
+  const std::vector<unsigned char> bytes = inner.GetRawData();
+  words << std::string(bytes.begin(), bytes.end());
+}
+
+vtkMultiProcessStream taken_words(vtkMultiProcessStream& words) {
+  std::string bytes;
+  words >> bytes;
+  vtkMultiProcessStream inner;
+  inner.SetRawData(std::vector<unsigned char>(bytes.begin(), bytes.end()));
+  return inner;
 }
 
 void put_times(vtkMultiProcessStream& words, const std::vector<double>& times) {

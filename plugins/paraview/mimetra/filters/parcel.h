@@ -32,6 +32,10 @@ class Parcel {
   std::size_t next_ = 0;
 };
 
+/// Words in words. VTK's own operator writes beyond its memory where there are more than 512 bytes.
+void put_words(vtkMultiProcessStream& words, const vtkMultiProcessStream& inner);
+vtkMultiProcessStream taken_words(vtkMultiProcessStream& words);
+
 void put_times(vtkMultiProcessStream& words, const std::vector<double>& times);
 std::vector<double> taken_times(vtkMultiProcessStream& words);
 

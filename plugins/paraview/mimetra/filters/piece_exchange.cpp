@@ -256,9 +256,10 @@ std::optional<std::vector<Parcel>> PieceExchange::gather(int port, std::optional
     const auto piece = vtkSmartPointer<vtkPolyData>::New();
     if (mesh) piece->ShallowCopy(mesh);
     parcel = packed(*piece);
-    Parcel header;
-    put_report(header.words, report);
-    parcel->words = header.words << parcel->words;
+    vtkMultiProcessStream words;
+    put_report(words, report);
+    put_words(words, parcel->words);
+    parcel->words = words;
     pieces_[port] = piece;
   } catch (const std::bad_alloc&) {
     parcel.reset();
@@ -279,9 +280,7 @@ vtkDataObject* PieceExchange::input_at(int port, std::optional<double> time) {
   const std::optional<double> shown = one_time_of(reports);
   Pieces pieces;
   for (Parcel& parcel : *parcels) {
-    vtkMultiProcessStream piece;
-    parcel.words >> piece;
-    parcel.words = piece;
+    parcel.words = taken_words(parcel.words);
     pieces.push_back(unpacked(parcel));
   }
   const auto before = merged_.find(port);
