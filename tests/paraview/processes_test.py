@@ -281,8 +281,7 @@ class Processes(HostTest):
                 self.assertEqual(found[found[:, 2].argmax(), 0], 2 + time)
 
     def test_shows_the_time_of_the_pieces_with_points(self):
-        last = "p == Controller.GetGlobalController().GetNumberOfProcesses() - 1"
-        source = self.strips("range(4)", shown=f"time if {last} else 0", held=last)
+        source = self.strips("range(4)", shown="time if p == 1 else 0", held="p == 1")
         filter = simple.RegionsofInterest(Input=source, K=2)
         first = points(fetched(filter, 0))
         found = fetched(filter, 3)

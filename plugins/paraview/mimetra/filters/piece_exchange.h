@@ -44,6 +44,10 @@ class PieceExchange {
   int processes() const { return processes_ ? processes_->count() : 1; }
   /// By all: true where it is true on all.
   bool all(bool mine) { return !processes_ || processes_->all(mine); }
+  /// By all: what the first one says.
+  vtkMultiProcessStream told(const vtkMultiProcessStream& words) {
+    return processes_ ? processes_->told(words) : words;
+  }
 
   /// On the first: what comes in at a port, the pieces of all merged. Throws MismatchError for
   /// pieces that do not fit, as those of different times, std::invalid_argument where one is no

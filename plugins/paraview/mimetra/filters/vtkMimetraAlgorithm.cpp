@@ -77,13 +77,20 @@ Attempt vtkMimetraAlgorithm::attempt(const std::function<void()>& work) {
     return Attempt::done;
   } catch (const Cancelled&) {
     begin_anew();
+    said_.clear();
     return Attempt::aborted;
   } catch (const std::bad_alloc&) {
-    vtkErrorMacro(<< "not enough memory; take fewer time steps");
+    show_error("not enough memory; take fewer time steps");
   } catch (const std::exception& error) {
-    vtkErrorMacro(<< in_its_words(error.what()));
+    show_error(in_its_words(error.what()));
   }
   return Attempt::failed;
+}
+
+void vtkMimetraAlgorithm::show_error(const std::string& message) {
+  if (is_anew_ && message == said_) return;
+  said_ = message;
+  vtkErrorMacro(<< message);
 }
 
 bool vtkMimetraAlgorithm::show_progress(double share) {
@@ -95,7 +102,10 @@ int vtkMimetraAlgorithm::ComputePipelineMTime(vtkInformation* request,
                                               vtkInformationVector** inputs,
                                               vtkInformationVector* outputs, int port,
                                               vtkMTimeType* changed) {
-  if (std::exchange(begins_anew_, false)) Modified();
+  if (std::exchange(begins_anew_, false)) {
+    is_anew_ = true;
+    Modified();
+  }
   return Superclass::ComputePipelineMTime(request, inputs, outputs, port, changed);
 }
 

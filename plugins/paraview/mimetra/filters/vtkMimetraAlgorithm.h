@@ -49,12 +49,14 @@ class MIMETRAFILTERS_EXPORT vtkMimetraAlgorithm : public vtkPolyDataAlgorithm {
   /// The operation's outcome, kept while it holds; its progress is shown from `begin` on. Throws
   /// what the operation throws.
   const mimetra::Outcome& outcome(double begin = 0);
-  /// Calls `work`; what it throws is shown as an error, save an abort.
+  /// Calls `work`; what it throws is shown as an error, save an abort, which is no result.
   Attempt attempt(const std::function<void()>& work);
   /// Shows progress; false to stop.
   bool show_progress(double share);
-  /// What comes out is no result: the next update begins anew, at the same time too.
+  /// The next update begins anew, at the same time too.
   void begin_anew() { begins_anew_ = true; }
+  /// What was begun anew has ended: until then, what was said is not said again.
+  void end_anew() { is_anew_ = false; }
   /// Forgets an abort of an earlier execution.
   void begin_execution();
 
@@ -62,6 +64,10 @@ class MIMETRAFILTERS_EXPORT vtkMimetraAlgorithm : public vtkPolyDataAlgorithm {
   vtkMimetraAlgorithm(const vtkMimetraAlgorithm&) = delete;
   void operator=(const vtkMimetraAlgorithm&) = delete;
 
+  void show_error(const std::string& message);
+
   std::unique_ptr<OperationCall> call_;
   bool begins_anew_ = false;
+  bool is_anew_ = false;
+  std::string said_;
 };

@@ -9,7 +9,7 @@
 #include <vtkInformationDoubleKey.h>
 #include <vtkInformationDoubleVectorKey.h>
 #include <vtkInformationVector.h>
-#include <vtkMultiProcessController.h>
+#include <vtkMultiProcessStream.h>
 #include <vtkPolyData.h>
 #include <vtkStreamingDemandDrivenPipeline.h>
 
@@ -39,20 +39,10 @@ std::vector<double> times_of(vtkInformation& info,
   return {times, times + info.Length(key)};
 }
 
-/// By all processes: gives an output the times that it has on the first. VTK asks no process again
-/// that knows of none.
-void share_times(vtkInformation& output) {
-  vtkMultiProcessController* controller = vtkMultiProcessController::GetGlobalController();
-  if (!controller || controller->GetNumberOfProcesses() == 1) return;
-  const std::array keys = {Pipeline::TIME_STEPS(), Pipeline::TIME_RANGE()};
-  vtkMultiProcessStream words;
-  for (auto* key : keys) put_times(words, times_of(output, key));
-  words = Processes(*controller).told(words);
-  for (auto* key : keys) {
-    const std::vector<double> times = taken_times(words);
-    output.Remove(key);
-    if (!times.empty()) output.Set(key, times.data(), static_cast<int>(times.size()));
-  }
+void set_key(vtkInformation& output, vtkInformationDoubleVectorKey* key,
+             const std::vector<double>& times) {
+  output.Remove(key);
+  if (!times.empty()) output.Set(key, times.data(), static_cast<int>(times.size()));
 }
 
 /// The time at which what moves comes out, whichever output asks; what stands still is made of the
@@ -128,18 +118,24 @@ int vtkMimetraFilter::FillInputPortInformation(int port, vtkInformation* info) {
   return 1;
 }
 
+// Processes do not come here together: one whose input alone was changed comes alone.
 int vtkMimetraFilter::RequestInformation(vtkInformation*, vtkInformationVector**,
                                          vtkInformationVector* outputs) {
-  for (int port = 0; port < outputs->GetNumberOfInformationObjects(); ++port) {
-    vtkInformation& output = *outputs->GetInformationObject(port);
-    if (moves(port)) {
-      share_times(output);
-    } else {
-      output.Remove(Pipeline::TIME_STEPS());
-      output.Remove(Pipeline::TIME_RANGE());
-    }
-  }
+  set_times(*outputs, times_.value_or(input_times()));
   return 1;
+}
+
+vtkMimetraFilter::Times vtkMimetraFilter::input_times() {
+  vtkInformation& in = *GetInputInformation(0, 0);
+  return {times_of(in), times_of(in, Pipeline::TIME_RANGE())};
+}
+
+void vtkMimetraFilter::set_times(vtkInformationVector& outputs, const Times& times) const {
+  for (int port = 0; port < outputs.GetNumberOfInformationObjects(); ++port) {
+    const Times shown = moves(port) ? times : Times();
+    set_key(*outputs.GetInformationObject(port), Pipeline::TIME_STEPS(), shown.steps);
+    set_key(*outputs.GetInformationObject(port), Pipeline::TIME_RANGE(), shown.range);
+  }
 }
 
 int vtkMimetraFilter::RequestUpdateExtent(vtkInformation* request, vtkInformationVector** inputs,
@@ -157,30 +153,45 @@ int vtkMimetraFilter::RequestUpdateExtent(vtkInformation* request, vtkInformatio
     }
   }
   const int port = std::max(0, request->Get(vtkExecutive::FROM_OUTPUT_PORT()));
-  begun_ = begin_request(*outputs->GetInformationObject(port));
+  begun_ = begin_request(*outputs->GetInformationObject(port), *outputs);
   // A process whose input fails may not be asked for data.
   if (!begun_) empty_outputs(*outputs);
   return 1;
 }
 
 // Now, because VTK does not ask a process for data whose input fails, and all others would wait for
-// it. It is asked again at the next update, and so all must be; that they fail again is not said.
-bool vtkMimetraFilter::begin_request(vtkInformation& output) {
+// it. It is asked again at the next update, and so all must be.
+bool vtkMimetraFilter::begin_request(vtkInformation& output, vtkInformationVector& outputs) {
   bool begun = false;
   attempt([&] {
     if (exchange_->begin(output)) forget_inputs();
     // Whatever went wrong with it, all wait here.
     const bool updated = !exchange_->in_pieces() || update_inputs();
     begun = exchange_->all(updated);
-    failed_.reset();
-    if (begun) return;
-    failed_ = asked();
-    begin_anew();
-    if (updated && exchange_->is_first()) {
+    const bool knew = exchange_->all(learn_times(outputs));
+    failed_ = begun ? std::nullopt : std::optional(asked());
+    if (!begun || !knew) begin_anew();
+    if (!begun && updated && exchange_->is_first()) {
       throw IoError("the input", "cannot be read by another process, whose message tells why");
     }
   });
   return begun;
+}
+
+// VTK asks no process for another time that knows of none, nor do filters after it.
+bool vtkMimetraFilter::learn_times(vtkInformationVector& outputs) {
+  const Times known = times_.value_or(input_times());
+  vtkMultiProcessStream words;
+  put_times(words, known.steps);
+  put_times(words, known.range);
+  words = exchange_->told(words);
+  times_.reset();
+  if (exchange_->is_first()) return true;
+  Times& told = times_.emplace();
+  told.steps = taken_times(words);
+  told.range = taken_times(words);
+  set_times(outputs, told);
+  return told == known;
 }
 
 // VTK takes what failed for done: asked for the same again, it succeeds, without data.
@@ -216,15 +227,22 @@ void vtkMimetraFilter::forget_inputs() {
 int vtkMimetraFilter::RequestData(vtkInformation*, vtkInformationVector** inputs,
                                   vtkInformationVector* outputs) {
   begin_execution();
+  compute_or_serve(inputs, outputs);
+  end_anew();
+  return 1;
+}
+
+void vtkMimetraFilter::compute_or_serve(vtkInformationVector** inputs,
+                                        vtkInformationVector* outputs) {
   if (!begun_) {
     empty_outputs(*outputs);
-    return 1;
+    return;
   }
   if (!exchange_->is_first()) {
     attempt([&] {
       if (exchange_->serve(*outputs) == Attempt::aborted) throw Cancelled();
     });
-    return 1;
+    return;
   }
   const vtkMTimeType now = changed_at(GetExecutive());
   const bool fails_again = failed_at_ == now && takes_ == Takes::all_time_steps;
@@ -239,7 +257,6 @@ int vtkMimetraFilter::RequestData(vtkInformation*, vtkInformationVector** inputs
   attempt([&] {
     if (!exchange_->end(attempted, *outputs)) throw std::bad_alloc();
   });
-  return 1;
 }
 
 void vtkMimetraFilter::collect(vtkInformation& in, std::optional<double> shown) {

@@ -59,6 +59,12 @@ class MIMETRAFILTERS_EXPORT vtkMimetraFilter : public vtkMimetraAlgorithm {
     vtkMTimeType changed = 0;
     bool operator==(const Origin&) const = default;
   };
+  /// The times that an input can be had at.
+  struct Times {
+    std::vector<double> steps = {};
+    std::vector<double> range = {};
+    bool operator==(const Times&) const = default;
+  };
   /// A further input that may come in as a mesh.
   struct MeshPort {
     std::string input;
@@ -77,10 +83,15 @@ class MIMETRAFILTERS_EXPORT vtkMimetraFilter : public vtkMimetraAlgorithm {
   /// What comes in at a port of this process, brought to a time where it has times. Throws IoError
   /// where it cannot be had.
   vtkDataObject* input_at(int port, std::optional<double> time);
+  Times input_times();
+  void set_times(vtkInformationVector& outputs, const Times& times) const;
   void name_inputs();
   /// By each process: whether this request is for a piece, and brings what comes in up to date.
   /// False, on all processes, where one of them cannot.
-  bool begin_request(vtkInformation& output);
+  bool begin_request(vtkInformation& output, vtkInformationVector& outputs);
+  /// By all: gives outputs that move the times of the first one's input. False where they had
+  /// others.
+  bool learn_times(vtkInformationVector& outputs);
   bool update_inputs();
   /// Of all ports.
   std::vector<Asked> asked();
@@ -92,6 +103,8 @@ class MIMETRAFILTERS_EXPORT vtkMimetraFilter : public vtkMimetraAlgorithm {
   /// Warns, once for an input, where points without global ids were joined by their positions.
   /// Throws UsageError where the operation keeps apart what is at one position.
   void tell_of_seams();
+  /// On the first process computes for all; the others do what it says.
+  void compute_or_serve(vtkInformationVector** inputs, vtkInformationVector* outputs);
   /// Gives the operation what comes in at further ports.
   void give_meshes(vtkInformationVector** inputs);
   /// Gives the operation the input's time steps, where they are others than before, or the one that
@@ -105,6 +118,7 @@ class MIMETRAFILTERS_EXPORT vtkMimetraFilter : public vtkMimetraAlgorithm {
   std::unique_ptr<PieceExchange> exchange_;
   bool begun_ = true;
   std::optional<std::vector<Asked>> failed_;  ///< what could not be had
+  std::optional<Times> times_;                ///< of the first process, save on that one
   std::unique_ptr<TimeSteps> steps_;
   std::optional<Origin> collected_;
   std::optional<Origin> told_of_;  ///< the input whose seams were joined
