@@ -1,6 +1,9 @@
+#include <algorithm>
 #include <iomanip>
 #include <iostream>
+#include <iterator>
 #include <map>
+#include <set>
 
 #include <gmock/gmock.h>
 
@@ -73,9 +76,13 @@ TEST_P(ForeseenTest, IsRefusedByADryRunAsByTheRun) {
 }
 
 std::vector<BadInput> foreseen_cases() {
+  // Whether a face is found in drawings of a mesh, the run alone finds out.
+  const std::set<std::string> drawn = {"other_faces_without_markers", "no_face",
+                                       "rig_of_other_faces"};
   std::vector<BadInput> all;
   for (const auto& cases : {test::match_cases(), test::retarget_cases(), test::rig_cases()}) {
-    all.insert(all.end(), cases.begin(), cases.end());
+    std::ranges::copy_if(cases, std::back_inserter(all),
+                         [&drawn](const BadInput& bad) { return !drawn.contains(bad.kind); });
   }
   return all;
 }

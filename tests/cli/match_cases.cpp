@@ -60,8 +60,10 @@ std::vector<BadInput> match_cases() {
       refused("ignored_files_of_given_markers", right, 2,
               {"--ignore-files: nothing is looked for with --markers"}, " --ignore-files"),
       refused("markers_without_pairs", "# nothing\n", 3, {"m.txt"}),
-      refused("marker_files_of_too_many_targets", right, 2,
-              {"--markers: 2 files, expected one for all targets or one for each of 1"}, ",m.txt"),
+      refused(
+          "marker_files_of_too_many_targets", right, 2,
+          {"--markers: 2 files or words (auto), expected one for all targets or one for each of 1"},
+          ",m.txt"),
       refused("index_base_2", right, 2, {"index-base"}, " --index-base 2"),
       refused("markers_and_correspondence", right, 2, {"--markers and --correspondence"},
               " --correspondence m.txt"),

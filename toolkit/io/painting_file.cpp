@@ -74,8 +74,8 @@ std::vector<std::string> notes_on_texture(const std::string& path, const Connect
 
 Painting painting_of_picture(const std::string& path, const Connectivity& mesh,
                              const std::string& mesh_name) {
-  check_texture(path, mesh, mesh_name);
   Brightness picture = read_brightness(path);
+  check_texture(path, mesh, mesh_name);
   const TextureCoordinates& texture = mesh.texture;
   std::vector<std::optional<double>> known(texture.coordinates.size());
   std::vector<RunningMean> means(mesh.vertices);

@@ -27,6 +27,8 @@ void check_given_markers(const std::vector<Marker>& markers, const std::vector<s
   const int shift = better_shift(markers, source, target);
   try {
     check_markers(markers, source.positions, target.positions);
+    // Throws where they fit a mirror image only.
+    is_inside_out(source, target, markers);
   } catch (const MismatchError& error) {
     const std::string text = name + ": " + error.what();
     if (shift == 0) throw MismatchError(text);
