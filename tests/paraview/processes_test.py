@@ -184,6 +184,10 @@ class Processes(HostTest):
         # These ids count the points in another order than the file.
         late = simple.GenerateGlobalIds(Input=distributed(numbered(self.take())))
         shared = simple.RegionsofInterest(Input=late, K=5)
+        if servermanager.ActiveConnection.GetNumberOfDataPartitions() > 2:
+            # ParaView cuts the moving mesh elsewhere over time, and ids of its pieces are others.
+            self.assert_refused(shared, "all time steps need the same faces")
+            return
         again = simple.RegionsofInterest(Input=distributed(shared), K=5)
         for time in [0, 3]:
             expected = point_array(fetched(alone, time), "displacement")
