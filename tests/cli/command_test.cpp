@@ -11,6 +11,7 @@ namespace {
 
 using nlohmann::json;
 using testing::HasSubstr;
+using testing::Not;
 
 class Command : public test::CommandTest {};
 
@@ -266,6 +267,13 @@ TEST_F(Command, SampleIsAModelWithAPerformance) {
   ASSERT_EQ(run("sample -o sample").code, 0);
   const json info = json::parse(run("info sample --weights sample/performance.csv --json").out);
   EXPECT_EQ(info.at("frames"), 120);
+}
+
+TEST_F(Command, LoadsNoCodecsBeforeThereIsAVideo) {
+  const auto libraries = run("--version", "LD_TRACE_LOADED_OBJECTS=1");
+  ASSERT_EQ(libraries.code, 0);
+  EXPECT_THAT(libraries.out, HasSubstr("libOpenMeshCore"));
+  EXPECT_THAT(libraries.out, Not(HasSubstr("libavcodec")));
 }
 
 }  // namespace

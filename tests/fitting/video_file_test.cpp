@@ -3,9 +3,12 @@
 #include <iterator>
 #include <string>
 
+#include <unistd.h>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "fitting/ffmpeg.h"
 #include "fitting/video_file.h"
 #include "tests/fitting/made_video.h"
 #include "tests/temporary_folder.h"
@@ -267,6 +270,18 @@ TEST_F(Video, KeepsTheSoundOfAnother) {
   EXPECT_TRUE(can_keep_sound(folder_ / "v.mkv", ".mkv"));
   EXPECT_FALSE(can_keep_sound(folder_ / "v.mkv", ".mp4"));
   EXPECT_TRUE(can_keep_sound(folder_ / "silent.mkv", ".mp4"));
+}
+
+TEST(SharedLibrary, MissingIsNamedAndSoIsAFunction) {
+  const auto problem_of = [](const auto& function) {
+    return message_of<std::runtime_error>(function);
+  };
+  EXPECT_THAT(problem_of([] { SharedLibrary("libmissing_here.so.1"); }),
+              HasSubstr("libmissing_here.so.1"));
+  const SharedLibrary present("libc.so.6");
+  EXPECT_THAT(problem_of([&] { present.function<void (*)()>("missing_function"); }),
+              AllOf(HasSubstr("libc.so.6"), HasSubstr("missing_function")));
+  EXPECT_GT(present.function<decltype(&getpid)>("getpid")(), 0);
 }
 
 }  // namespace
