@@ -77,7 +77,9 @@ class Transfer(HostTest):
             self.source.data.attributes["mimetra weight"].data.foreach_get("value", shown)
             # Distances are along vertices in single precision.
             np.testing.assert_allclose(shown, expected, atol=1e-4)
-            np.testing.assert_array_equal(shown == 1, weights == 1)
+            # Close to the border the weight is 1 - 1e-9, in single precision 1.
+            np.testing.assert_array_equal(np.equal(expected, 1), weights == 1)
+            self.assertTrue((shown[weights == 1] == 1).all())
 
     def test_vertex_groups_say_where_regions_may_lie(self):
         weights, _ = self.painted()
