@@ -66,15 +66,18 @@ TEST(SourceRestPose, IsRefusedWithAnotherNumberOfVertices) {
 }
 
 TEST(HeadMotion, IsLookedForOnlyWhereTheSourceMayHaveSome) {
-  EXPECT_FALSE(takes_out_motion(take(), {}));
-  EXPECT_FALSE(takes_out_motion(bare(take()).slice(0, 1), {}));
-  EXPECT_FALSE(takes_out_motion(bare(take()), {.model_driven = true}));
-  EXPECT_TRUE(takes_out_motion(bare(take()), {}));
-  EXPECT_TRUE(takes_out_motion(take(), {.head_motion = HeadMotion::all}));
-  EXPECT_FALSE(takes_out_motion(bare(take()), {.head_motion = HeadMotion::none}));
+  const auto taken_out = [](const MeshSequence& sequence, const SourceOptions& options = {}) {
+    return prepare_source(sequence, options).head_motion.how;
+  };
+  EXPECT_EQ(taken_out(take()), "none");
+  EXPECT_EQ(taken_out(bare(take()).slice(0, 1)), "none");
+  EXPECT_EQ(taken_out(bare(take()), {.model_driven = true}), "none");
+  EXPECT_EQ(taken_out(bare(take())), "stable");
+  EXPECT_EQ(taken_out(take(), {.head_motion = HeadMotion::all}), "all");
+  EXPECT_EQ(taken_out(bare(take()), {.head_motion = HeadMotion::none}), "none");
   // Whoever gives the neutral knows it.
-  EXPECT_FALSE(takes_out_motion(bare(take()), {.rest = take().rest()}));
-  EXPECT_TRUE(takes_out_motion(bare(take()), {.rest = SourceRest::mean}));
+  EXPECT_EQ(taken_out(bare(take()), {.rest = take().rest()}), "none");
+  EXPECT_EQ(taken_out(bare(take()), {.rest = SourceRest::mean}), "stable");
 }
 
 TEST(HeadMotion, IsSaidWithItsReasonAndSize) {

@@ -209,10 +209,6 @@ Positions asked_rest(const FrameSource& sequence, const SourceOptions& options) 
   return is_first ? Positions(FrameBlock(sequence, 0, 1).frame(0)) : sequence.rest();
 }
 
-bool takes_out_motion(const FrameSource& sequence, const SourceOptions& options) {
-  return takes_out(motion_of(sequence, options).motion);
-}
-
 Source prepare_source(Shared sequence, const SourceOptions& options) {
   // Whether the head moves is judged by what is known of the sequence itself.
   const MotionChoice choice = motion_of(*sequence, options);

@@ -135,9 +135,6 @@ struct Source {
 /// sequence's own stands in for the mean.
 Positions asked_rest(const FrameSource& sequence, const SourceOptions& options);
 
-/// True where these options take a head motion out of the sequence.
-bool takes_out_motion(const FrameSource& sequence, const SourceOptions& options);
-
 /// The sequence with the rest pose that was asked for, to which its frames are aligned; the mean is
 /// that of the aligned frames. Notes a first frame that stands in for the neutral
 /// (Topic::unknown_neutral), a motion that nobody asked to take out, a head that turns although
