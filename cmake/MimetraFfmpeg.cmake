@@ -1,6 +1,6 @@
 # FFmpeg's libraries read and write videos; without them, images and landmarks come from other files.
 # Only the headers are needed here: the libraries are loaded when a video is opened.
-option(MIMETRA_FFMPEG "Read and write videos by FFmpeg's libraries, where they are installed" ON)
+option(MIMETRA_FFMPEG "Read and write videos by FFmpeg's libraries, where their headers are installed" ON)
 set(MIMETRA_HAS_FFMPEG OFF)
 if(MIMETRA_FFMPEG)
   find_path(FFMPEG_INCLUDE_DIR libavformat/avformat.h)

@@ -21,8 +21,7 @@ class VideoDecoder {
   virtual Image image() = 0;
 };
 
-/// Throws IoError for what is no video that can be read, and where mimetra was built without
-/// FFmpeg's libraries.
+/// Throws IoError for what is no video that can be read, and where FFmpeg's libraries are missing.
 std::unique_ptr<VideoDecoder> open_video(const std::filesystem::path& path);
 
 class VideoEncoder {
@@ -45,8 +44,8 @@ struct VideoLayout {
   std::filesystem::path sound = {};  ///< a video whose sound goes along from first to end, or none
 };
 
-/// Writes to `path`, whatever its name. Throws OutputError that names `target`, also where mimetra
-/// was built without FFmpeg's libraries.
+/// Writes to `path`, whatever its name. Throws OutputError that names `target`, also where
+/// FFmpeg's libraries are missing.
 std::unique_ptr<VideoEncoder> create_video(const std::filesystem::path& path,
                                            const std::filesystem::path& target,
                                            const VideoLayout& layout);

@@ -24,7 +24,7 @@ bool is_video(const std::filesystem::path& path);
 class VideoFile final : public ImageSequence {
  public:
   /// Decodes all frames once, to know their times. Throws IoError for what is no video, where not
-  /// even its first frame can be decoded, and where mimetra was built without FFmpeg's libraries;
+  /// even its first frame can be decoded, and where FFmpeg's libraries are missing;
   /// Cancelled.
   explicit VideoFile(std::filesystem::path path, const Progress& progress = {});
   ~VideoFile() override;

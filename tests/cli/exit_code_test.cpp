@@ -100,7 +100,7 @@ TEST_F(ExitCode, Is4ForInputsThatContradictEachOtherOrTheRequest) {
   expect_failure("decompose head --weights take.csv -k 226 -o c.h5", 4, "225 vertices");
   expect_failure("decompose head -k 2 -o c.h5", 4, "frame");
   expect_failure("decompose head --weights take.csv -k 2 -o c.h5 --memory 1M", 4,
-                 "--memory: what is left of it, 0 GB, does not hold a decomposition of 12 frames");
+                 "--memory: what is left of it, 0 MB, does not hold a decomposition of 12 frames");
   write("other.csv", "time,smile\n0,1\n");
   expect_failure("info head --weights other.csv", 4, "smile");
   write("small.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");

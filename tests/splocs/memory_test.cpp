@@ -125,8 +125,8 @@ TEST_F(MemoryTest, IsRefusedWhereItHoldsNotOneBlock) {
   options_.memory = 1e6;
   EXPECT_THAT([this] { decompose(sequence_, options_); },
               ThrowsMessage<MismatchError>(
-                  AllOf(HasSubstr("option 'memory': what is left of it, 0.001 GB, does not hold a "
-                                  "decomposition of 24 frames into 4 components: at least"),
+                  AllOf(HasSubstr("option 'memory': what is left of it, 1 MB, does not hold a "
+                                  "decomposition of 24 frames into 4 components; allow at least"),
                         HasSubstr("take fewer components or frames"))));
 }
 

@@ -85,8 +85,9 @@ MotionPlace place_outside_memory(const FrameSource& frames, double bytes,
   return again < kept || !disk_has_room(bytes) ? MotionPlace::sequence : MotionPlace::scratch;
 }
 
-std::string gigabytes(double bytes) {
-  return readable(bytes / 1e9, 2) + " GB";
+/// Rounded up, so that what is asked for is enough.
+std::string megabytes(double bytes) {
+  return fixed(std::ceil(bytes / 1e6), 0) + " MB";
 }
 
 }  // namespace
@@ -104,11 +105,11 @@ DecompositionPlan planned_decomposition(const FrameSource& frames, const VertexP
 
   const double free = *options.memory - sizes.fixed();
   if (free < sizes.per_thread()) {
-    throw MismatchError("option 'memory': what is left of it, " + gigabytes(*options.memory) +
+    throw MismatchError("option 'memory': what is left of it, " + megabytes(*options.memory) +
                         ", does not hold a decomposition of " + std::to_string(frames.frames()) +
-                        " frames into " + std::to_string(options.count) + " components: at least " +
-                        gigabytes(sizes.fixed() + sizes.per_thread()) +
-                        " are needed; allow more, or take fewer components or frames");
+                        " frames into " + std::to_string(options.count) +
+                        " components; allow at least " + megabytes(sizes.per_thread() - free) +
+                        " more, or take fewer components or frames");
   }
   plan.threads = std::min(threads, static_cast<int>(free / sizes.per_thread()));
   plan.bytes = sizes.fixed() + plan.threads * sizes.per_thread();
