@@ -5,6 +5,7 @@
 
 #include <gmock/gmock.h>
 
+#include "toolkit/operations/command_terms.h"
 #include "toolkit/operations/pipeline_parameters.h"
 
 namespace mimetra {

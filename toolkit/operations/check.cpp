@@ -7,6 +7,7 @@
 #include "toolkit/mesh/inspection.h"
 #include "toolkit/mesh/text.h"
 #include "toolkit/operations/bound_parameters.h"
+#include "toolkit/operations/command_terms.h"
 #include "toolkit/operations/json.h"
 #include "toolkit/operations/toolkit_operations.h"
 #include "toolkit/splocs/decomposition_options.h"

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "toolkit/mesh/text.h"
+#include "toolkit/operations/command_terms.h"
 #include "toolkit/operations/convergence_report.h"
 #include "toolkit/operations/json.h"
 #include "toolkit/operations/pipeline_parameters.h"

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "toolkit/mesh/text.h"
+#include "toolkit/operations/command_terms.h"
 #include "toolkit/operations/evaluation_table.h"
 #include "toolkit/operations/json.h"
 #include "toolkit/operations/match_parameters.h"

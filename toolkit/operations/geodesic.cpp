@@ -7,6 +7,7 @@
 #include "geodesic/support_map.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/text.h"
+#include "toolkit/operations/command_terms.h"
 #include "toolkit/operations/json.h"
 #include "toolkit/operations/pipeline_parameters.h"
 #include "toolkit/operations/toolkit_operations.h"

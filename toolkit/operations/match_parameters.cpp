@@ -13,6 +13,7 @@
 #include "toolkit/io/rules_file.h"
 #include "toolkit/mesh/text.h"
 #include "toolkit/operations/bound_parameters.h"
+#include "toolkit/operations/command_terms.h"
 #include "toolkit/operations/heads.h"
 #include "toolkit/operations/pipeline_parameters.h"
 #include "toolkit/pipeline/given_markers.h"

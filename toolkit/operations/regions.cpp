@@ -3,6 +3,7 @@
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/stopwatch.h"
 #include "toolkit/mesh/text.h"
+#include "toolkit/operations/command_terms.h"
 #include "toolkit/operations/convergence_report.h"
 #include "toolkit/operations/json.h"
 #include "toolkit/operations/match_parameters.h"

@@ -9,6 +9,7 @@
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/stopwatch.h"
 #include "toolkit/mesh/text.h"
+#include "toolkit/operations/command_terms.h"
 #include "toolkit/operations/formats.h"
 #include "toolkit/operations/json.h"
 #include "toolkit/operations/match_parameters.h"

@@ -9,6 +9,7 @@
 #include "toolkit/mesh/stopwatch.h"
 #include "toolkit/mesh/suggestion.h"
 #include "toolkit/mesh/text.h"
+#include "toolkit/operations/command_terms.h"
 #include "toolkit/operations/match_parameters.h"
 #include "toolkit/operations/pipeline_parameters.h"
 #include "toolkit/pipeline/rig.h"

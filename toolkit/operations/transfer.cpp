@@ -6,6 +6,7 @@
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/stopwatch.h"
 #include "toolkit/mesh/text.h"
+#include "toolkit/operations/command_terms.h"
 #include "toolkit/operations/convergence_report.h"
 #include "toolkit/operations/formats.h"
 #include "toolkit/operations/json.h"

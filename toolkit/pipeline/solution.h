@@ -1,18 +1,14 @@
 #pragma once
 
-#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
-#include <variant>
 
-#include "toolkit/correspondence/automatic_markers.h"
-#include "toolkit/correspondence/pairing.h"
 #include "toolkit/mesh/similarity.h"
 #include "toolkit/model/animation.h"
 #include "toolkit/model/regional_animation.h"
-#include "toolkit/model/weight_rules.h"
+#include "toolkit/pipeline/matched_target.h"
 #include "toolkit/pipeline/region_choice.h"
 #include "toolkit/transfer/blendshape_transfer.h"
 #include "toolkit/transfer/local_weights.h"
@@ -56,30 +52,6 @@ constexpr std::string_view choice_name(Axes value) {
   }
   return {};
 }
-
-/// Looks for markers from the source's undeformed shape to a target. Throws MismatchError that
-/// names the mesh on which nothing is found.
-using MarkersBetween = std::function<AutomaticMarkers(const TriMesh& source)>;
-
-/// How a target of other faces than the source's is paired with it: not at all, by markers that are
-/// looked for if it has other faces, by markers, or as is known already.
-using GivenMatch =
-    std::variant<std::monostate, MarkersBetween, std::vector<Marker>, Correspondence>;
-
-/// Who receives the deformation: a model, or a mesh, which is a model without expressions. It
-/// refers to the model.
-struct Target {
-  /// In notes and errors.
-  std::string name;
-  std::reference_wrapper<const BlendshapeModel> model;
-  GivenMatch match = {};
-  /// Of the model's expressions, where they are solved for.
-  WeightRules rules = {};
-  /// Where each of the markers was written, for notes: "m.txt, line 3". None for their numbers.
-  std::vector<std::string> marker_places = {};
-  /// With the source; null where both have the same faces. A MatchedTarget has it of `match`.
-  std::shared_ptr<const Pairing> pairing = {};
-};
 
 struct SolveOptions {
   Space space = Space::automatic;
@@ -173,59 +145,11 @@ struct Solution {
 /// True for the vertex space, and where a target has no expressions to solve for.
 bool solves_for_vertices(const BlendshapeModel& target, Space space);
 
-/// Whether a MatchedTarget is paired: markers or pairs are given, or markers are looked for and the
-/// faces differ.
-bool is_to_be_paired(const FrameSource& source, const Target& target);
-
 /// Throws OptionError where the target has no pair for a symmetry (Topic::no_pairs), or none of the
 /// groups that are to exclude each other (Topic::no_exclusives), and what ExpressionRules() throws;
 /// nothing where it is solved for vertices. Throws std::invalid_argument where each region is to
 /// have weights of its own and the target has none, or they are to be smooth or to follow rules.
 void check_rules(const Target& target, const SolveOptions& options);
-
-struct MatchOptions {
-  /// The source's undeformed shape (N x 3); by default its rest pose.
-  std::optional<Positions> source_rest = {};
-  /// 0 for all there are; the result does not depend on it.
-  int threads = 0;
-  Progress progress = {};
-  Notes notes = {};
-};
-
-/// How well a target is paired, and what that took.
-struct MatchReport {
-  CorrespondenceQuality quality;
-  /// By how many markers; 0 for a correspondence that was given.
-  int markers = 0;
-  /// These, where they were looked for.
-  std::optional<AutomaticMarkers> found = {};
-  double seconds = 0;
-};
-
-/// A target and how its faces are the source's: the same, where polygons that its file begins at
-/// another corner are cut along the source's diagonals, or paired.
-class MatchedTarget {
- public:
-  /// Notes, under the target's name, markers that are doubtful and a match whose verdict is
-  /// poor (Topic::poor_match), and a target that is inside out. Throws OptionError
-  /// (Topic::other_faces) unless the target has the source's vertices and faces or a match is
-  /// given, and (Topic::shifted_markers) for markers that fit much better as other vertices;
-  /// MismatchError for other wrong markers and those that fit a mirror image, a correspondence of
-  /// other numbers of triangles, and one without any pair; Cancelled; what the search for markers
-  /// throws.
-  MatchedTarget(const FrameSource& source, Target target, const MatchOptions& options = {});
-
-  const Target& operator*() const { return target_; }
-  /// None where the faces are the same.
-  const std::optional<MatchReport>& report() const { return report_; }
-
- private:
-  void pair(const TriMesh& source, const MatchOptions& options);
-
-  std::unique_ptr<const BlendshapeModel> own_;  // null where the triangles are the same
-  Target target_;
-  std::optional<MatchReport> report_;
-};
 
 /// Throws OptionError (Topic::soft_outside) where the border of regions is soft and, in vertex
 /// space, triangles outside are to keep their shape.

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "toolkit/mesh/stopwatch.h"
+#include "toolkit/operations/command_terms.h"
 #include "toolkit/operations/match_parameters.h"
 #include "toolkit/operations/paint_parameter.h"
 #include "toolkit/operations/pipeline_parameters.h"

@@ -1,0 +1,26 @@
+#pragma once
+
+#include "toolkit/operations/operation.h"
+#include "toolkit/pipeline/note.h"
+
+namespace mimetra {
+
+// What the pipeline says, in the words of the command's options.
+
+/// Notes become warnings that name the options which help.
+Notes warnings_of(const Invocation& invocation);
+
+/// Throws what the command says where an option does not fit: UsageError, MismatchError.
+[[noreturn]] void refuse(const OptionError& error, const Parameters& parameters);
+
+/// Does `work` of the pipeline; its errors name the command's options.
+template <typename Work>
+auto in_command_terms(const Parameters& parameters, const Work& work) {
+  try {
+    return work();
+  } catch (const OptionError& error) {
+    refuse(error, parameters);
+  }
+}
+
+}  // namespace mimetra

@@ -1,0 +1,159 @@
+#include "toolkit/pipeline/matched_target.h"
+
+#include <utility>
+
+#include "toolkit/correspondence/renumbering.h"
+#include "toolkit/mesh/errors.h"
+#include "toolkit/mesh/stopwatch.h"
+#include "toolkit/mesh/text.h"
+#include "toolkit/pipeline/given_markers.h"
+#include "toolkit/pipeline/opening_comparison.h"
+
+namespace mimetra {
+
+namespace {
+
+/// Throws MismatchError for a mesh that is only numbered differently.
+void check_numbering(const FrameSource& source, const Target& target) {
+  const BlendshapeModel& model = target.model;
+  const Renumbering found = renumbering(TriMesh{source.rest(), source.connectivity()},
+                                        TriMesh{model.neutral(), model.connectivity()});
+  if (!found.found()) return;
+  throw MismatchError(target.name + ": has " + found.summary() +
+                      " against the source; write the source in its numbering first "
+                      "(convert --match)");
+}
+
+/// What is different about faces that are not the source's.
+std::string described_faces(const Connectivity& source, const BlendshapeModel& model) {
+  if (model.vertices() != source.vertices) {
+    return std::to_string(model.vertices()) + " vertices, expected " +
+           std::to_string(source.vertices) + " as in the source";
+  }
+  return "face " + std::to_string(first_different_face(source, model.connectivity())) +
+         " is not the source's";
+}
+
+/// Finds what markers tell. Errors are the target's.
+FoundCorrespondence found_by(const std::vector<Marker>& markers, const TriMesh& source,
+                             const TriMesh& target, const std::string& name,
+                             const MatchOptions& options) {
+  try {
+    FoundCorrespondence found = find_correspondence(
+        source, target, markers, {.threads = options.threads, .progress = options.progress});
+    if (found.inside_out) {
+      note(options.notes, name +
+                              ": its faces lead the other way round than the source's (one of them "
+                              "is inside out); they are paired as if turned");
+    }
+    return found;
+  } catch (const MismatchError& error) {
+    throw MismatchError(name + ": " + error.what());
+  }
+}
+
+/// Says that it was needed, and what makes the markers doubtful.
+AutomaticMarkers found_between(const MarkersBetween& search, const TriMesh& source,
+                               const Target& target, const MatchOptions& options) {
+  const std::string differs =
+      target.name + ": " + described_faces(source.connectivity, target.model.get());
+  try {
+    AutomaticMarkers found = search(source);
+    note(options.notes,
+         differs + "; " + std::to_string(found.markers.size()) + " markers were found on both");
+    for (const std::string& warning : found.warnings()) {
+      note(options.notes, target.name + ": " + warning, Topic::poor_match);
+    }
+    return found;
+  } catch (const MismatchError& error) {
+    throw OptionError(Topic::other_faces, differs + "; " + error.what());
+  }
+}
+
+/// Says where a face is open at rest as the other one is not.
+void note_openings(const TriMesh& source, const TriMesh& target, const AutomaticMarkers& markers,
+                   const std::string& name, const Notes& notes) {
+  for (const OpeningAtRest& opening : openings_at_rest(source, target, markers)) {
+    if (!opening.differs()) continue;
+    const bool is_sources = opening.source > opening.target;
+    note(notes,
+         name + ": at rest the " + std::string(opening.name) + " is open by " +
+             percent(opening.target) + " of its width, on the source by " +
+             percent(opening.source) + ": " + (is_sources ? "the source's" : "its") +
+             " rest pose is likely not neutral",
+         is_sources ? Topic::unneutral_rest : Topic::other);
+  }
+}
+
+}  // namespace
+
+bool is_to_be_paired(const FrameSource& source, const Target& target) {
+  if (std::holds_alternative<std::monostate>(target.match)) return false;
+  return !std::holds_alternative<MarkersBetween>(target.match) ||
+         !same_faces(source.connectivity(), target.model.get().connectivity());
+}
+
+MatchedTarget::MatchedTarget(const FrameSource& source, Target target, const MatchOptions& options)
+    : target_(std::move(target)) {
+  const BlendshapeModel& model = target_.model;
+  const bool is_given = !std::holds_alternative<std::monostate>(target_.match) &&
+                        !std::holds_alternative<MarkersBetween>(target_.match);
+  const bool differs = !same_faces(source.connectivity(), model.connectivity());
+  if (differs && !is_given) check_numbering(source, target_);
+  if (is_to_be_paired(source, target_)) {
+    pair({options.source_rest.value_or(source.rest()), source.connectivity()}, options);
+    return;
+  }
+  if (differs) {
+    const bool same_count = model.vertices() == source.vertices();
+    throw OptionError(Topic::other_faces,
+                      target_.name + ": " + described_faces(source.connectivity(), model) +
+                          (same_count ? "; source and target need the same faces" : ""));
+  }
+  target_.match = {};
+  if (model.triangles() == source.triangles()) return;
+  auto connectivity = std::make_shared<Connectivity>(model.connectivity());
+  connectivity->triangles = source.triangles();
+  connectivity->polygon_of_triangle = source.connectivity().polygon_of_triangle;
+  own_ = std::make_unique<BlendshapeModel>(std::move(connectivity), model.neutral(),
+                                           model.expressions());
+  target_.model = *own_;
+}
+
+void MatchedTarget::pair(const TriMesh& source, const MatchOptions& options) {
+  const Stopwatch stopwatch;
+  const BlendshapeModel& model = target_.model;
+  const TriMesh target{model.neutral(), model.connectivity()};
+  MatchReport report;
+  Correspondence pairs;
+  if (const auto* search = std::get_if<MarkersBetween>(&target_.match)) {
+    report.found = found_between(*search, source, target_, options);
+    note_openings(source, target, *report.found, target_.name, options.notes);
+    target_.match = report.found->markers;
+  } else if (const auto* given = std::get_if<std::vector<Marker>>(&target_.match)) {
+    check_given_markers(*given, target_.marker_places, source, target, target_.name, options.notes);
+  }
+  if (const auto* markers = std::get_if<std::vector<Marker>>(&target_.match)) {
+    FoundCorrespondence found = found_by(*markers, source, target, target_.name, options);
+    report.quality = found.quality;
+    report.markers = static_cast<int>(markers->size());
+    pairs = std::move(found.correspondence);
+  } else {
+    pairs = std::get<Correspondence>(target_.match);
+    report.quality = quality_of(pairs, box_diagonal(target.positions));
+  }
+  if (pairs.parts.empty()) {
+    throw MismatchError(target_.name + ": no triangle has a partner in the source");
+  }
+  target_.pairing = std::make_shared<const Pairing>(source, target, std::move(pairs));
+  target_.match = {};
+  const std::string verdict = report.quality.verdict();
+  if (verdict.starts_with("poor")) {
+    note(options.notes, target_.name + ": its correspondence with the source is " + verdict,
+         Topic::poor_match);
+  }
+  report.seconds = stopwatch.seconds();
+  report_ = std::move(report);
+}
+
+}  // namespace mimetra
