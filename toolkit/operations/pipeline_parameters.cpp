@@ -4,7 +4,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include "toolkit/mesh/text.h"
 #include "toolkit/operations/command_terms.h"
 #include "toolkit/operations/memory_use.h"
 #include "toolkit/operations/parameter_files.h"

@@ -6,7 +6,6 @@
 #include "toolkit/mesh/frame_store.h"
 #include "toolkit/mesh/stopwatch.h"
 #include "toolkit/mesh/surface_parts.h"
-#include "toolkit/mesh/text.h"
 #include "toolkit/model/animation.h"
 #include "toolkit/model/motion_filter.h"
 #include "toolkit/pipeline/regional_solution.h"
