@@ -168,7 +168,7 @@ std::vector<Target> model_targets() {
        "w.csv",
        [](const fs::path& file) {
          const WeightTrack track = read_weights(file);
-         weights_for(track, {"smile", "brow_L", "jaw"});
+         weights_for(track, {"smile", "brow_L", "jawOpen"});
          if (has_live_link_names(track.names)) live_link_csv(track);
        },
        {[](const fs::path& file) {
@@ -178,10 +178,10 @@ std::vector<Target> model_targets() {
       {"weights_json",
        "w.json",
        [](const fs::path& file) {
-         weights_for(read_weights(file), {"smile", "brow_L", "jaw"});
+         weights_for(read_weights(file), {"smile", "brow_L", "jawOpen"});
        },
        {text(R"([{"time": 0, "smile": 0.5}, {"time": 1, "smile": 0.25}])"),
-        text(R"({"names": ["smile", "jaw"], "weights": [[0, 1], [0.5, 0]], "fps": 30})")}},
+        text(R"({"names": ["smile", "jawOpen"], "weights": [[0, 1], [0.5, 0]], "fps": 30})")}},
       {"meshopt", "view.bin", read_meshopt, {write_meshopt_points, write_meshopt_faces}},
       {"image",
        "a.png",

@@ -48,9 +48,9 @@ VertexUnknowns PlaneGradients::unknowns(const std::vector<bool>& fixed) const {
 /// Normal equations sum_w (sum_i c_i h_iv . h_iw) d_w = sum_i c_i F_i h_iv.
 Eigen::VectorXd PlaneGradients::field_of(const Eigen::VectorXd& gradients,
                                          const VertexUnknowns& unknowns) const {
-  using Rows = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>;
+  using Unknowns = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>;
   Triplets entries;
-  Rows pull = Rows::Zero(unknowns.count, 3);
+  Unknowns pull = Unknowns::Zero(unknowns.count, 3);
   for (int t = 0; t < triangles(); ++t) {
     if (counts_[t] == 0) continue;
     std::array<int, 3> of_corner;
@@ -65,7 +65,7 @@ Eigen::VectorXd PlaneGradients::field_of(const Eigen::VectorXd& gradients,
     }
   }
   const geodesic::SparseFactor factor = factor_of(entries, unknowns.count);
-  Rows ordered(unknowns.count, 3);
+  Unknowns ordered(unknowns.count, 3);
   for (int u = 0; u < unknowns.count; ++u) ordered.row(factor.order()[u]) = pull.row(u);
   if (unknowns.count > 0) ordered = factor.solve<3>(std::move(ordered));
   const auto vertices = static_cast<Eigen::Index>(unknowns.of_vertex.size());
