@@ -193,6 +193,18 @@ TEST_F(Hdf5, ClaimsAreComparedWithTheFileBeforeAnythingIsAllocated) {
   EXPECT_THAT(message_of("set"), HasSubstr("claims more numbers than the file holds"));
 }
 
+TEST_F(Hdf5, RowsWithoutNumbersAreNoMoreThanTheFileHasBytes) {
+  for (const auto& [rows, columns] : {std::pair(1ull << 60, 0ull), std::pair(0ull, 1ull << 60)}) {
+    {
+      const Hdf5Made made(file_);
+      made.add("set", {rows, columns}, {});
+      made.add("empty", {4, 0}, {});
+    }
+    EXPECT_THAT(message_of("set"), HasSubstr("claims more rows than the file has bytes"));
+    EXPECT_EQ(Hdf5File(file_).dataset("empty").shape()[0], 4);
+  }
+}
+
 /// Reads all that there is.
 void read_all(const std::filesystem::path& path) {
   const Hdf5File file(path);

@@ -1,5 +1,6 @@
 #include "toolkit/io/hdf5_file.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -46,6 +47,10 @@ Hdf5Dataset::Hdf5Dataset(std::shared_ptr<const Hdf5Bytes> file, std::string name
     if (shape_[d] > 0 && size_ > kMost / shape_[d]) fail("claims more numbers than the file holds");
     size_ *= shape_[d];
     if (d > 0) row_size_ *= shape_[d];
+  }
+  // Beside an extent of 0 others could be anything, and readers go through rows.
+  if (size_ == 0 && std::ranges::any_of(shape_, [&](auto n) { return n > file_->size(); })) {
+    fail("claims more rows than the file has bytes");
   }
   storage_ = hdf5_storage(*this, file_, *layout, filters);
 }
