@@ -88,21 +88,39 @@ class Ranks(unittest.TestCase):
         self.assertEqual(result.stderr.count("-k: expected"), 1, result.stderr)
         self.assertEqual(self.names(), before)
 
-    def test_a_rank_without_the_input_ends_the_run(self):
-        before = self.names()
+    def end_of_run(self, rank, before_it, *arguments, code):
+        """The command on two processes, of which one is in another state: what the run says, once it
+        has ended in time and left nothing behind."""
+        names = self.names()
         script = self.folder / "elsewhere.sh"
-        script.write_text(f'#!/bin/sh\n[ "$OMPI_COMM_WORLD_RANK" = 1 ] && cd "{tempfile.gettempdir()}"\n'
+        script.write_text(f'#!/bin/sh\n[ "$OMPI_COMM_WORLD_RANK" = {rank} ] && {{ {before_it}; }}\n'
                           f'exec "{MIMETRA}" "$@"\n')
         script.chmod(0o755)
         started = time.monotonic()
-        result = subprocess.run([*MPIRUN, "-n", "2", str(script), "decompose", "take.npy", "-k", "4",
-                                 "-o", "c.h5"], cwd=self.folder, text=True, capture_output=True,
-                                timeout=60)
+        result = subprocess.run([*MPIRUN, "-n", "2", str(script), *arguments], cwd=self.folder,
+                                text=True, capture_output=True, timeout=60)
         script.unlink()
         self.assertLess(time.monotonic() - started, 10)
-        self.assertEqual(result.returncode, 3, result.stderr)
-        self.assertIn("take.npy", result.stderr)
-        self.assertEqual(self.names(), before)
+        self.assertEqual(result.returncode, code, result.stderr)
+        self.assertEqual(self.names(), names)
+        return result.stderr
+
+    def test_a_rank_without_the_input_ends_the_run(self):
+        said = self.end_of_run(1, f'cd "{tempfile.gettempdir()}"', "decompose", "take.npy", "-k", "4",
+                               "-o", "c.h5", code=3)
+        self.assertIn("take.npy", said)
+
+    def test_a_rank_with_a_full_disk_ends_the_run(self):
+        # Files end at 64 KB, with the error of a disk that is full.
+        full = "trap '' XFSZ; ulimit -f 128"
+        said = self.end_of_run(0, full, "decompose", "take.npy", "-k", "4", "-o", "c.h5", code=5)
+        self.assertIn("c.h5", said)
+        plan = json.loads(self.run_on(2, "decompose", "take.npy", "-k", "4", "-o", "c.h5",
+                                      "--dry-run", "--json").stdout)
+        less = int(plan["memory_bytes"] - 8e6)
+        said = self.end_of_run(1, full, "decompose", "take.npy", "-k", "4", "-o", "c.h5",
+                               "--memory", str(less), code=5)
+        self.assertIn("TMPDIR", said)
 
     def test_a_rank_that_is_killed_ends_the_run(self):
         before = self.names()

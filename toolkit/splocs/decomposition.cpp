@@ -199,7 +199,10 @@ void alternate(Components& result, double X_norm2, const BlockSource<Scalar>& X,
 /// The same motion in single precision; each block is released once it is taken over.
 std::unique_ptr<BlockSource<float>> in_single_precision(KeptBlocks<double>& X, MotionPlace place) {
   auto result = kept_blocks<float>(place, X.rows(), X.part());
-  for (int b = 0; b < X.count(); ++b) result->put(b, X.take(b).cast<float>());
+  for (int b = 0; b < X.count(); ++b) {
+    result->put(b, X.block(b)->cast<float>());
+    X.release(b);
+  }
   return result;
 }
 

@@ -28,6 +28,9 @@ void require_same_size(const SequencePart& sequence, const Components& component
   }
 }
 
+/// Frames of a block whose residual is held at once.
+constexpr Eigen::Index kErrorRows = 512;
+
 /// Sums over vertices.
 struct ErrorSums {
   double residual2 = 0;   ///< ||X - W C||^2
@@ -51,12 +54,15 @@ ErrorSums error_sums(const BlockSource<double>& X, const Components& components,
   const auto add_block = [&](int b, Eigen::MatrixXd& sums) {
     const auto C = block_of(components.displacements, X, b);
     const auto motion = X.block(b);
-    VertexBlocks<double>::Block rows = *motion;
-    rows.noalias() -= components.weights * C;
-    sums(0) += rows.squaredNorm();
     const Eigen::RowVectorXd mean = motion->colwise().mean();
-    rows = motion->rowwise() - mean;
-    sums(1) += rows.squaredNorm();
+    VertexBlocks<double>::Block rows;
+    for (Eigen::Index first = 0; first < X.rows(); first += kErrorRows) {
+      const Eigen::Index count = std::min(kErrorRows, X.rows() - first);
+      rows = motion->middleRows(first, count);
+      rows.noalias() -= components.weights.middleRows(first, count) * C;
+      sums(0) += rows.squaredNorm();
+      sums(1) += (motion->middleRows(first, count).rowwise() - mean).squaredNorm();
+    }
     for (Eigen::Index k = 0; k < C.rows(); ++k) {
       const auto lengths = VertexBlocks<double>::by_vertex(C, k).rowwise().squaredNorm();
       sums(2) += static_cast<double>((lengths.array() == 0).count());

@@ -141,9 +141,7 @@ Motion scaled_motion(const SequencePart& sequence, MotionScale unit, const Reduc
     return {std::make_unique<SequenceBlocks>(sequence, part, scale), nullptr, scale, norm2};
   }
   parallel_for(kept->count(), reduction.threads(), [&kept, scale](int b) {
-    KeptBlocks<double>::Block block = kept->take(b);
-    block /= scale;
-    kept->put(b, std::move(block));
+    kept->change(b, [scale](KeptBlocks<double>::Block& block) { block /= scale; });
   });
   KeptBlocks<double>* const blocks = kept.get();
   return {std::move(kept), blocks, scale, norm2};

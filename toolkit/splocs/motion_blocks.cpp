@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <span>
+#include <utility>
 
 namespace mimetra {
 namespace {
@@ -28,6 +29,30 @@ VertexBlocks<double>::Block displaced(const Eigen::Map<const Frames>& poses, Eig
 }  // namespace
 
 template <typename Scalar>
+std::shared_ptr<typename BlockPool<Scalar>::Block> BlockPool<Scalar>::block(
+    Eigen::Index rows, Eigen::Index columns) const {
+  std::unique_ptr<Block> block;
+  {
+    const std::scoped_lock lock(unused_->mutex);
+    const auto found = std::ranges::find_if(unused_->blocks, [&](const auto& unused) {
+      return unused->rows() == rows && unused->cols() == columns;
+    });
+    if (found == unused_->blocks.end()) {
+      // Room for its return, which must not fail.
+      unused_->blocks.reserve(++unused_->made);
+    } else {
+      block = std::move(*found);
+      unused_->blocks.erase(found);
+    }
+  }
+  if (!block) block = std::make_unique<Block>(rows, columns);
+  return {block.release(), [unused = unused_](Block* released) {
+            const std::scoped_lock lock(unused->mutex);
+            unused->blocks.emplace_back(released);
+          }};
+}
+
+template <typename Scalar>
 std::size_t ScratchBlocks<Scalar>::byte_of(int b, Eigen::Index row) const {
   const Eigen::Index before = this->rows() * 3 * this->first(b) + row * 3 * this->size(b);
   return sizeof(Scalar) * static_cast<std::size_t>(before);
@@ -39,9 +64,16 @@ void ScratchBlocks<Scalar>::put_rows(int b, Eigen::Index row, const Block& value
 }
 
 template <typename Scalar>
-typename ScratchBlocks<Scalar>::Block ScratchBlocks<Scalar>::read(int b) const {
-  Block block(this->rows(), 3 * this->size(b));
-  file_.read(byte_of(b, 0), std::as_writable_bytes(numbers_of(block)));
+void ScratchBlocks<Scalar>::change(int b, const std::function<void(Block&)>& change) {
+  const auto block = read(b);
+  change(*block);
+  put_rows(b, 0, *block);
+}
+
+template <typename Scalar>
+std::shared_ptr<typename ScratchBlocks<Scalar>::Block> ScratchBlocks<Scalar>::read(int b) const {
+  auto block = pool_.block(this->rows(), 3 * this->size(b));
+  file_.read(byte_of(b, 0), std::as_writable_bytes(numbers_of(*block)));
   return block;
 }
 
@@ -70,7 +102,7 @@ std::shared_ptr<const SequenceBlocks::Block> SequenceBlocks::block(int b) const 
   const auto rest = sequence_.rest.middleRows(part().first() + vertex, size(b));
   const Eigen::Index at_once =
       std::max<Eigen::Index>(1, kReadBytes / static_cast<Eigen::Index>(sizeof(double)) / columns);
-  auto block = std::make_shared<Block>(rows(), columns);
+  auto block = pool_.block(rows(), columns);
   Frames poses(std::min(at_once, rows()), columns);
   for (Eigen::Index frame = 0; frame < rows(); frame += at_once) {
     const Eigen::Index count = std::min(at_once, rows() - frame);

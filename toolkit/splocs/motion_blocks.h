@@ -1,6 +1,8 @@
 #pragma once
 
 #include <memory>
+#include <mutex>
+#include <vector>
 
 #include "toolkit/mesh/scratch_file.h"
 #include "toolkit/splocs/decomposition_plan.h"
@@ -8,6 +10,26 @@
 
 /// Blocks of a motion that is larger than memory. Internal to the decomposition.
 namespace mimetra {
+
+/// Memory of blocks that are read, for the next ones of the same shape: what is larger than 32 MB
+/// the C library would ask of the system each time, which clears it page by page.
+template <typename Scalar>
+class BlockPool {
+ public:
+  using Block = typename BlockSource<Scalar>::Block;
+
+  /// Numbers of any value. From several threads.
+  std::shared_ptr<Block> block(Eigen::Index rows, Eigen::Index columns) const;
+
+ private:
+  struct Unused {
+    std::mutex mutex;
+    std::vector<std::unique_ptr<Block>> blocks;
+    std::size_t made = 0;
+  };
+  /// Blocks may outlive the pool.
+  std::shared_ptr<Unused> unused_ = std::make_shared<Unused>();
+};
 
 /// Blocks in a ScratchFile, one after the other, each row after row.
 template <typename Scalar>
@@ -19,18 +41,18 @@ class ScratchBlocks : public KeptBlocks<Scalar> {
   ScratchBlocks(Eigen::Index row_count, const VertexPart& part)
       : KeptBlocks<Scalar>(row_count, part) {}
 
-  std::shared_ptr<const Block> block(int b) const override {
-    return std::make_shared<const Block>(read(b));
-  }
+  std::shared_ptr<const Block> block(int b) const override { return read(b); }
   void put_rows(int b, Eigen::Index row, const Block& values) override;
   void put(int b, Block block) override { put_rows(b, 0, block); }
-  Block take(int b) override { return read(b); }
+  void change(int b, const std::function<void(Block&)>& change) override;
+  void release(int) override {}
 
  private:
-  Block read(int b) const;
+  std::shared_ptr<Block> read(int b) const;
   std::size_t byte_of(int b, Eigen::Index row) const;
 
   ScratchFile file_;
+  BlockPool<Scalar> pool_;
 };
 
 /// Blocks with memory, or in a file. \pre the place is one of the two
@@ -49,6 +71,7 @@ class SequenceBlocks : public BlockSource<double> {
  private:
   SequencePart sequence_;
   double scale_;
+  BlockPool<double> pool_;
 };
 
 /// Displacements of a part of a sequence from its rest pose (F x 3n), by `threads` threads. Throws

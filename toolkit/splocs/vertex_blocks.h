@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <type_traits>
 #include <utility>
@@ -75,8 +76,10 @@ class KeptBlocks : public BlockSource<Scalar> {
   /// Rows of block b from `row` on.
   virtual void put_rows(int b, Eigen::Index row, const Block& values) = 0;
   virtual void put(int b, Block block) = 0;
-  /// Block b, which is not kept any more.
-  virtual Block take(int b) = 0;
+  /// Calls `change` with block b, and keeps what it leaves there.
+  virtual void change(int b, const std::function<void(Block&)>& change) = 0;
+  /// Block b is needed no more.
+  virtual void release(int b) = 0;
 
  protected:
   using BlockSource<Scalar>::BlockSource;
@@ -120,7 +123,8 @@ class VertexBlocks : public KeptBlocks<Scalar> {
     blocks_[b].middleRows(row, values.rows()) = values;
   }
   void put(int b, Block block) override { blocks_[b] = std::move(block); }
-  Block take(int b) override { return std::exchange(blocks_[b], Block()); }
+  void change(int b, const std::function<void(Block&)>& change) override { change(blocks_[b]); }
+  void release(int b) override { blocks_[b].resize(0, 0); }
 
   /// As R x 3n.
   Frames frames() const {
@@ -140,9 +144,10 @@ class VertexBlocks : public KeptBlocks<Scalar> {
     VertexBlocks<Other> result(rows(), this->part());
     for (int b = 0; b < count(); ++b) {
       if constexpr (std::is_same_v<Other, Scalar>) {
-        result[b] = take(b);
+        result[b] = std::move(blocks_[b]);
       } else {
-        result[b] = take(b).template cast<Other>();
+        result[b] = blocks_[b].template cast<Other>();
+        release(b);
       }
     }
     return result;
