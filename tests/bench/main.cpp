@@ -1,9 +1,10 @@
-// usage: mimetra_bench OUT [--quick] [--iterations | --steady | --per-region]
+// usage: mimetra_bench OUT [--quick] [--iterations | --steady | --per-region | --large]
 // Times kernels and whole commands; writes OUT/bench.json and OUT/growth.png, and a table to
 // stdout. With --iterations instead what more iterations of the decomposition give: the picture
 // OUT/iterations.png, and a table to stdout; with --steady a table of what smoothness, symmetry and
 // exclusive expressions take from flicker, and what they cost; with --per-region one of what
-// weights of each region give.
+// weights of each region give; with --large one of where the time of decompositions of up to a
+// million vertices goes.
 
 #include <algorithm>
 #include <cstdio>
@@ -21,6 +22,7 @@
 #include "tests/bench/growth.h"
 #include "tests/bench/io_bench.h"
 #include "tests/bench/iterations_bench.h"
+#include "tests/bench/large_bench.h"
 #include "tests/bench/numpy_bench.h"
 #include "tests/bench/per_region_bench.h"
 #include "tests/bench/report.h"
@@ -66,13 +68,15 @@ class Scratch {
   fs::path path_;
 };
 
+fs::path command_beside() {
+  return fs::read_symlink("/proc/self/exe").parent_path() / "mimetra";
+}
+
 /// One run of the whole suite.
 class Run {
  public:
   Run(fs::path out, bool quick)
-      : out_(std::move(out)),
-        scratch_(out_ / "scratch"),
-        mimetra_(fs::read_symlink("/proc/self/exe").parent_path() / "mimetra") {
+      : out_(std::move(out)), scratch_(out_ / "scratch"), mimetra_(command_beside()) {
     results_.settings = {quick, this_machine()};
     results_.at_start = measured_limits(results_.settings.machine, quick);
   }
@@ -284,6 +288,11 @@ void run_per_region(const fs::path&, bool quick) {
   std::printf("%s", table_of(rows).c_str());
 }
 
+void run_large(const fs::path& out, bool quick) {
+  const Scratch scratch(out / "scratch");
+  std::printf("%s", table_of(large_rows(command_beside(), scratch.path(), quick)).c_str());
+}
+
 }  // namespace
 }  // namespace mimetra::bench
 
@@ -291,16 +300,19 @@ int main(int argc, char** argv) {
   const std::set<std::string> modes(argv + std::min(argc, 2), argv + argc);
   const bool quick = modes.contains("--quick"), iterations = modes.contains("--iterations");
   const bool steady = modes.contains("--steady"), per_region = modes.contains("--per-region");
-  const int subjects = int{iterations} + int{steady} + int{per_region};
+  const bool large = modes.contains("--large");
+  const int subjects = int{iterations} + int{steady} + int{per_region} + int{large};
   if (argc < 2 || modes.size() != static_cast<std::size_t>(int{quick} + subjects) || subjects > 1) {
-    std::fprintf(stderr,
-                 "usage: mimetra_bench OUT [--quick] [--iterations | --steady | --per-region]\n");
+    std::fprintf(
+        stderr,
+        "usage: mimetra_bench OUT [--quick] [--iterations | --steady | --per-region | --large]\n");
     return 2;
   }
   try {
     const auto run = iterations   ? mimetra::bench::run_iterations
                      : steady     ? mimetra::bench::run_steady
                      : per_region ? mimetra::bench::run_per_region
+                     : large      ? mimetra::bench::run_large
                                   : mimetra::bench::run;
     run(std::filesystem::absolute(argv[1]), quick);
   } catch (const std::exception& error) {

@@ -23,7 +23,7 @@ class Ranks(unittest.TestCase):
         self._folder = tempfile.TemporaryDirectory()
         self.folder = pathlib.Path(self._folder.name)
         self.run_on(1, "sample", "-o", "sample")
-        self.run_on(1, "convert", "sample/model", "--weights", "sample/performance.csv",
+        self.run_on(1, "convert", "sample", "--weights", "sample/performance.csv",
                     "-o", "take.npy")
 
     def tearDown(self):
@@ -69,8 +69,8 @@ class Ranks(unittest.TestCase):
         self.assertEqual(self.bytes_of("three.json"), self.bytes_of("one.json"))
 
     def test_transfers_and_other_operations_are_those_of_one_rank(self):
-        self.run_on(1, "transfer", "take.npy", "sample/model", "-k", "4", "-o", "one.npy")
-        self.run_on(2, "transfer", "take.npy", "sample/model", "-k", "4", "-o", "two.npy")
+        self.run_on(1, "transfer", "take.npy", "sample", "-k", "4", "-o", "one.npy")
+        self.run_on(2, "transfer", "take.npy", "sample", "-k", "4", "-o", "two.npy")
         self.assertEqual(self.bytes_of("two.npy"), self.bytes_of("one.npy"))
         self.run_on(2, "convert", "take.npy", "-o", "again.npy")
         self.assertEqual(self.bytes_of("again.npy"), self.bytes_of("take.npy"))

@@ -7,6 +7,7 @@
 
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/text.h"
+#include "toolkit/splocs/surface_distances.h"
 
 namespace mimetra {
 namespace {
@@ -17,8 +18,9 @@ constexpr double kNumber = sizeof(double);
 /// vertices, where fill-in grows little.
 constexpr double kFactorsPerVertex = 2000;
 
-/// Components have so many different centres on their way that their distances are kept.
-constexpr double kCentersPerComponent = 4;
+/// Components have so many different centres on their way, whose distances are kept as far as
+/// SurfaceDistances does: measured with K = 40.
+constexpr double kCentersPerComponent = 8;
 
 /// A thread holds the block that it reads; measured, the C library keeps as much of what was freed.
 constexpr double kBlocksPerThread = 2;
@@ -49,12 +51,16 @@ struct Sizes {
   double sums() const { return kNumber * (frames + count + 1) * count; }
   /// What does not depend on the number of threads.
   double fixed() const {
-    const double components = 3 * count * 3 * vertices;  // C, the best so far, the dual variable
-    const double maps = 2 * count * vertices + kCentersPerComponent * count * mesh_vertices;
+    // C, the best so far, the dual variable, and what is returned.
+    const double components = 4 * count * 3 * vertices;
+    // Of all vertices while they are made of distances.
+    const double maps = 2 * count * vertices + 2 * count * mesh_vertices;
+    const double distances = std::min(kNumber * kCentersPerComponent * count * mesh_vertices,
+                                      double{SurfaceDistances::kKeptBytes});
     // Memory of the last block, which is smaller, serves no other.
     return kFactorsPerVertex * mesh_vertices +
-           kNumber * (components + maps + kWeightMatrices * frames * count) + kLevels * sums() +
-           block();
+           kNumber * (components + maps + kWeightMatrices * frames * count) + distances +
+           kLevels * sums() + block();
   }
   double per_thread() const { return kBlocksPerThread * block() + kSumsPerThread * sums(); }
 };

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cstdint>
 #include <map>
 #include <mutex>
 #include <stdexcept>
@@ -56,6 +57,40 @@ Triangles welded(const Triangles& triangles, const Weld& weld) {
   });
 }
 
+/// Distances from the sources that were asked for last.
+class LatestDistances {
+ public:
+  explicit LatestDistances(std::size_t bytes) : bytes_(bytes) {}
+
+  /// Null where none are kept.
+  const Eigen::VectorXd* find(VertexIndex source) {
+    const auto found = kept_.find(source);
+    if (found == kept_.end()) return nullptr;
+    found->second.asked = ++asked_;
+    return &found->second.distances;
+  }
+
+  /// \pre as many distances as from every other source
+  void keep(VertexIndex source, Eigen::VectorXd distances) {
+    const std::size_t most = bytes_ / (sizeof(double) * static_cast<std::size_t>(distances.size()));
+    while (!kept_.empty() && kept_.size() >= most) {
+      kept_.erase(std::ranges::min_element(kept_, {},
+                                           [](const auto& entry) { return entry.second.asked; }));
+    }
+    if (most > 0) kept_[source] = {std::move(distances), ++asked_};
+  }
+
+ private:
+  struct Entry {
+    Eigen::VectorXd distances;
+    std::int64_t asked = 0;  ///< when, in requests
+  };
+
+  std::size_t bytes_;
+  std::int64_t asked_ = 0;
+  std::map<VertexIndex, Entry> kept_;
+};
+
 }  // namespace
 
 DistanceFunction one_by_one(std::function<Eigen::VectorXd(VertexIndex)> distances) {
@@ -79,7 +114,10 @@ struct SurfaceDistances::State {
   Geodesics geodesics;
   int threads;
   std::mutex mutex;
-  std::map<VertexIndex, Eigen::VectorXd> known;  // by representative
+  LatestDistances latest;  // by representative
+  int computed_sources = 0;
+
+  explicit State(std::size_t kept_bytes) : latest(kept_bytes) {}
 };
 
 VertexIndex SurfaceDistances::State::representative(VertexIndex source) const {
@@ -113,8 +151,9 @@ Eigen::MatrixXd SurfaceDistances::State::computed(std::span<const VertexIndex> s
 }
 
 SurfaceDistances::SurfaceDistances(const Positions& positions, const Triangles& triangles,
-                                   const Weld& weld, GeodesicMethod method, int threads)
-    : state_(std::make_shared<State>()) {
+                                   const Weld& weld, GeodesicMethod method, int threads,
+                                   std::size_t kept_bytes)
+    : state_(std::make_shared<State>(kept_bytes)) {
   check_size(positions, weld);
   state_->weld = weld;
   state_->threads = threads;
@@ -129,20 +168,25 @@ SurfaceDistances::SurfaceDistances(const Positions& positions, const Triangles& 
 Eigen::MatrixXd SurfaceDistances::operator()(std::span<const VertexIndex> sources) const {
   const std::vector<VertexIndex> places = state_->representatives(sources);
   const std::lock_guard lock(state_->mutex);
-  std::vector<VertexIndex> missing;
-  for (const VertexIndex place : places) {
-    if (!state_->known.contains(place)) missing.push_back(place);
-  }
-  std::ranges::sort(missing);
-  missing.erase(std::unique(missing.begin(), missing.end()), missing.end());
-  const Eigen::MatrixXd found = state_->computed(missing);
-  for (std::size_t i = 0; i < missing.size(); ++i) {
-    state_->known[missing[i]] = found.col(static_cast<Eigen::Index>(i));
-  }
   Eigen::MatrixXd result(static_cast<Eigen::Index>(state_->weld.representative.size()),
                          static_cast<Eigen::Index>(sources.size()));
-  for (std::size_t i = 0; i < places.size(); ++i) {
-    result.col(static_cast<Eigen::Index>(i)) = state_->known.at(places[i]);
+  std::map<VertexIndex, std::vector<Eigen::Index>> columns_of_missing;
+  for (Eigen::Index i = 0; i < result.cols(); ++i) {
+    const Eigen::VectorXd* const kept = state_->latest.find(places[i]);
+    if (kept) {
+      result.col(i) = *kept;
+    } else {
+      columns_of_missing[places[i]].push_back(i);
+    }
+  }
+  std::vector<VertexIndex> missing;
+  for (const auto& [place, columns] : columns_of_missing) missing.push_back(place);
+  const Eigen::MatrixXd found = state_->computed(missing);
+  state_->computed_sources += static_cast<int>(missing.size());
+  for (std::size_t m = 0; m < missing.size(); ++m) {
+    const auto distances = found.col(static_cast<Eigen::Index>(m));
+    for (const Eigen::Index i : columns_of_missing[missing[m]]) result.col(i) = distances;
+    state_->latest.keep(missing[m], distances);
   }
   return result;
 }
@@ -170,7 +214,7 @@ const Weld& SurfaceDistances::weld() const {
 
 int SurfaceDistances::computed() const {
   const std::lock_guard lock(state_->mutex);
-  return static_cast<int>(state_->known.size());
+  return state_->computed_sources;
 }
 
 int SurfaceDistances::degenerate_triangles() const {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <functional>
 #include <memory>
 #include <span>
@@ -33,13 +34,17 @@ constexpr std::string_view choice_name(GeodesicMethod value) {
 }
 
 /// Distances along a surface whose coinciding vertices are welded, so that they pass across UV
-/// seams. Each vertex is computed once and kept; copies share what they know.
+/// seams. Those asked for last are kept; copies share what they know.
 class SurfaceDistances {
  public:
+  /// What is kept at most, in bytes: all sources of a face, 61 of a million vertices.
+  static constexpr std::size_t kKeptBytes = std::size_t{1} << 29;
+
   /// Keeps no reference to the mesh; `threads` 0 for all there are. Throws std::invalid_argument as
   /// HeatGeodesics does.
   SurfaceDistances(const Positions& positions, const Triangles& triangles, const Weld& weld,
-                   GeodesicMethod method = GeodesicMethod::heat, int threads = 0);
+                   GeodesicMethod method = GeodesicMethod::heat, int threads = 0,
+                   std::size_t kept_bytes = kKeptBytes);
 
   /// Distances from each of `sources` (N x S). What is not known yet is computed for several of
   /// them at once. Safe to call from several threads. Throws std::out_of_range.
@@ -55,7 +60,8 @@ class SurfaceDistances {
   /// Which vertices are one.
   const Weld& weld() const;
 
-  /// Vertices asked for so far, each computed once.
+  /// Sources computed so far, but for once() and from_nearest(): one that is kept is not computed
+  /// again.
   int computed() const;
   /// As HeatGeodesics.
   int degenerate_triangles() const;
