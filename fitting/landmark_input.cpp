@@ -210,16 +210,17 @@ std::pair<int, int> size_of(const std::string& text) {
   return {width, height};
 }
 
-/// No landmark of a face is so near the corner in pixels.
+/// No face has all its landmarks so near the corner in pixels.
 bool are_shares(const LandmarkTrack& track) {
   constexpr double kMostShare = 2;
-  return !track.points.array().isNaN().all() &&
+  constexpr int kFewForAFace = 5;
+  return track.landmarks() >= kFewForAFace && !track.points.array().isNaN().all() &&
          (track.points.array().isNaN() || track.points.array().abs() <= kMostShare).all();
 }
 
 void make_pixels(LandmarksRead& read, const std::string& text,
                  const std::optional<std::string>& size) {
-  if (!is_mediapipe(read.track) || !are_shares(read.track)) {
+  if (!are_shares(read.track)) {
     if (!size) return;
     throw MismatchError("option 'image-size': " + text + " has landmarks in pixels already");
   }
@@ -233,8 +234,8 @@ void make_pixels(LandmarksRead& read, const std::string& text,
     throw MismatchError(
         text +
         ": has landmarks in shares of the image's width and height, as MediaPipe "
-        "counts; give its size by option 'image-size' (1920x1080), or its images by "
-        "option 'images'");
+        "counts: no coordinate is above 2; give its size by option 'image-size' (1920x1080), or "
+        "its images by option 'images'");
   }
 }
 

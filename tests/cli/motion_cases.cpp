@@ -1,4 +1,6 @@
 #include "tests/cli/bad_input.h"
+#include "toolkit/io/sequence_file.h"
+#include "toolkit/mesh/unit_change.h"
 
 /// Every operation where motion is missing, and every number of components that is too high or low.
 namespace mimetra::test {
@@ -33,16 +35,18 @@ std::string with_sequence(const std::string& arguments, const std::string& seque
   return arguments.substr(0, place) + sequence + arguments.substr(place + 1) + " --json";
 }
 
-/// One BadInput for each operation; `says` is what those that need motion answer.
+/// One BadInput for each operation; `says` is what those that need motion answer, and all transfers
+/// of one frame.
 void add_to_all(std::vector<BadInput>& all, const std::string& kind, const std::string& sequence,
                 const std::function<void(const fs::path&)>& make, const std::string& says,
                 const std::string& where_motion_is_needed = "") {
   for (const Request& request : requests()) {
-    const int code = request.needs_motion ? 4 : 0;
+    const bool is_refused =
+        request.needs_motion || (kind == "one_frame" && request.operation.starts_with("transfer"));
     const std::string options = request.needs_motion ? where_motion_is_needed : "";
     all.push_back({kind, request.operation, make,
-                   with_sequence(request.arguments, sequence) + options, code,
-                   request.needs_motion ? std::vector{says} : std::vector<std::string>{"{"}});
+                   with_sequence(request.arguments, sequence) + options, is_refused ? 4 : 0,
+                   is_refused ? std::vector{says} : std::vector<std::string>{"{"}});
   }
 }
 
@@ -123,6 +127,17 @@ std::vector<BadInput> motion_cases() {
                    0,
                    {"expressions do not move", "idle"}});
   }
+  all.push_back({"rest_in_another_unit",
+                 "transfer",
+                 [](const fs::path& folder) {
+                   const SequenceRead head = read_sequence((folder / "head").string());
+                   write_sequence(
+                       *with_units(std::make_shared<MeshSequence>(head.sequence), {.scale = 0.01}),
+                       folder / "small.ply");
+                 },
+                 "transfer head --weights take.csv head --full --source-rest small.ply -o x.npy",
+                 4,
+                 {"head: the rest pose is 100 times as small as frame 0", "--scale"}});
   all.push_back({"all_zero_expression",
                  "info",
                  with_idle_expression,

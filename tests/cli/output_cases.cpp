@@ -109,6 +109,14 @@ std::vector<BadInput> output_cases() {
            {"head/neutral.ply: is a part of head, an input of this run"});
   of_input("folder", "convert head --weights p/performance.csv -o p",
            {"p: holds p/performance.csv, an input of this run"});
+  for (const std::string extension : {".vtp", ".stl"}) {
+    all.push_back({"far_from_the_origin",
+                   extension.substr(1),
+                   file("far.obj", "v 1e6 0 0\nv 1000001 0 0\nv 1e6 1 0\nf 1 2 3\n"),
+                   "convert far.obj -o x" + extension,
+                   0,
+                   {"rounds positions by up to 0.06", "1e+06 times its size from the origin"}});
+  }
   full("convert_npy", "convert " + kSequence + " -o x.npy", "x.npy", 20);
   full("decompose_h5", "decompose " + kSequence + " -k 2 -o c.h5", "c.h5", 20);
   full("regions_pvd", "regions " + kSequence + " -k 2 -o r.pvd", "r_vtp/r_0000.vtp", 6);
@@ -132,6 +140,15 @@ std::vector<BadInput> request_cases() {
   add("unknown_command", "command", "decompse head", {"'decompse'", "did you mean 'decompose'?"});
   add("far_from_any_command", "command", "frobnicate", {"'frobnicate'", "--help"});
   add("no_command", "command", "", {"expected a command"});
+  add("standard_output", "output", "convert head --weights take.csv -o -",
+      {"not written to standard output", "give a name"});
+  const std::string full = "transfer head --weights take.csv head --full -o x.npy ";
+  for (const std::string option : {"-k 5", "--radius 0.2", "--coverage 0.5", "--sparsity 3"}) {
+    add("option_without_effect", "full", full + option,
+        {option.substr(0, option.find(' ')) + ": no regions are looked for"});
+  }
+  add("smoothness_of_milliseconds", "full", full + "--smoothness 100",
+      {"--smoothness", "from 0 to 60", "100"});
   const std::map<std::string, std::pair<std::string, std::string>> misspelt = {
       {"info", {"head --jsno", "--json"}},
       {"align", {"head -o b.npy --undoo x", "--undo"}},

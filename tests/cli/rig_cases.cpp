@@ -1,6 +1,8 @@
 #include "tests/cli/bad_input.h"
 #include "tests/cli/matched_patch.h"
 #include "tests/shapes.h"
+#include "toolkit/io/sequence_file.h"
+#include "toolkit/mesh/unit_change.h"
 
 /// Examples of a rig.
 namespace mimetra::test {
@@ -60,6 +62,18 @@ std::vector<BadInput> rig_cases() {
        by_examples,
        3,
        {"left.off"}},
+      {"example_in_another_unit",
+       "rig",
+       [](const fs::path& folder) {
+         examples("left.ply")(folder);
+         const SequenceRead shape = read_sequence((folder / "scans/left.ply").string());
+         const auto smaller =
+             with_units(std::make_shared<MeshSequence>(shape.sequence), {.scale = 0.01});
+         write_sequence(*smaller, folder / "scans/left.ply", {.overwrite = true});
+       },
+       by_examples,
+       4,
+       {"example 'left'", "those of double", "into one unit", "--scale"}},
       {"examples_missing", "rig", examples("left.ply"), rig + "--examples nowhere", 3, {"nowhere"}},
       {"examples_empty",
        "rig",

@@ -148,6 +148,12 @@ TEST_F(SelectionTest, RefusesOptionsWithoutEffect) {
   ASSERT_EQ(run(regions("")).code, 0);
   expect_usage(transfer("--regions r.json --triangles 0.2"), "--triangles: no regions");
   expect_usage(transfer("--regions r.json --select energy"), "--select: no regions");
+  expect_usage(transfer("--regions r.json --full"), "--regions: --full takes all triangles");
+  expect_usage(transfer("--regions r.json -k 3"), "-k: no regions are looked for");
+  ASSERT_EQ(run("decompose head --weights take.csv -k 3 -o c.h5").code, 0);
+  expect_usage(transfer("--regions r.json --components c.h5"), "--components: no regions");
+  expect_usage(transfer("--components c.h5 -k 2"), "-k: has no effect on --components");
+  expect_usage(regions("--components c.h5 --d-max 0.3"), "--d-max: has no effect on --components");
   for (const std::string option :
        {"--coverage 0.5", "--region support", "--drop-rims", "--d-min 0.2", "--iterations 3",
         "--complete 0.1", "--rest first", "--compat splocs2013"}) {

@@ -113,6 +113,19 @@ TEST_F(LandmarkInput, InSharesOfTheImageBecomePixels) {
   EXPECT_EQ(read.track.points(0, 1), 539.5);
 }
 
+TEST_F(LandmarkInput, InSharesAreKnownByTheirRange) {
+  // Six landmarks that nobody numbers as MediaPipe does.
+  const std::string names = "x0,y0,x1,y1,x2,y2,x3,y3,x4,y4,x5,y5\n";
+  write("s.csv", names + "0.25,0.5,0.3,0.5,0.35,0.5,0.4,0.5,0.5,0.6,1.01,0.9\n");
+  const LandmarksRead read = this->read("s.csv", {}, {.image_size = "1920x1080"});
+  EXPECT_EQ(read.track.points(0, 0), 479.5);
+  EXPECT_EQ(read.track.points(0, 1), 539.5);
+  EXPECT_THAT(test::message_of<MismatchError>([&] { this->read("s.csv"); }),
+              AllOf(HasSubstr("in shares"), HasSubstr("option 'image-size'")));
+  write("p.csv", names + "0.25,0.5,0.3,0.5,0.35,0.5,0.4,0.5,0.5,0.6,3,0.9\n");
+  EXPECT_EQ(this->read("p.csv").track.points(0, 0), 0.25);
+}
+
 TEST_F(LandmarkInput, InSharesNeedsTheSizeOfTheImage) {
   write("m.json", quarter_of_an_image());
   EXPECT_THAT(test::message_of<MismatchError>([&] { read("m.json"); }),

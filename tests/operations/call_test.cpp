@@ -218,7 +218,7 @@ TEST_F(CallOfAnOperation, ConvertsUnitsAndAxesAndSaysSo) {
 TEST_F(CallOfAnOperation, ChecksWhatReadingNoticed) {
   for (const int number : {0, 1, 4}) {
     std::ofstream(at("f_" + std::to_string(number) + ".obj"))
-        << "v 0 0 0\nv 1 0 0\nv 0 " << number + 1 << " 0\nf 1 2 3\n";
+        << "v 0 0 0\nv 1 0 0\nv 0 1." << number << " 0\nf 1 2 3\n";
   }
   std::vector<std::string> warnings;
   CallRequest check = request("check");

@@ -25,8 +25,9 @@ TEST_F(ScratchTest, BlocksThatAreHeldKeepTheirNumbers) {
   EXPECT_EQ(*first, numbered(0));
   EXPECT_EQ(*second, numbered(1));
   EXPECT_EQ(*rest, numbered(2));
+  const Block expected = numbered(0);
   blocks_.reset();
-  EXPECT_EQ(*first, numbered(0));
+  EXPECT_EQ(*first, expected);
 }
 
 TEST_F(ScratchTest, MemoryServesTheNextBlockOfItsShape) {

@@ -26,6 +26,9 @@ struct HeldParts {
   bool times = true;
   /// Times as they are; otherwise in single precision.
   bool exact_times = true;
+  /// Positions in double precision where single precision would round motion that one sees, or not
+  /// at all there; otherwise rounded.
+  bool exact_positions = true;
 
   bool operator==(const HeldParts&) const = default;
 };

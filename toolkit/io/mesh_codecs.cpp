@@ -23,8 +23,11 @@ constexpr std::array kCodecs = {
               {.polygons = true, .texture = Texture::corners}},
     MeshCodec{MeshFormat::off, read_off, off_layout, off_frame, {.polygons = true}},
     // A rest pose in the old order would not fit.
-    MeshCodec{
-        MeshFormat::stl, nullptr, nullptr, stl_frame, {.rest = false, .vertex_order = false}}};
+    MeshCodec{MeshFormat::stl,
+              nullptr,
+              nullptr,
+              stl_frame,
+              {.rest = false, .vertex_order = false, .exact_positions = false}}};
 
 }  // namespace
 

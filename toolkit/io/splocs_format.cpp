@@ -40,7 +40,9 @@ int counted(const Hdf5Dataset& set, std::uint64_t size) {
 Hdf5Dataset positions_of(const Hdf5File& file) {
   if (file.has(kVerts)) return file.dataset(kVerts);
   if (file.has("default") && file.has("comp000")) {
-    file.fail("holds components, expected a sequence; give it by option 'components'");
+    file.fail(
+        "holds components, expected a sequence; `regions` and `transfer` take them by option "
+        "'components'");
   }
   if (file.has("VTKHDF")) file.fail("is a VTKHDF file, which is written but not read");
   file.fail("holds " + (file.names().empty() ? "nothing" : listed(file.names())) +

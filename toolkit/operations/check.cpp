@@ -4,6 +4,7 @@
 
 #include "toolkit/correspondence/renumbering.h"
 #include "toolkit/mesh/errors.h"
+#include "toolkit/mesh/frame_shapes.h"
 #include "toolkit/mesh/inspection.h"
 #include "toolkit/mesh/text.h"
 #include "toolkit/operations/bound_parameters.h"
@@ -47,6 +48,43 @@ bool moves(const FrameSource& sequence, const BlockOptions& options) {
     }
   });
   return differs;
+}
+
+/// Frames that can be no poses of the mesh: "frames 7, 9 are WHAT".
+std::string told(const std::vector<int>& frames, const std::string& what) {
+  const bool several = frames.size() > 1;
+  return (several ? "frames " : "frame ") + listed(words_of(frames)) +
+         (several ? " are " : " is ") + what;
+}
+
+std::vector<std::string> frame_warnings(const FrameSource& sequence, const BlockOptions& options) {
+  const std::vector<FrameShape> shapes = frame_shapes(sequence, options);
+  const OddFrames odd = odd_frames(sequence, shapes);
+  std::vector<std::string> warnings;
+  const auto of_first = [&shapes](const std::vector<int>& frames) -> const FrameShape& {
+    return shapes[static_cast<std::size_t>(frames.front())];
+  };
+  if (!odd.of_other_size.empty()) {
+    warnings.push_back(told(odd.of_other_size, "of another size than the others: vertices lie ") +
+                       readable(of_first(odd.of_other_size).spread) +
+                       " from their mean there (RMS), " + readable(odd.usual_spread) +
+                       " elsewhere");
+  }
+  if (!odd.mirrored.empty()) {
+    warnings.push_back(told(odd.mirrored, "mirrored against the rest pose, or numbered otherwise"));
+  }
+  if (!odd.torn.empty()) {
+    const FrameShape& shape = of_first(odd.torn);
+    warnings.push_back(told(odd.torn, "torn: vertices ") + std::to_string(shape.ends.first) +
+                       " and " + std::to_string(shape.ends.second) + ", which share an edge, lie " +
+                       readable(shape.longest_edge) + " apart");
+  }
+  if (is_other_size(spread(sequence.rest()), odd.usual_spread)) {
+    warnings.push_back("the rest pose is of another size than the frames: its vertices lie " +
+                       readable(spread(sequence.rest())) +
+                       " from their mean (RMS), those of frames " + readable(odd.usual_spread));
+  }
+  return warnings;
 }
 
 /// What is legal but often a mistake.
@@ -96,9 +134,13 @@ Outcome run_check(const Invocation& invocation) {
   const NamedData& input = invocation.input("sequence");
   const FrameSource& sequence = *std::get<FieldSequence>(input.data).frames;
   std::vector<std::string> found = numbering_warnings(invocation);
-  const std::vector<std::string> own = warnings_of(
-      sequence, moves(sequence, {.threads = invocation.threads, .progress = invocation.progress}));
+  const auto part = [&](double from, double to) -> BlockOptions {
+    return {.threads = invocation.threads, .progress = part_of(invocation.progress, from, to)};
+  };
+  const std::vector<std::string> own = warnings_of(sequence, moves(sequence, part(0, 0.5)));
   found.insert(found.end(), own.begin(), own.end());
+  const std::vector<std::string> of_frames = frame_warnings(sequence, part(0.5, 1));
+  found.insert(found.end(), of_frames.begin(), of_frames.end());
   // What reading said is not said again.
   std::vector<std::string> warnings = input.origin.notes;
   warnings.insert(warnings.end(), found.begin(), found.end());
@@ -113,7 +155,9 @@ Outcome run_check(const Invocation& invocation) {
           json_text(Json{{"usable", true}, {"warnings", warnings}}),
           input.name + ": usable, " + std::to_string(sequence.frames()) + " frames of " +
               std::to_string(sequence.vertices()) + " vertices" +
-              (warnings.empty() ? "\n" : ", " + std::to_string(warnings.size()) + " warnings\n")};
+              (warnings.empty() ? "\n"
+                                : ", " + std::to_string(warnings.size()) +
+                                      (warnings.size() > 1 ? " warnings\n" : " warning\n"))};
 }
 
 }  // namespace

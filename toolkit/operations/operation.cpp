@@ -298,6 +298,11 @@ void OperationTable::check_writable(const Output& output, const std::filesystem:
                                     bool overwrite,
                                     const std::vector<std::filesystem::path>& inputs) const {
   using Kind = PendingOutput::Kind;
+  if (target == "-") {
+    throw UsageError(
+        "output '-': results are files and folders and not written to standard output; "
+        "give a name (`./-` is a folder of that name)");
+  }
   check_inputs_stay(target, inputs);
   PendingOutput(target, writes_folder(output, target) ? Kind::folder : Kind::file, overwrite);
 }

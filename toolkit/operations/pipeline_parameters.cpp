@@ -99,7 +99,8 @@ Parameter memory_parameter() {
 /// What a run may take besides what its process has.
 double memory_for(const Parameters& parameters) {
   const auto allowed = parameters.bytes("memory");
-  return allowed ? std::max(0.0, *allowed - MemoryUse::of_this_process().now) : available_memory();
+  // Less than nothing where the process has more already: what is missing counts that.
+  return allowed ? *allowed - MemoryUse::of_this_process().now : available_memory();
 }
 
 /// Vertices where regions may lie, named by `options` of one name; not read without a sequence.

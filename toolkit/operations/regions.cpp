@@ -105,6 +105,7 @@ Found found_for_transfer(const Invocation& invocation, const RegionsCall& call) 
 /// Options that the others leave without an effect, or that need more.
 void check_choice(const Invocation& invocation) {
   check_selection(invocation);
+  check_given_components(invocation);
   const bool selects = invocation.parameters.choice<Selector>("select") == Selector::transfer;
   const bool has_target = invocation.find<ModelData>("target") != nullptr;
   if (selects && !has_target) {

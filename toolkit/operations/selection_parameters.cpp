@@ -7,12 +7,32 @@
 namespace mimetra {
 
 const std::vector<std::string>& options_of_energy() {
-  static const std::vector<std::string> names = {
-      "region",         "coverage",        "drop-rims", "component-fields", "complete",
-      "complete-limit", "d-min",           "d-max",     "sparsity",         "rho",
-      "iterations",     "admm-iterations", "tolerance", "signed",           "precision",
-      "basis-tolerance"};
+  static const std::vector<std::string> names = [] {
+    std::vector<std::string> all = {"region",           "coverage", "drop-rims",
+                                    "component-fields", "complete", "complete-limit"};
+    all.insert(all.end(), options_of_decomposition().begin(), options_of_decomposition().end());
+    return all;
+  }();
   return names;
+}
+
+const std::vector<std::string>& options_of_decomposition() {
+  static const std::vector<std::string> names = {
+      "d-min",           "d-max",     "sparsity", "rho",       "iterations",
+      "admm-iterations", "tolerance", "signed",   "precision", "basis-tolerance"};
+  return names;
+}
+
+void check_given_components(const Invocation& invocation) {
+  const auto* components = invocation.find<Components>("components");
+  if (!components) return;
+  const std::string reason = "has no effect on --components, which are decomposed already";
+  const Parameters& parameters = invocation.parameters;
+  // The line that made them, with the components instead.
+  if (parameters.is_set("k") && parameters.integer("k") != components->count()) {
+    refuse_options(parameters, {"k"}, reason);
+  }
+  refuse_options(invocation.parameters, options_of_decomposition(), reason);
 }
 
 BoundParameters<RegionChoiceOptions> selection_parameters() {

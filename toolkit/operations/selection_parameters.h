@@ -16,6 +16,13 @@ RegionChoiceOptions with_most_discs(RegionChoiceOptions options, const Parameter
 /// Options that only regions by energy depend on.
 const std::vector<std::string>& options_of_energy();
 
+/// Those of them, but for -k, that the decomposition depends on.
+const std::vector<std::string>& options_of_decomposition();
+
+/// Throws UsageError where the call is given components, and options of their decomposition, or
+/// another number of them.
+void check_given_components(const Invocation& invocation);
+
 /// Throws UsageError where options of the call exclude each other or would have no effect: those of
 /// a decomposition where regions are chosen for the transfer, and vertices to solve for.
 void check_selection(const Invocation& invocation);

@@ -132,6 +132,9 @@ void check_outputs(const Invocation& invocation) {
   check_paint(invocation);
   check_solving(invocation);
   if (options.full) {
+    if (invocation.find<RegionData>("regions")) {
+      throw UsageError("--regions: --full takes all triangles; leave one of them out");
+    }
     refuse_options(invocation.parameters, {"falloff"}, "there are no regions with --full");
     if (options.solving.per_region) {
       throw UsageError("--per-region: there are no regions with --full");
@@ -142,9 +145,17 @@ void check_outputs(const Invocation& invocation) {
   }
   const bool chooses = looks_for_regions(invocation);
   if (!chooses) {
-    refuse_options(invocation.parameters, {"only", "without", "select", "triangles", "drop-rims"},
-                   "no regions are looked for with --full or --regions");
+    const std::string reason = "no regions are looked for with --full or --regions";
+    refuse_options(
+        invocation.parameters,
+        {"only", "without", "select", "triangles", "drop-rims", "region", "coverage", "k"}, reason);
+    refuse_options(invocation.parameters, options_of_decomposition(), reason);
+    if (options.full) {
+      refuse_options(invocation.parameters, {"radius", "complete", "complete-limit"}, reason);
+    }
+    if (invocation.find<Components>("components")) throw UsageError("--components: " + reason);
   }
+  check_given_components(invocation);
   check_selection(invocation);
   if (chooses && has_own_regions(options.regions) && invocation.wants("regions-out") &&
       invocation.inputs.at("target").size() > 1) {

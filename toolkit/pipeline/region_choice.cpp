@@ -72,6 +72,13 @@ Regions choose_regions(const Analysis& analysis, const RegionChoiceOptions& opti
   of_search.inside = analysis.inside;
   of_search.no_centers = rims_to_avoid(analysis, options);
   Regions regions = find_regions(analysis.components, of_search);
+  if (regions.triangles.empty()) {
+    throw MismatchError("no region is left: no component moves anything where regions may lie" +
+                        std::string(analysis.inside.empty()
+                                        ? ""
+                                        : "; let them lie elsewhere (option 'only', option "
+                                          "'without'), or decompose there"));
+  }
   if (options.triangles) {
     const Triangles& triangles = analysis.components.triangles;
     const int count = regions_within(regions, *options.triangles, triangles);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "toolkit/mesh/errors.h"
+#include "toolkit/mesh/frame_shapes.h"
 #include "toolkit/mesh/parallel.h"
 #include "toolkit/mesh/text.h"
 #include "toolkit/pipeline/usability.h"
@@ -16,6 +18,10 @@ namespace {
 /// A vertex of the source that moves by less, as a share of the farthest that its expression moves
 /// one, stays: modelled expressions fade out far beyond what is seen.
 constexpr double kStill = 1e-4;
+
+/// Where every vertex of a true shape lies farther from the neutral, as a share of the diameter, it
+/// stands elsewhere: no expression moves all of a head.
+constexpr double kStillShare = 0.01;
 
 /// Transfer and examples as progress shows them.
 constexpr double kTransferPart = 0.5;
@@ -108,6 +114,26 @@ void add_own_expressions(std::vector<RigExample>& examples, const BlendshapeMode
     }
     examples.push_back(
         {name, target.pose(Eigen::VectorXd::Unit(target.expressions().size(), own)), known});
+  }
+}
+
+/// Throws MismatchError for an example in another unit than the target, and notes those no vertex
+/// of which stays where it is in the neutral.
+void check_places(const std::vector<RigExample>& examples, const Positions& neutral,
+                  const std::string& name, const Notes& notes) {
+  const double usual = spread(neutral), size = diameter(neutral);
+  for (const RigExample& example : examples) {
+    const double found = spread(example.pose);
+    if (is_other_size(found, usual)) {
+      throw MismatchError("example '" + example.name + "': its vertices lie " + readable(found) +
+                          " from their mean (RMS), those of " + name + " " + readable(usual) +
+                          "; bring both into one unit (`mimetra convert --scale X`)");
+    }
+    const double least = (example.pose - neutral).rowwise().norm().minCoeff();
+    if (least < kStillShare * size) continue;
+    note(notes, "example '" + example.name + "': every vertex lies " + readable(least) +
+                    " and more from the neutral, in a face of " + readable(size) +
+                    "; it seems to stand elsewhere: align it to the neutral (`mimetra align`)");
   }
 }
 
@@ -247,6 +273,7 @@ Rig rig(const BlendshapeModel& source, const Target& given, std::vector<RigExamp
   }
   const BlendshapeModel transferred(model.shared_connectivity(), model.neutral(),
                                     {source.expressions().names, transfer.displacements()});
+  check_places(examples, model.neutral(), target.name, options.notes);
   add_own_expressions(examples, model, source.expressions(), options.notes);
   note_still(examples, model.neutral(), options.notes);
   ExampleRigOptions of_examples = options.examples;

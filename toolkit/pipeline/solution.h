@@ -86,7 +86,8 @@ struct SolveOptions {
 
   static constexpr Option kSpace{"space", &SolveOptions::space};
   static constexpr Option kAxes{"axes", &SolveOptions::axes};
-  static constexpr Option kSmoothness{"smoothness", &SolveOptions::smoothness, {.minimum = 0}, "s"};
+  static constexpr Option kSmoothness{
+      "smoothness", &SolveOptions::smoothness, {.minimum = 0, .maximum = 60}, "s"};
   static constexpr Option kPerRegion{"per_region", &SolveOptions::per_region};
   static constexpr Option kFalloff{"falloff", &SolveOptions::falloff, {.minimum = 1e-9}};
   static constexpr auto declared() { return std::tuple(kSpace, kAxes, kSmoothness, kFalloff); }

@@ -1,8 +1,11 @@
 #include "toolkit/pipeline/source.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
+#include "toolkit/mesh/errors.h"
+#include "toolkit/mesh/frame_shapes.h"
 #include "toolkit/mesh/frame_store.h"
 #include "toolkit/mesh/text.h"
 
@@ -115,6 +118,20 @@ Shared with_asked_rest(Shared sequence, const SourceOptions& options) {
   return sequence;  // the mean is that of the aligned frames
 }
 
+/// Throws MismatchError for a rest pose in another unit than the frames: all of their deformation
+/// would be that.
+void check_size_of_rest(const FrameSource& sequence, const std::string& name) {
+  const double of_rest = spread(sequence.rest());
+  const double of_frame = spread(FrameBlock(sequence, 0, 1).frame(0));
+  if (!is_other_size(of_rest, of_frame)) return;
+  const bool larger = of_rest > of_frame;
+  const double ratio = larger ? of_rest / of_frame : of_frame / of_rest;
+  throw MismatchError(name + ": the rest pose is " +
+                      (std::isfinite(ratio) ? readable(ratio, 3) + " times as " : "infinitely ") +
+                      (larger ? "large" : "small") +
+                      " as frame 0; bring both into one unit (`mimetra convert --scale X`)");
+}
+
 std::string_view name_of(const Motion& motion) {
   const auto* fitted = std::get_if<HeadMotion>(&motion);
   return fitted ? choice_name(*fitted) : "given";
@@ -220,6 +237,7 @@ Source prepare_source(Shared sequence, const SourceOptions& options) {
   Source source;
   source.given = kept(std::move(sequence), options);
   source.sequence = with_asked_rest(source.given, options);
+  check_size_of_rest(*source.sequence, options.name);
   source.rest_is_given = options.rest.has_value();
   source.neutral_is_known = knows_neutral(*source.given, options);
   source.head_motion = {name_of(choice.motion), choice.reason};

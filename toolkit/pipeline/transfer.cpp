@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "toolkit/mesh/frame_shapes.h"
 #include "toolkit/mesh/stopwatch.h"
 #include "toolkit/mesh/text.h"
 #include "toolkit/pipeline/joint_motion.h"
@@ -81,6 +82,20 @@ Source source_of(const FrameSource& sequence, const std::vector<Target>& targets
   of_source.progress = part_of(options.progress, 0, kSourceShare);
   of_source.joint = joint_search(targets, of_solving);
   return prepare_source(std::move(given), of_source);
+}
+
+/// Throws MismatchError where the only frame is the rest pose: the result would be perfect, and the
+/// target's neutral.
+void require_motion(const FrameSource& sequence, const std::string& name) {
+  if (sequence.frames() > 1) return;
+  const FrameBlock only(sequence, 0, 1);
+  const double farthest = (only.frame(0) - sequence.rest()).rowwise().norm().maxCoeff();
+  if (farthest > kLeastMotion * sequence.diameter()) return;
+  throw MismatchError(
+      name +
+      ": nothing moves: it has one frame, its rest pose; give what drives it (option "
+      "'weights') where it is a model, or its undeformed shape (option "
+      "'source-rest')");
 }
 
 std::vector<MatchedTarget> matched_targets(const FrameSource& sequence,
@@ -163,6 +178,14 @@ void note_usability(const TargetSolve& solved, const TransferError& error,
   const std::string wrong = unusable_by(error);
   if (wrong.empty()) return;
   std::string text = target.name + ": the result may not be usable: " + wrong;
+  const FrameSource& source = *solved.placed.source.sequence;
+  const OddFrames odd = odd_frames(source, frame_shapes(source, {.threads = options.threads}));
+  if (!odd.of_other_size.empty() || !odd.mirrored.empty() || !odd.torn.empty()) {
+    note(options.notes, text +
+                            "; look at the source's frames, of which some can be no poses of its "
+                            "mesh: `mimetra check` names them");
+    return;
+  }
   const std::vector<std::string> holds = holding_options(target, solved.options);
   if (!holds.empty()) {
     const std::string names = joined(holds, ", ", " and ");
@@ -244,6 +267,7 @@ TransferResult transfer(const FrameSource& sequence, const std::vector<Target>& 
   }
   of_solving.distances = options.analysis.distances;
   const Source source = source_of(sequence, targets, options, of_solving);
+  require_motion(*source.sequence, options.source.name);
   Choice choice = choose(source, options);
   const bool give_back = !source.motion.empty() && options.head_motion == RemovedMotion::keep;
 

@@ -98,7 +98,8 @@ struct DecompositionOptions {
   DistanceFunction distances = {};
   /// 0 for all there are; the result does not depend on it.
   int threads = 0;
-  /// Bytes that it may take, as planned_decomposition() counts them; none for as many as it likes.
+  /// Bytes that it may take, as planned_decomposition() counts them; none for as many as it likes,
+  /// less than 0 where the process has more already.
   /// The result does not depend on it: motion that is larger is kept in a file without a name, or
   /// read again for every pass, and fewer threads work at a time.
   std::optional<double> memory = {};
@@ -114,7 +115,7 @@ struct DecompositionOptions {
   static constexpr Option kTolerance{
       "tolerance", &DecompositionOptions::tolerance, {.minimum = 0, .maximum = 1}};
   static constexpr Option kNonnegative{"nonnegative", &DecompositionOptions::nonnegative};
-  static constexpr Option kMemory{"memory", &DecompositionOptions::memory, {.minimum = 0}};
+  static constexpr Option kMemory{"memory", &DecompositionOptions::memory};
   static constexpr Option kPrecision{"precision", &DecompositionOptions::precision};
   static constexpr Option kBasisTolerance{
       "basis_tolerance", &DecompositionOptions::basis_tolerance, {.minimum = 0, .maximum = 0.5}};

@@ -115,11 +115,11 @@ DecompositionPlan planned_decomposition(const FrameSource& frames, const VertexP
 
   const double free = *options.memory - sizes.fixed();
   if (free < sizes.per_thread()) {
-    throw MismatchError("option 'memory': what is left of it, " + megabytes(*options.memory) +
-                        ", does not hold a decomposition of " + std::to_string(frames.frames()) +
-                        " frames into " + std::to_string(options.count) +
-                        " components; allow at least " + megabytes(sizes.per_thread() - free) +
-                        " more, or take fewer components or frames");
+    throw MismatchError(
+        "option 'memory': what is left of it, " + megabytes(std::max(0.0, *options.memory)) +
+        ", does not hold a decomposition of " + std::to_string(frames.frames()) + " frames into " +
+        std::to_string(options.count) + " components; allow at least " +
+        megabytes(sizes.per_thread() - free) + " more, or take fewer components or frames");
   }
   plan.threads = std::min(threads, static_cast<int>(free / sizes.per_thread()));
   plan.bytes = sizes.fixed() + plan.threads * sizes.per_thread();

@@ -45,7 +45,7 @@ struct BlendshapeTransferOptions {
   static constexpr Option kSparsity{
       "sparsity", &BlendshapeTransferOptions::sparsity, {.minimum = 0}};
   static constexpr Option kSmoothness{
-      "smoothness", &BlendshapeTransferOptions::smoothness, {.minimum = 0}, "s"};
+      "smoothness", &BlendshapeTransferOptions::smoothness, {.minimum = 0, .maximum = 60}, "s"};
   static constexpr Option kSymmetry{
       "symmetry", &BlendshapeTransferOptions::symmetry, {.minimum = 0}};
   static constexpr Option kExclusive{"exclusive", &BlendshapeTransferOptions::exclusive};

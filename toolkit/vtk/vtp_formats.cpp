@@ -126,7 +126,9 @@ void add_vtp(OperationTable& table) {
                 .writing = writing,
                 .write = write_sequence_data,
                 .fields = true,
-                .holds = [](const Parameters&) { return HeldParts{.polygons = true}; }};
+                .holds = [](const Parameters&) {
+                  return HeldParts{.polygons = true, .exact_positions = false};
+                }};
   table.add(series);
   series.name = "VTK mesh of one frame";
   series.extensions = {".vtp"};

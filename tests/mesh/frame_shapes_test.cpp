@@ -1,0 +1,99 @@
+#include <gmock/gmock.h>
+#include <Eigen/Geometry>
+
+#include "tests/mesh/captured_performance.h"
+#include "tests/shapes.h"
+#include "tests/shared_data.h"
+#include "toolkit/mesh/frame_shapes.h"
+#include "toolkit/mesh/mesh_sequence.h"
+
+namespace mimetra {
+namespace {
+
+using testing::ElementsAre;
+using testing::IsEmpty;
+
+/// A ball that is pulled long, turned, moved and dented: what a face may do.
+class FrameShapes : public testing::Test {
+ protected:
+  FrameShapes() : ball_(test::sphere(3)) {
+    ball_.positions.col(1) *= 1.4;
+    for (int f = 0; f < 9; ++f) poses_.push_back(pose(f));
+  }
+
+  Positions pose(int f) const {
+    Positions moved = ball_.positions;
+    moved.col(2).array() += 0.1 * f * moved.col(0).array().square();
+    const Eigen::AngleAxisd turn(0.3 * f, Eigen::Vector3d(1, 2, f).normalized());
+    moved = moved * turn.toRotationMatrix().transpose();
+    return moved.rowwise() + Eigen::RowVector3d(5 * f, 0, -f);
+  }
+
+  OddFrames odd() const {
+    Frames frames(static_cast<Eigen::Index>(poses_.size()), ball_.positions.size());
+    for (std::size_t f = 0; f < poses_.size(); ++f) {
+      Eigen::Map<Positions>(frames.row(static_cast<Eigen::Index>(f)).data(), ball_.positions.rows(),
+                            3) = poses_[f];
+    }
+    const MeshSequence sequence(std::make_shared<const Connectivity>(Connectivity::from_triangles(
+                                    static_cast<int>(ball_.positions.rows()), ball_.triangles)),
+                                frames, {}, ball_.positions);
+    return odd_frames(sequence, frame_shapes(sequence));
+  }
+
+  test::Shape ball_;
+  std::vector<Positions> poses_;
+};
+
+TEST_F(FrameShapes, OfOnePersonAreNotOdd) {
+  const OddFrames found = odd();
+  EXPECT_THAT(found.of_other_size, IsEmpty());
+  EXPECT_THAT(found.mirrored, IsEmpty());
+  EXPECT_THAT(found.torn, IsEmpty());
+  EXPECT_GE(found.usual_spread, spread(ball_.positions));
+}
+
+TEST_F(FrameShapes, InAnotherUnitOrWithoutAnyAreOfAnotherSize) {
+  poses_[2] *= 100;
+  poses_[5] *= 0.01;
+  poses_[7].setZero();
+  const OddFrames found = odd();
+  EXPECT_THAT(found.of_other_size, ElementsAre(2, 5, 7));
+  EXPECT_THAT(found.mirrored, IsEmpty());
+  EXPECT_THAT(found.torn, IsEmpty());
+}
+
+TEST_F(FrameShapes, OfWhichOneAxisIsTurnedAroundAreMirrored) {
+  poses_[1].col(0) *= -1;
+  poses_[6] *= -1;
+  poses_[8].col(0) *= -1;
+  poses_[8].col(1) *= -1;  // half a turn
+  EXPECT_THAT(odd().mirrored, ElementsAre(1, 6));
+}
+
+TEST_F(FrameShapes, WithAVertexFarAwayAreTorn) {
+  poses_[3].row(17) += Eigen::RowVector3d(0, 3, 0);
+  const OddFrames found = odd();
+  EXPECT_THAT(found.torn, ElementsAre(3));
+  EXPECT_THAT(found.of_other_size, IsEmpty());
+}
+
+TEST_F(FrameShapes, NumberedOtherwiseAreTorn) {
+  poses_[4] = Positions(poses_[4].colwise().reverse());
+  EXPECT_THAT(odd().torn, ElementsAre(4));
+}
+
+TEST(CapturedFrameShapes, AreNotOdd) {
+  const auto data = test::shared_path("data");
+  if (!std::filesystem::exists(data)) GTEST_SKIP() << "no shared data beside the project";
+  const MeshSequence performance =
+      test::captured_performance(data / "ict-face/neutral.obj", data / "ict-face/expressions",
+                                 data / "captures/talking-60fps-1200.csv", 60);
+  const OddFrames found = odd_frames(performance, frame_shapes(performance));
+  EXPECT_THAT(found.of_other_size, IsEmpty());
+  EXPECT_THAT(found.mirrored, IsEmpty());
+  EXPECT_THAT(found.torn, IsEmpty());
+}
+
+}  // namespace
+}  // namespace mimetra

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <utility>
+#include <vector>
+
+#include "toolkit/mesh/frame_source.h"
+
+namespace mimetra {
+
+/// Root mean square distance of vertices from their mean (N x 3): expressions change a face's by a
+/// few percent, another unit by far more.
+double spread(const Eigen::Ref<const Positions>& positions);
+
+/// Spreads of one mesh differ by less than this factor, unless something is wrong with one.
+constexpr double kOtherSize = 2;
+
+/// Whether one of two spreads is more than kOtherSize times the other. \pre both are finite
+bool is_other_size(double spread, double usual);
+
+/// What of a frame tells whether it is a pose of its mesh.
+struct FrameShape {
+  double spread = 0;
+  /// The affine map that takes the rest pose nearest to it turns inside out. Never where either is
+  /// flat.
+  bool is_mirrored = false;
+  /// The longest edge, and its ends; none where there are no triangles.
+  double longest_edge = 0;
+  std::pair<VertexIndex, VertexIndex> ends{-1, -1};
+};
+
+/// Of every frame (F). Throws what reading throws, Cancelled.
+std::vector<FrameShape> frame_shapes(const FrameSource& sequence, const BlockOptions& options = {});
+
+/// Frames that cannot be poses of the sequence's mesh, ascending.
+struct OddFrames {
+  std::vector<int> of_other_size;  ///< than the median
+  std::vector<int> mirrored;
+  /// Neighbours lie apart by half the frame's size and by twice as much as in the rest pose.
+  std::vector<int> torn;
+  double usual_spread = 0;  ///< the median
+};
+
+/// \pre one shape a frame
+OddFrames odd_frames(const FrameSource& sequence, const std::vector<FrameShape>& shapes);
+
+}  // namespace mimetra
