@@ -156,7 +156,7 @@ TEST_F(Fit, RefusesAMirrorImage) {
     EXPECT_EQ(result.code, 4);
     EXPECT_THAT(result.err, HasSubstr("mirrored.csv: the face that fits looks away from the camera "
                                       "in 6 of 6 frames, so the landmarks are mirrored"));
-    EXPECT_FALSE(exists("take.npy"));
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "take.npy"));
   }
 }
 

@@ -110,12 +110,13 @@ std::vector<BadInput> output_cases() {
   of_input("folder", "convert head --weights p/performance.csv -o p",
            {"p: holds p/performance.csv, an input of this run"});
   for (const std::string extension : {".vtp", ".stl"}) {
-    all.push_back({"far_from_the_origin",
-                   extension.substr(1),
-                   file("far.obj", "v 1e6 0 0\nv 1000001 0 0\nv 1e6 1 0\nf 1 2 3\n"),
-                   "convert far.obj -o x" + extension,
-                   0,
-                   {"rounds positions by up to 0.06", "1e+06 times its size from the origin"}});
+    all.push_back(
+        {"far_from_the_origin",
+         extension.substr(1),
+         file("far.obj", "v 1e6 0 0\nv 1000001 0 0\nv 1e6 1 0\nf 1 2 3\n"),
+         "convert far.obj -o x" + extension,
+         0,
+         {"exact positions (rounded by up to 0.06", "1e+06 times its size from the origin"}});
   }
   full("convert_npy", "convert " + kSequence + " -o x.npy", "x.npy", 20);
   full("decompose_h5", "decompose " + kSequence + " -k 2 -o c.h5", "c.h5", 20);

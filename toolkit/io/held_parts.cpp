@@ -1,8 +1,10 @@
 #include "toolkit/io/held_parts.h"
 
 #include <algorithm>
+#include <limits>
 #include <string_view>
 
+#include "toolkit/io/sequence_parts.h"
 #include "toolkit/mesh/text.h"
 #include "toolkit/mesh/texture.h"
 #include "toolkit/mesh/weld.h"
@@ -94,6 +96,15 @@ std::vector<std::string> parts_left_out(const HeldParts& held, const FrameSource
   if (const double rounded = held.exact_times ? 0 : rounding_of(sequence.known_times());
       rounded > 0) {
     lost.push_back("exact times (rounded by up to " + readable(rounded) + " s)");
+  }
+  const Positions& rest = sequence.rest();
+  const double size = extent(rest);
+  if (!held.exact_positions && needs_double({rest.data(), rest.rows(), 3}, size)) {
+    const double farthest = rest.cwiseAbs().maxCoeff();
+    lost.push_back("exact positions (rounded by up to " +
+                   readable(std::numeric_limits<float>::epsilon() / 2 * farthest, 2) +
+                   ", as the mesh lies " + readable(farthest / size, 2) +
+                   " times its size from the origin)");
   }
   return lost;
 }

@@ -1,10 +1,8 @@
 #include "toolkit/operations/format.h"
 
 #include <algorithm>
-#include <limits>
 
 #include "toolkit/io/material_library.h"
-#include "toolkit/io/sequence_parts.h"
 #include "toolkit/mesh/text.h"
 
 namespace mimetra {
@@ -59,16 +57,6 @@ std::vector<std::string> notes_on_losses(const Format& format, const Data& data,
   if (!lost.empty()) {
     notes.push_back(request.target.string() + ": this format holds no " +
                     joined(lost, ", ", " or ") + "; written without");
-  }
-  const Positions& rest = sequence->frames->rest();
-  const double size = extent(rest);
-  if (!held.exact_positions && needs_double({rest.data(), rest.rows(), 3}, size)) {
-    const double farthest = rest.cwiseAbs().maxCoeff();
-    notes.push_back(request.target.string() +
-                    ": this format holds single precision, which rounds positions by up to " +
-                    readable(std::numeric_limits<float>::epsilon() / 2 * farthest, 2) +
-                    ", as the mesh lies " + readable(farthest / size, 2) +
-                    " times its size from the origin; move it, or write .npy or .ply");
   }
   if (held.groups) {
     const Connectivity& connectivity = sequence->frames->connectivity();
