@@ -144,8 +144,12 @@ std::vector<BadInput> request_cases() {
   add("standard_output", "output", "convert head --weights take.csv -o -",
       {"not written to standard output", "give a name"});
   const std::string full = "transfer head --weights take.csv head --full -o x.npy ";
-  for (const std::string option : {"-k 5", "--radius 0.2", "--coverage 0.5", "--sparsity 3"}) {
-    add("option_without_effect", "full", full + option,
+  const std::map<std::string, std::string> without_effect = {{"full_k", "-k 5"},
+                                                             {"full_radius", "--radius 0.2"},
+                                                             {"full_coverage", "--coverage 0.5"},
+                                                             {"full_sparsity", "--sparsity 3"}};
+  for (const auto& [subject, option] : without_effect) {
+    add("option_without_effect", subject, full + option,
         {option.substr(0, option.find(' ')) + ": no regions are looked for"});
   }
   add("smoothness_of_milliseconds", "full", full + "--smoothness 100",

@@ -10,6 +10,7 @@
 #include "toolkit/io/mesh_codecs.h"
 #include "toolkit/io/mesh_file.h"
 #include "toolkit/io/sequence_parts.h"
+#include "toolkit/io/single_precision.h"
 #include "toolkit/io/whole_file.h"
 #include "toolkit/io/written_files.h"
 

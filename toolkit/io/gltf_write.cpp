@@ -13,6 +13,7 @@
 #include "toolkit/io/json_text.h"
 #include "toolkit/io/pending_output.h"
 #include "toolkit/io/sequence_parts.h"
+#include "toolkit/io/single_precision.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/text.h"
 

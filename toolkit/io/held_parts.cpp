@@ -4,7 +4,7 @@
 #include <limits>
 #include <string_view>
 
-#include "toolkit/io/sequence_parts.h"
+#include "toolkit/io/single_precision.h"
 #include "toolkit/mesh/text.h"
 #include "toolkit/mesh/texture.h"
 #include "toolkit/mesh/weld.h"

@@ -73,11 +73,6 @@ void write_mesh(const std::filesystem::path& path, const PositionsView& position
 void write_mesh(const std::filesystem::path& path, const TriMesh& mesh,
                 const MeshWriteOptions& = {});
 
-/// The largest number of single precision.
-constexpr double kLargestSingle = std::numeric_limits<float>::max();
-/// "vertex 7 is at 1e+39, ...": what is wrong with a coordinate beyond it.
-std::string beyond_single(Eigen::Index vertex, double coordinate);
-
 /// Writes poses of one mesh, each to a file of its own. What the files have in common is made once.
 /// Files may be written from several threads.
 class MeshFileWriter {

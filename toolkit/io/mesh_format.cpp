@@ -3,6 +3,7 @@
 #include "toolkit/io/mesh_file.h"
 #include "toolkit/io/sequence_format.h"
 #include "toolkit/io/sequence_parts.h"
+#include "toolkit/io/single_precision.h"
 #include "toolkit/io/whole_file.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/text.h"

@@ -7,6 +7,7 @@
 #include "toolkit/io/binary_file.h"
 #include "toolkit/io/mesh_codecs.h"
 #include "toolkit/io/mesh_file.h"
+#include "toolkit/io/single_precision.h"
 #include "toolkit/io/temporary_name.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/text.h"
@@ -33,13 +34,6 @@ MeshFileWriter::MeshFileWriter(const Connectivity& connectivity, const std::stri
 }
 
 MeshFileWriter::~MeshFileWriter() = default;
-
-std::string beyond_single(Eigen::Index vertex, double coordinate) {
-  return "vertex " + std::to_string(vertex) + " is at " + readable(coordinate) +
-         ", and single precision ends at " + readable(kLargestSingle) +
-         "; write double precision (.npy without option 'single', or .ply with option 'double'), "
-         "or scale it";
-}
 
 void MeshFileWriter::write(const fs::path& path, const PositionsView& positions) const {
   if (positions.rows() != vertices_) {

@@ -10,6 +10,7 @@
 #include "toolkit/io/pending_output.h"
 #include "toolkit/io/sequence_format.h"
 #include "toolkit/io/sequence_parts.h"
+#include "toolkit/io/single_precision.h"
 #include "toolkit/io/temporary_name.h"
 #include "toolkit/io/zip_archive.h"
 #include "toolkit/mesh/errors.h"

@@ -10,6 +10,7 @@
 #include "toolkit/io/frame_files.h"
 #include "toolkit/io/mesh_file.h"
 #include "toolkit/io/sequence_parts.h"
+#include "toolkit/io/single_precision.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/text.h"
 

@@ -51,15 +51,4 @@ void add_times_beside(PendingOutputs& outputs, const std::filesystem::path& sequ
 void add_extra_beside(PendingOutputs& outputs, const std::filesystem::path& target,
                       const ExtraFiles& extra, std::vector<std::filesystem::path>& files);
 
-/// True where single precision would round motion away, or cannot hold a coordinate: `poses` lie
-/// far from the origin for a mesh whose longest side is `extent`.
-bool needs_double(const PositionsView& poses, double extent);
-
-/// Throws MismatchError that names frame and vertex where single precision would make a coordinate
-/// infinite. `poses` are the frames from `first` on.
-void check_single_range(const std::filesystem::path& target, int first, const Frames& poses);
-/// Throws MismatchError for these, of a `target` that holds single precision only.
-void check_single_precision(const std::filesystem::path& target, const PositionsView& poses,
-                            double extent);
-
 }  // namespace mimetra

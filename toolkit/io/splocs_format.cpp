@@ -7,6 +7,7 @@
 #include "toolkit/io/point_cache.h"
 #include "toolkit/io/sequence_format.h"
 #include "toolkit/io/sequence_parts.h"
+#include "toolkit/io/single_precision.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/text.h"
 

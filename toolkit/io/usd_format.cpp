@@ -11,6 +11,7 @@
 #include "toolkit/io/pending_output.h"
 #include "toolkit/io/sequence_format.h"
 #include "toolkit/io/sequence_parts.h"
+#include "toolkit/io/single_precision.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/model/animation.h"
 

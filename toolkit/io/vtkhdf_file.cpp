@@ -7,6 +7,7 @@
 #include "toolkit/io/hdf5_image.h"
 #include "toolkit/io/point_cache.h"
 #include "toolkit/io/sequence_parts.h"
+#include "toolkit/io/single_precision.h"
 #include "toolkit/mesh/progress.h"
 
 namespace mimetra {
