@@ -9,11 +9,11 @@ namespace {
 /// Vertices of the patch, on which the landmarks of these cases lie.
 constexpr std::array kVertices = {0, 7, 14, 48, 95, 105, 176, 210, 217, 224};
 
-/// "x,y" of a landmark in frame 0, seen from the side.
+/// "x,y" of a landmark in frame 0, seen from the side, in an image, whose y points down.
 std::array<double, 2> landmark(std::size_t i) {
   static const Positions mean = Patch::model().mean();
   const auto point = mean.row(kVertices.at(i));
-  return {30 * point[0] + 10 * point[2], 30 * point[1] + 20 * point[2]};
+  return {30 * point[0] + 10 * point[2], 100 - 30 * point[1] - 20 * point[2]};
 }
 
 std::string header(std::size_t count, const std::string& before = "") {

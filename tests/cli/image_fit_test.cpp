@@ -51,7 +51,7 @@ class ImageFit : public test::CommandTest {
     std::string points = "version: 1\nn_points: 68\n{\n";
     for (int i = 0; i < 68; ++i) {
       points +=
-          std::to_string(right + 100 + 7 * (i % 9)) + " " + std::to_string(90 + 4 * (i / 2)) + "\n";
+          std::to_string(right + 156 - 7 * (i % 9)) + " " + std::to_string(90 + 4 * (i / 2)) + "\n";
     }
     write("images/" + name, points + "}\n");
   }

@@ -92,7 +92,7 @@ TEST_F(Streamed, TransfersKeepFramesInAFolderThatThereMustBe) {
 
 TEST_F(Streamed, DecompositionsKeepWithinTheMemoryAllowed) {
   write_take("long", kLong);
-  const std::string decompose = "decompose long.npy --align none -k 2 --iterations 2 ";
+  const std::string decompose = "decompose long.npy --align none -k 2 --iterations 8 ";
   ASSERT_EQ(run(decompose + "-o a.h5").code, 0);
   const auto planned = [this](const std::string& arguments) {
     return json::parse(run(arguments + " --dry-run --json", "TMPDIR=tmp").out);
