@@ -78,7 +78,7 @@ void add_tracks(std::vector<BadInput>& all) {
   add("whole", sound_track(), 0, {"\"rms_px\""});
   add("empty", "", 3, {"is empty"});
   add("names_only", header(10), 3, {"no frame"});
-  add("truncated", sound_track().substr(0, sound_track().size() - 12), 3, {"line 3", "fields"});
+  add("truncated", sound_track().substr(0, sound_track().rfind(',')), 3, {"line 3", "fields"});
   add("other_type", bytes_of(square(), "stl_binary"), 3, {});
   add("x_without_y", "x0,x1,y0\n1,2,3\n", 3, {"no column 'y' for 'x1'"});
   add("text_for_a_number", header(1) + "1,high\n", 3, {"line 2", "'y0'", "'high'"});

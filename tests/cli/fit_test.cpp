@@ -145,21 +145,6 @@ TEST_F(Fit, DoesNotChangeWithTheImagesScaleRotationAndPlace) {
   }
 }
 
-TEST_F(Fit, RefusesAMirrorImage) {
-  for (const int axis : {0, 1}) {
-    Frames mirrored = clip_.points;
-    for (Eigen::Index i = axis; i < mirrored.cols(); i += 2) {
-      mirrored.col(i) = 1080 - mirrored.col(i).array();
-    }
-    write("mirrored.csv", csv_of(mirrored));
-    const auto result = run("fit mirrored.csv --model face -o take.npy");
-    EXPECT_EQ(result.code, 4);
-    EXPECT_THAT(result.err, HasSubstr("mirrored.csv: the face that fits looks away from the camera "
-                                      "in 6 of 6 frames, so the landmarks are mirrored"));
-    EXPECT_FALSE(std::filesystem::exists(folder_ / "take.npy"));
-  }
-}
-
 /// Images have y down: what turns there by an angle turns by its negative for a viewer.
 TEST_F(Fit, TurnsAsTheHeadDoesWhereItIsAskedTo) {
   write("moved.csv", csv_of(moved_images(clip_.points)));

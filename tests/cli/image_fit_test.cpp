@@ -46,12 +46,21 @@ class ImageFit : public test::CommandTest {
     std::filesystem::remove(folder_ / ("images/" + name.substr(0, 1) + ".run.json"));
   }
 
-  /// 68 landmarks that are no face, but not coplanar either.
-  void write_points(const std::string& name, int right = 0) {
+  /// Where the head's landmarks are seen from the front, with y down or up (-1); those that it
+  /// lacks anywhere.
+  void write_points(const std::string& name, int right = 0, int down = 1) {
+    const Positions head = read_sequence((folder_ / "face").string()).sequence.rest();
+    std::vector<Eigen::Vector2d> places(68, Eigen::Vector2d(right + 240, 240));
+    std::ifstream mapping(folder_ / "face/landmarks68.txt");
+    for (std::string line; std::getline(mapping, line);) {
+      const std::size_t equals = line.find('=');
+      if (line.empty() || line[0] == '#' || equals == std::string::npos) continue;
+      const auto vertex = head.row(std::stoi(line.substr(equals + 1)));
+      places.at(std::stoi(line) - 1) = {right + 240 + vertex[0], 240 - down * vertex[1]};
+    }
     std::string points = "version: 1\nn_points: 68\n{\n";
-    for (int i = 0; i < 68; ++i) {
-      points +=
-          std::to_string(right + 156 - 7 * (i % 9)) + " " + std::to_string(90 + 4 * (i / 2)) + "\n";
+    for (const Eigen::Vector2d& place : places) {
+      points += std::to_string(place[0]) + " " + std::to_string(place[1]) + "\n";
     }
     write("images/" + name, points + "}\n");
   }
@@ -106,6 +115,16 @@ TEST_F(ImageFit, DrawsOverTheImagesBesidePoints) {
   EXPECT_FALSE(listing().contains("take2"));
   EXPECT_EQ(run("fit images --model face -o take2 --overlay over2 --images 'images/?.png'").code,
             0);
+}
+
+TEST_F(ImageFit, RefusesPointsWhoseYPointsUp) {
+  write_points("1.pts", 0, -1);
+  const auto result = run("fit images/1.pts --model face -o a.ply");
+  EXPECT_EQ(result.code, 4);
+  EXPECT_THAT(result.err,
+              HasSubstr("images/1.pts: the face that fits looks away from the camera in "
+                        "1 of 1 frames, so the landmarks are mirrored"));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "a.ply"));
 }
 
 TEST_F(ImageFit, LeavesNothingWhereAnImageBesidePointsIsDamaged) {

@@ -132,6 +132,7 @@ std::vector<RigExample> examples_of(const Invocation& invocation, const RigCall&
     ExampleMeaning meaning = meaning_of(shape, folder, expressions, call);
     examples.push_back({shape.name, std::move(shape.pose), std::move(meaning)});
   }
+  check_sizes(examples, person_of(target).neutral(), target.name);
   return examples;
 }
 

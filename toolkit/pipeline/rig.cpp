@@ -117,18 +117,11 @@ void add_own_expressions(std::vector<RigExample>& examples, const BlendshapeMode
   }
 }
 
-/// Throws MismatchError for an example in another unit than the target, and notes those no vertex
-/// of which stays where it is in the neutral.
-void check_places(const std::vector<RigExample>& examples, const Positions& neutral,
-                  const std::string& name, const Notes& notes) {
-  const double usual = spread(neutral), size = diameter(neutral);
+/// Notes examples no vertex of which stays where it is in the neutral.
+void note_places(const std::vector<RigExample>& examples, const Positions& neutral,
+                 const Notes& notes) {
+  const double size = diameter(neutral);
   for (const RigExample& example : examples) {
-    const double found = spread(example.pose);
-    if (is_other_size(found, usual)) {
-      throw MismatchError("example '" + example.name + "': its vertices lie " + readable(found) +
-                          " from their mean (RMS), those of " + name + " " + readable(usual) +
-                          "; bring both into one unit (`mimetra convert --scale X`)");
-    }
     const double least = (example.pose - neutral).rowwise().norm().minCoeff();
     if (least < kStillShare * size) continue;
     note(notes, "example '" + example.name + "': every vertex lies " + readable(least) +
@@ -246,6 +239,18 @@ void note_usability(const Rig& rig, const Target& target, const Notes& notes) {
 
 }  // namespace
 
+void check_sizes(const std::vector<RigExample>& examples, const Positions& neutral,
+                 const std::string& name) {
+  const double usual = spread(neutral);
+  for (const RigExample& example : examples) {
+    const double found = spread(example.pose);
+    if (!is_other_size(found, usual)) continue;
+    throw MismatchError("example '" + example.name + "': its vertices lie " + readable(found) +
+                        " from their mean (RMS), those of " + name + " " + readable(usual) +
+                        "; bring both into one unit (`mimetra convert --scale X`)");
+  }
+}
+
 std::shared_ptr<const Animation> frame_of_each_expression(const BlendshapeModel& source) {
   const int count = source.expressions().size();
   if (count == 0) throw MismatchError("the source has no expressions");
@@ -273,7 +278,8 @@ Rig rig(const BlendshapeModel& source, const Target& given, std::vector<RigExamp
   }
   const BlendshapeModel transferred(model.shared_connectivity(), model.neutral(),
                                     {source.expressions().names, transfer.displacements()});
-  check_places(examples, model.neutral(), target.name, options.notes);
+  check_sizes(examples, model.neutral(), target.name);
+  note_places(examples, model.neutral(), options.notes);
   add_own_expressions(examples, model, source.expressions(), options.notes);
   note_still(examples, model.neutral(), options.notes);
   ExampleRigOptions of_examples = options.examples;

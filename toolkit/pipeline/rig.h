@@ -77,9 +77,14 @@ std::shared_ptr<const Animation> frame_of_each_expression(const BlendshapeModel&
 /// a rig that is likely not usable.
 ///
 /// Throws what frame_of_each_expression(), MatchedTarget(), placed_at(),
-/// closed_seams(), VertexTransfer and fit_to_examples() throw; Cancelled.
+/// check_sizes(), closed_seams(), VertexTransfer and fit_to_examples() throw; Cancelled.
 Rig rig(const BlendshapeModel& source, const Target& target, std::vector<RigExample> examples = {},
         const RigOptions& options = {});
+
+/// Throws MismatchError for an example in another unit than the neutral (N x 3) of the target of
+/// this name.
+void check_sizes(const std::vector<RigExample>& examples, const Positions& neutral,
+                 const std::string& name);
 
 /// Bytes that it takes at its peak.
 double rig_bytes(const BlendshapeModel& source, const BlendshapeModel& target);
