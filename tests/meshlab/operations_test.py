@@ -59,7 +59,7 @@ class Operations(HostTest):
         words = "1 vertices without a face (in no region), the first is 3"
         said = self.log([odd], filter_script("mimetra Check"))
         self.assertIn(words, said)
-        self.assertIn("usable, 1 frames of 4 vertices, 1 warnings", said)
+        self.assertIn("usable, 1 frames of 4 vertices, 1 warning", said)
         self.assert_refused([odd], [filter_script("mimetra Check", strict=True)], words)
 
     def test_decompose_writes_the_components_of_the_command(self):

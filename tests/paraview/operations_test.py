@@ -112,7 +112,7 @@ class Operations(HostTest):
             table = at(simple.mimetraCheck(Input=self.odd()))
         words = "1 vertices without a face (in no region), the first is 36"
         self.assertIn(words, messages.text)
-        self.assertIn("usable, 1 frames of 37 vertices, 1 warnings", messages.text)
+        self.assertIn("usable, 1 frames of 37 vertices, 1 warning", messages.text)
         self.assertEqual(texts(table, "name"), ["usable", "warnings"])
         self.assertEqual(texts(table, "value"), ["true", json.dumps([words])])
 
