@@ -9,6 +9,7 @@
 
 #include "fitting/fit_judgement.h"
 #include "fitting/fit_pictures.h"
+#include "fitting/head_facing.h"
 #include "fitting/head_rotation.h"
 #include "fitting/image_files.h"
 #include "fitting/landmark_file.h"
@@ -261,73 +262,6 @@ std::vector<int> seen_frames(const FittedCoefficients& fit) {
   return frames;
 }
 
-/// Affine cameras that see the model's origin, and a little around it, as the fitted ones do.
-std::vector<AffineCamera> cameras_at_origin(const FittedCoefficients& fit) {
-  std::vector<AffineCamera> cameras = fit.cameras;
-  for (Eigen::Index f = 0; f < fit.depths.rows(); ++f) {
-    AffineCamera& camera = cameras[static_cast<std::size_t>(f)];
-    camera.leftCols<3>() -= camera.col(3) * fit.depths.row(f).head<3>();
-  }
-  return cameras;
-}
-
-/// Landmarks of each frame that are behind the face, as its camera sees it; -1 of unseen frames.
-std::vector<int> averted_of(const MeshSequence& sequence, const FittedCoefficients& fit,
-                            const MappedLandmarks& mapped) {
-  const std::vector<AffineCamera> cameras = cameras_at_origin(fit);
-  std::vector<int> averted(static_cast<std::size_t>(fit.frames()), -1);
-  for (int f = 0; f < fit.frames(); ++f) {
-    if (fit.landmarks[f] == 0) continue;
-    averted[static_cast<std::size_t>(f)] =
-        averted_landmarks(sequence.frame(f), sequence.triangles(), mapped.vertices,
-                          cameras[static_cast<std::size_t>(f)]);
-  }
-  return averted;
-}
-
-/// A mirror image fits as well, as a face that looks away from the camera, which nobody finds
-/// landmarks of.
-void require_facing(const std::vector<int>& averted, const MappedLandmarks& mapped,
-                    const std::string& name) {
-  const auto landmarks = static_cast<int>(mapped.vertices.size());
-  const auto seen = std::ranges::count_if(averted, [](int behind) { return behind >= 0; });
-  const auto away =
-      std::ranges::count_if(averted, [&](int behind) { return 2 * behind > landmarks; });
-  if (2 * away <= seen) return;
-  throw MismatchError(
-      name + ": the face that fits looks away from the camera in " + std::to_string(away) + " of " +
-      std::to_string(seen) +
-      " frames, so the landmarks are mirrored; expected pixels from the upper left "
-      "corner, x to the right and y down: where y points up take the image's height "
-      "minus y, where the image was mirrored its width minus x");
-}
-
-/// The notes of the frames, with those in which the head is turned so far that landmarks are behind
-/// it, of which it warns.
-std::vector<std::string> notes_of(const std::vector<int>& averted, const MappedLandmarks& mapped,
-                                  const Invocation& invocation) {
-  const NamedData& landmarks = invocation.input("landmarks");
-  std::vector<std::string> notes = landmarks.origin.frame_notes;
-  std::vector<int> turned;
-  notes.resize(averted.size());
-  for (std::size_t f = 0; f < averted.size(); ++f) {
-    if (4 * averted[f] < static_cast<int>(mapped.vertices.size())) continue;
-    turned.push_back(static_cast<int>(f));
-    std::string& note = notes[f];
-    note += (note.empty() ? "" : "; ") + std::string("turned away: ") + std::to_string(averted[f]) +
-            " of " + std::to_string(mapped.vertices.size()) + " landmarks are behind the face";
-  }
-  if (!turned.empty()) {
-    invocation.warn(landmarks.name +
-                    ": frames in which the head is turned so far that the hidden half of the face "
-                    "is guessed: " +
-                    listed(words_of(turned)));
-  }
-  const bool none =
-      std::ranges::all_of(notes, [](const std::string& note) { return note.empty(); });
-  return none ? std::vector<std::string>{} : notes;
-}
-
 Outcome run(const Invocation& invocation) {
   const NamedData& landmarks = invocation.input("landmarks");
   const LandmarkTrack& track = std::get<LandmarkTrack>(landmarks.data);
@@ -362,9 +296,10 @@ Outcome run(const Invocation& invocation) {
                     listed(words_of(summary.unseen)));
   }
   const MeshSequence sequence = sequence_of(model, fit, call.fit.shape);
-  const std::vector<int> averted = averted_of(sequence, fit, mapped);
-  require_facing(averted, mapped, landmarks.name);
-  fit.notes = notes_of(averted, mapped, invocation);
+  const std::vector<AffineCamera> cameras = cameras_at_origin(fit);
+  const AvertedLandmarks averted(sequence, fit, mapped.vertices, cameras);
+  averted.require_facing(landmarks.name);
+  fit.notes = averted.notes(invocation);
   Outcome outcome;
   Json report = {{"rms_px", summary.rms},
                  {"vertices", model.vertices()},
@@ -382,7 +317,6 @@ Outcome run(const Invocation& invocation) {
                     " in frame " + std::to_string(summary.worst) + "), " +
                     std::to_string(summary.iterations) + " iterations\n" + judgement.words();
   warn_of(judgement, fit.expressions, invocation);
-  const std::vector<AffineCamera> cameras = cameras_at_origin(fit);
   const bool turns = call.head_motion == FitCall::HeadTurns::keep;
   outcome.outputs["out"].push_back(
       {"",
