@@ -99,6 +99,19 @@ class Caches(HostTest):
         bpy.ops.mimetra.align(on="all")
         self.assert_moves_like(bpy.data.objects["source align"], np.load(out))
 
+    def test_a_simplified_and_a_subdivided_source_are_meshes_of_their_own(self):
+        for name, options in (("simplify", {"share": 0.3}), ("subdivide", {"times": 1})):
+            with self.subTest(name):
+                self.activate(self.source)
+                out = self.path / f"{name}.npy"
+                command(name, self.take, *(f"--{key}={value}" for key, value in options.items()),
+                        "-o", out)
+                if name == "simplify":
+                    bpy.ops.mimetra.simplify(share=0.3)
+                else:
+                    bpy.ops.mimetra.subdivide(times=1)
+                self.assert_moves_like(bpy.data.objects[f"source {name}"], np.load(out))
+
     def test_a_source_moves_by_any_modifier_that_keeps_its_vertices(self):
         bend = self.source.modifiers.new("bend", "SIMPLE_DEFORM")
         bend.deform_method = "TWIST"

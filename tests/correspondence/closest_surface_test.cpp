@@ -9,6 +9,7 @@
 #include <Eigen/Geometry>
 
 #include "tests/shapes.h"
+#include "toolkit/mesh/normals.h"
 
 namespace mimetra {
 namespace {

@@ -48,6 +48,17 @@ class Operations(HostTest):
         for layer, frame in zip(self.new_layers([self.target], script, 12), self.take, strict=True):
             self.assert_same(layer.points, Ply(frame).points)
 
+    def test_simplify_and_subdivide_make_layers_of_other_vertices(self):
+        for name, script in (
+                ("simplify", filter_script("mimetra Simplify", share=0.3)),
+                ("subdivide", filter_script("mimetra Subdivide", times=1))):
+            options = ["--share", "0.3"] if name == "simplify" else []
+            out = self.path / f"{name}d.npy"
+            mimetra(name, self.path / "take", *options, "-o", out)
+            expected = np.load(out).astype("f4")
+            for layer, pose in zip(self.new_layers(self.take, script, 12), expected, strict=True):
+                self.assert_same(layer.points, pose)
+
     def test_info_stands_in_the_log(self):
         said = self.log(self.take, filter_script("mimetra Info"))
         for line in mimetra("info", self.path / "take").splitlines():

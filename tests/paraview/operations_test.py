@@ -50,6 +50,16 @@ class Operations(HostTest):
         self.assertEqual(time_steps(align), list(source.TimestepValues))
         self.assertGreater(np.abs(points(at(align)) - points(at(source))).max(), 1)
 
+    def test_simplify_and_subdivide_show_meshes_of_their_own(self):
+        source = self.sequence_of(self.moved)
+        for name, filter in (("simplify", simple.mimetraSimplify(Input=source, Share=0.3)),
+                             ("subdivide", simple.mimetraSubdivide(Input=source))):
+            out = self.sample / f"{name}.npy"
+            mimetra(name, self.moved, *(["--share", "0.3"] if name == "simplify" else []), "-o", out)
+            expected = self.sequence_of(out)
+            for time in source.TimestepValues:
+                self.assert_same(points(at(filter, time)), points(at(expected, time)))
+
     def test_align_gives_back_the_motion_of_the_commands_manifest(self):
         mimetra("align", self.moved, "-o", self.sample / "kept.npy")
         self.assert_undone(self.sequence_of(self.moved), str(self.sample / "kept.run.json"))

@@ -124,6 +124,17 @@ class Operations(SampleTest):
         self.assert_same(result.out.positions, self.arrays.positions)
         self.assertEqual(result.report["frames"], 12)
 
+    def test_simplifies_and_subdivides_as_the_command_does(self):
+        coarse, fine = self.path / "coarse.npy", self.path / "fine.npy"
+        report = json.loads(command("simplify", self.take, "--share", "0.3", "-o", coarse, "--json"))
+        result = mimetra.simplify(self.arrays, share=0.3)
+        self.assert_same(result.out.positions, np.load(coarse))
+        self.assertEqual(result.report["kept"], report["kept"])
+        self.assert_same(result.out.positions, self.arrays.positions[:, report["kept"]])
+        command("subdivide", self.take, "--scheme", "midpoint", "-o", fine)
+        self.assert_same(mimetra.subdivide(self.arrays, scheme="midpoint").out.positions,
+                         np.load(fine))
+
     def test_evaluates_as_the_command_does(self):
         out = self.path / "table.csv"
         command("evaluate", self.take, self.actor, "-k", "3,6", "-o", out)

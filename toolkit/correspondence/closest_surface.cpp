@@ -16,6 +16,8 @@
 #include <CGAL/AABB_triangle_primitive.h>
 #include <CGAL/Simple_cartesian.h>
 
+#include "toolkit/mesh/normals.h"
+
 namespace mimetra {
 namespace {
 
@@ -241,26 +243,6 @@ std::vector<BorderEdge> border_edges(const Triangles& triangles) {
     }
   }
   return borders;
-}
-
-Positions triangle_normals(const Eigen::Ref<const Positions>& positions,
-                           const Triangles& triangles) {
-  Positions normals(triangles.rows(), 3);
-  for (Eigen::Index t = 0; t < triangles.rows(); ++t) {
-    const Vector3d a = positions.row(triangles(t, 0)), b = positions.row(triangles(t, 1)),
-                   c = positions.row(triangles(t, 2));
-    normals.row(t) = (b - a).cross(c - a);
-  }
-  return normals;
-}
-
-Positions vertex_normals(const Eigen::Ref<const Positions>& positions, const Triangles& triangles) {
-  const Positions of_triangles = triangle_normals(positions, triangles);
-  Positions normals = Positions::Zero(positions.rows(), 3);
-  for (Eigen::Index t = 0; t < triangles.rows(); ++t) {
-    for (const VertexIndex v : triangles.row(t)) normals.row(v) += of_triangles.row(t);
-  }
-  return normals;
 }
 
 Positions centroids(const Eigen::Ref<const Positions>& positions, const Triangles& triangles) {

@@ -48,13 +48,6 @@ struct BorderEdge {
 };
 std::vector<BorderEdge> border_edges(const Triangles& triangles);
 
-/// Normal of each triangle (M x 3), as long as twice its area.
-Positions triangle_normals(const Eigen::Ref<const Positions>& positions,
-                           const Triangles& triangles);
-
-/// Sum of the normals of each vertex's triangles (N x 3).
-Positions vertex_normals(const Eigen::Ref<const Positions>& positions, const Triangles& triangles);
-
 /// Centroid of each triangle (M x 3).
 Positions centroids(const Eigen::Ref<const Positions>& positions, const Triangles& triangles);
 

@@ -7,6 +7,7 @@
 
 #include "toolkit/correspondence/closest_surface.h"
 #include "toolkit/correspondence/marker_check.h"
+#include "toolkit/mesh/normals.h"
 #include "toolkit/mesh/parallel.h"
 #include "toolkit/mesh/text.h"
 #include "toolkit/mesh/weld.h"

@@ -9,6 +9,7 @@
 
 #include "toolkit/correspondence/closest_surface.h"
 #include "toolkit/mesh/errors.h"
+#include "toolkit/mesh/normals.h"
 #include "toolkit/mesh/product_blocking.h"
 #include "toolkit/mesh/similarity.h"
 #include "toolkit/mesh/text.h"

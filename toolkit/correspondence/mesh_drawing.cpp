@@ -10,6 +10,7 @@
 #include <Eigen/Geometry>
 
 #include "toolkit/correspondence/closest_surface.h"
+#include "toolkit/mesh/normals.h"
 #include "toolkit/mesh/weld.h"
 
 namespace mimetra {

@@ -8,6 +8,7 @@
 #include "toolkit/correspondence/closest_surface.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/inspection.h"
+#include "toolkit/mesh/normals.h"
 #include "toolkit/mesh/similarity.h"
 
 namespace mimetra {

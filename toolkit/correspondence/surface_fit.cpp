@@ -9,6 +9,7 @@
 #include "toolkit/correspondence/deformation_system.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/inspection.h"
+#include "toolkit/mesh/normals.h"
 #include "toolkit/mesh/parallel.h"
 #include "toolkit/mesh/similarity.h"
 #include "toolkit/mesh/surface_parts.h"

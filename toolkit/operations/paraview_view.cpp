@@ -52,16 +52,22 @@ std::string categories(const std::map<int, Color>& colors) {
          "]\n";
 }
 
-/// Orthographic, a little from the side and from above; the face looks along +z.
-std::string camera(const Positions& rest) {
+/// Orthographic, a little from the side and from above.
+std::string camera(const Positions& rest, UpAxis up) {
+  const auto axes = [up](double right, double above, double front) {
+    return up == UpAxis::y ? Eigen::RowVector3d(right, above, front)
+                           : Eigen::RowVector3d(right, 0 - front, above);
+  };
   const Eigen::RowVector3d low = rest.colwise().minCoeff(), high = rest.colwise().maxCoeff();
   const Eigen::RowVector3d middle = (low + high) / 2;
   const double size = (high - low).norm();
-  const Eigen::RowVector3d from = middle + 2 * size * Eigen::RowVector3d(0.26, 0.09, 0.96);
+  const Eigen::RowVector3d from = middle + 2 * size * axes(0.26, 0.09, 0.96);
+  const Eigen::RowVector3d seen = axes(1, 1, 0).cwiseProduct(high - low);
   std::ostringstream text;
   text << "view.CameraParallelProjection = 1\nview.CameraFocalPoint = " << list_of(middle)
-       << "\nview.CameraPosition = " << list_of(from) << "\nview.CameraViewUp = [0, 1, 0]\n"
-       << "view.CameraParallelScale = " << 0.6 * (high - low).head<2>().maxCoeff() << '\n';
+       << "\nview.CameraPosition = " << list_of(from)
+       << "\nview.CameraViewUp = " << list_of(axes(0, 1, 0)) << '\n'
+       << "view.CameraParallelScale = " << 0.6 * seen.maxCoeff() << '\n';
   return text.str();
 }
 
@@ -117,11 +123,12 @@ if len(sys.argv) == 2 and sys.argv[1].endswith(".png"):
 
 }  // namespace
 
-std::string paraview_view(const RegionData& regions, const std::filesystem::path& series) {
+std::string paraview_view(const RegionData& regions, const std::filesystem::path& series,
+                          UpAxis up) {
   const std::string name = series.stem().string();
   return kHead + ("reader = OpenDataFile(" + quoted(series.string()) + ")\n") + "RenameSource(" +
          quoted(name) + ", reader)\n" + kColoring + categories(colors_of(regions)) + kLegend +
-         camera(regions.fields.frames->rest()) + kEnd;
+         camera(regions.fields.frames->rest(), up) + kEnd;
 }
 
 }  // namespace mimetra

@@ -15,6 +15,7 @@
 #include "toolkit/pipeline/joint_motion.h"
 #include "toolkit/pipeline/memory.h"
 #include "toolkit/pipeline/region_selector.h"
+#include "toolkit/pipeline/simplified_regions.h"
 
 namespace mimetra {
 
@@ -24,10 +25,17 @@ struct RegionsCall {
   RegionChoiceOptions regions = {};
   /// Also write support_k and component_k of each region.
   bool component_fields = false;
+  /// In the script for ParaView.
+  UpAxis up = UpAxis::y;
+  /// Share of the vertices on which regions are found; by default all.
+  std::optional<double> simplify = {};
   AnalysisOptions analysis = {};
   SourceOptions source = {};
 
   static constexpr Option kComponentFields{"component_fields", &RegionsCall::component_fields};
+  static constexpr Option kUp{"up", &RegionsCall::up};
+  static constexpr Option kSimplify{
+      "simplify", &RegionsCall::simplify, {.minimum = 1e-6, .maximum = 1}};
 };
 
 BoundParameters<RegionsCall> regions_parameters(const FieldSequence* fields = nullptr) {
@@ -36,6 +44,12 @@ BoundParameters<RegionsCall> regions_parameters(const FieldSequence* fields = nu
   return list.add(&RegionsCall::regions, region_parameters())
       .add("component-fields", RegionsCall::kComponentFields,
            "also write support_k and component_k of each region")
+      .add("simplify", RegionsCall::kSimplify,
+           "find the regions on this share of the vertices (as the command simplify chooses them) "
+           "and measure their discs on all of them; for fine meshes; default all")
+      .add("up", RegionsCall::kUp,
+           "axis that points up in --paraview's script; the face looks along +z, or -y where z is "
+           "up")
       .add(&RegionsCall::analysis, count_parameters())
       .add(&RegionsCall::analysis, analysis_parameters(fields))
       .add(&RegionsCall::source, rest_parameters(sequence))
@@ -48,6 +62,8 @@ struct Found {
   std::optional<HeadMotionTaken> head_motion = {};
   /// That the regions come from; none where they are chosen for a transfer.
   std::optional<Components> components = {};
+  /// On which they were found, where those are not all.
+  std::optional<std::size_t> simplified_vertices = {};
   double seconds = 0;
 };
 
@@ -58,8 +74,21 @@ SourceOptions source_options(const Invocation& invocation, const RegionsCall& ca
   return options;
 }
 
+/// On some of the vertices.
+Found found_on_simplified(const Invocation& invocation, const RegionsCall& call) {
+  const Source source = prepare_source(invocation.get<FieldSequence>("sequence").frames,
+                                       source_options(invocation, call));
+  SimplifiedRegions made =
+      regions_by_simplified(source, {.share = *call.simplify}, call.analysis, call.regions);
+  Found found{std::move(made.regions), source.head_motion};
+  found.simplified_vertices = made.mesh.vertices.size();
+  found.seconds = made.seconds;
+  return found;
+}
+
 /// By components that are given, or those of the sequence without its motion.
 Found found_by_energy(const Invocation& invocation, const RegionsCall& call) {
+  if (call.simplify) return found_on_simplified(invocation, call);
   const std::shared_ptr<const FrameSource>& sequence =
       invocation.get<FieldSequence>("sequence").frames;
   Found found;
@@ -102,10 +131,29 @@ Found found_for_transfer(const Invocation& invocation, const RegionsCall& call) 
   return found;
 }
 
+/// What is not made where regions are found on some of the vertices.
+void check_simplify(const Invocation& invocation) {
+  const Parameters& parameters = invocation.parameters;
+  if (!parameters.is_set("simplify")) return;
+  if (parameters.choice<RegionShape>("region") != RegionShape::disc) {
+    throw UsageError("--simplify: needs --region disc; the others need all vertices");
+  }
+  if (parameters.choice<Selector>("select") == Selector::transfer) {
+    throw UsageError("--simplify: has no effect with --select transfer");
+  }
+  if (invocation.find<Components>("components")) {
+    throw UsageError("--simplify: has no effect on --components, which are decomposed already");
+  }
+  const std::string reason = "components of all vertices are not made with --simplify";
+  refuse_options(parameters, {"component-fields"}, reason);
+  if (invocation.wants("components-out")) throw UsageError("--components-out: " + reason);
+}
+
 /// Options that the others leave without an effect, or that need more.
 void check_choice(const Invocation& invocation) {
   check_selection(invocation);
   check_given_components(invocation);
+  check_simplify(invocation);
   const bool selects = invocation.parameters.choice<Selector>("select") == Selector::transfer;
   const bool has_target = invocation.find<ModelData>("target") != nullptr;
   if (selects && !has_target) {
@@ -132,7 +180,11 @@ std::filesystem::path series_of(const Invocation& invocation) {
 
 /// Refuses what the run cannot do, before it is done.
 RegionsCall read_regions_call(const Invocation& invocation) {
-  if (invocation.wants("paraview")) series_of(invocation);
+  if (invocation.wants("paraview")) {
+    series_of(invocation);
+  } else {
+    refuse_options(invocation.parameters, {"up"}, "is for the script of --paraview");
+  }
   check_choice(invocation);
   RegionsCall call =
       regions_parameters(&invocation.get<FieldSequence>("sequence")).read(invocation.parameters);
@@ -148,6 +200,15 @@ RegionsCall read_regions_call(const Invocation& invocation) {
                         "sequence again");
   }
   return call;
+}
+
+/// A decomposition of some of the vertices, and what chooses these.
+DecompositionPlan of_share(DecompositionPlan plan, const Invocation& invocation,
+                           const FrameSource& sequence) {
+  const double share = invocation.parameters.number("simplify");
+  plan.bytes = std::max(simplify_bytes(sequence), share * plan.bytes);
+  plan.scratch_bytes *= share;
+  return plan;
 }
 
 void foresee_regions(const Invocation& invocation) {
@@ -177,6 +238,7 @@ Outcome run_regions(const Invocation& invocation) {
   Outcome outcome;
   Json json = report_of(regions);
   if (found.head_motion) json["head_motion"] = json_of(*found.head_motion);
+  if (found.simplified_vertices) json["simplified_vertices"] = *found.simplified_vertices;
   if (found.components) add_convergence(json, *found.components);
   json["seconds"] = found.seconds;
   outcome.report = json_text(json);
@@ -185,7 +247,7 @@ Outcome run_regions(const Invocation& invocation) {
                                                 std::move(fields), true)};
   if (invocation.wants("paraview")) {
     outcome.outputs["paraview"].push_back(
-        {"", Document{paraview_view(shown, series_of(invocation))}});
+        {"", Document{paraview_view(shown, series_of(invocation), call.up)}});
   }
   outcome.outputs["out"].push_back({"", shown});
   if (invocation.wants("components-out")) {
@@ -221,7 +283,11 @@ Operation regions_operation() {
   const auto plan = [](const Invocation& invocation) {
     const FrameSource& sequence = *invocation.get<FieldSequence>("sequence").frames;
     if (invocation.parameters.choice<Selector>("select") == Selector::energy) {
-      return analysis_plan(invocation, sequence, invocation.parameters.integer("k"));
+      DecompositionPlan decomposition =
+          analysis_plan(invocation, sequence, invocation.parameters.integer("k"));
+      if (invocation.parameters.is_set("simplify"))
+        decomposition = of_share(decomposition, invocation, sequence);
+      return decomposition;
     }
     DecompositionPlan selection;
     if (const auto* target = invocation.find<ModelData>("target")) {

@@ -19,6 +19,8 @@ void add_toolkit(OperationTable& table) {
   table.add(evaluate_operation());
   table.add(rig_operation());
   table.add(convert_operation());
+  table.add(simplify_operation());
+  table.add(subdivide_operation());
   table.add(retarget_operation());
 }
 

@@ -14,6 +14,8 @@ Operation regions_operation();
 Operation transfer_operation();
 Operation evaluate_operation();
 Operation convert_operation();
+Operation simplify_operation();
+Operation subdivide_operation();
 Operation retarget_operation();
 
 }  // namespace mimetra

@@ -1,24 +1,9 @@
 #pragma once
 
-#include <string_view>
-
 #include "toolkit/mesh/option.h"
+#include "toolkit/operations/up_axis.h"
 
 namespace mimetra {
-
-/// The axis that points up.
-enum class UpAxis { y, z };
-
-/// As people choose it.
-constexpr std::string_view choice_name(UpAxis value) {
-  switch (value) {
-    case UpAxis::y:
-      return "y";
-    case UpAxis::z:
-      return "z";
-  }
-  return {};
-}
 
 /// From where meshes are seen.
 struct Viewpoint {

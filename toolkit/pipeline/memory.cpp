@@ -32,6 +32,12 @@ double frame_bytes(const FrameSource& sequence) {
   return kNumber * 3 * sequence.frames() * sequence.vertices();
 }
 
+double simplify_bytes(const FrameSource& sequence) {
+  // Quadrics, positions and normals of six poses, half-edges, and the decimater's heap.
+  constexpr double kOfVertex = 2200;
+  return kOfVertex * sequence.vertices();
+}
+
 double stored_bytes(const FrameSource& sequence) {
   return sequence.is_quick() ? 0 : kept_bytes(frame_bytes(sequence));
 }

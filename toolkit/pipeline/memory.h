@@ -12,6 +12,9 @@ namespace mimetra {
 /// All frames in memory.
 double frame_bytes(const FrameSource& sequence);
 
+/// What simplify() takes of a sequence.
+double simplify_bytes(const FrameSource& sequence);
+
 /// What stored() has in memory; 0 for a source that is quick to read.
 double stored_bytes(const FrameSource& sequence);
 

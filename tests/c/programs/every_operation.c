@@ -145,6 +145,11 @@ int main(int argc, char** argv) {
   m->free_data(makes(m, context, call, "positions", FRAMES));
   call = call_on(m, context, "convert", "sequence", take);
   m->free_data(makes(m, context, call, "positions", FRAMES));
+  call = call_on(m, context, "simplify", "sequence", take);
+  OK(context, m->call_set(call, "share", "0.5"));
+  m->free_data(makes(m, context, call, "positions", FRAMES));
+  call = call_on(m, context, "subdivide", "sequence", take);
+  m->free_data(makes(m, context, call, "positions", FRAMES));
   call = call_on(m, context, "geodesic", "mesh", take);
   OK(context, m->call_set(call, "source", "0"));
   m->free_data(makes(m, context, call, "distance", VERTICES));

@@ -1,0 +1,329 @@
+#include "toolkit/mesh/simplification.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <set>
+
+#include "geodesic/glued_surface.h"
+#include "toolkit/mesh/normals.h"
+#include "toolkit/mesh/pose_decimation.h"
+#include "toolkit/mesh/weld.h"
+
+namespace mimetra {
+namespace {
+
+using Vector = Eigen::Vector3d;
+
+/// Besides the rest pose, whose planes count.
+constexpr int kExtremePoses = 5;
+/// Vertices by which frames are compared.
+constexpr int kSamples = 500;
+/// Frames in which triangles fold are looked at in the next round.
+constexpr int kRounds = 4, kFoldedPoses = 4;
+
+/// Triangles with three different corners.
+std::vector<int> sound_triangles(const Triangles& triangles) {
+  std::vector<int> sound;
+  for (Eigen::Index t = 0; t < triangles.rows(); ++t) {
+    const auto c = triangles.row(t);
+    if (c[0] != c[1] && c[1] != c[2] && c[2] != c[0]) sound.push_back(static_cast<int>(t));
+  }
+  return sound;
+}
+
+/// The surface that half-edges can hold, each of whose vertices stands for one of the input.
+struct Surface {
+  geodesic::GluedSurface glued;
+  /// Triangle of the input behind each.
+  std::vector<int> triangle;
+};
+
+Surface surface_of(const Connectivity& mesh) {
+  Surface surface;
+  surface.triangle = sound_triangles(mesh.triangles);
+  std::vector<VertexIndex> used, number(static_cast<std::size_t>(mesh.vertices), -1);
+  const Triangles sound = mesh.triangles(surface.triangle, Eigen::all);
+  for (const VertexIndex v : sound.reshaped()) number[static_cast<std::size_t>(v)] = 0;
+  for (VertexIndex v = 0; v < mesh.vertices; ++v) {
+    VertexIndex& own = number[static_cast<std::size_t>(v)];
+    if (own < 0) continue;
+    own = static_cast<VertexIndex>(used.size());
+    used.push_back(v);
+  }
+  const Triangles compact =
+      sound.unaryExpr([&number](VertexIndex v) { return number[static_cast<std::size_t>(v)]; });
+  surface.glued = geodesic::glued(static_cast<Eigen::Index>(used.size()), compact);
+  for (VertexIndex& v : surface.glued.vertex) v = used[static_cast<std::size_t>(v)];
+  return surface;
+}
+
+/// Coordinates of each corner's vertex; one number where all corners of a vertex share it.
+std::vector<std::set<int>> texture_of_vertices(const Connectivity& mesh) {
+  std::vector<std::set<int>> of_vertex(static_cast<std::size_t>(mesh.vertices));
+  for (std::size_t c = 0; c < mesh.texture.corners.size(); ++c) {
+    of_vertex[static_cast<std::size_t>(mesh.polygons.corners[c])].insert(mesh.texture.corners[c]);
+  }
+  return of_vertex;
+}
+
+/// Vertices of the input that must not go (N).
+std::vector<bool> locked_vertices(const FrameSource& sequence, const Surface& surface,
+                                  const std::vector<std::set<int>>& texture) {
+  const auto count = static_cast<std::size_t>(sequence.vertices());
+  std::vector<int> times(count, 0), at_place(count, 0);
+  for (const VertexIndex v : surface.glued.vertex) ++times[static_cast<std::size_t>(v)];
+  const Weld weld = Weld::exact(sequence.rest());
+  for (const VertexIndex v : weld.representative) ++at_place[static_cast<std::size_t>(v)];
+  std::vector<bool> locked(count);
+  for (std::size_t v = 0; v < count; ++v) {
+    const auto place = static_cast<std::size_t>(weld.representative[v]);
+    locked[v] = times[v] != 1 || at_place[place] > 1 || texture[v].size() > 1;
+  }
+  return locked;
+}
+
+/// A frame's vertices that stand for the surface's, times `scale`.
+Positions on_surface(const PositionsView& pose, const Surface& surface, const Vector& middle,
+                     double scale) {
+  Positions result = pose(surface.glued.vertex, Eigen::all);
+  result.rowwise() -= middle.transpose();
+  return result * scale;
+}
+
+/// Frames that differ most from the rest pose and from each other, in the order in which they were
+/// found.
+std::vector<int> extreme_frames(const FrameSource& sequence, const BlockOptions& options) {
+  std::vector<VertexIndex> sample;
+  const int step = std::max(1, sequence.vertices() / kSamples);
+  for (VertexIndex v = 0; v < sequence.vertices(); v += step) sample.push_back(v);
+  const auto count = static_cast<Eigen::Index>(sample.size());
+  Eigen::MatrixXd poses(sequence.frames(), 3 * count);
+  for_each_block(sequence, options, [&](int first, const Frames& block) {
+    for (Eigen::Index row = 0; row < block.rows(); ++row) {
+      const PositionsView pose(block.row(row).data(), sequence.vertices(), 3);
+      poses.row(first + row) = Positions(pose(sample, Eigen::all)).reshaped<Eigen::RowMajor>();
+    }
+  });
+  const Eigen::RowVectorXd rest =
+      Positions(sequence.rest()(sample, Eigen::all)).reshaped<Eigen::RowMajor>().transpose();
+  Eigen::VectorXd farthest = (poses.rowwise() - rest).rowwise().squaredNorm();
+  std::vector<int> frames;
+  while (static_cast<int>(frames.size()) < kExtremePoses) {
+    Eigen::Index next = 0;
+    if (!(farthest.maxCoeff(&next) > 0)) break;
+    frames.push_back(static_cast<int>(next));
+    farthest = farthest.cwiseMin((poses.rowwise() - poses.row(next)).rowwise().squaredNorm());
+  }
+  return frames;
+}
+
+/// Where triangles that collapses have made are turned over.
+struct Folds {
+  std::vector<int> in_frame;   ///< how many (F)
+  std::vector<bool> triangle;  ///< each of `corners`
+};
+
+Folds folds_of(const FrameSource& sequence, const Surface& surface, const CollapsedSurface& mesh,
+               const BlockOptions& options) {
+  std::vector<int> made;
+  for (Eigen::Index i = 0; i < mesh.corners.rows(); ++i) {
+    auto before = std::array<int, 3>{}, after = std::array<int, 3>{};
+    for (int c = 0; c < 3; ++c) {
+      before[std::size_t(c)] = surface.glued.triangles(mesh.triangles[std::size_t(i)], c);
+      after[std::size_t(c)] = mesh.corners(i, c);
+    }
+    std::ranges::sort(before);
+    std::ranges::sort(after);
+    if (before != after) made.push_back(static_cast<int>(i));
+  }
+  Folds folds;
+  folds.in_frame.resize(static_cast<std::size_t>(sequence.frames()), 0);
+  std::vector<std::vector<int>> folded(folds.in_frame.size());
+  for_each_block(sequence, options, [&](int first, const Frames& poses) {
+    for (Eigen::Index row = 0; row < poses.rows(); ++row) {
+      const Positions pose = on_surface(
+          PositionsView(poses.row(row).data(), sequence.vertices(), 3), surface, Vector::Zero(), 1);
+      const Positions normals =
+          vertex_normals(pose, surface.glued.triangles).rowwise().normalized();
+      for (const int i : made) {
+        const auto c = mesh.corners.row(i);
+        const Vector around = normals.row(c[0]) + normals.row(c[1]) + normals.row(c[2]);
+        if (agreement(pose.row(c[0]), pose.row(c[1]), pose.row(c[2]), around) > 0) continue;
+        folded[static_cast<std::size_t>(first + row)].push_back(i);
+      }
+    }
+  });
+  folds.triangle.resize(static_cast<std::size_t>(mesh.corners.rows()));
+  for (std::size_t f = 0; f < folded.size(); ++f) {
+    folds.in_frame[f] = static_cast<int>(folded[f].size());
+    for (const int i : folded[f]) folds.triangle[static_cast<std::size_t>(i)] = true;
+  }
+  return folds;
+}
+
+/// Frames with the most folds, most first.
+std::vector<int> worst_frames(const std::vector<int>& folds) {
+  std::vector<int> frames(folds.size());
+  std::iota(frames.begin(), frames.end(), 0);
+  std::ranges::stable_sort(
+      frames, [&folds](int a, int b) { return folds[std::size_t(a)] > folds[std::size_t(b)]; });
+  const auto none =
+      std::ranges::find_if(frames, [&folds](int frame) { return folds[std::size_t(frame)] == 0; });
+  frames.erase(none, frames.end());
+  frames.resize(std::min<std::size_t>(frames.size(), kFoldedPoses));
+  return frames;
+}
+
+/// Texture coordinates of `vertex` next to those that the corner had before.
+int nearest_texture(const TextureCoordinates& texture, const std::set<int>& of_vertex, int before) {
+  if (of_vertex.empty()) return -1;
+  if (of_vertex.size() == 1 || before < 0) return *of_vertex.begin();
+  const auto at = [&texture](int i) { return texture.coordinates[std::size_t(i)]; };
+  return *std::ranges::min_element(
+      of_vertex, {}, [&](int i) { return i < 0 ? HUGE_VAL : (at(i) - at(before)).squaredNorm(); });
+}
+
+/// Makes the connectivity of what is left of a mesh.
+class Remaining {
+ public:
+  Remaining(const Connectivity& mesh, const Surface& surface, const CollapsedSurface& left,
+            const std::vector<std::set<int>>& texture)
+      : mesh_(mesh), surface_(surface), left_(left), texture_(texture) {}
+
+  /// Vertices of the input that are kept, ascending.
+  std::vector<VertexIndex> vertices() const {
+    std::vector<bool> kept(static_cast<std::size_t>(mesh_.vertices), true);
+    for (const VertexIndex v : surface_.glued.vertex) kept[std::size_t(v)] = false;
+    for (std::size_t v = 0; v < left_.kept.size(); ++v) {
+      if (left_.kept[v]) kept[std::size_t(surface_.glued.vertex[v])] = true;
+    }
+    std::vector<VertexIndex> vertices;
+    for (VertexIndex v = 0; v < mesh_.vertices; ++v) {
+      if (kept[std::size_t(v)]) vertices.push_back(v);
+    }
+    return vertices;
+  }
+
+  std::shared_ptr<const Connectivity> connectivity(const std::vector<VertexIndex>& vertices) const {
+    std::vector<VertexIndex> number(static_cast<std::size_t>(mesh_.vertices), -1);
+    for (std::size_t i = 0; i < vertices.size(); ++i) {
+      number[std::size_t(vertices[i])] = static_cast<VertexIndex>(i);
+    }
+    Triangles triangles = left_.corners.unaryExpr(
+        [&](VertexIndex v) { return number[std::size_t(surface_.glued.vertex[std::size_t(v)])]; });
+    for (std::size_t i = 0; i < left_.triangles.size(); ++i) {
+      if (is_turned(i)) triangles.row(Eigen::Index(i)).reverseInPlace();
+    }
+    Connectivity made = Connectivity::from_triangles(static_cast<int>(vertices.size()), triangles);
+    made.materials = mesh_.materials;
+    add_texture(made);
+    add_groups(made);
+    return std::make_shared<const Connectivity>(std::move(made));
+  }
+
+ private:
+  int given_triangle(std::size_t i) const {
+    return surface_.triangle[std::size_t(left_.triangles[i])];
+  }
+
+  /// Whether the surface has the given triangle the other way round, to glue it to its neighbours.
+  bool is_turned(std::size_t i) const {
+    const auto given = mesh_.triangles.row(given_triangle(i));
+    const auto glued = surface_.glued.triangles.row(left_.triangles[i]);
+    const auto at = [&](int c) { return surface_.glued.vertex[std::size_t(glued[c])]; };
+    for (int c = 0; c < 3; ++c) {
+      if (at(c) == given[0]) return at((c + 1) % 3) != given[1];
+    }
+    return false;
+  }
+
+  void add_texture(Connectivity& made) const {
+    if (mesh_.texture.coordinates.empty()) return;
+    std::map<int, int> number;
+    for (std::size_t i = 0; i < left_.triangles.size(); ++i) {
+      const int polygon = mesh_.polygon_of_triangle[std::size_t(given_triangle(i))];
+      const int before =
+          mesh_.texture.corners[std::size_t(mesh_.polygons.offsets[std::size_t(polygon)])];
+      for (int c = 0; c < 3; ++c) {
+        const VertexIndex v =
+            surface_.glued.vertex[std::size_t(left_.corners(static_cast<Eigen::Index>(i), c))];
+        const int given = nearest_texture(mesh_.texture, texture_[std::size_t(v)], before);
+        const auto [place, is_new] =
+            number.try_emplace(given, int(made.texture.coordinates.size()));
+        if (given < 0) place->second = -1;
+        if (given >= 0 && is_new) {
+          made.texture.coordinates.push_back(mesh_.texture.coordinates[std::size_t(given)]);
+        }
+        made.texture.corners.push_back(place->second);
+      }
+    }
+  }
+
+  /// Statements before faces that are gone stand before the next that is left.
+  void add_groups(Connectivity& made) const {
+    std::size_t face = 0;
+    for (const FaceGroup& group : mesh_.groups) {
+      while (face < left_.triangles.size() &&
+             mesh_.polygon_of_triangle[std::size_t(given_triangle(face))] < group.first_face) {
+        ++face;
+      }
+      made.groups.push_back({static_cast<int>(face), group.statement});
+    }
+  }
+
+  const Connectivity& mesh_;
+  const Surface& surface_;
+  const CollapsedSurface& left_;
+  const std::vector<std::set<int>>& texture_;
+};
+
+}  // namespace
+
+Simplification simplify(const FrameSource& sequence, const SimplifyOptions& options) {
+  check_options(options);
+  const auto part = [&options](double from, double to) -> BlockOptions {
+    return {.threads = options.threads, .progress = part_of(options.progress, from, to)};
+  };
+  const Surface surface = surface_of(sequence.connectivity());
+  const std::vector<std::set<int>> texture = texture_of_vertices(sequence.connectivity());
+  const std::vector<bool> locked = locked_vertices(sequence, surface, texture);
+  std::vector<bool> on_glued;
+  for (const VertexIndex v : surface.glued.vertex) on_glued.push_back(locked[std::size_t(v)]);
+  const Vector middle = sequence.rest().colwise().mean();
+  const double size = sequence.diameter(), scale = size > 0 ? 1 / size : 1;
+  DecimationPoses poses;
+  const auto add = [&](const PositionsView& pose) {
+    poses.add(on_surface(pose, surface, middle, scale), surface.glued.triangles);
+  };
+  add(PositionsView(sequence.rest().data(), sequence.vertices(), 3));
+  for (const int frame : extreme_frames(sequence, part(0, 0.1))) {
+    add(FrameBlock(sequence, frame, 1).frame(0));
+  }
+  poses.planes = static_cast<int>(poses.positions.size());
+  const auto wanted = static_cast<int>(std::ceil(options.share * sequence.vertices()));
+  const auto collapses = static_cast<std::size_t>(std::max(0, sequence.vertices() - wanted));
+  CollapsedSurface left;
+  Folds folds;
+  for (int round = 0; round < kRounds; ++round) {
+    const double from = 0.1 + 0.9 * round / kRounds;
+    left = collapsed(surface.glued, poses, on_glued, collapses,
+                     part_of(options.progress, from, from + 0.5 / kRounds));
+    folds = folds_of(sequence, surface, left, part(from + 0.5 / kRounds, from + 0.9 / kRounds));
+    const std::vector<int> frames = worst_frames(folds.in_frame);
+    if (frames.empty()) break;
+    for (const int frame : frames) add(FrameBlock(sequence, frame, 1).frame(0));
+  }
+  const Remaining remaining(sequence.connectivity(), surface, left, texture);
+  Simplification result;
+  result.vertices = remaining.vertices();
+  result.connectivity = remaining.connectivity(result.vertices);
+  result.locked = static_cast<int>(std::ranges::count(locked, true));
+  result.folded = static_cast<int>(std::ranges::count(folds.triangle, true));
+  report_progress(options.progress, 1);
+  return result;
+}
+
+}  // namespace mimetra

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "toolkit/mesh/frame_source.h"
+#include "toolkit/mesh/option.h"
+
+namespace mimetra {
+
+struct SimplifyOptions {
+  /// Of the vertices that are kept, in (0, 1].
+  double share = 0.25;
+  /// 0 for all there are; the result does not depend on it.
+  int threads = 0;
+  Progress progress = {};
+
+  static constexpr Option kShare{"share", &SimplifyOptions::share, {.minimum = 1e-6, .maximum = 1}};
+  static constexpr auto declared() { return std::tuple(kShare); }
+};
+
+/// A sequence's mesh with fewer vertices, which stay where they are.
+struct Simplification {
+  /// Those that are kept, ascending, in the given mesh's numbering.
+  std::vector<VertexIndex> vertices;
+  /// On these: triangles, with texture coordinates, groups and materials of the given ones.
+  std::shared_ptr<const Connectivity> connectivity;
+  /// Vertices that must be kept: on texture seams, where vertices lie at one place, where the mesh
+  /// is no manifold, and those without a triangle.
+  int locked = 0;
+  /// New triangles that are turned over in some frame, which is avoided where it can be.
+  int folded = 0;
+};
+
+/// Fewer vertices by half-edge collapses, each of one vertex onto a neighbour, in OpenMesh's
+/// decimater: the cheapest first by the distances to the planes of the triangles that went before,
+/// summed over the rest pose and those frames that differ most, so that what moves keeps its
+/// vertices. No collapse turns a triangle against the surface, or makes a sliver; which is looked
+/// at in these poses, and in every frame in which the finished mesh has such a triangle. It ends
+/// with more vertices than asked for where no collapse is left. Throws std::invalid_argument for
+/// options out of range, what reading throws, Cancelled.
+///
+/// [Garland, Heckbert. Surface simplification using quadric error metrics. SIGGRAPH 1997;
+///  Mohr, Gleicher. Deformation sensitive decimation. 2003]
+Simplification simplify(const FrameSource& sequence, const SimplifyOptions& options = {});
+
+}  // namespace mimetra

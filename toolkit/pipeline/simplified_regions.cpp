@@ -1,0 +1,67 @@
+#include "toolkit/pipeline/simplified_regions.h"
+
+#include <stdexcept>
+#include <utility>
+
+#include "toolkit/correspondence/renumbered_frames.h"
+#include "toolkit/mesh/stopwatch.h"
+#include "toolkit/regions/carried_regions.h"
+
+namespace mimetra {
+namespace {
+
+/// Of all the work, choosing the vertices.
+constexpr double kSimplifying = 0.3;
+
+/// What is said of the vertices of the mesh, of those that are kept.
+AnalysisOptions of_kept(AnalysisOptions options, const std::vector<VertexIndex>& kept) {
+  if (!options.inside.empty()) {
+    std::vector<bool> inside;
+    for (const VertexIndex v : kept) inside.push_back(options.inside[static_cast<std::size_t>(v)]);
+    options.inside = std::move(inside);
+  }
+  if (options.rest) {
+    if (auto* pose = std::get_if<Positions>(&*options.rest)) {
+      *pose = Positions((*pose)(kept, Eigen::all));
+    }
+  }
+  return options;
+}
+
+}  // namespace
+
+SimplifiedRegions regions_by_simplified(const Source& source, const SimplifyOptions& simplifying,
+                                        const AnalysisOptions& analysis,
+                                        const RegionChoiceOptions& choice) {
+  const Stopwatch stopwatch;
+  if (choice.regions.shape != RegionShape::disc) {
+    throw std::invalid_argument(
+        "shape: regions that are found on fewer vertices are discs; those that hold most of a "
+        "component's energy need all vertices");
+  }
+  SimplifiedRegions result;
+  SimplifyOptions of_mesh = simplifying;
+  of_mesh.threads = analysis.threads;
+  of_mesh.progress = part_of(analysis.progress, 0, kSimplifying);
+  result.mesh = simplify(*source.sequence, of_mesh);
+  const std::vector<VertexIndex>& kept = result.mesh.vertices;
+  Source on_kept = source;
+  on_kept.sequence = renumbered(source.sequence, result.mesh.connectivity, kept);
+  on_kept.given = renumbered(source.given, result.mesh.connectivity, kept);
+  AnalysisOptions of_kept_mesh = of_kept(analysis, kept);
+  of_kept_mesh.progress = part_of(analysis.progress, kSimplifying, 1);
+  const FrameSource& whole = *source.sequence;
+  RegionChoiceOptions of_choice = choice;
+  of_choice.radius = Length::of(choice.radius.in(whole.diameter()));
+  const Regions found = choose_regions(analyse(on_kept, of_kept_mesh), of_choice);
+  DistanceOptions of_distances = analysis.distances;
+  of_distances.threads = analysis.threads;
+  of_distances.notes = analysis.notes;
+  result.regions = carried_regions(found, result.mesh, whole.vertices(), whole.triangles(),
+                                   distances_along(whole.rest(), whole.triangles(), of_distances),
+                                   analysis.inside);
+  result.seconds = stopwatch.seconds();
+  return result;
+}
+
+}  // namespace mimetra
