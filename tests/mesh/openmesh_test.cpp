@@ -117,5 +117,155 @@ TEST(OpenMeshBridge, RefusesDeletedFaces) {
                   HasSubstr("face 3 is deleted; call garbage_collection() first")));
 }
 
+using QuadMesh = OpenMesh::PolyMesh_ArrayKernelT<RichTraits>;
+
+/// Two quads and a triangle over them: vertices 0 1 2 / 3 4 5 / 6.
+QuadMesh house() {
+  QuadMesh mesh;
+  for (const auto& p : {QuadMesh::Point(0, 0, 0),
+                        {1, 0, 0},
+                        {2, 0, 0},
+                        {0, 1, 0},
+                        {1, 1, 0},
+                        {2, 1, 0},
+                        {0.5f, 2, 0}}) {
+    mesh.add_vertex(p);
+  }
+  for (const auto& corners : std::vector<std::vector<int>>{{0, 1, 4, 3}, {1, 2, 5, 4}, {3, 4, 6}}) {
+    std::vector<OpenMesh::VertexHandle> face;
+    for (const int corner : corners) face.emplace_back(corner);
+    mesh.add_face(face);
+  }
+  for (const auto vertex : mesh.vertices())
+    mesh.set_texcoord2D(vertex, {0.5f, float(vertex.idx())});
+  return mesh;
+}
+
+TEST(OpenMeshBridge, GivesPolygonsAndTextureCoordinates) {
+  const TriMesh mesh = from_openmesh(house());
+  EXPECT_TRUE(same_faces(
+      mesh.connectivity,
+      Connectivity::from_polygons(7, {{0, 1, 4, 3, 1, 2, 5, 4, 3, 4, 6}, {0, 4, 8, 11}})));
+  EXPECT_EQ(mesh.connectivity.triangles.rows(), 5);
+  const TextureCoordinates& texture = mesh.connectivity.texture;
+  const std::vector<int>& corners = mesh.connectivity.polygons.corners;
+  ASSERT_EQ(texture.corners.size(), corners.size());
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    EXPECT_EQ(texture.coordinates[static_cast<std::size_t>(texture.corners[i])],
+              Eigen::Vector2d(0.5, corners[i]));
+  }
+}
+
+TEST(OpenMeshBridge, TakesTextureCoordinatesOfHalfedgesFirst) {
+  QuadMesh mesh = house();
+  mesh.request_halfedge_texcoords2D();
+  for (const auto halfedge : mesh.halfedges()) {
+    mesh.set_texcoord2D(halfedge, {float(halfedge.idx()), float(halfedge.to().idx())});
+  }
+  const Connectivity found = from_openmesh(mesh).connectivity;
+  for (std::size_t i = 0; i < found.polygons.corners.size(); ++i) {
+    const auto uv = found.texture.coordinates[static_cast<std::size_t>(found.texture.corners[i])];
+    EXPECT_EQ(uv[1], found.polygons.corners[i]);
+    EXPECT_EQ(mesh.to_vertex_handle(OpenMesh::HalfedgeHandle(int(uv[0]))).idx(), uv[1]);
+  }
+}
+
+TEST(OpenMeshBridge, MakesASequenceOfMeshes) {
+  QuadMesh moved = house();
+  moved.set_point(OpenMesh::VertexHandle(6), {3, 4, 5});
+  const MeshSequence sequence =
+      sequence_from_openmesh(std::vector<QuadMesh>{house(), moved}, Eigen::Vector2d(0, 0.5));
+  EXPECT_EQ(sequence.frames(), 2);
+  EXPECT_FALSE(sequence.rest_is_known());
+  EXPECT_EQ(sequence.times(), Eigen::Vector2d(0, 0.5));
+  EXPECT_EQ(Positions(sequence.frame(0)), from_openmesh(house()).positions);
+  EXPECT_EQ(Positions(sequence.frame(1)), from_openmesh(moved).positions);
+}
+
+TEST(OpenMeshBridge, NamesTheMeshWithOtherFaces) {
+  QuadMesh other = house();
+  other.delete_face(OpenMesh::FaceHandle(2), false);
+  other.garbage_collection();
+  EXPECT_THAT(
+      [&] {
+        sequence_from_openmesh(std::vector<QuadMesh>{house(), house(), other});
+      },
+      ThrowsMessage<std::invalid_argument>("mesh 2 has other faces than mesh 0"));
+  EXPECT_THROW(sequence_from_openmesh(std::vector<QuadMesh>{}), std::invalid_argument);
+}
+
+TEST(OpenMeshBridge, MakesASequenceOfPointProperties) {
+  QuadMesh mesh = house();
+  auto open = OpenMesh::getOrMakeProperty<OpenMesh::VertexHandle, QuadMesh::Point>(mesh, "open");
+  auto wide = OpenMesh::getOrMakeProperty<OpenMesh::VertexHandle, OpenMesh::Vec3d>(mesh, "wide");
+  for (const auto vertex : mesh.vertices()) {
+    open[vertex] = mesh.point(vertex) * 2.0f;
+    wide[vertex] = OpenMesh::Vec3d(vertex.idx(), 0.1, 0);
+  }
+  const MeshSequence sequence = sequence_from_openmesh(mesh, {"open", "wide"});
+  const Positions rest = from_openmesh(mesh).positions;
+  EXPECT_TRUE(sequence.rest_is_known());
+  EXPECT_EQ(sequence.rest(), rest);
+  EXPECT_EQ(Positions(sequence.frame(0)), 2 * rest);
+  EXPECT_EQ(sequence.frame(1)(5, 0), 5);
+  EXPECT_EQ(sequence.frame(1)(5, 1), 0.1);
+  EXPECT_THAT(
+      [&] {
+        sequence_from_openmesh(mesh, {"open", "shut"});
+      },
+      ThrowsMessage<std::invalid_argument>("the mesh has no points of vertices 'shut'"));
+}
+
+TEST(OpenMeshBridge, PutsFieldsIntoPropertiesAndTakesThemBack) {
+  QuadMesh mesh = house();
+  Eigen::MatrixXd region(7, 1), way(7, 3), in_l(5, 1);
+  region << 0, 0, 1, -1, -1, 1, 2;
+  way.setRandom();
+  in_l << 0, 1, 0, 0, 1;
+  set_fields(mesh, {{"region", Field::Location::vertices, region, true},
+                    {"component_0", Field::Location::vertices, way},
+                    {"in_L", Field::Location::triangles, in_l, true}});
+  const auto of_vertices = OpenMesh::getProperty<OpenMesh::VertexHandle, int>(mesh, "v:region");
+  const auto of_faces = OpenMesh::getProperty<OpenMesh::FaceHandle, int>(mesh, "f:in_L");
+  EXPECT_EQ(of_vertices[OpenMesh::VertexHandle(6)], 2);
+  EXPECT_EQ(of_faces[OpenMesh::FaceHandle(0)], 1);
+  EXPECT_EQ(of_faces[OpenMesh::FaceHandle(1)], 0);
+  const Field back = field_from_openmesh(mesh, "v:region");
+  EXPECT_EQ(back.name, "region");
+  EXPECT_TRUE(back.integer);
+  EXPECT_EQ(back.values, region);
+  EXPECT_EQ(field_from_openmesh(mesh, "v:component_0").values, way);
+  const Field faces = field_from_openmesh(mesh, "f:in_L");
+  EXPECT_EQ(faces.location, Field::Location::triangles);
+  EXPECT_EQ(faces.values, (Eigen::VectorXd(5) << 1, 1, 0, 0, 1).finished());
+}
+
+TEST(OpenMeshBridge, TakesMasksAndWeightsOfAnyType) {
+  QuadMesh mesh = house();
+  auto mask = OpenMesh::getOrMakeProperty<OpenMesh::VertexHandle, bool>(mesh, "v:roi");
+  auto weight = OpenMesh::getOrMakeProperty<OpenMesh::VertexHandle, float>(mesh, "v:weight");
+  for (const auto vertex : mesh.vertices()) {
+    mask[vertex] = vertex.idx() == 2;
+    weight[vertex] = 0.25f * static_cast<float>(vertex.idx() % 5);
+  }
+  EXPECT_EQ(field_from_openmesh(mesh, "v:roi").values, Eigen::VectorXd::Unit(7, 2));
+  EXPECT_EQ(field_from_openmesh(mesh, "v:weight").values(3, 0), 0.75);
+}
+
+TEST(OpenMeshBridge, NamesWhatItCannotHoldOrFind) {
+  QuadMesh mesh = house();
+  EXPECT_THAT([&] { field_from_openmesh(mesh, "v:roi"); },
+              ThrowsMessage<std::invalid_argument>(HasSubstr("the mesh has no property 'v:roi'")));
+  EXPECT_THAT([&] { field_from_openmesh(mesh, "roi"); },
+              ThrowsMessage<std::invalid_argument>(HasSubstr("begins with v: or f:")));
+  const Field wide{"wide", Field::Location::vertices, Eigen::MatrixXd::Zero(7, 2)};
+  EXPECT_THAT([&] { set_fields(mesh, {wide}); },
+              ThrowsMessage<std::invalid_argument>(HasSubstr("field 'wide' has 2 columns")));
+  const Field short_one{"short", Field::Location::triangles, Eigen::MatrixXd::Zero(3, 1)};
+  EXPECT_THAT([&] { set_fields(mesh, {short_one}); },
+              ThrowsMessage<std::invalid_argument>(
+                  "field 'short' has 3 values, expected 5, one a triangle"));
+}
+
 }  // namespace
 }  // namespace mimetra

@@ -62,11 +62,14 @@ std::vector<FrameShape> frame_shapes(const FrameSource& sequence, const BlockOpt
   std::vector<FrameShape> shapes(static_cast<std::size_t>(sequence.frames()));
   const Positions rest = centred(sequence.rest());
   const double rest_spread = spread(sequence.rest());
+  const Frames first_pose = sequence.read(0, 1);
+  const PositionsView start(first_pose.data(), sequence.vertices(), 3);
   for_each_block(sequence, options, [&](int first, const Frames& poses) {
     for (Eigen::Index row = 0; row < poses.rows(); ++row) {
       const PositionsView pose(poses.row(row).data(), sequence.vertices(), 3);
-      shapes[static_cast<std::size_t>(first + row)] =
-          shape_of(pose, rest, rest_spread, sequence.triangles());
+      FrameShape& shape = shapes[static_cast<std::size_t>(first + row)];
+      shape = shape_of(pose, rest, rest_spread, sequence.triangles());
+      shape.from_first = std::sqrt((pose - start).rowwise().squaredNorm().maxCoeff());
     }
   });
   return shapes;

@@ -26,6 +26,8 @@ struct FrameShape {
   /// The longest edge, and its ends; none where there are no triangles.
   double longest_edge = 0;
   std::pair<VertexIndex, VertexIndex> ends{-1, -1};
+  /// Largest distance of a vertex from where it is in frame 0.
+  double from_first = 0;
 };
 
 /// Of every frame (F). Throws what reading throws, Cancelled.

@@ -56,22 +56,11 @@ class SelectedFrames : public FrameSource {
   std::vector<int> chosen_;
 };
 
-/// The poses of another source.
-class RestedFrames : public FrameSource {
+/// The poses of another source under another header of as many vertices and frames.
+class FramesUnderHeader : public FrameSource {
  public:
-  RestedFrames(std::shared_ptr<const FrameSource> source, std::optional<Positions> rest)
-      : FrameSource(source->header()), source_(std::move(source)) {
-    header_.rest_is_known = rest.has_value();
-    if (rest) {
-      header_.rest = *std::move(rest);
-    } else if (frames() > 0) {
-      header_.rest = FrameBlock(*source_, 0, 1).frame(0);
-    }
-    if (header_.rest.rows() == vertices()) return;
-    throw std::invalid_argument("the rest pose has " + std::to_string(header_.rest.rows()) +
-                                " vertices, expected " + std::to_string(vertices()) +
-                                " as in the frames");
-  }
+  FramesUnderHeader(std::shared_ptr<const FrameSource> source, SequenceHeader header)
+      : FrameSource(std::move(header)), source_(std::move(source)) {}
 
   std::shared_ptr<const Frames> in_memory() const override { return source_->in_memory(); }
   bool is_quick() const override { return source_->is_quick(); }
@@ -210,7 +199,25 @@ std::shared_ptr<const FrameSource> selected(std::shared_ptr<const FrameSource> s
 
 std::shared_ptr<const FrameSource> with_rest(std::shared_ptr<const FrameSource> source,
                                              std::optional<Positions> rest) {
-  return std::make_shared<const RestedFrames>(std::move(source), std::move(rest));
+  SequenceHeader header = source->header();
+  header.rest_is_known = rest.has_value();
+  if (rest) {
+    header.rest = *std::move(rest);
+  } else if (source->frames() > 0) {
+    header.rest = FrameBlock(*source, 0, 1).frame(0);
+  }
+  if (header.rest.rows() != source->vertices()) {
+    throw std::invalid_argument("the rest pose has " + std::to_string(header.rest.rows()) +
+                                " vertices, expected " + std::to_string(source->vertices()) +
+                                " as in the frames");
+  }
+  return std::make_shared<const FramesUnderHeader>(std::move(source), std::move(header));
+}
+
+std::shared_ptr<const FrameSource> with_z_up(std::shared_ptr<const FrameSource> source) {
+  SequenceHeader header = source->header();
+  header.z_is_up = true;
+  return std::make_shared<const FramesUnderHeader>(std::move(source), std::move(header));
 }
 
 std::shared_ptr<const FrameSource> some_vertices(std::shared_ptr<const FrameSource> source,

@@ -147,6 +147,9 @@ std::shared_ptr<const FrameSource> selected(std::shared_ptr<const FrameSource> s
 std::shared_ptr<const FrameSource> with_rest(std::shared_ptr<const FrameSource> source,
                                              std::optional<Positions> rest);
 
+/// The same frames, of which it is known that z is up in them.
+std::shared_ptr<const FrameSource> with_z_up(std::shared_ptr<const FrameSource> source);
+
 /// The vertices `first` .. first + count - 1 of a source, without faces. Throws std::out_of_range
 /// for vertices that are not there.
 std::shared_ptr<const FrameSource> some_vertices(std::shared_ptr<const FrameSource> source,

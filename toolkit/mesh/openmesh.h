@@ -1,73 +1,303 @@
 #pragma once
 
+#include <concepts>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
+#include <OpenMesh/Core/Mesh/PolyMesh_ArrayKernelT.hh>
 #include <OpenMesh/Core/Mesh/TriMesh_ArrayKernelT.hh>
+#include <OpenMesh/Core/Utils/PropertyManager.hh>
 
-#include "toolkit/mesh/tri_mesh.h"
+#include "toolkit/mesh/fields.h"
 
 namespace mimetra {
 
-/// Positions and triangles of any OpenMesh triangle mesh; vertex and face order stay as they are.
-/// Throws std::invalid_argument where the mesh has deleted elements (call garbage_collection
-/// first).
-template <typename Traits>
-TriMesh from_openmesh(const OpenMesh::TriMesh_ArrayKernelT<Traits>& mesh);
+/// Any TriMesh_ArrayKernelT or PolyMesh_ArrayKernelT, or what derives from one.
+template <typename Mesh>
+concept OpenMeshClass = std::derived_from<Mesh, OpenMesh::BaseKernel> &&
+    requires(const Mesh& mesh, OpenMesh::VertexHandle vertex) {
+  typename Mesh::Point;
+  mesh.point(vertex);
+};
 
-/// The same mesh, with all its properties, at new positions (N x 3, in its vertex order). Throws
-/// std::invalid_argument where the count differs from the mesh's vertices.
-template <typename Traits>
-OpenMesh::TriMesh_ArrayKernelT<Traits> with_positions(OpenMesh::TriMesh_ArrayKernelT<Traits> mesh,
-                                                      const Eigen::Ref<const Positions>& positions);
+/// Positions, faces and texture coordinates (of halfedges, else of vertices) of a mesh; the order
+/// of vertices and faces stays as it is. Throws std::invalid_argument where the mesh has deleted
+/// elements (call garbage_collection first).
+template <OpenMeshClass Mesh>
+TriMesh from_openmesh(const Mesh& mesh);
+
+/// A frame for each mesh, of which all have the faces of the first; `times` as MeshSequence takes
+/// them, and the rest pose is not known. Throws std::invalid_argument that names the first mesh
+/// with others, for no mesh, and as from_openmesh().
+template <OpenMeshClass Mesh>
+MeshSequence sequence_from_openmesh(const std::vector<Mesh>& meshes, Eigen::VectorXd times = {});
+
+/// A frame for each vertex property of these names, which holds points of the mesh's class or
+/// OpenMesh::Vec3d; the rest pose is the mesh's own. Throws std::invalid_argument that names a
+/// property that is not there, for no name, and as from_openmesh().
+template <OpenMeshClass Mesh>
+MeshSequence sequence_from_openmesh(const Mesh& mesh, const std::vector<std::string>& poses,
+                                    Eigen::VectorXd times = {});
+
+/// Moves the vertices (N x 3, in their order); everything else on the mesh stays as it is, normals
+/// too. Throws std::invalid_argument for another number of vertices.
+template <OpenMeshClass Mesh>
+void set_positions(Mesh& mesh, const Eigen::Ref<const Positions>& positions);
+
+/// The same mesh, with all its properties, at new positions. Throws as set_positions().
+template <OpenMeshClass Mesh>
+Mesh with_positions(Mesh mesh, const Eigen::Ref<const Positions>& positions);
+
+/// Puts each field into the property `v:NAME`, on vertices, or `f:NAME`, on faces, where it takes
+/// the place of one of that name and type: `v:region`, `v:roi`, `v:distance`, `f:in_L`. Its type is
+/// int for integer fields, OpenMesh::Vec3d for three columns (`v:component_3`), else double; a face
+/// has the largest value of its triangles. Throws std::invalid_argument that names a field of
+/// another number of columns, or of values that are not one for each vertex or triangle.
+template <OpenMeshClass Mesh>
+void set_fields(Mesh& mesh, const std::vector<Field>& fields);
+
+/// The property of that name on vertices (`v:...`) or faces (`f:...`), of type bool, int, unsigned,
+/// float, double, Vec3f or Vec3d: masks, regions, weights, displacements. Values of faces are those
+/// of their triangles. Throws std::invalid_argument where there is none, or of another type.
+template <OpenMeshClass Mesh>
+Field field_from_openmesh(const Mesh& mesh, const std::string& name);
 
 // ---- implementation ----
 
-template <typename Traits>
-TriMesh from_openmesh(const OpenMesh::TriMesh_ArrayKernelT<Traits>& mesh) {
-  const int vertices = static_cast<int>(mesh.n_vertices());
-  const int faces = static_cast<int>(mesh.n_faces());
-  const auto deleted = [&mesh](auto handle, bool has_status) {
-    return has_status && mesh.status(handle).deleted();
-  };
-  TriMesh result;
-  result.positions.resize(vertices, 3);
+namespace openmesh_bridge {
+
+template <typename Handle, OpenMeshClass Mesh>
+void check_kept(const Mesh& mesh, Handle handle, bool has_status, const char* element) {
+  if (!has_status || !mesh.status(handle).deleted()) return;
+  throw std::invalid_argument(std::string(element) + " " + std::to_string(handle.idx()) +
+                              " is deleted; call garbage_collection() first");
+}
+
+template <OpenMeshClass Mesh>
+Positions positions_of(const Mesh& mesh) {
+  Positions positions(static_cast<Eigen::Index>(mesh.n_vertices()), 3);
   for (const auto vertex : mesh.all_vertices()) {
-    if (deleted(vertex, mesh.has_vertex_status())) {
-      throw std::invalid_argument("vertex " + std::to_string(vertex.idx()) +
-                                  " is deleted; call garbage_collection() first");
-    }
+    check_kept(mesh, OpenMesh::VertexHandle(vertex), mesh.has_vertex_status(), "vertex");
     const auto& point = mesh.point(vertex);
-    for (int axis = 0; axis < 3; ++axis) result.positions(vertex.idx(), axis) = point[axis];
+    for (int axis = 0; axis < 3; ++axis) positions(vertex.idx(), axis) = point[axis];
   }
-  Triangles triangles(faces, 3);
+  return positions;
+}
+
+template <OpenMeshClass Mesh>
+Polygons polygons_of(const Mesh& mesh) {
+  Polygons polygons;
   for (const auto face : mesh.all_faces()) {
-    if (deleted(face, mesh.has_face_status())) {
-      throw std::invalid_argument("face " + std::to_string(face.idx()) +
-                                  " is deleted; call garbage_collection() first");
-    }
-    int corner = 0;
-    for (const auto vertex : mesh.fv_range(face)) triangles(face.idx(), corner++) = vertex.idx();
+    check_kept(mesh, OpenMesh::FaceHandle(face), mesh.has_face_status(), "face");
+    for (const auto halfedge : mesh.fh_range(face)) polygons.corners.push_back(halfedge.to().idx());
+    polygons.offsets.push_back(static_cast<int>(polygons.corners.size()));
   }
-  result.connectivity = Connectivity::from_triangles(vertices, triangles);
+  return polygons;
+}
+
+template <OpenMeshClass Mesh>
+TextureCoordinates texture_of(const Mesh& mesh) {
+  TextureCoordinates texture;
+  const bool of_corners = mesh.has_halfedge_texcoords2D();
+  if (!of_corners && !mesh.has_vertex_texcoords2D()) return texture;
+  const auto add = [&texture](const auto& uv) { texture.coordinates.emplace_back(uv[0], uv[1]); };
+  if (!of_corners) {
+    for (const auto vertex : mesh.all_vertices()) add(mesh.texcoord2D(vertex));
+  }
+  for (const auto face : mesh.all_faces()) {
+    for (const auto halfedge : mesh.fh_range(face)) {
+      texture.corners.push_back(of_corners ? static_cast<int>(texture.coordinates.size())
+                                           : halfedge.to().idx());
+      if (of_corners) add(mesh.texcoord2D(halfedge));
+    }
+  }
+  return texture;
+}
+
+inline Eigen::Index columns(const OpenMesh::Vec3f& /*type*/) {
+  return 3;
+}
+inline Eigen::Index columns(const OpenMesh::Vec3d& /*type*/) {
+  return 3;
+}
+template <typename Number>
+Eigen::Index columns(const Number& /*type*/) {
+  return 1;
+}
+
+/// Numbers of a property of this type, a row for each element; none where there is no such one.
+template <typename Type, typename Handle, OpenMeshClass Mesh>
+bool read_property(const Mesh& mesh, const std::string& name, Eigen::MatrixXd& values) {
+  typename OpenMesh::PropHandle<Handle>::template type<Type> property;
+  if (!mesh.get_property_handle(property, name)) return false;
+  const auto count = static_cast<Eigen::Index>(mesh.template n_elements<Handle>());
+  values.resize(count, columns(Type()));
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const auto& value = mesh.property(property, Handle(static_cast<int>(i)));
+    if constexpr (requires { value[0]; }) {
+      for (Eigen::Index axis = 0; axis < 3; ++axis) {
+        values(i, axis) = static_cast<double>(value[static_cast<std::size_t>(axis)]);
+      }
+    } else {
+      values(i, 0) = static_cast<double>(value);
+    }
+  }
+  return true;
+}
+
+template <typename Handle, typename... Types, OpenMeshClass Mesh>
+bool read_property_of(const Mesh& mesh, const std::string& name, Eigen::MatrixXd& values) {
+  return (read_property<Types, Handle>(mesh, name, values) || ...);
+}
+
+template <typename Handle, OpenMeshClass Mesh>
+Field read_field(const Mesh& mesh, const std::string& name) {
+  Field field;
+  field.name = name.substr(2);
+  field.integer = read_property_of<Handle, bool, int, unsigned>(mesh, name, field.values);
+  using Vec3f = OpenMesh::Vec3f;
+  using Vec3d = OpenMesh::Vec3d;
+  if (field.integer ||
+      read_property_of<Handle, float, double, Vec3f, Vec3d>(mesh, name, field.values)) {
+    return field;
+  }
+  throw std::invalid_argument("the mesh has no property '" + name +
+                              "' of bool, int, unsigned, float, double, Vec3f or Vec3d");
+}
+
+template <typename Type, typename Handle, OpenMeshClass Mesh>
+void write_property(Mesh& mesh, const std::string& name, const Eigen::MatrixXd& values) {
+  auto property = OpenMesh::getOrMakeProperty<Handle, Type>(mesh, name.c_str());
+  for (Eigen::Index i = 0; i < values.rows(); ++i) {
+    const Handle handle(static_cast<int>(i));
+    if constexpr (std::same_as<Type, OpenMesh::Vec3d>) {
+      property[handle] = Type(values(i, 0), values(i, 1), values(i, 2));
+    } else {
+      property[handle] = static_cast<Type>(values(i, 0));
+    }
+  }
+}
+
+template <typename Handle, OpenMeshClass Mesh>
+void write_field(Mesh& mesh, const std::string& name, const Field& field,
+                 const Eigen::MatrixXd& values) {
+  if (values.cols() == 3 && !field.integer) {
+    write_property<OpenMesh::Vec3d, Handle>(mesh, name, values);
+  } else if (values.cols() != 1) {
+    throw std::invalid_argument("field '" + field.name + "' has " + std::to_string(values.cols()) +
+                                " columns; expected one number, or a vector of three");
+  } else if (field.integer) {
+    write_property<int, Handle>(mesh, name, values);
+  } else {
+    write_property<double, Handle>(mesh, name, values);
+  }
+}
+
+}  // namespace openmesh_bridge
+
+template <OpenMeshClass Mesh>
+TriMesh from_openmesh(const Mesh& mesh) {
+  TriMesh result;
+  result.positions = openmesh_bridge::positions_of(mesh);
+  result.connectivity = Connectivity::from_polygons(static_cast<int>(mesh.n_vertices()),
+                                                    openmesh_bridge::polygons_of(mesh));
+  result.connectivity.texture = openmesh_bridge::texture_of(mesh);
   return result;
 }
 
-template <typename Traits>
-OpenMesh::TriMesh_ArrayKernelT<Traits> with_positions(
-    OpenMesh::TriMesh_ArrayKernelT<Traits> mesh, const Eigen::Ref<const Positions>& positions) {
+template <OpenMeshClass Mesh>
+MeshSequence sequence_from_openmesh(const std::vector<Mesh>& meshes, Eigen::VectorXd times) {
+  if (meshes.empty()) throw std::invalid_argument("a sequence needs a mesh");
+  TriMesh first = from_openmesh(meshes.front());
+  Frames frames(static_cast<Eigen::Index>(meshes.size()), first.positions.size());
+  for (std::size_t f = 0; f < meshes.size(); ++f) {
+    const TriMesh mesh = from_openmesh(meshes[f]);
+    if (!same_faces(mesh.connectivity, first.connectivity)) {
+      throw std::invalid_argument("mesh " + std::to_string(f) + " has other faces than mesh 0");
+    }
+    frames.row(static_cast<Eigen::Index>(f)) = mesh.positions.reshaped<Eigen::RowMajor>();
+  }
+  return {std::move(first.connectivity), std::move(frames), std::move(times)};
+}
+
+template <OpenMeshClass Mesh>
+MeshSequence sequence_from_openmesh(const Mesh& mesh, const std::vector<std::string>& poses,
+                                    Eigen::VectorXd times) {
+  if (poses.empty()) throw std::invalid_argument("a sequence needs the name of a property");
+  TriMesh rest = from_openmesh(mesh);
+  Frames frames(static_cast<Eigen::Index>(poses.size()), rest.positions.size());
+  for (std::size_t f = 0; f < poses.size(); ++f) {
+    Eigen::MatrixXd pose;
+    if (!openmesh_bridge::read_property_of<OpenMesh::VertexHandle, typename Mesh::Point,
+                                           OpenMesh::Vec3d>(mesh, poses[f], pose)) {
+      throw std::invalid_argument("the mesh has no points of vertices '" + poses[f] + "'");
+    }
+    frames.row(static_cast<Eigen::Index>(f)) = pose.reshaped<Eigen::RowMajor>();
+  }
+  return {std::move(rest.connectivity), std::move(frames), std::move(times),
+          std::move(rest.positions)};
+}
+
+template <OpenMeshClass Mesh>
+void set_positions(Mesh& mesh, const Eigen::Ref<const Positions>& positions) {
   if (positions.rows() != static_cast<Eigen::Index>(mesh.n_vertices())) {
     throw std::invalid_argument(std::to_string(positions.rows()) + " positions for a mesh of " +
                                 std::to_string(mesh.n_vertices()) + " vertices");
   }
-  using Point = typename OpenMesh::TriMesh_ArrayKernelT<Traits>::Point;
+  using Point = typename Mesh::Point;
   using Scalar = typename OpenMesh::vector_traits<Point>::value_type;
   for (const auto vertex : mesh.all_vertices()) {
     const auto row = positions.row(vertex.idx());
     mesh.set_point(vertex, Point(static_cast<Scalar>(row[0]), static_cast<Scalar>(row[1]),
                                  static_cast<Scalar>(row[2])));
   }
+}
+
+template <OpenMeshClass Mesh>
+Mesh with_positions(Mesh mesh, const Eigen::Ref<const Positions>& positions) {
+  set_positions(mesh, positions);
   return mesh;
+}
+
+template <OpenMeshClass Mesh>
+void set_fields(Mesh& mesh, const std::vector<Field>& fields) {
+  const Connectivity connectivity = Connectivity::from_polygons(static_cast<int>(mesh.n_vertices()),
+                                                                openmesh_bridge::polygons_of(mesh));
+  for (const Field& field : fields) {
+    const bool on_vertices = field.location == Field::Location::vertices;
+    const Eigen::Index expected =
+        on_vertices ? connectivity.vertices : connectivity.triangles.rows();
+    if (field.values.rows() != expected) {
+      throw std::invalid_argument("field '" + field.name + "' has " +
+                                  std::to_string(field.values.rows()) + " values, expected " +
+                                  std::to_string(expected) +
+                                  (on_vertices ? ", one a vertex" : ", one a triangle"));
+    }
+    if (on_vertices) {
+      openmesh_bridge::write_field<OpenMesh::VertexHandle>(mesh, "v:" + field.name, field,
+                                                           field.values);
+    } else {
+      openmesh_bridge::write_field<OpenMesh::FaceHandle>(mesh, "f:" + field.name, field,
+                                                         on_polygons(field.values, connectivity));
+    }
+  }
+}
+
+template <OpenMeshClass Mesh>
+Field field_from_openmesh(const Mesh& mesh, const std::string& name) {
+  if (name.starts_with("v:"))
+    return openmesh_bridge::read_field<OpenMesh::VertexHandle>(mesh, name);
+  if (!name.starts_with("f:")) {
+    throw std::invalid_argument("property '" + name +
+                                "': expected a name that begins with v: or f:");
+  }
+  Field field = openmesh_bridge::read_field<OpenMesh::FaceHandle>(mesh, name);
+  field.location = Field::Location::triangles;
+  const Connectivity connectivity = Connectivity::from_polygons(static_cast<int>(mesh.n_vertices()),
+                                                                openmesh_bridge::polygons_of(mesh));
+  field.values = Eigen::MatrixXd(field.values(connectivity.polygon_of_triangle, Eigen::all));
+  return field;
 }
 
 }  // namespace mimetra
