@@ -72,6 +72,32 @@ TEST(FilmStrip, ShowsRegionsThatCoverTheWholeMeshAsCategories) {
   EXPECT_NE(row.tiles[0].colors[0], row.tiles[0].colors[2]);
 }
 
+TEST(FilmStrip, NamesItsColours) {
+  const Sheet sheet = film_strip({rising(2), rising(2), rising(2)},
+                                 {.colors = {StripColor::displacement, "in_L", "region"}});
+  EXPECT_EQ(sheet.rows[0].bar->name, "displacement");
+  EXPECT_EQ(sheet.rows[1].bar->name, "in_L");
+  EXPECT_TRUE(sheet.rows[1].legend.entries.empty());
+  const Legend& legend = sheet.rows[2].legend;
+  EXPECT_EQ(legend.name, "region");
+  ASSERT_EQ(legend.entries.size(), 4U);  // of -1, 0, 1, 2^24 + 1 and 2
+  EXPECT_EQ(legend.entries[2].number, 2);
+  EXPECT_EQ(legend.entries[2].color, sheet.rows[2].tiles[0].colors[4]);
+}
+
+TEST(FilmStrip, NumbersTheRegionsThatAreSeen) {
+  FieldSequence fields = rising(2);
+  fields.fields[0].values << 0, 0, 1, 1, -1;
+  const TileRow row = film_strip({fields}, {.colors = {"region"}, .viewpoint = {0, 0}}).rows[0];
+  EXPECT_TRUE(row.tiles[0].crisp);
+  ASSERT_EQ(row.tiles[0].labels.size(), 2U);
+  EXPECT_EQ(row.tiles[0].labels[1].text, "1");
+  EXPECT_EQ(row.tiles[0].labels[1].position, Eigen::RowVector3d(1, 1, 0));
+  EXPECT_TRUE(row.tiles[1].labels.empty());
+  const TileRow back = film_strip({fields}, {.colors = {"region"}, .viewpoint = {180, 0}}).rows[0];
+  EXPECT_TRUE(back.tiles[0].labels.empty());
+}
+
 TEST(FilmStrip, TurnsATurntableOnceAround) {
   const Sheet sheet =
       film_strip({rising(3)}, {.layout = StripLayout::turntable, .columns = 4, .frames = {2}});

@@ -59,6 +59,69 @@ TEST(Picture, DoesNotDependOnUnitOrOrigin) {
   }
 }
 
+TEST(Picture, ShowsCrispColoursWithoutAnyBetweenThem) {
+  Sheet sheet = square_sheet();
+  Tile& tile = sheet.rows[0].tiles[0];
+  for (int v = 0; v < 9; ++v)
+    tile.colors[std::size_t(v)] = v < 3 ? Color{0, 0, 255} : Color{0, 255, 0};
+  const auto between = [&sheet] {
+    const Image image = draw(sheet);
+    const Box box = SheetLayout::of(sheet).tile(0, 0);
+    int count = 0;
+    for (int y = 0; y < image.height; ++y) {
+      const Color& pixel = image.at(box.left + box.width / 2, y);
+      count += pixel.red < 100 && pixel.green > 60 && pixel.blue > 60;
+    }
+    return count;
+  };
+  EXPECT_GT(between(), 5);  // 50 pixels from one colour to the other
+  tile.crisp = true;
+  EXPECT_LE(between(), 2);  // of the samples of a pixel on the border
+  // The lowest row of vertices has the lowest quarter.
+  const SheetLayout layout = SheetLayout::of(sheet);
+  const Image image = draw(sheet);
+  const Box box = layout.tile(0, 0);
+  int blue = 0;
+  for (int y = 0; y < image.height; ++y) {
+    const Color& pixel = image.at(box.left + box.width / 2, y);
+    blue += pixel.blue > 100 && pixel.green < 60;
+  }
+  EXPECT_NEAR(blue, 0.5 * layout.pixels_per_unit(), 1.5);
+}
+
+TEST(Picture, WritesLabelsWhereTheyAre) {
+  Sheet sheet = square_sheet();
+  const Image plain = draw(sheet);
+  sheet.rows[0].tiles[0].labels = {{"7", Eigen::RowVector3d(2, 2, 0)}};
+  const Image labelled = draw(sheet);
+  const SheetLayout layout = SheetLayout::of(sheet);
+  const Box box = layout.tile(0, 0);
+  double x_sum = 0, y_sum = 0, count = 0;
+  for (int y = 0; y < plain.height; ++y) {
+    for (int x = 0; x < plain.width; ++x) {
+      if (plain.at(x, y) == labelled.at(x, y)) continue;
+      x_sum += x, y_sum += y, ++count;
+    }
+  }
+  ASSERT_GT(count, 10);
+  // The upper right corner of the square, whose middle is the tile's.
+  EXPECT_NEAR(x_sum / count, box.left + box.width / 2.0 + layout.pixels_per_unit(), 3);
+  EXPECT_NEAR(y_sum / count, box.top + box.height / 2.0 - layout.pixels_per_unit(), 3);
+}
+
+TEST(SheetLayout, HasRoomForALegendOfManyNumbers) {
+  Sheet sheet = square_sheet();
+  const SheetLayout plain = SheetLayout::of(sheet);
+  for (int number = 0; number < 30; ++number) {
+    sheet.rows[0].legend.entries.push_back({number, {0, 0, 0}});
+  }
+  const SheetLayout layout = SheetLayout::of(sheet);
+  const int columns = layout.legend_columns(sheet.rows[0].legend);
+  EXPECT_GE(columns * layout.legend_lines(), 30);
+  EXPECT_GE(layout.width - plain.width, SheetLayout::kLegendColumn * columns * layout.text);
+  EXPECT_LE(SheetLayout::kLegendLine * layout.legend_lines() * layout.text, layout.tile_height);
+}
+
 TEST(Picture, IsTheSameEveryTime) {
   EXPECT_EQ(draw(square_sheet()).pixels, draw(square_sheet()).pixels);
 }

@@ -16,6 +16,7 @@ namespace {
 
 using test::Browser;
 using test::PageBox;
+using testing::HasSubstr;
 using testing::IsEmpty;
 
 /// Share of pixels that are not white.
@@ -138,6 +139,30 @@ TEST_F(OpenReport, ShowsRegionsDisplacementOrNothing) {
   EXPECT_GT(changed_share(regions, none), 0.01);
   EXPECT_GT(changed_share(displacement, none), 0.01);
   EXPECT_THAT(browser.complaints(), IsEmpty());
+}
+
+TEST_F(OpenReport, NamesWhatIsClicked) {
+  Browser& browser = open(1280, 800, false);
+  const auto picked = [&browser] {
+    return browser.value("document.getElementById('picked').textContent").get<std::string>();
+  };
+  browser.click("stage", 0.25);
+  EXPECT_THAT(picked(), testing::MatchesRegex("source: (no region|region [0-9]+), vertex [0-9]+"));
+  browser.click("stage", 0.75);
+  EXPECT_THAT(picked(), HasSubstr("target: "));
+  browser.click("stage", 0.002);
+  EXPECT_EQ(picked(), "");
+  EXPECT_THAT(browser.complaints(), IsEmpty());
+}
+
+TEST_F(OpenReport, HasALegendOfItsRegions) {
+  Browser& browser = open(1280, 800, false);
+  const std::string shown = "[...document.querySelectorAll('#legend span:not([hidden])')]";
+  EXPECT_GT(browser.value(shown + ".length"), 1);
+  EXPECT_EQ(browser.value(shown + "[0].textContent"), "0");
+  EXPECT_EQ(browser.value("document.getElementById('legend').hidden"), false);
+  choose("coloring", "displacement");
+  EXPECT_EQ(browser.value("document.getElementById('legend').hidden"), true);
 }
 
 TEST_F(OpenReport, ShowsOneMeshInTheWholeStage) {

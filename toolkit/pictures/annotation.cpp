@@ -41,6 +41,21 @@ class Pen {
     renderer_.AddActor2D(actor);
   }
 
+  /// Letters about a middle, light behind, that are to be read on any colour.
+  void label(const std::string& text, double x, double y) const {
+    vtkNew<vtkTextActor> actor;
+    actor->SetInput(text.c_str());
+    actor->SetPosition(x, layout_.height - y);
+    vtkTextProperty& look = *actor->GetTextProperty();
+    look.SetFontSize(std::max(kSmallestLabel, 3 * layout_.text / 4));
+    look.SetColor(0.1, 0.1, 0.1);
+    look.SetBackgroundColor(1, 1, 1);
+    look.SetBackgroundOpacity(0.7);
+    look.SetJustificationToCentered();
+    look.SetVerticalJustificationToCentered();
+    renderer_.AddActor2D(actor);
+  }
+
   /// Equal boxes of one colour each, from below to above.
   void stack(const Box& box, const std::vector<Color>& colors) const {
     vtkNew<vtkPoints> points;
@@ -71,6 +86,8 @@ class Pen {
   }
 
  private:
+  static constexpr int kSmallestLabel = 10;
+
   vtkRenderer& renderer_;
   const SheetLayout& layout_;
 };
@@ -95,9 +112,35 @@ void write_bar(const Pen& pen, const ColorBar& bar, const Box& row_end, int text
   const Box box{row_end.left + text, row_end.top + row_end.height / 8, text,
                 3 * row_end.height / 4};
   pen.stack(box, colors);
+  pen.write(bar.name, box.left, box.top - text / 2);
   const int x = box.left + box.width + text / 2;
   pen.write(with_unit(bar.maximum, bar.unit), x, box.top + text);
   pen.write(readable(bar.minimum, 2), x, box.top + box.height);
+}
+
+/// Beside a row: a box of each number's colour, in columns.
+void write_legend(const Pen& pen, const Legend& legend, const Box& row_end,
+                  const SheetLayout& layout) {
+  const int text = layout.text, lines = layout.legend_lines();
+  pen.write(legend.name, row_end.left + text, row_end.top + text);
+  for (std::size_t i = 0; i < legend.entries.size(); ++i) {
+    const int column = static_cast<int>(i) / lines, line = static_cast<int>(i) % lines;
+    const Box box{
+        row_end.left + text + static_cast<int>(SheetLayout::kLegendColumn * text * column),
+        row_end.top + static_cast<int>(text * (1.7 + SheetLayout::kLegendLine * line)), text, text};
+    pen.stack(box, {legend.entries[i].color});
+    pen.write(std::to_string(legend.entries[i].number), box.left + box.width + text / 4,
+              box.top + 9 * text / 10);
+  }
+}
+
+void write_labels(const Pen& pen, const Tile& tile, const Box& box, const View& view,
+                  const Eigen::RowVector3d& center, double pixels_per_unit) {
+  for (const TileLabel& label : tile.labels) {
+    const Eigen::Vector3d way = (label.position - center).transpose();
+    pen.label(label.text, box.left + box.width / 2.0 + pixels_per_unit * way.dot(view.right),
+              box.top + box.height / 2.0 - pixels_per_unit * way.dot(view.up));
+  }
 }
 
 /// A third of a tile at most, below the last row.
@@ -127,10 +170,15 @@ void annotate(vtkRenderer& renderer, const Sheet& sheet, const SheetLayout& layo
       const Box tile = layout.tile(row, column);
       pen.write(fitted(sheet.rows[row].tiles[column].title, tile.width, layout.text), tile.left,
                 tile.top - layout.text / 2);
+      write_labels(pen, sheet.rows[row].tiles[column], tile,
+                   view_of(sheet.viewpoint, sheet.rows[row].tiles[column].turn),
+                   layout.centers[row], layout.pixels_per_unit());
     }
-    if (!sheet.rows[row].bar) continue;
-    write_bar(pen, *sheet.rows[row].bar, layout.tile(row, sheet.rows[row].tiles.size()),
-              layout.text);
+    const Box end = layout.tile(row, sheet.rows[row].tiles.size());
+    if (sheet.rows[row].bar) write_bar(pen, *sheet.rows[row].bar, end, layout.text);
+    if (!sheet.rows[row].legend.entries.empty()) {
+      write_legend(pen, sheet.rows[row].legend, end, layout);
+    }
   }
   write_scale_bar(pen, sheet, layout);
 }

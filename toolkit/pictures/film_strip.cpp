@@ -3,10 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <stdexcept>
 
 #include "toolkit/mesh/errors.h"
+#include "toolkit/mesh/normals.h"
 #include "toolkit/mesh/text.h"
+#include "toolkit/pictures/sheet_layout.h"
 
 namespace mimetra {
 
@@ -136,7 +139,7 @@ class RowPainter {
 
   std::optional<ColorBar> bar() const {
     if (values_.empty() || !categories_.empty()) return {};
-    ColorBar bar{0, 0, unit_};
+    ColorBar bar{0, 0, unit_, name_};
     for (const Eigen::VectorXd& values : values_) {
       for (const double value : values) {
         if (!std::isfinite(value)) continue;
@@ -146,6 +149,44 @@ class RowPainter {
     }
     if (options_.maximum) bar.maximum = *options_.maximum;
     return bar;
+  }
+
+  /// Of numbers that are names, but for "none".
+  Legend legend() const {
+    std::map<int, Color> colors;
+    for (std::size_t v = 0; v < numbers_.size(); ++v) {
+      if (numbers_[v] >= 0) colors.emplace(numbers_[v], categories_[v]);
+    }
+    Legend legend{name_, {}};
+    for (const auto& [number, color] : colors) legend.entries.push_back({number, color});
+    return legend;
+  }
+
+  bool is_crisp() const { return !categories_.empty(); }
+
+  /// The numbers, each on the vertex in the middle of those that `view` sees.
+  std::vector<TileLabel> labels(const Positions& pose, const View& view) const {
+    std::map<int, std::vector<VertexIndex>> seen;
+    if (!numbers_.empty()) {
+      const Positions normals =
+          vertex_normals(pose, sequences_[row_].sequence().triangles()).rowwise().normalized();
+      constexpr double kSeen = 0.3;
+      for (std::size_t v = 0; v < numbers_.size(); ++v) {
+        const double facing = normals.row(static_cast<Eigen::Index>(v)).dot(view.towards_eye);
+        if (numbers_[v] >= 0 && facing > kSeen) {
+          seen[numbers_[v]].push_back(static_cast<VertexIndex>(v));
+        }
+      }
+    }
+    std::vector<TileLabel> labels;
+    for (const auto& [number, vertices] : seen) {
+      const Positions places = pose(vertices, Eigen::all);
+      const Eigen::RowVector3d middle = places.colwise().mean();
+      Eigen::Index nearest = 0;
+      (places.rowwise() - middle).rowwise().squaredNorm().minCoeff(&nearest);
+      labels.push_back({std::to_string(number), places.row(nearest)});
+    }
+    return labels;
   }
 
   std::vector<Color> colors(std::size_t column, const std::optional<ColorBar>& bar) const {
@@ -163,6 +204,7 @@ class RowPainter {
   void measure(StripColor color, const std::vector<int>& frames) {
     const FieldSequence& own = sequences_[row_];
     unit_ = options_.unit;
+    name_ = choice_name(color);
     for (const int frame : frames) {
       switch (color) {
         case StripColor::none:
@@ -181,8 +223,10 @@ class RowPainter {
   void show(const Field& field, std::size_t columns) {
     const MeshSequence& sequence = sequences_[row_].sequence();
     values_.assign(columns, vertex_values(field, sequence));
+    name_ = field.name;
     if (is_category(field)) {
-      categories_ = category_colors(whole_numbers(values_.front()), sequence.triangles());
+      numbers_ = whole_numbers(values_.front());
+      categories_ = category_colors(numbers_, sequence.triangles());
     }
   }
 
@@ -212,7 +256,8 @@ class RowPainter {
   const StripOptions& options_;
   std::size_t row_;
   std::vector<Eigen::VectorXd> values_;  // by column; empty for none
-  std::string unit_;                     // of the values
+  std::string name_, unit_;              // of the values
+  std::vector<int> numbers_;             // that are names, of vertices; empty for others
   std::vector<Color> categories_;
 };
 
@@ -253,11 +298,18 @@ Sheet film_strip(const std::vector<FieldSequence>& sequences, const StripOptions
     if (!options.titles.empty()) tiles.title = options.titles[row];
     tiles.connectivity = sequences[row].sequence().shared_connectivity();
     tiles.bar = painter.bar();
+    tiles.legend = painter.legend();
     for (std::size_t column = 0; column < frames.size(); ++column) {
-      tiles.tiles.push_back({pose(sequences[row], frames[column]),
-                             painter.colors(column, tiles.bar),
-                             turn_of(options, column),
-                             {}});
+      Tile tile;
+      tile.positions = pose(sequences[row], frames[column]);
+      tile.colors = painter.colors(column, tiles.bar);
+      tile.crisp = painter.is_crisp();
+      tile.turn = turn_of(options, column);
+      // Once is enough where nothing but the pose changes.
+      if (column == 0 || options.layout == StripLayout::turntable) {
+        tile.labels = painter.labels(tile.positions, view_of(options.viewpoint, tile.turn));
+      }
+      tiles.tiles.push_back(std::move(tile));
     }
     sheet.rows.push_back(std::move(tiles));
   }

@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "toolkit/mesh/frame_shapes.h"
 #include "toolkit/mesh/text.h"
 #include "toolkit/operations/json.h"
 #include "toolkit/pictures/film_strip.h"
@@ -82,7 +83,25 @@ Sheet sheet_of(const Invocation& invocation) {
   return film_strip(sequences, options_of(invocation));
 }
 
+/// Rows have one scale, at which one in another unit is a dot, or fills what the others are in.
+void warn_of_sizes(const std::vector<NamedData>& inputs, const Invocation& invocation) {
+  const auto size = [](const NamedData& input) {
+    return spread(std::get<FieldSequence>(input.data).frames->rest());
+  };
+  const double usual = size(inputs.front());
+  for (const NamedData& input : inputs) {
+    if (!is_other_size(size(input), usual)) continue;
+    const bool larger = size(input) > usual;
+    const double ratio = larger ? size(input) / usual : usual / size(input);
+    invocation.warn(input.name + " is " + readable(ratio, 3) + " times as " +
+                    (larger ? "large" : "small") + " as " + inputs.front().name +
+                    ", and all rows have one scale; bring them into one unit (convert, option "
+                    "'scale')");
+  }
+}
+
 Outcome run_render(const Invocation& invocation) {
+  warn_of_sizes(invocation.inputs.at("input"), invocation);
   const Sheet sheet = sheet_of(invocation);
   Image image = draw(sheet, {.progress = invocation.progress});
   Outcome outcome;
@@ -97,7 +116,8 @@ Outcome run_render(const Invocation& invocation) {
                                   {"columns", sheet.rows.front().tiles.size()},
                                   {"ranges", bars}});
   outcome.summary = std::to_string(image.width) + " x " + std::to_string(image.height) +
-                    " pixels, " + std::to_string(sheet.rows.size()) + " rows of " +
+                    " pixels, " + std::to_string(sheet.rows.size()) +
+                    (sheet.rows.size() == 1 ? " row of " : " rows of ") +
                     std::to_string(sheet.rows.front().tiles.size()) + "\n";
   outcome.outputs["out"].push_back({"", Pictures::of(std::move(image))});
   return outcome;

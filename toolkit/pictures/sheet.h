@@ -15,7 +15,24 @@ namespace mimetra {
 struct ColorBar {
   double minimum = 0;
   double maximum = 1;
-  std::string unit;  ///< written after the maximum
+  std::string unit;       ///< written after the maximum
+  std::string name = {};  ///< of the values, above it
+};
+
+/// What the colours of a row mean that stand for numbers.
+struct Legend {
+  struct Entry {
+    int number;
+    Color color;
+  };
+  std::string name;  ///< of the numbers, above them
+  std::vector<Entry> entries;
+};
+
+/// Letters on a mesh.
+struct TileLabel {
+  std::string text;
+  Eigen::RowVector3d position;  ///< their middle
 };
 
 /// One mesh in a sheet.
@@ -24,6 +41,9 @@ struct Tile {
   std::vector<Color> colors;  ///< per vertex (N), or none for kClay
   double turn = 0;            ///< degrees about the upright axis, besides the sheet's
   std::string title = {};     ///< above it
+  std::vector<TileLabel> labels = {};
+  /// Each point has the colour of the vertex nearest to it, instead of what lies between colours.
+  bool crisp = false;
 };
 
 struct TileRow {
@@ -31,6 +51,7 @@ struct TileRow {
   std::shared_ptr<const Connectivity> connectivity;
   std::vector<Tile> tiles;
   std::optional<ColorBar> bar;
+  Legend legend = {};  ///< without entries where there is none
 };
 
 /// Meshes in rows and columns, all at one scale and seen from one side without perspective, so that

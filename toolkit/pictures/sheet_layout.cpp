@@ -91,13 +91,26 @@ SheetLayout SheetLayout::of(const Sheet& sheet) {
     return std::ranges::any_of(row.tiles, [](const Tile& tile) { return !tile.title.empty(); });
   };
   layout.tile_title = std::ranges::any_of(sheet.rows, has_tile_titles) ? line : 0;
-  const bool has_bar =
-      std::ranges::any_of(sheet.rows, [](const TileRow& row) { return row.bar.has_value(); });
+  double beside = 0;  // letters high
+  for (const TileRow& row : sheet.rows) {
+    if (row.bar) beside = std::max(beside, 8.0);
+    if (row.legend.entries.empty()) continue;
+    beside = std::max(beside, 1 + kLegendColumn * layout.legend_columns(row.legend));
+    beside = std::max(beside, 2 + 0.6 * static_cast<double>(row.legend.name.size()));
+  }
   layout.width = 2 * layout.margin + static_cast<int>(columns) * layout.tile_width +
-                 (has_bar ? 8 * layout.text : 0);
+                 static_cast<int>(std::ceil(beside * layout.text));
   const Box last = layout.tile(sheet.rows.size() - 1, 0);
   layout.height = last.top + last.height + 2 * layout.text;
   return layout;
+}
+
+int SheetLayout::legend_lines() const {
+  return std::max(1, static_cast<int>((tile_height - 2 * text) / (kLegendLine * text)));
+}
+
+int SheetLayout::legend_columns(const Legend& legend) const {
+  return (static_cast<int>(legend.entries.size()) + legend_lines() - 1) / legend_lines();
 }
 
 Box SheetLayout::tile(std::size_t row, std::size_t column) const {

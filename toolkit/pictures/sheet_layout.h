@@ -47,6 +47,10 @@ struct SheetLayout {
 
   Box tile(std::size_t row, std::size_t column) const;
   double pixels_per_unit() const { return tile_height / (2 * half_height); }
+  /// Lines and columns of a legend beside a row, so many times the height of letters high and wide.
+  int legend_lines() const;
+  int legend_columns(const Legend& legend) const;
+  static constexpr double kLegendColumn = 2.6, kLegendLine = 1.35;
 };
 
 /// The largest of 1, 2 and 5 times a power of ten that is at most `length` > 0.

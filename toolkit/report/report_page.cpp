@@ -146,8 +146,9 @@ class PageText {
 <button id="reset" type="button">Reset view</button>
 </div>
 )" + scale() +
+           "<div id=\"legend\"></div>\n"
            "<p class=\"soft\">Drag to turn, two fingers or Ctrl and the wheel to "
-           "zoom.</p>\n</div>\n";
+           "zoom, click to see what is there. <output id=\"picked\"></output></p>\n</div>\n";
   }
 
   std::string table() const {

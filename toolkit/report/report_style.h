@@ -41,6 +41,11 @@ button:hover, select:hover { border-color: var(--ink); }
 #scale { display: flex; align-items: center; gap: .5rem; font-size: .9rem; color: var(--soft); }
 #scale[hidden] { display: none; }
 #scale i { width: 9rem; height: .75rem; border-radius: .2rem; }
+#legend { display: flex; flex-wrap: wrap; gap: .3rem .8rem; font-size: .9rem; color: var(--soft); }
+#legend[hidden], #legend span[hidden] { display: none; }
+#legend i { display: inline-block; width: .9rem; height: .9rem; margin-right: .3rem; border-radius: .2rem;
+  vertical-align: -.1rem; }
+#picked { color: var(--ink); }
 figure { margin: 0; }
 img { display: block; width: 100%; height: auto; }
 .strip img { max-width: 1180px; }

@@ -6,13 +6,24 @@ import vtkMapper from '@kitware/vtk.js/Rendering/Core/Mapper';
 import vtkPolyData from '@kitware/vtk.js/Common/DataModel/PolyData';
 import vtkRenderer from '@kitware/vtk.js/Rendering/Core/Renderer';
 
-// The light of the still pictures: a key light that grazes from the upper left, a weak one opposite,
-// and one from above.
+// The light of the still pictures: a key light from the upper left, a weak one opposite, and one
+// from above.
 const lights = [
-  { position: [-1.1, 1.0, 1.0], intensity: 0.76 },
-  { position: [1.2, 0.1, 0.9], intensity: 0.4 },
-  { position: [0, 1.5, 0.2], intensity: 0.16 },
+  { position: [-0.6, 0.7, 1.2], intensity: 0.62 },
+  { position: [1.3, 0.2, 0.8], intensity: 0.38 },
+  { position: [0, 1.5, 0.3], intensity: 0.2 },
 ];
+
+// The region that most corners of each triangle are in, of three different ones the first corner's:
+// colours of whole triangles do not run into each other.
+function regionsOfTriangles({ triangles, regions }) {
+  const found = new Int32Array(triangles.length / 3);
+  for (let t = 0; t < found.length; ++t) {
+    const [a, b, c] = [0, 1, 2].map((corner) => regions[triangles[3 * t + corner]]);
+    found[t] = b === c ? b : a;
+  }
+  return found;
+}
 
 function trianglesOf(indices) {
   const cells = new Uint32Array((indices.length / 3) * 4);
@@ -31,6 +42,7 @@ export class Surface {
     this.positions = new Float32Array(coordinates);
     this.normals = new Float32Array(coordinates);
     this.colors = new Uint8Array(coordinates);
+    this.regions = regionsOfTriangles(mesh.surface);
 
     this.data = vtkPolyData.newInstance();
     this.data.getPoints().setData(this.positions, 3);
@@ -43,13 +55,16 @@ export class Surface {
     });
     this.data.getPointData().setNormals(this.normalArray);
     this.data.getPointData().setScalars(this.colorArray);
+    this.data.getCellData().setScalars(vtkDataArray.newInstance({
+      name: 'regions', numberOfComponents: 3, values: this.regionColors(),
+    }));
 
-    const mapper = vtkMapper.newInstance({ scalarVisibility: true });
-    mapper.setColorModeToDirectScalars();
-    mapper.setInputData(this.data);
+    this.mapper = vtkMapper.newInstance({ scalarVisibility: true });
+    this.mapper.setColorModeToDirectScalars();
+    this.mapper.setInputData(this.data);
     const actor = vtkActor.newInstance();
-    actor.setMapper(mapper);
-    actor.getProperty().set({ ambient: 0.14, diffuse: 0.88, specular: 0.12, specularPower: 18 });
+    actor.setMapper(this.mapper);
+    actor.getProperty().set({ ambient: 0.2, diffuse: 0.84, specular: 0.12, specularPower: 18 });
 
     this.renderer = vtkRenderer.newInstance({ background: [1, 1, 1] });
     this.renderer.setAutomaticLightCreation(false);
@@ -60,6 +75,16 @@ export class Surface {
     }
     this.renderer.setActiveCamera(camera);
     this.renderer.addActor(actor);
+  }
+
+  // What is at a point of a triangle, in words.
+  nameOf(triangle, point) {
+    if (triangle < 0) return '';
+    const corners = this.mesh.surface.triangles.subarray(3 * triangle, 3 * triangle + 3);
+    const away = (v) => Math.hypot(...point.map((x, axis) => x - this.positions[3 * v + axis]));
+    const nearest = corners.reduce((best, v) => (away(v) < away(best) ? v : best));
+    const region = this.regions[triangle];
+    return `${this.mesh.role}: ${region < 0 ? 'no region' : `region ${region}`}, vertex ${nearest}`;
   }
 
   // Between pose `first` and the next one; poses count from 0, the one at rest is not among them.
@@ -104,15 +129,24 @@ export class Surface {
     }
   }
 
+  regionColors() {
+    const { regionColors, clay } = this.performance;
+    const colors = new Uint8Array(3 * this.regions.length);
+    this.regions.forEach((region, t) => colors.set(region < 0 ? clay : regionColors[region], 3 * t));
+    return colors;
+  }
+
   updateColors(coloring) {
-    const { regionColors, evenColors, clay, largest } = this.performance;
+    if (coloring === 'regions') {
+      this.mapper.setScalarModeToUseCellData();
+      return;
+    }
+    this.mapper.setScalarModeToUsePointData();
+    const { evenColors, clay, largest } = this.performance;
     const { poses, step } = this.mesh;
-    const { regions } = this.mesh.surface;
-    for (let v = 0; v < regions.length; ++v) {
+    for (let v = 0; v < this.mesh.surface.vertices; ++v) {
       let color = clay;
-      if (coloring === 'regions' && regions[v] >= 0) {
-        color = regionColors[regions[v]];
-      } else if (coloring === 'displacement') {
+      if (coloring === 'displacement') {
         const moved = Math.hypot(
           this.positions[3 * v] - step * poses[3 * v],
           this.positions[3 * v + 1] - step * poses[3 * v + 1],

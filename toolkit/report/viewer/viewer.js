@@ -1,6 +1,7 @@
 // The player of a report: source and target side by side, under one camera.
 import '@kitware/vtk.js/Rendering/OpenGL/Profiles/Geometry';
 import vtkCamera from '@kitware/vtk.js/Rendering/Core/Camera';
+import vtkCellPicker from '@kitware/vtk.js/Rendering/Core/CellPicker';
 import vtkInteractorStyleTrackballCamera from '@kitware/vtk.js/Interaction/Style/InteractorStyleTrackballCamera';
 import vtkOpenGLRenderWindow from '@kitware/vtk.js/Rendering/OpenGL/RenderWindow';
 import vtkRenderWindow from '@kitware/vtk.js/Rendering/Core/RenderWindow';
@@ -62,10 +63,13 @@ class Player {
       this.seek(Number(slider.value));
     });
     element('play').addEventListener('click', () => (this.playing ? this.pause() : this.play()));
+    this.showLegend();
+    this.connectPicking(element('stage'));
     element('largest').textContent = this.performance.largest.toPrecision(3);
     element('coloring').addEventListener('change', (event) => {
       this.coloring = event.target.value;
       element('scale').hidden = this.coloring !== 'displacement';
+      element('legend').hidden = this.coloring !== 'regions';
       this.draw();
     });
     // There is nothing to choose from where there is one mesh.
@@ -79,6 +83,40 @@ class Player {
       this.resetView();
       this.draw();
     });
+  }
+
+  // A box of each region's colour.
+  showLegend() {
+    const there = new Set(this.surfaces.flatMap(({ regions }) => [...regions]));
+    const entries = this.performance.regionColors.map((color, region) => {
+      const entry = document.createElement('span');
+      const box = entry.appendChild(document.createElement('i'));
+      box.style.background = `rgb(${color.join(' ')})`;
+      entry.append(String(region));
+      entry.hidden = !there.has(region);
+      return entry;
+    });
+    element('legend').replaceChildren('region', ...entries);
+  }
+
+  // A click, which is no turn, names what it hits.
+  connectPicking(stage) {
+    const picker = vtkCellPicker.newInstance({ tolerance: 0 });
+    let pressed = null;
+    stage.addEventListener('pointerdown', (event) => { pressed = event; }, { capture: true });
+    stage.addEventListener('pointerup', (event) => {
+      const distance = pressed
+        ? Math.hypot(event.clientX - pressed.clientX, event.clientY - pressed.clientY) : Infinity;
+      if (distance > 3) return;
+      const box = stage.getBoundingClientRect();
+      const share = (event.clientX - box.left) / box.width;
+      const surface = this.shown[Math.min(this.shown.length - 1,
+        Math.floor(share * this.shown.length))];
+      const [width, height] = this.view.getSize();
+      picker.pick([share * width, (1 - (event.clientY - box.top) / box.height) * height, 0],
+        surface.renderer);
+      element('picked').textContent = surface.nameOf(picker.getCellId(), picker.getPickPosition());
+    }, { capture: true });
   }
 
   resetView() {
