@@ -19,7 +19,7 @@ class SparseComponents(HostTest):
 
     def filter(self):
         source = simple.mimetraSequence(FileName=str(self.sample.take))
-        return simple.SparseComponents(Input=source, K=6)
+        return simple.SparseComponents(Input=source, K=6, SideBySide=0)
 
     def test_shows_the_components_of_the_command(self):
         blocks = at(self.filter(), 0)
@@ -41,6 +41,23 @@ class SparseComponents(HostTest):
             moved = point_array(block, "displacement").astype(float)
             # Displacements are shown in single precision.
             np.testing.assert_allclose(points(block) - rest, moved, rtol=1e-6, atol=1e-12)
+
+    def test_stands_side_by_side(self):
+        filter = self.filter()
+        together = at(filter, 0)
+        filter.SideBySide = 1
+        apart = at(filter, 0)
+        self.assertEqual(decompositions(filter), 1)
+        boxes = []
+        for k in range(6):
+            # The same mesh elsewhere, to the rounding of single precision.
+            way = points(apart.GetBlock(k)) - points(together.GetBlock(k))
+            size = np.abs(points(apart.GetBlock(k))).max()
+            np.testing.assert_allclose(way, np.broadcast_to(way[0], way.shape), atol=1e-6 * size)
+            boxes.append((points(apart.GetBlock(k)).min(0), points(apart.GetBlock(k)).max(0)))
+        for k, (low, high) in enumerate(boxes):
+            for other_low, other_high in boxes[:k]:
+                self.assertTrue((low > other_high).any() or (other_low > high).any())
 
     def test_has_the_weights_of_the_command_under_the_names_of_the_blocks(self):
         filter = self.filter()

@@ -21,6 +21,13 @@ const std::string kDisplayedRegion =
     "        <Documentation>Region that the point data displayed_region tell of, with what others"
     " cover; -1 for none.</Documentation>\n      </IntVectorProperty>\n";
 
+const std::string kSideBySide =
+    "      <IntVectorProperty name=\"SideBySide\" command=\"SetSideBySide\""
+    " number_of_elements=\"1\" default_values=\"1\">\n        <BooleanDomain name=\"bool\"/>\n"
+    "        <Documentation>Show the components in rows beside each other; otherwise all stand "
+    "where"
+    " the mesh is.</Documentation>\n      </IntVectorProperty>\n";
+
 const std::string kRunFile =
     "      <StringVectorProperty name=\"RunFile\" command=\"SetRunFile\" number_of_elements=\"1\""
     " default_values=\"\" panel_visibility=\"advanced\">\n"
@@ -60,7 +67,7 @@ const std::map<std::string, OwnFilter>& own_filters() {
         "Sparse Components",
         {"k"},
         {"Components", "Weights"},
-        kDecompositions,
+        kSideBySide + kDecompositions,
         kChart}},
       {"transfer",
        {"vtkMimetraTransfer",

@@ -1,5 +1,7 @@
 #include "plugins/paraview/mimetra/filters/vtkMimetraComponents.h"
 
+#include <cmath>
+
 #include <vtkInformation.h>
 #include <vtkMultiBlockDataSet.h>
 #include <vtkNew.h>
@@ -15,8 +17,31 @@ using namespace mimetra;
 
 vtkStandardNewMacro(vtkMimetraComponents);
 
+namespace {
+
+/// Where the mesh of a component stands among so many, each a mesh's width and a bit apart: in
+/// columns along x, and in rows along the longer of the other axes, which is up in a face.
+Eigen::RowVector3d place_of(int component, int count, const Positions& rest) {
+  constexpr double kApart = 1.2;
+  const int columns = static_cast<int>(std::ceil(std::sqrt(static_cast<double>(count))));
+  const Eigen::RowVector3d size = rest.colwise().maxCoeff() - rest.colwise().minCoeff();
+  const int up = size[1] >= size[2] ? 1 : 2;
+  Eigen::RowVector3d place = Eigen::RowVector3d::Zero();
+  place[0] = kApart * size[0] * (component % columns);
+  place[up] = -kApart * size[up] * (component / columns);
+  return place;
+}
+
+}  // namespace
+
 vtkMimetraComponents::vtkMimetraComponents() : vtkMimetraFilter("decompose") {
   SetNumberOfOutputPorts(2);
+}
+
+void vtkMimetraComponents::SetSideBySide(int on) {
+  if (side_by_side_ == (on != 0)) return;
+  side_by_side_ = on != 0;
+  Modified();
 }
 
 int vtkMimetraComponents::FillOutputPortInformation(int port, vtkInformation* info) {
@@ -41,8 +66,10 @@ void vtkMimetraComponents::show(const Outcome& outcome, vtkPolyData& input, doub
   for (int k = 0; k < components.count(); ++k) {
     vtkNew<vtkPolyData> block;
     const PositionsView moved(components.displacements.row(k).data(), components.vertices(), 3);
-    show_shape(*block, input, components.rest + moved);
-    set_rest(*block, components.rest);
+    Positions rest = components.rest;
+    if (side_by_side_) rest.rowwise() += place_of(k, components.count(), components.rest);
+    show_shape(*block, input, rest + moved);
+    set_rest(*block, rest);
     add_displacement(*block, moved);
     const Field support{"support", Field::Location::vertices,
                         components.support.row(k).transpose()};

@@ -9,6 +9,9 @@ class MIMETRAFILTERS_EXPORT vtkMimetraComponents : public vtkMimetraFilter {
   vtkTypeMacro(vtkMimetraComponents, vtkMimetraFilter);
   static vtkMimetraComponents* New();
 
+  /// Whether blocks stand in rows beside each other, or all where the mesh is.
+  void SetSideBySide(int on);
+
  protected:
   vtkMimetraComponents();
   int FillOutputPortInformation(int port, vtkInformation* info) override;
@@ -16,4 +19,7 @@ class MIMETRAFILTERS_EXPORT vtkMimetraComponents : public vtkMimetraFilter {
   std::vector<std::string> wanted_outputs(const mimetra::Invocation& invocation) override;
   void show(const mimetra::Outcome& outcome, vtkPolyData& input, double time,
             vtkInformationVector* outputs) override;
+
+ private:
+  bool side_by_side_ = true;
 };
