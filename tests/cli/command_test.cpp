@@ -256,11 +256,11 @@ TEST_F(Command, OperationsListsEveryCommand) {
   const json list = json::parse(run("operations --json").out)["operations"];
   std::set<std::string> names;
   for (const json& entry : list) names.insert(entry.at("name").get<std::string>());
-  EXPECT_EQ(names,
-            (std::set<std::string>{"info",     "check",      "align",    "geodesic",   "decompose",
-                                   "regions",  "transfer",   "evaluate", "rig",        "convert",
-                                   "retarget", "markers",    "fit",      "render",     "report",
-                                   "sample",   "operations", "formats",  "completion", "manual"}));
+  EXPECT_EQ(names, (std::set<std::string>{
+                       "info",       "check",    "align",    "geodesic", "decompose",  "regions",
+                       "transfer",   "evaluate", "rig",      "convert",  "retarget",   "markers",
+                       "fit",        "render",   "report",   "sample",   "operations", "formats",
+                       "completion", "manual",   "simplify", "subdivide"}));
 }
 
 TEST_F(Command, SampleIsAModelWithAPerformance) {

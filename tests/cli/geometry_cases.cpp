@@ -105,6 +105,8 @@ std::vector<BadInput> geometry_cases() {
       {"2 slivers of the target"});
   add("evaluate", "evaluate" + odd + " odd -k 3 --json", {"\"rows\""});
   add("convert", "convert" + odd + " -o x --format obj --json", {"\"vertices\": 226"});
+  add("simplify", "simplify" + odd + " --share 0.5 -o x.npy --json", {"\"given_vertices\": 226"});
+  add("subdivide", "subdivide" + odd + " -o x.npy --json", {"\"vertices\": "});
   add_targets(all);
   all.push_back({"source_vertex_out_of_range",
                  "geodesic",

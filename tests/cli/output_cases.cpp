@@ -179,12 +179,34 @@ std::vector<BadInput> request_cases() {
       {"--paraview", "-o NAME.pvd"});
   add("zero_radius", "regions", "regions " + kSequence + " --radius 0 -o r.json",
       {"--radius", "0"});
+  const std::string simplified = "regions " + kSequence + " -k 2 --simplify 0.5";
+  add("simplified_support", "regions", simplified + " --region support -o r.json",
+      {"--simplify", "--region disc"});
+  add("simplified_components", "regions", simplified + " -o r.json --components-out c.h5",
+      {"--components-out", "--simplify"});
+  add("up_without_script", "regions", "regions " + kSequence + " -k 2 --up z -o r.json",
+      {"--up", "--paraview"});
+  add("share_above_1", "simplify", "simplify head --share 2 -o x", {"--share", "'2'"});
+  add("too_many_times", "subdivide", "subdivide head --times 9 -o x", {"--times", "'9'"});
   add("unknown_choice", "convert", "convert head -o x --format fbx", {"--format", "ply, obj"});
   add("unknown_extension", "decompose", "decompose head -o c.txt", {"c.txt", ".h5"});
   add("unknown_extension", "geodesic", "geodesic head -o d.npy", {"d.npy", ".pvd or .vtp"});
   add("unknown_extension", "render", "render head -o r.jpg", {"r.jpg", ".png"});
   add("of_no_output", "convert_compress", "convert " + kSequence + " -o x.npy --compress small",
       {"'compress'", "leave it out"});
+  all.push_back({"row_of_another_unit",
+                 "render",
+                 [](const fs::path& folder) {
+                   const MorphableModel model = Patch::model();
+                   write_model(
+                       folder / "small",
+                       MorphableModel(std::make_shared<Connectivity>(model.connectivity()),
+                                      model.mean() / 1000, model.identities(), model.expressions()),
+                       std::nullopt, false);
+                 },
+                 "render head small --size 32 -o r.png",
+                 0,
+                 {"small is 1000 times as small as head", "one scale", "'scale'"}});
   all.push_back({"several_frames",
                  "convert_vtp",
                  {},

@@ -397,6 +397,24 @@ TEST_F(UsdFiles, WhatIsUpIsSaid) {
   }
 }
 
+TEST_F(UsdFiles, ZStaysUpWhenAFileIsWrittenAgain) {
+  const auto grid = std::make_shared<const MeshSequence>(turning_grid(2));
+  ShapeBasis basis{{"smile"}, Eigen::MatrixXd::Constant(27, 1, 0.1)};
+  const auto model = std::make_shared<const BlendshapeModel>(grid->shared_connectivity(),
+                                                             Positions(grid->frame(0)), basis);
+  const auto driven = std::make_shared<const Animation>(model, Eigen::MatrixXd::Ones(2, 1));
+  for (const std::shared_ptr<const FrameSource>& given :
+       {std::shared_ptr<const FrameSource>(grid), std::shared_ptr<const FrameSource>(driven)}) {
+    write_sequence(*in_units(given, {.up = UpTurn::y_to_z}), file_, {.overwrite = true});
+    const auto read = open_sequence(file_.string()).frames;
+    const fs::path again = file_.parent_path() / "again.usda";
+    write_sequence(*read, again, {.overwrite = true});
+    EXPECT_THAT(read_file(again), HasSubstr("upAxis = \"Z\""));
+    EXPECT_EQ(read->read(0, 2), open_sequence(again.string()).frames->read(0, 2));
+    EXPECT_EQ(dynamic_cast<const Animation*>(read.get()) != nullptr, given == driven);
+  }
+}
+
 TEST_F(UsdFiles, PosesFarFromTheOriginAreRefused) {
   const MeshSequence near = turning_grid(2);
   const Frames far = near.positions().array() + 1e6;

@@ -145,7 +145,12 @@ TEST_F(Weights, ThatLookLikePercentOrAreFarOffAreNoted) {
   for (int row = 0; row < 50; ++row) mostly_usual += "0.25,1\n";
   EXPECT_THAT(read(mostly_usual).notes,
               ElementsAre("the weight of 'jawOpen' is 99 in frame 1, expected 0 to 1"));
-  EXPECT_THAT(read("a\n1.5\n-1\n").notes, testing::IsEmpty());
+  EXPECT_THAT(read("a\n1.5\n-0.05\n").notes, testing::IsEmpty());
+  EXPECT_THAT(
+      read("a,b\n1.5,0\n-0.05,-1\n").notes,
+      ElementsAre(
+          "the weight of 'b' is -1 in frame 1, expected 0 to 1; those below 0 are taken as they "
+          "are"));
 }
 
 TEST_F(Weights, HaveSecondsUnderSeveralNames) {

@@ -192,7 +192,7 @@ ParsedLine parse_command_line(const OperationTable& table,
   CLI::App app("Transfers the deformation of one animated mesh to another, by regions.", "mimetra");
   app.require_subcommand(1);
   app.set_version_flag("--version", "mimetra " MIMETRA_VERSION);
-  app.footer("`mimetra COMMAND --help` tells a command's options and two examples.");
+  app.footer("`mimetra COMMAND --help` lists a command's options, with two examples.");
   const std::vector<Command> commands = commands_of(table);
   std::list<Slots> all_slots;
   for (const Command& command : commands) {

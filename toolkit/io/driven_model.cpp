@@ -104,6 +104,7 @@ OpenSequence open_scene(const fs::path& path, const SequenceSource& source) {
     open.frames = with_rest(open.frames, std::nullopt);
     open.model_driven = false;
   }
+  if (scene.z_is_up) open.frames = z_up(open.frames);
   open.files = scene.files;
   if (source.weights) open.files.push_back(*source.weights);
   std::vector<std::string>& notes = scene.notes;

@@ -55,6 +55,7 @@ struct Scene {
   std::shared_ptr<const FrameSource> frames = {};
   /// False where the model's neutral only stands in for a rest pose that nobody knows.
   bool rest_is_known = true;
+  bool z_is_up = false;
   std::vector<std::filesystem::path> files = {};
   std::vector<std::string> notes = {};
   /// What was left out of its movement: of no interest for its shapes.

@@ -43,7 +43,8 @@ class UsdReader {
     if (!(rate_ > 0) || std::isinf(rate_))
       throw IoError(path_, "has " + readable(rate_) + " time codes per second");
     const auto up = layer_.metadata.find("upAxis");
-    if (up != layer_.metadata.end() && up->second.words == std::vector<std::string>{"Z"}) {
+    z_is_up_ = up != layer_.metadata.end() && up->second.words == std::vector<std::string>{"Z"};
+    if (z_is_up_) {
       notes_.push_back(path_ + ": its up axis is z; convert with option 'up' z-to-y turns it");
     }
   }
@@ -60,6 +61,7 @@ class UsdReader {
     }
     Scene scene = joined_scene(path_, std::move(parts), bytes_);
     if (is_baked) bake(scene);
+    scene.z_is_up = z_is_up_;
     scene.files = {path_};
     scene.notes.insert(scene.notes.begin(), notes_.begin(), notes_.end());
     if (!left_out_.empty()) {
@@ -453,6 +455,7 @@ class UsdReader {
   std::size_t bytes_;
   UsdLayer layer_;
   double rate_;
+  bool z_is_up_;
   std::vector<UsdMesh> meshes_;
   std::vector<std::pair<std::string, const UsdPrim*>> animations_;
   std::set<std::string> left_out_;

@@ -129,7 +129,7 @@ class WeightReader {
 };
 
 /// Blendshape weights are 0 to 1, and sometimes a little beyond.
-constexpr double kMostUsual = 2;
+constexpr double kMostUsual = 2, kLeastUsual = -0.1;
 
 /// Weights that go beyond this and look like percent are nothing else.
 constexpr double kLeastPercent = 10;
@@ -141,11 +141,22 @@ bool look_like_percent(const Eigen::MatrixXd& weights) {
          weights.minCoeff() >= 0;
 }
 
+std::string note_on_weight(const WeightTrack& track, Eigen::Index frame, Eigen::Index column) {
+  return "the weight of '" + track.names[static_cast<std::size_t>(column)] + "' is " +
+         readable(track.weights(frame, column)) + " in frame " + std::to_string(frame) +
+         ", expected 0 to 1";
+}
+
 /// Divides weights in percent by 100; notes that, and weights that nobody means.
 void check_size(WeightTrack& track) {
   Eigen::Index frame = 0, column = 0;
   const double most = track.weights.cwiseAbs().maxCoeff(&frame, &column);
-  if (most <= kMostUsual) return;
+  if (most <= kMostUsual) {
+    if (track.weights.minCoeff(&frame, &column) >= kLeastUsual) return;
+    track.notes.push_back(note_on_weight(track, frame, column) +
+                          "; those below 0 are taken as they are");
+    return;
+  }
   if (look_like_percent(track.weights)) {
     const bool is_percent = most > kLeastPercent;
     if (is_percent) track.weights /= 100;
@@ -155,9 +166,7 @@ void check_size(WeightTrack& track) {
                                       : "they are taken as they are: divide them by 100"));
     return;
   }
-  track.notes.push_back("the weight of '" + track.names[static_cast<std::size_t>(column)] +
-                        "' is " + readable(track.weights(frame, column)) + " in frame " +
-                        std::to_string(frame) + ", expected 0 to 1");
+  track.notes.push_back(note_on_weight(track, frame, column));
 }
 
 void append(std::string& text, double number) {

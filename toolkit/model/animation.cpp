@@ -46,6 +46,12 @@ Animation Animation::in_units(const UnitChange& change) const {
   return changed;
 }
 
+Animation Animation::z_up() const {
+  Animation known = *this;
+  known.header_.z_is_up = true;
+  return known;
+}
+
 void Animation::read_frames(int first, FramesView poses) const {
   // A product takes its columns, here the frames, in fours and the rest one by one, which adds in
   // another order; and it takes another way altogether where there is only one. Runs that start
@@ -66,6 +72,12 @@ std::shared_ptr<const FrameSource> in_units(std::shared_ptr<const FrameSource> s
     return with_units(std::move(source), change);
   }
   return std::make_shared<const Animation>(animation->in_units(change));
+}
+
+std::shared_ptr<const FrameSource> z_up(std::shared_ptr<const FrameSource> source) {
+  const auto* animation = dynamic_cast<const Animation*>(source.get());
+  if (!animation) return with_z_up(std::move(source));
+  return std::make_shared<const Animation>(animation->z_up());
 }
 
 }  // namespace mimetra

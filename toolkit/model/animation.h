@@ -22,6 +22,8 @@ class Animation : public FrameSource {
   /// The same with its model in other units and axes. Throws std::invalid_argument for options out
   /// of range.
   Animation in_units(const UnitChange& change) const;
+  /// The same, of which it is known that z is up in it.
+  Animation z_up() const;
 
  private:
   /// The same numbers as those frames of model().animate(weights()).
@@ -34,5 +36,8 @@ class Animation : public FrameSource {
 /// with_units() of any sequence, by which an Animation stays one.
 std::shared_ptr<const FrameSource> in_units(std::shared_ptr<const FrameSource> source,
                                             const UnitChange& change);
+
+/// with_z_up() of any sequence, by which an Animation stays one.
+std::shared_ptr<const FrameSource> z_up(std::shared_ptr<const FrameSource> source);
 
 }  // namespace mimetra

@@ -1,4 +1,4 @@
-#include <atomic>
+#include <algorithm>
 
 #include <nlohmann/json.hpp>
 
@@ -34,22 +34,6 @@ std::string counted(std::size_t count, const std::string& what, int first) {
   return std::to_string(count) + " " + what + ", the first is " + std::to_string(first);
 }
 
-/// Whether any frame differs from the first by what a decomposition takes for motion. Reads all of
-/// them.
-bool moves(const FrameSource& sequence, const BlockOptions& options) {
-  const Frames first = sequence.read(0, 1);
-  const double least = kLeastMotion * diameter(PositionsView(first.data(), sequence.vertices(), 3));
-  std::atomic<bool> differs = false;
-  for_each_block(sequence, options, [&](int, const Frames& poses) {
-    for (Eigen::Index row = 0; row < poses.rows(); ++row) {
-      const Eigen::RowVectorXd way = poses.row(row) - first.row(0);
-      const PositionsView of_vertices(way.data(), sequence.vertices(), 3);
-      if (of_vertices.rowwise().squaredNorm().maxCoeff() > least * least) differs = true;
-    }
-  });
-  return differs;
-}
-
 /// Frames that can be no poses of the mesh: "frames 7, 9 are WHAT".
 std::string told(const std::vector<int>& frames, const std::string& what) {
   const bool several = frames.size() > 1;
@@ -57,10 +41,18 @@ std::string told(const std::vector<int>& frames, const std::string& what) {
          (several ? " are " : " is ") + what;
 }
 
+/// Reads all frames.
 std::vector<std::string> frame_warnings(const FrameSource& sequence, const BlockOptions& options) {
   const std::vector<FrameShape> shapes = frame_shapes(sequence, options);
   const OddFrames odd = odd_frames(sequence, shapes);
   std::vector<std::string> warnings;
+  const double least = kLeastMotion * sequence.diameter();
+  const bool moves = std::ranges::any_of(
+      shapes, [least](const FrameShape& shape) { return shape.from_first > least; });
+  if (sequence.frames() > 1 && !moves) {
+    warnings.push_back("nothing moves: all " + std::to_string(sequence.frames()) +
+                       " frames are equal to " + readable(kLeastMotion) + " of their diameter");
+  }
   const auto of_first = [&shapes](const std::vector<int>& frames) -> const FrameShape& {
     return shapes[static_cast<std::size_t>(frames.front())];
   };
@@ -88,7 +80,7 @@ std::vector<std::string> frame_warnings(const FrameSource& sequence, const Block
 }
 
 /// What is legal but often a mistake.
-std::vector<std::string> warnings_of(const FrameSource& sequence, bool moves) {
+std::vector<std::string> mesh_warnings(const FrameSource& sequence) {
   const MeshReport mesh = inspect(sequence.rest(), sequence.connectivity());
   std::vector<std::string> warnings;
   if (!mesh.degenerate_triangles.empty()) {
@@ -104,10 +96,6 @@ std::vector<std::string> warnings_of(const FrameSource& sequence, bool moves) {
     warnings.push_back(counted(mesh.vertices_without_face.size(),
                                "vertices without a face (in no region)",
                                mesh.vertices_without_face.front()));
-  }
-  if (sequence.frames() > 1 && !moves) {
-    warnings.push_back("nothing moves: all " + std::to_string(sequence.frames()) +
-                       " frames are equal to " + readable(kLeastMotion) + " of their diameter");
   }
   return warnings;
 }
@@ -134,12 +122,10 @@ Outcome run_check(const Invocation& invocation) {
   const NamedData& input = invocation.input("sequence");
   const FrameSource& sequence = *std::get<FieldSequence>(input.data).frames;
   std::vector<std::string> found = numbering_warnings(invocation);
-  const auto part = [&](double from, double to) -> BlockOptions {
-    return {.threads = invocation.threads, .progress = part_of(invocation.progress, from, to)};
-  };
-  const std::vector<std::string> own = warnings_of(sequence, moves(sequence, part(0, 0.5)));
+  const std::vector<std::string> own = mesh_warnings(sequence);
   found.insert(found.end(), own.begin(), own.end());
-  const std::vector<std::string> of_frames = frame_warnings(sequence, part(0.5, 1));
+  const std::vector<std::string> of_frames =
+      frame_warnings(sequence, {.threads = invocation.threads, .progress = invocation.progress});
   found.insert(found.end(), of_frames.begin(), of_frames.end());
   // What reading said is not said again.
   std::vector<std::string> warnings = input.origin.notes;

@@ -84,18 +84,29 @@ Source source_of(const FrameSource& sequence, const std::vector<Target>& targets
   return prepare_source(std::move(given), of_source);
 }
 
-/// Throws MismatchError where the only frame is the rest pose: the result would be perfect, and the
-/// target's neutral.
-void require_motion(const FrameSource& sequence, const std::string& name) {
-  if (sequence.frames() > 1) return;
-  const FrameBlock only(sequence, 0, 1);
-  const double farthest = (only.frame(0) - sequence.rest()).rowwise().norm().maxCoeff();
-  if (farthest > kLeastMotion * sequence.diameter()) return;
-  throw MismatchError(
-      name +
-      ": nothing moves: it has one frame, its rest pose; give what drives it (option "
-      "'weights') where it is a model, or its undeformed shape (option "
-      "'source-rest')");
+/// Whether a frame differs from the rest pose. Reads until it finds one.
+bool moves(const FrameSource& sequence) {
+  const double least = kLeastMotion * sequence.diameter();
+  for (int f = 0; f < sequence.frames(); ++f) {
+    const FrameBlock block(sequence, f, 1);
+    if ((block.frame(0) - sequence.rest()).rowwise().norm().maxCoeff() > least) return true;
+  }
+  return false;
+}
+
+/// Where all frames are the rest pose the result would be perfect, and the target's neutral: says
+/// so, and of a single frame throws MismatchError.
+void expect_motion(const FrameSource& sequence, const std::string& name, const Notes& notes) {
+  if (moves(sequence)) return;
+  const bool single = sequence.frames() == 1;
+  const std::string text =
+      name + ": nothing moves: " +
+      (single ? "it has one frame, its rest pose"
+              : "all " + std::to_string(sequence.frames()) + " frames are its rest pose") +
+      "; give what drives it (option 'weights') where it is a model, or its undeformed shape "
+      "(option 'source-rest')";
+  if (single) throw MismatchError(text);
+  note(notes, text);
 }
 
 std::vector<MatchedTarget> matched_targets(const FrameSource& sequence,
@@ -267,7 +278,7 @@ TransferResult transfer(const FrameSource& sequence, const std::vector<Target>& 
   }
   of_solving.distances = options.analysis.distances;
   const Source source = source_of(sequence, targets, options, of_solving);
-  require_motion(*source.sequence, options.source.name);
+  expect_motion(*source.sequence, options.source.name, options.notes);
   Choice choice = choose(source, options);
   const bool give_back = !source.motion.empty() && options.head_motion == RemovedMotion::keep;
 
