@@ -2,8 +2,8 @@
 
 usage: build.py MIMETRA OUT
 
-MIMETRA is the built command; OUT becomes a folder of pages that need no network and no server. What is
-made on the way lies in OUT-work.
+MIMETRA is the built command; OUT becomes a folder of pages that need no network and no server. What
+is made on the way lies in OUT-work.
 """
 
 import json
@@ -21,8 +21,8 @@ SITE = ROOT / "docs" / "site"
 
 REPORT = """# A report
 
-`mimetra report` makes one page for a browser of a run: source and target in 3D, strips, components, Table I. This is the
-one of the built-in sample, as these commands make it:
+`mimetra report` makes one page for a browser of a run: source and target in 3D, strips, components,
+Table I. This is the one of the built-in sample, as these commands make it:
 
 ```sh
 {commands}
@@ -66,8 +66,8 @@ def layout(work):
     """Doxygen's own, with a way back to the site."""
     path = work / "doxygen_layout.xml"
     run("doxygen", "-l", path)
-    back = '<navindex>\n    <tab type="user" visible="yes" url="../index.html" title="mimetra documentation"/>'
-    path.write_text(path.read_text().replace("<navindex>", back))
+    back = '<tab type="user" visible="yes" url="../index.html" title="mimetra documentation"/>'
+    path.write_text(path.read_text().replace("<navindex>", f"<navindex>\n    {back}"))
     return path
 
 
@@ -78,8 +78,11 @@ def make_cpp(work, out):
     main_page.write_text(main_page_of_cpp(headers))
     inputs = " ".join(f'"{path}"' for path in [main_page, *headers])
     settings = (SITE / "Doxyfile").read_text() + (
-        f'\nPROJECT_NUMBER = {version()}\nINPUT = {inputs}\nUSE_MDFILE_AS_MAINPAGE = "{main_page}"\n'
-        f'OUTPUT_DIRECTORY = "{out}"\nHTML_EXTRA_STYLESHEET = "{SITE / "reference.css"}"\n'
+        f'\nPROJECT_NUMBER = {version()}\nINPUT = {inputs}\n'
+        f'USE_MDFILE_AS_MAINPAGE = "{main_page}"\n'
+        f'STRIP_FROM_INC_PATH = "{ROOT}"\nOUTPUT_DIRECTORY = "{out}"\n'
+        f'HTML_EXTRA_STYLESHEET = "{SITE / "reference.css"}"\n'
+        f'INPUT_FILTER = "python3 -B {SITE / "doxygen_filter.py"}"\n'
         f'LAYOUT_FILE = "{layout(work)}"\nWARN_LOGFILE = "{work / "doxygen.log"}"\n')
     subprocess.run(["doxygen", "-"], input=settings, text=True, cwd=ROOT, check=True)
     return headers
@@ -102,9 +105,9 @@ def main(mimetra, out):
     pages.add("samples.md", samples_page(ROOT))
     pages.add("report.md", make_report(mimetra, work, out))
     pages.finish()
-    run("sphinx-build", "-q", "-W", "--keep-going", "-b", "html", "-c", SITE, "-d", work / "doctrees",
-        "-D", f"release={version()}", work / "pages", out)
-    print(f"{out / 'index.html'}")
+    run("sphinx-build", "-q", "-W", "--keep-going", "-b", "html", "-c", SITE,
+        "-d", work / "doctrees", "-D", f"release={version()}", work / "pages", out)
+    print(out / "index.html")
 
 
 if __name__ == "__main__":

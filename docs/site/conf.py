@@ -13,7 +13,7 @@ html_theme = "furo"
 html_title = "mimetra"
 html_static_path = ["site.css", "/usr/share/fonts/opentype/stix-word/STIXMath-Regular.otf"]
 html_css_files = ["site.css"]
-html_copy_source = html_show_sourcelink = False
+html_copy_source = html_show_sourcelink = html_show_copyright = False
 html_math_renderer = "mathml"
 html_theme_options = {
     "light_css_variables": {"color-brand-primary": "#1f5f8b", "color-brand-content": "#1f5f8b"},

@@ -1,4 +1,4 @@
-"""The pages of the site: documents of the repository whose links lead to where the site has them."""
+"""The pages of the site: documents of the repository, with links to where the site has them."""
 
 import os
 import pathlib
