@@ -6,7 +6,8 @@ usage: check_docs.py --mimetra MIMETRA [--run PAGE ... | --no-run]
 Without --run and --no-run all is checked; --run runs these pages only, which are named below docs/
 without .md. In a page that is run, all blocks ```sh are run in its order in one fresh folder, and
 each line of a block ```text is the beginning of a line that the block ```sh before it printed:
-numbers to within 5 percent, and of warnings what stands before the first number.
+numbers to within 5 percent, and of warnings what stands before the first number. What depends on
+the machine is shown in blocks ```console, which are not compared.
 """
 
 import argparse
