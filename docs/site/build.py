@@ -88,6 +88,17 @@ def make_cpp(work, out):
     return headers
 
 
+def take_in_style_sheets(folder):
+    """Debian's theme imports sheets from where a web server has them: these go beside it."""
+    for path in folder.glob("*.css"):
+        def copied(match):
+            sheet = pathlib.Path("/usr/share/javascript", match.group(1))
+            shutil.copy(sheet, folder / sheet.name)
+            return f"url({sheet.name})"
+
+        path.write_text(re.sub(r"url\(/javascript/([^)]+)\)", copied, path.read_text()))
+
+
 def main(mimetra, out):
     mimetra, out = pathlib.Path(mimetra).resolve(), pathlib.Path(out).resolve()
     work = out.with_name(out.name + "-work")
@@ -107,6 +118,7 @@ def main(mimetra, out):
     pages.finish()
     run("sphinx-build", "-q", "-W", "--keep-going", "-b", "html", "-c", SITE,
         "-d", work / "doctrees", "-D", f"release={version()}", work / "pages", out)
+    take_in_style_sheets(out / "_static" / "styles")
     print(out / "index.html")
 
 
