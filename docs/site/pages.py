@@ -17,6 +17,7 @@ MENU = {
         "algorithms/index", "algorithms/heat_geodesics", "algorithms/exact_geodesics",
         "algorithms/support_map", "algorithms/alignment", "algorithms/decomposition",
         "algorithms/regions", "algorithms/region_completion", "algorithms/region_selection",
+        "algorithms/simplification", "algorithms/subdivision",
         "algorithms/deformation_gradients", "algorithms/blendshape_transfer",
         "algorithms/vertex_transfer", "algorithms/soft_border", "algorithms/local_weights",
         "algorithms/transfer_error", "algorithms/linear_transfer", "algorithms/example_rig",
@@ -24,7 +25,7 @@ MENU = {
         "algorithms/landmark_fitter"],
     "Reference": ["commands", "formats", "scenes", "errors", "python", "cpp", "samples"],
     "Measured": ["accuracy", "performance"],
-    "Project": ["contributing", "changelog"],
+    "Project": ["contributing", "changelog", "security"],
 }
 
 TITLES = {"readme": "Overview", "tutorial": "Tutorial", "algorithms/index": "All algorithms",
@@ -33,7 +34,7 @@ TITLES = {"readme": "Overview", "tutorial": "Tutorial", "algorithms/index": "All
 
 # Documents outside docs/, and the page that each becomes.
 OUTSIDE = {"README.md": "readme.md", "CONTRIBUTING.md": "contributing.md",
-           "CHANGELOG.md": "changelog.md"}
+           "CHANGELOG.md": "changelog.md", "SECURITY.md": "security.md"}
 
 FENCE = re.compile(r"^( *)(```+|~~~+).*?^\1?\2 *$", re.MULTILINE | re.DOTALL)
 CODE = re.compile(r"(`+)(?!`).+?(?<!`)\1(?!`)", re.DOTALL)
