@@ -1,0 +1,27 @@
+# Compiles PROGRAM in BUILD as pkg-config says for the installation in PREFIX, and runs it.
+set(libraries ${PREFIX}/${LIBRARIES})
+set(ENV{PKG_CONFIG_PATH} ${libraries}/pkgconfig)
+function(asked variable)
+  execute_process(COMMAND pkg-config ${ARGN} OUTPUT_VARIABLE text OUTPUT_STRIP_TRAILING_WHITESPACE
+                          COMMAND_ERROR_IS_FATAL ANY)
+  set(${variable} "${text}" PARENT_SCOPE)
+endfunction()
+
+foreach(name mimetra mimetra_c)
+  asked(version --modversion ${name})
+  if(NOT version STREQUAL VERSION)
+    message(FATAL_ERROR "${name}.pc: expected version ${VERSION}, found '${version}'")
+  endif()
+endforeach()
+asked(plugins --variable=plugindir mimetra)
+cmake_path(NORMAL_PATH plugins)
+if(NOT plugins STREQUAL "${libraries}/mimetra/plugins")
+  message(FATAL_ERROR "mimetra.pc: expected plugins in ${libraries}/mimetra/plugins, found '${plugins}'")
+endif()
+
+asked(options --cflags --libs mimetra)
+separate_arguments(options UNIX_COMMAND "${options} ${FLAGS}")
+file(MAKE_DIRECTORY ${BUILD})
+execute_process(COMMAND ${CC} ${PROGRAM} -o ${BUILD}/version ${options} COMMAND_ERROR_IS_FATAL ANY)
+set(ENV{LD_LIBRARY_PATH} ${libraries})
+execute_process(COMMAND ${BUILD}/version COMMAND_ERROR_IS_FATAL ANY)
