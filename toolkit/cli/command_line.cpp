@@ -6,6 +6,7 @@
 #include <CLI/CLI.hpp>
 
 #include "toolkit/cli/command.h"
+#include "toolkit/cli/libraries.h"
 #include "toolkit/io/frame_series.h"
 #include "toolkit/io/mesh_formats.h"
 #include "toolkit/mesh/suggestion.h"
@@ -191,7 +192,7 @@ ParsedLine parse_command_line(const OperationTable& table,
                               const std::vector<std::string>& arguments) {
   CLI::App app("Transfers the deformation of one animated mesh to another, by regions.", "mimetra");
   app.require_subcommand(1);
-  app.set_version_flag("--version", "mimetra " MIMETRA_VERSION);
+  app.set_version_flag("--version", "mimetra " MIMETRA_VERSION "\n" + std::string(libraries()));
   app.footer("`mimetra COMMAND --help` lists a command's options, with two examples.");
   const std::vector<Command> commands = commands_of(table);
   std::list<Slots> all_slots;
@@ -204,7 +205,7 @@ ParsedLine parse_command_line(const OperationTable& table,
   } catch (const CLI::CallForHelp&) {
     return {{}, app.help()};
   } catch (const CLI::CallForVersion&) {
-    return {{}, app.version() + '\n'};
+    return {{}, app.version()};
   } catch (const CLI::ParseError& error) {
     throw UsageError(explained(app, arguments, error));
   }
