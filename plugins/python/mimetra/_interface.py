@@ -133,7 +133,9 @@ def _places():
         return [named]
     here = pathlib.Path(__file__).resolve().parent
     places = [here / "libmimetra_c.so"]
-    for folder in here.parents[:4]:
+    # Of the system's library the loader takes the build for the processor, if it is not given a path.
+    installed = [] if here.is_relative_to("/usr/lib") else here.parents[:4]
+    for folder in installed:
         places += [folder / "libmimetra_c.so", *sorted(folder.glob("*-linux-*/libmimetra_c.so"))]
     return [str(place) for place in places if place.exists()] or ["libmimetra_c.so.1"]
 
