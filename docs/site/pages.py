@@ -23,7 +23,7 @@ MENU = {
         "algorithms/transfer_error", "algorithms/linear_transfer", "algorithms/example_rig",
         "algorithms/automatic_markers", "algorithms/correspondence", "algorithms/renumbering",
         "algorithms/landmark_fitter"],
-    "Reference": ["commands", "formats", "scenes", "errors", "python", "cpp", "samples"],
+    "Reference": ["commands", "formats", "scenes", "errors", "packages", "python", "cpp", "samples"],
     "Measured": ["accuracy", "performance"],
     "Project": ["contributing", "changelog", "security"],
 }

@@ -41,13 +41,15 @@ class Pen {
     renderer_.AddActor2D(actor);
   }
 
+  int label_height() const { return std::max(kSmallestLabel, 3 * layout_.text / 4); }
+
   /// Letters about a middle, light behind, that are to be read on any colour.
   void label(const std::string& text, double x, double y) const {
     vtkNew<vtkTextActor> actor;
     actor->SetInput(text.c_str());
     actor->SetPosition(x, layout_.height - y);
     vtkTextProperty& look = *actor->GetTextProperty();
-    look.SetFontSize(std::max(kSmallestLabel, 3 * layout_.text / 4));
+    look.SetFontSize(label_height());
     look.SetColor(0.1, 0.1, 0.1);
     look.SetBackgroundColor(1, 1, 1);
     look.SetBackgroundOpacity(0.7);
@@ -136,10 +138,18 @@ void write_legend(const Pen& pen, const Legend& legend, const Box& row_end,
 
 void write_labels(const Pen& pen, const Tile& tile, const Box& box, const View& view,
                   const Eigen::RowVector3d& center, double pixels_per_unit) {
+  std::vector<Eigen::Vector2d> written;
   for (const TileLabel& label : tile.labels) {
     const Eigen::Vector3d way = (label.position - center).transpose();
-    pen.label(label.text, box.left + box.width / 2.0 + pixels_per_unit * way.dot(view.right),
-              box.top + box.height / 2.0 - pixels_per_unit * way.dot(view.up));
+    const Eigen::Vector2d place(box.left + box.width / 2.0 + pixels_per_unit * way.dot(view.right),
+                                box.top + box.height / 2.0 - pixels_per_unit * way.dot(view.up));
+    // The first of those that would lie on each other is written.
+    const bool is_free = std::ranges::none_of(written, [&](const Eigen::Vector2d& other) {
+      return (place - other).norm() < pen.label_height() * 1.4;
+    });
+    if (!is_free) continue;
+    written.push_back(place);
+    pen.label(label.text, place.x(), place.y());
   }
 }
 

@@ -14,39 +14,50 @@ const lights = [
   { position: [0, 1.5, 0.3], intensity: 0.2 },
 ];
 
-// The region that most corners of each triangle are in, of three different ones the first corner's:
-// colours of whole triangles do not run into each other.
-function regionsOfTriangles({ triangles, regions }) {
-  const found = new Int32Array(triangles.length / 3);
-  for (let t = 0; t < found.length; ++t) {
-    const [a, b, c] = [0, 1, 2].map((corner) => regions[triangles[3 * t + corner]]);
-    found[t] = b === c ? b : a;
+// What is drawn: triangles within one region, and around each corner of the others the part nearest
+// to it, so that colours do not run into each other. `between` holds the vertices in whose middle
+// each added point is, `cells` VTK's list, and of each cell `triangles` and `regions`.
+function cellsOf({ vertices, triangles, regions }) {
+  const between = [], cells = [], ofTriangle = [], ofRegion = [];
+  const add = (corners) => vertices + between.push(corners) - 1;
+  const addCell = (corners, triangle, region) => {
+    cells.push(corners.length, ...corners);
+    ofTriangle.push(triangle);
+    ofRegion.push(region);
+  };
+  for (let t = 0; t < triangles.length / 3; ++t) {
+    const corners = [...triangles.subarray(3 * t, 3 * t + 3)];
+    const [a, b, c] = corners.map((v) => regions[v]);
+    if (a === b && b === c) {
+      addCell(corners, t, a);
+      continue;
+    }
+    const edges = corners.map((v, i) => add([v, corners[(i + 1) % 3]]));
+    const middle = add(corners);
+    corners.forEach((v, i) => addCell([v, edges[i], middle, edges[(i + 2) % 3]], t, regions[v]));
   }
-  return found;
-}
-
-function trianglesOf(indices) {
-  const cells = new Uint32Array((indices.length / 3) * 4);
-  for (let t = 0; t < indices.length / 3; ++t) {
-    cells[4 * t] = 3;
-    cells.set(indices.subarray(3 * t, 3 * t + 3), 4 * t + 1);
-  }
-  return cells;
+  return {
+    between,
+    cells: Uint32Array.from(cells),
+    triangles: Int32Array.from(ofTriangle),
+    regions: Int32Array.from(ofRegion),
+  };
 }
 
 export class Surface {
   constructor(performance, mesh, camera) {
     this.performance = performance;
     this.mesh = mesh;
-    const coordinates = 3 * mesh.surface.vertices;
+    this.drawn = cellsOf(mesh.surface);
+    this.regions = this.drawn.regions;
+    const coordinates = 3 * (mesh.surface.vertices + this.drawn.between.length);
     this.positions = new Float32Array(coordinates);
     this.normals = new Float32Array(coordinates);
     this.colors = new Uint8Array(coordinates);
-    this.regions = regionsOfTriangles(mesh.surface);
 
     this.data = vtkPolyData.newInstance();
     this.data.getPoints().setData(this.positions, 3);
-    this.data.getPolys().setData(trianglesOf(mesh.surface.triangles));
+    this.data.getPolys().setData(this.drawn.cells);
     this.normalArray = vtkDataArray.newInstance({
       name: 'normals', numberOfComponents: 3, values: this.normals,
     });
@@ -78,19 +89,20 @@ export class Surface {
   }
 
   // What is at a point of a triangle, in words.
-  nameOf(triangle, point) {
-    if (triangle < 0) return '';
+  nameOf(cell, point) {
+    if (cell < 0) return '';
+    const triangle = this.drawn.triangles[cell];
     const corners = this.mesh.surface.triangles.subarray(3 * triangle, 3 * triangle + 3);
     const away = (v) => Math.hypot(...point.map((x, axis) => x - this.positions[3 * v + axis]));
     const nearest = corners.reduce((best, v) => (away(v) < away(best) ? v : best));
-    const region = this.regions[triangle];
+    const region = this.regions[cell];
     return `${this.mesh.role}: ${region < 0 ? 'no region' : `region ${region}`}, vertex ${nearest}`;
   }
 
   // Between pose `first` and the next one; poses count from 0, the one at rest is not among them.
   show(first, share, coloring) {
     const { poses, step } = this.mesh;
-    const coordinates = this.positions.length;
+    const coordinates = 3 * this.mesh.surface.vertices;
     const from = (first + 1) * coordinates;
     const to = share > 0 ? from + coordinates : from;
     for (let i = 0; i < coordinates; ++i) {
@@ -98,10 +110,29 @@ export class Surface {
     }
     this.updateNormals();
     this.updateColors(coloring);
+    this.drawn.between.forEach((corners, i) => this.put(corners, coordinates + 3 * i));
     this.data.getPoints().dataChange();
     this.normalArray.modified();
     this.colorArray.modified();
     this.data.modified();
+  }
+
+  // The point in the middle of others.
+  put(corners, at) {
+    const n = this.normals;
+    for (let axis = 0; axis < 3; ++axis) {
+      let position = 0, normal = 0, color = 0;
+      for (const v of corners) {
+        position += this.positions[3 * v + axis];
+        normal += n[3 * v + axis];
+        color += this.colors[3 * v + axis];
+      }
+      this.positions[at + axis] = position / corners.length;
+      n[at + axis] = normal;
+      this.colors[at + axis] = color / corners.length;
+    }
+    const length = Math.hypot(n[at], n[at + 1], n[at + 2]) || 1;
+    for (let axis = 0; axis < 3; ++axis) n[at + axis] /= length;
   }
 
   // By area; vertices at one place share theirs.
@@ -132,7 +163,7 @@ export class Surface {
   regionColors() {
     const { regionColors, clay } = this.performance;
     const colors = new Uint8Array(3 * this.regions.length);
-    this.regions.forEach((region, t) => colors.set(region < 0 ? clay : regionColors[region], 3 * t));
+    this.regions.forEach((region, i) => colors.set(region < 0 ? clay : regionColors[region], 3 * i));
     return colors;
   }
 
