@@ -206,7 +206,7 @@ std::vector<BadInput> request_cases() {
                  },
                  "render head small --size 32 -o r.png",
                  0,
-                 {"small is 1000 times as small as head", "one scale", "'scale'"}});
+                 {"small is 1000 times as small as head", "one scale", "--scale"}});
   all.push_back({"several_frames",
                  "convert_vtp",
                  {},

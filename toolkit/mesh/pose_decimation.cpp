@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include <Eigen/Geometry>
@@ -90,54 +91,76 @@ class PoseModule : public OpenMesh::Decimater::ModBaseT<MeshT> {
   explicit PoseModule(MeshT& mesh) : Base(mesh, false) {}
 
   void start(const DecimationPoses& poses, const geodesic::GluedSurface& surface) {
-    poses_ = &poses;
-    for (int p = 0; p < poses.planes; ++p) {
-      quadrics_.push_back(quadrics_of(poses.positions[static_cast<std::size_t>(p)], surface));
+    poses_ = poses.positions.size();
+    planes_ = static_cast<std::size_t>(poses.planes);
+    const std::size_t vertices = surface.vertex.size();
+    positions_.resize(vertices * poses_);
+    normals_.resize(vertices * poses_);
+    quadrics_.resize(vertices * planes_);
+    for (std::size_t p = 0; p < poses_; ++p) {
+      for (std::size_t v = 0; v < vertices; ++v) {
+        positions_[v * poses_ + p] = poses.positions[p].row(Eigen::Index(v));
+        normals_[v * poses_ + p] = poses.normals[p].row(Eigen::Index(v));
+      }
+    }
+    for (std::size_t p = 0; p < planes_; ++p) {
+      const std::vector<Quadric> quadrics = quadrics_of(poses.positions[p], surface);
+      for (std::size_t v = 0; v < vertices; ++v) quadrics_[v * planes_ + p] = quadrics[v];
     }
   }
 
   float collapse_priority(const CollapseInfo& collapse) override {
-    const int from = collapse.v0.idx(), to = collapse.v1.idx();
-    if (!is_allowed(collapse)) return float(Base::ILLEGAL_COLLAPSE);
+    const auto from = std::size_t(collapse.v0.idx()), to = std::size_t(collapse.v1.idx());
+    if (collapse.v0 != ranked_) {
+      ranked_ = collapse.v0;
+      best_ = std::numeric_limits<float>::max();
+    }
+    const float cost = cost_of(from, to);
+    // The decimater takes a vertex's cheapest: whether a dearer one is allowed does not matter.
+    if (cost >= best_ || !is_allowed(collapse)) return float(Base::ILLEGAL_COLLAPSE);
+    best_ = cost;
+    return cost;
+  }
+
+  void postprocess_collapse(const CollapseInfo& collapse) override {
+    const auto from = std::size_t(collapse.v0.idx()), to = std::size_t(collapse.v1.idx());
+    for (std::size_t p = 0; p < planes_; ++p) {
+      quadrics_[to * planes_ + p].add(quadrics_[from * planes_ + p]);
+    }
+    ranked_ = OpenMesh::VertexHandle();
+  }
+
+ private:
+  float cost_of(std::size_t from, std::size_t to) const {
     double cost = 0;
-    for (std::size_t p = 0; p < quadrics_.size(); ++p) {
-      const Positions& pose = poses_->positions[p];
-      const Vector x = pose.row(to);
-      const double shift2 = (pose.row(from) - pose.row(to)).squaredNorm();
-      cost += quadrics_[p][std::size_t(from)].at(x) + quadrics_[p][std::size_t(to)].at(x) +
+    for (std::size_t p = 0; p < planes_; ++p) {
+      const Vector& x = positions_[to * poses_ + p];
+      const double shift2 = (positions_[from * poses_ + p] - x).squaredNorm();
+      cost += quadrics_[from * planes_ + p].at(x) + quadrics_[to * planes_ + p].at(x) +
               kShort * shift2 * shift2;
     }
     return static_cast<float>(std::max(0.0, cost));
   }
 
-  void postprocess_collapse(const CollapseInfo& collapse) override {
-    for (std::vector<Quadric>& quadrics : quadrics_) {
-      quadrics[std::size_t(collapse.v1.idx())].add(quadrics[std::size_t(collapse.v0.idx())]);
-    }
-  }
-
- private:
   /// Whether every triangle that stays around `from` may have its corner at `to`.
   bool is_allowed(const CollapseInfo& collapse) {
     MeshT& mesh = Base::mesh();
-    const int from = collapse.v0.idx(), to = collapse.v1.idx();
+    const auto from = std::size_t(collapse.v0.idx()), to = std::size_t(collapse.v1.idx());
     for (const auto spoke : mesh.voh_range(collapse.v0)) {
-      const auto face = spoke.face();
-      if (!face.is_valid()) continue;
-      const int b = spoke.to().idx(), c = spoke.next().to().idx();
+      if (!spoke.face().is_valid()) continue;
+      const auto b = std::size_t(spoke.to().idx()), c = std::size_t(spoke.next().to().idx());
       if (b == to || c == to) continue;
       if (!keeps_its_side(from, to, b, c) || !keeps_its_shape(from, to, b, c)) return false;
     }
     return true;
   }
 
-  bool keeps_its_side(int from, int to, int b, int c) const {
-    for (std::size_t p = 0; p < poses_->positions.size(); ++p) {
-      const Positions& pose = poses_->positions[p];
-      const Positions& normals = poses_->normals[p];
-      const auto agrees = [&](int a) {
-        return agreement(pose.row(a), pose.row(b), pose.row(c),
-                         normals.row(a) + normals.row(b) + normals.row(c));
+  bool keeps_its_side(std::size_t from, std::size_t to, std::size_t b, std::size_t c) const {
+    for (std::size_t p = 0; p < poses_; ++p) {
+      const auto agrees = [this, p, b, c](std::size_t a) {
+        const auto of = [this, p](std::size_t v) { return v * poses_ + p; };
+        return agreement(positions_[of(a)], positions_[of(b)], positions_[of(c)],
+                         normals_[of(a)] + normals_[of(b)] + normals_[of(c)]);
       };
       const double now = agrees(to);
       if (now < kLeastCosine && now <= agrees(from)) return false;
@@ -145,14 +168,19 @@ class PoseModule : public OpenMesh::Decimater::ModBaseT<MeshT> {
     return true;
   }
 
-  bool keeps_its_shape(int from, int to, int b, int c) const {
-    const Positions& rest = poses_->positions.front();
-    const double now = quality(rest.row(to), rest.row(b), rest.row(c));
-    return now >= kLeastQuality || now > quality(rest.row(from), rest.row(b), rest.row(c));
+  bool keeps_its_shape(std::size_t from, std::size_t to, std::size_t b, std::size_t c) const {
+    const auto at_rest = [this](std::size_t v) -> const Vector& { return positions_[v * poses_]; };
+    const double now = quality(at_rest(to), at_rest(b), at_rest(c));
+    return now >= kLeastQuality || now > quality(at_rest(from), at_rest(b), at_rest(c));
   }
 
-  const DecimationPoses* poses_ = nullptr;
-  std::vector<std::vector<Quadric>> quadrics_;
+  // Of each vertex one pose after the other, so that they lie together in memory.
+  std::size_t poses_ = 0, planes_ = 0;
+  std::vector<Vector> positions_, normals_;
+  std::vector<Quadric> quadrics_;
+  // Whose collapses are asked for, one after the other, and the cheapest of them so far.
+  OpenMesh::VertexHandle ranked_;
+  float best_ = 0;
 };
 
 class CollapseProgress : public OpenMesh::Decimater::Observer {

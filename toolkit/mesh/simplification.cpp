@@ -17,12 +17,12 @@ namespace {
 
 using Vector = Eigen::Vector3d;
 
-/// Besides the rest pose, whose planes count.
-constexpr int kExtremePoses = 5;
+/// Besides the rest pose: frames whose planes count, and those that are looked at for folds.
+constexpr int kPlanePoses = 5, kExtremePoses = 12;
 /// Vertices by which frames are compared.
 constexpr int kSamples = 500;
 /// Frames in which triangles fold are looked at in the next round.
-constexpr int kRounds = 4, kFoldedPoses = 4;
+constexpr int kRounds = 3, kFoldedPoses = 4;
 
 /// Triangles with three different corners.
 std::vector<int> sound_triangles(const Triangles& triangles) {
@@ -120,7 +120,7 @@ std::vector<int> extreme_frames(const FrameSource& sequence, const BlockOptions&
   return frames;
 }
 
-/// Where triangles that collapses have made are turned over.
+/// Where triangles that collapses have made are turned over, and were not before.
 struct Folds {
   std::vector<int> in_frame;   ///< how many (F)
   std::vector<bool> triangle;  ///< each of `corners`
@@ -149,9 +149,13 @@ Folds folds_of(const FrameSource& sequence, const Surface& surface, const Collap
       const Positions normals =
           vertex_normals(pose, surface.glued.triangles).rowwise().normalized();
       for (const int i : made) {
-        const auto c = mesh.corners.row(i);
-        const Vector around = normals.row(c[0]) + normals.row(c[1]) + normals.row(c[2]);
-        if (agreement(pose.row(c[0]), pose.row(c[1]), pose.row(c[2]), around) > 0) continue;
+        const auto is_turned = [&](const auto& c) {
+          const Vector around = normals.row(c[0]) + normals.row(c[1]) + normals.row(c[2]);
+          return agreement(pose.row(c[0]), pose.row(c[1]), pose.row(c[2]), around) <= 0;
+        };
+        if (!is_turned(mesh.corners.row(i))) continue;
+        // The given triangle that it was may be so, too: an eyelid that closes.
+        if (is_turned(surface.glued.triangles.row(mesh.triangles[std::size_t(i)]))) continue;
         folded[static_cast<std::size_t>(first + row)].push_back(i);
       }
     }
@@ -175,6 +179,20 @@ std::vector<int> worst_frames(const std::vector<int>& folds) {
   frames.erase(none, frames.end());
   frames.resize(std::min<std::size_t>(frames.size(), kFoldedPoses));
   return frames;
+}
+
+/// Locks the surface's vertices around the corners of folded triangles.
+void keep_around(const Folds& folds, const CollapsedSurface& mesh, const Surface& surface,
+                 std::vector<bool>& locked) {
+  std::vector<bool> near(locked.size(), false);
+  for (Eigen::Index i = 0; i < mesh.corners.rows(); ++i) {
+    if (!folds.triangle[std::size_t(i)]) continue;
+    for (const int v : mesh.corners.row(i)) near[std::size_t(v)] = true;
+  }
+  for (const auto& t : surface.glued.triangles.rowwise()) {
+    if (!near[std::size_t(t[0])] && !near[std::size_t(t[1])] && !near[std::size_t(t[2])]) continue;
+    for (const int v : t) locked[std::size_t(v)] = true;
+  }
 }
 
 /// Texture coordinates of `vertex` next to those that the corner had before.
@@ -302,7 +320,7 @@ Simplification simplify(const FrameSource& sequence, const SimplifyOptions& opti
   for (const int frame : extreme_frames(sequence, part(0, 0.1))) {
     add(FrameBlock(sequence, frame, 1).frame(0));
   }
-  poses.planes = static_cast<int>(poses.positions.size());
+  poses.planes = std::min(1 + kPlanePoses, static_cast<int>(poses.positions.size()));
   const auto wanted = static_cast<int>(std::ceil(options.share * sequence.vertices()));
   const auto collapses = static_cast<std::size_t>(std::max(0, sequence.vertices() - wanted));
   CollapsedSurface left;
@@ -314,6 +332,7 @@ Simplification simplify(const FrameSource& sequence, const SimplifyOptions& opti
     folds = folds_of(sequence, surface, left, part(from + 0.5 / kRounds, from + 0.9 / kRounds));
     const std::vector<int> frames = worst_frames(folds.in_frame);
     if (frames.empty()) break;
+    keep_around(folds, left, surface, on_glued);
     for (const int frame : frames) add(FrameBlock(sequence, frame, 1).frame(0));
   }
   const Remaining remaining(sequence.connectivity(), surface, left, texture);

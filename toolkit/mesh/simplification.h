@@ -28,17 +28,18 @@ struct Simplification {
   /// Vertices that must be kept: on texture seams, where vertices lie at one place, where the mesh
   /// is no manifold, and those without a triangle.
   int locked = 0;
-  /// New triangles that are turned over in some frame, which is avoided where it can be.
+  /// Triangles that collapses have turned over in some frame, which is avoided where it can be.
   int folded = 0;
 };
 
 /// Fewer vertices by half-edge collapses, each of one vertex onto a neighbour, in OpenMesh's
 /// decimater: the cheapest first by the distances to the planes of the triangles that went before,
 /// summed over the rest pose and those frames that differ most, so that what moves keeps its
-/// vertices. No collapse turns a triangle against the surface, or makes a sliver; which is looked
-/// at in these poses, and in every frame in which the finished mesh has such a triangle. It ends
-/// with more vertices than asked for where no collapse is left. Throws std::invalid_argument for
-/// options out of range, what reading throws, Cancelled.
+/// vertices. No collapse turns a triangle against the surface, or makes a sliver, in these poses;
+/// where the finished mesh has a triangle that is turned over in any frame, it is made again with
+/// such frames among the poses and the vertices around it locked, twice at most. It ends with more
+/// vertices than asked for where no collapse is left. Throws std::invalid_argument for options out
+/// of range, what reading throws, Cancelled.
 ///
 /// [Garland, Heckbert. Surface simplification using quadric error metrics. SIGGRAPH 1997;
 ///  Mohr, Gleicher. Deformation sensitive decimation. 2003]

@@ -93,7 +93,7 @@ void warn_of_sizes(const std::vector<NamedData>& inputs, const Invocation& invoc
     if (!is_other_size(size(input), usual)) continue;
     const bool larger = size(input) > usual;
     const double ratio = larger ? size(input) / usual : usual / size(input);
-    invocation.warn(input.name + " is " + readable(ratio, 3) + " times as " +
+    invocation.warn(input.name + " is " + readable(ratio) + " times as " +
                     (larger ? "large" : "small") + " as " + inputs.front().name +
                     ", and all rows have one scale; bring them into one unit (convert, option "
                     "'scale')");

@@ -33,8 +33,8 @@ double frame_bytes(const FrameSource& sequence) {
 }
 
 double simplify_bytes(const FrameSource& sequence) {
-  // Quadrics, positions and normals of six poses, half-edges, and the decimater's heap.
-  constexpr double kOfVertex = 2200;
+  // Quadrics of six poses, positions and normals of 13, half-edges, and the decimater's heap.
+  constexpr double kOfVertex = 2800;
   return kOfVertex * sequence.vertices();
 }
 

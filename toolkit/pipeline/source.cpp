@@ -127,7 +127,7 @@ void check_size_of_rest(const FrameSource& sequence, const std::string& name) {
   const bool larger = of_rest > of_frame;
   const double ratio = larger ? of_rest / of_frame : of_frame / of_rest;
   throw MismatchError(name + ": the rest pose is " +
-                      (std::isfinite(ratio) ? readable(ratio, 3) + " times as " : "infinitely ") +
+                      (std::isfinite(ratio) ? readable(ratio) + " times as " : "infinitely ") +
                       (larger ? "large" : "small") +
                       " as frame 0; bring both into one unit (`mimetra convert --scale X`)");
 }
