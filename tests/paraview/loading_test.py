@@ -8,7 +8,8 @@ from host import *
 
 FILTERS = {"regions": "RegionsofInterest", "decompose": "SparseComponents",
            "transfer": "RegionTransfer", "geodesic": "GeodesicDistance", "info": "mimetraInfo",
-           "check": "mimetraCheck", "align": "mimetraAlign", "evaluate": "mimetraEvaluate"}
+           "check": "mimetraCheck", "align": "mimetraAlign", "evaluate": "mimetraEvaluate",
+           "simplify": "mimetraSimplify", "subdivide": "mimetraSubdivide"}
 # ParaView saves what it shows itself, and draws it; markers are a file that people edit.
 LEFT_OUT = {"convert", "render", "markers"}
 # What a pipeline knows by itself, and what only files take.
