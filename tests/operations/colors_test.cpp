@@ -43,6 +43,22 @@ TEST(EvenColor, TakesTheEndsOutsideItsRange) {
   EXPECT_EQ(even_color(std::nan("")), kNoValue);
 }
 
+TEST(CategoryColors, OfOneThatTouchesTenOthersIsAnother) {
+  // A fan of ten categories around the last one, in the middle.
+  Triangles fan(10, 3);
+  std::vector<int> categories;
+  for (int i = 0; i < 10; ++i) {
+    fan.row(i) << i, (i + 1) % 10, 10;
+    categories.push_back(i);
+  }
+  categories.push_back(10);
+  const std::vector<Color> colors = category_colors(categories, fan);
+  for (int i = 0; i < 10; ++i) {
+    EXPECT_NE(colors[std::size_t(i)], colors[10]);
+    EXPECT_NE(colors[std::size_t(i)], colors[std::size_t((i + 1) % 10)]);
+  }
+}
+
 TEST(CategoryColors, DifferWhereCategoriesTouch) {
   const test::Shape shape = test::grid(20, 20);
   std::vector<int> categories;

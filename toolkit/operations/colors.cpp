@@ -110,13 +110,19 @@ Color even_color(double share) {
 }
 
 std::vector<Color> category_colors(const std::vector<int>& categories, const Triangles& triangles) {
-  constexpr std::array<Color, 7> kPalette = {{{230, 159, 0},
-                                              {86, 180, 233},
-                                              {0, 158, 115},
-                                              {240, 228, 66},
-                                              {0, 114, 178},
-                                              {213, 94, 0},
-                                              {204, 121, 167}}};
+  // The first seven by turns; the others where all of them stand around a category.
+  constexpr std::size_t kUsual = 7;
+  constexpr std::array<Color, 11> kPalette = {{{230, 159, 0},
+                                               {86, 180, 233},
+                                               {0, 158, 115},
+                                               {240, 228, 66},
+                                               {0, 114, 178},
+                                               {213, 94, 0},
+                                               {204, 121, 167},
+                                               {136, 34, 85},
+                                               {80, 80, 80},
+                                               {187, 204, 51},
+                                               {51, 34, 136}}};
   const std::vector<int> ranks = ranks_of(categories);
   std::map<int, std::size_t> chosen;
   for (const auto& [rank, lower] : touching(ranks, triangles)) {
@@ -124,10 +130,13 @@ std::vector<Color> category_colors(const std::vector<int>& categories, const Tri
     std::array<int, kPalette.size()> used{};
     for (const int neighbor : lower) ++used[chosen[neighbor]];
     // The least used among neighbours; starting at another colour each time spreads them.
-    std::size_t best = static_cast<std::size_t>(rank) % kPalette.size();
-    for (std::size_t i = 0; i < kPalette.size(); ++i) {
-      const std::size_t candidate = (static_cast<std::size_t>(rank) + i) % kPalette.size();
+    std::size_t best = static_cast<std::size_t>(rank) % kUsual;
+    for (std::size_t i = 0; i < kUsual; ++i) {
+      const std::size_t candidate = (static_cast<std::size_t>(rank) + i) % kUsual;
       if (used[candidate] < used[best]) best = candidate;
+    }
+    for (std::size_t i = kUsual; i < kPalette.size(); ++i) {
+      if (used[i] < used[best]) best = i;
     }
     chosen[rank] = best;
   }

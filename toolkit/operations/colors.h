@@ -20,10 +20,10 @@ constexpr Color kNoValue = {150, 150, 150};
 Color even_color(double share);
 
 /// A colour for each vertex's category (N), none where it is negative (kClay). Categories that
-/// touch along an edge get different colours unless one touches more than six earlier ones; the
+/// touch along an edge get different colours unless one touches more than ten earlier ones; the
 /// colours are told apart by people with any kind of colour vision.
 ///
-/// [Okabe, Ito. Color universal design. 2008]
+/// [Okabe, Ito. Color universal design. 2008; Tol. Colour schemes. 2021]
 std::vector<Color> category_colors(const std::vector<int>& categories, const Triangles& triangles);
 
 }  // namespace mimetra

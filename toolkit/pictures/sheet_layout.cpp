@@ -14,9 +14,12 @@ namespace mimetra {
 namespace {
 
 constexpr double kSpaceAround = 1.05;
-/// Letters are this part of a tile's height, but never too small to read.
-constexpr int kLettersPerTile = 18;
-constexpr int kSmallestLetters = 12;
+/// Height of letters beside tiles of this height, pixels: a part of it, a smaller one of large
+/// tiles, and never too small to read.
+int letters_for(int tile_height) {
+  constexpr int kSmallest = 12;
+  return std::max(kSmallest, std::min(tile_height / 18, kSmallest + tile_height / 60));
+}
 
 /// Half the width and height that all tiles need, seen from their sides.
 Eigen::Vector2d half_extent(const Sheet& sheet, const std::vector<Eigen::RowVector3d>& centers) {
@@ -80,8 +83,7 @@ SheetLayout SheetLayout::of(const Sheet& sheet) {
   layout.half_height = std::max(half[1], half[0] / aspect);
   layout.tile_height = sheet.tile_height;
   layout.tile_width = static_cast<int>(std::ceil(aspect * sheet.tile_height));
-  layout.text = sheet.letters > 0 ? sheet.letters
-                                  : std::max(kSmallestLetters, sheet.tile_height / kLettersPerTile);
+  layout.text = sheet.letters > 0 ? sheet.letters : letters_for(sheet.tile_height);
   layout.margin = layout.text;
   const int line = 2 * layout.text;
   const auto has_title = [](const TileRow& row) { return !row.title.empty(); };
