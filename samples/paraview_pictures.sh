@@ -20,6 +20,7 @@ xvfb-run -a -n 220 -s "-screen 0 1280x1024x24 -noreset" pvpython rois/view.py vi
 take = mimetraSequence(registrationName="takes", FileName="takes")
 regions = RegionsofInterest(registrationName="Regions of Interest", Input=take, K=10)
 Delete(time)
+Delete(faces)
 Delete(reader)
 ColorBy(Show(regions, view), ("POINTS", "region"))
 legend.Visibility = 0

@@ -84,8 +84,13 @@ view = GetActiveViewOrCreate("RenderView")
 view.UseColorPaletteForBackground = 0
 view.Background = [1, 1, 1]
 view.OrientationAxesVisibility = 0
-display = Show(reader, view)
-ColorBy(display, ("POINTS", "region"))
+# Without a dark side.
+view.FillLightKFRatio = 1.5
+view.HeadLightKHRatio = 1.5
+# Each face in the colour of the region that most of its points are in: colours do not blend.
+faces = PointDatatoCellData(reader, CategoricalData=1, PassPointData=1)
+display = Show(faces, view)
+ColorBy(display, ("CELLS", "region"))
 colors = GetColorTransferFunction("region")
 colors.InterpretValuesAsCategories = 1
 colors.AnnotationsInitialized = 1
@@ -109,7 +114,7 @@ clock.Color = [0, 0, 0]
 clock.FontSize = 12
 clock.WindowLocation = "Lower Left Corner"
 GetAnimationScene().UpdateAnimationUsingDataTimeSteps()
-SetActiveSource(reader)
+SetActiveSource(faces)
 
 Render(view)
 )";
