@@ -24,9 +24,8 @@ const std::string kDisplayedRegion =
 const std::string kSideBySide =
     "      <IntVectorProperty name=\"SideBySide\" command=\"SetSideBySide\""
     " number_of_elements=\"1\" default_values=\"1\">\n        <BooleanDomain name=\"bool\"/>\n"
-    "        <Documentation>Show the components in rows beside each other; otherwise all stand "
-    "where"
-    " the mesh is.</Documentation>\n      </IntVectorProperty>\n";
+    "        <Documentation>Show the components in rows beside each other; otherwise all stand"
+    " where the mesh is.</Documentation>\n      </IntVectorProperty>\n";
 
 const std::string kRunFile =
     "      <StringVectorProperty name=\"RunFile\" command=\"SetRunFile\" number_of_elements=\"1\""
