@@ -127,8 +127,9 @@ TEST_F(Streamed, PlansSayWhatIsReadAsAWhole) {
   EXPECT_FALSE(reads_all("regions head --weights take.csv -k 2 -o s.json"));
   EXPECT_FALSE(reads_all("align head --weights take.csv -o a.npy"));
   EXPECT_FALSE(reads_all("evaluate head --weights take.csv head -k 2"));
-  EXPECT_TRUE(reads_all("render head --weights take.csv -o a.png"));
-  EXPECT_THAT(run("render head --weights take.csv -o a.png --dry-run").out,
+  EXPECT_FALSE(reads_all("render head --weights take.csv -o a.png"));
+  EXPECT_TRUE(reads_all("geodesic head --weights take.csv --source 3 -o d.vtp"));
+  EXPECT_THAT(run("geodesic head --weights take.csv --source 3 -o d.vtp --dry-run").out,
               HasSubstr("12 frames of 225 vertices, all in memory\n"));
 }
 

@@ -133,7 +133,7 @@ TEST(FilmStrip, NamesWhatItCannotShow) {
               }),
               HasSubstr("row 2: 3 frames, expected 2"));
   EXPECT_THAT(message_of<MismatchError>([] { film_strip({rising(2)}, {.frames = {2}}); }),
-              HasSubstr("frame 2, there are 2"));
+              HasSubstr("no frame 2 to draw: the last is 1"));
   EXPECT_THAT(message_of<MismatchError>(
                   [] { film_strip({rising(2)}, {.colors = {StripColor::difference}}); }),
               HasSubstr("no row above"));

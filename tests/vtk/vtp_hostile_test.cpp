@@ -92,6 +92,24 @@ TEST_F(VtpHostile, BlocksThatAreLargerThanTheFileAreRefused) {
               HasSubstr("offset"));
 }
 
+/// VTK would look for the last of them before the first.
+TEST_F(VtpHostile, NoBlocksOfWhichTheLastHoldsSomethingAreRefused) {
+  const std::string compressed = "compressor=\"vtkLZ4DataCompressor\" header_type";
+  const auto refusal = [&](const std::string& sizes) {
+    std::string text = kTriangle;
+    text.replace(text.find("header_type"), 11, compressed);
+    const std::string ascii = "Name=\"roi\" format=\"ascii\">0 1 1";
+    text.replace(text.find(ascii), ascii.size(), "Name=\"roi\" format=\"binary\">" + sizes);
+    return refusal_of("a.vtp", text);
+  };
+  EXPECT_THAT(refusal("AAAAAACAAAAMAAAA"),
+              AllOf(HasSubstr("array 'roi'"), HasSubstr("sizes of its blocks")));
+  // VTK reads on where base64 ends within four characters.
+  for (const char* cut : {"AAAA", "A=AAAACAAAAMAAAA"}) {
+    EXPECT_THAT(refusal(cut), HasSubstr("truncated"));
+  }
+}
+
 /// VTK would take what follows for the values of the array.
 TEST_F(VtpHostile, TheEndOfATagWithinAValueIsRefused) {
   EXPECT_THAT(refusal_with("Name=\"roi\"", "Name=\"roi>/////w==\""), HasSubstr("no '<' or '>'"));
@@ -103,6 +121,65 @@ TEST_F(VtpHostile, OffsetsOfFacesThatDoNotFitAreRefused) {
         refusal_with("\"offsets\" format=\"ascii\">3", "\"offsets\" format=\"ascii\">" + offset),
         "");
   }
+}
+
+/// VTK asks for as many corners as the last offset says: 8 GB here.
+TEST_F(VtpHostile, OffsetsThatEndBehindTheCornersAreRefusedHoweverTheyAreStored) {
+  struct Stored {
+    std::string header, format, sound, wrong;  ///< 3 and 2000000000
+  };
+  const std::vector<Stored> all = {
+      {"header_type=\"UInt32\"", "ascii", "3", "2000000000"},
+      {"header_type=\"UInt32\"", "ascii", "+3", "+2000000000"},
+      {"header_type=\"UInt32\"", "binary", "BAAAAAMAAAA=", "BAAAAACUNXc="},
+      {"header_type=\"UInt32\"", "binary", "BAAAAA==AwAAAA==", "BAAAAA==AJQ1dw=="},
+      {"header_type=\"UInt64\"", "binary", "BAAAAAAAAAADAAAA", "BAAAAAAAAAAAlDV3"},
+      {"header_type=\"UInt32\" compressor=\"vtkZLibDataCompressor\"", "binary",
+       "AQAAAAQAAAAAAAAADAAAAA==eJxjZmBgAAAAEAAE", "AQAAAAQAAAAAAAAADAAAAA==eJxjmGJaDgACoQFB"},
+      {"header_type=\"UInt32\" compressor=\"vtkLZ4DataCompressor\"", "binary",
+       "AQAAAAQAAAAAAAAABQAAAA==QAMAAAA=", "AQAAAAQAAAAAAAAABQAAAA==QACUNXc="},
+      {"header_type=\"UInt32\" compressor=\"vtkLZMADataCompressor\"", "binary",
+       "AQAAAAQAAAAAAAAAPAAAAA==/"
+       "Td6WFoAAATm1rRGAgAhARYAAAB0L+WjAQADAwAAAAAvfW541xiW0gABHARvLJzBH7bzfQEAAAAABFla",
+       "AQAAAAQAAAAAAAAAPAAAAA==/"
+       "Td6WFoAAATm1rRGAgAhARYAAAB0L+WjAQADAJQ1dwCK4flXxm+lFQABHARvLJzBH7bzfQEAAAAABFla"},
+  };
+  for (const Stored& each : all) {
+    const auto with = [&](const std::string& offsets) {
+      std::string text = kTriangle;
+      const std::string header = "header_type=\"UInt32\"";
+      text.replace(text.find(header), header.size(), each.header);
+      const std::string ascii = "\"offsets\" format=\"ascii\">3";
+      return text.replace(text.find(ascii), ascii.size(),
+                          "\"offsets\" format=\"" + each.format + "\">" + offsets);
+    };
+    std::ofstream(in_folder("sound.vtp")) << with(each.sound);
+    EXPECT_EQ(read_vtp_series(in_folder("sound.vtp")).sequence().triangles().rows(), 1)
+        << each.header << each.sound;
+    EXPECT_THAT(refusal_of("a.vtp", with(each.wrong)),
+                AllOf(HasSubstr("Polys, array 'offsets': ends at 2000000000"),
+                      HasSubstr("3 corners at most")))
+        << each.header << each.wrong;
+  }
+}
+
+/// VTK stops there, and leaves the values behind as they were in memory.
+TEST_F(VtpHostile, GapsInBase64AreRefused) {
+  // 12 bytes: 0, 1 and 1 in single precision.
+  const std::string sound = "DAAAAAAAAAAAAIA/AACAPw==";
+  const auto with = [&](const std::string& values) {
+    std::string text = kTriangle;
+    const std::string ascii = "Name=\"roi\" format=\"ascii\">0 1 1";
+    return text.replace(text.find(ascii), ascii.size(), "Name=\"roi\" format=\"binary\">" + values);
+  };
+  std::ofstream(in_folder("sound.vtp")) << with("\n  " + sound + "\n");
+  EXPECT_EQ(read_vtp_field(in_folder("sound.vtp"), "roi"), Eigen::Vector3d(0, 1, 1));
+  for (const char* gap : {"\n", " ", "!!!!", "===="}) {
+    std::string text = sound;
+    EXPECT_THAT(refusal_of("a.vtp", with(text.insert(8, gap))),
+                AllOf(HasSubstr("array 'roi'"), HasSubstr("gaps")));
+  }
+  EXPECT_THAT(refusal_of("a.vtp", with(sound.substr(0, 16))), HasSubstr("truncated"));
 }
 
 TEST_F(VtpHostile, TheFileThatWasFoundIsRefused) {

@@ -76,6 +76,25 @@ TEST_F(VtpRead, NamesTheFileThatIsWrong) {
   EXPECT_THAT(message("bad.json"), HasSubstr("bad.json: expected a series in .pvd"));
 }
 
+TEST_F(VtpRead, ReadsAFrameWhenItIsNeeded) {
+  write_vtp_series(quad_and_triangle(), in_folder("face.pvd"));
+  const FieldSequence read = read_vtp_series(in_folder("face.pvd"));
+  const FieldSequence open = open_vtp_series(in_folder("face.pvd"));
+  const FrameSource& frames = *open.frames;
+  EXPECT_FALSE(open.is_in_memory());
+  EXPECT_EQ(frames.times(), read.sequence().times());
+  EXPECT_EQ(frames.rest(), read.sequence().rest());
+  EXPECT_EQ(frames.read(0, 3), read.sequence().positions());
+  EXPECT_EQ(frames.read(1, 1), read.sequence().positions().row(1));
+  EXPECT_EQ(open.fields.size(), read.fields.size());
+  write_text("face_vtp/face_0001.vtp", "<VTKFile");
+  EXPECT_EQ(frames.read(2, 1), read.sequence().positions().row(2));
+  EXPECT_THAT(message_of<IoError>([&] { frames.read(1, 1); }), HasSubstr("face_0001.vtp"));
+  std::filesystem::remove(in_folder("face_vtp/face_0002.vtp"));
+  EXPECT_THAT(message_of<IoError>([&] { open_vtp_series(in_folder("face.pvd")); }),
+              HasSubstr("face_0002.vtp: no such file"));
+}
+
 TEST_F(VtpRead, RefusesAFrameWithOtherFaces) {
   write_vtp_series(quad_and_triangle(), in_folder("face.pvd"));
   FieldSequence other = quad_and_triangle();

@@ -43,7 +43,7 @@ void check(const std::vector<FieldSequence>& sequences, const StripOptions& opti
 int common_frames(const std::vector<FieldSequence>& sequences, const StripOptions& options) {
   int frames = 1;
   for (std::size_t row = 0; row < sequences.size(); ++row) {
-    const int own = sequences[row].sequence().frames();
+    const int own = sequences[row].frames->frames();
     if (own == 1 || own == frames) continue;
     if (frames != 1) {
       throw MismatchError(row_name(options, row) + ": " + std::to_string(own) +
@@ -68,8 +68,8 @@ std::vector<int> evenly_spread(int frames, int most) {
 std::vector<int> shown_frames(int frames, const StripOptions& options) {
   for (const int frame : options.frames) {
     if (frame >= frames) {
-      throw MismatchError("frame " + std::to_string(frame) + ", there are " +
-                          std::to_string(frames) + " (0-based)");
+      throw MismatchError("there is no frame " + std::to_string(frame) + " to draw: the last is " +
+                          std::to_string(frames - 1) + " (0-based)");
     }
   }
   const int first = options.frames.empty() ? 0 : options.frames.front();
@@ -84,12 +84,13 @@ std::vector<int> shown_frames(int frames, const StripOptions& options) {
   return {};
 }
 
+/// Read when it is drawn: a picture of some frames reads no others.
 Positions pose(const FieldSequence& fields, int frame) {
-  return fields.sequence().frame(fields.sequence().frames() == 1 ? 0 : frame);
+  return FrameBlock(*fields.frames, fields.frames->frames() == 1 ? 0 : frame, 1).frame(0);
 }
 
 /// Values of triangles on their vertices: the largest.
-Eigen::VectorXd on_vertices(const Eigen::VectorXd& values, const MeshSequence& sequence) {
+Eigen::VectorXd on_vertices(const Eigen::VectorXd& values, const FrameSource& sequence) {
   Eigen::VectorXd result =
       Eigen::VectorXd::Constant(sequence.vertices(), std::numeric_limits<double>::quiet_NaN());
   const Triangles& triangles = sequence.triangles();
@@ -109,7 +110,7 @@ const Field& field_of(const FieldSequence& fields, const std::string& name,
 }
 
 /// One value a vertex: a field of several columns by its length.
-Eigen::VectorXd vertex_values(const Field& field, const MeshSequence& sequence) {
+Eigen::VectorXd vertex_values(const Field& field, const FrameSource& sequence) {
   const Eigen::VectorXd values = field.values.cols() == 1
                                      ? Eigen::VectorXd(field.values.col(0))
                                      : Eigen::VectorXd(field.values.rowwise().norm());
@@ -169,7 +170,7 @@ class RowPainter {
     std::map<int, std::vector<VertexIndex>> seen;
     if (!numbers_.empty()) {
       const Positions normals =
-          vertex_normals(pose, sequences_[row_].sequence().triangles()).rowwise().normalized();
+          vertex_normals(pose, sequences_[row_].frames->triangles()).rowwise().normalized();
       constexpr double kSeen = 0.3;
       for (std::size_t v = 0; v < numbers_.size(); ++v) {
         const double facing = normals.row(static_cast<Eigen::Index>(v)).dot(view.towards_eye);
@@ -221,7 +222,7 @@ class RowPainter {
 
   /// The same in all columns.
   void show(const Field& field, std::size_t columns) {
-    const MeshSequence& sequence = sequences_[row_].sequence();
+    const FrameSource& sequence = *sequences_[row_].frames;
     values_.assign(columns, vertex_values(field, sequence));
     name_ = field.name;
     if (is_category(field)) {
@@ -274,10 +275,10 @@ std::vector<std::string> column_titles(const std::vector<FieldSequence>& sequenc
                                        const std::vector<int>& frames,
                                        const StripOptions& options) {
   const auto longest = std::ranges::max_element(
-      sequences, {}, [](const FieldSequence& fields) { return fields.sequence().frames(); });
+      sequences, {}, [](const FieldSequence& fields) { return fields.frames->frames(); });
   std::vector<std::string> titles;
-  if (longest->sequence().frames() == 1 || options.layout == StripLayout::turntable) return titles;
-  for (const int frame : frames) titles.push_back(time_title(longest->sequence().times()[frame]));
+  if (longest->frames->frames() == 1 || options.layout == StripLayout::turntable) return titles;
+  for (const int frame : frames) titles.push_back(time_title(longest->frames->times()[frame]));
   return titles;
 }
 
@@ -296,7 +297,7 @@ Sheet film_strip(const std::vector<FieldSequence>& sequences, const StripOptions
     const RowPainter painter(sequences, options, row, frames);
     TileRow tiles;
     if (!options.titles.empty()) tiles.title = options.titles[row];
-    tiles.connectivity = sequences[row].sequence().shared_connectivity();
+    tiles.connectivity = sequences[row].frames->shared_connectivity();
     tiles.bar = painter.bar();
     tiles.legend = painter.legend();
     for (std::size_t column = 0; column < frames.size(); ++column) {

@@ -22,7 +22,7 @@ namespace {
 /// and stays open: drivers do not give back all they took when it is closed.
 class EglContext {
  public:
-  /// Null where EGL has none to offer.
+  /// Null where EGL has none to offer. Throws where this thread has another one current.
   static std::unique_ptr<EglContext> create() {
     auto context = std::unique_ptr<EglContext>(new EglContext);
     return context->start() ? std::move(context) : nullptr;
@@ -66,8 +66,11 @@ class EglContext {
                                    EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
                                    EGL_NONE};
     context_ = eglCreateContext(display_, config, EGL_NO_CONTEXT, kVersion);
-    return context_ != EGL_NO_CONTEXT &&
-           eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, context_);
+    if (context_ == EGL_NO_CONTEXT) return false;
+    if (eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, context_)) return true;
+    throw std::runtime_error(
+        "pictures cannot be drawn in a thread that draws into a window itself, as VTK and Qt do; "
+        "call it from another thread");
   }
 
   EGLDisplay display_ = EGL_NO_DISPLAY;

@@ -139,7 +139,7 @@ Operation render_operation() {
   operation.summary = "Draw sequences as rows of pictures: film strip, one frame or turntable";
   operation.inputs = {{"input", DataKind::sequence,
                        "sequences, a row each, with the fields that they have", false, true}};
-  operation.inputs.front().fields = true;
+  operation.inputs.front().streamed = operation.inputs.front().fields = true;
   operation.outputs = {{"out", DataKind::pictures, "the picture"}};
   operation.outputs.front().extensions = {".png"};
   operation.parameters = strip_parameters().declared();

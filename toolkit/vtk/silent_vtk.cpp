@@ -1,15 +1,29 @@
 #include "toolkit/vtk/silent_vtk.h"
 
+#include <mutex>
+
 #include <vtkObject.h>
 
 namespace mimetra {
 
-SilentVtk::SilentVtk() : before_(vtkObject::GetGlobalWarningDisplay()) {
+namespace {
+
+std::mutex changing;
+int living = 0;
+int before = 0;
+
+}  // namespace
+
+SilentVtk::SilentVtk() {
+  const std::lock_guard lock(changing);
+  if (living++ > 0) return;
+  before = vtkObject::GetGlobalWarningDisplay();
   vtkObject::GlobalWarningDisplayOff();
 }
 
 SilentVtk::~SilentVtk() {
-  vtkObject::SetGlobalWarningDisplay(before_);
+  const std::lock_guard lock(changing);
+  if (--living == 0) vtkObject::SetGlobalWarningDisplay(before);
 }
 
 }  // namespace mimetra

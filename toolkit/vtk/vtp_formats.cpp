@@ -60,7 +60,9 @@ std::vector<std::filesystem::path> write_sequence_data(const Data& data,
 ReadValue read_sequence_data(const std::string& text, const ReadRequest& request) {
   const SequenceSource source = frame_parameters().read(request.parameters);
   const auto selected = [&](int count) { return selected_frames(source.frames, count); };
-  FieldSequence read = read_vtp_series(text, {.selected = selected, .progress = request.progress});
+  const VtpReadOptions options{.selected = selected, .progress = request.progress};
+  FieldSequence read =
+      request.may_stream ? open_vtp_series(text, options) : read_vtp_series(text, options);
   check_rate(text, read.frames->known_times(), source);
   if (!request.fields) read.fields.clear();
   return {{text, std::move(read)}, vtp_series_files(text)};

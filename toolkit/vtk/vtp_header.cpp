@@ -7,8 +7,9 @@
 #include <limits>
 #include <optional>
 
-#include "toolkit/io/text_cursor.h"
 #include "toolkit/mesh/errors.h"
+#include "toolkit/mesh/text.h"
+#include "toolkit/vtk/vtp_values.h"
 #include "toolkit/vtk/xml_elements.h"
 
 namespace mimetra {
@@ -19,6 +20,7 @@ namespace {
 constexpr std::uint64_t kMostCompressed = 8192;
 constexpr std::uint64_t kMostComponents = 4096;
 
+constexpr std::array<std::string_view, 4> kCells = {"Verts", "Lines", "Strips", "Polys"};
 constexpr std::array<std::string_view, 12> kTypes = {"Int8",    "UInt8",   "Int16",  "UInt16",
                                                      "Int32",   "UInt32",  "Int64",  "UInt64",
                                                      "Float32", "Float64", "String", "Bit"};
@@ -28,26 +30,13 @@ bool is_one_of(const std::array<std::string_view, size>& all, std::string_view w
   return std::find(all.begin(), all.end(), word) != all.end();
 }
 
-/// The bytes of base64 text, until it ends or as many are there as are wanted.
-std::string decoded(std::string_view text, std::size_t wanted) {
-  constexpr std::string_view kDigits =
-      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string bytes;
-  std::uint32_t bits = 0;
-  int count = 0;
-  for (const char c : text) {
-    if (is_blank(c) || c == '\n') continue;
-    const auto digit = kDigits.find(c);
-    if (digit == std::string_view::npos || bytes.size() >= wanted) break;
-    bits = bits << 6U | static_cast<std::uint32_t>(digit);
-    count += 6;
-    if (count >= 8) {
-      count -= 8;
-      bytes += static_cast<char>(bits >> static_cast<unsigned>(count) & 0xffU);
-    }
-  }
-  return bytes;
-}
+/// The arrays of one kind of cells of a piece, as far as they have been seen.
+struct Cells {
+  std::string name;  ///< "Polys"; empty for none
+  std::uint64_t count = 0;
+  std::optional<std::uint64_t> corners = {};  ///< at most
+  std::optional<double> end = {};             ///< that the last cell's offset tells
+};
 
 class VtpHeader {
  public:
@@ -56,9 +45,21 @@ class VtpHeader {
 
   void check() {
     check_file(elements_.front());
+    const XmlElement* piece = nullptr;
+    Cells cells;
     for (const XmlElement& element : elements_) {
-      if (element.name == "Piece") check_piece(element);
-      if (element.name == "DataArray" || element.name == "Array") check_array(element);
+      if (element.name == "Piece") {
+        check_piece(element);
+        piece = &element;
+      }
+      if (piece && is_one_of(kCells, element.name)) {
+        cells = {element.name, count(*piece, "NumberOf" + element.name)};
+      }
+      if (element.name != "DataArray" && element.name != "Array") continue;
+      const auto values = checked_array(element);
+      if (values && element.parent == cells.name && cells.count > 0) {
+        check_cells(cells, element.attribute("Name"), *values);
+      }
     }
   }
 
@@ -88,10 +89,8 @@ class VtpHeader {
     constexpr std::array<std::string_view, 4> kCompressors = {
         "", "vtkZLibDataCompressor", "vtkLZ4DataCompressor", "vtkLZMADataCompressor"};
     if (!is_one_of(kCompressors, compressor)) fail("no such compressor as '" + compressor + "'");
-    word_ = header == "UInt64" ? 8 : 4;
-    big_endian_ = order == "BigEndian";
-    compressed_ = !compressor.empty();
-    most_bytes_ = text_.size() * (compressed_ ? kMostCompressed : 1);
+    storage_ = {header == "UInt64" ? 8U : 4U, order == "BigEndian", compressor};
+    most_bytes_ = text_.size() * (compressor.empty() ? 1 : kMostCompressed);
     if (elements_.back().name == "AppendedData") {
       const auto start = text_.find('_', elements_.back().end_of_tag);
       appended_ = start == std::string_view::npos ? text_.size() : start + 1;
@@ -125,7 +124,25 @@ class VtpHeader {
     }
   }
 
-  void check_array(const XmlElement& array) const {
+  /// VTK asks for as many corners as the last offset says, without looking whether they are there.
+  void check_cells(Cells& cells, const std::string& name, const StoredValues& values) const {
+    if (name == "connectivity") cells.corners = values.most();
+    if (name == "offsets") {
+      cells.end = values.at(cells.count - 1);
+      if (!cells.end) {
+        fail(cells.name + ", array 'offsets': expected " + std::to_string(cells.count) +
+             " numbers, found fewer");
+      }
+    }
+    if (!cells.corners || !cells.end) return;
+    if (*cells.end >= 0 && *cells.end <= static_cast<double>(*cells.corners)) return;
+    fail(cells.name + ", array 'offsets': ends at " + fixed(*cells.end, 0) + ", and there are " +
+         std::to_string(*cells.corners) + " corners at most");
+  }
+
+  /// Its values; nothing where there are none.
+  std::optional<StoredValues> checked_array(const XmlElement& array) const {
+    using Form = StoredValues::Form;
     const std::string type = array.attribute("type"), format = array.attribute("format");
     if (!is_one_of(kTypes, type)) fail(shown(array) + "no such type as '" + type + "'");
     const std::uint64_t components = count(array, "NumberOfComponents");
@@ -138,64 +155,71 @@ class VtpHeader {
     if (array.parent == "Points" && components != 3) {
       fail(shown(array) + "expected 3 components, found " + std::to_string(components));
     }
-    if (format == "binary") {
-      const std::string_view own = text_.substr(array.end_of_tag);
-      const std::string_view values = own.substr(0, own.find('<'));
-      if (!decoded(values, 1).empty()) check_blocks(array, values, false);
-    } else if (format == "appended") {
+    if (format == "appended") {
       const std::uint64_t offset = count(array, "offset");
       if (offset >= text_.size() - std::min(appended_, text_.size())) {
         fail(shown(array) + "its offset " + std::to_string(offset) + " lies behind the file's end");
       }
-      check_blocks(array, text_.substr(appended_ + static_cast<std::size_t>(offset)),
-                   appended_raw_);
-    } else if (!format.empty() && format != "ascii") {
+      const std::string_view stored = text_.substr(appended_ + static_cast<std::size_t>(offset));
+      const StoredValues values(storage_, type, stored, appended_raw_ ? Form::raw : Form::base64);
+      check_blocks(array, values, stored.size());
+      return values;
+    }
+    const std::string_view own = text_.substr(array.end_of_tag);
+    const std::string_view stored = own.substr(0, own.find('<'));
+    if (format.empty() || format == "ascii") {
+      return StoredValues(storage_, type, stored, Form::text);
+    }
+    if (format != "binary") {
       fail(shown(array) + "no such format as '" + format.substr(0, 40) + "'");
     }
+    const StoredValues values(storage_, type, stored, Form::base64);
+    if (stored.find_first_not_of(" \t\r\n") == std::string_view::npos) return {};
+    check_blocks(array, values, stored.size());
+    return values;
   }
 
   /// The numbers before binary values: their bytes, or how many blocks of which sizes there are.
-  void check_blocks(const XmlElement& array, std::string_view stored, bool is_raw) const {
+  void check_blocks(const XmlElement& array, const StoredValues& values, std::size_t size) const {
     const auto lies = [&] { fail(shown(array) + "the sizes of its blocks cannot be true"); };
     const auto words = [&](std::size_t count) {
-      const std::string bytes =
-          is_raw ? std::string(stored.substr(0, count * word_)) : decoded(stored, count * word_);
-      if (bytes.size() < count * word_) fail(shown(array) + "is truncated");
+      const std::string bytes = values.words(count);
+      if (bytes.size() < count * storage_.word) fail(shown(array) + "is truncated");
       return bytes;
     };
-    const auto word = [this](const std::string& bytes, std::size_t i) {
-      std::uint64_t number = 0;
-      for (std::size_t j = 0; j < word_; ++j) {
-        const std::size_t place = i * word_ + (big_endian_ ? j : word_ - 1 - j);
-        number = number << 8U | static_cast<unsigned char>(bytes[place]);
-      }
-      return number;
-    };
-    if (!compressed_) {
-      if (word(words(1), 0) > stored.size()) lies();
+    if (storage_.compressor.empty()) {
+      if (values.word(words(1), 0) > size) lies();
+      check_bytes(array, values);
       return;
     }
-    const std::uint64_t blocks = word(words(1), 0);
-    if (blocks == 0) return;
-    if (blocks > stored.size() / word_) lies();
-    const std::string bytes = words(3 + static_cast<std::size_t>(blocks));
-    const std::uint64_t size = word(bytes, 1), last = word(bytes, 2);
-    const std::uint64_t most = kMostCompressed * stored.size();
-    if (size > most / blocks || last > size) lies();
-    std::uint64_t left = stored.size();
-    for (std::size_t i = 0; i < blocks; ++i) {
-      const std::uint64_t packed = word(bytes, 3 + i);
-      if (packed > left) lies();
+    words(3);
+    const VtpBlocks blocks = *values.blocks();
+    if (blocks.count == 0 && blocks.last > 0) lies();
+    if (blocks.count == 0) return;
+    if (blocks.count > size / storage_.word) lies();
+    const std::string bytes = words(3 + static_cast<std::size_t>(blocks.count));
+    if (blocks.size > kMostCompressed * size / blocks.count || blocks.last > blocks.size) lies();
+    std::uint64_t left = size;
+    for (std::size_t i = 0; i < blocks.count; ++i) {
+      const std::uint64_t packed = values.word(bytes, 3 + i);
+      const std::uint64_t unpacked =
+          i + 1 == blocks.count && blocks.last > 0 ? blocks.last : blocks.size;
+      if (packed > left || unpacked / kMostCompressed > packed) lies();
       left -= packed;
     }
+    check_bytes(array, values);
+  }
+
+  /// VTK stops without a word where base64 has gaps, and leaves the values behind as they are.
+  void check_bytes(const XmlElement& array, const StoredValues& values) const {
+    if (values.are_all_there()) return;
+    fail(shown(array) + "is truncated, or its base64 has gaps or other characters");
   }
 
   const std::string& path_;
   std::string_view text_;
   std::vector<XmlElement> elements_;
-  std::size_t word_ = 4;
-  bool big_endian_ = false;
-  bool compressed_ = false;
+  VtpStorage storage_;
   bool appended_raw_ = false;
   std::size_t appended_ = std::numeric_limits<std::size_t>::max();
   std::uint64_t most_bytes_ = 0;

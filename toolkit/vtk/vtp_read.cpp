@@ -13,6 +13,7 @@
 
 #include "toolkit/io/frame_files.h"
 #include "toolkit/io/json_text.h"
+#include "toolkit/io/opened_file.h"
 #include "toolkit/io/whole_file.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/progress.h"
@@ -116,42 +117,60 @@ std::vector<FrameFile> entries_of(const fs::path& path) {
   return entries;
 }
 
+/// Frames that are read from their files; the first one again.
+class VtpFrames : public FrameSource {
+ public:
+  VtpFrames(std::vector<FrameFile> files, SequenceHeader header)
+      : FrameSource(std::move(header)), files_(std::move(files)) {}
+
+ private:
+  void read_frames(int first, FramesView poses) const override {
+    for (Eigen::Index row = 0; row < poses.rows(); ++row) {
+      const fs::path& file = files_[static_cast<std::size_t>(first + row)].file;
+      const auto data = read_poly_data(file);
+      if (!same_faces(connectivity_of(*data, file.string()), connectivity())) {
+        throw MismatchError(file.string() + ": other vertices or faces than " +
+                            files_.front().file.string());
+      }
+      const Positions positions = positions_of(*data, file.string());
+      poses.row(row) = Eigen::Map<const Eigen::RowVectorXd>(positions.data(), positions.size());
+    }
+  }
+
+  std::vector<FrameFile> files_;
+};
+
 }  // namespace
 
-FieldSequence read_vtp_series(const fs::path& path, const VtpReadOptions& options) {
+FieldSequence open_vtp_series(const fs::path& path, const VtpReadOptions& options) {
   const std::vector<FrameFile> all = entries_of(path);
   const auto count = static_cast<int>(all.size());
-  const std::vector<int> chosen =
-      options.selected ? options.selected(count) : selected_frames({}, count);
-  const FrameFile& first = all[static_cast<std::size_t>(chosen.front())];
-  std::vector<Field> fields;
-  Connectivity connectivity;
-  Frames frames;
-  Eigen::VectorXd times(static_cast<Eigen::Index>(chosen.size()));
-  std::optional<Positions> rest;
-  for (Eigen::Index f = 0; f < times.size(); ++f) {
-    const FrameFile& entry = all[static_cast<std::size_t>(chosen[static_cast<std::size_t>(f)])];
-    const auto data = read_poly_data(entry.file);
-    const Positions positions = positions_of(*data, entry.file.string());
-    Connectivity own = connectivity_of(*data, entry.file.string());
-    if (f == 0) {
-      connectivity = std::move(own);
-      frames.resize(times.size(), positions.size());
-      fields = fields_of(*data, connectivity);
-      rest = rest_of(*data, positions, entry.file.string());
-    } else if (!same_faces(own, connectivity)) {
-      throw MismatchError(entry.file.string() + ": other vertices or faces than " +
-                          first.file.string());
-    }
-    frames.row(f) = Eigen::Map<const Eigen::RowVectorXd>(positions.data(), positions.size());
-    times[f] = entry.time;
-    report_progress(options.progress,
-                    static_cast<double>(f + 1) / static_cast<double>(times.size()));
+  std::vector<FrameFile> chosen;
+  for (const int frame : options.selected ? options.selected(count) : selected_frames({}, count)) {
+    chosen.push_back(all[static_cast<std::size_t>(frame)]);
+    OpenedFile(chosen.back().file);  // throws where it is not there
   }
-  if (lower_extension(path) == ".vtp") times.resize(0);
-  return {
-      MeshSequence(std::move(connectivity), std::move(frames), std::move(times), std::move(rest)),
-      std::move(fields)};
+  const std::string first = chosen.front().file.string();
+  const auto data = read_poly_data(chosen.front().file);
+  const Positions positions = positions_of(*data, first);
+  SequenceHeader header;
+  header.connectivity = std::make_shared<Connectivity>(connectivity_of(*data, first));
+  const std::optional<Positions> rest = rest_of(*data, positions, first);
+  header.rest = rest.value_or(positions);
+  header.rest_is_known = rest.has_value();
+  header.times_are_known = lower_extension(path) != ".vtp";
+  header.times = default_times(static_cast<int>(chosen.size()));
+  for (std::size_t f = 0; header.times_are_known && f < chosen.size(); ++f) {
+    header.times[static_cast<Eigen::Index>(f)] = chosen[f].time;
+  }
+  std::vector<Field> fields = fields_of(*data, *header.connectivity);
+  return {std::make_shared<const VtpFrames>(std::move(chosen), std::move(header)),
+          std::move(fields)};
+}
+
+FieldSequence read_vtp_series(const fs::path& path, const VtpReadOptions& options) {
+  FieldSequence open = open_vtp_series(path, options);
+  return {MeshSequence(*open.frames, {.progress = options.progress}), std::move(open.fields)};
 }
 
 std::vector<fs::path> vtp_series_files(const fs::path& path) {

@@ -61,13 +61,16 @@ struct VtpReadOptions {
   Progress progress = {};
 };
 
-/// Reads a series as write_vtp_series writes it, and ParaView too: NAME.pvd, NAME.vtp.series, or
-/// one NAME.vtp. Fields are those of the
-/// first chosen frame; `displacement` gives the rest pose, and is not a field. Throws IoError that
-/// names the file, MismatchError where a frame has other vertices or faces.
+/// A series as write_vtp_series writes it, and ParaView too: NAME.pvd, NAME.vtp.series, or one
+/// NAME.vtp. Fields are those of the first chosen frame; `displacement` gives the rest pose, and is
+/// not a field. The other frames are read when they are needed, which throws as this does: IoError
+/// that names the file, MismatchError where a frame has other vertices or faces.
+FieldSequence open_vtp_series(const std::filesystem::path& path, const VtpReadOptions& = {});
+
+/// The same with all frames in memory. Throws Cancelled, too.
 FieldSequence read_vtp_series(const std::filesystem::path& path, const VtpReadOptions& = {});
 
-/// The files that read_vtp_series reads for a path: itself, and the frames it names.
+/// The files that open_vtp_series reads for a path: itself, and the frames it names.
 std::vector<std::filesystem::path> vtp_series_files(const std::filesystem::path& path);
 
 /// A field on the vertices of a .vtp file (N x c). Throws IoError where the file or field is
