@@ -75,6 +75,7 @@ BoundParameters<FitCall> fit_parameters() {
       .add("camera", FitOptions::kCamera,
            "orthographic: scaled orthographic (auto: for clips); affine: as in the paper; "
            "perspective: with --focal-length")
+      .brief("model of the camera")
       .add("stretch", FitOptions::kStretch,
            "how much the orthographic and perspective cameras may stretch the image, as a standard "
            "deviation")
@@ -84,7 +85,9 @@ BoundParameters<FitCall> fit_parameters() {
            "noise is estimated), or trust all")
       .add("ridge", FitOptions::kRidge,
            "weight of squared expressions (default: 0.1 with more than ten of them, else 0)")
-      .add("smoothness", FitOptions::kSmoothness, "time constant of smooth expressions");
+      .add("smoothness", FitOptions::kSmoothness, "time constant of smooth expressions")
+      .brief("time constant of smooth expressions")
+      .under("Fitting");
   BoundParameters<FitCall> list;
   return list
       .add("mapping", FitCall::kMapping,

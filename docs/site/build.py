@@ -37,7 +37,7 @@ REPORT_COMMANDS = (
     "sample -o head",
     "convert head@identity001=1 --weights head/performance.csv -o source",
     "transfer source head@identity002=1 -k 30 -o result",
-    "report result --unit mm -o report.html",
+    "report result -k 10,30,40 --unit mm -o report.html",
 )
 
 

@@ -1,3 +1,5 @@
+#include <regex>
+
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 
@@ -26,8 +28,31 @@ TEST_F(Command, HelpOfACommandEndsInTwoExamples) {
   const auto result = run("transfer --help");
   EXPECT_EQ(result.code, 0);
   const auto examples = result.out.substr(result.out.find("Examples:"));
-  EXPECT_EQ(std::count(examples.begin(), examples.end(), '\n'), 3);
+  EXPECT_EQ(std::count(examples.begin(), examples.end(), '\n'), 4);
   EXPECT_THAT(examples, HasSubstr("mimetra transfer "));
+  EXPECT_THAT(examples, HasSubstr("mimetra transfer --help all"));
+}
+
+TEST_F(Command, HelpOfEachFitsAScreenAndNamesAllOptionsThatItsLongHelpExplains) {
+  const json table = json::parse(run("operations --json").out).at("operations");
+  ASSERT_GT(table.size(), 20u);
+  for (const json& operation : table) {
+    const std::string name = operation.at("name");
+    const auto brief = run(name + " --help"), all = run(name + " --help all");
+    EXPECT_LE(std::count(brief.out.begin(), brief.out.end(), '\n'), 50) << name;
+    std::istringstream lines(brief.out);
+    for (std::string line; std::getline(lines, line);) {
+      if (line.starts_with("  mimetra ")) continue;  // examples and the synopsis
+      EXPECT_LE(line.size(), 80u) << line;
+    }
+    const auto options = brief.out.substr(0, brief.out.find("Examples:"));
+    for (const json& parameter : operation.value("parameters", json::array())) {
+      const std::string parameter_name = parameter.at("name");
+      const std::string option = (parameter_name.size() == 1 ? "-" : "--") + parameter_name;
+      EXPECT_TRUE(std::regex_search(options, std::regex(" " + option + "[ \n]"))) << option;
+      EXPECT_TRUE(std::regex_search(all.out, std::regex("\n  " + option + "[ \n]"))) << option;
+    }
+  }
 }
 
 TEST_F(Command, InfoCountsWhatTheSequenceHolds) {
@@ -74,7 +99,7 @@ TEST_F(Command, DryRunSaysWhatIsReadIntoMemoryAsAWhole) {
     return json::parse(run(arguments + " --dry-run --json").out).at("inputs").at(0);
   };
   EXPECT_EQ(plan_of("convert head --weights take.csv -o a.npy").at("in_memory"), false);
-  EXPECT_EQ(plan_of("render head --weights take.csv -o a.png").at("in_memory"), true);
+  EXPECT_EQ(plan_of("geodesic head --weights take.csv --source 3 -o d.vtp").at("in_memory"), true);
 }
 
 TEST_F(Command, ConvertsThroughEveryFormatOfOneFile) {

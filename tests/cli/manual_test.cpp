@@ -95,12 +95,12 @@ TEST_F(Check, WarnsOfWhatIsOddAndRefusesItWhenStrict) {
   EXPECT_EQ(result.code, 0);
   const json warnings = json::parse(result.out).at("warnings");
   ASSERT_EQ(warnings.size(), 2u);
-  EXPECT_THAT(warnings[0], HasSubstr("1 triangles without area"));
+  EXPECT_THAT(warnings[0], HasSubstr("1 triangle without area"));
   EXPECT_THAT(warnings[1], HasSubstr("the first is 4"));
-  EXPECT_THAT(result.err, HasSubstr("odd.obj: 1 triangles without area"));
+  EXPECT_THAT(result.err, HasSubstr("odd.obj: 1 triangle without area"));
   const auto strict = run("check odd.obj --strict");
   EXPECT_EQ(strict.code, 4);
-  EXPECT_THAT(strict.err, HasSubstr("and 1 more warnings"));
+  EXPECT_THAT(strict.err, HasSubstr("and 1 more warning\n"));
   EXPECT_EQ(strict.out, "");
 }
 

@@ -60,8 +60,9 @@ TEST_F(RulesTest, AreTakenFromAModelsFolderWhichIsSaid) {
   std::filesystem::rename(folder_ / "low.json", folder_ / "head/rules.json");
   const auto result = run(kTransfer + "-o x.npy --weights-out found.csv");
   EXPECT_EQ(result.code, 0) << result.err;
-  EXPECT_THAT(result.err, HasSubstr("head@wide=1: takes the rules in its folder (1 expression, 0 "
-                                    "groups that exclude each other and 0 pairs); --rules none"));
+  EXPECT_THAT(result.err,
+              HasSubstr("head@wide=1: takes the rules in its folder (1 expression, 0 "
+                        "groups of some that exclude each other and 0 pairs); --rules none"));
   EXPECT_EQ(text_of(folder_ / "found.csv"), asked);
   EXPECT_THAT(text_of(folder_ / "x.run.json"), HasSubstr("head/rules.json"));
   EXPECT_GT(largest(weights_of("--rules none", "none.csv"), kTop), 0.5);

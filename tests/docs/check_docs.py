@@ -78,9 +78,10 @@ class Command:
 
     def options_of(self, name):
         if name not in self.options:
-            text = self.printed(name, "--help")
-            found = re.findall(r"^ +(-[-\w,]+)", text, re.MULTILINE)
-            self.options[name] = {option for each in found for option in each.split(",")}
+            text = self.printed(name, "--help", "all")
+            found = re.findall(r"^  (-.*?)(?:  |$)", text, re.MULTILINE)
+            self.options[name] = {"-h", "--help"} | {
+                option for each in found for option in re.findall(r"--?[a-z][\w-]*", each)}
         return self.options[name]
 
     def knows_somewhere(self, option):

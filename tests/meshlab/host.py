@@ -13,6 +13,7 @@ import numpy as np
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
 
+SAMPLES = pathlib.Path(__file__).parents[2] / "samples"
 FRAMES = "0:120:10"
 SELECTED = 0x20  # of MeshLab's flags of vertices and faces
 OPERATIONS = {"Geodesic Support Map": "geodesic", "Regions of Interest": "regions",

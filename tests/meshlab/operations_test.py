@@ -67,10 +67,10 @@ class Operations(HostTest):
     def test_check_says_what_is_odd_and_refuses_it_when_strict(self):
         points = [(0, 0, 0), (1, 0, 0), (0, 1, 0), (5, 5, 5)]
         odd = write_ply(self.path / "odd.ply", points, [(0, 1, 2)])
-        words = "1 vertices without a face (in no region), the first is 3"
+        words = "1 vertex without a face (in no region), the first is 3"
         said = self.log([odd], filter_script("mimetra Check"))
         self.assertIn(words, said)
-        self.assertIn("usable, 1 frames of 4 vertices, 1 warning", said)
+        self.assertIn("usable, 1 frame of 4 vertices, 1 warning", said)
         self.assert_refused([odd], [filter_script("mimetra Check", strict=True)], words)
 
     def test_decompose_writes_the_components_of_the_command(self):

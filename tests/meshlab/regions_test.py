@@ -21,6 +21,14 @@ class RegionsOfInterest(HostTest):
             self.assert_same(layer.vertices["quality"], self.region)
         self.assertEqual((self.region.min(), self.region.max()), (-1, 11))
 
+    def test_is_what_the_sample_script_asks_for(self):
+        sample = ElementTree.parse(SAMPLES / "meshlab_regions.mlx").getroot()
+        [layer] = self.apply(self.take, list(sample), [("sample.ply", 0, "vq")])
+        self.assert_same(layer.vertices["quality"], self.region)
+        asked = [dict(row.attrib) for row in sample.iter("Param")]
+        rows = [dict(row.attrib) for row in filter_script("Regions of Interest", k=12)]
+        self.assertEqual(asked, rows)
+
     def test_takes_a_sequence_of_files_onto_the_current_layer(self):
         script = filter_script("Regions of Interest", k=12, sequence=self.path / "take")
         [layer] = self.apply([self.take[3]], [script], [("one.ply", 0, "vq")])

@@ -17,7 +17,7 @@ TEST(RegionReport, LeavesOutAnEnergyThatIsNotKnown) {
   EXPECT_TRUE(report_of(regions)["energy_share"].is_null());
   EXPECT_TRUE(report_of(regions)["regions"][0]["energy_share"].is_null());
   EXPECT_THAT(summary_of(regions), Not(HasSubstr("energy")));
-  EXPECT_THAT(summary_of(regions), HasSubstr("1 regions hold 1 vertices (8.3 %) and "));
+  EXPECT_THAT(summary_of(regions), HasSubstr("1 region holds 1 vertex (8.3 %) and "));
   regions.energy_share = 0.5;
   EXPECT_EQ(report_of(regions)["energy_share"], 0.5);
   EXPECT_THAT(summary_of(regions), HasSubstr(" and 50.0 % of the motion energy"));

@@ -120,9 +120,9 @@ class Operations(HostTest):
     def test_check_warns_of_what_is_odd(self):
         with Messages() as messages:
             table = at(simple.mimetraCheck(Input=self.odd()))
-        words = "1 vertices without a face (in no region), the first is 36"
+        words = "1 vertex without a face (in no region), the first is 36"
         self.assertIn(words, messages.text)
-        self.assertIn("usable, 1 frames of 37 vertices, 1 warning", messages.text)
+        self.assertIn("usable, 1 frame of 37 vertices, 1 warning", messages.text)
         self.assertEqual(texts(table, "name"), ["usable", "warnings"])
         self.assertEqual(texts(table, "value"), ["true", json.dumps([words])])
 
@@ -131,7 +131,7 @@ class Operations(HostTest):
             table = at(simple.mimetraCheck(Input=self.odd(), Strict=1))
         self.assertEqual(table.GetNumberOfRows(), 0)
         self.assertEqual(messages.text.count("ERR"), 1, messages.text)
-        self.assertIn("1 vertices without a face", messages.text)
+        self.assertIn("1 vertex without a face", messages.text)
 
     def assert_evaluates(self, target, **inputs):
         """The table of the command for a target, in all columns but times."""

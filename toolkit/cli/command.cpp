@@ -3,25 +3,33 @@
 #include <algorithm>
 #include <cctype>
 
+#include "toolkit/mesh/text.h"
+
 namespace mimetra::cli {
 
 namespace {
 
-/// Help, unit, choices and default in one line.
-std::string described(const Parameter& parameter) {
-  std::string text = parameter.help;
+/// `text` with unit, choices and default.
+std::string described(const Parameter& parameter, std::string text) {
   if (!parameter.unit.empty()) text += " [" + parameter.unit + "]";
   if (!parameter.choices.empty()) {
-    text += " {";
-    for (const std::string& choice : parameter.choices) {
-      text += (choice == parameter.choices.front() ? "" : ",") + choice;
-    }
+    text += " {" + joined(parameter.choices, ",");
     text += parameter.kind == ParameterKind::file ? ",FILE}" : "}";
   }
   const std::string fallback = to_text(parameter.fallback);
-  if (!fallback.empty() && parameter.kind != ParameterKind::flag)
+  if (!fallback.empty() && parameter.kind != ParameterKind::flag) {
     text += " (default " + fallback + ")";
+  }
   return text;
+}
+
+/// What the short help says; empty for the name alone.
+std::string in_brief(const Parameter& parameter) {
+  if (parameter.brief.empty()) {
+    return parameter.group.empty() ? described(parameter, parameter.help) : "";
+  }
+  return parameter.kind == ParameterKind::file ? parameter.brief
+                                               : described(parameter, parameter.brief);
 }
 
 std::string value_name(ParameterKind kind) {
@@ -53,25 +61,35 @@ std::vector<std::string> endings_of(std::vector<std::string> extensions) {
 }
 
 CommandOption option_of(const OperationTable& table, const Input& input) {
-  CommandOption option{input.name, {"--" + input.name}, upper(input.name), input.help, {}, true};
-  if (input.optional) option.value = "FILE";
+  CommandOption option{input.name, {"--" + input.name}, "FILE", table.help(input), {}, true};
+  option.brief = input.help;
   option.endings = endings_of(table.extensions(input));
   option.required = !input.optional;
   return option;
 }
 
 CommandOption option_of(const OperationTable& table, const Output& output) {
-  CommandOption option{
-      output.name, {"--" + output.name}, upper(output.name), table.help(output), {}, true};
+  CommandOption option{output.name, {"--" + output.name}, "FILE", table.help(output), {}, true};
+  option.brief = output.help;
   option.endings = endings_of(table.extensions(output));
-  if (output.name == "out") option.forms.insert(option.forms.begin(), "-o");
+  if (output.name == "out") {
+    option.forms.insert(option.forms.begin(), "-o");
+    option.value = "OUT";
+  }
   option.required = !output.optional;
   return option;
 }
 
 CommandOption option_of(const Parameter& parameter) {
-  return {parameter.name,       {parameter.option()}, value_name(parameter.kind),
-          described(parameter), parameter.choices,    parameter.kind == ParameterKind::file};
+  CommandOption option{parameter.name,
+                       {parameter.option()},
+                       value_name(parameter.kind),
+                       described(parameter, parameter.help),
+                       parameter.choices,
+                       parameter.kind == ParameterKind::file};
+  option.group = parameter.group;
+  option.brief = in_brief(parameter);
+  return option;
 }
 
 std::vector<CommandOption> common_options(const Operation& operation) {
@@ -90,7 +108,7 @@ std::vector<CommandOption> common_options(const Operation& operation) {
     options.push_back({"force", {"--force"}, "", "replace what an earlier run wrote"});
     options.push_back({"dry-run", {"--dry-run"}, "", "tell the plan and the memory, and stop"});
   }
-  for (CommandOption& option : options) option.common = true;
+  for (CommandOption& option : options) option.group = CommandOption::kCommon;
   return options;
 }
 
@@ -101,6 +119,31 @@ std::string upper(std::string text) {
   return text;
 }
 
+std::vector<std::string> headings_of(const Command& command) {
+  std::vector<std::string> found = {""};
+  for (const CommandOption& option : command.options) {
+    if (std::ranges::find(found, option.group) == found.end()) found.push_back(option.group);
+  }
+  return found;
+}
+
+std::string synopsis(const Command& command) {
+  std::string text = "mimetra " + command.operation->name + " [OPTIONS]";
+  for (const CommandOption& option : command.options) {
+    if (option.required) text += " " + option.forms.front() + " " + option.value;
+  }
+  for (const Input& input : command.positionals) {
+    const std::string name = upper(input.name) + (input.repeated ? "..." : "");
+    text += input.optional ? " [" + name + "]" : " " + name;
+  }
+  return text;
+}
+
+std::string forms_of(const CommandOption& option) {
+  const std::string forms = joined(option.forms, ", ");
+  return option.is_flag() ? forms : forms + " " + option.value;
+}
+
 std::vector<Command> commands_of(const OperationTable& table) {
   std::vector<Command> commands;
   for (const Operation& operation : table.operations()) {
@@ -109,11 +152,12 @@ std::vector<Command> commands_of(const OperationTable& table) {
       command.options.push_back(option_of(table, output));
     }
     for (Input input : operation.inputs) {
-      input.help = table.help(input);
-      if (input.is_option())
+      if (input.is_option()) {
         command.options.push_back(option_of(table, input));
-      else
-        command.positionals.push_back(std::move(input));
+        continue;
+      }
+      input.help = table.help(input);
+      command.positionals.push_back(std::move(input));
     }
     for (const Parameter& parameter : command.parameters) {
       command.options.push_back(option_of(parameter));

@@ -9,6 +9,9 @@ namespace mimetra::cli {
 
 /// An option as it is typed, whatever it is for.
 struct CommandOption {
+  /// The heading of those that every command has.
+  static constexpr const char* kCommon = "Common";
+
   std::string name;                ///< "radius"
   std::vector<std::string> forms;  ///< "--radius"; "-o" and "--out"
   std::string value;               ///< "LENGTH"; empty for a flag
@@ -18,7 +21,12 @@ struct CommandOption {
   /// What the names of its files end in, ".json"; none where folders and others are taken too.
   std::vector<std::string> endings = {};
   bool required = false;
-  bool common = false;  ///< every command has it
+  /// Heading under which help lists it; none for what the command is about.
+  std::string group = "";
+  /// What the short help says: that without kinds of files; empty where it tells the name only.
+  std::string brief = "";
+
+  bool is_common() const { return group == kCommon; }
 
   bool is_flag() const { return value.empty(); }
 };
@@ -31,8 +39,14 @@ struct Command {
   std::vector<CommandOption> options;
 };
 
+/// Headings of its options in their order, "" for what the command is about at first.
+std::vector<std::string> headings_of(const Command& command);
 /// What stands for a value in help texts: the name in capitals.
 std::string upper(std::string text);
+/// An option as it is typed: "-o, --out OUT".
+std::string forms_of(const CommandOption& option);
+/// "mimetra transfer [OPTIONS] -o OUT SOURCE TARGET..."
+std::string synopsis(const Command& command);
 
 /// Every operation of a table as a command.
 std::vector<Command> commands_of(const OperationTable& table);

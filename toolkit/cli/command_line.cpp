@@ -6,10 +6,9 @@
 #include <CLI/CLI.hpp>
 
 #include "toolkit/cli/command.h"
+#include "toolkit/cli/help.h"
 #include "toolkit/cli/libraries.h"
-#include "toolkit/io/frame_series.h"
-#include "toolkit/io/mesh_formats.h"
-#include "toolkit/mesh/suggestion.h"
+#include "toolkit/cli/mistakes.h"
 #include "toolkit/mesh/text.h"
 #include "toolkit/operations/option_file.h"
 
@@ -36,26 +35,21 @@ struct Slots {
 
 void declare(CLI::App& app, const Command& command, Slots& slots) {
   for (const Input& input : command.positionals) {
-    app.add_option(input.name, slots.inputs[input.name], input.help)
-        ->type_name(upper(input.name))
+    app.add_option(input.name, slots.inputs[input.name])
         ->expected(1, input.repeated ? CLI::detail::expected_max_vector_size : 1)
         ->allow_extra_args(input.repeated)
         ->required(!input.optional);
   }
   for (const CommandOption& option : command.options) {
     const std::string forms = joined(option.forms, ",");
-    CLI::Option* declared = option.is_flag()
-                                ? app.add_flag(forms, slots.flags[option.name], option.help)
-                                : app.add_option(forms, slots.values[option.name], option.help)
-                                      ->type_name(option.value)
-                                      ->required(option.required);
-    if (option.common) declared->group("Common options");
+    if (option.is_flag()) {
+      app.add_flag(forms, slots.flags[option.name]);
+    } else {
+      app.add_option(forms, slots.values[option.name])
+          ->type_name(option.value)
+          ->required(option.required);
+    }
   }
-  std::string examples = "Examples:";
-  for (const std::string& example : command.operation->examples) {
-    examples += "\n  mimetra " + example;
-  }
-  app.footer(examples);
 }
 
 /// An empty name is a mistake, mostly of a script whose variable is not set.
@@ -120,70 +114,34 @@ Request request_of(const CLI::App& app, const Command& command, const Slots& slo
   return request;
 }
 
-/// Every option of a command as it is typed.
-std::vector<std::string> option_names(const CLI::App& command) {
-  std::vector<std::string> names;
-  for (const CLI::Option* option : command.get_options()) {
-    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
-    for (const std::string& name : option->get_snames()) names.push_back("-" + name);
-  }
-  return names;
+/// Help where the line asks for that of a command: "transfer --help", "transfer --help all",
+/// "help transfer".
+std::optional<std::string> asked_help(const std::vector<Command>& commands,
+                                      const std::vector<std::string>& arguments) {
+  const auto asks = [](const std::string& argument) {
+    return argument == "-h" || argument == "--help" || argument.starts_with("--help=");
+  };
+  const bool asks_first =
+      !arguments.empty() && (arguments.front() == "help" || asks(arguments.front()));
+  if (arguments.size() < (asks_first ? 2 : 1)) return {};
+  const std::string& name = arguments[asks_first ? 1 : 0];
+  const auto is_named = [&name](const Command& each) { return each.operation->name == name; };
+  const auto command = std::ranges::find_if(commands, is_named);
+  const auto asked = asks_first ? arguments.begin() : std::ranges::find_if(arguments, asks);
+  if (command == commands.end() || asked == arguments.end()) return {};
+  const bool all =
+      *asked == "--help=all" || std::ranges::find(asked, arguments.end(), "all") != arguments.end();
+  return help_page(*command, all ? HelpLength::all : HelpLength::brief);
 }
 
-/// What is wrong with many files of one kind in one folder, which a shell has put in place of a
-/// pattern without quotes; "" where there are fewer than three, or, unless the line was `refused`,
-/// they are not of one series with the first input.
-std::string unquoted_pattern(const std::vector<std::string>& arguments, bool refused) {
-  std::vector<std::filesystem::path> files;
-  std::error_code missing;
-  for (std::size_t i = 1; i < arguments.size(); ++i) {
-    const std::filesystem::path path = arguments[i];
-    const bool is_mesh = is_mesh_extension(path.extension().string());
-    if (!is_mesh || !std::filesystem::is_regular_file(path, missing)) {
-      if (files.empty() && !refused) return {};  // the first input is something else
-      continue;
-    }
-    const bool fits = files.empty() || (path.parent_path() == files.front().parent_path() &&
-                                        path.extension() == files.front().extension());
-    const bool is_one_series = !series_name(path).empty() &&
-                               (files.empty() || series_name(path) == series_name(files.front()));
-    if (fits && (refused || is_one_series)) files.push_back(path);
+/// As CLI11 takes them, which knows -k 5 and -k5, but not -k=5.
+std::vector<std::string> last_first(const std::vector<std::string>& arguments) {
+  std::vector<std::string> reversed(arguments.rbegin(), arguments.rend());
+  for (std::string& argument : reversed) {
+    const bool is_short = argument.size() > 3 && argument[0] == '-' && argument[1] != '-';
+    if (is_short && argument[2] == '=') argument.erase(2, 1);
   }
-  if (files.size() < 3) return {};
-  const auto pattern = files.front().parent_path() / ("*" + files.front().extension().string());
-  return "got " + std::to_string(files.size()) + " files, " + files.front().string() + " to " +
-         files.back().string() +
-         ", where one sequence is expected: a shell puts them in place of a pattern without "
-         "quotes; "
-         "write '" +
-         pattern.string() + "' in quotes, or name the folder";
-}
-
-/// The message for what CLI11 refuses, with a suggestion for an unknown word.
-std::string explained(const CLI::App& app, const std::vector<std::string>& arguments,
-                      const CLI::ParseError& error) {
-  std::vector<std::string> commands;
-  for (const CLI::App* command : app.get_subcommands({})) commands.push_back(command->get_name());
-  if (arguments.empty()) return "expected a command; mimetra --help lists them";
-  const std::string& first = arguments.front();
-  if (std::ranges::find(commands, first) == commands.end()) {
-    const std::string nearest = nearest_word(first, commands);
-    return "no command '" + first + "'" +
-           (nearest.empty() ? "; mimetra --help lists them" : "; did you mean '" + nearest + "'?");
-  }
-  const std::vector<std::string> known = option_names(*app.get_subcommand(first));
-  for (const std::string& argument : arguments) {
-    const std::string name = argument.substr(0, argument.find('='));
-    if (!name.starts_with("--") || std::ranges::find(known, name) != known.end()) continue;
-    const std::string nearest = nearest_word(name, known);
-    return first + ": unknown option " + name +
-           (nearest.empty() ? "; mimetra " + first + " --help lists them"
-                            : "; did you mean '" + nearest + "'?");
-  }
-  if (const std::string mistake = unquoted_pattern(arguments, true); !mistake.empty()) {
-    return first + ": " + mistake;
-  }
-  return first + ": " + error.what();
+  return reversed;
 }
 
 }  // namespace
@@ -193,21 +151,36 @@ ParsedLine parse_command_line(const OperationTable& table,
   CLI::App app("Transfers the deformation of one animated mesh to another, by regions.", "mimetra");
   app.require_subcommand(1);
   app.set_version_flag("--version", "mimetra " MIMETRA_VERSION "\n" + std::string(libraries()));
-  app.footer("`mimetra COMMAND --help` lists a command's options, with two examples.");
+  app.footer(
+      "`mimetra COMMAND --help` shows what a command takes, `--help all` explains every option.");
   const std::vector<Command> commands = commands_of(table);
+  if (auto text = asked_help(commands, arguments)) return {{}, std::move(*text)};
   std::list<Slots> all_slots;
   for (const Command& command : commands) {
     CLI::App* sub = app.add_subcommand(command.operation->name, command.operation->summary);
     declare(*sub, command, all_slots.emplace_back());
   }
+  if (arguments == std::vector<std::string>{"help"}) return {{}, app.help()};
+  for (const Command& command : commands) {
+    if (arguments.empty() || arguments.front() != command.operation->name) continue;
+    if (const std::string mistake = lost_hyphen(command, arguments); !mistake.empty()) {
+      throw UsageError(mistake);
+    }
+  }
   try {
-    app.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));
+    app.parse(last_first(arguments));
   } catch (const CLI::CallForHelp&) {
+    for (const Command& command : commands) {
+      // Among other letters, "-qh".
+      if (!arguments.empty() && arguments.front() == command.operation->name) {
+        return {{}, help_page(command, HelpLength::brief)};
+      }
+    }
     return {{}, app.help()};
   } catch (const CLI::CallForVersion&) {
     return {{}, app.version()};
   } catch (const CLI::ParseError& error) {
-    throw UsageError(explained(app, arguments, error));
+    throw UsageError(explained(commands, arguments, error.what()));
   }
   auto slots = all_slots.begin();
   for (const Command& command : commands) {

@@ -7,6 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "toolkit/operations/counted.h"
 #include "toolkit/operations/json.h"
 #include "toolkit/operations/memory_use.h"
 
@@ -18,26 +19,25 @@ namespace {
 std::string size_of(const NamedData& value) {
   const Data& data = value.data;
   if (const auto* sequence = std::get_if<FieldSequence>(&data)) {
-    return std::to_string(sequence->frames->frames()) + " frames of " +
-           std::to_string(sequence->frames->vertices()) + " vertices";
+    return counted(sequence->frames->frames(), "frame") + " of " +
+           counted(sequence->frames->vertices(), "vertex", "vertices");
   }
   if (const auto* held = std::get_if<ModelData>(&data)) {
     const MorphableModel& model = held->model;
-    std::string size = std::to_string(model.vertices()) + " vertices, ";
+    std::string size = counted(model.vertices(), "vertex", "vertices") + ", ";
     if (model.identities().size() > 0) {
-      size += std::to_string(model.identities().size()) + " identities, ";
+      size += counted(model.identities().size(), "identity", "identities") + ", ";
     }
-    return size + std::to_string(model.expressions().size()) + " expressions";
+    return size + counted(model.expressions().size(), "expression");
   }
   if (const auto* components = std::get_if<Components>(&data)) {
-    return std::to_string(components->count()) + " components";
+    return counted(components->count(), "component");
   }
   if (const auto* regions = std::get_if<RegionData>(&data)) {
-    return std::to_string(regions->regions.regions.size()) + " regions";
+    return counted(std::ssize(regions->regions.regions), "region");
   }
   if (const auto* track = std::get_if<LandmarkTrack>(&data)) {
-    return std::to_string(track->frames()) + " frames of " + std::to_string(track->landmarks()) +
-           " landmarks";
+    return counted(track->frames(), "frame") + " of " + counted(track->landmarks(), "landmark");
   }
   if (value.origin.run) return "a run of " + value.origin.run->record.operation;
   return "";

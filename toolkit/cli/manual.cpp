@@ -42,34 +42,19 @@ std::string cell(const std::string& text) {
   return result;
 }
 
-/// `mimetra transfer [OPTIONS] -o OUT SOURCE TARGET...`
-std::string synopsis(const Command& command) {
-  std::string text = "mimetra " + command.operation->name + " [OPTIONS]";
-  for (const CommandOption& option : command.options) {
-    if (option.required) text += " " + option.forms.front() + " " + option.value;
-  }
-  for (const Input& input : command.positionals) {
-    const std::string name = upper(input.name) + (input.repeated ? "..." : "");
-    text += input.optional ? " [" + name + "]" : " " + name;
-  }
-  return text;
-}
-
-std::string forms_of(const CommandOption& option) {
-  std::string text;
-  for (const std::string& form : option.forms) text += (text.empty() ? "" : ", ") + form;
-  return option.is_flag() ? text : text + " " + option.value;
-}
-
 std::string command_section(const Command& command) {
   std::string text =
       ".SS " + roff(synopsis(command)) + "\n" + roff(command.operation->summary) + ".\n";
   for (const Input& input : command.positionals) {
     text += ".TP\n.I " + roff(upper(input.name)) + "\n" + roff(input.help) + "\n";
   }
-  for (const CommandOption& option : command.options) {
-    if (option.common) continue;
-    text += ".TP\n.B " + roff(forms_of(option)) + "\n" + roff(option.help) + "\n";
+  for (const std::string& heading : headings_of(command)) {
+    if (heading == CommandOption::kCommon) continue;
+    if (!heading.empty()) text += ".PP\n" + roff(heading) + ":\n";
+    for (const CommandOption& option : command.options) {
+      if (option.group != heading) continue;
+      text += ".TP\n.B " + roff(forms_of(option)) + "\n" + roff(option.help) + "\n";
+    }
   }
   for (const std::string& example : command.operation->examples) {
     text += ".PP\n.nf\n  mimetra " + roff(example) + "\n.fi\n";
@@ -83,7 +68,7 @@ std::vector<CommandOption> common_options(const std::vector<Command>& commands) 
   for (const Command& command : commands) {
     std::vector<CommandOption> own;
     for (const CommandOption& option : command.options) {
-      if (option.common) own.push_back(option);
+      if (option.is_common()) own.push_back(option);
     }
     if (own.size() > common.size()) common = std::move(own);
   }
@@ -152,13 +137,15 @@ std::string man_page(const std::vector<Command>& commands) {
 std::string reference_page(const std::vector<Command>& commands) {
   std::string text =
       "# Commands\n\nMade by `mimetra manual --format markdown` from the table of operations.\n";
-  const auto table_of = [](const std::vector<CommandOption>& options, bool common) {
+  const auto table_of = [](const std::vector<CommandOption>& options, const std::string& heading) {
     std::string rows;
     for (const CommandOption& option : options) {
-      if (option.common != common) continue;
+      if (option.group != heading) continue;
       rows += "| `" + forms_of(option) + "` | " + cell(option.help) + " |\n";
     }
-    return rows.empty() ? rows : "\n| option | |\n| --- | --- |\n" + rows;
+    if (rows.empty()) return rows;
+    const bool has_own = !heading.empty() && heading != CommandOption::kCommon;
+    return "\n| " + (has_own ? heading : "option") + " | |\n| --- | --- |\n" + rows;
   };
   for (const Command& command : commands) {
     text += "\n## " + command.operation->name + "\n\n" + command.operation->summary + ".\n\n```\n" +
@@ -166,13 +153,16 @@ std::string reference_page(const std::vector<Command>& commands) {
     for (const Input& input : command.positionals) {
       text += "\n`" + upper(input.name) + "`: " + input.help + "\n";
     }
-    text += table_of(command.options, false) + "\n```\n";
+    for (const std::string& heading : headings_of(command)) {
+      if (heading != CommandOption::kCommon) text += table_of(command.options, heading);
+    }
+    text += "\n```\n";
     for (const std::string& example : command.operation->examples) {
       text += "mimetra " + example + "\n";
     }
     text += "```\n";
   }
-  text += "\n## Common options\n" + table_of(common_options(commands), true);
+  text += "\n## Common options\n" + table_of(common_options(commands), CommandOption::kCommon);
   text += "\n## Formats\n\n[formats.md](formats.md) lists all that is read and written.\n";
   text += "\n## Exit codes\n\n| code | |\n| --- | --- |\n";
   for (const ExitCodeLine& line : kExitCodes) {

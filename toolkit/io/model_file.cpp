@@ -355,9 +355,13 @@ MorphableModel read_model(const fs::path& path, int threads) {
     return read_eos(*parts.shape, *parts.expressions);
   }
   if (!parts.neutral) {
-    throw IoError(path.string(),
-                  "is no model: expected neutral.* with expressions/ or targets/, a model.json, or "
-                  "the eos pair sfm_shape_*.bin and expression_blendshapes_*.bin");
+    throw IoError(
+        path.string(),
+        "is no model: expected neutral.* with expressions/ or targets/, a model.json, or "
+        "the eos pair sfm_shape_*.bin and expression_blendshapes_*.bin" +
+            std::string(meshes_in(path).size() > 1
+                            ? "; its meshes can be frames of a sequence, which is a source"
+                            : ""));
   }
   const MeshFileReader neutral(*parts.neutral);
   ShapeBasis expressions = shapes_or_none(parts.expressions, neutral, threads);

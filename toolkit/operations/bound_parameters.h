@@ -203,6 +203,20 @@ class BoundParameters {
     return *this;
   }
 
+  /// Puts all that stand nowhere yet under a heading of the help.
+  BoundParameters& under(const std::string& group) {
+    for (Entry& entry : entries_) {
+      if (entry.parameter.group.empty()) entry.parameter.group = group;
+    }
+    return *this;
+  }
+
+  /// What the short help says of the last one.
+  BoundParameters& brief(const std::string& text) {
+    entries_.back().parameter.brief = text;
+    return *this;
+  }
+
   std::vector<Parameter> declared() const {
     std::vector<Parameter> parameters;
     for (const Entry& entry : entries_) parameters.push_back(entry.parameter);

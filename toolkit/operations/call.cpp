@@ -130,6 +130,8 @@ void Call::check_manifest() const {
 
 std::vector<std::string> Call::repeated_names() const {
   std::vector<std::string> names;
+  // Where no output is one for each of them, an input needs no name.
+  if (std::ranges::none_of(request_.operation->outputs, &Output::repeated)) return names;
   for (const Input& input : request_.operation->inputs) {
     const auto values = invocation_.inputs.find(input.name);
     if (!input.repeated || values == invocation_.inputs.end()) continue;

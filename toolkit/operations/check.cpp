@@ -9,6 +9,7 @@
 #include "toolkit/mesh/text.h"
 #include "toolkit/operations/bound_parameters.h"
 #include "toolkit/operations/command_terms.h"
+#include "toolkit/operations/counted.h"
 #include "toolkit/operations/json.h"
 #include "toolkit/operations/toolkit_operations.h"
 #include "toolkit/splocs/decomposition_options.h"
@@ -29,9 +30,9 @@ BoundParameters<CheckCall> check_parameters() {
   return list.add("strict", CheckCall::kStrict, "fail where there is a warning (exit code 4)");
 }
 
-/// "3 degenerate triangles, the first is 17".
-std::string counted(std::size_t count, const std::string& what, int first) {
-  return std::to_string(count) + " " + what + ", the first is " + std::to_string(first);
+/// "3 WHAT, the first is 17".
+std::string from(const std::vector<int>& found, const std::string& what) {
+  return what + ", the first is " + std::to_string(found.front());
 }
 
 /// Frames that can be no poses of the mesh: "frames 7, 9 are WHAT".
@@ -83,19 +84,16 @@ std::vector<std::string> frame_warnings(const FrameSource& sequence, const Block
 std::vector<std::string> mesh_warnings(const FrameSource& sequence) {
   const MeshReport mesh = inspect(sequence.rest(), sequence.connectivity());
   std::vector<std::string> warnings;
-  if (!mesh.degenerate_triangles.empty()) {
-    warnings.push_back(counted(mesh.degenerate_triangles.size(),
-                               "triangles without area (left out of distances and gradients)",
-                               mesh.degenerate_triangles.front()));
+  if (const auto& found = mesh.degenerate_triangles; !found.empty()) {
+    warnings.push_back(from(found, counted(std::ssize(found), "triangle") +
+                                       " without area (left out of distances and gradients)"));
   }
   if (mesh.nonmanifold_edges > 0) {
-    warnings.push_back(std::to_string(mesh.nonmanifold_edges) +
-                       " edges of more than two triangles");
+    warnings.push_back(counted(mesh.nonmanifold_edges, "edge") + " of more than two triangles");
   }
-  if (!mesh.vertices_without_face.empty()) {
-    warnings.push_back(counted(mesh.vertices_without_face.size(),
-                               "vertices without a face (in no region)",
-                               mesh.vertices_without_face.front()));
+  if (const auto& found = mesh.vertices_without_face; !found.empty()) {
+    warnings.push_back(from(found, counted(std::ssize(found), "vertex", "vertices") +
+                                       " without a face (in no region)"));
   }
   return warnings;
 }
@@ -131,19 +129,16 @@ Outcome run_check(const Invocation& invocation) {
   std::vector<std::string> warnings = input.origin.notes;
   warnings.insert(warnings.end(), found.begin(), found.end());
   if (!warnings.empty() && check_parameters().read(invocation.parameters).strict) {
-    throw MismatchError(input.name + ": " + warnings.front() +
-                        (warnings.size() > 1
-                             ? "; and " + std::to_string(warnings.size() - 1) + " more warnings"
-                             : ""));
+    throw MismatchError(
+        input.name + ": " + warnings.front() +
+        (warnings.size() > 1 ? "; and " + counted(std::ssize(warnings) - 1, "more warning") : ""));
   }
   for (const std::string& warning : found) invocation.warn(input.name + ": " + warning);
   return {{},
           json_text(Json{{"usable", true}, {"warnings", warnings}}),
-          input.name + ": usable, " + std::to_string(sequence.frames()) + " frames of " +
-              std::to_string(sequence.vertices()) + " vertices" +
-              (warnings.empty() ? "\n"
-                                : ", " + std::to_string(warnings.size()) +
-                                      (warnings.size() > 1 ? " warnings\n" : " warning\n"))};
+          input.name + ": usable, " + counted(sequence.frames(), "frame") + " of " +
+              counted(sequence.vertices(), "vertex", "vertices") +
+              (warnings.empty() ? "" : ", " + counted(std::ssize(warnings), "warning")) + '\n'};
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include "toolkit/mesh/text.h"
 #include "toolkit/model/animation.h"
 #include "toolkit/operations/bound_parameters.h"
+#include "toolkit/operations/counted.h"
 #include "toolkit/operations/formats.h"
 #include "toolkit/operations/json.h"
 #include "toolkit/operations/times_text.h"
@@ -133,8 +134,8 @@ Outcome run_convert(const Invocation& invocation) {
                      {"up", choice_name(change.up)}};
   if (found) report["renumbered"] = found->moved();
   outcome.report = json_text(report);
-  outcome.summary = std::to_string(made.frames->frames()) + " frames of " +
-                    std::to_string(made.frames->vertices()) + " vertices, " +
+  outcome.summary = counted(made.frames->frames(), "frame") + " of " +
+                    counted(made.frames->vertices(), "vertex", "vertices") + ", " +
                     times_text(*made.frames) + said(change) +
                     (found ? ", " + found->summary() : "") + '\n';
   outcome.outputs["out"].push_back({"", std::move(made), input.origin});

@@ -5,6 +5,7 @@
 #include "toolkit/mesh/text.h"
 #include "toolkit/operations/command_terms.h"
 #include "toolkit/operations/convergence_report.h"
+#include "toolkit/operations/counted.h"
 #include "toolkit/operations/json.h"
 #include "toolkit/operations/pipeline_parameters.h"
 #include "toolkit/operations/toolkit_operations.h"
@@ -106,7 +107,7 @@ Outcome run_decompose(const Invocation& invocation) {
                  {"seconds", analysis.seconds}};
   add_convergence(report, components);
   outcome.report = json_text(report);
-  outcome.summary = std::to_string(components.count() - dead) + " components, RMS error " +
+  outcome.summary = counted(components.count() - dead, "component") + ", RMS error " +
                     readable(error.rms) + " (" + readable(100 * error.relative_rms) +
                     " % of the box diagonal), KG error " + readable(error.kg) + " %, " +
                     percent(error.sparsity) + " of the displacements are zero, " +

@@ -150,7 +150,7 @@ Operation evaluate_operation() {
   operation.summary = "The paper's Table I: error and time against the number of regions";
   operation.inputs = {
       {"source", DataKind::sequence, "sequence whose deformation is transferred"},
-      {"target", DataKind::model, "model (MODEL or MODEL@identity=1.5) or mesh that receives it"}};
+      {"target", DataKind::model, "model (MODEL@identity=1.5) or mesh that receives it"}};
   operation.inputs.front().streamed = operation.inputs.front().fields = true;
   operation.outputs = {{"out", DataKind::table, "the table", true}};
   operation.parameters = evaluation_parameters().declared();

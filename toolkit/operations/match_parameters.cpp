@@ -14,6 +14,7 @@
 #include "toolkit/mesh/text.h"
 #include "toolkit/operations/bound_parameters.h"
 #include "toolkit/operations/command_terms.h"
+#include "toolkit/operations/counted.h"
 #include "toolkit/operations/heads.h"
 #include "toolkit/operations/pipeline_parameters.h"
 #include "toolkit/pipeline/given_markers.h"
@@ -96,15 +97,11 @@ class MarkersTo {
       std::make_shared<std::optional<MarkerSearch>>();
 };
 
-/// "12 expressions, 3 groups that exclude each other and 1 pair".
+/// "12 expressions, 3 groups of some that exclude each other and 1 pair".
 std::string summary_of(const WeightRules& rules) {
-  const auto counted = [](std::size_t count, const std::string& one, const std::string& more) {
-    return std::to_string(count) + " " + (count == 1 ? one : more);
-  };
-  return counted(rules.expressions.size(), "expression", "expressions") + ", " +
-         counted(rules.exclusive.size(), "group that exclude each other",
-                 "groups that exclude each other") +
-         " and " + counted(rules.pairs.size(), "pair", "pairs");
+  return counted(std::ssize(rules.expressions), "expression") + ", " +
+         counted(std::ssize(rules.exclusive), "group") + " of some that exclude each other and " +
+         counted(std::ssize(rules.pairs), "pair");
 }
 
 /// Operations without a choice of spaces solve for weights, where there are expressions.
@@ -216,6 +213,8 @@ std::vector<Parameter> pairing_parameters() {
           "the same by pairs of triangles that an earlier run found and wrote beside its output")};
   const std::vector<Parameter> more = list.declared();
   parameters.insert(parameters.begin() + 1, more.begin(), more.end());
+  for (Parameter& parameter : parameters) parameter.group = "Targets of other faces";
+  parameters.front().brief = "pairs of vertices that are the same point of a face";
   return parameters;
 }
 
@@ -227,6 +226,7 @@ std::vector<Parameter> match_parameters() {
               "other, limits, gains and offsets; one file for all targets, or one for each between "
               "commas, also auto (rules.json in a model's folder) or none",
               {std::string(kAuto), std::string(kNone)}));
+  parameters.back().group = kSolvingGroup;
   return parameters;
 }
 

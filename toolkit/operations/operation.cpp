@@ -173,12 +173,13 @@ const Operation* OperationTable::find(const std::string& name) const {
 
 std::vector<Parameter> OperationTable::parameters_of(const Operation& operation) const {
   std::vector<Parameter> parameters = operation.parameters;
-  const auto append = [&](const std::vector<Parameter>& more) {
-    for (const Parameter& parameter : more) {
+  const auto append = [&](const std::vector<Parameter>& more, const std::string& group) {
+    for (Parameter parameter : more) {
       const auto same = std::ranges::find(parameters, parameter.name, &Parameter::name);
       const bool is_own = same - parameters.begin() < std::ssize(operation.parameters);
       if (same == parameters.end()) {
-        parameters.push_back(parameter);
+        if (parameter.group.empty()) parameter.group = group;
+        parameters.push_back(std::move(parameter));
       } else if (is_own || same->kind != parameter.kind) {
         throw std::invalid_argument("operation '" + operation.name + "': parameter '" +
                                     parameter.name +
@@ -188,12 +189,12 @@ std::vector<Parameter> OperationTable::parameters_of(const Operation& operation)
   };
   for (const Input& input : operation.inputs) {
     for (const Format& format : formats_) {
-      if (format.read && format.kind == input.kind) append(format.reading);
+      if (format.read && format.kind == input.kind) append(format.reading, "Reading");
     }
   }
   for (const Output& output : operation.outputs) {
     for (const Format& format : formats_) {
-      if (!extensions_of(output, format).empty()) append(format.writing);
+      if (!extensions_of(output, format).empty()) append(format.writing, "Writing");
     }
   }
   return parameters;

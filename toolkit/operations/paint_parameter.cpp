@@ -7,6 +7,7 @@
 #include "toolkit/io/painting_file.h"
 #include "toolkit/mesh/suggestion.h"
 #include "toolkit/mesh/text.h"
+#include "toolkit/operations/pipeline_parameters.h"
 #include "toolkit/operations/selection_parameters.h"
 
 namespace mimetra {
@@ -67,7 +68,10 @@ Parameter paint_parameter() {
           "",
           {},
           {},
-          {std::string(kField) + "NAME"}};
+          {std::string(kField) + "NAME"},
+          false,
+          kRegionGroup,
+          "regions as painted: a field, a picture or a list"};
 }
 
 void check_paint(const Invocation& invocation) {

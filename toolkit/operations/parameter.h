@@ -45,6 +45,11 @@ struct Parameter {
   std::optional<double> maximum = {};
   std::vector<std::string> choices = {};
   bool several = false;  ///< of a file: several paths, or `choices`, between commas
+  /// Heading under which help lists it; none for what its operation is about.
+  std::string group = "";
+  /// What the short help says instead of `help`; of those under a heading it tells the names only
+  /// where this is empty.
+  std::string brief = "";
 
   /// `--radius` or `-k`.
   std::string option() const;

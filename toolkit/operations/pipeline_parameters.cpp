@@ -63,7 +63,7 @@ BoundParameters<SourceOptions> rest_named(const std::string& name, const std::st
       name, SourceOptions::kRest,
       what + "; default the neutral where it is known, else the first frame",
       rest_reader(sequence));
-  return list;
+  return list.under(kSourceGroup);
 }
 
 BoundParameters<DecompositionOptions> decomposition_parameters() {
@@ -123,9 +123,10 @@ BoundParameters<AnalysisOptions> place_parameters(const FieldSequence* sequence)
                "largest, info lists them), OBJ groups or materials, vertices where a field is not "
                "zero (all: several between commas), or a vertex list"),
            bound("only", true))
+      .brief("where regions may lie: component:0, group:NAME, FILE")
       .add(vertex_set_parameter("without", "where none may lie, named as for --only"),
            bound("without", false));
-  return list;
+  return list.under(kRegionGroup);
 }
 
 /// --per-region and what belongs to it.
@@ -178,7 +179,7 @@ BoundParameters<SourceOptions> alignment_parameters(const FrameSource* sequence)
       [sequence](const std::string& path) {
         return sequence ? read_motion(path, sequence->frames()) : Motion();
       });
-  return list;
+  return list.brief("head motion to take out {stable,all,joint,none,FILE}").under(kSourceGroup);
 }
 
 BoundParameters<SourceOptions> source_rest_parameters(const FrameSource* sequence) {
@@ -195,7 +196,7 @@ BoundParameters<AnalysisOptions> analysis_rest_parameters(const FrameSource* seq
       "rest", AnalysisOptions::kRest,
       "rest pose of the decomposition: a frame, the mean, or a mesh; default that of the source",
       rest_reader(sequence));
-  return list;
+  return list.under(kDecompositionGroup);
 }
 
 BoundParameters<DistanceOptions> distance_parameters() {
@@ -208,9 +209,10 @@ BoundParameters<DistanceOptions> distance_parameters() {
 
 BoundParameters<AnalysisOptions> count_parameters(const AnalysisOptions& defaults) {
   BoundParameters<DecompositionOptions> count(defaults.decomposition);
-  count.add("k", DecompositionOptions::kCount, "number of components");
+  count.add("k", DecompositionOptions::kCount, "number of components")
+      .brief("number of components");
   BoundParameters<AnalysisOptions> list(defaults);
-  return list.add(&AnalysisOptions::decomposition, count);
+  return list.add(&AnalysisOptions::decomposition, count).under(kDecompositionGroup);
 }
 
 BoundParameters<AnalysisOptions> analysis_parameters(const FieldSequence* sequence) {
@@ -227,7 +229,7 @@ BoundParameters<AnalysisOptions> analysis_parameters(const FieldSequence* sequen
       .add(memory_parameter(), [](const Parameters& parameters, AnalysisOptions& options) {
         options.decomposition.memory = memory_for(parameters);
       });
-  return list;
+  return list.under(kDecompositionGroup);
 }
 
 BoundParameters<RegionChoiceOptions> region_parameters() {
@@ -236,12 +238,14 @@ BoundParameters<RegionChoiceOptions> region_parameters() {
       .add("region", RegionOptions::kShape,
            "disc: within the radius; support: vertices with 95 % of the component's energy")
       .add("coverage", RegionOptions::kCoverage,
-           "take the strongest regions until they hold this share of the motion energy");
+           "take the strongest regions until they hold this share of the motion energy")
+      .brief("take regions until they hold this share of the motion");
   BoundParameters<RegionChoiceOptions> list;
   list.add(selection_parameters())
       .add("radius", RegionChoiceOptions::kRadius, "geodesic radius of a region")
+      .brief("geodesic radius of a region")
       .add(&RegionChoiceOptions::regions, regions);
-  return list;
+  return list.under(kRegionGroup);
 }
 
 BoundParameters<RegionChoiceOptions> completion_parameters() {
@@ -253,7 +257,7 @@ BoundParameters<RegionChoiceOptions> completion_parameters() {
       .add("complete-limit", CompletionOptions::kLimit,
            "share of the triangles that --complete may add");
   BoundParameters<RegionChoiceOptions> list;
-  return list.add(&RegionChoiceOptions::completion, completion);
+  return list.add(&RegionChoiceOptions::completion, completion).under(kRegionGroup);
 }
 
 BoundParameters<BlendshapeTransferOptions> blendshape_parameters() {
@@ -272,8 +276,10 @@ BoundParameters<BlendshapeTransferOptions> blendshape_parameters() {
 
 BoundParameters<SolveOptions> axes_parameters() {
   BoundParameters<SolveOptions> list;
-  return list.add("axes", SolveOptions::kAxes,
-                  "fit: the source is turned as its rest pose is to the target's; none: it is not");
+  return list
+      .add("axes", SolveOptions::kAxes,
+           "fit: the source is turned as its rest pose is to the target's; none: it is not")
+      .under(kSolvingGroup);
 }
 
 BoundParameters<SolveOptions> solving_parameters() {
@@ -281,14 +287,16 @@ BoundParameters<SolveOptions> solving_parameters() {
   list.add("space", SolveOptions::kSpace,
            "solve for blendshape weights or vertices; auto: weights where the target has "
            "expressions")
+      .brief("solve for")
       .add(axes_parameters())
       .add("smoothness", SolveOptions::kSmoothness,
            "time constant of smooth weights, or in vertex space of smooth motion; 0 smooths "
            "nothing")
+      .brief("time constant of smooth motion")
       .add(&SolveOptions::blendshape, blendshape_parameters())
       .add(regional_parameters())
       .add(&SolveOptions::vertex, vertex_parameters());
-  return list;
+  return list.under(kSolvingGroup);
 }
 
 /// Regions that fade out take more of the face than were chosen.

@@ -14,6 +14,12 @@ namespace mimetra {
 // The pipeline's options as parameters, shared by operations. Files that a call names must fit
 // `sequence`; without one they are not read, and what they hold is empty.
 
+// Headings of the help under which they stand.
+inline constexpr const char* kRegionGroup = "Regions";
+inline constexpr const char* kDecompositionGroup = "Decomposition";
+inline constexpr const char* kSourceGroup = "Rest pose and head motion";
+inline constexpr const char* kSolvingGroup = "Solving";
+
 /// --align.
 BoundParameters<SourceOptions> alignment_parameters(const FrameSource* sequence = nullptr);
 /// --source-rest of a transfer, and --rest of its decomposition.

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "toolkit/mesh/text.h"
+#include "toolkit/operations/counted.h"
 
 namespace mimetra {
 
@@ -53,11 +54,12 @@ Json report_of(const Regions& regions) {
 }
 
 std::string summary_of(const Regions& regions) {
-  const std::string vertices = std::to_string(regions.vertex_count()) + " vertices (" +
+  const std::string vertices = counted(regions.vertex_count(), "vertex", "vertices") + " (" +
                                percent(regions.vertex_share()) + ")";
-  const std::string triangles = std::to_string(regions.triangles.size()) + " triangles (" +
+  const std::string triangles = counted(std::ssize(regions.triangles), "triangle") + " (" +
                                 percent(regions.triangle_share()) + ")";
-  return std::to_string(regions.regions.size()) + " regions hold " + vertices +
+  const std::string hold = regions.regions.size() == 1 ? " holds " : " hold ";
+  return counted(std::ssize(regions.regions), "region") + hold + vertices +
          (regions.energy_is_known()
               ? ", " + triangles + " and " + percent(regions.energy_share) + " of the motion energy"
               : " and " + triangles) +

@@ -10,6 +10,7 @@
 #include "toolkit/mesh/stopwatch.h"
 #include "toolkit/mesh/text.h"
 #include "toolkit/operations/command_terms.h"
+#include "toolkit/operations/counted.h"
 #include "toolkit/operations/formats.h"
 #include "toolkit/operations/json.h"
 #include "toolkit/operations/match_parameters.h"
@@ -383,9 +384,9 @@ Outcome run_retarget(const Invocation& invocation) {
   made.report["expressions"] = made.weights.cols();
   made.report["seconds"] = stopwatch.seconds();
   outcome.report = json_text(made.report);
-  outcome.summary = std::to_string(made.weights.rows()) + " frames of " +
-                    std::to_string(made.weights.cols()) + " weights, " +
-                    readable(stopwatch.seconds()) + " s\n" + made.summary;
+  outcome.summary = counted(made.weights.rows(), "frame") + " of " +
+                    counted(made.weights.cols(), "weight") + ", " + readable(stopwatch.seconds()) +
+                    " s\n" + made.summary;
   return outcome;
 }
 
@@ -393,15 +394,15 @@ Operation declared_operation() {
   Operation operation;
   operation.name = "retarget";
   operation.summary = "Make weights of one rig weights of another, through their meshes";
-  operation.inputs = {{"source", DataKind::model,
-                       "model (MODEL or MODEL@identity=1.5) that the weights are of", true},
-                      {"target", DataKind::model, "model whose weights are made", true},
-                      {.name = "weights",
-                       .kind = DataKind::table,
-                       .help = "blendshape weights of the source",
-                       .named = true},
-                      {"map", DataKind::document,
-                       "what --map-out kept of an earlier run, in place of both models", true}};
+  operation.inputs = {
+      {"source", DataKind::model, "model (MODEL@identity=1.5) that the weights are of", true},
+      {"target", DataKind::model, "model whose weights are made", true},
+      {.name = "weights",
+       .kind = DataKind::table,
+       .help = "blendshape weights of the source",
+       .named = true},
+      {"map", DataKind::document, "what --map-out kept of an earlier run, in place of both models",
+       true}};
   operation.inputs[0].positional = operation.inputs[1].positional = true;
   operation.outputs = {{"out", DataKind::table, "blendshape weights of the target"},
                        {"map-out", DataKind::document,

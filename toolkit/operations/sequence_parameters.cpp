@@ -4,8 +4,9 @@ namespace mimetra {
 
 BoundParameters<SequenceSource> choice_of_frames() {
   BoundParameters<SequenceSource> list;
-  return list.add("frames", SequenceSource::kFrames,
-                  "part A:B:STEP of the frames, 0-based, B excluded");
+  return list
+      .add("frames", SequenceSource::kFrames, "part A:B:STEP of the frames, 0-based, B excluded")
+      .brief("part A:B:STEP of the frames");
 }
 
 BoundParameters<SequenceSource> frame_parameters() {
@@ -17,6 +18,7 @@ BoundParameters<SequenceSource> sequence_parameters() {
   return list
       .add("weights", SequenceSource::kWeights,
            "CSV or JSON of blendshape weights that drive a model")
+      .brief("CSV or JSON of weights that drive a model")
       .add("topology", SequenceSource::kTopology, "mesh with the faces of a file that holds none")
       .add(frame_parameters());
 }

@@ -30,6 +30,7 @@ BoundParameters<TransferOptions> transfer_parameters(const FieldSequence* source
   return list.add("full", Options::kFull, "use all triangles instead of regions")
       .add("head-motion", Options::kHeadMotion,
            "give the motion that --align took out back to the target, or drop it")
+      .brief("motion that --align took")
       .add(&Options::regions, region_parameters())
       .add(&Options::regions, completion_parameters())
       .add(&Options::analysis, count_parameters())
@@ -327,14 +328,13 @@ Operation transfer_operation() {
   operation.summary = "Transfer a sequence's deformation to other characters, by regions";
   operation.inputs = {
       {"source", DataKind::sequence, "sequence whose deformation is transferred"},
-      {"target", DataKind::model, "model (MODEL or MODEL@identity=1.5) or mesh that receives it",
-       false, true},
+      {"target", DataKind::model, "model (MODEL@identity=1.5) or mesh that receives it", false,
+       true},
       {"components", DataKind::components, "components of an earlier decompose", true},
       {"regions", DataKind::regions, "region set, in .vtp the field roi", true}};
   operation.inputs.front().streamed = operation.inputs.front().fields = true;
   operation.outputs = {
-      {"out", DataKind::sequence, "the new sequence, with several targets one each, named after it",
-       false, true},
+      {"out", DataKind::sequence, "the new sequence; of several targets one each", false, true},
       {"regions-out", DataKind::regions, "the regions, as .pvd over time", true},
       components_output(),
       {"weights-out", DataKind::table, "blendshape weights", true, true}};

@@ -22,7 +22,7 @@ namespace {
 
 struct ReportCall {
   /// Numbers of components in the table, besides the run's own.
-  std::vector<int> counts = {10, 30, 40};
+  std::vector<int> counts = {};
   ReportView view = {};
 
   static constexpr Option kCounts{"counts", &ReportCall::counts, {.minimum = 1}};
@@ -34,7 +34,9 @@ BoundParameters<ReportCall> report_parameters() {
       .add("unit", ReportView::kUnit, "name of the meshes' unit of length");
   BoundParameters<ReportCall> list;
   return list
-      .add("k", ReportCall::kCounts, "numbers of components in the table, besides the run's own")
+      .add("k", ReportCall::kCounts,
+           "numbers of components in the table, besides the run's own, as in 10,30,40; each costs "
+           "a decomposition and a transfer")
       .add(&ReportCall::view, view);
 }
 
@@ -89,7 +91,8 @@ void draw_wanted(Outcome& outcome, const Invocation& invocation, const ReportStu
 
 Outcome run_report(const Invocation& invocation) {
   check_pictures(invocation);
-  const ReportCall call = report_parameters().read(invocation.parameters);
+  ReportCall call = report_parameters().read(invocation.parameters);
+  call.view.threads = invocation.threads;
   const ReportStudy found = study(invocation.input("run"), call.counts,
                                   part_of(invocation.progress, 0, 0.6), invocation.log);
   const std::string_view viewer = viewer_script();
@@ -129,7 +132,8 @@ double memory(const Invocation& invocation) {
   const NamedData& source = call.input(call.inputs.contains("source") ? "source" : "sequence");
   const MeshSequence& sequence = std::get<FieldSequence>(source.data).sequence();
   const ReportCall report = report_parameters().read(invocation.parameters);
-  const int most = std::max(main_count(call.parameters), *std::ranges::max_element(report.counts));
+  int most = main_count(call.parameters);
+  for (const int count : report.counts) most = std::max(most, count);
   const double analysis =
       drawing_bytes(sequence.vertices(), most) + analysis_plan(call, sequence, most).bytes;
   if (!call.inputs.contains("target")) return analysis;

@@ -235,6 +235,7 @@ ViewerScene scene_of(const ReportStudy& study, const ReportView& view) {
         {"target", transfer.target, transfer.by_regions, transfer.regions_of_vertices});
   }
   scene.viewpoint = view.viewpoint;
+  scene.threads = view.threads;
   return scene;
 }
 

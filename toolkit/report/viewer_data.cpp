@@ -8,6 +8,7 @@
 #include <vtkNew.h>
 #include <vtkZLibDataCompressor.h>
 
+#include "toolkit/mesh/parallel.h"
 #include "toolkit/mesh/weld.h"
 #include "toolkit/operations/colors.h"
 #include "toolkit/operations/json.h"
@@ -189,15 +190,19 @@ std::string with_frames(Json json, const ViewerScene& scene, const std::vector<i
   json["times"] = times;
   json["meshes"] = Json::array();
   const std::vector<std::size_t> surface = surface_of_each(scene.meshes);
-  for (std::size_t i = 0; i < scene.meshes.size(); ++i) {
-    const ViewerMesh& mesh = scene.meshes[i];
+  const int count = static_cast<int>(scene.meshes.size());
+  std::vector<Json> meshes(scene.meshes.size());
+  parallel_for(count, scene.threads, [&](int i) {
+    const auto place = static_cast<std::size_t>(i);
+    const ViewerMesh& mesh = scene.meshes[place];
     const QuantizedPoses poses = quantized(mesh.sequence, frames);
-    json["meshes"].push_back({{"role", mesh.role},
-                              {"name", mesh.name},
-                              {"surface", surface[i]},
-                              {"step", poses.step},
-                              {"poses", packed_poses(poses)}});
-  }
+    meshes[place] = {{"role", mesh.role},
+                     {"name", mesh.name},
+                     {"surface", surface[place]},
+                     {"step", poses.step},
+                     {"poses", packed_poses(poses)}};
+  });
+  for (Json& mesh : meshes) json["meshes"].push_back(std::move(mesh));
   return script_text(json);
 }
 

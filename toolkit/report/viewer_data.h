@@ -21,6 +21,7 @@ struct ViewerMesh {
 struct ViewerScene {
   std::vector<ViewerMesh> meshes;
   Viewpoint viewpoint = {.yaw = 0, .pitch = 0};
+  int threads = 0;  ///< to pack with, 0 for all there are; what is packed does not depend on it
 };
 
 /// Poses as whole numbers of steps from a centre.
