@@ -112,9 +112,14 @@ def samples_page(root):
     return "\n".join(lines)
 
 
-def python_name(name):
+def function_name(name):
     made = name.replace("-", "_")
-    return made + "_" if keyword.iskeyword(made) or made in RESERVED else made
+    return made + "_" if keyword.iskeyword(made) else made
+
+
+def python_name(name):
+    made = function_name(name)
+    return made + "_" if made in RESERVED else made
 
 
 def in_python(root):
@@ -164,10 +169,10 @@ def call_of(node):
 def function(operation):
     """One function: its call, and what it takes."""
     inputs = operation.get("inputs", [])
-    outputs = [each for each in operation.get("outputs", []) if each["kind"] != "document"]
+    outputs = operation.get("outputs", [])
     first = [python_name(each["name"]) for each in inputs
              if not each["optional"] and not each["named"]]
-    name = python_name(operation["name"])
+    name = function_name(operation["name"])
     lines = [f"### {name}", "", operation["summary"] + ".", "", "```python",
              f"mimetra.{name}({', '.join([*first, '*', '...'])})", "```", "",
              "| argument | type | default | |", "| --- | --- | --- | --- |"]

@@ -1,6 +1,7 @@
 # What the packages say of themselves.
 set(maintainer "mimetra developers <mimetra@localhost>")
-set(packages libmimetra-c1 mimetra libmimetra-dev python3-mimetra mimetra-blender mimetra-paraview)
+set(packages libmimetra-c1 libmimetra-pictures1 mimetra libmimetra-dev python3-mimetra
+    mimetra-blender mimetra-paraview)
 
 # The viewer of reports is bundled from packages of npm; their licences stand at its beginning.
 set(viewer_licenses " None: reports of this build have no viewer.")
@@ -23,9 +24,11 @@ endif()
 configure_file(../copyright.in copyright @ONLY)
 configure_file(changelog.in changelog @ONLY)
 execute_process(COMMAND gzip -9nf ${PROJECT_BINARY_DIR}/changelog COMMAND_ERROR_IS_FATAL ANY)
-file(WRITE ${PROJECT_BINARY_DIR}/libmimetra-c1/shlibs
-     "libmimetra_c 1 libmimetra-c1 (>= ${PROJECT_VERSION})\n")
-file(WRITE ${PROJECT_BINARY_DIR}/libmimetra-c1/triggers "activate-noawait ldconfig\n")
+foreach(name c pictures)
+  set(folder ${PROJECT_BINARY_DIR}/libmimetra-${name}1)
+  file(WRITE ${folder}/shlibs "libmimetra_${name} 1 libmimetra-${name}1 (>= ${PROJECT_VERSION})\n")
+  file(WRITE ${folder}/triggers "activate-noawait ldconfig\n")
+endforeach()
 
 set(about "mimetra finds the regions of an animated face that move, and transfers their
 deformation to another character: sparse localized deformation components,
@@ -92,6 +95,14 @@ operation on arrays of their own. It has a build for processors with AVX2 and
 FMA, which the loader chooses."
   RECOMMENDS ${video} libdlib-data
   OVERRIDES "# CPack writes these scripts itself.\n" "libmimetra-c1: maintscript-calls-ldconfig\n")
+package(libmimetra-pictures1 SECTION libs SHLIBDEPS
+  SUMMARY "region-based deformation transfer (library that draws)"
+  TEXT "This package holds the library of the C interface with pictures, pages for a
+browser and ParaView's files, for which it needs VTK. The Python module takes it
+where it is installed."
+  RECOMMENDS ${video} libdlib-data
+  OVERRIDES "# CPack writes these scripts itself.\n"
+            "libmimetra-pictures1: maintscript-calls-ldconfig\n")
 package(mimetra SECTION graphics SHLIBDEPS
   SUMMARY "region-based deformation transfer (command)"
   TEXT "This package holds the command, its manual and completion. It has a build for
@@ -112,7 +123,8 @@ package(python3-mimetra SECTION python ALL
   SUMMARY "region-based deformation transfer (Python module)"
   TEXT "This package holds the Python module: each operation is a function on NumPy
 arrays."
-  DEPENDS "libmimetra-c1 (>= ${PROJECT_VERSION})" "python3 (>= 3.9)" python3-numpy)
+  DEPENDS "libmimetra-c1 (>= ${PROJECT_VERSION})" "python3 (>= 3.9)" python3-numpy
+  RECOMMENDS libmimetra-pictures1)
 package(mimetra-blender SECTION graphics ALL
   SUMMARY "region-based deformation transfer (Blender add-on)"
   TEXT "This package holds the add-on for Blender: switch Animation: mimetra on in

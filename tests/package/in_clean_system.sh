@@ -15,18 +15,23 @@ mimetra report moved.npy -o report.html
 [ -s /usr/share/man/man1/mimetra.1.gz ]
 
 # No program or library looks for others where it was built.
-for file in /usr/bin/mimetra "$libraries"/mimetra/x86-64*/mimetra "$libraries"/libmimetra_c.so.1 \
+for file in /usr/bin/mimetra "$libraries"/mimetra/x86-64*/mimetra "$libraries"/libmimetra_*.so.1 \
   "$libraries"/mimetra/*.so; do
   readelf -d "$file" | { ! grep -E 'R(UN)?PATH'; }
 done
 
-# The Python module, with the build for the processor.
-python3 - "$libraries/${newer}libmimetra_c.so.1" <<'PYTHON'
+# The Python module, with the build for the processor, with and without pictures.
+for name in c pictures; do
+  MIMETRA_LIBRARY="$([ "$name" = pictures ] || echo libmimetra_c.so.1)" \
+    python3 - "$libraries/${newer}libmimetra_$name.so.1" <<'PYTHON'
 import sys
 import mimetra
 assert mimetra.sample().out.neutral.shape[1] == 3
 assert sys.argv[1] in open("/proc/self/maps").read(), sys.argv[1]
+if "pictures" in sys.argv[1]:
+    assert mimetra.render(["take.npy"], columns=2).out.pixels.std() > 10
 PYTHON
+done
 
 # ParaView's plugin.
 PV_PLUGIN_PATH="$(dirname "$libraries"/paraview-*/plugins/Mimetra/Mimetra.so)" pvpython - \

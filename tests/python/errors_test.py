@@ -78,8 +78,8 @@ class Errors(SampleTest):
         self.assert_fails(mimetra.UsageError, 2, "parameter 'format' is about files",
                           lambda: mimetra.align(self.arrays, format="obj"))
 
-    def test_what_only_a_program_with_vtk_can_use_is_no_option(self):
-        with self.assertRaisesRegex(TypeError, "unexpected keyword"):
+    def test_a_view_of_paraview_needs_the_file_that_it_shows(self):
+        with self.assertRaisesRegex(mimetra.UsageError, "paraview: needs regions that ParaView"):
             mimetra.regions(self.arrays, paraview=True)
 
     def test_an_unknown_array_is_told_of_beside_those_there_are(self):

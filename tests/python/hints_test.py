@@ -15,7 +15,7 @@ class Hints(unittest.TestCase):
     def test_each_operation_of_the_table_is_a_function(self):
         for name, operation in mimetra.operations.items():
             with self.subTest(name):
-                function = getattr(mimetra, mimetra.python_name(name))
+                function = getattr(mimetra, mimetra.function_name(name))
                 self.assertIs(function.operation, operation)
                 slots = inspect.signature(function).parameters
                 self.assertEqual(set(slots), set(function.__annotations__))

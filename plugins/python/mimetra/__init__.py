@@ -10,8 +10,8 @@ Each operation of the library's table is a function here, those of plugins too: 
 lists them, `operations` describes them, and `formats` the files that they read and write. Inputs
 are values (Sequence, Model, Components, Regions, Table, Landmarks, Fit, Pictures, Document) or what
 the command takes as text, which is read from files; where a sequence or model is expected,
-(positions, faces) is one. What the library logs goes to logging.getLogger("mimetra"). Functions may
-be called from several threads at once.
+(positions, faces) is one. Pictures show themselves in notebooks. What the library logs goes to
+logging.getLogger("mimetra"). Functions may be called from several threads at once.
 """
 
 from ._context import library as _library
@@ -19,12 +19,12 @@ from ._data import (Components, Data, Document, Faces, Fit, Landmarks, Model, Pi
                     Sequence, Table)
 from ._errors import BadInput, Cancelled, Error, Mismatch, OutputError, UsageError
 from ._operations import (Format, Operation, Result, all_formats, all_operations, function_of,
-                          python_name)
+                          function_name, python_name)
 
 __version__ = _library.toolkit_version.decode()
 operations = all_operations()
 formats = all_formats()
-_functions = {python_name(name): function_of(operation)
+_functions = {function_name(name): function_of(operation)
               for name, operation in operations.items()}
 __all__ = [
     "BadInput", "Cancelled", "Components", "Data", "Document", "Error", "Faces", "Fit", "Format",
@@ -36,7 +36,13 @@ def run(name, /, *inputs, **options):
     """Runs an operation by its name in the table."""
     if name not in operations:
         raise UsageError(f"no operation '{name}'; there are {', '.join(operations)}")
-    return _functions[python_name(name)](*inputs, **options)
+    return _functions[function_name(name)](*inputs, **options)
+
+
+def __getattr__(name):
+    missing = ("; pictures and pages need libmimetra_pictures.so beside libmimetra_c.so, and VTK"
+               if name in ("render", "report") else "")
+    raise AttributeError(f"module 'mimetra' has no attribute '{name}'{missing}")
 
 
 globals().update({name: function for name, function in _functions.items()

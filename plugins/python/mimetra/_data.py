@@ -2,6 +2,8 @@
 
 import ctypes
 import os
+import struct
+import zlib
 from typing import NamedTuple
 
 import numpy as np
@@ -271,6 +273,10 @@ class Pictures(Data):
     def __init__(self, pixels, name=""):
         self._make(name, {"pixels": pixels})
 
+    def _repr_png_(self):
+        """The picture as a notebook shows it; of several the first."""
+        return _png(self[next(iter(self))])
+
 
 class Document(Data):
     """A text that stands for itself, such as a page or a script."""
@@ -282,6 +288,21 @@ class Document(Data):
 
 
 CLASSES = {each.kind: each for each in Data.__subclasses__()}
+
+
+def _png(pixels):
+    """A PNG file of pixels, height x width x 3."""
+    height, width, _ = pixels.shape
+    rows = np.zeros((height, 1 + 3 * width), np.uint8)  # each begins with its filter: none
+    rows[:, 1:] = pixels.reshape(height, -1)
+
+    def chunk(name, content):
+        return (struct.pack(">I", len(content)) + name + content
+                + struct.pack(">I", zlib.crc32(name + content)))
+
+    header = struct.pack(">IIBBBBB", width, height, 8, 2, 0, 0, 0)  # 8 bits, RGB
+    return (b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", header)
+            + chunk(b"IDAT", zlib.compress(rows.tobytes())) + chunk(b"IEND", b""))
 
 
 def of_handle(handle):

@@ -3,6 +3,7 @@
 import ctypes
 import os
 import pathlib
+import sys
 import weakref
 from ctypes import CFUNCTYPE, POINTER, c_char_p, c_double, c_int32, c_int64, c_uint32, c_void_p
 
@@ -126,27 +127,42 @@ def free_with(owner, free, handle):
     weakref.finalize(owner, free, handle).atexit = False
 
 
+# The one that draws is taken where it is there and finds VTK; Blender draws itself.
+_NAMES = ("libmimetra_pictures.so", "libmimetra_c.so")
+if "bpy" in sys.modules:
+    _NAMES = _NAMES[1:]
+
+
 def _places():
-    """Where the library may be: as the environment says, beside this module, in its installation, in the system."""
+    """Where a library may be, the first one first: as the environment says, beside this module, in
+    its installation, in the system."""
     named = os.environ.get("MIMETRA_LIBRARY")
     if named:
         return [named]
     here = pathlib.Path(__file__).resolve().parent
-    places = [here / "libmimetra_c.so"]
+    places = [here / name for name in _NAMES]
     # Of the system's library the loader takes the build for the processor, if it is not given a path.
     installed = [] if here.is_relative_to("/usr/lib") else here.parents[:4]
-    for folder in installed:
-        places += [folder / "libmimetra_c.so", *sorted(folder.glob("*-linux-*/libmimetra_c.so"))]
-    return [str(place) for place in places if place.exists()] or ["libmimetra_c.so.1"]
+    for name in _NAMES:
+        for folder in installed:
+            places += [folder / name, *sorted(folder.glob(f"*-linux-*/{name}"))]
+    return ([str(place) for place in places if place.exists()]
+            or [f"{name}.1" for name in _NAMES])
+
+
+def _loaded():
+    """The first library that can be loaded, and its place."""
+    for place in _places():
+        try:
+            return ctypes.CDLL(place), place
+        except OSError as error:
+            failure = error
+    raise ImportError(f"{failure}; set MIMETRA_LIBRARY to the path of libmimetra_c.so")
 
 
 def load():
     """The table of functions. Throws ImportError where there is no library, or one too old."""
-    place = _places()[0]
-    try:
-        library = ctypes.CDLL(place)
-    except OSError as error:
-        raise ImportError(f"{error}; set MIMETRA_LIBRARY to the path of libmimetra_c.so") from None
+    library, place = _loaded()
     library.mimetra_get_interface.restype = POINTER(Interface)
     library.mimetra_get_interface.argtypes = [c_uint32]
     table = library.mimetra_get_interface(VERSION)

@@ -10,7 +10,7 @@ import types
 
 from . import _interface as c
 from ._context import context, library
-from ._data import CLASSES, Data, Document, Model, Sequence, of_handle, text_of
+from ._data import CLASSES, Data, Model, Sequence, of_handle, text_of
 
 _ANNOTATIONS = {c.FLAG: "bool", c.INTEGER: "int", c.INTEGER_LIST: "Iterable[int]",
                 c.NUMBER: "float", c.LENGTH: "float | str", c.TEXT: "str",
@@ -77,15 +77,13 @@ class Parameter:
 
 
 class Operation:
-    """An operation as the table declares it, but for documents that it makes: they show files that
-    only programs with VTK write."""
+    """An operation as the table declares it."""
 
     def __init__(self, described):
         self.name = described.name.decode()
         self.summary = described.summary.decode()
         self.inputs = [Input(each.contents) for each in c.listed(described.inputs)]
-        outputs = [Output(each.contents) for each in c.listed(described.outputs)]
-        self.outputs = [port for port in outputs if port.kind is not Document]
+        self.outputs = [Output(each.contents) for each in c.listed(described.outputs)]
         parameters = [each.contents for each in c.listed(described.parameters)]
         self.parameters = [Parameter(each) for each in parameters if each.of_files != c.WRITING]
         #: Those of writing its outputs to files.
@@ -96,10 +94,16 @@ class Result(types.SimpleNamespace):
     """What an operation made: its outputs by name, `report` (a dict) and `summary` (text)."""
 
 
-def python_name(name):
-    """An operation's, output's or parameter's name in Python."""
+def function_name(name):
+    """An operation's name in Python."""
     made = name.replace("-", "_")
-    return made + "_" if keyword.iskeyword(made) or made in _RESERVED else made
+    return made + "_" if keyword.iskeyword(made) else made
+
+
+def python_name(name):
+    """An input's, output's or parameter's name in Python."""
+    made = function_name(name)
+    return made + "_" if made in _RESERVED else made
 
 
 def _finite(number):
@@ -276,7 +280,7 @@ def function_of(operation):
         return _run(operation, given, progress=given.pop("progress", None),
                     threads=given.pop("threads", None))
 
-    function.__name__ = function.__qualname__ = python_name(operation.name)
+    function.__name__ = function.__qualname__ = function_name(operation.name)
     function.__module__ = "mimetra"
     function.__doc__ = _docstring(operation)
     function.__signature__ = signature

@@ -107,7 +107,7 @@ def text():
         lines += [*_error_class(made), ""]
     lines += ["def run(name: str, /, *inputs: Any, **options: Any) -> Result: ..."]
     for name in mimetra.operations:
-        function = getattr(mimetra, mimetra.python_name(name))
+        function = getattr(mimetra, mimetra.function_name(name))
         signature = inspect.signature(function)
         lines.append(f"def {function.__name__}({_slots(signature)}) -> Result: ...")
     return "\n".join(lines) + "\n"
