@@ -362,4 +362,14 @@ const mimetra_interface& toolkit_interface() {
   return functions;
 }
 
+const mimetra_interface* library_interface(uint32_t version,
+                                           decltype(mimetra_interface::new_context) new_context) {
+  static const mimetra_interface functions = [new_context] {
+    mimetra_interface all = toolkit_interface();
+    all.new_context = new_context;
+    return all;
+  }();
+  return version == MIMETRA_INTERFACE_VERSION ? &functions : nullptr;
+}
+
 }  // namespace mimetra

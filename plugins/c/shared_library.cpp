@@ -1,4 +1,4 @@
-// The one symbol of libmimetra_c, and of libmimetra_pictures, which draws too.
+// The one symbol of libmimetra_c.
 
 #include "plugins/c/interface.h"
 #include "plugins/c/plugins.h"
@@ -7,11 +7,6 @@
 #ifdef MIMETRA_HAS_FITTING
 #include "fitting/fit_operation.h"
 #endif
-#ifdef MIMETRA_HAS_VTK
-#include "toolkit/pictures/picture_formats.h"
-#include "toolkit/report/report_operation.h"
-#include "toolkit/vtk/vtk_formats.h"
-#endif
 
 namespace {
 
@@ -19,11 +14,6 @@ mimetra_status new_context(mimetra_log log, void* user, mimetra_context** contex
   return mimetra::make_context(
       [](mimetra::OperationTable& table) {
         mimetra::add_toolkit(table);
-#ifdef MIMETRA_HAS_VTK
-        mimetra::add_vtk(table);
-        mimetra::add_pictures(table);
-        mimetra::add_report(table);
-#endif
 #ifdef MIMETRA_HAS_FITTING
         mimetra::add_fitting(table);
 #endif
@@ -36,10 +26,5 @@ mimetra_status new_context(mimetra_log log, void* user, mimetra_context** contex
 }  // namespace
 
 const mimetra_interface* mimetra_get_interface(uint32_t version) {
-  static const mimetra_interface functions = [] {
-    mimetra_interface all = mimetra::toolkit_interface();
-    all.new_context = new_context;
-    return all;
-  }();
-  return version == MIMETRA_INTERFACE_VERSION ? &functions : nullptr;
+  return mimetra::library_interface(version, new_context);
 }

@@ -308,6 +308,7 @@ const std::vector<FolderRule>& folder_rules() {
         {"samples", "samples/head", up_to_operations, {"JSON"}},
         // The C interface makes values of all kinds, and shows them.
         {"c", "plugins/c", with(up_to_operations, {"fitting", "samples"}), {"JSON"}},
+        {"drawing", "plugins/pictures", with(up_to_report, {"fitting", "samples", "c"})},
         {"programs", "samples", with(up_to_report, {"fitting", "samples"}), {}, true},
         // What third parties write, who have nothing but the C header.
         {"plugin", "samples/plugin", {"c"}},

@@ -140,7 +140,7 @@ TEST_F(PluginCommand, IsNotHarmedByBrokenPlugins) {
 
 TEST_F(PluginCommand, ReadsAndWritesAFormatOfAPlugin) {
   EXPECT_THAT(run_with("samples", "formats").out, HasSubstr("Medit mesh of one frame"));
-  EXPECT_THAT(run_with("samples", "convert --help").out, HasSubstr(".mesh"));
+  EXPECT_THAT(run_with("samples", "convert --help all").out, HasSubstr(".mesh"));
   auto result = run_with("samples", "convert head -o face.mesh");
   EXPECT_EQ(result.code, 0) << result.err;
   result = run_with("samples", "convert face.mesh -o back.npy");

@@ -171,7 +171,8 @@ class _Run:
                 options[mimetra.python_name(parameter.name)] = value
         # Vertices that are solved for have no weights.
         keyed = None if options.get("space") == "vertex" else self._keyed(objects)
-        for port in self._operation.outputs:
+        outputs = properties.outputs_of(self._operation)
+        for port in outputs:
             asked = getattr(self, properties.property_name(port.name), None)
             if properties.needs_path(port) and not asked:
                 raise mimetra.UsageError(f"{self._operation.name}: expected a path for {port.name}:"
@@ -181,7 +182,7 @@ class _Run:
                 options[mimetra.python_name(port.name)] = _free(path, port.name) or True
         if self.manifest:
             options["manifest"] = _free(bpy.path.abspath(self.manifest), "the manifest")
-        if keyed and any(port.kind is mimetra.Table for port in self._operation.outputs):
+        if keyed and any(port.kind is mimetra.Table for port in outputs):
             results.check_not_driven(keyed)
         return options
 
@@ -208,7 +209,7 @@ class _Run:
         """Shows what was made, on the target where there is one. What may fail comes before what
         changes the scene: values that do not fit, files, caches."""
         made = [(port, getattr(result, mimetra.python_name(port.name)))
-                for port in self._operation.outputs]
+                for port in properties.outputs_of(self._operation)]
         made = [(port, value) for port, value in made if value is not None]
         target = next((objects.get(mimetra.python_name(port.name))
                        for port in self._operation.inputs if port.kind is mimetra.Model), None)

@@ -66,7 +66,7 @@ class _OperationPanel(_Panel):
                 layout.prop(group, properties.property_name(port.name))
         for parameter in _main_parameters(operation):
             _draw_parameter(layout, group, parameter)
-        for port in operation.outputs:
+        for port in properties.outputs_of(operation):
             if _is_main_output(port):
                 layout.prop(group, properties.property_name(port.name))
         run = self.layout.operator(operators.idname(operation))
@@ -86,7 +86,7 @@ class _MorePanel(_Panel):
         for parameter in properties.parameters_of(operation):
             if parameter.name not in main:
                 _draw_parameter(layout, group, parameter)
-        for port in operation.outputs:
+        for port in properties.outputs_of(operation):
             if not _is_main_output(port) and (port.optional or properties.is_written(port)):
                 layout.prop(group, properties.property_name(port.name))
         layout.prop(group, "manifest")

@@ -143,6 +143,11 @@ def _input_property(operation, port, options, pointers):
     return StringProperty(subtype="FILE_PATH", **common)
 
 
+def outputs_of(operation):
+    """Those that Blender has a place for: documents are for other programs."""
+    return [port for port in operation.outputs if port.kind is not mimetra.Document]
+
+
 def is_written(port):
     """True for outputs that go into files, those of components where a path is given."""
     return port.kind not in SHOWN or port.kind is mimetra.Components
@@ -199,7 +204,7 @@ def annotations_of(operation, *, pointers):
         if pointers and is_optional_number(parameter):
             made[f"use_{property_name(parameter.name)}"] = BoolProperty(
                 name="", description=f"Use {_label(parameter).lower()}")
-    for port in operation.outputs:
+    for port in outputs_of(operation):
         if port.optional or is_written(port):
             made[property_name(port.name)] = _output_property(port, options)
     return made
