@@ -72,10 +72,12 @@ class Pages(SampleTest):
         command("report", run, "-o", by_command)
         result = mimetra.report(run, out=self.path / "python.html")
         page, expected = (self.path / "python.html").read_text(), by_command.read_text()
-        self.assertEqual(played(page), played(expected))
         self.assertEqual(page.count("<img"), expected.count("<img"))
-        self.assertEqual(played(mimetra.report(run).out.text[0]), played(expected))
         self.assertEqual(result.report["frames"], 12)
+        if result.report["viewer_frames"] == 0:
+            self.skipTest("this mimetra was built without npm: its pages have no player")
+        self.assertEqual(played(page), played(expected))
+        self.assertEqual(played(mimetra.report(run).out.text[0]), played(expected))
 
 
 class WithoutPictures(unittest.TestCase):
