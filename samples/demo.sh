@@ -26,7 +26,7 @@ echo "Table I of the paper on the sample (MPE in percent, negative is worse than
 cat <<TEXT
 
 What to open:
-  $out/report.html  in a browser: source and target in 3D, components, error and time
+  $out/report.html  in a browser: source and target (in 3D where npm was there), components, error
   $out/strip.png    source, regions, and the target both ways, as a film strip
   $out/regions.pvd  in ParaView: press Apply, colour by 'region' or 'roi', press Play
   $out/source/      the performance of one head, frame_0000.ply on
