@@ -170,4 +170,10 @@ std::vector<Command> commands_of(const OperationTable& table) {
   return commands;
 }
 
+const Command* find_command(const std::vector<Command>& commands, const std::string& name) {
+  const auto found = std::ranges::find_if(
+      commands, [&name](const Command& each) { return each.operation->name == name; });
+  return found == commands.end() ? nullptr : &*found;
+}
+
 }  // namespace mimetra::cli

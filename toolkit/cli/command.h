@@ -50,5 +50,7 @@ std::string synopsis(const Command& command);
 
 /// Every operation of a table as a command.
 std::vector<Command> commands_of(const OperationTable& table);
+/// The one of a name; null where there is none.
+const Command* find_command(const std::vector<Command>& commands, const std::string& name);
 
 }  // namespace mimetra::cli

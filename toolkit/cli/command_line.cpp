@@ -124,11 +124,9 @@ std::optional<std::string> asked_help(const std::vector<Command>& commands,
   const bool asks_first =
       !arguments.empty() && (arguments.front() == "help" || asks(arguments.front()));
   if (arguments.size() < (asks_first ? 2 : 1)) return {};
-  const std::string& name = arguments[asks_first ? 1 : 0];
-  const auto is_named = [&name](const Command& each) { return each.operation->name == name; };
-  const auto command = std::ranges::find_if(commands, is_named);
+  const Command* command = find_command(commands, arguments[asks_first ? 1 : 0]);
   const auto asked = asks_first ? arguments.begin() : std::ranges::find_if(arguments, asks);
-  if (command == commands.end() || asked == arguments.end()) return {};
+  if (!command || asked == arguments.end()) return {};
   const bool all =
       *asked == "--help=all" || std::ranges::find(asked, arguments.end(), "all") != arguments.end();
   return help_page(*command, all ? HelpLength::all : HelpLength::brief);
@@ -161,22 +159,15 @@ ParsedLine parse_command_line(const OperationTable& table,
     declare(*sub, command, all_slots.emplace_back());
   }
   if (arguments == std::vector<std::string>{"help"}) return {{}, app.help()};
-  for (const Command& command : commands) {
-    if (arguments.empty() || arguments.front() != command.operation->name) continue;
-    if (const std::string mistake = lost_hyphen(command, arguments); !mistake.empty()) {
-      throw UsageError(mistake);
-    }
+  const Command* first = arguments.empty() ? nullptr : find_command(commands, arguments.front());
+  if (const std::string mistake = first ? lost_hyphen(*first, arguments) : ""; !mistake.empty()) {
+    throw UsageError(mistake);
   }
   try {
     app.parse(last_first(arguments));
   } catch (const CLI::CallForHelp&) {
-    for (const Command& command : commands) {
-      // Among other letters, "-qh".
-      if (!arguments.empty() && arguments.front() == command.operation->name) {
-        return {{}, help_page(command, HelpLength::brief)};
-      }
-    }
-    return {{}, app.help()};
+    // Of a command among other letters, "-qh".
+    return {{}, first ? help_page(*first, HelpLength::brief) : app.help()};
   } catch (const CLI::CallForVersion&) {
     return {{}, app.version()};
   } catch (const CLI::ParseError& error) {

@@ -69,9 +69,8 @@ std::string explained(const std::vector<Command>& commands,
                       const std::vector<std::string>& arguments, const std::string& refused) {
   if (arguments.empty()) return "expected a command; mimetra --help lists them";
   const std::string& first = arguments.front();
-  const auto is_first = [&first](const Command& each) { return each.operation->name == first; };
-  const auto command = std::ranges::find_if(commands, is_first);
-  if (command == commands.end()) {
+  const Command* command = find_command(commands, first);
+  if (!command) {
     const bool asks = first == "help" && arguments.size() > 1;
     const std::string& word = asks ? arguments[1] : first;
     std::vector<std::string> words = {"--version", "--help"};
