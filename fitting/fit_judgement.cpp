@@ -1,5 +1,9 @@
 #include "fitting/fit_judgement.h"
 
+#include <algorithm>
+#include <functional>
+#include <numeric>
+
 #include <nlohmann/json.hpp>
 
 #include "toolkit/mesh/text.h"
@@ -16,15 +20,18 @@ Json Judgement::json(const std::vector<std::string>& names) const {
   return {{"alpha_rms", identity.alpha_rms},
           {"alpha_max", identity.alpha_max},
           {"flipped", identity.flipped},
+          {"residual", residuals.typical()},
+          {"stretch", stretch},
           {"halves_mean", halves ? Json(halves->mean) : Json(nullptr)},
           {"halves_largest", halves ? Json(halves->largest) : Json(nullptr)},
           {"expressions", uses}};
 }
 
 std::string Judgement::words() const {
-  std::string text = "identity: " + readable(identity.alpha_rms) +
-                     " standard deviations (RMS), at most " + readable(identity.alpha_max) + ", " +
-                     std::to_string(identity.flipped) + " flipped triangles";
+  std::string text = "identity: " +
+                     readable(identity.alpha_rms) + " standard deviations (RMS), at most " +
+                     readable(identity.alpha_max) + ", " + std::to_string(identity.flipped) +
+                     " flipped triangles";
   if (halves) {
     text += "; the neutrals of the clip's halves are " + readable(100 * halves->mean) +
             " % of the longest side apart (at most " + readable(100 * halves->largest) + " %)";
@@ -39,15 +46,93 @@ std::string Judgement::words() const {
   return text + '\n';
 }
 
+namespace {
+
+/// The landmarks that are farthest off, with their distance.
+std::string farthest(const Eigen::VectorXd& distances, const MappedLandmarks& mapped) {
+  constexpr std::size_t kNamed = 4;
+  std::vector<std::size_t> order(mapped.names.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::stable_sort(order, std::greater(), [&distances](std::size_t landmark) {
+    return distances[static_cast<Eigen::Index>(landmark)];
+  });
+  std::vector<std::string> named;
+  for (const std::size_t i : order) {
+    if (named.size() == kNamed) break;
+    named.push_back(mapped.names[i] + " by " +
+                    readable(distances[static_cast<Eigen::Index>(i)], 3) + " px");
+  }
+  return mimetra::joined(named);
+}
+
+void warn_of_residuals(const FitResiduals& residuals, const MappedLandmarks& mapped,
+                       const Invocation& invocation) {
+  const std::string& name = invocation.input("landmarks").name;
+  if (residuals.typical() > kFarLandmarks) {
+    invocation.warn(name + ": the landmarks are " + percent(residuals.typical()) +
+                    " of the face's radius from the fitted face, where a right fit has about 6 %; "
+                    "the farthest are " +
+                    farthest(residuals.of_landmarks, mapped) +
+                    ": are they in the order of the mapping, and does it count the model's "
+                    "vertices from 0?");
+    return;
+  }
+  std::vector<int> far;
+  for (Eigen::Index f = 0; f < residuals.of_frames.size(); ++f) {
+    if (residuals.of_frames[f] > 2 * kFarLandmarks) far.push_back(static_cast<int>(f));
+  }
+  if (far.empty()) return;
+  invocation.warn(name + ": frames whose landmarks are farther than " + percent(2 * kFarLandmarks) +
+                  " of the face's radius from the fitted face, so that it is not theirs: " +
+                  listed(words_of(far)));
+}
+
+void warn_of_stretch(double stretch, const Invocation& invocation) {
+  if (stretch < kStretched && stretch > 1 / kStretched) return;
+  const bool is_wide = stretch > 1;
+  invocation.warn(invocation.input("landmarks").name + ": the images show the face " +
+                  readable(is_wide ? stretch : 1 / stretch, 3) + " times as " +
+                  (is_wide ? "wide" : "high") + " as it should be against its " +
+                  (is_wide ? "height" : "width") +
+                  ": are width and height of the images as they were said to be, and their pixels "
+                  "square?");
+}
+
+/// What may make a person of it.
+std::string advice(const FitOptions& options, bool is_clip) {
+  using Camera = FitOptions::Camera;
+  const bool is_affine =
+      options.camera == Camera::affine || (options.camera == Camera::automatic && !is_clip);
+  std::string text = "use more frames in which the head turns";
+  if (is_affine) text += ", --camera orthographic";
+  if (options.camera != Camera::perspective) {
+    text += ", --camera perspective with the --focal-length where the face is near";
+  }
+  return text + ", a --repeated nearer to 1 or a larger --sigma";
+}
+
+}  // namespace
+
 void warn_of(const Judgement& judgement, const std::vector<std::string>& names,
+             const MappedLandmarks& mapped, const FitOptions& options,
              const Invocation& invocation) {
+  warn_of_residuals(judgement.residuals, mapped, invocation);
+  const bool is_clip = mapped.points.rows() > 1;
+  if (is_clip) warn_of_stretch(judgement.stretch, invocation);
+  const std::optional<NeutralDistance>& halves = judgement.halves;
+  if (halves && halves->mean > kTwoPeople) {
+    invocation.warn(invocation.input("landmarks").name +
+                    ": the halves of the clip give two faces, " + percent(halves->mean) +
+                    " of the longest side apart on average, where one "
+                    "person's are below 1.2 %: is it one person, without a cut? --frames takes a "
+                    "part");
+  }
   const IdentityVerdict& identity = judgement.identity;
   if (identity.is_doubtful()) {
     invocation.warn("the fitted identity is hardly a person: its largest coefficient is " +
                     readable(identity.alpha_max) + " standard deviations, and " +
-                    std::to_string(identity.flipped) +
-                    " triangles are flipped; use more frames in which the head turns, --camera "
-                    "orthographic, a --repeated nearer to 1 or a larger --sigma");
+                    std::to_string(identity.flipped) + " of " + std::to_string(identity.triangles) +
+                    " triangles are flipped; " + advice(options, is_clip));
   }
   std::string constant;
   for (std::size_t j = 0; j < names.size(); ++j) {

@@ -13,6 +13,8 @@ namespace mimetra {
 /// What a fit is worth, in numbers and in words. Internal to fit_operation.h.
 struct Judgement {
   IdentityVerdict identity;
+  FitResiduals residuals;
+  double stretch = 1;
   std::optional<NeutralDistance> halves;
   std::vector<ExpressionUse> expressions;
 
@@ -21,8 +23,11 @@ struct Judgement {
   std::string words() const;
 };
 
-/// Warns where no person is to be expected, and of expressions that are there all the time.
+/// Warns where landmarks are far from the fitted face, as in the wrong order, in all frames or
+/// some; where a clip's images are stretched, or its halves show two people; where no person is to
+/// be expected; and of expressions that are there all the time, by their `names`.
 void warn_of(const Judgement& judgement, const std::vector<std::string>& names,
+             const MappedLandmarks& mapped, const FitOptions& options,
              const Invocation& invocation);
 
 }  // namespace mimetra

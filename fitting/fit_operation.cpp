@@ -286,9 +286,7 @@ Outcome run(const Invocation& invocation) {
   const std::vector<FrameFit> frames =
       naming_landmarks(invocation, [&] { return clip.of(0, track.frames(), 0, 0.3); });
   FittedCoefficients fit = coefficients_of(model, track.times, frames);
-  const Judgement judgement{verdict_of(model, fit.identity()),
-                            halves_distance(clip, model, fit, call.fit.shape),
-                            expression_use(fit.beta)};
+  const std::optional<NeutralDistance> halves = halves_distance(clip, model, fit, call.fit.shape);
   report_progress(invocation.progress, 0.5);
 
   const FitSummary summary = summary_of(fit);
@@ -303,6 +301,8 @@ Outcome run(const Invocation& invocation) {
   const AvertedLandmarks averted(sequence, fit, mapped.vertices, cameras);
   averted.require_facing(landmarks.name);
   fit.notes = averted.notes(invocation);
+  const Judgement judgement{verdict_of(model, fit.identity()), residuals_of(sequence, fit, mapped),
+                            stretch_of(cameras, fit), halves, expression_use(fit.beta)};
   Outcome outcome;
   Json report = {{"rms_px", summary.rms},
                  {"vertices", model.vertices()},
@@ -319,7 +319,7 @@ Outcome run(const Invocation& invocation) {
                     readable(summary.rms) + " px (worst " + readable(fit.rms[summary.worst]) +
                     " in frame " + std::to_string(summary.worst) + "), " +
                     std::to_string(summary.iterations) + " iterations\n" + judgement.words();
-  warn_of(judgement, fit.expressions, invocation);
+  warn_of(judgement, fit.expressions, mapped, call.fit, invocation);
   const bool turns = call.head_motion == FitCall::HeadTurns::keep;
   outcome.outputs["out"].push_back(
       {"",

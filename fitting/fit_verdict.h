@@ -5,6 +5,8 @@
 #include <vector>
 
 #include "fitting/landmark_fitter.h"
+#include "fitting/landmark_mapping.h"
+#include "toolkit/io/fit_file.h"
 
 /// Whether what was fitted can be a person. Internal to fit_operation.h.
 namespace mimetra {
@@ -14,6 +16,7 @@ struct IdentityVerdict {
   double alpha_rms = 0;  ///< in standard deviations of the model
   double alpha_max = 0;  ///< the largest, by size
   int flipped = 0;       ///< triangles of the neutral that are turned against the mean face
+  int triangles = 0;     ///< of the model
   /// True where a person of the model is not to be expected.
   bool is_doubtful() const;
 };
@@ -28,6 +31,40 @@ struct NeutralDistance {
 
 NeutralDistance neutral_distance(const MorphableModel& model, const Eigen::VectorXd& a,
                                  const Eigen::VectorXd& b);
+
+/// Above this share of the longest side, on average, the neutrals of a clip's halves are those of
+/// two people. Of one person they are 0.4 to 1.2 % apart, of two 2.5 % and more.
+constexpr double kTwoPeople = 0.02;
+
+/// How far landmarks are from the fitted face.
+struct FitResiduals {
+  /// RMS over the landmarks of each frame as a share of their RMS radius (F); NaN where none was
+  /// seen.
+  Eigen::VectorXd of_frames;
+  /// RMS over the frames of each landmark, in pixels (n).
+  Eigen::VectorXd of_landmarks;
+
+  /// The median of the frames.
+  double typical() const;
+};
+
+/// Above this share of the face's RMS radius landmarks are not those of the mapping. Landmarks of
+/// real faces are 0.05 to 0.06 of it from the face, in the wrong order or at wrong vertices 0.2 to
+/// 0.7.
+constexpr double kFarLandmarks = 0.12;
+
+/// Of the landmarks of `mapped` from where the cameras of `fit` see their vertices of the fitted
+/// `sequence`.
+FitResiduals residuals_of(const MeshSequence& sequence, const FittedCoefficients& fit,
+                          const MappedLandmarks& mapped);
+
+/// How many times as wide as high the cameras show things in which landmarks were seen, on average:
+/// 1 for images of square pixels. Affine cameras, as cameras_at_origin().
+double stretch_of(const std::vector<AffineCamera>& cameras, const FittedCoefficients& fit);
+
+/// Farther from 1 than by this factor the images are not as wide or high as they were said to be.
+/// Of real faces the stretch is 0.98 to 1.08.
+constexpr double kStretched = 1.15;
 
 /// How an expression is used in a clip.
 struct ExpressionUse {

@@ -9,8 +9,10 @@
 #include "fitting/image_files.h"
 #include "fitting/landmark_file.h"
 #include "fitting/mediapipe.h"
+#include "fitting/placeholders.h"
 #include "fitting/video_file.h"
 #include "toolkit/io/frame_files.h"
+#include "toolkit/io/frame_series.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/progress.h"
 #include "toolkit/mesh/text.h"
@@ -148,10 +150,15 @@ LandmarkTrack taken_from(LandmarkTrack track, const std::vector<int>& frames) {
 }
 
 /// Frames keep the time they have in the whole clip, whichever part is taken.
-void set_times(LandmarkTrack& track, const std::string& text, const std::vector<int>& frames,
+void set_times(LandmarksRead& read, const std::string& text, const std::vector<int>& frames,
                const SequenceSource& source) {
+  LandmarkTrack& track = read.track;
   check_rate(text, track.times, source);
-  if (track.times.size() > 0) return;
+  if (track.times.size() > 0) {
+    const std::string odd = source.frames ? "" : note_on_steps(track.times);
+    if (!odd.empty()) read.notes.push_back(text + ": " + odd);
+    return;
+  }
   track.times.resize(track.frames());
   for (int f = 0; f < track.frames(); ++f) {
     track.times[f] =
@@ -299,11 +306,19 @@ LandmarksRead read_landmark_input(const std::string& text, const SequenceSource&
     const bool of_frames = static_cast<int>(shown.files.size()) == count;
     const Paths shown_files = of_frames ? taken_from(shown.files, selected) : shown.files;
     read.files.insert(read.files.end(), shown_files.begin(), shown_files.end());
+    if (const std::string dropped = drop_placeholders(read.track); !dropped.empty()) {
+      read.notes.push_back(text + ": " + dropped);
+    }
     make_pixels(read, text, options.image_size);
     drop_doubtful(read, text, options.faces.min_confidence);
     note_others(read, text, input);
   }
-  set_times(read.track, text, selected, source);
+  const std::vector<std::string> missing = missing_numbers(input.frames);
+  if (!missing.empty()) {
+    read.notes.push_back(text + ": no file has these numbers: " + listed(missing) +
+                         "; frames follow each other without a pause");
+  }
+  set_times(read, text, selected, source);
   report_progress(source.progress, 1);
   return read;
 }

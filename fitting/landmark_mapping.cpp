@@ -45,6 +45,7 @@ MappedLandmarks map_landmarks(const LandmarkTrack& track, const LandmarkMapping&
     }
     const auto landmark = found - track.names.begin();
     columns.insert(columns.end(), {2 * landmark, 2 * landmark + 1});
+    mapped.names.push_back(name);
     mapped.vertices.push_back(index);
   }
   if (columns.empty()) {

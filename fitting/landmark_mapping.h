@@ -9,8 +9,9 @@ namespace mimetra {
 
 /// Landmarks of a track that a mapping knows.
 struct MappedLandmarks {
-  std::vector<int> vertices;  ///< of the model, one per landmark (n)
-  Frames points;              ///< F x 2n, as LandmarkTrack::points
+  std::vector<std::string> names;  ///< of the landmarks (n), as the mapping has them
+  std::vector<int> vertices;       ///< of the model, one per landmark (n)
+  Frames points;                   ///< F x 2n, as LandmarkTrack::points
   /// Those of iBUG's jaw (1 to 17 of 68) that the mapping lacks, which lie on the face's outline: F
   /// x 2m.
   Frames outline = {};

@@ -24,8 +24,12 @@ const MeshSequence* sequence_of(const Data& data) {
 /// Diameter of the rest pose of what has one.
 std::optional<double> diameter_of(const Data& data) {
   if (const MeshSequence* sequence = sequence_of(data)) return sequence->diameter();
-  if (const auto* components = std::get_if<Components>(&data)) return diameter(components->rest);
-  if (const auto* held = std::get_if<ModelData>(&data)) return diameter(held->model.mean());
+  if (const auto* components = std::get_if<Components>(&data)) {
+    return diameter(components->rest, components->triangles);
+  }
+  if (const auto* held = std::get_if<ModelData>(&data)) {
+    return diameter(held->model.mean(), held->model.connectivity().triangles);
+  }
   return {};
 }
 

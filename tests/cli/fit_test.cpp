@@ -204,5 +204,17 @@ TEST_F(Fit, OfOneFrameIsAMesh) {
   EXPECT_EQ(frames_of("one.obj").cols(), clip_.model.mean().size());
 }
 
+TEST_F(Fit, SaysThatLandmarksAreInAnotherOrder) {
+  const auto clean = run("fit track.csv --model face -o clean.npy");
+  EXPECT_THAT(clean.err, testing::Not(HasSubstr("warning")));
+  Frames shifted(clip_.points.rows(), clip_.points.cols());
+  shifted << clip_.points.rightCols(2 * 3), clip_.points.leftCols(clip_.points.cols() - 2 * 3);
+  write("shifted.csv", csv_of(shifted));
+  const auto wrong = run("fit shifted.csv --model face -o wrong.npy");
+  if (wrong.code == 4) return;  // as mirrored
+  EXPECT_THAT(wrong.err, testing::AllOf(HasSubstr("of the face's radius from the fitted face"),
+                                        HasSubstr("are they in the order of the mapping")));
+}
+
 }  // namespace
 }  // namespace mimetra

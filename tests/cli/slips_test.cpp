@@ -69,6 +69,7 @@ TEST_F(Slips, AreAnsweredByWhatWasMeant) {
       {"render take.npy --frame 3 -o f.png", {"did you mean '--frames'?"}},
       {"render take.npy --layout frame --at 100 -o f.png", {"no frame 100", "last is 11"}, 4},
       {"report take.npy -o r.html", {"a run of convert", "transfer, evaluate or regions"}, 4},
+      {"evaluate take.npy head -k 5 10", {"-k takes one word: write -k 5,10"}},
       {"evaluate take.npy head -k 5-10", {"as in 10,30,40", "'5-10'"}},
   };
   for (const Slip& slip : slips) {

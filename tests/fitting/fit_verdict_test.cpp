@@ -73,5 +73,57 @@ TEST(FitVerdict, SeesWhichLandmarksAreBehindTheFace) {
   EXPECT_GT(averted(3.14), 3 * all / 4);
 }
 
+TEST(FitVerdict, TakesAFewSliversOfManyTrianglesForThoseOfTheModel) {
+  EXPECT_FALSE((IdentityVerdict{.flipped = 6, .triangles = 13120}.is_doubtful()));
+  EXPECT_TRUE((IdentityVerdict{.flipped = 32, .triangles = 6736}.is_doubtful()));
+}
+
+/// Two frames of a square, whose corners landmarks are at, seen twice as large.
+class FitResidualsTest : public testing::Test {
+ protected:
+  FitResidualsTest() : sequence_(square().person(coefficients(0)).animate(Eigen::MatrixXd(2, 0))) {
+    AffineCamera camera = AffineCamera::Zero();
+    camera.leftCols<2>() = 2 * Eigen::Matrix2d::Identity();
+    fit_.cameras = {camera, camera};
+    fit_.times = Eigen::Vector2d(0, 1);
+    fit_.alpha.resize(2, 1);
+    fit_.landmarks = Eigen::VectorXi::Constant(2, 4);
+    mapped_.names = {"a", "b", "c", "d"};
+    mapped_.vertices = {0, 1, 2, 3};
+    mapped_.points.resize(2, 8);
+    mapped_.points << 0, 0, 2, 0, 2, 2, 0, 2, 0, 0, 2, 0, 2, 2, 0, 2;
+  }
+
+  FitResiduals residuals() const { return residuals_of(sequence_, fit_, mapped_); }
+
+  MeshSequence sequence_;
+  FittedCoefficients fit_;
+  MappedLandmarks mapped_;
+};
+
+TEST_F(FitResidualsTest, AreSharesOfTheFacesRadius) {
+  EXPECT_EQ(residuals().typical(), 0);
+  // One of four corners, which lie sqrt(2) from their middle, is 1 off in both frames.
+  mapped_.points(0, 2) = mapped_.points(1, 2) = 3;
+  const Eigen::MatrixXd corners = (Eigen::MatrixXd(4, 2) << 0, 0, 3, 0, 2, 2, 0, 2).finished();
+  EXPECT_NEAR(residuals().typical(), 0.5 / rms_radius(corners), 1e-12);
+  EXPECT_NEAR(residuals().of_landmarks[1], 1, 1e-12);
+  EXPECT_EQ(residuals().of_landmarks[0], 0);
+}
+
+TEST_F(FitResidualsTest, LeaveOutWhatWasNotSeen) {
+  mapped_.points(0, 2) = 3;
+  mapped_.points.row(1).setConstant(std::nan(""));
+  fit_.landmarks[1] = 0;
+  EXPECT_TRUE(std::isnan(residuals().of_frames[1]));
+  EXPECT_NEAR(residuals().of_landmarks[1], 1, 1e-12);
+  EXPECT_EQ(stretch_of(fit_.cameras, fit_), 1);
+}
+
+TEST_F(FitResidualsTest, StretchIsThatOfTheCamerasAxes) {
+  for (AffineCamera& camera : fit_.cameras) camera.row(0) *= 3;
+  EXPECT_NEAR(stretch_of(fit_.cameras, fit_), 3, 1e-12);
+}
+
 }  // namespace
 }  // namespace mimetra

@@ -139,5 +139,42 @@ TEST_F(LandmarkInput, InSharesNeedsTheSizeOfTheImage) {
       HasSubstr("in pixels already"));
 }
 
+/// Five landmarks around (320, 240), the rows of two frames.
+constexpr const char* kFiveNames = "x0,y0,x1,y1,x2,y2,x3,y3,x4,y4\n";
+constexpr const char* kFiveSeen = "300,200,340,200,320,240,300,280,340,280\n";
+
+TEST_F(LandmarkInput, TakesPlaceholdersOutsideOfTheFaceAsNotSeen) {
+  write("t.csv", std::string(kFiveNames) + kFiveSeen + "300,200,0,0,320,240,-1,-1,340,280\n" +
+                     "0,0,0,0,0,0,0,0,0,0\n" + "-1,-1,-1,-1,-1,-1,-1,-1,-1,-1\n");
+  const LandmarksRead read = this->read("t.csv");
+  const auto unseen = [&read](int frame) {
+    return read.track.points.row(frame).array().isNaN().count();
+  };
+  EXPECT_EQ(unseen(0), 0);
+  EXPECT_EQ(unseen(1), 4);
+  EXPECT_EQ(read.track.points(1, 4), 320);
+  EXPECT_EQ(unseen(2), 10);
+  EXPECT_EQ(unseen(3), 10);
+  EXPECT_THAT(read.notes, ElementsAre(AllOf(HasSubstr("t.csv: 3 of 4 frames have landmarks at"),
+                                            HasSubstr("; 2 of them have no others"))));
+}
+
+TEST_F(LandmarkInput, KeepsALandmarkThatIsTheOriginOfTheFace) {
+  write("t.csv", std::string(kFiveNames) + "-20,-40,20,-40,0,0,-20,40,20,40\n");
+  const LandmarksRead read = this->read("t.csv");
+  EXPECT_FALSE(read.track.points.array().isNaN().any());
+  EXPECT_THAT(read.notes, IsEmpty());
+}
+
+TEST_F(LandmarkInput, NamesNumbersThatNoFileOfPointsHas) {
+  for (const char* number : {"1", "2", "5", "6"}) write_points(std::string(number) + ".pts", 1);
+  EXPECT_THAT(read("").notes, ElementsAre(HasSubstr("no file has these numbers: 3 to 4")));
+}
+
+TEST_F(LandmarkInput, SaysThatTimesLookLikeMilliseconds) {
+  write("t.csv", "time,x0,y0\n0,1,2\n33,1,2\n67,1,2\n");
+  EXPECT_THAT(read("t.csv").notes, ElementsAre(HasSubstr("t.csv: its frames are 34 s apart")));
+}
+
 }  // namespace
 }  // namespace mimetra

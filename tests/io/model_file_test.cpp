@@ -342,5 +342,32 @@ TEST(RealModels, HaveTheSizesTheirAuthorsState) {
   EXPECT_EQ(ict.identities().size(), 10);
 }
 
+TEST_F(Model, HasItsFoldersAndItsNeutralInAnyCase) {
+  const MorphableModel model = small_model();
+  write_model(folder_ / "m", model, {}, false);
+  const auto rename = [this](const char* from, const char* to) {
+    std::filesystem::rename(folder_ / "m" / from, folder_ / "m" / to);
+  };
+  rename("expressions", "Expressions");
+  rename("identities", "IDENTITIES");
+  rename("neutral.ply", "Neutral.ply");
+  ASSERT_TRUE(is_model(folder_ / "m"));
+  const MorphableModel found = read_model(folder_ / "m");
+  EXPECT_EQ(found.expressions().size(), 3);
+  EXPECT_EQ(found.identities().size(), 2);
+  EXPECT_THAT(notes_on_unread(folder_ / "m"), testing::IsEmpty());
+}
+
+TEST_F(Model, SaysWhichMeshesItLeavesUnread) {
+  write_model(folder_ / "m", small_model(), {}, false);
+  std::filesystem::rename(folder_ / "m/expressions", folder_ / "m/shapes");
+  EXPECT_THAT(notes_on_unread(folder_ / "m"),
+              testing::ElementsAre(testing::AllOf(HasSubstr("has no expressions; shapes/ in it"),
+                                                  HasSubstr("expressions/ or targets/"))));
+  std::filesystem::copy_file(folder_ / "m/shapes/smile.ply", folder_ / "m/smile.ply");
+  EXPECT_THAT(notes_on_unread(folder_ / "m"),
+              testing::ElementsAre(HasSubstr("1 other mesh files and shapes/")));
+}
+
 }  // namespace
 }  // namespace mimetra

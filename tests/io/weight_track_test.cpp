@@ -320,5 +320,47 @@ TEST(WeightsOfTheCapture, DriveEveryExpressionOfTheIctFace) {
   EXPECT_TRUE(match.undriven_expressions.empty());
 }
 
+TEST_F(Weights, OfRowsThatLostTheFaceLieBetweenTheirNeighbours) {
+  // Without values, and cut off behind their number.
+  const WeightTrack track = read(
+      "Timecode,BlendShapeCount,JawOpen,JawLeft\n10:00:00:01,0,,\n10:00:00:02,61,0.2,0.5\n"
+      "10:00:00:03,0\n10:00:00:04,0\n10:00:00:05,61,0.8,0.5\n10:00:00:06,0\n");
+  EXPECT_THAT(track.weights.col(0), ElementsAre(0.2, 0.2, testing::DoubleNear(0.4, 1e-15),
+                                                testing::DoubleNear(0.6, 1e-15), 0.8, 0.8));
+  EXPECT_THAT(track.notes, testing::Contains(HasSubstr("rows without weights")));
+  EXPECT_THAT(message_of("a,b\n,\n,\n"), HasSubstr("no row with weights"));
+  EXPECT_THAT(message_of("a,b\n0.5,\n"), HasSubstr("'b': expected a finite number"));
+  EXPECT_THAT(message_of("a,b\n0.5\n"), HasSubstr("1 field, expected 2"));
+}
+
+TEST_F(Weights, NameFramesThatNoRowHasWhereThereAreNoTimes) {
+  const auto notes_of = [this](const std::string& content) { return read(content).notes; };
+  EXPECT_THAT(notes_of("frame,a\n1,0\n2,0\n7,0\n8,0\n"),
+              ElementsAre(HasSubstr("no row has these frames: 3 to 6")));
+  EXPECT_THAT(notes_of("frame,a\n0,0\n2,0\n4,0\n"), testing::IsEmpty());
+  EXPECT_THAT(notes_of("frame,time,a\n1,0,0\n7,0.2,0\n8,0.3,0\n"), testing::IsEmpty());
+  EXPECT_THAT(notes_of("frame,a\nfirst,0\n2,0\n7,0\n"), testing::IsEmpty());
+}
+
+TEST_F(Weights, SayThatTimesLookLikeMilliseconds) {
+  EXPECT_THAT(read("time,a\n0,0\n33.3,0\n66.7,0\n").notes,
+              ElementsAre(HasSubstr("its frames are 33.4 s apart")));
+  EXPECT_THAT(read("time,a\n0,0\n1,0\n2,0\n").notes, testing::IsEmpty());
+}
+
+TEST_F(Weights, MatchNamesOfSidesHoweverTheyAreWritten) {
+  const std::vector<std::vector<std::string>> spellings = {{"eyeBlink_L", "eyeBlink_R"},
+                                                           {"eyeBlinkLeft", "eyeBlinkRight"},
+                                                           {"eyeBlink.L", "eyeBlink.R"},
+                                                           {"EyeBlink_l", "EyeBlink_r"}};
+  for (const auto& columns : spellings) {
+    for (const auto& expressions : spellings) {
+      const WeightMatch match = match_weights({columns, {}, {}}, expressions);
+      EXPECT_THAT(match.column, ElementsAre(0, 1)) << columns[0] << " to " << expressions[0];
+      EXPECT_THAT(match.unmatched_columns, testing::IsEmpty());
+    }
+  }
+}
+
 }  // namespace
 }  // namespace mimetra

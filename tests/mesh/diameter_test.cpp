@@ -67,5 +67,14 @@ TEST(Diameter, PassesOverPointsThatAreNotFinite) {
   EXPECT_DOUBLE_EQ(diameter(points), expected);
 }
 
+TEST(Diameter, OfAMeshIsThatOfTheVerticesItsTrianglesUse) {
+  Positions points(4, 3);
+  points << 0, 0, 0, 3, 0, 0, 0, 4, 0, 0, 0, 100;
+  Triangles triangles(1, 3);
+  triangles << 0, 1, 2;
+  EXPECT_EQ(diameter(points, triangles), 5);
+  EXPECT_EQ(diameter(points, Triangles(0, 3)), diameter(points));
+}
+
 }  // namespace
 }  // namespace mimetra

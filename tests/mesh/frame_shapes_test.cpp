@@ -95,5 +95,14 @@ TEST(CapturedFrameShapes, AreNotOdd) {
   EXPECT_THAT(found.torn, IsEmpty());
 }
 
+TEST_F(FrameShapes, ThatJumpAwayAndBackAreOdd) {
+  for (Positions& pose : poses_) pose = ball_.positions;
+  poses_[4].col(1).array() += 1.4;
+  EXPECT_THAT(odd().jumping, ElementsAre(4));
+  // A cut is no jump: the frames after it stay there.
+  for (std::size_t f = 5; f < poses_.size(); ++f) poses_[f].col(1).array() += 1.4;
+  EXPECT_THAT(odd().jumping, IsEmpty());
+}
+
 }  // namespace
 }  // namespace mimetra

@@ -3,11 +3,13 @@
 #include <atomic>
 #include <cmath>
 #include <mutex>
+#include <numeric>
 #include <set>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "tests/thread_ranks.h"
 #include "toolkit/mesh/mesh_sequence.h"
 
 namespace mimetra {
@@ -161,42 +163,91 @@ TEST(WithRest, RefusesAnotherNumberOfVertices) {
       ThrowsMessage<std::invalid_argument>(HasSubstr("the rest pose has 3 vertices, expected 2")));
 }
 
-TEST(SumOverFrames, AddsInTheOrderOfTheFrames) {
-  // Frames of 0.6 MB, so that it takes several blocks. Next to 1e16 every second number is rounded
-  // away: another order gives another sum.
-  const Counted source(31, 25000);
-  const auto added = [](int frame) {
-    if (frame == 7) return 1e16;
-    return frame == 23 ? -1e16 : 1.0 + frame;
-  };
+/// What frame f adds: next to 1e16 every second number is rounded away, so that another order gives
+/// another sum.
+double added_by(int frame) {
+  if (frame == 7) return 1e16;
+  return frame == 23 ? -1e16 : 1.0 + frame;
+}
+
+/// The sum of what frames add, and of each its number.
+FrameNumbers numbers_of(const FrameSource& source, const BlockOptions& options) {
+  return over_frames(
+      source, 1, 2, options, [](int first, const FrameBlock& block, FrameRows& numbers) {
+        ASSERT_TRUE((numbers.array() == 0).all());
+        ASSERT_EQ(numbers.rows(), block.frames());
+        for (int row = 0; row < block.frames(); ++row) {
+          numbers.row(row) << added_by(first + row), first + row, block.poses()(row, 0);
+        }
+      });
+}
+
+/// Frames of 0.6 MB, so that it takes several blocks.
+constexpr int kFrames = 31, kVertices = 25000;
+
+void expect_all_frames(const FrameNumbers& found) {
   double expected = 0;
-  for (int f = 0; f < 31; ++f) expected += added(f);
-  for (const int threads : {1, 3}) {
-    const Eigen::VectorXd sum = sum_over_frames(
-        source, 2, {.threads = threads}, [&](int first, const FrameBlock& block, FramesView rows) {
-          ASSERT_EQ(rows.rows(), block.frames());
-          for (int row = 0; row < block.frames(); ++row) {
-            EXPECT_EQ(block.poses()(row, 0), 1000.0 * (first + row));
-            rows(row, 0) = added(first + row);
-            rows(row, 1) = 1;
-          }
-        });
-    EXPECT_EQ(sum, Eigen::Vector2d(expected, 31));
+  for (int f = 0; f < kFrames; ++f) expected += added_by(f);
+  EXPECT_THAT(found.sum, ElementsAre(expected));
+  ASSERT_EQ(found.of_each.rows(), kFrames);
+  for (int f = 0; f < kFrames; ++f) {
+    EXPECT_THAT(found.of_each.row(f), ElementsAre(f, 1000.0 * f));
   }
+}
+
+TEST(OverFrames, AddsInTheOrderOfTheFramesAndKeepsWhatIsOfEach) {
+  const Counted source(kFrames, kVertices);
+  for (const int threads : {1, 3}) expect_all_frames(numbers_of(source, {.threads = threads}));
   EXPECT_LE(source.most_bytes(), kBlockBytes);
 }
 
-TEST(SumOverFrames, ThrowsWhatWorkThrows) {
-  const auto work = [](int, const FrameBlock&, FramesView) { throw std::runtime_error("broken"); };
-  EXPECT_THAT([&] { sum_over_frames(Counted(9, 2), 1, {}, work); },
+TEST(OverFrames, GivesTheSameOnAllRanksOfWhichEachReadsItsShare) {
+  for (const int ranks : {1, 2, 3, 7, 40}) {
+    std::vector<int> read(ranks);
+    test::on_ranks(ranks, [&](const Ranks& rank) {
+      const Counted source(kFrames, kVertices);
+      expect_all_frames(numbers_of(source, {.threads = 2, .ranks = &rank}));
+      read[rank.rank()] = source.frames_read();
+    });
+    EXPECT_EQ(std::accumulate(read.begin(), read.end(), 0), kFrames);
+    // Blocks are of one frame to four.
+    EXPECT_LE(std::ranges::max(read), kFrames / ranks + 4) << ranks;
+  }
+}
+
+TEST(OverFrames, ThrowsWhatWorkThrows) {
+  const auto work = [](int, const FrameBlock&, FrameRows&) { throw std::runtime_error("broken"); };
+  EXPECT_THAT([&] { over_frames(Counted(9, 2), 1, 0, {}, work); },
               ThrowsMessage<std::runtime_error>("broken"));
 }
 
-TEST(SumOverFrames, EndsWhereProgressAsksForIt) {
-  const auto work = [](int, const FrameBlock&, FramesView) {};
+TEST(OverFrames, EndsWhereProgressAsksForIt) {
+  const auto work = [](int, const FrameBlock&, FrameRows&) {};
   EXPECT_THROW(
-      sum_over_frames(Counted(9, 2), 1, {.progress = [](double share) { return share < 1; }}, work),
+      over_frames(Counted(9, 2), 1, 0, {.progress = [](double share) { return share < 1; }}, work),
       Cancelled);
+}
+
+TEST(ForEachBlock, GivesEveryFrameToAllRanksOfWhichEachReadsItsShare) {
+  constexpr int kMany = 401;  // more blocks than are exchanged at a time
+  for (const int ranks : {2, 3}) {
+    std::atomic<int> read = 0;
+    test::on_ranks(ranks, [&](const Ranks& rank) {
+      const Counted source(kMany, 30000);
+      std::set<int> seen;
+      for_each_block(source, {.threads = 1, .ranks = &rank},
+                     [&seen](int first, const Frames& poses) {
+                       for (int row = 0; row < poses.rows(); ++row) {
+                         EXPECT_EQ(poses(row, 1), 1000.0 * (first + row) + 1);
+                         EXPECT_TRUE(seen.insert(first + row).second);
+                       }
+                     });
+      EXPECT_EQ(seen.size(), kMany);
+      EXPECT_LE(source.frames_read(), kMany / ranks + 2);
+      read += source.frames_read();
+    });
+    EXPECT_EQ(read, kMany);
+  }
 }
 
 /// Whatever a source is made of, some vertices of it are those of whole frames.

@@ -115,5 +115,49 @@ TEST(Extent, OfNothingIsZero) {
   EXPECT_EQ(box_diagonal(Positions(0, 3)), 0);
 }
 
+/// A strip of a quad, a triangle and a quad, and the same faces in another order, from other
+/// corners, the first two wound the other way.
+struct TwoOrders {
+  Connectivity reference =
+      Connectivity::from_polygons(7, {{0, 1, 3, 2, 2, 3, 4, 3, 5, 6, 4}, {0, 4, 7, 11}});
+  Connectivity other =
+      Connectivity::from_polygons(7, {{5, 6, 4, 3, 3, 1, 0, 2, 4, 3, 2}, {0, 4, 8, 11}});
+};
+
+TEST(Connectivity, TakesTheTrianglesOfTheSameFacesInAnotherOrder) {
+  const TwoOrders orders;
+  const auto ordered = in_order_of(orders.reference, orders.other);
+  ASSERT_TRUE(ordered);
+  Triangles expected = orders.reference.triangles;
+  for (const int turned : {0, 1, 2}) std::swap(expected(turned, 1), expected(turned, 2));
+  EXPECT_EQ(ordered->triangles, expected);
+  EXPECT_THAT(ordered->polygon_of_triangle, ElementsAre(1, 1, 2, 0, 0));
+  EXPECT_EQ(ordered->polygons, orders.other.polygons);
+}
+
+TEST(Connectivity, TakesNoTrianglesOfOtherFaces) {
+  const TwoOrders orders;
+  // Split along the other diagonal, with a face more, a vertex more, and a face that is there
+  // twice.
+  EXPECT_FALSE(in_order_of(orders.reference, Connectivity::from_polygons(
+                                                 7, {{0, 1, 2, 1, 3, 2, 2, 3, 4}, {0, 3, 6, 9}})));
+  Polygons more = orders.other.polygons;
+  more.corners.insert(more.corners.end(), {0, 1, 2});
+  more.offsets.push_back(14);
+  EXPECT_FALSE(in_order_of(orders.reference, Connectivity::from_polygons(7, more)));
+  EXPECT_FALSE(
+      in_order_of(orders.reference, Connectivity::from_polygons(8, orders.other.polygons)));
+  const Polygons twice{{0, 1, 2, 2, 1, 0}, {0, 3, 6}};
+  EXPECT_FALSE(
+      in_order_of(Connectivity::from_polygons(3, twice), Connectivity::from_polygons(3, twice)));
+}
+
+TEST(Connectivity, KnowsTheVerticesThatTrianglesUse) {
+  Triangles triangles(1, 3);
+  triangles << 4, 1, 2;
+  EXPECT_THAT(used_vertices(triangles, 6), ElementsAre(1, 2, 4));
+  EXPECT_THAT(used_vertices(Triangles(0, 3), 3), ElementsAre(0, 1, 2));
+}
+
 }  // namespace
 }  // namespace mimetra

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/shapes.h"
+#include "toolkit/model/displaced_expressions.h"
 
 namespace mimetra {
 namespace {
@@ -69,6 +70,40 @@ TEST(Animation, NeedsAWeightForEachExpressionAndATimeForEachFrame) {
               ThrowsMessage<std::invalid_argument>(HasSubstr("3 weights for a model of 2")));
   EXPECT_THAT([] { Animation(waves(3, 2), some_weights(5, 2), Eigen::VectorXd::Zero(4)); },
               ThrowsMessage<std::invalid_argument>(HasSubstr("4 times for 5 frames")));
+}
+
+TEST(Animation, KeepsItsExpressionsOnAMeshThatIsNumberedDifferently) {
+  const auto model = waves(4, 3);
+  const Eigen::MatrixXd weights = some_weights(5, 3);
+  const Animation animation(model, weights, Eigen::VectorXd::LinSpaced(5, 1, 2));
+  std::vector<VertexIndex> vertices(16);
+  for (int v = 0; v < 16; ++v) vertices[v] = 15 - v;
+  const auto connectivity =
+      std::make_shared<const Connectivity>(Connectivity::from_triangles(16, Triangles(0, 3)));
+  const Animation other = animation.renumbered(connectivity, vertices);
+  EXPECT_EQ(other.weights(), weights);
+  EXPECT_EQ(other.times(), animation.times());
+  EXPECT_EQ(other.model().expressions().names, model->expressions().names);
+  const Frames before = animation.read(0, 5), after = other.read(0, 5);
+  for (int v = 0; v < 16; ++v) {
+    EXPECT_EQ(after.middleCols(3 * v, 3), before.middleCols(3 * vertices[v], 3)) << v;
+  }
+  EXPECT_THROW(animation.renumbered(connectivity, {0, 1}), std::invalid_argument);
+}
+
+TEST(DisplacedExpressions, AreThoseThatMoveEveryVertex) {
+  const auto model = waves(4, 2);
+  ShapeBasis shapes = model->expressions();
+  shapes.displacements.col(0).setConstant(0.5);  // elsewhere
+  shapes.displacements.col(1).setConstant(0.5);
+  shapes.displacements.col(1).head<3>().setZero();  // one vertex stays
+  EXPECT_THAT(displaced_expressions(model->neutral(), model->triangles(), shapes),
+              testing::ElementsAre("wave0"));
+  EXPECT_THAT(notes_on_displaced("m", model->neutral(), model->triangles(), shapes),
+              testing::ElementsAre(HasSubstr("m: expressions that move every vertex")));
+  shapes.displacements.setZero();
+  EXPECT_THAT(notes_on_displaced("m", model->neutral(), model->triangles(), shapes),
+              testing::IsEmpty());
 }
 
 }  // namespace

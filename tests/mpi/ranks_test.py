@@ -68,12 +68,44 @@ class Ranks(unittest.TestCase):
         self.run_on(3, "regions", "take.npy", "-k", "8", "-o", "three.json")
         self.assertEqual(self.bytes_of("three.json"), self.bytes_of("one.json"))
 
-    def test_transfers_and_other_operations_are_those_of_one_rank(self):
-        self.run_on(1, "transfer", "take.npy", "sample", "-k", "4", "-o", "one.npy")
-        self.run_on(2, "transfer", "take.npy", "sample", "-k", "4", "-o", "two.npy")
-        self.assertEqual(self.bytes_of("two.npy"), self.bytes_of("one.npy"))
-        self.run_on(2, "convert", "take.npy", "-o", "again.npy")
-        self.assertEqual(self.bytes_of("again.npy"), self.bytes_of("take.npy"))
+    def test_transfers_are_the_same_bytes_on_any_number_of_ranks(self):
+        for options in (["-k", "4"], ["--full", "--space", "vertex"], ["-k", "4", "--per-region"]):
+            said, files = [], []
+            for ranks in (1, 2, 3):
+                result = self.run_on(ranks, "transfer", "take.npy", "sample", "sample@identity000=1",
+                                     *options, "-o", f"on{ranks}", "--force", "--json")
+                report = json.loads(result.stdout)
+                said.append([[target[key] for key in ("de_all", "leak", "flipped", "missed")]
+                             for target in report["targets"]])
+                files.append({path.relative_to(self.folder / f"on{ranks}"): path.read_bytes()
+                              for path in (self.folder / f"on{ranks}").rglob("*.ply")})
+            self.assertGreater(len(files[0]), 2 * 100, "frames of two targets")
+            self.assertTrue(files[0] == files[1] == files[2], options)
+            self.assertEqual(said[1:], said[:1] * 2)
+
+    def test_other_operations_are_those_of_one_rank(self):
+        self.run_on(1, "convert", "take.npy", "-o", "frames/")
+        for ranks in (1, 2, 3):
+            self.run_on(ranks, "convert", "frames", "-o", f"again{ranks}.npy")
+            self.assertEqual(self.bytes_of(f"again{ranks}.npy"), self.bytes_of("again1.npy"))
+        self.run_on(1, "align", "frames", "-o", "still1.npy")
+        self.run_on(3, "align", "frames", "-o", "still3.npy")
+        self.assertEqual(self.bytes_of("still3.npy"), self.bytes_of("still1.npy"))
+        rows = []
+        for ranks in (1, 3):
+            said = self.run_on(ranks, "evaluate", "frames", "sample", "-k", "3,6", "--json").stdout
+            rows.append([[row[key] for key in ("k", "de_all", "de_region", "leak")]
+                         for row in json.loads(said)["rows"]])
+        self.assertEqual(rows[1], rows[0])
+
+    def test_a_broken_frame_ends_the_run_with_one_message(self):
+        self.run_on(1, "convert", "take.npy", "-o", "frames/")
+        broken = sorted((self.folder / "frames").glob("*.ply"))[7]
+        broken.write_bytes(broken.read_bytes()[:-20])
+        before = self.names()
+        result = self.run_on(3, "convert", "frames", "-o", "again.npy", code=3)
+        self.assertEqual(result.stderr.count(broken.name), 1, result.stderr)
+        self.assertEqual(self.names(), before)
 
     def test_the_first_rank_alone_prints(self):
         result = self.run_on(3, "decompose", "take.npy", "-k", "4", "-o", "c.h5", "--json")

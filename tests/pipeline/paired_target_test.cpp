@@ -258,5 +258,35 @@ TEST_F(PairedTargetTest, RefusesACorrespondenceWithoutPairs) {
       ThrowsMessage<MismatchError>("actor: no triangle has a partner in the source"));
 }
 
+TEST_F(PairedTargetTest, FacesInAnotherOrderOrWoundTheOtherWayAreTheSame) {
+  Triangles turned = actor_.triangles().colwise().reverse();
+  turned.col(1).swap(turned.col(2));
+  const BlendshapeModel other(
+      std::make_shared<const Connectivity>(Connectivity::from_triangles(actor_.vertices(), turned)),
+      actor_.neutral(), actor_.expressions());
+  for (const Space space : {Space::blendshape, Space::vertex}) {
+    TransferOptions options;
+    options.analysis.decomposition.count = 3;
+    options.solving.space = space;
+    const TransferredTarget plain = transferred({"actor", actor_}, options);
+    Noted noted;
+    options.notes = noted.sink();
+    const TransferredTarget same = transferred({"actor", other}, options);
+    EXPECT_LT((test::frames_of(same.solution.sequence) - test::frames_of(plain.solution.sequence))
+                  .cwiseAbs()
+                  .maxCoeff(),
+              1e-12);
+    EXPECT_NEAR(same.error.de_all, plain.error.de_all, 1e-12);
+    EXPECT_EQ(same.error.flipped, plain.error.flipped);
+    EXPECT_FALSE(same.match);
+    // It is written as it was.
+    EXPECT_EQ(same.solution.sequence->connectivity().polygons, other.connectivity().polygons);
+    const auto says_so = [](const Note& note) {
+      return note.text.find("in another order, or wound the other way") != std::string::npos;
+    };
+    EXPECT_TRUE(std::ranges::any_of(noted.notes, says_so));
+  }
+}
+
 }  // namespace
 }  // namespace mimetra

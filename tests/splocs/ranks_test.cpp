@@ -7,7 +7,7 @@
 
 #include "tests/cache_sizes.h"
 #include "tests/splocs/synthetic.h"
-#include "tests/splocs/thread_ranks.h"
+#include "tests/thread_ranks.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/splocs/time_basis.h"
 

@@ -8,7 +8,7 @@
 #include <gmock/gmock.h>
 
 #include "tests/cache_sizes.h"
-#include "tests/splocs/thread_ranks.h"
+#include "tests/thread_ranks.h"
 #include "toolkit/mesh/near_tie.h"
 #include "toolkit/splocs/vertex_energies.h"
 

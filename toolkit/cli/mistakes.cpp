@@ -7,6 +7,7 @@
 #include "toolkit/io/frame_series.h"
 #include "toolkit/io/mesh_formats.h"
 #include "toolkit/mesh/suggestion.h"
+#include "toolkit/mesh/text.h"
 
 namespace mimetra::cli {
 
@@ -48,6 +49,23 @@ std::string meant(const std::string& name, const std::vector<std::string>& known
   };
   const auto found = std::ranges::find_if(known, begins_alike);
   return found == known.end() ? "" : *found;
+}
+
+/// What is wrong with "-k 5 10", where a list is "5,10"; "" where there is none.
+std::string split_list(const Command& command, const std::vector<std::string>& arguments) {
+  for (const CommandOption& option : command.options) {
+    if (!option.value.ends_with(",...")) continue;
+    const auto typed = std::ranges::find_first_of(arguments, option.forms);
+    if (typed == arguments.end()) continue;
+    const auto is_word = [](const std::string& argument) {
+      return argument.empty() || !std::isdigit(static_cast<unsigned char>(argument[0]));
+    };
+    const std::vector<std::string> numbers(typed + 1,
+                                           std::find_if(typed + 1, arguments.end(), is_word));
+    if (numbers.size() < 2) continue;
+    return *typed + " takes one word: write " + *typed + ' ' + joined(numbers, ",");
+  }
+  return "";
 }
 
 }  // namespace
@@ -92,8 +110,9 @@ std::string explained(const std::vector<Command>& commands,
            (option.empty() ? "; mimetra " + first + " --help lists them"
                            : "; did you mean '" + option + "'?");
   }
-  if (const std::string mistake = unquoted_pattern(arguments, true); !mistake.empty()) {
-    return first + ": " + mistake;
+  for (const std::string& mistake :
+       {split_list(*command, arguments), unquoted_pattern(arguments, true)}) {
+    if (!mistake.empty()) return first + ": " + mistake;
   }
   return first + ": " + refused + "; write: " + synopsis(*command);
 }

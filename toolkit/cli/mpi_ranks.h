@@ -1,6 +1,6 @@
 #pragma once
 
-#include "toolkit/splocs/reduction.h"
+#include "toolkit/mesh/ranks.h"
 
 namespace mimetra::cli {
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "toolkit/cli/command_line.h"
-#include "toolkit/splocs/reduction.h"
+#include "toolkit/mesh/ranks.h"
 
 namespace mimetra::cli {
 

@@ -100,9 +100,13 @@ class FaceSearch {
         painter_(head.mesh) {}
 
   FaceLandmarks landmarks() {
+    // A stray point has no say in how large the mesh is drawn.
+    const Positions& all = head_.mesh.positions;
+    const Positions drawn =
+        all(used_vertices(head_.mesh.connectivity.triangles, all.rows()), Eigen::all);
     const auto first =
-        most_certain_face(painter_, head_.mesh.positions, finder_, options_.pixels,
-                          options_.threads, part_of(options_.progress, 0, kSearchShare));
+        most_certain_face(painter_, drawn, finder_, options_.pixels, options_.threads,
+                          part_of(options_.progress, 0, kSearchShare));
     if (!first) fail("no face was found in drawings of it along all of its axes");
     skin_ = skin_part(*first, triangles_, parts_);
     const FacePlace place = nearer_place(*face_place(*first));

@@ -42,7 +42,7 @@ std::optional<SeenFace> seen_face(const MeshPainter& painter, const View& view,
 std::optional<FacePlace> face_place(const SeenFace& seen);
 
 /// What is seen in the drawing along one of the mesh's axes, up along another, whose face is the
-/// most certain; none where no drawing shows a face.
+/// most certain; none where no drawing shows a face. All of `positions` are in the drawings.
 std::optional<SeenFace> most_certain_face(const MeshPainter& painter, const Positions& positions,
                                           const LandmarkFinder& finder, int pixels, int threads,
                                           const Progress& progress);

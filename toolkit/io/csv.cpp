@@ -67,19 +67,25 @@ CsvReader::CsvReader(const std::filesystem::path& path)
   names_ = comma_separated(line);
 }
 
-bool CsvReader::next_row() {
+bool CsvReader::next_row(Rows rows) {
   const std::string_view line = next_line();
   if (line.empty()) return false;
   row_ = comma_separated(line);
-  if (row_.size() != names_.size()) {
-    fail(std::to_string(row_.size()) + (row_.size() == 1 ? " field" : " fields") + ", expected " +
-         std::to_string(names_.size()) + " as in the first line" +
-         (row_.size() > names_.size() ? " (decimal commas are not supported)" : ""));
-  }
+  given_ = row_.size();
+  const bool may_be_short = rows == Rows::may_end_early && given_ < names_.size();
+  if (given_ != names_.size() && !may_be_short) fail_of_size();
+  row_.resize(names_.size());
   return true;
 }
 
+void CsvReader::fail_of_size() const {
+  fail(std::to_string(given_) + (given_ == 1 ? " field" : " fields") + ", expected " +
+       std::to_string(names_.size()) + " as in the first line" +
+       (given_ > names_.size() ? " (decimal commas are not supported)" : ""));
+}
+
 double CsvReader::number(std::size_t column) const {
+  if (column >= given_) fail_of_size();
   const std::string_view field = row_[column];
   double value = 0;
   const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), value);

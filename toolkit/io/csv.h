@@ -28,9 +28,12 @@ class CsvReader {
   /// Without the blanks and quotation marks around them; those inside stay doubled.
   const std::vector<std::string_view>& names() const { return names_; }
 
+  /// Whether the last fields of a row may be missing, and are empty then.
+  enum class Rows { are_whole, may_end_early };
+
   /// Moves to the next row; false where there is none. Throws IoError for one that has not a field
   /// for each name.
-  bool next_row();
+  bool next_row(Rows rows = Rows::are_whole);
 
   /// A field of the row, as names() are.
   std::string_view field(std::size_t column) const { return row_[column]; }
@@ -41,6 +44,7 @@ class CsvReader {
   [[noreturn]] void fail(const std::string& message) const;
 
  private:
+  [[noreturn]] void fail_of_size() const;
   /// The next line that is not blank; empty at the end of the file.
   std::string_view next_line();
 
@@ -49,6 +53,7 @@ class CsvReader {
   TextCursor text_;
   int line_ = 0;
   std::vector<std::string_view> names_, row_;
+  std::size_t given_ = 0;  ///< fields of the row that its line has
 };
 
 }  // namespace mimetra

@@ -56,30 +56,6 @@ std::string run_of(long long first, long long last) {
   return first == last ? text : text + " to " + std::to_string(last);
 }
 
-/// Numbers between those of one series that no file has. Files may count by any step.
-std::vector<std::string> missing_numbers(const std::vector<fs::path>& frames) {
-  std::vector<long long> numbers;
-  const std::string series = numbered(frames.front()).series;
-  for (const fs::path& frame : frames) {
-    const NumberedName name = numbered(frame);
-    if (name.series.empty() || name.series != series) return {};
-    numbers.push_back(name.number);
-  }
-  std::ranges::sort(numbers);
-  long long step = 0;
-  for (std::size_t i = 1; i < numbers.size(); ++i) {
-    const long long way = numbers[i] - numbers[i - 1];
-    step = step == 0 ? way : std::min(step, way);
-  }
-  std::vector<std::string> missing;
-  for (std::size_t i = 1; i < numbers.size(); ++i) {
-    if (numbers[i] - numbers[i - 1] == step) continue;
-    missing.push_back(
-        run_of(numbers[i - 1] + step, std::max(numbers[i - 1] + step, numbers[i] - step)));
-  }
-  return missing;
-}
-
 void note_missing(FrameSeries& found, const std::string& name) {
   const std::vector<std::string> missing = missing_numbers(found.frames);
   if (missing.empty()) return;
@@ -198,6 +174,35 @@ FrameSeries series_of_pattern(std::vector<fs::path> files, const std::string& pa
   }
   note_missing(found, pattern);
   return found;
+}
+
+std::vector<std::string> missing_numbers(const std::vector<fs::path>& files) {
+  if (files.empty()) return {};
+  std::vector<long long> numbers;
+  const std::string series = numbered(files.front()).series;
+  for (const fs::path& file : files) {
+    const NumberedName name = numbered(file);
+    if (name.series.empty() || name.series != series) return {};
+    numbers.push_back(name.number);
+  }
+  return missing_numbers(std::move(numbers));
+}
+
+std::vector<std::string> missing_numbers(std::vector<long long> numbers) {
+  std::ranges::sort(numbers);
+  if (std::ranges::adjacent_find(numbers) != numbers.end()) return {};
+  long long step = 0;
+  for (std::size_t i = 1; i < numbers.size(); ++i) {
+    const long long way = numbers[i] - numbers[i - 1];
+    step = step == 0 ? way : std::min(step, way);
+  }
+  std::vector<std::string> missing;
+  for (std::size_t i = 1; i < numbers.size(); ++i) {
+    if (numbers[i] - numbers[i - 1] == step) continue;
+    missing.push_back(
+        run_of(numbers[i - 1] + step, std::max(numbers[i - 1] + step, numbers[i] - step)));
+  }
+  return missing;
 }
 
 std::string series_name(const fs::path& file) {

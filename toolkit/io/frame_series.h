@@ -33,6 +33,11 @@ void check_one_series(const std::vector<std::filesystem::path>& files,
 /// All `files` are frames. Throws as series_in_folder.
 FrameSeries series_of_pattern(std::vector<std::filesystem::path> files, const std::string& pattern);
 
+/// Numbers between those of files of one series that none of them has, as "7" or "9 to 12"; none
+/// for other files, and where a number occurs twice. They may count by any step.
+std::vector<std::string> missing_numbers(const std::vector<std::filesystem::path>& files);
+std::vector<std::string> missing_numbers(std::vector<long long> numbers);
+
 /// What numbered files have in common, "smile_*.obj" for smile_0012.OBJ; "" for one without a
 /// number.
 std::string series_name(const std::filesystem::path& file);

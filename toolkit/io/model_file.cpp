@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <functional>
 
 #include <nlohmann/json.hpp>
 
@@ -73,11 +74,55 @@ std::vector<fs::path> meshes_in(const fs::path& folder) {
   return files;
 }
 
+/// Whether a file is called neutral.*, in any case.
+bool is_neutral(const fs::path& file) {
+  return lower_case(file.stem().string()) == "neutral";
+}
+
 std::optional<fs::path> neutral_of(const fs::path& folder) {
-  for (const fs::path& file : sorted_files_in(folder)) {
-    if (file.stem() == "neutral" && is_mesh_extension(file.extension().string())) return file;
+  for (const fs::path& file : meshes_in(folder)) {
+    if (is_neutral(file)) return file;
   }
   return {};
+}
+
+/// Folders in a folder, in the order of their names.
+std::vector<fs::path> folders_in(const fs::path& folder) {
+  std::vector<fs::path> folders;
+  std::error_code error;
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end;
+       entry.increment(error)) {
+    std::error_code missing;
+    if (entry->is_directory(missing)) folders.push_back(entry->path());
+  }
+  std::ranges::sort(folders);
+  return folders;
+}
+
+/// The folder of one of these names, of several the first; of names in another case where there is
+/// none.
+std::optional<fs::path> folder_called(const fs::path& parent,
+                                      const std::vector<std::string>& names) {
+  const std::vector<fs::path> folders = folders_in(parent);
+  using Spelling = std::string (*)(const std::string&);
+  const Spelling as_is = [](const std::string& name) { return name; };
+  for (const Spelling spelling : {as_is, Spelling(lower_case)}) {
+    for (const std::string& name : names) {
+      const auto found = std::ranges::find_if(folders, [&](const fs::path& folder) {
+        return spelling(folder.filename().string()) == name;
+      });
+      if (found != folders.end()) return *found;
+    }
+  }
+  return {};
+}
+
+std::optional<fs::path> expressions_in(const fs::path& folder) {
+  return folder_called(folder, {"expressions", "targets"});
+}
+
+std::optional<fs::path> identities_in(const fs::path& folder) {
+  return folder_called(folder, {"identities"});
 }
 
 /// A shape is called as its file without the extension.
@@ -130,15 +175,10 @@ Parts parts_of(const fs::path& folder) {
   parts.neutral = neutral_of(folder);
   if (parts.neutral) {
     std::vector<fs::path> neutrals = meshes_in(folder);
-    std::erase_if(neutrals, [](const fs::path& file) { return file.stem() != "neutral"; });
+    std::erase_if(neutrals, std::not_fn(is_neutral));
     check_names(neutrals);
-    for (const char* name : {"expressions", "targets"}) {
-      if (!parts.expressions && fs::is_directory(folder / name, unreadable)) {
-        parts.expressions = folder / name;
-      }
-    }
-    if (fs::is_directory(folder / "identities", unreadable))
-      parts.identities = folder / "identities";
+    parts.expressions = expressions_in(folder);
+    parts.identities = identities_in(folder);
   } else {
     parts.shape = eos_shape_of(folder);
     parts.expressions = eos_expressions_of(folder);
@@ -314,8 +354,28 @@ std::vector<fs::path> meshes_beside_model(const fs::path& path) {
   const bool is_named_by_parts = !fs::exists(path / "model.json", unreadable) && neutral_of(path);
   if (!is_named_by_parts) return {};
   std::vector<fs::path> files = meshes_in(path);
-  std::erase_if(files, [](const fs::path& file) { return file.stem() == "neutral"; });
+  std::erase_if(files, is_neutral);
   return files;
+}
+
+std::vector<std::string> notes_on_unread(const fs::path& path) {
+  std::error_code unreadable;
+  if (!fs::is_directory(path, unreadable) || fs::exists(path / "model.json", unreadable) ||
+      !neutral_of(path) || expressions_in(path)) {
+    return {};
+  }
+  std::vector<std::string> found;
+  if (const auto beside = meshes_beside_model(path).size(); beside > 0) {
+    found.push_back(std::to_string(beside) + " other mesh files");
+  }
+  for (const fs::path& folder : folders_in(path)) {
+    if (folder != identities_in(path) && !meshes_in(folder).empty()) {
+      found.push_back(folder.filename().string() + "/");
+    }
+  }
+  if (found.empty()) return {};
+  return {path.string() + ": has no expressions; " + joined(found, ", ", " and ") +
+          " in it are not read, whose place would be expressions/ or targets/"};
 }
 
 std::vector<fs::path> model_files(const fs::path& path) {
@@ -405,9 +465,7 @@ bool is_model(const fs::path& path) {
   if (!fs::is_directory(path, unreadable)) return path.extension() == ".bin" && is_eos_shape(path);
   if (fs::exists(path / "model.json", unreadable)) return true;
   if (!neutral_of(path)) return eos_expressions_of(path) && eos_shape_of(path);
-  const auto holds = [&](const char* part) { return fs::is_directory(path / part, unreadable); };
-  return holds("expressions") || holds("targets") || holds("identities") ||
-         meshes_in(path).size() == 1;
+  return expressions_in(path) || identities_in(path) || meshes_in(path).size() == 1;
 }
 
 void write_model(const fs::path& folder, const MorphableModel& model,

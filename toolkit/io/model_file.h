@@ -35,7 +35,7 @@ struct ModelSpec {
   std::vector<std::string> notes() const;
 };
 
-/// Reads a directory with `neutral.*` and `targets/` or `expressions/`, and optionally
+/// Reads a directory with `neutral.*` and `expressions/` or `targets/`, in any case, and optionally
 /// `identities/` (absolute shapes, their neutral subtracted on reading; the file's stem is the
 /// name), or a `model.json` that names them (`neutral`, `expressions`, `identities`, or `shape` for
 /// an eos model file with `expressions` its eos blendshape file), or the eos pair `sfm_shape_*.bin`
@@ -63,6 +63,10 @@ bool is_model(const std::filesystem::path& path);
 
 /// Mesh files in a model's folder that are no part of it, such as frames, in natural order.
 std::vector<std::filesystem::path> meshes_beside_model(const std::filesystem::path& path);
+
+/// What to say of meshes in a model's folder that could be its expressions and are not read;
+/// nothing where it has some.
+std::vector<std::string> notes_on_unread(const std::filesystem::path& path);
 
 /// Writes a model directory: neutral.ply, expressions/NAME.ply, identities/NAME.ply (absolute
 /// shapes, double precision), and `performance.csv` when there is a track. `extra` are further

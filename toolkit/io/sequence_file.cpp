@@ -11,6 +11,8 @@
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/progress.h"
 #include "toolkit/mesh/text.h"
+#include "toolkit/model/animation.h"
+#include "toolkit/model/displaced_expressions.h"
 
 namespace mimetra {
 namespace fs = std::filesystem;
@@ -61,10 +63,7 @@ OpenSequence open_path(const fs::path& path, const SequenceSource& source) {
                                              : "is " + found);
 }
 
-}  // namespace
-
-OpenSequence open_sequence(const std::string& text, const SequenceSource& source) {
-  check_options(source);
+OpenSequence opened(const std::string& text, const SequenceSource& source) {
   const bool exists = is_there(text);
   if (exists && is_scene_file(text)) return open_scene(text, source);
   if (exists && is_model(text)) return open_driven(ModelSpec{text, {}, {}}, source);
@@ -78,6 +77,26 @@ OpenSequence open_sequence(const std::string& text, const SequenceSource& source
   if (!exists && !is_frame_pattern(text)) throw IoError(text, "no such file or folder");
   check_undriven(text, source);
   return exists ? open_path(text, source) : open_frames(frames_of_pattern(text), {}, source);
+}
+
+}  // namespace
+
+OpenSequence open_sequence(const std::string& text, const SequenceSource& source) {
+  check_options(source);
+  OpenSequence open = opened(text, source);
+  if (const auto* animation = dynamic_cast<const Animation*>(open.frames.get())) {
+    const BlendshapeModel& model = animation->model();
+    for (const std::string& note :
+         notes_on_displaced(text, model.neutral(), model.triangles(), model.expressions())) {
+      open.notes.push_back(note);
+    }
+  }
+  // Weights' times were looked at already, and chosen frames may lie far apart.
+  if (open.model_driven || source.frames) return open;
+  if (const std::string odd = note_on_steps(open.frames->known_times()); !odd.empty()) {
+    open.notes.push_back(text + ": " + odd);
+  }
+  return open;
 }
 
 SequenceRead read_sequence(const std::string& text, const SequenceSource& source) {

@@ -46,6 +46,19 @@ void check_rate(const std::string& name, const Eigen::VectorXd& times,
                               " s, and option 'fps' is for what has none; leave it out");
 }
 
+std::string note_on_steps(const Eigen::VectorXd& times) {
+  constexpr double kLongest = 1;
+  std::vector<double> steps;
+  for (Eigen::Index f = 1; f < times.size(); ++f) steps.push_back(times[f] - times[f - 1]);
+  if (steps.empty()) return "";
+  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
+  std::ranges::nth_element(steps, middle);
+  if (!(*middle > kLongest)) return "";
+  return "its frames are " + readable(*middle) +
+         " s apart (median), as where times are milliseconds or numbers of frames; expected "
+         "seconds";
+}
+
 FrameTimes frame_times(const std::string& name, int frames, std::optional<Eigen::VectorXd> known,
                        const SequenceSource& source) {
   if (!known) {

@@ -6,7 +6,9 @@
 #include <string_view>
 
 #include "toolkit/io/csv.h"
+#include "toolkit/io/frame_series.h"
 #include "toolkit/io/pending_output.h"
+#include "toolkit/io/sequence_options.h"
 #include "toolkit/io/timecode.h"
 #include "toolkit/io/weight_json.h"
 #include "toolkit/mesh/errors.h"
@@ -16,9 +18,12 @@ namespace mimetra {
 
 namespace {
 
+/// Of frame numbers, in lower case.
+constexpr const char* kFrame = "frame";
+
 /// Columns of captures that are not weights.
 bool is_bookkeeping(const std::string& name) {
-  return name == "frame" || name == "blendshapecount";
+  return name == kFrame || name == "blendshapecount";
 }
 
 /// Names of a column of seconds, in lower case.
@@ -32,7 +37,7 @@ class WeightReader {
 
   WeightTrack read() {
     choose_columns();
-    while (csv_.next_row()) read_row();
+    while (csv_.next_row(CsvReader::Rows::may_end_early)) read_row();
     if (frames_ == 0) throw IoError(path_.string(), "has names but no row of weights");
     return track();
   }
@@ -61,13 +66,20 @@ class WeightReader {
         notes_.push_back(note_on_timestamp(std::string(name)));
       } else if (!is_bookkeeping(plain)) {
         weight_columns_.push_back(column);
+      } else if (plain == kFrame) {
+        frame_column_ = column;
       }
     }
     if (weight_columns_.empty()) csv_.fail("no column of weights");
   }
 
   void read_row() {
-    for (const std::size_t column : weight_columns_) weights_.push_back(csv_.number(column));
+    const bool is_lost = std::ranges::all_of(
+        weight_columns_, [this](std::size_t column) { return csv_.field(column).empty(); });
+    if (is_lost) lost_.push_back(frames_);
+    for (const std::size_t column : weight_columns_) {
+      weights_.push_back(is_lost ? 0 : csv_.number(column));
+    }
     if (time_column_) {
       const double time = csv_.number(*time_column_);
       if (!times_.empty() && time <= times_.back()) csv_.fail("times do not ascend");
@@ -75,7 +87,20 @@ class WeightReader {
     } else if (timecode_column_) {
       read_timecode(csv_.field(*timecode_column_));
     }
+    if (frame_column_) read_frame_number(csv_.field(*frame_column_));
     ++frames_;
+  }
+
+  /// A column of other things than numbers tells nothing.
+  void read_frame_number(std::string_view text) {
+    long long number = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+    if (error == std::errc() && end == text.data() + text.size()) {
+      frame_numbers_.push_back(number);
+    } else {
+      frame_column_.reset();
+      frame_numbers_.clear();
+    }
   }
 
   void read_timecode(std::string_view text) {
@@ -107,19 +132,51 @@ class WeightReader {
     WeightTrack result;
     result.notes = std::move(notes_);
     find_times(result);
+    const auto missing = missing_numbers(std::move(frame_numbers_));
+    if (times_.empty() && !missing.empty()) {
+      result.notes.push_back("no row has these frames: " + listed(missing) +
+                             "; without times frames follow each other without a pause");
+    }
     const auto columns = static_cast<Eigen::Index>(weight_columns_.size());
     for (const std::size_t column : weight_columns_) {
       result.names.push_back(text_of_csv(csv_.names()[column]));
     }
     result.weights = Eigen::Map<const Frames>(weights_.data(), frames_, columns);
+    fill_lost(result);
     result.times =
         Eigen::Map<const Eigen::VectorXd>(times_.data(), static_cast<Eigen::Index>(times_.size()));
     return result;
   }
 
+  /// Rows without weights, as where a capture lost the face, lie between their neighbours in the
+  /// order of frames.
+  void fill_lost(WeightTrack& result) const {
+    if (lost_.empty()) return;
+    if (static_cast<int>(lost_.size()) == frames_) {
+      throw IoError(path_.string(), "has no row with weights");
+    }
+    std::vector<int> seen;
+    for (int f = 0; f < frames_; ++f) {
+      if (!std::ranges::binary_search(lost_, f)) seen.push_back(f);
+    }
+    for (const int f : lost_) {
+      const auto next = std::ranges::lower_bound(seen, f);
+      const int after = next == seen.end() ? seen.back() : *next;
+      const int before = next == seen.begin() ? after : *std::prev(next);
+      const double share = after > before ? double(f - before) / (after - before) : 0;
+      result.weights.row(f) =
+          (1 - share) * result.weights.row(before) + share * result.weights.row(after);
+    }
+    result.notes.push_back(
+        "rows without weights, which are taken from between their neighbours': " +
+        listed(words_of(lost_)));
+  }
+
   std::filesystem::path path_;
   CsvReader csv_;
-  std::optional<std::size_t> time_column_, timecode_column_;
+  std::vector<int> lost_;  ///< frames, ascending
+  std::optional<std::size_t> time_column_, timecode_column_, frame_column_;
+  std::vector<long long> frame_numbers_;
   std::vector<std::size_t> weight_columns_;
   std::vector<double> weights_;
   std::vector<double> times_;
@@ -190,6 +247,7 @@ WeightTrack read_weights(const std::filesystem::path& path) {
   const bool is_json = lower_extension(path) == ".json";
   WeightTrack track = is_json ? read_weights_json(path) : WeightReader(path).read();
   check_size(track);
+  if (const std::string odd = note_on_steps(track.times); !odd.empty()) track.notes.push_back(odd);
   return track;
 }
 

@@ -23,6 +23,11 @@ int column_of(const std::vector<std::string>& names, const std::string& expressi
     if (exact != names.end()) return static_cast<int>(exact - names.begin());
     const auto loose = std::ranges::find(names, folded_name(wanted), folded_name);
     if (loose != names.end()) return static_cast<int>(loose - names.begin());
+    if (spelling != Spelling(spelled_out)) continue;
+    const auto of_column =
+        std::ranges::find(names, folded_name(wanted),
+                          [](const std::string& name) { return folded_name(spelled_out(name)); });
+    if (of_column != names.end()) return static_cast<int>(of_column - names.begin());
   }
   return -1;
 }

@@ -25,8 +25,9 @@ struct WeightMatch {
   std::vector<std::string> undriven_expressions;
 };
 
-/// Names match exactly, then with Left/Right for _L/_R, then one name drives both halves; without
-/// regard to case and underscores at each step only where nothing matched exactly.
+/// Names match exactly, then with Left/Right for _L/_R of the expression, then of the column, then
+/// one name drives both halves; without regard to case and underscores at each step only where
+/// nothing matched exactly.
 WeightMatch match_weights(const WeightTrack& track, const std::vector<std::string>& expressions);
 
 /// Weights in the order of the expressions (F x D), 0 where nothing drives one. Throws

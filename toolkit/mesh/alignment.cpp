@@ -78,17 +78,37 @@ RigidTransform motion_to(const PositionsView& frame, const Positions& rest,
   return frame != rest ? fitter.carry_to(frame) : RigidTransform();
 }
 
+/// A transform as a row of numbers.
+constexpr int kTransformNumbers = 12;
+
+using TransformNumbers = Eigen::Matrix<double, 1, kTransformNumbers>;
+
+TransformNumbers numbers_of(const RigidTransform& transform) {
+  TransformNumbers numbers;
+  numbers << transform.rotation.reshaped().transpose(), transform.translation.transpose();
+  return numbers;
+}
+
+std::vector<RigidTransform> transforms_of(const FrameRows& numbers) {
+  std::vector<RigidTransform> transforms(static_cast<std::size_t>(numbers.rows()));
+  for (Eigen::Index f = 0; f < numbers.rows(); ++f) {
+    const TransformNumbers row = numbers.row(f);
+    transforms[f].rotation = row.head<9>().reshaped(3, 3);
+    transforms[f].translation = row.tail<3>();
+  }
+  return transforms;
+}
+
 std::vector<RigidTransform> fit_frames(const FrameSource& source, const Eigen::VectorXd& weights,
                                        const BlockOptions& options) {
   const RigidFitter fitter(source.rest(), weights);
-  std::vector<RigidTransform> motion(source.frames());
-  for_each_run(source, options, [&](int first, int count) {
-    const FrameBlock block(source, first, count);
-    for (int row = 0; row < count; ++row) {
-      motion[first + row] = motion_to(block.frame(row), source.rest(), fitter);
-    }
-  });
-  return motion;
+  const FrameNumbers motion = over_frames(
+      source, 0, kTransformNumbers, options, [&](int, const FrameBlock& block, FrameRows& numbers) {
+        for (int row = 0; row < block.frames(); ++row) {
+          numbers.row(row) = numbers_of(motion_to(block.frame(row), source.rest(), fitter));
+        }
+      });
+  return transforms_of(motion.of_each);
 }
 
 /// Squared distances of each vertex of a frame from the moved rest pose (N).
@@ -127,17 +147,19 @@ struct StableFit {
 StableFit weighted_fit(const FrameSource& source, Eigen::VectorXd weights,
                        const BlockOptions& options) {
   const RigidFitter fitter(source.rest(), weights);
-  StableFit fit{std::vector<RigidTransform>(source.frames()), std::move(weights), {}};
-  const Eigen::VectorXd squares = sum_over_frames(
-      source, source.vertices(), options, [&](int first, const FrameBlock& block, FramesView rows) {
+  const int vertices = source.vertices();
+  const FrameNumbers found = over_frames(
+      source, vertices, kTransformNumbers, options,
+      [&](int, const FrameBlock& block, FrameRows& numbers) {
         for (int row = 0; row < block.frames(); ++row) {
-          RigidTransform& motion = fit.motion[first + row];
-          motion = motion_to(block.frame(row), source.rest(), fitter);
-          squared_residuals(block.frame(row), source.rest(), motion, rows.row(row));
+          const PositionsView frame = block.frame(row);
+          const RigidTransform motion = motion_to(frame, source.rest(), fitter);
+          squared_residuals(frame, source.rest(), motion, numbers.row(row).head(vertices));
+          numbers.row(row).tail<kTransformNumbers>() = numbers_of(motion);
         }
       });
-  fit.residuals = (squares / source.frames()).cwiseSqrt();
-  return fit;
+  return {transforms_of(found.of_each), std::move(weights),
+          (found.sum / source.frames()).cwiseSqrt()};
 }
 
 /// Iteratively reweighted least squares over all frames at once: one weight per vertex, because a
@@ -155,7 +177,7 @@ StableFit fit_stable(const FrameSource& source, const BlockOptions& options) {
     const double done = iteration;
     const Progress progress =
         part_of(options.progress, done / kMaxIterations, (done + 1) / kMaxIterations);
-    fit = weighted_fit(source, std::move(fit.weights), {options.threads, progress});
+    fit = weighted_fit(source, std::move(fit.weights), {options.threads, progress, options.ranks});
     const double target = std::max(quantile(fit.residuals, kStableShare), least_scale);
     if (target == 0) break;  // every vertex is in one place
     const bool settled = scale == least_scale;
@@ -227,19 +249,19 @@ double disagreement_of_halves(const FrameSource& source, const Eigen::VectorXd& 
                               const BlockOptions& options) {
   if (source.vertices() < kLeastVertices) return 0;
   const auto fitters = fitters_of_halves(source.rest(), weights);
-  const Eigen::VectorXd squares =
-      sum_over_frames(source, 3, options, [&](int, const FrameBlock& block, FramesView rows) {
+  const FrameNumbers squares =
+      over_frames(source, 3, 0, options, [&](int, const FrameBlock& block, FrameRows& numbers) {
         for (int row = 0; row < block.frames(); ++row) {
           for (int axis = 0; axis < 3; ++axis) {
             const auto rotation = [&](int half) {
               return motion_to(block.frame(row), source.rest(), fitters[axis][half]).rotation;
             };
             const RigidTransform difference{rotation(0).transpose() * rotation(1)};
-            rows(row, axis) = difference.angle() * difference.angle();
+            numbers(row, axis) = difference.angle() * difference.angle();
           }
         }
       });
-  return std::sqrt(squares.maxCoeff() / source.frames());
+  return std::sqrt(squares.sum.maxCoeff() / source.frames());
 }
 
 /// The frames of another source, each moved rigidly.
@@ -324,7 +346,7 @@ std::vector<RigidTransform> rigid_motion(const FrameSource& source,
   check_options(options);
   std::vector<RigidTransform> motion(source.frames());
   if (source.vertices() == 0) return motion;
-  const BlockOptions blocks{options.threads, options.progress};
+  const BlockOptions blocks{options.threads, options.progress, options.ranks};
   if (options.vertices == AlignmentVertices::all) {
     motion = fit_frames(source, Eigen::VectorXd::Ones(source.vertices()), blocks);
   } else {
@@ -338,11 +360,13 @@ StableMotion stable_motion(const FrameSource& source, const AlignmentOptions& op
   check_options(options);
   StableMotion stable{std::vector<RigidTransform>(source.frames())};
   if (source.vertices() == 0) return stable;
-  StableFit fit = fit_stable(source, {options.threads, part_of(options.progress, 0, kFitShare)});
+  StableFit fit =
+      fit_stable(source, {options.threads, part_of(options.progress, 0, kFitShare), options.ranks});
   if (is_significant(source, fit)) stable.motion = std::move(fit.motion);
   stable.stillest = quantile(fit.residuals, kStableShare);
   stable.disagreement = disagreement_of_halves(
-      source, fit.weights, {options.threads, part_of(options.progress, kFitShare, 1)});
+      source, fit.weights,
+      {options.threads, part_of(options.progress, kFitShare, 1), options.ranks});
   report_progress(options.progress, 1);
   return stable;
 }

@@ -58,6 +58,8 @@ struct AlignmentOptions {
   /// 0 for all there are; the result does not depend on it.
   int threads = 0;
   Progress progress = {};
+  /// Processes that frames are dealt out to, as in BlockOptions.
+  const Ranks* ranks = nullptr;
 
   static constexpr Option kVertices{"vertices", &AlignmentOptions::vertices};
   static constexpr auto declared() { return std::tuple(kVertices); }

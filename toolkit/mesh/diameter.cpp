@@ -125,4 +125,11 @@ double diameter(const Eigen::Ref<const Positions>& positions) {
   return points.size() < 2 ? 0 : FarthestPair(std::move(points)).distance();
 }
 
+double diameter(const Positions& positions, const Triangles& triangles) {
+  const std::vector<VertexIndex> used = used_vertices(triangles, positions.rows());
+  return static_cast<Eigen::Index>(used.size()) == positions.rows()
+             ? diameter(positions)
+             : diameter(positions(used, Eigen::all));
+}
+
 }  // namespace mimetra

@@ -23,6 +23,7 @@ FrameShape shape_of(const PositionsView& pose, const Positions& rest, double res
   const Positions moved = centred(pose);
   const auto count = static_cast<double>(pose.rows());
   shape.spread = spread(pose);
+  shape.center = pose.colwise().mean().transpose();
   if (shape.spread > 0 && rest_spread > 0) {
     const Eigen::Matrix3d mixed = moved.transpose() * rest / (count * shape.spread * rest_spread);
     shape.is_mirrored = mixed.determinant() < -kFlat;
@@ -75,6 +76,24 @@ std::vector<FrameShape> frame_shapes(const FrameSource& sequence, const BlockOpt
   return shapes;
 }
 
+namespace {
+
+/// Frames that jump away and back, in a mesh of this size.
+std::vector<int> jumping_frames(const std::vector<FrameShape>& shapes, double size) {
+  constexpr double kFar = 0.2, kNear = 0.1;
+  std::vector<int> jumping;
+  for (std::size_t f = 1; f + 1 < shapes.size(); ++f) {
+    const Eigen::Vector3d &before = shapes[f - 1].center, &after = shapes[f + 1].center;
+    const bool stays = (after - before).norm() < kNear * size;
+    if (stays && (shapes[f].center - (before + after) / 2).norm() > kFar * size) {
+      jumping.push_back(static_cast<int>(f));
+    }
+  }
+  return jumping;
+}
+
+}  // namespace
+
 OddFrames odd_frames(const FrameSource& sequence, const std::vector<FrameShape>& shapes) {
   std::vector<double> spreads;
   for (const FrameShape& shape : shapes) spreads.push_back(shape.spread);
@@ -85,6 +104,7 @@ OddFrames odd_frames(const FrameSource& sequence, const std::vector<FrameShape>&
   const FrameShape of_rest = shape_of(PositionsView(sequence.rest().data(), rest.rows(), 3), rest,
                                       rest_spread, sequence.triangles());
   const double size = sequence.diameter();
+  odd.jumping = jumping_frames(shapes, size);
   for (std::size_t f = 0; f < shapes.size(); ++f) {
     const FrameShape& shape = shapes[f];
     const auto frame = static_cast<int>(f);

@@ -20,6 +20,8 @@ bool is_other_size(double spread, double usual);
 /// What of a frame tells whether it is a pose of its mesh.
 struct FrameShape {
   double spread = 0;
+  /// Mean of the vertices.
+  Eigen::Vector3d center = Eigen::Vector3d::Zero();
   /// The affine map that takes the rest pose nearest to it turns inside out. Never where either is
   /// flat.
   bool is_mirrored = false;
@@ -39,6 +41,9 @@ struct OddFrames {
   std::vector<int> mirrored;
   /// Neighbours lie apart by half the frame's size and by twice as much as in the rest pose.
   std::vector<int> torn;
+  /// One frame at a time: a fifth of the size away from the middle of the frames before and after,
+  /// which are next to each other.
+  std::vector<int> jumping;
   double usual_spread = 0;  ///< the median
 };
 

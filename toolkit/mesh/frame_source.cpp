@@ -113,6 +113,15 @@ int in_fours(int wanted, int most) {
   return most < 4 ? std::max(1, wanted) : std::max(4, wanted / 4 * 4);
 }
 
+/// Blocks of so many numbers that each rank computes before they are exchanged; the same on all,
+/// however many threads they have.
+int dealt_blocks(Eigen::Index numbers) {
+  constexpr std::size_t kBytes = std::size_t{64} << 20;
+  const std::size_t block =
+      sizeof(double) * static_cast<std::size_t>(std::max<Eigen::Index>(1, numbers));
+  return static_cast<int>(std::clamp<std::size_t>(kBytes / block, 2, 32));
+}
+
 /// As many as fit a block, but enough blocks for threads to share.
 int frames_in_block(const FrameSource& source) {
   constexpr int kBlocks = 64;
@@ -235,31 +244,67 @@ void for_each_run(const FrameSource& source, const BlockOptions& options,
   parallel_for((source.frames() + size - 1) / size, options.threads, work_on, options.progress);
 }
 
-void for_each_block(const FrameSource& source, const BlockOptions& options,
-                    const std::function<void(int, const Frames&)>& work) {
-  for_each_run(source, options,
-               [&](int first, int count) { work(first, source.read(first, count)); });
-}
-
-Eigen::VectorXd sum_over_frames(
-    const FrameSource& source, Eigen::Index size, const BlockOptions& options,
-    const std::function<void(int, const FrameBlock&, FramesView)>& work) {
-  const int most = frames_in(kBlockBytes, source);
-  const int held = in_fours(most, most), at_once = frames_in_block(source);
-  Frames vectors(std::min(held, source.frames()), size);
-  Eigen::VectorXd sum = Eigen::VectorXd::Zero(size);
-  for (int first = 0; first < source.frames(); first += held) {
-    report_progress(options.progress, static_cast<double>(first) / source.frames());
-    const int count = std::min(held, source.frames() - first);
-    parallel_for((count + at_once - 1) / at_once, options.threads, [&](int block) {
-      const int row = block * at_once, rows = std::min(at_once, count - row);
-      const FrameBlock frames(source, first + row, rows);
-      work(first + row, frames, FramesView(vectors.data() + row * size, rows, size));
-    });
-    for (int row = 0; row < count; ++row) sum += vectors.row(row).transpose();
+void for_each_dealt(int frames, int at_once, Eigen::Index columns, const BlockOptions& options,
+                    const ComputeBlock& compute, const TakeBlock& take) {
+  const int blocks = (frames + at_once - 1) / at_once;
+  const auto length = [&](int block) { return std::min(at_once, frames - block * at_once); };
+  const auto computed = [&](int block) { return compute(block * at_once, length(block)); };
+  if (!options.ranks) {
+    const auto work = [&](int block) { take(block * at_once, computed(block)); };
+    return parallel_for(blocks, options.threads, work, options.progress);
+  }
+  const int rank = options.ranks->rank(), ranks = options.ranks->count();
+  const int together = dealt_blocks(at_once * columns) * ranks;
+  for (int start = 0; start < blocks; start += together) {
+    report_progress(options.progress, static_cast<double>(start) / blocks);
+    const int end = std::min(blocks, start + together);
+    std::vector<FrameRows> own(std::max(0, (end - start - rank + ranks - 1) / ranks));
+    parallel_for(static_cast<int>(own.size()), options.threads,
+                 [&](int i) { own[i] = computed(start + rank + i * ranks); });
+    for (int block = start; block < end; ++block) {
+      const int owner = (block - start) % ranks;
+      FrameRows rows = owner == rank ? std::move(own[(block - start) / ranks])
+                                     : FrameRows(length(block), columns);
+      options.ranks->broadcast(owner, {rows.data(), static_cast<std::size_t>(rows.size())});
+      take(block * at_once, rows);
+    }
   }
   report_progress(options.progress, 1);
-  return sum;
+}
+
+void for_each_block(const FrameSource& source, const BlockOptions& options,
+                    const std::function<void(int, const Frames&)>& work) {
+  for_each_dealt(
+      source.frames(), frames_in_block(source), 3 * Eigen::Index{source.vertices()}, options,
+      [&source](int first, int count) { return source.read(first, count); }, work);
+}
+
+FrameNumbers over_frames(const FrameSource& source, Eigen::Index summed, Eigen::Index kept,
+                         const BlockOptions& options,
+                         const std::function<void(int, const FrameBlock&, FrameRows&)>& work) {
+  const int most = frames_in(kBlockBytes, source) * (options.ranks ? options.ranks->count() : 1);
+  const int held = in_fours(most, most), at_once = frames_in_block(source);
+  FrameRows summands(std::min(held, source.frames()), summed);
+  FrameNumbers result{Eigen::VectorXd::Zero(summed), FrameRows(source.frames(), kept)};
+  for (int start = 0; start < source.frames(); start += held) {
+    report_progress(options.progress, static_cast<double>(start) / source.frames());
+    const int count = std::min(held, source.frames() - start);
+    for_each_dealt(
+        count, at_once, summed + kept, {.threads = options.threads, .ranks = options.ranks},
+        [&](int first, int rows) {
+          const FrameBlock block(source, start + first, rows);
+          FrameRows numbers = FrameRows::Zero(rows, summed + kept);
+          work(start + first, block, numbers);
+          return numbers;
+        },
+        [&](int first, const FrameRows& numbers) {
+          summands.middleRows(first, numbers.rows()) = numbers.leftCols(summed);
+          result.of_each.middleRows(start + first, numbers.rows()) = numbers.rightCols(kept);
+        });
+    for (int row = 0; row < count; ++row) result.sum += summands.row(row).transpose();
+  }
+  report_progress(options.progress, 1);
+  return result;
 }
 
 Positions mean_pose(const FrameSource& source) {

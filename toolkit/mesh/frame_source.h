@@ -9,6 +9,7 @@
 #include "toolkit/mesh/diameter.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/progress.h"
+#include "toolkit/mesh/ranks.h"
 #include "toolkit/mesh/tri_mesh.h"
 
 namespace mimetra {
@@ -63,8 +64,8 @@ class FrameSource {
   /// N x 3; where nobody knows it, it is the first frame.
   const Positions& rest() const { return header_.rest; }
   bool rest_is_known() const { return header_.rest_is_known; }
-  /// Largest distance between two vertices of the rest pose.
-  double diameter() const { return mimetra::diameter(rest()); }
+  /// Largest distance between two vertices of the rest pose that faces use, of all without faces.
+  double diameter() const { return mimetra::diameter(rest(), triangles()); }
 
   /// All poses (F x 3N) where they are in memory; null elsewhere.
   virtual std::shared_ptr<const Frames> in_memory() const { return nullptr; }
@@ -159,6 +160,9 @@ struct BlockOptions {
   /// 0 for all there are.
   int threads = 0;
   Progress progress = {};
+  /// Processes that frames are dealt out to: all make the same calls with the same frames, and get
+  /// the same. Null for this one alone.
+  const Ranks* ranks = nullptr;
 };
 
 /// Most bytes of a block of frames, unless one frame takes more.
@@ -169,19 +173,43 @@ constexpr std::size_t kBlockBytes = std::size_t{4} << 20;
 void for_each_run(const FrameSource& source, const BlockOptions& options,
                   const std::function<void(int first, int count)>& work);
 
+/// Rows of numbers, one of each frame in a block.
+using FrameRows = Frames;
+
+/// What is computed of the frames `first` .. first + count - 1: a row of each.
+using ComputeBlock = std::function<FrameRows(int first, int count)>;
+/// The rows of a block that starts with frame `first`.
+using TakeBlock = std::function<void(int first, const FrameRows& rows)>;
+
+/// Computes `columns` numbers of each of so many frames, in blocks of `at_once`, each on one of the
+/// ranks, and gives every block to `take` on all of them. Both are called from several threads, in
+/// any order; on several ranks `take` from this one, and a rank holds no more of its blocks than
+/// fill 64 MB, or two. Throws what they throw, Cancelled; where one rank alone throws, the others
+/// wait for it.
+void for_each_dealt(int frames, int at_once, Eigen::Index columns, const BlockOptions& options,
+                    const ComputeBlock& compute, const TakeBlock& take);
+
 /// Calls `work` with every frame of `source` once, in blocks (first frame, poses) of at most
-/// kBlockBytes for each thread, in any order, from several threads. Throws what reading and `work`
-/// throw, Cancelled.
+/// kBlockBytes for each thread, in any order, from several threads; on several ranks as
+/// for_each_dealt(), which reads each frame on one of them. Throws what reading and `work` throw,
+/// Cancelled.
 void for_each_block(const FrameSource& source, const BlockOptions& options,
                     const std::function<void(int first, const Frames& poses)>& work);
 
-/// Sum over all frames of one vector each (`size`), added in the order of the frames: the same for
-/// every number of threads. `work` is called from several threads and writes the vectors of a block
-/// that starts with frame `first` (one row a frame). No more of them are held than their frames
-/// fill kBlockBytes. Throws what reading and `work` throw, Cancelled.
-Eigen::VectorXd sum_over_frames(
-    const FrameSource& source, Eigen::Index size, const BlockOptions& options,
-    const std::function<void(int first, const FrameBlock& block, FramesView vectors)>& work);
+/// What frames give.
+struct FrameNumbers {
+  Eigen::VectorXd sum;  ///< over all of them
+  FrameRows of_each;    ///< F x what is kept of each
+};
+
+/// Numbers of each frame, of which the first `summed` are added in the order of the frames and the
+/// further `kept` are kept: the same for every number of threads and of ranks, which frames are
+/// dealt out to. `work` is called from several threads and writes the numbers of a block that
+/// starts with frame `first` (frames x (summed + kept), 0 before). No more of them are held than
+/// their frames fill kBlockBytes for each rank. Throws what reading and `work` throw, Cancelled.
+FrameNumbers over_frames(
+    const FrameSource& source, Eigen::Index summed, Eigen::Index kept, const BlockOptions& options,
+    const std::function<void(int first, const FrameBlock& block, FrameRows& numbers)>& work);
 
 /// Mean of all frames (N x 3).
 Positions mean_pose(const FrameSource& source);

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <map>
 #include <stdexcept>
 #include <utility>
 
@@ -95,6 +96,70 @@ int first_different_face(const Connectivity& a, const Connectivity& b) {
     if (!same_face(a.polygons, b.polygons, face)) return face;
   }
   return a.polygons.size() == b.polygons.size() ? -1 : common;
+}
+
+namespace {
+
+/// A polygon whichever corner it begins with and whichever way it is wound.
+struct UnorderedPolygon {
+  std::vector<int> corners;
+  bool is_turned = false;  ///< against the way it is wound
+};
+
+UnorderedPolygon unordered(const Polygons& polygons, int face) {
+  const auto at = [&](int i) {
+    return polygons.corners.begin() + polygons.offsets[std::size_t(i)];
+  };
+  UnorderedPolygon polygon{{at(face), at(face + 1)}};
+  std::vector<int>& corners = polygon.corners;
+  std::ranges::rotate(corners, std::ranges::min_element(corners));
+  polygon.is_turned = corners[1] > corners.back();
+  if (polygon.is_turned) std::reverse(corners.begin() + 1, corners.end());
+  return polygon;
+}
+
+}  // namespace
+
+std::optional<Connectivity> in_order_of(const Connectivity& reference, const Connectivity& mesh) {
+  const int count = mesh.polygons.size();
+  if (reference.vertices != mesh.vertices || reference.polygons.size() != count) return {};
+  struct Place {
+    int polygon;
+    bool is_turned;
+  };
+  std::map<std::vector<int>, Place> places;
+  for (int face = 0; face < count; ++face) {
+    UnorderedPolygon polygon = unordered(mesh.polygons, face);
+    const Place place{face, polygon.is_turned};
+    if (!places.emplace(std::move(polygon.corners), place).second) return {};
+  }
+  std::vector<Place> of_reference;
+  std::vector<bool> is_taken(static_cast<std::size_t>(count), false);
+  for (int face = 0; face < count; ++face) {
+    const UnorderedPolygon polygon = unordered(reference.polygons, face);
+    const auto found = places.find(polygon.corners);
+    if (found == places.end() || is_taken[std::size_t(found->second.polygon)]) return {};
+    is_taken[std::size_t(found->second.polygon)] = true;
+    of_reference.push_back({found->second.polygon, found->second.is_turned != polygon.is_turned});
+  }
+  Connectivity ordered = mesh;
+  ordered.triangles = reference.triangles;
+  for (Eigen::Index t = 0; t < ordered.triangles.rows(); ++t) {
+    const Place& place = of_reference[std::size_t(reference.polygon_of_triangle[std::size_t(t)])];
+    ordered.polygon_of_triangle[std::size_t(t)] = place.polygon;
+    if (place.is_turned) std::swap(ordered.triangles(t, 1), ordered.triangles(t, 2));
+  }
+  return ordered;
+}
+
+std::vector<VertexIndex> used_vertices(const Triangles& triangles, Eigen::Index vertices) {
+  std::vector<bool> is_used(static_cast<std::size_t>(vertices), triangles.rows() == 0);
+  for (const VertexIndex vertex : triangles.reshaped()) is_used[vertex] = true;
+  std::vector<VertexIndex> used;
+  for (VertexIndex v = 0; v < vertices; ++v) {
+    if (is_used[v]) used.push_back(v);
+  }
+  return used;
 }
 
 double extent(const Eigen::Ref<const Positions>& positions) {

@@ -52,6 +52,25 @@ Animation Animation::z_up() const {
   return known;
 }
 
+Animation Animation::renumbered(std::shared_ptr<const Connectivity> connectivity,
+                                const std::vector<VertexIndex>& vertices) const {
+  const ShapeBasis& given = model_->expressions();
+  const auto count = static_cast<Eigen::Index>(vertices.size());
+  ShapeBasis shapes{given.names, Eigen::MatrixXd(3 * count, given.size())};
+  for (int j = 0; j < given.size(); ++j) {
+    const Eigen::Map<const Positions> from(given.displacements.col(j).data(), model_->vertices(),
+                                           3);
+    Eigen::Map<Positions>(shapes.displacements.col(j).data(), count, 3) =
+        from(vertices, Eigen::all);
+  }
+  const Positions neutral = model_->neutral()(vertices, Eigen::all);
+  Animation renumbered(
+      std::make_shared<const BlendshapeModel>(std::move(connectivity), neutral, std::move(shapes)),
+      weights_, times(), times_are_known());
+  renumbered.header_.z_is_up = header_.z_is_up;
+  return renumbered;
+}
+
 void Animation::read_frames(int first, FramesView poses) const {
   // A product takes its columns, here the frames, in fours and the rest one by one, which adds in
   // another order; and it takes another way altogether where there is only one. Runs that start

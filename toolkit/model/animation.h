@@ -24,6 +24,10 @@ class Animation : public FrameSource {
   Animation in_units(const UnitChange& change) const;
   /// The same, of which it is known that z is up in it.
   Animation z_up() const;
+  /// The same on another mesh, vertex v of which is vertices[v] of this one. Throws
+  /// std::invalid_argument unless there is one of them for each vertex of the connectivity.
+  Animation renumbered(std::shared_ptr<const Connectivity> connectivity,
+                       const std::vector<VertexIndex>& vertices) const;
 
  private:
   /// The same numbers as those frames of model().animate(weights()).

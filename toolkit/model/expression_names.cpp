@@ -56,8 +56,11 @@ std::vector<KnownGroup> known_groups() {
 }  // namespace
 
 std::string spelled_out(const std::string& name) {
-  if (name.ends_with("_L")) return name.substr(0, name.size() - 2) + "Left";
-  if (name.ends_with("_R")) return name.substr(0, name.size() - 2) + "Right";
+  if (name.size() < 2 || (name[name.size() - 2] != '_' && name[name.size() - 2] != '.'))
+    return name;
+  const std::string stem = name.substr(0, name.size() - 2);
+  if (name.back() == 'L' || name.back() == 'l') return stem + "Left";
+  if (name.back() == 'R' || name.back() == 'r') return stem + "Right";
   return name;
 }
 

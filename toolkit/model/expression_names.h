@@ -30,7 +30,7 @@ constexpr std::string_view choice_name(Exclusive value) {
   return {};
 }
 
-/// `mouthSmile_L` as captures write it: `mouthSmileLeft`.
+/// `mouthSmile_L` or `mouthSmile.L` as captures write it: `mouthSmileLeft`.
 std::string spelled_out(const std::string& name);
 
 /// Without regard to case and underscores.

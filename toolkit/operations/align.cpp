@@ -75,8 +75,10 @@ Moved moved(const Invocation& invocation) {
     return {with_motion(given, motion), std::move(motion)};
   }
   given = stored(given, {.threads = invocation.threads,
-                         .progress = part_of(invocation.progress, 0, kFittingFrom)});
+                         .progress = part_of(invocation.progress, 0, kFittingFrom),
+                         .ranks = invocation.ranks});
   call.alignment.threads = invocation.threads;
+  call.alignment.ranks = invocation.ranks;
   call.alignment.progress = part_of(invocation.progress, kFittingFrom, kFittingTo);
   if (call.alignment.vertices == AlignmentVertices::all) {
     std::vector<RigidTransform> motion = rigid_motion(*given, call.alignment);
@@ -136,6 +138,7 @@ Operation align_operation() {
   operation.examples = {"align takes/ -o still/",
                         "align still/ --undo still/mimetra-run.json -o back/"};
   operation.run = run_align;
+  operation.shared = true;
   operation.memory = [](const Invocation& invocation) {
     const FieldSequence& sequence = invocation.get<FieldSequence>("sequence");
     return sequence.is_in_memory() ? frame_bytes(*sequence.frames) : stored_bytes(*sequence.frames);

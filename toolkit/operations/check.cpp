@@ -72,6 +72,9 @@ std::vector<std::string> frame_warnings(const FrameSource& sequence, const Block
                        " and " + std::to_string(shape.ends.second) + ", which share an edge, lie " +
                        readable(shape.longest_edge) + " apart");
   }
+  if (!odd.jumping.empty()) {
+    warnings.push_back(told(odd.jumping, "far from the frames before and after"));
+  }
   if (is_other_size(spread(sequence.rest()), odd.usual_spread)) {
     warnings.push_back("the rest pose is of another size than the frames: its vertices lie " +
                        readable(spread(sequence.rest())) +

@@ -3,7 +3,9 @@
 #include <nlohmann/json.hpp>
 
 #include "toolkit/correspondence/renumbered_frames.h"
+#include "toolkit/io/scene.h"
 #include "toolkit/mesh/face_groups.h"
+#include "toolkit/mesh/frame_store.h"
 #include "toolkit/mesh/text.h"
 #include "toolkit/model/animation.h"
 #include "toolkit/operations/bound_parameters.h"
@@ -50,6 +52,15 @@ std::vector<std::string> parts_of_faces(const Connectivity& faces, const Connect
   return parts;
 }
 
+/// The frames on another mesh, by which a model's stay driven by its expressions.
+std::shared_ptr<const FrameSource> on_mesh(const std::shared_ptr<const FrameSource>& frames,
+                                           const std::shared_ptr<const Connectivity>& connectivity,
+                                           const std::vector<VertexIndex>& vertices) {
+  const auto* animation = dynamic_cast<const Animation*>(frames.get());
+  if (!animation) return renumbered(frames, connectivity, vertices);
+  return std::make_shared<const Animation>(animation->renumbered(connectivity, vertices));
+}
+
 /// The sequence with the vertices and faces of `reference`. Throws MismatchError where it is
 /// another mesh.
 FieldSequence matched(const Invocation& invocation, const NamedData& input,
@@ -57,7 +68,7 @@ FieldSequence matched(const Invocation& invocation, const NamedData& input,
   const auto& given = std::get<FieldSequence>(input.data);
   const auto& reference = *invocation.get<FieldSequence>("match").frames;
   FieldSequence made =
-      held_like(given, renumbered(given.frames, reference.shared_connectivity(), found.vertices),
+      held_like(given, on_mesh(given.frames, reference.shared_connectivity(), found.vertices),
                 {.threads = invocation.threads, .progress = invocation.progress});
   const std::string& name = invocation.input("match").name;
   if (const auto lost = parts_of_faces(given.frames->connectivity(), reference.connectivity());
@@ -111,6 +122,22 @@ void check_weights(const Invocation& invocation, const FrameSource& frames) {
   check_live_link(invocation, "out", animation->model().expressions().names);
 }
 
+/// A model that nothing drives is one frame at rest where its expressions have no place.
+void warn_of_lost_expressions(const Invocation& invocation, const FrameSource& frames) {
+  const auto* animation = dynamic_cast<const Animation*>(&frames);
+  const auto paths = invocation.wanted.find("out");
+  if (!animation || animation->model().expressions().size() == 0 || animation->frames() > 1 ||
+      !animation->weights().isZero(0) || paths == invocation.wanted.end() ||
+      paths->second.empty()) {
+    return;
+  }
+  const std::filesystem::path& path = paths->second.front();
+  if (is_scene_file(path) || is_weight_file(path.string())) return;
+  invocation.warn(path.string() + ": holds the neutral alone, not the " +
+                  counted(animation->model().expressions().size(), "expression") +
+                  " of the model; .glb and .usda hold them, and --weights moves them");
+}
+
 Outcome run_convert(const Invocation& invocation) {
   NamedData input = invocation.input("sequence");
   check_weights(invocation, *std::get<FieldSequence>(input.data).frames);
@@ -124,6 +151,12 @@ Outcome run_convert(const Invocation& invocation) {
         held_like(given, frames, {.threads = invocation.threads, .progress = invocation.progress});
     made.fields = given.fields;
   }
+  if (invocation.ranks && invocation.ranks->count() > 1) {
+    made.frames = stored(made.frames, {.threads = invocation.threads,
+                                       .progress = invocation.progress,
+                                       .ranks = invocation.ranks});
+  }
+  warn_of_lost_expressions(invocation, *made.frames);
   Outcome outcome;
   Json report = Json{{"frames", made.frames->frames()},
                      {"vertices", made.frames->vertices()},
@@ -165,6 +198,7 @@ Operation convert_operation() {
   operation.examples = {"convert takes/smile_%04d.obj --match neutral.obj -o smile.npy",
                         "convert scan_mm/ --scale 0.001 --up z-to-y -o scan/"};
   operation.run = run_convert;
+  operation.shared = true;
   return operation;
 }
 

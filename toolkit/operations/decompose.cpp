@@ -78,6 +78,7 @@ Outcome run_decompose(const Invocation& invocation) {
   call.source = described(std::move(call.source), invocation.input("sequence"));
   call.source.notes = call.analysis.notes;
   call.source.threads = invocation.threads;
+  call.source.ranks = invocation.ranks;
   auto [still, analysis] = in_command_terms(invocation.parameters, [&] {
     Source source = prepare_source(sequence.frames, call.source);
     Analysis found = analyse(source, call.analysis);

@@ -97,6 +97,7 @@ Outcome run_evaluate(const Invocation& invocation) {
   }
   options.given = painted_region_of(invocation);
   options.threads = invocation.threads;
+  options.ranks = invocation.ranks;
   options.progress = invocation.progress;
   options.notes = warnings_of(invocation);
   const std::vector<EvaluationRow> rows = in_command_terms(invocation.parameters, [&] {
@@ -160,6 +161,7 @@ Operation evaluate_operation() {
   operation.examples = {"evaluate take.npy actor/ -k 10,30,40",
                         "evaluate takes/ actor@identity007=2 -k 10,20,30,40,50 -o table.csv"};
   operation.run = run_evaluate;
+  operation.shared = true;
   operation.memory = memory_of_evaluate;
   operation.scratch = [](const Invocation& invocation) {
     return plan_of_evaluation(invocation).scratch_bytes;

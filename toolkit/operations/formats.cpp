@@ -12,6 +12,7 @@
 #include "toolkit/io/vtkhdf_file.h"
 #include "toolkit/io/whole_file.h"
 #include "toolkit/mesh/errors.h"
+#include "toolkit/model/displaced_expressions.h"
 #include "toolkit/operations/sequence_parameters.h"
 
 namespace mimetra {
@@ -111,7 +112,7 @@ MorphableModel model_of(const ModelSpec& spec, const ReadRequest& request) {
                       "' is one mesh and has no identities");
 }
 
-ReadValue read_model_data(const std::string& text, const ReadRequest& request) {
+ReadValue read_model_files(const std::string& text, const ReadRequest& request) {
   const ModelSpec spec = ModelSpec::parse(text);
   if (is_scene_file(spec.path) && !spec.fit && spec.identity_text.empty()) {
     Scene scene = read_scene(spec.path);
@@ -123,6 +124,17 @@ ReadValue read_model_data(const std::string& text, const ReadRequest& request) {
                  {spec.path},
                  spec.notes()};
   if (spec.fit) read.files.push_back(*spec.fit);
+  for (const std::string& note : notes_on_unread(spec.path)) read.notes.push_back(note);
+  return read;
+}
+
+ReadValue read_model_data(const std::string& text, const ReadRequest& request) {
+  ReadValue read = read_model_files(text, request);
+  const MorphableModel& model = std::get<ModelData>(read.value.data).model;
+  for (const std::string& note : notes_on_displaced(
+           read.value.name, model.mean(), model.connectivity().triangles, model.expressions())) {
+    read.notes.push_back(note);
+  }
   return read;
 }
 

@@ -182,7 +182,7 @@ void check_weight_options(const Invocation& invocation) {
 void take_markers(const Invocation& invocation, const Connectivity& source, const std::string& file,
                   Target& target) {
   MarkerFile read = read_marker_file(file, invocation.parameters.integer("index-base"));
-  if (same_faces(source, target.model.get().connectivity())) {
+  if (has_faces_of(source, target.model.get().connectivity())) {
     invocation.warn(target.name + ": has the source's faces; markers are left out");
     return;
   }

@@ -128,7 +128,8 @@ struct Operation {
   std::vector<Parameter> parameters;
   std::vector<std::string> examples;  ///< two command lines without the program's name
   std::function<Outcome(const Invocation&)> run;
-  /// Several processes decompose the sequence together; all else each does for itself.
+  /// Several processes compute it together: frames are dealt out to them, and vertices of the
+  /// decomposition. The first one writes.
   bool shared = false;
   /// Bytes that it takes at its peak besides what it is given; none where that is little.
   std::function<double(const Invocation&)> memory = {};

@@ -319,7 +319,7 @@ bool pairs_targets(const Invocation& invocation) {
   if (!invocation.parameters.paths("correspondence").empty()) return true;
   const Connectivity& faces = invocation.get<FieldSequence>("source").frames->connectivity();
   return std::ranges::any_of(invocation.inputs.at("target"), [&faces](const NamedData& target) {
-    return !same_faces(faces, std::get<ModelData>(target.data).model.connectivity());
+    return !has_faces_of(faces, std::get<ModelData>(target.data).model.connectivity());
   });
 }
 

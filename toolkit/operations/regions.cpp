@@ -71,6 +71,7 @@ SourceOptions source_options(const Invocation& invocation, const RegionsCall& ca
   SourceOptions options = described(call.source, invocation.input("sequence"));
   options.notes = call.analysis.notes;
   options.threads = invocation.threads;
+  options.ranks = invocation.ranks;
   return options;
 }
 
@@ -119,6 +120,7 @@ Found found_for_transfer(const Invocation& invocation, const RegionsCall& call) 
   check_selection(*matched, call.regions, Space::automatic);
   SolveOptions of_solving;
   of_solving.threads = invocation.threads;
+  of_solving.ranks = invocation.ranks;
   of_solving.notes = of_source.notes;
   of_solving.progress = invocation.progress;
   of_solving.edges = edge_sum(call.analysis.compatibility);

@@ -59,6 +59,7 @@ TransferOptions options_of(const Invocation& invocation) {
     options.given = std::move(*components);
   }
   options.threads = invocation.threads;
+  options.ranks = invocation.ranks;
   options.progress = invocation.progress;
   options.notes = warnings_of(invocation);
   return options;
@@ -348,6 +349,7 @@ Operation transfer_operation() {
       "transfer takes/smile_%04d.obj actor/ -k 30 -o actor_smile/ --regions-out rois/smile.pvd",
       "transfer take.npy actor@identity007=2 double/ --full -o results/"};
   operation.run = run_transfer;
+  operation.shared = true;
   operation.memory = memory_of_transfer;
   operation.scratch = [](const Invocation& invocation) {
     return plan_of_transfer(invocation).scratch_bytes;

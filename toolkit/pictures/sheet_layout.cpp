@@ -21,13 +21,25 @@ int letters_for(int tile_height) {
   return std::max(kSmallest, std::min(tile_height / 18, kSmallest + tile_height / 60));
 }
 
+/// Vertices that are seen, of each row: a stray point has no say in how large the others are.
+using SeenVertices = std::vector<std::vector<VertexIndex>>;
+
+SeenVertices seen_vertices(const Sheet& sheet) {
+  SeenVertices seen;
+  for (const TileRow& row : sheet.rows) {
+    seen.push_back(used_vertices(row.connectivity->triangles, row.connectivity->vertices));
+  }
+  return seen;
+}
+
 /// Half the width and height that all tiles need, seen from their sides.
-Eigen::Vector2d half_extent(const Sheet& sheet, const std::vector<Eigen::RowVector3d>& centers) {
+Eigen::Vector2d half_extent(const Sheet& sheet, const SeenVertices& seen,
+                            const std::vector<Eigen::RowVector3d>& centers) {
   Eigen::Vector2d half = Eigen::Vector2d::Zero();
   for (std::size_t row = 0; row < sheet.rows.size(); ++row) {
     for (const Tile& tile : sheet.rows[row].tiles) {
       const View view = view_of(sheet.viewpoint, tile.turn);
-      const Positions centered = tile.positions.rowwise() - centers[row];
+      const Positions centered = tile.positions(seen[row], Eigen::all).rowwise() - centers[row];
       half[0] = std::max(half[0], (centered * view.right).cwiseAbs().maxCoeff());
       half[1] = std::max(half[1], (centered * view.up).cwiseAbs().maxCoeff());
     }
@@ -35,11 +47,12 @@ Eigen::Vector2d half_extent(const Sheet& sheet, const std::vector<Eigen::RowVect
   return half;
 }
 
-double reach_of(const Sheet& sheet, const std::vector<Eigen::RowVector3d>& centers) {
+double reach_of(const Sheet& sheet, const SeenVertices& seen,
+                const std::vector<Eigen::RowVector3d>& centers) {
   double reach = 0;
   for (std::size_t row = 0; row < sheet.rows.size(); ++row) {
     for (const Tile& tile : sheet.rows[row].tiles) {
-      const Positions centered = tile.positions.rowwise() - centers[row];
+      const Positions centered = tile.positions(seen[row], Eigen::all).rowwise() - centers[row];
       reach = std::max(reach, centered.rowwise().norm().maxCoeff());
     }
   }
@@ -67,18 +80,20 @@ View view_of(const Viewpoint& viewpoint, double turn) {
 SheetLayout SheetLayout::of(const Sheet& sheet) {
   SheetLayout layout;
   std::size_t columns = 0;
-  for (const TileRow& row : sheet.rows) {
+  const SeenVertices seen = seen_vertices(sheet);
+  for (std::size_t r = 0; r < sheet.rows.size(); ++r) {
+    const TileRow& row = sheet.rows[r];
     if (row.tiles.empty()) throw std::invalid_argument("a row of a sheet has no tile");
-    const Positions& first = row.tiles.front().positions;
+    const Positions first = row.tiles.front().positions(seen[r], Eigen::all);
     layout.centers.push_back((first.colwise().minCoeff() + first.colwise().maxCoeff()) / 2);
     columns = std::max(columns, row.tiles.size());
   }
   if (sheet.rows.empty()) throw std::invalid_argument("a sheet has no row");
-  layout.reach = reach_of(sheet, layout.centers);
+  layout.reach = reach_of(sheet, seen, layout.centers);
   if (!(layout.reach > 0)) {
     throw MismatchError("all vertices are at one place, so that there is nothing to draw");
   }
-  const Eigen::Vector2d half = kSpaceAround * half_extent(sheet, layout.centers);
+  const Eigen::Vector2d half = kSpaceAround * half_extent(sheet, seen, layout.centers);
   const double aspect = std::clamp(half[0] / half[1], 0.5, 2.0);
   layout.half_height = std::max(half[1], half[0] / aspect);
   layout.tile_height = sheet.tile_height;

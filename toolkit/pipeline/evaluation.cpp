@@ -195,6 +195,7 @@ class Rows {
     options.source.notes = options.analysis.notes = options.regions.notes = options.solving.notes =
         options.notes;
     options.source.threads = options.analysis.threads = options.solving.threads = options.threads;
+    options.source.ranks = options.analysis.ranks = options.solving.ranks = options.ranks;
     options.solving.edges = edge_sum(options.analysis.compatibility);
     options.solving.distances = options.analysis.distances;
     return options;

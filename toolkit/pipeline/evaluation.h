@@ -63,14 +63,16 @@ struct EvaluationOptions {
   bool curve = false;
   /// One row by these regions instead.
   std::optional<GivenRegions> given = {};
-  /// Of the parts; their threads, progress and notes are those of the evaluation, and the number of
-  /// components is each of `counts`.
+  /// Of the parts; their threads, ranks, progress and notes are those of the evaluation, and the
+  /// number of components is each of `counts`.
   SourceOptions source = {};
   AnalysisOptions analysis = {};
   RegionChoiceOptions regions = {};
   SolveOptions solving = {};
   /// 0 for all there are; the result does not depend on it.
   int threads = 0;
+  /// Processes that work together: all make the same call, and get the same.
+  const Ranks* ranks = nullptr;
   Progress progress = {};
   Notes notes = {};
 

@@ -87,10 +87,14 @@ void note_openings(const TriMesh& source, const TriMesh& target, const Automatic
 
 }  // namespace
 
+bool has_faces_of(const Connectivity& source, const Connectivity& target) {
+  return same_faces(source, target) || in_order_of(source, target).has_value();
+}
+
 bool is_to_be_paired(const FrameSource& source, const Target& target) {
   if (std::holds_alternative<std::monostate>(target.match)) return false;
   return !std::holds_alternative<MarkersBetween>(target.match) ||
-         !same_faces(source.connectivity(), target.model.get().connectivity());
+         !has_faces_of(source.connectivity(), target.model.get().connectivity());
 }
 
 MatchedTarget::MatchedTarget(const FrameSource& source, Target target, const MatchOptions& options)
@@ -98,7 +102,7 @@ MatchedTarget::MatchedTarget(const FrameSource& source, Target target, const Mat
   const BlendshapeModel& model = target_.model;
   const bool is_given = !std::holds_alternative<std::monostate>(target_.match) &&
                         !std::holds_alternative<MarkersBetween>(target_.match);
-  const bool differs = !same_faces(source.connectivity(), model.connectivity());
+  const bool differs = !has_faces_of(source.connectivity(), model.connectivity());
   if (differs && !is_given) check_numbering(source, target_);
   if (is_to_be_paired(source, target_)) {
     pair({options.source_rest.value_or(source.rest()), source.connectivity()}, options);
@@ -111,10 +115,20 @@ MatchedTarget::MatchedTarget(const FrameSource& source, Target target, const Mat
                           (same_count ? "; source and target need the same faces" : ""));
   }
   target_.match = {};
+  if (!same_faces(source.connectivity(), model.connectivity())) {
+    note(options.notes, target_.name +
+                            ": has the source's faces in another order, or wound the other way; "
+                            "they are taken for the same");
+  }
   if (model.triangles() == source.triangles()) return;
   auto connectivity = std::make_shared<Connectivity>(model.connectivity());
-  connectivity->triangles = source.triangles();
-  connectivity->polygon_of_triangle = source.connectivity().polygon_of_triangle;
+  if (std::optional<Connectivity> ordered =
+          in_order_of(source.connectivity(), model.connectivity())) {
+    *connectivity = *std::move(ordered);
+  } else {
+    connectivity->triangles = source.triangles();
+    connectivity->polygon_of_triangle = source.connectivity().polygon_of_triangle;
+  }
   own_ = std::make_unique<BlendshapeModel>(std::move(connectivity), model.neutral(),
                                            model.expressions());
   target_.model = *own_;

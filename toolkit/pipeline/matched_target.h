@@ -41,6 +41,9 @@ struct Target {
   std::shared_ptr<const Pairing> pairing = {};
 };
 
+/// Whether both have the same polygons, in any order and wound either way.
+bool has_faces_of(const Connectivity& source, const Connectivity& target);
+
 /// Whether a MatchedTarget is paired: markers or pairs are given, or markers are looked for and the
 /// faces differ.
 bool is_to_be_paired(const FrameSource& source, const Target& target);

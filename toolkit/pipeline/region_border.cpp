@@ -168,11 +168,11 @@ Selection bordered_selection(const Regions& regions, const Target& target,
     of_distances.threads = options.threads;
     const SurfaceDistances distances =
         distances_along(model.neutral(), model.triangles(), of_distances);
-    weights =
-        fading_out(weights, model.triangles(), weld, options.falloff->in(diameter(model.neutral())),
-                   [&distances](std::span<const VertexIndex> sources) {
-                     return distances.from_nearest(sources);
-                   });
+    weights = fading_out(weights, model.triangles(), weld,
+                         options.falloff->in(diameter(model.neutral(), model.triangles())),
+                         [&distances](std::span<const VertexIndex> sources) {
+                           return distances.from_nearest(sources);
+                         });
   }
   if (target.pairing) {
     weights = FollowingParts(model.neutral(), model.triangles(), weld, *target.pairing)

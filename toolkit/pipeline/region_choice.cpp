@@ -67,7 +67,8 @@ void refuse_bound(double share, const std::string& reason) {
 Regions choose_regions(const Analysis& analysis, const RegionChoiceOptions& options) {
   check_options(options);
   RegionOptions of_search = options.regions;
-  of_search.radius = options.radius.in(diameter(analysis.components.rest));
+  of_search.radius =
+      options.radius.in(diameter(analysis.components.rest, analysis.components.triangles));
   of_search.distances = analysis.distances;
   of_search.inside = analysis.inside;
   of_search.no_centers = rims_to_avoid(analysis, options);

@@ -91,7 +91,7 @@ Regions RegionCompleter::operator()(const Regions& regions, const Target& target
     return regions;
   if (!search_) {
     search_.emplace(rest_, triangles_, distances_,
-                    kAddedRadius * options_.radius.in(diameter(rest_)), inside_);
+                    kAddedRadius * options_.radius.in(diameter(rest_, triangles_)), inside_);
   }
   CompletionOptions of_completion = options_.completion;
   of_completion.edges = options.edges;

@@ -77,7 +77,7 @@ RegionSelector::RegionSelector(const FrameSource& source, const RegionChoiceOpti
       triangles_(source.triangles()),
       options_(options),
       analysis_(analysis),
-      radius_(kDiscRadius * options.radius.in(diameter(rest_))) {
+      radius_(kDiscRadius * options.radius.in(diameter(rest_, triangles_))) {
   check_options(options);
   options_.select = Selector::transfer;
 }

@@ -15,7 +15,7 @@ RegionShares shares_on(const BlendshapeModel& model,
   const SurfaceDistances distances =
       distances_along(model.neutral(), model.triangles(), options.distances);
   return partition_of_unity(model.triangles(), distances.weld(), regions,
-                            options.falloff.in(diameter(model.neutral())),
+                            options.falloff.in(diameter(model.neutral(), model.triangles())),
                             [&distances](std::span<const VertexIndex> sources) {
                               return distances.from_nearest(sources);
                             });

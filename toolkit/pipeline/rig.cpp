@@ -7,6 +7,8 @@
 #include "toolkit/mesh/frame_shapes.h"
 #include "toolkit/mesh/parallel.h"
 #include "toolkit/mesh/text.h"
+#include "toolkit/model/displaced_expressions.h"
+#include "toolkit/pipeline/target_notes.h"
 #include "toolkit/pipeline/usability.h"
 #include "toolkit/transfer/seams.h"
 #include "toolkit/transfer/transfer_error.h"
@@ -18,10 +20,6 @@ namespace {
 /// A vertex of the source that moves by less, as a share of the farthest that its expression moves
 /// one, stays: modelled expressions fade out far beyond what is seen.
 constexpr double kStill = 1e-4;
-
-/// Where every vertex of a true shape lies farther from the neutral, as a share of the diameter, it
-/// stands elsewhere: no expression moves all of a head.
-constexpr double kStillShare = 0.01;
 
 /// Transfer and examples as progress shows them.
 constexpr double kTransferPart = 0.5;
@@ -61,18 +59,24 @@ class ExpressionTransfer {
     const BlendshapeModel& model = target.model;
     displacements_ = Eigen::MatrixXd::Zero(model.neutral().size(), source.frames());
     std::vector<int> slivers(static_cast<std::size_t>(source.frames()), 0);
+    std::vector<std::vector<VertexIndex>> following(slivers.size());
     parallel_for(
-        source.frames(), options.threads, [&](int j) { slivers[j] = transfer(j); },
+        source.frames(), options.threads,
+        [&](int j) { slivers[j] = transfer(j, following[static_cast<std::size_t>(j)]); },
         part_of(options.progress, 0, kTransferPart));
     slivers_ = std::ranges::max(slivers);
+    following_ = *std::ranges::max_element(following, {}, &std::vector<VertexIndex>::size);
   }
 
   const Eigen::MatrixXd& displacements() const { return displacements_; }
   /// Of the target, at most of any expression.
   int slivers() const { return slivers_; }
+  /// Vertices of parts without partner, ascending.
+  const std::vector<VertexIndex>& following() const { return following_; }
 
  private:
-  int transfer(int j) {
+  /// Returns the slivers of the target.
+  int transfer(int j, std::vector<VertexIndex>& following) {
     const Frames frame = source_.read(j, 1);
     const PositionsView pose(frame.data(), source_.rest().rows(), 3);
     const Regions moving = moving_part(source_.rest(), pose, source_.triangles());
@@ -87,6 +91,7 @@ class ExpressionTransfer {
     const Eigen::Map<const Eigen::RowVectorXd> neutral(model.neutral().data(),
                                                        model.neutral().size());
     displacements_.col(j) = (solver.frames(single).row(0) - neutral).transpose();
+    following = solver.following_vertices();
     return solver.degenerate_target_triangles();
   }
 
@@ -95,6 +100,7 @@ class ExpressionTransfer {
   VertexTransferOptions options_;
   Eigen::MatrixXd displacements_;
   int slivers_ = 0;
+  std::vector<VertexIndex> following_;
 };
 
 /// The target's own expressions that the source has are examples, too, unless one is given.
@@ -276,6 +282,8 @@ Rig rig(const BlendshapeModel& source, const Target& given, std::vector<RigExamp
     note(options.notes, target.name + ": " + std::to_string(transfer.slivers()) +
                             " slivers, triangles of hardly any area, follow their neighbours");
   }
+  TargetNotes(target.name, options.notes)
+      .add_following(parts_with(transfer.following(), model), transfer.following().size());
   const BlendshapeModel transferred(model.shared_connectivity(), model.neutral(),
                                     {source.expressions().names, transfer.displacements()});
   check_sizes(examples, model.neutral(), target.name);

@@ -1,11 +1,8 @@
 #include "toolkit/pipeline/solution.h"
 
-#include <set>
-
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/frame_store.h"
 #include "toolkit/mesh/stopwatch.h"
-#include "toolkit/mesh/surface_parts.h"
 #include "toolkit/model/animation.h"
 #include "toolkit/model/motion_filter.h"
 #include "toolkit/pipeline/regional_solution.h"
@@ -30,6 +27,7 @@ RegionalOptions regional_options(const Target& target, const SolveOptions& optio
   RegionalOptions of_regions{target.name, options.falloff.value_or(SolveOptions::kUsualFalloff),
                              options.distances, options.local, options.notes};
   of_regions.distances.threads = of_regions.local.threads = options.threads;
+  of_regions.local.ranks = options.ranks;
   of_regions.local.edges = options.edges;
   of_regions.local.pairing = target.pairing;
   of_regions.local.progress = part_of(options.progress, kGlobalShare, 1);
@@ -42,6 +40,7 @@ Solution solve_blendshapes(const Source& source, const Target& target, const Sel
   const BlendshapeModel& model = target.model;
   BlendshapeTransferOptions of_space = options.blendshape;
   of_space.threads = options.threads;
+  of_space.ranks = options.ranks;
   of_space.progress = options.progress;
   of_space.edges = options.edges;
   of_space.pairing = target.pairing;
@@ -132,15 +131,6 @@ void check_weights_of(const Selection& selection, const Target& target,
   check_soft_border(target, options);
 }
 
-/// The connected parts that some vertices are, ascending.
-std::vector<int> parts_of(const std::vector<VertexIndex>& vertices, const BlendshapeModel& model) {
-  if (vertices.empty()) return {};
-  const SurfaceParts parts = surface_parts(model.neutral(), model.triangles());
-  std::set<int> found;
-  for (const VertexIndex v : vertices) found.insert(parts.of_vertex[v]);
-  return {found.begin(), found.end()};
-}
-
 Solution solve_vertices(const Source& source, const Target& target, const Selection& selection,
                         const SolveOptions& options) {
   const Stopwatch stopwatch;
@@ -149,6 +139,7 @@ Solution solve_vertices(const Source& source, const Target& target, const Select
   of_space.inside = selection.inside;
   of_space.weights = selection.weights;
   of_space.threads = options.threads;
+  of_space.ranks = options.ranks;
   check_anchor(of_space, target, selection);
   const FrameSource& performance = *source.sequence;
   of_space.pairing = target.pairing;
@@ -177,7 +168,7 @@ Solution solve_vertices(const Source& source, const Target& target, const Select
   solution.degenerate_source_triangles = transfer.degenerate_source_triangles();
   solution.degenerate_target_triangles = transfer.degenerate_target_triangles();
   const std::vector<VertexIndex> following = transfer.following_vertices();
-  solution.following_parts = parts_of(following, model);
+  solution.following_parts = parts_with(following, model);
   const TargetNotes notes(target.name, options.notes);
   notes.add_following(solution.following_parts, following.size());
   notes.add_degenerate({.source = solution.degenerate_source_triangles,
@@ -186,23 +177,13 @@ Solution solve_vertices(const Source& source, const Target& target, const Select
   return solution;
 }
 
-/// Vertices that triangles use, ascending.
-std::vector<VertexIndex> used_vertices(const BlendshapeModel& model) {
-  std::vector<bool> used(model.vertices(), false);
-  for (const VertexIndex vertex : model.triangles().reshaped()) used[vertex] = true;
-  std::vector<VertexIndex> vertices;
-  for (VertexIndex v = 0; v < model.vertices(); ++v) {
-    if (used[v]) vertices.push_back(v);
-  }
-  return vertices;
-}
-
 Similarity similarity_between(const Positions& rest, const Target& target,
                               const SolveOptions& options) {
   const BlendshapeModel& model = target.model;
   if (!target.pairing && rest == model.neutral()) return {};
-  const std::vector<VertexIndex> used =
-      target.pairing ? target.pairing->carried_vertices() : used_vertices(model);
+  const std::vector<VertexIndex> used = target.pairing
+                                            ? target.pairing->carried_vertices()
+                                            : used_vertices(model.triangles(), model.vertices());
   const Positions to = model.neutral()(used, Eigen::all);
   const Positions from =
       target.pairing ? target.pairing->carried(rest, used) : rest(used, Eigen::all);

@@ -61,8 +61,8 @@ struct SolveOptions {
   /// Time constant in seconds: weights, or in vertex space positions, are drawn to a small second
   /// derivative (smooth_weights(), MotionFilter).
   double smoothness = 0;
-  /// Of each space; their threads and progress, edges, smoothness, the vertices inside, those that
-  /// are one and the rules of expressions are those of the solve and the target.
+  /// Of each space; their threads, ranks and progress, edges, smoothness, the vertices inside,
+  /// those that are one and the rules of expressions are those of the solve and the target.
   BlendshapeTransferOptions blendshape = {};
   VertexTransferOptions vertex = {};
   /// Blendshape space: each region has weights of its own, and what lies around them too; all
@@ -72,13 +72,15 @@ struct SolveOptions {
   /// each region (there kUsualFalloff where none is given), otherwise the motion that vertices
   /// take (bordered_selection()); without it a region's border is hard.
   std::optional<Length> falloff = {};
-  /// Its threads, progress, edges and pairing are those of the solve.
+  /// Its threads, ranks, progress, edges and pairing are those of the solve.
   LocalWeightsOptions local = {};
   /// By which that is measured; of a transfer those of the analysis. Threads are those of the
   /// solve.
   DistanceOptions distances = {};
   /// 0 for all there are; the result does not depend on it.
   int threads = 0;
+  /// Processes that frames are dealt out to, as in BlockOptions.
+  const Ranks* ranks = nullptr;
   Progress progress = {};
   Notes notes = {};
 

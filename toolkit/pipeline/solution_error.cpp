@@ -26,7 +26,8 @@ TransferError error_of(const Solution& solution, const Source& source, const Tar
                                 .inside = selection.inside,
                                 .weights = selection.weights,
                                 .threads = options.threads,
-                                .progress = options.progress};
+                                .progress = options.progress,
+                                .ranks = options.ranks};
   if (has_border(selection)) {
     of_error.weld =
         closed_seams_of(source, target, {options.threads, part_of(options.progress, 0, 0.2)});

@@ -188,8 +188,10 @@ void note_motion(const MotionChoice& choice, const Source& source, const SourceO
     return;
   }
   double angle = 0;
-  for (const RigidTransform& transform : rigid_motion(
-           *source.sequence, {.vertices = AlignmentVertices::all, .threads = options.threads})) {
+  for (const RigidTransform& transform :
+       rigid_motion(*source.sequence, {.vertices = AlignmentVertices::all,
+                                      .threads = options.threads,
+                                      .ranks = options.ranks})) {
     angle = std::max(angle, transform.angle());
   }
   if (angle < kTurning) return;
@@ -202,7 +204,8 @@ void note_motion(const MotionChoice& choice, const Source& source, const SourceO
 
 Shared kept(Shared sequence, const SourceOptions& options) {
   return stored(std::move(sequence), {.threads = options.threads,
-                                      .progress = part_of(options.progress, 0, kStoringShare)});
+                                      .progress = part_of(options.progress, 0, kStoringShare),
+                                      .ranks = options.ranks});
 }
 
 /// True for a shape that was given, and for the sequence's own where none was asked for.
@@ -241,9 +244,10 @@ Source prepare_source(Shared sequence, const SourceOptions& options) {
   source.rest_is_given = options.rest.has_value();
   source.neutral_is_known = knows_neutral(*source.given, options);
   source.head_motion = {name_of(choice.motion), choice.reason};
-  find_motion(
-      source, choice, options,
-      {.threads = options.threads, .progress = part_of(options.progress, kStoringShare, 1)});
+  find_motion(source, choice, options,
+              {.threads = options.threads,
+               .progress = part_of(options.progress, kStoringShare, 1),
+               .ranks = options.ranks});
   measure_motion(source);
   note_motion(choice, source, options);
   note_uncertainty(choice, source, options);

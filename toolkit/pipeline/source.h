@@ -89,6 +89,8 @@ struct SourceOptions {
   JointSearch joint = {};
   /// 0 for all there are; the result does not depend on it.
   int threads = 0;
+  /// Processes that frames are dealt out to, as in BlockOptions.
+  const Ranks* ranks = nullptr;
   Progress progress = {};
   Notes notes = {};
 

@@ -1,8 +1,20 @@
 #include "toolkit/pipeline/target_notes.h"
 
+#include <set>
+
+#include "toolkit/mesh/surface_parts.h"
 #include "toolkit/mesh/text.h"
 
 namespace mimetra {
+
+std::vector<int> parts_with(const std::vector<VertexIndex>& vertices,
+                            const BlendshapeModel& model) {
+  if (vertices.empty()) return {};
+  const SurfaceParts parts = surface_parts(model.neutral(), model.triangles());
+  std::set<int> found;
+  for (const VertexIndex v : vertices) found.insert(parts.of_vertex[v]);
+  return {found.begin(), found.end()};
+}
 
 void TargetNotes::add(const std::string& text, Topic topic) const {
   note(notes_, start_ + text, topic);

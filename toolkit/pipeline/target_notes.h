@@ -3,10 +3,14 @@
 #include <string>
 #include <vector>
 
+#include "toolkit/model/blendshape_model.h"
 #include "toolkit/pipeline/note.h"
 #include "toolkit/transfer/blendshape_transfer.h"
 
 namespace mimetra {
+
+/// The connected parts of a model that some vertices are in, ascending.
+std::vector<int> parts_with(const std::vector<VertexIndex>& vertices, const BlendshapeModel& model);
 
 /// What a solve notes of a target, under its name.
 class TargetNotes {

@@ -35,6 +35,7 @@ struct Choice {
 Analysis analysis_for(const Source& source, const TransferOptions& options) {
   AnalysisOptions of_analysis = options.analysis;
   of_analysis.threads = options.threads;
+  of_analysis.ranks = options.ranks;
   of_analysis.notes = options.notes;
   of_analysis.progress = part_of(options.progress, kSourceShare, kRegionShare);
   if (const auto* given = std::get_if<GivenComponents>(&options.given)) {
@@ -50,6 +51,7 @@ Choice choose(const Source& source, const TransferOptions& options) {
   const FrameSource& sequence = *source.sequence;
   AnalysisOptions of_analysis = options.analysis;
   of_analysis.threads = options.threads;
+  of_analysis.ranks = options.ranks;
   of_analysis.notes = options.notes;
   if (const auto* given = std::get_if<GivenRegions>(&options.given)) {
     check_regions(*given, sequence);
@@ -78,6 +80,7 @@ Source source_of(const FrameSource& sequence, const std::vector<Target>& targets
   std::shared_ptr<const FrameSource> given(std::shared_ptr<const FrameSource>(), &sequence);
   SourceOptions of_source = options.source;
   of_source.threads = options.threads;
+  of_source.ranks = options.ranks;
   of_source.notes = options.notes;
   of_source.progress = part_of(options.progress, 0, kSourceShare);
   of_source.joint = joint_search(targets, of_solving);
@@ -270,6 +273,7 @@ TransferResult transfer(const FrameSource& sequence, const std::vector<Target>& 
   }
   SolveOptions of_solving = options.solving;
   of_solving.threads = options.threads;
+  of_solving.ranks = options.ranks;
   of_solving.notes = options.notes;
   of_solving.edges = edge_sum(options.analysis.compatibility);
   for (const Target& target : targets) {

@@ -35,13 +35,15 @@ struct TransferOptions {
   /// decomposed. Regions with a soft border of their own are taken as they are: no discs complete
   /// them.
   std::variant<std::monostate, GivenRegions, GivenComponents> given = {};
-  /// Of the parts; their threads, progress and notes are those of the transfer.
+  /// Of the parts; their threads, ranks, progress and notes are those of the transfer.
   SourceOptions source = {};
   AnalysisOptions analysis = {};
   RegionChoiceOptions regions = {};
   SolveOptions solving = {};
   /// 0 for all there are; the result does not depend on it.
   int threads = 0;
+  /// Processes that work together: all make the same call, and get the same.
+  const Ranks* ranks = nullptr;
   Progress progress = {};
   Notes notes = {};
 

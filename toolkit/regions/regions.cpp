@@ -271,8 +271,9 @@ Regions find_regions(const Components& components, const RegionOptions& options)
   const double total = regions.vertex_energy.sum();
   if (total > 0) regions.vertex_energy /= total;
   const SurfaceParts parts = surface_parts(components.rest, components.triangles);
-  const double radius =
-      options.radius ? *options.radius : RegionOptions::kRadiusShare * diameter(components.rest);
+  const double radius = options.radius ? *options.radius
+                                       : RegionOptions::kRadiusShare *
+                                             diameter(components.rest, components.triangles);
   for (const Site& site : sites) {
     Region region = region_around(site, components, options.shape, radius);
     if (!options.inside.empty()) {

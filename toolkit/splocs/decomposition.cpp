@@ -270,7 +270,7 @@ Components decomposed(const SequencePart& sequence, const DecompositionOptions& 
   Components result;
   result.rest = sequence.rest;
   result.triangles = sequence.triangles;
-  const double size = diameter(sequence.rest);
+  const double size = diameter(sequence.rest, sequence.triangles);
   result.d_min = options.d_min.value_or(DecompositionOptions::kMinimumShare * size);
   result.d_max = options.d_max.value_or(DecompositionOptions::kMaximumShare * size);
   require_valid(result.d_min, result.d_max);

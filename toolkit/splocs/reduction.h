@@ -1,27 +1,12 @@
 #pragma once
 
 #include <functional>
-#include <span>
 #include <vector>
 
+#include "toolkit/mesh/ranks.h"
 #include "toolkit/splocs/vertex_part.h"
 
 namespace mimetra {
-
-/// How several ranks, each with a part of the vertices, talk to each other. All ranks make the same
-/// calls of a Reduction in the same order, each from one thread.
-class Ranks {
- public:
-  virtual ~Ranks() = default;
-
-  virtual int rank() const = 0;
-  virtual int count() const = 0;
-  /// What one rank sends to another arrives there in order; both may wait for each other.
-  virtual void send(int to, std::span<const double> numbers) const = 0;
-  virtual void receive(int from, std::span<double> numbers) const = 0;
-  /// Gives the numbers of rank `from` to all, which all call it with as many.
-  virtual void broadcast(int from, std::span<double> numbers) const = 0;
-};
 
 /// Sums, largest values and copies over all vertices of a mesh: all that the decomposition needs
 /// beyond one vertex.

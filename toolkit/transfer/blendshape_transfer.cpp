@@ -11,7 +11,6 @@
 
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/inspection.h"
-#include "toolkit/mesh/parallel.h"
 #include "toolkit/mesh/product_blocking.h"
 #include "toolkit/model/ruled_least_squares.h"
 #include "toolkit/model/smooth_weights.h"
@@ -172,20 +171,27 @@ Eigen::MatrixXd BlendshapeTransfer::weights(const FrameSource& performance) cons
   const int frames = performance.frames();
   const bool smooths = state.options.smoothness > 0;
   Eigen::MatrixXd beta(frames, unknowns), h(smooths ? frames : 0, unknowns);
-  const auto solve_block = [&](int number) {
-    const int first = number * kFramesPerBlock;
-    const int count = std::min(kFramesPerBlock, frames - first);
+  // Weights, and behind them what smoothing needs.
+  const Eigen::Index columns = smooths ? 2 * unknowns : unknowns;
+  const auto solve_block = [&](int first, int count) {
     const FrameBlock block(performance, first, count);
     const Eigen::MatrixXd of_block = state.right_hand_side(block.poses()).array() - penalty;
-    if (smooths) h.middleRows(first, count) = of_block;
+    FrameRows solved(count, columns);
+    if (smooths) solved.rightCols(unknowns) = of_block;
     Eigen::VectorXd current = state.solver->rules().lower;
     for (int row = 0; row < count; ++row) {
       current = (*state.solver)(of_block.row(row).transpose(), current);
-      beta.row(first + row) = current.transpose();
+      solved.row(row).head(unknowns) = current.transpose();
     }
+    return solved;
   };
-  const int blocks = (frames + kFramesPerBlock - 1) / kFramesPerBlock;
-  parallel_for(blocks, state.options.threads, solve_block, state.options.progress);
+  const auto take = [&](int first, const FrameRows& solved) {
+    beta.middleRows(first, solved.rows()) = solved.leftCols(unknowns);
+    if (smooths) h.middleRows(first, solved.rows()) = solved.rightCols(unknowns);
+  };
+  for_each_dealt(frames, kFramesPerBlock, columns,
+                 {state.options.threads, state.options.progress, state.options.ranks}, solve_block,
+                 take);
   if (smooths) state.smooth(performance, h, beta);
   return state.rules.written(beta);
 }
@@ -222,22 +228,25 @@ bool BlendshapeTransfer::rest_looks_unneutral(const FrameSource& performance,
   const Eigen::MatrixXd solved = state.rules.solved(weights);
   std::vector<Eigen::Index> counted = state.seen;
   std::erase_if(counted, [&state](Eigen::Index j) { return state.solver->rules().lower[j] != 0; });
-  const int blocks = (performance.frames() + kFramesPerBlock - 1) / kFramesPerBlock;
-  std::vector<Eigen::Index> below(blocks, 0);
-  parallel_for(blocks, state.options.threads, [&](int number) {
-    const int first = number * kFramesPerBlock;
-    const int count = std::min(kFramesPerBlock, performance.frames() - first);
-    const auto beta = solved.middleRows(first, count);
-    const FrameBlock block(performance, first, count);
-    const Eigen::MatrixXd pull = state.right_hand_side(block.poses()) - beta * state.gram;
-    for (const Eigen::Index j : counted) {
-      below[number] +=
-          (beta.col(j).array() == 0 && pull.col(j).array() < kWantedStep * diagonal[j]).count();
-    }
-  });
-  const auto all = static_cast<double>(performance.frames() * counted.size());
-  const auto wanted = std::accumulate(below.begin(), below.end(), Eigen::Index{0});
-  return static_cast<double>(wanted) > kUnneutralShare * all;
+  const int frames = performance.frames();
+  Eigen::VectorXd below(frames);
+  for_each_dealt(
+      frames, kFramesPerBlock, 1, {.threads = state.options.threads, .ranks = state.options.ranks},
+      [&](int first, int count) {
+        const auto beta = solved.middleRows(first, count);
+        const FrameBlock block(performance, first, count);
+        const Eigen::MatrixXd pull = state.right_hand_side(block.poses()) - beta * state.gram;
+        FrameRows found = FrameRows::Zero(count, 1);
+        for (const Eigen::Index j : counted) {
+          found.array() +=
+              (beta.col(j).array() == 0 && pull.col(j).array() < kWantedStep * diagonal[j])
+                  .cast<double>();
+        }
+        return found;
+      },
+      [&](int first, const FrameRows& found) { below.segment(first, found.rows()) = found; });
+  const double wanted = below.sum(), all = static_cast<double>(frames * counted.size());
+  return wanted > kUnneutralShare * all;
 }
 
 }  // namespace mimetra

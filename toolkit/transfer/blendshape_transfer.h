@@ -40,6 +40,8 @@ struct BlendshapeTransferOptions {
   int threads = 0;
   /// Of weights().
   Progress progress = {};
+  /// Processes that frames are dealt out to, as in BlockOptions.
+  const Ranks* ranks = nullptr;
 
   static constexpr Option kRidge{"ridge", &BlendshapeTransferOptions::ridge, {.minimum = 0}};
   static constexpr Option kSparsity{

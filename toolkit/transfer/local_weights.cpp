@@ -5,7 +5,6 @@
 #include <string>
 
 #include "toolkit/mesh/errors.h"
-#include "toolkit/mesh/parallel.h"
 #include "toolkit/mesh/product_blocking.h"
 #include "toolkit/model/block_pivoting.h"
 #include "toolkit/model/box_least_squares.h"
@@ -124,25 +123,29 @@ RegionalWeights LocalWeights::weights(const FrameSource& performance,
   }
   fix_product_blocking();
   const int frames = performance.frames();
-  const int blocks = (frames + kRegionalBlock - 1) / kRegionalBlock;
-  RegionalWeights result{Eigen::MatrixXd(frames, state.gram.rows())};
-  std::vector<double> violations(frames, 0);
-  parallel_for(
-      blocks, state.options.threads,
-      [&](int number) {
-        const int first = number * kRegionalBlock;
-        const int count = std::min(kRegionalBlock, frames - first);
+  const Eigen::Index unknowns = state.gram.rows();
+  RegionalWeights result{Eigen::MatrixXd(frames, unknowns)};
+  Eigen::VectorXd violations(frames);
+  for_each_dealt(
+      frames, kRegionalBlock, unknowns + 1,
+      {state.options.threads, state.options.progress, state.options.ranks},
+      [&](int first, int count) {
         const FrameBlock block(performance, first, count);
         const Eigen::MatrixXd h = state.right_hand_side(block.poses());
+        FrameRows solved(count, unknowns + 1);
         Eigen::VectorXd current;
         for (int row = 0; row < count; ++row) {
-          violations[first + row] =
+          solved(row, unknowns) =
               state.solve(h.row(row).transpose(), global.row(first + row).transpose(), current);
-          result.beta.row(first + row) = current.transpose();
+          solved.row(row).head(unknowns) = current.transpose();
         }
+        return solved;
       },
-      state.options.progress);
-  if (frames > 0) result.violation = std::ranges::max(violations);
+      [&](int first, const FrameRows& solved) {
+        result.beta.middleRows(first, solved.rows()) = solved.leftCols(unknowns);
+        violations.segment(first, solved.rows()) = solved.col(unknowns);
+      });
+  if (frames > 0) result.violation = violations.maxCoeff();
   return result;
 }
 

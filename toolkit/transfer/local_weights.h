@@ -21,6 +21,8 @@ struct LocalWeightsOptions {
   /// 0 for all there are; the result does not depend on it.
   int threads = 0;
   Progress progress = {};
+  /// Processes that frames are dealt out to, as in BlockOptions.
+  const Ranks* ranks = nullptr;
 
   /// Without it, what a region hardly sees is anything.
   static constexpr Option kRidge{"ridge", &LocalWeightsOptions::ridge, {.minimum = 1e-6}};

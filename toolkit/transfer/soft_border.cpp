@@ -36,7 +36,7 @@ SoftBorder::SoftBorder(const Positions& rest, const Triangles& triangles,
       border_(Eigen::VectorXd::Zero(triangles.rows())),
       sizes_(Eigen::VectorXd::Zero(triangles.rows())),
       counts_(Eigen::VectorXd::Zero(triangles.rows())) {
-  const double steepest = kBorderSlope / diameter(rest);
+  const double steepest = kBorderSlope / diameter(rest, triangles);
   double slopes = 0, squares = 0;
   for (int t = 0; t < triangles.rows(); ++t) {
     counts_[t] = target_share(quality_of(rest, triangles, t));

@@ -149,6 +149,19 @@ bool is_flipped(const Edges& wanted, const Edges& found) {
   return wanted.col(0).cross(wanted.col(1)).dot(found.col(0).cross(found.col(1))) < 0;
 }
 
+/// What is measured of a frame.
+enum Measured {
+  kSum,            ///< of the squared errors of all triangles
+  kShare,          ///< of those against the share that is asked for
+  kStill,          ///< of those at rest
+  kLeak,           ///< squared
+  kFlipped,        ///< triangles
+  kCrease,         ///< RMS over the border
+  kLargestCrease,  ///< of it
+  kMeasured        ///< how many these are
+};
+using MeasuredRow = Eigen::Matrix<double, 1, kMeasured>;
+
 /// Measures one frame after the other.
 class FrameErrors {
  public:
@@ -175,37 +188,30 @@ class FrameErrors {
   /// Triangles that count.
   int counted() const { return static_cast<int>(counted_.size()); }
 
-  struct Measured {
-    double sum = 0;    ///< of the squared errors of all triangles
-    double share = 0;  ///< of those against the share that is asked for
-    double still = 0;  ///< of those at rest
-    double leak = 0;   ///< squared
-    int flipped = 0;
-    BorderCrease::Excess crease;
-  };
-
   /// `squares` are the errors of the triangles (M), which are 0 before.
-  Measured operator()(const PositionsView& source, const PositionsView& result,
-                      Eigen::Ref<Eigen::RowVectorXd> squares) const {
-    Measured measured;
+  MeasuredRow operator()(const PositionsView& source, const PositionsView& result,
+                         Eigen::Ref<Eigen::RowVectorXd> squares) const {
+    MeasuredRow measured = MeasuredRow::Zero();
     std::vector<Edges> wanted = wanted_change_(source);
     for (const int t : counted_) {
       const Edges neutral = edges_of(rest_, triangles_, t);
       const Edges found = edges_of(result, triangles_, t);
       const double squared = sum_of_squares(wanted[t] - (found - neutral));
       squares[t] = squared;
-      measured.sum += squared;
+      measured[kSum] += squared;
       const Edges asked = shares_.size() > 0 ? Edges(shares_[t] * wanted[t]) : wanted[t];
       if (tells_what_is_missing(t)) {
-        measured.share += sum_of_squares(asked - (found - neutral));
-        measured.still += sum_of_squares(asked);
+        measured[kShare] += sum_of_squares(asked - (found - neutral));
+        measured[kStill] += sum_of_squares(asked);
       }
       wanted[t] += neutral;
-      if (is_flipped(neutral + asked, found)) ++measured.flipped;
+      if (is_flipped(neutral + asked, found)) ++measured[kFlipped];
     }
-    measured.crease = crease_(wanted, result);
+    const BorderCrease::Excess excess = crease_(wanted, result);
+    measured[kCrease] = excess.rms;
+    measured[kLargestCrease] = excess.largest;
     for (const VertexIndex v : outside_) {
-      measured.leak = std::max(measured.leak, (result.row(v) - rest_.row(v)).squaredNorm());
+      measured[kLeak] = std::max(measured[kLeak], (result.row(v) - rest_.row(v)).squaredNorm());
     }
     return measured;
   }
@@ -241,27 +247,26 @@ TransferError transfer_error(const FrameSource& source, const FrameSource& resul
   const auto triangles = static_cast<int>(result.triangles().rows());
   const FrameErrors errors_of(source, result, selected, options);
   const int count = errors_of.counted();
-  std::vector<FrameErrors::Measured> frames(source.frames());
+  const FrameNumbers measured =
+      over_frames(source, triangles, kMeasured, {options.threads, options.progress, options.ranks},
+                  [&](int first, const FrameBlock& poses, FrameRows& numbers) {
+                    const FrameBlock found(result, first, poses.frames());
+                    for (int row = 0; row < poses.frames(); ++row) {
+                      numbers.row(row).tail<kMeasured>() = errors_of(
+                          poses.frame(row), found.frame(row), numbers.row(row).head(triangles));
+                    }
+                  });
   TransferError error;
-  error.per_triangle = sum_over_frames(
-      source, triangles, {options.threads, options.progress},
-      [&](int first, const FrameBlock& poses, FramesView squares) {
-        const FrameBlock found(result, first, poses.frames());
-        squares.setZero();
-        for (int row = 0; row < poses.frames(); ++row) {
-          frames[first + row] = errors_of(poses.frame(row), found.frame(row), squares.row(row));
-        }
-      });
-  error.per_frame.resize(source.frames());
+  error.per_triangle = measured.sum;
+  error.per_frame = measured.of_each.col(kSum);
   double leak = 0;
-  for (int f = 0; f < source.frames(); ++f) {
-    error.per_frame[f] = frames[f].sum;
-    error.flipped += frames[f].flipped;
-    error.de_share += frames[f].share;
-    error.de_still += frames[f].still;
-    leak = std::max(leak, frames[f].leak);
-    error.crease = std::max(error.crease, frames[f].crease.rms);
-    error.largest_crease = std::max(error.largest_crease, frames[f].crease.largest);
+  for (const auto& frame : measured.of_each.rowwise()) {
+    error.de_share += frame[kShare];
+    error.de_still += frame[kStill];
+    leak = std::max(leak, frame[kLeak]);
+    error.flipped += static_cast<int>(frame[kFlipped]);
+    error.crease = std::max(error.crease, frame[kCrease]);
+    error.largest_crease = std::max(error.largest_crease, frame[kLargestCrease]);
   }
   error.leak = std::sqrt(leak);
   error.triangles = count;

@@ -56,6 +56,8 @@ struct TransferErrorOptions {
   /// 0 for all there are; the result does not depend on it.
   int threads = 0;
   Progress progress = {};
+  /// Processes that frames are dealt out to, as in BlockOptions.
+  const Ranks* ranks = nullptr;
 };
 
 /// `result` is the transferred sequence before head motion is given back; its rest pose is the

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <functional>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -13,7 +12,6 @@
 #include "geodesic/sparse_factor.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/inspection.h"
-#include "toolkit/mesh/parallel.h"
 #include "toolkit/regions/regions.h"
 #include "toolkit/transfer/deformation_gradients.h"
 #include "toolkit/transfer/following_parts.h"
@@ -139,8 +137,7 @@ struct VertexTransfer::State {
   Row motion_of(const std::vector<Pairing::Carrier>& carriers,
                 const Eigen::Ref<const Frames>& frames) const;
   Frames solve(const Eigen::Map<const Frames>& frames) const;
-  void solve_all(const FrameSource& performance,
-                 const std::function<void(int first, const Frames& poses)>& take) const;
+  void solve_all(const FrameSource& performance, const TakeBlock& take) const;
   std::array<int, 3> unknowns_of(int triangle) const;
   bool collapses(int triangle) const;
 
@@ -434,21 +431,17 @@ VertexTransfer::~VertexTransfer() = default;
 VertexTransfer::VertexTransfer(VertexTransfer&&) noexcept = default;
 VertexTransfer& VertexTransfer::operator=(VertexTransfer&&) noexcept = default;
 
-/// Calls `take` with the first frame and the poses of every kLanes frames, from several threads.
-void VertexTransfer::State::solve_all(
-    const FrameSource& performance,
-    const std::function<void(int first, const Frames& poses)>& take) const {
+/// Gives `take` the poses of every kLanes frames, as for_each_dealt().
+void VertexTransfer::State::solve_all(const FrameSource& performance, const TakeBlock& take) const {
   if (performance.vertices() != source_rest.rows()) {
     throw MismatchError("the performance has " + std::to_string(performance.vertices()) +
                         " vertices, the source " + std::to_string(source_rest.rows()));
   }
-  const auto solve_block = [&](int number) {
-    const int first = number * kLanes;
-    const FrameBlock block(performance, first, std::min(kLanes, performance.frames() - first));
-    take(first, solve(block.poses()));
-  };
-  const int blocks = (performance.frames() + kLanes - 1) / kLanes;
-  parallel_for(blocks, options.threads, solve_block, options.progress);
+  for_each_dealt(
+      performance.frames(), kLanes, 3 * target_rest.rows(),
+      {options.threads, options.progress, options.ranks},
+      [&](int first, int count) { return solve(FrameBlock(performance, first, count).poses()); },
+      take);
 }
 
 Frames VertexTransfer::frames(const FrameSource& performance) const {

@@ -83,6 +83,8 @@ struct VertexTransferOptions {
   int threads = 0;
   /// Of frames() and write_frames().
   Progress progress = {};
+  /// Processes that frames are dealt out to, as in BlockOptions.
+  const Ranks* ranks = nullptr;
 
   static constexpr Option kTriangleWeight{"triangle_weight",
                                           &VertexTransferOptions::triangle_weight};

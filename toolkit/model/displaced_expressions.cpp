@@ -1,0 +1,32 @@
+#include "toolkit/model/displaced_expressions.h"
+
+#include "toolkit/mesh/diameter.h"
+#include "toolkit/mesh/text.h"
+
+namespace mimetra {
+
+std::vector<std::string> displaced_expressions(const Positions& neutral, const Triangles& triangles,
+                                               const ShapeBasis& expressions) {
+  const double least = kStillShare * diameter(neutral, triangles);
+  std::vector<std::string> displaced;
+  for (int j = 0; j < expressions.size(); ++j) {
+    const auto field = expressions.displacements.col(j);
+    const Eigen::Map<const Positions> moved(field.data(), neutral.rows(), 3);
+    if (moved.rows() == 0 || !(moved.rowwise().squaredNorm().minCoeff() > least * least)) continue;
+    displaced.push_back(expressions.names[static_cast<std::size_t>(j)]);
+  }
+  return displaced;
+}
+
+std::vector<std::string> notes_on_displaced(const std::string& name, const Positions& neutral,
+                                            const Triangles& triangles,
+                                            const ShapeBasis& expressions) {
+  const std::vector<std::string> displaced = displaced_expressions(neutral, triangles, expressions);
+  if (displaced.empty()) return {};
+  return {name + ": expressions that move every vertex by more than " + percent(kStillShare) +
+          " of the face's size: " + listed(displaced) +
+          "; they seem to stand elsewhere than the neutral: bring them there "
+          "(`mimetra align`), or the face moves with them"};
+}
+
+}  // namespace mimetra

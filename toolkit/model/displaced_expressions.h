@@ -1,0 +1,23 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "toolkit/model/blendshape_model.h"
+
+namespace mimetra {
+
+/// Share of a face's diameter() by which no expression moves every vertex of it.
+constexpr double kStillShare = 0.01;
+
+/// Names of expressions that move every vertex by more than that: shapes that stand elsewhere, as
+/// where they were exported side by side.
+std::vector<std::string> displaced_expressions(const Positions& neutral, const Triangles& triangles,
+                                               const ShapeBasis& expressions);
+
+/// What to say of them under the model's `name`; nothing where there are none.
+std::vector<std::string> notes_on_displaced(const std::string& name, const Positions& neutral,
+                                            const Triangles& triangles,
+                                            const ShapeBasis& expressions);
+
+}  // namespace mimetra
