@@ -28,10 +28,9 @@ Json Judgement::json(const std::vector<std::string>& names) const {
 }
 
 std::string Judgement::words() const {
-  std::string text = "identity: " +
-                     readable(identity.alpha_rms) + " standard deviations (RMS), at most " +
-                     readable(identity.alpha_max) + ", " + std::to_string(identity.flipped) +
-                     " flipped triangles";
+  std::string text = "identity: " + readable(identity.alpha_rms) +
+                     " standard deviations (RMS), at most " + readable(identity.alpha_max) + ", " +
+                     std::to_string(identity.flipped) + " flipped triangles";
   if (halves) {
     text += "; the neutrals of the clip's halves are " + readable(100 * halves->mean) +
             " % of the longest side apart (at most " + readable(100 * halves->largest) + " %)";
