@@ -33,7 +33,7 @@ AffineCamera estimate_affine_camera(const ModelPoints& points, const ImagePoints
   const Eigen::Matrix3d scatter = centred.transpose() * centred;
   const Eigen::Matrix<double, 2, 3> cross = (image.rowwise() - image_centre).transpose() * centred;
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(scatter);
-  const Eigen::Vector3d values = eigen.eigenvalues();  // ascending; squares of singular values
+  const Eigen::Vector3d& values = eigen.eigenvalues();  // ascending; squares of singular values
   if (!(values[0] > kCoplanar * kCoplanar * values[2])) {
     throw MismatchError("the " + std::to_string(count) +
                         " landmarks are coplanar on the model, so that no affine camera can be "

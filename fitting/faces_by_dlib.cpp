@@ -22,6 +22,7 @@ namespace dlib {
 
 static_assert(sizeof(rgb_pixel) == sizeof(mimetra::Color));
 
+// NOLINTBEGIN(readability-identifier-naming): dlib's name
 template <>
 struct image_traits<mimetra::Image> {
   using pixel_type = rgb_pixel;
@@ -30,6 +31,7 @@ template <>
 struct image_traits<const mimetra::Image> {
   using pixel_type = rgb_pixel;
 };
+// NOLINTEND(readability-identifier-naming)
 
 }  // namespace dlib
 

@@ -43,6 +43,7 @@ struct Ffmpeg {
   SharedLibrary format{"libavformat.so." AV_STRINGIFY(LIBAVFORMAT_VERSION_MAJOR)};
   SharedLibrary scale{"libswscale.so." AV_STRINGIFY(LIBSWSCALE_VERSION_MAJOR)};
 
+// NOLINTNEXTLINE(bugprone-macro-parentheses): a member's name
 #define MIMETRA_OF(library, name) \
   decltype(&::name) name = library.function<decltype(&::name)>(#name)
   MIMETRA_OF(util, av_d2q);

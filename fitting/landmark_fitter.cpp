@@ -261,7 +261,7 @@ ClipOutline LandmarkFitter::State::on_outline(const Frames& points, Eigen::Index
   return result;
 }
 
-LandmarkFitter::LandmarkFitter(const MorphableModel& model, std::vector<int> vertices,
+LandmarkFitter::LandmarkFitter(const MorphableModel& model, const std::vector<int>& vertices,
                                Outline outline) {
   for (const int vertex : vertices) {
     if (vertex >= 0 && vertex < model.vertices()) continue;

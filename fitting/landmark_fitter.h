@@ -52,7 +52,7 @@ class LandmarkFitter {
 
   /// `vertices`: the model's vertex of each landmark (n). Throws MismatchError for a vertex that
   /// the model does not have.
-  LandmarkFitter(const MorphableModel& model, std::vector<int> vertices,
+  LandmarkFitter(const MorphableModel& model, const std::vector<int>& vertices,
                  Outline outline = Outline::none);
   ~LandmarkFitter();
   LandmarkFitter(LandmarkFitter&&) noexcept;

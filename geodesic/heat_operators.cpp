@@ -51,6 +51,7 @@ struct EndlessFlips : std::runtime_error {
 }
 
 /// What CGAL's heat method asks of a geometry kernel (HeatMethodTraits_3), on OpenMesh's points.
+// NOLINTBEGIN(readability-identifier-naming): CGAL's names
 struct OpenMeshGeometry {
   using FT = double;
   using Point_3 = OpenMesh::Vec3d;
@@ -86,6 +87,7 @@ struct OpenMeshGeometry {
   Compute_squared_length_3 compute_squared_length_3_object() const { return {}; }
   Compute_squared_distance_3 compute_squared_distance_3_object() const { return {}; }
 };
+// NOLINTEND(readability-identifier-naming)
 
 /// The matrices that CGAL hands to its solver while one of these is alive. CGAL makes the solver
 /// itself and keeps it private, so they leave by a slot of the thread.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
 #include "plugins/c/call_handle.h"
 #include "plugins/c/context.h"
@@ -161,7 +162,8 @@ mimetra_status new_call(mimetra_context* context, const char* operation,
                         mimetra_call** call) noexcept {
   if (call) *call = nullptr;
   return guarded(context, [&] {
-    *needed(call, "call") = new mimetra_call(*context, needed(operation, "operation"));
+    *needed(call, "call") =
+        std::make_unique<mimetra_call>(*context, needed(operation, "operation")).release();
   });
 }
 
@@ -314,52 +316,52 @@ mimetra_status make_context(const std::function<std::vector<std::string>(Operati
 }
 
 const mimetra_interface& toolkit_interface() {
-  static constexpr mimetra_interface functions = {sizeof(mimetra_interface),
-                                                  MIMETRA_INTERFACE_VERSION,
-                                                  MIMETRA_VERSION,
-                                                  new_context,
-                                                  free_context,
-                                                  message,
-                                                  set_progress,
-                                                  set_threads,
-                                                  operations,
-                                                  find_operation,
-                                                  operations_json,
-                                                  new_data,
-                                                  derive_data,
-                                                  load_data,
-                                                  save_data,
-                                                  free_data,
-                                                  data_kind,
-                                                  data_name,
-                                                  data_arrays,
-                                                  data_array,
-                                                  data_json,
-                                                  new_call,
-                                                  free_call,
-                                                  call_set,
-                                                  call_give,
-                                                  call_read,
-                                                  call_want,
-                                                  call_write,
-                                                  call_run,
-                                                  call_output_count,
-                                                  call_output,
-                                                  call_report,
-                                                  call_summary,
-                                                  job_context,
-                                                  job_input,
-                                                  job_number,
-                                                  job_text,
-                                                  job_threads,
-                                                  job_wants,
-                                                  job_progress,
-                                                  job_log,
-                                                  job_fail,
-                                                  job_output,
-                                                  job_report,
-                                                  formats};
-  return functions;
+  static constexpr mimetra_interface kFunctions = {sizeof(mimetra_interface),
+                                                   MIMETRA_INTERFACE_VERSION,
+                                                   MIMETRA_VERSION,
+                                                   new_context,
+                                                   free_context,
+                                                   message,
+                                                   set_progress,
+                                                   set_threads,
+                                                   operations,
+                                                   find_operation,
+                                                   operations_json,
+                                                   new_data,
+                                                   derive_data,
+                                                   load_data,
+                                                   save_data,
+                                                   free_data,
+                                                   data_kind,
+                                                   data_name,
+                                                   data_arrays,
+                                                   data_array,
+                                                   data_json,
+                                                   new_call,
+                                                   free_call,
+                                                   call_set,
+                                                   call_give,
+                                                   call_read,
+                                                   call_want,
+                                                   call_write,
+                                                   call_run,
+                                                   call_output_count,
+                                                   call_output,
+                                                   call_report,
+                                                   call_summary,
+                                                   job_context,
+                                                   job_input,
+                                                   job_number,
+                                                   job_text,
+                                                   job_threads,
+                                                   job_wants,
+                                                   job_progress,
+                                                   job_log,
+                                                   job_fail,
+                                                   job_output,
+                                                   job_report,
+                                                   formats};
+  return kFunctions;
 }
 
 const mimetra_interface* library_interface(uint32_t version,

@@ -113,7 +113,7 @@ std::vector<fs::path> write_by(PluginFunction function, const Operation& operati
 }  // namespace
 
 Format plugin_format(const mimetra_format& described, const std::string& plugin,
-                     std::shared_ptr<const DescribedTable> toolkit) {
+                     const std::shared_ptr<const DescribedTable>& toolkit) {
   Format format;
   format.name = line_of(described.name, "a format");
   if (format.name.empty()) throw UsageError("a format has no name");

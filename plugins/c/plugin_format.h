@@ -12,6 +12,6 @@ namespace mimetra {
 /// A format of a plugin as one of the table. `toolkit` is what its functions may call. Throws
 /// UsageError that says what is wrong with the description.
 Format plugin_format(const mimetra_format& described, const std::string& plugin,
-                     std::shared_ptr<const DescribedTable> toolkit);
+                     const std::shared_ptr<const DescribedTable>& toolkit);
 
 }  // namespace mimetra

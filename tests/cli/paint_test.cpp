@@ -44,8 +44,9 @@ class PaintTest : public test::CommandTest {
       for (int v = 0; v < kSide * kSide; ++v) {
         const Eigen::RowVector3d place = head.average().neutral().row(v) +
                                          0.5 * frame * bumps.col(0).segment<3>(3 * v).transpose();
-        text << "v " << place << "\nvt " << (v % kSide + 0.5) / kSide << ' '
-             << (v / kSide + 0.5) / kSide << '\n';
+        const int row = v / kSide;
+        text << "v " << place << "\nvt " << (v % kSide + 0.5) / kSide << ' ' << (row + 0.5) / kSide
+             << '\n';
       }
       for (const auto& corners : head.average().triangles().rowwise()) {
         text << 'f';

@@ -105,12 +105,12 @@ TEST_F(RetargetCommand, ForeseesInADryRunWhatItRefuses) {
 TEST_F(RetargetCommand, EasesWeightsWithinTheBoundsOfAMap) {
   done(std::string(kRigs) + "-o w.csv --map-out map.json");
   std::string map = text_of(folder_ / "map.json");
-  const std::size_t upper = map.find("1", map.find("\"upper\""));
+  const std::size_t upper = map.find('1', map.find("\"upper\""));
   map.replace(upper, map.find_first_of(",\n]", upper) - upper, "0.25");
   write("low.json", map);
   done("retarget --map low.json --weights take.csv --smoothness 0.01 -o eased.csv");
   EXPECT_EQ(weights("eased.csv").weights.col(0).maxCoeff(), 0.25);
-  const std::size_t lower = map.find("0", map.find("\"lower\""));
+  const std::size_t lower = map.find('0', map.find("\"lower\""));
   map.replace(lower, map.find_first_of(",\n]", lower) - lower, "-0.5");
   write("negative.json", map);
   for (const std::string mode : {"", " --dry-run"}) {

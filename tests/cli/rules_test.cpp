@@ -19,14 +19,14 @@ class RulesTest : public test::CommandTest {
 
   void expect_failure(const std::string& arguments, int code, const std::string& message) const {
     const auto before = listing();
-    const auto result = run(kTransfer + arguments);
+    const auto result = run(transfer_ + arguments);
     EXPECT_EQ(result.code, code) << arguments << '\n' << result.err;
     EXPECT_THAT(result.err, HasSubstr(message)) << arguments;
     EXPECT_EQ(listing(), before) << arguments;
   }
 
   std::string weights_of(const std::string& arguments, const std::string& name) const {
-    const auto result = run(kTransfer + arguments + " -o " + name + ".npy --weights-out " + name);
+    const auto result = run(transfer_ + arguments + " -o " + name + ".npy --weights-out " + name);
     EXPECT_EQ(result.code, 0) << arguments << '\n' << result.err;
     return text_of(folder_ / name);
   }
@@ -46,7 +46,7 @@ class RulesTest : public test::CommandTest {
   }
 
   static constexpr int kTop = 3;
-  const std::string kTransfer = "transfer head --weights take.csv head@wide=1 --full ";
+  const std::string transfer_ = "transfer head --weights take.csv head@wide=1 --full ";
 };
 
 TEST_F(RulesTest, BoundWhatIsWritten) {
@@ -58,7 +58,7 @@ TEST_F(RulesTest, BoundWhatIsWritten) {
 TEST_F(RulesTest, AreTakenFromAModelsFolderWhichIsSaid) {
   const std::string asked = weights_of("--rules low.json", "low.csv");
   std::filesystem::rename(folder_ / "low.json", folder_ / "head/rules.json");
-  const auto result = run(kTransfer + "-o x.npy --weights-out found.csv");
+  const auto result = run(transfer_ + "-o x.npy --weights-out found.csv");
   EXPECT_EQ(result.code, 0) << result.err;
   EXPECT_THAT(result.err,
               HasSubstr("head@wide=1: takes the rules in its folder (1 expression, 0 "
@@ -79,7 +79,7 @@ TEST_F(RulesTest, AreInTheTableOfErrorsToo) {
 
 TEST_F(RulesTest, AreNotLookedForInVertexSpace) {
   std::filesystem::copy_file(folder_ / "low.json", folder_ / "head/rules.json");
-  const auto result = run(kTransfer + "--space vertex -o x.npy");
+  const auto result = run(transfer_ + "--space vertex -o x.npy");
   EXPECT_EQ(result.code, 0) << result.err;
   EXPECT_THAT(result.err, Not(HasSubstr("rules")));
 }
@@ -156,7 +156,7 @@ TEST_F(RulesTest, SayWhichFilesDoNotAct) {
 TEST_F(RulesTest, SayWhatWouldBeMissingWithoutThem) {
   write("still.json", R"({"expressions": {"top": {"maximum": 0.01}, "left": {"maximum": 0.01},
                           "right": {"maximum": 0.01}}})");
-  const auto result = run(kTransfer + "--rules still.json -o x.npy");
+  const auto result = run(transfer_ + "--rules still.json -o x.npy");
   EXPECT_EQ(result.code, 0) << result.err;
   EXPECT_THAT(result.err, HasSubstr("of the deformation is missing; without --rules "));
 }
@@ -183,7 +183,7 @@ TEST_F(RulesTest, DrawPairsTogether) {
 
 TEST_F(RulesTest, SmoothnessOfZeroChangesNothingAndMoreSmoothsBothSpaces) {
   for (const std::string space : {"vertex", "blendshape"}) {
-    const std::string line = kTransfer + "--space " + space + " -o " + space;
+    const std::string line = transfer_ + "--space " + space + " -o " + space;
     ASSERT_EQ(run(line + "0.npy").code, 0);
     ASSERT_EQ(run(line + "1.npy --smoothness 0").code, 0);
     ASSERT_EQ(run(line + "2.npy --smoothness 0.1").code, 0);

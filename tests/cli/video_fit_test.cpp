@@ -40,7 +40,8 @@ class VideoFit : public test::CommandTest {
       test::draw_head(person.pose(track.weights.row(2 * f)), person.connectivity().triangles,
                       {.x = 240, .y = 180, .height = 260, .yaw = -15 + 30.0 * f / frames}, image);
       images.push_back(std::move(image));
-      times.push_back(f / 25.0 + 0.1 * (f / 5));
+      const int pauses = f / 5;
+      times.push_back(f / 25.0 + 0.1 * pauses);
     }
     test::write_video(folder_ / name, images, times);
     return times;

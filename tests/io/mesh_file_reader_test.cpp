@@ -237,8 +237,8 @@ TEST(PlyFiles, WithFurtherPropertiesInEitherByteOrderAgree) {
     EXPECT_NE(readers.read(header + vertices + std::string("\3\0\2\1", 4)).error, "");
     for (int byte = 0; byte < 3 * 15; ++byte) {
       std::string endless = vertices;
-      endless.replace(static_cast<std::size_t>(byte / 4 * 4), 2, "\x7f\x80");
-      endless.replace(static_cast<std::size_t>(byte / 4 * 4) + 2, 2, "\x80\x7f");
+      endless.replace(static_cast<std::size_t>(byte) / 4 * 4, 2, "\x7f\x80");
+      endless.replace(static_cast<std::size_t>(byte) / 4 * 4 + 2, 2, "\x80\x7f");
       readers.read(header + endless + face);
     }
   }

@@ -95,7 +95,7 @@ TEST_F(NpzFiles, MayHaveFortranOrder) {
   for (int c = 0; c < 3; ++c) {
     for (int v = 0; v < 4; ++v) {
       for (int f = 0; f < 2; ++f)
-        values.push_back(kPoses[static_cast<std::size_t>(12 * f + 3 * v + c)]);
+        values.push_back(kPoses[12 * std::size_t(f) + 3 * std::size_t(v) + std::size_t(c)]);
     }
   }
   write({{"positions.npy", npy("<f8", "2, 4, 3", values, "True")}, faces_});

@@ -29,8 +29,8 @@ class PaintingFileTest : public testing::Test {
       : mesh_(
             Connectivity::from_triangles(kColumns * kRows, test::grid(kColumns, kRows).triangles)) {
     for (int v = 0; v < mesh_.vertices; ++v) {
-      mesh_.texture.coordinates.emplace_back((v % kColumns + 0.5) / kColumns,
-                                             (v / kColumns + 0.5) / kRows);
+      const int row = v / kColumns;
+      mesh_.texture.coordinates.emplace_back((v % kColumns + 0.5) / kColumns, (row + 0.5) / kRows);
     }
     mesh_.texture.corners = mesh_.polygons.corners;
   }

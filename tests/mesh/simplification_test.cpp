@@ -153,7 +153,11 @@ TEST(Simplification, FoldsNoTriangleInAnyFrame) {
 TEST(Simplification, KeepsTextureCoordinatesWithTheirVertices) {
   const Shape grid = test::grid(17, 17);
   Connectivity mesh = Connectivity::from_triangles(289, grid.triangles);
-  for (int v = 0; v < 289; ++v) mesh.texture.coordinates.emplace_back(v % 17 / 16.0, v / 17 / 16.0);
+  const auto place = [](int v) {
+    const int row = v / 17;
+    return Eigen::Vector2d(v % 17 / 16.0, row / 16.0);
+  };
+  for (int v = 0; v < 289; ++v) mesh.texture.coordinates.push_back(place(v));
   mesh.texture.corners = mesh.polygons.corners;
   const MeshSequence sheet(mesh, grid.positions.reshaped<Eigen::RowMajor>().transpose());
   const Simplification simple = simplify(sheet, {.share = 0.3});
@@ -162,7 +166,7 @@ TEST(Simplification, KeepsTextureCoordinatesWithTheirVertices) {
   for (std::size_t c = 0; c < left.polygons.corners.size(); ++c) {
     const int own = simple.vertices[static_cast<std::size_t>(left.polygons.corners[c])];
     EXPECT_EQ(left.texture.coordinates[static_cast<std::size_t>(left.texture.corners[c])],
-              Eigen::Vector2d(own % 17 / 16.0, own / 17 / 16.0));
+              place(own));
   }
 }
 

@@ -116,7 +116,7 @@ TEST_F(CallOfAnOperation, WritesWhatItHandsOver) {
 }
 
 TEST_F(CallOfAnOperation, RefusesBeforeAnythingIsRead) {
-  const auto refusal = [&](CallRequest request) {
+  const auto refusal = [&](const CallRequest& request) {
     return [this, request] { Call(table_, request); };
   };
   EXPECT_THAT(refusal(request("align")),

@@ -24,7 +24,8 @@ inline BlendshapeModel bumpy_patch(double stretch, double size = 1) {
   const double centers[3][2] = {{3, 3}, {11, 4}, {6, 11}};
   for (int j = 0; j < 3; ++j) {
     for (int v = 0; v < n; ++v) {
-      const double x = v % kSide - centers[j][0], y = v / kSide - centers[j][1];
+      const int row = v / kSide;
+      const double x = v % kSide - centers[j][0], y = row - centers[j][1];
       const double inside = 1 - (x * x + y * y) / 9;
       if (inside > 0) bumps(3 * v + 2, j) = 2 * inside * inside;
     }

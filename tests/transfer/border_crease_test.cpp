@@ -129,7 +129,8 @@ TransferError literal_crease(const MeshSequence& source, const MeshSequence& res
                                  triangle_frame(source.rest(), triangles, t).inverse());
         };
         const Eigen::Matrix3d qa = gradient(a), qb = gradient(b);
-        const Positions rest = result.rest(), pose = result.frame(f);
+        const Positions& rest = result.rest();
+        const Positions pose = result.frame(f);
         const double at_rest = signed_angle(normal(rest, a), normal(rest, b), along(rest));
         const double found = signed_angle(normal(pose, a), normal(pose, b), along(pose)) - at_rest;
         const double asked =

@@ -25,8 +25,9 @@ class SameBytes : public testing::Test {
     Eigen::MatrixXd bumps = Eigen::MatrixXd::Zero(3 * n, 4);
     for (int v = 0; v < n; ++v) {
       for (int j = 0; j < 4; ++j) {
-        const double x = shape.positions(v, 0) - 9 * (1 + 2 * (j % 2));
-        const double y = shape.positions(v, 1) - 9 * (1 + 2 * (j / 2));
+        const int column = j % 2, row = j / 2;
+        const double x = shape.positions(v, 0) - 9 * (1 + 2 * column);
+        const double y = shape.positions(v, 1) - 9 * (1 + 2 * row);
         bumps(3 * v + 2, j) = std::exp(-(x * x + y * y) / 20);
         bumps(3 * v, j) = 0.1 * std::sin(0.3 * v + j) * bumps(3 * v + 2, j);
       }

@@ -24,12 +24,12 @@ class VtpHostile : public VtpTest {
   }
   /// Of a triangle, with one text in place of another.
   std::string refusal_with(const std::string& before, const std::string& after) const {
-    std::string text = kTriangle;
+    std::string text = triangle_;
     text.replace(text.find(before), before.size(), after);
     return refusal_of("a.vtp", text);
   }
 
-  const std::string kTriangle =
+  const std::string triangle_ =
       "<VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"LittleEndian\" "
       "header_type=\"UInt32\"><PolyData><Piece NumberOfPoints=\"3\" NumberOfPolys=\"1\">"
       "<PointData><DataArray type=\"Float32\" Name=\"roi\" format=\"ascii\">0 1 1</DataArray>"
@@ -41,7 +41,7 @@ class VtpHostile : public VtpTest {
 };
 
 TEST_F(VtpHostile, TheTriangleItselfIsRead) {
-  std::ofstream(in_folder("a.vtp")) << kTriangle;
+  std::ofstream(in_folder("a.vtp")) << triangle_;
   EXPECT_EQ(read_vtp_series(in_folder("a.vtp")).sequence().vertices(), 3);
 }
 
@@ -56,7 +56,7 @@ TEST_F(VtpHostile, EntitiesAreRefused) {
   const std::string bomb =
       "<?xml version=\"1.0\"?><!DOCTYPE a [<!ENTITY b \"ha\"><!ENTITY c \"&b;&b;\">]>";
   EXPECT_THAT(refusal_of("a.pvd", bomb + "<VTKFile/>"), HasSubstr("<!ENTITY"));
-  EXPECT_THAT(refusal_of("a.vtp", bomb + kTriangle), HasSubstr("<!ENTITY"));
+  EXPECT_THAT(refusal_of("a.vtp", bomb + triangle_), HasSubstr("<!ENTITY"));
   EXPECT_THAT(refusal_of("b.pvd", "<VTKFile a=\"&c;\"/>"), HasSubstr("'&c'"));
 }
 
@@ -96,7 +96,7 @@ TEST_F(VtpHostile, BlocksThatAreLargerThanTheFileAreRefused) {
 TEST_F(VtpHostile, NoBlocksOfWhichTheLastHoldsSomethingAreRefused) {
   const std::string compressed = "compressor=\"vtkLZ4DataCompressor\" header_type";
   const auto refusal = [&](const std::string& sizes) {
-    std::string text = kTriangle;
+    std::string text = triangle_;
     text.replace(text.find("header_type"), 11, compressed);
     const std::string ascii = "Name=\"roi\" format=\"ascii\">0 1 1";
     text.replace(text.find(ascii), ascii.size(), "Name=\"roi\" format=\"binary\">" + sizes);
@@ -146,7 +146,7 @@ TEST_F(VtpHostile, OffsetsThatEndBehindTheCornersAreRefusedHoweverTheyAreStored)
   };
   for (const Stored& each : all) {
     const auto with = [&](const std::string& offsets) {
-      std::string text = kTriangle;
+      std::string text = triangle_;
       const std::string header = "header_type=\"UInt32\"";
       text.replace(text.find(header), header.size(), each.header);
       const std::string ascii = "\"offsets\" format=\"ascii\">3";
@@ -168,7 +168,7 @@ TEST_F(VtpHostile, GapsInBase64AreRefused) {
   // 12 bytes: 0, 1 and 1 in single precision.
   const std::string sound = "DAAAAAAAAAAAAIA/AACAPw==";
   const auto with = [&](const std::string& values) {
-    std::string text = kTriangle;
+    std::string text = triangle_;
     const std::string ascii = "Name=\"roi\" format=\"ascii\">0 1 1";
     return text.replace(text.find(ascii), ascii.size(), "Name=\"roi\" format=\"binary\">" + values);
   };

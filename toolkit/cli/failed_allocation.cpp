@@ -16,6 +16,7 @@ void* noted(void* memory, std::size_t bytes) {
 
 // std::bad_alloc does not say how much was asked for. The linker sends the program's calls here
 // (--wrap, in CMakeLists.txt); __real_NAME is the function itself.
+// NOLINTBEGIN(bugprone-reserved-identifier,readability-identifier-naming): the linker's names
 extern "C" {
 void* __real_malloc(std::size_t bytes);
 void* __real_realloc(void* memory, std::size_t bytes);
@@ -52,6 +53,7 @@ void* __wrap__ZnwmSt11align_val_t(std::size_t bytes, std::align_val_t alignment)
   }
 }
 }
+// NOLINTEND(bugprone-reserved-identifier,readability-identifier-naming)
 
 namespace mimetra::cli {
 

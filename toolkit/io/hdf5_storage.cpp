@@ -310,8 +310,9 @@ std::vector<Chunk> chunks_of_index(const Hdf5Dataset& dataset, const ChunkedRows
 }
 
 std::shared_ptr<const Storage> chunked(const Hdf5Dataset& dataset,
-                                       std::shared_ptr<const Hdf5Bytes> file, Hdf5Fields& fields,
-                                       std::uint64_t version, const Hdf5Message* filters) {
+                                       const std::shared_ptr<const Hdf5Bytes>& file,
+                                       Hdf5Fields& fields, std::uint64_t version,
+                                       const Hdf5Message* filters) {
   constexpr std::uint64_t kFilteredSize = 2;
   const auto flags = version == 4 ? fields.byte() : 0;
   const auto dimensions = fields.byte();
@@ -372,7 +373,7 @@ std::shared_ptr<const Storage> hdf5_storage(const Hdf5Dataset& dataset,
   if (rank > kMostDimensions) {
     dataset.fail("has " + std::to_string(rank) + " dimensions, expected 3 at most");
   }
-  return chunked(dataset, std::move(file), fields, version, filters);
+  return chunked(dataset, file, fields, version, filters);
 }
 
 }  // namespace mimetra

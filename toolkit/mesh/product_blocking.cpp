@@ -12,7 +12,7 @@ constexpr std::ptrdiff_t kSecondLevel = 256 * 1024;
 constexpr std::ptrdiff_t kThirdLevel = 2 * 1024 * 1024;
 
 /// Before there are threads, which from here on only read the sizes.
-[[maybe_unused]] const bool fixed_when_loaded = (fix_product_blocking(), true);
+[[maybe_unused]] const bool kFixedWhenLoaded = (fix_product_blocking(), true);
 
 }  // namespace
 

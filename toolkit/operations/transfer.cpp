@@ -233,7 +233,7 @@ void add_targets(Outcome& outcome, Json& report, const Invocation& invocation,
           correspondence_json(pairs, source.frames->connectivity(), made.frames->connectivity());
     }
     if (transferred.weights.size() > 0) {
-      shown.push_back({"weight", Field::Location::vertices, std::move(transferred.weights)});
+      shown.push_back({"weight", Field::Location::vertices, transferred.weights});
     }
     out.data = std::move(made);
   }

@@ -421,7 +421,7 @@ Frames VertexTransfer::State::solve(const Eigen::Map<const Frames>& frames) cons
 }
 
 VertexTransfer::VertexTransfer(const Positions& source_rest, const Positions& target_rest,
-                               const Triangles& triangles, std::vector<int> selected,
+                               const Triangles& triangles, const std::vector<int>& selected,
                                const VertexTransferOptions& options) {
   check(source_rest, target_rest, triangles, options);
   state_ = std::make_unique<State>(source_rest, target_rest, triangles, selected, options);

@@ -127,7 +127,7 @@ class VertexTransfer {
   /// range, an explicit anchor where vertices are fixed, an index out of range, vertices that are
   /// one but lie apart in a rest pose, or weights together with Outside::identity.
   VertexTransfer(const Positions& source_rest, const Positions& target_rest,
-                 const Triangles& triangles, std::vector<int> selected,
+                 const Triangles& triangles, const std::vector<int>& selected,
                  const VertexTransferOptions& = {});
   ~VertexTransfer();
   VertexTransfer(VertexTransfer&&) noexcept;
