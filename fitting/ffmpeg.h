@@ -43,9 +43,10 @@ struct Ffmpeg {
   SharedLibrary format{"libavformat.so." AV_STRINGIFY(LIBAVFORMAT_VERSION_MAJOR)};
   SharedLibrary scale{"libswscale.so." AV_STRINGIFY(LIBSWSCALE_VERSION_MAJOR)};
 
-// NOLINTNEXTLINE(bugprone-macro-parentheses): a member's name
+// NOLINTBEGIN(bugprone-macro-parentheses): a member's name
 #define MIMETRA_OF(library, name) \
   decltype(&::name) name = library.function<decltype(&::name)>(#name)
+  // NOLINTEND(bugprone-macro-parentheses)
   MIMETRA_OF(util, av_d2q);
   MIMETRA_OF(util, av_dict_free);
   MIMETRA_OF(util, av_dict_set);

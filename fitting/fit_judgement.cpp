@@ -64,8 +64,8 @@ std::string farthest(const Eigen::VectorXd& distances, const MappedLandmarks& ma
   return mimetra::joined(named);
 }
 
-void warn_of_residuals(const FitResiduals& residuals, const MappedLandmarks& mapped,
-                       const Invocation& invocation) {
+void warn_of_residuals(const FitResiduals& residuals, bool has_identities,
+                       const MappedLandmarks& mapped, const Invocation& invocation) {
   const std::string& name = invocation.input("landmarks").name;
   if (residuals.typical() > kFarLandmarks) {
     invocation.warn(name + ": the landmarks are " + percent(residuals.typical()) +
@@ -73,7 +73,8 @@ void warn_of_residuals(const FitResiduals& residuals, const MappedLandmarks& map
                     "the farthest are " +
                     farthest(residuals.of_landmarks, mapped) +
                     ": are they in the order of the mapping, and does it count the model's "
-                    "vertices from 0?");
+                    "vertices from 0?" +
+                    (has_identities ? "" : " Or is it another face than the model's?"));
     return;
   }
   std::vector<int> far;
@@ -115,9 +116,9 @@ std::string advice(const FitOptions& options, bool is_clip) {
 void warn_of(const Judgement& judgement, const std::vector<std::string>& names,
              const MappedLandmarks& mapped, const FitOptions& options,
              const Invocation& invocation) {
-  warn_of_residuals(judgement.residuals, mapped, invocation);
+  warn_of_residuals(judgement.residuals, judgement.has_identities, mapped, invocation);
   const bool is_clip = mapped.points.rows() > 1;
-  if (is_clip) warn_of_stretch(judgement.stretch, invocation);
+  if (is_clip && judgement.has_identities) warn_of_stretch(judgement.stretch, invocation);
   const std::optional<NeutralDistance>& halves = judgement.halves;
   if (halves && halves->mean > kTwoPeople) {
     invocation.warn(invocation.input("landmarks").name +

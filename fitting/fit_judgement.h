@@ -15,6 +15,8 @@ struct Judgement {
   IdentityVerdict identity;
   FitResiduals residuals;
   double stretch = 1;
+  /// Without identities, cameras take what the person's proportions are.
+  bool has_identities = true;
   std::optional<NeutralDistance> halves;
   std::vector<ExpressionUse> expressions;
 

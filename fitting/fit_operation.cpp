@@ -301,8 +301,12 @@ Outcome run(const Invocation& invocation) {
   const AvertedLandmarks averted(sequence, fit, mapped.vertices, cameras);
   averted.require_facing(landmarks.name);
   fit.notes = averted.notes(invocation);
-  const Judgement judgement{verdict_of(model, fit.identity()), residuals_of(sequence, fit, mapped),
-                            stretch_of(cameras, fit), halves, expression_use(fit.beta)};
+  const Judgement judgement{verdict_of(model, fit.identity()),
+                            residuals_of(sequence, fit, mapped),
+                            stretch_of(cameras, fit),
+                            model.identities().size() > 0,
+                            halves,
+                            expression_use(fit.beta)};
   Outcome outcome;
   Json report = {{"rms_px", summary.rms},
                  {"vertices", model.vertices()},

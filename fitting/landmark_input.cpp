@@ -80,6 +80,14 @@ void note_others(LandmarksRead& read, const std::string& text, const LandmarkFil
                        "name the images by a pattern to find faces in them");
 }
 
+/// Says which numbers no file of points has.
+void note_missing(LandmarksRead& read, const std::string& text, const Paths& files) {
+  const std::vector<std::string> missing = missing_numbers(files);
+  if (missing.empty()) return;
+  read.notes.push_back(text + ": no file has these numbers: " + listed(missing) +
+                       "; frames follow each other without a pause");
+}
+
 /// Options that change nothing are mistakes. `what` says what the input is where it shows faces,
 /// "is a video"; it is nothing for landmarks.
 void check_needed(const std::string& text, const std::string& what,
@@ -312,11 +320,7 @@ LandmarksRead read_landmark_input(const std::string& text, const SequenceSource&
     make_pixels(read, text, options.image_size);
     drop_doubtful(read, text, options.faces.min_confidence);
     note_others(read, text, input);
-  }
-  const std::vector<std::string> missing = missing_numbers(input.frames);
-  if (!missing.empty()) {
-    read.notes.push_back(text + ": no file has these numbers: " + listed(missing) +
-                         "; frames follow each other without a pause");
+    if (!source.frames) note_missing(read, text, input.frames);
   }
   set_times(read, text, selected, source);
   report_progress(source.progress, 1);

@@ -11,22 +11,28 @@ constexpr int kFewForAFace = 5;
 
 using Points = Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, 2, Eigen::RowMajor>>;
 
-/// The landmarks of a frame (n x 2) at (place, place) that are none, by their rows.
-std::vector<Eigen::Index> placeholders_at(double place, const Points& points) {
-  std::vector<Eigen::Index> there;
-  const Eigen::RowVector2d at = Eigen::RowVector2d::Constant(place);
+bool is_placeholder(const Eigen::RowVector2d& point) {
+  return point == Eigen::RowVector2d(0, 0) || point == Eigen::RowVector2d(-1, -1);
+}
+
+/// The landmarks of a frame (n x 2) that are none, by their rows.
+std::vector<Eigen::Index> placeholders_of(const Points& points) {
+  std::vector<Eigen::Index> found;
   Eigen::RowVector2d lowest = Eigen::RowVector2d::Constant(std::numeric_limits<double>::infinity());
   Eigen::RowVector2d highest = -lowest;
   for (Eigen::Index i = 0; i < points.rows(); ++i) {
-    if (points.row(i) == at) {
-      there.push_back(i);
+    if (is_placeholder(points.row(i))) {
+      found.push_back(i);
     } else if (!points.row(i).hasNaN()) {
       lowest = lowest.cwiseMin(points.row(i));
       highest = highest.cwiseMax(points.row(i));
     }
   }
-  const bool is_inside = (lowest.array() <= place).all() && (highest.array() >= place).all();
-  return is_inside ? std::vector<Eigen::Index>{} : there;
+  std::erase_if(found, [&](Eigen::Index i) {
+    const auto point = points.row(i).array();
+    return (lowest.array() <= point).all() && (point <= highest.array()).all();
+  });
+  return found;
 }
 
 }  // namespace
@@ -37,14 +43,11 @@ std::string drop_placeholders(LandmarkTrack& track) {
   for (Eigen::Index f = 0; f < track.points.rows(); ++f) {
     Points points(track.points.row(f).data(), track.landmarks(), 2);
     const bool was_seen = !points.array().isNaN().all();
-    bool has_some = false;
-    for (const double place : {0.0, -1.0}) {
-      for (const Eigen::Index landmark : placeholders_at(place, points)) {
-        points.row(landmark).setConstant(std::numeric_limits<double>::quiet_NaN());
-        has_some = true;
-      }
+    const std::vector<Eigen::Index> placeholders = placeholders_of(points);
+    if (placeholders.empty()) continue;
+    for (const Eigen::Index landmark : placeholders) {
+      points.row(landmark).setConstant(std::numeric_limits<double>::quiet_NaN());
     }
-    if (!has_some) continue;
     ++(was_seen && points.array().isNaN().all() ? frames : partly);
   }
   if (frames + partly == 0) return "";

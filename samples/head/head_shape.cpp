@@ -112,7 +112,7 @@ Eigen::Vector3d eyeball_point(const HeadVertex& vertex) {
   constexpr double kHalf = 0.5, kIris = 0.23, kPupil = 0.12;
   const double h = std::sqrt(3.0) / 2;
   const std::array<double, 12> cosines = {1, h, kHalf, 0, -kHalf, -h, -1, -h, -kHalf, 0, kHalf, h};
-  const auto column = static_cast<std::size_t>(vertex.u * 12 + 0.5);
+  const auto column = static_cast<std::size_t>(std::lround(vertex.u * 12));
   const double cos_around = cosines[column], sin_around = cosines[(column + 9) % 12];
   if (vertex.v >= 1) return eye_center(vertex.eye) - Eigen::Vector3d(0, 0, kEyeballRadius);
   const double t = vertex.v / (1 - vertex.v);

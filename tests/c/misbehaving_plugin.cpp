@@ -69,7 +69,6 @@ mimetra_status run(const mimetra_interface* m, mimetra_job* job, void* user) {
   return make(m, job, 0, "positions");
 }
 
-// NOLINTBEGIN(readability-identifier-naming): as a plugin in C has them
 const mimetra_port input = {sizeof input, MIMETRA_SEQUENCE, "sequence", "anything", 0, 0};
 const mimetra_port* const inputs[] = {&input, nullptr};
 const mimetra_port out = {sizeof out, MIMETRA_SEQUENCE, "out", "a triangle", 0, 0};
@@ -86,7 +85,6 @@ const mimetra_operation operation = {
 const mimetra_operation* const operations[] = {&operation, nullptr};
 const mimetra_plugin plugin = {sizeof plugin, MIMETRA_INTERFACE_VERSION, "misbehaving", operations,
                                nullptr};
-// NOLINTEND(readability-identifier-naming)
 
 }  // namespace
 

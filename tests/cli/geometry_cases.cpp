@@ -67,11 +67,6 @@ void add_targets(std::vector<BadInput>& all) {
         mesh.faces[7] = {7, 22, 23};
       },
       {"other", "face 7"});
-  add("flipped_target",
-      [](RawMesh& mesh) {
-        for (auto& face : mesh.faces) std::swap(face[1], face[2]);
-      },
-      {"other", "face 0"});
   add("target_with_a_face_less", [](RawMesh& mesh) { mesh.faces.pop_back(); }, {"other", "face"});
 }
 

@@ -3,6 +3,7 @@
 
 #include "tests/cli/matched_patch.h"
 #include "toolkit/io/correspondence_file.h"
+#include "toolkit/io/mesh_file.h"
 
 namespace mimetra {
 namespace {
@@ -152,6 +153,40 @@ TEST_F(MatchTest, EvaluatesOverACorrespondence) {
   const auto report = report_of("evaluate head --weights take.csv small.obj -k 2 --markers m.txt");
   ASSERT_EQ(report["rows"].size(), 2u);
   EXPECT_EQ(report["rows"][1]["vertices"], 225);
+}
+
+TEST_F(MatchTest, ConvertKeepsAModelsExpressions) {
+  // The neutral with its vertices numbered backwards.
+  const MorphableModel head = model();
+  const int last = head.vertices() - 1;
+  const Positions backwards = head.mean().colwise().reverse();
+  write_mesh(
+      folder_ / "back.ply",
+      TriMesh{backwards, Connectivity::from_triangles(
+                             last + 1, Triangles(last - head.connectivity().triangles.array()))});
+  ASSERT_EQ(run("convert head --match back.ply -o back.glb").code, 0);
+  const BlendshapeModel found = read_blendshapes((folder_ / "back.glb").string());
+  EXPECT_EQ(found.expressions().names, head.expressions().names);
+  EXPECT_LT((found.neutral() - backwards).cwiseAbs().maxCoeff(), 1e-5);
+  for (int j = 0; j < found.expressions().size(); ++j) {
+    const Eigen::VectorXd one = found.expressions().displacements.col(j),
+                          other = head.expressions().displacements.col(j);
+    const Eigen::Map<const Positions> turned(other.data(), last + 1, 3);
+    EXPECT_LT((Eigen::Map<const Positions>(one.data(), last + 1, 3) - turned.colwise().reverse())
+                  .cwiseAbs()
+                  .maxCoeff(),
+              1e-5)
+        << j;
+  }
+}
+
+TEST_F(MatchTest, ConvertSaysWhereAModelsExpressionsAreLost) {
+  EXPECT_THAT(run("convert head -o frames/").err, HasSubstr("not the 3 expressions of the model"));
+  for (const char* output : {"m.glb", "m.ply"}) {
+    EXPECT_THAT(run("convert head -o " + std::string(output)).err,
+                testing::Not(HasSubstr("expressions of the model")))
+        << output;
+  }
 }
 
 }  // namespace

@@ -34,7 +34,8 @@ Image noise(int width, int height) {
 double mean_distance(const Eigen::RowVectorXd& a, const Eigen::RowVectorXd& b) {
   double sum = 0;
   for (Eigen::Index i = 0; i < a.size(); i += 2) sum += (a - b).segment<2>(i).norm();
-  return sum / double(a.size() / 2);
+  const Eigen::Index points = a.size() / 2;
+  return sum / double(points);
 }
 
 /// Copies `source` into `target` with its left upper corner at (left, top).

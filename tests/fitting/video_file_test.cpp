@@ -43,8 +43,8 @@ std::vector<Image> numbered_images(int count, int width = 96, int height = 64) {
 
 /// Frame number that an image shows.
 int number_of(const Image& image) {
-  return static_cast<int>(
-      std::lround((image.at(image.width / 2, image.height / 2).green - 40) / 6.0));
+  const Color middle = image.at(image.width / 2, image.height / 2);
+  return static_cast<int>(std::lround((middle.green - 40) / 6.0));
 }
 
 bool is_red(const Color& color) {

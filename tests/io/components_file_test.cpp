@@ -121,7 +121,7 @@ TEST(ComponentsFile, TruncatedAnywhereIsAnError) {
 /// The bytes of a file in which the links `names` have others. The new ones keep the alphabetical
 /// order in which HDF5 looks links up, and the file's other content stays as it is.
 std::string without_links(std::string bytes, const std::vector<std::string>& names) {
-  for (std::string name : names) {
+  for (const std::string& name : names) {
     // HDF5 stores names with zeros up to a multiple of eight bytes, after the zeros of another.
     std::string stored = '\0' + name + '\0';
     const auto at = bytes.find(stored);

@@ -28,6 +28,7 @@ bool fails(std::size_t bytes) {
 }  // namespace
 
 // The linker sends the test's allocations here (--wrap, in CMakeLists.txt).
+// NOLINTBEGIN(bugprone-reserved-identifier,readability-identifier-naming): the linker's names
 extern "C" {
 void* __real_malloc(std::size_t bytes);
 void* __real_realloc(void* memory, std::size_t bytes);
@@ -63,6 +64,7 @@ void* __wrap__ZnwmSt11align_val_t(std::size_t bytes, std::align_val_t alignment)
   return __real__ZnwmSt11align_val_t(bytes, alignment);
 }
 }
+// NOLINTEND(bugprone-reserved-identifier,readability-identifier-naming)
 
 namespace mimetra {
 namespace {

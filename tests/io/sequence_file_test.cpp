@@ -107,6 +107,15 @@ TEST_F(TwelveFiles, FrameWithOtherFacesIsNamedWithTheFirst) {
   EXPECT_THAT(message, testing::EndsWith("as in " + (folder_ / "frame_1.obj").string()));
 }
 
+TEST_F(TwelveFiles, FrameWithItsFacesInAnotherOrderIsOne) {
+  TriMesh other = test::mesh_of(test::octahedron());
+  other.connectivity =
+      Connectivity::from_triangles(6, Triangles(other.connectivity.triangles.colwise().reverse()));
+  other.positions(2, 1) = 7;
+  write_mesh(folder_ / "frame_7.obj", other);
+  EXPECT_EQ(read_sequence(text()).sequence.frame(6)(2, 1), 7);
+}
+
 TEST_F(TwelveFiles, AnotherFormatAmongThemIsAnErrorThatNamesBoth) {
   write_frame(folder_ / "other.ply", 0);
   const std::string message = message_of<IoError>([&] { read_sequence(text()); });

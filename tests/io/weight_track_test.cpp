@@ -348,6 +348,14 @@ TEST_F(Weights, SayThatTimesLookLikeMilliseconds) {
   EXPECT_THAT(read("time,a\n0,0\n1,0\n2,0\n").notes, testing::IsEmpty());
 }
 
+TEST_F(Weights, OfOneNameDriveBothHalves) {
+  for (const char* end : {"_L", ".l", "Left", "_left"}) {
+    const WeightMatch match = match_weights({{"browInnerUp", "jaw"}, {}, {}},
+                                            {std::string("browInnerUp") + end, "jawLeft"});
+    EXPECT_THAT(match.column, ElementsAre(0, -1)) << end;
+  }
+}
+
 TEST_F(Weights, MatchNamesOfSidesHoweverTheyAreWritten) {
   const std::vector<std::vector<std::string>> spellings = {{"eyeBlink_L", "eyeBlink_R"},
                                                            {"eyeBlinkLeft", "eyeBlinkRight"},

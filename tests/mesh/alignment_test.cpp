@@ -250,7 +250,10 @@ TEST(StableAlignment, OfStillVerticesOnALineDoesNotSpinAboutIt) {
   const TriMesh sheet = test::mesh_of(test::grid(30, 8));
   Frames poses = sheet.positions.reshaped<Eigen::RowMajor>().transpose().replicate(10, 1);
   for (int f = 5; f < 10; ++f) {
-    for (int v = 30; v < 240; ++v) poses(f, 3 * v + 2) += 0.02 * (v / 30) * (v % 3);
+    for (int v = 30; v < 240; ++v) {
+      const int row = v / 30;
+      poses(f, 3 * v + 2) += 0.02 * row * (v % 3);
+    }
   }
   const MeshSequence sequence(sheet.connectivity, poses, {}, sheet.positions);
   const MeshSequence aligned = rigidly_aligned(with_motion(sequence, random_motion(10, 40, 3)));

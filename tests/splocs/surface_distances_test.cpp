@@ -85,7 +85,7 @@ TEST(SurfaceDistances, AreEqualForWeldedVertices) {
 TEST(SurfaceDistances, AreComputedOncePerPlace) {
   const CutGrid cut = cut_grid(9, 5, 4);
   const SurfaceDistances distances = welded_distances(cut.shape);
-  const SurfaceDistances copy = distances;
+  const SurfaceDistances copy = distances;  // NOLINT(performance-unnecessary-copy-initialization)
   EXPECT_EQ(distances.computed(), 0);
   distances(0);
   distances(0);

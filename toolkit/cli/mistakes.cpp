@@ -58,7 +58,7 @@ std::string split_list(const Command& command, const std::vector<std::string>& a
     const auto typed = std::ranges::find_first_of(arguments, option.forms);
     if (typed == arguments.end()) continue;
     const auto is_word = [](const std::string& argument) {
-      return argument.empty() || !std::isdigit(static_cast<unsigned char>(argument[0]));
+      return argument.empty() || argument.find_first_not_of("0123456789,") != std::string::npos;
     };
     const std::vector<std::string> numbers(typed + 1,
                                            std::find_if(typed + 1, arguments.end(), is_word));

@@ -11,12 +11,12 @@
 /// Numbers in files, in either byte order. Internal to the readers and writers.
 namespace mimetra {
 
-/// An unsigned integer of `bytes` bytes.
-template <std::size_t bytes>
+/// An unsigned integer of so many bytes.
+template <std::size_t Bytes>
 using UnsignedOf = std::conditional_t<
-    bytes == 1, std::uint8_t,
-    std::conditional_t<bytes == 2, std::uint16_t,
-                       std::conditional_t<bytes == 4, std::uint32_t, std::uint64_t>>>;
+    Bytes == 1, std::uint8_t,
+    std::conditional_t<Bytes == 2, std::uint16_t,
+                       std::conditional_t<Bytes == 4, std::uint32_t, std::uint64_t>>>;
 
 template <typename Unsigned>
 Unsigned byte_swapped(Unsigned value) {

@@ -107,9 +107,6 @@ struct SplitFiles {
 
 SplitFiles split(std::vector<fs::path> files) {
   FrameSeries found;
-  const auto is_neutral = [](const fs::path& file) {
-    return lower_case(file.stem().string()) == "neutral";
-  };
   if (std::ranges::count_if(files, is_neutral) == 1 && files.size() > 1) {
     const auto neutral = std::ranges::find_if(files, is_neutral);
     found.rest = *neutral;
@@ -121,6 +118,10 @@ SplitFiles split(std::vector<fs::path> files) {
 }
 
 }  // namespace
+
+bool is_neutral(const fs::path& file) {
+  return lower_case(file.stem().string()) == "neutral";
+}
 
 FrameSeries frames_among(std::vector<fs::path> files) {
   return split(std::move(files)).series;

@@ -17,6 +17,9 @@ struct FrameSeries {
   std::vector<std::string> notes = {};
 };
 
+/// Whether a file is called neutral.*, in any case.
+bool is_neutral(const std::filesystem::path& file);
+
 /// The frames and the rest pose of series_in_folder, without notes and errors.
 FrameSeries frames_among(std::vector<std::filesystem::path> files);
 

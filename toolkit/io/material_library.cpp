@@ -39,9 +39,10 @@ std::optional<std::string> text_of_library(const fs::path& path) {
 void add_libraries(Materials& materials, const fs::path& folder, const std::string& statement) {
   const auto add = [&](const std::string& name) {
     const fs::path path = folder / with_slashes(name);
-    auto text = text_of_library(path);
-    if (text) materials.libraries.push_back({path, *std::move(text)});
-    return text.has_value();
+    std::optional<std::string> text = text_of_library(path);
+    if (!text) return false;
+    materials.libraries.push_back({path, *std::move(text)});
+    return true;
   };
   if (add(statement)) return;
   const std::string unnamed;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <stdexcept>
 
 #include "toolkit/io/material_library.h"
@@ -185,6 +186,9 @@ void check_same_faces(const fs::path& path, const MeshContent& content,
   const Connectivity found = Connectivity::from_polygons(expected.vertices, content.polygons);
   const int face = first_different_face(found, expected);
   if (face < 0) return;
+  // In another order, but none flipped.
+  const std::optional<Connectivity> ordered = in_order_of(expected, found);
+  if (ordered && ordered->triangles == expected.triangles) return;
   throw MismatchError(path.string() + ": " + face_name(content, face) + " has the vertices " +
                       corners_of(content.polygons, face, content.first_index) + ", expected " +
                       corners_of(expected.polygons, face, content.first_index) + " as in " +

@@ -74,16 +74,10 @@ std::vector<fs::path> meshes_in(const fs::path& folder) {
   return files;
 }
 
-/// Whether a file is called neutral.*, in any case.
-bool is_neutral(const fs::path& file) {
-  return lower_case(file.stem().string()) == "neutral";
-}
-
 std::optional<fs::path> neutral_of(const fs::path& folder) {
-  for (const fs::path& file : meshes_in(folder)) {
-    if (is_neutral(file)) return file;
-  }
-  return {};
+  const std::vector<fs::path> meshes = meshes_in(folder);
+  const auto found = std::ranges::find_if(meshes, is_neutral);
+  return found == meshes.end() ? std::nullopt : std::optional(*found);
 }
 
 /// Folders in a folder, in the order of their names.
@@ -125,14 +119,16 @@ std::optional<fs::path> identities_in(const fs::path& folder) {
   return folder_called(folder, {"identities"});
 }
 
+[[noreturn]] void fail_second_shape(const fs::path& file, const fs::path& other) {
+  throw IoError(file.string(), "is a second shape named '" + file.stem().string() + "', beside " +
+                                   other.filename().string() + "; rename or remove one of them");
+}
+
 /// A shape is called as its file without the extension.
 void check_names(const std::vector<fs::path>& files) {
   for (std::size_t i = 0; i < files.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j) {
-      if (files[i].stem() != files[j].stem()) continue;
-      throw IoError(files[i].string(), "is a second shape named '" + files[i].stem().string() +
-                                           "', beside " + files[j].filename().string() +
-                                           "; rename or remove one of them");
+      if (files[i].stem() == files[j].stem()) fail_second_shape(files[i], files[j]);
     }
   }
 }
@@ -176,7 +172,7 @@ Parts parts_of(const fs::path& folder) {
   if (parts.neutral) {
     std::vector<fs::path> neutrals = meshes_in(folder);
     std::erase_if(neutrals, std::not_fn(is_neutral));
-    check_names(neutrals);
+    if (neutrals.size() > 1) fail_second_shape(neutrals[1], neutrals[0]);
     parts.expressions = expressions_in(folder);
     parts.identities = identities_in(folder);
   } else {

@@ -81,7 +81,7 @@ class ObjLayout : public MeshLayout {
       const char* next = next_line(at, end);
       if (kind == Line::vertex) ++vertices;
       if (kind == Line::counted) {
-        if (!in_run) runs_.push_back({vertices, {at, 0}});
+        if (!in_run) runs_.push_back({vertices, std::string_view(at, at)});
         std::string_view& run = runs_.back().text;
         run = {run.data(), static_cast<std::size_t>(next - run.data())};
       }

@@ -54,9 +54,9 @@ std::optional<int> counted_frames(const std::vector<Timecode>& codes) {
 
 /// Frames since midnight, where the first ones of each minute but every tenth have no number.
 double dropped_count(const Timecode& code, int rate) {
-  const int minutes = code.seconds / 60, numbers_left_out = rate / 15;
+  const int minutes = code.seconds / 60, tens = minutes / 10, numbers_left_out = rate / 15;
   return static_cast<double>(code.seconds) * rate + code.frames -
-         numbers_left_out * (minutes - minutes / 10);
+         numbers_left_out * (minutes - tens);
 }
 
 }  // namespace

@@ -95,7 +95,9 @@ class WeightReader {
   void read_frame_number(std::string_view text) {
     long long number = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-    if (error == std::errc() && end == text.data() + text.size()) {
+    constexpr long long kMost = 1'000'000'000'000;
+    const bool is_number = error == std::errc() && end == text.data() + text.size();
+    if (is_number && -kMost < number && number < kMost) {
       frame_numbers_.push_back(number);
     } else {
       frame_column_.reset();

@@ -9,11 +9,6 @@ namespace mimetra {
 
 namespace {
 
-/// `browInnerUp` of `browInnerUp_L`.
-std::string without_side(const std::string& name) {
-  return name.ends_with("_L") || name.ends_with("_R") ? name.substr(0, name.size() - 2) : name;
-}
-
 int column_of(const std::vector<std::string>& names, const std::string& expression) {
   using Spelling = std::string (*)(const std::string&);
   const Spelling as_is = [](const std::string& name) { return name; };

@@ -102,10 +102,15 @@ class VertexFrames : public FrameSource {
   VertexIndex first_;
 };
 
-/// Frames that fill `bytes`.
-int frames_in(std::size_t bytes, const FrameSource& source) {
-  const std::size_t frame = std::max<std::size_t>(1, 3 * sizeof(double) * source.vertices());
+/// Frames of so many numbers that fill `bytes`.
+int frames_in(std::size_t bytes, Eigen::Index numbers) {
+  const std::size_t frame =
+      sizeof(double) * static_cast<std::size_t>(std::max<Eigen::Index>(1, numbers));
   return static_cast<int>(std::min<std::size_t>(bytes / frame, 1 << 20));
+}
+
+Eigen::Index numbers_of_pose(const FrameSource& source) {
+  return 3 * Eigen::Index{source.vertices()};
 }
 
 /// `wanted` frames, where `most` fit. Products of matrices take rows in fours.
@@ -123,10 +128,10 @@ int dealt_blocks(Eigen::Index numbers) {
 }
 
 /// As many as fit a block, but enough blocks for threads to share.
-int frames_in_block(const FrameSource& source) {
+int frames_in_block(const FrameSource& source, Eigen::Index numbers) {
   constexpr int kBlocks = 64;
   // Readers and writers hold a block up to three times more, in their own encodings.
-  const int most = frames_in(kBlockBytes / 4, source);
+  const int most = frames_in(kBlockBytes / 4, numbers);
   return in_fours(std::min(most, source.frames() / kBlocks + 1), most);
 }
 
@@ -236,7 +241,7 @@ std::shared_ptr<const FrameSource> some_vertices(std::shared_ptr<const FrameSour
 
 void for_each_run(const FrameSource& source, const BlockOptions& options,
                   const std::function<void(int, int)>& work) {
-  const int size = frames_in_block(source);
+  const int size = frames_in_block(source, numbers_of_pose(source));
   const auto work_on = [&](int block) {
     const int first = block * size;
     work(first, std::min(size, source.frames() - first));
@@ -275,31 +280,37 @@ void for_each_dealt(int frames, int at_once, Eigen::Index columns, const BlockOp
 void for_each_block(const FrameSource& source, const BlockOptions& options,
                     const std::function<void(int, const Frames&)>& work) {
   for_each_dealt(
-      source.frames(), frames_in_block(source), 3 * Eigen::Index{source.vertices()}, options,
-      [&source](int first, int count) { return source.read(first, count); }, work);
+      source.frames(), frames_in_block(source, numbers_of_pose(source)), numbers_of_pose(source),
+      options, [&source](int first, int count) { return source.read(first, count); }, work);
 }
 
 FrameNumbers over_frames(const FrameSource& source, Eigen::Index summed, Eigen::Index kept,
                          const BlockOptions& options,
                          const std::function<void(int, const FrameBlock&, FrameRows&)>& work) {
-  const int most = frames_in(kBlockBytes, source) * (options.ranks ? options.ranks->count() : 1);
-  const int held = in_fours(most, most), at_once = frames_in_block(source);
+  constexpr int kFewest = 8;  // for threads to share
+  const Eigen::Index columns = summed + kept;
+  const Eigen::Index numbers = std::max(numbers_of_pose(source), columns);
+  const int ranks = options.ranks ? options.ranks->count() : 1;
+  const int most = std::max(kFewest, frames_in(kBlockBytes, numbers)) * ranks;
+  // What is only kept is in its place already.
+  const int held = summed > 0 ? in_fours(most, most) : std::max(1, source.frames());
+  const int at_once = frames_in_block(source, numbers);
   FrameRows summands(std::min(held, source.frames()), summed);
   FrameNumbers result{Eigen::VectorXd::Zero(summed), FrameRows(source.frames(), kept)};
   for (int start = 0; start < source.frames(); start += held) {
     report_progress(options.progress, static_cast<double>(start) / source.frames());
     const int count = std::min(held, source.frames() - start);
     for_each_dealt(
-        count, at_once, summed + kept, {.threads = options.threads, .ranks = options.ranks},
+        count, at_once, columns, {.threads = options.threads, .ranks = options.ranks},
         [&](int first, int rows) {
           const FrameBlock block(source, start + first, rows);
-          FrameRows numbers = FrameRows::Zero(rows, summed + kept);
-          work(start + first, block, numbers);
-          return numbers;
+          FrameRows found = FrameRows::Zero(rows, columns);
+          work(start + first, block, found);
+          return found;
         },
-        [&](int first, const FrameRows& numbers) {
-          summands.middleRows(first, numbers.rows()) = numbers.leftCols(summed);
-          result.of_each.middleRows(start + first, numbers.rows()) = numbers.rightCols(kept);
+        [&](int first, const FrameRows& found) {
+          summands.middleRows(first, found.rows()) = found.leftCols(summed);
+          result.of_each.middleRows(start + first, found.rows()) = found.rightCols(kept);
         });
     for (int row = 0; row < count; ++row) result.sum += summands.row(row).transpose();
   }

@@ -205,8 +205,9 @@ struct FrameNumbers {
 /// Numbers of each frame, of which the first `summed` are added in the order of the frames and the
 /// further `kept` are kept: the same for every number of threads and of ranks, which frames are
 /// dealt out to. `work` is called from several threads and writes the numbers of a block that
-/// starts with frame `first` (frames x (summed + kept), 0 before). No more of them are held than
-/// their frames fill kBlockBytes for each rank. Throws what reading and `work` throw, Cancelled.
+/// starts with frame `first` (frames x (summed + kept), 0 before). No more summands are held than
+/// fill kBlockBytes for each rank, or are those of eight frames. Throws what reading and `work`
+/// throw, Cancelled.
 FrameNumbers over_frames(
     const FrameSource& source, Eigen::Index summed, Eigen::Index kept, const BlockOptions& options,
     const std::function<void(int first, const FrameBlock& block, FrameRows& numbers)>& work);

@@ -112,7 +112,7 @@ UnorderedPolygon unordered(const Polygons& polygons, int face) {
   };
   UnorderedPolygon polygon{{at(face), at(face + 1)}};
   std::vector<int>& corners = polygon.corners;
-  std::ranges::rotate(corners, std::ranges::min_element(corners));
+  std::rotate(corners.begin(), std::ranges::min_element(corners), corners.end());
   polygon.is_turned = corners[1] > corners.back();
   if (polygon.is_turned) std::reverse(corners.begin() + 1, corners.end());
   return polygon;

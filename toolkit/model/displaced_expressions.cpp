@@ -5,14 +5,20 @@
 
 namespace mimetra {
 
+double least_move(const Positions& from, const Eigen::Ref<const Positions>& to,
+                  const Triangles& triangles) {
+  const std::vector<VertexIndex> used = used_vertices(triangles, from.rows());
+  return used.empty() ? 0 : (to - from)(used, Eigen::all).rowwise().norm().minCoeff();
+}
+
 std::vector<std::string> displaced_expressions(const Positions& neutral, const Triangles& triangles,
                                                const ShapeBasis& expressions) {
   const double least = kStillShare * diameter(neutral, triangles);
   std::vector<std::string> displaced;
   for (int j = 0; j < expressions.size(); ++j) {
     const auto field = expressions.displacements.col(j);
-    const Eigen::Map<const Positions> moved(field.data(), neutral.rows(), 3);
-    if (moved.rows() == 0 || !(moved.rowwise().squaredNorm().minCoeff() > least * least)) continue;
+    const Positions moved = neutral + Eigen::Map<const Positions>(field.data(), neutral.rows(), 3);
+    if (!(least_move(neutral, moved, triangles) > least)) continue;
     displaced.push_back(expressions.names[static_cast<std::size_t>(j)]);
   }
   return displaced;

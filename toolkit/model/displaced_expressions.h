@@ -10,6 +10,10 @@ namespace mimetra {
 /// Share of a face's diameter() by which no expression moves every vertex of it.
 constexpr double kStillShare = 0.01;
 
+/// The least distance between two poses of a vertex that triangles use; 0 without vertices.
+double least_move(const Positions& from, const Eigen::Ref<const Positions>& to,
+                  const Triangles& triangles);
+
 /// Names of expressions that move every vertex by more than that: shapes that stand elsewhere, as
 /// where they were exported side by side.
 std::vector<std::string> displaced_expressions(const Positions& neutral, const Triangles& triangles,

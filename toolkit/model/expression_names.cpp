@@ -12,6 +12,7 @@ enum class Half { none, left, right };
 
 struct HalfName {
   Half half = Half::none;
+  std::string given_stem;
   std::string stem;  // folded
 };
 
@@ -26,14 +27,20 @@ HalfName half_of(const std::string& name) {
       {"_R", Half::right},  {"_r", Half::right},   {".R", Half::right},    {".r", Half::right}};
   for (const Ending& ending : kEndings) {
     if (!name.ends_with(ending.text)) continue;
-    return {ending.half, folded_name(name.substr(0, name.size() - ending.text.size()))};
+    const std::string stem = name.substr(0, name.size() - ending.text.size());
+    return {ending.half, stem, folded_name(stem)};
   }
   return {};
 }
 
+/// `jawLeft` and `mouthLeft` move to a side.
+bool is_side_movement(const std::string& stem) {
+  return stem == "jaw" || stem == "mouth";
+}
+
 /// What the right half of a left one is called without its side; empty for what is no half.
 std::string stem_of_right(const std::string& left) {
-  if (left == "jaw" || left == "mouth") return {};
+  if (is_side_movement(left)) return {};
   if (left == "eyelookin") return "eyelookout";
   if (left == "eyelookout") return "eyelookin";
   return left;
@@ -56,12 +63,14 @@ std::vector<KnownGroup> known_groups() {
 }  // namespace
 
 std::string spelled_out(const std::string& name) {
-  if (name.size() < 2 || (name[name.size() - 2] != '_' && name[name.size() - 2] != '.'))
-    return name;
-  const std::string stem = name.substr(0, name.size() - 2);
-  if (name.back() == 'L' || name.back() == 'l') return stem + "Left";
-  if (name.back() == 'R' || name.back() == 'r') return stem + "Right";
-  return name;
+  const HalfName half = half_of(name);
+  if (half.half == Half::none) return name;
+  return half.given_stem + (half.half == Half::left ? "Left" : "Right");
+}
+
+std::string without_side(const std::string& name) {
+  const HalfName half = half_of(name);
+  return half.half == Half::none || is_side_movement(half.stem) ? name : half.given_stem;
 }
 
 std::string folded_name(const std::string& name) {

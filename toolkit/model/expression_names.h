@@ -30,8 +30,12 @@ constexpr std::string_view choice_name(Exclusive value) {
   return {};
 }
 
-/// `mouthSmile_L` or `mouthSmile.L` as captures write it: `mouthSmileLeft`.
+/// `mouthSmile_L`, `mouthSmile.l` or `mouthSmile_left` as captures write it: `mouthSmileLeft`.
 std::string spelled_out(const std::string& name);
+
+/// `browInnerUp` of `browInnerUp_L`, `browInnerUpLeft` and the like. `jawLeft` and `mouthLeft`,
+/// which are no halves, stay.
+std::string without_side(const std::string& name);
 
 /// Without regard to case and underscores.
 std::string folded_name(const std::string& name);

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "toolkit/correspondence/renumbered_frames.h"
+#include "toolkit/io/mesh_formats.h"
 #include "toolkit/io/scene.h"
 #include "toolkit/mesh/face_groups.h"
 #include "toolkit/mesh/frame_store.h"
@@ -15,6 +16,7 @@
 #include "toolkit/operations/times_text.h"
 #include "toolkit/operations/toolkit_operations.h"
 #include "toolkit/operations/weight_tables.h"
+#include "toolkit/pipeline/memory.h"
 
 namespace mimetra {
 
@@ -122,7 +124,8 @@ void check_weights(const Invocation& invocation, const FrameSource& frames) {
   check_live_link(invocation, "out", animation->model().expressions().names);
 }
 
-/// A model that nothing drives is one frame at rest where its expressions have no place.
+/// A model that nothing drives is one frame at rest where its expressions have no place; one mesh
+/// is what is asked for.
 void warn_of_lost_expressions(const Invocation& invocation, const FrameSource& frames) {
   const auto* animation = dynamic_cast<const Animation*>(&frames);
   const auto paths = invocation.wanted.find("out");
@@ -132,10 +135,24 @@ void warn_of_lost_expressions(const Invocation& invocation, const FrameSource& f
     return;
   }
   const std::filesystem::path& path = paths->second.front();
-  if (is_scene_file(path) || is_weight_file(path.string())) return;
+  const bool is_one_mesh = is_mesh_extension(path.extension().string());
+  if (is_one_mesh || is_scene_file(path) || is_weight_file(path.string())) return;
   invocation.warn(path.string() + ": holds the neutral alone, not the " +
                   counted(animation->model().expressions().size(), "expression") +
                   " of the model; .glb and .usda hold them, and --weights moves them");
+}
+
+bool is_shared(const Invocation& invocation) {
+  return invocation.ranks && invocation.ranks->count() > 1;
+}
+
+/// Frames that several processes read for the first one, which writes them.
+std::shared_ptr<const FrameSource> read_by_all(const Invocation& invocation,
+                                               std::shared_ptr<const FrameSource> frames) {
+  const BlockOptions options{invocation.threads, invocation.progress, invocation.ranks};
+  if (invocation.ranks->rank() == 0) return stored(std::move(frames), options);
+  if (!frames->is_quick()) for_each_block(*frames, options, [](int, const Frames&) {});
+  return frames;
 }
 
 Outcome run_convert(const Invocation& invocation) {
@@ -151,11 +168,7 @@ Outcome run_convert(const Invocation& invocation) {
         held_like(given, frames, {.threads = invocation.threads, .progress = invocation.progress});
     made.fields = given.fields;
   }
-  if (invocation.ranks && invocation.ranks->count() > 1) {
-    made.frames = stored(made.frames, {.threads = invocation.threads,
-                                       .progress = invocation.progress,
-                                       .ranks = invocation.ranks});
-  }
+  if (is_shared(invocation)) made.frames = read_by_all(invocation, made.frames);
   warn_of_lost_expressions(invocation, *made.frames);
   Outcome outcome;
   Json report = Json{{"frames", made.frames->frames()},
@@ -199,6 +212,10 @@ Operation convert_operation() {
                         "convert scan_mm/ --scale 0.001 --up z-to-y -o scan/"};
   operation.run = run_convert;
   operation.shared = true;
+  operation.scratch = [](const Invocation& invocation) {
+    const FrameSource& frames = *invocation.get<FieldSequence>("sequence").frames;
+    return is_shared(invocation) && !frames.is_quick() ? frame_bytes(frames) : 0;
+  };
   return operation;
 }
 

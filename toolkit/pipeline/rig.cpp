@@ -124,11 +124,11 @@ void add_own_expressions(std::vector<RigExample>& examples, const BlendshapeMode
 }
 
 /// Notes examples no vertex of which stays where it is in the neutral.
-void note_places(const std::vector<RigExample>& examples, const Positions& neutral,
+void note_places(const std::vector<RigExample>& examples, const BlendshapeModel& model,
                  const Notes& notes) {
-  const double size = diameter(neutral);
+  const double size = diameter(model.neutral(), model.triangles());
   for (const RigExample& example : examples) {
-    const double least = (example.pose - neutral).rowwise().norm().minCoeff();
+    const double least = least_move(model.neutral(), example.pose, model.triangles());
     if (least < kStillShare * size) continue;
     note(notes, "example '" + example.name + "': every vertex lies " + readable(least) +
                     " and more from the neutral, in a face of " + readable(size) +
@@ -287,7 +287,7 @@ Rig rig(const BlendshapeModel& source, const Target& given, std::vector<RigExamp
   const BlendshapeModel transferred(model.shared_connectivity(), model.neutral(),
                                     {source.expressions().names, transfer.displacements()});
   check_sizes(examples, model.neutral(), target.name);
-  note_places(examples, model.neutral(), options.notes);
+  note_places(examples, model, options.notes);
   add_own_expressions(examples, model, source.expressions(), options.notes);
   note_still(examples, model.neutral(), options.notes);
   ExampleRigOptions of_examples = options.examples;

@@ -5,8 +5,8 @@
 namespace mimetra {
 namespace {
 
-Field integer_field(std::string name, Field::Location location, Eigen::VectorXd values) {
-  return {std::move(name), location, std::move(values), true};
+Field integer_field(std::string name, Field::Location location, const Eigen::VectorXd& values) {
+  return {std::move(name), location, values, true};
 }
 
 }  // namespace
