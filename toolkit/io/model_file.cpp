@@ -100,7 +100,8 @@ std::optional<fs::path> folder_called(const fs::path& parent,
   const std::vector<fs::path> folders = folders_in(parent);
   using Spelling = std::string (*)(const std::string&);
   const Spelling as_is = [](const std::string& name) { return name; };
-  for (const Spelling spelling : {as_is, Spelling(lower_case)}) {
+  const Spelling in_any_case = [](const std::string& name) { return lower_case(name); };
+  for (const Spelling spelling : {as_is, in_any_case}) {
     for (const std::string& name : names) {
       const auto found = std::ranges::find_if(folders, [&](const fs::path& folder) {
         return spelling(folder.filename().string()) == name;

@@ -322,7 +322,7 @@ Positions mean_pose(const FrameSource& source) {
   if (source.frames() == 0) return {};
   // Eigen's sum of rows takes the first one and adds the others in fours: so does the sum of blocks
   // of fours that start with the sum so far.
-  const int held = 4 * std::max(1, frames_in(kBlockBytes, source) / 4);
+  const int held = 4 * std::max(1, frames_in(kBlockBytes, numbers_of_pose(source)) / 4);
   Frames rows(1 + std::min(held, source.frames() - 1), 3 * Eigen::Index{source.vertices()});
   source.read(0, FramesView(rows.data(), 1, rows.cols()));
   for (int first = 1; first < source.frames(); first += held) {

@@ -88,7 +88,12 @@ void note_openings(const TriMesh& source, const TriMesh& target, const Automatic
 }  // namespace
 
 bool has_faces_of(const Connectivity& source, const Connectivity& target) {
-  return same_faces(source, target) || in_order_of(source, target).has_value();
+  if (same_faces(source, target)) return true;
+  if (!in_order_of(source, target)) return false;
+  // A mesh that looks the same from two sides has the same faces where it is numbered from the
+  // other one.
+  const Renumbering found = renumbering(source, target);
+  return !found.found() || found.moved() == 0;
 }
 
 bool is_to_be_paired(const FrameSource& source, const Target& target) {

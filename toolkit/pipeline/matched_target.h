@@ -41,7 +41,8 @@ struct Target {
   std::shared_ptr<const Pairing> pairing = {};
 };
 
-/// Whether both have the same polygons, in any order and wound either way.
+/// Whether both have the same polygons, in any order and wound either way, and none are known by
+/// their order to be numbered differently (renumbering()).
 bool has_faces_of(const Connectivity& source, const Connectivity& target);
 
 /// Whether a MatchedTarget is paired: markers or pairs are given, or markers are looked for and the
