@@ -101,6 +101,12 @@ TEST(DisplacedExpressions, AreThoseThatMoveEveryVertex) {
               testing::ElementsAre("wave0"));
   EXPECT_THAT(notes_on_displaced("m", model->neutral(), model->triangles(), shapes),
               testing::ElementsAre(HasSubstr("m: expressions that move every vertex")));
+  // As a statistical model's: every vertex, each its own way.
+  for (Eigen::Index i = 0; i < shapes.displacements.rows(); ++i) {
+    shapes.displacements(i, 0) = i % 2 ? 0.5 : -0.5;
+  }
+  EXPECT_THAT(displaced_expressions(model->neutral(), model->triangles(), shapes),
+              testing::IsEmpty());
   shapes.displacements.setZero();
   EXPECT_THAT(notes_on_displaced("m", model->neutral(), model->triangles(), shapes),
               testing::IsEmpty());

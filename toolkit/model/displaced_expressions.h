@@ -14,8 +14,9 @@ constexpr double kStillShare = 0.01;
 double least_move(const Positions& from, const Eigen::Ref<const Positions>& to,
                   const Triangles& triangles);
 
-/// Names of expressions that move every vertex by more than that: shapes that stand elsewhere, as
-/// where they were exported side by side.
+/// Names of expressions that move every vertex by more than that, and all by the same more than by
+/// what differs: shapes that stand elsewhere, as where they were exported side by side. The first
+/// components of a statistical model move every vertex, but not aside.
 std::vector<std::string> displaced_expressions(const Positions& neutral, const Triangles& triangles,
                                                const ShapeBasis& expressions);
 
