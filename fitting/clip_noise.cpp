@@ -5,6 +5,8 @@
 #include <map>
 #include <numbers>
 
+#include "toolkit/mesh/median.h"
+
 namespace mimetra {
 
 namespace {
@@ -111,11 +113,10 @@ ClipNoise rough_noise(const std::vector<FittedFrame>& frames, const KnownNoise& 
     const Eigen::VectorXd r = frame.residual().rowwise().squaredNorm();
     for (const double each : r) squares.push_back(each / (frame.radius() * frame.radius()));
   }
-  const auto middle = squares.begin() + std::ptrdiff_t(squares.size() / 2);
-  std::ranges::nth_element(squares, middle);
   ClipNoise noise;
   // The median of a squared distance in the plane is 2 ln 2 sigma^2.
-  noise.sigma = std::max(std::sqrt(*middle / (2 * std::numbers::ln2)), kLeastSigma);
+  noise.sigma =
+      std::max(std::sqrt(median(std::move(squares)) / (2 * std::numbers::ln2)), kLeastSigma);
   noise.repeated = known.repeated.value_or(kUnknownRepeated);
   return noise;
 }
@@ -162,10 +163,8 @@ double outline_noise(const std::vector<FittedFrame>& frames, const ClipNoise& no
   if (sizes.empty()) return 0;
   const double least = std::max(noise.sigma, kLeastSigma);
   if (weight > 0) return std::max(least, std::sqrt(squares / weight));
-  const auto middle = sizes.begin() + std::ptrdiff_t(sizes.size() / 2);
-  std::ranges::nth_element(sizes, middle);
   constexpr double kNormal = 1.4826;  // of a median of sizes
-  return std::max(least, kNormal * *middle);
+  return std::max(least, kNormal * median(std::move(sizes)));
 }
 
 void set_noise(std::vector<FittedFrame>& frames, const ClipNoise& noise, const KnownNoise& known) {

@@ -111,6 +111,7 @@ Image DetectorPyramid::interpolated(const PyramidPart& before, int level,
 
 std::vector<PyramidPart> DetectorPyramid::parts(const std::vector<PixelArea>& wanted) const {
   std::vector<PyramidPart> parts;
+  parts.reserve(wanted.size());
   for (const PixelArea& area : wanted) parts.push_back({area, {}});
   // A level needs what the next one is made of.
   for (int level = static_cast<int>(parts.size()) - 1; level > 0; --level) {

@@ -7,6 +7,7 @@
 
 #include <Eigen/Geometry>
 
+#include "toolkit/mesh/median.h"
 #include "toolkit/mesh/tri_mesh.h"
 
 namespace mimetra {
@@ -58,10 +59,7 @@ double FitResiduals::typical() const {
   std::vector<double> seen;
   std::ranges::copy_if(of_frames, std::back_inserter(seen),
                        [](double residual) { return !std::isnan(residual); });
-  if (seen.empty()) return 0;
-  const auto middle = seen.begin() + static_cast<std::ptrdiff_t>(seen.size() / 2);
-  std::ranges::nth_element(seen, middle);
-  return *middle;
+  return seen.empty() ? 0 : median(std::move(seen));
 }
 
 FitResiduals residuals_of(const MeshSequence& sequence, const FittedCoefficients& fit,

@@ -43,6 +43,7 @@ inline Shape octahedron() {
 inline Shape subdivided(const Shape& coarse) {
   std::map<std::pair<int, int>, int> midpoints;
   std::vector<Eigen::Vector3d> points;
+  points.reserve(static_cast<std::size_t>(coarse.positions.rows()));
   for (int v = 0; v < coarse.positions.rows(); ++v) points.push_back(coarse.positions.row(v));
   const auto midpoint = [&](int a, int b) {
     const auto [entry, added] =

@@ -99,6 +99,7 @@ inline Traffic on_ranks(int count, const std::function<void(const Ranks&)>& work
   std::vector<std::exception_ptr> errors(count);
   {
     std::vector<std::jthread> threads;
+    threads.reserve(errors.size());
     for (int rank = 0; rank < count; ++rank) {
       threads.emplace_back([&, rank] {
         try {

@@ -61,20 +61,20 @@ mimetra_status run(const mimetra_interface* m, mimetra_job* job, void*) {
                        ("the fastest vertex moves by " + top + " in a second").c_str());
 }
 
-const mimetra_port input = {sizeof input, MIMETRA_SEQUENCE, "sequence", "what moves", 0, 0};
-const mimetra_port output = {
-    sizeof output, MIMETRA_SEQUENCE, "out", "the mesh with its speeds", MIMETRA_WITH_FIELDS, 0};
-const mimetra_port* const inputs[] = {&input, nullptr};
-const mimetra_port* const outputs[] = {&output, nullptr};
-const mimetra_operation operation = {
-    sizeof operation, 0,   "speed", "Show how fast each vertex moves", inputs, outputs, nullptr,
-    nullptr,          run, nullptr};
-const mimetra_operation* const operations[] = {&operation, nullptr};
-const mimetra_plugin plugin = {sizeof plugin, MIMETRA_INTERFACE_VERSION, "speed sample", operations,
-                               nullptr};
+const mimetra_port kInput = {sizeof kInput, MIMETRA_SEQUENCE, "sequence", "what moves", 0, 0};
+const mimetra_port kOutput = {
+    sizeof kOutput, MIMETRA_SEQUENCE, "out", "the mesh with its speeds", MIMETRA_WITH_FIELDS, 0};
+const mimetra_port* const kInputs[] = {&kInput, nullptr};
+const mimetra_port* const kOutputs[] = {&kOutput, nullptr};
+const mimetra_operation kOperation = {
+    sizeof kOperation, 0,   "speed", "Show how fast each vertex moves", kInputs, kOutputs, nullptr,
+    nullptr,           run, nullptr};
+const mimetra_operation* const kOperations[] = {&kOperation, nullptr};
+const mimetra_plugin kPlugin = {sizeof kPlugin, MIMETRA_INTERFACE_VERSION, "speed sample",
+                                kOperations, nullptr};
 
 }  // namespace
 
 const mimetra_plugin* mimetra_get_plugin() {
-  return &plugin;
+  return &kPlugin;
 }

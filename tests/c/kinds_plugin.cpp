@@ -65,37 +65,37 @@ mimetra_status each(const mimetra_interface* m, mimetra_job* job, void*) {
 }
 
 constexpr auto kPort = sizeof(mimetra_port);
-const mimetra_port sequence = {kPort, MIMETRA_SEQUENCE, "sequence", "a mesh", 0, 0};
-const mimetra_port sequences = {kPort, MIMETRA_SEQUENCE, "sequences", "", MIMETRA_REPEATED, 0};
-const mimetra_port regions = {kPort, MIMETRA_REGIONS, "out", "a vertex", 0, 0};
-const mimetra_port copies = {kPort, MIMETRA_SEQUENCE, "out", "", MIMETRA_REPEATED, 0};
-const mimetra_port* const spots_inputs[] = {&sequence, nullptr};
-const mimetra_port* const spots_outputs[] = {&regions, nullptr};
-const mimetra_port* const each_inputs[] = {&sequences, nullptr};
-const mimetra_port* const each_outputs[] = {&copies, nullptr};
-const mimetra_port spot_copies = {kPort, MIMETRA_REGIONS, "out", "", MIMETRA_REPEATED, 0};
-const mimetra_port fields = {kPort, MIMETRA_SEQUENCE, "fields", "", MIMETRA_WITH_FIELDS, 0};
-const mimetra_port a_set = {kPort, MIMETRA_REGIONS, "regions", "", MIMETRA_NAMED, 0};
-const mimetra_port* const spot_each_outputs[] = {&spot_copies, nullptr};
-const mimetra_port* const count_inputs[] = {&fields, &a_set, nullptr};
-const mimetra_parameter seed = {sizeof seed, MIMETRA_INTEGER, "seed",  "unused", "0", nullptr,
-                                0,           4294967295,      nullptr, 0,        0};
-const mimetra_parameter* const parameters[] = {&seed, nullptr};
+const mimetra_port kSequence = {kPort, MIMETRA_SEQUENCE, "sequence", "a mesh", 0, 0};
+const mimetra_port kSequences = {kPort, MIMETRA_SEQUENCE, "sequences", "", MIMETRA_REPEATED, 0};
+const mimetra_port kRegions = {kPort, MIMETRA_REGIONS, "out", "a vertex", 0, 0};
+const mimetra_port kCopies = {kPort, MIMETRA_SEQUENCE, "out", "", MIMETRA_REPEATED, 0};
+const mimetra_port* const kSpotsInputs[] = {&kSequence, nullptr};
+const mimetra_port* const kSpotsOutputs[] = {&kRegions, nullptr};
+const mimetra_port* const kEachInputs[] = {&kSequences, nullptr};
+const mimetra_port* const kEachOutputs[] = {&kCopies, nullptr};
+const mimetra_port kSpotCopies = {kPort, MIMETRA_REGIONS, "out", "", MIMETRA_REPEATED, 0};
+const mimetra_port kFields = {kPort, MIMETRA_SEQUENCE, "fields", "", MIMETRA_WITH_FIELDS, 0};
+const mimetra_port kASet = {kPort, MIMETRA_REGIONS, "regions", "", MIMETRA_NAMED, 0};
+const mimetra_port* const kSpotEachOutputs[] = {&kSpotCopies, nullptr};
+const mimetra_port* const kCountInputs[] = {&kFields, &kASet, nullptr};
+const mimetra_parameter kSeed = {sizeof kSeed, MIMETRA_INTEGER, "seed", "unused", "0", nullptr, 0,
+                                 4294967295,   nullptr,         0,      0};
+const mimetra_parameter* const kParameters[] = {&kSeed, nullptr};
 constexpr auto kSize = sizeof(mimetra_operation);
-const mimetra_operation all[] = {{kSize, 0, "spots", "Makes regions", spots_inputs, spots_outputs,
-                                  parameters, nullptr, spots, nullptr},
-                                 {kSize, 0, "spot-each", "Makes regions of several", each_inputs,
-                                  spot_each_outputs, nullptr, nullptr, spot_each, nullptr},
-                                 {kSize, 0, "count", "Takes regions of fields", count_inputs,
-                                  nullptr, nullptr, nullptr, count, nullptr},
-                                 {kSize, 0, "each", "Takes several", each_inputs, each_outputs,
-                                  nullptr, nullptr, each, nullptr}};
-const mimetra_operation* const operations[] = {&all[0], &all[1], &all[2], &all[3], nullptr};
-const mimetra_plugin plugin = {sizeof plugin, MIMETRA_INTERFACE_VERSION, "kinds", operations,
-                               nullptr};
+const mimetra_operation kAll[] = {{kSize, 0, "spots", "Makes regions", kSpotsInputs, kSpotsOutputs,
+                                   kParameters, nullptr, spots, nullptr},
+                                  {kSize, 0, "spot-each", "Makes regions of several", kEachInputs,
+                                   kSpotEachOutputs, nullptr, nullptr, spot_each, nullptr},
+                                  {kSize, 0, "count", "Takes regions of fields", kCountInputs,
+                                   nullptr, nullptr, nullptr, count, nullptr},
+                                  {kSize, 0, "each", "Takes several", kEachInputs, kEachOutputs,
+                                   nullptr, nullptr, each, nullptr}};
+const mimetra_operation* const kOperations[] = {&kAll[0], &kAll[1], &kAll[2], &kAll[3], nullptr};
+const mimetra_plugin kPlugin = {sizeof kPlugin, MIMETRA_INTERFACE_VERSION, "kinds", kOperations,
+                                nullptr};
 
 }  // namespace
 
 const mimetra_plugin* mimetra_get_plugin() {
-  return &plugin;
+  return &kPlugin;
 }

@@ -33,6 +33,7 @@ mimetra_array array(const char* name, int type, std::initializer_list<std::int64
 /// A list as the interface takes it.
 std::vector<const mimetra_array*> list_of(const std::vector<mimetra_array>& arrays) {
   std::vector<const mimetra_array*> list;
+  list.reserve(arrays.size() + 1);
   for (const mimetra_array& each : arrays) list.push_back(&each);
   list.push_back(nullptr);
   return list;

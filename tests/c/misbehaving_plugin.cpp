@@ -69,25 +69,25 @@ mimetra_status run(const mimetra_interface* m, mimetra_job* job, void* user) {
   return make(m, job, 0, "positions");
 }
 
-const mimetra_port input = {sizeof input, MIMETRA_SEQUENCE, "sequence", "anything", 0, 0};
-const mimetra_port* const inputs[] = {&input, nullptr};
-const mimetra_port out = {sizeof out, MIMETRA_SEQUENCE, "out", "a triangle", 0, 0};
-const mimetra_port table = {sizeof table, MIMETRA_TABLE, "table", "", MIMETRA_OPTIONAL, 0};
-const mimetra_port* const outputs[] = {&out, &table, nullptr};
-const mimetra_parameter how = {
-    sizeof how, MIMETRA_TEXT, "how", "what goes wrong", "well", nullptr, 0, 0, nullptr, 0, 0};
-const mimetra_parameter radius = {
-    sizeof radius, MIMETRA_LENGTH, "radius", "a length", "0.5", nullptr, 0, 0, nullptr, 0, 0};
-const mimetra_parameter* const parameters[] = {&how, &radius, nullptr};
-const mimetra_operation operation = {
-    sizeof operation, 0,   "misbehave", "Does what is wrong", inputs, outputs, parameters,
-    nullptr,          run, nullptr};
-const mimetra_operation* const operations[] = {&operation, nullptr};
-const mimetra_plugin plugin = {sizeof plugin, MIMETRA_INTERFACE_VERSION, "misbehaving", operations,
-                               nullptr};
+const mimetra_port kInput = {sizeof kInput, MIMETRA_SEQUENCE, "sequence", "anything", 0, 0};
+const mimetra_port* const kInputs[] = {&kInput, nullptr};
+const mimetra_port kOut = {sizeof kOut, MIMETRA_SEQUENCE, "out", "a triangle", 0, 0};
+const mimetra_port kTable = {sizeof kTable, MIMETRA_TABLE, "table", "", MIMETRA_OPTIONAL, 0};
+const mimetra_port* const kOutputs[] = {&kOut, &kTable, nullptr};
+const mimetra_parameter kHow = {
+    sizeof kHow, MIMETRA_TEXT, "how", "what goes wrong", "well", nullptr, 0, 0, nullptr, 0, 0};
+const mimetra_parameter kRadius = {
+    sizeof kRadius, MIMETRA_LENGTH, "radius", "a length", "0.5", nullptr, 0, 0, nullptr, 0, 0};
+const mimetra_parameter* const kParameters[] = {&kHow, &kRadius, nullptr};
+const mimetra_operation kOperation = {
+    sizeof kOperation, 0,   "misbehave", "Does what is wrong", kInputs, kOutputs, kParameters,
+    nullptr,           run, nullptr};
+const mimetra_operation* const kOperations[] = {&kOperation, nullptr};
+const mimetra_plugin kPlugin = {sizeof kPlugin, MIMETRA_INTERFACE_VERSION, "misbehaving",
+                                kOperations, nullptr};
 
 }  // namespace
 
 const mimetra_plugin* mimetra_get_plugin() {
-  return &plugin;
+  return &kPlugin;
 }

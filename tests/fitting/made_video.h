@@ -27,6 +27,7 @@ inline void write_video(const std::filesystem::path& path, const std::vector<Ima
 /// `count` times from 0 on.
 inline std::vector<double> even_times(int count, double fps = 25) {
   std::vector<double> times;
+  times.reserve(static_cast<std::size_t>(count));
   for (int i = 0; i < count; ++i) times.push_back(i / fps);
   return times;
 }

@@ -37,6 +37,7 @@ Image numbered(int frame, int width = 96, int height = 64) {
 
 std::vector<Image> numbered_images(int count, int width = 96, int height = 64) {
   std::vector<Image> images;
+  images.reserve(static_cast<std::size_t>(count));
   for (int i = 0; i < count; ++i) images.push_back(numbered(i, width, height));
   return images;
 }

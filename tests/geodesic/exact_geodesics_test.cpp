@@ -73,6 +73,7 @@ TEST(ExactGeodesics, GiveTheSameBytesInEveryThread) {
   std::array<Eigen::VectorXd, 2> results;
   {
     std::vector<std::jthread> threads;
+    threads.reserve(results.size());
     for (auto& result : results) threads.emplace_back([&] { result = exact.distances(4); });
   }
   EXPECT_EQ(results[0], expected);

@@ -211,6 +211,7 @@ TEST(HeatGeodesics, GiveTheSameBytesInEveryThread) {
   std::array<std::vector<Eigen::VectorXd>, 2> results;
   {
     std::vector<std::jthread> threads;
+    threads.reserve(results.size());
     for (auto& result : results) {
       threads.emplace_back([&] {
         for (VertexIndex source = 0; source < 20; ++source) {

@@ -42,7 +42,8 @@ class Attributes : public testing::Test {
     write_bytes(folder_ / "take/f_1.obj", moved);
   }
 
-  void convert(const std::string& from, const std::string& to, SequenceWriteOptions options = {}) {
+  void convert(const std::string& from, const std::string& to,
+               const SequenceWriteOptions& options = {}) {
     const auto open = open_sequence(folder_ / from);
     write_sequence(*open.frames, folder_ / to, options);
   }

@@ -128,7 +128,7 @@ TEST_F(GltfFiles, FiltersOfCompressedViewsAreUndone) {
 
 TEST_F(GltfFiles, DamagedCompressionIsAnError) {
   const std::string points = encoded_points(quarters());
-  const auto with = [&](const std::string& encoded, GltfJson how) {
+  const auto with = [&](const std::string& encoded, const GltfJson& how) {
     GltfBuilder gltf;
     const int view = compressed_view(gltf, encoded, how);
     gltf.primitive(gltf.accessor(view, 5126, 6, "VEC3"), gltf.faces(eight()));

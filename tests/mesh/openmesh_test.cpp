@@ -133,6 +133,7 @@ QuadMesh house() {
   }
   for (const auto& corners : std::vector<std::vector<int>>{{0, 1, 4, 3}, {1, 2, 5, 4}, {3, 4, 6}}) {
     std::vector<OpenMesh::VertexHandle> face;
+    face.reserve(corners.size());
     for (const int corner : corners) face.emplace_back(corner);
     mesh.add_face(face);
   }

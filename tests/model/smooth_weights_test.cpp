@@ -97,6 +97,7 @@ TEST(SmoothWeights, AreTheSolutionOfTheDenseProblem) {
 TEST(SmoothWeights, TakeAGramMatrixForEachFrame) {
   const Clip clip = noisy_clip(7, 4);
   std::vector<Eigen::MatrixXd> grams;
+  grams.reserve(7);
   for (int f = 0; f < 7; ++f) grams.push_back((0.5 + 0.3 * f) * noisy_clip(3 + f, 4).gram);
   const double mu = clip.mean_diagonal();
   const Eigen::MatrixXd beta =

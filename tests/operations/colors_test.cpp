@@ -62,6 +62,7 @@ TEST(CategoryColors, OfOneThatTouchesTenOthersIsAnother) {
 TEST(CategoryColors, DifferWhereCategoriesTouch) {
   const test::Shape shape = test::grid(20, 20);
   std::vector<int> categories;
+  categories.reserve(400);
   for (int v = 0; v < 400; ++v) categories.push_back(v / 20 / 4 * 5 + v % 20 / 4);
   const std::vector<Color> colors = category_colors(categories, shape.triangles);
   for (Eigen::Index t = 0; t < shape.triangles.rows(); ++t) {

@@ -41,6 +41,7 @@ class MatchedTransferTest : public testing::Test {
 
   static std::vector<std::string> names_of(const std::vector<Field>& fields) {
     std::vector<std::string> names;
+    names.reserve(fields.size());
     for (const Field& field : fields) names.push_back(field.name);
     return names;
   }

@@ -29,6 +29,7 @@ struct Sheet {
   /// A region of each of some coarse vertices, with no other vertex in it.
   Regions around(const std::vector<int>& centers, double radius) const {
     std::vector<std::vector<VertexIndex>> lists;
+    lists.reserve(centers.size());
     for (const int center : centers) lists.push_back({center});
     Regions regions =
         regions_from_vertices(coarse.connectivity->vertices, coarse.connectivity->triangles, lists);

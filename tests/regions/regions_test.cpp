@@ -195,6 +195,7 @@ TEST(SupportRegions, AreTheFewestVerticesWith95PercentOfTheEnergy) {
   options.shape = RegionShape::support;
   const Region region = find_regions(components, options).regions[0];
   std::vector<double> energies;
+  energies.reserve(static_cast<std::size_t>(components.vertices()));
   for (int v = 0; v < components.vertices(); ++v) {
     energies.push_back(components.displacements.row(0).segment(3 * v, 3).squaredNorm());
   }

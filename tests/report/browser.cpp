@@ -50,6 +50,7 @@ std::array<int, 2> pipe_ends() {
   dup2(reads, kBrowserReads);
   dup2(writes, kBrowserWrites);
   std::vector<char*> arguments;
+  arguments.reserve(words.size() + 1);
   for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
   arguments.push_back(nullptr);
   execv(arguments.front(), arguments.data());

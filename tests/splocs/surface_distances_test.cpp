@@ -146,6 +146,7 @@ TEST(SurfaceDistances, AreTheSameFromSeveralThreads) {
   std::vector<Eigen::VectorXd> results(4);
   {
     std::vector<std::jthread> threads;
+    threads.reserve(results.size());
     for (auto& result : results) threads.emplace_back([&] { result = distances(7); });
   }
   for (const auto& result : results) EXPECT_EQ(result, welded_distances(shape)(7));

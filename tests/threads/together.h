@@ -17,6 +17,7 @@ template <typename Work>
 void together(const Work& work) {
   std::latch start(kTogether);
   std::vector<std::jthread> threads;
+  threads.reserve(kTogether);
   for (int i = 0; i < kTogether; ++i) {
     threads.emplace_back([&work, &start, i] {
       start.arrive_and_wait();

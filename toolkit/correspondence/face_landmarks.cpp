@@ -11,6 +11,7 @@
 
 #include "toolkit/correspondence/face_search.h"
 #include "toolkit/mesh/errors.h"
+#include "toolkit/mesh/median.h"
 #include "toolkit/mesh/parallel.h"
 #include "toolkit/mesh/surface_parts.h"
 
@@ -54,12 +55,6 @@ int skin_part(const SeenFace& seen, const Triangles& triangles, const SurfacePar
   return std::ranges::max_element(landmarks, fewer)->first;
 }
 
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::ranges::nth_element(values, middle);
-  return *middle;
-}
-
 /// Where most of some points are: the mean of those within reach of the median.
 struct Agreement {
   Vector3d centre = Vector3d::Zero();
@@ -71,6 +66,7 @@ Agreement agreement(const std::vector<Vector3d>& points, double reach) {
   Vector3d middle;
   for (int axis = 0; axis < 3; ++axis) {
     std::vector<double> values;
+    values.reserve(points.size());
     for (const Vector3d& point : points) values.push_back(point[axis]);
     middle[axis] = median(std::move(values));
   }

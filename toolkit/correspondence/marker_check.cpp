@@ -9,6 +9,7 @@
 
 #include "toolkit/correspondence/closest_surface.h"
 #include "toolkit/mesh/errors.h"
+#include "toolkit/mesh/median.h"
 #include "toolkit/mesh/normals.h"
 #include "toolkit/mesh/product_blocking.h"
 #include "toolkit/mesh/similarity.h"
@@ -139,10 +140,9 @@ std::optional<DoubtfulMarker> most_doubtful(const Positions& from, const Positio
   }
   Eigen::Index worst = 0;
   const double most = significance.maxCoeff(&worst);
-  const auto middle = significance.begin() + significance.size() / 2;
-  std::nth_element(significance.begin(), middle, significance.end());
+  const double usual = median({significance.begin(), significance.end()});
   const double off = others.missed(coefficients, worst).norm() / size;
-  if (off <= kHarmless || most <= kDoubtfulTimes * *middle) return {};
+  if (off <= kHarmless || most <= kDoubtfulTimes * usual) return {};
   return DoubtfulMarker{static_cast<std::size_t>(worst), {}, off};
 }
 

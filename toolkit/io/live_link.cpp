@@ -9,6 +9,7 @@
 #include "toolkit/io/timecode.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/frame_source.h"
+#include "toolkit/mesh/median.h"
 #include "toolkit/mesh/text.h"
 
 namespace mimetra {
@@ -35,11 +36,8 @@ std::vector<int> columns_of(const std::vector<std::string>& expressions) {
 /// one is near.
 int counted_rate(const Eigen::VectorXd& times) {
   constexpr std::array kUsualRates = {24, 25, 30, 48, 50, 60, 90, 100, 120, 240};
-  std::vector<double> steps;
-  for (Eigen::Index f = 1; f < times.size(); ++f) steps.push_back(times[f] - times[f - 1]);
-  if (steps.empty()) return 30;
-  std::ranges::nth_element(steps, steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2));
-  const double found = 1 / steps[steps.size() / 2];
+  if (times.size() < 2) return 30;
+  const double found = 1 / median_difference(times);
   for (const int rate : kUsualRates) {
     // 29.97 is counted by 30.
     if (std::abs(rate - found) < 0.01 * rate) return rate;

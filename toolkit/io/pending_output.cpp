@@ -92,6 +92,7 @@ void check_replaceable(const fs::path& target, const fs::path& folder) {
   const std::vector<fs::path> others = files_of_others(folder);
   if (others.empty()) return;
   std::vector<std::string> quoted_names;
+  quoted_names.reserve(others.size());
   for (const fs::path& other : others) quoted_names.push_back("'" + other.string() + "'");
   throw OutputError(
       target.string(),

@@ -10,6 +10,7 @@
 #include "toolkit/io/sequence_companions.h"
 #include "toolkit/io/whole_file.h"
 #include "toolkit/mesh/errors.h"
+#include "toolkit/mesh/median.h"
 #include "toolkit/mesh/text.h"
 
 namespace mimetra {
@@ -48,13 +49,10 @@ void check_rate(const std::string& name, const Eigen::VectorXd& times,
 
 std::string note_on_steps(const Eigen::VectorXd& times) {
   constexpr double kLongest = 1;
-  std::vector<double> steps;
-  for (Eigen::Index f = 1; f < times.size(); ++f) steps.push_back(times[f] - times[f - 1]);
-  if (steps.empty()) return "";
-  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-  std::ranges::nth_element(steps, middle);
-  if (!(*middle > kLongest)) return "";
-  return "its frames are " + readable(*middle) +
+  if (times.size() < 2) return "";
+  const double step = median_difference(times);
+  if (!(step > kLongest)) return "";
+  return "its frames are " + readable(step) +
          " s apart (median), as where times are milliseconds or numbers of frames; expected "
          "seconds";
 }

@@ -5,6 +5,8 @@
 #include <charconv>
 #include <cmath>
 
+#include "toolkit/mesh/median.h"
+
 namespace mimetra {
 namespace {
 
@@ -14,12 +16,6 @@ constexpr int kDay = 24 * 60 * 60;
 int seconds_between(const Timecode& code, const Timecode& next) {
   const int seconds = next.seconds - code.seconds;
   return seconds < -kDay / 2 ? seconds + kDay : seconds;
-}
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::ranges::nth_element(values, middle);
-  return *middle;
 }
 
 /// Whole frames in a second; none where nothing tells.

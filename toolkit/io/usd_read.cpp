@@ -37,7 +37,7 @@ struct UsdMesh {
 
 class UsdReader {
  public:
-  UsdReader(const fs::path& path, std::string text)
+  UsdReader(const fs::path& path, const std::string& text)
       : path_(path.string()), bytes_(text.size()), layer_(parse_usd(path_, text)) {
     rate_ = setting("timeCodesPerSecond", setting("framesPerSecond", 24));
     if (!(rate_ > 0) || std::isinf(rate_))
@@ -55,6 +55,7 @@ class UsdReader {
     const bool is_baked =
         std::ranges::any_of(meshes_, [](const UsdMesh& mesh) { return !mesh.codes.empty(); });
     std::vector<ScenePart> parts;
+    parts.reserve(meshes_.size());
     for (const UsdMesh& mesh : meshes_) {
       parts.push_back(mesh.part);
       if (is_baked) parts.back().weights = nullptr;
@@ -465,13 +466,13 @@ class UsdReader {
 }  // namespace
 
 Scene read_usd(const fs::path& path) {
-  std::string text = read_file(path);
+  const std::string text = read_file(path);
   const std::string remedy = ", which is not read; export .usda, the text form (usdcat " +
                              path.filename().string() + " -o NAME.usda)";
   if (text.starts_with("PXR-USDC")) throw IoError(path.string(), "is binary USD" + remedy);
   if (text.starts_with("PK")) throw IoError(path.string(), "is a package of USD" + remedy);
   check_encoding(path.string(), text);
-  return UsdReader(path, std::move(text)).read();
+  return UsdReader(path, text).read();
 }
 
 }  // namespace mimetra

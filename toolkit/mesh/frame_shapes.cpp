@@ -5,6 +5,8 @@
 
 #include <Eigen/LU>
 
+#include "toolkit/mesh/median.h"
+
 namespace mimetra {
 namespace {
 
@@ -40,12 +42,6 @@ FrameShape shape_of(const PositionsView& pose, const Positions& rest, double res
   }
   shape.longest_edge = std::sqrt(longest2);
   return shape;
-}
-
-double median_of(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 }  // namespace
@@ -96,9 +92,10 @@ std::vector<int> jumping_frames(const std::vector<FrameShape>& shapes, double si
 
 OddFrames odd_frames(const FrameSource& sequence, const std::vector<FrameShape>& shapes) {
   std::vector<double> spreads;
+  spreads.reserve(shapes.size());
   for (const FrameShape& shape : shapes) spreads.push_back(shape.spread);
   OddFrames odd;
-  odd.usual_spread = median_of(std::move(spreads));
+  odd.usual_spread = median(std::move(spreads));
   const Positions rest = centred(sequence.rest());
   const double rest_spread = spread(sequence.rest());
   const FrameShape of_rest = shape_of(PositionsView(sequence.rest().data(), rest.rows(), 3), rest,

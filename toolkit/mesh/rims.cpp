@@ -68,6 +68,7 @@ std::vector<double> diameters_of(const Positions& positions, const SurfaceParts&
     members[parts.of_vertex[v]].push_back(static_cast<Eigen::Index>(v));
   }
   std::vector<double> diameters;
+  diameters.reserve(members.size());
   for (const auto& vertices : members) {
     diameters.push_back(diameter(positions(vertices, Eigen::all)));
   }

@@ -6,7 +6,6 @@
 #include <system_error>
 
 #include <fcntl.h>
-#include <stdlib.h>
 #include <unistd.h>
 
 #include "toolkit/mesh/errors.h"

@@ -82,6 +82,7 @@ std::string listed(const std::vector<std::string>& words, std::size_t most) {
 
 std::vector<std::string> words_of(const std::vector<int>& numbers) {
   std::vector<std::string> words;
+  words.reserve(numbers.size());
   for (const int number : numbers) words.push_back(std::to_string(number));
   return words;
 }

@@ -81,6 +81,7 @@ std::string folded_name(const std::string& name) {
 
 std::vector<std::array<int, 2>> known_pairs(const std::vector<std::string>& names) {
   std::vector<HalfName> halves;
+  halves.reserve(names.size());
   for (const std::string& name : names) halves.push_back(half_of(name));
   std::vector<std::array<int, 2>> pairs;
   for (std::size_t left = 0; left < halves.size(); ++left) {
@@ -98,6 +99,7 @@ std::vector<std::array<int, 2>> known_pairs(const std::vector<std::string>& name
 std::vector<std::vector<int>> known_exclusives(const std::vector<std::string>& names,
                                                Exclusive which) {
   std::vector<std::string> folded;
+  folded.reserve(names.size());
   for (const std::string& name : names) folded.push_back(folded_name(spelled_out(name)));
   std::vector<std::vector<int>> groups;
   for (const KnownGroup& known : known_groups()) {

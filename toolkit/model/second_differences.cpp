@@ -1,23 +1,20 @@
 #include "toolkit/model/second_differences.h"
 
-#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <string>
-#include <vector>
+
+#include "toolkit/mesh/median.h"
 
 namespace mimetra {
 
 double median_step(const Eigen::VectorXd& times) {
-  std::vector<double> steps;
-  for (Eigen::Index f = 1; f < times.size(); ++f) steps.push_back(times[f] - times[f - 1]);
-  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-  std::ranges::nth_element(steps, middle);
-  if (!(*middle > 0)) {
-    throw std::invalid_argument("smoothness: the median time step is " + std::to_string(*middle) +
+  const double step = median_difference(times);
+  if (!(step > 0)) {
+    throw std::invalid_argument("smoothness: the median time step is " + std::to_string(step) +
                                 " s, expected a positive one");
   }
-  return *middle;
+  return step;
 }
 
 SecondDifferences second_differences(const Eigen::VectorXd& times) {

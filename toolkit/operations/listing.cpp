@@ -33,6 +33,7 @@ std::vector<Format> by_kind(const OperationTable& table) {
 
 std::vector<std::string> option_words(const std::vector<Parameter>& parameters) {
   std::vector<std::string> words;
+  words.reserve(parameters.size());
   for (const Parameter& parameter : parameters) words.push_back(parameter.option());
   return words;
 }

@@ -328,6 +328,7 @@ Json json_of(const std::vector<ComparedOpening>& openings) {
 
 std::string summary_of(const std::vector<ComparedOpening>& openings) {
   std::vector<std::string> parts;
+  parts.reserve(openings.size());
   for (const ComparedOpening& opening : openings) {
     parts.push_back(std::string(opening.name) + ' ' + percent(opening.source_least) + " to " +
                     percent(opening.source_most) + " on the source, " +

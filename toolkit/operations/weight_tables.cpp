@@ -58,10 +58,10 @@ std::vector<std::string> live_link_losses(const Data& data, const std::filesyste
 }
 
 /// A format of tables, or of a sequence's weights as such a table.
-template <std::string (Table::*text)() const>
+template <std::string (Table::*Text)() const>
 Paths write_table(const Data& data, const WriteRequest& request) {
-  if (const auto* table = std::get_if<Table>(&data)) return write_text(request, (table->*text)());
-  return write_text(request, (weight_table(track_of(data, request.target)).*text)());
+  if (const auto* table = std::get_if<Table>(&data)) return write_text(request, (table->*Text)());
+  return write_text(request, (weight_table(track_of(data, request.target)).*Text)());
 }
 
 }  // namespace

@@ -234,13 +234,14 @@ Image draw(const std::vector<Chart>& row, const ChartSize& size) {
   const OffscreenWindow offscreen(size.width * static_cast<int>(row.size()), size.height);
   const SilentVtk silent;
   vtkNew<vtkContextActor> actor;
+  const int height = size.height - letters / 2;
   for (std::size_t i = 0; i < row.size(); ++i) {
     const auto shown = chart_item(row[i], letters);
     shown->SetAutoSize(false);
     // Space for the last tick's label, which is centred on the end of its axis.
     const double left = static_cast<double>(i) * size.width;
     shown->SetSize(vtkRectf(static_cast<float>(left), 0, static_cast<float>(size.width - letters),
-                            static_cast<float>(size.height - letters / 2)));
+                            static_cast<float>(height)));
     actor->GetScene()->AddItem(shown);
   }
   vtkNew<vtkRenderer> renderer;

@@ -31,6 +31,7 @@ std::vector<std::filesystem::path> write_pictures(const Data& data, const WriteR
   for (const auto& [extra, content] : request.extra) write_bytes(folder / extra, content);
   outputs.commit();
   std::vector<std::filesystem::path> files;
+  files.reserve(static_cast<std::size_t>(pictures.count));
   for (int i = 0; i < pictures.count; ++i) files.push_back(request.target / name(i));
   return files;
 }

@@ -57,7 +57,8 @@ std::vector<int> reached_places(const std::vector<std::vector<VertexIndex>>& nei
   for (std::size_t place = 0; place < known.size(); ++place) {
     if (known[place]) reach_around(static_cast<VertexIndex>(place));
   }
-  for (std::size_t i = 0; i < reached.size(); ++i) reach_around(reached[i]);
+  std::size_t seen = 0;
+  while (seen < reached.size()) reach_around(reached[seen++]);
   return number;
 }
 

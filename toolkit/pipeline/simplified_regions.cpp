@@ -17,6 +17,7 @@ constexpr double kSimplifying = 0.3;
 AnalysisOptions of_kept(AnalysisOptions options, const std::vector<VertexIndex>& kept) {
   if (!options.inside.empty()) {
     std::vector<bool> inside;
+    inside.reserve(kept.size());
     for (const VertexIndex v : kept) inside.push_back(options.inside[static_cast<std::size_t>(v)]);
     options.inside = std::move(inside);
   }

@@ -39,6 +39,7 @@ void TargetNotes::add(const BlendshapeConditions& conditions) const {
 void TargetNotes::add_following(const std::vector<int>& parts, std::size_t vertices) const {
   if (parts.empty()) return;
   std::vector<std::string> names;
+  names.reserve(parts.size());
   for (const int part : parts) names.push_back("component:" + std::to_string(part));
   add(std::to_string(parts.size()) + " connected parts without partner in the source (" +
       std::to_string(vertices) +

@@ -180,6 +180,7 @@ Eigen::MatrixXd SurfaceDistances::operator()(std::span<const VertexIndex> source
     }
   }
   std::vector<VertexIndex> missing;
+  missing.reserve(columns_of_missing.size());
   for (const auto& [place, columns] : columns_of_missing) missing.push_back(place);
   const Eigen::MatrixXd found = state_->computed(missing);
   state_->computed_sources += static_cast<int>(missing.size());

@@ -57,9 +57,9 @@ class BlockSource {
   BlockSource() = default;
   BlockSource(Eigen::Index rows, const VertexPart& part) : rows_(rows), part_(part) {}
   BlockSource(const BlockSource&) = default;
-  BlockSource(BlockSource&&) = default;
+  BlockSource(BlockSource&&) noexcept = default;
   BlockSource& operator=(const BlockSource&) = default;
-  BlockSource& operator=(BlockSource&&) = default;
+  BlockSource& operator=(BlockSource&&) noexcept = default;
 
  private:
   Eigen::Index rows_ = 0;

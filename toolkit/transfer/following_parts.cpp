@@ -6,6 +6,7 @@
 
 #include "toolkit/mesh/alignment.h"
 #include "toolkit/mesh/inspection.h"
+#include "toolkit/mesh/median.h"
 
 namespace mimetra {
 
@@ -22,19 +23,13 @@ constexpr int kFollowingSteps = 8;
 /// What is left of a point is seen from this share of the target's size on.
 constexpr double kSeenResidual = 1e-4;
 
-double median_of(Eigen::VectorXd values) {
-  const auto middle = values.begin() + values.size() / 2;
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 /// The rigid motion from `from` to `to` that most of the points agree on, beginning with none.
 RigidTransform common_motion(const Positions& from, const Positions& to,
                              const Eigen::VectorXd& counts, double least) {
   RigidTransform motion;
   for (int step = 0; step < kFollowingSteps; ++step) {
     const Eigen::VectorXd left = (motion.apply(from) - to).rowwise().norm();
-    const double scale = std::max(median_of(left), least);
+    const double scale = std::max(median({left.begin(), left.end()}), least);
     const Eigen::VectorXd weights = counts.array() / (left.array().square() + scale * scale);
     motion = rigid_fit(from, to, weights);
   }
