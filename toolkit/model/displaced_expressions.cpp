@@ -1,5 +1,9 @@
 #include "toolkit/model/displaced_expressions.h"
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
 #include "toolkit/mesh/diameter.h"
 #include "toolkit/mesh/text.h"
 
@@ -8,7 +12,10 @@ namespace mimetra {
 double least_move(const Positions& from, const Eigen::Ref<const Positions>& to,
                   const Triangles& triangles) {
   const std::vector<VertexIndex> used = used_vertices(triangles, from.rows());
-  return used.empty() ? 0 : (to - from)(used, Eigen::all).rowwise().norm().minCoeff();
+  if (used.empty()) return 0;
+  double least2 = std::numeric_limits<double>::infinity();
+  for (const VertexIndex v : used) least2 = std::min(least2, (to.row(v) - from.row(v)).squaredNorm());
+  return std::sqrt(least2);
 }
 
 namespace {
