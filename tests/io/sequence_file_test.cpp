@@ -116,6 +116,16 @@ TEST_F(TwelveFiles, FrameWithItsFacesInAnotherOrderIsOne) {
   EXPECT_EQ(read_sequence(text()).sequence.frame(6)(2, 1), 7);
 }
 
+TEST_F(TwelveFiles, FrameWhoseQuadsAreTrianglesIsOne) {
+  const std::string corners = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 ";
+  std::filesystem::create_directory(folder_ / "quads");
+  write_bytes(folder_ / "quads/a_1.obj", corners + "0\nf 1 2 3 4\n");
+  write_bytes(folder_ / "quads/a_2.obj", corners + "5\nf 2 3 4\nf 1 2 4\n");
+  const SequenceRead read = read_sequence((folder_ / "quads").string());
+  EXPECT_EQ(read.sequence.frame(1)(3, 2), 5);
+  EXPECT_EQ(read.sequence.connectivity().polygons.size(), 1);
+}
+
 TEST_F(TwelveFiles, AnotherFormatAmongThemIsAnErrorThatNamesBoth) {
   write_frame(folder_ / "other.ply", 0);
   const std::string message = message_of<IoError>([&] { read_sequence(text()); });

@@ -135,6 +135,37 @@ TEST(Connectivity, TakesTheTrianglesOfTheSameFacesInAnotherOrder) {
   EXPECT_EQ(ordered->polygons, orders.other.polygons);
 }
 
+TEST(Connectivity, TakesTheTrianglesOfPolygonsThatAreCutOtherwise) {
+  const TwoOrders orders;
+  // The first quad along its other diagonal, the second against the way it is wound.
+  const Connectivity cut = Connectivity::from_polygons(
+      7, {{3, 2, 1, 2, 3, 4, 5, 3, 4, 4, 6, 5, 2, 0, 1}, {0, 3, 6, 9, 12, 15}});
+  const auto finer = in_order_of(orders.reference, cut);
+  ASSERT_TRUE(finer);
+  Triangles expected = orders.reference.triangles;
+  for (const int turned : {3, 4}) std::swap(expected(turned, 1), expected(turned, 2));
+  EXPECT_EQ(finer->triangles, expected);
+  // Each triangle in the part that has the most of its corners.
+  EXPECT_THAT(finer->polygon_of_triangle, ElementsAre(0, 0, 1, 2, 2));
+  EXPECT_EQ(finer->polygons, cut.polygons);
+
+  const auto coarser = in_order_of(cut, orders.reference);
+  ASSERT_TRUE(coarser);
+  expected = cut.triangles;
+  for (const int turned : {2, 3}) std::swap(expected(turned, 1), expected(turned, 2));
+  EXPECT_EQ(coarser->triangles, expected);
+  EXPECT_THAT(coarser->polygon_of_triangle, ElementsAre(0, 1, 2, 2, 0));
+}
+
+TEST(Connectivity, TakesTheTrianglesOfAFaceThatHasACornerTwice) {
+  const Connectivity one = Connectivity::from_polygons(4, {{0, 1, 2, 3, 3, 1}, {0, 3, 6}});
+  const Connectivity other = Connectivity::from_polygons(4, {{1, 3, 3, 1, 2, 0}, {0, 3, 6}});
+  const auto ordered = in_order_of(one, other);
+  ASSERT_TRUE(ordered);
+  EXPECT_EQ(ordered->triangles, one.triangles);
+  EXPECT_THAT(ordered->polygon_of_triangle, ElementsAre(1, 0));
+}
+
 TEST(Connectivity, TakesNoTrianglesOfOtherFaces) {
   const TwoOrders orders;
   // Split along the other diagonal, with a face more, a vertex more, and a face that is there

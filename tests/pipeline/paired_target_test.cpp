@@ -282,10 +282,55 @@ TEST_F(PairedTargetTest, FacesInAnotherOrderOrWoundTheOtherWayAreTheSame) {
     // It is written as it was.
     EXPECT_EQ(same.solution.sequence->connectivity().polygons, other.connectivity().polygons);
     const auto says_so = [](const Note& note) {
-      return note.text.find("in another order, or wound the other way") != std::string::npos;
+      return note.text.find("in another order, wound the other way") != std::string::npos;
     };
     EXPECT_TRUE(std::ranges::any_of(noted.notes, says_so));
   }
+}
+
+/// Four quads around a vertex, of which left and right are alike, on a bowl that falls to one side.
+struct SymmetricQuads {
+  TriMesh mesh{Positions(9, 3),
+               Connectivity::from_polygons(
+                   9, {{0, 1, 4, 3, 1, 2, 5, 4, 3, 4, 7, 6, 4, 5, 8, 7}, {0, 4, 8, 12, 16}})};
+
+  SymmetricQuads() {
+    for (int v = 0; v < 9; ++v) {
+      const int x = v % 3 - 1, y = v / 3 - 1;
+      mesh.positions.row(v) << x, y, 0.5 * (x * x + y * y) + 0.2 * y;
+    }
+  }
+
+  /// With its faces wound the other way.
+  BlendshapeModel turned(const Positions& positions) const {
+    Polygons polygons = mesh.connectivity.polygons;
+    std::reverse(polygons.corners.begin(), polygons.corners.end());
+    return {std::make_shared<const Connectivity>(Connectivity::from_polygons(9, polygons)),
+            positions,
+            {}};
+  }
+};
+
+TEST(HasFacesOf, TakesTurnedQuadsOfASymmetricMeshWhereTheyAre) {
+  const SymmetricQuads quads;
+  EXPECT_TRUE(has_faces_of(quads.mesh, quads.turned(2 * quads.mesh.positions)));
+  // Seen from the other side they are turned the same way as the source's.
+  const Positions mirrored = quads.mesh.positions * Eigen::Vector3d(-1, 1, 1).asDiagonal();
+  EXPECT_FALSE(has_faces_of(quads.mesh, quads.turned(mirrored)));
+}
+
+TEST(HasFacesOf, TakesTheTrianglesOfQuads) {
+  const SymmetricQuads quads;
+  const BlendshapeModel cut(std::make_shared<const Connectivity>(
+                                Connectivity::from_triangles(9, quads.mesh.connectivity.triangles)),
+                            quads.mesh.positions, {});
+  EXPECT_TRUE(has_faces_of(quads.mesh, cut));
+  Triangles other = quads.mesh.connectivity.triangles;
+  other.row(0) << 0, 1, 8;
+  EXPECT_FALSE(has_faces_of(
+      quads.mesh, {std::make_shared<const Connectivity>(Connectivity::from_triangles(9, other)),
+                   quads.mesh.positions,
+                   {}}));
 }
 
 }  // namespace

@@ -180,15 +180,15 @@ void check_same_faces(const fs::path& path, const MeshContent& content,
                       const Connectivity& expected, const fs::path& expected_path) {
   // Equal lists are the rule and need no triangulation.
   if (content.polygons == expected.polygons) return;
+  const Connectivity found = Connectivity::from_polygons(expected.vertices, content.polygons);
+  // In another order, or cut otherwise, but none flipped.
+  const std::optional<Connectivity> ordered = in_order_of(expected, found);
+  if (ordered && ordered->triangles == expected.triangles) return;
   if (content.polygons.size() != expected.polygons.size()) {
     throw_mismatch(path, content.polygons.size(), "faces", expected.polygons.size(), expected_path);
   }
-  const Connectivity found = Connectivity::from_polygons(expected.vertices, content.polygons);
   const int face = first_different_face(found, expected);
   if (face < 0) return;
-  // In another order, but none flipped.
-  const std::optional<Connectivity> ordered = in_order_of(expected, found);
-  if (ordered && ordered->triangles == expected.triangles) return;
   throw MismatchError(path.string() + ": " + face_name(content, face) + " has the vertices " +
                       corners_of(content.polygons, face, content.first_index) + ", expected " +
                       corners_of(expected.polygons, face, content.first_index) + " as in " +

@@ -1,7 +1,9 @@
 #include <algorithm>
-#include <map>
+#include <iterator>
+#include <span>
 #include <stdexcept>
 #include <utility>
+#include <vector>
 
 #include "toolkit/mesh/tri_mesh.h"
 
@@ -100,54 +102,121 @@ int first_different_face(const Connectivity& a, const Connectivity& b) {
 
 namespace {
 
-/// A polygon whichever corner it begins with and whichever way it is wound.
-struct UnorderedPolygon {
-  std::vector<int> corners;
-  bool is_turned = false;  ///< against the way it is wound
+std::span<const int> corners_of(const Polygons& polygons, int face) {
+  const auto first = static_cast<std::size_t>(polygons.offsets[std::size_t(face)]);
+  const auto last = static_cast<std::size_t>(polygons.offsets[std::size_t(face) + 1]);
+  return std::span(polygons.corners).subspan(first, last - first);
+}
+
+/// How a polygon lies in another that has all of its corners.
+enum class Lies { apart, straight, turned };
+
+bool has_repeated(std::span<const int> corners) {
+  std::vector<int> sorted(corners.begin(), corners.end());
+  std::ranges::sort(sorted);
+  return std::ranges::adjacent_find(sorted) != sorted.end();
+}
+
+/// One that has a corner twice lies in its like only.
+Lies lies_in(std::span<const int> whole, std::span<const int> part) {
+  if (has_repeated(part)) {
+    return std::ranges::is_permutation(whole, part) ? Lies::straight : Lies::apart;
+  }
+  std::vector<std::ptrdiff_t> places;
+  places.reserve(part.size());
+  for (const int corner : part) {
+    const auto place = std::ranges::find(whole, corner);
+    if (place == whole.end()) return Lies::apart;
+    places.push_back(place - whole.begin());
+  }
+  // Around the whole once, either way.
+  int falls = 0;
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    if (places[(i + 1) % places.size()] < places[i]) ++falls;
+  }
+  if (falls == 1) return Lies::straight;
+  return falls + 1 == static_cast<int>(places.size()) ? Lies::turned : Lies::apart;
+}
+
+/// Polygons of one mesh in those of a coarser one, or of one that has the same.
+struct Split {
+  std::vector<int> whole;               ///< for each polygon of the finer mesh, the one it lies in
+  std::vector<bool> is_turned;          ///< for each polygon of the coarser, its parts against it
+  std::vector<std::vector<int>> parts;  ///< of each polygon of the coarser, ascending
 };
 
-UnorderedPolygon unordered(const Polygons& polygons, int face) {
-  const auto at = [&](int i) {
-    return polygons.corners.begin() + polygons.offsets[std::size_t(i)];
+/// None unless every polygon of `coarse` is one of `fine` or cut into several, wound all alike, and
+/// no polygon is there twice.
+std::optional<Split> split_of(const Polygons& coarse, const Polygons& fine, int vertices) {
+  const auto wholes = static_cast<std::size_t>(coarse.size());
+  Split split{{}, std::vector<bool>(wholes, false), std::vector<std::vector<int>>(wholes)};
+  split.whole.reserve(static_cast<std::size_t>(fine.size()));
+  std::vector<std::vector<int>> around(static_cast<std::size_t>(vertices));
+  for (int face = 0; face < coarse.size(); ++face) {
+    for (const int corner : corners_of(coarse, face)) around[std::size_t(corner)].push_back(face);
+  }
+  for (int face = 0; face < fine.size(); ++face) {
+    const auto part = corners_of(fine, face);
+    std::optional<int> found;
+    Lies lies = Lies::apart;
+    for (const int whole : around[std::size_t(part.front())]) {
+      const Lies here = lies_in(corners_of(coarse, whole), part);
+      if (here == Lies::apart) continue;
+      if (found) return {};
+      found = whole;
+      lies = here;
+    }
+    if (!found) return {};
+    std::vector<int>& parts = split.parts[std::size_t(*found)];
+    const bool is_turned = lies == Lies::turned;
+    if (!parts.empty() && split.is_turned[std::size_t(*found)] != is_turned) return {};
+    split.is_turned[std::size_t(*found)] = is_turned;
+    parts.push_back(face);
+    split.whole.push_back(*found);
+  }
+  for (int whole = 0; whole < coarse.size(); ++whole) {
+    // A polygon of c corners is worth c - 2 triangles.
+    std::ptrdiff_t missing = std::ssize(corners_of(coarse, whole)) - 2;
+    for (const int part : split.parts[std::size_t(whole)]) {
+      missing -= std::ssize(corners_of(fine, part)) - 2;
+    }
+    if (missing != 0) return {};
+  }
+  return split;
+}
+
+/// The one of several polygons that has the most of a triangle's corners; the first such.
+int nearest_to(const Triangles& triangles, Eigen::Index t, const Polygons& polygons,
+               const std::vector<int>& parts) {
+  const auto shared = [&](int part) {
+    const auto corners = corners_of(polygons, part);
+    return std::ranges::count_if(triangles.row(t),
+                                 [&](int v) { return std::ranges::count(corners, v) > 0; });
   };
-  UnorderedPolygon polygon{{at(face), at(face + 1)}};
-  std::vector<int>& corners = polygon.corners;
-  std::rotate(corners.begin(), std::ranges::min_element(corners), corners.end());
-  polygon.is_turned = corners[1] > corners.back();
-  if (polygon.is_turned) std::reverse(corners.begin() + 1, corners.end());
-  return polygon;
+  return *std::ranges::max_element(parts, {}, shared);
 }
 
 }  // namespace
 
 std::optional<Connectivity> in_order_of(const Connectivity& reference, const Connectivity& mesh) {
-  const int count = mesh.polygons.size();
-  if (reference.vertices != mesh.vertices || reference.polygons.size() != count) return {};
-  struct Place {
-    int polygon;
-    bool is_turned;
-  };
-  std::map<std::vector<int>, Place> places;
-  for (int face = 0; face < count; ++face) {
-    UnorderedPolygon polygon = unordered(mesh.polygons, face);
-    const Place place{face, polygon.is_turned};
-    if (!places.emplace(std::move(polygon.corners), place).second) return {};
-  }
-  std::vector<Place> of_reference;
-  std::vector<bool> is_taken(static_cast<std::size_t>(count), false);
-  for (int face = 0; face < count; ++face) {
-    const UnorderedPolygon polygon = unordered(reference.polygons, face);
-    const auto found = places.find(polygon.corners);
-    if (found == places.end() || is_taken[std::size_t(found->second.polygon)]) return {};
-    is_taken[std::size_t(found->second.polygon)] = true;
-    of_reference.push_back({found->second.polygon, found->second.is_turned != polygon.is_turned});
-  }
+  if (reference.vertices != mesh.vertices) return {};
+  const bool is_finer = mesh.polygons.size() > reference.polygons.size();
+  const std::optional<Split> split =
+      is_finer ? split_of(reference.polygons, mesh.polygons, mesh.vertices)
+               : split_of(mesh.polygons, reference.polygons, mesh.vertices);
+  if (!split) return {};
   Connectivity ordered = mesh;
   ordered.triangles = reference.triangles;
   for (Eigen::Index t = 0; t < ordered.triangles.rows(); ++t) {
-    const Place& place = of_reference[std::size_t(reference.polygon_of_triangle[std::size_t(t)])];
-    ordered.polygon_of_triangle[std::size_t(t)] = place.polygon;
-    if (place.is_turned) std::swap(ordered.triangles(t, 1), ordered.triangles(t, 2));
+    const int known = reference.polygon_of_triangle[std::size_t(t)];
+    const int whole = is_finer ? known : split->whole[std::size_t(known)];
+    ordered.polygon_of_triangle[std::size_t(t)] =
+        is_finer
+            ? nearest_to(reference.triangles, t, mesh.polygons, split->parts[std::size_t(whole)])
+            : whole;
+    if (split->is_turned[std::size_t(whole)]) {
+      std::swap(ordered.triangles(t, 1), ordered.triangles(t, 2));
+    }
   }
   return ordered;
 }

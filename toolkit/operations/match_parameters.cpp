@@ -63,11 +63,12 @@ std::vector<std::string> named_for_each(const Parameters& parameters, const std:
 }
 
 /// Of a sequence or a model.
-const Connectivity& faces_of(const Data& data) {
+TriMesh rest_mesh(const Data& data) {
   if (const auto* sequence = std::get_if<FieldSequence>(&data)) {
-    return sequence->frames->connectivity();
+    return {sequence->frames->rest(), sequence->frames->connectivity()};
   }
-  return std::get<ModelData>(data).model.connectivity();
+  const BlendshapeModel& model = std::get<ModelData>(data).model.average();
+  return {model.neutral(), model.connectivity()};
 }
 
 /// Looks for markers from a call's source to its targets; the source's face is looked for once.
@@ -179,10 +180,10 @@ void check_weight_options(const Invocation& invocation) {
 }
 
 /// What pairs one target with the source by markers that were named.
-void take_markers(const Invocation& invocation, const Connectivity& source, const std::string& file,
+void take_markers(const Invocation& invocation, const TriMesh& source, const std::string& file,
                   Target& target) {
   MarkerFile read = read_marker_file(file, invocation.parameters.integer("index-base"));
-  if (has_faces_of(source, target.model.get().connectivity())) {
+  if (has_faces_of(source, target.model)) {
     invocation.warn(target.name + ": has the source's faces; markers are left out");
     return;
   }
@@ -252,7 +253,7 @@ std::vector<Target> targets_of(const Invocation& invocation, const std::string& 
   if (parameters.flag("ignore-files") && !looks) {
     throw UsageError("--ignore-files: nothing is looked for with --markers or --correspondence");
   }
-  const Connectivity& source = faces_of(invocation.input(source_name).data);
+  const TriMesh source = rest_mesh(invocation.input(source_name).data);
   const MarkersTo markers_to(invocation, source_name);
   std::vector<Target> targets;
   for (std::size_t t = 0; t < given.size(); ++t) {
@@ -261,7 +262,7 @@ std::vector<Target> targets_of(const Invocation& invocation, const std::string& 
     Target& target = targets.back();
     target.rules = std::move(rules[t]);
     if (!pairs.empty()) {
-      target.match = read_correspondence(pairs[t], source, model.connectivity());
+      target.match = read_correspondence(pairs[t], source.connectivity, model.connectivity());
     } else if (markers[t] == kAuto) {
       target.match = markers_to(given[t]);
     } else {

@@ -317,9 +317,10 @@ void check_falloff(const Parameters& parameters) {
 /// Whether triangles of a target may have no partner in the source.
 bool pairs_targets(const Invocation& invocation) {
   if (!invocation.parameters.paths("correspondence").empty()) return true;
-  const Connectivity& faces = invocation.get<FieldSequence>("source").frames->connectivity();
-  return std::ranges::any_of(invocation.inputs.at("target"), [&faces](const NamedData& target) {
-    return !has_faces_of(faces, std::get<ModelData>(target.data).model.connectivity());
+  const FrameSource& frames = *invocation.get<FieldSequence>("source").frames;
+  const TriMesh source{frames.rest(), frames.connectivity()};
+  return std::ranges::any_of(invocation.inputs.at("target"), [&source](const NamedData& target) {
+    return !has_faces_of(source, std::get<ModelData>(target.data).model.average());
   });
 }
 

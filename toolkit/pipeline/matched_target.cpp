@@ -1,9 +1,11 @@
 #include "toolkit/pipeline/matched_target.h"
 
+#include <cmath>
 #include <utility>
 
 #include "toolkit/correspondence/renumbering.h"
 #include "toolkit/mesh/errors.h"
+#include "toolkit/mesh/similarity.h"
 #include "toolkit/mesh/stopwatch.h"
 #include "toolkit/mesh/text.h"
 #include "toolkit/pipeline/given_markers.h"
@@ -13,11 +15,15 @@ namespace mimetra {
 
 namespace {
 
+TriMesh rest_mesh(const FrameSource& source) {
+  return {source.rest(), source.connectivity()};
+}
+
 /// Throws MismatchError for a mesh that is only numbered differently.
 void check_numbering(const FrameSource& source, const Target& target) {
   const BlendshapeModel& model = target.model;
-  const Renumbering found = renumbering(TriMesh{source.rest(), source.connectivity()},
-                                        TriMesh{model.neutral(), model.connectivity()});
+  const Renumbering found =
+      renumbering(rest_mesh(source), TriMesh{model.neutral(), model.connectivity()});
   if (!found.found()) return;
   throw MismatchError(target.name + ": has " + found.summary() +
                       " against the source; write the source in its numbering first "
@@ -85,21 +91,29 @@ void note_openings(const TriMesh& source, const TriMesh& target, const Automatic
   }
 }
 
+/// Root mean square distance of `to` (N x 3) from `from`, carried there without mirroring it.
+double misfit(const Positions& from, const Positions& to) {
+  const Similarity fit = similarity_fit(from, to, Handedness::kept);
+  return (fit.apply(from) - to).norm() / std::sqrt(static_cast<double>(to.rows()));
+}
+
 }  // namespace
 
-bool has_faces_of(const Connectivity& source, const Connectivity& target) {
-  if (same_faces(source, target)) return true;
-  if (!in_order_of(source, target)) return false;
+bool has_faces_of(const TriMesh& source, const BlendshapeModel& target) {
+  if (same_faces(source.connectivity, target.connectivity())) return true;
+  if (!in_order_of(source.connectivity, target.connectivity())) return false;
   // A mesh that looks the same from two sides has the same faces where it is numbered from the
   // other one.
-  const Renumbering found = renumbering(source, target);
-  return !found.found() || found.moved() == 0;
+  const Renumbering other = renumbering(source.connectivity, target.connectivity());
+  if (!other.found() || other.moved() == 0) return true;
+  return misfit(source.positions, target.neutral()) <
+         misfit(source.positions, target.neutral()(other.vertices, Eigen::all));
 }
 
 bool is_to_be_paired(const FrameSource& source, const Target& target) {
   if (std::holds_alternative<std::monostate>(target.match)) return false;
   return !std::holds_alternative<MarkersBetween>(target.match) ||
-         !has_faces_of(source.connectivity(), target.model.get().connectivity());
+         !has_faces_of(rest_mesh(source), target.model);
 }
 
 MatchedTarget::MatchedTarget(const FrameSource& source, Target target, const MatchOptions& options)
@@ -107,7 +121,7 @@ MatchedTarget::MatchedTarget(const FrameSource& source, Target target, const Mat
   const BlendshapeModel& model = target_.model;
   const bool is_given = !std::holds_alternative<std::monostate>(target_.match) &&
                         !std::holds_alternative<MarkersBetween>(target_.match);
-  const bool differs = !has_faces_of(source.connectivity(), model.connectivity());
+  const bool differs = !has_faces_of(rest_mesh(source), model);
   if (differs && !is_given) check_numbering(source, target_);
   if (is_to_be_paired(source, target_)) {
     pair({options.source_rest.value_or(source.rest()), source.connectivity()}, options);
@@ -122,8 +136,8 @@ MatchedTarget::MatchedTarget(const FrameSource& source, Target target, const Mat
   target_.match = {};
   if (!same_faces(source.connectivity(), model.connectivity())) {
     note(options.notes, target_.name +
-                            ": has the source's faces in another order, or wound the other way; "
-                            "they are taken for the same");
+                            ": has the source's faces in another order, wound the other way, or "
+                            "cut otherwise; they are taken for the same");
   }
   if (model.triangles() == source.triangles()) return;
   auto connectivity = std::make_shared<Connectivity>(model.connectivity());

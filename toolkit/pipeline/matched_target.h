@@ -41,9 +41,11 @@ struct Target {
   std::shared_ptr<const Pairing> pairing = {};
 };
 
-/// Whether both have the same polygons, in any order and wound either way, and none are known by
-/// their order to be numbered differently (renumbering()).
-bool has_faces_of(const Connectivity& source, const Connectivity& target);
+/// Whether both have the same polygons, in any order, wound either way and cut in one of them, as
+/// quads are into triangles. Where another numbering (renumbering()) fits the faces as well, as
+/// that from the other side of a symmetric mesh, the nearer shape decides, carried to the target's
+/// neutral.
+bool has_faces_of(const TriMesh& source, const BlendshapeModel& target);
 
 /// Whether a MatchedTarget is paired: markers or pairs are given, or markers are looked for and the
 /// faces differ.
