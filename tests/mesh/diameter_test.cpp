@@ -74,6 +74,11 @@ TEST(Diameter, OfAMeshIsThatOfTheVerticesItsTrianglesUse) {
   triangles << 0, 1, 2;
   EXPECT_EQ(diameter(points, triangles), 5);
   EXPECT_EQ(diameter(points, Triangles(0, 3)), diameter(points));
+  // One without area has no say, unless there is no other.
+  Triangles flat(2, 3);
+  flat << 0, 1, 2, 0, 0, 3;
+  EXPECT_EQ(diameter(points, flat), 5);
+  EXPECT_EQ(diameter(points, flat.bottomRows(1)), 100);
 }
 
 }  // namespace

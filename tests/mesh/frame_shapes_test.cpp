@@ -83,6 +83,34 @@ TEST_F(FrameShapes, NumberedOtherwiseAreTorn) {
   EXPECT_THAT(odd().torn, ElementsAre(4));
 }
 
+TEST_F(FrameShapes, WithAVertexThatStraysInOneFrameAreSpiked) {
+  poses_[3].row(17) += Eigen::RowVector3d(0, 0.4, 0);
+  poses_[8].row(20) += Eigen::RowVector3d(0.4, 0, 0);  // the last
+  const OddFrames found = odd();
+  EXPECT_THAT(found.spiked, ElementsAre(3, 8));
+  EXPECT_THAT(found.torn, IsEmpty());
+  // One that stays away is a shape.
+  for (std::size_t f = 3; f < poses_.size(); ++f) {
+    poses_[f] = pose(static_cast<int>(f));
+    poses_[f].row(17) += Eigen::RowVector3d(0, 0.4, 0);
+  }
+  EXPECT_THAT(odd().spiked, IsEmpty());
+}
+
+TEST_F(FrameShapes, AreDescribedWithTheVertexThatStrays) {
+  poses_[3].row(17) += Eigen::RowVector3d(0, 0.4, 0);
+  Frames frames(9, ball_.positions.size());
+  for (Eigen::Index f = 0; f < 9; ++f) {
+    frames.row(f) = poses_[std::size_t(f)].reshaped<Eigen::RowMajor>().transpose();
+  }
+  const MeshSequence sequence(
+      Connectivity::from_triangles(static_cast<int>(ball_.positions.rows()), ball_.triangles),
+      frames, {}, ball_.positions);
+  const std::vector<FrameShape> shapes = frame_shapes(sequence);
+  EXPECT_THAT(described(odd_frames(sequence, shapes), shapes),
+              ElementsAre(testing::StartsWith("frame 3 is spiked: vertex 17 alone lies 0.3")));
+}
+
 TEST(CapturedFrameShapes, AreNotOdd) {
   const auto data = test::shared_path("data");
   if (!std::filesystem::exists(data)) GTEST_SKIP() << "no shared data beside the project";
@@ -93,6 +121,7 @@ TEST(CapturedFrameShapes, AreNotOdd) {
   EXPECT_THAT(found.of_other_size, IsEmpty());
   EXPECT_THAT(found.mirrored, IsEmpty());
   EXPECT_THAT(found.torn, IsEmpty());
+  EXPECT_THAT(found.spiked, IsEmpty());
 }
 
 TEST_F(FrameShapes, ThatJumpAwayAndBackAreOdd) {

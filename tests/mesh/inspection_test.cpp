@@ -66,6 +66,22 @@ TEST(Inspection, OfAClosedSurfaceFindsNoBoundary) {
   EXPECT_EQ(report.components, 1);
 }
 
+TEST(Inspection, CountsVerticesThatRoundingMovedFromAnother) {
+  test::Shape shape = test::both(octahedron(), octahedron());
+  EXPECT_EQ(inspect_shape(shape).almost_welded_vertices, 0);
+  shape.positions(3, 1) += 1e-8;
+  EXPECT_EQ(inspect_shape(shape).almost_welded_vertices, 2);
+  shape.positions(3, 1) += 1e-3;
+  EXPECT_EQ(inspect_shape(shape).almost_welded_vertices, 0);
+}
+
+TEST(Inspection, CountsTheEdgesAroundATurnedFace) {
+  test::Shape shape = octahedron();
+  EXPECT_EQ(inspect_shape(shape).inconsistent_edges, 0);
+  std::swap(shape.triangles(4, 0), shape.triangles(4, 1));
+  EXPECT_EQ(inspect_shape(shape).inconsistent_edges, 3);
+}
+
 TEST(Inspection, OfAGridCountsItsRim) {
   const MeshReport report = inspect_shape(grid(5, 4));
   EXPECT_EQ(report.boundary_edges, 2 * (4 + 3));

@@ -41,6 +41,9 @@ TEST(Text, JoinsWordsAsPeopleReadThem) {
 TEST(Text, ShowsNumbersAndSharesAsPeopleReadThem) {
   EXPECT_EQ(readable(1234.56), "1235");
   EXPECT_EQ(readable(0.000123456, 2), "0.00012");
+  EXPECT_EQ(readable(-184.6, 2), "-185");
+  EXPECT_EQ(readable(9999.6), "10000");
+  EXPECT_EQ(readable(1234567), "1.235e+06");
   EXPECT_EQ(readable(1e39), "1e+39");
   EXPECT_EQ(fixed(-0.126, 2), "-0.13");
   EXPECT_EQ(fixed(1e300, 1).size(), 303u);

@@ -100,7 +100,7 @@ TEST(DisplacedExpressions, AreThoseThatMoveEveryVertex) {
   EXPECT_THAT(displaced_expressions(model->neutral(), model->triangles(), shapes),
               testing::ElementsAre("wave0"));
   EXPECT_THAT(notes_on_displaced("m", model->neutral(), model->triangles(), shapes),
-              testing::ElementsAre(HasSubstr("m: expressions that move every vertex")));
+              testing::ElementsAre(HasSubstr("m: expressions of another place, turn or size")));
   // As a statistical model's: every vertex, each its own way.
   for (Eigen::Index i = 0; i < shapes.displacements.rows(); ++i) {
     shapes.displacements(i, 0) = i % 2 ? 0.5 : -0.5;
@@ -110,6 +110,22 @@ TEST(DisplacedExpressions, AreThoseThatMoveEveryVertex) {
   shapes.displacements.setZero();
   EXPECT_THAT(notes_on_displaced("m", model->neutral(), model->triangles(), shapes),
               testing::IsEmpty());
+}
+
+TEST(DisplacedExpressions, AreThoseThatAreTurnedOrHaveAnotherSize) {
+  const auto plane = waves(4, 2);
+  const BlendshapeModel& model = *plane;
+  ShapeBasis shapes = model.expressions();
+  const Positions& neutral = model.neutral();
+  const auto column = [&](const Positions& pose) {
+    return Eigen::VectorXd((pose - neutral).reshaped<Eigen::RowMajor>());
+  };
+  const Eigen::Matrix3d turn =
+      Eigen::AngleAxisd(EIGEN_PI / 2, Eigen::Vector3d::UnitX()).toRotationMatrix();
+  shapes.displacements.col(0) = column(neutral * turn.transpose());
+  shapes.displacements.col(1) = column(10 * neutral);
+  EXPECT_THAT(displaced_expressions(neutral, model.triangles(), shapes),
+              testing::ElementsAre("wave0", "wave1"));
 }
 
 }  // namespace

@@ -129,6 +129,26 @@ MeshSequence nearly_still(double share) {
   return bare(sequence.with_frames(std::move(frames)));
 }
 
+TEST(Analysis, LeavesOutTheMotionOfVerticesWithoutATriangle) {
+  const MeshSequence plain = take();
+  // A vertex more, which jumps about.
+  Connectivity connectivity = plain.connectivity();
+  ++connectivity.vertices;
+  Positions rest(plain.vertices() + 1, 3);
+  rest << plain.rest(), Eigen::RowVector3d(0, 0, 50);
+  Frames frames(plain.frames(), rest.size());
+  for (int f = 0; f < plain.frames(); ++f) {
+    frames.row(f) << plain.positions().row(f), 30 * f, -20, 50 + f * f;
+  }
+  const MeshSequence loose(connectivity, frames, {}, rest);
+  const Components expected = analyse(source_of(plain), three_components()).components;
+  const Components found = analyse(source_of(loose), three_components()).components;
+  EXPECT_EQ(found.centers, expected.centers);
+  EXPECT_EQ(found.displacements.leftCols(expected.displacements.cols()), expected.displacements);
+  EXPECT_EQ(found.weights, expected.weights);
+  EXPECT_TRUE((found.displacements.rightCols(3).array() == 0).all());
+}
+
 TEST(Analysis, RefusesRoundingNoise) {
   EXPECT_THAT([] { analyse(source_of(nearly_still(1e-9)), three_components()); },
               ThrowsMessage<MismatchError>(HasSubstr("nothing moves: all 8 frames")));

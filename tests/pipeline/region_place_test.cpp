@@ -118,6 +118,19 @@ TEST(SmallParts, AreNotedWhereRegionsLieOnThem) {
   }
 }
 
+TEST(LargeRegions, AreNotedUnlessTheirRadiusIsALength) {
+  Noted noted;
+  const MeshSequence sequence = plate_and_ball();
+  const Analysis analysis = analyse(still_source(sequence), {.decomposition = {.count = 2}});
+  choose_regions(analysis, {.radius = Length::share(0.9), .notes = noted.sink()});
+  EXPECT_TRUE(noted.has(Topic::large_regions));
+  noted.notes.clear();
+  choose_regions(analysis,
+                 {.radius = Length::of(0.9 * sequence.diameter()), .notes = noted.sink()});
+  choose_regions(analysis, {.notes = noted.sink()});
+  EXPECT_FALSE(noted.has(Topic::large_regions));
+}
+
 TEST(PartWeights, AreSharesOfTheLargestPart) {
   const MeshSequence sequence = plate_and_ball();
   const PartWeights parts = part_weights(sequence.rest(), sequence.triangles());

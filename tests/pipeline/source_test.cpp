@@ -106,6 +106,23 @@ TEST(HeadMotion, ThatIsNotTakenOutIsNotedWhereTheHeadTurns) {
   EXPECT_FALSE(noted.has(Topic::turning_head));
 }
 
+TEST(HeadMotion, ThatIsNotTakenOutIsNotedWhereTheHeadSlidesOrHasAnotherSize) {
+  const Positions rest = take().rest();
+  const double size = take().diameter();
+  Noted noted;
+  const auto notes_of = [&](const Positions& given) {
+    noted.notes.clear();
+    prepare_source(bare(take()), {.name = "a take", .rest = given, .notes = noted.sink()});
+    return noted.notes;
+  };
+  EXPECT_THAT(notes_of(rest), IsEmpty());
+  notes_of(rest.rowwise() + Eigen::RowVector3d(size, 0, 0));
+  EXPECT_TRUE(noted.has(Topic::turning_head));
+  EXPECT_THAT(noted.notes.front().text, HasSubstr("a take: the head turns by up to"));
+  ASSERT_EQ(notes_of(1.5 * rest).size(), 1U);
+  EXPECT_THAT(noted.notes.front().text, HasSubstr("times as large as the rest pose"));
+}
+
 TEST(HeadMotion, IsMeasuredFromTheRestPoseThatIsGiven) {
   const RigidTransform turn = nodding(4).back();
   const MeshSequence still = take();

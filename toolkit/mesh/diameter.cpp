@@ -7,6 +7,8 @@
 
 #include <Eigen/Geometry>
 
+#include "toolkit/mesh/inspection.h"
+
 namespace mimetra {
 
 namespace {
@@ -126,7 +128,9 @@ double diameter(const Eigen::Ref<const Positions>& positions) {
 }
 
 double diameter(const Positions& positions, const Triangles& triangles) {
-  const std::vector<VertexIndex> used = used_vertices(triangles, positions.rows());
+  const Triangles sound = with_area(positions, triangles);
+  const std::vector<VertexIndex> used =
+      used_vertices(sound.rows() > 0 ? sound : triangles, positions.rows());
   return static_cast<Eigen::Index>(used.size()) == positions.rows()
              ? diameter(positions)
              : diameter(positions(used, Eigen::all));

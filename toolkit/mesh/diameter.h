@@ -12,8 +12,8 @@ namespace mimetra {
 /// where every point has another that is as far, about N^1.5.
 double diameter(const Eigen::Ref<const Positions>& positions);
 
-/// That of the vertices that triangles use, so that a stray point is no part of a mesh's size; of
-/// all where there is no triangle.
+/// That of the vertices of triangles with_area(), so that a stray point is no part of a mesh's
+/// size; of those that triangles use where none has area, of all where there is no triangle.
 double diameter(const Positions& positions, const Triangles& triangles);
 
 }  // namespace mimetra

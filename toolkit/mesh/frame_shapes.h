@@ -1,5 +1,6 @@
 #pragma once
 
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -28,6 +29,10 @@ struct FrameShape {
   /// The longest edge, and its ends; none where there are no triangles.
   double longest_edge = 0;
   std::pair<VertexIndex, VertexIndex> ends{-1, -1};
+  /// By how much a vertex lies farther from the middle of its neighbours than at rest: the most,
+  /// and that vertex; none where there are no triangles.
+  double stray = 0;
+  VertexIndex stray_vertex = -1;
   /// Largest distance of a vertex from where it is in frame 0.
   double from_first = 0;
 };
@@ -44,10 +49,16 @@ struct OddFrames {
   /// One frame at a time: a fifth of the size away from the middle of the frames before and after,
   /// which are next to each other.
   std::vector<int> jumping;
+  /// Not torn, but a vertex strays by more than a twentieth of the size, and by so much more than
+  /// in the frames before and after. Faces that were captured stay below 0.3 %.
+  std::vector<int> spiked;
   double usual_spread = 0;  ///< the median
 };
 
 /// \pre one shape a frame
 OddFrames odd_frames(const FrameSource& sequence, const std::vector<FrameShape>& shapes);
+
+/// What is odd, for people: "frame 7 is mirrored against the rest pose, or numbered otherwise".
+std::vector<std::string> described(const OddFrames& odd, const std::vector<FrameShape>& shapes);
 
 }  // namespace mimetra

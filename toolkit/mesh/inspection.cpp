@@ -3,6 +3,7 @@
 #include <numeric>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 #include <Eigen/Geometry>
 
@@ -58,7 +59,18 @@ void for_each_edge(const std::vector<Edge>& edges, Visit visit) {
 struct EdgeCounts {
   int boundary = 0;
   int nonmanifold = 0;
+  int inconsistent = 0;
 };
+
+/// Whether the edge's triangle leads from its lower vertex to the higher.
+bool leads_up(const Triangles& triangles, const Edge& edge) {
+  for (int corner = 0; corner < 3; ++corner) {
+    if (triangles(edge.triangle, corner) == edge.low) {
+      return triangles(edge.triangle, (corner + 1) % 3) == edge.high;
+    }
+  }
+  return false;
+}
 
 EdgeCounts count_edges(const Triangles& triangles) {
   EdgeCounts counts;
@@ -66,6 +78,9 @@ EdgeCounts count_edges(const Triangles& triangles) {
   for_each_edge(sorted_edges(triangles, Collapsed::skipped), [&](auto first, auto last) {
     if (last - first == 1) ++counts.boundary;
     if (last - first > 2) ++counts.nonmanifold;
+    if (last - first == 2 && leads_up(triangles, *first) == leads_up(triangles, *(first + 1))) {
+      ++counts.inconsistent;
+    }
   });
   return counts;
 }
@@ -104,15 +119,39 @@ int components_with_triangle(int vertices, const Triangles& triangles) {
   return static_cast<int>(std::count(seen.begin(), seen.end(), 1));
 }
 
+bool has_area(const Positions& positions, const Triangles& triangles, int t) {
+  const double quality =
+      triangle_quality(positions.row(triangles(t, 0)), positions.row(triangles(t, 1)),
+                       positions.row(triangles(t, 2)));
+  return !repeats_vertex(triangles, t) && quality >= kDegenerateQuality;
+}
+
 std::vector<int> degenerate_triangles(const Positions& positions, const Triangles& triangles) {
   std::vector<int> degenerate;
   for (int t = 0; t < triangles.rows(); ++t) {
-    const double quality =
-        triangle_quality(positions.row(triangles(t, 0)), positions.row(triangles(t, 1)),
-                         positions.row(triangles(t, 2)));
-    if (repeats_vertex(triangles, t) || !(quality >= kDegenerateQuality)) degenerate.push_back(t);
+    if (!has_area(positions, triangles, t)) degenerate.push_back(t);
   }
   return degenerate;
+}
+
+/// Of the places at which vertices are.
+int almost_welded(const Positions& positions, const Weld& weld) {
+  constexpr double kAlmost = 1e-6;
+  const double reach = kAlmost * box_diagonal(positions);
+  // Along a line that no grid is straight to.
+  const Eigen::VectorXd along = positions * Eigen::Vector3d(1, 1.7, 2.3).normalized();
+  std::vector<VertexIndex> order = weld.representative;
+  std::ranges::sort(order, {}, [&along](VertexIndex v) { return std::pair(along[v], v); });
+  order.erase(std::unique(order.begin(), order.end()), order.end());
+  std::vector<bool> is_near(weld.representative.size(), false);
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    for (std::size_t j = i + 1; j < order.size() && along[order[j]] - along[order[i]] <= reach;
+         ++j) {
+      if ((positions.row(order[j]) - positions.row(order[i])).norm() > reach) continue;
+      is_near[std::size_t(order[i])] = is_near[std::size_t(order[j])] = true;
+    }
+  }
+  return static_cast<int>(std::ranges::count(is_near, true));
 }
 
 std::vector<VertexIndex> vertices_without_face(int vertices, const Triangles& triangles) {
@@ -165,9 +204,11 @@ MeshReport inspect(const Positions& positions, const Connectivity& connectivity)
   report.boundary_edges = edges.boundary;
   report.boundary_edges_after_welding = count_edges(welded).boundary;
   report.nonmanifold_edges = edges.nonmanifold;
+  report.inconsistent_edges = edges.inconsistent;
   report.degenerate_triangles = degenerate_triangles(positions, triangles);
   report.vertices_without_face = vertices_without_face(report.vertices, triangles);
   report.welded_vertices = weld.count;
+  report.almost_welded_vertices = almost_welded(positions, weld);
   if (positions.rows() > 0) {
     report.extent = positions.colwise().maxCoeff() - positions.colwise().minCoeff();
   }
@@ -179,6 +220,14 @@ double triangle_quality(const Eigen::Vector3d& a, const Eigen::Vector3d& b,
   const double longest =
       std::max({(b - a).squaredNorm(), (c - b).squaredNorm(), (a - c).squaredNorm()});
   return longest > 0 ? (b - a).cross(c - a).norm() / longest : 0;
+}
+
+Triangles with_area(const Positions& positions, const Triangles& triangles) {
+  std::vector<int> sound;
+  for (int t = 0; t < triangles.rows(); ++t) {
+    if (has_area(positions, triangles, t)) sound.push_back(t);
+  }
+  return triangles(sound, Eigen::all);
 }
 
 std::vector<std::vector<int>> triangle_neighbors(int vertices, const Triangles& triangles) {

@@ -27,11 +27,16 @@ struct MeshReport {
   int boundary_edges_after_welding = 0;
   /// Edges of more than two triangles.
   int nonmanifold_edges = 0;
+  /// Edges of two triangles that are wound against each other: the faces of one side are turned.
+  int inconsistent_edges = 0;
   /// Triangles that repeat a vertex or are degenerate by `triangle_quality`.
   std::vector<int> degenerate_triangles;
   std::vector<VertexIndex> vertices_without_face;
   /// Vertices that coincide with an earlier one.
   int welded_vertices = 0;
+  /// Places of vertices within a millionth of the box's diagonal of another: seams that rounding
+  /// opened.
+  int almost_welded_vertices = 0;
   Eigen::Vector3d extent = Eigen::Vector3d::Zero();
 };
 
@@ -44,6 +49,9 @@ double triangle_quality(const Eigen::Vector3d& a, const Eigen::Vector3d& b,
 
 /// Triangles of lower quality carry no usable deformation gradient; valid faces go down to 4e-3.
 constexpr double kDegenerateQuality = 1e-6;
+
+/// Those that repeat no vertex and are not degenerate, in their order.
+Triangles with_area(const Positions& positions, const Triangles& triangles);
 
 /// Neighbours of each triangle across its edges, at most a few each; lists ascend.
 std::vector<std::vector<int>> triangle_neighbors(int vertices, const Triangles& triangles);

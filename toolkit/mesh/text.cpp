@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <cmath>
 #include <cstdint>
 
 namespace mimetra {
@@ -88,6 +89,10 @@ std::vector<std::string> words_of(const std::vector<int>& numbers) {
 }
 
 std::string readable(double value, int digits) {
+  // 185 degrees are none of 1.9e+02.
+  constexpr double kLong = 1e6;
+  const double size = std::abs(value);
+  if (size < kLong && size >= std::pow(10, digits) - 0.5) return fixed(value, 0);
   return number_text(value, std::chars_format::general, digits);
 }
 

@@ -37,7 +37,8 @@ std::string listed(const std::vector<std::string>& words, std::size_t most = 8);
 /// 0, 5, 17 as words.
 std::vector<std::string> words_of(const std::vector<int>& numbers);
 
-/// `value` with `digits` significant digits; with a decimal point in every locale.
+/// `value` with `digits` significant digits, below a million with all before the point; with a
+/// decimal point in every locale.
 std::string readable(double value, int digits = 4);
 
 /// `value` with `decimals` digits after the point, in every locale.

@@ -6,6 +6,7 @@
 
 #include "toolkit/mesh/diameter.h"
 #include "toolkit/mesh/text.h"
+#include "toolkit/mesh/whole_motion.h"
 
 namespace mimetra {
 
@@ -14,17 +15,27 @@ double least_move(const Positions& from, const Eigen::Ref<const Positions>& to,
   const std::vector<VertexIndex> used = used_vertices(triangles, from.rows());
   if (used.empty()) return 0;
   double least2 = std::numeric_limits<double>::infinity();
-  for (const VertexIndex v : used) least2 = std::min(least2, (to.row(v) - from.row(v)).squaredNorm());
+  for (const VertexIndex v : used)
+    least2 = std::min(least2, (to.row(v) - from.row(v)).squaredNorm());
   return std::sqrt(least2);
 }
 
 namespace {
 
 /// Whether vertices (N x 3) move by the same more than by what differs between them.
-bool moves_aside(const Eigen::Ref<const Positions>& moves) {
+bool moves_aside(const Positions& moves) {
   const Eigen::RowVector3d common = moves.colwise().mean();
   const double rest = (moves.rowwise() - common).squaredNorm() / static_cast<double>(moves.rows());
   return common.squaredNorm() > rest;
+}
+
+/// Whether a face is turned or has another size, as no expression does it: a jaw that opens turns
+/// it by 6 degrees and makes it larger by 7 %.
+bool is_turned_or_scaled(const Positions& neutral, const Positions& moves) {
+  constexpr double kTurned = 10, kScaled = 0.2;
+  const WholeMotion whole = whole_motion(neutral, neutral + moves);
+  return (whole.moves() && whole.angle > kTurned) ||
+         (whole.is_scaled() && std::abs(whole.scale - 1) > kScaled);
 }
 
 }  // namespace
@@ -32,12 +43,18 @@ bool moves_aside(const Eigen::Ref<const Positions>& moves) {
 std::vector<std::string> displaced_expressions(const Positions& neutral, const Triangles& triangles,
                                                const ShapeBasis& expressions) {
   const double least = kStillShare * diameter(neutral, triangles);
+  const std::vector<VertexIndex> used = used_vertices(triangles, neutral.rows());
+  const Positions face = neutral(used, Eigen::all);
   std::vector<std::string> displaced;
   for (int j = 0; j < expressions.size(); ++j) {
     const auto field = expressions.displacements.col(j);
-    const Eigen::Map<const Positions> moves(field.data(), neutral.rows(), 3);
-    if (!(least_move(neutral, neutral + moves, triangles) > least) || !moves_aside(moves)) continue;
-    displaced.push_back(expressions.names[static_cast<std::size_t>(j)]);
+    const Eigen::Map<const Positions> of_all(field.data(), neutral.rows(), 3);
+    const Positions moves = of_all(used, Eigen::all);
+    const bool is_aside =
+        moves.rowwise().squaredNorm().minCoeff() > least * least && moves_aside(moves);
+    if (is_aside || is_turned_or_scaled(face, moves)) {
+      displaced.push_back(expressions.names[static_cast<std::size_t>(j)]);
+    }
   }
   return displaced;
 }
@@ -47,10 +64,10 @@ std::vector<std::string> notes_on_displaced(const std::string& name, const Posit
                                             const ShapeBasis& expressions) {
   const std::vector<std::string> displaced = displaced_expressions(neutral, triangles, expressions);
   if (displaced.empty()) return {};
-  return {name + ": expressions that move every vertex by more than " + percent(kStillShare) +
-          " of the face's size, and all aside: " + listed(displaced) +
-          "; they seem to stand elsewhere than the neutral: bring them there "
-          "(`mimetra align`), or the face moves with them"};
+  return {name +
+          ": expressions of another place, turn or size than the neutral: " + listed(displaced) +
+          "; every vertex of it moves as in no expression: bring them there (`mimetra align`) and "
+          "into one unit, or the face moves with them"};
 }
 
 }  // namespace mimetra

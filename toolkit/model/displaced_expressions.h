@@ -14,9 +14,11 @@ constexpr double kStillShare = 0.01;
 double least_move(const Positions& from, const Eigen::Ref<const Positions>& to,
                   const Triangles& triangles);
 
-/// Names of expressions that move every vertex by more than that, and all by the same more than by
-/// what differs: shapes that stand elsewhere, as where they were exported side by side. The first
-/// components of a statistical model move every vertex, but not aside.
+/// Names of expressions that are shapes of another place, turn or size than the neutral, as where
+/// they were exported side by side, with other axes or in another unit: every vertex moves by more
+/// than that and all by the same more than by what differs, or whole_motion() turns it by more than
+/// 10 degrees or changes its size by more than a fifth. The first components of a statistical
+/// model move every vertex, but not so.
 std::vector<std::string> displaced_expressions(const Positions& neutral, const Triangles& triangles,
                                                const ShapeBasis& expressions);
 

@@ -7,6 +7,7 @@
 #include "toolkit/mesh/frame_shapes.h"
 #include "toolkit/mesh/inspection.h"
 #include "toolkit/mesh/text.h"
+#include "toolkit/mesh/whole_motion.h"
 #include "toolkit/operations/bound_parameters.h"
 #include "toolkit/operations/command_terms.h"
 #include "toolkit/operations/counted.h"
@@ -35,13 +36,6 @@ std::string from(const std::vector<int>& found, const std::string& what) {
   return what + ", the first is " + std::to_string(found.front());
 }
 
-/// Frames that can be no poses of the mesh: "frames 7, 9 are WHAT".
-std::string told(const std::vector<int>& frames, const std::string& what) {
-  const bool several = frames.size() > 1;
-  return (several ? "frames " : "frame ") + listed(words_of(frames)) +
-         (several ? " are " : " is ") + what;
-}
-
 /// Reads all frames.
 std::vector<std::string> frame_warnings(const FrameSource& sequence, const BlockOptions& options) {
   const std::vector<FrameShape> shapes = frame_shapes(sequence, options);
@@ -54,26 +48,17 @@ std::vector<std::string> frame_warnings(const FrameSource& sequence, const Block
     warnings.push_back("nothing moves: all " + std::to_string(sequence.frames()) +
                        " frames are equal to " + readable(kLeastMotion) + " of their diameter");
   }
-  const auto of_first = [&shapes](const std::vector<int>& frames) -> const FrameShape& {
-    return shapes[static_cast<std::size_t>(frames.front())];
-  };
-  if (!odd.of_other_size.empty()) {
-    warnings.push_back(told(odd.of_other_size, "of another size than the others: vertices lie ") +
-                       readable(of_first(odd.of_other_size).spread) +
-                       " from their mean there (RMS), " + readable(odd.usual_spread) +
-                       " elsewhere");
-  }
-  if (!odd.mirrored.empty()) {
-    warnings.push_back(told(odd.mirrored, "mirrored against the rest pose, or numbered otherwise"));
-  }
-  if (!odd.torn.empty()) {
-    const FrameShape& shape = of_first(odd.torn);
-    warnings.push_back(told(odd.torn, "torn: vertices ") + std::to_string(shape.ends.first) +
-                       " and " + std::to_string(shape.ends.second) + ", which share an edge, lie " +
-                       readable(shape.longest_edge) + " apart");
-  }
-  if (!odd.jumping.empty()) {
-    warnings.push_back(told(odd.jumping, "far from the frames before and after"));
+  for (std::string& text : described(odd, shapes)) warnings.push_back(std::move(text));
+  const WholeMotion whole =
+      sequence.rest_is_known() ? whole_motion(sequence, options) : WholeMotion();
+  if (whole.is_scaled()) {
+    warnings.push_back("frames are up to " + readable(whole.scale, 3) +
+                       " times as large as the rest pose");
+  } else if (whole.moves()) {
+    warnings.push_back("the whole mesh turns by up to " + readable(whole.angle, 3) +
+                       " degrees and moves by up to " + readable(whole.shift, 3) +
+                       " against the rest pose, " + percent(1 - whole.left_by_motion) +
+                       " of all motion");
   }
   if (is_other_size(spread(sequence.rest()), odd.usual_spread)) {
     warnings.push_back("the rest pose is of another size than the frames: its vertices lie " +
@@ -93,6 +78,17 @@ std::vector<std::string> mesh_warnings(const FrameSource& sequence) {
   }
   if (mesh.nonmanifold_edges > 0) {
     warnings.push_back(counted(mesh.nonmanifold_edges, "edge") + " of more than two triangles");
+  }
+  if (mesh.almost_welded_vertices > 0) {
+    warnings.push_back(counted(mesh.almost_welded_vertices, "place") +
+                       " of vertices within a millionth of the size of another, as where rounding "
+                       "opened seams: distances end there, and results come apart; give both "
+                       "copies one place");
+  }
+  if (mesh.inconsistent_edges > 0) {
+    warnings.push_back(counted(mesh.inconsistent_edges, "edge") +
+                       " between triangles that are wound against each other: some faces are "
+                       "turned, their normals point to the other side");
   }
   if (const auto& found = mesh.vertices_without_face; !found.empty()) {
     warnings.push_back(from(found, counted(std::ssize(found), "vertex", "vertices") +

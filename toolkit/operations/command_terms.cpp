@@ -75,6 +75,8 @@ std::string in_command_terms(Topic topic, const std::string& text, const Paramet
     case Topic::small_parts:
       return text +
              "; --only component:0 keeps to the largest, --without component:N leaves some out";
+    case Topic::large_regions:
+      return text + "; give lengths in the mesh's unit (--radius, --d-min and --d-max, as in 2abs)";
     case Topic::no_expressions:
       return text + "; use --space vertex";
     case Topic::no_pairs:

@@ -40,6 +40,7 @@ Json report_of(const FrameSource& sequence, const MeshReport& mesh, const Surfac
           {"components", mesh.components},
           {"boundary_edges", mesh.boundary_edges},
           {"nonmanifold_edges", mesh.nonmanifold_edges},
+          {"inconsistent_edges", mesh.inconsistent_edges},
           {"degenerate_triangles", mesh.degenerate_triangles.size()},
           {"vertices_without_face", mesh.vertices_without_face.size()},
           {"welded_vertices", mesh.welded_vertices},
@@ -63,7 +64,8 @@ std::string summary_of(const FrameSource& sequence, const MeshReport& mesh,
        << "components  " << mesh.components << ", welded " << mesh.components_after_welding
        << ", by surface " << shares_of(parts) << '\n'
        << "edges       " << mesh.boundary_edges << " boundary, welded "
-       << mesh.boundary_edges_after_welding << "; " << mesh.nonmanifold_edges << " non-manifold\n"
+       << mesh.boundary_edges_after_welding << "; " << mesh.nonmanifold_edges << " non-manifold, "
+       << mesh.inconsistent_edges << " wound against each other\n"
        << "defects     " << mesh.degenerate_triangles.size() << " degenerate triangles, "
        << mesh.vertices_without_face.size() << " vertices without face\n"
        << "extent      " << readable(mesh.extent[0]) << " x " << readable(mesh.extent[1]) << " x "

@@ -104,6 +104,16 @@ Components decomposed_inside(const std::shared_ptr<const FrameSource>& work,
   return cutout.put_back(decomposed(*cutout.of(work), options, ranks), *work);
 }
 
+/// The vertices inside that are some of a triangle with area; empty for all.
+std::vector<bool> on_surface(std::vector<bool> inside, const SurfaceDistances& distances,
+                             int vertices) {
+  const std::vector<VertexIndex>& loose = distances.vertices_without_face();
+  if (loose.empty() || static_cast<int>(loose.size()) == vertices) return inside;
+  if (inside.empty()) inside.assign(static_cast<std::size_t>(vertices), true);
+  for (const VertexIndex v : loose) inside[static_cast<std::size_t>(v)] = false;
+  return inside;
+}
+
 /// Components whose centres are inside; one that moves nothing there has none.
 Components centered_inside(Components components, const std::vector<bool>& inside) {
   if (inside.empty()) return components;
@@ -156,7 +166,7 @@ SurfaceDistances distances_along(const Positions& rest, const Triangles& triangl
     note(options.notes, std::to_string(distances.vertices_without_face().size()) +
                             " vertices belong to no triangle with area, the first is vertex " +
                             std::to_string(distances.vertices_without_face().front()) +
-                            "; they are in no region");
+                            "; they are in no region, and their motion counts nowhere");
   }
   return distances;
 }
@@ -196,7 +206,13 @@ Analysis analyse(const Source& source, const AnalysisOptions& options) {
                                                   std::to_string(work.vertices()) + " vertices");
   }
   check_inside(options.inside, work.vertices());
-  decomposition.count = component_count(work, options);
+  SurfaceDistances distances =
+      distances_along(work.rest(), work.triangles(), distance_options(options));
+  const bool reference = options.compatibility != Compatibility::none;
+  AnalysisOptions of_surface = options;
+  if (!reference) of_surface.inside = on_surface(options.inside, distances, work.vertices());
+  check_inside(of_surface.inside, work.vertices());
+  decomposition.count = component_count(work, of_surface);
   if (decomposition.count < options.decomposition.count) {
     note(options.notes, "K = " + std::to_string(options.decomposition.count) + ": " +
                             std::to_string(work.frames()) + " frames tell at most " +
@@ -204,9 +220,6 @@ Analysis analyse(const Source& source, const AnalysisOptions& options) {
                             " components of this surface apart; so many are taken");
   }
   note_parting(work, options);
-  SurfaceDistances distances =
-      distances_along(work.rest(), work.triangles(), distance_options(options));
-  const bool reference = options.compatibility != Compatibility::none;
   const double unit = reference ? largest_frame_extent(*source.given) : work.diameter();
   const SupportRange range = support_range(options.d_min, options.d_max, unit);
   decomposition.d_min = range.d_min;
@@ -225,7 +238,8 @@ Analysis analyse(const Source& source, const AnalysisOptions& options) {
   decomposition.distances = distances;
   decomposition.threads = options.threads;
   decomposition.progress = options.progress;
-  Components components = decomposed_inside(sequence, options.inside, decomposition, options.ranks);
+  Components components =
+      decomposed_inside(sequence, of_surface.inside, decomposition, options.ranks);
   return {std::move(components), std::move(distances), options.inside, stopwatch.seconds(),
           options.distances.welding};
 }

@@ -29,6 +29,7 @@ enum class Topic {
   few_discs,           ///< all discs together hold less than that share
   no_selection,        ///< a target is solved for vertices, for which no region can be chosen
   small_parts,         ///< regions lie on small connected parts of the surface
+  large_regions,       ///< a region holds more than half of the mesh
   support_range,       ///< d_min is not below d_max
   no_expressions,      ///< of the target, where weights are asked for
   no_pairs,            ///< of left and right among the target's expressions

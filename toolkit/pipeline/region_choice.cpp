@@ -51,6 +51,25 @@ void note_small_parts(Regions& regions, const Notes& notes) {
   note(notes, regions.notes.back(), Topic::small_parts);
 }
 
+/// Says where a region is most of the mesh: nothing is told apart then.
+void note_large_regions(const Regions& regions, const RegionChoiceOptions& options, double size,
+                        const Triangles& triangles) {
+  constexpr double kMost = 0.5;
+  if (options.radius.absolute) return;
+  const auto most = static_cast<std::size_t>(
+      kMost * static_cast<double>(used_vertices(triangles, regions.vertices).size()));
+  const auto is_large = [most](const Region& region) { return region.vertices.size() > most; };
+  const auto count = std::ranges::count_if(regions.regions, is_large);
+  if (count == 0) return;
+  note(options.notes,
+       std::to_string(count) + " of " + std::to_string(regions.regions.size()) +
+           " regions hold more than half of the mesh each: their radius is " +
+           readable(options.radius.in(size)) + ", " + percent(options.radius.value) +
+           " of the mesh's diameter, " + readable(size) +
+           ", which parts beside the face can make large",
+       Topic::large_regions);
+}
+
 }  // namespace
 
 bool has_own_regions(const RegionChoiceOptions& options) {
@@ -67,8 +86,8 @@ void refuse_bound(double share, const std::string& reason) {
 Regions choose_regions(const Analysis& analysis, const RegionChoiceOptions& options) {
   check_options(options);
   RegionOptions of_search = options.regions;
-  of_search.radius =
-      options.radius.in(diameter(analysis.components.rest, analysis.components.triangles));
+  const double size = diameter(analysis.components.rest, analysis.components.triangles);
+  of_search.radius = options.radius.in(size);
   of_search.distances = analysis.distances;
   of_search.inside = analysis.inside;
   of_search.no_centers = rims_to_avoid(analysis, options);
@@ -88,6 +107,7 @@ Regions choose_regions(const Analysis& analysis, const RegionChoiceOptions& opti
   }
   for (const std::string& text : regions.notes) note(options.notes, text);
   note_small_parts(regions, options.notes);
+  note_large_regions(regions, options, size, analysis.components.triangles);
   return regions;
 }
 

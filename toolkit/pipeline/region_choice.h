@@ -68,7 +68,8 @@ constexpr double kSmallPart = 0.02;
 
 /// Regions of an analysis, of which the strongest are kept that hold no more than the share of the
 /// triangles; what find_regions() notes is noted, and regions whose centres lie on a small part of
-/// the surface (Topic::small_parts), and components that give no region because they move a rim
+/// the surface (Topic::small_parts), regions of more than half of the
+/// mesh (Topic::large_regions), and components that give no region because they move a rim
 /// most. Throws std::invalid_argument for options out of range, OptionError (Topic::triangle_bound)
 /// where the strongest region alone holds more.
 Regions choose_regions(const Analysis& analysis, const RegionChoiceOptions& options = {});

@@ -8,6 +8,7 @@
 #include "toolkit/mesh/frame_shapes.h"
 #include "toolkit/mesh/frame_store.h"
 #include "toolkit/mesh/text.h"
+#include "toolkit/mesh/whole_motion.h"
 
 namespace mimetra {
 
@@ -170,36 +171,59 @@ void note_uncertainty(const MotionChoice& choice, const Source& source,
                      ": no vertex is still enough to tell the head's motion: the stillest, which "
                      "move by " +
                      in_percent(*motion.stillest) + " of the size, disagree by " +
-                     readable(*motion.disagreement, 2) + " degrees";
+                     readable(*motion.disagreement, 3) + " degrees";
   if (is_joint) text += ", so it is found together with the target's expressions";
   if (motion.held_out) text += "; " + comparison(*motion.held_out);
   note(options.notes, text, is_joint ? Topic::joint_motion : Topic::uncertain_motion);
 }
 
-/// Says what nobody asked for: that motion was taken out, or that the head turns and it was not.
-void note_motion(const MotionChoice& choice, const Source& source, const SourceOptions& options) {
-  if (choice.is_asked || options.model_driven || source.sequence->frames() == 1) return;
-  if (takes_out(choice.motion)) {
-    const HeadMotionTaken& motion = source.head_motion;
-    if (motion.angle == 0 && motion.shift == 0) return;
-    note(options.notes, options.name + ": a head motion of up to " + readable(motion.angle, 2) +
-                            " degrees and " + readable(motion.shift, 2) + " is taken out, as " +
-                            std::string(motion.why));
+/// Says where frames are another size or elsewhere than the rest pose, by a motion of the whole
+/// head that was not taken out.
+void note_whole_motion(const MotionChoice& choice, const Source& source,
+                       const SourceOptions& options) {
+  const WholeMotion whole =
+      whole_motion(*source.sequence, {.threads = options.threads, .ranks = options.ranks});
+  const std::string reason = ", as " + std::string(choice.reason);
+  if (whole.is_scaled()) {
+    note(options.notes,
+         options.name + ": frames are up to " + readable(whole.scale, 3) +
+             " times as large as the rest pose, which is " +
+             in_percent(1 - whole.left_by_similarity) +
+             " of how they differ from it and counts as deformation; bring both into one unit "
+             "(`mimetra convert --scale X`)");
     return;
   }
-  double angle = 0;
-  for (const RigidTransform& transform :
-       rigid_motion(*source.sequence, {.vertices = AlignmentVertices::all,
-                                      .threads = options.threads,
-                                      .ranks = options.ranks})) {
-    angle = std::max(angle, transform.angle());
-  }
-  if (angle < kTurning) return;
+  if (whole.angle < kTurning && !whole.moves()) return;
   note(options.notes,
-       options.name + ": the head turns by up to " + readable(angle, 2) +
-           " degrees against the rest pose, which counts as deformation, as " +
-           std::string(choice.reason),
+       options.name + ": the head turns by up to " + readable(whole.angle, 3) +
+           " degrees and moves by up to " + readable(whole.shift, 3) + " against the rest pose, " +
+           in_percent(1 - whole.left_by_motion) + " of all motion, which counts as deformation" +
+           reason,
        Topic::turning_head);
+}
+
+/// Says what nobody asked for: that motion was taken out, or that the head moves and it was not.
+void note_motion(const MotionChoice& choice, const Source& source, const SourceOptions& options) {
+  if (choice.is_asked || options.model_driven) return;
+  if (!takes_out(choice.motion)) {
+    note_whole_motion(choice, source, options);
+    return;
+  }
+  const HeadMotionTaken& motion = source.head_motion;
+  if (motion.angle == 0 && motion.shift == 0) return;
+  note(options.notes, options.name + ": a head motion of up to " + readable(motion.angle, 3) +
+                          " degrees and " + readable(motion.shift, 3) + " is taken out, as " +
+                          std::string(motion.why));
+}
+
+/// Says which frames can be no poses of the mesh: they take regions over, and targets follow them.
+void note_odd_frames(const FrameSource& sequence, const SourceOptions& options) {
+  const std::vector<FrameShape> shapes =
+      frame_shapes(sequence, {.threads = options.threads, .ranks = options.ranks});
+  for (const std::string& text : described(odd_frames(sequence, shapes), shapes)) {
+    note(options.notes,
+         options.name + ": " + text + "; leave such frames out (option 'frames') or mend them");
+  }
 }
 
 Shared kept(Shared sequence, const SourceOptions& options) {
@@ -249,6 +273,7 @@ Source prepare_source(Shared sequence, const SourceOptions& options) {
                .progress = part_of(options.progress, kStoringShare, 1),
                .ranks = options.ranks});
   measure_motion(source);
+  if (!options.model_driven) note_odd_frames(*source.sequence, options);
   note_motion(choice, source, options);
   note_uncertainty(choice, source, options);
   if (takes_out(choice.motion)) {
