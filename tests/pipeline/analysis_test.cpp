@@ -131,16 +131,7 @@ MeshSequence nearly_still(double share) {
 
 TEST(Analysis, LeavesOutTheMotionOfVerticesWithoutATriangle) {
   const MeshSequence plain = take();
-  // A vertex more, which jumps about.
-  Connectivity connectivity = plain.connectivity();
-  ++connectivity.vertices;
-  Positions rest(plain.vertices() + 1, 3);
-  rest << plain.rest(), Eigen::RowVector3d(0, 0, 50);
-  Frames frames(plain.frames(), rest.size());
-  for (int f = 0; f < plain.frames(); ++f) {
-    frames.row(f) << plain.positions().row(f), 30 * f, -20, 50 + f * f;
-  }
-  const MeshSequence loose(connectivity, frames, {}, rest);
+  const MeshSequence loose = test::with_loose_vertex(plain);
   const Components expected = analyse(source_of(plain), three_components()).components;
   const Components found = analyse(source_of(loose), three_components()).components;
   EXPECT_EQ(found.centers, expected.centers);

@@ -89,6 +89,20 @@ TEST_F(SolveTest, NotesExpressionsThatTheTrianglesDoNotShow) {
             "actor: 1 expressions do not move in the regions and stay 0: shape0");
 }
 
+TEST_F(SolveTest, NotesVerticesThatNoTriangleMoves) {
+  const Source loose =
+      prepare_source(test::with_loose_vertex(take()), {.head_motion = HeadMotion::none});
+  const BlendshapeModel mesh(loose.sequence->shared_connectivity(), loose.sequence->rest(),
+                             {{}, Eigen::MatrixXd(3 * 82, 0)});
+  Noted noted;
+  options_.notes = noted.sink();
+  const Solution solution = solve(loose, {"mesh", mesh}, whole(*loose.sequence), options_);
+  EXPECT_THAT(
+      noted.notes.front().text,
+      "mesh: 1 vertices of no triangle, the first is vertex 81, stay where they are at rest");
+  EXPECT_EQ(FrameBlock(*solution.sequence, 3, 1).frame(0).row(81), mesh.neutral().row(81));
+}
+
 TEST_F(SolveTest, NotesExpressionsThatLookAlike) {
   ShapeBasis twins = test::bumps(actor_.neutral(), 2);
   // Differences of 1e-4 make a condition number of about 1e8.

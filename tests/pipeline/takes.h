@@ -16,6 +16,19 @@ inline MeshSequence take(int frames = 8, int expressions = 5) {
   return model_on(patch(), expressions).animate(random_weights(frames, expressions));
 }
 
+/// With a vertex more that no triangle has, which jumps about.
+inline MeshSequence with_loose_vertex(const MeshSequence& sequence) {
+  Connectivity connectivity = sequence.connectivity();
+  ++connectivity.vertices;
+  Positions rest(connectivity.vertices, 3);
+  rest << sequence.rest(), Eigen::RowVector3d(0, 0, 50);
+  Frames frames(sequence.frames(), rest.size());
+  for (int f = 0; f < sequence.frames(); ++f) {
+    frames.row(f) << sequence.positions().row(f), 30 * f, -20, 50 + f * f;
+  }
+  return {std::move(connectivity), std::move(frames), {}, std::move(rest)};
+}
+
 /// The same frames, of which nobody knows the neutral.
 inline MeshSequence bare(const MeshSequence& sequence) {
   return {sequence.shared_connectivity(), sequence.positions(), sequence.times()};

@@ -46,6 +46,17 @@ void TargetNotes::add_following(const std::vector<int>& parts, std::size_t verti
       " vertices) move rigidly with the surface around them: " + listed(names));
 }
 
+void TargetNotes::add_unmoved(const Connectivity& connectivity) const {
+  const std::vector<VertexIndex> used =
+      used_vertices(connectivity.triangles, connectivity.vertices);
+  const std::size_t unmoved = static_cast<std::size_t>(connectivity.vertices) - used.size();
+  if (unmoved == 0) return;
+  VertexIndex first = 0;
+  while (static_cast<std::size_t>(first) < used.size() && used[first] == first) ++first;
+  add(std::to_string(unmoved) + " vertices of no triangle, the first is vertex " +
+      std::to_string(first) + ", stay where they are at rest");
+}
+
 void TargetNotes::add_degenerate(const Degenerate& triangles) const {
   if (triangles.collapsed > 0) {
     add(std::to_string(triangles.collapsed) +
