@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <stdexcept>
 #include <string>
 
@@ -11,12 +12,18 @@
 
 namespace mimetra::test {
 
-/// An octahedron as Draco's bytes: no number is rounded, every point stands once.
-inline std::string draco_octahedron() {
+/// An octahedron as Draco's bytes: no number is rounded, every point stands once. `hanging` adds
+/// joints (attribute 1) and their weights (2): what lies at x > 0 hangs on joint 1, the rest on 0.
+inline std::string draco_octahedron(bool hanging = false) {
   const Shape shape = octahedron();
   draco::TriangleSoupMeshBuilder builder;
   builder.Start(static_cast<int>(shape.triangles.rows()));
   const int id = builder.AddAttribute(draco::GeometryAttribute::POSITION, 3, draco::DT_FLOAT32);
+  int joints = 0, weights = 0;
+  if (hanging) {
+    joints = builder.AddAttribute(draco::GeometryAttribute::GENERIC, 4, draco::DT_UINT8);
+    weights = builder.AddAttribute(draco::GeometryAttribute::GENERIC, 4, draco::DT_FLOAT32);
+  }
   for (int t = 0; t < shape.triangles.rows(); ++t) {
     std::array<std::array<float, 3>, 3> corner{};
     for (std::size_t k = 0; k < 3; ++k) {
@@ -27,6 +34,14 @@ inline std::string draco_octahedron() {
     }
     builder.SetAttributeValuesForFace(id, draco::FaceIndex(static_cast<std::uint32_t>(t)),
                                       corner[0].data(), corner[1].data(), corner[2].data());
+    if (!hanging) continue;
+    std::array<std::array<std::uint8_t, 4>, 3> on{};
+    for (std::size_t k = 0; k < 3; ++k) on[k][0] = corner[k][0] > 0 ? 1 : 0;
+    const std::array<float, 4> all = {1, 0, 0, 0};
+    builder.SetAttributeValuesForFace(joints, draco::FaceIndex(static_cast<std::uint32_t>(t)),
+                                      on[0].data(), on[1].data(), on[2].data());
+    builder.SetAttributeValuesForFace(weights, draco::FaceIndex(static_cast<std::uint32_t>(t)),
+                                      all.data(), all.data(), all.data());
   }
   const auto mesh = builder.Finalize();
   draco::Encoder encoder;

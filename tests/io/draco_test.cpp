@@ -17,7 +17,7 @@ using test::GltfBuilder;
 using test::GltfJson;
 using testing::HasSubstr;
 
-std::string draco_glb(const std::string& encoded) {
+GltfBuilder draco_gltf(const std::string& encoded) {
   GltfBuilder gltf;
   const int view = gltf.view(encoded);
   const int points = gltf.accessor({{"componentType", 5126}, {"count", 6}, {"type", "VEC3"}});
@@ -25,7 +25,11 @@ std::string draco_glb(const std::string& encoded) {
   gltf.primitive(points, faces)["extensions"] = {
       {"KHR_draco_mesh_compression", {{"bufferView", view}, {"attributes", {{"POSITION", 0}}}}}};
   gltf.root["extensionsRequired"] = {"KHR_draco_mesh_compression"};
-  return gltf.glb();
+  return gltf;
+}
+
+std::string draco_glb(const std::string& encoded) {
+  return draco_gltf(encoded).glb();
 }
 
 TEST(Draco, ACompressedMeshIsItsTriangles) {
@@ -43,6 +47,48 @@ TEST(Draco, ACompressedMeshIsItsTriangles) {
     volume += corners.determinant() / 6;
   }
   EXPECT_NEAR(volume, 4.0 / 3, 1e-12);
+}
+
+/// A compressed mesh on two joints, the second of which stands 5 higher.
+GltfBuilder hanging_gltf() {
+  GltfBuilder gltf = draco_gltf(draco_octahedron(true));
+  GltfJson& primitive = gltf.root["meshes"][0]["primitives"][0];
+  primitive["extensions"]["KHR_draco_mesh_compression"]["attributes"] = {
+      {"POSITION", 0}, {"JOINTS_0", 1}, {"WEIGHTS_0", 2}};
+  primitive["attributes"]["JOINTS_0"] =
+      gltf.accessor({{"componentType", 5121}, {"count", 6}, {"type", "VEC4"}});
+  primitive["attributes"]["WEIGHTS_0"] =
+      gltf.accessor({{"componentType", 5126}, {"count", 6}, {"type", "VEC4"}});
+  gltf.root["skins"] = {{{"joints", {1, 2}}}};
+  gltf.root["nodes"] = {{{"mesh", 0}, {"skin", 0}, {"translation", {9, 9, 9}}},
+                        {{"name", "root"}, {"children", {2}}},
+                        {{"name", "up"}, {"translation", {0, 5, 0}}}};
+  gltf.root["scenes"][0]["nodes"] = {0, 1};
+  return gltf;
+}
+
+TEST(Draco, ASkinHoldsTheVerticesOfACompressedMesh) {
+  test::TemporaryFolder folder;
+  write_bytes(folder / "a.glb", hanging_gltf().glb());
+  const Positions found = read_blendshapes((folder / "a.glb").string()).neutral();
+  std::vector<std::vector<double>> points, expected;
+  for (const auto& point : found.rowwise()) points.emplace_back(point.begin(), point.end());
+  const Positions bound = test::octahedron().positions;
+  for (Eigen::RowVector3d point : bound.rowwise()) {
+    if (point.x() > 0) point.y() += 5;
+    expected.emplace_back(point.begin(), point.end());
+  }
+  EXPECT_THAT(points, testing::UnorderedElementsAreArray(expected));
+}
+
+TEST(Draco, AMeshWithoutTheJointsThatItsFileNamesSaysSo) {
+  test::TemporaryFolder folder;
+  GltfBuilder gltf = hanging_gltf();
+  gltf.root["meshes"][0]["primitives"][0]["extensions"]["KHR_draco_mesh_compression"]["attributes"]
+           ["WEIGHTS_0"] = 7;
+  write_bytes(folder / "a.glb", gltf.glb());
+  EXPECT_THAT(test::message_of<IoError>([&] { read_blendshapes((folder / "a.glb").string()); }),
+              HasSubstr("its compressed mesh has no joints"));
 }
 
 TEST(Draco, EveryTruncatedPrefixIsAnError) {

@@ -32,13 +32,13 @@ Frames draco_values(const std::string& path, const std::string& what, const drac
 
 DracoMesh draco_parts(const std::string& path, const std::string& what, const draco::Mesh& mesh,
                       const GltfDraco& draco) {
-  const auto attribute = [&mesh](std::optional<int> id) {
+  const auto attribute = [&mesh](std::optional<std::size_t> id) {
     return id ? mesh.GetAttributeByUniqueId(static_cast<uint32_t>(*id)) : nullptr;
   };
   const auto* positions = attribute(draco.positions);
   if (!positions) throw IoError(path, what + ": its compressed mesh has no positions");
   DracoMesh parts{
-      Triangles(mesh.num_faces(), 3), draco_values(path, what, mesh, *positions, 3), {}};
+      Triangles(mesh.num_faces(), 3), draco_values(path, what, mesh, *positions, 3), {}, {}};
   for (draco::FaceIndex face(0); face < mesh.num_faces(); ++face) {
     for (int corner = 0; corner < 3; ++corner) {
       const auto point = mesh.face(face)[static_cast<std::size_t>(corner)].value();
@@ -49,6 +49,16 @@ DracoMesh draco_parts(const std::string& path, const std::string& what, const dr
   if (!parts.positions.allFinite()) throw IoError(path, what + ": a position is not finite");
   if (const auto* texture = attribute(draco.texture)) {
     parts.texture = draco_values(path, what, mesh, *texture, 2);
+  }
+  for (const auto& [joints_id, weights_id] : draco.joints) {
+    const auto *joints = attribute(joints_id), *weights = attribute(weights_id);
+    if (!joints || !weights) throw IoError(path, what + ": its compressed mesh has no joints");
+    VertexJoints set{draco_values(path, what, mesh, *joints, 4),
+                     draco_values(path, what, mesh, *weights, 4)};
+    if (!set.joints.allFinite() || !set.weights.allFinite()) {
+      throw IoError(path, what + ": a joint or its weight is not finite");
+    }
+    parts.joints.push_back(std::move(set));
   }
   return parts;
 }

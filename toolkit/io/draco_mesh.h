@@ -3,17 +3,24 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "toolkit/io/gltf_document.h"
 #include "toolkit/mesh/frame_source.h"
 
 namespace mimetra {
 
+/// Four joints of each vertex, and their weights (N x 4).
+struct VertexJoints {
+  Frames joints, weights;
+};
+
 /// What a primitive's compressed mesh holds.
 struct DracoMesh {
   Triangles triangles;
   Frames positions;               ///< N x 3
   std::optional<Frames> texture;  ///< N x 2
+  std::vector<VertexJoints> joints;
 };
 
 /// Decodes `bytes` with the attributes that `draco` names. `what` names the mesh in messages.

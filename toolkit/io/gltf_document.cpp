@@ -165,6 +165,19 @@ GltfAccessor gltf_accessor(const GltfValue& value, std::size_t views) {
   return accessor;
 }
 
+/// Attributes of joints and their weights, set by set.
+std::vector<std::pair<std::size_t, std::size_t>> joint_sets(const GltfValue& attributes,
+                                                            std::size_t size) {
+  std::vector<std::pair<std::size_t, std::size_t>> sets;
+  for (int set = 0;; ++set) {
+    const std::string number = std::to_string(set);
+    const auto joints = attributes.maybe_index(("JOINTS_" + number).c_str(), size);
+    const auto weights = attributes.maybe_index(("WEIGHTS_" + number).c_str(), size);
+    if (!joints || !weights) return sets;
+    sets.emplace_back(*joints, *weights);
+  }
+}
+
 GltfPrimitive gltf_primitive(const GltfValue& value, const GltfDocument& document,
                              std::size_t materials) {
   const std::size_t accessors = document.accessors.size();
@@ -178,13 +191,7 @@ GltfPrimitive gltf_primitive(const GltfValue& value, const GltfDocument& documen
   for (const char* name : {"TEXCOORD_1", "COLOR_0"}) {
     if (attributes.has(name)) primitive.unread.emplace_back(name);
   }
-  for (int set = 0;; ++set) {
-    const std::string number = std::to_string(set);
-    const auto joints = attributes.maybe_index(("JOINTS_" + number).c_str(), accessors);
-    const auto weights = attributes.maybe_index(("WEIGHTS_" + number).c_str(), accessors);
-    if (!joints || !weights) break;
-    primitive.joints.emplace_back(*joints, *weights);
-  }
+  primitive.joints = joint_sets(attributes, accessors);
   primitive.indices = value.maybe_index("indices", accessors);
   primitive.material = value.maybe_index("material", materials);
   for (const GltfValue& target : value.list("targets")) {
@@ -193,12 +200,10 @@ GltfPrimitive gltf_primitive(const GltfValue& value, const GltfDocument& documen
   primitive.polygons = value.extension("FB_ngon_encoding").has_value();
   if (const auto draco = value.extension("KHR_draco_mesh_compression")) {
     const GltfValue ids = draco->at("attributes");
-    const auto id = [&ids](const char* name) -> std::optional<int> {
-      if (!ids.has(name)) return std::nullopt;
-      return static_cast<int>(ids.at(name).index(std::numeric_limits<int>::max()));
-    };
-    primitive.draco = GltfDraco{draco->index("bufferView", document.views.size()), id("POSITION"),
-                                id("TEXCOORD_0")};
+    constexpr std::size_t kMostIds = std::numeric_limits<int>::max();
+    primitive.draco = GltfDraco{draco->index("bufferView", document.views.size()),
+                                ids.maybe_index("POSITION", kMostIds),
+                                ids.maybe_index("TEXCOORD_0", kMostIds), joint_sets(ids, kMostIds)};
   }
   return primitive;
 }

@@ -52,10 +52,11 @@ struct GltfAccessor {
   std::optional<GltfSparse> sparse;
 };
 
-/// [KHR_draco_mesh_compression]
+/// Attributes by their ids in the compressed mesh. [KHR_draco_mesh_compression]
 struct GltfDraco {
   std::size_t view;
-  std::optional<int> positions, texture;
+  std::optional<std::size_t> positions, texture;
+  std::vector<std::pair<std::size_t, std::size_t>> joints;  ///< as of GltfPrimitive
 };
 
 struct GltfPrimitive {

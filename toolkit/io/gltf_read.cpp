@@ -262,7 +262,7 @@ class GltfReader {
       part.positions = values_.read(*primitive.positions, 3);
     }
     const Eigen::Index vertices = part.positions.rows();
-    const Placement placement = placement_of(placed, primitive, vertices);
+    const Placement placement = placement_of(placed, primitive, draco, vertices);
     placement.apply(part.positions, false);
     for (std::size_t j = 0; j < primitive.targets.size(); ++j) {
       const bool is_named = j < mesh.target_names.size() && !mesh.target_names[j].empty();
@@ -313,19 +313,29 @@ class GltfReader {
     return texture;
   }
 
-  Placement placement_of(const PlacedNode& placed, const GltfPrimitive& primitive,
-                         Eigen::Index vertices) {
-    const auto& skin = document_.nodes[placed.node].skin;
-    if (!skin || primitive.joints.empty() || primitive.draco) {
-      return Placement(placed.world);
+  /// The sets of joints of a primitive, which may lie in its compressed mesh.
+  std::vector<VertexJoints> joint_sets(const GltfPrimitive& primitive,
+                                       const std::optional<DracoMesh>& draco,
+                                       Eigen::Index vertices) {
+    if (draco && !draco->joints.empty()) return draco->joints;
+    std::vector<VertexJoints> sets;
+    for (const auto& [joints, weights] : primitive.joints) {
+      sets.push_back({values_.read(joints, 4, vertices), values_.read(weights, 4, vertices)});
     }
+    return sets;
+  }
+
+  Placement placement_of(const PlacedNode& placed, const GltfPrimitive& primitive,
+                         const std::optional<DracoMesh>& draco, Eigen::Index vertices) {
+    const auto& skin = document_.nodes[placed.node].skin;
+    if (!skin) return Placement(placed.world);
+    const std::vector<VertexJoints> sets = joint_sets(primitive, draco, vertices);
+    if (sets.empty()) return Placement(placed.world);
     const Frames joints = joints_of(document_.skins[*skin]);
     for (const std::size_t joint : document_.skins[*skin].joints) joints_.insert(joint);
     Frames blended = Frames::Zero(vertices, 12);
     Eigen::VectorXd sums = Eigen::VectorXd::Zero(vertices);
-    for (const auto& [which_accessor, weight_accessor] : primitive.joints) {
-      const Frames which = values_.read(which_accessor, 4, vertices);
-      const Frames weights = values_.read(weight_accessor, 4, vertices);
+    for (const auto& [which, weights] : sets) {
       for (Eigen::Index v = 0; v < vertices; ++v) {
         for (int k = 0; k < 4; ++k) {
           if (weights(v, k) == 0) continue;
@@ -375,7 +385,8 @@ class GltfReader {
   }
 
   void add_faces(const GltfPrimitive& primitive, const PlacedNode& placed, ScenePart& part) {
-    add_faces(primitive, placement_of(placed, primitive, part.positions.rows()).mirrors(), part);
+    add_faces(primitive,
+              placement_of(placed, primitive, std::nullopt, part.positions.rows()).mirrors(), part);
   }
 
   void add_faces(const GltfPrimitive& primitive, bool mirrored, ScenePart& part) {
