@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
 #include <limits>
 
@@ -24,10 +25,10 @@ namespace {
 /// where surfaces are.
 bool is_known_extension(const std::string& extension) {
   static const std::vector<std::string> known = {
-      "KHR_mesh_quantization",     "EXT_meshopt_compression", "KHR_texture_transform",
-      "FB_ngon_encoding",          "KHR_texture_basisu",      "EXT_texture_webp",
-      "EXT_texture_avif",          "MSFT_texture_dds",        "KHR_lights_punctual",
-      "KHR_draco_mesh_compression"};
+      "KHR_mesh_quantization",      "EXT_meshopt_compression", "KHR_texture_transform",
+      "FB_ngon_encoding",           "KHR_texture_basisu",      "EXT_texture_webp",
+      "EXT_texture_avif",           "MSFT_texture_dds",        "KHR_lights_punctual",
+      "KHR_draco_mesh_compression", "KHR_animation_pointer"};
   return extension.starts_with("KHR_materials_") ||
          std::find(known.begin(), known.end(), extension) != known.end();
 }
@@ -277,19 +278,43 @@ GltfMaterial gltf_material(const GltfValue& value) {
   return material;
 }
 
+/// A node and which of its properties an animation changes.
+struct GltfTarget {
+  std::size_t node;
+  std::string property;
+};
+
+/// None for what is no part of the face: lights, materials and the like.
+std::optional<GltfTarget> gltf_target(const GltfValue& target, std::size_t nodes,
+                                      std::vector<std::string>& unread) {
+  if (target.has("node")) return GltfTarget{target.index("node", nodes), target.at("path").text()};
+  const auto extension = target.extension("KHR_animation_pointer");
+  if (!extension) return std::nullopt;
+  const std::string pointer = extension->at("pointer").name();
+  constexpr std::string_view kNodes = "/nodes/";
+  if (pointer.starts_with(kNodes)) {
+    std::size_t node = 0;
+    const char* last = pointer.data() + pointer.size();
+    const auto [end, error] = std::from_chars(pointer.data() + kNodes.size(), last, node);
+    const std::string_view rest(end, static_cast<std::size_t>(last - end));
+    const bool is_whole = error == std::errc() && rest.rfind('/') == 0;
+    if (is_whole && node < nodes) return GltfTarget{node, std::string(rest.substr(1))};
+  }
+  if (pointer.find("/weights") != std::string::npos) unread.push_back("'" + pointer + "'");
+  return std::nullopt;
+}
+
 GltfAnimation gltf_animation(const GltfValue& value, const GltfDocument& document) {
-  GltfAnimation animation{value.name_or_nothing(), {}};
+  GltfAnimation animation{value.name_or_nothing(), {}, {}};
   const std::vector<GltfValue> samplers = value.at("samplers").items();
   for (const GltfValue& channel : value.at("channels").items()) {
-    const GltfValue target = channel.at("target");
-    if (!target.has("node")) continue;  // what an extension moves is no part of the face
-    const std::string path = target.at("path").text();
+    const auto target = gltf_target(channel.at("target"), document.nodes.size(), animation.unread);
+    if (!target) continue;
     const GltfValue& sampler = samplers[channel.index("sampler", samplers.size())];
     const std::size_t accessors = document.accessors.size();
-    animation.channels.push_back({target.index("node", document.nodes.size()), path == "weights",
-                                  sampler.index("input", accessors),
-                                  sampler.index("output", accessors),
-                                  sampler.text_or("interpolation", "LINEAR")});
+    animation.channels.push_back(
+        {target->node, target->property == "weights", sampler.index("input", accessors),
+         sampler.index("output", accessors), sampler.text_or("interpolation", "LINEAR")});
   }
   return animation;
 }
@@ -345,6 +370,14 @@ void read_gltf_buffers(const GltfValue& root, const std::optional<std::string_vi
 }
 
 }  // namespace
+
+std::size_t GltfMesh::most_targets() const {
+  std::size_t most = 0;
+  for (const GltfPrimitive& primitive : primitives) {
+    most = std::max(most, primitive.targets.size());
+  }
+  return most;
+}
 
 GltfDocument read_gltf_document(const fs::path& path) {
   GltfDocument document;

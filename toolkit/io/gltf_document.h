@@ -82,6 +82,9 @@ struct GltfMesh {
   std::vector<GltfPrimitive> primitives;
   std::vector<std::string> target_names;
   std::vector<double> weights;
+
+  /// Of its primitives, which should all have as many.
+  std::size_t most_targets() const;
 };
 
 struct GltfNode {
@@ -113,6 +116,8 @@ struct GltfChannel {
 struct GltfAnimation {
   std::string name;
   std::vector<GltfChannel> channels;
+  /// Pointers to weights that no channel has a place for. [KHR_animation_pointer]
+  std::vector<std::string> unread;
 };
 
 struct GltfDocument {

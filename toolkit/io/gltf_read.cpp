@@ -7,6 +7,7 @@
 #include <Eigen/LU>
 
 #include "toolkit/io/draco_mesh.h"
+#include "toolkit/io/gltf_motion.h"
 #include "toolkit/io/gltf_values.h"
 #include "toolkit/io/scene.h"
 #include "toolkit/mesh/errors.h"
@@ -93,13 +94,12 @@ class GltfReader {
  public:
   explicit GltfReader(const fs::path& path)
       : document_(read_gltf_document(path)), values_(document_), placed_(placed_nodes(document_)) {
-    curves_.resize(document_.nodes.size());
     for (const PlacedNode& node : placed_) worlds_.emplace(node.node, node.world);
   }
 
   Scene read() {
     check_size();
-    read_animations();
+    read_motion();
     std::vector<ScenePart> parts;
     bool shows_mesh = false;
     for (const PlacedNode& placed : placed_) {
@@ -157,64 +157,22 @@ class GltfReader {
                      document_.file_bytes);
   }
 
-  /// The weights of each node, by the first animation that has some of it.
-  void read_animations() {
-    std::set<std::string> further;
-    for (const GltfAnimation& animation : document_.animations) {
-      for (const GltfChannel& channel : animation.channels) {
-        if (!channel.drives_weights) {
-          moved_.insert(channel.node);
-        } else if (curves_[channel.node]) {
-          further.insert("'" + animation.name + "'");
-        } else if (document_.nodes[channel.node].mesh) {
-          curves_[channel.node] = curve_of(channel, targets_of(mesh_at(channel.node)));
-        }
-      }
-    }
-    note(further, "weights that an earlier animation drives too are left out of the animations");
-  }
-
-  static std::size_t targets_of(const GltfMesh& mesh) {
-    std::size_t targets = 0;
-    for (const GltfPrimitive& primitive : mesh.primitives) {
-      targets = std::max(targets, primitive.targets.size());
-    }
-    return targets;
-  }
-
-  std::shared_ptr<const WeightCurve> curve_of(const GltfChannel& channel, std::size_t targets) {
-    if (targets == 0) return nullptr;
-    WeightCurve curve;
-    const Frames keys = values_.read(channel.times, 1);
-    const Eigen::Index count = keys.rows(), columns = static_cast<Eigen::Index>(targets);
-    const bool is_cubic = channel.interpolation == "CUBICSPLINE";
-    const Frames values = values_.read(channel.values, 1, count * columns * (is_cubic ? 3 : 1));
-    using Rows = Eigen::Map<const Frames, 0, Eigen::OuterStride<>>;
-    const auto rows = [&](Eigen::Index first) -> Eigen::MatrixXd {
-      return Rows(values.data() + first * columns, count, columns,
-                  Eigen::OuterStride<>(columns * (is_cubic ? 3 : 1)));
-    };
-    curve.times = keys.col(0);
-    curve.values = rows(is_cubic ? 1 : 0);
-    if (is_cubic) {
-      curve.between = WeightCurve::Between::cubic;
-      curve.slopes_in = rows(0);
-      curve.slopes_out = rows(2);
-    } else if (channel.interpolation == "STEP") {
-      curve.between = WeightCurve::Between::step;
-    } else if (channel.interpolation != "LINEAR") {
-      fail("an animation", "has interpolation '" + channel.interpolation + "'");
-    }
-    return std::make_shared<const WeightCurve>(std::move(curve));
+  void read_motion() {
+    motion_ = gltf_motion(document_, values_);
+    note(motion_.other_clips,
+         "several clips drive the same weights: one is read, others are left out as a whole "
+         "(export each to a file of its own)");
+    note(motion_.unread,
+         "animations point to weights by other than '/nodes/N/weights', which is left out");
   }
 
   /// Weights of a node's mesh: over time, or those that stay.
   std::shared_ptr<const WeightCurve> weights_of(std::size_t node) const {
-    if (curves_[node]) return curves_[node];
+    if (motion_.weights[node]) return motion_.weights[node];
     const std::vector<double>& own = document_.nodes[node].weights;
     const std::vector<double>& still = own.empty() ? mesh_at(node).weights : own;
     auto curve = std::make_shared<WeightCurve>();
-    const auto columns = static_cast<Eigen::Index>(targets_of(mesh_at(node)));
+    const auto columns = static_cast<Eigen::Index>(mesh_at(node).most_targets());
     curve->values = Eigen::MatrixXd::Zero(1, columns);
     for (Eigen::Index j = 0; j < std::min(columns, Eigen::Index(still.size())); ++j) {
       curve->values(0, j) = still[static_cast<std::size_t>(j)];
@@ -470,7 +428,7 @@ class GltfReader {
       moves_face[placed->node] = holds;
     }
     std::set<std::string> names;
-    for (const std::size_t node : moved_) {
+    for (const std::size_t node : motion_.moved) {
       if (!moves_face[node]) continue;
       const std::string& name = document_.nodes[node].name;
       names.insert("'" + (name.empty() ? "nodes[" + std::to_string(node) + ']' : name) + "'");
@@ -484,8 +442,8 @@ class GltfReader {
   GltfValues values_;
   std::vector<PlacedNode> placed_;
   std::map<std::size_t, Eigen::Matrix4d> worlds_;
-  std::vector<std::shared_ptr<const WeightCurve>> curves_;
-  std::set<std::size_t> moved_, joints_;
+  GltfMotion motion_;
+  std::set<std::size_t> joints_;
   std::set<std::string> left_out_, unread_;
   std::vector<std::string> notes_, motion_notes_;
 };

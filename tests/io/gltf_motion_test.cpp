@@ -1,0 +1,96 @@
+#include <gmock/gmock.h>
+
+#include "tests/io/gltf_fixture.h"
+
+namespace mimetra {
+namespace {
+
+using test::GltfBuilder;
+using test::GltfFiles;
+using test::GltfJson;
+using test::moved;
+using test::quarters;
+using test::two_nodes;
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+/// Adds the only channel of the last animation to the one before it.
+void join_last(GltfBuilder& gltf) {
+  GltfJson& animations = gltf.root["animations"];
+  const GltfJson last = animations.back();
+  animations.erase(animations.size() - 1);
+  GltfJson channel = last["channels"][0];
+  channel["sampler"] = animations.back()["samplers"].size();
+  animations.back()["samplers"].push_back(last["samplers"][0]);
+  animations.back()["channels"].push_back(channel);
+}
+
+TEST_F(GltfFiles, ALaterClipIsLeftOutAsAWhole) {
+  GltfBuilder gltf = two_nodes(plain());
+  gltf.animate(0, {0, 1}, {0, 1});
+  gltf.animate(0, {0, 3}, {0, 0.5});
+  gltf.animate(2, {0, 3}, {0, 0.5});
+  join_last(gltf);
+  gltf.root["animations"][1]["name"] = "sing";
+  const MeshSequence sequence = read(gltf.glb());
+  EXPECT_EQ(sequence.times(), Eigen::Vector2d(0, 1));
+  EXPECT_EQ(sequence.frame(1).topRows(6), quarters() + moved());
+  EXPECT_EQ(sequence.frame(1).bottomRows(6), sequence.rest().bottomRows(6));
+  EXPECT_THAT(notes_,
+              testing::Contains(AllOf(HasSubstr("left out as a whole"), HasSubstr("'sing'"))));
+}
+
+TEST_F(GltfFiles, AnimationsOfDifferentNodesAreOneClip) {
+  GltfBuilder gltf = two_nodes(plain());
+  gltf.animate(0, {0, 1}, {0, 1});
+  gltf.animate(2, {0, 1}, {0, 1});
+  const MeshSequence sequence = read(gltf.glb());
+  EXPECT_EQ(sequence.frame(1).bottomRows(6), sequence.rest().bottomRows(6) + 2 * moved());
+  EXPECT_TRUE(notes_.empty());
+}
+
+TEST_F(GltfFiles, APoseOfOneKeyDoesNotDisplaceALaterClip) {
+  GltfBuilder gltf = plain();
+  gltf.animate(0, {0}, {0.25});
+  gltf.root["animations"][0]["name"] = "T-pose";
+  gltf.animate(0, {0, 1}, {0, 1});
+  const MeshSequence sequence = read(gltf.glb());
+  ASSERT_EQ(sequence.frames(), 2);
+  EXPECT_EQ(sequence.frame(1), quarters() + moved());
+  EXPECT_THAT(notes_, ElementsAre(HasSubstr("'T-pose'")));
+  gltf.root["animations"][0].erase("name");
+  read(gltf.glb());
+  EXPECT_THAT(notes_, ElementsAre(HasSubstr("'animations[0]'")));
+  gltf.root["animations"].erase(1);
+  EXPECT_EQ(read(gltf.glb()).frame(0), quarters() + 0.25 * moved());
+}
+
+/// A channel as KHR_animation_pointer has it.
+GltfJson pointing_to(const char* pointer) {
+  return {{"path", "pointer"}, {"extensions", {{"KHR_animation_pointer", {{"pointer", pointer}}}}}};
+}
+
+TEST_F(GltfFiles, APointerToANodesWeightsDrivesThem) {
+  GltfBuilder gltf = plain();
+  gltf.animate(0, {0, 1}, {0, 1});
+  gltf.root["extensionsRequired"] = {"KHR_animation_pointer"};
+  GltfJson& target = gltf.root["animations"][0]["channels"][0]["target"];
+  target = pointing_to("/nodes/0/weights");
+  EXPECT_EQ(read(gltf.glb()).frame(1), quarters() + moved());
+  EXPECT_TRUE(notes_.empty());
+  target = pointing_to("/nodes/0/rotation");
+  EXPECT_EQ(read(gltf.glb()).frames(), 1);
+  EXPECT_THAT(notes_, ElementsAre(HasSubstr("the movement of nodes is left out")));
+  target = pointing_to("/materials/0/emissiveFactor");
+  read(gltf.glb());
+  EXPECT_TRUE(notes_.empty());
+  for (const char* other : {"/meshes/0/weights", "/nodes/0/weights/0", "/nodes/7/weights"}) {
+    target = pointing_to(other);
+    EXPECT_EQ(read(gltf.glb()).frames(), 1);
+    EXPECT_THAT(notes_, ElementsAre(AllOf(HasSubstr("which is left out"), HasSubstr(other))));
+  }
+}
+
+}  // namespace
+}  // namespace mimetra

@@ -1,0 +1,90 @@
+#include "toolkit/io/gltf_motion.h"
+
+#include <algorithm>
+
+#include "toolkit/mesh/errors.h"
+
+namespace mimetra {
+namespace {
+
+std::shared_ptr<const WeightCurve> curve_of(const GltfDocument& document, GltfValues& values,
+                                            const GltfChannel& channel) {
+  const std::size_t targets = document.meshes[*document.nodes[channel.node].mesh].most_targets();
+  WeightCurve curve;
+  const Frames keys = values.read(channel.times, 1);
+  const Eigen::Index count = keys.rows(), columns = static_cast<Eigen::Index>(targets);
+  const bool is_cubic = channel.interpolation == "CUBICSPLINE";
+  const Frames stored = values.read(channel.values, 1, count * columns * (is_cubic ? 3 : 1));
+  using Rows = Eigen::Map<const Frames, 0, Eigen::OuterStride<>>;
+  const auto rows = [&](Eigen::Index first) -> Eigen::MatrixXd {
+    return Rows(stored.data() + first * columns, count, columns,
+                Eigen::OuterStride<>(columns * (is_cubic ? 3 : 1)));
+  };
+  curve.times = keys.col(0);
+  curve.values = rows(is_cubic ? 1 : 0);
+  if (is_cubic) {
+    curve.between = WeightCurve::Between::cubic;
+    curve.slopes_in = rows(0);
+    curve.slopes_out = rows(2);
+  } else if (channel.interpolation == "STEP") {
+    curve.between = WeightCurve::Between::step;
+  } else if (channel.interpolation != "LINEAR") {
+    throw IoError(document.path, "an animation: has interpolation '" + channel.interpolation + "'");
+  }
+  return std::make_shared<const WeightCurve>(std::move(curve));
+}
+
+/// Channels of an animation that drive targets which there are.
+std::vector<const GltfChannel*> weight_channels(const GltfDocument& document,
+                                                const GltfAnimation& animation) {
+  std::vector<const GltfChannel*> channels;
+  for (const GltfChannel& channel : animation.channels) {
+    const auto& mesh = document.nodes[channel.node].mesh;
+    if (channel.drives_weights && mesh && document.meshes[*mesh].most_targets() > 0) {
+      channels.push_back(&channel);
+    }
+  }
+  return channels;
+}
+
+std::string shown_name(const GltfDocument& document, const GltfAnimation& animation) {
+  if (!animation.name.empty()) return animation.name;
+  return "animations[" + std::to_string(&animation - document.animations.data()) + ']';
+}
+
+}  // namespace
+
+GltfMotion gltf_motion(const GltfDocument& document, GltfValues& values) {
+  GltfMotion motion;
+  motion.weights.resize(document.nodes.size());
+  std::vector<const GltfAnimation*> clips;
+  for (const GltfAnimation& animation : document.animations) {
+    clips.push_back(&animation);
+    motion.unread.insert(animation.unread.begin(), animation.unread.end());
+    for (const GltfChannel& channel : animation.channels) {
+      if (!channel.drives_weights) motion.moved.insert(channel.node);
+    }
+  }
+  std::stable_partition(clips.begin(), clips.end(), [&](const GltfAnimation* clip) {
+    return std::ranges::any_of(weight_channels(document, *clip), [&](const GltfChannel* channel) {
+      return document.accessors[channel->times].count > 1;
+    });
+  });
+  for (const GltfAnimation* clip : clips) {
+    const std::vector<const GltfChannel*> channels = weight_channels(document, *clip);
+    const bool is_another = std::ranges::any_of(channels, [&](const GltfChannel* channel) {
+      return motion.weights[channel->node] != nullptr;
+    });
+    if (is_another) {
+      motion.other_clips.insert("'" + shown_name(document, *clip) + "'");
+      continue;
+    }
+    for (const GltfChannel* channel : channels) {
+      auto& weights = motion.weights[channel->node];
+      if (!weights) weights = curve_of(document, values, *channel);
+    }
+  }
+  return motion;
+}
+
+}  // namespace mimetra
