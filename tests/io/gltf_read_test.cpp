@@ -245,6 +245,44 @@ TEST_F(GltfFiles, TextureCoordinatesHaveTheirOriginBelow) {
   EXPECT_EQ(faces.texture.coordinates[2], Eigen::Vector2d(0.25, 0.75));
 }
 
+/// A mesh with shares of 65535 as texture coordinates, whose material has `transform`.
+GltfBuilder textured(const std::vector<std::uint16_t>& stored, const GltfJson& transform) {
+  GltfBuilder gltf;
+  const int view = gltf.view(GltfBuilder::bytes_of(stored));
+  GltfJson& primitive = gltf.primitive(gltf.points(quarters()), gltf.faces(eight()));
+  primitive["attributes"]["TEXCOORD_0"] = gltf.accessor({{"bufferView", view},
+                                                         {"componentType", 5123},
+                                                         {"count", 6},
+                                                         {"type", "VEC2"},
+                                                         {"normalized", true}});
+  primitive["material"] = 0;
+  gltf.root["materials"] = {
+      {{"pbrMetallicRoughness",
+        {{"baseColorTexture",
+          {{"index", 0}, {"extensions", {{"KHR_texture_transform", transform}}}}}}}}};
+  return gltf;
+}
+
+TEST_F(GltfFiles, ATransformThatUndoesQuantisationMakesTextureCoordinates) {
+  // Vertex 2 stands at (1/4, 1/2) of what its bits can say.
+  const std::vector<std::uint16_t> stored = {0, 0, 4, 8, 1023, 2047, 0, 0, 4095, 4095, 0, 0};
+  const auto of_2 = [&](const GltfBuilder& gltf) -> Eigen::Vector2d {
+    return model(GltfBuilder(gltf).glb()).connectivity().texture.coordinates[2];
+  };
+  const double scale = 65535. / 4095;
+  const Eigen::Vector2d quarter(1023. / 4095, 1 - 2047. / 4095);
+  EXPECT_LT((of_2(textured(stored, {{"scale", {scale, scale}}})) - quarter).norm(), 1e-12);
+  // One that repeats a picture says nothing of where its coordinates are.
+  const Eigen::Vector2d as_stored(1023. / 65535, 1 - 2047. / 65535);
+  EXPECT_LT((of_2(textured(stored, {{"scale", {2, 2}}})) - as_stored).norm(), 1e-12);
+  EXPECT_LT((of_2(textured(stored, {{"scale", {scale, 1}}})) - as_stored).norm(), 1e-12);
+  // gltfpack scales to the range of the coordinates, here half of the picture from its middle.
+  GltfBuilder packed = textured(stored, {{"scale", {scale / 2, scale}}, {"offset", {0.5, 0}}});
+  packed.root["asset"]["generator"] = "gltfpack 0.20";
+  const Eigen::Vector2d in_range(0.5 + quarter.x() / 2, quarter.y());
+  EXPECT_LT((of_2(packed) - in_range).norm(), 1e-12);
+}
+
 TEST_F(GltfFiles, ColoursAndFurtherTexturesAreSaidToBeLeftOut) {
   GltfBuilder gltf;
   const int colours = gltf.points(quarters());

@@ -409,6 +409,7 @@ GltfDocument read_gltf_document(const fs::path& path) {
        [&](const GltfValue& value) { return gltf_animation(value, document); });
   document.roots = gltf_roots(root, document);
   const GltfValue asset = root.at("asset");
+  document.generator = asset.text_or("generator", "");
   document.rest_is_known = !(asset.has("extras") && asset.at("extras").flag("restIsFirstFrame"));
   return document;
 }

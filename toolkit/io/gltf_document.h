@@ -121,7 +121,7 @@ struct GltfAnimation {
 };
 
 struct GltfDocument {
-  std::string path;
+  std::string path, generator;
   std::vector<std::filesystem::path> files;
   std::size_t file_bytes = 0;
   /// Bytes of each buffer; none of one that only stands for what is decompressed.

@@ -258,13 +258,31 @@ class GltfReader {
     return coordinates;
   }
 
+  /// Whether a material's transform brings integers to texture coordinates; others move or repeat
+  /// its picture.
+  bool undoes_quantisation(const Eigen::Matrix<double, 2, 3>& transform,
+                           const GltfAccessor& accessor) const {
+    constexpr int kUnsignedShort = 5123, kFloat = 5126;
+    if (accessor.type == kFloat) return false;
+    // gltfpack stores shares of the range that a material's coordinates have.
+    if (!accessor.normalized || document_.generator.starts_with("gltfpack")) return true;
+    if (accessor.type != kUnsignedShort) return false;
+    // Fewer bits than 16 of the range from 0 to 1.
+    constexpr double kRounding = 1e-6;
+    for (int bits = 8; bits < 16; ++bits) {
+      const double scale = 65535. / ((1 << bits) - 1);
+      if (transform.leftCols<2>().isApprox(scale * Eigen::Matrix2d::Identity(), kRounding)) {
+        return true;
+      }
+    }
+    return false;
+  }
+
   Frames texture_of(const GltfPrimitive& primitive, Eigen::Index vertices) {
     Frames texture = values_.read(*primitive.texture, 2, vertices);
-    const GltfAccessor& accessor = document_.accessors[*primitive.texture];
-    constexpr int kFloat = 5126;
-    // Integers that only the material's transform brings to texture coordinates.
-    if (accessor.type == kFloat || accessor.normalized || !primitive.material) return texture;
+    if (!primitive.material) return texture;
     const auto& transform = document_.materials[*primitive.material].texture;
+    if (!undoes_quantisation(transform, document_.accessors[*primitive.texture])) return texture;
     texture =
         ((texture * transform.leftCols<2>().transpose()).rowwise() + transform.col(2).transpose())
             .eval();
