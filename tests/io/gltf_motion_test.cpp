@@ -92,5 +92,91 @@ TEST_F(GltfFiles, APointerToANodesWeightsDrivesThem) {
   }
 }
 
+TEST_F(GltfFiles, WeightsOfSeveralNodesMeetByName) {
+  GltfBuilder gltf = two_nodes(plain());
+  gltf.animate(0, {0, 2}, {0, 1});
+  gltf.animate(2, {0, 1, 2}, {0, 0.5, 1});
+  const MeshSequence sequence = read(gltf.glb());
+  EXPECT_EQ(sequence.times(), Eigen::Vector3d(0, 1, 2));
+  EXPECT_EQ(sequence.frame(1).topRows(6), quarters() + 0.5 * moved());
+  EXPECT_THAT(model(gltf.glb()).expressions().names, ElementsAre("smile"));
+}
+
+TEST_F(GltfFiles, WeightsOfOneNameThatDifferAreTwoExpressions) {
+  GltfBuilder gltf = two_nodes(plain());
+  gltf.animate(0, {0, 2}, {0, 1});
+  gltf.animate(2, {0, 2}, {0, 0});
+  const MeshSequence sequence = read(gltf.glb());
+  EXPECT_EQ(sequence.frame(1).topRows(6), quarters() + moved());
+  EXPECT_EQ(sequence.frame(1).bottomRows(6), sequence.rest().bottomRows(6));
+  ASSERT_EQ(notes_.size(), 1U);
+  EXPECT_THAT(notes_[0], HasSubstr("'smile' of 'big' is 'smile_2'"));
+  EXPECT_THAT(model(gltf.glb()).expressions().names, ElementsAre("smile", "smile_2"));
+}
+
+TEST_F(GltfFiles, ATargetThatATakeLeavesStillIsPartOfTheModelsExpression) {
+  for (const int animated : {0, 2}) {
+    GltfBuilder gltf = two_nodes(plain());
+    gltf.animate(animated, {0, 2}, {0, 1});
+    const MeshSequence take = read(gltf.glb());
+    const auto moves = [](const MeshSequence& sequence, int frame) -> std::vector<bool> {
+      const Positions motion = sequence.frame(frame) - sequence.rest();
+      return {!motion.topRows(6).isZero(0), !motion.bottomRows(6).isZero(0)};
+    };
+    EXPECT_THAT(moves(take, 1), ElementsAre(animated == 0, animated == 2));
+    EXPECT_THAT(notes_, ElementsAre(AllOf(
+                            HasSubstr("one expression of the model"),
+                            HasSubstr(animated == 0 ? "'smile' of 'big'" : "'smile' of 'face'"))));
+    const BlendshapeModel face = model(gltf.glb());
+    EXPECT_THAT(face.expressions().names, ElementsAre("smile"));
+    write_bytes(folder_ / "w.csv", "smile\n1\n");
+    const MeshSequence driven = read(gltf.glb(), {.weights = folder_ / "w.csv"});
+    EXPECT_THAT(moves(driven, 0), ElementsAre(true, true));
+    EXPECT_EQ(driven.frame(0), face.pose(Eigen::VectorXd::Ones(1)));
+    EXPECT_TRUE(notes_.empty());
+  }
+}
+
+TEST_F(GltfFiles, CurvesThatRoundingPartsAreOneExpression) {
+  GltfBuilder gltf = two_nodes(plain());
+  gltf.animate(0, {0, 0.1F, 0.2F, 0.3F}, {0, 0.1F, 0.2F, 0.3F});
+  gltf.animate(2, {0, 0.3F}, {0, 0.3F});  // without the keys that lie on its line
+  const MeshSequence sequence = read(gltf.glb());
+  EXPECT_EQ(sequence.frames(), 4);
+  EXPECT_TRUE(notes_.empty());
+}
+
+TEST_F(GltfFiles, KeysThatRoundingPartsAreOneFrame) {
+  GltfBuilder gltf = two_nodes(plain());
+  gltf.animate(0, {1, 2, 3}, {0, 0.5F, 1}, "STEP");
+  gltf.animate(2, {1 + 1e-6F, 2 + 1e-6F, 3 + 1e-6F}, {0, 0.5F, 1}, "STEP");
+  const MeshSequence sequence = read(gltf.glb());
+  EXPECT_EQ(sequence.times(), Eigen::Vector3d(1, 2, 3));
+  EXPECT_EQ(sequence.frame(1).bottomRows(6), sequence.rest().bottomRows(6) + moved());
+  EXPECT_TRUE(notes_.empty());
+}
+
+TEST_F(GltfFiles, KeysOfOneCurveStayHoweverCloseTheyAre) {
+  GltfBuilder gltf = plain();
+  gltf.animate(0, {1, 1 + 1e-6F, 2}, {0, 1, 1});
+  const MeshSequence sequence = read(gltf.glb());
+  ASSERT_EQ(sequence.frames(), 3);
+  EXPECT_EQ(sequence.frame(0), quarters());
+  EXPECT_EQ(sequence.frame(1), quarters() + moved());
+}
+
+TEST_F(GltfFiles, TargetsWithoutNamesThatMeetByNumberAreSaid) {
+  GltfBuilder gltf = two_nodes(plain());
+  gltf.root["meshes"][0].erase("extras");
+  read(gltf.glb());
+  EXPECT_TRUE(notes_.empty());  // one mesh, twice
+  gltf.root["meshes"].push_back(gltf.root["meshes"][0]);
+  gltf.root["nodes"][2]["mesh"] = 1;
+  EXPECT_THAT(model(gltf.glb()).expressions().names, ElementsAre("target_000"));
+  read(gltf.glb());
+  EXPECT_THAT(notes_,
+              ElementsAre(AllOf(HasSubstr("targets without names"), HasSubstr("'face', 'big'"))));
+}
+
 }  // namespace
 }  // namespace mimetra

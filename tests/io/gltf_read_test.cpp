@@ -304,27 +304,6 @@ TEST_F(GltfFiles, NodesAreJoinedWhereTheyStand) {
   EXPECT_EQ(face.connectivity().groups[1].statement, "g big");
 }
 
-TEST_F(GltfFiles, WeightsOfSeveralNodesMeetByName) {
-  GltfBuilder gltf = two_nodes(plain());
-  gltf.animate(0, {0, 2}, {0, 1});
-  gltf.animate(2, {0, 1, 2}, {0, 0.5, 1});
-  const MeshSequence sequence = read(gltf.glb());
-  EXPECT_EQ(sequence.times(), Eigen::Vector3d(0, 1, 2));
-  EXPECT_EQ(sequence.frame(1).topRows(6), quarters() + 0.5 * moved());
-  EXPECT_THAT(model(gltf.glb()).expressions().names, ElementsAre("smile"));
-}
-
-TEST_F(GltfFiles, WeightsOfOneNameThatDifferAreTwoExpressions) {
-  GltfBuilder gltf = two_nodes(plain());
-  gltf.animate(0, {0, 2}, {0, 1});
-  const MeshSequence sequence = read(gltf.glb());
-  EXPECT_EQ(sequence.frame(1).topRows(6), quarters() + moved());
-  EXPECT_EQ(sequence.frame(1).bottomRows(6), sequence.rest().bottomRows(6));
-  ASSERT_EQ(notes_.size(), 1U);
-  EXPECT_THAT(notes_[0], HasSubstr("'smile' of 'big' is 'smile_2'"));
-  EXPECT_THAT(model(gltf.glb()).expressions().names, ElementsAre("smile", "smile_2"));
-}
-
 TEST_F(GltfFiles, AMirroredNodeTurnsItsFaces) {
   GltfBuilder gltf = plain();
   gltf.root["nodes"][0]["scale"] = {-1, 1, 1};

@@ -97,7 +97,7 @@ OpenSequence open_scene(const fs::path& path, const SequenceSource& source) {
     const FrameTimes times = frame_times(path.string(), frames, std::move(of_scene), source);
     open.model_driven = true;
     open.frames = std::make_shared<const Animation>(
-        scene.model, Eigen::MatrixXd(scene.weights(chosen, Eigen::all)), times.seconds(chosen),
+        scene.performer, Eigen::MatrixXd(scene.weights(chosen, Eigen::all)), times.seconds(chosen),
         times.are_known);
   }
   if (!scene.rest_is_known && !source.weights) {
@@ -108,7 +108,9 @@ OpenSequence open_scene(const fs::path& path, const SequenceSource& source) {
   open.files = scene.files;
   if (source.weights) open.files.push_back(*source.weights);
   std::vector<std::string>& notes = scene.notes;
-  notes.insert(notes.end(), scene.motion_notes.begin(), scene.motion_notes.end());
+  if (!source.weights) {
+    notes.insert(notes.end(), scene.motion_notes.begin(), scene.motion_notes.end());
+  }
   open.notes.insert(open.notes.begin(), notes.begin(), notes.end());
   return open;
 }

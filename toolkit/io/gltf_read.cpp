@@ -115,7 +115,8 @@ class GltfReader {
     note(left_out_, "primitives that are no triangles are left out");
     note(unread_, "further texture coordinates and colours of vertices are left out");
     Scene scene = joined_scene(document_.path, std::move(parts), document_.file_bytes);
-    scene.motion_notes = std::move(motion_notes_);
+    scene.motion_notes.insert(scene.motion_notes.begin(), motion_notes_.begin(),
+                              motion_notes_.end());
     scene.rest_is_known = document_.rest_is_known;
     scene.files = document_.files;
     std::vector<std::string> notes = document_.notes;
@@ -226,6 +227,7 @@ class GltfReader {
       const bool is_named = j < mesh.target_names.size() && !mesh.target_names[j].empty();
       SceneTarget target{is_named ? mesh.target_names[j] : number_name("target_", j),
                          Positions::Zero(vertices, 3)};
+      if (!is_named) target.unnamed_in = *document_.nodes[placed.node].mesh;
       if (primitive.targets[j]) {
         target.displacements = values_.read(*primitive.targets[j], 3, vertices);
         placement.apply(target.displacements, true);

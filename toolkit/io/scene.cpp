@@ -14,6 +14,12 @@ namespace mimetra {
 namespace fs = std::filesystem;
 namespace {
 
+/// Whether only rounding parts two times. Curves of one take may be resampled one by one.
+bool is_same_time(double a, double b) {
+  constexpr double kRounding = 2e-6;  // relative, or of a second; more than single precision needs
+  return std::abs(a - b) <= kRounding * std::max(1., std::abs(a));
+}
+
 /// Key number `key` of a curve and the part of the way to the next one.
 struct KeyPlace {
   Eigen::Index key;
@@ -23,7 +29,8 @@ struct KeyPlace {
 KeyPlace key_place(const Eigen::VectorXd& times, double time) {
   const double* after = std::upper_bound(times.data(), times.data() + times.size(), time);
   const Eigen::Index next = after - times.data();
-  if (next == 0) return {0, 0};
+  if (next > 0 && is_same_time(times[next - 1], time)) return {next - 1, 0};
+  if (next == 0 || (next < times.size() && is_same_time(times[next], time))) return {next, 0};
   if (next == times.size()) return {next - 1, 0};
   return {next - 1, (time - times[next - 1]) / (times[next] - times[next - 1])};
 }
@@ -33,32 +40,42 @@ struct JoinedExpression {
   std::string name;
   Eigen::VectorXd weights;                        ///< one for each frame
   std::vector<std::pair<std::size_t, int>> from;  ///< part, target
+  /// The earlier one that it is where weights other than the file's drive both.
+  std::optional<std::size_t> joins = {};
 };
 
 /// Gathers targets by name.
 class ExpressionList {
  public:
+  /// \pre targets that are animated come before those that are not
   void add(std::size_t part, const std::string& part_name, int target, const std::string& name,
-           const Eigen::VectorXd& weights) {
+           const Eigen::VectorXd& weights, bool is_animated) {
+    constexpr double kRounding = 1e-6;
     Namesakes& namesakes = by_name_[name];
     for (const std::size_t index : namesakes.expressions) {
       JoinedExpression& expression = expressions[index];
       // Two of one name in one mesh are two.
-      if (expression.from.back().first == part || expression.weights != weights) continue;
+      const bool is_same = (expression.weights - weights).isZero(kRounding);
+      if (expression.from.back().first == part || !is_same) continue;
       expression.from.emplace_back(part, target);
       return;
     }
-    namesakes.expressions.push_back(expressions.size());
     std::string free = name;
     for (; !names_.insert(free).second; ++namesakes.next) {
       free = name + '_' + std::to_string(namesakes.next);
     }
-    if (free != name) renamed.push_back("'" + name + "' of '" + part_name + "' is '" + free + "'");
-    expressions.push_back({free, weights, {{part, target}}});
+    JoinedExpression expression{free, weights, {{part, target}}};
+    if (!is_animated) expression.joins = joined_by(namesakes, part);
+    if (free != name) {
+      (expression.joins ? renamed_in_take : renamed)
+          .push_back("'" + name + "' of '" + part_name + "' is '" + free + "'");
+    }
+    namesakes.expressions.push_back(expressions.size());
+    expressions.push_back(std::move(expression));
   }
 
   std::vector<JoinedExpression> expressions;
-  std::vector<std::string> renamed;
+  std::vector<std::string> renamed, renamed_in_take;
 
  private:
   struct Namesakes {
@@ -66,15 +83,81 @@ class ExpressionList {
     int next = 2;  ///< the number of the next one that is not the same
   };
 
+  /// The first of a name, if `part` has no other one of it.
+  std::optional<std::size_t> joined_by(const Namesakes& namesakes, std::size_t part) const {
+    if (namesakes.expressions.empty()) return std::nullopt;
+    for (const std::size_t index : namesakes.expressions) {
+      if (expressions[index].from.back().first == part) return std::nullopt;
+    }
+    return namesakes.expressions.front();
+  }
+
   std::map<std::string, Namesakes> by_name_;
   std::set<std::string> names_;
 };
 
+/// Weights of a part's targets in all frames (frames x targets); 0 where nothing is said.
+Eigen::MatrixXd weights_at(const ScenePart& part, const Eigen::VectorXd& times, int frames) {
+  const auto targets = static_cast<Eigen::Index>(part.targets.size());
+  Eigen::MatrixXd weights = Eigen::MatrixXd::Zero(frames, targets);
+  if (!part.weights) return weights;
+  for (int frame = 0; frame < frames; ++frame) {
+    weights.row(frame) = part.weights->at(times.size() > 0 ? times[frame] : 0).head(targets);
+  }
+  return weights;
+}
+
+bool is_animated(const ScenePart& part) {
+  return part.weights && part.weights->times.size() > 0;
+}
+
+ExpressionList expressions_of(const std::vector<ScenePart>& parts, const Eigen::VectorXd& times,
+                              int frames) {
+  ExpressionList list;
+  for (const bool animated : {true, false}) {
+    for (std::size_t p = 0; p < parts.size(); ++p) {
+      if (is_animated(parts[p]) != animated) continue;
+      const Eigen::MatrixXd weights = weights_at(parts[p], times, frames);
+      for (int j = 0; j < weights.cols(); ++j) {
+        list.add(p, parts[p].name, j, parts[p].targets[static_cast<std::size_t>(j)].name,
+                 weights.col(j), animated);
+      }
+    }
+  }
+  return list;
+}
+
+/// Parts whose targets without names are one expression with those of another mesh.
+std::vector<std::string> united_by_number(const std::vector<ScenePart>& parts,
+                                          const std::vector<JoinedExpression>& expressions) {
+  std::map<std::size_t, std::set<std::size_t>> parts_of;
+  for (std::size_t j = 0; j < expressions.size(); ++j) {
+    for (const auto& [p, target] : expressions[j].from) {
+      if (!parts[p].targets[static_cast<std::size_t>(target)].unnamed_in) continue;
+      parts_of[expressions[j].joins.value_or(j)].insert(p);
+    }
+  }
+  std::set<std::size_t> united;
+  for (const auto& expression : parts_of) {
+    const std::set<std::size_t>& of = expression.second;
+    const auto mesh_of = [&](std::size_t p) { return parts[p].targets.front().unnamed_in; };
+    const bool is_one =
+        std::ranges::all_of(of, [&](std::size_t p) { return mesh_of(p) == mesh_of(*of.begin()); });
+    if (!is_one) united.insert(of.begin(), of.end());
+  }
+  std::vector<std::string> names;
+  for (const std::size_t p : united) names.push_back("'" + parts[p].name + "'");
+  return names;
+}
+
 /// Many parts may share one.
-std::set<const WeightCurve*> all_curves(const std::vector<ScenePart>& parts) {
-  std::set<const WeightCurve*> curves;
+std::vector<const WeightCurve*> all_curves(const std::vector<ScenePart>& parts) {
+  std::vector<const WeightCurve*> curves;
+  std::set<const WeightCurve*> known;
   for (const ScenePart& part : parts) {
-    if (part.weights) curves.insert(part.weights.get());
+    if (part.weights && known.insert(part.weights.get()).second) {
+      curves.push_back(part.weights.get());
+    }
   }
   return curves;
 }
@@ -87,42 +170,44 @@ double steps_between(double key, double next) {
   return std::max(1., std::ceil((next - key) * kDefaultFramesPerSecond - kAllowance));
 }
 
-/// The keys of all curves, and times between those of splines, which move on a line nowhere.
-Eigen::VectorXd shown_times(const std::string& path, const std::set<const WeightCurve*>& curves) {
+/// The keys of a curve, and times between those of splines, which move on a line nowhere.
+std::vector<double> shown_times(const std::string& path, const WeightCurve& curve) {
+  const Eigen::VectorXd& keys = curve.times;
+  std::vector<double> times(keys.begin(), keys.end());
+  if (curve.between != WeightCurve::Between::cubic) return times;
+  double most = 0;
+  for (Eigen::Index k = 1; k < keys.size(); ++k) most += steps_between(keys[k - 1], keys[k]);
+  constexpr double kMostFrames = 1e6;
+  if (most > kMostFrames) {
+    throw IoError(path, "an animation of weights on splines lasts " +
+                            readable(keys[keys.size() - 1] - keys[0], 8) + " s; expected at most " +
+                            readable(kMostFrames, 8) + " frames of it");
+  }
+  for (Eigen::Index k = 1; k < keys.size(); ++k) {
+    const double steps = steps_between(keys[k - 1], keys[k]);
+    for (double step = 1; step < steps; ++step) {
+      times.push_back(keys[k - 1] + step / steps * (keys[k] - keys[k - 1]));
+    }
+  }
+  return times;
+}
+
+/// Those of all curves. Times that only rounding parts are that of the first curve.
+Eigen::VectorXd shown_times(const std::string& path,
+                            const std::vector<const WeightCurve*>& curves) {
   std::set<double> times;
   for (const WeightCurve* curve : curves) {
-    const Eigen::VectorXd& keys = curve->times;
-    times.insert(keys.begin(), keys.end());
-    if (curve->between != WeightCurve::Between::cubic) continue;
-    double most = 0;
-    for (Eigen::Index k = 1; k < keys.size(); ++k) most += steps_between(keys[k - 1], keys[k]);
-    constexpr double kMostFrames = 1e6;
-    if (most > kMostFrames) {
-      throw IoError(path, "an animation of weights on splines lasts " +
-                              readable(keys[keys.size() - 1] - keys[0], 8) +
-                              " s; expected at most " + readable(kMostFrames, 8) + " frames of it");
-    }
-    for (Eigen::Index k = 1; k < keys.size(); ++k) {
-      const double steps = steps_between(keys[k - 1], keys[k]);
-      for (double step = 1; step < steps; ++step) {
-        times.insert(keys[k - 1] + step / steps * (keys[k] - keys[k - 1]));
-      }
-    }
+    std::vector<double> own = shown_times(path, *curve);
+    std::erase_if(own, [&](double time) {
+      const auto next = times.lower_bound(time);
+      return (next != times.end() && is_same_time(*next, time)) ||
+             (next != times.begin() && is_same_time(*std::prev(next), time));
+    });
+    times.insert(own.begin(), own.end());
   }
   Eigen::VectorXd all(static_cast<Eigen::Index>(times.size()));
   std::copy(times.begin(), times.end(), all.begin());
   return all;
-}
-
-/// Weights of a part's targets in all frames (frames x targets); 0 where nothing is said.
-Eigen::MatrixXd weights_at(const ScenePart& part, const Eigen::VectorXd& times, int frames) {
-  const auto targets = static_cast<Eigen::Index>(part.targets.size());
-  Eigen::MatrixXd weights = Eigen::MatrixXd::Zero(frames, targets);
-  if (!part.weights) return weights;
-  for (int frame = 0; frame < frames; ++frame) {
-    weights.row(frame) = part.weights->at(times.size() > 0 ? times[frame] : 0).head(targets);
-  }
-  return weights;
 }
 
 void append_texture(TextureCoordinates& all, TextureCoordinates part) {
@@ -176,6 +261,67 @@ std::shared_ptr<const Connectivity> joined_faces(const std::string& path,
   }
 }
 
+std::vector<std::string> notes_of(const std::string& path, const std::vector<ScenePart>& parts,
+                                  const ExpressionList& list) {
+  std::vector<std::string> notes;
+  if (!list.renamed.empty()) {
+    notes.push_back(path +
+                    ": targets of one name that are not one expression: " + listed(list.renamed));
+  }
+  const std::vector<std::string> united = united_by_number(parts, list.expressions);
+  if (!united.empty()) {
+    notes.push_back(path +
+                    ": targets without names are taken for one expression where they have the same "
+                    "number in their meshes; name them (extras.targetNames) where they are not: " +
+                    listed(united));
+  }
+  return notes;
+}
+
+/// Displacements of the joined parts, a column for each expression.
+ShapeBasis joined_basis(std::vector<ScenePart> parts,
+                        const std::vector<JoinedExpression>& expressions, Eigen::Index vertices) {
+  std::vector<Eigen::Index> first;
+  Eigen::Index at = 0;
+  for (const ScenePart& part : parts) {
+    first.push_back(at);
+    at += part.positions.rows();
+  }
+  const auto count = static_cast<Eigen::Index>(expressions.size());
+  ShapeBasis basis{{}, Eigen::MatrixXd::Zero(3 * vertices, count)};
+  for (Eigen::Index j = 0; j < count; ++j) {
+    const JoinedExpression& expression = expressions[static_cast<std::size_t>(j)];
+    basis.names.push_back(expression.name);
+    for (const auto& [p, target] : expression.from) {
+      Positions& field = parts[p].targets[static_cast<std::size_t>(target)].displacements;
+      basis.displacements.col(j).segment(3 * first[p], field.size()) =
+          Eigen::Map<const Eigen::VectorXd>(field.data(), field.size());
+      field.resize(0, 3);
+    }
+  }
+  return basis;
+}
+
+/// Expressions that join others as parts of those.
+ShapeBasis basis_of_model(const ShapeBasis& take,
+                          const std::vector<JoinedExpression>& expressions) {
+  std::vector<Eigen::Index> own;
+  ShapeBasis basis;
+  for (std::size_t j = 0; j < expressions.size(); ++j) {
+    if (expressions[j].joins) continue;
+    own.push_back(static_cast<Eigen::Index>(j));
+    basis.names.push_back(expressions[j].name);
+  }
+  basis.displacements = take.displacements(Eigen::all, own);
+  for (std::size_t j = 0; j < expressions.size(); ++j) {
+    if (!expressions[j].joins) continue;
+    const auto whole = static_cast<Eigen::Index>(*expressions[j].joins);
+    basis.displacements.col(std::ranges::find(own, whole) - own.begin()) +=
+        take.displacements.col(static_cast<Eigen::Index>(j));
+  }
+  return basis;
+}
+
 }  // namespace
 
 Eigen::RowVectorXd WeightCurve::at(double time) const {
@@ -217,7 +363,7 @@ Scene joined_scene(const std::string& path, std::vector<ScenePart> parts, std::s
     vertices += part.positions.rows();
     targets += static_cast<double>(part.targets.size());
   }
-  const std::set<const WeightCurve*> curves = all_curves(parts);
+  const std::vector<const WeightCurve*> curves = all_curves(parts);
   for (const WeightCurve* curve : curves) {
     check_times(path + ": an animation of weights", curve->times);
     still = still && curve->values.isZero(0);
@@ -226,46 +372,36 @@ Scene joined_scene(const std::string& path, std::vector<ScenePart> parts, std::s
   const Eigen::VectorXd times = shown_times(path, curves);
   const int frames = times.size() > 0 ? static_cast<int>(times.size()) : still ? 0 : 1;
   check_scene_size(path, targets / 3, frames, file_bytes);
-  ExpressionList list;
-  for (std::size_t p = 0; p < parts.size(); ++p) {
-    const Eigen::MatrixXd weights = weights_at(parts[p], times, frames);
-    for (int j = 0; j < weights.cols(); ++j) {
-      list.add(p, parts[p].name, j, parts[p].targets[static_cast<std::size_t>(j)].name,
-               weights.col(j));
-    }
-  }
-  const auto count = static_cast<Eigen::Index>(list.expressions.size());
-  check_scene_size(path, static_cast<double>(vertices), static_cast<double>(count) + 1, file_bytes);
-  if (!list.renamed.empty()) {
-    scene.notes.push_back(
-        path + ": targets of one name that are not one expression: " + listed(list.renamed));
-  }
-
-  auto connectivity = joined_faces(path, parts, static_cast<int>(vertices));
-  Positions neutral(vertices, 3);
-  std::vector<Eigen::Index> first(parts.size());
-  Eigen::Index at = 0;
-  for (std::size_t p = 0; p < parts.size(); ++p) {
-    first[p] = at;
-    neutral.middleRows(at, parts[p].positions.rows()) = parts[p].positions;
-    at += parts[p].positions.rows();
-  }
-  ShapeBasis basis{{}, Eigen::MatrixXd::Zero(3 * vertices, count)};
-  scene.weights.resize(frames, count);
-  for (Eigen::Index j = 0; j < count; ++j) {
-    const JoinedExpression& expression = list.expressions[static_cast<std::size_t>(j)];
-    basis.names.push_back(expression.name);
-    scene.weights.col(j) = expression.weights;
-    for (const auto& [p, target] : expression.from) {
-      Positions& field = parts[p].targets[static_cast<std::size_t>(target)].displacements;
-      basis.displacements.col(j).segment(3 * first[p], field.size()) =
-          Eigen::Map<const Eigen::VectorXd>(field.data(), field.size());
-      field.resize(0, 3);
-    }
+  const ExpressionList list = expressions_of(parts, times, frames);
+  const auto count = static_cast<double>(list.expressions.size());
+  check_scene_size(path, static_cast<double>(vertices), count + 1, file_bytes);
+  scene.notes = notes_of(path, parts, list);
+  if (!list.renamed_in_take.empty()) {
+    scene.motion_notes.push_back(path +
+                                 ": targets of one name, of which the take drives some: they are "
+                                 "one expression of the model, and several in the take: " +
+                                 listed(list.renamed_in_take));
   }
   scene.times = times;
-  scene.model = std::make_shared<const BlendshapeModel>(std::move(connectivity), std::move(neutral),
-                                                        std::move(basis));
+  scene.weights.resize(frames, static_cast<Eigen::Index>(list.expressions.size()));
+  for (std::size_t j = 0; j < list.expressions.size(); ++j) {
+    scene.weights.col(static_cast<Eigen::Index>(j)) = list.expressions[j].weights;
+  }
+  auto connectivity = joined_faces(path, parts, static_cast<int>(vertices));
+  Positions neutral(vertices, 3);
+  Eigen::Index at = 0;
+  for (const ScenePart& part : parts) {
+    neutral.middleRows(at, part.positions.rows()) = part.positions;
+    at += part.positions.rows();
+  }
+  ShapeBasis basis = joined_basis(std::move(parts), list.expressions, vertices);
+  if (!list.renamed_in_take.empty()) {
+    scene.model = std::make_shared<const BlendshapeModel>(connectivity, neutral,
+                                                          basis_of_model(basis, list.expressions));
+  }
+  scene.performer = std::make_shared<const BlendshapeModel>(std::move(connectivity),
+                                                            std::move(neutral), std::move(basis));
+  if (!scene.model) scene.model = scene.performer;
   return scene;
 }
 

@@ -30,6 +30,8 @@ struct WeightCurve {
 struct SceneTarget {
   std::string name;
   Positions displacements;  ///< N x 3
+  /// The mesh of the file that has a number for it and no name.
+  std::optional<std::size_t> unnamed_in = {};
 };
 
 /// One mesh of a scene, where the scene puts it.
@@ -48,6 +50,8 @@ struct ScenePart {
 /// A face and what it performs.
 struct Scene {
   std::shared_ptr<const BlendshapeModel> model;
+  /// The same model, with an expression of its own for each course of weights.
+  std::shared_ptr<const BlendshapeModel> performer = {};
   /// Weights of its expressions (F x D) and their seconds (F); no frames where nothing is driven.
   Eigen::MatrixXd weights = {};
   Eigen::VectorXd times = {};
@@ -67,10 +71,11 @@ struct Scene {
 void check_scene_size(const std::string& path, double vertices, double poses,
                       std::size_t file_bytes);
 
-/// One model of all parts, one after the other. Targets of equal names are one expression where
-/// their weights are equal at all times; frames are at the keys of all curves. Throws IoError where
-/// there is no part, a face has a bad index, a key's time does not rise, or all of them would take
-/// more memory than a file of `file_bytes` can mean.
+/// One model of all parts, one after the other. Targets of equal names are one expression of the
+/// performer where their weights are equal at all times, and one of the model also where only one
+/// of them is animated; frames are at the keys of all curves. Throws IoError where there is no
+/// part, a face has a bad index, a key's time does not rise, or all of them would take more memory
+/// than a file of `file_bytes` can mean.
 Scene joined_scene(const std::string& path, std::vector<ScenePart> parts, std::size_t file_bytes);
 
 /// True for the extension of a scene's file, also one that is only refused by what it is.
