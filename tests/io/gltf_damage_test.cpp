@@ -76,7 +76,7 @@ TEST_F(GltfFiles, WhatCannotBeIsNamed) {
   EXPECT_THAT(wrong("/scenes/0/nodes", {4}), HasSubstr("is 4, but there are 1"));
   EXPECT_THAT(wrong("/meshes/0/primitives/0/targets/0/POSITION", 99), HasSubstr("is 99"));
   EXPECT_THAT(wrong("/meshes/0/primitives/0/indices", 0), HasSubstr("holds no indices"));
-  EXPECT_THAT(wrong("/meshes/0/extras/targetNames", "x"), HasSubstr("expected an array"));
+  EXPECT_THAT(wrong("/meshes/0/weights", "x"), HasSubstr("expected an array"));
   EXPECT_THAT(wrong("/animations/0/samplers/0/interpolation", "BEZIER"), HasSubstr("BEZIER"));
   EXPECT_THAT(wrong("/animations/0/samplers/0/output", 1), HasSubstr("expected 2"));
   EXPECT_THAT(wrong("/scenes", GltfJson::object()), HasSubstr("expected an array"));

@@ -369,6 +369,34 @@ TEST_F(GltfFiles, BuffersStandInTheFileOrBesideIt) {
   EXPECT_EQ(read_gltf_document(folder_ / "c.gltf").buffers.front(), "foobar");
 }
 
+TEST_F(GltfFiles, DataMayBeWrittenAsAnyUriMay) {
+  for (const std::string uri :
+       {"data:application/gltf-buffer;BASE64,Zm9vYmE=", "data:;base64,Zm9vYmE%3D",
+        "data:application/octet-stream;base64,%5am9vYmE%3d"}) {
+    GltfBuilder gltf;
+    gltf.root["buffers"] = {{{"byteLength", 5}, {"uri", uri}}};
+    write_bytes(folder_ / "c.gltf", gltf.root.dump());
+    EXPECT_EQ(read_gltf_document(folder_ / "c.gltf").buffers.front(), "fooba") << uri;
+  }
+}
+
+TEST_F(GltfFiles, NamesThatAreNoneAreNotThere) {
+  for (const GltfJson& names : {GltfJson(), GltfJson("smile"), GltfJson({{"a", 1}}),
+                                GltfJson::array({nullptr}), GltfJson::array({7})}) {
+    GltfBuilder gltf = plain();
+    gltf.root["meshes"][0]["extras"]["targetNames"] = names;
+    EXPECT_THAT(model(gltf.glb()).expressions().names, ElementsAre("target_000")) << names;
+  }
+}
+
+TEST_F(GltfFiles, AnotherNamesBytesAreKnownForGltf) {
+  file_ = folder_ / "avatar.vrm";
+  EXPECT_THAT(
+      error(plain().glb()),
+      HasSubstr("avatar.vrm: is glTF by its first bytes; give it a name that ends in .glb"));
+  EXPECT_THAT(error("gl"), HasSubstr("avatar.vrm: is no sequence"));
+}
+
 TEST_F(GltfFiles, NothingOutsideItsOwnFolderIsRead) {
   write_bytes(folder_ / "secret.bin", std::string(1000, 'x'));
   std::filesystem::create_directory(folder_ / "inside");

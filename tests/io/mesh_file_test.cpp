@@ -161,6 +161,13 @@ TEST(Obj, LosesNoVertexToAByteOrderMark) {
   EXPECT_EQ(mesh.positions(0, 0), 5);
 }
 
+TEST(Obj, MayEndAsFilesOfDosDid) {
+  const std::string text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+  EXPECT_EQ(read_text(".obj", text + "\x1a").positions.rows(), 3);
+  EXPECT_THAT(error_of(".obj", text + "\x1a\nv 0 0 0\n"),
+              HasSubstr("line 5: expected a statement"));
+}
+
 TEST(Obj, PassesOverStatementsThatSayNothingOfTheMesh) {
   EXPECT_EQ(read_text(".obj", "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvp 1\nl 1 2\nf 1 2 3\n")
                 .positions.rows(),
@@ -318,6 +325,24 @@ TEST(Ply, TextAfterTheLastElementIsNamedWithItsLine) {
   EXPECT_EQ(read_text(".ply", text).positions.rows(), 3);
   EXPECT_THAT(error_of(".ply", text + "3 0 1 2\n"),
               HasSubstr("line 15: expected the end of the file, found '3'"));
+}
+
+TEST(Ply, ABinaryFileMayEndWithBlanks) {
+  for (const std::string tail : {"\n", "\r\n", " \n\n"}) {
+    expect_the_ply_triangle(read_text(".ply", binary_ply(false) + tail));
+  }
+  EXPECT_THAT(error_of(".ply", binary_ply(false) + "\n\x01"),
+              HasSubstr("2 bytes follow the last element, expected the end of the file"));
+}
+
+TEST(Ply, StripsOfTrianglesAreNamed) {
+  EXPECT_THAT(error_of(".ply",
+                       "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\n"
+                       "property float y\nproperty float z\nelement tristrips 1\n"
+                       "property list int int vertex_indices\nend_header\n"
+                       "0 0 0\n1 0 0\n0 1 0\n4 0 1 2 -1\n"),
+              HasSubstr("element tristrips: strips of triangles are not read, expected an element "
+                        "face"));
 }
 
 TEST(Ply, PolygonsOfManyCornersComeBack) {

@@ -265,6 +265,26 @@ TEST_F(UsdFiles, OtherKindsOfUsdAreRefusedByWhatTheyAre) {
   EXPECT_EQ(read_sequence((folder_ / "text.usd").string()).sequence.vertices(), 4);
 }
 
+TEST_F(UsdFiles, OtherWritersLayersAreReadToo) {
+  const std::string mesh = "def Mesh \"m\" {" + std::string(kTetrahedron) + R"(
+    asset info:file = @@@./head@2x.png@@@
+    normal3f[] normals.timeSamples = { 0: None, 1: [(0, 0, 1)] }
+    bool glows.timeSamples = { 0: None }
+  })";
+  EXPECT_EQ(read("#usda 1.1\n" + mesh).rest(), corners());
+  EXPECT_EQ(read("\xEF\xBB\xBF#usda 1.0\n" + mesh).rest(), corners());
+  EXPECT_THAT(error("#usda 1.0\ndef A \"a\" {\n asset b = @@@no@end@@\n}"),
+              HasSubstr("line 3: '@@@' has no end"));
+}
+
+TEST_F(UsdFiles, ASampleOfNothingIsRefusedWhereItIsNeeded) {
+  EXPECT_THAT(error(smiling(".timeSamples = { 0: [0, 0],\n 5: None }")),
+              HasSubstr("a time sample of nothing is not read"));
+  EXPECT_THAT(error(layer_of("def Mesh \"m\" {" + std::string(kTetrahedron) +
+                             "point3f[] points.timeSamples = { 0: None }\n}")),
+              HasSubstr("line 9: a time sample of nothing is not read"));
+}
+
 TEST_F(UsdFiles, WhatCannotBeIsNamedWithItsLine) {
   const auto mesh = [&](const std::string& body) {
     return error("#usda 1.0\ndef Mesh \"m\" {\n" + body + "\n}\n");

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <fstream>
 #include <string_view>
 
 #include "toolkit/mesh/text.h"
@@ -54,7 +55,14 @@ std::string foreign_file(const std::filesystem::path& path) {
   const auto found = std::ranges::find_if(kKinds, [&extension](const Kind& kind) {
     return kind.extensions.find(' ' + extension + ' ') != std::string_view::npos;
   });
-  return found == kKinds.end() ? "" : std::string(found->name).append(found->remedy);
+  if (found != kKinds.end()) return std::string(found->name).append(found->remedy);
+  std::error_code unreadable;
+  if (!std::filesystem::is_regular_file(path, unreadable)) return {};
+  // An avatar (.vrm) and the like.
+  std::array<char, 4> start{};
+  std::ifstream(path, std::ios::binary).read(start.data(), start.size());
+  if (std::string_view(start.data(), start.size()) != "glTF") return {};
+  return "glTF by its first bytes; give it a name that ends in .glb";
 }
 
 }  // namespace mimetra

@@ -4,6 +4,7 @@
 
 #include "toolkit/io/whole_file.h"
 #include "toolkit/mesh/errors.h"
+#include "toolkit/mesh/text.h"
 
 namespace mimetra {
 namespace fs = std::filesystem;
@@ -48,7 +49,7 @@ int hex_digit(char c) {
 }
 
 /// With %20 and the like as the characters they stand for.
-std::string decoded_uri(const std::string& uri) {
+std::string decoded_uri(std::string_view uri) {
   std::string text;
   for (std::size_t at = 0; at < uri.size(); ++at) {
     const int high = at + 2 < uri.size() ? hex_digit(uri[at + 1]) : -1;
@@ -76,9 +77,10 @@ bool is_inside(const fs::path& folder, const fs::path& file) {
 GltfBuffer read_gltf_buffer(const std::string& path, const std::string& uri) {
   if (uri.starts_with("data:")) {
     const std::size_t comma = uri.find(',');
-    if (comma == std::string::npos || !std::string_view(uri).substr(0, comma).ends_with(";base64"))
+    if (comma == std::string::npos || !lower_case(uri.substr(0, comma)).ends_with(";base64")) {
       throw IoError(path, "the data URI " + shown_uri(uri) + " is not base64");
-    return {from_base64(path, std::string_view(uri).substr(comma + 1)), std::nullopt};
+    }
+    return {from_base64(path, decoded_uri(std::string_view(uri).substr(comma + 1))), std::nullopt};
   }
   const fs::path folder = fs::path(path).has_parent_path() ? fs::path(path).parent_path() : ".";
   const std::string name = decoded_uri(uri);

@@ -209,10 +209,15 @@ GltfPrimitive gltf_primitive(const GltfValue& value, const GltfDocument& documen
   return primitive;
 }
 
+/// What else stands in `extras` is some program's own.
 std::vector<std::string> target_names(const GltfValue& value) {
   std::vector<std::string> names;
   if (!value.has("extras") || !value.at("extras").has("targetNames")) return names;
-  for (const GltfValue& name : value.at("extras").list("targetNames")) names.push_back(name.name());
+  const GltfValue given = value.at("extras").at("targetNames");
+  if (!given.is_array()) return names;
+  for (const GltfValue& name : given.items()) {
+    names.push_back(name.is_text() ? name.name() : std::string());
+  }
   return names;
 }
 

@@ -21,6 +21,14 @@ bool GltfValue::has(const char* name) const {
   return json_->is_object() && json_->contains(name);
 }
 
+bool GltfValue::is_array() const {
+  return json_->is_array();
+}
+
+bool GltfValue::is_text() const {
+  return json_->is_string();
+}
+
 GltfValue GltfValue::at(const char* name) const {
   const auto found = object().find(name);
   if (found == json_->end()) fail(std::string("has no '") + name + "'");
@@ -33,7 +41,7 @@ std::vector<GltfValue> GltfValue::list(const char* name) const {
 }
 
 std::vector<GltfValue> GltfValue::items() const {
-  if (!json_->is_array()) fail("expected an array");
+  if (!is_array()) fail("expected an array");
   std::vector<GltfValue> items;
   items.reserve(json_->size());
   for (const Json& item : *json_) {
@@ -83,7 +91,7 @@ std::vector<double> GltfValue::numbers(const char* name) const {
 }
 
 std::string GltfValue::text() const {
-  if (!json_->is_string()) fail("expected text");
+  if (!is_text()) fail("expected text");
   return json_->get<std::string>();
 }
 

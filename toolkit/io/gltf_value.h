@@ -20,6 +20,8 @@ class GltfValue {
   [[noreturn]] void fail(const std::string& message) const;
 
   bool has(const char* name) const;
+  bool is_array() const;
+  bool is_text() const;
   GltfValue at(const char* name) const;
   /// The values of an array; none where it is not there.
   std::vector<GltfValue> list(const char* name) const;

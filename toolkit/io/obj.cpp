@@ -140,6 +140,8 @@ void append_face(std::string& text, const Connectivity& connectivity, int face) 
 }  // namespace
 
 MeshContent read_obj(const std::string& path, std::string_view bytes) {
+  constexpr char kEndOfDosFile = '\x1a';
+  if (bytes.ends_with(kEndOfDosFile)) bytes.remove_suffix(1);
   return ObjReader(path, bytes).read();
 }
 

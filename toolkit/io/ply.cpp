@@ -49,7 +49,7 @@ class PlyBody {
   void expect_end() {
     if (format_ == PlyFormat::ascii) {
       text_.expect_end();
-    } else if (!data_.empty()) {
+    } else if (!std::ranges::all_of(data_, ends_word)) {
       throw IoError(path_, std::to_string(data_.size()) +
                                " bytes follow the last element, expected the end of the file");
     }
@@ -289,6 +289,10 @@ MeshContent read_ply(const std::string& path, std::string_view bytes) {
     } else {
       skip_element(body, element);
     }
+  }
+  const auto strips = std::ranges::find(header.elements, "tristrips", &PlyElement::name);
+  if (!has_faces && strips != header.elements.end()) {
+    body.fail(*strips, "strips of triangles are not read, expected an element face");
   }
   body.expect_end();
   // Those of vertices.

@@ -37,7 +37,7 @@ struct UsdMesh {
 
 class UsdReader {
  public:
-  UsdReader(const fs::path& path, const std::string& text)
+  UsdReader(const fs::path& path, std::string_view text)
       : path_(path.string()), bytes_(text.size()), layer_(parse_usd(path_, text)) {
     rate_ = setting("timeCodesPerSecond", setting("framesPerSecond", 24));
     if (!(rate_ > 0) || std::isinf(rate_))
@@ -385,7 +385,7 @@ class UsdReader {
     for (std::size_t row = 0; row < rows; ++row) {
       const std::vector<double>& given =
           times.empty() ? weights->value.numbers : weights->samples[row].second.numbers;
-      check_finite(path_, *weights, given);
+      check_numbers(path_, *weights, given);
       if (given.size() != driven->value.words.size()) {
         fail(weights->line, std::to_string(given.size()) + " weights for " +
                                 std::to_string(driven->value.words.size()) + " blendshapes");
@@ -472,7 +472,7 @@ Scene read_usd(const fs::path& path) {
   if (text.starts_with("PXR-USDC")) throw IoError(path.string(), "is binary USD" + remedy);
   if (text.starts_with("PK")) throw IoError(path.string(), "is a package of USD" + remedy);
   check_encoding(path.string(), text);
-  return UsdReader(path, text).read();
+  return UsdReader(path, without_byte_order_mark(text)).read();
 }
 
 }  // namespace mimetra

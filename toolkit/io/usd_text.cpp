@@ -35,7 +35,7 @@ class UsdParser {
   UsdParser(const std::string& path, std::string_view text) : path_(path), text_(text) {}
 
   UsdLayer layer() {
-    if (!text_.starts_with("#usda 1.0")) fail("expected '#usda 1.0'");
+    if (!text_.starts_with("#usda 1.")) fail("expected '#usda 1.0' or a later 1.x");
     UsdLayer layer;
     if (peek() == '(') layer.metadata = metadata();
     while (peek() != '\0') layer.prims.push_back(prim(word("def, over or class"), 0));
@@ -120,15 +120,15 @@ class UsdParser {
   }
 
   /// What stands between `open` and `close` on a line.
-  std::string enclosed(char open, char close) {
-    expect(open);
+  std::string enclosed(std::string_view open, std::string_view close) {
+    at_ += open.size();
     const std::size_t end = text_.find(close, at_);
     const std::size_t line_end = text_.find('\n', at_);
     if (end == std::string_view::npos || end > line_end) {
-      fail(std::string("'") + open + "' has no end");
+      fail("'" + std::string(open) + "' has no end");
     }
     std::string text(text_.substr(at_, end - at_));
-    at_ = end + 1;
+    at_ = end + close.size();
     return text;
   }
 
@@ -167,9 +167,11 @@ class UsdParser {
     } else if (first == '"' || first == '\'') {
       value.words.push_back(quoted());
     } else if (first == '@') {
-      value.words.push_back(enclosed('@', '@'));
+      // Three around paths with a '@' in them.
+      const std::string_view mark = text_.substr(at_).starts_with("@@@") ? "@@@" : "@";
+      value.words.push_back(enclosed(mark, mark));
     } else if (first == '<') {
-      value.words.push_back(enclosed('<', '>'));
+      value.words.push_back(enclosed("<", ">"));
     } else if (first != '\0' && starts_number(first)) {
       value.numbers.push_back(literal());
     } else {
@@ -219,6 +221,10 @@ class UsdParser {
     if (value.words.empty())
       return std::ranges::all_of(value.numbers, [](double n) { return n == 0; });
     return value.words.front() == "None" || value.words.front() == "false";
+  }
+
+  static bool is_none(const UsdValue& value) {
+    return value.words.size() == 1 && value.words.front() == "None";
   }
 
   static bool edits_list(const std::string& name) {
@@ -306,8 +312,7 @@ class UsdParser {
       samples(property);
     } else if (skip('=')) {
       UsdValue given = value();
-      const bool is_none = given.words.size() == 1 && given.words.front() == "None";
-      if (part.empty() && !is_none) {
+      if (part.empty() && !is_none(given)) {
         property.value = std::move(given);
         property.has_value = true;
       }
@@ -327,10 +332,11 @@ class UsdParser {
       const double time = number();
       expect(':');
       UsdValue given = value();
-      if (given.words.size() == 1 && given.words.front() == "None") {
-        fail("a time sample of nothing is not read");
+      if (is_none(given)) {
+        property.blocked_line = line_;
+      } else {
+        property.samples.emplace_back(time, std::move(given));
       }
-      property.samples.emplace_back(time, std::move(given));
       if (!skip(',') && peek() != '}') fail_expected("',' or '}'");
     }
     std::ranges::stable_sort(property.samples, {}, &std::pair<double, UsdValue>::first);
@@ -339,7 +345,8 @@ class UsdParser {
     if (same != property.samples.end()) {
       fail_at(property.line, "two time samples at " + readable(same->first, 8));
     }
-    if (property.samples.empty()) fail_at(property.line, "time samples without any");
+    if (property.samples.empty() && property.blocked_line == 0)
+      fail_at(property.line, "time samples without any");
   }
 
   const std::string& path_;

@@ -23,6 +23,7 @@ struct UsdProperty {
   UsdValue value = {};
   bool has_value = false;
   std::vector<std::pair<double, UsdValue>> samples = {};  ///< by time code, which rises
+  int blocked_line = 0;                                   ///< of a sample that is None
   std::string type = {};                                  ///< "rel" for a relationship
   std::string interpolation = {};
 };

@@ -89,8 +89,11 @@ const UsdProperty* usd_property(const UsdPrim& prim, const std::string& name) {
   return found == prim.properties.end() ? nullptr : &found->second;
 }
 
-void check_finite(const std::string& path, const UsdProperty& property,
-                  const std::vector<double>& numbers) {
+void check_numbers(const std::string& path, const UsdProperty& property,
+                   const std::vector<double>& numbers) {
+  if (property.blocked_line > 0) {
+    usd_fail(path, property.blocked_line, "a time sample of nothing is not read");
+  }
   const bool sound = std::ranges::all_of(numbers, [](double n) { return std::isfinite(n); });
   if (!sound) usd_fail(path, property.line, "holds a number that is not finite");
 }
@@ -98,7 +101,7 @@ void check_finite(const std::string& path, const UsdProperty& property,
 std::vector<double> usd_numbers(const std::string& path, const UsdProperty& property,
                                 std::optional<double> code) {
   const std::vector<double> numbers = numbers_at(property, code);
-  check_finite(path, property, numbers);
+  check_numbers(path, property, numbers);
   return numbers;
 }
 

@@ -19,13 +19,14 @@ const UsdProperty* usd_property(const UsdPrim& prim, const std::string& name);
 
 /// The numbers of a property at a time: the nearest sample's outside of them, and a straight line
 /// between two of them. Its own value where it has no samples, or where no time is asked for.
-/// Throws IoError with the line where one is not finite.
+/// Throws IoError with the line where one is not finite, or a sample is None.
 std::vector<double> usd_numbers(const std::string& path, const UsdProperty& property,
                                 std::optional<double> code = {});
 
-/// Throws IoError with the line of a property of which a number is not finite.
-void check_finite(const std::string& path, const UsdProperty& property,
-                  const std::vector<double>& numbers);
+/// Throws IoError with the line of a property of which a number is not finite, or a time sample is
+/// None.
+void check_numbers(const std::string& path, const UsdProperty& property,
+                   const std::vector<double>& numbers);
 
 /// From a prim to the world, at a time code. Throws IoError with the line of what is no transform.
 Eigen::Matrix4d usd_world(const std::string& path, const UsdStack& stack,
