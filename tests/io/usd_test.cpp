@@ -219,6 +219,61 @@ TEST_F(UsdFiles, TextureCoordinatesAreOfPointsOrOfCorners) {
   EXPECT_EQ(corners.corners[3], 0);
 }
 
+TEST_F(UsdFiles, FacesThatAreHolesAreLeftOutWithTheirCorners) {
+  const MeshSequence sequence = read(layer_of(
+      "def Mesh \"m\" {" + std::string(kTetrahedron) +
+      "texCoord2f[] primvars:st = [(0, 0), (1, 0)] (\n interpolation = \"faceVarying\"\n)\n"
+      "int[] primvars:st:indices = [0, 0, 0, 1, 1, 1, 0, 0, 1, 0, 1, 0]\n"
+      "int[] holeIndices = [2, 0]\n}"));
+  const Connectivity& faces = sequence.connectivity();
+  EXPECT_THAT(faces.polygons.corners, ElementsAre(0, 1, 3, 2, 0, 3));
+  EXPECT_THAT(faces.polygons.offsets, ElementsAre(0, 3, 6));
+  EXPECT_THAT(faces.texture.corners, ElementsAre(1, 1, 1, 0, 1, 0));
+  EXPECT_EQ(sequence.vertices(), 4);
+  EXPECT_THAT(error(layer_of("def Mesh \"m\" {" + std::string(kTetrahedron) +
+                             "int[] holeIndices = [4]\n}")),
+              HasSubstr("face 4 of 4 is no hole"));
+}
+
+/// A mesh on the joints of a skeleton, which stands 3 to the front.
+std::string on_joints(const std::string& of_skeleton = "") {
+  std::string text = smiling(" = [0, 1]", R"(
+    int[] primvars:skel:jointIndices = [0, 0, 0, 0]
+    matrix4d primvars:skel:geomBindTransform = ((2, 0, 0, 0), (0, 2, 0, 0), (0, 0, 2, 0), (0, 1, 0, 1))
+    double3 xformOp:translate.timeSamples = { 0: (9, 9, 9), 1: (8, 8, 8) }
+    uniform token[] xformOpOrder = ["xformOp:translate"])");
+  const std::string skeleton = "def Skeleton \"bones\" {";
+  return text.insert(text.find(skeleton) + skeleton.size(), R"(
+    double3 xformOp:translate = (0, 0, 3)
+    uniform token[] xformOpOrder = ["xformOp:translate"]
+    )" + of_skeleton);
+}
+
+TEST_F(UsdFiles, AMeshOnJointsStandsWhereTheyHoldIt) {
+  const MeshSequence sequence = read(on_joints());
+  const Positions rest = (2 * corners()).rowwise() + Eigen::RowVector3d(0, 1, 3);
+  EXPECT_EQ(sequence.rest(), rest);
+  ASSERT_EQ(sequence.frames(), 1);
+  EXPECT_EQ(sequence.frame(0), rest + 2 * smile());
+  EXPECT_THAT(notes_, ElementsAre(HasSubstr("the skeleton of 'mesh': it stands as it is bound")));
+  // Bound in the world, where the skeleton stands now.
+  const std::string joints = R"(
+    uniform matrix4d[] bindTransforms = [((1, 0, 0, 0), (0, 1, 0, 0), (0, 0, 1, 0), (0, 5, 3, 1))]
+    uniform matrix4d[] restTransforms = [((1, 0, 0, 0), (0, 1, 0, 0), (0, 0, 1, 0), (0, 5, 0, 1))])";
+  EXPECT_EQ(read(on_joints(joints)).rest(), rest.rowwise() - Eigen::RowVector3d(0, 0, 3));
+}
+
+TEST_F(UsdFiles, MatricesOfABindingHaveToBeSome) {
+  std::string text = on_joints();
+  const std::string matrix = "(0, 1, 0, 1))";
+  text.replace(text.find(matrix), matrix.size(), "(0, 1, 0))");
+  EXPECT_THAT(error(text), HasSubstr("15 numbers, expected 16 of each matrix"));
+  EXPECT_THAT(error(on_joints("matrix4d[] restTransforms = [((1, 0, 0, 0), (0, 1, 0, 0), "
+                              "(0, 0, 1, 0), (0, 0, 0, 1))]\nmatrix4d[] bindTransforms = "
+                              "[((1, 0, 0, 0), (0, 1, 0, 0), (0, 0, 0, 0), (0, 0, 0, 1))]\n")),
+              HasSubstr("the first of bindTransforms has no inverse"));
+}
+
 TEST_F(UsdFiles, WhatIsNoMeshIsSaidToBeLeftOut) {
   const MeshSequence sequence = read(layer_of(R"(
 class "pattern" { def Mesh "m" { } }

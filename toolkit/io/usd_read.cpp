@@ -1,8 +1,6 @@
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
-#include <numbers>
 #include <set>
 
 #include <Eigen/Geometry>
@@ -11,7 +9,7 @@
 #include "toolkit/io/scene.h"
 #include "toolkit/io/sequence_parts.h"
 #include "toolkit/io/text_cursor.h"
-#include "toolkit/io/usd_text.h"
+#include "toolkit/io/usd_faces.h"
 #include "toolkit/io/usd_transform.h"
 #include "toolkit/io/whole_file.h"
 #include "toolkit/mesh/errors.h"
@@ -30,6 +28,9 @@ struct UsdMesh {
   const UsdPrim* prim;
   UsdStack stack;
   ScenePart part;
+  /// Whose transforms place it, and where it stands within: its own, or those of its skeleton.
+  UsdStack placing = {};
+  Eigen::Matrix4d bound = Eigen::Matrix4d::Identity();
   /// Time codes at which it is told by other than weights.
   std::set<double> codes = {};
   bool rest_is_known = true;
@@ -74,18 +75,13 @@ class UsdReader {
 
  private:
   [[noreturn]] void fail(int line, const std::string& message) const {
-    throw IoError(path_, "line " + std::to_string(line) + ": " + message);
+    usd_fail(path_, line, message);
   }
 
   double setting(const std::string& name, double fallback) const {
     const auto found = layer_.metadata.find(name);
     if (found == layer_.metadata.end() || found->second.numbers.empty()) return fallback;
     return found->second.numbers.front();
-  }
-
-  static bool is_word(const UsdPrim& prim, const std::string& name, const std::string& word) {
-    const UsdProperty* property = usd_property(prim, name);
-    return property && !property->value.words.empty() && property->value.words.front() == word;
   }
 
   void visit(const UsdPrim& prim, UsdStack stack) {
@@ -102,8 +98,9 @@ class UsdReader {
     if (shapes.contains(prim.type)) left_out_.insert(shown);
     stack.push_back(&prim);
     if (prim.type == "SkelAnimation") animations_.emplace_back(path_of(stack), &prim);
-    const bool is_hidden = is_word(prim, "visibility", "invisible") ||
-                           is_word(prim, "purpose", "guide") || is_word(prim, "purpose", "proxy");
+    const bool is_hidden = usd_is_word(prim, "visibility", "invisible") ||
+                           usd_is_word(prim, "purpose", "guide") ||
+                           usd_is_word(prim, "purpose", "proxy");
     if (is_hidden) {
       left_out_.insert(shown + ", which is not shown");
       return;
@@ -119,32 +116,6 @@ class UsdReader {
     std::string path;
     for (const UsdPrim* prim : stack) path += '/' + prim->name;
     return path;
-  }
-
-  const UsdProperty& needed(const UsdPrim& prim, const std::string& name) const {
-    const UsdProperty* property = usd_property(prim, name);
-    if (!property) fail(prim.line, prim.type + " '" + prim.name + "' has no " + name);
-    return *property;
-  }
-
-  std::vector<int> counts_of(const UsdPrim& prim, const std::string& name) const {
-    const UsdProperty& property = needed(prim, name);
-    for (const auto& [time, value] : property.samples) {
-      if (value.numbers == property.samples.front().second.numbers) continue;
-      fail(property.line, name + " change over time, which is not read");
-    }
-    return integers(property, name);
-  }
-
-  std::vector<int> integers(const UsdProperty& property, const std::string& name) const {
-    std::vector<int> values;
-    for (const double number : usd_numbers(path_, property)) {
-      if (number != std::floor(number) || number < 0 || number > std::numeric_limits<int>::max()) {
-        fail(property.line, name + ": " + readable(number, 12) + " is no count");
-      }
-      values.push_back(static_cast<int>(number));
-    }
-    return values;
   }
 
   /// Numbers of `property` at a time, of which there must be three for each vertex.
@@ -164,22 +135,66 @@ class UsdReader {
     const UsdPrim& prim = *mesh.prim;
     ScenePart& part = mesh.part;
     part.name = prim.name;
-    const UsdProperty& points = needed(prim, "points");
+    const UsdProperty& points = usd_needed(path_, prim, "points");
     part.positions = points_at(points, std::nullopt, -1);
-    fill_faces(prim, part);
+    fill_usd_faces(path_, prim, part);
     for (const auto& [time, value] : points.samples) mesh.codes.insert(time);
     mesh.rest_is_known = points.samples.empty() || points.has_value;
-    for (const UsdPrim* parent : mesh.stack) {
+    bind(mesh);
+    for (const UsdPrim* parent : mesh.placing) {
       for (const auto& [name, property] : parent->properties) {
         if (!name.starts_with("xformOp:")) continue;
         for (const auto& [time, value] : property.samples) mesh.codes.insert(time);
         mesh.rest_is_known = mesh.rest_is_known && (property.samples.empty() || property.has_value);
       }
     }
-    const Eigen::Matrix4d world = usd_world(path_, mesh.stack);
-    if (world.topLeftCorner<3, 3>().determinant() < 0) reverse(part);
+    const Eigen::Matrix4d world = world_of(mesh);
+    if (world.topLeftCorner<3, 3>().determinant() < 0) turn_faces(part);
     place(part.positions, world, true);
     fill_targets(mesh, world);
+  }
+
+  /// A mesh that hangs on the joints of a skeleton stands where they hold it, wherever its own
+  /// transform would put it. [UsdSkelBindingAPI]
+  void bind(UsdMesh& mesh) {
+    mesh.placing = mesh.stack;
+    if (!inherited(mesh, "primvars:skel:jointIndices")) return;
+    left_out_.insert("the skeleton of '" + mesh.prim->name + "': it stands as it is bound");
+    const UsdProperty* named = inherited(mesh, "skel:skeleton");
+    if (!named || named->value.words.empty()) return;
+    const UsdStack skeleton = stack_at(named->value.words.front(), mesh.stack);
+    if (skeleton.empty()) return;
+    mesh.placing = skeleton;
+    const UsdProperty* rest = usd_property(*skeleton.back(), "restTransforms");
+    const UsdProperty* bound = usd_property(*skeleton.back(), "bindTransforms");
+    if (rest && bound) {
+      // All joints have moved as the first one has, which is the root, since the mesh was bound.
+      const Eigen::Matrix4d then = first_matrix(*bound);
+      if (then.determinant() == 0) fail(bound->line, "the first of bindTransforms has no inverse");
+      mesh.bound = first_matrix(*rest) * then.inverse();
+    }
+    const UsdProperty* at_binding = inherited(mesh, "primvars:skel:geomBindTransform");
+    if (at_binding) mesh.bound *= first_matrix(*at_binding);
+  }
+
+  /// A property of the mesh or, where it has none, of the nearest prim that it stands in.
+  static const UsdProperty* inherited(const UsdMesh& mesh, const std::string& name) {
+    for (auto prim = mesh.stack.rbegin(); prim != mesh.stack.rend(); ++prim) {
+      if (const UsdProperty* property = usd_property(**prim, name)) return property;
+    }
+    return nullptr;
+  }
+
+  Eigen::Matrix4d first_matrix(const UsdProperty& property) const {
+    const std::vector<double> numbers = usd_numbers(path_, property);
+    if (numbers.empty() || numbers.size() % 16 != 0) {
+      fail(property.line, std::to_string(numbers.size()) + " numbers, expected 16 of each matrix");
+    }
+    return Eigen::Map<const Eigen::Matrix4d>(numbers.data());  // its rows are our columns
+  }
+
+  Eigen::Matrix4d world_of(const UsdMesh& mesh, std::optional<double> code = {}) const {
+    return usd_world(path_, mesh.placing, code) * mesh.bound;
   }
 
   static void place(Positions& points, const Eigen::Matrix4d& world, bool moved) {
@@ -187,92 +202,9 @@ class UsdReader {
     if (moved) points.rowwise() += world.topRightCorner<3, 1>().transpose();
   }
 
-  /// Turns the faces, each with the coordinates of its corners.
-  static void reverse(ScenePart& part) {
-    for (int face = 0; face < part.polygons.size(); ++face) {
-      const auto begin = part.polygons.offsets[static_cast<std::size_t>(face)];
-      const auto end = part.polygons.offsets[static_cast<std::size_t>(face) + 1];
-      std::reverse(part.polygons.corners.begin() + begin + 1, part.polygons.corners.begin() + end);
-      if (part.texture.corners.empty()) continue;
-      std::reverse(part.texture.corners.begin() + begin + 1, part.texture.corners.begin() + end);
-    }
-  }
-
-  void fill_faces(const UsdPrim& prim, ScenePart& part) const {
-    part.polygons.corners = counts_of(prim, "faceVertexIndices");
-    std::size_t all = 0;
-    const UsdProperty& counts = needed(prim, "faceVertexCounts");
-    for (const int count : counts_of(prim, "faceVertexCounts")) {
-      all += static_cast<std::size_t>(count);
-      if (all > part.polygons.corners.size()) break;
-      part.polygons.offsets.push_back(static_cast<int>(all));
-    }
-    if (all != part.polygons.corners.size()) {
-      fail(counts.line, "the faces have other corners than the " +
-                            std::to_string(part.polygons.corners.size()) + " that are named");
-    }
-    for (const int corner : part.polygons.corners) {
-      if (corner < part.positions.rows()) continue;
-      fail(needed(prim, "faceVertexIndices").line, "a face uses point " + std::to_string(corner) +
-                                                       " of " +
-                                                       std::to_string(part.positions.rows()));
-    }
-    fill_texture(prim, part);
-    if (is_word(prim, "orientation", "leftHanded")) reverse(part);
-  }
-
-  /// `primvars:st`, or the first that has the type of texture coordinates.
-  static std::string texture_name(const UsdPrim& prim) {
-    if (usd_property(prim, "primvars:st")) return "primvars:st";
-    for (const auto& [name, property] : prim.properties) {
-      if (name.starts_with("primvars:") && property.type.starts_with("texCoord2")) return name;
-    }
-    return {};
-  }
-
-  void fill_texture(const UsdPrim& prim, ScenePart& part) const {
-    const std::string name = texture_name(prim);
-    if (name.empty()) return;
-    const UsdProperty& texture = *usd_property(prim, name);
-    const std::vector<double> numbers = usd_numbers(path_, texture);
-    if (numbers.size() % 2 != 0) fail(texture.line, "a texture coordinate has no v");
-    const std::size_t corners = part.polygons.corners.size();
-    const bool by_corner = texture.interpolation == "faceVarying";
-    if (!by_corner && texture.interpolation != "vertex" && texture.interpolation != "varying") {
-      return;  // one for a whole face, or for the mesh
-    }
-    const std::size_t wanted =
-        by_corner ? corners : static_cast<std::size_t>(part.positions.rows());
-    std::vector<int> index;
-    if (const UsdProperty* indices = usd_property(prim, name + ":indices")) {
-      index = integers(*indices, name + ":indices");
-    } else {
-      for (std::size_t i = 0; i < numbers.size() / 2; ++i) index.push_back(static_cast<int>(i));
-    }
-    if (index.size() != wanted) {
-      fail(texture.line, std::to_string(index.size()) + " texture coordinates, expected " +
-                             std::to_string(wanted));
-    }
-    for (const int i : index) {
-      if (static_cast<std::size_t>(i) >= numbers.size() / 2) {
-        fail(texture.line, "there is no texture coordinate " + std::to_string(i));
-      }
-    }
-    for (std::size_t i = 0; i < numbers.size(); i += 2) {
-      part.texture.coordinates.emplace_back(numbers[i], numbers[i + 1]);
-    }
-    for (std::size_t corner = 0; corner < corners; ++corner) {
-      const auto vertex = static_cast<std::size_t>(part.polygons.corners[corner]);
-      part.texture.corners.push_back(index[by_corner ? corner : vertex]);
-    }
-  }
-
   void fill_targets(UsdMesh& mesh, const Eigen::Matrix4d& world) {
     const UsdProperty* names = usd_property(*mesh.prim, "skel:blendShapes");
     const UsdProperty* paths = usd_property(*mesh.prim, "skel:blendShapeTargets");
-    if (usd_property(*mesh.prim, "primvars:skel:jointIndices")) {
-      left_out_.insert("the skeleton of '" + mesh.prim->name + "': it stands as it is bound");
-    }
     if (!names || !paths) return;
     if (names->value.words.size() != paths->value.words.size()) {
       fail(names->line, std::to_string(names->value.words.size()) + " names of blendshapes for " +
@@ -293,21 +225,26 @@ class UsdReader {
     mesh.part.weights = weights_of(mesh, names->value.words);
   }
 
-  /// The prim of a path, from the root of the layer or, without a slash before it, from the mesh.
-  const UsdPrim* prim_at(const std::string& path, const UsdStack& stack) const {
+  /// The prim of a path and those that it stands in, from the root of the layer or, without a slash
+  /// before it, from the mesh of `stack`. Empty where there is none.
+  UsdStack stack_at(const std::string& path, const UsdStack& stack) const {
     const bool is_absolute = path.starts_with('/');
     const std::vector<UsdPrim>* children = is_absolute ? &layer_.prims : &stack.back()->children;
-    const UsdPrim* prim = nullptr;
+    UsdStack found_stack = is_absolute ? UsdStack() : stack;
     for (std::size_t at = is_absolute ? 1 : 0; at <= path.size();) {
       const std::size_t slash = std::min(path.find('/', at), path.size());
       const std::string name = path.substr(at, slash - at);
       const auto found = std::ranges::find(*children, name, &UsdPrim::name);
-      if (found == children->end()) return nullptr;
-      prim = &*found;
-      children = &prim->children;
+      if (found == children->end()) return {};
+      found_stack.push_back(&*found);
+      children = &found->children;
       at = slash + 1;
     }
-    return prim;
+    return found_stack;
+  }
+  const UsdPrim* prim_at(const std::string& path, const UsdStack& stack) const {
+    const UsdStack found = stack_at(path, stack);
+    return found.empty() ? nullptr : found.back();
   }
 
   Positions displacements_of(const UsdPrim& shape, Eigen::Index vertices) const {
@@ -315,10 +252,10 @@ class UsdReader {
       if (!name.starts_with("inbetweens:")) continue;
       fail(property.line, "'" + name + "': shapes in between are not read");
     }
-    const UsdProperty& offsets = needed(shape, "offsets");
+    const UsdProperty& offsets = usd_needed(path_, shape, "offsets");
     const UsdProperty* indices = usd_property(shape, "pointIndices");
     if (!indices) return points_at(offsets, std::nullopt, vertices);
-    const std::vector<int> points = integers(*indices, "pointIndices");
+    const std::vector<int> points = usd_integers(path_, *indices, "pointIndices");
     const Positions given =
         points_at(offsets, std::nullopt, static_cast<Eigen::Index>(points.size()));
     Positions displacements = Positions::Zero(vertices, 3);
@@ -433,14 +370,14 @@ class UsdReader {
   }
 
   Positions pose_at(const UsdMesh& mesh, double code) const {
-    const UsdProperty& points = needed(*mesh.prim, "points");
+    const UsdProperty& points = usd_needed(path_, *mesh.prim, "points");
     const Eigen::Index vertices = mesh.part.positions.rows();
     Positions pose = points_at(points, code, vertices);
-    const Eigen::Matrix4d world = usd_world(path_, mesh.stack, code);
+    const Eigen::Matrix4d world = world_of(mesh, code);
     place(pose, world, true);
     if (!mesh.part.weights) return pose;
     // Targets stand as at rest: they turn with the mesh.
-    const Eigen::Matrix4d rest = usd_world(path_, mesh.stack);
+    const Eigen::Matrix4d rest = world_of(mesh);
     const Eigen::Matrix3d turned =
         world.topLeftCorner<3, 3>() * rest.topLeftCorner<3, 3>().inverse();
     const Eigen::RowVectorXd weights = mesh.part.weights->at(code / rate_);

@@ -1,42 +1,14 @@
 #include "toolkit/io/usd_transform.h"
 
-#include <algorithm>
-#include <cmath>
 #include <numbers>
 #include <string_view>
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 
-#include "toolkit/mesh/errors.h"
-
 namespace mimetra {
 
 namespace {
-
-[[noreturn]] void usd_fail(const std::string& path, int line, const std::string& message) {
-  throw IoError(path, "line " + std::to_string(line) + ": " + message);
-}
-
-std::vector<double> numbers_at(const UsdProperty& property, std::optional<double> code) {
-  const auto& samples = property.samples;
-  if (samples.empty() || (!code && property.has_value)) return property.value.numbers;
-  if (!code) return samples.front().second.numbers;
-  const auto after =
-      std::ranges::upper_bound(samples, *code, {}, &std::pair<double, UsdValue>::first);
-  if (after == samples.begin()) return after->second.numbers;
-  const auto& [from, start] = *std::prev(after);
-  if (after == samples.end() || from == *code ||
-      after->second.numbers.size() != start.numbers.size()) {
-    return start.numbers;
-  }
-  const double share = (*code - from) / (after->first - from);
-  std::vector<double> between = start.numbers;
-  for (std::size_t i = 0; i < between.size(); ++i) {
-    between[i] += share * (after->second.numbers[i] - between[i]);
-  }
-  return between;
-}
 
 /// A step of a prim's transform. [UsdGeomXformOp]
 Eigen::Matrix4d usd_step(const std::string& path, const std::string& name,
@@ -83,27 +55,6 @@ Eigen::Matrix4d usd_step(const std::string& path, const std::string& name,
 }
 
 }  // namespace
-
-const UsdProperty* usd_property(const UsdPrim& prim, const std::string& name) {
-  const auto found = prim.properties.find(name);
-  return found == prim.properties.end() ? nullptr : &found->second;
-}
-
-void check_numbers(const std::string& path, const UsdProperty& property,
-                   const std::vector<double>& numbers) {
-  if (property.blocked_line > 0) {
-    usd_fail(path, property.blocked_line, "a time sample of nothing is not read");
-  }
-  const bool sound = std::ranges::all_of(numbers, [](double n) { return std::isfinite(n); });
-  if (!sound) usd_fail(path, property.line, "holds a number that is not finite");
-}
-
-std::vector<double> usd_numbers(const std::string& path, const UsdProperty& property,
-                                std::optional<double> code) {
-  const std::vector<double> numbers = numbers_at(property, code);
-  check_numbers(path, property, numbers);
-  return numbers;
-}
 
 Eigen::Matrix4d usd_world(const std::string& path, const UsdStack& stack,
                           std::optional<double> code) {
