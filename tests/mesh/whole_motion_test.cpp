@@ -1,6 +1,10 @@
 #include "toolkit/mesh/whole_motion.h"
 
+#include <algorithm>
+#include <vector>
+
 #include <gtest/gtest.h>
+#include <Eigen/Geometry>
 
 #include "tests/shapes.h"
 #include "toolkit/mesh/alignment.h"
@@ -11,14 +15,23 @@ namespace {
 
 constexpr double kRounding = 1e-12;
 
-/// A sphere of which one half is pulled out.
+/// Alike from no two sides.
+test::Shape bumpy_sphere(int level) {
+  test::Shape shape = test::sphere(level);
+  for (auto&& position : shape.positions.rowwise()) {
+    position *= 1 + 0.2 * position[0] + 0.1 * position[1] * position[2];
+  }
+  return shape;
+}
+
+/// With one half pulled out.
 Positions pulled(Positions positions, double by) {
   for (auto&& position : positions.rowwise()) position[0] += by * std::max(0.0, position[0]);
   return positions;
 }
 
 TEST(WholeMotion, OfARigidMotionIsThatMotion) {
-  const Positions rest = test::bumpy_sphere(2).positions;
+  const Positions rest = bumpy_sphere(2).positions;
   RigidTransform motion;
   motion.rotation = Eigen::AngleAxisd(0.1, Eigen::Vector3d(1, 2, 2) / 3).toRotationMatrix();
   motion.translation << 3, 0, 4;
@@ -34,7 +47,7 @@ TEST(WholeMotion, OfARigidMotionIsThatMotion) {
 }
 
 TEST(WholeMotion, OfAnotherSizeIsThatSize) {
-  const Positions rest = test::bumpy_sphere(2).positions;
+  const Positions rest = bumpy_sphere(2).positions;
   const WholeMotion whole = whole_motion(rest, 0.9 * rest);
   EXPECT_NEAR(whole.scale, 0.9, kRounding);
   EXPECT_NEAR(whole.left_by_similarity, 0, kRounding);
@@ -42,7 +55,7 @@ TEST(WholeMotion, OfAnotherSizeIsThatSize) {
 }
 
 TEST(WholeMotion, OfADeformationIsLittleOfIt) {
-  const Positions rest = test::bumpy_sphere(2).positions;
+  const Positions rest = bumpy_sphere(2).positions;
   const WholeMotion whole = whole_motion(rest, pulled(rest, 0.3));
   EXPECT_FALSE(whole.moves());
   EXPECT_FALSE(whole.is_scaled());
@@ -53,7 +66,7 @@ TEST(WholeMotion, OfADeformationIsLittleOfIt) {
 }
 
 TEST(WholeMotion, OfASequenceIsTheLargestAndWhatAllFramesLeave) {
-  const TriMesh mesh = test::mesh_of(test::bumpy_sphere(2));
+  const TriMesh mesh = test::mesh_of(bumpy_sphere(2));
   const Positions aside = mesh.positions.rowwise() + Eigen::RowVector3d(0, 2, 0);
   const std::vector<Positions> poses{pulled(mesh.positions, 0.3), aside, mesh.positions};
   Frames frames(3, mesh.positions.size());
@@ -71,7 +84,7 @@ TEST(WholeMotion, OfASequenceIsTheLargestAndWhatAllFramesLeave) {
 }
 
 TEST(WholeMotion, OfNothingIsNone) {
-  const Positions rest = test::bumpy_sphere(1).positions;
+  const Positions rest = bumpy_sphere(1).positions;
   const WholeMotion whole = whole_motion(rest, rest);
   EXPECT_EQ(whole.left_by_motion, 1);
   EXPECT_FALSE(whole.moves());

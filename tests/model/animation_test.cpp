@@ -4,6 +4,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <Eigen/Geometry>
 
 #include "tests/shapes.h"
 #include "toolkit/model/displaced_expressions.h"
