@@ -50,9 +50,9 @@ void add_frames(std::vector<BadInput>& all, const std::string& format) {
       },
       4, {third, "expected 1 2 3 as in", first});
   all.back().says[1] = format == "obj" ? "expected 1 2 3 as in" : "expected 0 1 2 as in";
-  add("polygon_instead_later",
+  add("crossed_polygon_instead_later",
       [](RawMesh& mesh) {
-        mesh.faces = {{0, 1, 2, 3}};
+        mesh.faces = {{0, 2, 1, 3}};
       },
       4, {third, "1 faces, expected 2", first});
 }

@@ -204,7 +204,8 @@ MeshReport inspect(const Positions& positions, const Connectivity& connectivity)
   report.boundary_edges = edges.boundary;
   report.boundary_edges_after_welding = count_edges(welded).boundary;
   report.nonmanifold_edges = edges.nonmanifold;
-  report.inconsistent_edges = edges.inconsistent;
+  // A triangle without area has no side.
+  report.inconsistent_edges = count_edges(with_area(positions, triangles)).inconsistent;
   report.degenerate_triangles = degenerate_triangles(positions, triangles);
   report.vertices_without_face = vertices_without_face(report.vertices, triangles);
   report.welded_vertices = weld.count;

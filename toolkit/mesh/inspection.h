@@ -27,7 +27,8 @@ struct MeshReport {
   int boundary_edges_after_welding = 0;
   /// Edges of more than two triangles.
   int nonmanifold_edges = 0;
-  /// Edges of two triangles that are wound against each other: the faces of one side are turned.
+  /// Edges of two triangles with_area() that are wound against each other: the faces of one side
+  /// are turned.
   int inconsistent_edges = 0;
   /// Triangles that repeat a vertex or are degenerate by `triangle_quality`.
   std::vector<int> degenerate_triangles;
