@@ -1,3 +1,7 @@
+#include "toolkit/pipeline/matched_target.h"
+
+#include <algorithm>
+
 #include <gmock/gmock.h>
 
 #include "tests/pipeline/takes.h"
@@ -288,15 +292,16 @@ TEST_F(PairedTargetTest, FacesInAnotherOrderOrWoundTheOtherWayAreTheSame) {
   }
 }
 
-/// Four quads around a vertex, of which left and right are alike, on a bowl that falls to one side.
+/// Four quads around a vertex and two triangles above, of which left and right are alike, on a bowl
+/// that falls to one side.
 struct SymmetricQuads {
-  TriMesh mesh{Positions(9, 3),
-               Connectivity::from_polygons(
-                   9, {{0, 1, 4, 3, 1, 2, 5, 4, 3, 4, 7, 6, 4, 5, 8, 7}, {0, 4, 8, 12, 16}})};
+  TriMesh mesh{Positions(10, 3), Connectivity::from_polygons(10, {{0, 1, 4, 3, 1, 2, 5, 4, 3, 4, 7,
+                                                                   6, 4, 5, 8, 7, 6, 7, 9, 7, 8, 9},
+                                                                  {0, 4, 8, 12, 16, 19, 22}})};
 
   SymmetricQuads() {
-    for (int v = 0; v < 9; ++v) {
-      const int x = v % 3 - 1, y = v / 3 - 1;
+    for (int v = 0; v < 10; ++v) {
+      const int x = v < 9 ? v % 3 - 1 : 0, y = v / 3 - 1;
       mesh.positions.row(v) << x, y, 0.5 * (x * x + y * y) + 0.2 * y;
     }
   }
@@ -304,8 +309,11 @@ struct SymmetricQuads {
   /// With its faces wound the other way.
   BlendshapeModel turned(const Positions& positions) const {
     Polygons polygons = mesh.connectivity.polygons;
-    std::reverse(polygons.corners.begin(), polygons.corners.end());
-    return {std::make_shared<const Connectivity>(Connectivity::from_polygons(9, polygons)),
+    for (int f = 0; f < polygons.size(); ++f) {
+      std::reverse(polygons.corners.begin() + polygons.offsets[f],
+                   polygons.corners.begin() + polygons.offsets[f + 1]);
+    }
+    return {std::make_shared<const Connectivity>(Connectivity::from_polygons(10, polygons)),
             positions,
             {}};
   }
@@ -321,14 +329,14 @@ TEST(HasFacesOf, TakesTurnedQuadsOfASymmetricMeshWhereTheyAre) {
 
 TEST(HasFacesOf, TakesTheTrianglesOfQuads) {
   const SymmetricQuads quads;
-  const BlendshapeModel cut(std::make_shared<const Connectivity>(
-                                Connectivity::from_triangles(9, quads.mesh.connectivity.triangles)),
+  const BlendshapeModel cut(std::make_shared<const Connectivity>(Connectivity::from_triangles(
+                                10, quads.mesh.connectivity.triangles)),
                             quads.mesh.positions, {});
   EXPECT_TRUE(has_faces_of(quads.mesh, cut));
   Triangles other = quads.mesh.connectivity.triangles;
   other.row(0) << 0, 1, 8;
   EXPECT_FALSE(has_faces_of(
-      quads.mesh, {std::make_shared<const Connectivity>(Connectivity::from_triangles(9, other)),
+      quads.mesh, {std::make_shared<const Connectivity>(Connectivity::from_triangles(10, other)),
                    quads.mesh.positions,
                    {}}));
 }

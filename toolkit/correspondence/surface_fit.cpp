@@ -47,18 +47,6 @@ struct Normalisation {
   double size;
 };
 
-/// Triangles that have an area, and so a deformation.
-Triangles sound(const Positions& positions, const Triangles& triangles) {
-  std::vector<int> rows;
-  for (int t = 0; t < triangles.rows(); ++t) {
-    const double quality =
-        triangle_quality(positions.row(triangles(t, 0)), positions.row(triangles(t, 1)),
-                         positions.row(triangles(t, 2)));
-    if (quality >= kDegenerateQuality) rows.push_back(t);
-  }
-  return triangles(rows, Eigen::all);
-}
-
 /// Whether a marker is on the connected part of each vertex (N).
 std::vector<bool> reached_parts(const Positions& positions, const Triangles& triangles,
                                 const Weld& weld, const std::vector<VertexIndex>& markers) {
@@ -86,7 +74,7 @@ void check_places(const std::vector<VertexIndex>& markers, const Weld& weld) {
 struct Source {
   Source(const TriMesh& mesh, const std::vector<Marker>& markers)
       : weld(Weld::exact(mesh.positions)),
-        triangles(sound(mesh.positions, weld.welded(mesh.connectivity.triangles))),
+        triangles(with_area(mesh.positions, weld.welded(mesh.connectivity.triangles))),
         target_of(mesh.positions.rows(), -1),
         along_border(Positions::Zero(mesh.positions.rows(), 3)) {
     for (const Marker& marker : markers) {

@@ -7,7 +7,7 @@
 
 #include <Eigen/Geometry>
 
-#include "toolkit/mesh/inspection.h"
+#include "toolkit/mesh/triangle_quality.h"
 
 namespace mimetra {
 

@@ -37,17 +37,32 @@ Eigen::VectorXd distances_from_neighbors(const PositionsView& pose, const Triang
   return distances;
 }
 
+/// Of the edges at each vertex (N).
+Eigen::VectorXd longest_edges(const Positions& positions, const Triangles& triangles) {
+  Eigen::VectorXd longest = Eigen::VectorXd::Zero(positions.rows());
+  for (const auto& corners : triangles.rowwise()) {
+    for (int c = 0; c < 3; ++c) {
+      const VertexIndex a = corners[c], b = corners[(c + 1) % 3];
+      const double length = (positions.row(a) - positions.row(b)).norm();
+      longest[a] = std::max(longest[a], length);
+      longest[b] = std::max(longest[b], length);
+    }
+  }
+  return longest;
+}
+
 /// The mesh that frames are poses of.
 struct RestShape {
   explicit RestShape(const FrameSource& sequence)
       : centred_rest(centred(sequence.rest())),
         of_spread(spread(sequence.rest())),
         from_neighbors(distances_from_neighbors(
-            PositionsView(sequence.rest().data(), sequence.vertices(), 3), sequence.triangles())) {}
+            PositionsView(sequence.rest().data(), sequence.vertices(), 3), sequence.triangles())),
+        edges(longest_edges(sequence.rest(), sequence.triangles())) {}
 
   Positions centred_rest;
   double of_spread;
-  Eigen::VectorXd from_neighbors;
+  Eigen::VectorXd from_neighbors, edges;
 };
 
 FrameShape shape_of(const PositionsView& pose, const RestShape& rest, const Triangles& triangles) {
@@ -166,7 +181,8 @@ OddFrames odd_frames(const FrameSource& sequence, const std::vector<FrameShape>&
     const double least = unit * kStray * size;
     if (shape.longest_edge > unit * std::max(size / 2, 2 * of_rest.longest_edge)) {
       odd.torn.push_back(frame);
-    } else if (shape.stray > least && strays_alone(sequence, rest, frame, shape, least)) {
+    } else if (shape.stray > least && shape.stray > unit * rest.edges[shape.stray_vertex] &&
+               strays_alone(sequence, rest, frame, shape, least)) {
       odd.spiked.push_back(frame);
     }
   }

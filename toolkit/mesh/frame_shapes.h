@@ -49,8 +49,9 @@ struct OddFrames {
   /// One frame at a time: a fifth of the size away from the middle of the frames before and after,
   /// which are next to each other.
   std::vector<int> jumping;
-  /// Not torn, but a vertex strays by more than a twentieth of the size, and by so much more than
-  /// in the frames before and after. Faces that were captured stay below 0.3 %.
+  /// Not torn, but a vertex strays by more than a twentieth of the size and than its edges are long
+  /// at rest, and by so much more than in the frames before and after. Faces that were captured
+  /// stay below 0.3 %.
   std::vector<int> spiked;
   double usual_spread = 0;  ///< the median
 };

@@ -119,13 +119,6 @@ int components_with_triangle(int vertices, const Triangles& triangles) {
   return static_cast<int>(std::count(seen.begin(), seen.end(), 1));
 }
 
-bool has_area(const Positions& positions, const Triangles& triangles, int t) {
-  const double quality =
-      triangle_quality(positions.row(triangles(t, 0)), positions.row(triangles(t, 1)),
-                       positions.row(triangles(t, 2)));
-  return !repeats_vertex(triangles, t) && quality >= kDegenerateQuality;
-}
-
 std::vector<int> degenerate_triangles(const Positions& positions, const Triangles& triangles) {
   std::vector<int> degenerate;
   for (int t = 0; t < triangles.rows(); ++t) {
@@ -214,21 +207,6 @@ MeshReport inspect(const Positions& positions, const Connectivity& connectivity)
     report.extent = positions.colwise().maxCoeff() - positions.colwise().minCoeff();
   }
   return report;
-}
-
-double triangle_quality(const Eigen::Vector3d& a, const Eigen::Vector3d& b,
-                        const Eigen::Vector3d& c) {
-  const double longest =
-      std::max({(b - a).squaredNorm(), (c - b).squaredNorm(), (a - c).squaredNorm()});
-  return longest > 0 ? (b - a).cross(c - a).norm() / longest : 0;
-}
-
-Triangles with_area(const Positions& positions, const Triangles& triangles) {
-  std::vector<int> sound;
-  for (int t = 0; t < triangles.rows(); ++t) {
-    if (has_area(positions, triangles, t)) sound.push_back(t);
-  }
-  return triangles(sound, Eigen::all);
 }
 
 std::vector<std::vector<int>> triangle_neighbors(int vertices, const Triangles& triangles) {

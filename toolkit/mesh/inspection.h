@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "toolkit/mesh/tri_mesh.h"
+#include "toolkit/mesh/triangle_quality.h"
 
 namespace mimetra {
 
@@ -42,17 +42,6 @@ struct MeshReport {
 };
 
 MeshReport inspect(const Positions& positions, const Connectivity& connectivity);
-
-/// Scale-free quality 2 A / l_max^2 of a triangle: sqrt(3)/2 for the equilateral one, 0 without
-/// area.
-double triangle_quality(const Eigen::Vector3d& a, const Eigen::Vector3d& b,
-                        const Eigen::Vector3d& c);
-
-/// Triangles of lower quality carry no usable deformation gradient; valid faces go down to 4e-3.
-constexpr double kDegenerateQuality = 1e-6;
-
-/// Those that repeat no vertex and are not degenerate, in their order.
-Triangles with_area(const Positions& positions, const Triangles& triangles);
 
 /// Neighbours of each triangle across its edges, at most a few each; lists ascend.
 std::vector<std::vector<int>> triangle_neighbors(int vertices, const Triangles& triangles);

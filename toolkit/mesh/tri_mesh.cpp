@@ -153,7 +153,10 @@ std::optional<Split> split_of(const Polygons& coarse, const Polygons& fine, int 
   split.whole.reserve(static_cast<std::size_t>(fine.size()));
   std::vector<std::vector<int>> around(static_cast<std::size_t>(vertices));
   for (int face = 0; face < coarse.size(); ++face) {
-    for (const int corner : corners_of(coarse, face)) around[std::size_t(corner)].push_back(face);
+    for (const int corner : corners_of(coarse, face)) {
+      std::vector<int>& faces = around[std::size_t(corner)];
+      if (faces.empty() || faces.back() != face) faces.push_back(face);
+    }
   }
   for (int face = 0; face < fine.size(); ++face) {
     const auto part = corners_of(fine, face);

@@ -29,15 +29,16 @@ Numbers numbers_of(const Positions& rest, const Eigen::Ref<const Positions>& pos
   return numbers;
 }
 
-WholeMotion together(const Eigen::Ref<const Eigen::VectorXd>& sums,
+WholeMotion together(Eigen::Index vertices, const Eigen::Ref<const Eigen::VectorXd>& sums,
                      const Eigen::Ref<const Eigen::MatrixXd>& of_each) {
+  constexpr int kFew = 10;
   WholeMotion whole;
   whole.angle = of_each.col(kAngle - kSummed).maxCoeff();
   whole.shift = of_each.col(kShift - kSummed).maxCoeff();
   for (const double scale : of_each.col(kScale - kSummed)) {
     if (std::abs(scale - 1) > std::abs(whole.scale - 1)) whole.scale = scale;
   }
-  if (sums[kAll] > 0) {
+  if (sums[kAll] > 0 && vertices >= kFew) {
     whole.left_by_motion = sums[kLeftByMotion] / sums[kAll];
     whole.left_by_similarity = sums[kLeftBySimilarity] / sums[kAll];
   }
@@ -53,7 +54,8 @@ bool WholeMotion::is_scaled() const {
 
 WholeMotion whole_motion(const Positions& rest, const Positions& pose) {
   const Numbers numbers = numbers_of(rest, pose);
-  return together(numbers.head<kSummed>().transpose(), numbers.tail<kNumbers - kSummed>());
+  return together(rest.rows(), numbers.head<kSummed>().transpose(),
+                  numbers.tail<kNumbers - kSummed>());
 }
 
 WholeMotion whole_motion(const FrameSource& source, const BlockOptions& options) {
@@ -64,7 +66,7 @@ WholeMotion whole_motion(const FrameSource& source, const BlockOptions& options)
                                                    numbers_of(source.rest(), block.frame(row));
                                              }
                                            });
-  return together(numbers.sum, numbers.of_each);
+  return together(source.vertices(), numbers.sum, numbers.of_each);
 }
 
 }  // namespace mimetra

@@ -13,7 +13,8 @@ struct WholeMotion {
   /// The size of the frames against the rest pose, the farthest from 1.
   double scale = 1;
   /// What those motions leave of all squared distances from the rest pose, and what they leave if
-  /// each may also change the size; 1 where nothing moves.
+  /// each may also change the size; 1 where nothing moves, and for fewer than ten vertices, which
+  /// tell no motion from a deformation.
   double left_by_motion = 1;
   double left_by_similarity = 1;
 
