@@ -52,7 +52,7 @@ std::vector<std::string> frame_warnings(const FrameSource& sequence, const Block
   const WholeMotion whole =
       sequence.rest_is_known() ? whole_motion(sequence, options) : WholeMotion();
   if (whole.is_scaled()) {
-    warnings.push_back("frames are up to " + readable(whole.scale, 3) +
+    warnings.push_back("frames are " + readable(whole.scale, 3) +
                        " times as large as the rest pose");
   } else if (whole.moves()) {
     warnings.push_back("the whole mesh turns by up to " + readable(whole.angle, 3) +

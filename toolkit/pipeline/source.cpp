@@ -186,7 +186,7 @@ void note_whole_motion(const MotionChoice& choice, const Source& source,
   const std::string reason = ", as " + std::string(choice.reason);
   if (whole.is_scaled()) {
     note(options.notes,
-         options.name + ": frames are up to " + readable(whole.scale, 3) +
+         options.name + ": frames are " + readable(whole.scale, 3) +
              " times as large as the rest pose, which is " +
              in_percent(1 - whole.left_by_similarity) +
              " of how they differ from it and counts as deformation; bring both into one unit "
