@@ -7,7 +7,6 @@
 #include <Eigen/Geometry>
 
 #include "tests/shapes.h"
-#include "toolkit/model/displaced_expressions.h"
 
 namespace mimetra {
 namespace {
@@ -90,43 +89,6 @@ TEST(Animation, KeepsItsExpressionsOnAMeshThatIsNumberedDifferently) {
     EXPECT_EQ(after.middleCols(3 * v, 3), before.middleCols(3 * vertices[v], 3)) << v;
   }
   EXPECT_THROW(animation.renumbered(connectivity, {0, 1}), std::invalid_argument);
-}
-
-TEST(DisplacedExpressions, AreThoseThatMoveEveryVertex) {
-  const auto model = waves(4, 2);
-  ShapeBasis shapes = model->expressions();
-  shapes.displacements.col(0).setConstant(0.5);  // elsewhere
-  shapes.displacements.col(1).setConstant(0.5);
-  shapes.displacements.col(1).head<3>().setZero();  // one vertex stays
-  EXPECT_THAT(displaced_expressions(model->neutral(), model->triangles(), shapes),
-              testing::ElementsAre("wave0"));
-  EXPECT_THAT(notes_on_displaced("m", model->neutral(), model->triangles(), shapes),
-              testing::ElementsAre(HasSubstr("m: expressions of another place, turn or size")));
-  // As a statistical model's: every vertex, each its own way.
-  for (Eigen::Index i = 0; i < shapes.displacements.rows(); ++i) {
-    shapes.displacements(i, 0) = i % 2 ? 0.5 : -0.5;
-  }
-  EXPECT_THAT(displaced_expressions(model->neutral(), model->triangles(), shapes),
-              testing::IsEmpty());
-  shapes.displacements.setZero();
-  EXPECT_THAT(notes_on_displaced("m", model->neutral(), model->triangles(), shapes),
-              testing::IsEmpty());
-}
-
-TEST(DisplacedExpressions, AreThoseThatAreTurnedOrHaveAnotherSize) {
-  const auto plane = waves(4, 2);
-  const BlendshapeModel& model = *plane;
-  ShapeBasis shapes = model.expressions();
-  const Positions& neutral = model.neutral();
-  const auto column = [&](const Positions& pose) {
-    return Eigen::VectorXd((pose - neutral).reshaped<Eigen::RowMajor>());
-  };
-  const Eigen::Matrix3d turn =
-      Eigen::AngleAxisd(EIGEN_PI / 2, Eigen::Vector3d::UnitX()).toRotationMatrix();
-  shapes.displacements.col(0) = column(neutral * turn.transpose());
-  shapes.displacements.col(1) = column(10 * neutral);
-  EXPECT_THAT(displaced_expressions(neutral, model.triangles(), shapes),
-              testing::ElementsAre("wave0", "wave1"));
 }
 
 }  // namespace

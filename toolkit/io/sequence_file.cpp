@@ -12,7 +12,7 @@
 #include "toolkit/mesh/progress.h"
 #include "toolkit/mesh/text.h"
 #include "toolkit/model/animation.h"
-#include "toolkit/model/displaced_expressions.h"
+#include "toolkit/model/expression_notes.h"
 
 namespace mimetra {
 namespace fs = std::filesystem;
@@ -87,7 +87,7 @@ OpenSequence open_sequence(const std::string& text, const SequenceSource& source
   if (const auto* animation = dynamic_cast<const Animation*>(open.frames.get())) {
     const BlendshapeModel& model = animation->model();
     for (const std::string& note :
-         notes_on_displaced(text, model.neutral(), model.triangles(), model.expressions())) {
+         notes_on_expressions(text, model.neutral(), model.triangles(), model.expressions())) {
       open.notes.push_back(note);
     }
   }

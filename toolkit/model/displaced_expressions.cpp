@@ -5,7 +5,6 @@
 #include <limits>
 
 #include "toolkit/mesh/diameter.h"
-#include "toolkit/mesh/text.h"
 #include "toolkit/mesh/whole_motion.h"
 
 namespace mimetra {
@@ -57,17 +56,6 @@ std::vector<std::string> displaced_expressions(const Positions& neutral, const T
     }
   }
   return displaced;
-}
-
-std::vector<std::string> notes_on_displaced(const std::string& name, const Positions& neutral,
-                                            const Triangles& triangles,
-                                            const ShapeBasis& expressions) {
-  const std::vector<std::string> displaced = displaced_expressions(neutral, triangles, expressions);
-  if (displaced.empty()) return {};
-  return {name +
-          ": expressions of another place, turn or size than the neutral: " + listed(displaced) +
-          "; every vertex of it moves as in no expression: bring them there (`mimetra align`) and "
-          "into one unit, or the face moves with them"};
 }
 
 }  // namespace mimetra

@@ -22,9 +22,4 @@ double least_move(const Positions& from, const Eigen::Ref<const Positions>& to,
 std::vector<std::string> displaced_expressions(const Positions& neutral, const Triangles& triangles,
                                                const ShapeBasis& expressions);
 
-/// What to say of them under the model's `name`; nothing where there are none.
-std::vector<std::string> notes_on_displaced(const std::string& name, const Positions& neutral,
-                                            const Triangles& triangles,
-                                            const ShapeBasis& expressions);
-
 }  // namespace mimetra

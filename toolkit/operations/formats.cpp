@@ -12,7 +12,7 @@
 #include "toolkit/io/vtkhdf_file.h"
 #include "toolkit/io/whole_file.h"
 #include "toolkit/mesh/errors.h"
-#include "toolkit/model/displaced_expressions.h"
+#include "toolkit/model/expression_notes.h"
 #include "toolkit/operations/sequence_parameters.h"
 
 namespace mimetra {
@@ -131,7 +131,7 @@ ReadValue read_model_files(const std::string& text, const ReadRequest& request) 
 ReadValue read_model_data(const std::string& text, const ReadRequest& request) {
   ReadValue read = read_model_files(text, request);
   const MorphableModel& model = std::get<ModelData>(read.value.data).model;
-  for (const std::string& note : notes_on_displaced(
+  for (const std::string& note : notes_on_expressions(
            read.value.name, model.mean(), model.connectivity().triangles, model.expressions())) {
     read.notes.push_back(note);
   }

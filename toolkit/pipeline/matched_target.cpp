@@ -48,9 +48,11 @@ FoundCorrespondence found_by(const std::vector<Marker>& markers, const TriMesh& 
     FoundCorrespondence found = find_correspondence(
         source, target, markers, {.threads = options.threads, .progress = options.progress});
     if (found.inside_out) {
-      note(options.notes, name +
-                              ": its faces lead the other way round than the source's (one of them "
-                              "is inside out); they are paired as if turned");
+      note(options.notes,
+           name +
+               ": its faces lead the other way round than the source's (one of them "
+               "is inside out); they are paired as if turned; if one was mirrored, left and "
+               "right are exchanged");
     }
     return found;
   } catch (const MismatchError& error) {

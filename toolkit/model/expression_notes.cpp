@@ -1,0 +1,41 @@
+#include "toolkit/model/expression_notes.h"
+
+#include "toolkit/mesh/text.h"
+#include "toolkit/model/displaced_expressions.h"
+#include "toolkit/model/exchanged_sides.h"
+
+namespace mimetra {
+
+namespace {
+
+std::string described(const ExchangedSides& sides) {
+  const std::string these = listed(sides.left_halves);
+  if (sides.everywhere) {
+    return "expressions of the left move the face's right: " + these +
+           "; the face is mirrored, as by an export with one axis negated, or left is the "
+           "viewer's: "
+           "on another face, left and right would be exchanged";
+  }
+  return "expressions of the left move the side that the others call right: " + these +
+         "; exchange them with their other halves";
+}
+
+}  // namespace
+
+std::vector<std::string> notes_on_expressions(const std::string& name, const Positions& neutral,
+                                              const Triangles& triangles,
+                                              const ShapeBasis& expressions) {
+  std::vector<std::string> notes;
+  const std::vector<std::string> displaced = displaced_expressions(neutral, triangles, expressions);
+  if (!displaced.empty()) {
+    notes.push_back(name + ": expressions of another place, turn or size than the neutral: " +
+                    listed(displaced) +
+                    "; every vertex of it moves as in no expression: bring them there (`mimetra "
+                    "align`) and into one unit, or the face moves with them");
+  }
+  const ExchangedSides sides = exchanged_sides(neutral, triangles, expressions);
+  if (!sides.left_halves.empty()) notes.push_back(name + ": " + described(sides));
+  return notes;
+}
+
+}  // namespace mimetra
