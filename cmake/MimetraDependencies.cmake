@@ -44,8 +44,8 @@ if(MIMETRA_VTK)
   if(NOT VTK_DIR AND paraview_vtk)
     list(GET paraview_vtk -1 VTK_DIR)
   endif()
-  mimetra_package(GLEW)
-  mimetra_package(OpenGL COMPONENTS EGL)
+  find_package(GLEW REQUIRED)
+  find_package(OpenGL REQUIRED COMPONENTS EGL)
   set(vtk_files CommonCore CommonDataModel IOCore IOXML IOXMLParser)
   set(vtk_rendering ChartsCore IOImage RenderingContext2D RenderingContextOpenGL2 RenderingCore
                     RenderingFreeType RenderingOpenGL2)
@@ -53,7 +53,6 @@ if(MIMETRA_VTK)
   # Objects compiled against one VTK break with another one's libraries.
   set(same_vtk VTK ${VTK_VERSION} EXACT HINTS ${VTK_DIR})
   set(MIMETRA_FIND_VTK ${same_vtk} COMPONENTS ${vtk_files})
-  set(MIMETRA_FIND_VTK_rendering ${same_vtk} COMPONENTS ${vtk_files} ${vtk_rendering})
 endif()
 
 if(MIMETRA_MPI)

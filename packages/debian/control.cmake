@@ -29,6 +29,8 @@ foreach(name c pictures)
   file(WRITE ${folder}/shlibs "libmimetra_${name} 1 libmimetra-${name}1 (>= ${PROJECT_VERSION})\n")
   file(WRITE ${folder}/triggers "activate-noawait ldconfig\n")
 endforeach()
+file(APPEND ${PROJECT_BINARY_DIR}/libmimetra-pictures1/shlibs
+     "libmimetra_painter 1 libmimetra-pictures1 (>= ${PROJECT_VERSION})\n")
 
 set(about "mimetra finds the regions of an animated face that move, and transfers their
 deformation to another character: sparse localized deformation components,
@@ -98,27 +100,31 @@ FMA, which the loader chooses."
 package(libmimetra-pictures1 SECTION libs SHLIBDEPS
   SUMMARY "region-based deformation transfer (library that draws)"
   TEXT "This package holds the library of the C interface with pictures, pages for a
-browser and ParaView's files, for which it needs VTK. The Python module takes it
-where it is installed."
+browser and ParaView's files, for which it needs VTK, and the library that
+draws, which the command loads, too. The Python module takes it where it is
+installed."
   RECOMMENDS ${video} libdlib-data
   OVERRIDES "# CPack writes these scripts itself.\n"
-            "libmimetra-pictures1: maintscript-calls-ldconfig\n")
+            "libmimetra-pictures1: maintscript-calls-ldconfig\n"
+            "# The library that draws is of no use to others.\n"
+            "libmimetra-pictures1: package-name-doesnt-match-sonames libmimetra-painter1*\n")
 package(mimetra SECTION graphics SHLIBDEPS
   SUMMARY "region-based deformation transfer (command)"
   TEXT "This package holds the command, its manual and completion. It has a build for
 processors with AVX2 and FMA, which it chooses when it starts. Videos need the
 libraries of FFmpeg, faces in pictures the data of dlib."
+  DEPENDS "libmimetra-pictures1 ${same}"
   RECOMMENDS ${video} libdlib-data
   SUGGESTS paraview mimetra-paraview mimetra-blender python3-mimetra)
 package(libmimetra-dev SECTION libdevel
   SUMMARY "region-based deformation transfer (development files)"
   TEXT "This package holds the headers, the static libraries of all parts, and what
 CMake and pkg-config ask for. The component vtk needs ParaView's development
-files."
+files, what draws libmimetra-pictures1."
   DEPENDS "libmimetra-c1 ${same}" libeigen3-dev libopenmesh-dev libcgal-dev nlohmann-json3-dev
           libzip-dev zipcmp zipmerge ziptool zlib1g-dev libpng-dev libjpeg-dev
           libmeshoptimizer-dev libdraco-dev
-  SUGGESTS paraview-dev libglew-dev libegl-dev libdlib-dev cmake pkg-config)
+  SUGGESTS paraview-dev libmimetra-pictures1 libdlib-dev cmake pkg-config)
 package(python3-mimetra SECTION python ALL
   SUMMARY "region-based deformation transfer (Python module)"
   TEXT "This package holds the Python module: each operation is a function on NumPy

@@ -14,22 +14,13 @@
 #include "plugins/c/plugin_operation.h"
 #include "plugins/c/utf8.h"
 #include "plugins/c/whole_struct.h"
+#include "toolkit/operations/this_binary.h"
 
 namespace mimetra {
 
 namespace {
 
 namespace fs = std::filesystem;
-
-/// The program or library that holds this code.
-fs::path this_binary() {
-  Dl_info info{};
-  const bool known = dladdr(reinterpret_cast<const void*>(&plugin_folders), &info) != 0;
-  const std::string name = known && info.dli_fname ? info.dli_fname : "";
-  // A program's name is what it was called by, which may not be a path.
-  std::error_code error;
-  return fs::canonical(name.find('/') == std::string::npos ? "/proc/self/exe" : name, error);
-}
 
 fs::path folder_of_installation() {
   // From the program in bin, or a library in lib or a host's folder below it.

@@ -176,7 +176,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Include{"toolkit/vtk/a.cpp", "#include <EGL/egl.h>"},
                     Include{"toolkit/vtk/a.cpp", "#include <vtkRenderWindow.h>"},
                     Include{"plugins/paraview/a.cpp", "#include <toolkit/io/pending_output.h>"},
-                    Include{"toolkit/vtk/a.cpp", "#include \"toolkit/pictures/picture.h\""},
+                    Include{"toolkit/vtk/a.cpp", "#include \"toolkit/drawing/picture.h\""},
                     Include{"toolkit/pictures/a.cpp", "#include \"toolkit/report/x.h\""},
                     Include{"toolkit/cli/a.cpp", "#include <dlib/image_io.h>"},
                     Include{"toolkit/splocs/a.cpp", "#include <gtest/gtest.h>"},

@@ -279,7 +279,8 @@ const std::vector<FolderRule>& folder_rules() {
     const std::vector<std::string> below_operations = with(below_pipeline, {"pipeline", "io"});
     const std::vector<std::string> up_to_operations = with(below_operations, {"operations"});
     const std::vector<std::string> up_to_vtk = with(up_to_operations, {"vtk"});
-    const std::vector<std::string> up_to_report = with(up_to_vtk, {"pictures", "report"});
+    const std::vector<std::string> up_to_report =
+        with(up_to_vtk, {"drawing", "pictures", "report"});
     // JSON goes wherever operations are declared, because their results are JSON.
     return std::vector<FolderRule>{
         {"geodesic", "geodesic", {}, {"CGAL", "OpenMesh"}},
@@ -299,8 +300,9 @@ const std::vector<FolderRule>& folder_rules() {
          {"OpenMesh", "JSON", "libzip", "zlib", "libpng", "libjpeg", "meshoptimizer", "Draco"}},
         {"operations", "toolkit/operations", below_operations, {"JSON", "xxHash"}},
         {"vtk", "toolkit/vtk", up_to_operations, {"VTK", "JSON"}},
-        {"pictures", "toolkit/pictures", up_to_vtk, {"VTK", "VTK's rendering", "OpenGL", "JSON"}},
-        {"report", "toolkit/report", with(up_to_vtk, {"pictures"}), {"VTK", "JSON"}},
+        {"drawing", "toolkit/drawing", up_to_vtk, {"VTK", "VTK's rendering", "OpenGL"}},
+        {"pictures", "toolkit/pictures", with(up_to_vtk, {"drawing"}), {"JSON"}},
+        {"report", "toolkit/report", with(up_to_vtk, {"drawing", "pictures"}), {"VTK", "JSON"}},
         {"fitting",
          "fitting",
          {"mesh", "model", "correspondence", "io", "operations"},
@@ -308,7 +310,7 @@ const std::vector<FolderRule>& folder_rules() {
         {"samples", "samples/head", up_to_operations, {"JSON"}},
         // The C interface makes values of all kinds, and shows them.
         {"c", "plugins/c", with(up_to_operations, {"fitting", "samples"}), {"JSON"}},
-        {"drawing", "plugins/pictures", with(up_to_report, {"fitting", "samples", "c"})},
+        {"interface", "plugins/pictures", with(up_to_report, {"fitting", "samples", "c"})},
         {"programs", "samples", with(up_to_report, {"fitting", "samples"}), {}, true},
         // What third parties write, who have nothing but the C header.
         {"plugin", "samples/plugin", {"c"}},

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "tests/bench/suite.h"
-#include "toolkit/pictures/chart.h"
+#include "toolkit/drawing/chart.h"
 
 namespace mimetra::bench {
 

@@ -4,7 +4,7 @@
 #include <cstdio>
 #include <ctime>
 
-#include "toolkit/pictures/chart.h"
+#include "toolkit/drawing/chart.h"
 #include "toolkit/pipeline/evaluation.h"
 #include "toolkit/pipeline/region_completer.h"
 

@@ -31,7 +31,7 @@
 #include "tests/bench/subjects.h"
 #include "tests/bench/transfer_bench.h"
 #include "tests/bench/video_bench.h"
-#include "toolkit/pictures/picture.h"
+#include "toolkit/drawing/picture.h"
 
 namespace mimetra::bench {
 namespace {

@@ -5,8 +5,8 @@
 #include <gtest/gtest.h>
 
 #include "tests/temporary_folder.h"
-#include "toolkit/pictures/chart.h"
-#include "toolkit/pictures/picture.h"
+#include "toolkit/drawing/chart.h"
+#include "toolkit/drawing/picture.h"
 
 namespace mimetra {
 namespace {

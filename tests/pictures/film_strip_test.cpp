@@ -4,9 +4,9 @@
 #include "tests/option_ranges.h"
 #include "tests/temporary_folder.h"
 #include "tests/vtk/vtp_fixture.h"
+#include "toolkit/drawing/sheet_layout.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/pictures/film_strip.h"
-#include "toolkit/pictures/sheet_layout.h"
 
 namespace mimetra {
 namespace {

@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "tests/shapes.h"
-#include "toolkit/pictures/picture.h"
-#include "toolkit/pictures/sheet_layout.h"
+#include "toolkit/drawing/picture.h"
+#include "toolkit/drawing/sheet_layout.h"
 
 namespace mimetra {
 namespace {

@@ -6,10 +6,10 @@
 #include <map>
 #include <stdexcept>
 
+#include "toolkit/drawing/sheet_layout.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/normals.h"
 #include "toolkit/mesh/text.h"
-#include "toolkit/pictures/sheet_layout.h"
 
 namespace mimetra {
 

@@ -6,9 +6,9 @@
 #include <variant>
 #include <vector>
 
+#include "toolkit/drawing/picture.h"
 #include "toolkit/mesh/fields.h"
 #include "toolkit/mesh/option.h"
-#include "toolkit/pictures/picture.h"
 
 namespace mimetra {
 

@@ -1,11 +1,11 @@
 #include "toolkit/pictures/picture_formats.h"
 
+#include "toolkit/drawing/picture.h"
 #include "toolkit/io/frame_files.h"
 #include "toolkit/io/pending_output.h"
 #include "toolkit/io/whole_file.h"
 #include "toolkit/mesh/parallel.h"
 #include "toolkit/operations/formats.h"
-#include "toolkit/pictures/picture.h"
 #include "toolkit/pictures/render_operation.h"
 #include "toolkit/pictures/table_chart.h"
 

@@ -1,8 +1,8 @@
 #pragma once
 
+#include "toolkit/drawing/viewpoint.h"
 #include "toolkit/operations/bound_parameters.h"
 #include "toolkit/operations/operation.h"
-#include "toolkit/pictures/viewpoint.h"
 
 namespace mimetra {
 

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "toolkit/pictures/chart.h"
+#include "toolkit/drawing/chart.h"
 #include "toolkit/pictures/film_strip.h"
 #include "toolkit/report/report_study.h"
 

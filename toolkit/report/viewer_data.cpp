@@ -8,11 +8,11 @@
 #include <vtkNew.h>
 #include <vtkZLibDataCompressor.h>
 
+#include "toolkit/drawing/sheet_layout.h"
 #include "toolkit/mesh/parallel.h"
 #include "toolkit/mesh/weld.h"
 #include "toolkit/operations/colors.h"
 #include "toolkit/operations/json.h"
-#include "toolkit/pictures/sheet_layout.h"
 #include "toolkit/report/base64.h"
 
 namespace mimetra {

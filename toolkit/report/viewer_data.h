@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "toolkit/drawing/viewpoint.h"
 #include "toolkit/mesh/mesh_sequence.h"
-#include "toolkit/pictures/viewpoint.h"
 
 namespace mimetra {
 

@@ -1,4 +1,4 @@
-#include "toolkit/pictures/offscreen_window.h"
+#include "toolkit/drawing/offscreen_window.h"
 
 #include <cstring>
 #include <stdexcept>

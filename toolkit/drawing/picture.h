@@ -2,8 +2,8 @@
 
 #include <string>
 
+#include "toolkit/drawing/sheet.h"
 #include "toolkit/mesh/progress.h"
-#include "toolkit/pictures/sheet.h"
 
 namespace mimetra {
 

@@ -1,4 +1,4 @@
-#include "toolkit/pictures/chart.h"
+#include "toolkit/drawing/vtk_drawing.h"
 
 #include <algorithm>
 #include <array>
@@ -21,9 +21,8 @@
 #include <vtkTable.h>
 #include <vtkTextProperty.h>
 
+#include "toolkit/drawing/offscreen_window.h"
 #include "toolkit/mesh/text.h"
-#include "toolkit/pictures/offscreen_window.h"
-#include "toolkit/pictures/picture.h"
 #include "toolkit/vtk/silent_vtk.h"
 
 namespace mimetra {
@@ -226,7 +225,7 @@ void check(const std::vector<Chart>& row, const ChartSize& size) {
 
 }  // namespace
 
-Image draw(const std::vector<Chart>& row, const ChartSize& size) {
+Image drawn(const std::vector<Chart>& row, const ChartSize& size) {
   check(row, size);
   const int letters = size.letters > 0
                           ? size.letters

@@ -1,4 +1,4 @@
-#include "toolkit/pictures/picture.h"
+#include "toolkit/drawing/vtk_drawing.h"
 
 #include <algorithm>
 #include <cmath>
@@ -23,11 +23,11 @@
 #include <vtkRenderer.h>
 #include <vtkUnsignedCharArray.h>
 
+#include "toolkit/drawing/annotation.h"
+#include "toolkit/drawing/offscreen_window.h"
+#include "toolkit/drawing/sheet_layout.h"
 #include "toolkit/mesh/normals.h"
 #include "toolkit/mesh/progress.h"
-#include "toolkit/pictures/annotation.h"
-#include "toolkit/pictures/offscreen_window.h"
-#include "toolkit/pictures/sheet_layout.h"
 #include "toolkit/vtk/silent_vtk.h"
 
 namespace mimetra {
@@ -210,7 +210,7 @@ void add_tile(vtkRenderWindow& window, const Sheet& sheet, const SheetLayout& la
 
 }  // namespace
 
-Image draw(const Sheet& sheet, const DrawOptions& options) {
+Image drawn(const Sheet& sheet, const DrawOptions& options) {
   const SheetLayout layout = SheetLayout::of(sheet);
   if (layout.width > kLargestPicture || layout.height > kLargestPicture) {
     throw std::invalid_argument("a picture of " + std::to_string(layout.width) + " x " +
@@ -241,16 +241,7 @@ Image draw(const Sheet& sheet, const DrawOptions& options) {
   return image;
 }
 
-double drawing_bytes(const Sheet& sheet) {
-  // Colour and depth in each of four samples a pixel, once resolved, once read, once as PNG.
-  constexpr double kBytesPerPixel = 64;
-  // OpenGL without a graphics card, which compiles its shaders: measured for pictures of any size.
-  constexpr double kOpenGl = 90e6;
-  const SheetLayout layout = SheetLayout::of(sheet);
-  return kOpenGl + kBytesPerPixel * layout.width * layout.height;
-}
-
-std::string png_of(const Image& image) {
+std::string encoded_png(const Image& image) {
   vtkNew<vtkImageData> data;
   data->SetDimensions(image.width, image.height, 1);
   data->AllocateScalars(VTK_UNSIGNED_CHAR, 3);

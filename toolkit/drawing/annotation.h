@@ -1,6 +1,6 @@
 #pragma once
 
-#include "toolkit/pictures/sheet_layout.h"
+#include "toolkit/drawing/sheet_layout.h"
 
 class vtkRenderer;
 

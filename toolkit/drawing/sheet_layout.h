@@ -4,7 +4,7 @@
 
 #include <Eigen/Core>
 
-#include "toolkit/pictures/sheet.h"
+#include "toolkit/drawing/sheet.h"
 
 namespace mimetra {
 

@@ -1,4 +1,4 @@
-#include "toolkit/pictures/annotation.h"
+#include "toolkit/drawing/annotation.h"
 
 #include <algorithm>
 #include <cmath>

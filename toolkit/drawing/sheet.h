@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "toolkit/drawing/viewpoint.h"
 #include "toolkit/mesh/tri_mesh.h"
 #include "toolkit/operations/colors.h"
-#include "toolkit/pictures/viewpoint.h"
 
 namespace mimetra {
 

@@ -1,4 +1,4 @@
-#include "toolkit/pictures/sheet_layout.h"
+#include "toolkit/drawing/sheet_layout.h"
 
 #include <algorithm>
 #include <cmath>

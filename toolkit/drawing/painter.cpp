@@ -1,0 +1,72 @@
+#include "toolkit/drawing/painter.h"
+
+#include <filesystem>
+#include <stdexcept>
+#include <system_error>
+
+#include <dlfcn.h>
+
+#include "toolkit/drawing/sheet_layout.h"
+#include "toolkit/operations/this_binary.h"
+
+namespace mimetra {
+
+namespace {
+
+constexpr const char* kLibrary = "libmimetra_painter.so.1";
+
+/// Beside the library that holds this code, or from a program's folder; elsewhere the loader looks.
+std::filesystem::path place_of_library() {
+  const std::filesystem::path folder = this_binary().parent_path();
+  for (const char* way : {".", "../lib", "../" MIMETRA_LIBRARY_FOLDER}) {
+    std::error_code error;
+    const std::filesystem::path place = folder / way / kLibrary;
+    if (std::filesystem::exists(place, error)) return place;
+  }
+  return kLibrary;
+}
+
+const Painter& loaded() {
+  const std::filesystem::path place = place_of_library();
+  // Never unloaded: VTK registers what it does at the end of the process.
+  void* library = dlopen(place.c_str(), RTLD_NOW | RTLD_LOCAL);
+  if (!library) throw std::runtime_error(std::string("pictures cannot be drawn: ") + dlerror());
+  void* symbol = dlsym(library, "mimetra_get_painter");
+  const Painter* painter =
+      symbol ? reinterpret_cast<mimetra_get_painter_function>(symbol)(MIMETRA_VERSION) : nullptr;
+  if (!painter) {
+    throw std::runtime_error(place.string() + " is not of version " MIMETRA_VERSION
+                                              ": install it again");
+  }
+  return *painter;
+}
+
+}  // namespace
+
+const Painter& painter() {
+  static const Painter& painter = loaded();
+  return painter;
+}
+
+Image draw(const Sheet& sheet, const DrawOptions& options) {
+  return painter().draw(sheet, options);
+}
+
+Image draw(const std::vector<Chart>& row, const ChartSize& size) {
+  return painter().draw(row, size);
+}
+
+std::string png_of(const Image& image) {
+  return painter().png_of(image);
+}
+
+double drawing_bytes(const Sheet& sheet) {
+  // Colour and depth in each of four samples a pixel, once resolved, once read, once as PNG.
+  constexpr double kBytesPerPixel = 64;
+  // OpenGL without a graphics card, which compiles its shaders: measured for pictures of any size.
+  constexpr double kOpenGl = 90e6;
+  const SheetLayout layout = SheetLayout::of(sheet);
+  return kOpenGl + kBytesPerPixel * layout.width * layout.height;
+}
+
+}  // namespace mimetra

@@ -1,0 +1,31 @@
+// The one symbol of libmimetra_painter.
+
+#include <string_view>
+
+#include "toolkit/drawing/painter.h"
+#include "toolkit/drawing/vtk_drawing.h"
+
+namespace mimetra {
+
+namespace {
+
+class VtkPainter final : public Painter {
+ public:
+  Image draw(const Sheet& sheet, const DrawOptions& options) const override {
+    return drawn(sheet, options);
+  }
+  Image draw(const std::vector<Chart>& row, const ChartSize& size) const override {
+    return drawn(row, size);
+  }
+  std::string png_of(const Image& image) const override { return encoded_png(image); }
+};
+
+}  // namespace
+
+}  // namespace mimetra
+
+extern "C" __attribute__((visibility("default"))) const mimetra::Painter* mimetra_get_painter(
+    const char* version) noexcept {
+  static const mimetra::VtkPainter painter;
+  return std::string_view(version) == MIMETRA_VERSION ? &painter : nullptr;
+}
