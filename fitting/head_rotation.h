@@ -15,8 +15,14 @@ namespace mimetra {
 /// shears or stretches is left out. \pre the camera sees the model from some side: rank 2
 Eigen::Matrix3d head_rotation(const AffineCamera& camera);
 
-/// Each frame (F) turned by its camera's rotation about the middle of the rest pose, which stays.
-/// Throws std::invalid_argument for another number of cameras.
+/// What carries a model of other axes to one that looks along +z with y up, judged by how it is
+/// seen: of the rotations that exchange axes the one nearest to the mean of head_rotation()s, but
+/// none unless that is more than 60 degrees from none. \pre some rotations
+Eigen::Matrix3d looking_ahead(const std::vector<Eigen::Matrix3d>& rotations);
+
+/// Each frame (F) turned by its camera's rotation about the middle of the rest pose, which stays;
+/// in the model's own axes, looking_ahead(), so that a head that moves little stays near its rest
+/// pose. Throws std::invalid_argument for another number of cameras.
 MeshSequence turned_as_seen(const MeshSequence& sequence, const std::vector<AffineCamera>& cameras);
 
 }  // namespace mimetra

@@ -1,9 +1,12 @@
 #include "toolkit/correspondence/correspondence.h"
 
+#include <algorithm>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "tests/shapes.h"
+#include "toolkit/correspondence/found_correspondence.h"
 
 namespace mimetra {
 namespace {
@@ -96,6 +99,37 @@ TEST(Correspondence, GivesNoPartnerToPartsOfTheTargetThatNoMarkerReaches) {
   for (int t = 0; t < 128; ++t) EXPECT_THAT(partners_of(found.correspondence, t), ElementsAre(t));
   for (int t = 128; t < 256; ++t) EXPECT_FALSE(found.correspondence.has_partner(t));
   EXPECT_EQ(found.quality.without_partner, 0.5);
+}
+
+test::Shape ball_at(int level, double x, double y) {
+  test::Shape ball = test::sphere(level);
+  ball.positions = (0.1 * ball.positions).rowwise() + Eigen::RowVector3d(x, y, 0);
+  return ball;
+}
+
+TEST(FoundCorrespondence, PairsUnmarkedPartsThatLieOverEachOther) {
+  // Teeth within a head; the target is twice as large, finer, has one tooth elsewhere and one more.
+  const test::Shape head = test::sphere(2);
+  const test::Shape source = test::both(
+      head, test::both(ball_at(1, 0.3, 0), test::both(ball_at(1, 0, 0.3), ball_at(1, -0.3, 0))));
+  test::Shape target = test::both(
+      head, test::both(ball_at(2, 0, 0.3), test::both(ball_at(1, -0.3, 0), ball_at(1, 0.3, -0.4))));
+  target.positions *= 2;
+  const std::vector<Marker> markers = {{0, 0}, {1, 1}, {2, 2}, {3, 3}, {4, 4}, {5, 5}};
+  const auto found =
+      find_correspondence(test::mesh_of(source), test::mesh_of(target), markers).correspondence;
+  const auto is_of_ball = [&](int t, int ball) {
+    const auto partners = partners_of(found, t);
+    return !partners.empty() && std::ranges::all_of(partners, [ball](int partner) {
+      return partner >= 128 + 32 * ball && partner < 160 + 32 * ball;
+    });
+  };
+  for (int t = 128; t < 256; ++t) EXPECT_TRUE(is_of_ball(t, 1)) << t;
+  for (int t = 256; t < 288; ++t) {
+    EXPECT_TRUE(is_of_ball(t, 2)) << t;
+    EXPECT_LT(found.residuals[t], 1e-6);
+  }
+  for (int t = 288; t < 320; ++t) EXPECT_FALSE(found.has_partner(t)) << t;
 }
 
 TEST(Correspondence, HasTheSameBytesForEveryNumberOfThreads) {

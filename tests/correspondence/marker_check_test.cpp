@@ -6,6 +6,7 @@
 
 #include "tests/shapes.h"
 #include "toolkit/correspondence/correspondence.h"
+#include "toolkit/correspondence/found_correspondence.h"
 #include "toolkit/mesh/errors.h"
 
 namespace mimetra {

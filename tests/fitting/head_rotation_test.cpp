@@ -75,5 +75,39 @@ TEST(TurnedAsSeen, TurnsFramesAboutTheMiddleOfTheRestPose) {
   EXPECT_THROW(turned_as_seen(still, {}), std::invalid_argument);
 }
 
+TEST(LookingAhead, IsNoneForAHeadThatIsSeenFromAside) {
+  const Eigen::Matrix3d aside = Eigen::AngleAxisd(0.8, Eigen::Vector3d::UnitY()).toRotationMatrix();
+  EXPECT_EQ(looking_ahead({Eigen::Matrix3d::Identity(), aside, aside}),
+            Eigen::Matrix3d::Identity());
+}
+
+TEST(TurnedAsSeen, IsTheSameMotionForAModelOfOtherAxes) {
+  const Eigen::Matrix3d nod = Eigen::AngleAxisd(0.2, Eigen::Vector3d::UnitX()).toRotationMatrix();
+  const Eigen::Matrix3d shake = Eigen::AngleAxisd(0.3, Eigen::Vector3d::UnitY()).toRotationMatrix();
+  const TriMesh mesh = test::mesh_of(test::octahedron());
+  const auto motion = [&](const Eigen::Matrix3d& axes) {
+    const Positions rest = mesh.positions * axes.transpose();
+    Frames frames(2, rest.size());
+    frames.rowwise() = rest.reshaped<Eigen::RowMajor>().transpose();
+    const MeshSequence still(mesh.connectivity, frames, {}, rest);
+    const MeshSequence turned = turned_as_seen(
+        still, {seeing(nod * axes.transpose(), 2), seeing(shake * axes.transpose(), 1)});
+    // Back in the first model's axes.
+    Frames back(2, rest.size());
+    for (int f = 0; f < 2; ++f) {
+      const Positions pose = PositionsView(turned.positions().row(f).data(), 6, 3) * axes;
+      back.row(f) = pose.reshaped<Eigen::RowMajor>().transpose();
+    }
+    return back;
+  };
+  const Frames expected = motion(Eigen::Matrix3d::Identity());
+  Eigen::Matrix3d z_up, backwards;
+  z_up << 1, 0, 0, 0, 0, -1, 0, 1, 0;
+  backwards << -1, 0, 0, 0, 1, 0, 0, 0, -1;
+  for (const Eigen::Matrix3d& axes : {z_up, backwards, Eigen::Matrix3d(z_up * backwards)}) {
+    EXPECT_LT((motion(axes) - expected).cwiseAbs().maxCoeff(), 1e-12) << axes;
+  }
+}
+
 }  // namespace
 }  // namespace mimetra

@@ -111,6 +111,22 @@ TEST_F(FrameShapes, AreDescribedWithTheVertexThatStrays) {
               ElementsAre(testing::StartsWith("frame 3 is spiked: vertex 17 alone lies 0.3")));
 }
 
+TEST_F(FrameShapes, AreThoseOfTheSurfaceAlone) {
+  // A vertex of no triangle, and one of a triangle without area, far away in one frame.
+  const Eigen::Index count = ball_.positions.rows();
+  ball_.triangles.conservativeResize(ball_.triangles.rows() + 1, 3);
+  ball_.triangles.bottomRows(1) << 0, 0, static_cast<int>(count);
+  ball_.positions.conservativeResize(count + 2, 3);
+  ball_.positions.bottomRows(2).setZero();
+  for (Positions& pose : poses_) {
+    pose.conservativeResize(count + 2, 3);
+    pose.bottomRows(2).setZero();
+  }
+  poses_[4].bottomRows(2).setConstant(3000);
+  EXPECT_FALSE(odd().any());
+  EXPECT_EQ(spread(poses_[4], ball_.triangles), spread(poses_[4].topRows(count)));
+}
+
 TEST(CapturedFrameShapes, AreNotOdd) {
   const auto data = test::shared_path("data");
   if (!std::filesystem::exists(data)) GTEST_SKIP() << "no shared data beside the project";

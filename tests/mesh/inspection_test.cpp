@@ -75,6 +75,20 @@ TEST(Inspection, CountsVerticesThatRoundingMovedFromAnother) {
   EXPECT_EQ(inspect_shape(shape).almost_welded_vertices, 0);
 }
 
+TEST(Inspection, MeasuresWhatRoundingMovedByTheSurfaceAlone) {
+  test::Shape shape = octahedron();
+  shape.positions.conservativeResize(8, 3);
+  shape.positions.row(6) << 0, 0, 1e9;  // of no triangle
+  shape.positions.row(7) << 0, 0, 1e9 + 1;
+  EXPECT_EQ(inspect_shape(shape).almost_welded_vertices, 0);
+}
+
+TEST(Inspection, CountsManyVerticesThatLieAlmostAtOnePlace) {
+  test::Shape shape = test::grid(300, 300);
+  shape.positions.topRows(60000) *= 1e-10;
+  EXPECT_EQ(inspect_shape(shape).almost_welded_vertices, 60000);
+}
+
 TEST(Inspection, CountsTheEdgesAroundATurnedFace) {
   test::Shape shape = octahedron();
   EXPECT_EQ(inspect_shape(shape).inconsistent_edges, 0);

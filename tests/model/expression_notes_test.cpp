@@ -8,6 +8,7 @@
 #include "tests/shapes.h"
 #include "toolkit/model/displaced_expressions.h"
 #include "toolkit/model/exchanged_sides.h"
+#include "toolkit/model/torn_expressions.h"
 
 namespace mimetra {
 namespace {
@@ -158,6 +159,24 @@ TEST(ExchangedSides, NeedNamesToTellUpForAWholeFace) {
   EXPECT_THAT(face.notes(), IsEmpty());
   face.shapes.displacements.col(2).swap(face.shapes.displacements.col(3));
   EXPECT_THAT(face.sides().left_halves, ElementsAre("b_L"));
+}
+
+TEST(TornExpressions, AreThoseWithVerticesInAnotherOrder) {
+  Face face = face_with_names();
+  EXPECT_THAT(torn_expressions(face.neutral, face.triangles, face.shapes), IsEmpty());
+  const auto set_pose = [&face](int j, const Positions& pose) {
+    face.shapes.displacements.col(j) = (pose - face.neutral).reshaped<Eigen::RowMajor>();
+  };
+  Positions shuffled(81, 3);
+  for (int v = 0; v < 81; ++v) shuffled.row(v) = face.neutral.row(37 * v % 81);
+  set_pose(1, shuffled);
+  // Two that lie far apart in each other's place.
+  Positions exchanged = face.neutral;
+  exchanged.row(20).swap(exchanged.row(60));
+  set_pose(6, exchanged);
+  EXPECT_THAT(torn_expressions(face.neutral, face.triangles, face.shapes),
+              ElementsAre("eyeBlink_R", "jawOpen"));
+  EXPECT_THAT(face.notes(), testing::Contains(HasSubstr("tear the neutral's surface")));
 }
 
 TEST(ExchangedSides, TellNothingWhereHalvesMoveTheSameOrNothing) {

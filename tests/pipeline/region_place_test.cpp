@@ -128,6 +128,9 @@ TEST(LargeRegions, AreNotedUnlessTheirRadiusIsALength) {
   choose_regions(analysis,
                  {.radius = Length::of(0.9 * sequence.diameter()), .notes = noted.sink()});
   choose_regions(analysis, {.notes = noted.sink()});
+  RegionChoiceOptions of_support{.radius = Length::share(0.9), .notes = noted.sink()};
+  of_support.regions.shape = RegionShape::support;
+  choose_regions(analysis, of_support);
   EXPECT_FALSE(noted.has(Topic::large_regions));
 }
 

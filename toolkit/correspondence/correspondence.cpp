@@ -6,11 +6,10 @@
 #include <utility>
 
 #include "toolkit/correspondence/closest_surface.h"
-#include "toolkit/correspondence/marker_check.h"
+#include "toolkit/correspondence/reached_triangles.h"
 #include "toolkit/mesh/normals.h"
 #include "toolkit/mesh/parallel.h"
 #include "toolkit/mesh/text.h"
-#include "toolkit/mesh/weld.h"
 
 namespace mimetra {
 namespace {
@@ -88,34 +87,6 @@ Partners found_on(const PairedSurface& side, const PairedSurface& other, double 
   return found;
 }
 
-/// Of `triangles`, those of `counted` only.
-int folded_triangles(const Positions& positions, const Triangles& triangles,
-                     const std::vector<bool>& counted) {
-  const Positions at_vertices = vertex_normals(positions, triangles);
-  const Positions normals = triangle_normals(positions, triangles);
-  int folded = 0;
-  for (Eigen::Index t = 0; t < triangles.rows(); ++t) {
-    Eigen::RowVector3d around = Eigen::RowVector3d::Zero();
-    for (const VertexIndex v : triangles.row(t)) around += at_vertices.row(v).normalized();
-    if (counted[t] && normals.row(t).dot(around) < 0) ++folded;
-  }
-  return folded;
-}
-
-/// Triangles of the parts that a marker reaches, and their numbers.
-struct ReachedTriangles {
-  ReachedTriangles(const Positions& positions, const Triangles& all,
-                   const std::vector<bool>& reached) {
-    for (int t = 0; t < all.rows(); ++t) {
-      if (reached[all(t, 0)]) numbers.push_back(t);
-    }
-    triangles = Weld::exact(positions).welded(all(numbers, Eigen::all));
-  }
-
-  std::vector<int> numbers;
-  Triangles triangles;  ///< on the lowest vertices of each place
-};
-
 /// The partners of each triangle of `target`, ascending; rows of both surfaces.
 std::vector<std::vector<int>> partners_of(const PairedSurface& target, const Partners& of_target,
                                           const Partners& of_source) {
@@ -145,12 +116,6 @@ std::vector<Correspondence::Part> by_area(const std::vector<int>& rows,
     parts.push_back({numbers[row], surface.normals.row(row).norm() / area});
   }
   return parts;
-}
-
-/// With triangles that lead the other way round.
-TriMesh turned_over(TriMesh mesh) {
-  mesh.connectivity.triangles.col(1).swap(mesh.connectivity.triangles.col(2));
-  return mesh;
 }
 
 }  // namespace
@@ -224,29 +189,6 @@ Correspondence pair_triangles(const SurfaceFit& fitted, const Triangles& source,
     result.offsets.push_back(static_cast<int>(result.parts.size()));
   }
   return result;
-}
-
-FoundCorrespondence find_correspondence(const TriMesh& source, const TriMesh& target,
-                                        const std::vector<Marker>& markers,
-                                        const SurfaceFitOptions& options) {
-  check_fit(source, target, markers);
-  FoundCorrespondence found;
-  found.inside_out = is_inside_out(source, target, markers);
-  const TriMesh facing = found.inside_out ? turned_over(target) : target;
-  found.fit = fit_to_surface(source, facing, markers, options);
-  const Triangles& triangles = source.connectivity.triangles;
-  found.correspondence = pair_triangles(found.fit, triangles, facing, options.threads);
-  found.quality = quality_of(found.correspondence, box_diagonal(target.positions));
-  const ReachedTriangles parts(found.fit.positions, triangles, found.fit.reached);
-  std::vector<bool> is_partner(triangles.rows(), false);
-  for (const Correspondence::Part& part : found.correspondence.parts) {
-    is_partner[part.triangle] = true;
-  }
-  std::vector<bool> counted;
-  for (const int number : parts.numbers) counted.push_back(is_partner[number]);
-  found.quality.partners = static_cast<int>(std::ranges::count(is_partner, true));
-  found.quality.folded = folded_triangles(found.fit.positions, parts.triangles, counted);
-  return found;
 }
 
 }  // namespace mimetra

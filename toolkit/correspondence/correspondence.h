@@ -23,7 +23,7 @@ struct Correspondence {
   std::vector<int> offsets = {0};
   std::vector<Part> parts;
   /// How far the deformed source is from each target triangle's centroid (M), in the unit of the
-  /// target; infinite where nothing of it faces the same way, and on parts that no marker reaches.
+  /// target; infinite where nothing of it faces the same way.
   Eigen::VectorXd residuals;
 
   int target_triangles() const { return static_cast<int>(offsets.size()) - 1; }
@@ -51,15 +51,6 @@ struct CorrespondenceQuality {
 /// What the residuals tell of it; nothing is known of folds. `diagonal` of the target's box.
 CorrespondenceQuality quality_of(const Correspondence& pairs, double diagonal);
 
-/// A source deformed onto a target, and their triangles in pairs.
-struct FoundCorrespondence {
-  Correspondence correspondence;
-  SurfaceFit fit;
-  CorrespondenceQuality quality;
-  /// The target's faces lead the other way round than the source's: they were paired as if turned.
-  bool inside_out = false;
-};
-
 /// Pairs triangles whose centroids are nearest to each other's surface, both ways: a target
 /// triangle's partners are the triangle of `fitted` (N x 3, on the target's surface) whose centroid
 /// is nearest to its own, and those to which it is the nearest; both must face less than 90 degrees
@@ -68,10 +59,5 @@ struct FoundCorrespondence {
 /// partners' areas. Triangles that no marker reaches have no partner, and are none.
 Correspondence pair_triangles(const SurfaceFit& fitted, const Triangles& source,
                               const TriMesh& target, int threads = 0);
-
-/// fit_to_surface() and pair_triangles(). Throws what they and is_inside_out() throw.
-FoundCorrespondence find_correspondence(const TriMesh& source, const TriMesh& target,
-                                        const std::vector<Marker>& markers,
-                                        const SurfaceFitOptions& = {});
 
 }  // namespace mimetra

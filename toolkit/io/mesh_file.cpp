@@ -11,6 +11,7 @@
 #include "toolkit/io/mesh_layout.h"
 #include "toolkit/io/whole_file.h"
 #include "toolkit/mesh/errors.h"
+#include "toolkit/mesh/face_order.h"
 #include "toolkit/mesh/text.h"
 #include "toolkit/mesh/weld.h"
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <utility>
 #include <vector>
 
@@ -128,12 +129,9 @@ double diameter(const Eigen::Ref<const Positions>& positions) {
 }
 
 double diameter(const Positions& positions, const Triangles& triangles) {
-  const Triangles sound = with_area(positions, triangles);
-  const std::vector<VertexIndex> used =
-      used_vertices(sound.rows() > 0 ? sound : triangles, positions.rows());
-  return static_cast<Eigen::Index>(used.size()) == positions.rows()
-             ? diameter(positions)
-             : diameter(positions(used, Eigen::all));
+  const std::vector<VertexIndex> surface = surface_vertices(positions, triangles);
+  return std::ssize(surface) == positions.rows() ? diameter(positions)
+                                                 : diameter(positions(surface, Eigen::all));
 }
 
 }  // namespace mimetra

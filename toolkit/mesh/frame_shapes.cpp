@@ -6,7 +6,9 @@
 #include <Eigen/LU>
 
 #include "toolkit/mesh/median.h"
+#include "toolkit/mesh/stray_vertices.h"
 #include "toolkit/mesh/text.h"
+#include "toolkit/mesh/triangle_quality.h"
 
 namespace mimetra {
 namespace {
@@ -20,64 +22,40 @@ Positions centred(const Eigen::Ref<const Positions>& positions) {
   return positions.rowwise() - positions.colwise().mean();
 }
 
-/// Distances of vertices from the middle of their neighbours (N).
-Eigen::VectorXd distances_from_neighbors(const PositionsView& pose, const Triangles& triangles) {
-  Positions sums = Positions::Zero(pose.rows(), 3);
-  Eigen::VectorXd counts = Eigen::VectorXd::Zero(pose.rows());
-  for (const auto& corners : triangles.rowwise()) {
-    for (int c = 0; c < 3; ++c) {
-      sums.row(corners[c]) += pose.row(corners[(c + 1) % 3]) + pose.row(corners[(c + 2) % 3]);
-      counts[corners[c]] += 2;
-    }
-  }
-  Eigen::VectorXd distances = Eigen::VectorXd::Zero(pose.rows());
-  for (Eigen::Index v = 0; v < pose.rows(); ++v) {
-    if (counts[v] > 0) distances[v] = (pose.row(v) - sums.row(v) / counts[v]).norm();
-  }
-  return distances;
-}
-
-/// Of the edges at each vertex (N).
-Eigen::VectorXd longest_edges(const Positions& positions, const Triangles& triangles) {
-  Eigen::VectorXd longest = Eigen::VectorXd::Zero(positions.rows());
-  for (const auto& corners : triangles.rowwise()) {
-    for (int c = 0; c < 3; ++c) {
-      const VertexIndex a = corners[c], b = corners[(c + 1) % 3];
-      const double length = (positions.row(a) - positions.row(b)).norm();
-      longest[a] = std::max(longest[a], length);
-      longest[b] = std::max(longest[b], length);
-    }
-  }
-  return longest;
-}
-
 /// The mesh that frames are poses of.
 struct RestShape {
   explicit RestShape(const FrameSource& sequence)
-      : centred_rest(centred(sequence.rest())),
-        of_spread(spread(sequence.rest())),
-        from_neighbors(distances_from_neighbors(
-            PositionsView(sequence.rest().data(), sequence.vertices(), 3), sequence.triangles())),
-        edges(longest_edges(sequence.rest(), sequence.triangles())) {}
+      : surface(surface_vertices(sequence.rest(), sequence.triangles())),
+        triangles(with_area(sequence.rest(), sequence.triangles())),
+        centred_rest(centred(sequence.rest()(surface, Eigen::all))),
+        of_spread(spread(centred_rest)),
+        strays(sequence.rest(), triangles) {}
 
-  Positions centred_rest;
+  static PositionsView view_of(const Positions& positions) {
+    return {positions.data(), positions.rows(), 3};
+  }
+
+  std::vector<VertexIndex> surface;
+  Triangles triangles;
+  Positions centred_rest;  // of the surface
   double of_spread;
-  Eigen::VectorXd from_neighbors, edges;
+  StrayVertices strays;
 };
 
-FrameShape shape_of(const PositionsView& pose, const RestShape& rest, const Triangles& triangles) {
+FrameShape shape_of(const PositionsView& pose, const RestShape& rest) {
   FrameShape shape;
-  const Positions moved = centred(pose);
-  const auto count = static_cast<double>(pose.rows());
-  shape.spread = spread(pose);
-  shape.center = pose.colwise().mean().transpose();
+  const Positions surface = pose(rest.surface, Eigen::all);
+  const Positions moved = centred(surface);
+  const auto count = static_cast<double>(moved.rows());
+  shape.spread = spread(moved);
+  shape.center = surface.colwise().mean().transpose();
   if (shape.spread > 0 && rest.of_spread > 0) {
     const Eigen::Matrix3d mixed =
         moved.transpose() * rest.centred_rest / (count * shape.spread * rest.of_spread);
     shape.is_mirrored = mixed.determinant() < -kFlat;
   }
   double longest2 = 0;
-  for (const auto& corners : triangles.rowwise()) {
+  for (const auto& corners : rest.triangles.rowwise()) {
     for (int c = 0; c < 3; ++c) {
       const VertexIndex a = corners[c], b = corners[(c + 1) % 3];
       const double length2 = (pose.row(a) - pose.row(b)).squaredNorm();
@@ -87,10 +65,34 @@ FrameShape shape_of(const PositionsView& pose, const RestShape& rest, const Tria
     }
   }
   shape.longest_edge = std::sqrt(longest2);
-  if (triangles.rows() > 0) {
-    shape.stray = (distances_from_neighbors(pose, triangles) - rest.from_neighbors)
-                      .maxCoeff(&shape.stray_vertex);
+  if (rest.triangles.rows() > 0) {
+    shape.stray = rest.strays.distances(pose).maxCoeff(&shape.stray_vertex);
   }
+  return shape;
+}
+
+/// A shape as numbers, which ranks send to each other.
+constexpr Eigen::Index kShapeNumbers = 11;
+using ShapeNumbers = Eigen::Matrix<double, 1, kShapeNumbers>;
+
+ShapeNumbers numbers_of(const FrameShape& shape) {
+  ShapeNumbers numbers;
+  numbers << shape.spread, shape.center.transpose(), shape.is_mirrored, shape.longest_edge,
+      shape.ends.first, shape.ends.second, shape.stray, shape.stray_vertex, shape.from_first;
+  return numbers;
+}
+
+FrameShape shape_from(const ShapeNumbers& numbers) {
+  const auto vertex = [&numbers](int place) { return static_cast<VertexIndex>(numbers[place]); };
+  FrameShape shape;
+  shape.spread = numbers[0];
+  shape.center = numbers.segment<3>(1).transpose();
+  shape.is_mirrored = numbers[4] != 0;
+  shape.longest_edge = numbers[5];
+  shape.ends = {vertex(6), vertex(7)};
+  shape.stray = numbers[8];
+  shape.stray_vertex = vertex(9);
+  shape.from_first = numbers[10];
   return shape;
 }
 
@@ -101,23 +103,32 @@ double spread(const Eigen::Ref<const Positions>& positions) {
   return std::sqrt(centred(positions).squaredNorm() / static_cast<double>(positions.rows()));
 }
 
+double spread(const Positions& positions, const Triangles& triangles) {
+  return spread(positions(surface_vertices(positions, triangles), Eigen::all));
+}
+
 bool is_other_size(double spread, double usual) {
   return spread > kOtherSize * usual || usual > kOtherSize * spread;
 }
 
 std::vector<FrameShape> frame_shapes(const FrameSource& sequence, const BlockOptions& options) {
-  std::vector<FrameShape> shapes(static_cast<std::size_t>(sequence.frames()));
   const RestShape rest(sequence);
   const Frames first_pose = sequence.read(0, 1);
-  const PositionsView start(first_pose.data(), sequence.vertices(), 3);
-  for_each_block(sequence, options, [&](int first, const Frames& poses) {
-    for (Eigen::Index row = 0; row < poses.rows(); ++row) {
-      const PositionsView pose(poses.row(row).data(), sequence.vertices(), 3);
-      FrameShape& shape = shapes[static_cast<std::size_t>(first + row)];
-      shape = shape_of(pose, rest, sequence.triangles());
-      shape.from_first = std::sqrt((pose - start).rowwise().squaredNorm().maxCoeff());
-    }
-  });
+  const Positions start =
+      PositionsView(first_pose.data(), sequence.vertices(), 3)(rest.surface, Eigen::all);
+  const FrameNumbers numbers = over_frames(
+      sequence, 0, kShapeNumbers, options, [&](int, const FrameBlock& block, FrameRows& of_block) {
+        for (int row = 0; row < block.frames(); ++row) {
+          const PositionsView pose = block.frame(row);
+          FrameShape shape = shape_of(pose, rest);
+          const Positions surface = pose(rest.surface, Eigen::all);
+          shape.from_first = std::sqrt((surface - start).rowwise().squaredNorm().maxCoeff());
+          of_block.row(row) = numbers_of(shape);
+        }
+      });
+  std::vector<FrameShape> shapes;
+  shapes.reserve(static_cast<std::size_t>(sequence.frames()));
+  for (const auto& of_frame : numbers.of_each.rowwise()) shapes.push_back(shape_from(of_frame));
   return shapes;
 }
 
@@ -137,15 +148,15 @@ std::vector<int> jumping_frames(const std::vector<FrameShape>& shapes, double si
   return jumping;
 }
 
-/// Whether a vertex that strays in a frame does not in the frames beside it.
+/// Whether a vertex that strays in a frame strays by so much less in the frames beside it.
 bool strays_alone(const FrameSource& sequence, const RestShape& rest, int frame,
                   const FrameShape& shape, double least) {
   for (const int beside : {frame - 1, frame + 1}) {
     if (beside < 0 || beside >= sequence.frames()) continue;
     const FrameBlock block(sequence, beside, 1);
-    const Eigen::VectorXd there = distances_from_neighbors(block.frame(0), sequence.triangles());
-    const VertexIndex v = shape.stray_vertex;
-    if (there[v] - rest.from_neighbors[v] > shape.stray - least) return false;
+    if (rest.strays.distances(block.frame(0))[shape.stray_vertex] > shape.stray - least) {
+      return false;
+    }
   }
   return sequence.frames() > 1;
 }
@@ -159,16 +170,19 @@ std::string told(const std::vector<int>& frames, const std::string& what) {
 
 }  // namespace
 
+bool OddFrames::any() const {
+  return !(of_other_size.empty() && mirrored.empty() && torn.empty() && jumping.empty() &&
+           spiked.empty());
+}
+
 OddFrames odd_frames(const FrameSource& sequence, const std::vector<FrameShape>& shapes) {
   std::vector<double> spreads;
   spreads.reserve(shapes.size());
   for (const FrameShape& shape : shapes) spreads.push_back(shape.spread);
   OddFrames odd;
   odd.usual_spread = median(std::move(spreads));
-  constexpr double kStray = 0.05;
   const RestShape rest(sequence);
-  const FrameShape of_rest = shape_of(PositionsView(sequence.rest().data(), sequence.vertices(), 3),
-                                      rest, sequence.triangles());
+  const FrameShape of_rest = shape_of(RestShape::view_of(sequence.rest()), rest);
   const double size = sequence.diameter();
   odd.jumping = jumping_frames(shapes, size);
   for (std::size_t f = 0; f < shapes.size(); ++f) {
@@ -178,11 +192,11 @@ OddFrames odd_frames(const FrameSource& sequence, const std::vector<FrameShape>&
     if (shape.is_mirrored) odd.mirrored.push_back(frame);
     // A frame in another unit is not torn for that.
     const double unit = rest.of_spread > 0 ? std::max(1.0, shape.spread / rest.of_spread) : 1;
-    const double least = unit * kStray * size;
     if (shape.longest_edge > unit * std::max(size / 2, 2 * of_rest.longest_edge)) {
       odd.torn.push_back(frame);
-    } else if (shape.stray > least && shape.stray > unit * rest.edges[shape.stray_vertex] &&
-               strays_alone(sequence, rest, frame, shape, least)) {
+    } else if (rest.triangles.rows() > 0 &&
+               rest.strays.is_torn_off(shape.stray_vertex, shape.stray, size, unit) &&
+               strays_alone(sequence, rest, frame, shape, unit * StrayVertices::kStray * size)) {
       odd.spiked.push_back(frame);
     }
   }

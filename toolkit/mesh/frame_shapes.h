@@ -12,13 +12,17 @@ namespace mimetra {
 /// few percent, another unit by far more.
 double spread(const Eigen::Ref<const Positions>& positions);
 
+/// That of the surface_vertices(), so that stray points are no part of it.
+double spread(const Positions& positions, const Triangles& triangles);
+
 /// Spreads of one mesh differ by less than this factor, unless something is wrong with one.
 constexpr double kOtherSize = 2;
 
 /// Whether one of two spreads is more than kOtherSize times the other. \pre both are finite
 bool is_other_size(double spread, double usual);
 
-/// What of a frame tells whether it is a pose of its mesh.
+/// What of a frame tells whether it is a pose of its mesh: of the surface_vertices() and the
+/// triangles with_area() of its rest pose.
 struct FrameShape {
   double spread = 0;
   /// Mean of the vertices.
@@ -49,11 +53,12 @@ struct OddFrames {
   /// One frame at a time: a fifth of the size away from the middle of the frames before and after,
   /// which are next to each other.
   std::vector<int> jumping;
-  /// Not torn, but a vertex strays by more than a twentieth of the size and than its edges are long
-  /// at rest, and by so much more than in the frames before and after. Faces that were captured
-  /// stay below 0.3 %.
+  /// Not torn, but a vertex is_torn_off() as it is not in the frames before and after, by a
+  /// twentieth of the size.
   std::vector<int> spiked;
   double usual_spread = 0;  ///< the median
+
+  bool any() const;
 };
 
 /// \pre one shape a frame

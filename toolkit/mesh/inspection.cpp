@@ -1,5 +1,7 @@
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <iterator>
 #include <numeric>
 #include <stdexcept>
 #include <string>
@@ -7,7 +9,9 @@
 
 #include <Eigen/Geometry>
 
+#include "toolkit/mesh/diameter.h"
 #include "toolkit/mesh/inspection.h"
+#include "toolkit/mesh/triangle_quality.h"
 #include "toolkit/mesh/weld.h"
 
 namespace mimetra {
@@ -127,24 +131,30 @@ std::vector<int> degenerate_triangles(const Positions& positions, const Triangle
   return degenerate;
 }
 
-/// Of the places at which vertices are.
-int almost_welded(const Positions& positions, const Weld& weld) {
+/// Of the places at which vertices of the surface are.
+int almost_welded(const Positions& positions, const Triangles& triangles, const Weld& weld) {
   constexpr double kAlmost = 1e-6;
-  const double reach = kAlmost * box_diagonal(positions);
+  const double reach = kAlmost * diameter(positions, triangles);
   // Along a line that no grid is straight to.
   const Eigen::VectorXd along = positions * Eigen::Vector3d(1, 1.7, 2.3).normalized();
-  std::vector<VertexIndex> order = weld.representative;
+  std::vector<VertexIndex> order;
+  for (const VertexIndex v : surface_vertices(positions, triangles)) {
+    order.push_back(weld.representative[static_cast<std::size_t>(v)]);
+  }
   std::ranges::sort(order, {}, [&along](VertexIndex v) { return std::pair(along[v], v); });
   order.erase(std::unique(order.begin(), order.end()), order.end());
-  std::vector<bool> is_near(weld.representative.size(), false);
-  for (std::size_t i = 0; i < order.size(); ++i) {
-    for (std::size_t j = i + 1; j < order.size() && along[order[j]] - along[order[i]] <= reach;
-         ++j) {
-      if ((positions.row(order[j]) - positions.row(order[i])).norm() > reach) continue;
-      is_near[std::size_t(order[i])] = is_near[std::size_t(order[j])] = true;
+  const auto has_near = [&](std::ptrdiff_t i, std::ptrdiff_t step) {
+    const VertexIndex v = order[static_cast<std::size_t>(i)];
+    for (std::ptrdiff_t j = i + step; j >= 0 && j < std::ssize(order); j += step) {
+      const VertexIndex other = order[static_cast<std::size_t>(j)];
+      if (std::abs(along[other] - along[v]) > reach) break;
+      if ((positions.row(other) - positions.row(v)).norm() <= reach) return true;
     }
-  }
-  return static_cast<int>(std::ranges::count(is_near, true));
+    return false;
+  };
+  int count = 0;
+  for (std::ptrdiff_t i = 0; i < std::ssize(order); ++i) count += has_near(i, 1) || has_near(i, -1);
+  return count;
 }
 
 std::vector<VertexIndex> vertices_without_face(int vertices, const Triangles& triangles) {
@@ -202,7 +212,7 @@ MeshReport inspect(const Positions& positions, const Connectivity& connectivity)
   report.degenerate_triangles = degenerate_triangles(positions, triangles);
   report.vertices_without_face = vertices_without_face(report.vertices, triangles);
   report.welded_vertices = weld.count;
-  report.almost_welded_vertices = almost_welded(positions, weld);
+  report.almost_welded_vertices = almost_welded(positions, triangles, weld);
   if (positions.rows() > 0) {
     report.extent = positions.colwise().maxCoeff() - positions.colwise().minCoeff();
   }

@@ -2,7 +2,6 @@
 
 #include <filesystem>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -79,12 +78,6 @@ bool same_faces(const Connectivity& a, const Connectivity& b);
 
 /// Index of the first polygon in which the two differ (up to cyclic rotation), or -1.
 int first_different_face(const Connectivity& a, const Connectivity& b);
-
-/// The connectivity of `mesh` with the triangles of `reference`, one by one, each wound as its
-/// polygon of `mesh`; none unless both have the same polygons, in any order, each from some corner
-/// and wound either way, and no polygon twice. The polygons of one may be cut in the other, as
-/// quads are into triangles, along any diagonals.
-std::optional<Connectivity> in_order_of(const Connectivity& reference, const Connectivity& mesh);
 
 /// The vertices that triangles use, ascending; all of so many where there is no triangle.
 std::vector<VertexIndex> used_vertices(const Triangles& triangles, Eigen::Index vertices);

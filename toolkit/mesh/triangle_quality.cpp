@@ -1,7 +1,6 @@
 #include "toolkit/mesh/triangle_quality.h"
 
 #include <algorithm>
-#include <vector>
 
 #include <Eigen/Geometry>
 
@@ -27,6 +26,11 @@ Triangles with_area(const Positions& positions, const Triangles& triangles) {
     if (has_area(positions, triangles, t)) sound.push_back(t);
   }
   return triangles(sound, Eigen::all);
+}
+
+std::vector<VertexIndex> surface_vertices(const Positions& positions, const Triangles& triangles) {
+  const Triangles sound = with_area(positions, triangles);
+  return used_vertices(sound.rows() > 0 ? sound : triangles, positions.rows());
 }
 
 }  // namespace mimetra

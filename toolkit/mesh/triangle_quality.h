@@ -1,5 +1,7 @@
 #pragma once
 
+#include <vector>
+
 #include "toolkit/mesh/tri_mesh.h"
 
 namespace mimetra {
@@ -17,5 +19,9 @@ bool has_area(const Positions& positions, const Triangles& triangles, Eigen::Ind
 
 /// Those that do, in their order.
 Triangles with_area(const Positions& positions, const Triangles& triangles);
+
+/// The vertices of triangles with area, ascending: those of a surface, without stray points. Where
+/// no triangle has area used_vertices() of them.
+std::vector<VertexIndex> surface_vertices(const Positions& positions, const Triangles& triangles);
 
 }  // namespace mimetra

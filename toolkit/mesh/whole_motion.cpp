@@ -1,17 +1,49 @@
 #include "toolkit/mesh/whole_motion.h"
 
+#include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <utility>
+#include <vector>
 
 #include "toolkit/mesh/alignment.h"
+#include "toolkit/mesh/triangle_quality.h"
 
 namespace mimetra {
 namespace {
 
-/// What is measured of a frame: of squared distances from the rest pose, all, and what the motion
-/// and the similarity leave, which are added over frames; the others are of each.
-enum Number { kAll, kLeftByMotion, kLeftBySimilarity, kAngle, kShift, kScale };
-constexpr int kSummed = 3, kNumbers = 6;
+/// What is measured of a frame: of squared distances from the rest pose, all, what the motion and
+/// the similarity leave, and those of the stillest vertices there and by the motion, which are
+/// added over frames; the others are of each.
+enum Number {
+  kAll,
+  kLeftByMotion,
+  kLeftBySimilarity,
+  kOfStillest,
+  kOfStillestByMotion,
+  kAngle,
+  kShift,
+  kScale
+};
+constexpr int kSummed = 5, kNumbers = 8;
 using Numbers = Eigen::Matrix<double, 1, kNumbers>;
+
+/// A twentieth of so many, and one.
+Eigen::Index count_of_least(Eigen::Index count) {
+  return std::min(count, count / 20 + 1);
+}
+
+/// That many that are least, ascending; of equals the first.
+std::vector<Eigen::Index> least_of(const Eigen::VectorXd& values) {
+  std::vector<Eigen::Index> order(static_cast<std::size_t>(values.size()));
+  std::iota(order.begin(), order.end(), Eigen::Index{0});
+  const Eigen::Index count = count_of_least(values.size());
+  std::ranges::nth_element(order, order.begin() + count, {},
+                           [&values](Eigen::Index v) { return std::pair(values[v], v); });
+  order.resize(static_cast<std::size_t>(count));
+  std::ranges::sort(order);
+  return order;
+}
 
 Numbers numbers_of(const Positions& rest, const Eigen::Ref<const Positions>& pose) {
   const RigidTransform motion = rigid_fit(rest, pose);
@@ -19,28 +51,45 @@ Numbers numbers_of(const Positions& rest, const Eigen::Ref<const Positions>& pos
   const Eigen::RowVector3d from = moved.colwise().mean(), to = pose.colwise().mean();
   const Positions turned = moved.rowwise() - from, there = pose.rowwise() - to;
   const double size = turned.squaredNorm();
-  Numbers numbers;
+  Numbers numbers = Numbers::Zero();
   numbers[kScale] = size > 0 ? turned.cwiseProduct(there).sum() / size : 1;
   numbers[kAll] = (pose - rest).squaredNorm();
   numbers[kLeftByMotion] = (there - turned).squaredNorm();
   numbers[kLeftBySimilarity] = (there - numbers[kScale] * turned).squaredNorm();
+  const Eigen::VectorXd distances = (pose - rest).rowwise().squaredNorm();
+  const std::vector<Eigen::Index> stillest = least_of(distances);
+  for (const Eigen::Index v : stillest) {
+    numbers[kOfStillest] += distances[v];
+    numbers[kOfStillestByMotion] += (moved.row(v) - rest.row(v)).squaredNorm();
+  }
   numbers[kAngle] = motion.angle();
   numbers[kShift] = (to - rest.colwise().mean()).norm();
   return numbers;
 }
 
-WholeMotion together(Eigen::Index vertices, const Eigen::Ref<const Eigen::VectorXd>& sums,
+WholeMotion together(const Positions& rest, const Eigen::Ref<const Eigen::VectorXd>& sums,
                      const Eigen::Ref<const Eigen::MatrixXd>& of_each) {
   constexpr int kFew = 10;
+  // Of the size (RMS): single precision alone moves by less.
+  constexpr double kRounding = 1e-6;
   WholeMotion whole;
   whole.angle = of_each.col(kAngle - kSummed).maxCoeff();
   whole.shift = of_each.col(kShift - kSummed).maxCoeff();
   for (const double scale : of_each.col(kScale - kSummed)) {
     if (std::abs(scale - 1) > std::abs(whole.scale - 1)) whole.scale = scale;
   }
-  if (sums[kAll] > 0 && vertices >= kFew) {
+  const double size2 = (rest.rowwise() - rest.colwise().mean()).squaredNorm();
+  const auto frames = static_cast<double>(of_each.rows());
+  if (sums[kAll] > frames * kRounding * kRounding * size2 && rest.rows() >= kFew) {
     whole.left_by_motion = sums[kLeftByMotion] / sums[kAll];
     whole.left_by_similarity = sums[kLeftBySimilarity] / sums[kAll];
+    // What moves by less than a hundredth of the mean is on an axis of the motion, if on anything.
+    constexpr double kOnAxis = 0.01;
+    const auto stillest = static_cast<double>(count_of_least(rest.rows()));
+    const double least =
+        kOnAxis * kOnAxis * stillest / static_cast<double>(rest.rows()) * sums[kAll];
+    whole.of_stillest =
+        std::sqrt((sums[kOfStillest] + least) / (sums[kOfStillestByMotion] + least));
   }
   return whole;
 }
@@ -54,19 +103,21 @@ bool WholeMotion::is_scaled() const {
 
 WholeMotion whole_motion(const Positions& rest, const Positions& pose) {
   const Numbers numbers = numbers_of(rest, pose);
-  return together(rest.rows(), numbers.head<kSummed>().transpose(),
-                  numbers.tail<kNumbers - kSummed>());
+  return together(rest, numbers.head<kSummed>().transpose(), numbers.tail<kNumbers - kSummed>());
 }
 
 WholeMotion whole_motion(const FrameSource& source, const BlockOptions& options) {
+  const std::vector<VertexIndex> surface = surface_vertices(source.rest(), source.triangles());
+  const Positions rest = source.rest()(surface, Eigen::all);
   const FrameNumbers numbers = over_frames(source, kSummed, kNumbers - kSummed, options,
                                            [&](int, const FrameBlock& block, FrameRows& of_block) {
                                              for (int row = 0; row < block.frames(); ++row) {
-                                               of_block.row(row) =
-                                                   numbers_of(source.rest(), block.frame(row));
+                                               const Positions pose =
+                                                   block.frame(row)(surface, Eigen::all);
+                                               of_block.row(row) = numbers_of(rest, pose);
                                              }
                                            });
-  return together(source.vertices(), numbers.sum, numbers.of_each);
+  return together(rest, numbers.sum, numbers.of_each);
 }
 
 }  // namespace mimetra

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "toolkit/mesh/diameter.h"
+#include "toolkit/mesh/triangle_quality.h"
 #include "toolkit/mesh/whole_motion.h"
 
 namespace mimetra {
@@ -42,7 +43,7 @@ bool is_turned_or_scaled(const Positions& neutral, const Positions& moves) {
 std::vector<std::string> displaced_expressions(const Positions& neutral, const Triangles& triangles,
                                                const ShapeBasis& expressions) {
   const double least = kStillShare * diameter(neutral, triangles);
-  const std::vector<VertexIndex> used = used_vertices(triangles, neutral.rows());
+  const std::vector<VertexIndex> used = surface_vertices(neutral, triangles);
   const Positions face = neutral(used, Eigen::all);
   std::vector<std::string> displaced;
   for (int j = 0; j < expressions.size(); ++j) {

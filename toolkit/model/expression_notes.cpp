@@ -3,6 +3,7 @@
 #include "toolkit/mesh/text.h"
 #include "toolkit/model/displaced_expressions.h"
 #include "toolkit/model/exchanged_sides.h"
+#include "toolkit/model/torn_expressions.h"
 
 namespace mimetra {
 
@@ -32,6 +33,13 @@ std::vector<std::string> notes_on_expressions(const std::string& name, const Pos
                     listed(displaced) +
                     "; every vertex of it moves as in no expression: bring them there (`mimetra "
                     "align`) and into one unit, or the face moves with them");
+  }
+  const std::vector<std::string> torn = torn_expressions(neutral, triangles, expressions);
+  if (!torn.empty()) {
+    notes.push_back(name +
+                    ": expressions that tear the neutral's surface, as where their vertices "
+                    "are in another order: " +
+                    listed(torn) + "; give them the neutral's (`mimetra convert --match`)");
   }
   const ExchangedSides sides = exchanged_sides(neutral, triangles, expressions);
   if (!sides.left_halves.empty()) notes.push_back(name + ": " + described(sides));

@@ -60,10 +60,11 @@ std::vector<std::string> frame_warnings(const FrameSource& sequence, const Block
                        " against the rest pose, " + percent(1 - whole.left_by_motion) +
                        " of all motion");
   }
-  if (is_other_size(spread(sequence.rest()), odd.usual_spread)) {
+  const double of_rest = spread(sequence.rest(), sequence.triangles());
+  if (is_other_size(of_rest, odd.usual_spread)) {
     warnings.push_back("the rest pose is of another size than the frames: its vertices lie " +
-                       readable(spread(sequence.rest())) +
-                       " from their mean (RMS), those of frames " + readable(odd.usual_spread));
+                       readable(of_rest) + " from their mean (RMS), those of frames " +
+                       readable(odd.usual_spread));
   }
   return warnings;
 }

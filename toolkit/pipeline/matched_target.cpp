@@ -3,8 +3,10 @@
 #include <cmath>
 #include <utility>
 
+#include "toolkit/correspondence/found_correspondence.h"
 #include "toolkit/correspondence/renumbering.h"
 #include "toolkit/mesh/errors.h"
+#include "toolkit/mesh/face_order.h"
 #include "toolkit/mesh/similarity.h"
 #include "toolkit/mesh/stopwatch.h"
 #include "toolkit/mesh/text.h"

@@ -51,11 +51,12 @@ void note_small_parts(Regions& regions, const Notes& notes) {
   note(notes, regions.notes.back(), Topic::small_parts);
 }
 
-/// Says where a region is most of the mesh: nothing is told apart then.
+}  // namespace
+
 void note_large_regions(const Regions& regions, const RegionChoiceOptions& options, double size,
                         const Triangles& triangles) {
   constexpr double kMost = 0.5;
-  if (options.radius.absolute) return;
+  if (options.radius.absolute || options.regions.shape != RegionShape::disc) return;
   const auto most = static_cast<std::size_t>(
       kMost * static_cast<double>(used_vertices(triangles, regions.vertices).size()));
   const auto is_large = [most](const Region& region) { return region.vertices.size() > most; };
@@ -69,8 +70,6 @@ void note_large_regions(const Regions& regions, const RegionChoiceOptions& optio
            ", which parts beside the face can make large",
        Topic::large_regions);
 }
-
-}  // namespace
 
 bool has_own_regions(const RegionChoiceOptions& options) {
   return options.select == Selector::transfer ||

@@ -68,11 +68,15 @@ constexpr double kSmallPart = 0.02;
 
 /// Regions of an analysis, of which the strongest are kept that hold no more than the share of the
 /// triangles; what find_regions() notes is noted, and regions whose centres lie on a small part of
-/// the surface (Topic::small_parts), regions of more than half of the
-/// mesh (Topic::large_regions), and components that give no region because they move a rim
-/// most. Throws std::invalid_argument for options out of range, OptionError (Topic::triangle_bound)
-/// where the strongest region alone holds more.
+/// the surface (Topic::small_parts), those that note_large_regions() finds, and components that
+/// give no region because they move a rim most. Throws std::invalid_argument for options out of
+/// range, OptionError (Topic::triangle_bound) where the strongest region alone holds more.
 Regions choose_regions(const Analysis& analysis, const RegionChoiceOptions& options = {});
+
+/// Says which discs of a radius that was not given as a length hold more than half of a mesh of
+/// this size (Topic::large_regions): they tell nothing apart.
+void note_large_regions(const Regions& regions, const RegionChoiceOptions& options, double size,
+                        const Triangles& triangles);
 
 /// Whether each of several targets has regions that may hold what another's do not: those that are
 /// chosen for it, and those that make room for its own discs.

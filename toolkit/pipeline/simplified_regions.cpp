@@ -61,6 +61,7 @@ SimplifiedRegions regions_by_simplified(const Source& source, const SimplifyOpti
   result.regions = carried_regions(found, result.mesh, whole.vertices(), whole.triangles(),
                                    distances_along(whole.rest(), whole.triangles(), of_distances),
                                    analysis.inside);
+  note_large_regions(result.regions, choice, whole.diameter(), whole.triangles());
   result.seconds = stopwatch.seconds();
   return result;
 }

@@ -8,6 +8,7 @@
 #include "toolkit/mesh/frame_shapes.h"
 #include "toolkit/mesh/frame_store.h"
 #include "toolkit/mesh/text.h"
+#include "toolkit/mesh/triangle_quality.h"
 #include "toolkit/mesh/whole_motion.h"
 
 namespace mimetra {
@@ -122,8 +123,9 @@ Shared with_asked_rest(Shared sequence, const SourceOptions& options) {
 /// Throws MismatchError for a rest pose in another unit than the frames: all of their deformation
 /// would be that.
 void check_size_of_rest(const FrameSource& sequence, const std::string& name) {
-  const double of_rest = spread(sequence.rest());
-  const double of_frame = spread(FrameBlock(sequence, 0, 1).frame(0));
+  const std::vector<VertexIndex> surface = surface_vertices(sequence.rest(), sequence.triangles());
+  const double of_rest = spread(sequence.rest()(surface, Eigen::all));
+  const double of_frame = spread(FrameBlock(sequence, 0, 1).frame(0)(surface, Eigen::all));
   if (!is_other_size(of_rest, of_frame)) return;
   const bool larger = of_rest > of_frame;
   const double ratio = larger ? of_rest / of_frame : of_frame / of_rest;

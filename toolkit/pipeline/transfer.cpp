@@ -194,7 +194,7 @@ void note_usability(const TargetSolve& solved, const TransferError& error,
   std::string text = target.name + ": the result may not be usable: " + wrong;
   const FrameSource& source = *solved.placed.source.sequence;
   const OddFrames odd = odd_frames(source, frame_shapes(source, {.threads = options.threads}));
-  if (!odd.of_other_size.empty() || !odd.mirrored.empty() || !odd.torn.empty()) {
+  if (odd.any()) {
     note(options.notes, text +
                             "; look at the source's frames, of which some can be no poses of its "
                             "mesh: `mimetra check` names them");
