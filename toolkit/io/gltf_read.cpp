@@ -317,10 +317,10 @@ class GltfReader {
       for (Eigen::Index v = 0; v < vertices; ++v) {
         for (int k = 0; k < 4; ++k) {
           if (weights(v, k) == 0) continue;
-          if (which(v, k) < 0 || which(v, k) >= static_cast<double>(joints.size())) {
+          if (which(v, k) < 0 || which(v, k) >= static_cast<double>(joints.rows())) {
             fail(shown_name(placed), "vertex " + std::to_string(v) + " hangs on joint " +
                                          readable(which(v, k)) + " of " +
-                                         std::to_string(joints.size()));
+                                         std::to_string(joints.rows()) + ", which count from 0");
           }
           blended.row(v) += weights(v, k) * joints.row(static_cast<Eigen::Index>(which(v, k)));
           sums[v] += weights(v, k);
