@@ -354,6 +354,22 @@ TEST_F(GltfFiles, AVertexOnAJointThatItsSkinDoesNotHaveIsAnError) {
   EXPECT_THAT(error(gltf.glb()), HasSubstr("vertex 3 hangs on joint 1 of 1, which count from 0"));
 }
 
+TEST_F(GltfFiles, AMirroredJointTurnsTheFacesThatItHolds) {
+  const int both = 2;
+  for (int primitives = 1; primitives <= both; ++primitives) {
+    GltfBuilder gltf = skinned(plain(), {-1, 1, 1});
+    GltfJson& list = gltf.root["meshes"][0]["primitives"];
+    list[0]["indices"] = gltf.faces((Triangles(2, 3) << 0, 1, 2, 3, 4, 5).finished());
+    if (primitives == both) list.push_back(list[0]);  // on the same vertices
+    const Triangles triangles = model(gltf.glb()).triangles();
+    ASSERT_EQ(triangles.rows(), 2 * primitives);
+    for (int t = 0; t < triangles.rows(); t += 2) {
+      EXPECT_EQ(triangles.row(t), Eigen::RowVector3i(0, 1, 2));
+      EXPECT_EQ(triangles.row(t + 1), Eigen::RowVector3i(3, 5, 4));
+    }
+  }
+}
+
 TEST_F(GltfFiles, PointsAndLinesAreSaidToBeLeftOut) {
   GltfBuilder gltf = plain();
   gltf.primitive(0, 1)["mode"] = 1;
