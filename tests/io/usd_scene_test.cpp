@@ -8,6 +8,7 @@ namespace {
 using test::corners;
 using test::on_joints;
 using test::smile;
+using test::smiling;
 using test::UsdFiles;
 using testing::ElementsAre;
 using testing::HasSubstr;
@@ -35,6 +36,39 @@ TEST_F(UsdFiles, MatricesOfABindingHaveToBeSome) {
                               "(0, 0, 1, 0), (0, 0, 0, 1))]\nmatrix4d[] bindTransforms = "
                               "[((1, 0, 0, 0), (0, 1, 0, 0), (0, 0, 0, 0), (0, 0, 0, 1))]\n")),
               HasSubstr("the first of bindTransforms has no inverse"));
+}
+
+/// `text` with `with` instead of the first `what`.
+std::string changed(std::string text, const std::string& what, const std::string& with) {
+  return text.replace(text.find(what), what.size(), with);
+}
+
+/// Points and a weight at every code: z of the last point is 1 + a hundredth of the code, and moved
+/// by the weight, which is the same.
+std::string sampled(int rate, int codes) {
+  std::string points = "\n    point3f[] points.timeSamples = {\n", weights = ".timeSamples = {\n";
+  for (int code = 0; code < codes; ++code) {
+    const std::string share = std::to_string(0.01 * code);
+    points += "      " + std::to_string(code) + ": [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, " +
+              std::to_string(1 + 0.01 * code) + ")],\n";
+    weights += "      " + std::to_string(code) + ": [0, " + share + "],\n";
+  }
+  return changed(smiling(weights + "    }", points + "    }"), "timeCodesPerSecond = 10",
+                 "timeCodesPerSecond = " + std::to_string(rate));
+}
+
+TEST_F(UsdFiles, PointsAndWeightsAtOneCodeAreOneFrame) {
+  constexpr int kCodes = 400;
+  for (const int rate : {24, 25, 30, 48, 50, 60, 120}) {
+    const MeshSequence sequence = read(sampled(rate, kCodes));
+    ASSERT_EQ(sequence.frames(), kCodes) << rate;
+    for (int code = 0; code < kCodes; ++code) {
+      ASSERT_EQ(sequence.times()[code], static_cast<double>(code) / rate);
+      // The shape moves the last point by 1 along x.
+      ASSERT_NEAR(sequence.frame(code)(3, 0), 0.01 * code, 1e-12) << rate;
+      ASSERT_NEAR(sequence.frame(code)(3, 2), 1 + 0.01 * code, 1e-12) << rate;
+    }
+  }
 }
 
 }  // namespace

@@ -33,6 +33,7 @@ struct UsdMesh {
   Eigen::Matrix4d bound = Eigen::Matrix4d::Identity();
   /// Time codes at which it is told by other than weights.
   std::set<double> codes = {};
+  std::vector<double> weight_codes = {};
   bool rest_is_known = true;
 };
 
@@ -295,7 +296,7 @@ class UsdReader {
     return animations_.front().second;
   }
 
-  std::shared_ptr<const WeightCurve> weights_of(const UsdMesh& mesh,
+  std::shared_ptr<const WeightCurve> weights_of(UsdMesh& mesh,
                                                 const std::vector<std::string>& names) {
     const UsdPrim* animation = animation_of(mesh);
     if (!animation) return nullptr;
@@ -334,25 +335,26 @@ class UsdReader {
       }
     }
     curve->times /= rate_;
+    mesh.weight_codes = std::move(times);
     return curve;
   }
 
   /// Frames of points and transforms that are told over time, with the weights on top.
   void bake(Scene& scene) const {
-    std::set<double> codes;
+    std::map<double, double> codes;  // by their seconds, of which two codes may have the same
+    const auto add = [&](double code) { codes.emplace(code / rate_, code); };
     bool rest_is_known = true;
     for (const UsdMesh& mesh : meshes_) {
-      codes.insert(mesh.codes.begin(), mesh.codes.end());
+      std::ranges::for_each(mesh.codes, add);
+      std::ranges::for_each(mesh.weight_codes, add);
       rest_is_known = rest_is_known && mesh.rest_is_known;
-      if (!mesh.part.weights) continue;
-      for (const double time : mesh.part.weights->times) codes.insert(time * rate_);
     }
     const auto frames = static_cast<Eigen::Index>(codes.size());
     check_scene_size(path_, scene.model->vertices(), static_cast<double>(frames), bytes_);
     Frames poses(frames, 3 * scene.model->vertices());
     Eigen::VectorXd times(frames);
     Eigen::Index frame = 0;
-    for (const double code : codes) {
+    for (const auto& [seconds, code] : codes) {
       Eigen::Index at = 0;
       for (const UsdMesh& mesh : meshes_) {
         const Positions points = pose_at(mesh, code);
@@ -360,7 +362,7 @@ class UsdReader {
             Eigen::Map<const Eigen::RowVectorXd>(points.data(), points.size());
         at += points.size();
       }
-      times[frame++] = code / rate_;
+      times[frame++] = seconds;
     }
     check_times(path_, times);
     std::optional<Positions> rest;
