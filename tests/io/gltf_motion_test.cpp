@@ -178,5 +178,24 @@ TEST_F(GltfFiles, TargetsWithoutNamesThatMeetByNumberAreSaid) {
               ElementsAre(AllOf(HasSubstr("targets without names"), HasSubstr("'face', 'big'"))));
 }
 
+TEST_F(GltfFiles, KeysOfATimeOfDayAreFramesOfTheirOwn) {
+  // Single precision counts 256ths of a second there: about four of them are a frame.
+  std::vector<float> times;
+  for (int key = 0; key < 60; ++key) times.push_back(static_cast<float>(36000 + key / 60.));
+  GltfBuilder gltf = two_nodes(plain());
+  std::vector<float> weights(60, 0), half_times, half_weights(30, 1);
+  for (int key = 0; key < 60; key += 2) half_times.push_back(times[static_cast<std::size_t>(key)]);
+  for (std::size_t key = 1; key < 60; key += 2) weights[key] = 1;
+  gltf.animate(0, half_times, half_weights, "STEP");
+  gltf.animate(2, times, weights, "STEP");
+  const MeshSequence sequence = read(gltf.glb());
+  ASSERT_EQ(sequence.frames(), 60);
+  for (int f = 0; f < 60; ++f) {
+    EXPECT_EQ(sequence.frame(f).topRows(6), quarters() + moved());
+    EXPECT_EQ(sequence.frame(f).bottomRows(6),
+              sequence.rest().bottomRows(6) + 2.0 * (f % 2) * moved());
+  }
+}
+
 }  // namespace
 }  // namespace mimetra

@@ -71,5 +71,29 @@ TEST_F(UsdFiles, PointsAndWeightsAtOneCodeAreOneFrame) {
   }
 }
 
+TEST_F(UsdFiles, CodesOfATimeOfDayAreTimesOfTheirOwn) {
+  for (const int rate : {24, 60}) {
+    const int noon = 12 * 3600 * rate;
+    std::string points, weights = ".timeSamples = { ";
+    for (int code = noon; code < noon + 5; ++code) {
+      points += std::to_string(code) + ": [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)],\n";
+    }
+    for (const int at : {0, 2, 4}) {
+      weights += std::to_string(noon + at) + (at == 2 ? ": [0, 1], " : ": [0, 0], ");
+    }
+    const MeshSequence sequence = read(
+        changed(smiling(weights + '}', "\n    point3f[] points.timeSamples = {" + points + "    }"),
+                "timeCodesPerSecond = 10", "timeCodesPerSecond = " + std::to_string(rate)));
+    ASSERT_EQ(sequence.frames(), 5);
+    std::vector<double> moved;
+    for (int f = 0; f < 5; ++f) moved.push_back(sequence.frame(f)(3, 0));
+    // Seconds since midnight in double precision leave a billionth of a frame.
+    constexpr double kRounding = 1e-8;
+    EXPECT_THAT(moved,
+                testing::Pointwise(testing::DoubleNear(kRounding), {0.0, 0.5, 1.0, 0.5, 0.0}))
+        << rate;
+  }
+}
+
 }  // namespace
 }  // namespace mimetra
