@@ -178,6 +178,19 @@ TEST_F(GltfFiles, TargetsWithoutNamesThatMeetByNumberAreSaid) {
               ElementsAre(AllOf(HasSubstr("targets without names"), HasSubstr("'face', 'big'"))));
 }
 
+TEST_F(GltfFiles, ATargetWithoutANameAmongNamedOnesMeetsByNumberToo) {
+  GltfBuilder gltf = two_nodes(plain());
+  GltfJson& mesh = gltf.root["meshes"][0];
+  mesh["primitives"][0]["targets"].push_back(mesh["primitives"][0]["targets"][0]);
+  mesh["extras"]["targetNames"] = {"smile", ""};
+  gltf.root["meshes"].push_back(mesh);
+  gltf.root["nodes"][2]["mesh"] = 1;
+  EXPECT_THAT(model(gltf.glb()).expressions().names, ElementsAre("smile", "target_001"));
+  read(gltf.glb());
+  EXPECT_THAT(notes_,
+              ElementsAre(AllOf(HasSubstr("targets without names"), HasSubstr("'face', 'big'"))));
+}
+
 TEST_F(GltfFiles, KeysOfATimeOfDayAreFramesOfTheirOwn) {
   // Single precision counts 256ths of a second there: about four of them are a frame.
   std::vector<float> times;

@@ -149,20 +149,21 @@ ExpressionList expressions_of(const std::vector<ScenePart>& parts, const Eigen::
 /// Parts whose targets without names are one expression with those of another mesh.
 std::vector<std::string> united_by_number(const std::vector<ScenePart>& parts,
                                           const std::vector<JoinedExpression>& expressions) {
-  std::map<std::size_t, std::set<std::size_t>> parts_of;
+  using MeshOfPart = std::map<std::size_t, std::size_t>;
+  std::map<std::size_t, MeshOfPart> unnamed;  // of each expression
   for (std::size_t j = 0; j < expressions.size(); ++j) {
     for (const auto& [p, target] : expressions[j].from) {
-      if (!parts[p].targets[static_cast<std::size_t>(target)].unnamed_in) continue;
-      parts_of[expressions[j].joins.value_or(j)].insert(p);
+      const auto mesh = parts[p].targets[static_cast<std::size_t>(target)].unnamed_in;
+      if (mesh) unnamed[expressions[j].joins.value_or(j)].emplace(p, *mesh);
     }
   }
   std::set<std::size_t> united;
-  for (const auto& expression : parts_of) {
-    const std::set<std::size_t>& of = expression.second;
-    const auto mesh_of = [&](std::size_t p) { return parts[p].targets.front().unnamed_in; };
+  for (const auto& [expression, meshes] : unnamed) {
+    const std::size_t first = meshes.begin()->second;
     const bool is_one =
-        std::ranges::all_of(of, [&](std::size_t p) { return mesh_of(p) == mesh_of(*of.begin()); });
-    if (!is_one) united.insert(of.begin(), of.end());
+        std::ranges::all_of(meshes, [&](const auto& part) { return part.second == first; });
+    if (is_one) continue;
+    for (const auto& [p, mesh] : meshes) united.insert(p);
   }
   std::vector<std::string> names;
   for (const std::size_t p : united) names.push_back("'" + parts[p].name + "'");
