@@ -191,6 +191,18 @@ TEST_F(GltfFiles, ATargetWithoutANameAmongNamedOnesMeetsByNumberToo) {
               ElementsAre(AllOf(HasSubstr("targets without names"), HasSubstr("'face', 'big'"))));
 }
 
+TEST_F(GltfFiles, WeightsThatStayAndDifferAreSaidToDoSo) {
+  GltfBuilder gltf = two_nodes(plain());
+  gltf.root["nodes"][0]["weights"] = {0.5};
+  gltf.root["nodes"][2]["weights"] = {0.0};
+  EXPECT_EQ(read(gltf.glb()).frame(0).topRows(6), quarters() + 0.5 * moved());
+  ASSERT_EQ(notes_.size(), 1U);
+  EXPECT_THAT(notes_[0],
+              AllOf(HasSubstr("some with weights that stay and differ"),
+                    HasSubstr("'smile' of 'big' is 'smile_2'"), testing::Not(HasSubstr("take"))));
+  EXPECT_THAT(model(gltf.glb()).expressions().names, ElementsAre("smile"));
+}
+
 TEST_F(GltfFiles, KeysOfATimeOfDayAreFramesOfTheirOwn) {
   // Single precision counts 256ths of a second there: about four of them are a frame.
   std::vector<float> times;

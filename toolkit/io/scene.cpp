@@ -407,8 +407,9 @@ Scene joined_scene(const std::string& path, std::vector<ScenePart> parts, std::s
   scene.notes = notes_of(path, parts, list);
   if (!list.renamed_in_take.empty()) {
     scene.motion_notes.push_back(path +
-                                 ": targets of one name, of which the take drives some: they are "
-                                 "one expression of the model, and several in the take: " +
+                                 ": targets of one name, some with weights that stay and differ "
+                                 "from the others': they are one expression of the model, and "
+                                 "several where the file's own weights drive them: " +
                                  listed(list.renamed_in_take));
   }
   scene.times = times;
