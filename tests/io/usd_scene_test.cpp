@@ -10,6 +10,7 @@ using test::on_joints;
 using test::smile;
 using test::smiling;
 using test::UsdFiles;
+using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
@@ -41,6 +42,82 @@ TEST_F(UsdFiles, MatricesOfABindingHaveToBeSome) {
 /// `text` with `with` instead of the first `what`.
 std::string changed(std::string text, const std::string& what, const std::string& with) {
   return text.replace(text.find(what), what.size(), with);
+}
+
+TEST_F(UsdFiles, AMeshWhoseSkeletonIsNotThereStandsByItsOwnTransformAndSaysSo) {
+  const std::string named = "rel skel:skeleton = </face/bones>";
+  const Positions own = corners().rowwise() + Eigen::RowVector3d(9, 9, 9);
+  const auto starts_as = [&](const std::string& text) {
+    return Positions(read(text).frame(0)) - smile() == own;
+  };
+  EXPECT_TRUE(starts_as(changed(on_joints(), named, "rel skel:skeleton = </face/none>")));
+  EXPECT_THAT(notes_, ElementsAre(HasSubstr("'mesh' has joints and there is no Skeleton "
+                                            "</face/none>: its own transform places it")));
+  EXPECT_TRUE(starts_as(changed(on_joints(), named, "")));
+  EXPECT_THAT(notes_, ElementsAre(HasSubstr("'mesh' has joints and names no skeleton: its own")));
+}
+
+TEST_F(UsdFiles, ARelativePathStartsFromThePrimThatHasIt) {
+  const Positions expected = read(on_joints()).rest();
+  const std::string named = "rel skel:skeleton = </face/bones>";
+  EXPECT_EQ(read(changed(on_joints(), named, "rel skel:skeleton = <../bones>")).rest(), expected);
+  const std::string above = changed(changed(on_joints(), named, ""), "def SkelRoot \"face\" {",
+                                    "def SkelRoot \"face\" { rel skel:skeleton = <bones>\n");
+  EXPECT_EQ(read(above).rest(), expected);
+  const std::string source = "rel skel:animationSource = </face/bones/take>";
+  EXPECT_EQ(read(changed(above, source, "rel skel:animationSource = <take>")).frame(0),
+            expected + 2 * smile());
+  EXPECT_THAT(error(changed(on_joints(), source, "rel skel:animationSource = <../../..>")),
+              HasSubstr("there is no SkelAnimation <../../..>"));
+}
+
+/// Three joints, each 1 above the one before, as bound; at rest the last one is 4 to the side.
+constexpr const char* kChain = R"(
+    uniform token[] joints = ["root", "root/neck", "root/neck/jaw"]
+    uniform matrix4d[] bindTransforms = [
+      ((1, 0, 0, 0), (0, 1, 0, 0), (0, 0, 1, 0), (0, 0, 0, 1)),
+      ((1, 0, 0, 0), (0, 1, 0, 0), (0, 0, 1, 0), (0, 1, 0, 1)),
+      ((1, 0, 0, 0), (0, 1, 0, 0), (0, 0, 1, 0), (0, 2, 0, 1))]
+    uniform matrix4d[] restTransforms = [
+      ((1, 0, 0, 0), (0, 1, 0, 0), (0, 0, 1, 0), (0, 0, 0, 1)),
+      ((1, 0, 0, 0), (0, 1, 0, 0), (0, 0, 1, 0), (0, 1, 0, 1)),
+      ((1, 0, 0, 0), (0, 1, 0, 0), (0, 0, 1, 0), (4, 1, 0, 1))])";
+
+TEST_F(UsdFiles, JointsThatHoldTheirVerticesElsewhereAreNamed) {
+  const auto hanging = [&](const std::string& on) {
+    return read(changed(on_joints(kChain), "jointIndices = [0, 0, 0, 0]", "jointIndices = " + on))
+        .rest();
+  };
+  const Positions bound = hanging("[0, 0, 0, 0]");
+  EXPECT_EQ(notes_.size(), 1U);
+  EXPECT_EQ(hanging("[0, 1, 1, 0]"), bound);
+  EXPECT_EQ(notes_.size(), 1U) << "the neck is where it was";
+  EXPECT_EQ(hanging("[0, 1, 2, 0]"), bound);
+  EXPECT_THAT(notes_, testing::Contains(AllOf(
+                          HasSubstr("'mesh' stands as a whole where joint 'root' holds it at rest"),
+                          HasSubstr("elsewhere: 'root/neck/jaw'"))));
+  EXPECT_EQ(hanging("[2, 2, 2, 2]"), bound.rowwise() + Eigen::RowVector3d(4, 0, 0));
+  EXPECT_EQ(notes_.size(), 1U) << "all of it is where its joint is";
+}
+
+TEST_F(UsdFiles, JointsAreThoseWithWeightsInTheOrderOfTheMesh) {
+  const auto hanging = [&](const std::string& of_mesh) {
+    return read(changed(on_joints(kChain), "int[] primvars:skel:jointIndices = [0, 0, 0, 0]",
+                        of_mesh))
+        .rest();
+  };
+  const Positions bound = read(on_joints(kChain)).rest();
+  const Positions aside = bound.rowwise() + Eigen::RowVector3d(4, 0, 0);
+  EXPECT_EQ(hanging("uniform token[] skel:joints = [\"root/neck/jaw\", \"root\"]\n"
+                    "int[] primvars:skel:jointIndices = [0, 0, 0, 0]"),
+            aside);
+  EXPECT_EQ(hanging("int[] primvars:skel:jointIndices = [0, 2, 0, 2, 0, 2, 0, 2]\n"
+                    "float[] primvars:skel:jointWeights = [0, 1, 0, 1, 0, 1, 0, 1]"),
+            aside);
+  EXPECT_EQ(notes_.size(), 1U);
+  EXPECT_THAT(error(changed(on_joints(kChain), "jointIndices = [0, 0, 0, 0]",
+                            "jointIndices = [0, 3, 0, 0]")),
+              HasSubstr("joint 3 of 3, which count from 0"));
 }
 
 /// Points and a weight at every code: z of the last point is 1 + a hundredth of the code, and moved
