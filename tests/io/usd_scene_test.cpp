@@ -6,6 +6,8 @@ namespace mimetra {
 namespace {
 
 using test::corners;
+using test::kTetrahedron;
+using test::layer_of;
 using test::on_joints;
 using test::smile;
 using test::smiling;
@@ -170,6 +172,20 @@ TEST_F(UsdFiles, CodesOfATimeOfDayAreTimesOfTheirOwn) {
                 testing::Pointwise(testing::DoubleNear(kRounding), {0.0, 0.5, 1.0, 0.5, 0.0}))
         << rate;
   }
+}
+
+TEST_F(UsdFiles, AnotherUnitThanMetresIsSaid) {
+  const auto with_unit = [](const std::string& unit) {
+    return changed(layer_of("def Mesh \"m\" {" + std::string(kTetrahedron) + "}"),
+                   "timeCodesPerSecond = 10", "metersPerUnit = " + unit);
+  };
+  EXPECT_EQ(read(with_unit("0.01")).rest(), corners());
+  EXPECT_THAT(notes_, ElementsAre(AllOf(HasSubstr("its unit is 0.01 m (metersPerUnit)"),
+                                        HasSubstr("'scale' 0.01 makes metres"))));
+  read(with_unit("1"));
+  EXPECT_TRUE(notes_.empty());
+  read(layer_of("def Mesh \"m\" {" + std::string(kTetrahedron) + "}"));
+  EXPECT_TRUE(notes_.empty());
 }
 
 }  // namespace

@@ -50,6 +50,7 @@ class UsdReader {
     if (z_is_up_) {
       notes_.push_back(path_ + ": its up axis is z; convert with option 'up' z-to-y turns it");
     }
+    note_unit();
   }
 
   Scene read() {
@@ -84,6 +85,17 @@ class UsdReader {
     const auto found = layer_.metadata.find(name);
     if (found == layer_.metadata.end() || found->second.numbers.empty()) return fallback;
     return found->second.numbers.front();
+  }
+
+  /// Positions stay as they are, and nothing that is written has a unit but glTF, by its rules.
+  void note_unit() {
+    const double metres = setting("metersPerUnit", 1);
+    if (metres == 1 || !(metres > 0) || std::isinf(metres)) return;
+    const std::string number = readable(metres, 6);
+    notes_.push_back(
+        path_ + ": its unit is " + number +
+        " m (metersPerUnit) and positions are read as they are; convert with option 'scale' " +
+        number + " makes metres, as glTF has them");
   }
 
   void visit(const UsdPrim& prim, UsdStack stack) {
