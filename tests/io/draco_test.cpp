@@ -91,6 +91,15 @@ TEST(Draco, AMeshWithoutTheJointsThatItsFileNamesSaysSo) {
               HasSubstr("its compressed mesh has no joints"));
 }
 
+TEST(Draco, AVertexOnAJointThatItsSkinDoesNotHaveIsAnError) {
+  test::TemporaryFolder folder;
+  GltfBuilder gltf = hanging_gltf();
+  gltf.root["skins"][0]["joints"] = {1};
+  write_bytes(folder / "a.glb", gltf.glb());
+  EXPECT_THAT(test::message_of<IoError>([&] { read_blendshapes((folder / "a.glb").string()); }),
+              HasSubstr("hangs on joint 1 of 1, which count from 0"));
+}
+
 TEST(Draco, EveryTruncatedPrefixIsAnError) {
   test::TemporaryFolder folder;
   const std::string encoded = draco_octahedron();

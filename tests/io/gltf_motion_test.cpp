@@ -178,5 +178,49 @@ TEST_F(GltfFiles, TargetsWithoutNamesThatMeetByNumberAreSaid) {
               ElementsAre(AllOf(HasSubstr("targets without names"), HasSubstr("'face', 'big'"))));
 }
 
+TEST_F(GltfFiles, ATargetWithoutANameAmongNamedOnesMeetsByNumberToo) {
+  GltfBuilder gltf = two_nodes(plain());
+  GltfJson& mesh = gltf.root["meshes"][0];
+  mesh["primitives"][0]["targets"].push_back(mesh["primitives"][0]["targets"][0]);
+  mesh["extras"]["targetNames"] = {"smile", ""};
+  gltf.root["meshes"].push_back(mesh);
+  gltf.root["nodes"][2]["mesh"] = 1;
+  EXPECT_THAT(model(gltf.glb()).expressions().names, ElementsAre("smile", "target_001"));
+  read(gltf.glb());
+  EXPECT_THAT(notes_,
+              ElementsAre(AllOf(HasSubstr("targets without names"), HasSubstr("'face', 'big'"))));
+}
+
+TEST_F(GltfFiles, WeightsThatStayAndDifferAreSaidToDoSo) {
+  GltfBuilder gltf = two_nodes(plain());
+  gltf.root["nodes"][0]["weights"] = {0.5};
+  gltf.root["nodes"][2]["weights"] = {0.0};
+  EXPECT_EQ(read(gltf.glb()).frame(0).topRows(6), quarters() + 0.5 * moved());
+  ASSERT_EQ(notes_.size(), 1U);
+  EXPECT_THAT(notes_[0],
+              AllOf(HasSubstr("some with weights that stay and differ"),
+                    HasSubstr("'smile' of 'big' is 'smile_2'"), testing::Not(HasSubstr("take"))));
+  EXPECT_THAT(model(gltf.glb()).expressions().names, ElementsAre("smile"));
+}
+
+TEST_F(GltfFiles, KeysOfATimeOfDayAreFramesOfTheirOwn) {
+  // Single precision counts 256ths of a second there: about four of them are a frame.
+  std::vector<float> times;
+  for (int key = 0; key < 60; ++key) times.push_back(static_cast<float>(36000 + key / 60.));
+  GltfBuilder gltf = two_nodes(plain());
+  std::vector<float> weights(60, 0), half_times, half_weights(30, 1);
+  for (int key = 0; key < 60; key += 2) half_times.push_back(times[static_cast<std::size_t>(key)]);
+  for (std::size_t key = 1; key < 60; key += 2) weights[key] = 1;
+  gltf.animate(0, half_times, half_weights, "STEP");
+  gltf.animate(2, times, weights, "STEP");
+  const MeshSequence sequence = read(gltf.glb());
+  ASSERT_EQ(sequence.frames(), 60);
+  for (int f = 0; f < 60; ++f) {
+    EXPECT_EQ(sequence.frame(f).topRows(6), quarters() + moved());
+    EXPECT_EQ(sequence.frame(f).bottomRows(6),
+              sequence.rest().bottomRows(6) + 2.0 * (f % 2) * moved());
+  }
+}
+
 }  // namespace
 }  // namespace mimetra

@@ -320,8 +320,9 @@ TEST_F(GltfFiles, MovementOfNodesIsSaidToBeLeftOut) {
   EXPECT_THAT(notes_[0], HasSubstr("'big'"));
 }
 
-TEST_F(GltfFiles, ASkinHoldsItsVerticesWhereItsJointsStand) {
-  GltfBuilder gltf = plain();
+/// The first three vertices on joint 0, 1 higher; the others on joint 1, which `scale` makes
+/// larger.
+GltfBuilder skinned(GltfBuilder gltf, const GltfJson& scale) {
   const int joints = gltf.accessor(
       gltf.view(std::string(12, '\0') + GltfBuilder::bytes_of(std::vector<std::uint32_t>{1, 1, 1})),
       5121, 6, "VEC4");
@@ -334,13 +335,39 @@ TEST_F(GltfFiles, ASkinHoldsItsVerticesWhereItsJointsStand) {
   gltf.root["skins"] = {{{"joints", {1, 2}}}};
   gltf.root["nodes"] = {{{"mesh", 0}, {"skin", 0}, {"translation", {9, 9, 9}}},
                         {{"translation", {0, 1, 0}}, {"children", {2}}},
-                        {{"scale", {2, 2, 2}}}};
+                        {{"scale", scale}}};
   gltf.root["scenes"][0]["nodes"] = {0, 1};
-  const BlendshapeModel face = model(gltf.glb());
+  return gltf;
+}
+
+TEST_F(GltfFiles, ASkinHoldsItsVerticesWhereItsJointsStand) {
+  const BlendshapeModel face = model(skinned(plain(), {2, 2, 2}).glb());
   const Eigen::RowVector3d up(0, 1, 0);
   EXPECT_EQ(face.neutral().topRows(3), quarters().topRows(3).rowwise() + up);
   EXPECT_EQ(face.neutral().bottomRows(3), (2 * quarters().bottomRows(3)).rowwise() + up);
   EXPECT_EQ(face.expressions().displacements(3 * 4 + 1, 0), 2);
+}
+
+TEST_F(GltfFiles, AVertexOnAJointThatItsSkinDoesNotHaveIsAnError) {
+  GltfBuilder gltf = skinned(plain(), {2, 2, 2});
+  gltf.root["skins"][0]["joints"] = {1};
+  EXPECT_THAT(error(gltf.glb()), HasSubstr("vertex 3 hangs on joint 1 of 1, which count from 0"));
+}
+
+TEST_F(GltfFiles, AMirroredJointTurnsTheFacesThatItHolds) {
+  const int both = 2;
+  for (int primitives = 1; primitives <= both; ++primitives) {
+    GltfBuilder gltf = skinned(plain(), {-1, 1, 1});
+    GltfJson& list = gltf.root["meshes"][0]["primitives"];
+    list[0]["indices"] = gltf.faces((Triangles(2, 3) << 0, 1, 2, 3, 4, 5).finished());
+    if (primitives == both) list.push_back(list[0]);  // on the same vertices
+    const Triangles triangles = model(gltf.glb()).triangles();
+    ASSERT_EQ(triangles.rows(), 2 * primitives);
+    for (int t = 0; t < triangles.rows(); t += 2) {
+      EXPECT_EQ(triangles.row(t), Eigen::RowVector3i(0, 1, 2));
+      EXPECT_EQ(triangles.row(t + 1), Eigen::RowVector3i(3, 5, 4));
+    }
+  }
 }
 
 TEST_F(GltfFiles, PointsAndLinesAreSaidToBeLeftOut) {

@@ -7,6 +7,7 @@
 #include "tests/shapes.h"
 #include "tests/shared_data.h"
 #include "tests/temporary_folder.h"
+#include "toolkit/io/sequence_file.h"
 #include "toolkit/io/whole_file.h"
 #include "toolkit/mesh/errors.h"
 
@@ -166,6 +167,33 @@ TEST(Obj, MayEndAsFilesOfDosDid) {
   EXPECT_EQ(read_text(".obj", text + "\x1a").positions.rows(), 3);
   EXPECT_THAT(error_of(".obj", text + "\x1a\nv 0 0 0\n"),
               HasSubstr("line 5: expected a statement"));
+}
+
+TEST(Obj, ZeroBytesAfterItsEndArePadding) {
+  const std::string text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3", zeros(4096, '\0');
+  for (const std::string end : {"", "\n", "\n\x1a"}) {
+    EXPECT_EQ(read_text(".obj", text + end + zeros).connectivity.triangles,
+              (Triangles(1, 3) << 0, 1, 2).finished());
+  }
+  EXPECT_THAT(error_of(".obj", text + '\n' + zeros + "\nv 0 0 0\n"),
+              HasSubstr("line 5: expected a statement"));
+}
+
+TEST(Obj, LinesMayEndInCarriageReturnsAlone) {
+  const TriMesh mesh = read_text(".obj", "# head\rv 0 0 0\rv 1 0 0\rv 0 1 0\rf 1 2 3\r");
+  EXPECT_EQ(mesh.positions.rows(), 3);
+  EXPECT_EQ(mesh.connectivity.triangles.rows(), 1);
+  EXPECT_THAT(error_of(".obj", "v 0 0 0\rv 1 0 0\rv 0 x 0\r"), HasSubstr("line 3: expected a num"));
+}
+
+TEST(Obj, FramesMayEndTheirLinesInCarriageReturnsAlone) {
+  const TemporaryFolder folder;
+  const std::string start = "v 0 0 0\rv 1 0 0\rv 0 1 ", end = "\rf 1 2 3\r";
+  write_bytes(folder / "f_1.obj", start + "0" + end);
+  write_bytes(folder / "f_2.obj", start + "5" + end);
+  const MeshSequence sequence = read_sequence((folder / "f_%d.obj").string()).sequence;
+  ASSERT_EQ(sequence.frames(), 2);
+  EXPECT_EQ(sequence.frame(1)(2, 2), 5);
 }
 
 TEST(Obj, PassesOverStatementsThatSayNothingOfTheMesh) {
@@ -335,6 +363,25 @@ TEST(Ply, ABinaryFileMayEndWithBlanks) {
               HasSubstr("2 bytes follow the last element, expected the end of the file"));
 }
 
+TEST(Ply, ZeroBytesAfterItsEndArePadding) {
+  const std::string zeros(4096, '\0');
+  for (const std::string tail : {"", "\n", "\r\n"}) {
+    expect_the_ply_triangle(read_text(".ply", binary_ply(false) + tail + zeros));
+  }
+  EXPECT_THAT(error_of(".ply", binary_ply(false) + zeros + "\x01"),
+              HasSubstr("4097 bytes follow the last element, expected the end of the file"));
+  const std::string text =
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\n"
+      "property float y\nproperty float z\nelement face 1\n"
+      "property list uchar int vertex_indices\nend_header\n"
+      "0 0 0\n1 0 0\n0 1 0\n3 0 1 2";
+  for (const std::string end : {"", "\n"}) {
+    EXPECT_EQ(read_text(".ply", text + end + zeros).connectivity.triangles.rows(), 1);
+  }
+  EXPECT_THAT(error_of(".ply", text + '\n' + zeros + '5'),
+              HasSubstr("line 14: expected the end of the file"));
+}
+
 TEST(Ply, StripsOfTrianglesAreNamed) {
   EXPECT_THAT(error_of(".ply",
                        "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\n"
@@ -361,6 +408,13 @@ TEST(Off, ReadsCommentsAndColours) {
                                  "4 0 1 2 3 0.5 0.5 0.5\n");
   EXPECT_EQ(mesh.positions.row(2), Eigen::RowVector3d(1, 1, 0));
   EXPECT_THAT(mesh.connectivity.polygons.corners, ElementsAre(0, 1, 2, 3));
+}
+
+TEST(Off, ZeroBytesAfterItsEndArePadding) {
+  const std::string text = "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2", zeros(4096, '\0');
+  for (const std::string end : {"", "\n"}) {
+    EXPECT_EQ(read_text(".off", text + end + zeros).connectivity.triangles.rows(), 1);
+  }
 }
 
 TEST(Off, ReadsNormalsAndCountsBesideTheKeyword) {

@@ -6,8 +6,8 @@
 #include <gmock/gmock.h>
 
 #include "tests/io/changed_bytes.h"
+#include "tests/io/usd_fixture.h"
 #include "tests/shapes.h"
-#include "tests/temporary_folder.h"
 #include "toolkit/io/model_file.h"
 #include "toolkit/io/sequence_file.h"
 #include "toolkit/io/whole_file.h"
@@ -18,76 +18,15 @@
 namespace mimetra {
 namespace {
 
+using test::corners;
+using test::kTetrahedron;
+using test::layer_of;
 using test::message_of;
-using test::TemporaryFolder;
+using test::smile;
+using test::smiling;
+using test::UsdFiles;
 using testing::ElementsAre;
 using testing::HasSubstr;
-
-/// A tetrahedron's faces and points, for a Mesh.
-constexpr const char* kTetrahedron = R"(
-    int[] faceVertexCounts = [3, 3, 3, 3]
-    int[] faceVertexIndices = [0, 2, 1, 0, 1, 3, 1, 2, 3, 2, 0, 3]
-    point3f[] points = [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)]
-)";
-
-Positions corners() {
-  return (Positions(4, 3) << 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1).finished();
-}
-
-std::string layer_of(const std::string& prims) {
-  return "#usda 1.0\n(\n  timeCodesPerSecond = 10\n)\n" + prims;
-}
-
-/// A mesh with a shape, `smile`, and what else stands in it and beside it.
-std::string smiling(const std::string& weights, const std::string& inside = "") {
-  return layer_of(R"(def SkelRoot "face" {
-  def Mesh "mesh" (
-    prepend apiSchemas = ["SkelBindingAPI"]
-  ) {)" + std::string(kTetrahedron) +
-                  R"(    uniform token[] skel:blendShapes = ["smile"]
-    rel skel:blendShapeTargets = [</face/mesh/shape>]
-    rel skel:skeleton = </face/bones>
-    def BlendShape "shape" {
-      uniform vector3f[] offsets = [(0, 0, 0.5), (1, 0, 0)]
-      uniform int[] pointIndices = [1, 3]
-    })" + inside +
-                  R"(
-  }
-  def Skeleton "bones" {
-    rel skel:animationSource = </face/bones/take>
-    def SkelAnimation "take" {
-      uniform token[] blendShapes = ["frown", "smile"]
-      float[] blendShapeWeights)" +
-                  weights + "\n    }\n  }\n}\n");
-}
-
-Positions smile() {
-  return (Positions(4, 3) << 0, 0, 0, 0, 0, 0.5, 0, 0, 0, 1, 0, 0).finished();
-}
-
-class UsdFiles : public testing::Test {
- protected:
-  MeshSequence read(const std::string& text, const SequenceSource& source = {}) {
-    write_bytes(file_, text);
-    SequenceRead result = read_sequence(file_.string(), source);
-    notes_ = result.notes;
-    return std::move(result.sequence);
-  }
-  std::string error(const std::string& text) {
-    write_bytes(file_, text);
-    return message_of<IoError>([&] { read_sequence(file_.string()); });
-  }
-  /// Where a mesh stands by these steps of its parent.
-  Positions placed(const std::string& steps) {
-    return read(layer_of("def Xform \"a\" {\n" + steps + "\ndef Mesh \"m\" {" + kTetrahedron +
-                         "}\n}\n"))
-        .rest();
-  }
-
-  TemporaryFolder folder_;
-  std::filesystem::path file_ = folder_ / "a.usda";
-  std::vector<std::string> notes_;
-};
 
 TEST_F(UsdFiles, AMeshIsItsNeutralInOneFrame) {
   const MeshSequence sequence =
@@ -233,45 +172,6 @@ TEST_F(UsdFiles, FacesThatAreHolesAreLeftOutWithTheirCorners) {
   EXPECT_THAT(error(layer_of("def Mesh \"m\" {" + std::string(kTetrahedron) +
                              "int[] holeIndices = [4]\n}")),
               HasSubstr("face 4 of 4 is no hole"));
-}
-
-/// A mesh on the joints of a skeleton, which stands 3 to the front.
-std::string on_joints(const std::string& of_skeleton = "") {
-  std::string text = smiling(" = [0, 1]", R"(
-    int[] primvars:skel:jointIndices = [0, 0, 0, 0]
-    matrix4d primvars:skel:geomBindTransform = ((2, 0, 0, 0), (0, 2, 0, 0), (0, 0, 2, 0), (0, 1, 0, 1))
-    double3 xformOp:translate.timeSamples = { 0: (9, 9, 9), 1: (8, 8, 8) }
-    uniform token[] xformOpOrder = ["xformOp:translate"])");
-  const std::string skeleton = "def Skeleton \"bones\" {";
-  return text.insert(text.find(skeleton) + skeleton.size(), R"(
-    double3 xformOp:translate = (0, 0, 3)
-    uniform token[] xformOpOrder = ["xformOp:translate"]
-    )" + of_skeleton);
-}
-
-TEST_F(UsdFiles, AMeshOnJointsStandsWhereTheyHoldIt) {
-  const MeshSequence sequence = read(on_joints());
-  const Positions rest = (2 * corners()).rowwise() + Eigen::RowVector3d(0, 1, 3);
-  EXPECT_EQ(sequence.rest(), rest);
-  ASSERT_EQ(sequence.frames(), 1);
-  EXPECT_EQ(sequence.frame(0), rest + 2 * smile());
-  EXPECT_THAT(notes_, ElementsAre(HasSubstr("the skeleton of 'mesh': it stands as it is bound")));
-  // Bound in the world, where the skeleton stands now.
-  const std::string joints = R"(
-    uniform matrix4d[] bindTransforms = [((1, 0, 0, 0), (0, 1, 0, 0), (0, 0, 1, 0), (0, 5, 3, 1))]
-    uniform matrix4d[] restTransforms = [((1, 0, 0, 0), (0, 1, 0, 0), (0, 0, 1, 0), (0, 5, 0, 1))])";
-  EXPECT_EQ(read(on_joints(joints)).rest(), rest.rowwise() - Eigen::RowVector3d(0, 0, 3));
-}
-
-TEST_F(UsdFiles, MatricesOfABindingHaveToBeSome) {
-  std::string text = on_joints();
-  const std::string matrix = "(0, 1, 0, 1))";
-  text.replace(text.find(matrix), matrix.size(), "(0, 1, 0))");
-  EXPECT_THAT(error(text), HasSubstr("15 numbers, expected 16 of each matrix"));
-  EXPECT_THAT(error(on_joints("matrix4d[] restTransforms = [((1, 0, 0, 0), (0, 1, 0, 0), "
-                              "(0, 0, 1, 0), (0, 0, 0, 1))]\nmatrix4d[] bindTransforms = "
-                              "[((1, 0, 0, 0), (0, 1, 0, 0), (0, 0, 0, 0), (0, 0, 0, 1))]\n")),
-              HasSubstr("the first of bindTransforms has no inverse"));
 }
 
 TEST_F(UsdFiles, WhatIsNoMeshIsSaidToBeLeftOut) {

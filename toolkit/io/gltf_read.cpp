@@ -2,6 +2,7 @@
 #include <array>
 #include <map>
 #include <set>
+#include <span>
 #include <string_view>
 
 #include <Eigen/LU>
@@ -57,9 +58,14 @@ class Placement {
   /// A row of 12 numbers for each vertex, 3 x 4 column by column.
   explicit Placement(Frames blended) : blended_(std::move(blended)) {}
 
-  bool mirrors() const {
-    return blended_.rows() == 0 ? all_.leftCols<3>().determinant() < 0
-                                : of(0).leftCols<3>().determinant() < 0;
+  /// Which of `vertices` vertices are mirrored. \pre there is a transform for each of them
+  std::vector<bool> mirrored(Eigen::Index vertices) const {
+    if (blended_.rows() == 0) {
+      return std::vector<bool>(static_cast<std::size_t>(vertices), mirrors(all_));
+    }
+    std::vector<bool> flags;
+    for (Eigen::Index v = 0; v < vertices; ++v) flags.push_back(mirrors(of(v)));
+    return flags;
   }
 
   /// `points` in place, or as directions. \pre there is a transform for each of them
@@ -75,6 +81,10 @@ class Placement {
  private:
   using Transform = Eigen::Matrix<double, 3, 4>;
 
+  static bool mirrors(const Transform& transform) {
+    return transform.leftCols<3>().determinant() < 0;
+  }
+
   Transform of(Eigen::Index vertex) const {
     if (blended_.rows() == 0) return all_;
     return Eigen::Map<const Transform>(blended_.row(vertex).data());
@@ -88,6 +98,12 @@ std::string number_name(const char* stem, std::size_t number) {
   std::string digits = std::to_string(number);
   return stem + std::string(3 - std::min<std::size_t>(3, digits.size()), '0') + digits;
 }
+
+/// A part, and which of its vertices are mirrored where they stand.
+struct PlacedPart {
+  ScenePart part;
+  std::vector<bool> mirrored;
+};
 
 /// Makes the parts of a scene.
 class GltfReader {
@@ -192,6 +208,7 @@ class GltfReader {
     if (name.empty()) name = number_name("mesh_", *document_.nodes[placed.node].mesh);
     // Primitives may share vertices, and are then one part.
     std::map<GltfPrimitive::Vertices, std::size_t> made;
+    std::vector<PlacedPart> own;
     for (const GltfPrimitive& primitive : mesh.primitives) {
       constexpr int kFirstOfFaces = 4;
       if (primitive.mode < kFirstOfFaces || !primitive.positions) {
@@ -199,18 +216,20 @@ class GltfReader {
         continue;
       }
       unread_.insert(primitive.unread.begin(), primitive.unread.end());
-      const auto [same, is_new] = made.emplace(primitive.vertices(), parts.size());
+      const auto [same, is_new] = made.emplace(primitive.vertices(), own.size());
       if (is_new || primitive.draco) {
-        parts.push_back(part_of(placed, name, mesh, primitive));
+        own.push_back(part_of(placed, name, mesh, primitive));
       } else {
-        add_faces(primitive, placed, parts[same->second]);
+        add_faces(primitive, own[same->second]);
       }
     }
+    for (PlacedPart& part : own) parts.push_back(std::move(part.part));
   }
 
-  ScenePart part_of(const PlacedNode& placed, const std::string& name, const GltfMesh& mesh,
-                    const GltfPrimitive& primitive) {
-    ScenePart part;
+  PlacedPart part_of(const PlacedNode& placed, const std::string& name, const GltfMesh& mesh,
+                     const GltfPrimitive& primitive) {
+    PlacedPart made;
+    ScenePart& part = made.part;
     part.name = name;
     std::optional<DracoMesh> draco;
     if (primitive.draco) {
@@ -223,6 +242,7 @@ class GltfReader {
     const Eigen::Index vertices = part.positions.rows();
     const Placement placement = placement_of(placed, primitive, draco, vertices);
     placement.apply(part.positions, false);
+    made.mirrored = placement.mirrored(vertices);
     for (std::size_t j = 0; j < primitive.targets.size(); ++j) {
       const bool is_named = j < mesh.target_names.size() && !mesh.target_names[j].empty();
       SceneTarget target{is_named ? mesh.target_names[j] : number_name("target_", j),
@@ -243,11 +263,11 @@ class GltfReader {
     if (draco) {
       add_group(primitive, part);
       append_triangles({draco->triangles.data(), draco->triangles.data() + draco->triangles.size()},
-                       primitive, placement.mirrors(), part);
+                       primitive, made);
     } else {
-      add_faces(primitive, placement.mirrors(), part);
+      add_faces(primitive, made);
     }
-    return part;
+    return made;
   }
 
   /// From the file's upper left corner to the lower left one.
@@ -317,10 +337,10 @@ class GltfReader {
       for (Eigen::Index v = 0; v < vertices; ++v) {
         for (int k = 0; k < 4; ++k) {
           if (weights(v, k) == 0) continue;
-          if (which(v, k) < 0 || which(v, k) >= static_cast<double>(joints.size())) {
+          if (which(v, k) < 0 || which(v, k) >= static_cast<double>(joints.rows())) {
             fail(shown_name(placed), "vertex " + std::to_string(v) + " hangs on joint " +
                                          readable(which(v, k)) + " of " +
-                                         std::to_string(joints.size()));
+                                         std::to_string(joints.rows()) + ", which count from 0");
           }
           blended.row(v) += weights(v, k) * joints.row(static_cast<Eigen::Index>(which(v, k)));
           sums[v] += weights(v, k);
@@ -362,12 +382,8 @@ class GltfReader {
     return joints;
   }
 
-  void add_faces(const GltfPrimitive& primitive, const PlacedNode& placed, ScenePart& part) {
-    add_faces(primitive,
-              placement_of(placed, primitive, std::nullopt, part.positions.rows()).mirrors(), part);
-  }
-
-  void add_faces(const GltfPrimitive& primitive, bool mirrored, ScenePart& part) {
+  void add_faces(const GltfPrimitive& primitive, PlacedPart& placed) {
+    ScenePart& part = placed.part;
     const Eigen::Index vertices = part.positions.rows();
     std::vector<int> corners;
     if (primitive.indices) {
@@ -376,7 +392,7 @@ class GltfReader {
       for (int v = 0; v < vertices; ++v) corners.push_back(v);
     }
     add_group(primitive, part);
-    append_triangles(triangles_of(primitive.mode, corners, part.name), primitive, mirrored, part);
+    append_triangles(triangles_of(primitive.mode, corners, part.name), primitive, placed);
   }
 
   void add_group(const GltfPrimitive& primitive, ScenePart& part) const {
@@ -405,9 +421,17 @@ class GltfReader {
     return triangles;
   }
 
+  /// Whether most corners of a polygon are mirrored.
+  static bool is_mirrored(const std::vector<bool>& vertices, std::span<const int> corners) {
+    const auto count = std::ranges::count_if(
+        corners, [&](int corner) { return vertices[static_cast<std::size_t>(corner)]; });
+    return 2 * static_cast<std::size_t>(count) > corners.size();
+  }
+
   /// Triangles, or the polygons that they are fans of.
   static void append_triangles(const std::vector<int>& corners, const GltfPrimitive& primitive,
-                               bool mirrored, ScenePart& part) {
+                               PlacedPart& placed) {
+    ScenePart& part = placed.part;
     Polygons& polygons = part.polygons;
     const std::size_t first = polygons.corners.size();
     int last_start = -1;
@@ -422,14 +446,13 @@ class GltfReader {
       polygons.offsets.push_back(static_cast<int>(polygons.corners.size()));
       last_start = start;
     }
-    if (mirrored) {
-      for (std::size_t face = polygons.offsets.size() - 1; face > 0; --face) {
-        const auto begin = static_cast<std::size_t>(polygons.offsets[face - 1]);
-        if (begin < first) break;
-        // The first corner stays, and with it the triangles.
-        std::reverse(polygons.corners.begin() + static_cast<std::ptrdiff_t>(begin) + 1,
-                     polygons.corners.begin() + polygons.offsets[face]);
-      }
+    for (std::size_t face = polygons.offsets.size() - 1; face > 0; --face) {
+      const auto begin = static_cast<std::size_t>(polygons.offsets[face - 1]);
+      if (begin < first) break;
+      const std::span<int> face_corners(&polygons.corners[begin],
+                                        polygons.corners.data() + polygons.offsets[face]);
+      // The first corner stays, and with it the triangles.
+      if (is_mirrored(placed.mirrored, face_corners)) std::ranges::reverse(face_corners.subspan(1));
     }
     if (part.texture.coordinates.empty()) return;
     // Each vertex has coordinates of its own.

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <climits>
 
 #include "toolkit/io/mesh_codecs.h"
@@ -137,12 +138,21 @@ void append_face(std::string& text, const Connectivity& connectivity, int face) 
   text += '\n';
 }
 
+/// As the first Macintosh ended them.
+bool ends_lines_in_cr(std::string_view text) {
+  return text.find('\n') == text.npos && text.find('\r') != text.npos;
+}
+
 }  // namespace
 
 MeshContent read_obj(const std::string& path, std::string_view bytes) {
   constexpr char kEndOfDosFile = '\x1a';
+  bytes = without_padding(bytes);
   if (bytes.ends_with(kEndOfDosFile)) bytes.remove_suffix(1);
-  return ObjReader(path, bytes).read();
+  if (!ends_lines_in_cr(bytes)) return ObjReader(path, bytes).read();
+  std::string lines(bytes);
+  std::ranges::replace(lines, '\r', '\n');
+  return ObjReader(path, lines).read();
 }
 
 MeshFrame obj_frame(const Connectivity& connectivity, bool double_precision) {

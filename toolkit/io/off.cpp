@@ -43,7 +43,7 @@ void read_face(TextCursor& cursor, MeshContent& content) {
 }  // namespace
 
 MeshContent read_off(const std::string& path, std::string_view bytes) {
-  TextCursor cursor(path, without_byte_order_mark(bytes), {.comments = true});
+  TextCursor cursor(path, without_padding(without_byte_order_mark(bytes)), {.comments = true});
   read_keyword(cursor);
   constexpr std::size_t kVertexBytes = 6;  // "0 0 0" and the line's end
   constexpr std::size_t kFaceBytes = 2;    // "0" and the line's end

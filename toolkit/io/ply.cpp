@@ -22,7 +22,7 @@ class PlyBody {
       : path_(path),
         format_(header.format),
         data_(bytes.substr(header.bytes)),
-        text_(path, data_, {}, header.lines + 1) {}
+        text_(path, without_padding(data_), {}, header.lines + 1) {}
 
   std::size_t left() const { return format_ == PlyFormat::ascii ? text_.left() : data_.size(); }
 
@@ -49,7 +49,7 @@ class PlyBody {
   void expect_end() {
     if (format_ == PlyFormat::ascii) {
       text_.expect_end();
-    } else if (!std::ranges::all_of(data_, ends_word)) {
+    } else if (!std::ranges::all_of(without_padding(data_), ends_word)) {
       throw IoError(path_, std::to_string(data_.size()) +
                                " bytes follow the last element, expected the end of the file");
     }

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <limits>
 #include <map>
 #include <set>
 #include <stdexcept>
@@ -14,10 +16,24 @@ namespace mimetra {
 namespace fs = std::filesystem;
 namespace {
 
+/// The shorter of the intervals beside one of times that rise; infinite where it stands alone.
+template <typename Times, typename Iterator>
+double shorter_interval(const Times& times, Iterator at) {
+  double shortest = std::numeric_limits<double>::infinity();
+  if (at != times.begin()) shortest = *at - *std::prev(at);
+  if (std::next(at) != times.end()) shortest = std::min(shortest, *std::next(at) - *at);
+  return shortest;
+}
+
 /// Whether only rounding parts two times. Curves of one take may be resampled one by one.
-bool is_same_time(double a, double b) {
-  constexpr double kRounding = 2e-6;  // relative, or of a second; more than single precision needs
-  return std::abs(a - b) <= kRounding * std::max(1., std::abs(a));
+/// `interval`: the shortest from either to the next key, in seconds.
+bool is_same_time(double a, double b, double interval) {
+  constexpr double kSeconds = 2e-6;
+  constexpr double kSinglePrecision = 2.4e-7;  // relative: two units in the last place
+  // Of an interval: in the evening, a unit in the last place is half a frame of 60 a second.
+  constexpr double kShare = 0.01;
+  const double rounding = std::max(kSeconds, kSinglePrecision * std::abs(a));
+  return std::abs(a - b) <= std::min(rounding, kShare * interval);
 }
 
 /// Key number `key` of a curve and the part of the way to the next one.
@@ -29,8 +45,11 @@ struct KeyPlace {
 KeyPlace key_place(const Eigen::VectorXd& times, double time) {
   const double* after = std::upper_bound(times.data(), times.data() + times.size(), time);
   const Eigen::Index next = after - times.data();
-  if (next > 0 && is_same_time(times[next - 1], time)) return {next - 1, 0};
-  if (next == 0 || (next < times.size() && is_same_time(times[next], time))) return {next, 0};
+  const auto is_at = [&](Eigen::Index key) {
+    return is_same_time(times[key], time, shorter_interval(times, times.begin() + key));
+  };
+  if (next > 0 && is_at(next - 1)) return {next - 1, 0};
+  if (next == 0 || (next < times.size() && is_at(next))) return {next, 0};
   if (next == times.size()) return {next - 1, 0};
   return {next - 1, (time - times[next - 1]) / (times[next] - times[next - 1])};
 }
@@ -130,20 +149,21 @@ ExpressionList expressions_of(const std::vector<ScenePart>& parts, const Eigen::
 /// Parts whose targets without names are one expression with those of another mesh.
 std::vector<std::string> united_by_number(const std::vector<ScenePart>& parts,
                                           const std::vector<JoinedExpression>& expressions) {
-  std::map<std::size_t, std::set<std::size_t>> parts_of;
+  using MeshOfPart = std::map<std::size_t, std::size_t>;
+  std::map<std::size_t, MeshOfPart> unnamed;  // of each expression
   for (std::size_t j = 0; j < expressions.size(); ++j) {
     for (const auto& [p, target] : expressions[j].from) {
-      if (!parts[p].targets[static_cast<std::size_t>(target)].unnamed_in) continue;
-      parts_of[expressions[j].joins.value_or(j)].insert(p);
+      const auto mesh = parts[p].targets[static_cast<std::size_t>(target)].unnamed_in;
+      if (mesh) unnamed[expressions[j].joins.value_or(j)].emplace(p, *mesh);
     }
   }
   std::set<std::size_t> united;
-  for (const auto& expression : parts_of) {
-    const std::set<std::size_t>& of = expression.second;
-    const auto mesh_of = [&](std::size_t p) { return parts[p].targets.front().unnamed_in; };
+  for (const auto& [expression, meshes] : unnamed) {
+    const std::size_t first = meshes.begin()->second;
     const bool is_one =
-        std::ranges::all_of(of, [&](std::size_t p) { return mesh_of(p) == mesh_of(*of.begin()); });
-    if (!is_one) united.insert(of.begin(), of.end());
+        std::ranges::all_of(meshes, [&](const auto& part) { return part.second == first; });
+    if (is_one) continue;
+    for (const auto& [p, mesh] : meshes) united.insert(p);
   }
   std::vector<std::string> names;
   for (const std::size_t p : united) names.push_back("'" + parts[p].name + "'");
@@ -170,11 +190,12 @@ double steps_between(double key, double next) {
   return std::max(1., std::ceil((next - key) * kDefaultFramesPerSecond - kAllowance));
 }
 
-/// The keys of a curve, and times between those of splines, which move on a line nowhere.
+/// The keys of a curve, and times between those of splines, which move on a line nowhere. They
+/// rise.
 std::vector<double> shown_times(const std::string& path, const WeightCurve& curve) {
   const Eigen::VectorXd& keys = curve.times;
   std::vector<double> times(keys.begin(), keys.end());
-  if (curve.between != WeightCurve::Between::cubic) return times;
+  if (curve.between != WeightCurve::Between::cubic || times.empty()) return times;
   double most = 0;
   for (Eigen::Index k = 1; k < keys.size(); ++k) most += steps_between(keys[k - 1], keys[k]);
   constexpr double kMostFrames = 1e6;
@@ -183,11 +204,13 @@ std::vector<double> shown_times(const std::string& path, const WeightCurve& curv
                             readable(keys[keys.size() - 1] - keys[0], 8) + " s; expected at most " +
                             readable(kMostFrames, 8) + " frames of it");
   }
+  times.resize(1);
   for (Eigen::Index k = 1; k < keys.size(); ++k) {
     const double steps = steps_between(keys[k - 1], keys[k]);
     for (double step = 1; step < steps; ++step) {
       times.push_back(keys[k - 1] + step / steps * (keys[k] - keys[k - 1]));
     }
+    times.push_back(keys[k]);
   }
   return times;
 }
@@ -197,13 +220,19 @@ Eigen::VectorXd shown_times(const std::string& path,
                             const std::vector<const WeightCurve*>& curves) {
   std::set<double> times;
   for (const WeightCurve* curve : curves) {
-    std::vector<double> own = shown_times(path, *curve);
-    std::erase_if(own, [&](double time) {
-      const auto next = times.lower_bound(time);
-      return (next != times.end() && is_same_time(*next, time)) ||
-             (next != times.begin() && is_same_time(*std::prev(next), time));
-    });
-    times.insert(own.begin(), own.end());
+    const std::vector<double> own = shown_times(path, *curve);
+    std::vector<double> added;
+    for (auto time = own.begin(); time != own.end(); ++time) {
+      const double interval = shorter_interval(own, time);
+      const auto is_it = [&](std::set<double>::const_iterator known) {
+        return is_same_time(*known, *time, std::min(interval, shorter_interval(times, known)));
+      };
+      const auto next = times.lower_bound(*time);
+      const bool is_known =
+          (next != times.end() && is_it(next)) || (next != times.begin() && is_it(std::prev(next)));
+      if (!is_known) added.push_back(*time);
+    }
+    times.insert(added.begin(), added.end());
   }
   Eigen::VectorXd all(static_cast<Eigen::Index>(times.size()));
   std::copy(times.begin(), times.end(), all.begin());
@@ -378,8 +407,9 @@ Scene joined_scene(const std::string& path, std::vector<ScenePart> parts, std::s
   scene.notes = notes_of(path, parts, list);
   if (!list.renamed_in_take.empty()) {
     scene.motion_notes.push_back(path +
-                                 ": targets of one name, of which the take drives some: they are "
-                                 "one expression of the model, and several in the take: " +
+                                 ": targets of one name, some with weights that stay and differ "
+                                 "from the others': they are one expression of the model, and "
+                                 "several where the file's own weights drive them: " +
                                  listed(list.renamed_in_take));
   }
   scene.times = times;

@@ -72,10 +72,10 @@ void check_scene_size(const std::string& path, double vertices, double poses,
                       std::size_t file_bytes);
 
 /// One model of all parts, one after the other. Targets of equal names are one expression of the
-/// performer where their weights are equal at all times, and one of the model also where only one
-/// of them is animated; frames are at the keys of all curves. Throws IoError where there is no
-/// part, a face has a bad index, a key's time does not rise, or all of them would take more memory
-/// than a file of `file_bytes` can mean.
+/// performer where their weights are equal at all times, and one of the model also where some have
+/// weights that stay; frames are at the keys of all curves. Throws IoError where there is no part,
+/// a face has a bad index, a key's time does not rise, or all of them would take more memory than a
+/// file of `file_bytes` can mean.
 Scene joined_scene(const std::string& path, std::vector<ScenePart> parts, std::size_t file_bytes);
 
 /// True for the extension of a scene's file, also one that is only refused by what it is.

@@ -52,6 +52,10 @@ std::string_view without_byte_order_mark(std::string_view text) {
   return text.starts_with(kMark) ? text.substr(kMark.size()) : text;
 }
 
+std::string_view without_padding(std::string_view bytes) {
+  return bytes.substr(0, bytes.find_last_not_of('\0') + 1);
+}
+
 void check_encoding(const std::string& path, std::string_view text) {
   if (!text.starts_with("\xFF\xFE") && !text.starts_with("\xFE\xFF")) return;
   throw IoError(path, "is text in UTF-16, expected UTF-8; save it in that encoding");

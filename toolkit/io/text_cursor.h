@@ -18,6 +18,9 @@ inline bool ends_word(char c) {
 /// `text` without the mark that some programs put before UTF-8.
 std::string_view without_byte_order_mark(std::string_view text);
 
+/// `bytes` without the zero bytes at their end, with which file systems and downloads pad files.
+std::string_view without_padding(std::string_view bytes);
+
 /// Throws IoError for text in UTF-16, which begins with its own mark.
 void check_encoding(const std::string& path, std::string_view text);
 

@@ -10,6 +10,7 @@
 #include "toolkit/io/sequence_parts.h"
 #include "toolkit/io/text_cursor.h"
 #include "toolkit/io/usd_faces.h"
+#include "toolkit/io/usd_skeleton.h"
 #include "toolkit/io/usd_transform.h"
 #include "toolkit/io/whole_file.h"
 #include "toolkit/mesh/errors.h"
@@ -33,6 +34,7 @@ struct UsdMesh {
   Eigen::Matrix4d bound = Eigen::Matrix4d::Identity();
   /// Time codes at which it is told by other than weights.
   std::set<double> codes = {};
+  std::vector<double> weight_codes = {};
   bool rest_is_known = true;
 };
 
@@ -48,6 +50,7 @@ class UsdReader {
     if (z_is_up_) {
       notes_.push_back(path_ + ": its up axis is z; convert with option 'up' z-to-y turns it");
     }
+    note_unit();
   }
 
   Scene read() {
@@ -82,6 +85,17 @@ class UsdReader {
     const auto found = layer_.metadata.find(name);
     if (found == layer_.metadata.end() || found->second.numbers.empty()) return fallback;
     return found->second.numbers.front();
+  }
+
+  /// Positions stay as they are, and nothing that is written has a unit but glTF, by its rules.
+  void note_unit() {
+    const double metres = setting("metersPerUnit", 1);
+    if (metres == 1 || !(metres > 0) || std::isinf(metres)) return;
+    const std::string number = readable(metres, 6);
+    notes_.push_back(
+        path_ + ": its unit is " + number +
+        " m (metersPerUnit) and positions are read as they are; convert with option 'scale' " +
+        number + " makes metres, as glTF has them");
   }
 
   void visit(const UsdPrim& prim, UsdStack stack) {
@@ -158,39 +172,26 @@ class UsdReader {
   /// transform would put it. [UsdSkelBindingAPI]
   void bind(UsdMesh& mesh) {
     mesh.placing = mesh.stack;
-    if (!inherited(mesh, "primvars:skel:jointIndices")) return;
-    left_out_.insert("the skeleton of '" + mesh.prim->name + "': it stands as it is bound");
-    const UsdProperty* named = inherited(mesh, "skel:skeleton");
-    if (!named || named->value.words.empty()) return;
-    const UsdStack skeleton = stack_at(named->value.words.front(), mesh.stack);
-    if (skeleton.empty()) return;
+    if (!usd_inherited(mesh.stack, "primvars:skel:jointIndices").property) return;
+    const std::string name = "'" + mesh.prim->name + "'";
+    const UsdOwned named = usd_inherited(mesh.stack, "skel:skeleton");
+    const bool is_named = named.property && !named.property->value.words.empty();
+    const std::string path = is_named ? named.property->value.words.front() : "";
+    const UsdStack skeleton = is_named ? usd_stack_at(layer_, path, named.owner) : UsdStack();
+    if (skeleton.empty() || skeleton.back()->type != "Skeleton") {
+      notes_.push_back(path_ + ": " + name + " has joints and " +
+                       (is_named ? "there is no Skeleton <" + path + ">" : "names no skeleton") +
+                       ": its own transform places it");
+      return;
+    }
+    left_out_.insert("the skeleton of " + name + ": it stands as it is bound");
     mesh.placing = skeleton;
-    const UsdProperty* rest = usd_property(*skeleton.back(), "restTransforms");
-    const UsdProperty* bound = usd_property(*skeleton.back(), "bindTransforms");
-    if (rest && bound) {
-      // All joints have moved as the first one has, which is the root, since the mesh was bound.
-      const Eigen::Matrix4d then = first_matrix(*bound);
-      if (then.determinant() == 0) fail(bound->line, "the first of bindTransforms has no inverse");
-      mesh.bound = first_matrix(*rest) * then.inverse();
-    }
-    const UsdProperty* at_binding = inherited(mesh, "primvars:skel:geomBindTransform");
-    if (at_binding) mesh.bound *= first_matrix(*at_binding);
-  }
-
-  /// A property of the mesh or, where it has none, of the nearest prim that it stands in.
-  static const UsdProperty* inherited(const UsdMesh& mesh, const std::string& name) {
-    for (auto prim = mesh.stack.rbegin(); prim != mesh.stack.rend(); ++prim) {
-      if (const UsdProperty* property = usd_property(**prim, name)) return property;
-    }
-    return nullptr;
-  }
-
-  Eigen::Matrix4d first_matrix(const UsdProperty& property) const {
-    const std::vector<double> numbers = usd_numbers(path_, property);
-    if (numbers.empty() || numbers.size() % 16 != 0) {
-      fail(property.line, std::to_string(numbers.size()) + " numbers, expected 16 of each matrix");
-    }
-    return Eigen::Map<const Eigen::Matrix4d>(numbers.data());  // its rows are our columns
+    const UsdHold hold = usd_hold(path_, *skeleton.back(), mesh.stack, mesh.part.positions);
+    mesh.bound = hold.bound;
+    if (hold.elsewhere.empty()) return;
+    notes_.push_back(path_ + ": " + name + " stands as a whole where joint '" + hold.joint +
+                     "' holds it at rest; other joints would hold their vertices elsewhere: " +
+                     listed(hold.elsewhere));
   }
 
   Eigen::Matrix4d world_of(const UsdMesh& mesh, std::optional<double> code = {}) const {
@@ -214,37 +215,15 @@ class UsdReader {
     check_scene_size(path_, static_cast<double>(vertices),
                      static_cast<double>(names->value.words.size()) + 1, bytes_);
     for (std::size_t j = 0; j < names->value.words.size(); ++j) {
-      const UsdPrim* shape = prim_at(paths->value.words[j], mesh.stack);
-      if (!shape || shape->type != "BlendShape") {
+      const UsdStack found = usd_stack_at(layer_, paths->value.words[j], mesh.stack);
+      if (found.empty() || found.back()->type != "BlendShape") {
         fail(paths->line, "there is no BlendShape <" + paths->value.words[j] + ">");
       }
-      SceneTarget target{names->value.words[j], displacements_of(*shape, vertices)};
+      SceneTarget target{names->value.words[j], displacements_of(*found.back(), vertices)};
       place(target.displacements, world, false);
       mesh.part.targets.push_back(std::move(target));
     }
     mesh.part.weights = weights_of(mesh, names->value.words);
-  }
-
-  /// The prim of a path and those that it stands in, from the root of the layer or, without a slash
-  /// before it, from the mesh of `stack`. Empty where there is none.
-  UsdStack stack_at(const std::string& path, const UsdStack& stack) const {
-    const bool is_absolute = path.starts_with('/');
-    const std::vector<UsdPrim>* children = is_absolute ? &layer_.prims : &stack.back()->children;
-    UsdStack found_stack = is_absolute ? UsdStack() : stack;
-    for (std::size_t at = is_absolute ? 1 : 0; at <= path.size();) {
-      const std::size_t slash = std::min(path.find('/', at), path.size());
-      const std::string name = path.substr(at, slash - at);
-      const auto found = std::ranges::find(*children, name, &UsdPrim::name);
-      if (found == children->end()) return {};
-      found_stack.push_back(&*found);
-      children = &found->children;
-      at = slash + 1;
-    }
-    return found_stack;
-  }
-  const UsdPrim* prim_at(const std::string& path, const UsdStack& stack) const {
-    const UsdStack found = stack_at(path, stack);
-    return found.empty() ? nullptr : found.back();
   }
 
   Positions displacements_of(const UsdPrim& shape, Eigen::Index vertices) const {
@@ -272,17 +251,18 @@ class UsdReader {
   /// The animation that the mesh or its skeleton names, itself or by what they stand in; where
   /// nobody names any, the only one.
   const UsdPrim* animation_of(const UsdMesh& mesh) {
-    for (auto prim = mesh.stack.rbegin(); prim != mesh.stack.rend(); ++prim) {
-      std::vector<const UsdPrim*> naming = {*prim};
-      const UsdProperty* skeleton = usd_property(**prim, "skel:skeleton");
+    for (UsdStack prim = mesh.stack; !prim.empty(); prim.pop_back()) {
+      std::vector<UsdStack> naming = {prim};
+      const UsdProperty* skeleton = usd_property(*prim.back(), "skel:skeleton");
       if (skeleton && !skeleton->value.words.empty()) {
-        naming.push_back(prim_at(skeleton->value.words.front(), mesh.stack));
+        naming.push_back(usd_stack_at(layer_, skeleton->value.words.front(), prim));
       }
-      for (const UsdPrim* owner : naming) {
-        const UsdProperty* source = owner ? usd_property(*owner, "skel:animationSource") : nullptr;
+      for (const UsdStack& owner : naming) {
+        if (owner.empty()) continue;
+        const UsdProperty* source = usd_property(*owner.back(), "skel:animationSource");
         if (!source || source->value.words.empty()) continue;
-        const UsdPrim* animation = prim_at(source->value.words.front(), mesh.stack);
-        if (animation) return animation;
+        const UsdStack animation = usd_stack_at(layer_, source->value.words.front(), owner);
+        if (!animation.empty()) return animation.back();
         fail(source->line, "there is no SkelAnimation <" + source->value.words.front() + ">");
       }
     }
@@ -295,7 +275,7 @@ class UsdReader {
     return animations_.front().second;
   }
 
-  std::shared_ptr<const WeightCurve> weights_of(const UsdMesh& mesh,
+  std::shared_ptr<const WeightCurve> weights_of(UsdMesh& mesh,
                                                 const std::vector<std::string>& names) {
     const UsdPrim* animation = animation_of(mesh);
     if (!animation) return nullptr;
@@ -334,25 +314,26 @@ class UsdReader {
       }
     }
     curve->times /= rate_;
+    mesh.weight_codes = std::move(times);
     return curve;
   }
 
   /// Frames of points and transforms that are told over time, with the weights on top.
   void bake(Scene& scene) const {
-    std::set<double> codes;
+    std::map<double, double> codes;  // by their seconds, of which two codes may have the same
+    const auto add = [&](double code) { codes.emplace(code / rate_, code); };
     bool rest_is_known = true;
     for (const UsdMesh& mesh : meshes_) {
-      codes.insert(mesh.codes.begin(), mesh.codes.end());
+      std::ranges::for_each(mesh.codes, add);
+      std::ranges::for_each(mesh.weight_codes, add);
       rest_is_known = rest_is_known && mesh.rest_is_known;
-      if (!mesh.part.weights) continue;
-      for (const double time : mesh.part.weights->times) codes.insert(time * rate_);
     }
     const auto frames = static_cast<Eigen::Index>(codes.size());
     check_scene_size(path_, scene.model->vertices(), static_cast<double>(frames), bytes_);
     Frames poses(frames, 3 * scene.model->vertices());
     Eigen::VectorXd times(frames);
     Eigen::Index frame = 0;
-    for (const double code : codes) {
+    for (const auto& [seconds, code] : codes) {
       Eigen::Index at = 0;
       for (const UsdMesh& mesh : meshes_) {
         const Positions points = pose_at(mesh, code);
@@ -360,7 +341,7 @@ class UsdReader {
             Eigen::Map<const Eigen::RowVectorXd>(points.data(), points.size());
         at += points.size();
       }
-      times[frame++] = code / rate_;
+      times[frame++] = seconds;
     }
     check_times(path_, times);
     std::optional<Positions> rest;

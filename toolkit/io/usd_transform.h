@@ -2,17 +2,13 @@
 
 #include <optional>
 #include <string>
-#include <vector>
 
 #include <Eigen/Core>
 
-#include "toolkit/io/usd_values.h"
+#include "toolkit/io/usd_path.h"
 
 /// Where prims of a layer of USD stand, and when. Internal to the format.
 namespace mimetra {
-
-/// A prim and those that it stands in, the innermost last.
-using UsdStack = std::vector<const UsdPrim*>;
 
 /// From a prim to the world, at a time code. Throws IoError with the line of what is no transform.
 Eigen::Matrix4d usd_world(const std::string& path, const UsdStack& stack,
