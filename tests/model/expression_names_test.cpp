@@ -9,6 +9,17 @@ using testing::ElementsAre;
 using testing::IsEmpty;
 using Pair = std::array<int, 2>;
 
+TEST(ExpressionNamed, IsTheSameOrTheOnlyOneThatIsWrittenOtherwise) {
+  const std::vector<std::string> names{"jawOpen", "mouthSmile_L", "mouthSmileLeft", "browDown_r"};
+  EXPECT_EQ(expression_named("jawOpen", names), 0);
+  EXPECT_EQ(expression_named("JawOpen", names), 0);
+  EXPECT_EQ(expression_named("mouthSmile_L", names), 1);
+  EXPECT_EQ(expression_named("mouthSmileLeft", names), 2);
+  EXPECT_EQ(expression_named("mouthSmile.l", names), -1);
+  EXPECT_EQ(expression_named("browDownRight", names), 3);
+  EXPECT_EQ(expression_named("brow", names), -1);
+}
+
 TEST(KnownPairs, AreLeftAndRightHoweverTheyAreNamed) {
   for (const auto& [left, right] :
        std::vector<std::array<std::string, 2>>{{"smileLeft", "smileRight"},

@@ -123,6 +123,13 @@ Face face_with_names() {
 const Eigen::Matrix3d kSomeTurn =
     Eigen::AngleAxisd(2, Eigen::Vector3d(1, 2, -2).normalized()).toRotationMatrix();
 
+TEST(ExpressionNotes, NameExpressionsThatAreWrittenInTwoWays) {
+  Face face = face_with_names();
+  face.add("eye_blink_left", 2, 2);
+  EXPECT_THAT(face.notes(),
+              ElementsAre(HasSubstr("'eyeBlink_L' and 'eye_blink_left'; one column")));
+}
+
 TEST(ExchangedSides, AreNoneInAFaceHoweverItIsTurned) {
   Face face = face_with_names();
   EXPECT_THAT(face.notes(), IsEmpty());

@@ -92,6 +92,18 @@ TEST_F(RigTest, KeepsWhatTheTargetHas) {
             1e-13);
 }
 
+TEST_F(RigTest, KnowsWhatTheTargetHasByANameThatIsWrittenOtherwise) {
+  ShapeBasis own = test::bumps(bare_.neutral(), 1, 17);
+  own.names = {"Shape_2"};
+  const BlendshapeModel target(bare_.shared_connectivity(), bare_.neutral(), own);
+  Noted noted;
+  const Rig made = rig(source_, {"double", target}, {}, {.notes = noted.sink()});
+  EXPECT_THAT(made.model.expressions().names,
+              testing::ElementsAre("shape0", "shape1", "shape2", "shape3"));
+  EXPECT_EQ(named(made, "shape2").origin, RigOrigin::example);
+  EXPECT_THAT(noted.notes, Contains(HasSubstr("'Shape_2' is 'shape2'")));
+}
+
 TEST_F(RigTest, GivesEqualBytesForAnyNumberOfThreadsAndByAnIdentityOfPairs) {
   const std::vector<RigExample> examples = {
       {"shape1", Positions(bare_.neutral().array() * 1.01), 1}};

@@ -79,6 +79,17 @@ std::string folded_name(const std::string& name) {
   return result;
 }
 
+int expression_named(const std::string& name, const std::vector<std::string>& names) {
+  const auto exact = std::ranges::find(names, name);
+  if (exact != names.end()) return static_cast<int>(exact - names.begin());
+  const auto is_alike = [wanted = folded_name(spelled_out(name))](const std::string& other) {
+    return folded_name(spelled_out(other)) == wanted;
+  };
+  const auto alike = std::ranges::find_if(names, is_alike);
+  const bool is_only_one = std::ranges::count_if(names, is_alike) == 1;
+  return is_only_one ? static_cast<int>(alike - names.begin()) : -1;
+}
+
 std::vector<std::array<int, 2>> known_pairs(const std::vector<std::string>& names) {
   std::vector<HalfName> halves;
   halves.reserve(names.size());

@@ -40,6 +40,10 @@ std::string without_side(const std::string& name);
 /// Without regard to case and underscores.
 std::string folded_name(const std::string& name);
 
+/// Index of the expression of that name; where there is none, of the only one that is written
+/// otherwise, by its spelled_out() and folded_name(); else -1.
+int expression_named(const std::string& name, const std::vector<std::string>& names);
+
 /// Left and right of one expression, by the index of each among `names`: those that end in Left and
 /// Right, _left and _right, _L and _R or .L and .R, in any case after a mark. Of an eye that looks
 /// in, the other half is the other eye that looks out: both look to one side. `jawLeft`,

@@ -1,8 +1,11 @@
 #include "toolkit/model/expression_notes.h"
 
+#include <map>
+
 #include "toolkit/mesh/text.h"
 #include "toolkit/model/displaced_expressions.h"
 #include "toolkit/model/exchanged_sides.h"
+#include "toolkit/model/expression_names.h"
 #include "toolkit/model/torn_expressions.h"
 
 namespace mimetra {
@@ -19,6 +22,17 @@ std::string described(const ExchangedSides& sides) {
   }
   return "expressions of the left move the side that the others call right: " + these +
          "; exchange them with their other halves";
+}
+
+/// Expressions that are the same but for how they are written: "'a_L' and 'aLeft'".
+std::vector<std::string> written_twice(const std::vector<std::string>& names) {
+  std::map<std::string, std::string> first;
+  std::vector<std::string> twice;
+  for (const std::string& name : names) {
+    const auto [known, is_new] = first.try_emplace(folded_name(spelled_out(name)), name);
+    if (!is_new) twice.push_back("'" + known->second + "' and '" + name + "'");
+  }
+  return twice;
 }
 
 }  // namespace
@@ -40,6 +54,11 @@ std::vector<std::string> notes_on_expressions(const std::string& name, const Pos
                     ": expressions that tear the neutral's surface, as where their vertices "
                     "are in another order: " +
                     listed(torn) + "; give them the neutral's (`mimetra convert --match`)");
+  }
+  const std::vector<std::string> twice = written_twice(expressions.names);
+  if (!twice.empty()) {
+    notes.push_back(name + ": expressions that differ in how they are written only: " +
+                    listed(twice) + "; one column of weights drives both");
   }
   const ExchangedSides sides = exchanged_sides(neutral, triangles, expressions);
   if (!sides.left_halves.empty()) notes.push_back(name + ": " + described(sides));

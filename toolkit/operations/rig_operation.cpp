@@ -9,6 +9,7 @@
 #include "toolkit/mesh/stopwatch.h"
 #include "toolkit/mesh/suggestion.h"
 #include "toolkit/mesh/text.h"
+#include "toolkit/model/expression_names.h"
 #include "toolkit/operations/command_terms.h"
 #include "toolkit/operations/match_parameters.h"
 #include "toolkit/operations/pipeline_parameters.h"
@@ -109,7 +110,7 @@ ExampleMeaning meaning_of(const ExampleShape& shape, const ExampleFolder& folder
     return given_weights(folder, weighted - folder.weighted.begin(), expressions.names,
                          call.examples->string());
   }
-  const int expression = expressions.find(shape.name);
+  const int expression = expression_named(shape.name, expressions.names);
   if (expression >= 0) return expression;
   if (call.estimate_weights) return {};
   throw MismatchError(shape.path.string() + ": '" + shape.name +

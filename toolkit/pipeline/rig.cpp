@@ -8,6 +8,7 @@
 #include "toolkit/mesh/parallel.h"
 #include "toolkit/mesh/text.h"
 #include "toolkit/model/displaced_expressions.h"
+#include "toolkit/model/expression_names.h"
 #include "toolkit/pipeline/target_notes.h"
 #include "toolkit/pipeline/usability.h"
 #include "toolkit/transfer/seams.h"
@@ -103,13 +104,19 @@ class ExpressionTransfer {
   std::vector<VertexIndex> following_;
 };
 
-/// The target's own expressions that the source has are examples, too, unless one is given.
+/// The target's own expressions that the source has, by the same name or one written otherwise, are
+/// examples, too, unless one is given.
 void add_own_expressions(std::vector<RigExample>& examples, const BlendshapeModel& target,
                          const ShapeBasis& expressions, const Notes& notes) {
+  std::vector<std::string> renamed;
   for (int own = 0; own < target.expressions().size(); ++own) {
     const std::string& name = target.expressions().names[static_cast<std::size_t>(own)];
-    const int known = expressions.find(name);
+    const int known = expression_named(name, expressions.names);
     if (known < 0) continue;
+    if (const std::string& other = expressions.names[static_cast<std::size_t>(known)];
+        other != name) {
+      renamed.push_back("'" + name + "' is '" + other + "'");
+    }
     const auto is_it = [known](const RigExample& example) {
       const int* expression = std::get_if<int>(&example.meaning);
       return expression && *expression == known;
@@ -121,6 +128,9 @@ void add_own_expressions(std::vector<RigExample>& examples, const BlendshapeMode
     examples.push_back(
         {name, target.pose(Eigen::VectorXd::Unit(target.expressions().size(), own)), known});
   }
+  if (renamed.empty()) return;
+  note(notes, "expressions of the target that the source writes otherwise have its names: " +
+                  listed(renamed));
 }
 
 /// Notes examples no vertex of which stays where it is in the neutral.
@@ -151,9 +161,10 @@ void note_still(const std::vector<RigExample>& examples, const Positions& neutra
 /// The expressions of the source on the target, then the target's others.
 BlendshapeModel with_others(const BlendshapeModel& target, ShapeBasis expressions) {
   const ShapeBasis& own = target.expressions();
+  const std::vector<std::string> known = expressions.names;
   for (int j = 0; j < own.size(); ++j) {
     const std::string& name = own.names[static_cast<std::size_t>(j)];
-    if (expressions.find(name) >= 0) continue;
+    if (expression_named(name, known) >= 0) continue;
     expressions.names.push_back(name);
     expressions.displacements.conservativeResize(Eigen::NoChange, expressions.names.size());
     expressions.displacements.rightCols<1>() = own.displacements.col(j);
