@@ -101,7 +101,7 @@ TEST_F(RigTest, KnowsWhatTheTargetHasByANameThatIsWrittenOtherwise) {
   EXPECT_THAT(made.model.expressions().names,
               testing::ElementsAre("shape0", "shape1", "shape2", "shape3"));
   EXPECT_EQ(named(made, "shape2").origin, RigOrigin::example);
-  EXPECT_THAT(noted.notes, Contains(HasSubstr("'Shape_2' is 'shape2'")));
+  EXPECT_THAT(noted.notes, Contains(Field(&Note::text, HasSubstr("'Shape_2' is 'shape2'"))));
 }
 
 TEST_F(RigTest, GivesEqualBytesForAnyNumberOfThreadsAndByAnIdentityOfPairs) {

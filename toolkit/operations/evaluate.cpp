@@ -41,8 +41,9 @@ std::string text_of(const std::vector<EvaluationRow>& rows) {
       "   K  vertices  triangles   share    radius       DE all   MPE all      DE in L  MPE in L  "
       "regions s"
       "  transfer s       leak    crease        by\n";
+  // A space at least stands between two.
   const auto cell = [](const std::string& content, int width) {
-    return std::string(std::max<std::size_t>(width, content.size()) - content.size(), ' ') +
+    return std::string(std::max<std::size_t>(width, content.size() + 1) - content.size(), ' ') +
            content;
   };
   const auto decimals = [&cell](const std::optional<double>& value, int count, int width) {

@@ -23,7 +23,7 @@ struct EvaluationRow {
   std::optional<double> radius;
   double de_all = 0;
   double de_region = 0;
-  std::optional<double> mpe_all;  ///< percent; none for the full transfer, or where it is exact
+  std::optional<double> mpe_all;  ///< percent; none for the full one, or where that is exact
   std::optional<double> mpe_region;
   std::optional<double> decompose_seconds;  ///< decomposition and choice of regions
   double transfer_seconds = 0;
