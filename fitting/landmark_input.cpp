@@ -322,6 +322,9 @@ LandmarksRead read_landmark_input(const std::string& text, const SequenceSource&
     note_others(read, text, input);
     if (!source.frames) note_missing(read, text, input.frames);
   }
+  if (const std::string note = note_on_digits(text); !files.empty() && !note.empty()) {
+    read.notes.push_back(note);
+  }
   set_times(read, text, selected, source);
   report_progress(source.progress, 1);
   return read;

@@ -140,5 +140,19 @@ TEST_F(FolderOfFrames, PatternThatMatchesNothingNamesTheOneThatFits) {
   EXPECT_THAT(refused("g_%d.obj"), testing::EndsWith("STL file"));
 }
 
+TEST_F(FolderOfFrames, PatternThatMatchesSomeFilesNamesTheOthersAndThePatternOfAll) {
+  write_frames({8, 9, 10, 11});
+  const FrameSeries some = frames_of_pattern((folder_ / "f_%02d.obj").string());
+  EXPECT_EQ(some.frames.size(), 2u);
+  EXPECT_THAT(some.notes,
+              ElementsAre(AllOf(HasSubstr("f_8.obj, f_9.obj are left out of the 4 files"),
+                                HasSubstr("write '" + (folder_ / "f_%d.obj").string() + "'"))));
+  EXPECT_THAT(frames_of_pattern((folder_ / "f_%d.obj").string()).notes, IsEmpty());
+  write("f_012.obj");  // padded: none of printf writes all five
+  EXPECT_THAT(frames_of_pattern((folder_ / "f_%d.obj").string()).notes,
+              ElementsAre(AllOf(HasSubstr("f_012.obj is left out of the 5 files"),
+                                HasSubstr("write '" + (folder_ / "f_*.obj").string() + "'"))));
+}
+
 }  // namespace
 }  // namespace mimetra
