@@ -8,6 +8,7 @@
 
 #include <glob.h>
 
+#include "toolkit/io/file_numbers.h"
 #include "toolkit/io/mesh_file.h"
 #include "toolkit/io/sequence_format.h"
 #include "toolkit/mesh/errors.h"
@@ -37,7 +38,8 @@ std::optional<NumberField> number_field(const std::string& name) {
   return NumberField{begin, at + 1, width};
 }
 
-/// The digits between `before` and `after` in a name that has nothing else between them; else "".
+/// The digits between `before` and `after` in a name that has nothing else between them, but a '-'
+/// where it is a sign (file_numbers.h); else "".
 std::string digits_between(const std::string& name, const std::string& before,
                            const std::string& after) {
   if (name.size() <= before.size() + after.size() || !name.starts_with(before) ||
@@ -45,6 +47,7 @@ std::string digits_between(const std::string& name, const std::string& before,
     return {};
   }
   std::string digits = name.substr(before.size(), name.size() - before.size() - after.size());
+  if (minus_is_sign(before) && digits.starts_with('-')) digits.erase(0, 1);
   return std::ranges::all_of(digits, is_digit) ? digits : std::string();
 }
 
@@ -52,9 +55,11 @@ std::string digits_between(const std::string& name, const std::string& before,
 bool matches(const std::string& name, const std::string& pattern, const NumberField& field) {
   const std::string digits =
       digits_between(name, pattern.substr(0, field.begin), pattern.substr(field.end));
+  if (digits.empty()) return false;
   const bool padded = digits.size() > 1 && digits[0] == '0';
-  return !digits.empty() && digits.size() >= field.width &&
-         (!padded || digits.size() == field.width);
+  // printf counts the sign, others do not.
+  const std::size_t width = name.size() + field.end - field.begin - pattern.size();
+  return padded ? digits.size() == field.width || width == field.width : width >= field.width;
 }
 
 /// A link that leads nowhere was meant for a file: whoever reads it says what it is.
@@ -117,12 +122,6 @@ bool is_companion(const fs::path& file, const std::string& name) {
   return false;
 }
 
-void sort_naturally(std::vector<fs::path>& files) {
-  std::sort(files.begin(), files.end(), [](const fs::path& a, const fs::path& b) {
-    return natural_less(a.string(), b.string());
-  });
-}
-
 /// The number that a printf pattern has; none where `*` or `?` make it a glob, but for those in the
 /// name of a folder that is there.
 std::optional<NumberField> printf_field(const fs::path& pattern) {
@@ -147,7 +146,7 @@ std::vector<fs::path> mesh_files(std::vector<fs::path> files, const std::string&
     return !is_mesh_extension(file.extension().string()) || is_companion(file, name);
   });
   if (files.empty()) throw IoError(name, nothing);
-  sort_naturally(files);
+  sort_by_numbers(files);
   return files;
 }
 
@@ -174,7 +173,7 @@ std::vector<fs::path> files_of_any_digits(const fs::path& pattern) {
                           name.substr(field->end))
         .empty();
   });
-  sort_naturally(files);
+  sort_by_numbers(files);
   return files;
 }
 
@@ -258,7 +257,7 @@ std::vector<fs::path> files_named(const std::string& text) {
   std::error_code unreadable;
   std::vector<fs::path> files =
       fs::is_directory(text, unreadable) ? files_in(text) : files_of_pattern(text);
-  sort_naturally(files);
+  sort_by_numbers(files);
   return files;
 }
 
@@ -305,7 +304,7 @@ std::vector<fs::path> frames_of_format(const fs::path& folder, const std::string
   std::erase_if(files, [&](const fs::path& file) {
     return lower_extension(file) != lower_case(extension) || is_companion(file, folder.string());
   });
-  sort_naturally(files);
+  sort_by_numbers(files);
   return frames_among(std::move(files)).frames;
 }
 
