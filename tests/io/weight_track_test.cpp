@@ -342,6 +342,20 @@ TEST_F(Weights, NameFramesThatNoRowHasWhereThereAreNoTimes) {
   EXPECT_THAT(notes_of("frame,a\nfirst,0\n2,0\n7,0\n"), testing::IsEmpty());
 }
 
+TEST_F(Weights, OfRowsThatCountInStepsAreAsManyFramesApart) {
+  EXPECT_EQ(read("frame,a\n1001,0\n1003,0\n1007,0\n").step, 2);
+  EXPECT_EQ(read("frame,a\n0,0\n2,0\n7,0\n").step, 1);
+  EXPECT_EQ(read("Frame_Index,a\n0,0\n5,0\n").step, 5);
+  EXPECT_EQ(read("frame,a\n4,0\n2,0\n0,0\n").step, 1);
+  EXPECT_EQ(read("a\n0\n0\n").step, 1);
+}
+
+TEST_F(Weights, SayThatManyTimesAtWholeSecondsLookLikeNumbersOfFrames) {
+  std::string text = "time,a\n";
+  for (int f = 0; f < 10; ++f) text += std::to_string(f) + ",0\n";
+  EXPECT_THAT(read(text).notes, ElementsAre(HasSubstr("numbers of frames; expected seconds")));
+}
+
 TEST_F(Weights, SayThatTimesLookLikeMilliseconds) {
   EXPECT_THAT(read("time,a\n0,0\n33.3,0\n66.7,0\n").notes,
               ElementsAre(HasSubstr("its frames are 33.4 s apart")));
@@ -368,6 +382,17 @@ TEST_F(Weights, MatchNamesOfSidesHoweverTheyAreWritten) {
       EXPECT_THAT(match.unmatched_columns, testing::IsEmpty());
     }
   }
+}
+
+TEST_F(WeightsJson, AreNumberedAsThoseOfCsv) {
+  const WeightTrack counted =
+      read(R"([{"frame": 2, "a": 0}, {"frame": 4, "a": 0}, {"frame": 8, "a": 0}])");
+  EXPECT_EQ(counted.step, 2);
+  EXPECT_THAT(counted.notes, ElementsAre(HasSubstr("no row has these frames: 6")));
+  const WeightTrack timed = read(R"({"fps": 10, "frames": [{"frame": 2, "a": 0},
+                                     {"frame": 4, "a": 0}, {"frame": 8, "a": 0}]})");
+  EXPECT_EQ(timed.times, Eigen::Vector3d(0, 0.2, 0.6));
+  EXPECT_THAT(timed.notes, testing::IsEmpty());
 }
 
 }  // namespace

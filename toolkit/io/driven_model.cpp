@@ -66,7 +66,12 @@ OpenSequence drive(std::shared_ptr<const BlendshapeModel> model, const fs::path&
   open.notes.insert(open.notes.end(), unmatched.begin(), unmatched.end());
   std::optional<Eigen::VectorXd> of_track;
   if (track.times.size() > 0) of_track = track.times;
-  const FrameTimes times = frame_times(driver.string(), frames, std::move(of_track), source);
+  FrameTimes times = frame_times(driver.string(), frames, std::move(of_track), source);
+  if (track.times.size() == 0 && track.step != 1) {
+    times.seconds *= track.step;
+    const std::string odd = note_on_steps(times.seconds);
+    if (!odd.empty()) open.notes.push_back(driver.string() + ": " + odd);
+  }
   // There may be many frames: no more than one copy of what is not needed again.
   if (static_cast<int>(chosen.size()) < frames) {
     track.weights = Eigen::MatrixXd(track.weights(chosen, Eigen::all));

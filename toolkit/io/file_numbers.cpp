@@ -38,7 +38,8 @@ std::optional<long long> integer(const std::string& text) {
 /// The part of `stem` from `first` to `last` is the number; none where it is too large to count.
 NumberedName name_of(const fs::path& file, std::size_t first, std::size_t last,
                      std::optional<long long> number) {
-  if (!number) return {};
+  constexpr long long kMost = 4'000'000'000'000'000'000;  // differences are counted, too
+  if (!number || *number < -kMost || *number > kMost) return {};
   const std::string stem = file.stem().string();
   return {stem.substr(0, first) + '*' + stem.substr(last) + lower_extension(file), *number,
           stem.substr(first, last - first)};

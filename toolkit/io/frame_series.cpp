@@ -69,6 +69,17 @@ void note_numbers(FrameSeries& found, const FileNumbers& numbers, const std::str
   }
 }
 
+/// Whether their differences are numbers of frames, and none overflows.
+bool are_countable(const std::vector<long long>& numbers) {
+  constexpr long long kMost = 1'000'000'000'000;
+  return std::ranges::all_of(numbers,
+                             [](long long number) { return -kMost < number && number < kMost; });
+}
+
+bool rise(const std::vector<long long>& numbers) {
+  return std::ranges::adjacent_find(numbers, std::ranges::greater_equal()) == numbers.end();
+}
+
 void note_missing(FrameSeries& found, const std::string& name) {
   const std::vector<std::string> missing = missing_numbers(found.frames);
   if (missing.empty()) return;
@@ -225,6 +236,39 @@ std::vector<std::string> missing_numbers(std::vector<long long> numbers) {
         run_of(numbers[i - 1] + step, std::max(numbers[i - 1] + step, numbers[i] - step)));
   }
   return missing;
+}
+
+bool holds_frame_numbers(const std::string& name) {
+  const std::string plain = lower_case(name);
+  return plain == "frame" || plain == "frame_index" || plain == "frameindex" ||
+         plain == "frame_number" || plain == "framenumber";
+}
+
+RowNumbers row_numbers(const std::vector<long long>& numbers) {
+  RowNumbers found;
+  if (!are_countable(numbers)) return found;
+  if (const std::vector<std::string> missing = missing_numbers(numbers); !missing.empty()) {
+    found.note = "no row has these frames: " + listed(missing) +
+                 "; without times frames follow each other without a pause";
+  }
+  if (numbers.size() < 2 || !rise(numbers)) return found;
+  std::vector<long long> steps;
+  for (std::size_t i = 1; i < numbers.size(); ++i) steps.push_back(numbers[i] - numbers[i - 1]);
+  const long long least = std::ranges::min(steps);
+  const auto fits = [least](long long step) { return step % least == 0; };
+  if (std::ranges::all_of(steps, fits)) found.step = least;
+  return found;
+}
+
+Eigen::VectorXd times_at_rate(double fps, Eigen::Index rows,
+                              const std::vector<long long>& numbers) {
+  Eigen::VectorXd times(rows);
+  const bool by_numbers = std::ssize(numbers) == rows && are_countable(numbers) && rise(numbers);
+  for (Eigen::Index row = 0; row < rows; ++row) {
+    const auto at = static_cast<std::size_t>(row);
+    times[row] = static_cast<double>(by_numbers ? numbers[at] - numbers[0] : row) / fps;
+  }
+  return times;
 }
 
 std::string series_name(const fs::path& file) {

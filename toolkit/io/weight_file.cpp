@@ -18,14 +18,6 @@ namespace mimetra {
 
 namespace {
 
-/// Of frame numbers, in lower case.
-constexpr const char* kFrame = "frame";
-
-/// Columns of captures that are not weights.
-bool is_bookkeeping(const std::string& name) {
-  return name == kFrame || name == "blendshapecount";
-}
-
 /// Names of a column of seconds, in lower case.
 bool is_time(const std::string& name) {
   return name == "time" || name == "time (s)" || name == "time_s" || name == "seconds";
@@ -64,10 +56,10 @@ class WeightReader {
         timecode_column_ = column;
       } else if (plain == kTimestamp) {
         notes_.push_back(note_on_timestamp(std::string(name)));
-      } else if (!is_bookkeeping(plain)) {
-        weight_columns_.push_back(column);
-      } else if (plain == kFrame) {
+      } else if (holds_frame_numbers(plain)) {
         frame_column_ = column;
+      } else if (plain != "blendshapecount") {
+        weight_columns_.push_back(column);
       }
     }
     if (weight_columns_.empty()) csv_.fail("no column of weights");
@@ -134,10 +126,10 @@ class WeightReader {
     WeightTrack result;
     result.notes = std::move(notes_);
     find_times(result);
-    const auto missing = missing_numbers(std::move(frame_numbers_));
-    if (times_.empty() && !missing.empty()) {
-      result.notes.push_back("no row has these frames: " + listed(missing) +
-                             "; without times frames follow each other without a pause");
+    if (times_.empty()) {
+      RowNumbers numbers = row_numbers(frame_numbers_);
+      result.step = static_cast<double>(numbers.step);
+      if (!numbers.note.empty()) result.notes.push_back(std::move(numbers.note));
     }
     const auto columns = static_cast<Eigen::Index>(weight_columns_.size());
     for (const std::size_t column : weight_columns_) {

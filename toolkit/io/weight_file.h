@@ -7,7 +7,8 @@
 namespace mimetra {
 
 /// Reads weights. An ARKit / Live Link Face style CSV has a header of names and one row a frame;
-/// columns `time` (seconds), `frame`, `Timecode` and `BlendShapeCount` are not weights. Timecodes
+/// columns `time` (seconds), `frame`, `Timecode` and `BlendShapeCount` are not weights. Without
+/// times, numbers of frames tell how many lie between rows (WeightTrack::step). Timecodes
 /// give times from 0 on, at the rate that their frames are counted by. A byte-order mark and CRLF
 /// are accepted.
 ///

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "toolkit/io/fit_file.h"
+#include "toolkit/io/frame_series.h"
 #include "toolkit/io/json_text.h"
 #include "toolkit/io/text_cursor.h"
 #include "toolkit/io/whole_file.h"
@@ -121,7 +122,11 @@ class WeightJson {
     } else if (const Json* rate = member(root_, kRate)) {
       const double fps = number(*rate, "fps");
       if (!(fps > 0)) fail("fps", "expected more than 0, found " + readable(fps));
-      track_.times = Eigen::VectorXd::LinSpaced(frames, 0, static_cast<double>(frames - 1)) / fps;
+      track_.times = times_at_rate(fps, frames, frame_numbers_);
+    } else {
+      RowNumbers numbers = row_numbers(frame_numbers_);
+      track_.step = static_cast<double>(numbers.step);
+      if (!numbers.note.empty()) track_.notes.push_back(std::move(numbers.note));
     }
   }
 
@@ -150,6 +155,11 @@ class WeightJson {
       if ((time != nullptr) != timed)
         fail(place, timed ? "has no time" : "has a time, others none");
       if (time) set_time(f, number(*time, place + ", time"), place);
+      for (const auto& [key, value] : row.items()) {
+        if (holds_frame_numbers(key) && value.is_number_integer()) {
+          frame_numbers_.push_back(value.get<long long>());
+        }
+      }
       read_row(weights, f, frames, place);
     }
     if (!timed) read_times();
@@ -158,7 +168,7 @@ class WeightJson {
   void read_row(const Json& row, Eigen::Index frame, Eigen::Index frames,
                 const std::string& place) {
     const auto is_weight = [](const std::string& key) {
-      return key != "time" && key != "frame" && lower_case(key) != kTimestamp;
+      return key != "time" && !holds_frame_numbers(key) && lower_case(key) != kTimestamp;
     };
     if (frame == 0) {
       for (const auto& [key, value] : row.items()) {
@@ -184,6 +194,7 @@ class WeightJson {
   std::string path_;
   Json root_;
   WeightTrack track_;
+  std::vector<long long> frame_numbers_;
   std::map<std::string, Eigen::Index> columns_;
 };
 
