@@ -44,6 +44,8 @@ OpenSequence open_driven(const ModelSpec& spec, const SequenceSource& source) {
                          others.front().filename().string() +
                          " on, are no part of it; name frames by a pattern");
   }
+  const std::vector<std::string> unread = notes_on_unread(spec.path);
+  open.notes.insert(open.notes.end(), unread.begin(), unread.end());
   return open;
 }
 
