@@ -13,8 +13,11 @@ namespace mimetra {
 /// are accepted.
 ///
 /// NAME.json holds rows of objects ([{"time": 0, "jawOpen": 0.5}], or these as "rows" or "frames"),
-/// or "names" and "weights" (F x names) with "times" or "fps", by Audio2Face's keys too, or is what
-/// `mimetra fit` wrote.
+/// which may be MediaPipe's results ("faceBlendshapes" with "timestamp_ms"); or "names" and
+/// "weights" (F x names) with "times" or "fps", by Audio2Face's keys too; or is what `mimetra fit`
+/// wrote.
+///
+/// An empty or NaN weight of a CSV is missing: it lies between its neighbours'.
 ///
 /// Throws IoError that names line and column for ragged rows (decimal commas make some), another
 /// separator, what is not a finite number, times that do not ascend, duplicate names, JSON in a CSV
