@@ -238,5 +238,26 @@ TEST_F(FolderOfFrames, OfOneNumberAreNamedByTheirFoldersOrPatterns) {
               AllOf(HasSubstr("/f_%d.obj'"), HasSubstr("/f_%02d.obj'")));
 }
 
+TEST(Patterns, OfOtherProgramsAreWrittenForPrintf) {
+  EXPECT_EQ(printf_pattern("a/head.####.obj"), "a/head.%04d.obj");
+  EXPECT_EQ(printf_pattern("head.@@@@.obj"), "head.%04d.obj");
+  EXPECT_EQ(printf_pattern("head.$F4.obj"), "head.%04d.obj");
+  EXPECT_EQ(printf_pattern("head_#.obj"), "head_%d.obj");
+  EXPECT_EQ(printf_pattern("head_$F.obj"), "head_%d.obj");
+  EXPECT_EQ(printf_pattern("actor@identity003=1.5"), "");
+  EXPECT_EQ(printf_pattern("head.obj"), "");
+  for (const char* name : {"gone/h.####.obj", "gone/h.@@@@.obj", "gone/h.$F4.obj"}) {
+    EXPECT_THAT(test::message_of<IoError>([&] { open_sequence(name); }),
+                HasSubstr("is written 'gone/h.%04d.obj'"));
+  }
+}
+
+TEST_F(FolderOfFrames, PatternOfPrintfWithAStarNamesTheStar) {
+  write_frames({1, 2});
+  EXPECT_THAT(
+      test::message_of<IoError>([this] { frames_of_pattern((folder_ / "*_%d.obj").string()); }),
+      HasSubstr("write '*' in the place of the number, too"));
+}
+
 }  // namespace
 }  // namespace mimetra

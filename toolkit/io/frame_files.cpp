@@ -202,7 +202,12 @@ std::string fitting_pattern(const fs::path& pattern, const std::vector<fs::path>
 std::string no_match(const std::string& pattern) {
   const std::string nothing = "matches no OBJ, PLY, OFF or STL file";
   const std::vector<fs::path> near = files_of_any_digits(pattern);
-  if (near.empty()) return nothing;
+  if (near.empty()) {
+    const bool is_both =
+        !printf_field(pattern) && number_field(fs::path(pattern).filename().string());
+    return nothing +
+           (is_both ? "; beside '*' or '?' write '*' in the place of the number, too" : "");
+  }
   return nothing + ", but there is " + near.front().filename().string() + ": write '" +
          fitting_pattern(pattern, near) + "'";
 }
@@ -259,6 +264,28 @@ std::vector<fs::path> files_named(const std::string& text) {
       fs::is_directory(text, unreadable) ? files_in(text) : files_of_pattern(text);
   sort_by_numbers(files);
   return files;
+}
+
+std::string printf_pattern(const fs::path& pattern) {
+  const std::string name = pattern.filename().string();
+  std::size_t begin = name.find('#'), end = name.find_first_not_of('#', begin), digits = 0;
+  if (begin == std::string::npos) {
+    begin = name.find("@@");
+    end = name.find_first_not_of('@', begin);
+  }
+  if (begin != std::string::npos) {
+    end = std::min(end, name.size());
+    digits = end - begin;
+  } else if (begin = name.find("$F"); begin != std::string::npos) {
+    end = begin + 2;
+    if (end < name.size() && is_digit(name[end])) {
+      digits = static_cast<std::size_t>(name[end++] - '0');
+    }
+  } else {
+    return {};
+  }
+  const std::string number = digits > 1 ? "%0" + std::to_string(digits) + "d" : "%d";
+  return (pattern.parent_path() / (name.substr(0, begin) + number + name.substr(end))).string();
 }
 
 std::string note_on_digits(const std::string& pattern) {
