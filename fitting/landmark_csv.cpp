@@ -10,6 +10,7 @@
 #include "fitting/landmark_formats.h"
 #include "fitting/mediapipe.h"
 #include "toolkit/io/csv.h"
+#include "toolkit/io/frame_series.h"
 #include "toolkit/mesh/errors.h"
 
 namespace mimetra {
@@ -57,7 +58,7 @@ class LandmarkReader {
         add_column(y, *row, column);
       } else if (name == "time" || name == "timestamp") {
         time_ = column;
-      } else if (name == "frame") {
+      } else if (holds_frame_numbers(std::string(name))) {
         frame_ = column;
       } else if (name == "confidence") {
         confidence_ = column;
@@ -110,7 +111,7 @@ class LandmarkReader {
       }
       times_.push_back(time);
     }
-    if (frame_ && !time_) check_frame(csv_.number(*frame_));
+    if (frame_ && !time_) read_frame_number(csv_.number(*frame_));
     if (confidence_) {
       const double confidence = csv_.number(*confidence_);
       if (!(confidence >= 0 && confidence <= 1)) csv_.fail("the confidence is outside [0, 1]");
@@ -119,14 +120,16 @@ class LandmarkReader {
     ++frames_;
   }
 
-  /// Without times, rows are taken for consecutive frames.
-  void check_frame(double frame) {
-    if (last_frame_ && frame != *last_frame_ + 1) {
-      csv_.fail("frame " + std::to_string(std::lround(frame)) + " follows " +
-                std::to_string(std::lround(*last_frame_)) +
-                "; expected consecutive frames, or a column 'time'");
+  void read_frame_number(double frame) {
+    constexpr double kMost = 1e12;
+    if (!(std::abs(frame) < kMost)) csv_.fail("the frame has a number of more than 12 digits");
+    const long long number = std::llround(frame);
+    if (!frame_numbers_.empty() && number <= frame_numbers_.back()) {
+      csv_.fail("frame " + std::to_string(number) + " follows " +
+                std::to_string(frame_numbers_.back()) +
+                "; expected one face and one row a frame, or a column 'time'");
     }
-    last_frame_ = frame;
+    frame_numbers_.push_back(number);
   }
 
   LandmarkTrack track() const {
@@ -135,9 +138,11 @@ class LandmarkReader {
           values.data(), static_cast<Eigen::Index>(values.size())));
     };
     const auto columns = static_cast<Eigen::Index>(columns_.size());
-    return {numbered_names(columns_.size() / 2),
-            Eigen::Map<const Frames>(points_.data(), frames_, columns), vector(times_),
-            vector(confidences_)};
+    LandmarkTrack track = {numbered_names(columns_.size() / 2),
+                           Eigen::Map<const Frames>(points_.data(), frames_, columns),
+                           vector(times_), vector(confidences_)};
+    number_frames(track, frame_numbers_);
+    return track;
   }
 
   std::filesystem::path path_;
@@ -145,7 +150,7 @@ class LandmarkReader {
   /// Columns of x0, y0, x1, y1, ...
   std::vector<std::size_t> columns_;
   std::optional<std::size_t> frame_, time_, confidence_, success_;
-  std::optional<double> last_frame_;
+  std::vector<long long> frame_numbers_;
   std::vector<double> points_, times_, confidences_;
   Eigen::Index frames_ = 0;
 };

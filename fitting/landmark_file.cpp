@@ -4,7 +4,7 @@
 
 #include "fitting/landmark_formats.h"
 #include "fitting/mediapipe.h"
-#include "toolkit/io/frame_files.h"
+#include "toolkit/io/frame_series.h"
 #include "toolkit/io/text_cursor.h"
 #include "toolkit/io/whole_file.h"
 #include "toolkit/mesh/errors.h"
@@ -16,6 +16,12 @@ std::vector<std::string> numbered_names(std::size_t count) {
   std::vector<std::string> names;
   for (std::size_t i = 1; i <= count; ++i) names.push_back(std::to_string(i));
   return names;
+}
+
+void number_frames(LandmarkTrack& track, const std::vector<long long>& numbers) {
+  RowNumbers found = row_numbers(numbers);
+  track.step = static_cast<double>(found.step);
+  if (!found.note.empty()) track.notes.push_back(std::move(found.note));
 }
 
 LandmarkTrack read_pts(const std::filesystem::path& path) {

@@ -14,13 +14,14 @@ namespace mimetra {
 ///   become 0-based.
 /// - `.csv`: a header and one row a frame: columns x0, y0, x1, ... (or OpenFace's x_0, ..., y_0,
 ///   ...; counted from 0 or from 1), 0-based pixels, and optionally `time` or `timestamp`
-///   (ascending), `confidence`, `success` (0: nothing of the frame was seen); others are left out.
+///   (ascending) or `frame` (ascending numbers), `confidence`, `success` (0: nothing of the frame
+///   was seen); others are left out.
 ///   The first landmark is "1". An empty field or `nan` is a landmark not seen.
 /// - `.json`: {"frames": [{"points": [[x, y], null, ...], "time": s, "confidence": c}, ...]} with
-///   optional "names" beside "frames"; or a list of frames, or one frame alone. 0-based; null is
-///   not seen. In a frame also the results of MediaPipe's Face Landmarker ("faceLandmarks",
-///   "face_landmarks", "multi_face_landmarks", "landmark": faces of {"x", "y", "z"}), of whose
-///   faces the largest is followed, with "timestamp_ms".
+///   optional "names" and "fps" beside "frames", and "frame" in each; or a list of frames, or one
+///   frame alone. 0-based; null is not seen. In a frame also the results of MediaPipe's Face
+///   Landmarker ("faceLandmarks", "face_landmarks", "multi_face_landmarks", "landmark": faces of
+///   {"x", "y", "z"}), of whose faces the largest is followed, with "timestamp_ms".
 ///
 /// 468 or 478 numbered landmarks are MediaPipe's, "mp0" to "mp477".
 LandmarkTrack read_landmarks(const std::filesystem::path& path);

@@ -169,8 +169,8 @@ void set_times(LandmarksRead& read, const std::string& text, const std::vector<i
   }
   track.times.resize(track.frames());
   for (int f = 0; f < track.frames(); ++f) {
-    track.times[f] =
-        frames[static_cast<std::size_t>(f)] / source.fps.value_or(kDefaultFramesPerSecond);
+    track.times[f] = frames[static_cast<std::size_t>(f)] * track.step /
+                     source.fps.value_or(kDefaultFramesPerSecond);
   }
 }
 
@@ -319,8 +319,12 @@ LandmarksRead read_landmark_input(const std::string& text, const SequenceSource&
     }
     make_pixels(read, text, options.image_size);
     drop_doubtful(read, text, options.faces.min_confidence);
+    for (const std::string& note : read.track.notes) read.notes.push_back(text + ": " + note);
     note_others(read, text, input);
     if (!source.frames) note_missing(read, text, input.frames);
+  }
+  if (const std::string note = note_on_digits(text); !files.empty() && !note.empty()) {
+    read.notes.push_back(note);
   }
   set_times(read, text, selected, source);
   report_progress(source.progress, 1);

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "fitting/landmark_formats.h"
+#include "toolkit/io/frame_series.h"
 #include "toolkit/io/json_text.h"
 #include "toolkit/mesh/errors.h"
 
@@ -26,6 +27,8 @@ constexpr std::array kFaceKeys = {"points",    "faceLandmarks",      "face_landm
 /// A key for the time of a frame, and how many of it are a second.
 constexpr std::array<std::pair<const char*, double>, 3> kTimeKeys = {
     {{"time", 1}, {"timestamp_ms", 1000}, {"timestampMs", 1000}}};
+
+constexpr std::array kRateKeys = {"fps", "frame_rate", "frameRate"};
 
 bool is_point(const Json& value) {
   if (value.is_object()) return value.contains("x") && value.contains("y");
@@ -90,6 +93,11 @@ class JsonReader {
       }
       times_.push_back(time);
       break;
+    }
+    for (const auto& [key, value] : frame.items()) {
+      if (holds_frame_numbers(key) && value.is_number_integer()) {
+        frame_numbers_.push_back(value.get<long long>());
+      }
     }
     if (frame.contains("confidence")) {
       const double confidence = number(frame["confidence"], place + "/confidence");
@@ -200,9 +208,30 @@ class JsonReader {
                                              static_cast<Eigen::Index>(values.size()));
   }
 
+  /// Frames per second that the file says; 0 where it does not.
+  double rate() const {
+    for (const char* key : kRateKeys) {
+      if (!root_.is_object() || !root_.contains(key)) continue;
+      const double fps = number(root_[key], std::string("/") + key);
+      if (!(fps > 0)) fail(std::string("/") + key, "expected more than 0");
+      return fps;
+    }
+    return 0;
+  }
+
   LandmarkTrack track() const {
     if (landmarks_ == 0) fail("", "shows no face in any frame; expected a list of points");
-    return {names(), points(), of_frames(times_, "time"), of_frames(confidences_, "confidence")};
+    LandmarkTrack track = {names(), points(), of_frames(times_, "time"),
+                           of_frames(confidences_, "confidence")};
+    if (track.times.size() > 0) return track;
+    const bool each_has_one = frame_numbers_.size() == faces_.size();
+    const std::vector<long long> numbers = each_has_one ? frame_numbers_ : std::vector<long long>();
+    if (const double fps = rate(); fps > 0) {
+      track.times = times_at_rate(fps, track.frames(), numbers);
+    } else {
+      number_frames(track, numbers);
+    }
+    return track;
   }
 
   std::string path_;
@@ -211,6 +240,7 @@ class JsonReader {
   std::vector<std::optional<Points>> faces_;
   std::optional<Eigen::Vector2d> last_;  ///< middle of the last face that was chosen of several
   std::vector<double> times_, confidences_;
+  std::vector<long long> frame_numbers_;
 };
 
 }  // namespace

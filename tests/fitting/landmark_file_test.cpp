@@ -245,5 +245,39 @@ TEST_F(Landmarks, OfAnUnknownFormatAreRefused) {
               HasSubstr("none.pts"));
 }
 
+TEST_F(Landmarks, OfAJsonFileHaveTheTimesOfItsRate) {
+  EXPECT_EQ(read("a.json", R"({"fps": 25, "frames": [{"points": [[1, 2]]}, {"points": [[1, 3]]}]})")
+                .times,
+            Eigen::Vector2d(0, 0.04));
+  EXPECT_EQ(read("a.json", R"({"fps": 10, "frames": [{"frame": 7, "points": [[1, 2]]},
+                                                     {"frame": 9, "points": [[1, 3]]}]})")
+                .times,
+            Eigen::Vector2d(0, 0.2));
+  EXPECT_THAT(message("a.json", R"({"fps": 0, "frames": [{"points": [[1, 2]]}]})"),
+              HasSubstr("/fps: expected more than 0"));
+}
+
+TEST_F(Landmarks, NameFramesThatAreMissingWhereThereAreNoTimes) {
+  const auto expect_gap = [](const LandmarkTrack& track) {
+    EXPECT_EQ(track.frames(), 3);
+    EXPECT_EQ(track.times.size(), 0);
+    EXPECT_EQ(track.step, 2);
+    EXPECT_THAT(track.notes, ElementsAre(HasSubstr("no row has these frames: 5")));
+  };
+  expect_gap(read("a.csv", "frame,x0,y0\n1,0,10\n3,0,10\n7,0,10\n"));
+  for (const std::string key : {"frame", "frame_index"}) {
+    std::string text;
+    for (const char* number : {"1", "3", "7"}) {
+      text +=
+          (text.empty() ? "[" : ",") + ("{\"" + key) + "\": " + number + ", \"points\": [[1, 2]]}";
+    }
+    expect_gap(read("a.json", text + "]"));
+  }
+  EXPECT_THAT(read("a.csv", "frame,time,x0,y0\n1,0,0,10\n3,0.1,0,10\n7,0.3,0,10\n").notes,
+              testing::IsEmpty());
+  EXPECT_THAT(message("a.csv", "frame,x0,y0\n1,0,10\n1,0,10\n"),
+              HasSubstr("line 3: frame 1 follows 1; expected one face and one row a frame"));
+}
+
 }  // namespace
 }  // namespace mimetra

@@ -205,5 +205,12 @@ TEST(ArrayFile, FolderThatIsNotThereIsAnOutputError) {
   EXPECT_THROW(write_npy_frames(folder / "none/a.npy", some_frames(1, 1)), OutputError);
 }
 
+TEST(ArrayFile, OfCoordinatesInOneRowIsFramesOfVertices) {
+  const TemporaryFolder folder;
+  write_bytes(folder / "a.npy", npy("<f8", "False", "(1, 6)", raw(kSix)));
+  EXPECT_EQ(read_npy_frames(folder / "a.npy").rows(), 1);
+  EXPECT_EQ(read_npy_frames(folder / "a.npy").cols(), 6);
+}
+
 }  // namespace
 }  // namespace mimetra

@@ -140,5 +140,124 @@ TEST_F(FolderOfFrames, PatternThatMatchesNothingNamesTheOneThatFits) {
   EXPECT_THAT(refused("g_%d.obj"), testing::EndsWith("STL file"));
 }
 
+TEST_F(FolderOfFrames, PatternThatMatchesSomeFilesNamesTheOthersAndThePatternOfAll) {
+  write_frames({8, 9, 10, 11});
+  const FrameSeries some = frames_of_pattern((folder_ / "f_%02d.obj").string());
+  EXPECT_EQ(some.frames.size(), 2u);
+  EXPECT_THAT(some.notes,
+              ElementsAre(AllOf(HasSubstr("f_8.obj, f_9.obj are left out of the 4 files"),
+                                HasSubstr("write '" + (folder_ / "f_%d.obj").string() + "'"))));
+  EXPECT_THAT(frames_of_pattern((folder_ / "f_%d.obj").string()).notes, IsEmpty());
+  write("f_012.obj");  // padded: none of printf writes all five
+  EXPECT_THAT(frames_of_pattern((folder_ / "f_%d.obj").string()).notes,
+              ElementsAre(AllOf(HasSubstr("f_012.obj is left out of the 5 files"),
+                                HasSubstr("write '" + (folder_ / "f_*.obj").string() + "'"))));
+}
+
+class OrderOfFrames : public FolderOfFrames {
+ protected:
+  /// Writes the files and returns their names in the order of frames.
+  std::vector<std::string> ordered(const std::vector<std::string>& stems) {
+    for (const std::string& stem : stems) write(stem + ".obj");
+    std::vector<std::string> names;
+    for (const fs::path& frame : series().frames) names.push_back(frame.stem().string());
+    return names;
+  }
+};
+
+TEST_F(OrderOfFrames, BeginsWithNumbersBelowZero) {
+  EXPECT_THAT(ordered({"f_-1", "f_-2", "f_-10", "f_0", "f_1", "f_2"}),
+              ElementsAre("f_-10", "f_-2", "f_-1", "f_0", "f_1", "f_2"));
+  EXPECT_THAT(series().notes, ElementsAre(HasSubstr("no file has these numbers: -9 to -3")));
+}
+
+TEST_F(OrderOfFrames, TakesAMinusForASignBehindASeparatorOnly) {
+  EXPECT_THAT(ordered({"head.-1", "head.-2", "head.0"}),
+              ElementsAre("head.-2", "head.-1", "head.0"));
+  EXPECT_EQ(frames_of_pattern((folder_ / "head.%d.obj").string()).frames.size(), 3u);
+}
+
+TEST_F(OrderOfFrames, BehindALetterAndAMinusIsThatOfTheDigits) {
+  EXPECT_THAT(ordered({"head-001", "head-002", "head-003"}),
+              ElementsAre("head-001", "head-002", "head-003"));
+}
+
+TEST_F(OrderOfFrames, IsNamedWhereAllNumbersAreBelowZero) {
+  EXPECT_THAT(ordered({"f_-001", "f_-002"}), ElementsAre("f_-002", "f_-001"));
+  EXPECT_THAT(series().notes, ElementsAre(HasSubstr("all frames have numbers below 0")));
+}
+
+TEST_F(OrderOfFrames, OfPaddedNumbersBelowZeroMatchesThePatternOfAnyProgram) {
+  // printf writes -0001 and 00000, Blender -00001 and 00000.
+  for (const char* name : {"a_-0001.obj", "a_00000.obj", "b_-00001.obj", "b_00000.obj"}) {
+    write(name);
+  }
+  for (const char* pattern : {"a_%05d.obj", "b_%05d.obj"}) {
+    const FrameSeries found = frames_of_pattern((folder_ / pattern).string());
+    EXPECT_EQ(found.frames.size(), 2u);
+    EXPECT_THAT(found.notes, IsEmpty());
+  }
+}
+
+TEST_F(OrderOfFrames, IsThatOfDecimalNumbers) {
+  EXPECT_THAT(ordered({"t_0.0", "t_0.25", "t_0.5", "t_0.75", "t_1.0", "t_1.25"}),
+              ElementsAre("t_0.0", "t_0.25", "t_0.5", "t_0.75", "t_1.0", "t_1.25"));
+  EXPECT_THAT(series().notes,
+              ElementsAre(AllOf(HasSubstr("0.0 to 1.25"), HasSubstr("not taken for times"))));
+}
+
+TEST_F(OrderOfFrames, IsThatOfDecimalNumbersWithoutEvenSteps) {
+  EXPECT_THAT(ordered({"0.033", "0.1", "0.133", "2.5"}),
+              ElementsAre("0.033", "0.1", "0.133", "2.5"));
+}
+
+TEST_F(OrderOfFrames, BehindANumberAndAPointIsThatOfIntegers) {
+  EXPECT_THAT(ordered({"v1.8", "v1.9", "v1.10", "v1.11"}),
+              ElementsAre("v1.8", "v1.9", "v1.10", "v1.11"));
+  EXPECT_THAT(series().notes, IsEmpty());
+}
+
+TEST_F(OrderOfFrames, BehindANumberAndAPointIsThatOfPaddedIntegers) {
+  EXPECT_THAT(ordered({"v2.0009", "v2.0010", "v2.0011"}),
+              ElementsAre("v2.0009", "v2.0010", "v2.0011"));
+  EXPECT_THAT(series().notes, IsEmpty());
+}
+
+TEST_F(FolderOfFrames, OfOneNumberAreNamedByTheirFoldersOrPatterns) {
+  for (const char* take : {"a", "b"}) {
+    fs::create_directory(folder_ / take);
+    write(std::string(take) + "/f_1.obj");
+  }
+  const std::string all = (folder_ / "*").string() + "/*.obj";
+  EXPECT_THAT(test::message_of<IoError>([&] { frames_of_pattern(all); }),
+              AllOf(HasSubstr("several takes; "), testing::Not(HasSubstr("remove")),
+                    testing::EndsWith("name one folder, " + (folder_ / "a").string() + " or " +
+                                      (folder_ / "b").string())));
+  write("a/f_01.obj");
+  EXPECT_THAT(test::message_of<IoError>([&] { frames_of_folder(folder_ / "a"); }),
+              AllOf(HasSubstr("/f_%d.obj'"), HasSubstr("/f_%02d.obj'")));
+}
+
+TEST(Patterns, OfOtherProgramsAreWrittenForPrintf) {
+  EXPECT_EQ(printf_pattern("a/head.####.obj"), "a/head.%04d.obj");
+  EXPECT_EQ(printf_pattern("head.@@@@.obj"), "head.%04d.obj");
+  EXPECT_EQ(printf_pattern("head.$F4.obj"), "head.%04d.obj");
+  EXPECT_EQ(printf_pattern("head_#.obj"), "head_%d.obj");
+  EXPECT_EQ(printf_pattern("head_$F.obj"), "head_%d.obj");
+  EXPECT_EQ(printf_pattern("actor@identity003=1.5"), "");
+  EXPECT_EQ(printf_pattern("head.obj"), "");
+  for (const char* name : {"gone/h.####.obj", "gone/h.@@@@.obj", "gone/h.$F4.obj"}) {
+    EXPECT_THAT(test::message_of<IoError>([&] { open_sequence(name); }),
+                HasSubstr("is written 'gone/h.%04d.obj'"));
+  }
+}
+
+TEST_F(FolderOfFrames, PatternOfPrintfWithAStarNamesTheStar) {
+  write_frames({1, 2});
+  EXPECT_THAT(
+      test::message_of<IoError>([this] { frames_of_pattern((folder_ / "*_%d.obj").string()); }),
+      HasSubstr("write '*' in the place of the number, too"));
+}
+
 }  // namespace
 }  // namespace mimetra

@@ -369,5 +369,27 @@ TEST_F(Model, SaysWhichMeshesItLeavesUnread) {
               testing::ElementsAre(HasSubstr("1 other mesh files and shapes/")));
 }
 
+TEST_F(Model, WithExpressionsSaysWhichMeshesItLeavesUnread) {
+  namespace fs = std::filesystem;
+  write_model(folder_ / "m", small_model(), {}, false);
+  for (const char* other : {"expressions/upper", "Targets", "frames"}) {
+    fs::create_directory(folder_ / "m" / other);
+    fs::copy_file(folder_ / "m/expressions/smile.ply", folder_ / "m" / other / "grin.ply");
+  }
+  EXPECT_THAT(notes_on_unread(folder_ / "m"),
+              testing::ElementsAre(HasSubstr("meshes of expressions/upper/ and Targets/ are not "
+                                             "read; expressions are the files in expressions/")));
+}
+
+TEST_F(Model, WithoutExpressionsIsDrivenByNoWeightsAndNamesTheFolderThatIsNotRead) {
+  write_model(folder_ / "m", small_model(), {}, false);
+  std::filesystem::rename(folder_ / "m/expressions", folder_ / "m/blendshapes");
+  write_bytes(folder_ / "w.csv", "smile\n0.5\n");
+  EXPECT_THAT(test::message_of<MismatchError>([this] {
+                open_sequence((folder_ / "m").string(), {.weights = folder_ / "w.csv"});
+              }),
+              testing::AllOf(HasSubstr("w.csv: drives nothing"), HasSubstr("blendshapes/ in it")));
+}
+
 }  // namespace
 }  // namespace mimetra

@@ -226,5 +226,19 @@ TEST_F(NpzFiles, NameWhatIsWrongInThem) {
   EXPECT_THAT(message_of<IoError>([this] { read(); }), HasSubstr("a.npz: is no ZIP archive"));
 }
 
+TEST_F(NpzFiles, HaveTheTimesOfTheirRate) {
+  for (const std::string name : {"fps", "mocap_framerate"}) {
+    write({{"vertices.npy", npy("<f8", "2, 4, 3", kPoses)},
+           {"faces.npy", npy("<i8", "1, 3", kFace)},
+           {name + ".npy", npy<double>("<f8", "", {20})}});
+    EXPECT_EQ(read().times(), Eigen::Vector2d(0, 0.05)) << name;
+    EXPECT_TRUE(read().times_are_known());
+  }
+  write({{"vertices.npy", npy("<f8", "2, 4, 3", kPoses)},
+         {"faces.npy", npy("<i8", "1, 3", kFace)},
+         {"fps.npy", npy<double>("<f8", "1,", {0})}});
+  EXPECT_THAT(message_of<IoError>([this] { read(); }), HasSubstr("fps: is 0, expected frames"));
+}
+
 }  // namespace
 }  // namespace mimetra

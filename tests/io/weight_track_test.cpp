@@ -342,6 +342,20 @@ TEST_F(Weights, NameFramesThatNoRowHasWhereThereAreNoTimes) {
   EXPECT_THAT(notes_of("frame,a\nfirst,0\n2,0\n7,0\n"), testing::IsEmpty());
 }
 
+TEST_F(Weights, OfRowsThatCountInStepsAreAsManyFramesApart) {
+  EXPECT_EQ(read("frame,a\n1001,0\n1003,0\n1007,0\n").step, 2);
+  EXPECT_EQ(read("frame,a\n0,0\n2,0\n7,0\n").step, 1);
+  EXPECT_EQ(read("Frame_Index,a\n0,0\n5,0\n").step, 5);
+  EXPECT_EQ(read("frame,a\n4,0\n2,0\n0,0\n").step, 1);
+  EXPECT_EQ(read("a\n0\n0\n").step, 1);
+}
+
+TEST_F(Weights, SayThatManyTimesAtWholeSecondsLookLikeNumbersOfFrames) {
+  std::string text = "time,a\n";
+  for (int f = 0; f < 10; ++f) text += std::to_string(f) + ",0\n";
+  EXPECT_THAT(read(text).notes, ElementsAre(HasSubstr("numbers of frames; expected seconds")));
+}
+
 TEST_F(Weights, SayThatTimesLookLikeMilliseconds) {
   EXPECT_THAT(read("time,a\n0,0\n33.3,0\n66.7,0\n").notes,
               ElementsAre(HasSubstr("its frames are 33.4 s apart")));
@@ -368,6 +382,65 @@ TEST_F(Weights, MatchNamesOfSidesHoweverTheyAreWritten) {
       EXPECT_THAT(match.unmatched_columns, testing::IsEmpty());
     }
   }
+}
+
+TEST_F(WeightsJson, AreNumberedAsThoseOfCsv) {
+  const WeightTrack counted =
+      read(R"([{"frame": 2, "a": 0}, {"frame": 4, "a": 0}, {"frame": 8, "a": 0}])");
+  EXPECT_EQ(counted.step, 2);
+  EXPECT_THAT(counted.notes, ElementsAre(HasSubstr("no row has these frames: 6")));
+  const WeightTrack timed = read(R"({"fps": 10, "frames": [{"frame": 2, "a": 0},
+                                     {"frame": 4, "a": 0}, {"frame": 8, "a": 0}]})");
+  EXPECT_EQ(timed.times, Eigen::Vector3d(0, 0.2, 0.6));
+  EXPECT_THAT(timed.notes, testing::IsEmpty());
+}
+
+TEST_F(WeightsJson, OfMediaPipeAreItsCategories) {
+  const auto row = [](const char* time, const char* smile) {
+    return std::string(R"({"timestamp_ms": )") + time +
+           R"(, "faceBlendshapes": [{"categories": [{"categoryName": "_neutral", "score": 1},
+                {"index": 1, "categoryName": "smile", "score": )" +
+           smile + R"(}]}]})";
+  };
+  const WeightTrack track = read("[" + row("0", "0.25") + "," + row("40", "0.5") + "]");
+  EXPECT_THAT(track.names, ElementsAre("smile"));
+  EXPECT_EQ(track.weights, Eigen::Vector2d(0.25, 0.5));
+  EXPECT_EQ(track.times, Eigen::Vector2d(0, 0.04));
+  const WeightTrack plain =
+      read(R"([{"face_blendshapes": [[{"category_name": "smile", "score": 0.5}]]}])");
+  EXPECT_EQ(plain.weights(0, 0), 0.5);
+  EXPECT_THAT(message_of(R"([{"faceBlendshapes": []}])"), HasSubstr("row 0: expected the categ"));
+}
+
+TEST_F(Weights, ThatAreMissingLieBetweenTheirNeighbours) {
+  const WeightTrack track = read("a,b\n0,0\nnan,1\n,\n0.75,NaN\n");
+  EXPECT_EQ(track.weights.col(0), Eigen::Vector4d(0, 0.25, 0.5, 0.75));
+  EXPECT_EQ(track.weights.col(1), Eigen::Vector4d(0, 1, 1, 1));
+  EXPECT_THAT(track.notes, ElementsAre(HasSubstr("rows without weights"),
+                                       HasSubstr("columns in which weights are missing")));
+  EXPECT_THAT(message_of("a,b\n0,inf\n"), HasSubstr("'b': expected a finite number"));
+}
+
+TEST_F(Weights, MayHaveCommentsAndCommasAtTheEndsOfLines) {
+  const WeightTrack track = read("# take 7\na,b,\n0,0.5,\n# lost\n1,0.25,\n");
+  EXPECT_THAT(track.names, ElementsAre("a", "b"));
+  EXPECT_EQ(track.weights, (Eigen::Matrix2d() << 0, 0.5, 1, 0.25).finished());
+  EXPECT_EQ(read("a,b\n0,0.5,\n").weights.cols(), 2);
+}
+
+TEST_F(Weights, OfOtherFilesAreNamedAsWhatTheyAre) {
+  EXPECT_THAT(message_of("a\tb\n0\t1\n"), HasSubstr("separated by tabs, expected ','"));
+  std::ofstream(folder_ / "w.npy") << "anything";
+  EXPECT_THAT(test::message_of<IoError>([this] { read_weights(folder_ / "w.npy"); }),
+              HasSubstr("is a NumPy array, which does not name its weights"));
+}
+
+TEST_F(Weights, FindExpressionsWhoseSideComesFirst) {
+  WeightTrack track;
+  track.names = {"L_smile", "right_smile"};
+  EXPECT_THAT(match_weights(track, {"smile_L", "smileRight"}).column, ElementsAre(0, 1));
+  track.names = {"smileLeft", "smile_R"};
+  EXPECT_THAT(match_weights(track, {"l_smile", "Right_smile"}).column, ElementsAre(0, 1));
 }
 
 }  // namespace

@@ -58,5 +58,13 @@ TEST(KnownExclusives, NeedAllOfAGroup) {
   EXPECT_THAT(known_exclusives({"eyeLookUpLeft", "jawOpen"}, Exclusive::all), IsEmpty());
 }
 
+TEST(ExpressionNames, MayBeginWithTheirSide) {
+  EXPECT_EQ(spelled_out("L_smile"), "smileLeft");
+  EXPECT_EQ(spelled_out("right_smile"), "smileRight");
+  EXPECT_EQ(without_side("r_smile"), "smile");
+  EXPECT_THAT(known_pairs({"R_smile", "L_smile", "l_frown", "jawOpen", "L_jaw", "R_jaw"}),
+              testing::ElementsAre(std::array{1, 0}));
+}
+
 }  // namespace
 }  // namespace mimetra

@@ -65,12 +65,20 @@ CsvReader::CsvReader(const std::filesystem::path& path)
   const std::string_view line = next_line();
   if (line.empty()) throw IoError(path_, "is empty; expected a line of column names");
   names_ = comma_separated(line);
+  names_end_in_comma_ = names_.size() > 1 && names_.back().empty();
+  if (names_end_in_comma_) names_.pop_back();
 }
 
 bool CsvReader::next_row(Rows rows) {
   const std::string_view line = next_line();
   if (line.empty()) return false;
   row_ = comma_separated(line);
+  if (row_.size() == names_.size() + 1) {
+    if (row_.back().empty())
+      row_.pop_back();
+    else if (names_end_in_comma_)
+      fail("column " + std::to_string(row_.size()) + " has no name");
+  }
   given_ = row_.size();
   const bool may_be_short = rows == Rows::may_end_early && given_ < names_.size();
   if (given_ != names_.size() && !may_be_short) fail_of_size();
@@ -104,7 +112,7 @@ std::string_view CsvReader::next_line() {
   while (!text_.at_end()) {
     line_ = text_.line();
     const std::string_view line = text_.rest_of_line();
-    if (!line.empty()) return line;
+    if (!line.empty() && line.front() != '#') return line;
   }
   return {};
 }

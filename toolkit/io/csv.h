@@ -17,7 +17,8 @@ std::string csv_field(const std::string& text);
 /// The text of a field as CsvReader has it.
 std::string text_of_csv(std::string_view field);
 
-/// Reads a file row by row. Lines end in LF or CRLF; those that are blank are passed over.
+/// Reads a file row by row. Lines end in LF or CRLF; those that are blank or begin with '#' are
+/// passed over, and so is a comma that ends them.
 class CsvReader {
  public:
   /// Reads the column names. Throws IoError where there are none.
@@ -37,6 +38,8 @@ class CsvReader {
 
   /// A field of the row, as names() are.
   std::string_view field(std::size_t column) const { return row_[column]; }
+  /// False for one that the row ends before.
+  bool is_given(std::size_t column) const { return column < given_; }
   /// Throws IoError where the field is not a finite number.
   double number(std::size_t column) const;
 
@@ -45,7 +48,7 @@ class CsvReader {
 
  private:
   [[noreturn]] void fail_of_size() const;
-  /// The next line that is not blank; empty at the end of the file.
+  /// The next line that is neither blank nor a comment; empty at the end of the file.
   std::string_view next_line();
 
   std::string path_;
@@ -53,6 +56,7 @@ class CsvReader {
   TextCursor text_;
   int line_ = 0;
   std::vector<std::string_view> names_, row_;
+  bool names_end_in_comma_ = false;
   std::size_t given_ = 0;  ///< fields of the row that its line has
 };
 

@@ -1,6 +1,7 @@
 #include "toolkit/io/driven_model.h"
 
 #include "toolkit/io/frame_files.h"
+#include "toolkit/io/model_file.h"
 #include "toolkit/io/scene.h"
 #include "toolkit/io/sequence_parts.h"
 #include "toolkit/io/weight_file.h"
@@ -61,12 +62,22 @@ OpenSequence drive(std::shared_ptr<const BlendshapeModel> model, const fs::path&
   const auto frames = static_cast<int>(track.weights.rows());
   const std::vector<int> chosen = selected_frames(source.frames, frames);
   const std::vector<std::string>& expressions = model->expressions().names;
+  if (expressions.empty()) {
+    const std::vector<std::string> unread = notes_on_unread(path);
+    throw MismatchError(driver.string() + ": drives nothing; " +
+                        (unread.empty() ? path.string() + ": has no expressions" : unread[0]));
+  }
   for (const std::string& note : track.notes) open.notes.push_back(driver.string() + ": " + note);
   const auto unmatched = match_notes(driver, path, match_weights(track, expressions));
   open.notes.insert(open.notes.end(), unmatched.begin(), unmatched.end());
   std::optional<Eigen::VectorXd> of_track;
   if (track.times.size() > 0) of_track = track.times;
-  const FrameTimes times = frame_times(driver.string(), frames, std::move(of_track), source);
+  FrameTimes times = frame_times(driver.string(), frames, std::move(of_track), source);
+  if (track.times.size() == 0 && track.step != 1) {
+    times.seconds *= track.step;
+    const std::string odd = note_on_steps(times.seconds);
+    if (!odd.empty()) open.notes.push_back(driver.string() + ": " + odd);
+  }
   // There may be many frames: no more than one copy of what is not needed again.
   if (static_cast<int>(chosen.size()) < frames) {
     track.weights = Eigen::MatrixXd(track.weights(chosen, Eigen::all));

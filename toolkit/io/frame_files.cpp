@@ -8,6 +8,7 @@
 
 #include <glob.h>
 
+#include "toolkit/io/file_numbers.h"
 #include "toolkit/io/mesh_file.h"
 #include "toolkit/io/sequence_format.h"
 #include "toolkit/mesh/errors.h"
@@ -37,7 +38,8 @@ std::optional<NumberField> number_field(const std::string& name) {
   return NumberField{begin, at + 1, width};
 }
 
-/// The digits between `before` and `after` in a name that has nothing else between them; else "".
+/// The digits between `before` and `after` in a name that has nothing else between them, but a '-'
+/// where it is a sign (file_numbers.h); else "".
 std::string digits_between(const std::string& name, const std::string& before,
                            const std::string& after) {
   if (name.size() <= before.size() + after.size() || !name.starts_with(before) ||
@@ -45,6 +47,7 @@ std::string digits_between(const std::string& name, const std::string& before,
     return {};
   }
   std::string digits = name.substr(before.size(), name.size() - before.size() - after.size());
+  if (minus_is_sign(before) && digits.starts_with('-')) digits.erase(0, 1);
   return std::ranges::all_of(digits, is_digit) ? digits : std::string();
 }
 
@@ -52,9 +55,11 @@ std::string digits_between(const std::string& name, const std::string& before,
 bool matches(const std::string& name, const std::string& pattern, const NumberField& field) {
   const std::string digits =
       digits_between(name, pattern.substr(0, field.begin), pattern.substr(field.end));
+  if (digits.empty()) return false;
   const bool padded = digits.size() > 1 && digits[0] == '0';
-  return !digits.empty() && digits.size() >= field.width &&
-         (!padded || digits.size() == field.width);
+  // printf counts the sign, others do not.
+  const std::size_t width = name.size() + field.end - field.begin - pattern.size();
+  return padded ? digits.size() == field.width || width == field.width : width >= field.width;
 }
 
 /// A link that leads nowhere was meant for a file: whoever reads it says what it is.
@@ -78,12 +83,14 @@ std::vector<fs::path> files_in(const fs::path& folder) {
   return files;
 }
 
+fs::path folder_of(const fs::path& file) {
+  return file.has_parent_path() ? file.parent_path() : ".";
+}
+
 std::vector<fs::path> files_of_printf(const fs::path& pattern, const NumberField& field) {
   std::vector<fs::path> files;
   std::error_code missing;
-  if (!fs::is_directory(pattern.has_parent_path() ? pattern.parent_path() : ".", missing)) {
-    return files;
-  }
+  if (!fs::is_directory(folder_of(pattern), missing)) return files;
   for (const fs::path& file : files_in(pattern.parent_path())) {
     if (matches(file.filename().string(), pattern.filename().string(), field)) {
       files.push_back(file);
@@ -115,16 +122,21 @@ bool is_companion(const fs::path& file, const std::string& name) {
   return false;
 }
 
-void sort_naturally(std::vector<fs::path>& files) {
-  std::sort(files.begin(), files.end(), [](const fs::path& a, const fs::path& b) {
-    return natural_less(a.string(), b.string());
-  });
+/// The number that a printf pattern has; none where `*` or `?` make it a glob, but for those in the
+/// name of a folder that is there.
+std::optional<NumberField> printf_field(const fs::path& pattern) {
+  constexpr const char* kGlob = "*?";
+  const std::string name = pattern.filename().string();
+  std::error_code missing;
+  const bool is_glob = name.find_first_of(kGlob) != std::string::npos ||
+                       (pattern.string().find_first_of(kGlob) != std::string::npos &&
+                        !fs::is_directory(folder_of(pattern), missing));
+  return is_glob ? std::nullopt : number_field(name);
 }
 
 std::vector<fs::path> files_of_pattern(const std::string& pattern) {
-  const auto field = number_field(fs::path(pattern).filename().string());
-  const bool is_glob = pattern.find_first_of("*?") != std::string::npos;
-  return is_glob || !field ? files_of_glob(pattern) : files_of_printf(pattern, *field);
+  const auto field = printf_field(pattern);
+  return field ? files_of_printf(pattern, *field) : files_of_glob(pattern);
 }
 
 /// Only mesh files, in natural order. Throws IoError where there is none.
@@ -134,7 +146,7 @@ std::vector<fs::path> mesh_files(std::vector<fs::path> files, const std::string&
     return !is_mesh_extension(file.extension().string()) || is_companion(file, name);
   });
   if (files.empty()) throw IoError(name, nothing);
-  sort_naturally(files);
+  sort_by_numbers(files);
   return files;
 }
 
@@ -149,31 +161,55 @@ void check_one_format(const std::vector<fs::path>& files, const std::string& nam
   }
 }
 
+/// The files that a printf pattern would match with any number of digits, in natural order.
+std::vector<fs::path> files_of_any_digits(const fs::path& pattern) {
+  const std::string name = pattern.filename().string();
+  const auto field = printf_field(pattern);
+  std::error_code missing;
+  if (!field || !fs::is_directory(folder_of(pattern), missing)) return {};
+  std::vector<fs::path> files = files_in(pattern.parent_path());
+  std::erase_if(files, [&](const fs::path& file) {
+    return digits_between(file.filename().string(), name.substr(0, field->begin),
+                          name.substr(field->end))
+        .empty();
+  });
+  sort_by_numbers(files);
+  return files;
+}
+
+/// The pattern in the place of `pattern` that matches `files`, which have any number of digits: one
+/// of printf, or where none matches all, a glob.
+std::string fitting_pattern(const fs::path& pattern, const std::vector<fs::path>& files) {
+  const std::string name = pattern.filename().string();
+  const NumberField field = *number_field(name);
+  const std::string before = name.substr(0, field.begin), after = name.substr(field.end);
+  std::size_t least = std::string::npos;
+  for (const fs::path& file : files) {
+    least = std::min(least, digits_between(file.filename().string(), before, after).size());
+  }
+  for (const std::string& digits : {std::string("%d"), "%0" + std::to_string(least) + "d"}) {
+    const std::string fitting = before + digits + after;
+    const auto matched = [&](const fs::path& file) {
+      return matches(file.filename().string(), fitting, *number_field(fitting));
+    };
+    if (std::ranges::all_of(files, matched)) return (pattern.parent_path() / fitting).string();
+  }
+  return (pattern.parent_path() / (before + '*' + after)).string();
+}
+
 /// What to say of a pattern that matches nothing: a `%04d` for files that are not padded, or the
 /// other way round, is named.
 std::string no_match(const std::string& pattern) {
   const std::string nothing = "matches no OBJ, PLY, OFF or STL file";
-  const fs::path path(pattern);
-  const std::string name = path.filename().string();
-  const auto field = number_field(name);
-  if (!field) return nothing;
-  std::error_code missing;
-  const fs::path folder = path.has_parent_path() ? path.parent_path() : ".";
-  if (!fs::is_directory(folder, missing)) return nothing;
-  std::vector<fs::path> near = files_in(path.parent_path());
-  const std::string before = name.substr(0, field->begin), after = name.substr(field->end);
-  std::erase_if(near, [&](const fs::path& file) {
-    return digits_between(file.filename().string(), before, after).empty();
-  });
-  if (near.empty()) return nothing;
-  sort_naturally(near);
-  const std::string first = near.front().filename().string();
-  const std::string digits = digits_between(first, before, after);
-  const bool padded = digits.size() > 1 && digits[0] == '0';
-  const std::string fitting =
-      before + (padded ? "%0" + std::to_string(digits.size()) + "d" : "%d") + after;
-  return nothing + ", but there is " + first + ": write '" +
-         (path.has_parent_path() ? (path.parent_path() / fitting).string() : fitting) + "'";
+  const std::vector<fs::path> near = files_of_any_digits(pattern);
+  if (near.empty()) {
+    const bool is_both =
+        !printf_field(pattern) && number_field(fs::path(pattern).filename().string());
+    return nothing +
+           (is_both ? "; beside '*' or '?' write '*' in the place of the number, too" : "");
+  }
+  return nothing + ", but there is " + near.front().filename().string() + ": write '" +
+         fitting_pattern(pattern, near) + "'";
 }
 
 /// Without a slash at its end, so that the folder that it stands in is its parent.
@@ -226,8 +262,47 @@ std::vector<fs::path> files_named(const std::string& text) {
   std::error_code unreadable;
   std::vector<fs::path> files =
       fs::is_directory(text, unreadable) ? files_in(text) : files_of_pattern(text);
-  sort_naturally(files);
+  sort_by_numbers(files);
   return files;
+}
+
+std::string printf_pattern(const fs::path& pattern) {
+  const std::string name = pattern.filename().string();
+  std::size_t begin = name.find('#'), end = name.find_first_not_of('#', begin), digits = 0;
+  if (begin == std::string::npos) {
+    begin = name.find("@@");
+    end = name.find_first_not_of('@', begin);
+  }
+  if (begin != std::string::npos) {
+    end = std::min(end, name.size());
+    digits = end - begin;
+  } else if (begin = name.find("$F"); begin != std::string::npos) {
+    end = begin + 2;
+    if (end < name.size() && is_digit(name[end])) {
+      digits = static_cast<std::size_t>(name[end++] - '0');
+    }
+  } else {
+    return {};
+  }
+  const std::string number = digits > 1 ? "%0" + std::to_string(digits) + "d" : "%d";
+  return (pattern.parent_path() / (name.substr(0, begin) + number + name.substr(end))).string();
+}
+
+std::string note_on_digits(const std::string& pattern) {
+  const std::vector<fs::path> all = files_of_any_digits(pattern);
+  if (all.empty()) return "";
+  const std::string name = fs::path(pattern).filename().string();
+  const NumberField field = *number_field(name);
+  std::vector<std::string> others;
+  for (const fs::path& file : all) {
+    const std::string other = file.filename().string();
+    if (!matches(other, name, field)) others.push_back(other);
+  }
+  if (others.empty() || others.size() == all.size()) return "";
+  return pattern + ": " + listed(others, 4) + (others.size() == 1 ? " is" : " are") +
+         " left out of the " + std::to_string(all.size()) +
+         " files that differ in their digits; write '" + fitting_pattern(pattern, all) +
+         "' to take all";
 }
 
 FrameSeries frames_of_pattern(const std::string& pattern) {
@@ -236,6 +311,9 @@ FrameSeries frames_of_pattern(const std::string& pattern) {
       files.empty() ? no_match(pattern) : "matches no OBJ, PLY, OFF or STL file";
   FrameSeries found = series_of_pattern(mesh_files(std::move(files), pattern, nothing), pattern);
   check_one_format(found.frames, pattern, "matches");
+  if (std::string note = note_on_digits(pattern); !note.empty()) {
+    found.notes.push_back(std::move(note));
+  }
   return found;
 }
 
@@ -253,7 +331,7 @@ std::vector<fs::path> frames_of_format(const fs::path& folder, const std::string
   std::erase_if(files, [&](const fs::path& file) {
     return lower_extension(file) != lower_case(extension) || is_companion(file, folder.string());
   });
-  sort_naturally(files);
+  sort_by_numbers(files);
   return frames_among(std::move(files)).frames;
 }
 

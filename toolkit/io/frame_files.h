@@ -22,6 +22,14 @@ bool is_frame_pattern(const std::string& text);
 /// natural order; maybe none. Throws IoError for a folder that cannot be read.
 std::vector<std::filesystem::path> files_named(const std::string& text);
 
+/// The printf pattern for a number as other programs write it, "head.####.obj", "head.@@@@.obj" and
+/// "head.$F4.obj"; "" for another name.
+std::string printf_pattern(const std::filesystem::path& pattern);
+
+/// What to say of a printf pattern that matches some files and leaves out others with more or fewer
+/// digits, and the pattern that takes all; "" where there are none.
+std::string note_on_digits(const std::string& pattern);
+
 /// The mesh files that a glob or printf pattern matches, in natural order. Throws IoError where
 /// there is none, they are of several formats, two have one number, or one is a link that leads
 /// nowhere. Rest poses and topologies of other sequences are no frames, unless the pattern asks for

@@ -1,9 +1,9 @@
 #include "toolkit/io/frame_series.h"
 
 #include <algorithm>
-#include <charconv>
 #include <map>
 
+#include "toolkit/io/file_numbers.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/text.h"
 
@@ -11,42 +11,39 @@ namespace mimetra {
 namespace fs = std::filesystem;
 namespace {
 
-/// "smile_0012.v.OBJ" is number 12 of the series "smile_*.v.obj".
-struct NumberedName {
-  std::string series;  ///< empty for a name without a number
-  long long number = 0;
-};
-
-NumberedName numbered(const fs::path& file) {
-  const std::string stem = file.stem().string();
-  const auto last = std::ranges::find_if(stem.rbegin(), stem.rend(), is_digit).base();
-  if (last == stem.begin()) return {};
-  auto first = last;
-  while (first != stem.begin() && is_digit(first[-1])) --first;
-  NumberedName name{std::string(stem.begin(), first) + '*' + std::string(last, stem.end()) +
-                    lower_extension(file)};
-  const auto error = std::from_chars(&*first, &*first + (last - first), name.number).ec;
-  return error == std::errc() ? name : NumberedName();  // a number of that size counts nothing
-}
-
 std::string place_of(const fs::path& folder) {
   const std::string text = folder.string();
   return text.empty() || text.back() == '/' ? text : text + '/';
 }
 
+/// "f_%04d.obj" for the series "f_*.obj" and "0012" in it.
+std::string pattern_of(const NumberedName& name) {
+  const std::string digits = name.text.substr(name.text.starts_with('-') ? 1 : 0);
+  const bool is_padded = digits.size() > 1 && digits[0] == '0';
+  std::string pattern = name.series;
+  return pattern.replace(pattern.find('*'), 1,
+                         is_padded ? "%0" + std::to_string(digits.size()) + "d" : "%d");
+}
+
 /// Two files of one number, such as frame_1.obj and frame_01.obj.
-void check_numbers(const std::vector<fs::path>& frames) {
+void check_numbers(const std::vector<fs::path>& frames, const FileNumbers& numbers) {
   std::map<std::pair<std::string, long long>, fs::path> known;
   for (const fs::path& frame : frames) {
-    const auto [series, number] = numbered(frame);
-    if (series.empty()) continue;
-    const auto [first, is_new] = known.try_emplace({series, number}, frame);
+    const NumberedName& name = numbers.of(frame);
+    if (name.series.empty()) continue;
+    const auto [first, is_new] = known.try_emplace({name.series, name.number}, frame);
     if (is_new) continue;
-    throw IoError(frame.string(), "has the number of " + first->second.filename().string() + ", " +
-                                      std::to_string(number) +
-                                      "; remove one of them, or name the frames by a pattern such "
-                                      "as 'frame_%04d" +
-                                      frame.extension().string() + "'");
+    const fs::path folder = first->second.parent_path();
+    const std::string has = "has the number of ", number = std::to_string(name.number);
+    if (frame.parent_path() != folder) {
+      throw IoError(frame.string(), has + first->second.string() + ", " + number +
+                                        ", as frames of several takes; name one folder, " +
+                                        folder.string() + " or " + frame.parent_path().string());
+    }
+    throw IoError(frame.string(), has + first->second.filename().string() + ", " + number +
+                                      "; name the frames by a pattern, '" +
+                                      (folder / pattern_of(numbers.of(first->second))).string() +
+                                      "' or '" + (folder / pattern_of(name)).string() + "'");
   }
 }
 
@@ -54,6 +51,33 @@ void check_numbers(const std::vector<fs::path>& frames) {
 std::string run_of(long long first, long long last) {
   const std::string text = std::to_string(first);
   return first == last ? text : text + " to " + std::to_string(last);
+}
+
+/// What numbers may not mean: those below 0 and with a point.
+void note_numbers(FrameSeries& found, const FileNumbers& numbers, const std::string& name) {
+  const NumberedName& first = numbers.of(found.frames.front());
+  const NumberedName& last = numbers.of(found.frames.back());
+  if (first.series.empty() || found.frames.size() < 2 || last.series != first.series) return;
+  if (numbers.is_decimal(first.series)) {
+    found.notes.push_back(name + ": frames are in the order of the numbers " + first.text + " to " +
+                          last.text +
+                          ", which are not taken for times; where these are seconds, give frames "
+                          "per second by option 'fps'");
+  } else if (last.number < 0) {
+    found.notes.push_back(name + ": all frames have numbers below 0, " + first.text + " to " +
+                          last.text + "; where '-' is no sign, they are in the wrong order");
+  }
+}
+
+/// Whether their differences are numbers of frames, and none overflows.
+bool are_countable(const std::vector<long long>& numbers) {
+  constexpr long long kMost = 1'000'000'000'000;
+  return std::ranges::all_of(numbers,
+                             [](long long number) { return -kMost < number && number < kMost; });
+}
+
+bool rise(const std::vector<long long>& numbers) {
+  return std::ranges::adjacent_find(numbers, std::ranges::greater_equal()) == numbers.end();
 }
 
 void note_missing(FrameSeries& found, const std::string& name) {
@@ -64,17 +88,18 @@ void note_missing(FrameSeries& found, const std::string& name) {
 }
 
 /// Numbered series of more than one file, and how many files each has.
-std::map<std::string, std::size_t> numbered_series(const std::vector<fs::path>& files) {
+std::map<std::string, std::size_t> numbered_series(const std::vector<fs::path>& files,
+                                                   const FileNumbers& numbers) {
   std::map<std::string, std::size_t> sizes;
-  for (const fs::path& file : files) ++sizes[numbered(file).series];
+  for (const fs::path& file : files) ++sizes[numbers.of(file).series];
   std::erase_if(sizes, [](const auto& entry) { return entry.first.empty() || entry.second < 2; });
   return sizes;
 }
 
 /// The series that more than half of the files are of; empty where there is none, or it is one
 /// file.
-std::string main_series(const std::vector<fs::path>& files) {
-  for (const auto& [series, size] : numbered_series(files)) {
+std::string main_series(const std::vector<fs::path>& files, const FileNumbers& numbers) {
+  for (const auto& [series, size] : numbered_series(files, numbers)) {
     if (2 * size > files.size()) return series;
   }
   return {};
@@ -86,14 +111,15 @@ std::string names_of(const std::vector<fs::path>& files) {
   return listed(names, 4);
 }
 
-/// Moves the files that are not of `series` out of `files`; not those of another format, which
-/// leave open what is meant.
-std::vector<fs::path> strangers_in(std::vector<fs::path>& files, const std::string& series) {
+/// Moves the files that are not of the main series out of `files`; not those of another format,
+/// which leave open what is meant.
+std::vector<fs::path> strangers_in(std::vector<fs::path>& files, const FileNumbers& numbers) {
   std::vector<fs::path> strangers;
+  const std::string series = main_series(files, numbers);
   if (series.empty()) return strangers;
   const std::string extension = lower_extension(series);
   std::erase_if(files, [&](const fs::path& file) {
-    if (numbered(file).series == series || lower_extension(file) != extension) return false;
+    if (numbers.of(file).series == series || lower_extension(file) != extension) return false;
     strangers.push_back(file);
     return true;
   });
@@ -105,14 +131,14 @@ struct SplitFiles {
   std::vector<fs::path> strangers;
 };
 
-SplitFiles split(std::vector<fs::path> files) {
+SplitFiles split(std::vector<fs::path> files, const FileNumbers& numbers) {
   FrameSeries found;
   if (std::ranges::count_if(files, is_neutral) == 1 && files.size() > 1) {
     const auto neutral = std::ranges::find_if(files, is_neutral);
     found.rest = *neutral;
     files.erase(neutral);
   }
-  std::vector<fs::path> strangers = strangers_in(files, main_series(files));
+  std::vector<fs::path> strangers = strangers_in(files, numbers);
   found.frames = std::move(files);
   return {std::move(found), std::move(strangers)};
 }
@@ -124,16 +150,18 @@ bool is_neutral(const fs::path& file) {
 }
 
 FrameSeries frames_among(std::vector<fs::path> files) {
-  return split(std::move(files)).series;
+  const FileNumbers numbers(files);
+  return split(std::move(files), numbers).series;
 }
 
 FrameSeries series_in_folder(std::vector<fs::path> files, const fs::path& folder) {
-  auto [found, strangers] = split(std::move(files));
+  const FileNumbers numbers(files);
+  auto [found, strangers] = split(std::move(files), numbers);
   if (!strangers.empty()) {
     found.notes.push_back(
         place_of(folder) + ": " + names_of(strangers) + (strangers.size() == 1 ? " is" : " are") +
         " left out of the " + std::to_string(found.frames.size()) + " frames " +
-        numbered(found.frames.front()).series + "; name files by a pattern to take them");
+        numbers.of(found.frames.front()).series + "; name files by a pattern to take them");
   }
   if (found.rest) {
     found.notes.push_back(found.rest->string() + ": is taken for the rest pose of the other " +
@@ -141,14 +169,16 @@ FrameSeries series_in_folder(std::vector<fs::path> files, const fs::path& folder
                           " files, and is no frame; name files by a pattern to take it for one");
   }
   check_links(found.frames);
-  check_numbers(found.frames);
+  check_numbers(found.frames, numbers);
+  note_numbers(found, numbers, place_of(folder));
   note_missing(found, place_of(folder));
   return found;
 }
 
 void check_one_series(const std::vector<fs::path>& files, const fs::path& folder) {
-  const std::map<std::string, std::size_t> all = numbered_series(files);
-  if (all.size() < 2 || !main_series(files).empty()) return;
+  const FileNumbers numbers(files);
+  const std::map<std::string, std::size_t> all = numbered_series(files, numbers);
+  if (all.size() < 2 || !main_series(files, numbers).empty()) return;
   std::vector<std::string> series, patterns;
   for (const auto& [name, size] : all) {
     series.push_back(std::to_string(size) + " files " + name);
@@ -162,29 +192,31 @@ void check_one_series(const std::vector<fs::path>& files, const fs::path& folder
 
 FrameSeries series_of_pattern(std::vector<fs::path> files, const std::string& pattern) {
   FrameSeries found{std::move(files)};
+  const FileNumbers numbers(found.frames);
   check_links(found.frames);
-  check_numbers(found.frames);
+  check_numbers(found.frames, numbers);
   std::vector<fs::path> numbered_frames = found.frames;
-  const std::vector<fs::path> strangers =
-      strangers_in(numbered_frames, main_series(numbered_frames));
+  const std::vector<fs::path> strangers = strangers_in(numbered_frames, numbers);
   if (!strangers.empty()) {
     found.notes.push_back(pattern + ": " + names_of(strangers) +
                           (strangers.size() == 1 ? " is a frame" : " are frames") +
                           " too, as the pattern says, beside " +
                           std::to_string(numbered_frames.size()) + " of one series");
   }
+  note_numbers(found, numbers, pattern);
   note_missing(found, pattern);
   return found;
 }
 
 std::vector<std::string> missing_numbers(const std::vector<fs::path>& files) {
   if (files.empty()) return {};
+  const FileNumbers names(files);
+  const std::string series = names.of(files.front()).series;
+  if (series.empty() || names.is_decimal(series)) return {};
   std::vector<long long> numbers;
-  const std::string series = numbered(files.front()).series;
   for (const fs::path& file : files) {
-    const NumberedName name = numbered(file);
-    if (name.series.empty() || name.series != series) return {};
-    numbers.push_back(name.number);
+    if (names.of(file).series != series) return {};
+    numbers.push_back(names.of(file).number);
   }
   return missing_numbers(std::move(numbers));
 }
@@ -204,6 +236,39 @@ std::vector<std::string> missing_numbers(std::vector<long long> numbers) {
         run_of(numbers[i - 1] + step, std::max(numbers[i - 1] + step, numbers[i] - step)));
   }
   return missing;
+}
+
+bool holds_frame_numbers(const std::string& name) {
+  const std::string plain = lower_case(name);
+  return plain == "frame" || plain == "frame_index" || plain == "frameindex" ||
+         plain == "frame_number" || plain == "framenumber";
+}
+
+RowNumbers row_numbers(const std::vector<long long>& numbers) {
+  RowNumbers found;
+  if (!are_countable(numbers)) return found;
+  if (const std::vector<std::string> missing = missing_numbers(numbers); !missing.empty()) {
+    found.note = "no row has these frames: " + listed(missing) +
+                 "; without times frames follow each other without a pause";
+  }
+  if (numbers.size() < 2 || !rise(numbers)) return found;
+  std::vector<long long> steps;
+  for (std::size_t i = 1; i < numbers.size(); ++i) steps.push_back(numbers[i] - numbers[i - 1]);
+  const long long least = std::ranges::min(steps);
+  const auto fits = [least](long long step) { return step % least == 0; };
+  if (std::ranges::all_of(steps, fits)) found.step = least;
+  return found;
+}
+
+Eigen::VectorXd times_at_rate(double fps, Eigen::Index rows,
+                              const std::vector<long long>& numbers) {
+  Eigen::VectorXd times(rows);
+  const bool by_numbers = std::ssize(numbers) == rows && are_countable(numbers) && rise(numbers);
+  for (Eigen::Index row = 0; row < rows; ++row) {
+    const auto at = static_cast<std::size_t>(row);
+    times[row] = static_cast<double>(by_numbers ? numbers[at] - numbers[0] : row) / fps;
+  }
+  return times;
 }
 
 std::string series_name(const fs::path& file) {

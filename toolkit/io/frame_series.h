@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include <Eigen/Core>
+
 /// Which files are frames, and what is odd about them.
 namespace mimetra {
 
@@ -40,6 +42,24 @@ FrameSeries series_of_pattern(std::vector<std::filesystem::path> files, const st
 /// for other files, and where a number occurs twice. They may count by any step.
 std::vector<std::string> missing_numbers(const std::vector<std::filesystem::path>& files);
 std::vector<std::string> missing_numbers(std::vector<long long> numbers);
+
+/// Whether a column or key of this name holds numbers of frames: "frame", "frame_index",
+/// "frame_number" and the like, in any case.
+bool holds_frame_numbers(const std::string& name);
+
+/// What numbers of frames say of rows that have no times.
+struct RowNumbers {
+  long long step = 1;     ///< frames from one row to the next
+  std::string note = {};  ///< on frames that no row has; "" for none
+};
+
+/// Rows count by the least step between them where it divides all others. Without numbers, and
+/// where some do not rise, they count by 1.
+RowNumbers row_numbers(const std::vector<long long>& numbers);
+
+/// Seconds since the first of `rows` at `fps` frames per second, by their numbers where each has
+/// one and they rise.
+Eigen::VectorXd times_at_rate(double fps, Eigen::Index rows, const std::vector<long long>& numbers);
 
 /// What numbered files have in common, "smile_*.obj" for smile_0012.OBJ; "" for one without a
 /// number.

@@ -313,6 +313,29 @@ ModelSpec parsed_spec(const std::string& text) {
   return spec;
 }
 
+/// What to say of meshes in folders of the folder of expressions, and in those beside it that have
+/// the name of such a folder.
+std::vector<std::string> notes_beside(const fs::path& model, const fs::path& expressions) {
+  const std::vector<std::string> known = {"expressions",  "targets",      "blendshapes",
+                                          "blend_shapes", "shapes",       "morphs",
+                                          "morphtargets", "morph_targets"};
+  std::vector<std::string> found;
+  for (const fs::path& folder : folders_in(expressions)) {
+    if (meshes_in(folder).empty()) continue;
+    found.push_back((expressions.filename() / folder.filename()).string() + "/");
+  }
+  for (const fs::path& folder : folders_in(model)) {
+    const std::string name = folder.filename().string();
+    const bool is_other = folder != expressions && !meshes_in(folder).empty();
+    if (is_other && std::ranges::find(known, lower_case(name)) != known.end()) {
+      found.push_back(name + "/");
+    }
+  }
+  if (found.empty()) return {};
+  return {model.string() + ": meshes of " + joined(found, ", ", " and ") +
+          " are not read; expressions are the files in " + expressions.filename().string() + "/"};
+}
+
 }  // namespace
 
 ModelSpec ModelSpec::parse(const std::string& text) {
@@ -358,9 +381,10 @@ std::vector<fs::path> meshes_beside_model(const fs::path& path) {
 std::vector<std::string> notes_on_unread(const fs::path& path) {
   std::error_code unreadable;
   if (!fs::is_directory(path, unreadable) || fs::exists(path / "model.json", unreadable) ||
-      !neutral_of(path) || expressions_in(path)) {
+      !neutral_of(path)) {
     return {};
   }
+  if (const auto expressions = expressions_in(path)) return notes_beside(path, *expressions);
   std::vector<std::string> found;
   if (const auto beside = meshes_beside_model(path).size(); beside > 0) {
     found.push_back(std::to_string(beside) + " other mesh files");

@@ -64,8 +64,8 @@ bool is_model(const std::filesystem::path& path);
 /// Mesh files in a model's folder that are no part of it, such as frames, in natural order.
 std::vector<std::filesystem::path> meshes_beside_model(const std::filesystem::path& path);
 
-/// What to say of meshes in a model's folder that could be its expressions and are not read;
-/// nothing where it has some.
+/// What to say of meshes in a model's folder that could be its expressions and are not read: in any
+/// folder where it has none, else in folders of theirs and beside, by their names.
 std::vector<std::string> notes_on_unread(const std::filesystem::path& path);
 
 /// Writes a model directory: neutral.ply, expressions/NAME.ply, identities/NAME.ply (absolute

@@ -21,12 +21,18 @@ int counted(const fs::path& path, std::size_t size) {
                                    std::to_string(kMost) + " at most");
 }
 
+/// Three coordinates are one vertex, and more a frame.
+bool is_one_frame(const NpyHeader& header) {
+  return header.shape.size() == 2 && header.shape[1] == 3;
+}
+
 int frames_of(const fs::path& path, const NpyHeader& header) {
-  return header.shape.size() == 3 ? counted(path, header.shape[0]) : 1;
+  return is_one_frame(header) ? 1 : counted(path, header.shape[0]);
 }
 
 int vertices_of(const fs::path& path, const NpyHeader& header) {
-  return counted(path, header.shape[header.shape.size() - 2]);
+  if (is_one_frame(header)) return counted(path, header.shape[0]);
+  return counted(path, header.shape.size() == 3 ? header.shape[1] : header.shape[1] / 3);
 }
 
 class StoredArray : public StoredPointCache {

@@ -56,7 +56,8 @@ void parse_type(const std::string& path, std::string_view text, NpyHeader& heade
   if (!known || (type[1] == 'b' && bytes != 1)) {
     const bool is_word = !type.empty() && type.size() <= 20;
     throw IoError(path, "has values of type " + std::string(is_word ? type : text.substr(0, 20)) +
-                            ", expected float32, float64 or integers");
+                            ", expected float32, float64 or, for indices, integers; write "
+                            "array.astype('float32')");
   }
   if (type[0] == '>') header.order = std::endian::big;
   if (type[0] == '=') header.order = std::endian::native;
@@ -137,10 +138,13 @@ NpyHeader read_npy_header(const std::string& path, const InputBytes& file) {
 }
 
 void check_frames_header(const std::string& path, const NpyHeader& header) {
-  const std::size_t axes = header.shape.size();
-  if ((axes != 2 && axes != 3) || header.shape.back() != 3) {
-    throw IoError(path, "has shape " + shape_text(header.shape) +
-                            ", expected frames x vertices x 3 or vertices x 3");
+  const std::vector<std::size_t>& shape = header.shape;
+  const bool is_sound = (shape.size() == 3 && shape[2] == 3) ||
+                        (shape.size() == 2 && shape[1] % 3 == 0 && shape[1] > 0);
+  if (!is_sound) {
+    throw IoError(path, "has shape " + shape_text(shape) +
+                            ", expected frames x vertices x 3 or vertices x 3, or frames x "
+                            "coordinates (x y z x y z ...)");
   }
   if (header.kind != 'f') {
     throw IoError(path, "holds integers, expected positions in float32 or float64");

@@ -31,7 +31,7 @@ std::size_t checked_count(const std::string& path, std::size_t file_bytes, const
 /// The header of a whole file, whose size fits it; no more than the first 128 kB are read. Throws
 /// IoError.
 NpyHeader read_npy_header(const std::string& path, const InputBytes& file);
-/// Throws IoError unless the array is F x N x 3 or N x 3, in floating point and not empty.
+/// Throws IoError unless the array is F x N x 3, N x 3 or F x 3N, in floating point and not empty.
 void check_frames_header(const std::string& path, const NpyHeader& header);
 /// What stands before numbers of a type ("<f8") in C order: version 1, padded so that the values
 /// start at a multiple of 64 bytes, as NumPy does.

@@ -26,6 +26,8 @@ const std::vector<std::string> kPositionNames = {"positions", "vertices", "verts
                                                  "points",    "frames",   "arr_0"};
 const std::vector<std::string> kFaceNames = {"faces", "triangles", "tris", "polygons"};
 const std::vector<std::string> kTimeNames = {"times", "time"};
+const std::vector<std::string> kRateNames = {"fps", "mocap_framerate", "mocap_frame_rate",
+                                             "frame_rate", "framerate"};
 const std::vector<std::string> kRestNames = {"rest", "neutral"};
 
 /// Pads the faces of those with fewer corners.
@@ -106,6 +108,15 @@ Eigen::VectorXd times_in(const std::string& name, const NumericArray& array, int
   return times;
 }
 
+Eigen::VectorXd times_by_rate(const std::string& name, const NumericArray& array, int frames) {
+  if (array.values.size() != 1) fail_shape(name, array, "one number");
+  const double fps = array.values.front();
+  if (!(fps > 0 && std::isfinite(fps))) {
+    throw IoError(name, "is " + readable(fps) + ", expected frames per second");
+  }
+  return Eigen::VectorXd::LinSpaced(frames, 0, frames - 1) / fps;
+}
+
 Positions rest_in(const std::string& name, const NumericArray& array, int vertices) {
   if (array.shape != std::vector<std::size_t>{static_cast<std::size_t>(vertices), 3}) {
     fail_shape(name, array, std::to_string(vertices) + " x 3 as the positions have vertices");
@@ -134,6 +145,8 @@ OpenSequence open_npz(const fs::path& path, const SequenceSource& source) {
   }
   if (const std::string times = file.find(kTimeNames); !times.empty()) {
     parts.times = times_in(file.named(times), file.array(times), cache->frames());
+  } else if (const std::string rate = file.find(kRateNames); !rate.empty()) {
+    parts.times = times_by_rate(file.named(rate), file.array(rate), cache->frames());
   }
   if (const std::string rest = file.find(kRestNames); !rest.empty()) {
     parts.rest = rest_in(file.named(rest), file.array(rest), cache->vertices());

@@ -5,6 +5,7 @@
 #include "toolkit/io/foreign_files.h"
 #include "toolkit/io/frame_files.h"
 #include "toolkit/io/frame_sequence.h"
+#include "toolkit/io/mesh_file.h"
 #include "toolkit/io/model_file.h"
 #include "toolkit/io/scene.h"
 #include "toolkit/io/sequence_format.h"
@@ -44,6 +45,8 @@ OpenSequence open_driven(const ModelSpec& spec, const SequenceSource& source) {
                          others.front().filename().string() +
                          " on, are no part of it; name frames by a pattern");
   }
+  const std::vector<std::string> unread = notes_on_unread(spec.path);
+  open.notes.insert(open.notes.end(), unread.begin(), unread.end());
   return open;
 }
 
@@ -63,10 +66,19 @@ OpenSequence open_path(const fs::path& path, const SequenceSource& source) {
                                              : "is " + found);
 }
 
+/// Throws IoError for a name in which another sign than those of printf stands for digits.
+void check_digits(const std::string& text) {
+  const std::string pattern = printf_pattern(text);
+  if (pattern.empty() || !is_mesh_extension(fs::path(text).extension().string())) return;
+  throw IoError(text, "no such file or folder; a pattern for files of many numbers is written '" +
+                          pattern + "'");
+}
+
 OpenSequence opened(const std::string& text, const SequenceSource& source) {
   const bool exists = is_there(text);
   if (exists && is_scene_file(text)) return open_scene(text, source);
   if (exists && is_model(text)) return open_driven(ModelSpec{text, {}, {}}, source);
+  if (!exists && !is_frame_pattern(text)) check_digits(text);
   if (!exists && !is_frame_pattern(text) && text.find('@') != std::string::npos) {
     const ModelSpec spec = ModelSpec::parse(text);
     if (is_there(spec.path) && !is_model(spec.path)) {

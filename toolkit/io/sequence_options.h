@@ -44,8 +44,8 @@ struct SequenceSource {
 void check_rate(const std::string& name, const Eigen::VectorXd& times,
                 const SequenceSource& source);
 
-/// What is odd about times (F) whose frames are more than a second apart, by the median; "" for
-/// nothing.
+/// What is odd about times (F) whose frames are more than a second apart, by the median, or ten and
+/// more a second apart at whole seconds; "" for nothing.
 std::string note_on_steps(const Eigen::VectorXd& times);
 
 /// A sequence whose poses are read when they are needed, and what was noticed while opening it.

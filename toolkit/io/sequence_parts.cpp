@@ -49,9 +49,12 @@ void check_rate(const std::string& name, const Eigen::VectorXd& times,
 
 std::string note_on_steps(const Eigen::VectorXd& times) {
   constexpr double kLongest = 1;
+  constexpr Eigen::Index kMany = 10;
   if (times.size() < 2) return "";
   const double step = median_difference(times);
-  if (!(step > kLongest)) return "";
+  const bool are_whole =
+      times.size() >= kMany && step >= kLongest && (times.array() == times.array().round()).all();
+  if (!(step > kLongest) && !are_whole) return "";
   return "its frames are " + readable(step) +
          " s apart (median), as where times are milliseconds or numbers of frames; expected "
          "seconds";

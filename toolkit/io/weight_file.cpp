@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
+#include <limits>
 #include <set>
 #include <string_view>
 
@@ -18,13 +20,7 @@ namespace mimetra {
 
 namespace {
 
-/// Of frame numbers, in lower case.
-constexpr const char* kFrame = "frame";
-
-/// Columns of captures that are not weights.
-bool is_bookkeeping(const std::string& name) {
-  return name == kFrame || name == "blendshapecount";
-}
+constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 
 /// Names of a column of seconds, in lower case.
 bool is_time(const std::string& name) {
@@ -48,8 +44,10 @@ class WeightReader {
     if (names.front().starts_with('{') || names.front().starts_with('[')) {
       throw IoError(path_.string(), "holds JSON, expected comma-separated values; call it .json");
     }
-    if (names.size() == 1 && names.front().find(';') != std::string_view::npos) {
-      csv_.fail("names are separated by ';', expected ','");
+    for (const auto& [separator, name] : {std::pair(';', "';'"), std::pair('\t', "tabs")}) {
+      if (names.size() == 1 && names.front().find(separator) != std::string_view::npos) {
+        csv_.fail(std::string("names are separated by ") + name + ", expected ','");
+      }
     }
     std::set<std::string_view> seen;
     for (std::size_t column = 0; column < names.size(); ++column) {
@@ -64,21 +62,24 @@ class WeightReader {
         timecode_column_ = column;
       } else if (plain == kTimestamp) {
         notes_.push_back(note_on_timestamp(std::string(name)));
-      } else if (!is_bookkeeping(plain)) {
-        weight_columns_.push_back(column);
-      } else if (plain == kFrame) {
+      } else if (holds_frame_numbers(plain)) {
         frame_column_ = column;
+      } else if (plain != "blendshapecount") {
+        weight_columns_.push_back(column);
       }
     }
     if (weight_columns_.empty()) csv_.fail("no column of weights");
   }
 
   void read_row() {
-    const bool is_lost = std::ranges::all_of(
-        weight_columns_, [this](std::size_t column) { return csv_.field(column).empty(); });
+    const auto is_missing = [this](std::size_t column) {
+      return csv_.field(column).empty() || lower_case(std::string(csv_.field(column))) == "nan";
+    };
+    const bool is_lost = std::ranges::all_of(weight_columns_, is_missing);
     if (is_lost) lost_.push_back(frames_);
     for (const std::size_t column : weight_columns_) {
-      weights_.push_back(is_lost ? 0 : csv_.number(column));
+      const bool is_given = !is_missing(column) || (!is_lost && !csv_.is_given(column));
+      weights_.push_back(is_given ? csv_.number(column) : kMissing);
     }
     if (time_column_) {
       const double time = csv_.number(*time_column_);
@@ -86,6 +87,11 @@ class WeightReader {
       times_.push_back(time);
     } else if (timecode_column_) {
       read_timecode(csv_.field(*timecode_column_));
+    }
+    if (frames_ == 0) {
+      for (const std::size_t column : weight_columns_) {
+        first_fields_.emplace_back(csv_.field(column));
+      }
     }
     if (frame_column_) read_frame_number(csv_.field(*frame_column_));
     ++frames_;
@@ -134,49 +140,74 @@ class WeightReader {
     WeightTrack result;
     result.notes = std::move(notes_);
     find_times(result);
-    const auto missing = missing_numbers(std::move(frame_numbers_));
-    if (times_.empty() && !missing.empty()) {
-      result.notes.push_back("no row has these frames: " + listed(missing) +
-                             "; without times frames follow each other without a pause");
+    if (times_.empty()) {
+      RowNumbers numbers = row_numbers(frame_numbers_);
+      result.step = static_cast<double>(numbers.step);
+      if (!numbers.note.empty()) result.notes.push_back(std::move(numbers.note));
     }
     const auto columns = static_cast<Eigen::Index>(weight_columns_.size());
     for (const std::size_t column : weight_columns_) {
       result.names.push_back(text_of_csv(csv_.names()[column]));
     }
     result.weights = Eigen::Map<const Frames>(weights_.data(), frames_, columns);
-    fill_lost(result);
+    fill_missing(result);
     result.times =
         Eigen::Map<const Eigen::VectorXd>(times_.data(), static_cast<Eigen::Index>(times_.size()));
     return result;
   }
 
-  /// Rows without weights, as where a capture lost the face, lie between their neighbours in the
-  /// order of frames.
-  void fill_lost(WeightTrack& result) const {
-    if (lost_.empty()) return;
+  /// Weights that are missing, as in rows where a capture lost the face, lie between their
+  /// neighbours in the order of frames.
+  void fill_missing(WeightTrack& result) const {
     if (static_cast<int>(lost_.size()) == frames_) {
       throw IoError(path_.string(), "has no row with weights");
     }
-    std::vector<int> seen;
-    for (int f = 0; f < frames_; ++f) {
-      if (!std::ranges::binary_search(lost_, f)) seen.push_back(f);
+    std::vector<std::string> gaps;
+    for (Eigen::Index column = 0; column < result.weights.cols(); ++column) {
+      const std::string& name = result.names[static_cast<std::size_t>(column)];
+      const auto missing = result.weights.col(column).array().isNaN().count();
+      if (missing == frames_) {
+        throw IoError(path_.string(), "column '" + name + "': expected a finite number, found '" +
+                                          first_fields_[static_cast<std::size_t>(column)] +
+                                          "' and no other");
+      }
+      if (missing > std::ssize(lost_)) gaps.push_back(name);
+      if (missing > 0) fill_gaps(result.weights.col(column));
     }
-    for (const int f : lost_) {
+    if (!lost_.empty()) {
+      result.notes.push_back(
+          "rows without weights, which are taken from between their neighbours': " +
+          listed(words_of(lost_)));
+    }
+    if (!gaps.empty()) {
+      result.notes.push_back(
+          "columns in which weights are missing, which are taken from between their neighbours': " +
+          listed(gaps));
+    }
+  }
+
+  /// \pre one number at least is not NaN
+  static void fill_gaps(Eigen::Ref<Eigen::VectorXd> weights) {
+    std::vector<Eigen::Index> seen;
+    for (Eigen::Index f = 0; f < weights.size(); ++f) {
+      if (!std::isnan(weights[f])) seen.push_back(f);
+    }
+    for (Eigen::Index f = 0; f < weights.size(); ++f) {
+      if (!std::isnan(weights[f])) continue;
       const auto next = std::ranges::lower_bound(seen, f);
-      const int after = next == seen.end() ? seen.back() : *next;
-      const int before = next == seen.begin() ? after : *std::prev(next);
-      const double share = after > before ? double(f - before) / (after - before) : 0;
-      result.weights.row(f) =
-          (1 - share) * result.weights.row(before) + share * result.weights.row(after);
+      const Eigen::Index after = next == seen.end() ? seen.back() : *next;
+      const Eigen::Index before = next == seen.begin() ? after : *std::prev(next);
+      const double share =
+          after > before ? static_cast<double>(f - before) / static_cast<double>(after - before)
+                         : 0;
+      weights[f] = (1 - share) * weights[before] + share * weights[after];
     }
-    result.notes.push_back(
-        "rows without weights, which are taken from between their neighbours': " +
-        listed(words_of(lost_)));
   }
 
   std::filesystem::path path_;
   CsvReader csv_;
-  std::vector<int> lost_;  ///< frames, ascending
+  std::vector<int> lost_;                  ///< frames, ascending
+  std::vector<std::string> first_fields_;  ///< of the columns of weights
   std::optional<std::size_t> time_column_, timecode_column_, frame_column_;
   std::vector<long long> frame_numbers_;
   std::vector<std::size_t> weight_columns_;
@@ -246,7 +277,13 @@ void check_sizes(const WeightTrack& track) {
 }  // namespace
 
 WeightTrack read_weights(const std::filesystem::path& path) {
-  const bool is_json = lower_extension(path) == ".json";
+  const std::string extension = lower_extension(path);
+  if (extension == ".npy" || extension == ".npz") {
+    throw IoError(path.string(),
+                  "is a NumPy array, which does not name its weights; expected .csv with a line of "
+                  "names, or .json");
+  }
+  const bool is_json = extension == ".json";
   WeightTrack track = is_json ? read_weights_json(path) : WeightReader(path).read();
   check_size(track);
   if (const std::string odd = note_on_steps(track.times); !odd.empty()) track.notes.push_back(odd);

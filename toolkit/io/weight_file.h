@@ -7,13 +7,17 @@
 namespace mimetra {
 
 /// Reads weights. An ARKit / Live Link Face style CSV has a header of names and one row a frame;
-/// columns `time` (seconds), `frame`, `Timecode` and `BlendShapeCount` are not weights. Timecodes
+/// columns `time` (seconds), `frame`, `Timecode` and `BlendShapeCount` are not weights. Without
+/// times, numbers of frames tell how many lie between rows (WeightTrack::step). Timecodes
 /// give times from 0 on, at the rate that their frames are counted by. A byte-order mark and CRLF
 /// are accepted.
 ///
 /// NAME.json holds rows of objects ([{"time": 0, "jawOpen": 0.5}], or these as "rows" or "frames"),
-/// or "names" and "weights" (F x names) with "times" or "fps", by Audio2Face's keys too, or is what
-/// `mimetra fit` wrote.
+/// which may be MediaPipe's results ("faceBlendshapes" with "timestamp_ms"); or "names" and
+/// "weights" (F x names) with "times" or "fps", by Audio2Face's keys too; or is what `mimetra fit`
+/// wrote.
+///
+/// An empty or NaN weight of a CSV is missing: it lies between its neighbours'.
 ///
 /// Throws IoError that names line and column for ragged rows (decimal commas make some), another
 /// separator, what is not a finite number, times that do not ascend, duplicate names, JSON in a CSV

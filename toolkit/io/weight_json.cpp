@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "toolkit/io/fit_file.h"
+#include "toolkit/io/frame_series.h"
 #include "toolkit/io/json_text.h"
 #include "toolkit/io/text_cursor.h"
 #include "toolkit/io/whole_file.h"
@@ -22,6 +23,11 @@ const std::vector<std::string> kNames = {"names", "facsNames", "blendShapeNames"
 const std::vector<std::string> kMatrix = {"weights", "weightMat"};
 const std::vector<std::string> kRate = {"fps", "exportFps"};
 const std::vector<std::string> kRows = {"rows", "frames"};
+
+// MediaPipe's Face Landmarker, from JavaScript and Python.
+const std::vector<std::string> kCategories = {"faceBlendshapes", "face_blendshapes"};
+const std::vector<std::string> kCategoryNames = {"categoryName", "category_name"};
+const std::vector<std::string> kMilliseconds = {"timestamp_ms", "timestampMs"};
 
 Json parsed(const std::filesystem::path& path) {
   const std::string bytes = read_file(path);
@@ -121,7 +127,11 @@ class WeightJson {
     } else if (const Json* rate = member(root_, kRate)) {
       const double fps = number(*rate, "fps");
       if (!(fps > 0)) fail("fps", "expected more than 0, found " + readable(fps));
-      track_.times = Eigen::VectorXd::LinSpaced(frames, 0, static_cast<double>(frames - 1)) / fps;
+      track_.times = times_at_rate(fps, frames, frame_numbers_);
+    } else {
+      RowNumbers numbers = row_numbers(frame_numbers_);
+      track_.step = static_cast<double>(numbers.step);
+      if (!numbers.note.empty()) track_.notes.push_back(std::move(numbers.note));
     }
   }
 
@@ -135,7 +145,11 @@ class WeightJson {
   void read_rows(const Json& rows) {
     if (!rows.is_array() || rows.empty()) fail("rows", "expected a list of rows");
     const auto frames = static_cast<Eigen::Index>(rows.size());
-    const bool timed = member(rows.front(), {"time"}) != nullptr;
+    const auto time_of = [](const Json& row) {
+      const Json* seconds = member(row, {"time"});
+      return seconds ? std::pair(seconds, 1.0) : std::pair(member(row, kMilliseconds), 1000.0);
+    };
+    const bool timed = time_of(rows.front()).first != nullptr;
     if (timed) track_.times.resize(frames);
     for (const auto& [key, value] : rows.front().items()) {
       if (lower_case(key) == kTimestamp) track_.notes.push_back(note_on_timestamp(key));
@@ -145,20 +159,49 @@ class WeightJson {
       const Json& row = rows[static_cast<std::size_t>(f)];
       if (!row.is_object()) fail(place, "expected an object of names and weights");
       const Json* nested = member(row, {"weights"});
-      const Json& weights = nested && nested->is_object() ? *nested : row;
-      const Json* time = member(row, {"time"});
+      const Json* categories = member(row, kCategories);
+      const Json scores = categories ? scores_of(*categories, place) : Json();
+      const Json& weights = categories ? scores : nested && nested->is_object() ? *nested : row;
+      const auto [time, per_second] = time_of(row);
       if ((time != nullptr) != timed)
         fail(place, timed ? "has no time" : "has a time, others none");
-      if (time) set_time(f, number(*time, place + ", time"), place);
+      if (time) set_time(f, number(*time, place + ", time") / per_second, place);
+      for (const auto& [key, value] : row.items()) {
+        if (holds_frame_numbers(key) && value.is_number_integer()) {
+          frame_numbers_.push_back(value.get<long long>());
+        }
+      }
       read_row(weights, f, frames, place);
     }
     if (!timed) read_times();
   }
 
+  /// MediaPipe's categories of one face, maybe in a list of faces, as an object of names and
+  /// weights, without "_neutral", which is no expression.
+  Json scores_of(const Json& found, const std::string& place) const {
+    const Json* list = &found;
+    while (list->is_array() && list->size() == 1 && !member(list->front(), kCategoryNames)) {
+      list = &list->front();
+    }
+    if (const Json* inner = member(*list, {"categories"})) list = inner;
+    if (!list->is_array() || list->empty()) fail(place, "expected the categories of one face");
+    Json scores = Json::object();
+    for (const Json& category : *list) {
+      const Json* name = member(category, kCategoryNames);
+      const Json* score = member(category, {"score"});
+      if (!name || !name->is_string() || !score) {
+        fail(place, "expected a category's \"categoryName\" and \"score\"");
+      }
+      if (*name != "_neutral") scores[name->get<std::string>()] = *score;
+    }
+    return scores;
+  }
+
   void read_row(const Json& row, Eigen::Index frame, Eigen::Index frames,
                 const std::string& place) {
     const auto is_weight = [](const std::string& key) {
-      return key != "time" && key != "frame" && lower_case(key) != kTimestamp;
+      return key != "time" && std::ranges::find(kMilliseconds, key) == kMilliseconds.end() &&
+             !holds_frame_numbers(key) && lower_case(key) != kTimestamp;
     };
     if (frame == 0) {
       for (const auto& [key, value] : row.items()) {
@@ -184,6 +227,7 @@ class WeightJson {
   std::string path_;
   Json root_;
   WeightTrack track_;
+  std::vector<long long> frame_numbers_;
   std::map<std::string, Eigen::Index> columns_;
 };
 

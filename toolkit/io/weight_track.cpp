@@ -47,12 +47,15 @@ WeightMatch match_weights(const WeightTrack& track, const std::vector<std::strin
 }
 
 Eigen::MatrixXd weights_for(const WeightTrack& track, const std::vector<std::string>& expressions) {
+  if (expressions.empty()) {
+    throw MismatchError("the model has no expressions that weights could drive");
+  }
   const WeightMatch match = match_weights(track, expressions);
   if (match.undriven_expressions.size() == expressions.size()) {
     throw MismatchError(
         "no weight is named like an expression of the model: the weights begin with '" +
         (track.names.empty() ? "" : track.names.front()) + "', the expressions with '" +
-        (expressions.empty() ? "" : expressions.front()) + "'");
+        expressions.front() + "'");
   }
   Eigen::MatrixXd weights =
       Eigen::MatrixXd::Zero(track.weights.rows(), static_cast<Eigen::Index>(expressions.size()));

@@ -16,6 +16,9 @@ struct WeightTrack {
   Eigen::VectorXd times;           ///< seconds (F); empty where the file has none
   /// What was noticed while reading: times that cannot be told, weights that look like percent.
   std::vector<std::string> notes = {};
+  /// Where it has no times: frames of the animation from one row to the next, 2 for rows of the
+  /// frames 1001, 1003, ...
+  double step = 1;
 };
 
 /// Which column of a track drives which expression.

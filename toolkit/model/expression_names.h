@@ -30,7 +30,8 @@ constexpr std::string_view choice_name(Exclusive value) {
   return {};
 }
 
-/// `mouthSmile_L`, `mouthSmile.l` or `mouthSmile_left` as captures write it: `mouthSmileLeft`.
+/// `mouthSmile_L`, `mouthSmile.l`, `mouthSmile_left` or `L_mouthSmile` as captures write it:
+/// `mouthSmileLeft`.
 std::string spelled_out(const std::string& name);
 
 /// `browInnerUp` of `browInnerUp_L`, `browInnerUpLeft` and the like. `jawLeft` and `mouthLeft`,
@@ -45,7 +46,8 @@ std::string folded_name(const std::string& name);
 int expression_named(const std::string& name, const std::vector<std::string>& names);
 
 /// Left and right of one expression, by the index of each among `names`: those that end in Left and
-/// Right, _left and _right, _L and _R or .L and .R, in any case after a mark. Of an eye that looks
+/// Right, _left and _right, _L and _R or .L and .R, in any case after a mark, or begin with left_
+/// and right_ or L_ and R_. Of an eye that looks
 /// in, the other half is the other eye that looks out: both look to one side. `jawLeft`,
 /// `mouthLeft` and their opposites move to a side and are no halves.
 std::vector<std::array<int, 2>> known_pairs(const std::vector<std::string>& names);

@@ -15,6 +15,10 @@ struct LandmarkTrack {
   Frames points;
   Eigen::VectorXd times;       ///< seconds (F); empty where the file has none
   Eigen::VectorXd confidence;  ///< of the detector, in [0, 1] (F); empty where the file has none
+  /// Where it has no times: frames of the video from one to the next.
+  double step = 1;
+  /// What was noticed while reading: numbers of frames that are missing.
+  std::vector<std::string> notes = {};
 
   int landmarks() const { return static_cast<int>(names.size()); }
   int frames() const { return static_cast<int>(points.rows()); }

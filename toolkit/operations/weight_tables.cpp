@@ -22,6 +22,10 @@ ReadValue read_weight_table(const std::string& text, const ReadRequest&) {
   const WeightTrack track = read_weights(text);
   ReadValue read{{text, weight_table(track)}, {text}};
   for (const std::string& note : track.notes) read.notes.push_back(text + ": " + note);
+  if (track.times.size() == 0 && track.step != 1) {
+    read.notes.push_back(text + ": rows are " + readable(track.step) +
+                         " frames apart; where option 'fps' is given, it counts rows");
+  }
   return read;
 }
 

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <set>
+#include <string>
+#include <string_view>
+#include <vector>
+
+/// Which numbers files have by their names. Internal to frame_series.h and frame_files.h.
+namespace mimetra {
+
+/// "smile_0012.v.OBJ" is number 12 of the series "smile_*.v.obj".
+struct NumberedName {
+  std::string series;     ///< empty for a name without a number
+  long long number = 0;   ///< of decimal numbers in units of the last decimal of their series
+  std::string text = {};  ///< as the name has it, "0012", "-12" or "0.25"
+};
+
+/// Whether a '-' behind `before` in a name is the sign of a number: where it begins the name or
+/// follows '_', '.' or '-'. "smile_-12.obj" has the number -12, "smile-12.obj" has 12.
+bool minus_is_sign(std::string_view before);
+
+/// The last number of a name.
+NumberedName numbered(const std::filesystem::path& file);
+
+/// The numbers of files beside each other. Two numbers with a point between them are a decimal
+/// number where the files say so: their integer parts or counts of decimals differ and all are
+/// evenly spaced (0.25, 0.5, 0.75, 1.0), or decimals begin with 0 and others are shorter (0.033,
+/// 0.1).
+class FileNumbers {
+ public:
+  explicit FileNumbers(const std::vector<std::filesystem::path>& files);
+
+  /// \pre one of the files
+  const NumberedName& of(const std::filesystem::path& file) const { return names_.at(file); }
+  bool is_decimal(const std::string& series) const { return decimal_series_.contains(series); }
+
+ private:
+  std::map<std::filesystem::path, NumberedName> names_;
+  std::set<std::string> decimal_series_;
+};
+
+/// Sorts files in the natural order of their names, and those of one series in a folder by their
+/// numbers.
+void sort_by_numbers(std::vector<std::filesystem::path>& files);
+
+}  // namespace mimetra
