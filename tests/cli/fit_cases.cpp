@@ -91,8 +91,10 @@ void add_tracks(std::vector<BadInput>& all) {
   add("nothing_seen", header(2) + ",,,\n", 4, {"no frame has landmarks"}, "0\n7\n");
   add("fewer_than_the_mapping", header(9) + row(9), 4,
       {"landmark '10'", "only 1 to 9", "another set of landmarks"});
-  add("frames_that_jump", header(10, "frame") + row(10, "0") + row(10, "5"), 3,
-      {"line 3", "frame 5 follows 0", "a column 'time'"});
+  add("frames_that_repeat", header(10, "frame") + row(10, "5") + row(10, "5"), 3,
+      {"line 3", "frame 5 follows 5", "a column 'time'"});
+  add("frames_that_jump", header(10, "frame") + row(10, "0") + row(10, "1") + row(10, "5"), 0,
+      {"no row has these frames: 2 to 4"});
   add("confidence_in_percent", header(10, "confidence") + row(10, "95"), 3,
       {"line 2", "outside [0, 1]"});
   add("nothing_trusted", header(10, "confidence") + row(10, "0.01"), 4, {"no frame has landmarks"});

@@ -419,6 +419,8 @@ TEST_F(Weights, ThatAreMissingLieBetweenTheirNeighbours) {
   EXPECT_THAT(track.notes, ElementsAre(HasSubstr("rows without weights"),
                                        HasSubstr("columns in which weights are missing")));
   EXPECT_THAT(message_of("a,b\n0,inf\n"), HasSubstr("'b': expected a finite number"));
+  EXPECT_THAT(message_of("a\nnan\n\nnan\n"),
+              HasSubstr("line 2: column 'a': expected a finite number, found 'nan'"));
 }
 
 TEST_F(Weights, MayHaveCommentsAndCommasAtTheEndsOfLines) {

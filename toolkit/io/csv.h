@@ -43,6 +43,9 @@ class CsvReader {
   /// Throws IoError where the field is not a finite number.
   double number(std::size_t column) const;
 
+  /// Of the row, or of the names before the first one; from 1.
+  int line() const { return line_; }
+
   /// Throws IoError with the path and the line of the row, or of the names before the first one.
   [[noreturn]] void fail(const std::string& message) const;
 

@@ -89,6 +89,7 @@ class WeightReader {
       read_timecode(csv_.field(*timecode_column_));
     }
     if (frames_ == 0) {
+      first_line_ = csv_.line();
       for (const std::size_t column : weight_columns_) {
         first_fields_.emplace_back(csv_.field(column));
       }
@@ -159,7 +160,8 @@ class WeightReader {
   /// Weights that are missing, as in rows where a capture lost the face, lie between their
   /// neighbours in the order of frames.
   void fill_missing(WeightTrack& result) const {
-    if (static_cast<int>(lost_.size()) == frames_) {
+    const bool is_empty = std::ranges::all_of(first_fields_, &std::string::empty);
+    if (static_cast<int>(lost_.size()) == frames_ && is_empty) {
       throw IoError(path_.string(), "has no row with weights");
     }
     std::vector<std::string> gaps;
@@ -167,7 +169,8 @@ class WeightReader {
       const std::string& name = result.names[static_cast<std::size_t>(column)];
       const auto missing = result.weights.col(column).array().isNaN().count();
       if (missing == frames_) {
-        throw IoError(path_.string(), "column '" + name + "': expected a finite number, found '" +
+        throw IoError(path_.string(), "line " + std::to_string(first_line_) + ": column '" + name +
+                                          "': expected a finite number, found '" +
                                           first_fields_[static_cast<std::size_t>(column)] +
                                           "' and no other");
       }
@@ -207,6 +210,7 @@ class WeightReader {
   std::filesystem::path path_;
   CsvReader csv_;
   std::vector<int> lost_;                  ///< frames, ascending
+  int first_line_ = 0;                     ///< of weights
   std::vector<std::string> first_fields_;  ///< of the columns of weights
   std::optional<std::size_t> time_column_, timecode_column_, frame_column_;
   std::vector<long long> frame_numbers_;
