@@ -30,7 +30,11 @@ Eigen::Matrix3d looking_ahead(const std::vector<Eigen::Matrix3d>& rotations) {
   const Eigen::Matrix3d mean =
       svd.matrixU() * Eigen::Vector3d(1, 1, sign).asDiagonal() * svd.matrixV().transpose();
   Eigen::Matrix3d best = Eigen::Matrix3d::Identity();
-  if (mean.trace() >= 1 + 2 * std::cos(kOwnAxes * EIGEN_PI / 180)) return best;
+  // 1 where all are the same; heads at 45 degrees to both sides have 0.8.
+  constexpr double kAlike = 0.75;
+  const double alike =
+      (mean.transpose() * sum).trace() / (3 * static_cast<double>(rotations.size()));
+  if (alike < kAlike || mean.trace() >= 1 + 2 * std::cos(kOwnAxes * EIGEN_PI / 180)) return best;
   for (int x = 0; x < 3; ++x) {
     for (const int y : {(x + 1) % 3, (x + 2) % 3}) {
       for (const int signs : {0, 1, 2, 3}) {

@@ -81,6 +81,14 @@ TEST(LookingAhead, IsNoneForAHeadThatIsSeenFromAside) {
             Eigen::Matrix3d::Identity());
 }
 
+TEST(LookingAhead, IsNoneForAHeadThatTurnsToAllSides) {
+  std::vector<Eigen::Matrix3d> rotations;
+  for (const double degrees : {0.0, 90.0, 180.0, 250.0}) {
+    rotations.push_back(turned_by(degrees, Eigen::Vector3d(1, 1, 0)));
+  }
+  EXPECT_EQ(looking_ahead(rotations), Eigen::Matrix3d::Identity());
+}
+
 TEST(TurnedAsSeen, IsTheSameMotionForAModelOfOtherAxes) {
   const Eigen::Matrix3d nod = Eigen::AngleAxisd(0.2, Eigen::Vector3d::UnitX()).toRotationMatrix();
   const Eigen::Matrix3d shake = Eigen::AngleAxisd(0.3, Eigen::Vector3d::UnitY()).toRotationMatrix();
