@@ -31,15 +31,23 @@ std::vector<Vertices> unreached_parts(const Positions& positions, const Triangle
 }
 
 /// Those of some vertices that are nearest to a place.
-Vertices nearest_to(const Eigen::RowVector3d& place, const Positions& positions, Vertices among) {
+Vertices nearest_to(const Eigen::RowVector3d& place, const Positions& positions,
+                    const Vertices& among) {
   constexpr std::size_t kAround = 200;
-  const std::size_t count = std::min(kAround, among.size());
-  std::ranges::nth_element(
-      among, among.begin() + static_cast<std::ptrdiff_t>(count - 1), {},
-      [&](VertexIndex v) { return std::pair((positions.row(v) - place).squaredNorm(), v); });
-  among.resize(count);
-  std::ranges::sort(among);
-  return among;
+  std::vector<std::pair<double, VertexIndex>> distances;
+  distances.reserve(among.size());
+  for (const VertexIndex v : among) {
+    distances.emplace_back((positions.row(v) - place).squaredNorm(), v);
+  }
+  if (distances.size() > kAround) {
+    std::ranges::nth_element(distances, distances.begin() + kAround);
+    distances.resize(kAround);
+  }
+  Vertices nearest;
+  nearest.reserve(distances.size());
+  for (const auto& [distance, v] : distances) nearest.push_back(v);
+  std::ranges::sort(nearest);
+  return nearest;
 }
 
 /// The fit with the parts that no marker reaches where the surface around them has gone.
@@ -49,17 +57,22 @@ Positions carried_parts(const SurfaceFit& fit, const TriMesh& source,
   for (VertexIndex v = 0; v < source.positions.rows(); ++v) {
     if (fit.reached[static_cast<std::size_t>(v)]) reached.push_back(v);
   }
+  const auto fitted_to = [&](const Vertices& vertices, auto... handedness) {
+    return similarity_fit(source.positions(vertices, Eigen::all),
+                          fit.positions(vertices, Eigen::all), handedness...);
+  };
   Positions carried = fit.positions;
-  for (const Vertices& part : parts) {
-    const Positions at_rest = source.positions(part, Eigen::all);
-    const Vertices around = nearest_to(at_rest.colwise().mean(), source.positions, reached);
-    try {
-      carried(part, Eigen::all) =
-          similarity_fit(source.positions(around, Eigen::all), fit.positions(around, Eigen::all))
-              .apply(at_rest);
-    } catch (const MismatchError&) {
-      continue;  // points on a line tell no rotation: the similarity of the markers stays
+  try {
+    // A flat place alone does not tell left from right.
+    const Handedness handedness =
+        fitted_to(reached).mirrors() ? Handedness::mirrored : Handedness::kept;
+    for (const Vertices& part : parts) {
+      const Positions at_rest = source.positions(part, Eigen::all);
+      const Vertices around = nearest_to(at_rest.colwise().mean(), source.positions, reached);
+      carried(part, Eigen::all) = fitted_to(around, handedness).apply(at_rest);
     }
+  } catch (const MismatchError&) {
+    return carried;  // points on a line tell no rotation: the similarity of the markers stays
   }
   return carried;
 }

@@ -65,9 +65,9 @@ std::set<std::size_t> joints_in_use(const std::string& path, const UsdStack& mes
     if (i < shares.size() && shares[i] == 0) continue;
     auto joint = static_cast<std::size_t>(which[i]);
     const std::size_t count = own.empty() ? names.size() : own.size();
-    if (joint >= count) {
+    if (which[i] < 0 || joint >= count) {
       usd_fail(path, indices->line,
-               "joint " + std::to_string(joint) + " of " + std::to_string(count) +
+               "joint " + std::to_string(which[i]) + " of " + std::to_string(count) +
                    ", which count from 0");
     }
     if (!own.empty()) {
