@@ -33,7 +33,7 @@ Canonical canonical(std::span<const int> corners) {
   for (std::size_t start = 0; start < corners.size(); ++start) {
     if (corners[start] != lowest) continue;
     std::vector<int> around(corners.begin(), corners.end());
-    std::ranges::rotate(around, around.begin() + static_cast<std::ptrdiff_t>(start));
+    std::rotate(around.begin(), around.begin() + static_cast<std::ptrdiff_t>(start), around.end());
     std::vector<int> turned = around;
     std::reverse(turned.begin() + 1, turned.end());
     if (least.corners.empty() || around < least.corners) least = {std::move(around), false};
