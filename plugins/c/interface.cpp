@@ -27,6 +27,15 @@ mimetra_data* handle(NamedData named) {
   return handle(std::make_shared<const Value>(std::move(named)));
 }
 
+/// Says what was noticed of a value that was made, but for what was said already.
+void say_notes(const mimetra_context& context, const NamedData& made,
+               const std::vector<std::string>& said) {
+  if (!context.log) return;
+  for (const std::string& note : made.origin.notes) {
+    if (std::ranges::find(said, note) == said.end()) context.log(LogLevel::warning, note);
+  }
+}
+
 mimetra_status new_context(mimetra_log log, void* user, mimetra_context** context) noexcept {
   return make_context(
       [](OperationTable& table) {
@@ -86,7 +95,9 @@ mimetra_status new_data(mimetra_context* context, mimetra_kind kind, const char*
                         const mimetra_array* const* arrays, mimetra_data** data) noexcept {
   if (data) *data = nullptr;
   return guarded(context, [&] {
-    *needed(data, "data") = handle(made_data(kind, name ? name : "", needed(arrays, "arrays")));
+    NamedData made = made_data(kind, name ? name : "", needed(arrays, "arrays"));
+    say_notes(*context, made, {});
+    *needed(data, "data") = handle(std::move(made));
   });
 }
 
@@ -94,8 +105,10 @@ mimetra_status derive_data(mimetra_context* context, const mimetra_data* base,
                            const mimetra_array* const* arrays, mimetra_data** data) noexcept {
   if (data) *data = nullptr;
   return guarded(context, [&] {
-    *needed(data, "data") =
-        handle(derived_data(needed(base, "base")->value->named(), needed(arrays, "arrays")));
+    const NamedData& origin = needed(base, "base")->value->named();
+    NamedData made = derived_data(origin, needed(arrays, "arrays"));
+    say_notes(*context, made, origin.origin.notes);
+    *needed(data, "data") = handle(std::move(made));
   });
 }
 

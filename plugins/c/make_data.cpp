@@ -7,7 +7,11 @@
 #include "plugins/c/shown_arrays.h"
 #include "plugins/c/utf8.h"
 #include "toolkit/io/painting_file.h"
+#include "toolkit/io/sequence_options.h"
+#include "toolkit/io/weight_file.h"
 #include "toolkit/mesh/errors.h"
+#include "toolkit/mesh/text.h"
+#include "toolkit/model/expression_notes.h"
 #include "toolkit/operations/parameter.h"
 
 namespace mimetra {
@@ -73,6 +77,18 @@ std::shared_ptr<const Connectivity> faces_of(
 
 using Base = std::shared_ptr<const Connectivity>;
 
+/// Seconds, which rise.
+Eigen::VectorXd times_of(GivenArrays& given) {
+  Eigen::VectorXd times = given.vector("times", "F");
+  for (Eigen::Index f = 1; f < times.size(); ++f) {
+    if (times[f] > times[f - 1]) continue;
+    throw IoError(given.subject(), "array 'times' holds " + readable(times[f]) + " at [" +
+                                       std::to_string(f) + "], expected more than " +
+                                       readable(times[f - 1]) + " before it");
+  }
+  return times;
+}
+
 MeshSequence sequence_of(GivenArrays& given, const Base& base) {
   const bool is_one = given.rank("positions") == 2;
   Frames frames = given.numbers("positions", is_one ? "N x 3" : "F x N x 3");
@@ -82,7 +98,7 @@ MeshSequence sequence_of(GivenArrays& given, const Base& base) {
   }
   auto connectivity = faces_of(given, given.size('N'), base);
   Eigen::VectorXd times;
-  if (given.has("times")) times = given.vector("times", "F");
+  if (given.has("times")) times = times_of(given);
   std::optional<Positions> rest;
   if (given.has("rest")) rest = given.positions("rest");
   return {std::move(connectivity), std::move(frames), std::move(times), std::move(rest)};
@@ -210,7 +226,8 @@ ModelData model_of(GivenArrays& given, const Base& base) {
   if (given.has("weights") || given.has("weight_names")) {
     made.performance.weights = given.numbers("weights", "F x W");
     made.performance.names = given.strings("weight_names", "W");
-    if (given.has("times")) made.performance.times = given.vector("times", "F");
+    if (given.has("times")) made.performance.times = times_of(given);
+    note_odd_weights(made.performance);
   }
   if (!given.has("landmarks")) return made;
   const std::vector<int> pairs = given.integers("landmarks", "L x 2");
@@ -240,7 +257,7 @@ LandmarkTrack landmarks_of(GivenArrays& given) {
   if (track.names.empty()) throw IoError(given.subject(), "needs a landmark or more");
   const int frames = given.size('F');
   track.times = given.has("times")
-                    ? given.vector("times", "F")
+                    ? times_of(given)
                     : Eigen::VectorXd::LinSpaced(frames, 0, (frames - 1) / kDefaultFramesPerSecond);
   if (given.has("confidence")) track.confidence = given.vector("confidence", "F");
   return track;
@@ -293,6 +310,21 @@ std::string subject_of(mimetra_kind kind, const std::string& name) {
   return name.empty() ? text : name;
 }
 
+/// What is odd about a value, as is said of one that is read from a file.
+std::vector<std::string> notes_on(const NamedData& made, const std::string& subject) {
+  std::vector<std::string> notes;
+  if (const auto* sequence = std::get_if<FieldSequence>(&made.data)) {
+    const std::string odd = note_on_steps(sequence->frames->known_times());
+    if (!odd.empty()) notes.push_back(subject + ": " + odd);
+  } else if (const auto* held = std::get_if<ModelData>(&made.data)) {
+    const MorphableModel& model = held->model;
+    notes = notes_on_expressions(subject, model.mean(), model.connectivity().triangles,
+                                 model.expressions());
+    for (const std::string& note : held->performance.notes) notes.push_back(subject + ": " + note);
+  }
+  return notes;
+}
+
 /// What no array shows.
 Base hidden_connectivity(const Data& data) {
   if (const auto* shown = std::get_if<FieldSequence>(&data)) {
@@ -334,6 +366,7 @@ NamedData checked(mimetra_kind kind, const std::string& name, GivenArrays& given
                   const Base& base) {
   NamedData made{name, data_of(kind, given, base)};
   given.check_all_used(shown_only(kind, given));
+  made.origin.notes = notes_on(made, given.subject());
   return made;
 }
 

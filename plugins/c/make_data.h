@@ -10,7 +10,7 @@ DataKind kind_of(mimetra_kind kind);
 
 /// A value of named arrays, as mimetra.h lists them by kind. Throws UsageError for arrays of
 /// another shape, or that the kind does not know; MismatchError where they contradict each other;
-/// IoError for values that cannot be.
+/// IoError for values that cannot be. What is odd about it is in its origin's notes.
 NamedData made_data(mimetra_kind kind, const std::string& name, const mimetra_array* const* arrays);
 
 /// `base` with these arrays in place of its own. Throws as made_data.

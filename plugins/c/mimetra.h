@@ -174,9 +174,9 @@ typedef struct mimetra_array {
  *
  *   faces       face_sizes I32 P and corners I32 C, or triangles I32 T x 3; both are shown |
  *               face_of_triangle I32 T
- *   sequence    positions F x N x 3 (or N x 3), faces, [times F, seconds], [rest N x 3], and any
+ *   sequence    positions F x N x 3 (or N x 3), faces, [times F], [rest N x 3], and any
  *               number of fields: N or N x c on vertices, T or T x c on triangles, by
- *               their location
+ *               their location; times are seconds that rise
  *   model       neutral N x 3, faces, [expressions D x N x 3, expression_names STRING D],
  *               [identities I x N x 3, identity_names STRING I], and where it performs weights
  *               F x W, weight_names STRING W, [times F]; [landmarks I32 L x 2: number, vertex].

@@ -18,8 +18,11 @@
 namespace mimetra {
 namespace {
 
+using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::StartsWith;
 using testing::ThrowsMessage;
 
 mimetra_array array(const char* name, int type, std::initializer_list<std::int64_t> shape,
@@ -249,6 +252,41 @@ TEST(MadeData, IsAModelWithOrWithoutIdentitiesAndAPerformance) {
   const NamedData model = made(MIMETRA_MODEL, arrays);
   EXPECT_THAT(std::get<ModelData>(model.data).model.identities().names, ElementsAre("wide"));
   EXPECT_EQ(std::get<ModelData>(model.data).performance.weights.rows(), 2);
+}
+
+TEST(MadeData, SaysWhatIsOddAboutIt) {
+  const test::Shape grid = test::grid(4, 4);
+  const Frames neutral = grid.positions, aside = Frames::Constant(16, 3, 9);
+  const Eigen::Matrix<std::int32_t, -1, 3, Eigen::RowMajor> corners = grid.triangles;
+  const double weights[] = {0, 100}, times[] = {0, 1};
+  const char* const names[] = {"smile"};
+  const NamedData model =
+      made(MIMETRA_MODEL, {array("neutral", MIMETRA_F64, {16, 3}, neutral.data()),
+                           array("triangles", MIMETRA_I32, {18, 3}, corners.data()),
+                           array("expressions", MIMETRA_F64, {1, 16, 3}, aside.data()),
+                           array("expression_names", MIMETRA_STRING, {1}, names),
+                           array("weights", MIMETRA_F64, {2, 1}, weights),
+                           array("weight_names", MIMETRA_STRING, {1}, names),
+                           array("times", MIMETRA_F64, {2}, times)});
+  EXPECT_THAT(
+      model.origin.notes,
+      ElementsAre(AllOf(StartsWith("it: expressions of another place"), HasSubstr("smile")),
+                  HasSubstr("look like percent, expected 0 to 1; they are divided by 100")));
+  EXPECT_EQ(std::get<ModelData>(model.data).performance.weights(1, 0), 1);
+}
+
+TEST(MadeData, HasTimesThatRise) {
+  const double positions[2 * 3 * kVertices] = {}, times[] = {0, 0.5, 0.5};
+  const std::int32_t corners[] = {0, 1, 2};
+  const auto at = [&](const double* two) {
+    return made(MIMETRA_SEQUENCE, {array("positions", MIMETRA_F64, {2, kVertices, 3}, positions),
+                                   array("triangles", MIMETRA_I32, {1, 3}, corners),
+                                   array("times", MIMETRA_F64, {2}, two)});
+  };
+  EXPECT_THAT(at(times).origin.notes, IsEmpty());
+  EXPECT_THAT(
+      [&] { at(times + 1); },
+      ThrowsMessage<IoError>(HasSubstr("'times' holds 0.5 at [1], expected more than 0.5")));
 }
 
 TEST(MadeData, IsOnePictureOrADocument) {

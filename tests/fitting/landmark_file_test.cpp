@@ -107,7 +107,8 @@ TEST_F(Landmarks, OfABrokenCsvTrackNameTheLine) {
               HasSubstr("line 1: there are more columns of y than of x"));
   EXPECT_THAT(message("a.csv", "x0,y0,x_0\n1,2,3\n"),
               HasSubstr("line 1: the column 'x_0' occurs twice"));
-  EXPECT_THAT(message("a.csv", "x0,y0\n1,5,2,5\n"), HasSubstr("decimal commas are not supported"));
+  EXPECT_THAT(message("a.csv", "x0,y0\n1,5,2,5\n"),
+              HasSubstr("decimal commas need ';' between fields"));
   EXPECT_THAT(message("a.csv", "x0,y0\n1,2\n\n1\n"),
               HasSubstr("line 4: 1 field, expected 2 as in the first line"));
   EXPECT_THAT(message("a.csv", "x0,y0\n1,b\n"),

@@ -44,10 +44,37 @@ TEST_F(Csv, NamesTheLineOfWhatIsWrong) {
 }
 
 TEST_F(Csv, FieldsComeBackAsTheyWereWritten) {
-  for (const std::string text : {"plain", "a,b", "say \"no\"", "\"", ","}) {
+  for (const std::string text : {"plain", "a,b", "a;b", "#a", "say \"no\"", "\"", ","}) {
     CsvReader csv(file(csv_field(text) + ",x\n"));
     EXPECT_EQ(text_of_csv(csv.names()[0]), text);
   }
+}
+
+TEST_F(Csv, NamesMayStandInTheCommentBeforeNumbers) {
+  for (const std::string text : {"# by hand\n# a,b\n1,2\n3,4\n", "#a;b\n1,0;2\n3;4,0\n"}) {
+    CsvReader csv(file(text));
+    EXPECT_THAT(csv.names(), ElementsAre("a", "b"));
+    ASSERT_TRUE(csv.next_row());
+    EXPECT_EQ(csv.number(0), 1);
+    EXPECT_EQ(csv.number(1), 2);
+    ASSERT_TRUE(csv.next_row());
+    EXPECT_EQ(csv.number(1), 4);
+    EXPECT_EQ(csv.line(), text.starts_with("#a") ? 3 : 4);
+    EXPECT_FALSE(csv.next_row());
+  }
+  EXPECT_THAT(CsvReader(file("# take 7, by hand\na,b\n1,2\n")).names(), ElementsAre("a", "b"));
+  EXPECT_THAT(CsvReader(file("# take 7\n1,2\n3,4\n")).names(), ElementsAre("1", "2"));
+}
+
+TEST_F(Csv, CommasAreDecimalWhereSemicolonsSeparate) {
+  CsvReader csv(file("a;\"b,c\";d\n0,5;1.5;-2,5e-1;\n1,2,3;0;0\n"));
+  EXPECT_THAT(csv.names(), ElementsAre("a", "b,c", "d"));
+  ASSERT_TRUE(csv.next_row());
+  EXPECT_EQ(csv.number(0), 0.5);
+  EXPECT_EQ(csv.number(1), 1.5);
+  EXPECT_EQ(csv.number(2), -0.25);
+  ASSERT_TRUE(csv.next_row());
+  EXPECT_THAT(message_of<IoError>([&] { csv.number(0); }), HasSubstr("line 3: column 'a'"));
 }
 
 }  // namespace

@@ -255,7 +255,6 @@ TEST_F(Weights, ErrorsNameLineColumnAndWhatWasFound) {
   EXPECT_THAT(message_of("a,b\n0,nan\n"), HasSubstr("found 'nan'"));
   EXPECT_THAT(message_of("a,b\n0\n"), HasSubstr("line 2: 1 field, expected 2"));
   EXPECT_THAT(message_of("a,b\n0,5,1\n"), HasSubstr("decimal commas"));
-  EXPECT_THAT(message_of("a;b\n0;1\n"), HasSubstr("separated by ';', expected ','"));
   EXPECT_THAT(message_of("a,a\n0,0\n"), HasSubstr("the name 'a' occurs twice"));
   EXPECT_THAT(message_of("time,Time,a\n"), HasSubstr("two columns of times"));
   EXPECT_THAT(message_of("a,\n0,0\n"), HasSubstr("column 2 has no name"));
@@ -430,8 +429,16 @@ TEST_F(Weights, MayHaveCommentsAndCommasAtTheEndsOfLines) {
   EXPECT_EQ(read("a,b\n0,0.5,\n").weights.cols(), 2);
 }
 
+TEST_F(Weights, MayBeThoseOfASpreadsheetWithDecimalCommas) {
+  const WeightTrack track = read("time;a;b\n0,5;0,25;1\n1;;0.75\n");
+  EXPECT_THAT(track.names, ElementsAre("a", "b"));
+  EXPECT_EQ(track.times, Eigen::Vector2d(0.5, 1));
+  EXPECT_EQ(track.weights(0, 0), 0.25);
+  EXPECT_EQ(track.weights.row(1), Eigen::RowVector2d(0.25, 0.75));
+}
+
 TEST_F(Weights, OfOtherFilesAreNamedAsWhatTheyAre) {
-  EXPECT_THAT(message_of("a\tb\n0\t1\n"), HasSubstr("separated by tabs, expected ','"));
+  EXPECT_THAT(message_of("a\tb\n0\t1\n"), HasSubstr("separated by tabs, expected ',' or ';'"));
   std::ofstream(folder_ / "w.npy") << "anything";
   EXPECT_THAT(test::message_of<IoError>([this] { read_weights(folder_ / "w.npy"); }),
               HasSubstr("is a NumPy array, which does not name its weights"));

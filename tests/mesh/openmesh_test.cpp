@@ -253,6 +253,15 @@ TEST(OpenMeshBridge, TakesMasksAndWeightsOfAnyType) {
   EXPECT_EQ(field_from_openmesh(mesh, "v:weight").values(3, 0), 0.75);
 }
 
+TEST(OpenMeshBridge, DoesNotChooseAmongPropertiesOfOneName) {
+  QuadMesh mesh = house();
+  auto own = OpenMesh::getOrMakeProperty<OpenMesh::VertexHandle, float>(mesh, "v:x");
+  for (const auto vertex : mesh.vertices()) own[vertex] = 0;
+  set_fields(mesh, {{"x", Field::Location::vertices, Eigen::VectorXd::Constant(7, 7), false}});
+  EXPECT_THAT([&] { field_from_openmesh(mesh, "v:x"); },
+              ThrowsMessage<std::invalid_argument>(HasSubstr("'v:x' of several types")));
+}
+
 TEST(OpenMeshBridge, NamesWhatItCannotHoldOrFind) {
   QuadMesh mesh = house();
   EXPECT_THAT([&] { field_from_openmesh(mesh, "v:roi"); },

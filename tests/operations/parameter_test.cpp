@@ -24,9 +24,19 @@ TEST(Parameter, ParsesEachKindFromText) {
   EXPECT_EQ(parse_value(kCount, "10"), ParameterValue(std::int64_t{10}));
   EXPECT_EQ(parse_value(kShape, "support"), ParameterValue("support"));
   EXPECT_EQ(parse_value({"x", ParameterKind::number, {}, ""}, "2.5e-1"), ParameterValue(0.25));
+  EXPECT_EQ(parse_value({"x", ParameterKind::number, {}, ""}, "24000/1001"),
+            ParameterValue(24000.0 / 1001.0));
   EXPECT_EQ(parse_value({"x", ParameterKind::flag, false, ""}, "true"), ParameterValue(true));
   EXPECT_EQ(parse_value({"x", ParameterKind::integer_list, {}, ""}, "10,30,40"),
             ParameterValue(std::vector<std::int64_t>{10, 30, 40}));
+}
+
+TEST(Parameter, RefusesFractionsThatAreNoNumber) {
+  for (const char* text : {"1/0", "0/0", "1/", "/2", "1/2/3", "a/2", "1 / 2"}) {
+    EXPECT_THAT(message_of({"x", ParameterKind::number, {}, ""}, text),
+                testing::HasSubstr("-x: expected a number, found '"))
+        << text;
+  }
 }
 
 enum class Fruit { apple, pear, plum };

@@ -37,6 +37,37 @@ class Values(SampleTest):
         twice = np.repeat(moved(), 2, axis=1)[:, ::2]
         self.assert_same(mimetra.Sequence(twice, POLYGONS).positions, moved())
 
+    def test_what_a_mask_hides_is_missing(self):
+        hidden = np.zeros((2, 1, 2), bool)
+        hidden[1] = True
+        points = np.ma.array(np.ones((2, 1, 2)), mask=hidden, fill_value=-9999)
+        seen = mimetra.Landmarks(points, ["0"]).points
+        self.assert_same(seen[0], np.ones((1, 2)))
+        self.assertTrue(np.isnan(seen[1]).all())
+        table = mimetra.Table({"x": np.ma.array([1, 777], mask=[False, True])})
+        self.assertEqual(table["x"][0], 1)
+        self.assertTrue(np.isnan(table["x"][1]))
+        poses = np.ma.array(moved(), mask=False)
+        self.assert_same(mimetra.Sequence(poses, POLYGONS).positions, moved())
+        poses[1, 3, 2] = np.ma.masked
+        with self.assertRaisesRegex(mimetra.BadInput, "positions"):
+            mimetra.Sequence(poses, POLYGONS)
+
+    def test_what_is_odd_about_a_value_is_said_where_it_is_made(self):
+        with self.assertLogs("mimetra", "WARNING") as said:
+            mimetra.Model(CORNERS, POLYGONS, np.full((1, 6, 3), 9.0), ["aside"], name="square")
+        self.assertIn("square: expressions of another place, turn or size", said.output[0])
+        with self.assertLogs("mimetra", "WARNING") as said:
+            mimetra.Sequence(np.stack([CORNERS] * 12), POLYGONS, times=np.arange(12.0))
+        self.assertIn("a second apart", said.output[0])
+
+    def test_times_rise(self):
+        for times in [[0, 0], [1, 0]]:
+            with self.assertRaisesRegex(mimetra.BadInput, r"'times' holds 0 at \[1\]"):
+                mimetra.Sequence(moved(), POLYGONS, times=times)
+            with self.assertRaisesRegex(mimetra.BadInput, r"'times' holds 0 at \[1\]"):
+                mimetra.Landmarks(np.ones((2, 1, 2)), ["0"], times=times)
+
     def test_faces_are_triangles_quads_lists_or_those_of_another_value(self):
         triangles = np.array([[0, 1, 2], [0, 2, 3]], dtype=np.int64)
         flat = mimetra.Sequence(CORNERS, triangles)

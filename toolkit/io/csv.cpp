@@ -1,7 +1,10 @@
 #include "toolkit/io/csv.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <optional>
+#include <utility>
 
 #include "toolkit/io/whole_file.h"
 #include "toolkit/mesh/errors.h"
@@ -15,22 +18,27 @@ std::string_view without_blanks(std::string_view text) {
   return text;
 }
 
-/// The comma that ends the first field; npos for the last one.
-std::size_t end_of_field(std::string_view line) {
+/// The separator that ends the first field; npos for the last one.
+std::size_t end_of_field(std::string_view line, char separator) {
   const auto first = line.find_first_not_of(" \t");
   bool quoted = first != std::string_view::npos && line[first] == '"';
-  if (!quoted) return line.find(',');
+  if (!quoted) return line.find(separator);
   for (std::size_t i = first + 1; i < line.size(); ++i) {
     if (line[i] == '"') quoted = !quoted;
-    if (line[i] == ',' && !quoted) return i;
+    if (line[i] == separator && !quoted) return i;
   }
   return std::string_view::npos;
 }
 
-std::vector<std::string_view> comma_separated(std::string_view line) {
+/// What separates the names of a line: what ends the first one.
+char separator_of(std::string_view names) {
+  return end_of_field(names, ';') < end_of_field(names, ',') ? ';' : ',';
+}
+
+std::vector<std::string_view> fields_of(std::string_view line, char separator) {
   std::vector<std::string_view> fields;
   for (;;) {
-    const auto end = end_of_field(line);
+    const auto end = end_of_field(line, separator);
     std::string_view field = without_blanks(line.substr(0, end));
     if (field.starts_with('"')) field.remove_prefix(1);
     if (field.ends_with('"')) field.remove_suffix(1);
@@ -40,10 +48,32 @@ std::vector<std::string_view> comma_separated(std::string_view line) {
   }
 }
 
+/// With a decimal point, or, where fields are not separated by commas, a decimal comma.
+std::optional<double> number_in(std::string_view field, char separator) {
+  std::string with_point(field);
+  if (separator != ',' && field.find('.') == std::string_view::npos) {
+    std::ranges::replace(with_point, ',', '.');
+  }
+  double value = 0;
+  const char* last = with_point.data() + with_point.size();
+  const auto [end, error] = std::from_chars(with_point.data(), last, value);
+  if (error != std::errc() || end != last || !std::isfinite(value)) return {};
+  return value;
+}
+
+/// Whether a first line is a row already, of as many fields as `names`.
+bool is_row_of(const std::vector<std::string_view>& names, std::string_view line, char separator) {
+  const auto fields = fields_of(line, separator);
+  return fields.size() == names.size() && fields.size() > 1 &&
+         std::ranges::all_of(fields, [separator](std::string_view field) {
+           return number_in(field, separator).has_value();
+         });
+}
+
 }  // namespace
 
 std::string csv_field(const std::string& text) {
-  if (text.find_first_of(",\"") == std::string::npos) return text;
+  if (text.find_first_of(",;\"") == std::string::npos && !text.starts_with('#')) return text;
   std::string field = "\"";
   for (const char c : text) field += c == '"' ? "\"\"" : std::string(1, c);
   return field + '"';
@@ -64,15 +94,23 @@ CsvReader::CsvReader(const std::filesystem::path& path)
       text_(path_, without_byte_order_mark(bytes_), {}) {
   const std::string_view line = next_line();
   if (line.empty()) throw IoError(path_, "is empty; expected a line of column names");
-  names_ = comma_separated(line);
+  separator_ = separator_of(comment_);
+  names_ = fields_of(comment_, separator_);
+  if (is_row_of(names_, line, separator_)) {
+    unread_row_ = line;
+    return;
+  }
+  separator_ = separator_of(line);
+  names_ = fields_of(line, separator_);
   names_end_in_comma_ = names_.size() > 1 && names_.back().empty();
   if (names_end_in_comma_) names_.pop_back();
 }
 
 bool CsvReader::next_row(Rows rows) {
-  const std::string_view line = next_line();
+  const std::string_view unread = std::exchange(unread_row_, {});
+  const std::string_view line = unread.empty() ? next_line() : unread;
   if (line.empty()) return false;
-  row_ = comma_separated(line);
+  row_ = fields_of(line, separator_);
   if (row_.size() == names_.size() + 1) {
     if (row_.back().empty())
       row_.pop_back();
@@ -89,19 +127,17 @@ bool CsvReader::next_row(Rows rows) {
 void CsvReader::fail_of_size() const {
   fail(std::to_string(given_) + (given_ == 1 ? " field" : " fields") + ", expected " +
        std::to_string(names_.size()) + " as in the first line" +
-       (given_ > names_.size() ? " (decimal commas are not supported)" : ""));
+       (given_ > names_.size() ? " (decimal commas need ';' between fields)" : ""));
 }
 
 double CsvReader::number(std::size_t column) const {
   if (column >= given_) fail_of_size();
-  const std::string_view field = row_[column];
-  double value = 0;
-  const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), value);
-  if (error != std::errc() || end != field.data() + field.size() || !std::isfinite(value)) {
+  const auto value = number_in(row_[column], separator_);
+  if (!value) {
     fail("column '" + std::string(names_[column]) + "': expected a finite number, found '" +
-         std::string(field) + "'");
+         std::string(row_[column]) + "'");
   }
-  return value;
+  return *value;
 }
 
 void CsvReader::fail(const std::string& message) const {
@@ -112,7 +148,9 @@ std::string_view CsvReader::next_line() {
   while (!text_.at_end()) {
     line_ = text_.line();
     const std::string_view line = text_.rest_of_line();
-    if (!line.empty() && line.front() != '#') return line;
+    if (line.empty()) continue;
+    if (line.front() != '#') return line;
+    comment_ = without_blanks(line.substr(1));
   }
   return {};
 }

@@ -8,17 +8,18 @@
 #include "toolkit/io/text_cursor.h"
 
 /// Comma-separated values: a line of column names, then rows of as many fields. For readers and
-/// writers.
+/// writers. Where the names are separated by ';', as where commas are decimal, so are the rows.
 namespace mimetra {
 
-/// `text` as a field: in quotation marks where it holds a comma or such a mark.
+/// `text` as a field: in quotation marks where it would be read as something else.
 std::string csv_field(const std::string& text);
 
 /// The text of a field as CsvReader has it.
 std::string text_of_csv(std::string_view field);
 
 /// Reads a file row by row. Lines end in LF or CRLF; those that are blank or begin with '#' are
-/// passed over, and so is a comma that ends them.
+/// passed over, and so is a separator that ends them. The names may stand behind a '#', as NumPy
+/// writes them.
 class CsvReader {
  public:
   /// Reads the column names. Throws IoError where there are none.
@@ -40,7 +41,7 @@ class CsvReader {
   std::string_view field(std::size_t column) const { return row_[column]; }
   /// False for one that the row ends before.
   bool is_given(std::size_t column) const { return column < given_; }
-  /// Throws IoError where the field is not a finite number.
+  /// Throws IoError where the field is not a finite number. Behind ';' it may have a decimal comma.
   double number(std::size_t column) const;
 
   /// Of the row, or of the names before the first one; from 1.
@@ -58,6 +59,9 @@ class CsvReader {
   std::string bytes_;
   TextCursor text_;
   int line_ = 0;
+  std::string_view comment_;     ///< the last one that was passed over
+  std::string_view unread_row_;  ///< the first line, where the names stand in a comment
+  char separator_ = ',';
   std::vector<std::string_view> names_, row_;
   bool names_end_in_comma_ = false;
   std::size_t given_ = 0;  ///< fields of the row that its line has

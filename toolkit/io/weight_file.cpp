@@ -44,10 +44,8 @@ class WeightReader {
     if (names.front().starts_with('{') || names.front().starts_with('[')) {
       throw IoError(path_.string(), "holds JSON, expected comma-separated values; call it .json");
     }
-    for (const auto& [separator, name] : {std::pair(';', "';'"), std::pair('\t', "tabs")}) {
-      if (names.size() == 1 && names.front().find(separator) != std::string_view::npos) {
-        csv_.fail(std::string("names are separated by ") + name + ", expected ','");
-      }
+    if (names.size() == 1 && names.front().find('\t') != std::string_view::npos) {
+      csv_.fail("names are separated by tabs, expected ',' or ';'");
     }
     std::set<std::string_view> seen;
     for (std::size_t column = 0; column < names.size(); ++column) {
@@ -242,7 +240,7 @@ std::string note_on_weight(const WeightTrack& track, Eigen::Index frame, Eigen::
 }
 
 /// Divides weights in percent by 100; notes that, and weights that nobody means.
-void check_size(WeightTrack& track) {
+void note_sizes(WeightTrack& track) {
   Eigen::Index frame = 0, column = 0;
   const double most = track.weights.cwiseAbs().maxCoeff(&frame, &column);
   if (most <= kMostUsual) {
@@ -289,9 +287,13 @@ WeightTrack read_weights(const std::filesystem::path& path) {
   }
   const bool is_json = extension == ".json";
   WeightTrack track = is_json ? read_weights_json(path) : WeightReader(path).read();
-  check_size(track);
-  if (const std::string odd = note_on_steps(track.times); !odd.empty()) track.notes.push_back(odd);
+  note_odd_weights(track);
   return track;
+}
+
+void note_odd_weights(WeightTrack& track) {
+  if (track.weights.size() > 0) note_sizes(track);
+  if (const std::string odd = note_on_steps(track.times); !odd.empty()) track.notes.push_back(odd);
 }
 
 void write_weights(const std::filesystem::path& path, const WeightTrack& track, bool overwrite) {

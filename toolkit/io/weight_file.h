@@ -19,10 +19,14 @@ namespace mimetra {
 ///
 /// An empty or NaN weight of a CSV is missing: it lies between its neighbours'.
 ///
-/// Throws IoError that names line and column for ragged rows (decimal commas make some), another
-/// separator, what is not a finite number, times that do not ascend, duplicate names, JSON in a CSV
-/// and the other way round.
+/// Throws IoError that names line and column for ragged rows (decimal commas between commas make
+/// some), tabs between fields, what is not a finite number, times that do not ascend, duplicate
+/// names, JSON in a CSV and the other way round.
 WeightTrack read_weights(const std::filesystem::path& path);
+
+/// Divides weights in percent by 100, and adds what was noticed to the track's notes: that, weights
+/// that nobody means, and times that nobody captures at. read_weights() has done it.
+void note_odd_weights(WeightTrack& track);
 
 /// Writes `time` and one column per name, the shortest digits that read back equal. Throws
 /// OutputError; std::invalid_argument where names, times and weights differ in number.

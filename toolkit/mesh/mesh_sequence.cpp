@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "toolkit/mesh/mesh_sequence.h"
+#include "toolkit/mesh/text.h"
 
 namespace mimetra {
 namespace {
@@ -21,6 +22,15 @@ void check_rest(const Positions& rest, int vertices) {
     throw std::invalid_argument("the rest pose has " + std::to_string(rest.rows()) +
                                 " vertices, expected " + std::to_string(vertices) +
                                 " as in the frames");
+  }
+}
+
+void check_times(const Eigen::VectorXd& times) {
+  for (Eigen::Index f = 1; f < times.size(); ++f) {
+    if (times[f] > times[f - 1]) continue;
+    throw std::invalid_argument("frame " + std::to_string(f) + " is at " + readable(times[f]) +
+                                " s, expected more than " + readable(times[f - 1]) +
+                                " s of the frame before");
   }
 }
 
@@ -50,6 +60,7 @@ MeshSequence::MeshSequence(std::shared_ptr<const Connectivity> connectivity,
     throw std::invalid_argument(std::to_string(this->frames()) + " times for " +
                                 std::to_string(count) + " frames");
   }
+  check_times(header_.times);
   header_.rest = rest ? *std::move(rest) : Positions(frame(0));
   check_rest(header_.rest, vertices());
 }

@@ -14,8 +14,8 @@ namespace mimetra {
 class MeshSequence : public FrameSource {
  public:
   MeshSequence() = default;
-  /// `frames` F x 3N with F >= 1; `times` F, in seconds, or empty where nobody knows them;
-  /// `rest` N x 3 where it is known. Throws std::invalid_argument where sizes disagree.
+  /// `frames` F x 3N with F >= 1; `times` F, seconds that rise, or empty where nobody knows them;
+  /// `rest` N x 3 where it is known. Throws std::invalid_argument where one of these is not so.
   MeshSequence(Connectivity connectivity, Frames frames, Eigen::VectorXd times = {},
                std::optional<Positions> rest = {});
   /// Shares a connectivity.

@@ -59,7 +59,7 @@ void set_fields(Mesh& mesh, const std::vector<Field>& fields);
 
 /// The property of that name on vertices (`v:...`) or faces (`f:...`), of type bool, int, unsigned,
 /// float, double, Vec3f or Vec3d: masks, regions, weights, displacements. Values of faces are those
-/// of their triangles. Throws std::invalid_argument where there is none, or of another type.
+/// of their triangles. Throws std::invalid_argument where there is none, or there are several.
 template <OpenMeshClass Mesh>
 Field field_from_openmesh(const Mesh& mesh, const std::string& name);
 
@@ -146,22 +146,26 @@ bool read_property(const Mesh& mesh, const std::string& name, Eigen::MatrixXd& v
   return true;
 }
 
+/// How many properties there are of these types; the numbers of one of them.
 template <typename Handle, typename... Types, OpenMeshClass Mesh>
-bool read_property_of(const Mesh& mesh, const std::string& name, Eigen::MatrixXd& values) {
-  return (read_property<Types, Handle>(mesh, name, values) || ...);
+int read_properties(const Mesh& mesh, const std::string& name, Eigen::MatrixXd& values) {
+  return (int{read_property<Types, Handle>(mesh, name, values)} + ...);
 }
 
 template <typename Handle, OpenMeshClass Mesh>
 Field read_field(const Mesh& mesh, const std::string& name) {
   Field field;
   field.name = name.substr(2);
-  field.integer = read_property_of<Handle, bool, int, unsigned>(mesh, name, field.values);
   using Vec3f = OpenMesh::Vec3f;
   using Vec3d = OpenMesh::Vec3d;
-  if (field.integer ||
-      read_property_of<Handle, float, double, Vec3f, Vec3d>(mesh, name, field.values)) {
-    return field;
+  const int integers = read_properties<Handle, bool, int, unsigned>(mesh, name, field.values);
+  const int others = read_properties<Handle, float, double, Vec3f, Vec3d>(mesh, name, field.values);
+  if (integers + others > 1) {
+    throw std::invalid_argument("the mesh has properties '" + name +
+                                "' of several types; remove all but the one that is meant");
   }
+  field.integer = integers == 1;
+  if (integers + others == 1) return field;
   throw std::invalid_argument("the mesh has no property '" + name +
                               "' of bool, int, unsigned, float, double, Vec3f or Vec3d");
 }
@@ -229,8 +233,8 @@ MeshSequence sequence_from_openmesh(const Mesh& mesh, const std::vector<std::str
   Frames frames(static_cast<Eigen::Index>(poses.size()), rest.positions.size());
   for (std::size_t f = 0; f < poses.size(); ++f) {
     Eigen::MatrixXd pose;
-    if (!openmesh_bridge::read_property_of<OpenMesh::VertexHandle, typename Mesh::Point,
-                                           OpenMesh::Vec3d>(mesh, poses[f], pose)) {
+    if (openmesh_bridge::read_properties<OpenMesh::VertexHandle, typename Mesh::Point,
+                                         OpenMesh::Vec3d>(mesh, poses[f], pose) == 0) {
       throw std::invalid_argument("the mesh has no points of vertices '" + poses[f] + "'");
     }
     frames.row(static_cast<Eigen::Index>(f)) = pose.reshaped<Eigen::RowMajor>();

@@ -65,6 +65,16 @@ std::optional<Number> parse_number(std::string_view text) {
   return number;
 }
 
+/// A number, or a fraction as in 24000/1001.
+std::optional<double> parse_ratio(std::string_view text) {
+  const auto slash = text.find('/');
+  const auto number = parse_number<double>(text.substr(0, slash));
+  if (!number || slash == std::string_view::npos) return number;
+  const auto divisor = parse_number<double>(text.substr(slash + 1));
+  if (!divisor) return {};
+  return *number / *divisor;
+}
+
 std::string expected_text(const Parameter& parameter) {
   const std::string range = range_text(parameter);
   const std::string suffix = range.empty() ? "" : " " + range;
@@ -194,7 +204,7 @@ ParameterValue parse_value(const Parameter& parameter, const std::string& text) 
       value = parse_list(parameter, text);
       break;
     case ParameterKind::number: {
-      const auto number = parse_number<double>(text);
+      const auto number = parse_ratio(text);
       if (!number) refuse(parameter, expected_text(parameter), text);
       value = *number;
       break;

@@ -6,6 +6,7 @@
 #include "toolkit/io/correspondence_file.h"
 #include "toolkit/io/frame_files.h"
 #include "toolkit/io/retargeting_file.h"
+#include "toolkit/io/weight_file.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/stopwatch.h"
 #include "toolkit/mesh/text.h"
@@ -76,11 +77,18 @@ void check_request(const Invocation& invocation) {
 /// The weights and their times of those frames that are asked for.
 WeightTrack chosen_track(const Invocation& invocation) {
   const SequenceSource source = frame_parameters().read(invocation.parameters);
-  const std::string& name = invocation.input("weights").name;
-  WeightTrack track = track_of(invocation.get<Table>("weights"));
+  const NamedData& weights = invocation.input("weights");
+  WeightTrack track = track_of(std::get<Table>(weights.data));
+  note_odd_weights(track);
+  for (const std::string& note : track.notes) {
+    const std::string text = weights.name + ": " + note;
+    // What reading said is not said again.
+    const std::vector<std::string>& said = weights.origin.notes;
+    if (std::ranges::find(said, text) == said.end()) invocation.warn(text);
+  }
   const auto frames = static_cast<int>(track.weights.rows());
   if (track.times.size() > 0) {
-    check_rate(name, track.times, source);
+    check_rate(weights.name, track.times, source);
   } else if (source.fps) {
     track.times = Eigen::VectorXd::LinSpaced(frames, 0, frames - 1) / *source.fps;
   }

@@ -10,7 +10,8 @@ BoundParameters<SequenceSource> choice_of_frames() {
 }
 
 BoundParameters<SequenceSource> frame_parameters() {
-  return choice_of_frames().add("fps", SequenceSource::kFps, "frame rate of formats without times");
+  return choice_of_frames().add("fps", SequenceSource::kFps,
+                                "frame rate of formats without times, as 30 or 24000/1001");
 }
 
 BoundParameters<SequenceSource> sequence_parameters() {

@@ -361,10 +361,17 @@ def _floats(array, name):
     return array if array.dtype == np.float32 else array.astype(np.float64, copy=False)
 
 
+def _unmasked(values):
+    """An array, with NaN for what a masked one hides."""
+    if np.ma.is_masked(values):
+        values = values.astype(np.float64).filled(np.nan)
+    return np.asarray(values)
+
+
 def _taken(values, type, name):
     """An array that the library takes, and the number of its type."""
     try:
-        array = np.asarray(values)
+        array = _unmasked(values)
     except ValueError as error:
         raise UsageError(f"array '{name}': {error}") from None
     if not 1 <= array.ndim <= 4:
@@ -379,7 +386,7 @@ def _described(name, values, type):
     shown = c.Array(name=name.encode(), type=type)
     if isinstance(values, _Field):
         shown.location = values.location
-        values = np.asarray(values.values)
+        values = _unmasked(values.values)
         type = c.I32 if values.dtype.kind in "biu" else c.F64
         values = values.astype(np.int32) if values.dtype == bool else values
     if type == c.STRING:
