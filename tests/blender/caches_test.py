@@ -2,7 +2,7 @@
 
 import bpy
 import numpy as np
-from host import FRAMES, LAST, HostTest, command, mimetra, run_tests
+from host import FRAMES, LAST, HostTest, command, mimetra, run_tests, sources
 
 
 class Caches(HostTest):
@@ -116,6 +116,27 @@ class Caches(HostTest):
         self.assertEqual(len(set(kept)), len(kept))
         for frame in FRAMES[:-1]:
             self.assert_close(self.shown(simplified, frame), self.shown(self.source, frame)[kept])
+
+    def test_a_converted_source_has_the_regions_of_the_given_one(self):
+        given = sources.rest_of(self.source.data)
+        bpy.ops.mimetra.regions(k=6)
+        regions = [group.name for group in self.source.vertex_groups]
+        masks = sources.regions(self.source, "mimetra region")["masks"]
+        # Twice a number has its digits: nothing is rounded otherwise.
+        bpy.ops.mimetra.convert(scale=2, up="y-to-z")
+        made = bpy.data.objects["source convert"]
+        self.assert_close(sources.rest_of(made.data), 2 * given[:, [0, 2, 1]] * [1, -1, 1])
+        made.vertex_groups.clear()
+        self.activate(made)
+        bpy.ops.mimetra.regions(k=6)
+        self.assertEqual([group.name for group in made.vertex_groups], regions)
+        np.testing.assert_array_equal(sources.regions(made, "mimetra region")["masks"], masks)
+
+    def test_a_subdivided_source_has_the_neutral_of_the_given_one(self):
+        given = sources.rest_of(self.source.data)
+        bpy.ops.mimetra.subdivide(scheme="midpoint", frame_start=60)
+        made = sources.rest_of(bpy.data.objects["source subdivide"].data)
+        self.assert_close(made[:len(given)], given)
 
     def test_a_source_moves_by_any_modifier_that_keeps_its_vertices(self):
         bend = self.source.modifiers.new("bend", "SIMPLE_DEFORM")

@@ -188,7 +188,7 @@ def _new_object(context, name, vertices, faces, beside=None):
     return made
 
 
-def _copied_object(subject, name):
+def _copied_object(subject, name, rest):
     """A copy of an object that moves by nothing but what it is given, beside it."""
     made = subject.copy()
     made.name = name
@@ -196,9 +196,8 @@ def _copied_object(subject, name):
     made.data.name = name
     made.modifiers.clear()
     if made.data.shape_keys:
-        rest = sources.rest_of(subject.data)
         made.shape_key_clear()
-        made.data.vertices.foreach_set("co", rest.ravel())
+    made.data.vertices.foreach_set("co", rest.astype(np.float32).ravel())
     for collection in subject.users_collection:
         collection.objects.link(made)
     made.delta_location.x += 1.2 * subject.dimensions.x
@@ -217,10 +216,11 @@ def show_sequence(context, value, subject, frames, name):
     its polygons."""
     frames = frames.of(value["times"])
     path = write_mesh_cache(value, frames, name)
+    rest = value["rest"] if "rest" in value else value["positions"][0]
     if subject and has_faces_of(subject, value):
-        made = _copied_object(subject, name)
+        made = _copied_object(subject, name, rest)
     else:
-        made = _new_object(context, name, value["positions"][0], value.faces, subject)
+        made = _new_object(context, name, rest, value.faces, subject)
     play_mesh_cache(made, path, frames)
     show_fields(value, made)
     return made
