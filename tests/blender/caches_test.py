@@ -156,6 +156,61 @@ class Caches(HostTest):
         self.assertIsNone(copy.data.shape_keys)
         self.assertIsNotNone(self.source.data.shape_keys)
 
+    def bound(self, before):
+        """A Surface Deform modifier of the source behind one of type `before`, to which it is
+        bound: it takes all vertices up by 10 until frame 11."""
+        cage = self.mesh_of("cage", sources.rest_of(self.source.data),
+                            sources.faces_of(self.source.data))
+        self.source.modifiers.new("before", before)
+        modifier = self.source.modifiers.new("follow", "SURFACE_DEFORM")
+        modifier.target = cage
+        self.bind(modifier)
+        cage.shape_key_add(name="Basis", from_mix=False)
+        up = cage.shape_key_add(name="up", from_mix=False)
+        up.data.foreach_set("co", (sources.rest_of(cage.data) + np.float32([0, 0, 10])).ravel())
+        for frame, up.value in ((1, 0), (11, 1)):
+            up.keyframe_insert("value", frame=frame)
+        return modifier
+
+    def bind(self, modifier):
+        bpy.context.scene.frame_set(1)
+        with bpy.context.temp_override(object=self.source, active_object=self.source):
+            bpy.ops.object.surfacedeform_bind(modifier=modifier.name)
+        self.assertTrue(modifier.is_bound)
+
+    def assert_converted(self, rise):
+        """A conversion of the source has its motion and rises by so much, without a warning."""
+        with self.assertNoLogs("mimetra", "WARNING"):
+            bpy.ops.mimetra.convert(frame_end=11)
+        copy = bpy.data.objects["source convert"]
+        self.source.modifiers["before"].show_viewport = False
+        poses = [self.shown(self.source, frame) for frame in (1, 11)]
+        self.source.modifiers["before"].show_viewport = True
+        self.assertAlmostEqual(np.median(poses[1] - poses[0], axis=0)[2], rise, delta=0.1)
+        for frame, pose in zip((1, 11), poses):
+            self.assert_close(self.shown(copy, frame), pose)
+        bpy.data.objects.remove(copy)
+
+    def test_a_modifier_that_is_bound_to_what_another_makes_is_named(self):
+        modifier = self.bound("SUBSURF")
+        with self.assertLogs("mimetra", "WARNING") as logs:
+            bpy.ops.mimetra.convert(frame_end=2)
+        self.assertRegex(logs.output[0], "source: the motion of the modifier 'follow' is missing:"
+                                         ".* 'before' makes.*; move 'follow' before it")
+        bpy.data.objects.remove(bpy.data.objects["source convert"])
+        modifier.show_viewport = False
+        self.assert_converted(0)
+        modifier.show_viewport = True
+        with bpy.context.temp_override(object=self.source, active_object=self.source):
+            bpy.ops.object.surfacedeform_bind(modifier="follow")  # unbinds
+            bpy.ops.object.modifier_move_to_index(modifier="follow", index=0)
+        self.bind(modifier)
+        self.assert_converted(10)
+
+    def test_a_modifier_that_is_bound_behind_one_that_cuts_faces_moves(self):
+        self.bound("TRIANGULATE")
+        self.assert_converted(10)
+
 
 if __name__ == "__main__":
     run_tests()
