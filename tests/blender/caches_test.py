@@ -3,6 +3,7 @@
 import bpy
 import numpy as np
 from host import FRAMES, LAST, HostTest, command, mimetra, run_tests, sources
+from mimetra_blender import results
 
 
 class Caches(HostTest):
@@ -137,6 +138,40 @@ class Caches(HostTest):
         bpy.ops.mimetra.subdivide(scheme="midpoint", frame_start=60)
         made = sources.rest_of(bpy.data.objects["source subdivide"].data)
         self.assert_close(made[:len(given)], given)
+
+    def layers(self, subject):
+        """Names of UV maps, materials, vertex groups and attributes."""
+        mesh = subject.data
+        return (mesh.uv_layers.keys(), mesh.materials.keys(), subject.vertex_groups.keys(),
+                [each.name for each in mesh.attributes
+                 if not each.is_internal and each.name != "material_index"])
+
+    def test_a_mesh_of_other_faces_has_no_layers_which_are_named(self):
+        mesh = self.source.data
+        mesh.uv_layers.new(name="skin")
+        for name in ("head", "teeth"):
+            mesh.materials.append(bpy.data.materials.new(name))
+        mesh.polygons.foreach_set("material_index", [1] * len(mesh.polygons))
+        self.source.vertex_groups.new(name="mouth")
+        mesh.attributes.new("dye", "FLOAT_COLOR", "POINT")
+        warning = ("source {0}: has other faces than source, of which are left out: UV maps skin;"
+                   " materials head, teeth; vertex groups mouth; attributes dye; bring them over")
+        value, frames = self.made_of("convert", scale=2)
+        made = results.show_sequence(bpy.context, value, self.source, frames, "source convert")
+        self.assertEqual((self.layers(made), frames.notes), (self.layers(self.source), []))
+        for operation, options in (("subdivide", {}), ("simplify", {"share": 0.5})):
+            value, frames = self.made_of(operation, **options)
+            name = f"source {operation}"
+            made = results.show_sequence(bpy.context, value, self.source, frames, name)
+            self.assertEqual(self.layers(made), ([], [], [], []))
+            self.assertEqual(len(frames.notes), 1)
+            self.assertTrue(frames.notes[0].startswith(warning.format(operation)))
+
+    def made_of(self, operation, **options):
+        """What an operation makes of two poses of the source's performance, and its frames."""
+        take = mimetra.Sequence.load(self.take, frames="0:2")
+        frames = results.Frames(bpy.context.scene, [1, 2], "PC2", str(self.path / "made"))
+        return getattr(mimetra, operation)(take, **options).out, frames
 
     def test_a_source_moves_by_any_modifier_that_keeps_its_vertices(self):
         bend = self.source.modifiers.new("bend", "SIMPLE_DEFORM")

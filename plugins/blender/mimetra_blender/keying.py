@@ -51,8 +51,8 @@ def set_keys(subject, weights, frames):
         key.slider_min = min(key.slider_min, values.min())
         key.slider_max = max(key.slider_max, values.max())
         if np.abs(values).max() > _LARGEST_KEY:
-            frames.notes.append(f"The shape key '{name}' reaches {np.abs(values).max():.3g}; Blender"
-                                f" keeps values from -{_LARGEST_KEY} to {_LARGEST_KEY}")
+            frames.notes.append(f"The shape key '{name}' reaches {np.abs(values).max():.3g};"
+                                f" Blender keeps values from -{_LARGEST_KEY} to {_LARGEST_KEY}")
         path = _path_of(name)
         curves[name] = action.fcurves.find(path) or action.fcurves.new(path)
         _set_points(curves[name], frames.at(len(values)), values)
@@ -84,9 +84,9 @@ def _why_unseen(subject, curves):
     altered = [name for name, curve in curves.items()
                if curve.mute or curve.group and curve.group.mute or len(curve.modifiers)]
     if altered:
-        reasons.append(f"{subject.name}: the curves of the shape keys {', '.join(altered)} are muted"
-                       " or have modifiers, so that other values are shown than are keyed; unmute"
-                       " them and remove their modifiers")
+        reasons.append(f"{subject.name}: the curves of the shape keys {', '.join(altered)} are"
+                       " muted or have modifiers, so that other values are shown than are keyed;"
+                       " unmute them and remove their modifiers")
     animation = subject.data.shape_keys.animation_data
     if not animation.use_nla:
         return reasons

@@ -15,6 +15,7 @@ from . import colors, keying, mimetra, sources
 _MODIFIER = "mimetra"
 _GROUP = "mimetra region"
 _LONGEST_NAME = 63  # bytes
+_OF_ANY_MESH = {"material_index", "position"}  # attributes
 
 
 class Frames:
@@ -141,6 +142,18 @@ def _copied_object(subject, name, rest):
     return made
 
 
+def _layers_of(subject):
+    """The names of what an object has on its vertices, corners and faces."""
+    mesh = subject.data
+    others = {*_OF_ANY_MESH, *mesh.uv_layers.keys()}
+    kinds = {"UV maps": mesh.uv_layers.keys(),
+             "materials": [slot.name for slot in subject.material_slots if slot.material],
+             "vertex groups": subject.vertex_groups.keys(),
+             "attributes": [each.name for each in mesh.attributes
+                            if not each.is_internal and each.name not in others]}
+    return "; ".join(f"{kind} {', '.join(names)}" for kind, names in kinds.items() if names)
+
+
 def has_faces_of(subject, value):
     """True where a value has an object's polygons."""
     faces = sources.faces_of(subject.data)
@@ -158,6 +171,11 @@ def show_sequence(context, value, subject, frames, name):
         made = _copied_object(subject, name, rest)
     else:
         made = _new_object(context, name, rest, value.faces, subject)
+        layers = _layers_of(subject) if subject else ""
+        if layers:
+            frames.notes.append(f"{made.name}: has other faces than {subject.name}, of which are"
+                                f" left out: {layers}; bring them over with Object > Link/Transfer"
+                                " Data")
     play_mesh_cache(made, path, frames)
     show_fields(value, made)
     return made
