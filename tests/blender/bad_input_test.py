@@ -81,6 +81,18 @@ class BadInput(HostTest):
         key.driver_remove("value")
         self.target.data.shape_keys.animation_data_clear()
 
+    def test_shape_keys_whose_nla_strip_is_edited(self):
+        keys = self.target.data.shape_keys
+        animation = keys.animation_data_create()
+        track = animation.nla_tracks.new()
+        strip = track.strips.new("edited", 1, self.source.data.shape_keys.animation_data.action)
+        track.select = strip.select = True
+        animation.use_tweak_mode = True
+        self.assert_fails("target: an NLA strip of its shape keys is being edited; leave Tweak",
+                          bpy.ops.mimetra.transfer, target="target", k=3)
+        animation.use_tweak_mode = False
+        keys.animation_data_clear()
+
     def test_a_file_that_exists(self):
         path = self.path / "kept.h5"
         path.write_bytes(b"kept")

@@ -2,7 +2,8 @@
 
 import bpy
 import numpy as np
-from host import FRAMES, LAST, HostTest, command, mimetra, run_tests
+from host import FRAMES, LAST, HostTest, command, mimetra, run_tests, sources
+from mimetra_blender import results
 
 
 class Caches(HostTest):
@@ -117,6 +118,61 @@ class Caches(HostTest):
         for frame in FRAMES[:-1]:
             self.assert_close(self.shown(simplified, frame), self.shown(self.source, frame)[kept])
 
+    def test_a_converted_source_has_the_regions_of_the_given_one(self):
+        given = sources.rest_of(self.source.data)
+        bpy.ops.mimetra.regions(k=6)
+        regions = [group.name for group in self.source.vertex_groups]
+        masks = sources.regions(self.source, "mimetra region")["masks"]
+        # Twice a number has its digits: nothing is rounded otherwise.
+        bpy.ops.mimetra.convert(scale=2, up="y-to-z")
+        made = bpy.data.objects["source convert"]
+        self.assert_close(sources.rest_of(made.data), 2 * given[:, [0, 2, 1]] * [1, -1, 1])
+        made.vertex_groups.clear()
+        self.activate(made)
+        bpy.ops.mimetra.regions(k=6)
+        self.assertEqual([group.name for group in made.vertex_groups], regions)
+        np.testing.assert_array_equal(sources.regions(made, "mimetra region")["masks"], masks)
+
+    def test_a_subdivided_source_has_the_neutral_of_the_given_one(self):
+        given = sources.rest_of(self.source.data)
+        bpy.ops.mimetra.subdivide(scheme="midpoint", frame_start=60)
+        made = sources.rest_of(bpy.data.objects["source subdivide"].data)
+        self.assert_close(made[:len(given)], given)
+
+    def layers(self, subject):
+        """Names of UV maps, materials, vertex groups and attributes."""
+        mesh = subject.data
+        return (mesh.uv_layers.keys(), mesh.materials.keys(), subject.vertex_groups.keys(),
+                [each.name for each in mesh.attributes
+                 if not each.is_internal and each.name != "material_index"])
+
+    def test_a_mesh_of_other_faces_has_no_layers_which_are_named(self):
+        mesh = self.source.data
+        mesh.uv_layers.new(name="skin")
+        for name in ("head", "teeth"):
+            mesh.materials.append(bpy.data.materials.new(name))
+        mesh.polygons.foreach_set("material_index", [1] * len(mesh.polygons))
+        self.source.vertex_groups.new(name="mouth")
+        mesh.attributes.new("dye", "FLOAT_COLOR", "POINT")
+        warning = ("source {0}: has other faces than source, of which are left out: UV maps skin;"
+                   " materials head, teeth; vertex groups mouth; attributes dye; bring them over")
+        value, frames = self.made_of("convert", scale=2)
+        made = results.show_sequence(bpy.context, value, self.source, frames, "source convert")
+        self.assertEqual((self.layers(made), frames.notes), (self.layers(self.source), []))
+        for operation, options in (("subdivide", {}), ("simplify", {"share": 0.5})):
+            value, frames = self.made_of(operation, **options)
+            name = f"source {operation}"
+            made = results.show_sequence(bpy.context, value, self.source, frames, name)
+            self.assertEqual(self.layers(made), ([], [], [], []))
+            self.assertEqual(len(frames.notes), 1)
+            self.assertTrue(frames.notes[0].startswith(warning.format(operation)))
+
+    def made_of(self, operation, **options):
+        """What an operation makes of two poses of the source's performance, and its frames."""
+        take = mimetra.Sequence.load(self.take, frames="0:2")
+        frames = results.Frames(bpy.context.scene, [1, 2], "PC2", str(self.path / "made"))
+        return getattr(mimetra, operation)(take, **options).out, frames
+
     def test_a_source_moves_by_any_modifier_that_keeps_its_vertices(self):
         bend = self.source.modifiers.new("bend", "SIMPLE_DEFORM")
         bend.deform_method = "TWIST"
@@ -134,6 +190,61 @@ class Caches(HostTest):
             self.assert_close(self.shown(copy, frame), expected, f"frame {frame}")
         self.assertIsNone(copy.data.shape_keys)
         self.assertIsNotNone(self.source.data.shape_keys)
+
+    def bound(self, before):
+        """A Surface Deform modifier of the source behind one of type `before`, to which it is
+        bound: it takes all vertices up by 10 until frame 11."""
+        cage = self.mesh_of("cage", sources.rest_of(self.source.data),
+                            sources.faces_of(self.source.data))
+        self.source.modifiers.new("before", before)
+        modifier = self.source.modifiers.new("follow", "SURFACE_DEFORM")
+        modifier.target = cage
+        self.bind(modifier)
+        cage.shape_key_add(name="Basis", from_mix=False)
+        up = cage.shape_key_add(name="up", from_mix=False)
+        up.data.foreach_set("co", (sources.rest_of(cage.data) + np.float32([0, 0, 10])).ravel())
+        for frame, up.value in ((1, 0), (11, 1)):
+            up.keyframe_insert("value", frame=frame)
+        return modifier
+
+    def bind(self, modifier):
+        bpy.context.scene.frame_set(1)
+        with bpy.context.temp_override(object=self.source, active_object=self.source):
+            bpy.ops.object.surfacedeform_bind(modifier=modifier.name)
+        self.assertTrue(modifier.is_bound)
+
+    def assert_converted(self, rise):
+        """A conversion of the source has its motion and rises by so much, without a warning."""
+        with self.assertNoLogs("mimetra", "WARNING"):
+            bpy.ops.mimetra.convert(frame_end=11)
+        copy = bpy.data.objects["source convert"]
+        self.source.modifiers["before"].show_viewport = False
+        poses = [self.shown(self.source, frame) for frame in (1, 11)]
+        self.source.modifiers["before"].show_viewport = True
+        self.assertAlmostEqual(np.median(poses[1] - poses[0], axis=0)[2], rise, delta=0.1)
+        for frame, pose in zip((1, 11), poses):
+            self.assert_close(self.shown(copy, frame), pose)
+        bpy.data.objects.remove(copy)
+
+    def test_a_modifier_that_is_bound_to_what_another_makes_is_named(self):
+        modifier = self.bound("SUBSURF")
+        with self.assertLogs("mimetra", "WARNING") as logs:
+            bpy.ops.mimetra.convert(frame_end=2)
+        self.assertRegex(logs.output[0], "source: the motion of the modifier 'follow' is missing:"
+                                         ".* 'before' makes.*; move 'follow' before it")
+        bpy.data.objects.remove(bpy.data.objects["source convert"])
+        modifier.show_viewport = False
+        self.assert_converted(0)
+        modifier.show_viewport = True
+        with bpy.context.temp_override(object=self.source, active_object=self.source):
+            bpy.ops.object.surfacedeform_bind(modifier="follow")  # unbinds
+            bpy.ops.object.modifier_move_to_index(modifier="follow", index=0)
+        self.bind(modifier)
+        self.assert_converted(10)
+
+    def test_a_modifier_that_is_bound_behind_one_that_cuts_faces_moves(self):
+        self.bound("TRIANGULATE")
+        self.assert_converted(10)
 
 
 if __name__ == "__main__":

@@ -7,7 +7,7 @@ import re
 import bpy
 import numpy as np
 from host import HostTest, command, run_tests
-from mimetra_blender import mimetra, results
+from mimetra_blender import keying, mimetra, results
 
 
 class Fields(HostTest):
@@ -162,10 +162,9 @@ class Fields(HostTest):
 
     def test_weights_beyond_what_blender_keeps_are_told_of(self):
         frames = results.Frames(bpy.context.scene, [1, 2], "PC2", "//")
-        keys = self.target.data.shape_keys
-        results.set_keys(keys, {"jawOpen": np.array([0, 10.0])}, frames)
+        keying.set_keys(self.target, {"jawOpen": np.array([0, 10.0])}, frames)
         self.assertEqual(frames.notes, [])
-        results.set_keys(keys, {"jawOpen": np.array([0, -12.0])}, frames)
+        keying.set_keys(self.target, {"jawOpen": np.array([0, -12.0])}, frames)
         self.assertIn("'jawOpen' reaches 12;", frames.notes[0])
 
     def test_a_mesh_cache_keeps_its_times(self):

@@ -5,6 +5,7 @@ import json
 import bpy
 import numpy as np
 from host import LAST, HostTest, column, command, mimetra, properties, run_tests, sources
+from mimetra_blender import keying, results
 
 
 class Transfer(HostTest):
@@ -146,6 +147,110 @@ class Transfer(HostTest):
         bpy.ops.mimetra.transfer(target="target", k=5)
         bpy.ops.mimetra.transfer(target="target", k=30)
         self.assert_performs(*self.expected("-k", 30))
+
+    def curve_of(self, name):
+        """The curve that moves a shape key of the target, where there is one."""
+        curves = self.target.data.shape_keys.animation_data.action.fcurves
+        return curves.find(f'key_blocks["{name}"].value')
+
+    def test_keys_outside_of_the_frames_stay(self):
+        key = self.target.data.shape_keys.key_blocks["jawOpen"]
+        for frame in (30, 200):
+            key.value = 0.75
+            key.keyframe_insert("value", frame=frame)
+        for first, last in ((1, 60), (61, LAST)):
+            bpy.ops.mimetra.transfer(target="target", full=True, frame_start=first, frame_end=last)
+        self.assert_performs(*self.expected("--full"))
+        by_hand = self.curve_of("jawOpen").keyframe_points[-1]
+        self.assertEqual((*by_hand.co, by_hand.interpolation), (200, 0.75, "BEZIER"))
+
+    def test_keys_within_the_frames_go(self):
+        bpy.ops.mimetra.transfer(target="target", full=True)
+        bpy.ops.mimetra.transfer(target="target", full=True, frame_start=11, frame_end=111,
+                                 frame_step=50)
+        for curve in self.target.data.shape_keys.animation_data.action.fcurves:
+            self.assertEqual([point.co.x for point in curve.keyframe_points],
+                             [*range(1, 11), 11, 61, 111, *range(112, LAST + 1)])
+
+    def test_keys_and_caches_play_at_the_scenes_frames_where_time_is_stretched(self):
+        twin = self.object_of("twin", f"{self.head}@identity001=1")
+        render = bpy.context.scene.render
+        for render.frame_map_old, render.frame_map_new in ((100, 200), (150, 100)):
+            bpy.ops.mimetra.transfer(target="twin", full=True)
+            bpy.ops.mimetra.convert()
+            copy = bpy.context.scene.objects["source convert"]
+            for frame in (1, 34, 60, 79, LAST):
+                expected = self.shown(self.source, frame)
+                self.assert_close(self.shown(twin, frame), expected, f"keys, frame {frame}")
+                self.assert_close(self.shown(copy, frame), expected, f"cache, frame {frame}")
+            bpy.data.objects.remove(copy)
+            twin.data.shape_keys.animation_data_clear()
+
+    def track(self, value):
+        """An NLA track of the target's shape keys that holds jawOpen at a value."""
+        keys = self.target.data.shape_keys
+        action = bpy.data.actions.new("below")
+        action.fcurves.new('key_blocks["jawOpen"].value').keyframe_points.insert(1, value)
+        track = keys.animation_data_create().nla_tracks.new()
+        track.name = "capture"
+        track.strips.new("below", 1, action)
+        return track
+
+    def test_what_hides_the_keys_is_named(self):
+        def muted_curve(animation, track):
+            self.curve_of("jawOpen").mute = True
+
+        def muted_group(animation, track):
+            self.curve_of("jawOpen").group = animation.action.groups.new("face")
+            animation.action.groups["face"].mute = True
+
+        def modifier(animation, track):
+            self.curve_of("jawOpen").modifiers.new("NOISE").strength = 3
+
+        def solo(animation, track):
+            track.is_solo = True
+
+        def added(animation, track):
+            animation.action_blend_type = "ADD"
+
+        def added_to_nothing(animation, track):
+            track.mute = True
+            animation.action_blend_type = "ADD"
+
+        def added_without_tracks(animation, track):
+            animation.use_nla = False
+            animation.action_blend_type = "ADD"
+
+        def half(animation, track):
+            animation.action_influence = 0.5
+
+        cases = [(lambda *_: None, None), (added_to_nothing, None), (added_without_tracks, None),
+                 (solo, "target: the NLA track 'capture' .* plays alone"),
+                 (added, "target: .* blended with the NLA track 'capture' \\(Add, influence 1\\)"),
+                 (half, "target: .* 'capture' \\(Replace, influence 0.5\\)"),
+                 (muted_curve, "target: the curves of the shape keys jawOpen are muted"),
+                 (muted_group, "target: the curves of the shape keys jawOpen are muted"),
+                 (modifier, "target: the curves of the shape keys jawOpen .* modifiers")]
+        key = self.target.data.shape_keys.key_blocks["jawOpen"]
+        values = {"jawOpen": np.array([0.25, 0.5])}
+        for change, expected in cases:
+            with self.subTest(expected or change.__name__):
+                track = self.track(0.4)
+                frames = results.Frames(bpy.context.scene, [10, 11], "PC2", "//")
+                keying.set_keys(self.target, values, frames)
+                self.assertEqual(frames.notes, [])
+                change(self.target.data.shape_keys.animation_data, track)
+                keying.set_keys(self.target, values, frames)
+                bpy.context.scene.frame_set(11)
+                bpy.context.view_layer.update()
+                if expected:
+                    self.assertNotAlmostEqual(key.value, 0.5, places=3)
+                    self.assertEqual(len(frames.notes), 1)
+                    self.assertRegex(frames.notes[0], expected)
+                else:
+                    self.assertAlmostEqual(key.value, 0.5, places=5)
+                    self.assertEqual(frames.notes, [])
+                self.target.data.shape_keys.animation_data_clear()
 
     def test_a_shared_action_stays_as_it_is(self):
         keys = self.target.data.shape_keys

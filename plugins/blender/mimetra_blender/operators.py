@@ -8,7 +8,7 @@ import time
 
 import bpy
 
-from . import classes, mimetra, properties, results, sources
+from . import classes, keying, mimetra, properties, results, sources
 
 # Shares of a run: reading poses, computing, showing.
 _READING, _COMPUTING = 0.3, 0.95
@@ -183,7 +183,7 @@ class _Run:
         if self.manifest:
             options["manifest"] = _free(bpy.path.abspath(self.manifest), "the manifest")
         if keyed and any(port.kind is mimetra.Table for port in outputs):
-            results.check_not_driven(keyed)
+            keying.check_can_be_keyed(keyed)
         return options
 
     def _keyed(self, objects):
@@ -239,9 +239,9 @@ class _Run:
         frames = frames.of(sequence["times"])
         model = next(value for value in values.values() if isinstance(value, mimetra.Model))
         for port, value in made:
-            weights = port.kind is mimetra.Table and results.keyed_weights(target, value)
-            if weights and results.holds(model, weights, sequence["positions"]):
-                results.set_keys(target.data.shape_keys, weights, frames)
+            weights = port.kind is mimetra.Table and keying.keyed_weights(target, value)
+            if weights and keying.holds(model, weights, sequence["positions"]):
+                keying.set_keys(target, weights, frames)
                 results.remove_mesh_cache(target)
                 return True
         if model.keys() >= {"expressions"} and any(

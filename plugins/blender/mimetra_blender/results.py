@@ -10,21 +10,24 @@ import tempfile
 import bpy
 import numpy as np
 
-from . import colors, mimetra, sources
+from . import colors, keying, mimetra, sources
 
 _MODIFIER = "mimetra"
 _GROUP = "mimetra region"
-_LARGEST_KEY = 10  # of the sliders of shape keys
 _LONGEST_NAME = 63  # bytes
+_OF_ANY_MESH = {"material_index", "position"}  # attributes
 
 
 class Frames:
-    """Where results lie in time, and where their caches go."""
+    """Where results lie in time, and where their caches go. Counted are the frames of animation,
+    which Time Stretching makes others than the scene's."""
 
     def __init__(self, scene, frames, cache_format, cache_folder):
-        self.rate = scene.render.fps / scene.render.fps_base
-        self.start = frames[0]
-        self.step = frames[1] - frames[0] if len(frames) > 1 else 1
+        render = scene.render
+        stretch = render.frame_map_old / render.frame_map_new
+        self.rate = stretch * render.fps / render.fps_base
+        self.start = stretch * frames[0]
+        self.step = stretch * (frames[1] - frames[0] if len(frames) > 1 else 1)
         self.offsets = None
         self.cache_format = cache_format
         self.folder = cache_folder
@@ -41,7 +44,7 @@ class Frames:
         return made
 
     def at(self, count):
-        """The scene's frames of so many poses."""
+        """The frames of so many poses."""
         return self.start + (self.step * np.arange(count) if self.offsets is None
                              else self.offsets)
 
@@ -107,71 +110,6 @@ def remove_mesh_cache(subject):
         subject.modifiers.remove(modifier)
 
 
-def _own_action(keys):
-    """An action of these shape keys alone."""
-    animation = keys.animation_data_create()
-    if animation.action is None:
-        animation.action = bpy.data.actions.new(keys.name)
-    elif animation.action.users > 1:
-        animation.action = animation.action.copy()
-    return animation.action
-
-
-def _path_of(key):
-    """Where the value of a shape key is animated."""
-    return f'key_blocks["{bpy.utils.escape_identifier(key)}"].value'
-
-
-def check_not_driven(subject):
-    """Throws Mismatch where a driver holds a shape key that would be keyed."""
-    animation = subject.data.shape_keys.animation_data
-    driven = {curve.data_path for curve in animation.drivers} if animation else set()
-    for key in sources.expression_keys(subject):
-        if _path_of(key.name) in driven:
-            raise mimetra.Mismatch(f"{subject.name}: the shape key '{key.name}' is driven; remove"
-                                   " its driver, mute it, or transfer with the space 'vertex'")
-
-
-def set_keys(keys, weights, frames):
-    """Keyed values of shape keys, {name: F}; other keys and curves stay."""
-    paths = {name: _path_of(name) for name in weights}
-    action = _own_action(keys)
-    for name, values in weights.items():
-        # Blender keeps values within the range of their slider.
-        key = keys.key_blocks[name]
-        key.slider_min = min(key.slider_min, values.min())
-        key.slider_max = max(key.slider_max, values.max())
-        if np.abs(values).max() > _LARGEST_KEY:
-            frames.notes.append(f"The shape key '{name}' reaches {np.abs(values).max():.3g}; Blender"
-                                f" keeps values from -{_LARGEST_KEY} to {_LARGEST_KEY}")
-        old = action.fcurves.find(paths[name])
-        if old:
-            action.fcurves.remove(old)
-        curve = action.fcurves.new(paths[name])
-        curve.keyframe_points.add(len(values))
-        points = np.column_stack([frames.at(len(values)), values]).astype(np.float32)
-        curve.keyframe_points.foreach_set("co", points.ravel())
-        for point in curve.keyframe_points:
-            point.interpolation = "LINEAR"
-        curve.update()
-
-
-def keyed_weights(subject, table):
-    """The columns of a table that are an object's shape keys, {name: F}; all must be known."""
-    names = {key.name for key in sources.expression_keys(subject)}
-    columns = {name: table[name] for name in table if name not in ("time", "frame")}
-    return columns if columns and set(columns) <= names else None
-
-
-def holds(model, weights, positions):
-    """True where shape keys with these weights are the poses: a head's motion is none of theirs."""
-    names = model["expression_names"]
-    beta = np.column_stack([weights.get(name, np.zeros(len(positions))) for name in names])
-    poses = model["neutral"] + np.tensordot(beta, model["expressions"], 1)
-    extent = np.ptp(model["neutral"], axis=0).max()
-    return np.abs(poses - positions).max() <= 1e-5 * extent
-
-
 def _new_object(context, name, vertices, faces, beside=None):
     """An object of a new mesh: upright, since files have y up, or beside another."""
     mesh = bpy.data.meshes.new(name)
@@ -188,7 +126,7 @@ def _new_object(context, name, vertices, faces, beside=None):
     return made
 
 
-def _copied_object(subject, name):
+def _copied_object(subject, name, rest):
     """A copy of an object that moves by nothing but what it is given, beside it."""
     made = subject.copy()
     made.name = name
@@ -196,13 +134,24 @@ def _copied_object(subject, name):
     made.data.name = name
     made.modifiers.clear()
     if made.data.shape_keys:
-        rest = sources.rest_of(subject.data)
         made.shape_key_clear()
-        made.data.vertices.foreach_set("co", rest.ravel())
+    made.data.vertices.foreach_set("co", rest.astype(np.float32).ravel())
     for collection in subject.users_collection:
         collection.objects.link(made)
     made.delta_location.x += 1.2 * subject.dimensions.x
     return made
+
+
+def _layers_of(subject):
+    """The names of what an object has on its vertices, corners and faces."""
+    mesh = subject.data
+    others = {*_OF_ANY_MESH, *mesh.uv_layers.keys()}
+    kinds = {"UV maps": mesh.uv_layers.keys(),
+             "materials": [slot.name for slot in subject.material_slots if slot.material],
+             "vertex groups": subject.vertex_groups.keys(),
+             "attributes": [each.name for each in mesh.attributes
+                            if not each.is_internal and each.name not in others]}
+    return "; ".join(f"{kind} {', '.join(names)}" for kind, names in kinds.items() if names)
 
 
 def has_faces_of(subject, value):
@@ -217,10 +166,16 @@ def show_sequence(context, value, subject, frames, name):
     its polygons."""
     frames = frames.of(value["times"])
     path = write_mesh_cache(value, frames, name)
+    rest = value["rest"] if "rest" in value else value["positions"][0]
     if subject and has_faces_of(subject, value):
-        made = _copied_object(subject, name)
+        made = _copied_object(subject, name, rest)
     else:
-        made = _new_object(context, name, value["positions"][0], value.faces, subject)
+        made = _new_object(context, name, rest, value.faces, subject)
+        layers = _layers_of(subject) if subject else ""
+        if layers:
+            frames.notes.append(f"{made.name}: has other faces than {subject.name}, of which are"
+                                f" left out: {layers}; bring them over with Object > Link/Transfer"
+                                " Data")
     play_mesh_cache(made, path, frames)
     show_fields(value, made)
     return made
@@ -237,7 +192,7 @@ def _show_shapes(context, name, neutral, faces, shapes, weights, frames, beside=
         if shape in weights:
             keyed[key.name] = weights[shape]  # Blender shortens long names
     if keyed:
-        set_keys(made.data.shape_keys, keyed, frames)
+        keying.set_keys(made, keyed, frames)
     made.data.update()
     return made
 

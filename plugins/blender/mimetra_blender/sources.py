@@ -1,6 +1,7 @@
 """Blender's objects as values of the toolkit."""
 
 import contextlib
+import logging
 
 import numpy as np
 
@@ -8,8 +9,8 @@ from . import mimetra
 
 # Modifiers that change which vertices there are. They are left out, so that results fit the mesh.
 _REBUILDING = {"ARRAY", "BEVEL", "BOOLEAN", "BUILD", "DECIMATE", "EDGE_SPLIT", "MASK", "MIRROR",
-               "MULTIRES", "REMESH", "SCREW", "SKIN", "SOLIDIFY", "SUBSURF", "TRIANGULATE",
-               "VOLUME_TO_MESH", "WELD", "WIREFRAME"}
+               "MULTIRES", "REMESH", "SCREW", "SKIN", "SOLIDIFY", "SUBSURF", "VOLUME_TO_MESH",
+               "WELD", "WIREFRAME"}
 
 
 def coordinates(points):
@@ -36,11 +37,35 @@ def rest_of(mesh):
     return coordinates(keys.reference_key.data if keys else mesh.vertices)
 
 
+def _is_bound(modifier):
+    """True where a modifier moves nothing but the vertices that it was bound to, or that its file
+    holds."""
+    if modifier.type == "MESH_CACHE":
+        return True
+    bound = getattr(modifier, "is_bound", False) or getattr(modifier, "is_bind", False)
+    return bound and getattr(modifier, "rest_source", "BIND") == "BIND"
+
+
+def _warn_of_bound(subject, hidden):
+    """Warns of modifiers that move the vertices of hidden ones, which are missing to them."""
+    rebuilding = None
+    for modifier in subject.modifiers:
+        if modifier in hidden:
+            rebuilding = modifier
+        elif rebuilding and modifier.show_viewport and _is_bound(modifier):
+            logging.getLogger("mimetra").warning(
+                "%s: the motion of the modifier '%s' is missing: it is bound to the vertices that"
+                " '%s' makes, which is off where the object is read; move '%s' before it and bind"
+                " it again, or apply '%s'", subject.name, modifier.name, rebuilding.name,
+                modifier.name, rebuilding.name)
+
+
 @contextlib.contextmanager
 def _own_vertices(subject):
     """Modifiers that rebuild the mesh are off as long as the block lasts."""
     hidden = [each for each in subject.modifiers
               if each.type in _REBUILDING and each.show_viewport]
+    _warn_of_bound(subject, hidden)
     for modifier in hidden:
         modifier.show_viewport = False
     try:
