@@ -12,8 +12,9 @@ namespace mimetra {
 
 namespace {
 
-/// Standard deviation of outliers beside that of the others.
-constexpr double kWide = 10;
+/// Degrees of freedom. With fewer, frames of real footage leave a whole side of the jaw aside, and
+/// the next ones do not; with more there is no difference to normal noise.
+constexpr double kLeastFreedom = 6, kMostFreedom = 1000;
 /// Below it there is nothing that a detector or a person could mean: 0.01 px of a face of 100 px.
 constexpr double kLeastSigma = 1e-4;
 /// The noise that single frames are taken to have counts as this many coordinates beside a clip's,
@@ -74,28 +75,43 @@ Sums sums_of(const std::vector<FittedFrame>& frames) {
   return sums;
 }
 
-/// Mean probability of the frames' landmarks that they are outliers.
-double outlier_share(const std::vector<FittedFrame>& frames, const ClipNoise& noise) {
-  double sum = 0, count = 0;
+/// Of most likelihood for the distances of the frames' landmarks. In the plane the density at z
+/// sigmas is (1 + z^2 / nu)^-(nu / 2 + 1) / (2 pi sigma^2), of whose logarithm the sum has one
+/// maximum over nu.
+double likely_freedom(const std::vector<FittedFrame>& frames) {
+  std::vector<double> squares;
   for (const FittedFrame& frame : frames) {
-    const Eigen::VectorXd z = frame.residual().rowwise().norm() / frame.sigma();
-    for (const double each : z) sum += 1 - noise.weight(each);
-    count += double(z.size());
+    const Eigen::VectorXd r = frame.residual().rowwise().squaredNorm();
+    for (const double each : r) squares.push_back(each / (frame.sigma() * frame.sigma()));
   }
-  return sum / count;
+  const auto unlikely = [&squares](double logarithm) {
+    const double nu = std::exp(logarithm);
+    double sum = 0;
+    for (const double square : squares) sum += std::log1p(square / nu);
+    return (nu / 2 + 1) * sum;
+  };
+  // By golden section: each step keeps the inner point that is left.
+  constexpr double kGolden = 0.6180339887498949, kClose = 1e-3;
+  double first = std::log(kLeastFreedom), last = std::log(kMostFreedom);
+  double low = last - kGolden * (last - first), high = first + kGolden * (last - first);
+  double of_low = unlikely(low), of_high = unlikely(high);
+  while (last - first > kClose) {
+    if (of_low < of_high) {
+      last = std::exchange(high, low);
+      of_high = of_low;
+      low = last - kGolden * (last - first);
+      of_low = unlikely(low);
+    } else {
+      first = std::exchange(low, high);
+      of_low = of_high;
+      high = first + kGolden * (last - first);
+      of_high = unlikely(high);
+    }
+  }
+  return std::exp((first + last) / 2);
 }
 
 }  // namespace
-
-double ClipNoise::weight(double z) const {
-  constexpr double kVariance = kWide * kWide, kLargest = 700;
-  // A frame of nothing but outliers keeps a camera.
-  constexpr double kLeast = 1e-4;
-  // The ratio of the densities, outliers over the others.
-  const double odds = outliers / (1 - outliers) / kVariance *
-                      std::exp(std::min(z * z * (1 - 1 / kVariance) / 2, kLargest));
-  return std::max(1 / (1 + odds), kLeast);
-}
 
 KnownNoise known_noise(const FitOptions& options, std::size_t frames) {
   using Outliers = FitOptions::Outliers;
@@ -122,8 +138,8 @@ ClipNoise rough_noise(const std::vector<FittedFrame>& frames, const KnownNoise& 
   return noise;
 }
 
-ClipNoise estimated_noise(const std::vector<FittedFrame>& frames, const ClipNoise& before,
-                          double determined, const KnownNoise& known) {
+ClipNoise estimated_noise(const std::vector<FittedFrame>& frames, double determined,
+                          const KnownNoise& known) {
   const Sums sums = sums_of(frames);
   const double count = double(frames.size()), landmarks = double(sums.landmarks.size());
   const double own = sums.own_unknowns / count;
@@ -144,7 +160,7 @@ ClipNoise estimated_noise(const std::vector<FittedFrame>& frames, const ClipNois
   ClipNoise noise;
   noise.sigma = std::max(std::sqrt(within + repeated), kLeastSigma);
   noise.repeated = known.repeated.value_or(repeated / (within + repeated));
-  noise.outliers = std::clamp(outlier_share(frames, before), 1e-4, 0.5);
+  noise.freedom = likely_freedom(frames);
   return noise;
 }
 
@@ -156,7 +172,7 @@ double outline_noise(const std::vector<FittedFrame>& frames, const ClipNoise& no
     for (const double r : rest) {
       sizes.push_back(std::abs(r));
       if (noise.outline == 0) continue;
-      const double own = noise.weight(r / noise.outline);
+      const double own = noise.weight(r / noise.outline, 1);
       squares += own * r * r;
       weight += own;
     }
@@ -177,13 +193,13 @@ void set_noise(std::vector<FittedFrame>& frames, const ClipNoise& noise, const K
       outline->weight = frame.outline_residual() / sigma;
       for (double& weight : outline->weight) {
         const double ratio = frame.sigma() / sigma;
-        weight = ratio * ratio * (known.outliers ? 1 : noise.weight(weight));
+        weight = ratio * ratio * (known.outliers ? 1 : noise.weight(weight, 1));
       }
       frame.set_outline(std::move(outline));
     }
     if (known.outliers) continue;
     Eigen::VectorXd weights = frame.residual().rowwise().norm() / frame.sigma();
-    for (double& weight : weights) weight = noise.weight(weight);
+    for (double& weight : weights) weight = noise.weight(weight, 2);
     frame.set_landmark_weights(std::move(weights));
   }
 }

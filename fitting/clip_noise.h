@@ -28,13 +28,15 @@ ClipNoise rough_noise(const std::vector<FittedFrame>& frames, const KnownNoise& 
 /// Standard deviation, across the outline, of landmarks there that are no outliers.
 double outline_noise(const std::vector<FittedFrame>& frames, const ClipNoise& noise);
 
-/// One step of expectation maximisation from `before`, which weighed the frames' landmarks. Of the
-/// repeated error the fit hides what the identities follow: `determined` is the number of them that
-/// the landmarks determine and not the prior.
+/// One step of expectation maximisation with the landmarks' weights of the frames. Of the repeated
+/// error the fit hides what the identities follow: `determined` is the number of them that the
+/// landmarks determine and not the prior.
 ///
 /// [MacKay. Bayesian interpolation. Neural Computation 4(3), 1992]
-ClipNoise estimated_noise(const std::vector<FittedFrame>& frames, const ClipNoise& before,
-                          double determined, const KnownNoise& known);
+/// [Liu, Rubin. ML estimation of the t distribution using EM and its extensions, ECM and ECME.
+///  Statistica Sinica 5, 1995]
+ClipNoise estimated_noise(const std::vector<FittedFrame>& frames, double determined,
+                          const KnownNoise& known);
 
 /// Sets sigma and the landmarks' weights of the frames, also those on the outline.
 void set_noise(std::vector<FittedFrame>& frames, const ClipNoise& noise, const KnownNoise& known);

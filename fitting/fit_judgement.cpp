@@ -142,7 +142,7 @@ void warn_of(const Judgement& judgement, const std::vector<std::string>& names,
   }
   if (!constant.empty() && judgement.halves) {
     invocation.warn("expressions that are there all the time, as parts of the face are: " +
-                    constant + "; --ridge 1 makes them smaller");
+                    constant + "; a larger --ridge makes them smaller");
   }
 }
 

@@ -84,7 +84,9 @@ BoundParameters<FitCall> fit_parameters() {
            "landmarks far from the face in units of the clip's noise: resist them (auto: where "
            "noise is estimated), or trust all")
       .add("ridge", FitOptions::kRidge,
-           "weight of squared expressions (default: 0.1 with more than ten of them, else 0)")
+           "weight of squared expressions (default: a tenth of their number where that is above "
+           "ten, "
+           "else 0)")
       .add("smoothness", FitOptions::kSmoothness, "time constant of smooth expressions")
       .brief("time constant of smooth expressions")
       .under("Fitting");

@@ -103,18 +103,19 @@ class FittedFrame {
 
 /// A landmark's error, in each direction and as a share of the face's RMS radius in its frame, is
 /// the sum of one that is the same in every frame, on the face as it turns in the image, and one of
-/// its own, both normal; a share `outliers` of the landmarks has ten times as much, and says
-/// nothing.
+/// its own, both of Student's t distribution.
 struct ClipNoise {
   double sigma = 0;     ///< of both together
   double repeated = 0;  ///< share of sigma^2 that is the same in every frame: rho
-  double outliers = 0.05;
-  double outline = 0;  ///< sigma of landmarks on the outline, across it
+  double freedom = 6;   ///< nu of the distribution: the lower, the more lie far off
+  double outline = 0;   ///< sigma of landmarks on the outline, across it
 
   /// Of how many frames that are independent F of them say as much about what they share.
   double independent_frames(double frames) const { return frames / (1 + (frames - 1) * repeated); }
-  /// Probability that a landmark `z` sigmas from its place is none of the outliers, at least 1e-4.
-  double weight(double z) const;
+  /// Of the square of an error of so many coordinates that is `z` sigmas long.
+  double weight(double z, int coordinates) const {
+    return (freedom + coordinates) / (freedom + z * z);
+  }
 };
 
 /// Frames that were fitted together, and how that went.

@@ -255,7 +255,7 @@ FittedClip fit_jointly(std::vector<FittedFrame> frames, const FitOptions& option
     const Eigen::VectorXd alpha = frames.front().alpha();
     Descent step = descended(std::move(frames), options, prior_of(known, noise, count), 1);
     frames = std::move(step.clip.frames);
-    ClipNoise now = estimated_noise(frames, noise, step.determined, known);
+    ClipNoise now = estimated_noise(frames, step.determined, known);
     now.outline = noise.outline;
     set_noise(frames, now, known);
     settled = have_settled(noise, now, frames.front().alpha() - alpha);
