@@ -132,6 +132,33 @@ class RegionsOfInterest(HostTest):
             self.assert_same(cell_array(found, name), cell_array(given, name), name)
         self.assert_same(points(found), points(mesh))
 
+    def region_of(self, source):
+        return point_array(at(self.filter_of(source), 0), "region").copy()
+
+    def with_motion(self, name):
+        """A series of frames without a rest pose, with the motion to the next ones as an array."""
+        frames = np.load(self.sample.take)
+        faces = at(self.take(), 0)
+        meshes = []
+        for i, frame in enumerate(frames):
+            mesh = vtkPolyData()
+            mesh.ShallowCopy(mesh_of(frame, []))
+            mesh.SetPolys(faces.GetPolys())
+            motion = numpy_to_vtk(frames[min(i + 3, len(frames) - 1)] - frame, deep=True)
+            motion.SetName(name)
+            mesh.GetPointData().AddArray(motion)
+            meshes.append(mesh)
+        return self.series_of(name, meshes)
+
+    def test_takes_no_array_of_others_for_the_rest_pose(self):
+        expected = self.region_of(self.with_motion("motion"))
+        found = self.region_of(self.with_motion("displacement"))
+        self.assert_same(found, expected)
+        again = self.sample / "again_displacement.pvd"
+        mimetra("regions", self.sample / "displacement.pvd", "-k", 12, "-o", again)
+        series = simple.PVDReader(FileName=str(again))
+        self.assert_same(point_array(at(series, 0), "region"), expected)
+
 
 if __name__ == "__main__":
     run_tests()

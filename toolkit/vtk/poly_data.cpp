@@ -106,20 +106,27 @@ Eigen::MatrixXd on_triangles(vtkPolyData& data, const Eigen::MatrixXd& on_cells,
       connectivity.polygon_of_triangle, Eigen::all);
 }
 
-Positions finite(Positions positions, const std::string& name, const std::string& what) {
+void check_finite(const Positions& positions, const std::string& name, const std::string& what) {
   for (Eigen::Index v = 0; v < positions.rows(); ++v) {
     if (!positions.row(v).allFinite()) {
       throw IoError(name, what + std::to_string(v) + " is not finite");
     }
   }
-  return positions;
+}
+
+Positions rest_in(vtkDataArray& array, const std::string& name) {
+  Positions rest = values_of(array);
+  check_rest(rest, name);
+  return rest;
 }
 
 }  // namespace
 
 Positions positions_of(vtkPolyData& data, const std::string& name) {
   if (data.GetNumberOfPoints() == 0) throw IoError(name, "has no points");
-  return finite(values_of(*data.GetPoints()->GetData()), name, "point ");
+  Positions positions = values_of(*data.GetPoints()->GetData());
+  check_finite(positions, name, "point ");
+  return positions;
 }
 
 Connectivity connectivity_of(vtkPolyData& data, const std::string& name) {
@@ -146,7 +153,6 @@ Connectivity connectivity_of(vtkPolyData& data, const std::string& name) {
 
 std::optional<Positions> rest_of(vtkPolyData& data, const Positions& positions,
                                  const std::string& name) {
-  constexpr const char* kVertex = "rest pose: vertex ";
   const auto of_this_mesh = [&positions](vtkDataArray* array) {
     return array && array->GetNumberOfComponents() == 3 &&
            array->GetNumberOfTuples() == positions.rows();
@@ -154,11 +160,13 @@ std::optional<Positions> rest_of(vtkPolyData& data, const Positions& positions,
   vtkFieldData* const carriers[] = {data.GetPointData(), data.GetFieldData()};
   for (vtkFieldData* carrier : carriers) {
     vtkDataArray* rest = carrier->GetArray(kRestPose);
-    if (of_this_mesh(rest)) return finite(values_of(*rest), name, kVertex);
+    if (of_this_mesh(rest)) return rest_in(*rest, name);
   }
-  vtkDataArray* moved = data.GetPointData()->GetArray(kDisplacement);
-  if (of_this_mesh(moved)) return finite(positions - values_of(*moved), name, kVertex);
   return {};
+}
+
+void check_rest(const Positions& rest, const std::string& name) {
+  check_finite(rest, name, "rest pose: vertex ");
 }
 
 std::vector<Field> fields_of(vtkPolyData& data, const Connectivity& connectivity) {
@@ -168,7 +176,7 @@ std::vector<Field> fields_of(vtkPolyData& data, const Connectivity& connectivity
       vtkDataArray* array = vtkDataArray::SafeDownCast(arrays.GetAbstractArray(i));
       if (!array || !array->GetName()) continue;
       const std::string name = array->GetName();
-      if (name == kDisplacement || name == kDisplacementLength || name == kRestPose) continue;
+      if (name == kRestPose) continue;
       const bool integer = array->GetDataType() != VTK_FLOAT && array->GetDataType() != VTK_DOUBLE;
       fields.push_back({name, location, placed(values_of(*array)), integer});
     }

@@ -18,13 +18,15 @@ Positions positions_of(vtkPolyData& data, const std::string& name);
 /// The polygons; vertices and lines are left out. Throws IoError where there are none, or strips.
 Connectivity connectivity_of(vtkPolyData& data, const std::string& name);
 
-/// The rest pose of data at `positions`: the point data kRestPose, field data of this name, which
-/// files of earlier versions have, or the positions without the point data kDisplacement. Throws
-/// IoError where a vertex of it is not finite.
+/// The rest pose of data at `positions`: the point data kRestPose, or field data of this name,
+/// which files of earlier versions have. Throws IoError where a vertex of it is not finite.
 std::optional<Positions> rest_of(vtkPolyData& data, const Positions& positions,
                                  const std::string& name);
 
-/// All numeric point data, and cell data of the polygons, save displacements and rest poses.
+/// Throws IoError where a vertex of a rest pose is not finite.
+void check_rest(const Positions& rest, const std::string& name);
+
+/// All numeric point data, and cell data of the polygons, save rest poses.
 std::vector<Field> fields_of(vtkPolyData& data, const Connectivity& connectivity);
 
 /// A point array (N x c), or nothing.

@@ -63,8 +63,9 @@ struct VtpReadOptions {
 
 /// A series as write_vtp_series writes it, and ParaView too: NAME.pvd, NAME.vtp.series, or one
 /// NAME.vtp. Fields are those of the first chosen frame; `displacement` gives the rest pose, and is
-/// not a field. The other frames are read when they are needed, which throws as this does: IoError
-/// that names the file, MismatchError where a frame has other vertices or faces.
+/// not a field, where DisplacedRest finds one. The other frames are read when they are needed,
+/// which throws as this does: IoError that names the file, MismatchError where a frame has other
+/// vertices or faces.
 FieldSequence open_vtp_series(const std::filesystem::path& path, const VtpReadOptions& = {});
 
 /// The same with all frames in memory. Throws Cancelled, too.

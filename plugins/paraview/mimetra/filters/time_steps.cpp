@@ -1,5 +1,7 @@
 #include "plugins/paraview/mimetra/filters/time_steps.h"
 
+#include <utility>
+
 #include <vtkPolyData.h>
 
 #include "toolkit/mesh/errors.h"
@@ -39,6 +41,7 @@ void TimeSteps::begin(std::vector<double> times, bool with_fields) {
   *this = TimeSteps();
   times_ = std::move(times);
   with_fields_ = with_fields;
+  displaced_ = DisplacedRest(static_cast<int>(count()));
 }
 
 std::optional<double> TimeSteps::next_time() const {
@@ -65,6 +68,7 @@ void TimeSteps::add(vtkDataObject* data) {
                           to_text(times_.front()) + "; all time steps need the same faces");
     }
   }
+  if (displaced_.looks_at(static_cast<int>(next_))) displaced_.look_at(mesh, positions);
   frames_.row(static_cast<Eigen::Index>(next_)) =
       Eigen::Map<const Eigen::RowVectorXd>(positions.data(), positions.size());
   ++next_;
@@ -73,6 +77,10 @@ void TimeSteps::add(vtkDataObject* data) {
 FieldSequence TimeSteps::taken() {
   const Eigen::VectorXd times =
       Eigen::Map<const Eigen::VectorXd>(times_.data(), static_cast<Eigen::Index>(times_.size()));
+  const std::string first = name_of(times_.empty() ? std::nullopt : std::optional(times_.front()));
+  auto displaced = std::exchange(displaced_, DisplacedRest(1)).found(first);
+  if (displaced) std::erase_if(fields_, is_displacement);
+  if (!rest_) rest_ = std::move(displaced);
   MeshSequence sequence(std::move(connectivity_), std::move(frames_), times, std::move(rest_));
   return FieldSequence(std::move(sequence), std::move(fields_));
 }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "toolkit/operations/data.h"
+#include "toolkit/vtk/displaced_rest.h"
 
 class vtkDataObject;
 class vtkPolyData;
@@ -47,6 +48,7 @@ class TimeSteps {
   mimetra::Connectivity connectivity_;
   mimetra::Frames frames_;
   std::optional<mimetra::Positions> rest_;
+  mimetra::DisplacedRest displaced_{1};
   std::vector<mimetra::Field> fields_;
 };
 
