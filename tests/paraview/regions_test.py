@@ -135,6 +135,36 @@ class RegionsOfInterest(HostTest):
     def region_of(self, source):
         return point_array(at(self.filter_of(source), 0), "region").copy()
 
+    def test_are_the_same_wherever_a_transform_brings_the_head(self):
+        take = self.take()
+        time = take.TimestepValues[-1]
+        plain = at(self.filter_of(take), time)
+        region, length = [point_array(plain, n) for n in ["region", "displacement_length"]]
+        moves = [{"Translate": [0.5, 0, 0]}, {"Translate": [300, -20, 5]}, {"Rotate": [0, 0, 30]},
+                 {"Translate": [0, 40, 0], "Rotate": [20, 50, 10], "Scale": [2, 2, 2]}]
+        for move in moves:
+            for with_vectors in [1, 0]:
+                moved = simple.Transform(Input=take, TransformAllInputVectors=with_vectors)
+                moved.Transform = "Transform"
+                for name, value in move.items():
+                    setattr(moved.Transform, name, value)
+                with Messages() as messages:
+                    found = at(self.filter_of(moved), time)
+                self.assertEqual(messages.text, "")
+                scale = move.get("Scale", [1])[0]
+                np.testing.assert_allclose(point_array(found, "displacement_length"),
+                                           scale * length, rtol=1e-5, atol=1e-7 * length.max())
+                # Between two regions that reach a vertex alike, rounding decides.
+                self.assertLessEqual((point_array(found, "region") != region).sum(), 2)
+
+    def test_says_where_the_rest_pose_stays_behind(self):
+        bent = simple.Calculator(Input=self.take(), CoordinateResults=1,
+                                 Function="coords+iHat*0.01*coordsY*coordsY")
+        with Messages() as messages:
+            at(self.filter_of(bent), 0)
+        self.assertEqual(messages.text.count("not as a whole"), 1, messages.text)
+        self.assertIn("mimetra_rest", messages.text)
+
     def with_motion(self, name):
         """A series of frames without a rest pose, with the motion to the next ones as an array."""
         frames = np.load(self.sample.take)

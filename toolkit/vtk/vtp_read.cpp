@@ -171,8 +171,9 @@ FieldSequence open_vtp_series(const fs::path& path, const VtpReadOptions& option
   SequenceHeader header;
   header.connectivity = std::make_shared<Connectivity>(connectivity_of(*data, first));
   const std::optional<Positions> displaced = displaced_rest(*data, positions, chosen);
-  const std::optional<Positions> carried = rest_of(*data, positions, first);
-  header.rest = carried ? *carried : displaced.value_or(positions);
+  const std::optional<CarriedRest> carried = rest_of(*data, positions, first);
+  if (carried && !carried->note.empty() && options.note) options.note(carried->note);
+  header.rest = carried ? carried->positions : displaced.value_or(positions);
   header.rest_is_known = carried || displaced;
   header.times_are_known = lower_extension(path) != ".vtp";
   header.times = default_times(static_cast<int>(chosen.size()));

@@ -58,6 +58,8 @@ std::vector<std::filesystem::path> write_vtp_series(const FieldSequence& fields,
 struct VtpReadOptions {
   /// Chooses frames, 0-based, from their number; all without.
   std::function<std::vector<int>(int count)> selected = {};
+  /// Called with what is odd about the rest pose.
+  std::function<void(const std::string&)> note = {};
   Progress progress = {};
 };
 

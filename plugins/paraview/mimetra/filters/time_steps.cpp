@@ -55,7 +55,10 @@ void TimeSteps::add(vtkDataObject* data) {
   Connectivity connectivity = connectivity_of(mesh, name);
   if (next_ == 0) {
     frames_.resize(static_cast<Eigen::Index>(count()), positions.size());
-    rest_ = rest_of(mesh, positions, name);
+    if (auto carried = rest_of(mesh, positions, name)) {
+      rest_ = std::move(carried->positions);
+      if (!carried->note.empty()) notes_.push_back(std::move(carried->note));
+    }
     if (with_fields_) fields_ = fields_of(mesh, connectivity);
     vertices_ = connectivity.vertices;
     faces_ = connectivity.polygons.size();

@@ -33,6 +33,9 @@ class TimeSteps {
   /// What was collected, which is then forgotten, save its times and counts.
   mimetra::FieldSequence taken();
 
+  /// What is odd about those collected.
+  const std::vector<std::string>& notes() const { return notes_; }
+
   /// Throws MismatchError for a mesh at `time` with other numbers of vertices or faces than those
   /// collected.
   void expect_counts_of(vtkPolyData& mesh, std::optional<double> time) const;
@@ -49,6 +52,7 @@ class TimeSteps {
   mimetra::Frames frames_;
   std::optional<mimetra::Positions> rest_;
   mimetra::DisplacedRest displaced_{1};
+  std::vector<std::string> notes_;
   std::vector<mimetra::Field> fields_;
 };
 

@@ -272,6 +272,7 @@ void vtkMimetraFilter::collect(vtkInformation& in, std::optional<double> shown) 
     if (!show_progress(kReading * steps_->share())) throw Cancelled();
   }
   call().give(input_, {input_, steps_->taken()});
+  for (const std::string& note : steps_->notes()) vtkWarningMacro(<< input_ << ": " << note);
   collected_ = origin;
 }
 
