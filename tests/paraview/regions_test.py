@@ -189,6 +189,22 @@ class RegionsOfInterest(HostTest):
         series = simple.PVDReader(FileName=str(again))
         self.assert_same(point_array(at(series, 0), "region"), expected)
 
+    def test_says_that_file_series_count_frames(self):
+        folder = self.sample / "counted"
+        mimetra("convert", self.sample.take, "-o", folder)
+        files = simple.PLYReader(FileNames=sorted(map(str, folder.glob("*.ply"))))
+        words = "its frames are 1 s apart (median)"
+        with Messages() as messages:
+            found = self.filter_of(files)
+            at(found, 0)
+            at(found, 5)
+        self.assertEqual(messages.text.count(words), 1, messages.text)
+        self.assertIn("Temporal Shift Scale", messages.text)
+        seconds = simple.TemporalShiftScale(Input=files, Scale=1 / 30)
+        with Messages() as messages:
+            at(self.filter_of(seconds), 0)
+        self.assertNotIn(words, messages.text)
+
 
 if __name__ == "__main__":
     run_tests()

@@ -23,14 +23,40 @@ class VtpNotes : public VtpTest {
  protected:
   VtpNotes() { add_vtp(table_); }
 
-  std::vector<std::string> notes_on(const std::filesystem::path& path) const {
+  /// Of the quad and the triangle in as many frames as there are times.
+  std::vector<std::string> notes_at(const Eigen::VectorXd& times, const std::string& file,
+                                    const std::optional<std::string>& frames = {}) const {
+    const MeshSequence mesh = quad_and_triangle().sequence();
+    const Frames poses = mesh.positions().row(0).replicate(times.size(), 1);
+    write_vtp_series(FieldSequence(MeshSequence(mesh.connectivity(), poses, times)),
+                     in_folder("a.pvd"), {.overwrite = true});
+    return notes_on(in_folder(file), frames);
+  }
+
+  std::vector<std::string> notes_on(const std::filesystem::path& path,
+                                    const std::optional<std::string>& frames = {}) const {
     const Format& reader = table_.reader(DataKind::sequence, path);
-    const Parameters parameters(reader.reading);
+    Parameters parameters(reader.reading);
+    if (frames) parameters.set("frames", *frames);
     return reader.read(path, {.parameters = parameters}).notes;
   }
 
   OperationTable table_;
 };
+
+TEST_F(VtpNotes, NameTimesThatAreNumbersOfFrames) {
+  const Eigen::VectorXd numbers = Eigen::VectorXd::LinSpaced(12, 0, 11);
+  for (const char* file : {"a.pvd", "a.vtp.series"}) {
+    EXPECT_THAT(notes_at(numbers, file),
+                ElementsAre(HasSubstr(std::string(file) + ": its frames are 1 s apart (median)")));
+  }
+}
+
+TEST_F(VtpNotes, AreNoneForSecondsAndForFramesThatWereChosen) {
+  const Eigen::VectorXd numbers = Eigen::VectorXd::LinSpaced(12, 0, 11);
+  EXPECT_THAT(notes_at(numbers / 30, "a.pvd"), IsEmpty());
+  EXPECT_THAT(notes_at(numbers, "a.pvd", "0:11"), IsEmpty());
+}
 
 TEST_F(VtpNotes, NameARestPoseThatStayedWhereItsPointsWereBent) {
   const MeshSequence mesh = quad_and_triangle().sequence();

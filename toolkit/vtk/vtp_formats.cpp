@@ -66,6 +66,9 @@ ReadValue read_sequence_data(const std::string& text, const ReadRequest& request
   FieldSequence read =
       request.may_stream ? open_vtp_series(text, options) : read_vtp_series(text, options);
   check_rate(text, read.frames->known_times(), source);
+  // Chosen frames may lie far apart.
+  const std::string odd = source.frames ? "" : note_on_steps(read.frames->known_times());
+  if (!odd.empty()) note(odd);
   if (!request.fields) read.fields.clear();
   return {{text, std::move(read)}, vtp_series_files(text), std::move(notes)};
 }

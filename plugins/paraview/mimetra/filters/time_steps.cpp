@@ -6,6 +6,7 @@
 
 #include "toolkit/mesh/errors.h"
 #include "toolkit/operations/parameter.h"
+#include "toolkit/operations/sequence_parameters.h"
 #include "toolkit/vtk/poly_data.h"
 
 using namespace mimetra;
@@ -80,6 +81,9 @@ void TimeSteps::add(vtkDataObject* data) {
 FieldSequence TimeSteps::taken() {
   const Eigen::VectorXd times =
       Eigen::Map<const Eigen::VectorXd>(times_.data(), static_cast<Eigen::Index>(times_.size()));
+  if (const std::string odd = note_on_steps(times); !odd.empty()) {
+    notes_.push_back(odd + " (Temporal Shift Scale brings them there)");
+  }
   const std::string first = name_of(times_.empty() ? std::nullopt : std::optional(times_.front()));
   auto displaced = std::exchange(displaced_, DisplacedRest(1)).found(first);
   if (displaced) std::erase_if(fields_, is_displacement);
