@@ -182,12 +182,32 @@ class RegionsOfInterest(HostTest):
 
     def test_takes_no_array_of_others_for_the_rest_pose(self):
         expected = self.region_of(self.with_motion("motion"))
-        found = self.region_of(self.with_motion("displacement"))
+        with Messages() as messages:
+            found = self.region_of(self.with_motion("displacement"))
         self.assert_same(found, expected)
+        self.assertIn("not passed on: displacement;", messages.text)
         again = self.sample / "again_displacement.pvd"
         mimetra("regions", self.sample / "displacement.pvd", "-k", 12, "-o", again)
         series = simple.PVDReader(FileName=str(again))
         self.assert_same(point_array(at(series, 0), "region"), expected)
+
+    def test_names_the_arrays_that_it_replaces(self):
+        numbered = simple.Calculator(Input=self.take(), Function="coordsX", ResultArrayName="roi")
+        found = self.filter_of(numbered)
+        with Messages() as messages:
+            at(found, 0)
+            at(found, 1)
+        self.assertEqual(messages.text.count("not passed on: roi;"), 1,
+                         messages.text)
+
+    def test_passes_on_in_silence_what_the_command_wrote_of_displacements(self):
+        written = self.sample / "moved.pvd"
+        mimetra("convert", self.sample.take, "-o", written)
+        series = simple.PVDReader(FileName=str(written))
+        self.assertTrue(at(series, 0).GetPointData().HasArray("displacement"))
+        with Messages() as messages:
+            at(self.filter_of(series), 0)
+        self.assertEqual(messages.text, "")
 
     def test_says_that_file_series_count_frames(self):
         folder = self.sample / "counted"

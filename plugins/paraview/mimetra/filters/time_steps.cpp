@@ -86,7 +86,8 @@ FieldSequence TimeSteps::taken() {
   }
   const std::string first = name_of(times_.empty() ? std::nullopt : std::optional(times_.front()));
   auto displaced = std::exchange(displaced_, DisplacedRest(1)).found(first);
-  if (displaced) std::erase_if(fields_, is_displacement);
+  are_displaced_ = displaced.has_value();
+  if (are_displaced_) std::erase_if(fields_, is_displacement);
   if (!rest_) rest_ = std::move(displaced);
   MeshSequence sequence(std::move(connectivity_), std::move(frames_), times, std::move(rest_));
   return FieldSequence(std::move(sequence), std::move(fields_));

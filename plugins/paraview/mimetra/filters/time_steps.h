@@ -35,6 +35,8 @@ class TimeSteps {
 
   /// What is odd about those collected.
   const std::vector<std::string>& notes() const { return notes_; }
+  /// True where the point data `displacement` were mimetra's, and not anything else's.
+  bool are_displaced() const { return are_displaced_; }
 
   /// Throws MismatchError for a mesh at `time` with other numbers of vertices or faces than those
   /// collected.
@@ -52,6 +54,7 @@ class TimeSteps {
   mimetra::Frames frames_;
   std::optional<mimetra::Positions> rest_;
   mimetra::DisplacedRest displaced_{1};
+  bool are_displaced_ = false;
   std::vector<std::string> notes_;
   std::vector<mimetra::Field> fields_;
 };
