@@ -77,7 +77,7 @@ class BadInput(HostTest):
     def test_a_rest_pose_that_is_not_a_number(self):
         meshes = moving()
         for mesh in meshes:
-            displacement = np.zeros((36, 3))
+            displacement = points(mesh) - grid()[0]
             displacement[4, 2] = np.nan
             array = numpy_to_vtk(displacement, deep=True)
             array.SetName("displacement")

@@ -349,7 +349,7 @@ TEST(MergedPieces, BringARestPoseOnPointsAlong) {
     const auto rest = rest_of(*found.mesh, positions_of(*found.mesh, "mesh"), "mesh");
     ASSERT_TRUE(rest);
     for (vtkIdType i = 0; i < found.mesh->GetNumberOfPoints(); ++i) {
-      EXPECT_EQ((*rest)(i, 0), value(*found.mesh->GetPointData(), "at", i));
+      EXPECT_EQ(rest->positions(i, 0), value(*found.mesh->GetPointData(), "at", i));
     }
   }
 }
@@ -373,7 +373,7 @@ TEST(MergedPieces, AreRefusedWithARestPoseThatStayedBehind) {
 }
 
 TEST(MergedPieces, AreRefusedWithRestPosesOfSomeOnly) {
-  for (const char* name : {kRestPose, kDisplacement}) {
+  for (const char* name : {kRestPose, kPlaced, kDisplacement}) {
     Pieces pieces = halves();
     pieces[1]->GetPointData()->AddArray(own_numbers(name, *pieces[1]));
     EXPECT_THAT(refusal(pieces),

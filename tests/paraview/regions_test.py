@@ -132,6 +132,99 @@ class RegionsOfInterest(HostTest):
             self.assert_same(cell_array(found, name), cell_array(given, name), name)
         self.assert_same(points(found), points(mesh))
 
+    def region_of(self, source):
+        return point_array(at(self.filter_of(source), 0), "region").copy()
+
+    def test_are_the_same_wherever_a_transform_brings_the_head(self):
+        take = self.take()
+        time = take.TimestepValues[-1]
+        plain = at(self.filter_of(take), time)
+        region, length = [point_array(plain, n) for n in ["region", "displacement_length"]]
+        moves = [{"Translate": [0.5, 0, 0]}, {"Translate": [300, -20, 5]}, {"Rotate": [0, 0, 30]},
+                 {"Translate": [0, 40, 0], "Rotate": [20, 50, 10], "Scale": [2, 2, 2]}]
+        for move in moves:
+            for with_vectors in [1, 0]:
+                moved = simple.Transform(Input=take, TransformAllInputVectors=with_vectors)
+                moved.Transform = "Transform"
+                for name, value in move.items():
+                    setattr(moved.Transform, name, value)
+                with Messages() as messages:
+                    found = at(self.filter_of(moved), time)
+                self.assertEqual(messages.text, "")
+                scale = move.get("Scale", [1])[0]
+                np.testing.assert_allclose(point_array(found, "displacement_length"),
+                                           scale * length, rtol=1e-5, atol=1e-7 * length.max())
+                # Between two regions that reach a vertex alike, rounding decides.
+                self.assertLessEqual((point_array(found, "region") != region).sum(), 2)
+
+    def test_says_where_the_rest_pose_stays_behind(self):
+        bent = simple.Calculator(Input=self.take(), CoordinateResults=1,
+                                 Function="coords+iHat*0.01*coordsY*coordsY")
+        with Messages() as messages:
+            at(self.filter_of(bent), 0)
+        self.assertEqual(messages.text.count("not as a whole"), 1, messages.text)
+        self.assertIn("mimetra_rest", messages.text)
+
+    def with_motion(self, name):
+        """A series of frames without a rest pose, with the motion to the next ones as an array."""
+        frames = np.load(self.sample.take)
+        faces = at(self.take(), 0)
+        meshes = []
+        for i, frame in enumerate(frames):
+            mesh = vtkPolyData()
+            mesh.ShallowCopy(mesh_of(frame, []))
+            mesh.SetPolys(faces.GetPolys())
+            motion = numpy_to_vtk(frames[min(i + 3, len(frames) - 1)] - frame, deep=True)
+            motion.SetName(name)
+            mesh.GetPointData().AddArray(motion)
+            meshes.append(mesh)
+        return self.series_of(name, meshes)
+
+    def test_takes_no_array_of_others_for_the_rest_pose(self):
+        expected = self.region_of(self.with_motion("motion"))
+        with Messages() as messages:
+            found = self.region_of(self.with_motion("displacement"))
+        self.assert_same(found, expected)
+        self.assertIn("not passed on: displacement;", messages.text)
+        again = self.sample / "again_displacement.pvd"
+        mimetra("regions", self.sample / "displacement.pvd", "-k", 12, "-o", again)
+        series = simple.PVDReader(FileName=str(again))
+        self.assert_same(point_array(at(series, 0), "region"), expected)
+
+    def test_names_the_arrays_that_it_replaces(self):
+        numbered = simple.Calculator(Input=self.take(), Function="coordsX", ResultArrayName="roi")
+        found = self.filter_of(numbered)
+        with Messages() as messages:
+            at(found, 0)
+            at(found, 1)
+        self.assertEqual(messages.text.count("not passed on: roi;"), 1,
+                         messages.text)
+
+    def test_passes_on_in_silence_what_the_command_wrote_of_displacements(self):
+        written = self.sample / "moved.pvd"
+        mimetra("convert", self.sample.take, "-o", written)
+        series = simple.PVDReader(FileName=str(written))
+        self.assertTrue(at(series, 0).GetPointData().HasArray("displacement"))
+        with Messages() as messages:
+            at(self.filter_of(series), 0)
+        self.assertEqual(messages.text, "")
+
+    def test_says_that_file_series_count_frames(self):
+        folder = self.sample / "counted"
+        mimetra("convert", self.sample.take, "-o", folder)
+        files = simple.PLYReader(FileNames=sorted(map(str, folder.glob("*.ply"))))
+        words = "its frames are 1 s apart (median)"
+        with Messages() as messages:
+            found = self.filter_of(files)
+            at(found, 0)
+            at(found, 5)
+        self.assertEqual(messages.text.count(words), 1, messages.text)
+        self.assertIn("Temporal Shift Scale", messages.text)
+        seconds = simple.TemporalShiftScale(Input=files, Scale=1 / 30)
+        with Messages() as messages:
+            at(self.filter_of(seconds), 0)
+        self.assertNotIn(words, messages.text)
+
 
 if __name__ == "__main__":
     run_tests()

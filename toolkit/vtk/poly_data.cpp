@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include <Eigen/QR>
+
 #include <vtkCellArray.h>
 #include <vtkCellData.h>
 #include <vtkDoubleArray.h>
@@ -106,20 +108,68 @@ Eigen::MatrixXd on_triangles(vtkPolyData& data, const Eigen::MatrixXd& on_cells,
       connectivity.polygon_of_triangle, Eigen::all);
 }
 
-Positions finite(Positions positions, const std::string& name, const std::string& what) {
+/// The point data or field data of a name, where they are vectors of this mesh.
+vtkDataArray* vectors_of(vtkFieldData& carrier, const char* name, const Positions& positions) {
+  vtkDataArray* array = carrier.GetArray(name);
+  const bool fits = array && array->GetNumberOfComponents() == 3 &&
+                    array->GetNumberOfTuples() == positions.rows();
+  return fits ? array : nullptr;
+}
+
+/// `rest` moved as the points were from `then` to `now`; nothing where that is no linear map and
+/// shift.
+std::optional<Positions> moved_with(const Positions& rest, const Positions& then,
+                                    const Positions& now) {
+  // Of the largest coordinate: filters may give points in single precision.
+  constexpr double kRounding = 4 * std::numeric_limits<float>::epsilon();
+  // Of squared sizes: across a mesh that is flatter, rounding would tell the map.
+  constexpr double kFlat = 1e-8;
+  if (now == then) return rest;
+  const Eigen::RowVector3d center = then.colwise().mean();
+  const Positions around = then.rowwise() - center, moves = now - then;
+  const Eigen::RowVector3d shift = moves.colwise().mean();
+  Eigen::CompleteOrthogonalDecomposition<Eigen::Matrix3d> squares;
+  squares.setThreshold(kFlat);
+  squares.compute(around.transpose() * around);
+  const Eigen::Matrix3d map = squares.solve(around.transpose() * (moves.rowwise() - shift));
+  const double left = ((moves - around * map).rowwise() - shift).cwiseAbs().maxCoeff();
+  const double largest = std::max(then.cwiseAbs().maxCoeff(), now.cwiseAbs().maxCoeff());
+  if (!(left <= kRounding * largest)) return {};
+  return (rest + (rest.rowwise() - center) * map).rowwise() + shift;
+}
+
+/// Keeps where the points of a rest pose are; the array shares their memory.
+void keep_places(vtkPolyData& data) {
+  if (!data.GetPoints() || !data.GetPointData()->HasArray(kRestPose)) return;
+  vtkDataArray* points = data.GetPoints()->GetData();
+  const auto places = vtkSmartPointer<vtkDataArray>::Take(points->NewInstance());
+  places->ShallowCopy(points);
+  places->SetName(kPlaced);
+  name_components(*places);
+  data.GetPointData()->AddArray(places);
+}
+
+void check_finite(const Positions& positions, const std::string& name, const std::string& what) {
   for (Eigen::Index v = 0; v < positions.rows(); ++v) {
     if (!positions.row(v).allFinite()) {
       throw IoError(name, what + std::to_string(v) + " is not finite");
     }
   }
-  return positions;
+}
+
+Positions rest_in(vtkDataArray& array, const std::string& name) {
+  Positions rest = values_of(array);
+  check_rest(rest, name);
+  return rest;
 }
 
 }  // namespace
 
 Positions positions_of(vtkPolyData& data, const std::string& name) {
   if (data.GetNumberOfPoints() == 0) throw IoError(name, "has no points");
-  return finite(values_of(*data.GetPoints()->GetData()), name, "point ");
+  Positions positions = values_of(*data.GetPoints()->GetData());
+  check_finite(positions, name, "point ");
+  return positions;
 }
 
 Connectivity connectivity_of(vtkPolyData& data, const std::string& name) {
@@ -144,21 +194,29 @@ Connectivity connectivity_of(vtkPolyData& data, const std::string& name) {
   }
 }
 
-std::optional<Positions> rest_of(vtkPolyData& data, const Positions& positions,
-                                 const std::string& name) {
-  constexpr const char* kVertex = "rest pose: vertex ";
-  const auto of_this_mesh = [&positions](vtkDataArray* array) {
-    return array && array->GetNumberOfComponents() == 3 &&
-           array->GetNumberOfTuples() == positions.rows();
-  };
-  vtkFieldData* const carriers[] = {data.GetPointData(), data.GetFieldData()};
-  for (vtkFieldData* carrier : carriers) {
-    vtkDataArray* rest = carrier->GetArray(kRestPose);
-    if (of_this_mesh(rest)) return finite(values_of(*rest), name, kVertex);
+std::optional<CarriedRest> rest_of(vtkPolyData& data, const Positions& positions,
+                                   const std::string& name) {
+  vtkDataArray* on_points = vectors_of(*data.GetPointData(), kRestPose, positions);
+  if (!on_points) {
+    vtkDataArray* beside = vectors_of(*data.GetFieldData(), kRestPose, positions);
+    if (!beside) return {};
+    return CarriedRest{rest_in(*beside, name), ""};
   }
-  vtkDataArray* moved = data.GetPointData()->GetArray(kDisplacement);
-  if (of_this_mesh(moved)) return finite(positions - values_of(*moved), name, kVertex);
-  return {};
+  Positions rest = rest_in(*on_points, name);
+  // Earlier versions did not keep the places.
+  vtkDataArray* places = vectors_of(*data.GetPointData(), kPlaced, positions);
+  if (!places) return CarriedRest{std::move(rest), ""};
+  if (auto moved = moved_with(rest, values_of(*places), positions)) return CarriedRest{*moved, ""};
+  return CarriedRest{
+      std::move(rest),
+      "filters have moved the points since their rest pose (" + std::string(kRestPose) +
+          ") was set, and not as a whole: it stays where it was, and what moved them counts as "
+          "deformation; where it is none, apply such filters after mimetra's, or leave the array "
+          "out by Pass Arrays"};
+}
+
+void check_rest(const Positions& rest, const std::string& name) {
+  check_finite(rest, name, "rest pose: vertex ");
 }
 
 std::vector<Field> fields_of(vtkPolyData& data, const Connectivity& connectivity) {
@@ -168,7 +226,7 @@ std::vector<Field> fields_of(vtkPolyData& data, const Connectivity& connectivity
       vtkDataArray* array = vtkDataArray::SafeDownCast(arrays.GetAbstractArray(i));
       if (!array || !array->GetName()) continue;
       const std::string name = array->GetName();
-      if (name == kDisplacement || name == kDisplacementLength || name == kRestPose) continue;
+      if (name == kRestPose || name == kPlaced) continue;
       const bool integer = array->GetDataType() != VTK_FLOAT && array->GetDataType() != VTK_DOUBLE;
       fields.push_back({name, location, placed(values_of(*array)), integer});
     }
@@ -198,6 +256,7 @@ void set_positions(vtkPolyData& data, const Eigen::Ref<const Positions>& positio
   points->SetData(precision == Precision::single_precision ? float_array("Points", positions)
                                                            : double_array("Points", positions));
   data.SetPoints(points);
+  keep_places(data);
 }
 
 void add_field(vtkPolyData& data, const Field& field, const Connectivity& connectivity) {
@@ -221,9 +280,12 @@ void add_displacement(vtkPolyData& data, const Eigen::MatrixXd& displacement) {
 }
 
 void set_rest(vtkPolyData& data, const std::optional<Positions>& rest) {
+  data.GetPointData()->RemoveArray(kPlaced);
   data.GetPointData()->RemoveArray(kRestPose);
   data.GetFieldData()->RemoveArray(kRestPose);
-  if (rest) data.GetPointData()->AddArray(double_array(kRestPose, *rest));
+  if (!rest) return;
+  data.GetPointData()->AddArray(double_array(kRestPose, *rest));
+  keep_places(data);
 }
 
 }  // namespace mimetra

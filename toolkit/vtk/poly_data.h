@@ -18,13 +18,23 @@ Positions positions_of(vtkPolyData& data, const std::string& name);
 /// The polygons; vertices and lines are left out. Throws IoError where there are none, or strips.
 Connectivity connectivity_of(vtkPolyData& data, const std::string& name);
 
-/// The rest pose of data at `positions`: the point data kRestPose, field data of this name, which
-/// files of earlier versions have, or the positions without the point data kDisplacement. Throws
-/// IoError where a vertex of it is not finite.
-std::optional<Positions> rest_of(vtkPolyData& data, const Positions& positions,
-                                 const std::string& name);
+/// A rest pose that a mesh carries, and what is odd about it; "" for nothing.
+struct CarriedRest {
+  Positions positions;
+  std::string note;
+};
 
-/// All numeric point data, and cell data of the polygons, save displacements and rest poses.
+/// The rest pose of data at `positions`: the point data kRestPose, or field data of this name,
+/// which files of earlier versions have. Where filters have moved the points since set_rest() by a
+/// linear map and a shift, it has moved with them; where they have moved otherwise, it stays, which
+/// is noted. Throws IoError where a vertex of it is not finite.
+std::optional<CarriedRest> rest_of(vtkPolyData& data, const Positions& positions,
+                                   const std::string& name);
+
+/// Throws IoError where a vertex of a rest pose is not finite.
+void check_rest(const Positions& rest, const std::string& name);
+
+/// All numeric point data, and cell data of the polygons, save rest poses.
 std::vector<Field> fields_of(vtkPolyData& data, const Connectivity& connectivity);
 
 /// A point array (N x c), or nothing.
@@ -33,6 +43,7 @@ std::optional<Eigen::MatrixXd> point_values(vtkPolyData& data, const std::string
 void set_polygons(vtkPolyData& data, const Connectivity& connectivity);
 
 enum class Precision { single_precision, double_precision };
+/// A rest pose that was set stays that of the new positions.
 void set_positions(vtkPolyData& data, const Eigen::Ref<const Positions>& positions, Precision);
 
 /// Adds or replaces a field: float, or 32-bit integers. Triangle fields go on the polygon, the
@@ -45,8 +56,10 @@ constexpr const char* kDisplacementLength = "displacement_length";
 void add_displacement(vtkPolyData& data, const Eigen::MatrixXd& displacement);
 
 /// Point data (N x 3, double) that carry the rest pose along a pipeline, and stay with their points
-/// where a filter takes some away or distributes them.
+/// where a filter takes some away or distributes them. Filters that move points turn and scale it
+/// at most, as a vector; kPlaced, the points themselves, tells what has become of them.
 constexpr const char* kRestPose = "mimetra_rest";
+constexpr const char* kPlaced = "mimetra_points";
 void set_rest(vtkPolyData& data, const std::optional<Positions>& rest);
 
 }  // namespace mimetra

@@ -18,6 +18,7 @@
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/progress.h"
 #include "toolkit/mesh/text.h"
+#include "toolkit/vtk/displaced_rest.h"
 #include "toolkit/vtk/poly_data.h"
 #include "toolkit/vtk/silent_vtk.h"
 #include "toolkit/vtk/vtp_header.h"
@@ -140,6 +141,20 @@ class VtpFrames : public FrameSource {
   std::vector<FrameFile> files_;
 };
 
+/// The rest pose of files' displacements, of which the first is read already.
+std::optional<Positions> displaced_rest(vtkPolyData& first, const Positions& positions,
+                                        const std::vector<FrameFile>& files) {
+  DisplacedRest rest(static_cast<int>(files.size()));
+  rest.look_at(first, positions);
+  for (int f = 1; rest.is_possible() && f < static_cast<int>(files.size()); ++f) {
+    if (!rest.looks_at(f)) continue;
+    const fs::path& file = files[static_cast<std::size_t>(f)].file;
+    const auto data = read_poly_data(file);
+    rest.look_at(*data, positions_of(*data, file.string()));
+  }
+  return rest.found(files.front().file.string());
+}
+
 }  // namespace
 
 FieldSequence open_vtp_series(const fs::path& path, const VtpReadOptions& options) {
@@ -155,15 +170,18 @@ FieldSequence open_vtp_series(const fs::path& path, const VtpReadOptions& option
   const Positions positions = positions_of(*data, first);
   SequenceHeader header;
   header.connectivity = std::make_shared<Connectivity>(connectivity_of(*data, first));
-  const std::optional<Positions> rest = rest_of(*data, positions, first);
-  header.rest = rest.value_or(positions);
-  header.rest_is_known = rest.has_value();
+  const std::optional<Positions> displaced = displaced_rest(*data, positions, chosen);
+  const std::optional<CarriedRest> carried = rest_of(*data, positions, first);
+  if (carried && !carried->note.empty() && options.note) options.note(carried->note);
+  header.rest = carried ? carried->positions : displaced.value_or(positions);
+  header.rest_is_known = carried || displaced;
   header.times_are_known = lower_extension(path) != ".vtp";
   header.times = default_times(static_cast<int>(chosen.size()));
   for (std::size_t f = 0; header.times_are_known && f < chosen.size(); ++f) {
     header.times[static_cast<Eigen::Index>(f)] = chosen[f].time;
   }
   std::vector<Field> fields = fields_of(*data, *header.connectivity);
+  if (displaced) std::erase_if(fields, is_displacement);
   return {std::make_shared<const VtpFrames>(std::move(chosen), std::move(header)),
           std::move(fields)};
 }

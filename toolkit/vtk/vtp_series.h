@@ -58,13 +58,16 @@ std::vector<std::filesystem::path> write_vtp_series(const FieldSequence& fields,
 struct VtpReadOptions {
   /// Chooses frames, 0-based, from their number; all without.
   std::function<std::vector<int>(int count)> selected = {};
+  /// Called with what is odd about the rest pose.
+  std::function<void(const std::string&)> note = {};
   Progress progress = {};
 };
 
 /// A series as write_vtp_series writes it, and ParaView too: NAME.pvd, NAME.vtp.series, or one
 /// NAME.vtp. Fields are those of the first chosen frame; `displacement` gives the rest pose, and is
-/// not a field. The other frames are read when they are needed, which throws as this does: IoError
-/// that names the file, MismatchError where a frame has other vertices or faces.
+/// not a field, where DisplacedRest finds one. The other frames are read when they are needed,
+/// which throws as this does: IoError that names the file, MismatchError where a frame has other
+/// vertices or faces.
 FieldSequence open_vtp_series(const std::filesystem::path& path, const VtpReadOptions& = {});
 
 /// The same with all frames in memory. Throws Cancelled, too.

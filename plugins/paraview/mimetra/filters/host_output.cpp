@@ -27,6 +27,15 @@ void remove_normals(vtkDataSetAttributes& attributes) {
   if (normals && normals->GetName()) attributes.RemoveArray(normals->GetName());
 }
 
+void add_lost(std::set<std::string>& lost, vtkDataSetAttributes& given,
+              vtkDataSetAttributes& made) {
+  for (int i = 0; i < given.GetNumberOfArrays(); ++i) {
+    vtkAbstractArray* array = given.GetAbstractArray(i);
+    if (!array->GetName() || array == given.GetNormals()) continue;
+    if (made.GetAbstractArray(array->GetName()) != array) lost.insert(array->GetName());
+  }
+}
+
 }  // namespace
 
 void show_shape(vtkPolyData& output, vtkPolyData& input, const Positions& shape) {
@@ -78,6 +87,14 @@ void share_fields(vtkPolyData& holder, vtkPolyData& output) {
   };
   share(*holder.GetPointData(), *output.GetPointData());
   share(*holder.GetCellData(), *output.GetCellData());
+}
+
+std::set<std::string> lost_arrays(vtkPolyData& input, vtkPolyData& output) {
+  std::set<std::string> lost;
+  add_lost(lost, *input.GetPointData(), *output.GetPointData());
+  add_lost(lost, *input.GetCellData(), *output.GetCellData());
+  for (const char* own : {kRestPose, kPlaced}) lost.erase(own);
+  return lost;
 }
 
 void fill(vtkTable& output, const Table& table) {

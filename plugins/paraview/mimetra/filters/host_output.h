@@ -1,5 +1,6 @@
 #pragma once
 
+#include <set>
 #include <string>
 
 #include "toolkit/operations/data.h"
@@ -28,6 +29,10 @@ void show_mesh(vtkPolyData& output, vtkPolyData& mesh, const mimetra::MeshSequen
 void make_fields(vtkPolyData& holder, vtkPolyData& mesh, const std::vector<mimetra::Field>& fields,
                  const mimetra::Connectivity& connectivity);
 void share_fields(vtkPolyData& holder, vtkPolyData& output);
+
+/// Names of the input's point and cell data that an output on its points and cells has not, or has
+/// with other values; save normals, which a new shape loses, and rest poses.
+std::set<std::string> lost_arrays(vtkPolyData& input, vtkPolyData& output);
 
 /// One column of numbers for each of the table's, "time" as "Time"; an empty cell is NaN.
 void fill(vtkTable& output, const mimetra::Table& table);

@@ -125,7 +125,7 @@ void expect_no_rest_in_fields(const Pieces& pieces) {
 
 void merge_data(vtkPolyData& mesh, const Pieces& pieces, const std::vector<PieceElement>& points,
                 const std::vector<PieceElement>& cells) {
-  for (const char* name : {kRestPose, kDisplacement}) expect_alike(pieces, name);
+  for (const char* name : {kRestPose, kPlaced, kDisplacement}) expect_alike(pieces, name);
   expect_no_rest_in_fields(pieces);
   mesh.SetPoints(merged_points(pieces, points));
   merge_attributes(

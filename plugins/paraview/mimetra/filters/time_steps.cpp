@@ -1,9 +1,12 @@
 #include "plugins/paraview/mimetra/filters/time_steps.h"
 
+#include <utility>
+
 #include <vtkPolyData.h>
 
 #include "toolkit/mesh/errors.h"
 #include "toolkit/operations/parameter.h"
+#include "toolkit/operations/sequence_parameters.h"
 #include "toolkit/vtk/poly_data.h"
 
 using namespace mimetra;
@@ -39,6 +42,7 @@ void TimeSteps::begin(std::vector<double> times, bool with_fields) {
   *this = TimeSteps();
   times_ = std::move(times);
   with_fields_ = with_fields;
+  displaced_ = DisplacedRest(static_cast<int>(count()));
 }
 
 std::optional<double> TimeSteps::next_time() const {
@@ -52,7 +56,10 @@ void TimeSteps::add(vtkDataObject* data) {
   Connectivity connectivity = connectivity_of(mesh, name);
   if (next_ == 0) {
     frames_.resize(static_cast<Eigen::Index>(count()), positions.size());
-    rest_ = rest_of(mesh, positions, name);
+    if (auto carried = rest_of(mesh, positions, name)) {
+      rest_ = std::move(carried->positions);
+      if (!carried->note.empty()) notes_.push_back(std::move(carried->note));
+    }
     if (with_fields_) fields_ = fields_of(mesh, connectivity);
     vertices_ = connectivity.vertices;
     faces_ = connectivity.polygons.size();
@@ -65,6 +72,7 @@ void TimeSteps::add(vtkDataObject* data) {
                           to_text(times_.front()) + "; all time steps need the same faces");
     }
   }
+  if (displaced_.looks_at(static_cast<int>(next_))) displaced_.look_at(mesh, positions);
   frames_.row(static_cast<Eigen::Index>(next_)) =
       Eigen::Map<const Eigen::RowVectorXd>(positions.data(), positions.size());
   ++next_;
@@ -73,6 +81,14 @@ void TimeSteps::add(vtkDataObject* data) {
 FieldSequence TimeSteps::taken() {
   const Eigen::VectorXd times =
       Eigen::Map<const Eigen::VectorXd>(times_.data(), static_cast<Eigen::Index>(times_.size()));
+  if (const std::string odd = note_on_steps(times); !odd.empty()) {
+    notes_.push_back(odd + " (Temporal Shift Scale brings them there)");
+  }
+  const std::string first = name_of(times_.empty() ? std::nullopt : std::optional(times_.front()));
+  auto displaced = std::exchange(displaced_, DisplacedRest(1)).found(first);
+  are_displaced_ = displaced.has_value();
+  if (are_displaced_) std::erase_if(fields_, is_displacement);
+  if (!rest_) rest_ = std::move(displaced);
   MeshSequence sequence(std::move(connectivity_), std::move(frames_), times, std::move(rest_));
   return FieldSequence(std::move(sequence), std::move(fields_));
 }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "toolkit/operations/data.h"
+#include "toolkit/vtk/displaced_rest.h"
 
 class vtkDataObject;
 class vtkPolyData;
@@ -32,6 +33,11 @@ class TimeSteps {
   /// What was collected, which is then forgotten, save its times and counts.
   mimetra::FieldSequence taken();
 
+  /// What is odd about those collected.
+  const std::vector<std::string>& notes() const { return notes_; }
+  /// True where the point data `displacement` were mimetra's, and not anything else's.
+  bool are_displaced() const { return are_displaced_; }
+
   /// Throws MismatchError for a mesh at `time` with other numbers of vertices or faces than those
   /// collected.
   void expect_counts_of(vtkPolyData& mesh, std::optional<double> time) const;
@@ -47,6 +53,9 @@ class TimeSteps {
   mimetra::Connectivity connectivity_;
   mimetra::Frames frames_;
   std::optional<mimetra::Positions> rest_;
+  mimetra::DisplacedRest displaced_{1};
+  bool are_displaced_ = false;
+  std::vector<std::string> notes_;
   std::vector<mimetra::Field> fields_;
 };
 

@@ -14,11 +14,14 @@
 #include <vtkStreamingDemandDrivenPipeline.h>
 
 #include "plugins/paraview/mimetra/filters/filter_proxies.h"
+#include "plugins/paraview/mimetra/filters/host_output.h"
 #include "plugins/paraview/mimetra/filters/operation_call.h"
 #include "plugins/paraview/mimetra/filters/parcel.h"
+#include "plugins/paraview/mimetra/filters/piece_answer.h"
 #include "plugins/paraview/mimetra/filters/piece_exchange.h"
 #include "plugins/paraview/mimetra/filters/time_steps.h"
 #include "toolkit/mesh/errors.h"
+#include "toolkit/mesh/text.h"
 #include "toolkit/vtk/poly_data.h"
 
 using namespace mimetra;
@@ -272,6 +275,7 @@ void vtkMimetraFilter::collect(vtkInformation& in, std::optional<double> shown) 
     if (!show_progress(kReading * steps_->share())) throw Cancelled();
   }
   call().give(input_, {input_, steps_->taken()});
+  for (const std::string& note : steps_->notes()) vtkWarningMacro(<< input_ << ": " << note);
   collected_ = origin;
 }
 
@@ -310,6 +314,29 @@ void vtkMimetraFilter::tell_of_seams() {
                   << kNumberThem);
 }
 
+void vtkMimetraFilter::tell_of_lost_arrays(vtkPolyData& input, vtkInformationVector& outputs) {
+  vtkPolyData* output = vtkPolyData::GetData(&outputs, 0);
+  if (!output) return;
+  std::set<std::string> lost;
+  const auto look_at = [&](vtkPolyData& mesh) {
+    if (lies_on(*output, mesh)) lost.merge(lost_arrays(mesh, *output));
+  };
+  look_at(input);
+  for (const MeshPort& each : mesh_ports_) {
+    if (each.mesh) look_at(*each.mesh);
+  }
+  if (steps_->are_displaced()) {
+    for (const char* own : {kDisplacement, kDisplacementLength}) lost.erase(own);
+  }
+  if (lost == told_lost_) return;
+  told_lost_ = lost;
+  if (lost.empty()) return;
+  vtkWarningMacro(<< "arrays of the input that are not passed on: "
+                  << joined({lost.begin(), lost.end()})
+                  << "; the output has its own of that name, or is another shape. To keep one, "
+                     "give it another name before (Calculator)");
+}
+
 void vtkMimetraFilter::compute_and_show(std::optional<double> time, vtkInformationVector* outputs) {
   expect_order();
   tell_of_seams();
@@ -327,6 +354,7 @@ void vtkMimetraFilter::compute_and_show(std::optional<double> time, vtkInformati
   const bool has_time = about->Has(vtkDataObject::DATA_TIME_STEP());
   const double shown = has_time ? about->Get(vtkDataObject::DATA_TIME_STEP()) : time.value_or(0);
   show(computed, mesh, shown, outputs);
+  tell_of_lost_arrays(mesh, *outputs);
   // Whatever it is made of, what moves is at the input's time.
   if (!moves(0)) return;
   vtkDataObject::GetData(outputs, 0)

@@ -3,6 +3,7 @@
 #include <array>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -103,6 +104,8 @@ class MIMETRAFILTERS_EXPORT vtkMimetraFilter : public vtkMimetraAlgorithm {
   /// Warns, once for an input, where points without global ids were joined by their positions.
   /// Throws UsageError where the operation keeps apart what is at one position.
   void tell_of_seams();
+  /// Warns, once for the same, of the input's arrays that the first output does not pass on.
+  void tell_of_lost_arrays(vtkPolyData& input, vtkInformationVector& outputs);
   /// On the first process computes for all; the others do what it says.
   void compute_or_serve(vtkInformationVector** inputs, vtkInformationVector* outputs);
   /// Gives the operation what comes in at further ports.
@@ -122,6 +125,7 @@ class MIMETRAFILTERS_EXPORT vtkMimetraFilter : public vtkMimetraAlgorithm {
   std::unique_ptr<TimeSteps> steps_;
   std::optional<Origin> collected_;
   std::optional<Origin> told_of_;  ///< the input whose seams were joined
+  std::set<std::string> told_lost_;
   vtkMTimeType failed_at_ = 0;
   vtkMTimeType prepared_at_ = 0;
   std::array<vtkIdType, 3> prepared_cells_ = {};  ///< vertices, lines, and all
