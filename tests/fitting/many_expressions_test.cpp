@@ -15,6 +15,7 @@ namespace mimetra {
 namespace {
 
 constexpr int kUpperLip = 62, kLowerLip = 66, kLeftEye = 36, kRightEye = 45;
+constexpr int kNoseTop = 27, kNoseBase = 33;
 
 class ManyExpressions : public testing::Test {
  protected:
@@ -106,9 +107,10 @@ TEST_F(ManyExpressions, FollowRealFootage) {
     const Positions now = pose(fits[std::size_t(f)]);
     largest_step = std::max(largest_step, (now - before).rowwise().norm().maxCoeff());
     widest = std::max(widest, fits[std::size_t(f)].beta[jaw]);
-    gaps[f] = lip_gap(now);
-    const auto of_lip = [&](int lip) { return track.points.row(f).segment<2>(2 * lip); };
-    seen[f] = (of_lip(kUpperLip) - of_lip(kLowerLip)).norm();
+    gaps[f] = lip_gap(now) / (now.row(vertices_[kNoseTop]) - now.row(vertices_[kNoseBase])).norm();
+    const auto image = track.points.row(f).reshaped<Eigen::RowMajor>(68, 2);
+    seen[f] = (image.row(kUpperLip) - image.row(kLowerLip)).norm() /
+              (image.row(kNoseTop) - image.row(kNoseBase)).norm();
     before = now;
   }
   const double step = largest_step / extent(model_.mean());
