@@ -84,9 +84,7 @@ BoundParameters<FitCall> fit_parameters() {
            "landmarks far from the face in units of the clip's noise: resist them (auto: where "
            "noise is estimated), or trust all")
       .add("ridge", FitOptions::kRidge,
-           "weight of squared expressions (default: a tenth of their number where that is above "
-           "ten, "
-           "else 0)")
+           "weight of squared expressions (default: 0.125 for each of them beyond ten)")
       .add("smoothness", FitOptions::kSmoothness, "time constant of smooth expressions")
       .brief("time constant of smooth expressions")
       .under("Fitting");

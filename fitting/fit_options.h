@@ -50,8 +50,8 @@ struct FitOptions {
   Outliers outliers = Outliers::automatic;
   /// Upper bound of each beta, > 0; infinity leaves only beta >= 0.
   double max_expression = 1;
-  /// Weight of |beta|^2 beside |alpha|^2. By default a tenth of the number of expressions, and 0
-  /// for ten or fewer.
+  /// Weight of |beta|^2 beside |alpha|^2. By default 0.125 for each expression beyond ten, so that
+  /// fifty are as strong as in real performances.
   std::optional<double> ridge = std::nullopt;
   /// Time constant that is the weight of squared second differences of beta over time. The
   /// alternation finds it, from where the solver ends without it. Needs max_expression = 1.

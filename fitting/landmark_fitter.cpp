@@ -21,14 +21,13 @@ namespace {
 /// sqrt(3) px for the face of the size it was found on.
 constexpr double kRelativeSigma = 0.017485;
 
-/// More expressions than this are not told apart by landmarks alone.
-constexpr int kManyExpressions = 10;
-/// Expected |beta|^2 of a face. Captured performances of 51 and 52 expressions have 2.5 and 5.2.
-constexpr double kUsualSquares = 5;
-
-/// That of a normal prior on beta with which so many expressions are as strong as faces are.
-double usual_ridge(int expressions) {
-  return expressions > kManyExpressions ? expressions / (2 * kUsualSquares) : 0;
+/// The ridge with which so many expressions are as strong as those of faces are. Landmarks tell ten
+/// apart without one. Of 52 it is that of a normal prior with which |beta|^2 is 5 on average:
+/// captured performances of 51 and 52 expressions have 2.5 and 5.2.
+double usual_ridge(Eigen::Index expressions) {
+  constexpr Eigen::Index kToldApart = 10;
+  constexpr double kOfEachFurther = 0.125;
+  return expressions > kToldApart ? kOfEachFurther * double(expressions - kToldApart) : 0;
 }
 
 std::string frame_name(Eigen::Index frame) {
@@ -223,7 +222,7 @@ FitOptions LandmarkFitter::State::checked(const Frames& points, const FitOptions
                                 std::to_string(points.rows()) + " frames");
   }
   FitOptions result = options;
-  if (!result.ridge) result.ridge = usual_ridge(static_cast<int>(rows->expressions.size()));
+  if (!result.ridge) result.ridge = usual_ridge(rows->expressions.size());
   return result;
 }
 
