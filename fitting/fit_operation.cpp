@@ -327,7 +327,7 @@ Outcome run(const Invocation& invocation) {
   const bool turns = call.head_motion == FitCall::HeadTurns::keep;
   outcome.outputs["out"].push_back(
       {"",
-       FieldSequence(turns ? turned_as_seen(sequence, cameras) : sequence),
+       FieldSequence(turns ? turned_as_seen(sequence, cameras, mapped.ibug) : sequence),
        {.model_driven = !turns}});
   outcome.outputs["fit-out"].push_back({"", fit});
   if (invocation.wants("landmarks-out")) outcome.outputs["landmarks-out"].push_back({"", track});
