@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <optional>
 
@@ -17,6 +18,7 @@
 #include "fitting/landmark_input.h"
 #include "fitting/landmark_mapping.h"
 #include "fitting/landmarks_of_drawings.h"
+#include "fitting/partial_frames.h"
 #include "fitting/video_file.h"
 #include "fitting/video_format.h"
 #include "toolkit/mesh/errors.h"
@@ -257,6 +259,26 @@ void check_images(const Invocation& invocation) {
   }
 }
 
+/// The partial_frames(), whose landmarks are taken as not seen, with a warning.
+std::vector<int> without_partial_frames(const Invocation& invocation, const MorphableModel& model,
+                                        MappedLandmarks& mapped) {
+  const std::vector<int> partial = partial_frames(model, mapped);
+  if (partial.empty()) return partial;
+  const auto seen = (mapped.points.row(partial.front()).array().isFinite()).count() / 2;
+  invocation.warn(invocation.input("landmarks").name + ": " + std::to_string(partial.size()) +
+                  " of " + std::to_string(mapped.points.rows()) +
+                  " frames show too little of the face to tell how the head is turned (frame " +
+                  std::to_string(partial.front()) + ": " + std::to_string(seen) + " of " +
+                  std::to_string(mapped.vertices.size()) +
+                  " landmarks); they are taken as not seen, and their face lies between those of "
+                  "their neighbours: " +
+                  listed(words_of(partial)));
+  for (const int frame : partial) {
+    mapped.points.row(frame).setConstant(std::numeric_limits<double>::quiet_NaN());
+  }
+  return partial;
+}
+
 std::vector<int> seen_frames(const FittedCoefficients& fit) {
   std::vector<int> frames;
   for (int f = 0; f < fit.frames(); ++f) {
@@ -278,11 +300,12 @@ Outcome run(const Invocation& invocation) {
   const FitCall call = fit_parameters().read(invocation.parameters);
   check_fit(call.fit);
   const LandmarkMapping mapping = mapping_of(call, invocation.input("model"));
-  const MappedLandmarks mapped =
+  MappedLandmarks mapped =
       naming_landmarks(invocation, [&] { return map_landmarks(track, mapping); });
   report_progress(invocation.progress, 0);
   const ClipFit clip =
       naming_landmarks(invocation, [&] { return ClipFit(invocation, model, mapped, call.fit); });
+  const std::vector<int> partial = without_partial_frames(invocation, model, mapped);
   const std::vector<FrameFit> frames =
       naming_landmarks(invocation, [&] { return clip.of(0, track.frames(), 0, 0.3); });
   FittedCoefficients fit = coefficients_of(model, track.times, frames);
@@ -290,11 +313,13 @@ Outcome run(const Invocation& invocation) {
   report_progress(invocation.progress, 0.5);
 
   const FitSummary summary = summary_of(fit);
-  if (!summary.unseen.empty()) {
+  std::vector<int> without;
+  std::ranges::set_difference(summary.unseen, partial, std::back_inserter(without));
+  if (!without.empty()) {
     invocation.warn(landmarks.name +
                     ": frames of the result without landmarks, whose face lies between those of "
                     "their neighbours: " +
-                    listed(words_of(summary.unseen)));
+                    listed(words_of(without)));
   }
   const MeshSequence sequence = sequence_of(model, fit, call.fit.shape);
   const std::vector<AffineCamera> cameras = cameras_at_origin(fit);
@@ -312,6 +337,7 @@ Outcome run(const Invocation& invocation) {
                  {"vertices", model.vertices()},
                  {"mapped_landmarks", mapped.vertices.size()},
                  {"unseen_frames", summary.unseen},
+                 {"partial_frames", partial},
                  {"outline_landmarks", mapped.outline.cols() / 2},
                  {"repeated", frames.front().repeated},
                  {"verdict", judgement.json(fit.expressions)}};
