@@ -8,6 +8,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "fitting/camera_distance.h"
 #include "fitting/fit_judgement.h"
 #include "fitting/fit_pictures.h"
 #include "fitting/head_facing.h"
@@ -305,6 +306,7 @@ Outcome run(const Invocation& invocation) {
   report_progress(invocation.progress, 0);
   const ClipFit clip =
       naming_landmarks(invocation, [&] { return ClipFit(invocation, model, mapped, call.fit); });
+  check_focal_length(call.fit, model, mapped, landmarks.origin.images.get());
   const std::vector<int> partial = without_partial_frames(invocation, model, mapped);
   const std::vector<FrameFit> frames =
       naming_landmarks(invocation, [&] { return clip.of(0, track.frames(), 0, 0.3); });
