@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <iterator>
 #include <limits>
-#include <optional>
 #include <sstream>
 #include <stdexcept>
 
+#include "fitting/followed_face.h"
 #include "fitting/image_codec.h"
 #include "fitting/landmark_formats.h"
 #include "fitting/recording_search.h"
@@ -23,13 +23,9 @@ constexpr Eigen::Index kLandmarks = 68;
 constexpr const char* kTerms =
     "the 68-point model was trained on photographs for non-commercial use only (iBUG 300-W)";
 
-Eigen::Vector2d middle(const Face& face) {
-  return {face.left + face.width / 2, face.top + face.height / 2};
-}
-
-/// How much better a face is than another: by its size, or by its distance from the last one.
-double merit(const Face& face, const std::optional<Face>& last) {
-  return last ? -(middle(face) - middle(*last)).squaredNorm() : face.width * face.height;
+FaceBox box_of(const Face& face) {
+  const Eigen::Array2d size(face.width, face.height);
+  return {Eigen::Array2d(face.left, face.top) + size / 2, size};
 }
 
 FaceFrame frame_of(const FacesInImage& image, const std::vector<Face>& confident,
@@ -44,9 +40,11 @@ FaceFrame frame_of(const FacesInImage& image, const std::vector<Face>& confident
   } else if (image.faces.empty()) {
     frame.note = "no face found";
   } else {
-    frame.outcome = FaceFrame::Outcome::low_confidence;
     frame.confidence = std::ranges::max_element(image.faces, {}, &Face::confidence)->confidence;
-    frame.note = low_confidence_note(frame.confidence, min_confidence);
+    const bool trusted = frame.faces > 0;
+    frame.outcome = trusted ? FaceFrame::Outcome::other_face : FaceFrame::Outcome::low_confidence;
+    frame.note = trusted ? "only faces of others than the one that is followed"
+                         : low_confidence_note(frame.confidence, min_confidence);
   }
   return frame;
 }
@@ -69,9 +67,13 @@ std::vector<std::string> notes_on(const std::vector<FaceFrame>& frames) {
            [](const FaceFrame& frame) { return frame.outcome == Outcome::no_face; });
   add_note(notes, frames, "show only faces of too low confidence",
            [](const FaceFrame& frame) { return frame.outcome == Outcome::low_confidence; });
-  add_note(notes, frames,
-           "show several faces (the largest is taken, then the nearest to the last one)",
+  add_note(notes, frames, "show several faces (the largest of the first is followed)",
            [](const FaceFrame& frame) { return frame.faces > 1; });
+  add_note(notes, frames, "show only faces of others than the one that is followed",
+           [](const FaceFrame& frame) { return frame.outcome == Outcome::other_face; });
+  add_note(notes, frames,
+           "show the face that is followed elsewhere than before (is it the same person's?)",
+           [](const FaceFrame& frame) { return frame.jumps; });
   return notes;
 }
 
@@ -109,21 +111,25 @@ FaceTrack follow_face(const std::vector<FacesInImage>& frames, double min_confid
   track.landmarks.points.setConstant(count, 2 * kLandmarks,
                                      std::numeric_limits<double>::quiet_NaN());
   track.landmarks.confidence.setZero(count);
-  std::optional<Face> last;
-  for (Eigen::Index f = 0; f < count; ++f) {
-    const FacesInImage& image = frames[static_cast<std::size_t>(f)];
-    std::vector<Face> confident;
-    std::ranges::copy_if(image.faces, std::back_inserter(confident),
+  std::vector<std::vector<Face>> confident;
+  std::vector<std::vector<FaceBox>> boxes;
+  for (const FacesInImage& image : frames) {
+    auto& faces = confident.emplace_back();
+    std::ranges::copy_if(image.faces, std::back_inserter(faces),
                          [&](const Face& face) { return face.confidence >= min_confidence; });
-    const auto chosen = std::ranges::max_element(
-        confident, {}, [&](const Face& face) { return merit(face, last); });
-    const bool found = chosen != confident.end();
-    track.frames.push_back(frame_of(image, confident, found ? &*chosen : nullptr, min_confidence));
-    if (!found) continue;
-    track.landmarks.points.row(f) = chosen->landmarks.reshaped<Eigen::RowMajor>().transpose();
-    track.landmarks.confidence[f] = chosen->confidence;
-    last = *chosen;
+    std::ranges::transform(faces, std::back_inserter(boxes.emplace_back()), box_of);
   }
+  const FollowedFace followed = followed_face(boxes);
+  for (std::size_t f = 0; f < frames.size(); ++f) {
+    const int index = followed.chosen[f];
+    const Face* chosen = index < 0 ? nullptr : &confident[f][static_cast<std::size_t>(index)];
+    track.frames.push_back(frame_of(frames[f], confident[f], chosen, min_confidence));
+    if (!chosen) continue;
+    const auto row = static_cast<Eigen::Index>(f);
+    track.landmarks.points.row(row) = chosen->landmarks.reshaped<Eigen::RowMajor>().transpose();
+    track.landmarks.confidence[row] = chosen->confidence;
+  }
+  for (const int jump : followed.jumps) track.frames[static_cast<std::size_t>(jump)].jumps = true;
   track.notes = notes_on(track.frames);
   return track;
 }

@@ -13,13 +13,15 @@ namespace mimetra {
 
 /// What became of one frame.
 struct FaceFrame {
-  enum class Outcome { found, no_face, low_confidence };
+  enum class Outcome { found, no_face, low_confidence, other_face };
 
   std::string image;  ///< its name
   Outcome outcome = Outcome::no_face;
   int faces = 0;          ///< those of enough confidence, among which one was chosen
   double confidence = 0;  ///< of the chosen face; else of the best that was found; 0 where none was
-  std::string note;       ///< what is not as it should be, or nothing
+  /// Another face, elsewhere than in the frames before, is taken for that of the person.
+  bool jumps = false;
+  std::string note;  ///< what is not as it should be, or nothing
 };
 
 /// The landmarks of one person over a sequence of images.
@@ -31,9 +33,8 @@ struct FaceTrack {
   std::vector<std::string> notes;
 };
 
-/// Chooses one face in each frame: the largest, and once there is one, that whose middle is nearest
-/// to the last chosen one's. Equal ones: the first. Throws std::invalid_argument where
-/// min_confidence is out of its range.
+/// Chooses the face of one person in each frame, as followed_face(), among those of enough
+/// confidence. Throws std::invalid_argument where min_confidence is out of its range.
 FaceTrack follow_face(const std::vector<FacesInImage>& frames,
                       double min_confidence = FaceOptions{}.min_confidence);
 

@@ -22,8 +22,10 @@ Json Judgement::json(const std::vector<std::string>& names) const {
           {"flipped", identity.flipped},
           {"residual", residuals.typical()},
           {"stretch", stretch},
-          {"halves_mean", halves ? Json(halves->mean) : Json(nullptr)},
-          {"halves_largest", halves ? Json(halves->largest) : Json(nullptr)},
+          {"halves_mean", people.halves ? Json(people.halves->mean) : Json(nullptr)},
+          {"halves_largest", people.halves ? Json(people.halves->largest) : Json(nullptr)},
+          {"places_mean", people.places ? Json(people.places->mean) : Json(nullptr)},
+          {"cuts", people.cuts},
           {"expressions", uses}};
 }
 
@@ -31,9 +33,10 @@ std::string Judgement::words() const {
   std::string text = "identity: " + readable(identity.alpha_rms) +
                      " standard deviations (RMS), at most " + readable(identity.alpha_max) + ", " +
                      std::to_string(identity.flipped) + " flipped triangles";
-  if (halves) {
-    text += "; the neutrals of the clip's halves are " + readable(100 * halves->mean) +
-            " % of the longest side apart (at most " + readable(100 * halves->largest) + " %)";
+  if (people.halves) {
+    text += "; the neutrals of the clip's halves are " + readable(100 * people.halves->mean) +
+            " % of the longest side apart (at most " + readable(100 * people.halves->largest) +
+            " %)";
   }
   double at_bounds = 0;
   for (const ExpressionUse& use : expressions) {
@@ -98,6 +101,23 @@ void warn_of_stretch(double stretch, const Invocation& invocation) {
                   "square?");
 }
 
+void warn_of_people(const ClipPeople& people, const Invocation& invocation) {
+  const std::string& name = invocation.input("landmarks").name;
+  if (people.places && people.places->mean > kTwoPeople) {
+    invocation.warn(name + ": the face jumps to another place in frames " +
+                    listed(words_of(people.cuts)) + ", and the places give two faces, " +
+                    percent(people.places->mean) +
+                    " of the longest side apart on average, where one person's are below 1.9 %: "
+                    "are they two people? Fit each alone: --frames takes a part");
+  } else if (people.halves && people.halves->mean > kTwoPeople) {
+    invocation.warn(name + ": the halves of the clip give two faces, " +
+                    percent(people.halves->mean) +
+                    " of the longest side apart on average, where one "
+                    "person's are below 1.2 %: is it one person, without a cut? --frames takes a "
+                    "part");
+  }
+}
+
 /// What may make a person of it.
 std::string advice(const FitOptions& options, bool is_clip) {
   using Camera = FitOptions::Camera;
@@ -119,14 +139,7 @@ void warn_of(const Judgement& judgement, const std::vector<std::string>& names,
   warn_of_residuals(judgement.residuals, judgement.has_identities, mapped, invocation);
   const bool is_clip = mapped.points.rows() > 1;
   if (is_clip && judgement.has_identities) warn_of_stretch(judgement.stretch, invocation);
-  const std::optional<NeutralDistance>& halves = judgement.halves;
-  if (halves && halves->mean > kTwoPeople) {
-    invocation.warn(invocation.input("landmarks").name +
-                    ": the halves of the clip give two faces, " + percent(halves->mean) +
-                    " of the longest side apart on average, where one "
-                    "person's are below 1.2 %: is it one person, without a cut? --frames takes a "
-                    "part");
-  }
+  warn_of_people(judgement.people, invocation);
   const IdentityVerdict& identity = judgement.identity;
   if (identity.is_doubtful()) {
     invocation.warn("the fitted identity is hardly a person: its largest coefficient is " +
@@ -140,7 +153,7 @@ void warn_of(const Judgement& judgement, const std::vector<std::string>& names,
     constant += (constant.empty() ? "" : ", ") + names[j] + " (" +
                 readable(judgement.expressions[j].mean) + ")";
   }
-  if (!constant.empty() && judgement.halves) {
+  if (!constant.empty() && judgement.people.halves) {
     invocation.warn("expressions that are there all the time, as parts of the face are: " +
                     constant + "; a larger --ridge makes them smaller");
   }

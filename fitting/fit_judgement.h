@@ -1,9 +1,9 @@
 #pragma once
 
-#include <optional>
 #include <string>
 #include <vector>
 
+#include "fitting/clip_fit.h"
 #include "fitting/fit_verdict.h"
 #include "toolkit/operations/json.h"
 #include "toolkit/operations/operation.h"
@@ -17,7 +17,7 @@ struct Judgement {
   double stretch = 1;
   /// Without identities, cameras take what the person's proportions are.
   bool has_identities = true;
-  std::optional<NeutralDistance> halves;
+  ClipPeople people;
   std::vector<ExpressionUse> expressions;
 
   /// `names` of the expressions.
@@ -26,7 +26,7 @@ struct Judgement {
 };
 
 /// Warns where landmarks are far from the fitted face, as in the wrong order, in all frames or
-/// some; where a clip's images are stretched, or its halves show two people; where no person is to
+/// some; where a clip's images are stretched, or its parts show two people; where no person is to
 /// be expected; and of expressions that are there all the time, by their `names`.
 void warn_of(const Judgement& judgement, const std::vector<std::string>& names,
              const MappedLandmarks& mapped, const FitOptions& options,

@@ -2,21 +2,23 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
-#include <optional>
 
 #include <nlohmann/json.hpp>
 
+#include "fitting/camera_distance.h"
+#include "fitting/clip_fit.h"
 #include "fitting/fit_judgement.h"
 #include "fitting/fit_pictures.h"
 #include "fitting/head_facing.h"
 #include "fitting/head_rotation.h"
 #include "fitting/image_files.h"
 #include "fitting/landmark_file.h"
-#include "fitting/landmark_fitter.h"
 #include "fitting/landmark_input.h"
 #include "fitting/landmark_mapping.h"
 #include "fitting/landmarks_of_drawings.h"
+#include "fitting/partial_frames.h"
 #include "fitting/video_file.h"
 #include "fitting/video_format.h"
 #include "toolkit/mesh/errors.h"
@@ -201,49 +203,6 @@ auto naming_landmarks(const Invocation& invocation, Call call) {
   }
 }
 
-/// Fits all frames, or parts of them.
-class ClipFit {
- public:
-  ClipFit(const Invocation& invocation, const MorphableModel& model, const MappedLandmarks& mapped,
-          const FitOptions& options)
-      : invocation_(invocation),
-        mapped_(mapped),
-        options_(options),
-        outline_(options.solver == FitOptions::Solver::joint && mapped.outline.cols() > 0),
-        fitter_(model, mapped.vertices,
-                outline_ ? LandmarkFitter::Outline::given : LandmarkFitter::Outline::none) {}
-
-  std::vector<FrameFit> of(int from, int to, double progress_from, double progress_to) const {
-    FitOptions options = options_;
-    options.progress = part_of(invocation_.progress, progress_from, progress_to);
-    const auto rows = Eigen::seqN(from, to - from);
-    const Eigen::VectorXd& times = invocation_.get<LandmarkTrack>("landmarks").times;
-    return fitter_.fit(mapped_.points(rows, Eigen::all), options, times(rows),
-                       outline_ ? Frames(mapped_.outline(rows, Eigen::all)) : Frames());
-  }
-
- private:
-  const Invocation& invocation_;
-  const MappedLandmarks& mapped_;
-  FitOptions options_;
-  bool outline_;
-  LandmarkFitter fitter_;
-};
-
-/// Distance of the neutrals that the two halves of a clip give, where it has one shape and each
-/// half frames enough to tell.
-std::optional<NeutralDistance> halves_distance(const ClipFit& clip, const MorphableModel& model,
-                                               const FittedCoefficients& fit,
-                                               FitOptions::Shape shape) {
-  constexpr int kFewest = 10;
-  const int frames = fit.frames(), half = frames / 2;
-  const bool enough = (fit.landmarks.head(half).array() > 0).count() >= kFewest &&
-                      (fit.landmarks.tail(frames - half).array() > 0).count() >= kFewest;
-  if (shape == FitOptions::Shape::frame || !enough || model.identities().size() == 0) return {};
-  const Eigen::VectorXd first = clip.of(0, half, 0.3, 0.4).front().alpha;
-  return neutral_distance(model, first, clip.of(half, frames, 0.4, 0.5).front().alpha);
-}
-
 /// Before anything is computed: pictures need what they are drawn on, and that it is sound.
 void check_images(const Invocation& invocation) {
   const NamedData& landmarks = invocation.input("landmarks");
@@ -255,6 +214,26 @@ void check_images(const Invocation& invocation) {
     }
     landmarks.origin.images->check();
   }
+}
+
+/// The partial_frames(), whose landmarks are taken as not seen, with a warning.
+std::vector<int> without_partial_frames(const Invocation& invocation, const MorphableModel& model,
+                                        MappedLandmarks& mapped) {
+  const std::vector<int> partial = partial_frames(model, mapped);
+  if (partial.empty()) return partial;
+  const auto seen = (mapped.points.row(partial.front()).array().isFinite()).count() / 2;
+  invocation.warn(invocation.input("landmarks").name + ": " + std::to_string(partial.size()) +
+                  " of " + std::to_string(mapped.points.rows()) +
+                  " frames show too little of the face to tell how the head is turned (frame " +
+                  std::to_string(partial.front()) + ": " + std::to_string(seen) + " of " +
+                  std::to_string(mapped.vertices.size()) +
+                  " landmarks); they are taken as not seen, and their face lies between those of "
+                  "their neighbours: " +
+                  listed(words_of(partial)));
+  for (const int frame : partial) {
+    mapped.points.row(frame).setConstant(std::numeric_limits<double>::quiet_NaN());
+  }
+  return partial;
 }
 
 std::vector<int> seen_frames(const FittedCoefficients& fit) {
@@ -278,23 +257,29 @@ Outcome run(const Invocation& invocation) {
   const FitCall call = fit_parameters().read(invocation.parameters);
   check_fit(call.fit);
   const LandmarkMapping mapping = mapping_of(call, invocation.input("model"));
-  const MappedLandmarks mapped =
+  MappedLandmarks mapped =
       naming_landmarks(invocation, [&] { return map_landmarks(track, mapping); });
   report_progress(invocation.progress, 0);
+  FitOptions options = call.fit;
+  options.progress = invocation.progress;
   const ClipFit clip =
-      naming_landmarks(invocation, [&] { return ClipFit(invocation, model, mapped, call.fit); });
+      naming_landmarks(invocation, [&] { return ClipFit(model, mapped, track.times, options); });
+  check_focal_length(call.fit, model, mapped, landmarks.origin.images.get());
+  const std::vector<int> partial = without_partial_frames(invocation, model, mapped);
   const std::vector<FrameFit> frames =
-      naming_landmarks(invocation, [&] { return clip.of(0, track.frames(), 0, 0.3); });
+      naming_landmarks(invocation, [&] { return clip.all(0, 0.3); });
   FittedCoefficients fit = coefficients_of(model, track.times, frames);
-  const std::optional<NeutralDistance> halves = halves_distance(clip, model, fit, call.fit.shape);
+  const ClipPeople people = people_in(clip, fit);
   report_progress(invocation.progress, 0.5);
 
   const FitSummary summary = summary_of(fit);
-  if (!summary.unseen.empty()) {
+  std::vector<int> without;
+  std::ranges::set_difference(summary.unseen, partial, std::back_inserter(without));
+  if (!without.empty()) {
     invocation.warn(landmarks.name +
                     ": frames of the result without landmarks, whose face lies between those of "
                     "their neighbours: " +
-                    listed(words_of(summary.unseen)));
+                    listed(words_of(without)));
   }
   const MeshSequence sequence = sequence_of(model, fit, call.fit.shape);
   const std::vector<AffineCamera> cameras = cameras_at_origin(fit);
@@ -305,13 +290,14 @@ Outcome run(const Invocation& invocation) {
                             residuals_of(sequence, fit, mapped),
                             stretch_of(cameras, fit),
                             model.identities().size() > 0,
-                            halves,
+                            people,
                             expression_use(fit.beta)};
   Outcome outcome;
   Json report = {{"rms_px", summary.rms},
                  {"vertices", model.vertices()},
                  {"mapped_landmarks", mapped.vertices.size()},
                  {"unseen_frames", summary.unseen},
+                 {"partial_frames", partial},
                  {"outline_landmarks", mapped.outline.cols() / 2},
                  {"repeated", frames.front().repeated},
                  {"verdict", judgement.json(fit.expressions)}};
@@ -327,7 +313,7 @@ Outcome run(const Invocation& invocation) {
   const bool turns = call.head_motion == FitCall::HeadTurns::keep;
   outcome.outputs["out"].push_back(
       {"",
-       FieldSequence(turns ? turned_as_seen(sequence, cameras) : sequence),
+       FieldSequence(turns ? turned_as_seen(sequence, cameras, mapped.ibug) : sequence),
        {.model_driven = !turns}});
   outcome.outputs["fit-out"].push_back({"", fit});
   if (invocation.wants("landmarks-out")) outcome.outputs["landmarks-out"].push_back({"", track});

@@ -1,6 +1,6 @@
 #include "fitting/head_rotation.h"
 
-#include <cmath>
+#include <optional>
 #include <stdexcept>
 #include <utility>
 
@@ -8,6 +8,24 @@
 #include <Eigen/SVD>
 
 namespace mimetra {
+
+namespace {
+
+/// Of the landmarks with numbers from `first` to before `end`; none where there is none.
+std::optional<Eigen::RowVector3d> middle_of(const Positions& positions,
+                                            const LandmarkVertices& landmarks, int first, int end) {
+  Eigen::RowVector3d sum = Eigen::RowVector3d::Zero();
+  int count = 0;
+  for (const auto& [number, vertex] : landmarks) {
+    if (number < first || number >= end) continue;
+    sum += positions.row(vertex);
+    ++count;
+  }
+  if (count == 0) return std::nullopt;
+  return Eigen::RowVector3d(sum / count);
+}
+
+}  // namespace
 
 Eigen::Matrix3d head_rotation(const AffineCamera& camera) {
   const Eigen::Matrix<double, 2, 3> linear = camera.leftCols<3>();
@@ -20,21 +38,17 @@ Eigen::Matrix3d head_rotation(const AffineCamera& camera) {
   return Eigen::Vector3d(1, -1, -1).asDiagonal() * seen;
 }
 
-Eigen::Matrix3d looking_ahead(const std::vector<Eigen::Matrix3d>& rotations) {
-  constexpr double kOwnAxes = 60;  // degrees; heads that are seen from aside are turned by less
-  Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
-  for (const Eigen::Matrix3d& rotation : rotations) sum += rotation;
-  // The mean rotation; of a rotation A the trace of A^T M is 1 + 2 cos of the angle between them.
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(sum, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  const double sign = (svd.matrixU() * svd.matrixV().transpose()).determinant();
-  const Eigen::Matrix3d mean =
-      svd.matrixU() * Eigen::Vector3d(1, 1, sign).asDiagonal() * svd.matrixV().transpose();
+Eigen::Matrix3d looking_ahead(const Positions& neutral, const LandmarkVertices& landmarks) {
+  const auto right_eye = middle_of(neutral, landmarks, 36, 42);
+  const auto left_eye = middle_of(neutral, landmarks, 42, 48);
+  const auto lips = middle_of(neutral, landmarks, 48, 68);
+  if (!right_eye || !left_eye || !lips) return Eigen::Matrix3d::Identity();
+  // Rows as a viewer has them: right, which is the face's own left, up, and towards him.
+  Eigen::Matrix3d face;
+  face.row(0) = (*left_eye - *right_eye).normalized();
+  face.row(2) = face.row(0).cross((*left_eye + *right_eye) / 2 - *lips).normalized();
+  face.row(1) = face.row(2).cross(face.row(0));
   Eigen::Matrix3d best = Eigen::Matrix3d::Identity();
-  // 1 where all are the same; heads at 45 degrees to both sides have 0.8.
-  constexpr double kAlike = 0.75;
-  const double alike =
-      (mean.transpose() * sum).trace() / (3 * static_cast<double>(rotations.size()));
-  if (alike < kAlike || mean.trace() >= 1 + 2 * std::cos(kOwnAxes * EIGEN_PI / 180)) return best;
   for (int x = 0; x < 3; ++x) {
     for (const int y : {(x + 1) % 3, (x + 2) % 3}) {
       for (const int signs : {0, 1, 2, 3}) {
@@ -42,28 +56,26 @@ Eigen::Matrix3d looking_ahead(const std::vector<Eigen::Matrix3d>& rotations) {
         axes(x, 0) = signs & 1 ? -1 : 1;
         axes(y, 1) = signs & 2 ? -1 : 1;
         axes.col(2) = axes.col(0).cross(axes.col(1));
-        if ((axes.transpose() * mean).trace() > (best.transpose() * mean).trace()) best = axes;
+        if ((axes.transpose() * face).trace() > (best.transpose() * face).trace()) best = axes;
       }
     }
   }
   return best;
 }
 
-MeshSequence turned_as_seen(const MeshSequence& sequence,
-                            const std::vector<AffineCamera>& cameras) {
+MeshSequence turned_as_seen(const MeshSequence& sequence, const std::vector<AffineCamera>& cameras,
+                            const LandmarkVertices& landmarks) {
   if (static_cast<int>(cameras.size()) != sequence.frames()) {
     throw std::invalid_argument(std::to_string(cameras.size()) + " cameras for " +
                                 std::to_string(sequence.frames()) + " frames");
   }
   const Eigen::RowVector3d middle = sequence.rest().colwise().mean();
   Frames frames = sequence.positions();
-  std::vector<Eigen::Matrix3d> rotations;
-  rotations.reserve(cameras.size());
-  for (const AffineCamera& camera : cameras) rotations.push_back(head_rotation(camera));
-  const Eigen::Matrix3d to_own_axes = looking_ahead(rotations).transpose();
+  const Eigen::Matrix3d to_own_axes = looking_ahead(sequence.rest(), landmarks).transpose();
   for (int f = 0; f < sequence.frames(); ++f) {
     Eigen::Map<Positions> frame(frames.row(f).data(), sequence.vertices(), 3);
-    const Eigen::Matrix3d rotation = to_own_axes * rotations[static_cast<std::size_t>(f)];
+    const Eigen::Matrix3d rotation =
+        to_own_axes * head_rotation(cameras[static_cast<std::size_t>(f)]);
     const Positions turned = (frame.rowwise() - middle) * rotation.transpose();
     frame = turned.rowwise() + middle;
   }

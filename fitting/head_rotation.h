@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 
 #include "fitting/affine_camera.h"
+#include "toolkit/correspondence/face_landmarks.h"
 #include "toolkit/mesh/mesh_sequence.h"
 
 namespace mimetra {
@@ -15,14 +16,15 @@ namespace mimetra {
 /// shears or stretches is left out. \pre the camera sees the model from some side: rank 2
 Eigen::Matrix3d head_rotation(const AffineCamera& camera);
 
-/// What carries a model of other axes to one that looks along +z with y up, judged by how it is
-/// seen: of the rotations that exchange axes the one nearest to the mean of head_rotation()s, but
-/// none unless that is more than 60 degrees from none. \pre some rotations
-Eigen::Matrix3d looking_ahead(const std::vector<Eigen::Matrix3d>& rotations);
+/// What carries a model to one that looks along +z with y up, by where iBUG's landmarks (0 to 67)
+/// are on it: of the rotations that exchange axes the nearest to how its eyes and mouth lie. None
+/// where it has no landmark of an eye or of the mouth.
+Eigen::Matrix3d looking_ahead(const Positions& neutral, const LandmarkVertices& landmarks);
 
 /// Each frame (F) turned by its camera's rotation about the middle of the rest pose, which stays;
 /// in the model's own axes, looking_ahead(), so that a head that moves little stays near its rest
 /// pose. Throws std::invalid_argument for another number of cameras.
-MeshSequence turned_as_seen(const MeshSequence& sequence, const std::vector<AffineCamera>& cameras);
+MeshSequence turned_as_seen(const MeshSequence& sequence, const std::vector<AffineCamera>& cameras,
+                            const LandmarkVertices& landmarks);
 
 }  // namespace mimetra

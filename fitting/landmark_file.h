@@ -21,7 +21,7 @@ namespace mimetra {
 ///   optional "names" and "fps" beside "frames", and "frame" in each; or a list of frames, or one
 ///   frame alone. 0-based; null is not seen. In a frame also the results of MediaPipe's Face
 ///   Landmarker ("faceLandmarks", "face_landmarks", "multi_face_landmarks", "landmark": faces of
-///   {"x", "y", "z"}), of whose faces the largest is followed, with "timestamp_ms".
+///   {"x", "y", "z"}), of whose faces one is followed (followed_face.h), with "timestamp_ms".
 ///
 /// 468 or 478 numbered landmarks are MediaPipe's, "mp0" to "mp477".
 LandmarkTrack read_landmarks(const std::filesystem::path& path);

@@ -1,17 +1,19 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <limits>
-#include <optional>
 #include <set>
 #include <utility>
 
 #include <nlohmann/json.hpp>
 
+#include "fitting/followed_face.h"
 #include "fitting/landmark_formats.h"
 #include "toolkit/io/frame_series.h"
 #include "toolkit/io/json_text.h"
 #include "toolkit/mesh/errors.h"
+#include "toolkit/mesh/text.h"
 
 namespace mimetra {
 
@@ -79,7 +81,7 @@ class JsonReader {
   }
 
   void read_frame(const Json& frame, const std::string& place) {
-    faces_.push_back(face_in(frame, place));
+    add_faces(frame, place, faces_.emplace_back());
     if (!frame.is_object()) return;
     if (frame.contains("timestamp")) {
       fail(place + "/timestamp",
@@ -106,25 +108,25 @@ class JsonReader {
     }
   }
 
-  /// The face in a frame or in a part of it: of several the largest, and once there is one, the
-  /// nearest to the last one. None where there is none.
-  std::optional<Points> face_in(const Json& value, const std::string& place) {
+  /// All faces in a frame or in a part of it of which something is seen.
+  void add_faces(const Json& value, const std::string& place, std::vector<Points>& faces) {
     if (value.is_object()) {
       for (const char* key : kFaceKeys) {
-        if (value.contains(key)) return face_in(value[key], place + '/' + key);
+        if (value.contains(key)) return add_faces(value[key], place + '/' + key, faces);
       }
       fail(place, "expected a list of \"points\", or MediaPipe's \"faceLandmarks\"");
     }
-    if (value.is_null() || (value.is_array() && value.empty())) return {};
+    if (value.is_null() || (value.is_array() && value.empty())) return;
     if (!value.is_array()) fail(place, "expected a list of points [x, y]");
-    if (are_points(value)) return points_of(value, place);
-    std::optional<Points> chosen;
-    for (std::size_t face = 0; face < value.size(); ++face) {
-      std::optional<Points> found = face_in(value[face], place + '/' + std::to_string(face));
-      if (found && (!chosen || merit(*found) > merit(*chosen))) chosen = std::move(found);
+    if (are_points(value)) {
+      Points points = points_of(value, place);
+      const auto is_seen = [](double coordinate) { return !std::isnan(coordinate); };
+      if (std::ranges::any_of(points, is_seen)) faces.push_back(std::move(points));
+      return;
     }
-    if (chosen) last_ = middle(*chosen);
-    return chosen;
+    for (std::size_t face = 0; face < value.size(); ++face) {
+      add_faces(value[face], place + '/' + std::to_string(face), faces);
+    }
   }
 
   Points points_of(const Json& list, const std::string& place) {
@@ -155,15 +157,36 @@ class JsonReader {
     }
   }
 
-  using Seen = Eigen::Map<const Eigen::Matrix2Xd>;
-  static Seen columns(const Points& points) {
-    return {points.data(), 2, static_cast<Eigen::Index>(points.size() / 2)};
+  static FaceBox box_of(const Points& points) {
+    using Seen = Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, 2, Eigen::RowMajor>>;
+    return box_around(Seen(points.data(), static_cast<Eigen::Index>(points.size() / 2), 2));
   }
-  static Eigen::Vector2d middle(const Points& points) { return columns(points).rowwise().mean(); }
-  double merit(const Points& points) const {
-    const Eigen::Vector2d center = middle(points);
-    if (last_) return -(center - *last_).squaredNorm();
-    return (columns(points).colwise() - center).squaredNorm();
+
+  FollowedFace followed() const {
+    std::vector<std::vector<FaceBox>> boxes;
+    for (const auto& faces : faces_) {
+      std::ranges::transform(faces, std::back_inserter(boxes.emplace_back()), box_of);
+    }
+    return followed_face(boxes);
+  }
+
+  /// Says where several faces are, and what came of it.
+  void note_faces(const FollowedFace& followed, std::vector<std::string>& notes) const {
+    std::vector<int> several, others;
+    for (std::size_t f = 0; f < faces_.size(); ++f) {
+      if (faces_[f].size() > 1) several.push_back(static_cast<int>(f));
+      if (!faces_[f].empty() && followed.chosen[f] < 0) others.push_back(static_cast<int>(f));
+    }
+    const auto add = [&](const std::string& what, const std::vector<int>& frames) {
+      if (frames.empty()) return;
+      notes.push_back(std::to_string(frames.size()) + " of " + std::to_string(faces_.size()) +
+                      " frames " + what + ": " + listed(words_of(frames)));
+    };
+    add("have several faces, of which the largest of the first is followed", several);
+    add("have only faces of others than the one that is followed, and are taken as not seen",
+        others);
+    add("have the face that is followed elsewhere than before (is it the same person's?)",
+        followed.jumps);
   }
 
   std::vector<std::string> names() const {
@@ -184,15 +207,16 @@ class JsonReader {
     return names;
   }
 
-  Frames points() const {
+  Frames points(const std::vector<int>& chosen) const {
     Frames points(static_cast<Eigen::Index>(faces_.size()),
                   static_cast<Eigen::Index>(2 * landmarks_));
     for (std::size_t f = 0; f < faces_.size(); ++f) {
       auto row = points.row(static_cast<Eigen::Index>(f));
-      if (!faces_[f]) {
+      if (chosen[f] < 0) {
         row.setConstant(kUnseenPoint);
       } else {
-        row = Eigen::Map<const Eigen::RowVectorXd>(faces_[f]->data(), row.size());
+        const Points& face = faces_[f][static_cast<std::size_t>(chosen[f])];
+        row = Eigen::Map<const Eigen::RowVectorXd>(face.data(), row.size());
       }
     }
     return points;
@@ -221,8 +245,10 @@ class JsonReader {
 
   LandmarkTrack track() const {
     if (landmarks_ == 0) fail("", "shows no face in any frame; expected a list of points");
-    LandmarkTrack track = {names(), points(), of_frames(times_, "time"),
+    const FollowedFace person = followed();
+    LandmarkTrack track = {names(), points(person.chosen), of_frames(times_, "time"),
                            of_frames(confidences_, "confidence")};
+    note_faces(person, track.notes);
     if (track.times.size() > 0) return track;
     const bool each_has_one = frame_numbers_.size() == faces_.size();
     const std::vector<long long> numbers = each_has_one ? frame_numbers_ : std::vector<long long>();
@@ -237,8 +263,7 @@ class JsonReader {
   std::string path_;
   Json root_;
   std::size_t landmarks_ = 0;
-  std::vector<std::optional<Points>> faces_;
-  std::optional<Eigen::Vector2d> last_;  ///< middle of the last face that was chosen of several
+  std::vector<std::vector<Points>> faces_;  ///< of each frame
   std::vector<double> times_, confidences_;
   std::vector<long long> frame_numbers_;
 };

@@ -10,11 +10,20 @@ namespace mimetra {
 
 namespace {
 
+/// Numbered landmarks are those of a scheme, which has as many as its largest number.
+bool is_numbered(const LandmarkTrack& track) {
+  return track.names == numbered_names(track.names.size());
+}
+
+bool is_ibug(const LandmarkTrack& track) {
+  return is_numbered(track) && track.landmarks() == kFaceLandmarks;
+}
+
 std::vector<Eigen::Index> outline_columns(const LandmarkTrack& track,
                                           const LandmarkMapping& mapping) {
-  constexpr int kAll = 68, kJaw = 17;
+  constexpr int kJaw = 17;
   std::vector<Eigen::Index> columns;
-  if (track.names != numbered_names(kAll)) return columns;
+  if (!is_ibug(track)) return columns;
   for (Eigen::Index i = 0; i < kJaw; ++i) {
     const std::string& name = track.names[static_cast<std::size_t>(i)];
     const bool known =
@@ -24,9 +33,8 @@ std::vector<Eigen::Index> outline_columns(const LandmarkTrack& track,
   return columns;
 }
 
-/// Numbered landmarks are those of a scheme, which has as many as its largest number.
 void check_scheme(const std::string& name, const LandmarkTrack& track) {
-  if (track.names != numbered_names(track.names.size())) return;
+  if (!is_numbered(track)) return;
   throw MismatchError("the mapping has a landmark '" + name + "', but there are only 1 to " +
                       std::to_string(track.landmarks()) + "; is it for another set of landmarks?");
 }
@@ -36,6 +44,7 @@ void check_scheme(const std::string& name, const LandmarkTrack& track) {
 MappedLandmarks map_landmarks(const LandmarkTrack& track, const LandmarkMapping& mapping) {
   std::vector<Eigen::Index> columns;
   MappedLandmarks mapped;
+  LandmarkMapping used;
   for (const auto& [name, index] : mapping) {
     const std::string known = is_mediapipe(track) ? mediapipe_name(name).value_or(name) : name;
     const auto found = std::ranges::find(track.names, known);
@@ -47,6 +56,7 @@ MappedLandmarks map_landmarks(const LandmarkTrack& track, const LandmarkMapping&
     columns.insert(columns.end(), {2 * landmark, 2 * landmark + 1});
     mapped.names.push_back(name);
     mapped.vertices.push_back(index);
+    used.emplace_back(name, index);
   }
   if (columns.empty()) {
     throw MismatchError("none of the " + std::to_string(track.landmarks()) +
@@ -57,6 +67,7 @@ MappedLandmarks map_landmarks(const LandmarkTrack& track, const LandmarkMapping&
   }
   mapped.points = track.points(Eigen::all, columns);
   mapped.outline = track.points(Eigen::all, outline_columns(track, mapping));
+  if (is_ibug(track) || !is_numbered(track)) mapped.ibug = ibug_landmarks(used);
   return mapped;
 }
 

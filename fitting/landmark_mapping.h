@@ -15,6 +15,9 @@ struct MappedLandmarks {
   /// Those of iBUG's jaw (1 to 17 of 68) that the mapping lacks, which lie on the face's outline: F
   /// x 2m.
   Frames outline = {};
+  /// Vertices of iBUG's landmarks (0 to 67), by the names "1" to "68"; none where the track's are
+  /// numbered as another scheme has them.
+  LandmarkVertices ibug = {};
 };
 
 /// Takes them in the mapping's order; of MediaPipe's landmarks ("mp0" to "mp477") those at the

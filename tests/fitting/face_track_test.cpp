@@ -49,6 +49,30 @@ TEST(FaceTrack, GoesOnWithTheFaceNearestToTheLastOne) {
   EXPECT_THAT(lefts(track), ElementsAre(10, 20, testing::IsNan(), 40));
 }
 
+TEST(FaceTrack, LeavesOutFramesThatShowOnlySomebodyElse) {
+  const FaceTrack track = follow_face({{"0.png", {face(10, 60), face(300, 50)}},
+                                       {"1.png", {face(301, 50)}},
+                                       {"2.png", {face(12, 60), face(302, 50)}}});
+  EXPECT_THAT(lefts(track), ElementsAre(10, testing::IsNan(), 12));
+  EXPECT_EQ(track.frames[1].outcome, Outcome::other_face);
+  EXPECT_THAT(track.frames[1].note, HasSubstr("others than the one that is followed"));
+  EXPECT_EQ(track.landmarks.confidence[1], 0);
+  EXPECT_THAT(track.notes,
+              ElementsAre(HasSubstr("2 of 3 images show several faces"),
+                          HasSubstr("1 of 3 images show only faces of others than the one that is "
+                                    "followed, the first is 1.png")));
+}
+
+TEST(FaceTrack, SaysWhereTheFaceJumpsAmongSeveral) {
+  const FaceTrack track = follow_face(
+      {{"0.png", {face(10, 60), face(300, 50)}}, {"1.png", {face(150, 60), face(500, 50)}}});
+  EXPECT_THAT(lefts(track), ElementsAre(10, 150));
+  EXPECT_THAT(track.notes,
+              testing::Contains(HasSubstr("1 of 2 images show the face that is followed elsewhere "
+                                          "than before (is it the same person's?), the first is "
+                                          "1.png")));
+}
+
 TEST(FaceTrack, ReportsEachFrame) {
   const FaceTrack track = follow_face({{"d/0.png", {}},
                                        {"d/1.png", {face(1, 50, 0.05), face(2, 50, 0.02)}},

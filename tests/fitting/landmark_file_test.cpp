@@ -221,6 +221,25 @@ TEST_F(Landmarks, OfSeveralFacesFollowOneFromTheLargestOn) {
   EXPECT_EQ(track.points.col(0), Eigen::Vector3d(47, 46, 38));
 }
 
+TEST_F(Landmarks, OfSomebodyElseAreNotTakenWhereTheFollowedFaceIsMissed) {
+  const auto face = [](double x) {
+    return "[[" + std::to_string(x - 5) + ", 0], [" + std::to_string(x + 5) + ", 10]]";
+  };
+  const LandmarkTrack track =
+      read("a.json", "[[" + face(10) + "," + face(50) + "], [" + face(50) + "], [null, null], [" +
+                         face(51) + "," + face(12) + "]]");
+  EXPECT_EQ(track.points(0, 0), 5);
+  EXPECT_TRUE(track.points.middleRows(1, 2).array().isNaN().all());
+  EXPECT_EQ(track.points(3, 0), 7);
+  EXPECT_THAT(
+      track.notes,
+      ElementsAre("2 of 4 frames have several faces, of which the largest of the first is "
+                  "followed: 0, 3",
+                  "1 of 4 frames have only faces of others than the one that is followed, and are "
+                  "taken as not seen: 1"));
+  EXPECT_THAT(read("a.json", "[[" + face(10) + "], [" + face(90) + "]]").notes, testing::IsEmpty());
+}
+
 TEST_F(Landmarks, OfMediaPipeAreCalledByItsNumbersAndMayHaveMilliseconds) {
   for (const int count : {468, 478}) {
     std::string points;

@@ -77,6 +77,21 @@ TEST_F(Mapping, OfIbugTakes68PlacesOfMediaPipeOnce) {
   EXPECT_EQ(places.size(), 68U);
 }
 
+TEST_F(Mapping, KnowsWhichOfItsVerticesAreIbugs) {
+  const LandmarkMapping mapping = {{"37", 12}, {"46", 7}};
+  const LandmarkVertices both = {{36, 12}, {45, 7}};
+  EXPECT_EQ(map_landmarks(of_mediapipe(), mapping).ibug, both);
+  LandmarkTrack track;
+  track.names = {"46", "9"};
+  track.points = Eigen::RowVector4d(1, 2, 3, 4);
+  EXPECT_EQ(map_landmarks(track, mapping).ibug, (LandmarkVertices{{45, 7}}));
+  // Of 98 landmarks the 37th is another one.
+  track.names.clear();
+  for (int i = 1; i <= 98; ++i) track.names.push_back(std::to_string(i));
+  track.points = Eigen::RowVectorXd::Zero(2 * 98);
+  EXPECT_EQ(map_landmarks(track, mapping).ibug, LandmarkVertices());
+}
+
 TEST_F(Mapping, MayNameMediaPipesLandmarks) {
   const MappedLandmarks mapped =
       map_landmarks(of_mediapipe(), read("[landmark_mappings]\nmp468 = 12\nmp1 = 7\n"));

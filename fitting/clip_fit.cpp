@@ -1,0 +1,113 @@
+#include "fitting/clip_fit.h"
+
+#include <map>
+#include <numeric>
+#include <utility>
+
+#include "fitting/followed_face.h"
+#include "toolkit/mesh/progress.h"
+
+namespace mimetra {
+
+namespace {
+
+/// In fewer frames the neutrals of one person are up to 2.8 % apart.
+constexpr std::size_t kFewestOfPlace = 75;
+
+std::vector<int> frames_between(int from, int to) {
+  std::vector<int> frames(static_cast<std::size_t>(to - from));
+  std::iota(frames.begin(), frames.end(), from);
+  return frames;
+}
+
+std::optional<NeutralDistance> halves_distance(const ClipFit& clip, const FittedCoefficients& fit) {
+  constexpr int kFewest = 10;
+  const int frames = fit.frames(), half = frames / 2;
+  const bool enough = (fit.landmarks.head(half).array() > 0).count() >= kFewest &&
+                      (fit.landmarks.tail(frames - half).array() > 0).count() >= kFewest;
+  if (!enough) return {};
+  const Eigen::VectorXd first = clip.of(frames_between(0, half), 0.3, 0.35).front().alpha;
+  const Eigen::VectorXd second = clip.of(frames_between(half, frames), 0.35, 0.4).front().alpha;
+  return neutral_distance(clip.model(), first, second);
+}
+
+/// Frames with landmarks by the place of the face in the image.
+std::map<int, std::vector<int>> frames_of_places(const MappedLandmarks& mapped,
+                                                 const FittedCoefficients& fit,
+                                                 std::vector<int>& cuts) {
+  std::vector<std::vector<FaceBox>> boxes(static_cast<std::size_t>(fit.frames()));
+  for (int f = 0; f < fit.frames(); ++f) {
+    if (fit.landmarks[f] == 0) continue;
+    const Eigen::RowVectorXd row = mapped.points.row(f);
+    boxes[static_cast<std::size_t>(f)].push_back(
+        box_around(row.reshaped<Eigen::RowMajor>(row.size() / 2, 2)));
+  }
+  std::map<int, std::vector<int>> frames;
+  int last = 0;
+  const std::vector<std::vector<int>> places = face_places(boxes);
+  for (int f = 0; f < fit.frames(); ++f) {
+    for (const int place : places[static_cast<std::size_t>(f)]) {
+      frames[place].push_back(f);
+      if (place != last) cuts.push_back(f);
+      last = place;
+    }
+  }
+  return frames;
+}
+
+/// The largest distance of the neutrals of places with frames enough to tell; none where fewer than
+/// two have.
+std::optional<NeutralDistance> places_distance(const ClipFit& clip,
+                                               std::map<int, std::vector<int>> frames) {
+  std::erase_if(frames, [](const auto& place) { return place.second.size() < kFewestOfPlace; });
+  if (frames.size() < 2) return {};
+  std::vector<Eigen::VectorXd> alphas;
+  const double share = 0.1 / static_cast<double>(frames.size());
+  for (const auto& [place, of_place] : frames) {
+    const double from = 0.4 + share * static_cast<double>(alphas.size());
+    alphas.push_back(clip.of(of_place, from, from + share).front().alpha);
+  }
+  NeutralDistance largest;
+  for (std::size_t a = 0; a < alphas.size(); ++a) {
+    for (std::size_t b = 0; b < a; ++b) {
+      const NeutralDistance distance = neutral_distance(clip.model(), alphas[a], alphas[b]);
+      if (distance.mean > largest.mean) largest = distance;
+    }
+  }
+  return largest;
+}
+
+}  // namespace
+
+ClipFit::ClipFit(const MorphableModel& model, const MappedLandmarks& mapped, Eigen::VectorXd times,
+                 FitOptions options)
+    : model_(model),
+      mapped_(mapped),
+      times_(std::move(times)),
+      options_(std::move(options)),
+      outline_(options_.solver == FitOptions::Solver::joint && mapped.outline.cols() > 0),
+      fitter_(model, mapped.vertices,
+              outline_ ? LandmarkFitter::Outline::given : LandmarkFitter::Outline::none) {}
+
+std::vector<FrameFit> ClipFit::all(double progress_from, double progress_to) const {
+  return of(frames_between(0, static_cast<int>(mapped_.points.rows())), progress_from, progress_to);
+}
+
+std::vector<FrameFit> ClipFit::of(const std::vector<int>& frames, double progress_from,
+                                  double progress_to) const {
+  FitOptions options = options_;
+  options.progress = part_of(options_.progress, progress_from, progress_to);
+  return fitter_.fit(mapped_.points(frames, Eigen::all), options, times_(frames),
+                     outline_ ? Frames(mapped_.outline(frames, Eigen::all)) : Frames());
+}
+
+ClipPeople people_in(const ClipFit& clip, const FittedCoefficients& fit) {
+  ClipPeople people;
+  const bool one_shape = clip.shape() == FitOptions::Shape::clip;
+  if (!one_shape || clip.model().identities().size() == 0) return people;
+  people.halves = halves_distance(clip, fit);
+  people.places = places_distance(clip, frames_of_places(clip.mapped(), fit, people.cuts));
+  return people;
+}
+
+}  // namespace mimetra

@@ -1,0 +1,98 @@
+#include "fitting/partial_frames.h"
+
+#include <cmath>
+#include <map>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Geometry>
+
+#include "fitting/fit_options.h"
+#include "fitting/head_rotation.h"
+
+namespace mimetra {
+
+namespace {
+
+/// Noise of landmarks as a share of their RMS radius.
+constexpr double kNoise = 0.0175;
+
+std::vector<Eigen::Index> landmarks_seen(const Frames& points, Eigen::Index frame) {
+  std::vector<Eigen::Index> seen;
+  for (Eigen::Index i = 0; i < points.cols() / 2; ++i) {
+    if (points.row(frame).segment<2>(2 * i).allFinite()) seen.push_back(i);
+  }
+  return seen;
+}
+
+}  // namespace
+
+TurnUncertainty::TurnUncertainty(const MorphableModel& model, const std::vector<int>& vertices,
+                                 const Eigen::Matrix3d& ahead) {
+  const auto count = static_cast<Eigen::Index>(vertices.size());
+  const Eigen::MatrixXd& expressions = model.expressions().displacements;
+  // Turn, place, size and stretch of the face in the image, as in the camera's model.
+  constexpr Eigen::Index kCamera = 8;
+  image_.setZero(2 * count, kCamera + expressions.cols());
+  Positions points = model.mean()(vertices, Eigen::all) * ahead.transpose();
+  points.rowwise() -= points.colwise().mean().eval();
+  const double radius = std::sqrt(points.leftCols<2>().rowwise().squaredNorm().mean());
+  points /= radius;
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const Eigen::Vector3d point = points.row(i);
+    auto rows = image_.middleRows<2>(2 * i);
+    for (int axis = 0; axis < 3; ++axis) {
+      rows.col(axis) = Eigen::Vector3d::Unit(axis).cross(point).head<2>();
+    }
+    rows.middleCols<2>(3).setIdentity();
+    rows.col(5) = point.head<2>();
+    rows.col(6) << point.x(), -point.y();
+    rows.col(7) << point.y(), point.x();
+    if (expressions.cols() == 0) continue;
+    const auto moves = expressions.middleRows<3>(3 * Eigen::Index(vertices[std::size_t(i)]));
+    rows.rightCols(expressions.cols()) = (ahead * moves / radius).topRows<2>();
+  }
+  image_ /= kNoise;
+  // A turn of a radian, a place and a size of a radius are as much as may be; weights of
+  // expressions spread evenly between 0 and 1.
+  const double stretch = FitOptions{}.stretch;
+  prior_.setOnes(image_.cols());
+  prior_.segment<2>(6).setConstant(1 / (stretch * stretch));
+  prior_.tail(expressions.cols()).setConstant(12);
+}
+
+double TurnUncertainty::of(const std::vector<Eigen::Index>& seen) const {
+  Eigen::MatrixXd rows(2 * Eigen::Index(seen.size()), image_.cols());
+  for (std::size_t i = 0; i < seen.size(); ++i) {
+    rows.middleRows<2>(2 * Eigen::Index(i)) = image_.middleRows<2>(2 * seen[i]);
+  }
+  Eigen::MatrixXd information = rows.transpose() * rows;
+  information.diagonal() += prior_;
+  const Eigen::MatrixXd turn = Eigen::MatrixXd::Identity(image_.cols(), 3);
+  const double variance = information.llt().solve(turn).topRows<3>().trace();
+  return std::sqrt(variance) * 180 / EIGEN_PI;
+}
+
+std::vector<int> partial_frames(const MorphableModel& model, const MappedLandmarks& mapped) {
+  // Half a face has 2.4 to 3.5, brows and eyes 3.3; nose and mouth together 4.5, the nose alone 5
+  // to 7, the mouth 6 to 12.
+  constexpr double kMost = 4;
+  const TurnUncertainty uncertainty(model, mapped.vertices,
+                                    looking_ahead(model.mean(), mapped.ibug));
+  std::map<std::vector<Eigen::Index>, double> known;  // mostly the same ones in many frames
+  std::vector<int> partial;
+  bool some_are_whole = false;
+  for (int f = 0; f < mapped.points.rows(); ++f) {
+    const std::vector<Eigen::Index> seen = landmarks_seen(mapped.points, f);
+    if (seen.empty()) continue;
+    const auto [entry, added] = known.try_emplace(seen, 0);
+    if (added) entry->second = uncertainty.of(seen);
+    if (entry->second > kMost) {
+      partial.push_back(f);
+    } else {
+      some_are_whole = true;
+    }
+  }
+  return some_are_whole ? partial : std::vector<int>();
+}
+
+}  // namespace mimetra

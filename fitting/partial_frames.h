@@ -1,0 +1,32 @@
+#pragma once
+
+#include <vector>
+
+#include "fitting/landmark_mapping.h"
+#include "toolkit/model/morphable_model.h"
+
+/// Frames in which too little of a face is seen. Internal to fit_operation.h.
+namespace mimetra {
+
+/// By how many degrees (RMS) a head may be turned otherwise than what fits some of its landmarks
+/// says: seen from the front, with the noise of one picture (FitOptions::sigma) and expressions
+/// anywhere in [0, 1].
+class TurnUncertainty {
+ public:
+  /// `ahead` carries the model to one that looks along +z with y up.
+  TurnUncertainty(const MorphableModel& model, const std::vector<int>& vertices,
+                  const Eigen::Matrix3d& ahead);
+
+  /// Of landmarks that are seen, by their places in `vertices`.
+  double of(const std::vector<Eigen::Index>& seen) const;
+
+ private:
+  Eigen::MatrixXd image_;  ///< derivatives of the landmarks' x, y, x, ... by what is unknown
+  Eigen::VectorXd prior_;  ///< inverse variance of what is unknown
+};
+
+/// Frames with landmarks that leave the head's turn open by more than 4 degrees, as those of nose
+/// or mouth alone do. None where all frames are such.
+std::vector<int> partial_frames(const MorphableModel& model, const MappedLandmarks& mapped);
+
+}  // namespace mimetra

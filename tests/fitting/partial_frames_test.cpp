@@ -1,0 +1,130 @@
+#include "fitting/partial_frames.h"
+
+#include <limits>
+#include <numbers>
+#include <random>
+
+#include <gmock/gmock.h>
+#include <Eigen/Geometry>
+
+#include "fitting/head_rotation.h"
+#include "fitting/landmark_fitter.h"
+#include "samples/head/head.h"
+#include "tests/fitting/synthetic_clip.h"
+
+namespace mimetra {
+namespace {
+
+using testing::ElementsAre;
+using testing::IsEmpty;
+
+/// Landmarks of the built-in head in so many frames, all at rest and from the front.
+MappedLandmarks still_head(int frames) {
+  MappedLandmarks mapped;
+  for (const auto& [number, vertex] : samples::head_landmarks()) {
+    mapped.names.push_back(std::to_string(number));
+    mapped.vertices.push_back(vertex);
+    mapped.ibug.emplace_back(number - 1, vertex);
+  }
+  AffineCamera camera = AffineCamera::Zero();
+  camera(0, 0) = 2;
+  camera(1, 1) = -2;
+  const Positions points = samples::parametric_head().mean()(mapped.vertices, Eigen::all);
+  mapped.points.resize(frames, 2 * points.rows());
+  mapped.points.rowwise() = test::as_row(project(camera, points));
+  return mapped;
+}
+
+/// Leaves of a frame only the landmarks whose numbers (1 to 68) are `kept`.
+template <typename Kept>
+void keep(MappedLandmarks& mapped, int frame, Kept kept) {
+  for (std::size_t i = 0; i < mapped.ibug.size(); ++i) {
+    if (kept(mapped.ibug[i].first + 1)) continue;
+    mapped.points.row(frame)
+        .segment<2>(2 * Eigen::Index(i))
+        .setConstant(std::numeric_limits<double>::quiet_NaN());
+  }
+}
+
+bool is_of_eyes(int number) {
+  return number >= 37 && number <= 48;
+}
+
+bool is_of_mouth(int number) {
+  return number >= 49;
+}
+
+/// The half of a face that a profile shows: its own right.
+bool is_of_right_half(int number) {
+  return number <= 9 || (number >= 18 && number <= 22) || (number >= 28 && number <= 34) ||
+         (number >= 37 && number <= 42) || (number >= 49 && number <= 52) || number >= 58;
+}
+
+TEST(PartialFrames, AreThoseOfEyesOrMouthOrAFewLandmarksAlone) {
+  MappedLandmarks mapped = still_head(6);
+  keep(mapped, 1, is_of_eyes);
+  keep(mapped, 2, is_of_mouth);
+  keep(mapped, 3, [](int number) { return number == 31 || number == 37 || number == 46; });
+  keep(mapped, 4, [](int) { return false; });
+  EXPECT_THAT(partial_frames(samples::parametric_head(), mapped), ElementsAre(1, 2, 3));
+}
+
+TEST(PartialFrames, AreNotThoseOfAHalfNorOfEverySecondLandmark) {
+  MappedLandmarks mapped = still_head(5);
+  keep(mapped, 1, is_of_right_half);
+  keep(mapped, 2, [](int number) { return !is_of_mouth(number); });
+  keep(mapped, 3, [](int number) { return number % 2 == 0; });
+  keep(mapped, 4, [](int number) { return !is_of_eyes(number); });
+  EXPECT_THAT(partial_frames(samples::parametric_head(), mapped), IsEmpty());
+}
+
+TEST(PartialFrames, AreNoneWhereNoFrameShowsMore) {
+  MappedLandmarks mapped = still_head(2);
+  for (const int frame : {0, 1}) keep(mapped, frame, is_of_eyes);
+  EXPECT_THAT(partial_frames(samples::parametric_head(), mapped), IsEmpty());
+}
+
+/// The uncertainty is that of the fit: turns that are found for landmarks with its noise spread as
+/// it says. Without expressions, whose bounds make them no normal variables.
+TEST(TurnUncertainty, IsTheSpreadOfTheTurnsThatAreFound) {
+  const MorphableModel head = samples::parametric_head();
+  const MorphableModel rigid(head.shared_connectivity(), head.mean(), {}, {});
+  const MappedLandmarks mapped = still_head(1);
+  std::vector<Eigen::Index> all, right;
+  for (std::size_t i = 0; i < mapped.ibug.size(); ++i) {
+    all.push_back(Eigen::Index(i));
+    if (is_of_right_half(mapped.ibug[i].first + 1)) right.push_back(Eigen::Index(i));
+  }
+  const TurnUncertainty uncertainty(rigid, mapped.vertices, Eigen::Matrix3d::Identity());
+  EXPECT_GT(uncertainty.of(right), uncertainty.of(all));
+  std::mt19937 random(5);
+  constexpr int kFrames = 400;
+  for (const auto& seen : {all, right}) {
+    std::vector<int> vertices;
+    for (const Eigen::Index i : seen) vertices.push_back(mapped.vertices[std::size_t(i)]);
+    const Eigen::RowVectorXd row = mapped.points.row(0);
+    const ImagePoints image = row.reshaped<Eigen::RowMajor>(row.size() / 2, 2);
+    const double sigma =
+        0.0175 *
+        std::sqrt((image.rowwise() - image.colwise().mean()).rowwise().squaredNorm().mean());
+    Frames points(kFrames, 2 * Eigen::Index(seen.size()));
+    for (auto frame : points.rowwise()) {
+      frame = test::as_row(image(seen, Eigen::all) +
+                           sigma * test::normal_matrix(Eigen::Index(seen.size()), 2, random));
+    }
+    const std::vector<FrameFit> fits = LandmarkFitter(rigid, vertices)
+                                           .fit(points, {.sigma = sigma,
+                                                         .camera = FitOptions::Camera::orthographic,
+                                                         .outliers = FitOptions::Outliers::trust});
+    double squares = 0;
+    for (const FrameFit& fit : fits) {
+      squares += std::pow(Eigen::AngleAxisd(head_rotation(fit.camera)).angle(), 2);
+    }
+    // The mean of 400 squares of three normal variables is known to a few percent.
+    EXPECT_NEAR(std::sqrt(squares / kFrames) * 180 / std::numbers::pi, uncertainty.of(seen),
+                0.1 * uncertainty.of(seen));
+  }
+}
+
+}  // namespace
+}  // namespace mimetra
