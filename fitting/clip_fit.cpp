@@ -21,10 +21,10 @@ std::vector<int> frames_between(int from, int to) {
 }
 
 std::optional<NeutralDistance> halves_distance(const ClipFit& clip, const FittedCoefficients& fit) {
-  constexpr int kFewest = 10;
+  constexpr int kFewestOfHalf = 10;
   const int frames = fit.frames(), half = frames / 2;
-  const bool enough = (fit.landmarks.head(half).array() > 0).count() >= kFewest &&
-                      (fit.landmarks.tail(frames - half).array() > 0).count() >= kFewest;
+  const bool enough = (fit.landmarks.head(half).array() > 0).count() >= kFewestOfHalf &&
+                      (fit.landmarks.tail(frames - half).array() > 0).count() >= kFewestOfHalf;
   if (!enough) return {};
   const Eigen::VectorXd first = clip.of(frames_between(0, half), 0.3, 0.35).front().alpha;
   const Eigen::VectorXd second = clip.of(frames_between(half, frames), 0.35, 0.4).front().alpha;
