@@ -10,6 +10,7 @@
 
 #include "toolkit/mesh/edge_graph.h"
 #include "toolkit/mesh/errors.h"
+#include "toolkit/mesh/triangle_quality.h"
 #include "toolkit/transfer/deformation_gradients.h"
 #include "toolkit/transfer/pairs.h"
 
