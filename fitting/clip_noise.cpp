@@ -76,8 +76,8 @@ Sums sums_of(const std::vector<FittedFrame>& frames) {
 }
 
 /// Of most likelihood for the distances of the frames' landmarks. In the plane the density at z
-/// sigmas is (1 + z^2 / nu)^-(nu / 2 + 1) / (2 pi sigma^2), of whose logarithm the sum has one
-/// maximum over nu.
+/// sigmas is (1 + z^2 / nu)^-(nu / 2 + 1) / (2 pi sigma^2), whose logarithms' sum is
+/// searched as one with a single maximum over nu.
 double likely_freedom(const std::vector<FittedFrame>& frames) {
   std::vector<double> squares;
   for (const FittedFrame& frame : frames) {
@@ -149,7 +149,7 @@ ClipNoise estimated_noise(const std::vector<FittedFrame>& frames, double determi
   // Of each landmark's mean, the part that the mean of so many frames has anyway.
   double squares = 0, by_chance = 0, seen = 0;
   for (const auto& [index, landmark] : sums.landmarks) {
-    // One that is an outlier in every frame says nothing.
+    // One that is far off in every frame says little.
     const double share = std::min(1.0, landmark.weight / count);
     squares += share * landmark.mean.squaredNorm();
     by_chance += share * 2 * within / std::max(1.0, landmark.weight);

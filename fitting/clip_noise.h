@@ -25,7 +25,7 @@ KnownNoise known_noise(const FitOptions& options, std::size_t frames);
 /// Half of it is taken as repeated where that is not known.
 ClipNoise rough_noise(const std::vector<FittedFrame>& frames, const KnownNoise& known);
 
-/// Standard deviation, across the outline, of landmarks there that are no outliers.
+/// Sigma, across the outline, of landmarks there, weighed as others are.
 double outline_noise(const std::vector<FittedFrame>& frames, const ClipNoise& noise);
 
 /// One step of expectation maximisation with the landmarks' weights of the frames. Of the repeated

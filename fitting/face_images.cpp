@@ -129,7 +129,11 @@ FaceTrack follow_face(const std::vector<FacesInImage>& frames, double min_confid
     track.landmarks.points.row(row) = chosen->landmarks.reshaped<Eigen::RowMajor>().transpose();
     track.landmarks.confidence[row] = chosen->confidence;
   }
-  for (const int jump : followed.jumps) track.frames[static_cast<std::size_t>(jump)].jumps = true;
+  for (const int jump : followed.jumps) {
+    FaceFrame& frame = track.frames[static_cast<std::size_t>(jump)];
+    frame.jumps = true;
+    if (frame.note.empty()) frame.note = "the face is elsewhere than before";
+  }
   track.notes = notes_on(track.frames);
   return track;
 }

@@ -20,27 +20,44 @@ double distance(const FaceBox& from, const FaceBox& to) {
   return ((to.middle - from.middle) / size).matrix().norm();
 }
 
+/// Where a face was last seen, and in which of the frames with faces.
+struct Place {
+  FaceBox face;
+  int frame;
+};
+
 /// The places of a frame's faces among those that are known, or new ones.
-std::vector<int> places_of(const Faces& faces, std::vector<FaceBox>& known) {
-  std::vector<std::tuple<double, int, int>> pairs;  // distance, place, face
+std::vector<int> places_of(const Faces& faces, int frame, std::vector<Place>& known) {
+  // Detectors find a face twice: one that lies on another is the same one.
+  constexpr double kOnAnother = 0.5;
+  std::vector<std::tuple<bool, double, int, int>> pairs;  // was left, distance, place, face
   for (std::size_t place = 0; place < known.size(); ++place) {
     for (std::size_t face = 0; face < faces.size(); ++face) {
-      const double apart = distance(known[place], faces[face]);
-      if (apart <= 1) pairs.emplace_back(apart, int(place), int(face));
+      const double apart = distance(known[place].face, faces[face]);
+      const bool was_left = known[place].frame < frame - 1;
+      if (apart <= 1) pairs.emplace_back(was_left, apart, int(place), int(face));
     }
   }
   std::ranges::sort(pairs);
   std::vector<int> places(faces.size(), -1);
-  for (const auto& [apart, place, face] : pairs) {
+  for (const auto& [was_left, apart, place, face] : pairs) {
     int& own = places[static_cast<std::size_t>(face)];
     if (own < 0 && std::ranges::find(places, place) == places.end()) own = place;
   }
   for (std::size_t face = 0; face < faces.size(); ++face) {
+    const auto lies_on = [&](std::size_t other) {
+      return places[other] >= 0 && distance(faces[other], faces[face]) < kOnAnother;
+    };
+    for (std::size_t other = 0; other < faces.size() && places[face] < 0; ++other) {
+      if (lies_on(other)) places[face] = places[other];
+    }
     if (places[face] < 0) {
       places[face] = static_cast<int>(known.size());
       known.emplace_back();
     }
-    known[static_cast<std::size_t>(places[face])] = faces[face];
+  }
+  for (std::size_t face = faces.size(); face-- > 0;) {  // of two on each other the first
+    known[static_cast<std::size_t>(places[face])] = {faces[face], frame};
   }
   return places;
 }
@@ -73,9 +90,13 @@ FaceBox box_around(const ImagePoints& points) {
 }
 
 std::vector<std::vector<int>> face_places(const std::vector<Faces>& frames) {
-  std::vector<FaceBox> known;
+  std::vector<Place> known;
   std::vector<std::vector<int>> places;
-  for (const Faces& faces : frames) places.push_back(places_of(faces, known));
+  int with_faces = 0;
+  for (const Faces& faces : frames) {
+    if (!faces.empty()) ++with_faces;
+    places.push_back(places_of(faces, with_faces, known));
+  }
   return places;
 }
 

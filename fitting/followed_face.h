@@ -18,8 +18,9 @@ struct FaceBox {
 FaceBox box_around(const ImagePoints& points);
 
 /// The place of each face in each frame of a clip, by numbers from 0 on. A face whose middle is
-/// within the width and height of where one was last seen, however long ago, is at its place, the
-/// nearest first and each place once in a frame; others are at new ones.
+/// within the width and height of where one was last seen, however long ago, is at its place: those
+/// of the frame before come first, then the nearest, each once in a frame. A face that lies on
+/// another one is at its place, too; others are at new ones.
 std::vector<std::vector<int>> face_places(const std::vector<std::vector<FaceBox>>& frames);
 
 /// Which of the faces in each frame of a clip is the person that is followed.

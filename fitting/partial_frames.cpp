@@ -73,8 +73,8 @@ double TurnUncertainty::of(const std::vector<Eigen::Index>& seen) const {
 }
 
 std::vector<int> partial_frames(const MorphableModel& model, const MappedLandmarks& mapped) {
-  // Half a face has 2.4 to 3.5, brows and eyes 3.3; nose and mouth together 4.5, the nose alone 5
-  // to 7, the mouth 6 to 12.
+  // Half a face has 2.4 to 3.5, brows and eyes 3.3; nose and mouth together 3 to 4.4, the nose
+  // alone 5 to 7, the mouth 6 to 13.
   constexpr double kMost = 4;
   const TurnUncertainty uncertainty(model, mapped.vertices,
                                     looking_ahead(model.mean(), mapped.ibug));

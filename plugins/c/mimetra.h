@@ -176,7 +176,7 @@ typedef struct mimetra_array {
  *               face_of_triangle I32 T
  *   sequence    positions F x N x 3 (or N x 3), faces, [times F], [rest N x 3], and any
  *               number of fields: N or N x c on vertices, T or T x c on triangles, by
- *               their location; times are seconds that rise
+ *               their location
  *   model       neutral N x 3, faces, [expressions D x N x 3, expression_names STRING D],
  *               [identities I x N x 3, identity_names STRING I], and where it performs weights
  *               F x W, weight_names STRING W, [times F]; [landmarks I32 L x 2: number, vertex].
@@ -200,8 +200,9 @@ typedef struct mimetra_array {
  *   document    text STRING 1: a page, a script
  *
  * Where no type stands, it is F64, and F32 is taken too. Numbers must be finite, but for fields,
- * tables and the points of landmarks. Only fields have a location; two of them may share a name
- * where one is on vertices and one on triangles, and data_array() then gives the first.
+ * tables and the points of landmarks; times are seconds that rise. Only fields have a location; two
+ * of them may share a name where one is on vertices and one on triangles, and data_array() then
+ * gives the first.
  *
  * Of tables only weights are read from files; pictures and fits are in no file that can be read. As
  * inputs they are given as values.

@@ -1,6 +1,5 @@
 #include "fitting/clip_fit.h"
 
-#include <numbers>
 #include <random>
 
 #include <gmock/gmock.h>

@@ -37,6 +37,22 @@ TEST(FollowedFace, IsNotSomebodyElseWhoComesWhileItIsMissed) {
               ElementsAre(0, -1, 1, 0));
 }
 
+/// Detectors find one face twice.
+TEST(FollowedFace, IsOneWhereItsBoxesLieOnEachOther) {
+  const FollowedFace face =
+      followed_face({{at(100)}, {at(100), at(103)}, {at(104)}, {at(107), at(102)}, {at(105)}});
+  EXPECT_THAT(face.chosen, ElementsAre(0, 0, 0, 1, 0));
+  EXPECT_THAT(face.jumps, IsEmpty());
+}
+
+TEST(FollowedFace, MayCrossWhereSomebodyElseWas) {
+  std::vector<std::vector<FaceBox>> frames = {{at(0, 110), at(400)}};
+  for (int f = 1; f < 60; ++f) frames.push_back({at(10 * f)});
+  const FollowedFace face = followed_face(frames);
+  EXPECT_THAT(face.chosen, testing::Each(0));
+  EXPECT_THAT(face.jumps, IsEmpty());
+}
+
 TEST(FollowedFace, IsTakenUpAfterALongAbsence) {
   std::vector<std::vector<FaceBox>> frames = {{at(100, 110), at(500)}};
   for (int f = 0; f < 200; ++f) frames.push_back({at(500)});

@@ -1,5 +1,7 @@
+#include <algorithm>
 #include <cmath>
 #include <iostream>
+#include <random>
 
 #include <gtest/gtest.h>
 

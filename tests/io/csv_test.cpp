@@ -51,7 +51,8 @@ TEST_F(Csv, FieldsComeBackAsTheyWereWritten) {
 }
 
 TEST_F(Csv, NamesMayStandInTheCommentBeforeNumbers) {
-  for (const std::string text : {"# by hand\n# a,b\n1,2\n3,4\n", "#a;b\n1,0;2\n3;4,0\n"}) {
+  for (const std::string text :
+       {"# by hand\n# a,b\n1,2\n3,4\n", "#a;b\n1,0;2\n3;4,0\n", "# by hand\n#a,b,\n1,2,\n3,4,\n"}) {
     CsvReader csv(file(text));
     EXPECT_THAT(csv.names(), ElementsAre("a", "b"));
     ASSERT_TRUE(csv.next_row());
@@ -62,6 +63,10 @@ TEST_F(Csv, NamesMayStandInTheCommentBeforeNumbers) {
     EXPECT_EQ(csv.line(), text.starts_with("#a") ? 3 : 4);
     EXPECT_FALSE(csv.next_row());
   }
+  for (const std::string first : {"nan,2", "1,", ",2", "NaN,2"}) {
+    EXPECT_THAT(CsvReader(file("# a,b\n" + first + "\n3,4\n")).names(), ElementsAre("a", "b"));
+  }
+  EXPECT_THAT(CsvReader(file("# a,b\nnan,\n3,4\n")).names(), ElementsAre("nan"));
   EXPECT_THAT(CsvReader(file("# take 7, by hand\na,b\n1,2\n")).names(), ElementsAre("a", "b"));
   EXPECT_THAT(CsvReader(file("# take 7\n1,2\n3,4\n")).names(), ElementsAre("1", "2"));
 }

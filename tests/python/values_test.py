@@ -50,8 +50,9 @@ class Values(SampleTest):
         poses = np.ma.array(moved(), mask=False)
         self.assert_same(mimetra.Sequence(poses, POLYGONS).positions, moved())
         poses[1, 3, 2] = np.ma.masked
-        with self.assertRaisesRegex(mimetra.BadInput, "positions"):
-            mimetra.Sequence(poses, POLYGONS)
+        for hidden in [poses, list(poses)]:
+            with self.assertRaisesRegex(mimetra.BadInput, "positions"):
+                mimetra.Sequence(hidden, POLYGONS)
 
     def test_what_is_odd_about_a_value_is_said_where_it_is_made(self):
         with self.assertLogs("mimetra", "WARNING") as said:

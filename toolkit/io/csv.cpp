@@ -8,6 +8,7 @@
 
 #include "toolkit/io/whole_file.h"
 #include "toolkit/mesh/errors.h"
+#include "toolkit/mesh/text.h"
 
 namespace mimetra {
 namespace {
@@ -61,13 +62,28 @@ std::optional<double> number_in(std::string_view field, char separator) {
   return value;
 }
 
-/// Whether a first line is a row already, of as many fields as `names`.
+/// Takes away the empty field that a separator at the end of a line makes; false without one.
+bool drop_last_if_empty(std::vector<std::string_view>& fields) {
+  const bool ends_in_separator = fields.size() > 1 && fields.back().empty();
+  if (ends_in_separator) fields.pop_back();
+  return ends_in_separator;
+}
+
+/// Whether a first line is a row already, of as many fields as `names`: numbers, some of which may
+/// be missing.
 bool is_row_of(const std::vector<std::string_view>& names, std::string_view line, char separator) {
-  const auto fields = fields_of(line, separator);
-  return fields.size() == names.size() && fields.size() > 1 &&
-         std::ranges::all_of(fields, [separator](std::string_view field) {
-           return number_in(field, separator).has_value();
-         });
+  auto fields = fields_of(line, separator);
+  if (fields.size() > names.size()) drop_last_if_empty(fields);
+  if (fields.size() != names.size() || fields.size() < 2) return false;
+  const auto is_number = [separator](std::string_view field) {
+    return number_in(field, separator).has_value();
+  };
+  const auto is_missing = [](std::string_view field) {
+    return field.empty() || lower_case(std::string(field)) == "nan";
+  };
+  return std::ranges::any_of(fields, is_number) &&
+         std::ranges::all_of(
+             fields, [&](std::string_view field) { return is_number(field) || is_missing(field); });
 }
 
 }  // namespace
@@ -96,14 +112,14 @@ CsvReader::CsvReader(const std::filesystem::path& path)
   if (line.empty()) throw IoError(path_, "is empty; expected a line of column names");
   separator_ = separator_of(comment_);
   names_ = fields_of(comment_, separator_);
+  names_end_in_separator_ = drop_last_if_empty(names_);
   if (is_row_of(names_, line, separator_)) {
     unread_row_ = line;
     return;
   }
   separator_ = separator_of(line);
   names_ = fields_of(line, separator_);
-  names_end_in_comma_ = names_.size() > 1 && names_.back().empty();
-  if (names_end_in_comma_) names_.pop_back();
+  names_end_in_separator_ = drop_last_if_empty(names_);
 }
 
 bool CsvReader::next_row(Rows rows) {
@@ -114,7 +130,7 @@ bool CsvReader::next_row(Rows rows) {
   if (row_.size() == names_.size() + 1) {
     if (row_.back().empty())
       row_.pop_back();
-    else if (names_end_in_comma_)
+    else if (names_end_in_separator_)
       fail("column " + std::to_string(row_.size()) + " has no name");
   }
   given_ = row_.size();

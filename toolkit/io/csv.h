@@ -19,7 +19,7 @@ std::string text_of_csv(std::string_view field);
 
 /// Reads a file row by row. Lines end in LF or CRLF; those that are blank or begin with '#' are
 /// passed over, and so is a separator that ends them. The names may stand behind a '#', as NumPy
-/// writes them.
+/// writes them, before a line of two numbers and more.
 class CsvReader {
  public:
   /// Reads the column names. Throws IoError where there are none.
@@ -63,7 +63,7 @@ class CsvReader {
   std::string_view unread_row_;  ///< the first line, where the names stand in a comment
   char separator_ = ',';
   std::vector<std::string_view> names_, row_;
-  bool names_end_in_comma_ = false;
+  bool names_end_in_separator_ = false;
   std::size_t given_ = 0;  ///< fields of the row that its line has
 };
 

@@ -1,5 +1,6 @@
 #include "toolkit/vtk/vtp_formats.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "toolkit/io/frame_files.h"
@@ -10,6 +11,7 @@
 #include "toolkit/operations/bound_parameters.h"
 #include "toolkit/operations/formats.h"
 #include "toolkit/operations/sequence_parameters.h"
+#include "toolkit/vtk/displaced_rest.h"
 #include "toolkit/vtk/vtp_series.h"
 
 namespace mimetra {
@@ -115,6 +117,15 @@ Regions region_of_vtp(const std::filesystem::path& path, int vertices, const Tri
   return weights.size() > 0 ? with_weights(std::move(regions), weights, triangles) : regions;
 }
 
+/// What regions are written over.
+std::vector<std::string> region_losses(const Data& data, const std::filesystem::path& target) {
+  const FieldSequence& shown = std::get<RegionData>(data).fields;
+  if (!shown.displacement || std::ranges::none_of(shown.fields, is_displacement)) return {};
+  return {target.string() +
+          ": the input's field 'displacement' is replaced by that from the rest pose; give it "
+          "another name to keep it"};
+}
+
 ReadValue read_region_data(const std::string& text, const ReadRequest& request) {
   return {{text, RegionData{region_of_vtp(text, request.vertices, *request.triangles), {}}},
           {text}};
@@ -150,13 +161,15 @@ void add_vtp(OperationTable& table) {
                    .kind = DataKind::regions,
                    .extensions = {".pvd"},
                    .writing = writing,
-                   .write = write_region_data});
+                   .write = write_region_data,
+                   .losses = region_losses});
   table.add(Format{.name = "VTK mesh with region fields",
                    .kind = DataKind::regions,
                    .extensions = {".vtp"},
                    .read = read_region_data,
                    .writing = writing,
-                   .write = write_region_data});
+                   .write = write_region_data,
+                   .losses = region_losses});
 }
 
 }  // namespace mimetra

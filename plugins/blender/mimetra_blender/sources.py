@@ -55,8 +55,8 @@ def _warn_of_bound(subject, hidden):
         elif rebuilding and modifier.show_viewport and _is_bound(modifier):
             logging.getLogger("mimetra").warning(
                 "%s: the motion of the modifier '%s' is missing: it is bound to the vertices that"
-                " '%s' makes, which is off where the object is read; move '%s' before it and bind"
-                " it again, or apply '%s'", subject.name, modifier.name, rebuilding.name,
+                " '%s' makes, which is off where the object is read; move '%s' before it, bound or"
+                " recorded again, or apply '%s'", subject.name, modifier.name, rebuilding.name,
                 modifier.name, rebuilding.name)
 
 

@@ -363,6 +363,8 @@ def _floats(array, name):
 
 def _unmasked(values):
     """An array, with NaN for what a masked one hides."""
+    if isinstance(values, (list, tuple)) and any(map(np.ma.isMaskedArray, values)):
+        values = np.ma.array(values)
     if np.ma.is_masked(values):
         values = values.astype(np.float64).filled(np.nan)
     return np.asarray(values)
