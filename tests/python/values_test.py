@@ -60,7 +60,7 @@ class Values(SampleTest):
         self.assertIn("square: expressions of another place, turn or size", said.output[0])
         with self.assertLogs("mimetra", "WARNING") as said:
             mimetra.Sequence(np.stack([CORNERS] * 12), POLYGONS, times=np.arange(12.0))
-        self.assertIn("a second apart", said.output[0])
+        self.assertIn("frames are 1 s apart (median)", said.output[0])
 
     def test_times_rise(self):
         for times in [[0, 0], [1, 0]]:
