@@ -101,7 +101,7 @@ std::vector<BadInput> weight_cases() {
   add("truncated", "time,left,right\n0,0.5,0.5\n1,0.", 3, {"line 3", "2 fields, expected 3"});
   add("ragged_rows", "time,left,right\n0,0.5,0.5,0.5\n", 3, {"line 2", "4 fields, expected 3"});
   add("decimal_commas", "time,left\n0,0,5\n", 3, {"line 2", "decimal commas"});
-  add("semicolons", "time;left\n0;0,5\n", 3, {"line 1", "';'"});
+  add("tabs", "time\tleft\n0\t0.5\n", 3, {"line 1", "tabs"});
   add("duplicate_name", "time,left,left\n0,1,1\n", 3, {"line 1", "'left' occurs twice"});
   add("unnamed_column", "time,left,\n0,1,1\n", 3, {"column 3 has no name"});
   add("no_name_known", "time,smile\n0,1\n", 4, {"smile", "left"});

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include <Eigen/QR>
+#include <Eigen/Eigenvalues>
 
 #include <vtkCellArray.h>
 #include <vtkCellData.h>
@@ -128,14 +128,19 @@ std::optional<Positions> moved_with(const Positions& rest, const Positions& then
   const Eigen::RowVector3d center = then.colwise().mean();
   const Positions around = then.rowwise() - center, moves = now - then;
   const Eigen::RowVector3d shift = moves.colwise().mean();
-  Eigen::CompleteOrthogonalDecomposition<Eigen::Matrix3d> squares;
-  squares.setThreshold(kFlat);
-  squares.compute(around.transpose() * around);
-  const Eigen::Matrix3d map = squares.solve(around.transpose() * (moves.rowwise() - shift));
-  const double left = ((moves - around * map).rowwise() - shift).cwiseAbs().maxCoeff();
+  // Products of long matrices are lazy: their sums do not depend on sizes of caches.
+  const Eigen::Matrix3d squares = around.transpose().lazyProduct(around);
+  const Eigen::Matrix3d moved = around.transpose().lazyProduct((moves.rowwise() - shift).eval());
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(squares);
+  const double flat = kFlat * axes.eigenvalues().maxCoeff();
+  const Eigen::Vector3d inverse =
+      (axes.eigenvalues().array() > flat).select(axes.eigenvalues().cwiseInverse(), 0);
+  const Eigen::Matrix3d map =
+      axes.eigenvectors() * inverse.asDiagonal() * axes.eigenvectors().transpose() * moved;
+  const double left = ((moves - around.lazyProduct(map)).rowwise() - shift).cwiseAbs().maxCoeff();
   const double largest = std::max(then.cwiseAbs().maxCoeff(), now.cwiseAbs().maxCoeff());
   if (!(left <= kRounding * largest)) return {};
-  return (rest + (rest.rowwise() - center) * map).rowwise() + shift;
+  return (rest + (rest.rowwise() - center).lazyProduct(map)).rowwise() + shift;
 }
 
 /// Keeps where the points of a rest pose are; the array shares their memory.
