@@ -88,7 +88,8 @@ TEST(PartialFrames, AreNoneWhereNoFrameShowsMore) {
 /// it says. Without expressions, whose bounds make them no normal variables.
 TEST(TurnUncertainty, IsTheSpreadOfTheTurnsThatAreFound) {
   const MorphableModel head = samples::parametric_head();
-  const MorphableModel rigid(head.shared_connectivity(), head.mean(), {}, {});
+  const ShapeBasis still{{"still"}, Eigen::MatrixXd::Zero(head.mean().size(), 1)};
+  const MorphableModel rigid(head.shared_connectivity(), head.mean(), still, {});
   const MappedLandmarks mapped = still_head(1);
   std::vector<Eigen::Index> all, right;
   for (std::size_t i = 0; i < mapped.ibug.size(); ++i) {
