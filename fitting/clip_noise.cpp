@@ -20,7 +20,6 @@ constexpr double kLeastSigma = 1e-4;
 /// The noise that single frames are taken to have counts as this many coordinates beside a clip's,
 /// so that a few landmarks that fit by chance are not trusted beyond measure.
 constexpr double kBelieved = 10;
-constexpr double kUsualSigma = 0.017485;
 constexpr double kUnknownRepeated = 0.5;
 
 /// What is left of a frame's landmarks in shares of its radius, turned in the image as the face of

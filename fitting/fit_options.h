@@ -8,6 +8,10 @@
 
 namespace mimetra {
 
+/// Standard deviation of landmarks in each direction where it is not estimated, as a share of their
+/// RMS distance from their centroid: sqrt(3) px for the face of the size it was found on.
+constexpr double kUsualSigma = 0.017485;
+
 struct FitOptions {
   /// `alternating`: camera, alpha, camera, beta, in turn, as in the paper. `joint`: Gauss-Newton
   /// steps of all of them together, two or three of which reach what hundreds of iterations do.
@@ -33,7 +37,7 @@ struct FitOptions {
   double tolerance = 1e-4;
   /// Noise of the landmarks, a standard deviation in each direction. By default the joint solver
   /// estimates it where it fits one shape to several frames, as a share of the face's size in each;
-  /// elsewhere it is 0.017485 x the RMS distance of the used landmarks from their centroid, in each
+  /// elsewhere it is kUsualSigma x the RMS distance of the used landmarks from their centroid, in each
   /// frame, so that the image's scale changes nothing.
   std::optional<double> sigma = std::nullopt;
   /// rho, the share of the landmarks' squared error that is the same in every frame: F frames of

@@ -28,6 +28,7 @@ struct FrameSystem {
 
 FrameSystem frame_system(const FittedFrame& frame, double ridge) {
   const Eigen::Index a = frame.alpha().size(), b = frame.beta().size();
+  if (a + b == 0) return {};  // the camera alone is unknown
   const FittedFrame::Linear linear = frame.linear();
   // What a change of the camera undoes: the projection on the span of what that moves.
   const Eigen::HouseholderQR<Eigen::MatrixXd> qr(linear.camera);

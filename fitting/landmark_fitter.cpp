@@ -18,9 +18,6 @@ namespace mimetra {
 
 namespace {
 
-/// sqrt(3) px for the face of the size it was found on.
-constexpr double kRelativeSigma = 0.017485;
-
 /// The ridge with which so many expressions are as strong as those of faces are. Landmarks tell ten
 /// apart without one. Of 52 it is that of a normal prior with which |beta|^2 is 5 on average:
 /// captured performances of 51 and 52 expressions have 2.5 and 5.2.
@@ -236,7 +233,7 @@ FittedFrame LandmarkFitter::State::frame(const Frames& points, Eigen::Index inde
     image.row(static_cast<Eigen::Index>(i)) = points.row(index).segment<2>(2 * seen[i]);
   }
   const bool all = image.rows() == rows->mean.rows();
-  const double sigma = given_sigma ? *given_sigma : kRelativeSigma * rms_radius(image);
+  const double sigma = given_sigma ? *given_sigma : kUsualSigma * rms_radius(image);
   if (!(sigma > 0)) throw MismatchError(frame_name(index) + "all landmarks are at one place");
   std::shared_ptr<const LandmarkRows>& known = rows_of_seen[seen];
   if (!known) known = all ? rows : std::make_shared<const LandmarkRows>(*rows, seen);

@@ -13,9 +13,6 @@ namespace mimetra {
 
 namespace {
 
-/// Noise of landmarks as a share of their RMS radius.
-constexpr double kNoise = 0.0175;
-
 std::vector<Eigen::Index> landmarks_seen(const Frames& points, Eigen::Index frame) {
   std::vector<Eigen::Index> seen;
   for (Eigen::Index i = 0; i < points.cols() / 2; ++i) {
@@ -51,7 +48,7 @@ TurnUncertainty::TurnUncertainty(const MorphableModel& model, const std::vector<
     const auto moves = expressions.middleRows<3>(3 * Eigen::Index(vertices[std::size_t(i)]));
     rows.rightCols(expressions.cols()) = (ahead * moves / radius).topRows<2>();
   }
-  image_ /= kNoise;
+  image_ /= kUsualSigma;
   // A turn of a radian, a place and a size of a radius are as much as may be; weights of
   // expressions spread evenly between 0 and 1.
   const double stretch = FitOptions{}.stretch;

@@ -9,7 +9,7 @@
 namespace mimetra {
 
 /// By how many degrees (RMS) a head may be turned otherwise than what fits some of its landmarks
-/// says: seen from the front, with the noise of one picture (FitOptions::sigma) and expressions
+/// says: seen from the front, with the noise of one picture (kUsualSigma) and expressions
 /// anywhere in [0, 1].
 class TurnUncertainty {
  public:

@@ -88,8 +88,7 @@ TEST(PartialFrames, AreNoneWhereNoFrameShowsMore) {
 /// it says. Without expressions, whose bounds make them no normal variables.
 TEST(TurnUncertainty, IsTheSpreadOfTheTurnsThatAreFound) {
   const MorphableModel head = samples::parametric_head();
-  const ShapeBasis still{{"still"}, Eigen::MatrixXd::Zero(head.mean().size(), 1)};
-  const MorphableModel rigid(head.shared_connectivity(), head.mean(), still, {});
+  const MorphableModel rigid(head.shared_connectivity(), head.mean(), {}, {});
   const MappedLandmarks mapped = still_head(1);
   std::vector<Eigen::Index> all, right;
   for (std::size_t i = 0; i < mapped.ibug.size(); ++i) {
@@ -106,7 +105,7 @@ TEST(TurnUncertainty, IsTheSpreadOfTheTurnsThatAreFound) {
     const Eigen::RowVectorXd row = mapped.points.row(0);
     const ImagePoints image = row.reshaped<Eigen::RowMajor>(row.size() / 2, 2);
     const double sigma =
-        0.0175 *
+        kUsualSigma *
         std::sqrt((image.rowwise() - image.colwise().mean()).rowwise().squaredNorm().mean());
     Frames points(kFrames, 2 * Eigen::Index(seen.size()));
     for (auto frame : points.rowwise()) {
