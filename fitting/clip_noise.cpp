@@ -20,6 +20,9 @@ constexpr double kLeastSigma = 1e-4;
 /// The noise that single frames are taken to have counts as this many coordinates beside a clip's,
 /// so that a few landmarks that fit by chance are not trusted beyond measure.
 constexpr double kBelieved = 10;
+/// So many landmarks of normal noise stand beside a clip's, so that a few of five pictures that are
+/// off do not count less.
+constexpr double kBelievedNormal = 30;
 constexpr double kUnknownRepeated = 0.5;
 
 /// What is left of a frame's landmarks in shares of its radius, turned in the image as the face of
@@ -74,20 +77,25 @@ Sums sums_of(const std::vector<FittedFrame>& frames) {
   return sums;
 }
 
-/// Of most likelihood for the distances of the frames' landmarks. In the plane the density at z
-/// sigmas is (1 + z^2 / nu)^-(nu / 2 + 1) / (2 pi sigma^2), whose logarithms' sum is
-/// searched as one with a single maximum over nu.
-double likely_freedom(const std::vector<FittedFrame>& frames) {
+/// Of most likelihood for the distances of the frames' landmarks, as many as are independent, and
+/// of those that are believed to be normal. In the plane the density at z sigmas is
+/// (1 + z^2 / nu)^-(nu / 2 + 1) / (2 pi sigma^2), whose logarithms' sum is searched as one with a
+/// single maximum over nu.
+double likely_freedom(const std::vector<FittedFrame>& frames, const ClipNoise& noise) {
   std::vector<double> squares;
   for (const FittedFrame& frame : frames) {
     const Eigen::VectorXd r = frame.residual().rowwise().squaredNorm();
     for (const double each : r) squares.push_back(each / (frame.sigma() * frame.sigma()));
   }
-  const auto unlikely = [&squares](double logarithm) {
+  const double count = double(frames.size());
+  const double independent = noise.independent_frames(count) / count;
+  const auto unlikely = [&](double logarithm) {
     const double nu = std::exp(logarithm);
     double sum = 0;
     for (const double square : squares) sum += std::log1p(square / nu);
-    return (nu / 2 + 1) * sum;
+    // The mean of log(1 + z^2 / nu) of normal noise is e^(nu / 2) E1(nu / 2).
+    const double normal = -std::exp(nu / 2) * std::expint(-nu / 2);
+    return (nu / 2 + 1) * (independent * sum + kBelievedNormal * normal);
   };
   // By golden section: each step keeps the inner point that is left.
   constexpr double kGolden = 0.6180339887498949, kClose = 1e-3;
@@ -159,7 +167,7 @@ ClipNoise estimated_noise(const std::vector<FittedFrame>& frames, double determi
   ClipNoise noise;
   noise.sigma = std::max(std::sqrt(within + repeated), kLeastSigma);
   noise.repeated = known.repeated.value_or(repeated / (within + repeated));
-  noise.freedom = likely_freedom(frames);
+  noise.freedom = likely_freedom(frames, noise);
   return noise;
 }
 
