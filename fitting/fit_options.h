@@ -37,8 +37,8 @@ struct FitOptions {
   double tolerance = 1e-4;
   /// Noise of the landmarks, a standard deviation in each direction. By default the joint solver
   /// estimates it where it fits one shape to several frames, as a share of the face's size in each;
-  /// elsewhere it is kUsualSigma x the RMS distance of the used landmarks from their centroid, in each
-  /// frame, so that the image's scale changes nothing.
+  /// elsewhere it is kUsualSigma x the RMS distance of the used landmarks from their centroid, in
+  /// each frame, so that the image's scale changes nothing.
   std::optional<double> sigma = std::nullopt;
   /// rho, the share of the landmarks' squared error that is the same in every frame: F frames of
   /// one shape say as much of it as F / (1 + (F - 1) rho). 0 where frames are independent;
