@@ -3,8 +3,10 @@
 #include <gtest/gtest.h>
 
 #include "tests/shapes.h"
+#include "toolkit/drawing/chart.h"
 #include "toolkit/drawing/picture.h"
 #include "toolkit/drawing/sheet_layout.h"
+#include "toolkit/mesh/errors.h"
 
 namespace mimetra {
 namespace {
@@ -124,6 +126,32 @@ TEST(SheetLayout, HasRoomForALegendOfManyNumbers) {
 
 TEST(Picture, IsTheSameEveryTime) {
   EXPECT_EQ(draw(square_sheet()).pixels, draw(square_sheet()).pixels);
+}
+
+TEST(Picture, IsTheSameInASessionWhateverWasDrawnBefore) {
+  Sheet large = square_sheet(), small = square_sheet();
+  large.tile_height = 160;
+  large.rows.push_back(large.rows[0]);
+  Chart chart;
+  chart.title = "time";
+  chart.series.push_back({"all", {1, 2}, {3, 1}, Color{255, 0, 0}});
+  const auto all = [&] {
+    return std::vector<Image>{draw(large), draw(small), draw({chart}), draw(small), draw(large)};
+  };
+  const std::vector<Image> alone = all();
+  const DrawingSession outer;
+  for (int round = 0; round < 2; ++round) {
+    const DrawingSession session;
+    const std::vector<Image> together = all();
+    for (std::size_t i = 0; i < alone.size(); ++i) {
+      EXPECT_EQ(together[i].width, alone[i].width) << i;
+      EXPECT_TRUE(together[i].pixels == alone[i].pixels) << i;
+    }
+    DrawOptions cancelling;
+    cancelling.progress = [](double) { return false; };
+    EXPECT_THROW(draw(large, cancelling), Cancelled);
+  }
+  EXPECT_TRUE(draw(large).pixels == alone[0].pixels);
 }
 
 TEST(Picture, HasAScaleBarOfTheLengthItSays) {

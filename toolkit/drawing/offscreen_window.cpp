@@ -3,12 +3,15 @@
 #include <cstring>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 #include <EGL/egl.h>
 #include <EGL/eglext.h>
 #include <vtkGenericOpenGLRenderWindow.h>
 #include <vtkNew.h>
 #include <vtkRenderWindow.h>
+#include <vtkRenderer.h>
+#include <vtkRendererCollection.h>
 #include <vtkSmartPointer.h>
 #include <vtkUnsignedCharArray.h>
 
@@ -18,21 +21,28 @@ namespace mimetra {
 
 namespace {
 
-/// An OpenGL context without a surface, current in this thread. The display belongs to the process
+/// An OpenGL context without a surface. The display belongs to the process
 /// and stays open: drivers do not give back all they took when it is closed.
 class EglContext {
  public:
-  /// Null where EGL has none to offer. Throws where this thread has another one current.
+  /// Null where EGL has none to offer.
   static std::unique_ptr<EglContext> create() {
     auto context = std::unique_ptr<EglContext>(new EglContext);
     return context->start() ? std::move(context) : nullptr;
   }
 
   ~EglContext() {
-    if (display_ == EGL_NO_DISPLAY) return;
-    eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
-    if (context_ != EGL_NO_CONTEXT) eglDestroyContext(display_, context_);
+    if (context_ == EGL_NO_CONTEXT) return;
+    if (eglGetCurrentContext() == context_) release();
+    eglDestroyContext(display_, context_);
   }
+
+  /// False where this thread has another one current.
+  bool make_current() const {
+    return eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, context_);
+  }
+
+  void release() const { eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT); }
 
  private:
   EglContext() = default;
@@ -66,11 +76,7 @@ class EglContext {
                                    EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
                                    EGL_NONE};
     context_ = eglCreateContext(display_, config, EGL_NO_CONTEXT, kVersion);
-    if (context_ == EGL_NO_CONTEXT) return false;
-    if (eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, context_)) return true;
-    throw std::runtime_error(
-        "pictures cannot be drawn in a thread that draws into a window itself, as VTK and Qt do; "
-        "call it from another thread");
+    return context_ != EGL_NO_CONTEXT;
   }
 
   EGLDisplay display_ = EGL_NO_DISPLAY;
@@ -100,26 +106,70 @@ struct OffscreenWindow::State {
   std::unique_ptr<EglContext> context;
   vtkSmartPointer<vtkRenderWindow> window;
 
+  State() : context(EglContext::create()) {
+    if (!context) {
+      throw std::runtime_error(
+          "pictures need OpenGL 3.2 by EGL, and there is none; install libegl1 and "
+          "libgl1-mesa-dri");
+    }
+    make_current();
+    window = window_on_current_context();
+    window->SetShowWindow(false);
+    window->SetUseOffScreenBuffers(true);
+    window->SetMultiSamples(kSamples);
+  }
+
   ~State() {
     if (window) window->Finalize();
     window = nullptr;
   }
+
+  void make_current() const {
+    if (context->make_current()) return;
+    throw std::runtime_error(
+        "pictures cannot be drawn in a thread that draws into a window itself, as VTK and Qt do; "
+        "call it from another thread");
+  }
+
+  /// As a new one.
+  void empty() const {
+    while (vtkRenderer* renderer = window->GetRenderers()->GetFirstRenderer()) {
+      window->RemoveRenderer(renderer);
+    }
+    window->SetNumberOfLayers(1);
+  }
 };
 
-OffscreenWindow::OffscreenWindow(int width, int height) : state_(std::make_unique<State>()) {
-  state_->context = EglContext::create();
-  if (!state_->context) {
-    throw std::runtime_error(
-        "pictures need OpenGL 3.2 by EGL, and there is none; install libegl1 and libgl1-mesa-dri");
+namespace {
+
+/// The innermost of this thread.
+thread_local OneWindow* one_window = nullptr;
+
+}  // namespace
+
+OneWindow::OneWindow() : outer_(std::exchange(one_window, this)) {}
+
+OneWindow::~OneWindow() {
+  one_window = outer_;
+  if (free_) free_->context->make_current();
+}
+
+OffscreenWindow::OffscreenWindow(int width, int height) {
+  if (one_window && one_window->free_) {
+    one_window->free_->make_current();
+    state_ = std::move(one_window->free_);
+  } else {
+    state_ = std::make_unique<State>();
   }
-  state_->window = window_on_current_context();
-  state_->window->SetShowWindow(false);
-  state_->window->SetUseOffScreenBuffers(true);
-  state_->window->SetMultiSamples(kSamples);
   state_->window->SetSize(width, height);
 }
 
-OffscreenWindow::~OffscreenWindow() = default;
+OffscreenWindow::~OffscreenWindow() {
+  if (!one_window || one_window->free_) return;
+  state_->empty();
+  state_->context->release();
+  one_window->free_ = std::move(state_);
+}
 
 vtkRenderWindow& OffscreenWindow::window() const {
   return *state_->window;

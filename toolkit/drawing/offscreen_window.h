@@ -23,8 +23,24 @@ class OffscreenWindow {
   Image image() const;
 
  private:
+  friend class OneWindow;
   struct State;
   std::unique_ptr<State> state_;
+};
+
+/// While it lives, the windows of its thread are one, as long as there are not two at a time.
+class OneWindow {
+ public:
+  OneWindow();
+  ~OneWindow();
+  OneWindow(const OneWindow&) = delete;
+  OneWindow& operator=(const OneWindow&) = delete;
+
+ private:
+  friend class OffscreenWindow;
+  /// The one that is free; null before the first, and while it is in use.
+  std::unique_ptr<OffscreenWindow::State> free_;
+  OneWindow* outer_;
 };
 
 }  // namespace mimetra

@@ -33,7 +33,7 @@ const Painter& loaded() {
   if (!library) throw std::runtime_error(std::string("pictures cannot be drawn: ") + dlerror());
   void* symbol = dlsym(library, "mimetra_get_painter");
   const Painter* painter =
-      symbol ? reinterpret_cast<mimetra_get_painter_function>(symbol)(MIMETRA_VERSION) : nullptr;
+      symbol ? reinterpret_cast<GetMimetraPainter>(symbol)(MIMETRA_VERSION) : nullptr;
   if (!painter) {
     throw std::runtime_error(place.string() + " is not of version " MIMETRA_VERSION
                                               ": install it again");
@@ -59,6 +59,8 @@ Image draw(const std::vector<Chart>& row, const ChartSize& size) {
 std::string png_of(const Image& image) {
   return painter().png_of(image);
 }
+
+DrawingSession::DrawingSession() : window_(painter().one_window()) {}
 
 double drawing_bytes(const Sheet& sheet) {
   // Colour and depth in each of four samples a pixel, once resolved, once read, once as PNG.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,8 @@ class Painter {
   virtual Image draw(const Sheet& sheet, const DrawOptions& options) const = 0;
   virtual Image draw(const std::vector<Chart>& row, const ChartSize& size) const = 0;
   virtual std::string png_of(const Image& image) const = 0;
+  /// What a DrawingSession holds.
+  virtual std::shared_ptr<void> one_window() const = 0;
 };
 
 /// Loads the library when it is first asked for. Throws std::runtime_error where it is missing or
@@ -25,4 +28,4 @@ const Painter& painter();
 }  // namespace mimetra
 
 /// What the library shows; null where it is of another version.
-extern "C" using mimetra_get_painter_function = const mimetra::Painter * (*)(const char* version);
+extern "C" using GetMimetraPainter = const mimetra::Painter * (*)(const char* version);

@@ -2,6 +2,7 @@
 
 #include <string_view>
 
+#include "toolkit/drawing/offscreen_window.h"
 #include "toolkit/drawing/painter.h"
 #include "toolkit/drawing/vtk_drawing.h"
 
@@ -18,6 +19,7 @@ class VtkPainter final : public Painter {
     return drawn(row, size);
   }
   std::string png_of(const Image& image) const override { return encoded_png(image); }
+  std::shared_ptr<void> one_window() const override { return std::make_shared<OneWindow>(); }
 };
 
 }  // namespace

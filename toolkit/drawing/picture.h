@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <string>
 
 #include "toolkit/drawing/sheet.h"
@@ -16,6 +17,18 @@ struct DrawOptions {
 /// kLargestPicture, std::runtime_error where there is no OpenGL or it has not enough memory,
 /// Cancelled.
 Image draw(const Sheet& sheet, const DrawOptions& options = {});
+
+/// What this thread draws while it lives is drawn by one window: OpenGL starts, and compiles its
+/// shaders, once instead of for each picture, and keeps its memory in between. The pictures are the
+/// same bytes.
+class DrawingSession {
+ public:
+  /// Throws std::runtime_error where the library that draws is missing.
+  DrawingSession();
+
+ private:
+  std::shared_ptr<void> window_;
+};
 
 /// Bytes that draw() takes at its peak.
 double drawing_bytes(const Sheet& sheet);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <future>
 
 #include "toolkit/mesh/progress.h"
 #include "toolkit/mesh/text.h"
@@ -313,6 +314,29 @@ std::string gallery_section(const Components& components, const ReportView& view
       figure(drawn(sheet, {8, 210, 16}, {3, 220, 19}, bytes, progress), "Gallery of components"));
 }
 
+/// What follows the player; strip and gallery leave something of `largest` bytes for it.
+std::string sections_below(const PageText& page, const ReportStudy& study, const ReportView& view,
+                           std::size_t largest, const Progress& progress) {
+  const std::size_t each = largest * 3 / 10;
+  std::string sections = strip_section(study, view, each, part_of(progress, 0, 0.5));
+  if (study.transfer) {
+    sections +=
+        section("Error and time",
+                "The paper's Table I. DE: mean squared distance of the target's triangles from "
+                "what the source's deformation makes of them (eq. 12). MPE: against the "
+                "transfer by all triangles; negative is worse.",
+                page.table() + charts(table_charts(*study.transfer, view.unit)));
+  }
+  if (study.components) {
+    sections += gallery_section(*study.components, view, each, part_of(progress, 0.5, 0.9));
+  }
+  const std::vector<Chart> weights = weight_charts(study);
+  if (!weights.empty()) {
+    sections += section("Weights", "The strongest ones over time.", charts(weights));
+  }
+  return sections + page.run();
+}
+
 }  // namespace
 
 ReportPage report_page(const ReportStudy& study, const ReportView& view, std::string_view viewer,
@@ -327,45 +351,36 @@ ReportPage report_page(const ReportStudy& study, const ReportView& view, std::st
       page.title() + "</title>\n<style>" + kReportStyle +
       "</style>\n</head>\n<body>\n<header>\n<h1>" + page.title() + "</h1>\n" + page.remarks() +
       page.facts() + "</header>\n";
-  // Strip and gallery leave something for the player.
-  const std::size_t each = largest * 3 / 10;
-  std::string rest = strip_section(study, view, each, part_of(progress, 0, 0.4));
-  if (study.transfer) {
-    rest += section("Error and time",
-                    "The paper's Table I. DE: mean squared distance of the target's triangles from "
-                    "what the source's deformation makes of them (eq. 12). MPE: against the "
-                    "transfer by all triangles; negative is worse.",
-                    page.table() + charts(table_charts(*study.transfer, view.unit)));
-  }
-  if (study.components) {
-    rest += gallery_section(*study.components, view, each, part_of(progress, 0.4, 0.8));
-  }
-  const std::vector<Chart> weights = weight_charts(study);
-  if (!weights.empty()) {
-    rest += section("Weights", "The strongest ones over time.", charts(weights));
-  }
-  rest += page.run() + "</body>\n</html>\n";
-
+  // Before another thread: VTK must be loaded by one at a time.
+  const DrawingSession session;
   const std::string player = "<section>\n" + page.player();
   const std::string before = "<script type=\"application/json\" id=\"performance\">";
   const std::string between = "</script>\n</section>\n";
-  const std::size_t used =
-      head.size() + player.size() + before.size() + between.size() + rest.size() + viewer.size();
+  constexpr const char* kEnd = "</body>\n</html>\n";
   constexpr std::size_t kTags = 100;
-  PackedScene scene;
-  std::string none = "<section>\n<p class=\"soft\">No 3D viewer: ";
-  if (viewer.empty()) {
-    none += "this mimetra was built without npm.</p>\n</section>\n";
-  } else {
-    if (used + kTags < largest) {
-      scene = packed(scene_of(study, view), largest - used - kTags);
-    }
-    none += "the mesh is too large for a page of this size.</p>\n</section>\n";
+  const std::size_t always =
+      head.size() + player.size() + before.size() + between.size() + viewer.size() + kTags;
+  const auto packed_beside = [&](std::size_t used) {
+    if (viewer.empty() || used >= largest) return PackedScene{};
+    return packed(scene_of(study, view), largest - used);
+  };
+  // Meanwhile, as if pictures took nothing.
+  std::future<PackedScene> ahead = std::async(
+      view.threads == 1 ? std::launch::deferred : std::launch::async, packed_beside, always);
+  const std::string rest = sections_below(page, study, view, largest, progress);
+  PackedScene scene = ahead.get();
+  const std::size_t used = always + rest.size();
+  if (used + scene.json.size() > largest) scene = packed_beside(used);
+
+  if (scene.json.empty()) {
+    const std::string why = viewer.empty() ? "this mimetra was built without npm"
+                                           : "the mesh is too large for a page of this size";
+    return {head + "<section>\n<p class=\"soft\">No 3D viewer: " + why + ".</p>\n</section>\n" +
+                rest + kEnd,
+            0};
   }
-  if (scene.json.empty()) return {head + none + rest, 0};
-  const std::string script = "<script>" + std::string(viewer) + "</script>\n";
-  return {head + player + before + scene.json + between + rest.substr(0, rest.rfind("</body>")) +
-              script + "</body>\n</html>\n",
+  return {head + player + before + scene.json + between + rest + "<script>" + std::string(viewer) +
+              "</script>\n" + kEnd,
           scene.frames};
 }
 
