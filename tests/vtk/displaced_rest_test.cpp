@@ -8,7 +8,9 @@
 #include <vtkDataArray.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
+#include <vtkPoints.h>
 #include <vtkPolyData.h>
+#include <vtkSmartPointer.h>
 
 #include "tests/temporary_folder.h"
 #include "tests/vtk/vtp_fixture.h"
@@ -80,6 +82,41 @@ TEST_F(DisplacedRestOf, DisplacementsThatDoNotFollowTheFramesIsNone) {
 TEST_F(DisplacedRestOf, NumbersThatAreNotKnownIsNone) {
   const Positions unknown = Positions::Constant(5, 3, std::numeric_limits<double>::quiet_NaN());
   EXPECT_FALSE(found([&](int) { return unknown; }));
+}
+
+/// A motion of tenths far from the origin, whose steps to the next frame are called displacements,
+/// or which has displacements from its rest pose.
+std::optional<Positions> found_far_away(int precision, bool from_rest) {
+  constexpr int kFrames = 3;
+  const Eigen::RowVector3d far(5e5, 5e6, 0);
+  const Positions rest = quad_and_triangle().sequence().rest().rowwise() + far;
+  const Positions way = Positions::Constant(5, 3, 0.1);
+  DisplacedRest displaced(kFrames);
+  for (int frame = 0; frame < kFrames; ++frame) {
+    const Positions positions = rest + frame * way;
+    const auto array_of = [&](const Positions& rows) {
+      const auto array =
+          vtkSmartPointer<vtkDataArray>::Take(vtkDataArray::CreateDataArray(precision));
+      array->SetNumberOfComponents(3);
+      for (const auto& row : rows.rowwise()) array->InsertNextTuple3(row[0], row[1], row[2]);
+      return array;
+    };
+    vtkNew<vtkPoints> points;
+    points->SetData(array_of(positions));
+    vtkNew<vtkPolyData> data;
+    data->SetPoints(points);
+    const auto array = array_of(from_rest ? Positions(frame * way) : way);
+    array->SetName(kDisplacement);
+    data->GetPointData()->AddArray(array);
+    displaced.look_at(*data, positions_of(*data, "mesh"));
+  }
+  return displaced.found("mesh");
+}
+
+TEST_F(DisplacedRestOf, PointsFarFromTheOriginNeedDoublePrecision) {
+  EXPECT_TRUE(found_far_away(VTK_DOUBLE, true));
+  EXPECT_FALSE(found_far_away(VTK_DOUBLE, false));
+  EXPECT_FALSE(found_far_away(VTK_FLOAT, false));
 }
 
 TEST_F(DisplacedRestOf, OneFrameIsKnownByTheLengthBesideIt) {

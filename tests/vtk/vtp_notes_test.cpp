@@ -76,9 +76,40 @@ TEST_F(VtpNotes, NameARestPoseThatStayedWhereItsPointsWereBent) {
   data->SetPoints(bent);
   writer->SetFileName(in_folder("bent.vtp").c_str());
   writer->Write();
-  EXPECT_THAT(notes_on(in_folder("bent.vtp")),
-              ElementsAre(HasSubstr("bent.vtp: filters have moved the points since their rest "
-                                    "pose (mimetra_rest) was set, and not as a whole")));
+  const auto has_its_note = ElementsAre(HasSubstr(
+      "filters have moved the points since their rest pose (mimetra_rest) was set, and not as a "
+      "whole"));
+  EXPECT_THAT(notes_on(in_folder("bent.vtp")), has_its_note);
+  // In the first frame there is often nothing to bend.
+  std::ofstream(in_folder("later.vtp.series"))
+      << R"({"file-series-version": "1.0", "files": [{"name": "kept.vtp", "time": 0},
+            {"name": "bent.vtp", "time": 0.1}, {"name": "bent.vtp", "time": 0.2}]})";
+  EXPECT_THAT(notes_on(in_folder("later.vtp.series")), has_its_note);
+}
+
+TEST_F(VtpNotes, NameFieldsInWhosePlaceDisplacementsAreWritten) {
+  const std::filesystem::path target = in_folder("face.pvd");
+  const Format& format = table_.writer(Output{"out", DataKind::sequence, ""}, target);
+  const Parameters parameters(format.writing);
+  FieldSequence given = quad_and_triangle();
+  given.displacement = false;
+  EXPECT_THAT(notes_on_losses(format, given, {.target = target, .parameters = parameters}),
+              IsEmpty());
+  const Eigen::MatrixXd velocity = Eigen::MatrixXd::Constant(5, 3, 0.25);
+  given.fields.push_back({kDisplacement, Field::Location::vertices, velocity});
+  EXPECT_THAT(notes_on_losses(format, given, {.target = target, .parameters = parameters}),
+              ElementsAre(HasSubstr("face.pvd: the input's field 'displacement' is replaced by the "
+                                    "displacement from the rest pose")));
+  format.write(given, {.target = target, .parameters = parameters});
+  const FieldSequence read = read_vtp_series(target);
+  EXPECT_TRUE(read.sequence().rest_is_known());
+  EXPECT_EQ(read.fields.size(), given.fields.size() - 1);
+
+  const MeshSequence& moved = given.sequence();
+  const MeshSequence without_rest(moved.connectivity(), moved.positions(), moved.times());
+  given = FieldSequence(without_rest, given.fields);
+  EXPECT_THAT(notes_on_losses(format, given, {.target = target, .parameters = parameters}),
+              IsEmpty());
 }
 
 }  // namespace

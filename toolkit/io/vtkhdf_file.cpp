@@ -16,8 +16,6 @@ namespace {
 
 const std::string kTop = "VTKHDF", kSteps = kTop + "/Steps";
 const std::string kPoints = kTop + "/Points";
-// As in .vtp.
-const std::string kDisplacement = "displacement", kDisplacementLength = "displacement_length";
 
 using Integers = std::vector<std::int64_t>;
 

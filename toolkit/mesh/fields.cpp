@@ -23,6 +23,22 @@ bool FieldSequence::is_in_memory() const {
   return dynamic_cast<const MeshSequence*>(frames.get()) != nullptr;
 }
 
+bool is_displacement(const Field& field) {
+  return field.location == Field::Location::vertices &&
+         (field.name == kDisplacement || field.name == kDisplacementLength);
+}
+
+bool has_left_its_rest(const FrameSource& frames) {
+  if (!frames.rest_is_known()) return false;
+  return frames.frames() > 1 || FrameBlock(frames, 0, 1).frame(0) != frames.rest();
+}
+
+void show_displacement(FieldSequence& sequence) {
+  if (!has_left_its_rest(*sequence.frames)) return;
+  sequence.displacement = true;
+  std::erase_if(sequence.fields, is_displacement);
+}
+
 Eigen::MatrixXd on_polygons(const Eigen::MatrixXd& on_triangles, const Connectivity& connectivity) {
   Eigen::MatrixXd values = Eigen::MatrixXd::Constant(
       connectivity.polygons.size(), on_triangles.cols(), -std::numeric_limits<double>::infinity());

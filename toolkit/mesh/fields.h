@@ -33,9 +33,23 @@ struct FieldSequence {
   /// Never null.
   std::shared_ptr<const FrameSource> frames;
   std::vector<Field> fields;
-  /// Also write `displacement` (vector) and `displacement_length` per frame, from the rest pose.
+  /// Also write kDisplacement (vector) and kDisplacementLength per frame, from the rest pose.
   bool displacement = false;
 };
+
+constexpr const char* kDisplacement = "displacement";
+constexpr const char* kDisplacementLength = "displacement_length";
+
+/// True for a field on vertices that has the name of a displacement, or of its length.
+bool is_displacement(const Field& field);
+
+/// True unless the rest pose is the first frame, as it is to those who read the frames alone.
+/// Throws what reading throws.
+bool has_left_its_rest(const FrameSource& frames);
+
+/// Has displacements written where the rest pose is read again from them, in place of fields of
+/// their names.
+void show_displacement(FieldSequence& sequence);
 
 /// Values of the polygons: the largest of their triangles' (M x c) in each component.
 Eigen::MatrixXd on_polygons(const Eigen::MatrixXd& on_triangles, const Connectivity& connectivity);

@@ -51,6 +51,12 @@ std::vector<std::string> notes_on_losses(const Format& format, const Data& data,
     notes.push_back(request.target.string() + ": this format holds no fields; without " +
                     joined(names));
   }
+  if (format.displacements && std::ranges::any_of(sequence->fields, is_displacement) &&
+      has_left_its_rest(*sequence->frames)) {
+    notes.push_back(request.target.string() + ": the input's field '" + kDisplacement +
+                    "' is replaced by the displacement from the rest pose; give it another name to "
+                    "keep it");
+  }
   if (!format.holds) return notes;
   const HeldParts held = format.holds(request.parameters);
   const auto lost = parts_left_out(held, *sequence->frames);

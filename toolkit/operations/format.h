@@ -76,6 +76,8 @@ struct Format {
   std::function<std::vector<std::filesystem::path>(const Data&, const WriteRequest&)> write = {};
   /// A sequence keeps its fields.
   bool fields = false;
+  /// Displacements from a rest pose take the place of fields of their names: show_displacement().
+  bool displacements = false;
   /// What else of a sequence its files have a place for, with these options; where it is not set
   /// nothing is said.
   std::function<HeldParts(const Parameters&)> holds = {};

@@ -61,8 +61,7 @@ SequenceWriteOptions vtkhdf_options(const WriteRequest& request) {
 
 Paths write_vtkhdf_sequence(const Data& data, const WriteRequest& request) {
   FieldSequence sequence = std::get<FieldSequence>(data);
-  // The rest pose is the positions without these.
-  if (sequence.frames->rest_is_known()) sequence.displacement = true;
+  show_displacement(sequence);
   return write_vtkhdf(sequence, request.target, vtkhdf_options(request), request.extra);
 }
 
@@ -313,6 +312,7 @@ void add_formats(OperationTable& table) {
                    .writing = mesh_writing_parameters().declared(),
                    .write = write_vtkhdf_sequence,
                    .fields = true,
+                   .displacements = true,
                    .holds = [](const Parameters&) { return HeldParts{.polygons = true}; }});
   table.add(Format{.name = "VTKHDF over time with region fields",
                    .kind = DataKind::regions,

@@ -1,16 +1,22 @@
 #include "toolkit/vtk/displaced_rest.h"
 
 #include <algorithm>
+#include <initializer_list>
 #include <limits>
 #include <utility>
+
+#include <vtkDataArray.h>
+#include <vtkPointData.h>
+#include <vtkPoints.h>
+#include <vtkPolyData.h>
 
 #include "toolkit/vtk/poly_data.h"
 
 namespace mimetra {
 namespace {
 
-/// Of the largest value: positions and displacements are written in single precision.
-constexpr double kRounding = 4 * std::numeric_limits<float>::epsilon();
+/// Above it displacements drown in the rounding, as a share of the largest one.
+constexpr double kMostRounding = 0.25;
 /// From the first frame that is looked at to the last.
 constexpr int kSteps = 8;
 
@@ -18,17 +24,29 @@ double largest_of(const Eigen::MatrixXd& values) {
   return values.array().isFinite().select(values.array().abs(), 0).maxCoeff();
 }
 
+/// How far sums of `values` may be off where one of the arrays is of single precision.
+double rounding_of(const Eigen::MatrixXd& values, std::initializer_list<vtkDataArray*> arrays) {
+  const bool is_single = std::ranges::any_of(
+      arrays, [](vtkDataArray* array) { return array->GetDataType() == VTK_FLOAT; });
+  const double epsilon =
+      is_single ? std::numeric_limits<float>::epsilon() : std::numeric_limits<double>::epsilon();
+  return 4 * epsilon * largest_of(values);
+}
+
 /// What is not finite agrees: it is refused, unless there is nothing else.
-bool agree(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b, double largest) {
+bool agree(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b, double rounding) {
   const Eigen::ArrayXXd apart = (a - b).array().abs();
-  return apart.isFinite().any() && !(apart > kRounding * largest).any();
+  return apart.isFinite().any() && !(apart > rounding).any();
 }
 
 bool has_its_length(vtkPolyData& data, const Eigen::MatrixXd& displacement) {
+  vtkPointData& arrays = *data.GetPointData();
   const auto found = point_values(data, kDisplacementLength);
   const Eigen::VectorXd length = displacement.rowwise().norm();
   return found && found->rows() == length.rows() && found->cols() == 1 &&
-         agree(*found, length, largest_of(length));
+         agree(*found, length,
+               rounding_of(length,
+                           {arrays.GetArray(kDisplacement), arrays.GetArray(kDisplacementLength)}));
 }
 
 }  // namespace
@@ -47,22 +65,20 @@ void DisplacedRest::look_at(vtkPolyData& data, const Positions& positions) {
   if (!displacement || displacement->rows() != positions.rows() || displacement->cols() != 3)
     return;
   const Positions rest = positions - *displacement;
-  largest_ = std::max({largest_, largest_of(positions), largest_of(rest)});
+  const auto arrays = {data.GetPoints()->GetData(), data.GetPointData()->GetArray(kDisplacement)};
+  rounding_ = std::max({rounding_, rounding_of(positions, arrays), rounding_of(rest, arrays)});
+  largest_ = std::max(largest_, largest_of(*displacement));
   if (is_first) {
     if (frames_ > 1 || has_its_length(data, *displacement)) rest_ = rest;
-  } else if (first->rows() == rest.rows() && agree(rest, *first, largest_)) {
+  } else if (first->rows() == rest.rows() && agree(rest, *first, rounding_)) {
     rest_ = first;
   }
 }
 
 std::optional<Positions> DisplacedRest::found(const std::string& name) const {
-  if (rest_) check_rest(*rest_, name);
+  if (!rest_ || (largest_ > 0 && rounding_ > kMostRounding * largest_)) return {};
+  check_rest(*rest_, name);
   return rest_;
-}
-
-bool is_displacement(const Field& field) {
-  return field.location == Field::Location::vertices &&
-         (field.name == kDisplacement || field.name == kDisplacementLength);
 }
 
 }  // namespace mimetra

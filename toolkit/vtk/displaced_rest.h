@@ -23,18 +23,17 @@ class DisplacedRest {
   /// Looks at a frame; the first one comes first.
   void look_at(vtkPolyData& data, const Positions& positions);
 
-  /// Nothing where the data are no displacements, or something else's. Throws IoError that begins
+  /// Nothing where the data are no displacements, or something else's, and where the precision of
+  /// points far from the origin does not tell. Throws IoError that begins
   /// with `name` where a vertex of it is not finite.
   std::optional<Positions> found(const std::string& name) const;
 
  private:
   int frames_;
   bool is_first_ = true;
-  double largest_ = 0;
+  double largest_ = 0;   ///< displacement
+  double rounding_ = 0;  ///< of rest poses of one frame and another
   std::optional<Positions> rest_;
 };
-
-/// True for a field that has the name of a displacement, or of its length.
-bool is_displacement(const Field& field);
 
 }  // namespace mimetra

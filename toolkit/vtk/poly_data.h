@@ -51,8 +51,6 @@ void set_positions(vtkPolyData& data, const Eigen::Ref<const Positions>& positio
 void add_field(vtkPolyData& data, const Field& field, const Connectivity& connectivity);
 
 /// Point data of FieldSequence::displacement: the vector from the rest pose, and its length.
-constexpr const char* kDisplacement = "displacement";
-constexpr const char* kDisplacementLength = "displacement_length";
 void add_displacement(vtkPolyData& data, const Eigen::MatrixXd& displacement);
 
 /// Point data (N x 3, double) that carry the rest pose along a pipeline, and stay with their points

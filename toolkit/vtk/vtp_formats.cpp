@@ -11,7 +11,6 @@
 #include "toolkit/operations/bound_parameters.h"
 #include "toolkit/operations/formats.h"
 #include "toolkit/operations/sequence_parameters.h"
-#include "toolkit/vtk/displaced_rest.h"
 #include "toolkit/vtk/vtp_series.h"
 
 namespace mimetra {
@@ -43,19 +42,11 @@ void check_frame_count(const FrameSource& frames, const std::filesystem::path& t
                       "; write a .pvd, or take one by option 'frames'");
 }
 
-/// True unless the rest pose is the first frame, as readers take it to be.
-bool has_left_its_rest(const FrameSource& frames) {
-  if (!frames.rest_is_known()) return false;
-  const Frames first = frames.read(0, 1);
-  return frames.frames() > 1 || PositionsView(first.data(), frames.vertices(), 3) != frames.rest();
-}
-
 std::vector<std::filesystem::path> write_sequence_data(const Data& data,
                                                        const WriteRequest& request) {
   FieldSequence sequence = std::get<FieldSequence>(data);
   check_frame_count(*sequence.frames, request.target);
-  // A rest pose is read again from the displacements from it.
-  if (has_left_its_rest(*sequence.frames)) sequence.displacement = true;
+  show_displacement(sequence);
   return write(sequence, request);
 }
 
@@ -117,15 +108,6 @@ Regions region_of_vtp(const std::filesystem::path& path, int vertices, const Tri
   return weights.size() > 0 ? with_weights(std::move(regions), weights, triangles) : regions;
 }
 
-/// What regions are written over.
-std::vector<std::string> region_losses(const Data& data, const std::filesystem::path& target) {
-  const FieldSequence& shown = std::get<RegionData>(data).fields;
-  if (!shown.displacement || std::ranges::none_of(shown.fields, is_displacement)) return {};
-  return {target.string() +
-          ": the input's field 'displacement' is replaced by that from the rest pose; give it "
-          "another name to keep it"};
-}
-
 ReadValue read_region_data(const std::string& text, const ReadRequest& request) {
   return {{text, RegionData{region_of_vtp(text, request.vertices, *request.triangles), {}}},
           {text}};
@@ -144,6 +126,7 @@ void add_vtp(OperationTable& table) {
                 .writing = writing,
                 .write = write_sequence_data,
                 .fields = true,
+                .displacements = true,
                 .holds = [](const Parameters&) {
                   return HeldParts{.polygons = true, .exact_positions = false};
                 }};
@@ -161,15 +144,13 @@ void add_vtp(OperationTable& table) {
                    .kind = DataKind::regions,
                    .extensions = {".pvd"},
                    .writing = writing,
-                   .write = write_region_data,
-                   .losses = region_losses});
+                   .write = write_region_data});
   table.add(Format{.name = "VTK mesh with region fields",
                    .kind = DataKind::regions,
                    .extensions = {".vtp"},
                    .read = read_region_data,
                    .writing = writing,
-                   .write = write_region_data,
-                   .losses = region_losses});
+                   .write = write_region_data});
 }
 
 }  // namespace mimetra

@@ -141,18 +141,31 @@ class VtpFrames : public FrameSource {
   std::vector<FrameFile> files_;
 };
 
-/// The rest pose of files' displacements, of which the first is read already.
-std::optional<Positions> displaced_rest(vtkPolyData& first, const Positions& positions,
-                                        const std::vector<FrameFile>& files) {
-  DisplacedRest rest(static_cast<int>(files.size()));
-  rest.look_at(first, positions);
-  for (int f = 1; rest.is_possible() && f < static_cast<int>(files.size()); ++f) {
-    if (!rest.looks_at(f)) continue;
-    const fs::path& file = files[static_cast<std::size_t>(f)].file;
+/// Rest poses that files hold, of which the first is read already: as displacements lead from it,
+/// and as it came along a pipeline.
+struct FoundRest {
+  std::optional<Positions> displaced;
+  std::optional<CarriedRest> carried;
+};
+
+FoundRest found_rest(vtkPolyData& first, const Positions& positions,
+                     const std::vector<FrameFile>& files) {
+  const std::string name = files.front().file.string();
+  DisplacedRest displaced(static_cast<int>(files.size()));
+  displaced.look_at(first, positions);
+  std::optional<CarriedRest> carried = rest_of(first, positions, name);
+  const auto is_whole = [&carried] { return carried && carried->note.empty(); };
+  for (int f = 1; f < static_cast<int>(files.size()); ++f) {
+    if (!displaced.looks_at(f)) continue;
+    if (!displaced.is_possible() && !is_whole()) break;
+    const std::string file = files[static_cast<std::size_t>(f)].file.string();
     const auto data = read_poly_data(file);
-    rest.look_at(*data, positions_of(*data, file.string()));
+    const Positions later = positions_of(*data, file);
+    displaced.look_at(*data, later);
+    if (!is_whole()) continue;
+    if (const auto of_this = rest_of(*data, later, file)) carried->note = of_this->note;
   }
-  return rest.found(files.front().file.string());
+  return {displaced.found(name), std::move(carried)};
 }
 
 }  // namespace
@@ -170,8 +183,7 @@ FieldSequence open_vtp_series(const fs::path& path, const VtpReadOptions& option
   const Positions positions = positions_of(*data, first);
   SequenceHeader header;
   header.connectivity = std::make_shared<Connectivity>(connectivity_of(*data, first));
-  const std::optional<Positions> displaced = displaced_rest(*data, positions, chosen);
-  const std::optional<CarriedRest> carried = rest_of(*data, positions, first);
+  const auto& [displaced, carried] = found_rest(*data, positions, chosen);
   if (carried && !carried->note.empty() && options.note) options.note(carried->note);
   header.rest = carried ? carried->positions : displaced.value_or(positions);
   header.rest_is_known = carried || displaced;

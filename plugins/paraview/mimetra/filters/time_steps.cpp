@@ -58,7 +58,7 @@ void TimeSteps::add(vtkDataObject* data) {
     frames_.resize(static_cast<Eigen::Index>(count()), positions.size());
     if (auto carried = rest_of(mesh, positions, name)) {
       rest_ = std::move(carried->positions);
-      if (!carried->note.empty()) notes_.push_back(std::move(carried->note));
+      note_on_carried(carried->note);
     }
     if (with_fields_) fields_ = fields_of(mesh, connectivity);
     vertices_ = connectivity.vertices;
@@ -72,10 +72,19 @@ void TimeSteps::add(vtkDataObject* data) {
                           to_text(times_.front()) + "; all time steps need the same faces");
     }
   }
-  if (displaced_.looks_at(static_cast<int>(next_))) displaced_.look_at(mesh, positions);
+  if (displaced_.looks_at(static_cast<int>(next_))) {
+    displaced_.look_at(mesh, positions);
+    if (rest_is_whole_)
+      note_on_carried(rest_of(mesh, positions, name).value_or(CarriedRest{}).note);
+  }
   frames_.row(static_cast<Eigen::Index>(next_)) =
       Eigen::Map<const Eigen::RowVectorXd>(positions.data(), positions.size());
   ++next_;
+}
+
+void TimeSteps::note_on_carried(const std::string& note) {
+  rest_is_whole_ = note.empty();
+  if (!rest_is_whole_) notes_.push_back(note);
 }
 
 FieldSequence TimeSteps::taken() {

@@ -44,6 +44,8 @@ class TimeSteps {
 
  private:
   std::size_t count() const { return times_.empty() ? 1 : times_.size(); }
+  /// Empty where the points are as a whole where they were when the rest pose was set.
+  void note_on_carried(const std::string& note);
 
   std::vector<double> times_;
   bool with_fields_ = false;
@@ -53,6 +55,7 @@ class TimeSteps {
   mimetra::Connectivity connectivity_;
   mimetra::Frames frames_;
   std::optional<mimetra::Positions> rest_;
+  bool rest_is_whole_ = false;  ///< it came with the points, and no filter has bent these
   mimetra::DisplacedRest displaced_{1};
   bool are_displaced_ = false;
   std::vector<std::string> notes_;
