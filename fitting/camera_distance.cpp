@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "fitting/affine_camera.h"
+#include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/median.h"
 #include "toolkit/mesh/text.h"
 #include "toolkit/operations/parameter.h"
@@ -32,6 +34,20 @@ double camera_distance(const MorphableModel& model, const MappedLandmarks& mappe
   return distances.empty() ? std::numeric_limits<double>::infinity() : median(std::move(distances));
 }
 
+namespace {
+
+/// In pixels, of the first image; none where it cannot be read.
+std::optional<int> longer_side(const ImageSequence& images) {
+  try {
+    const Image image = images.image(0);
+    return std::max(image.width, image.height);
+  } catch (const IoError&) {
+    return std::nullopt;
+  }
+}
+
+}  // namespace
+
 void check_focal_length(const FitOptions& options, const MorphableModel& model,
                         const MappedLandmarks& mapped, const ImageSequence* images) {
   if (!options.focal_length) return;
@@ -40,19 +56,15 @@ void check_focal_length(const FitOptions& options, const MorphableModel& model,
   if (distance >= 1) return;
   constexpr double kFilmWidth = 36;
   constexpr int kHdWidth = 1920;
-  int pixels = kHdWidth;
-  if (images) {
-    const Image image = images->image(0);
-    pixels = std::max(image.width, image.height);
-  }
+  const std::optional<int> side = images ? longer_side(*images) : std::nullopt;
   throw UsageError("--focal-length: " + readable(given) + " pixels put the camera " +
                    readable(distance, 2) +
                    " times the face's size from it, expected more than once; is it in "
                    "millimetres? A lens of " +
                    readable(given) + " mm in 35 mm equivalents has " + readable(given) +
                    " / 36 of the image's longer side: " +
-                   std::to_string(std::lround(given / kFilmWidth * pixels)) + " pixels " +
-                   (images ? "here" : "where that is " + std::to_string(kHdWidth)));
+                   std::to_string(std::lround(given / kFilmWidth * side.value_or(kHdWidth))) +
+                   " pixels " + (side ? "here" : "where that is " + std::to_string(kHdWidth)));
 }
 
 }  // namespace mimetra

@@ -67,7 +67,8 @@ std::vector<std::string> notes_on(const std::vector<FaceFrame>& frames) {
            [](const FaceFrame& frame) { return frame.outcome == Outcome::no_face; });
   add_note(notes, frames, "show only faces of too low confidence",
            [](const FaceFrame& frame) { return frame.outcome == Outcome::low_confidence; });
-  add_note(notes, frames, "show several faces (the largest of the first is followed)",
+  add_note(notes, frames,
+           "show several faces (the largest of the first frame with a face is followed)",
            [](const FaceFrame& frame) { return frame.faces > 1; });
   add_note(notes, frames, "show only faces of others than the one that is followed",
            [](const FaceFrame& frame) { return frame.outcome == Outcome::other_face; });

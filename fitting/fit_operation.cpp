@@ -125,6 +125,21 @@ LandmarkMapping mapping_of(const FitCall& call, const NamedData& model) {
   return read_landmark_mapping(find_landmark_mapping(path));
 }
 
+/// iBUG's landmarks of a model for tracks that name others, where a file beside it has them, so
+/// that it is known how the model looks: by which head motion is kept, and partly hidden faces are
+/// found.
+LandmarkVertices landmarks_beside(const NamedData& input, const MorphableModel& model) {
+  if (input.origin.path.empty()) return {};
+  for (const std::filesystem::path& file : landmark_mappings(input.origin.path)) {
+    LandmarkVertices landmarks = ibug_landmarks(read_landmark_mapping(file));
+    const auto is_on_model = [&model](const auto& landmark) {
+      return landmark.second >= 0 && landmark.second < model.vertices();
+    };
+    if (tell_axes(landmarks) && std::ranges::all_of(landmarks, is_on_model)) return landmarks;
+  }
+  return {};
+}
+
 FittedCoefficients coefficients_of(const MorphableModel& model, const Eigen::VectorXd& times,
                                    const std::vector<FrameFit>& frames) {
   const auto count = static_cast<Eigen::Index>(frames.size());
@@ -236,6 +251,21 @@ std::vector<int> without_partial_frames(const Invocation& invocation, const Morp
   return partial;
 }
 
+/// Heads of which most are turned this far are rather those of a model in other axes.
+void warn_of_axes(const std::vector<AffineCamera>& cameras, const Invocation& invocation) {
+  constexpr double kFar = EIGEN_PI / 3;
+  const auto is_far = [](const AffineCamera& camera) {
+    return Eigen::AngleAxisd(head_rotation(camera)).angle() > kFar;
+  };
+  if (2 * std::ranges::count_if(cameras, is_far) <= static_cast<std::ptrdiff_t>(cameras.size())) {
+    return;
+  }
+  invocation.warn(
+      "--head-motion keep: heads are turned by more than 60 degrees in most frames of a model that "
+      "is taken as one that looks along +z with y up; where it does not, a landmarks68.txt beside "
+      "it, or a mapping that names eyes and mouth as iBUG does (37 to 68), says how it looks");
+}
+
 std::vector<int> seen_frames(const FittedCoefficients& fit) {
   std::vector<int> frames;
   for (int f = 0; f < fit.frames(); ++f) {
@@ -259,6 +289,9 @@ Outcome run(const Invocation& invocation) {
   const LandmarkMapping mapping = mapping_of(call, invocation.input("model"));
   MappedLandmarks mapped =
       naming_landmarks(invocation, [&] { return map_landmarks(track, mapping); });
+  if (!tell_axes(mapped.ibug)) {
+    mapped.ibug = landmarks_beside(invocation.input("model"), model);
+  }
   report_progress(invocation.progress, 0);
   FitOptions options = call.fit;
   options.progress = invocation.progress;
@@ -311,6 +344,7 @@ Outcome run(const Invocation& invocation) {
                     std::to_string(summary.iterations) + " iterations\n" + judgement.words();
   warn_of(judgement, fit.expressions, mapped, call.fit, invocation);
   const bool turns = call.head_motion == FitCall::HeadTurns::keep;
+  if (turns && !tell_axes(mapped.ibug)) warn_of_axes(cameras, invocation);
   outcome.outputs["out"].push_back(
       {"",
        FieldSequence(turns ? turned_as_seen(sequence, cameras, mapped.ibug) : sequence),

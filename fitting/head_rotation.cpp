@@ -1,6 +1,7 @@
 #include "fitting/head_rotation.h"
 
-#include <optional>
+#include <algorithm>
+#include <array>
 #include <stdexcept>
 #include <utility>
 
@@ -11,18 +12,24 @@ namespace mimetra {
 
 namespace {
 
-/// Of the landmarks with numbers from `first` to before `end`; none where there is none.
-std::optional<Eigen::RowVector3d> middle_of(const Positions& positions,
-                                            const LandmarkVertices& landmarks, int first, int end) {
+// iBUG's numbers, of a first one and of the one after the last.
+constexpr std::pair kRightEye{36, 42}, kLeftEye{42, 48}, kLips{48, 68};
+
+bool is_in(int number, std::pair<int, int> part) {
+  return number >= part.first && number < part.second;
+}
+
+/// \pre there is a landmark of the part
+Eigen::RowVector3d middle_of(const Positions& positions, const LandmarkVertices& landmarks,
+                             std::pair<int, int> part) {
   Eigen::RowVector3d sum = Eigen::RowVector3d::Zero();
   int count = 0;
   for (const auto& [number, vertex] : landmarks) {
-    if (number < first || number >= end) continue;
+    if (!is_in(number, part)) continue;
     sum += positions.row(vertex);
     ++count;
   }
-  if (count == 0) return std::nullopt;
-  return Eigen::RowVector3d(sum / count);
+  return sum / count;
 }
 
 }  // namespace
@@ -38,15 +45,22 @@ Eigen::Matrix3d head_rotation(const AffineCamera& camera) {
   return Eigen::Vector3d(1, -1, -1).asDiagonal() * seen;
 }
 
+bool tell_axes(const LandmarkVertices& landmarks) {
+  return std::ranges::all_of(std::array{kRightEye, kLeftEye, kLips}, [&](const auto& part) {
+    return std::ranges::any_of(landmarks,
+                               [&](const auto& landmark) { return is_in(landmark.first, part); });
+  });
+}
+
 Eigen::Matrix3d looking_ahead(const Positions& neutral, const LandmarkVertices& landmarks) {
-  const auto right_eye = middle_of(neutral, landmarks, 36, 42);
-  const auto left_eye = middle_of(neutral, landmarks, 42, 48);
-  const auto lips = middle_of(neutral, landmarks, 48, 68);
-  if (!right_eye || !left_eye || !lips) return Eigen::Matrix3d::Identity();
+  if (!tell_axes(landmarks)) return Eigen::Matrix3d::Identity();
+  const Eigen::RowVector3d right_eye = middle_of(neutral, landmarks, kRightEye);
+  const Eigen::RowVector3d left_eye = middle_of(neutral, landmarks, kLeftEye);
+  const Eigen::RowVector3d lips = middle_of(neutral, landmarks, kLips);
   // Rows as a viewer has them: right, which is the face's own left, up, and towards him.
   Eigen::Matrix3d face;
-  face.row(0) = (*left_eye - *right_eye).normalized();
-  face.row(2) = face.row(0).cross((*left_eye + *right_eye) / 2 - *lips).normalized();
+  face.row(0) = (left_eye - right_eye).normalized();
+  face.row(2) = face.row(0).cross((left_eye + right_eye) / 2 - lips).normalized();
   face.row(1) = face.row(2).cross(face.row(0));
   Eigen::Matrix3d best = Eigen::Matrix3d::Identity();
   for (int x = 0; x < 3; ++x) {

@@ -17,9 +17,12 @@ namespace mimetra {
 Eigen::Matrix3d head_rotation(const AffineCamera& camera);
 
 /// What carries a model to one that looks along +z with y up, by where iBUG's landmarks (0 to 67)
-/// are on it: of the rotations that exchange axes the nearest to how its eyes and mouth lie. None
-/// where it has no landmark of an eye or of the mouth.
+/// are on it: of the rotations that exchange axes the nearest to how its eyes and mouth lie. The
+/// identity where it has no landmark of an eye or of the mouth.
 Eigen::Matrix3d looking_ahead(const Positions& neutral, const LandmarkVertices& landmarks);
+
+/// True for landmarks of both eyes and the mouth.
+bool tell_axes(const LandmarkVertices& landmarks);
 
 /// Each frame (F) turned by its camera's rotation about the middle of the rest pose, which stays;
 /// in the model's own axes, looking_ahead(), so that a head that moves little stays near its rest

@@ -182,7 +182,8 @@ class JsonReader {
       notes.push_back(std::to_string(frames.size()) + " of " + std::to_string(faces_.size()) +
                       " frames " + what + ": " + listed(words_of(frames)));
     };
-    add("have several faces, of which the largest of the first is followed", several);
+    add("have several faces, of which the largest of the first frame with a face is followed",
+        several);
     add("have only faces of others than the one that is followed, and are taken as not seen",
         others);
     add("have the face that is followed elsewhere than before (is it the same person's?)",

@@ -77,7 +77,7 @@ std::vector<int> partial_frames(const MorphableModel& model, const MappedLandmar
                                     looking_ahead(model.mean(), mapped.ibug));
   std::map<std::vector<Eigen::Index>, double> known;  // mostly the same ones in many frames
   std::vector<int> partial;
-  bool some_are_whole = false;
+  std::size_t whole = 0;
   for (int f = 0; f < mapped.points.rows(); ++f) {
     const std::vector<Eigen::Index> seen = landmarks_seen(mapped.points, f);
     if (seen.empty()) continue;
@@ -86,10 +86,10 @@ std::vector<int> partial_frames(const MorphableModel& model, const MappedLandmar
     if (entry->second > kMost) {
       partial.push_back(f);
     } else {
-      some_are_whole = true;
+      ++whole;
     }
   }
-  return some_are_whole ? partial : std::vector<int>();
+  return whole >= partial.size() ? partial : std::vector<int>();
 }
 
 }  // namespace mimetra

@@ -26,7 +26,7 @@ class TurnUncertainty {
 };
 
 /// Frames with landmarks that leave the head's turn open by more than 4 degrees, as those of nose
-/// or mouth alone do. None where all frames are such.
+/// or mouth alone do. None where most frames are such: then they are all there is to go by.
 std::vector<int> partial_frames(const MorphableModel& model, const MappedLandmarks& mapped);
 
 }  // namespace mimetra

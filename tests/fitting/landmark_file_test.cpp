@@ -233,7 +233,8 @@ TEST_F(Landmarks, OfSomebodyElseAreNotTakenWhereTheFollowedFaceIsMissed) {
   EXPECT_EQ(track.points(3, 0), 7);
   EXPECT_THAT(
       track.notes,
-      ElementsAre("2 of 4 frames have several faces, of which the largest of the first is "
+      ElementsAre("2 of 4 frames have several faces, of which the largest of the first frame with "
+                  "a face is "
                   "followed: 0, 3",
                   "1 of 4 frames have only faces of others than the one that is followed, and are "
                   "taken as not seen: 1"));

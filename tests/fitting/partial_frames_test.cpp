@@ -61,7 +61,7 @@ bool is_of_right_half(int number) {
 }
 
 TEST(PartialFrames, AreThoseOfEyesOrMouthOrAFewLandmarksAlone) {
-  MappedLandmarks mapped = still_head(6);
+  MappedLandmarks mapped = still_head(8);
   keep(mapped, 1, is_of_eyes);
   keep(mapped, 2, is_of_mouth);
   keep(mapped, 3, [](int number) { return number == 31 || number == 37 || number == 46; });
@@ -78,9 +78,13 @@ TEST(PartialFrames, AreNotThoseOfAHalfNorOfEverySecondLandmark) {
   EXPECT_THAT(partial_frames(samples::parametric_head(), mapped), IsEmpty());
 }
 
-TEST(PartialFrames, AreNoneWhereNoFrameShowsMore) {
-  MappedLandmarks mapped = still_head(2);
+TEST(PartialFrames, AreNoneWhereFewFramesShowMore) {
+  MappedLandmarks mapped = still_head(5);
   for (const int frame : {0, 1}) keep(mapped, frame, is_of_eyes);
+  EXPECT_THAT(partial_frames(samples::parametric_head(), mapped), ElementsAre(0, 1));
+  for (const int frame : {2, 3}) keep(mapped, frame, is_of_eyes);
+  EXPECT_THAT(partial_frames(samples::parametric_head(), mapped), IsEmpty());
+  keep(mapped, 4, is_of_eyes);
   EXPECT_THAT(partial_frames(samples::parametric_head(), mapped), IsEmpty());
 }
 
@@ -101,6 +105,7 @@ TEST(TurnUncertainty, IsTheSpreadOfTheTurnsThatAreFound) {
   constexpr int kFrames = 400;
   for (const auto& seen : {all, right}) {
     std::vector<int> vertices;
+    vertices.reserve(seen.size());
     for (const Eigen::Index i : seen) vertices.push_back(mapped.vertices[std::size_t(i)]);
     const Eigen::RowVectorXd row = mapped.points.row(0);
     const ImagePoints image = row.reshaped<Eigen::RowMajor>(row.size() / 2, 2);
