@@ -43,7 +43,7 @@ TEST(SourceRestPose, IsOtherwiseTheFirstFrameWithANote) {
 
 TEST(SourceRestPose, IsTheOneThatIsAskedFor) {
   const MeshSequence sequence = take();
-  const Positions given = 2 * sequence.rest();
+  const Positions given = 1.5 * sequence.rest();
   EXPECT_TRUE(prepare_source(sequence, {.rest = SourceRest::neutral}).sequence->rest() ==
               sequence.rest());
   EXPECT_TRUE(prepare_source(sequence, {.rest = SourceRest::first}).sequence->rest() ==

@@ -74,8 +74,28 @@ TEST_F(MemoryTest, DoesNotChangeTheResultInSinglePrecision) {
 }
 
 TEST_F(MemoryTest, DoesNotChangeTheResultInABasisOfTime) {
+  sequence_ = restless_grid(70, 54, 100);
+  options_ = grid_options(sequence_, 4);
+  options_.iterations = 4;
   options_.basis_tolerance = 0.3;
-  expect_same_bytes_in(MotionPlace::scratch);
+  const Components expected = decompose(sequence_, options_);
+  options_.memory = plan_of(sequence_, options_).bytes - 0.05 * motion_bytes(sequence_);
+  ASSERT_EQ(plan_of(sequence_, options_).place, MotionPlace::scratch);
+  expect_same_bytes(decompose(sequence_, options_), expected);
+  expect_same_bytes(decompose(*streamed(sequence_), options_), expected);
+  // It is one in a basis.
+  options_ = grid_options(sequence_, 4);
+  options_.iterations = 4;
+  EXPECT_FALSE(equal_bytes(decompose(sequence_, options_).weights, expected.weights));
+}
+
+TEST_F(MemoryTest, IsRefusedWhereItDoesNotHoldABasisOfTime) {
+  options_.basis_tolerance = 0.3;
+  ASSERT_NO_THROW(decompose(sequence_, options_));
+  const DecompositionOptions bounded = within_less(options_, sequence_);
+  ASSERT_LT(plan_of(sequence_, bounded).poses, 12);
+  EXPECT_THAT([&] { decompose(sequence_, bounded); },
+              ThrowsMessage<MismatchError>(HasSubstr("option 'basis_tolerance': ")));
 }
 
 TEST_F(MemoryTest, DoesNotChangeTheResultWhereTheSequenceIsReadAgain) {

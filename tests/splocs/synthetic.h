@@ -74,7 +74,9 @@ inline MeshSequence restless_grid(int columns = 14, int rows = 9, int frames = 2
   Frames C(bumps, shape.positions.size());
   Eigen::MatrixXd W(frames, bumps);
   for (int k = 0; k < bumps; ++k) {
-    const Eigen::RowVector3d center((1 + uniform()) / 2 * columns, (1 + uniform()) / 2 * rows, 0);
+    // One after the other: in which order arguments are evaluated is the compiler's choice.
+    const double y = (1 + uniform()) / 2 * rows, x = (1 + uniform()) / 2 * columns;
+    const Eigen::RowVector3d center(x, y, 0);
     C.row(k) = bump(shape.positions, center, 4, {uniform(), uniform(), uniform()});
     for (int f = 0; f < frames; ++f) {
       W(f, k) = uniform() + 0.5 + std::sin(0.3 * (k + 1) * f);

@@ -206,13 +206,28 @@ std::unique_ptr<BlockSource<float>> in_single_precision(KeptBlocks<double>& X, M
   return result;
 }
 
+/// The first rank's, so that all look for the same basis.
+Eigen::Index poses_for_all(const DecompositionPlan& plan, const Reduction& reduction) {
+  const Eigen::MatrixXd poses = reduction.everywhere(
+      Eigen::MatrixXd(Eigen::MatrixXd::Constant(1, 1, static_cast<double>(plan.poses))));
+  return static_cast<Eigen::Index>(poses(0));
+}
+
 /// The motion in the precision and the basis that the options want, from the start on.
 void iterate(Components& result, Motion motion, Start start, SupportMaps support,
              const Progress& progress, const Reduction& reduction, const DecompositionPlan& plan) {
   const DecompositionOptions& options = result.options;
   std::optional<TimeBasis> basis;
   if (options.basis_tolerance > 0) {
-    basis = time_basis(*motion.X, motion.norm2, options.basis_tolerance, reduction, plan.poses);
+    const Eigen::Index most = poses_for_all(plan, reduction);
+    basis = time_basis(*motion.X, motion.norm2, options.basis_tolerance, reduction, most);
+    if (!basis && most < motion.X->rows() / 2) {
+      throw MismatchError(
+          "option 'basis_tolerance': the motion needs a basis of many poses, of which option "
+          "'memory' holds " +
+          std::to_string(most) +
+          "; allow more memory or a larger tolerance, or take all frames: tolerance 0");
+    }
   }
   MotionPlace place = plan.place;
   if (basis) {

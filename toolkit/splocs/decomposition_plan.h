@@ -17,7 +17,7 @@ struct DecompositionPlan {
   MotionPlace place = MotionPlace::memory;
   /// That work at a time, each on a block of 192 vertices over all frames; 0 for all there are.
   int threads = 0;
-  /// Poses that a basis in time may have.
+  /// Among which a basis in time may be looked for; half the frames where memory is no question.
   Eigen::Index poses = 0;
   /// At the peak, besides what the caller holds: arrays that grow with frames, vertices or
   /// components.

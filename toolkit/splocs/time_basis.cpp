@@ -83,9 +83,9 @@ Eigen::MatrixXd directions_of(const VertexBlocks<double>& B, const Reduction& re
 
 std::optional<TimeBasis> time_basis(const BlockSource<double>& X, double norm2, double tolerance,
                                     const Reduction& reduction, Eigen::Index most) {
-  most = std::min(most, X.rows() / 2);
-  for (Eigen::Index poses = std::min(kFirstSketch, most), tried = 0; poses > tried;
-       tried = poses, poses = std::min(2 * poses, most)) {
+  const Eigen::Index worth = X.rows() / 2;
+  for (Eigen::Index poses = std::min(kFirstSketch, worth), tried = 0;
+       poses > tried && poses <= most; tried = poses, poses = std::min(2 * poses, worth)) {
     const Eigen::MatrixXd sketch = sketched_basis(X, poses, reduction);
     const VertexBlocks<double> B = coordinates(sketch, X, reduction.threads());
     const Eigen::MatrixXd directions = directions_of(B, reduction);

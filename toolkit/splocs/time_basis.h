@@ -18,7 +18,8 @@ struct TimeBasis {
 constexpr double kLeastBasisTolerance = 1e-6;
 
 /// A basis with ||X - Q B||_F <= tolerance ||X||_F, found by random projections with a fixed seed;
-/// nothing where it would need more than `most` poses, or than half as many as X has frames.
+/// nothing where it would need more than half as many poses as X has frames, or would be looked for
+/// among more than `most` of them. A basis that is found does not depend on `most`.
 /// `norm2` is ||X||_F^2.
 /// \pre tolerance >= kLeastBasisTolerance
 ///
