@@ -67,6 +67,9 @@ TEST_F(Csv, NamesMayStandInTheCommentBeforeNumbers) {
     EXPECT_THAT(CsvReader(file("# a,b\n" + first + "\n3,4\n")).names(), ElementsAre("a", "b"));
   }
   EXPECT_THAT(CsvReader(file("# a,b\nnan,\n3,4\n")).names(), ElementsAre("nan"));
+  for (const std::string first : {"nan,nan", "NaN,nan"}) {
+    EXPECT_THAT(CsvReader(file("# a,b\n" + first + "\n3,4\n")).names(), ElementsAre("a", "b"));
+  }
   EXPECT_THAT(CsvReader(file("# take 7, by hand\na,b\n1,2\n")).names(), ElementsAre("a", "b"));
   EXPECT_THAT(CsvReader(file("# take 7\n1,2\n3,4\n")).names(), ElementsAre("1", "2"));
 }

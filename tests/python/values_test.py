@@ -53,6 +53,9 @@ class Values(SampleTest):
         for hidden in [poses, list(poses)]:
             with self.assertRaisesRegex(mimetra.BadInput, "positions"):
                 mimetra.Sequence(hidden, POLYGONS)
+        triangles = np.ma.array([[0, 1, 2]], mask=[[False, True, False]])
+        with self.assertRaisesRegex(mimetra.UsageError, "masked"):
+            mimetra.Sequence(moved(), triangles)
 
     def test_what_is_odd_about_a_value_is_said_where_it_is_made(self):
         with self.assertLogs("mimetra", "WARNING") as said:

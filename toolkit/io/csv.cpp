@@ -70,7 +70,8 @@ bool drop_last_if_empty(std::vector<std::string_view>& fields) {
 }
 
 /// Whether a first line is a row already, of as many fields as `names`: numbers, some of which may
-/// be missing.
+/// be missing, or more than one NaN, as where a track begins with a lost face: no two names are
+/// that.
 bool is_row_of(const std::vector<std::string_view>& names, std::string_view line, char separator) {
   auto fields = fields_of(line, separator);
   if (fields.size() > names.size()) drop_last_if_empty(fields);
@@ -78,12 +79,13 @@ bool is_row_of(const std::vector<std::string_view>& names, std::string_view line
   const auto is_number = [separator](std::string_view field) {
     return number_in(field, separator).has_value();
   };
-  const auto is_missing = [](std::string_view field) {
-    return field.empty() || lower_case(std::string(field)) == "nan";
+  const auto is_nan = [](std::string_view field) {
+    return lower_case(std::string(field)) == "nan";
   };
-  return std::ranges::any_of(fields, is_number) &&
-         std::ranges::all_of(
-             fields, [&](std::string_view field) { return is_number(field) || is_missing(field); });
+  return (std::ranges::any_of(fields, is_number) || std::ranges::count_if(fields, is_nan) > 1) &&
+         std::ranges::all_of(fields, [&](std::string_view field) {
+           return field.empty() || is_nan(field) || is_number(field);
+         });
 }
 
 }  // namespace

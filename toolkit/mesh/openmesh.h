@@ -3,6 +3,7 @@
 #include <concepts>
 #include <stdexcept>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include <OpenMesh/Core/Mesh/PolyMesh_ArrayKernelT.hh>
@@ -233,9 +234,19 @@ MeshSequence sequence_from_openmesh(const Mesh& mesh, const std::vector<std::str
   Frames frames(static_cast<Eigen::Index>(poses.size()), rest.positions.size());
   for (std::size_t f = 0; f < poses.size(); ++f) {
     Eigen::MatrixXd pose;
-    if (openmesh_bridge::read_properties<OpenMesh::VertexHandle, typename Mesh::Point,
-                                         OpenMesh::Vec3d>(mesh, poses[f], pose) == 0) {
-      throw std::invalid_argument("the mesh has no points of vertices '" + poses[f] + "'");
+    using OpenMesh::Vec3f, OpenMesh::Vec3d;
+    using openmesh_bridge::read_properties, OpenMesh::VertexHandle;
+    using Point = typename Mesh::Point;
+    int found = read_properties<VertexHandle, Vec3f, Vec3d>(mesh, poses[f], pose);
+    if constexpr (!std::is_same_v<Point, Vec3f> && !std::is_same_v<Point, Vec3d>) {
+      found += read_properties<VertexHandle, Point>(mesh, poses[f], pose);
+    }
+    if (found != 1) {
+      throw std::invalid_argument(found == 0
+                                      ? "the mesh has no points of vertices '" + poses[f] + "'"
+                                      : "the mesh has points of vertices '" + poses[f] +
+                                            "' of several types; remove all but the one that "
+                                            "is meant");
     }
     frames.row(static_cast<Eigen::Index>(f)) = pose.reshaped<Eigen::RowMajor>();
   }

@@ -71,7 +71,7 @@ std::optional<double> parse_ratio(std::string_view text) {
   const auto number = parse_number<double>(text.substr(0, slash));
   if (!number || slash == std::string_view::npos) return number;
   const auto divisor = parse_number<double>(text.substr(slash + 1));
-  if (!divisor) return {};
+  if (!divisor || *divisor == 0) return {};
   return *number / *divisor;
 }
 

@@ -80,8 +80,9 @@ WeightTrack chosen_track(const Invocation& invocation) {
   const NamedData& weights = invocation.input("weights");
   WeightTrack track = track_of(std::get<Table>(weights.data));
   note_odd_weights(track);
+  const std::string name = weights.name.empty() ? "weights" : weights.name;
   for (const std::string& note : track.notes) {
-    const std::string text = weights.name + ": " + note;
+    const std::string text = name + ": " + note;
     // What reading said is not said again.
     const std::vector<std::string>& said = weights.origin.notes;
     if (std::ranges::find(said, text) == said.end()) invocation.warn(text);

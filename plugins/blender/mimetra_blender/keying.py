@@ -82,7 +82,8 @@ def _why_unseen(subject, curves):
     """What makes an object show other values than are keyed on these curves, {name: curve}."""
     reasons = []
     altered = [name for name, curve in curves.items()
-               if curve.mute or curve.group and curve.group.mute or len(curve.modifiers)]
+               if curve.mute or curve.group and curve.group.mute
+               or any(not modifier.mute for modifier in curve.modifiers)]
     if altered:
         reasons.append(f"{subject.name}: the curves of the shape keys {', '.join(altered)} are"
                        " muted or have modifiers, so that other values are shown than are keyed;"
@@ -91,7 +92,9 @@ def _why_unseen(subject, curves):
     if not animation.use_nla:
         return reasons
     solo = next((track for track in animation.nla_tracks if track.is_solo), None)
-    below = [track.name for track in animation.nla_tracks if track.strips and not track.mute]
+    paths = {curve.data_path for curve in curves.values()}
+    below = [track.name for track in animation.nla_tracks
+             if not track.mute and _moves_any(track, paths)]
     if solo:
         reasons.append(f"{subject.name}: the NLA track '{solo.name}' of its shape keys plays alone,"
                        " so that the keys are not shown; switch off its star (solo)")
@@ -101,6 +104,13 @@ def _why_unseen(subject, curves):
                        f" {animation.action_influence:.3g}); mute the track, or set the blending of"
                        " the shape keys' action to Replace and its influence to 1")
     return reasons
+
+
+def _moves_any(track, paths):
+    """True where a strip of a track animates one of these data paths."""
+    return any(not strip.mute and strip.action
+               and any(curve.data_path in paths for curve in strip.action.fcurves)
+               for strip in track.strips)
 
 
 def keyed_weights(subject, table):

@@ -372,6 +372,9 @@ def _unmasked(values):
 
 def _taken(values, type, name):
     """An array that the library takes, and the number of its type."""
+    if type in (c.I32, c.U8) and np.ma.is_masked(values):
+        raise UsageError(f"array '{name}': is masked, and whole numbers have nothing for what is"
+                         " hidden; give all of it")
     try:
         array = _unmasked(values)
     except ValueError as error:
