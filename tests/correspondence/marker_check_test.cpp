@@ -159,6 +159,7 @@ TEST(MarkerCheck, KnowsAnotherBaseFitBetterShifted) {
   const std::vector<Marker> right = {{0, 0},   {7, 7},   {12, 12}, {25, 25},
                                      {33, 33}, {47, 47}, {60, 60}};
   std::vector<Marker> wrong;
+  wrong.reserve(right.size());
   for (const Marker& marker : right) wrong.push_back({marker.source + 1, marker.target + 1});
   Positions target = sphere;
   // The same sphere with its vertices in an order of its own.

@@ -96,6 +96,7 @@ std::string interlaced(int width, int height, const Bytes& grey) {
                PNG_FILTER_TYPE_DEFAULT);
   Bytes copy = grey;
   std::vector<png_bytep> rows;
+  rows.reserve(static_cast<std::size_t>(height));
   for (int y = 0; y < height; ++y) rows.push_back(copy.data() + y * width);
   png_set_rows(png, info, rows.data());
   png_write_png(png, info, PNG_TRANSFORM_IDENTITY, nullptr);

@@ -206,6 +206,7 @@ TEST_F(GltfFiles, WeightsThatStayAndDifferAreSaidToDoSo) {
 TEST_F(GltfFiles, KeysOfATimeOfDayAreFramesOfTheirOwn) {
   // Single precision counts 256ths of a second there: about four of them are a frame.
   std::vector<float> times;
+  times.reserve(60);
   for (int key = 0; key < 60; ++key) times.push_back(static_cast<float>(36000 + key / 60.));
   GltfBuilder gltf = two_nodes(plain());
   std::vector<float> weights(60, 0), half_times, half_weights(30, 1);

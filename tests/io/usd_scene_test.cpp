@@ -165,6 +165,7 @@ TEST_F(UsdFiles, CodesOfATimeOfDayAreTimesOfTheirOwn) {
                 "timeCodesPerSecond = 10", "timeCodesPerSecond = " + std::to_string(rate)));
     ASSERT_EQ(sequence.frames(), 5);
     std::vector<double> moved;
+    moved.reserve(5);
     for (int f = 0; f < 5; ++f) moved.push_back(sequence.frame(f)(3, 0));
     // Seconds since midnight in double precision leave a billionth of a frame.
     constexpr double kRounding = 1e-8;

@@ -37,7 +37,7 @@ struct Enumeration {
   double least = std::numeric_limits<double>::infinity();
   Eigen::VectorXd best = {};
 
-  void visit(std::size_t group, Eigen::VectorXd lower, Eigen::VectorXd upper) {
+  void visit(std::size_t group, const Eigen::VectorXd& lower, const Eigen::VectorXd& upper) {
     const UnknownRules& rules = solver.rules();
     if (group == rules.exclusive.size()) {
       const Eigen::VectorXd x = box_least_squares(solver.system(), h, lower, upper);

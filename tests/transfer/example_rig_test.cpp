@@ -192,6 +192,7 @@ TEST_F(ExampleRigTest, KeepsVerticesThatNothingMovesWhereTheyAre) {
 TEST_F(ExampleRigTest, FindsTheWeightsOfPoses) {
   const Eigen::MatrixXd truth = test::random_weights(3, kExpressions, 9);
   std::vector<RigExample> examples;
+  examples.reserve(3);
   for (int s = 0; s < 3; ++s) {
     examples.push_back({"pose", model_.pose(truth.row(s).transpose()), {}});
   }
@@ -253,7 +254,7 @@ TEST_F(ExampleRigTest, GivesEqualBytesForAnyNumberOfThreads) {
 }
 
 TEST_F(ExampleRigTest, RefusesWhatIsNoExample) {
-  const auto fit = [this](std::vector<RigExample> examples, ExampleRigOptions options = {}) {
+  const auto fit = [this](std::vector<RigExample> examples, const ExampleRigOptions& options = {}) {
     return [this, examples = std::move(examples), options] {
       fit_to_examples(model_, examples, apart_, options);
     };

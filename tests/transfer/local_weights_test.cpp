@@ -33,7 +33,7 @@ class LocalWeightsTest : public testing::Test {
   }
 
   BlendshapeTransfer whole() const { return {source_.rest(), actor_, all_}; }
-  LocalWeights local(LocalWeightsOptions options = {}) const {
+  LocalWeights local(const LocalWeightsOptions& options = {}) const {
     return {source_.rest(), actor_, shares_, all_, options};
   }
   RegionalAnimation animated(const RegionalWeights& weights) const {

@@ -171,6 +171,7 @@ TEST_P(Slivers, InPairsAndStripsLeaveTheResultAsItWas) {
   const Frames expected = transferred(source_, actor_);
   // Every second cell of a row, so that slid vertices do not meet.
   std::vector<Slide> strip;
+  strip.reserve(10);
   for (int i = 0; i < 10; ++i) strip.push_back({triangle_of(14 + 2 * i, 24)});
   for (const double left : kLeft) {
     EXPECT_LT(difference(transferred(with_needles(left), actor_), expected), 1e-3) << left;

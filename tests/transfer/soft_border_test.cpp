@@ -303,7 +303,7 @@ TEST_F(SoftBorderTest, IsHardlyChangedByWeightsRoundedToBytes) {
 }
 
 TEST_F(SoftBorderTest, RefusesWhatContradictsTheWeights) {
-  const auto with = [this](VertexTransferOptions options, const Eigen::VectorXd& weights) {
+  const auto with = [this](const VertexTransferOptions& options, const Eigen::VectorXd& weights) {
     return [this, options, weights] { transferred(take_, weights, options); };
   };
   EXPECT_THAT(with({.outside = Outside::identity}, disc_),

@@ -112,6 +112,7 @@ std::vector<Correspondence::Part> by_area(const std::vector<int>& rows,
   double area = 0;
   for (const int row : rows) area += surface.normals.row(row).norm();
   std::vector<Correspondence::Part> parts;
+  parts.reserve(rows.size());
   for (const int row : rows) {
     parts.push_back({numbers[row], surface.normals.row(row).norm() / area});
   }

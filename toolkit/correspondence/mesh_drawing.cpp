@@ -193,6 +193,7 @@ MeshDrawing MeshPainter::draw(const View& view) const {
   const Samples samples(places, triangles_, side);
   const Vector3d light = view.axes.transpose() * view.light.normalized();
   std::vector<bool> outside;
+  outside.reserve(static_cast<std::size_t>(triangles_.rows()));
   for (int t = 0; t < triangles_.rows(); ++t) outside.push_back(shows_outside(t, view));
   const auto brightness = [&](int column, int row) {
     const int t = samples.nearest(column, row);

@@ -95,6 +95,7 @@ std::vector<VertexIndex> parts_of(const MapSide& side) {
     }
   }
   std::vector<VertexIndex> parts;
+  parts.reserve(static_cast<std::size_t>(side.vertices));
   for (VertexIndex v = 0; v < side.vertices; ++v) parts.push_back(lowest(v));
   return parts;
 }

@@ -86,6 +86,7 @@ struct Source {
       target = marker.target;
     }
     std::vector<VertexIndex> marked;
+    marked.reserve(markers.size());
     for (const Marker& marker : markers) marked.push_back(marker.source);
     reached = reached_parts(mesh.positions, triangles, weld, marked);
     std::vector<bool> in_triangle(target_of.size(), false);

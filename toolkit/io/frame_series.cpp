@@ -107,6 +107,7 @@ std::string main_series(const std::vector<fs::path>& files, const FileNumbers& n
 
 std::string names_of(const std::vector<fs::path>& files) {
   std::vector<std::string> names;
+  names.reserve(files.size());
   for (const fs::path& file : files) names.push_back(file.filename().string());
   return listed(names, 4);
 }

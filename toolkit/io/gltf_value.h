@@ -38,16 +38,16 @@ class GltfValue {
 
   double number() const;
   std::vector<double> numbers(const char* name) const;
-  template <std::size_t size>
-  std::array<double, size> numbers_or(const char* name, std::array<double, size> values) const {
+  template <std::size_t Size>
+  std::array<double, Size> numbers_or(const char* name, std::array<double, Size> values) const {
     if (!has(name)) return values;
     const GltfValue given = at(name);
     const std::vector<GltfValue> items = given.items();
-    if (items.size() != size) {
+    if (items.size() != Size) {
       given.fail("has " + std::to_string(items.size()) + " numbers, expected " +
-                 std::to_string(size));
+                 std::to_string(Size));
     }
-    for (std::size_t i = 0; i < size; ++i) values[i] = items[i].number();
+    for (std::size_t i = 0; i < Size; ++i) values[i] = items[i].number();
     return values;
   }
 

@@ -1,6 +1,7 @@
 #include <array>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 #include "toolkit/io/bytes.h"
 #include "toolkit/io/mesh_layout.h"
@@ -58,10 +59,10 @@ bool decode(const VertexBlock& block, const char* vertex, std::span<double> coor
 /// What stands before and after the vertices.
 class PlyLayout : public MeshLayout {
  public:
-  PlyLayout(const std::string& first, std::size_t header_bytes, const VertexBlock& block)
+  PlyLayout(std::string first, std::size_t header_bytes, const VertexBlock& block)
       : block_(block),
-        before_(first.substr(0, header_bytes)),
-        after_(first.substr(header_bytes + block.bytes)) {}
+        after_(first.substr(header_bytes + block.bytes)),
+        before_(std::move(first.erase(header_bytes))) {}
 
   bool read(std::string_view bytes, std::span<double> coordinates) const override {
     if (bytes.size() != before_.size() + block_.bytes + after_.size()) return false;
@@ -73,8 +74,8 @@ class PlyLayout : public MeshLayout {
 
  private:
   const VertexBlock block_;
-  const std::string before_;
   const std::string after_;
+  const std::string before_;
 };
 
 }  // namespace
@@ -83,7 +84,7 @@ std::unique_ptr<const MeshLayout> ply_layout(std::string first, std::size_t) {
   const PlyHeader header = read_ply_header("", first);
   const std::optional<VertexBlock> block = block_of(header);
   if (!block) return nullptr;
-  return std::make_unique<PlyLayout>(first, header.bytes, *block);
+  return std::make_unique<PlyLayout>(std::move(first), header.bytes, *block);
 }
 
 }  // namespace mimetra

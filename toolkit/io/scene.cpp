@@ -166,6 +166,7 @@ std::vector<std::string> united_by_number(const std::vector<ScenePart>& parts,
     for (const auto& [p, mesh] : meshes) united.insert(p);
   }
   std::vector<std::string> names;
+  names.reserve(united.size());
   for (const std::size_t p : united) names.push_back("'" + parts[p].name + "'");
   return names;
 }

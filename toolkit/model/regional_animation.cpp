@@ -35,7 +35,7 @@ RegionalAnimation::RegionalAnimation(std::shared_ptr<const BlendshapeModel> mode
                                      Eigen::VectorXd times, bool times_are_known)
     : FrameSource(regional_header(*model, shares, weights, std::move(times), times_are_known)),
       model_(std::move(model)),
-      shares_(shares),
+      shares_(std::move(shares)),
       weights_(std::move(weights)) {}
 
 void RegionalAnimation::read_frames(int first, FramesView poses) const {

@@ -27,6 +27,7 @@ Json json_of(const SurfaceParts& parts) {
 /// "97.1 %, 1.2 %, ..." of the surface, the first of many.
 std::string shares_of(const SurfaceParts& parts) {
   std::vector<std::string> shares;
+  shares.reserve(static_cast<std::size_t>(parts.count()));
   for (int part = 0; part < parts.count(); ++part) shares.push_back(percent(parts.share(part)));
   return listed(shares);
 }

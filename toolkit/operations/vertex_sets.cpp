@@ -39,6 +39,7 @@ struct NamedVertices {
 std::vector<NamedVertices> components_of(const FrameSource& frames) {
   const SurfaceParts parts = surface_parts(frames.rest(), frames.triangles());
   std::vector<NamedVertices> sets;
+  sets.reserve(static_cast<std::size_t>(parts.count()));
   for (int part = 0; part < parts.count(); ++part) {
     sets.push_back({std::to_string(part), std::vector<bool>(frames.vertices(), false)});
   }
@@ -88,6 +89,7 @@ std::vector<NamedVertices> sets_of(VertexSetKind kind, const FieldSequence& sequ
 
 std::string names_of(const std::vector<NamedVertices>& sets) {
   std::vector<std::string> names;
+  names.reserve(sets.size());
   for (const NamedVertices& set : sets) names.push_back(set.name);
   constexpr std::size_t kShown = 40;
   return listed(names, kShown);

@@ -64,6 +64,7 @@ std::vector<Site> sites_of(const Components& components, const DistanceFunction&
   const Eigen::VectorXd energies = motion_energy(components);
   const std::vector<int> living = living_components(components, energies);
   std::vector<VertexIndex> centers;
+  centers.reserve(living.size());
   for (const int k : living) centers.push_back(components.centers[k]);
   const Eigen::MatrixXd from_centers = distances(centers);
   std::vector<Site> sites;
@@ -346,6 +347,7 @@ Regions regions_from_labels(const std::vector<int>& labels, const Triangles& tri
   }
   if (vertices_of.empty()) throw std::invalid_argument("labels: no vertex is in a region");
   std::vector<std::vector<VertexIndex>> lists;
+  lists.reserve(vertices_of.size());
   for (auto& [label, vertices] : vertices_of) lists.push_back(std::move(vertices));
   return regions_from_vertices(static_cast<int>(labels.size()), triangles, lists);
 }

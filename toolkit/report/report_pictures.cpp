@@ -65,6 +65,7 @@ std::vector<int> strongest_columns(const Eigen::MatrixXd& weights) {
 std::vector<int> middle_frames(int frames, int count) {
   const int kept = std::min(frames, count);
   std::vector<int> middles;
+  middles.reserve(static_cast<std::size_t>(kept));
   for (int i = 0; i < kept; ++i) {
     middles.push_back(static_cast<int>((2 * std::int64_t{i} + 1) * frames / (2 * kept)));
   }
@@ -130,6 +131,7 @@ std::vector<Chart> weight_charts(const ReportStudy& study) {
   if (study.components) {
     const std::vector<int> columns = strongest_components(*study.components, kMostLines);
     std::vector<std::string> names;
+    names.reserve(columns.size());
     for (const int k : columns) names.push_back("component " + std::to_string(k));
     charts.push_back(weight_chart("Weights of the strongest components", times,
                                   study.components->weights, columns, names));
@@ -138,6 +140,7 @@ std::vector<Chart> weight_charts(const ReportStudy& study) {
     const Eigen::MatrixXd& weights = study.transfer->weights;
     const std::vector<int> columns = strongest_columns(weights);
     std::vector<std::string> names;
+    names.reserve(columns.size());
     for (const int column : columns) {
       names.push_back(study.transfer->expressions[static_cast<std::size_t>(column)]);
     }

@@ -176,6 +176,7 @@ class RunSteps {
     options.notes = warnings_of(call);
     if (!targets.empty()) {
       std::vector<Target> all;
+      all.reserve(targets.size());
       for (const MatchedTarget& target : targets) all.push_back(*target);
       options.joint = joint_search(all, solve_options(call, {}));
     }

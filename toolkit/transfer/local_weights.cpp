@@ -102,7 +102,7 @@ double LocalWeights::State::solve(const Eigen::VectorXd& h, const Eigen::VectorX
 }
 
 LocalWeights::LocalWeights(const Positions& source_rest, const BlendshapeModel& target,
-                           RegionShares shares, std::vector<int> triangles,
+                           const RegionShares& shares, std::vector<int> triangles,
                            const LocalWeightsOptions& options) {
   check_regional(source_rest, target, shares, options);
   fix_product_blocking();

@@ -49,8 +49,9 @@ class LocalWeights {
   /// MismatchError where the vertex counts differ or the target has no expressions,
   /// std::invalid_argument for a triangle or an option out of range and for shares of another
   /// number of vertices.
-  LocalWeights(const Positions& source_rest, const BlendshapeModel& target, RegionShares shares,
-               std::vector<int> triangles, const LocalWeightsOptions& = {});
+  LocalWeights(const Positions& source_rest, const BlendshapeModel& target,
+               const RegionShares& shares, std::vector<int> triangles,
+               const LocalWeightsOptions& = {});
   ~LocalWeights();
   LocalWeights(LocalWeights&&) noexcept;
   LocalWeights& operator=(LocalWeights&&) noexcept;

@@ -25,8 +25,8 @@ constexpr std::array<std::string_view, 12> kTypes = {"Int8",    "UInt8",   "Int1
                                                      "Int32",   "UInt32",  "Int64",  "UInt64",
                                                      "Float32", "Float64", "String", "Bit"};
 
-template <std::size_t size>
-bool is_one_of(const std::array<std::string_view, size>& all, std::string_view word) {
+template <std::size_t Size>
+bool is_one_of(const std::array<std::string_view, Size>& all, std::string_view word) {
   return std::find(all.begin(), all.end(), word) != all.end();
 }
 
