@@ -31,11 +31,11 @@ SequenceHeader regional_header(const BlendshapeModel& model, const RegionShares&
 }  // namespace
 
 RegionalAnimation::RegionalAnimation(std::shared_ptr<const BlendshapeModel> model,
-                                     RegionShares shares, Eigen::MatrixXd weights,
+                                     const RegionShares& shares, Eigen::MatrixXd weights,
                                      Eigen::VectorXd times, bool times_are_known)
     : FrameSource(regional_header(*model, shares, weights, std::move(times), times_are_known)),
       model_(std::move(model)),
-      shares_(std::move(shares)),
+      shares_(shares),
       weights_(std::move(weights)) {}
 
 void RegionalAnimation::read_frames(int first, FramesView poses) const {

@@ -19,7 +19,7 @@ class RegionalAnimation : public FrameSource {
  public:
   /// `shares` N x R; `weights` F x R D, column r D + j is that of expression j in region r. `times`
   /// as in Animation. Throws std::invalid_argument where sizes disagree.
-  RegionalAnimation(std::shared_ptr<const BlendshapeModel> model, RegionShares shares,
+  RegionalAnimation(std::shared_ptr<const BlendshapeModel> model, const RegionShares& shares,
                     Eigen::MatrixXd weights, Eigen::VectorXd times = {},
                     bool times_are_known = true);
 
