@@ -13,6 +13,20 @@
 
 namespace mimetra {
 
+namespace {
+
+/// In pixels, of the first image; none where it cannot be read.
+std::optional<int> longer_side(const ImageSequence& images) {
+  try {
+    const Image image = images.image(0);
+    return std::max(image.width, image.height);
+  } catch (const IoError&) {
+    return std::nullopt;
+  }
+}
+
+}  // namespace
+
 double camera_distance(const MorphableModel& model, const MappedLandmarks& mapped,
                        double focal_length) {
   const Positions rest = model.mean()(mapped.vertices, Eigen::all);
@@ -33,20 +47,6 @@ double camera_distance(const MorphableModel& model, const MappedLandmarks& mappe
   }
   return distances.empty() ? std::numeric_limits<double>::infinity() : median(std::move(distances));
 }
-
-namespace {
-
-/// In pixels, of the first image; none where it cannot be read.
-std::optional<int> longer_side(const ImageSequence& images) {
-  try {
-    const Image image = images.image(0);
-    return std::max(image.width, image.height);
-  } catch (const IoError&) {
-    return std::nullopt;
-  }
-}
-
-}  // namespace
 
 void check_focal_length(const FitOptions& options, const MorphableModel& model,
                         const MappedLandmarks& mapped, const ImageSequence* images) {

@@ -125,21 +125,6 @@ LandmarkMapping mapping_of(const FitCall& call, const NamedData& model) {
   return read_landmark_mapping(find_landmark_mapping(path));
 }
 
-/// iBUG's landmarks of a model for tracks that name others, where a file beside it has them, so
-/// that it is known how the model looks: by which head motion is kept, and partly hidden faces are
-/// found.
-LandmarkVertices landmarks_beside(const NamedData& input, const MorphableModel& model) {
-  if (input.origin.path.empty()) return {};
-  for (const std::filesystem::path& file : landmark_mappings(input.origin.path)) {
-    LandmarkVertices landmarks = ibug_landmarks(read_landmark_mapping(file));
-    const auto is_on_model = [&model](const auto& landmark) {
-      return landmark.second >= 0 && landmark.second < model.vertices();
-    };
-    if (tell_axes(landmarks) && std::ranges::all_of(landmarks, is_on_model)) return landmarks;
-  }
-  return {};
-}
-
 FittedCoefficients coefficients_of(const MorphableModel& model, const Eigen::VectorXd& times,
                                    const std::vector<FrameFit>& frames) {
   const auto count = static_cast<Eigen::Index>(frames.size());
@@ -289,8 +274,9 @@ Outcome run(const Invocation& invocation) {
   const LandmarkMapping mapping = mapping_of(call, invocation.input("model"));
   MappedLandmarks mapped =
       naming_landmarks(invocation, [&] { return map_landmarks(track, mapping); });
-  if (!tell_axes(mapped.ibug)) {
-    mapped.ibug = landmarks_beside(invocation.input("model"), model);
+  const std::filesystem::path& model_path = invocation.input("model").origin.path;
+  if (!tell_axes(mapped.ibug) && !model_path.empty()) {
+    mapped.ibug = landmarks_beside(model_path, model.vertices());
   }
   report_progress(invocation.progress, 0);
   FitOptions options = call.fit;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "fitting/head_rotation.h"
 #include "fitting/landmark_formats.h"
 #include "fitting/mediapipe.h"
 #include "toolkit/mesh/errors.h"
@@ -69,6 +70,17 @@ MappedLandmarks map_landmarks(const LandmarkTrack& track, const LandmarkMapping&
   mapped.outline = track.points(Eigen::all, outline_columns(track, mapping));
   if (is_ibug(track) || !is_numbered(track)) mapped.ibug = ibug_landmarks(used);
   return mapped;
+}
+
+LandmarkVertices landmarks_beside(const std::filesystem::path& model, int vertices) {
+  for (const std::filesystem::path& file : landmark_mappings(model)) {
+    LandmarkVertices landmarks = ibug_landmarks(read_landmark_mapping(file));
+    const auto is_on_model = [vertices](const auto& landmark) {
+      return landmark.second >= 0 && landmark.second < vertices;
+    };
+    if (tell_axes(landmarks) && std::ranges::all_of(landmarks, is_on_model)) return landmarks;
+  }
+  return {};
 }
 
 }  // namespace mimetra

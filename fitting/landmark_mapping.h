@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <vector>
 
 #include "toolkit/io/landmark_vertices.h"
@@ -24,5 +25,9 @@ struct MappedLandmarks {
 /// places of iBUG's that the mapping names. Throws MismatchError where there is none, and where
 /// landmarks are numbered and the mapping has larger numbers.
 MappedLandmarks map_landmarks(const LandmarkTrack& track, const LandmarkMapping& mapping);
+
+/// iBUG's landmarks of a model of so many vertices, where a mapping in its folder has those that
+/// tell_axes(): tracks may name others. Else none. Throws IoError where a mapping cannot be read.
+LandmarkVertices landmarks_beside(const std::filesystem::path& model, int vertices);
 
 }  // namespace mimetra

@@ -73,6 +73,7 @@ std::vector<int> partial_frames(const MorphableModel& model, const MappedLandmar
   // Half a face has 2.4 to 3.5, brows and eyes 3.3; nose and mouth together 3 to 4.4, the nose
   // alone 5 to 7, the mouth 6 to 13.
   constexpr double kMost = 4;
+  constexpr std::size_t kFewest = 4;  // of a camera
   const TurnUncertainty uncertainty(model, mapped.vertices,
                                     looking_ahead(model.mean(), mapped.ibug));
   std::map<std::vector<Eigen::Index>, double> known;  // mostly the same ones in many frames
@@ -89,7 +90,13 @@ std::vector<int> partial_frames(const MorphableModel& model, const MappedLandmar
       ++whole;
     }
   }
-  return whole >= partial.size() ? partial : std::vector<int>();
+  if (whole == 0) return {};
+  if (whole < partial.size()) {
+    std::erase_if(partial, [&mapped](int frame) {
+      return landmarks_seen(mapped.points, frame).size() >= kFewest;
+    });
+  }
+  return partial;
 }
 
 }  // namespace mimetra

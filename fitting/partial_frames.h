@@ -26,7 +26,8 @@ class TurnUncertainty {
 };
 
 /// Frames with landmarks that leave the head's turn open by more than 4 degrees, as those of nose
-/// or mouth alone do. None where most frames are such: then they are all there is to go by.
+/// or mouth alone do. Where most frames are such they are what there is to go by, and only those
+/// with too few for a camera, four, are meant; none where all are such.
 std::vector<int> partial_frames(const MorphableModel& model, const MappedLandmarks& mapped);
 
 }  // namespace mimetra

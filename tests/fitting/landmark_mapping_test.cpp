@@ -31,6 +31,21 @@ TEST_F(Mapping, TakesItsLandmarksFromATrack) {
   EXPECT_EQ(mapped.points, Eigen::RowVector4d(5, 6, 1, 2));
 }
 
+TEST_F(Mapping, FindsIbugsLandmarksBesideAModel) {
+  EXPECT_THAT(landmarks_beside(folder_.path(), 100), testing::IsEmpty());
+  const auto write_mapping = [&](const std::string& lines) {
+    std::ofstream(folder_ / "ibug_to_face.txt", std::ios::binary) << lines;
+  };
+  write_mapping("[landmark_mappings]\n37 = 5\n43 = 6\n");  // no mouth
+  EXPECT_THAT(landmarks_beside(folder_.path(), 100), testing::IsEmpty());
+  write_mapping("[landmark_mappings]\n37 = 5\n43 = 6\n49 = 99\n");
+  using testing::Pair;
+  const auto all = ElementsAre(Pair(36, 5), Pair(42, 6), Pair(48, 99));
+  EXPECT_THAT(landmarks_beside(folder_.path(), 100), all);
+  EXPECT_THAT(landmarks_beside(folder_ / "neutral.obj", 100), all);
+  EXPECT_THAT(landmarks_beside(folder_.path(), 99), testing::IsEmpty());
+}
+
 TEST_F(Mapping, RefusesATrackOfOtherLandmarks) {
   const LandmarkTrack track{{"chin"}, Eigen::RowVector2d(1, 2), {}, {}};
   EXPECT_THAT(test::message_of<MismatchError>([&] {

@@ -84,6 +84,9 @@ TEST(PartialFrames, AreNoneWhereFewFramesShowMore) {
   EXPECT_THAT(partial_frames(samples::parametric_head(), mapped), ElementsAre(0, 1));
   for (const int frame : {2, 3}) keep(mapped, frame, is_of_eyes);
   EXPECT_THAT(partial_frames(samples::parametric_head(), mapped), IsEmpty());
+  // Three landmarks make no camera.
+  keep(mapped, 1, [](int number) { return number == 37 || number == 40 || number == 46; });
+  EXPECT_THAT(partial_frames(samples::parametric_head(), mapped), ElementsAre(1));
   keep(mapped, 4, is_of_eyes);
   EXPECT_THAT(partial_frames(samples::parametric_head(), mapped), IsEmpty());
 }
