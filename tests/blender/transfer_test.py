@@ -224,7 +224,21 @@ class Transfer(HostTest):
         def half(animation, track):
             animation.action_influence = 0.5
 
+        def muted_modifier(animation, track):
+            modifier(animation, track)
+            self.curve_of("jawOpen").modifiers[0].mute = True
+
+        def added_to_a_muted_strip(animation, track):
+            track.strips[0].mute = True
+            animation.action_blend_type = "ADD"
+
+        def added_to_other_curves(animation, track):
+            track.strips[0].action.fcurves[0].data_path = "eval_time"
+            animation.action_blend_type = "ADD"
+
         cases = [(lambda *_: None, None), (added_to_nothing, None), (added_without_tracks, None),
+                 (muted_modifier, None), (added_to_a_muted_strip, None),
+                 (added_to_other_curves, None),
                  (solo, "target: the NLA track 'capture' .* plays alone"),
                  (added, "target: .* blended with the NLA track 'capture' \\(Add, influence 1\\)"),
                  (half, "target: .* 'capture' \\(Replace, influence 0.5\\)"),

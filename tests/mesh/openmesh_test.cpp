@@ -260,6 +260,11 @@ TEST(OpenMeshBridge, DoesNotChooseAmongPropertiesOfOneName) {
   set_fields(mesh, {{"x", Field::Location::vertices, Eigen::VectorXd::Constant(7, 7), false}});
   EXPECT_THAT([&] { field_from_openmesh(mesh, "v:x"); },
               ThrowsMessage<std::invalid_argument>(HasSubstr("'v:x' of several types")));
+  OpenMesh::getOrMakeProperty<OpenMesh::VertexHandle, OpenMesh::Vec3f>(mesh, "pose");
+  EXPECT_EQ(sequence_from_openmesh(mesh, {"pose"}).frames(), 1);
+  OpenMesh::getOrMakeProperty<OpenMesh::VertexHandle, OpenMesh::Vec3d>(mesh, "pose");
+  EXPECT_THAT([&] { sequence_from_openmesh(mesh, {"pose"}); },
+              ThrowsMessage<std::invalid_argument>(HasSubstr("'pose' of several types")));
 }
 
 TEST(OpenMeshBridge, NamesWhatItCannotHoldOrFind) {

@@ -164,6 +164,12 @@ class RegionsOfInterest(HostTest):
             at(self.filter_of(bent), 0)
         self.assertEqual(messages.text.count("not as a whole"), 1, messages.text)
         self.assertIn("mimetra_rest", messages.text)
+        # In the first frame it moves nothing.
+        warped = simple.WarpByVector(Input=self.filter_of(self.take()))
+        warped.Vectors = ["POINTS", "displacement"]
+        with Messages() as messages:
+            at(self.filter_of(warped), 0)
+        self.assertEqual(messages.text.count("not as a whole"), 1, messages.text)
 
     def with_motion(self, name):
         """A series of frames without a rest pose, with the motion to the next ones as an array."""
