@@ -45,8 +45,8 @@ Eigen::SparseMatrix<double> gradients(const Positions& rest, const Triangles& tr
 Eigen::SparseMatrix<double> couplings(const Triangles& triangles, double smoothness,
                                       double identity) {
   std::vector<Entry> entries;
-  entries.reserve(static_cast<std::size_t>(3 * triangles.rows()));
   const auto rows = static_cast<int>(3 * triangles.rows());
+  entries.reserve(static_cast<std::size_t>(rows));
   for (int row = 0; row < rows; ++row) entries.emplace_back(row, row, identity);
   for (const auto& [i, j] : neighbouring_triangles(triangles)) {
     for (int row = 0; row < 3; ++row) {

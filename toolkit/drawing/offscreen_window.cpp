@@ -21,8 +21,8 @@ namespace mimetra {
 
 namespace {
 
-/// An OpenGL context without a surface. The display belongs to the process
-/// and stays open: drivers do not give back all they took when it is closed.
+/// An OpenGL context without a surface. The display belongs to the process and stays open: drivers
+/// do not give back all they took when it is closed.
 class EglContext {
  public:
   /// Null where EGL has none to offer.

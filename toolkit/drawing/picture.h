@@ -25,6 +25,8 @@ class DrawingSession {
  public:
   /// Throws std::runtime_error where the library that draws is missing.
   DrawingSession();
+  DrawingSession(const DrawingSession&) = delete;
+  DrawingSession& operator=(const DrawingSession&) = delete;
 
  private:
   std::shared_ptr<void> window_;

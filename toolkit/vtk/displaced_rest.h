@@ -24,8 +24,8 @@ class DisplacedRest {
   void look_at(vtkPolyData& data, const Positions& positions);
 
   /// Nothing where the data are no displacements, or something else's, and where the precision of
-  /// points far from the origin does not tell. Throws IoError that begins
-  /// with `name` where a vertex of it is not finite.
+  /// points far from the origin does not tell. Throws IoError that begins with `name` where a
+  /// vertex of it is not finite.
   std::optional<Positions> found(const std::string& name) const;
 
  private:
