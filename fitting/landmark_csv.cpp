@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -11,13 +12,18 @@
 #include "fitting/mediapipe.h"
 #include "toolkit/io/csv.h"
 #include "toolkit/io/frame_series.h"
+#include "toolkit/io/time_columns.h"
 #include "toolkit/mesh/errors.h"
+#include "toolkit/mesh/text.h"
 
 namespace mimetra {
 
 namespace {
 
 constexpr double kUnseen = std::numeric_limits<double>::quiet_NaN();
+
+/// Its column of seconds, in lower case.
+constexpr const char* kOpenFaceTime = "timestamp";
 
 /// Number of a column called x7 or x_7, for the letter 'x'.
 std::optional<std::size_t> landmark_number(std::string_view name, char letter) {
@@ -27,6 +33,17 @@ std::optional<std::size_t> landmark_number(std::string_view name, char letter) {
   const auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), number);
   if (error != std::errc() || end != name.data() + name.size()) return {};
   return number;
+}
+
+/// The number of a frame in a field, whose point may be a comma; none for other text.
+std::optional<long long> frame_number_in(std::string_view field) {
+  std::string text(field);
+  std::ranges::replace(text, ',', '.');
+  double value = 0;
+  const char* const last = text.data() + text.size();
+  const auto [end, error] = std::from_chars(text.data(), last, value);
+  if (error != std::errc() || end != last) return {};
+  return frame_number(value);
 }
 
 /// Those that read back equal.
@@ -51,18 +68,18 @@ class LandmarkReader {
     const auto& names = csv_.names();
     std::map<std::size_t, std::size_t> x, y;
     for (std::size_t column = 0; column < names.size(); ++column) {
-      const std::string_view name = names[column];
+      const std::string name(names[column]), plain = lower_case(name);
       if (const auto number = landmark_number(name, 'x')) {
         add_column(x, *number, column);
       } else if (const auto row = landmark_number(name, 'y')) {
         add_column(y, *row, column);
-      } else if (name == "time" || name == "timestamp") {
-        time_ = column;
-      } else if (holds_frame_numbers(std::string(name))) {
+      } else if (const auto units = plain == kOpenFaceTime ? 1 : units_per_second(name)) {
+        if (!time_) time_ = {column, *units};
+      } else if (holds_frame_numbers(plain)) {
         frame_ = column;
-      } else if (name == "confidence") {
+      } else if (plain == "confidence") {
         confidence_ = column;
-      } else if (name == "success") {
+      } else if (plain == "success") {
         success_ = column;
       }
     }
@@ -105,13 +122,13 @@ class LandmarkReader {
       points_.insert(points_.end(), {seen ? x : kUnseen, seen ? y : kUnseen});
     }
     if (time_) {
-      const double time = csv_.number(*time_);
+      const double time = csv_.number(time_->column) / time_->units_per_second;
       if (!times_.empty() && time <= times_.back()) {
         csv_.fail("times do not ascend; expected one face and one row a frame");
       }
       times_.push_back(time);
     }
-    if (frame_ && !time_) read_frame_number(csv_.number(*frame_));
+    if (frame_ && !time_) read_frame_number(*frame_);
     if (confidence_) {
       const double confidence = csv_.number(*confidence_);
       if (!(confidence >= 0 && confidence <= 1)) csv_.fail("the confidence is outside [0, 1]");
@@ -120,16 +137,21 @@ class LandmarkReader {
     ++frames_;
   }
 
-  void read_frame_number(double frame) {
-    constexpr double kMost = 1e12;
-    if (!(std::abs(frame) < kMost)) csv_.fail("the frame has a number of more than 12 digits");
-    const long long number = std::llround(frame);
-    if (!frame_numbers_.empty() && number <= frame_numbers_.back()) {
-      csv_.fail("frame " + std::to_string(number) + " follows " +
+  /// A column of other things than numbers, such as names of images, says nothing.
+  void read_frame_number(std::size_t column) {
+    const auto number = frame_number_in(csv_.field(column));
+    if (!number) {
+      notes_.push_back(note_on_frame_numbers(std::string(csv_.names()[column])));
+      frame_.reset();
+      frame_numbers_.clear();
+      return;
+    }
+    if (!frame_numbers_.empty() && *number <= frame_numbers_.back()) {
+      csv_.fail("frame " + std::to_string(*number) + " follows " +
                 std::to_string(frame_numbers_.back()) +
                 "; expected one face and one row a frame, or a column 'time'");
     }
-    frame_numbers_.push_back(number);
+    frame_numbers_.push_back(*number);
   }
 
   LandmarkTrack track() const {
@@ -141,6 +163,7 @@ class LandmarkReader {
     LandmarkTrack track = {numbered_names(columns_.size() / 2),
                            Eigen::Map<const Frames>(points_.data(), frames_, columns),
                            vector(times_), vector(confidences_)};
+    track.notes = notes_;
     number_frames(track, frame_numbers_);
     return track;
   }
@@ -149,9 +172,15 @@ class LandmarkReader {
   CsvReader csv_;
   /// Columns of x0, y0, x1, y1, ...
   std::vector<std::size_t> columns_;
-  std::optional<std::size_t> frame_, time_, confidence_, success_;
+  struct TimeColumn {
+    std::size_t column;
+    double units_per_second;
+  };
+  std::optional<TimeColumn> time_;
+  std::optional<std::size_t> frame_, confidence_, success_;
   std::vector<long long> frame_numbers_;
   std::vector<double> points_, times_, confidences_;
+  std::vector<std::string> notes_;
   Eigen::Index frames_ = 0;
 };
 

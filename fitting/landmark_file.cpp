@@ -12,6 +12,26 @@
 
 namespace mimetra {
 
+namespace {
+
+/// Throws IoError for what is no place in an image, nor near one.
+void check_places(const std::string& path, const LandmarkTrack& track) {
+  constexpr double kFarthest = 1e7;  // pixels; the largest images have a million in a row
+  for (Eigen::Index f = 0; f < track.points.rows(); ++f) {
+    for (Eigen::Index i = 0; i < track.points.cols(); ++i) {
+      const double found = track.points(f, i);
+      if (std::isnan(found) || std::abs(found) <= kFarthest) continue;
+      throw IoError(path, "frame " + std::to_string(f) + ": " + (i % 2 == 0 ? "x" : "y") +
+                              " of landmark '" + track.names[static_cast<std::size_t>(i / 2)] +
+                              "' is " + readable(found) +
+                              ", expected a place in an image, in pixels; leave out the landmark "
+                              "where it was not seen");
+    }
+  }
+}
+
+}  // namespace
+
 std::vector<std::string> numbered_names(std::size_t count) {
   std::vector<std::string> names;
   for (std::size_t i = 1; i <= count; ++i) names.push_back(std::to_string(i));
@@ -22,6 +42,12 @@ void number_frames(LandmarkTrack& track, const std::vector<long long>& numbers) 
   RowNumbers found = row_numbers(numbers);
   track.step = static_cast<double>(found.step);
   if (!found.note.empty()) track.notes.push_back(std::move(found.note));
+}
+
+std::string note_on_frame_numbers(const std::string& name) {
+  return "'" + name +
+         "' is not used, since it does not have a whole number in every frame, each higher than "
+         "the one before; without times frames follow each other without a pause";
 }
 
 LandmarkTrack read_pts(const std::filesystem::path& path) {
@@ -66,6 +92,7 @@ LandmarkTrack read_landmarks(const std::filesystem::path& path) {
                   "is not a known format of landmarks; expected .pts, .csv or .json");
   }
   name_mediapipe_landmarks(track);
+  check_places(path.string(), track);
   return track;
 }
 

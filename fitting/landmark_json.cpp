@@ -1,10 +1,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <iterator>
 #include <limits>
+#include <map>
+#include <optional>
 #include <set>
-#include <utility>
 
 #include <nlohmann/json.hpp>
 
@@ -12,6 +14,7 @@
 #include "fitting/landmark_formats.h"
 #include "toolkit/io/frame_series.h"
 #include "toolkit/io/json_text.h"
+#include "toolkit/io/time_columns.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/text.h"
 
@@ -26,21 +29,33 @@ constexpr std::array kFaceKeys = {"points",    "faceLandmarks",      "face_landm
                                   "landmarks", "multiFaceLandmarks", "multi_face_landmarks",
                                   "landmark"};
 
-/// A key for the time of a frame, and how many of it are a second.
-constexpr std::array<std::pair<const char*, double>, 3> kTimeKeys = {
-    {{"time", 1}, {"timestamp_ms", 1000}, {"timestampMs", 1000}}};
-
 constexpr std::array kRateKeys = {"fps", "frame_rate", "frameRate"};
 
-bool is_point(const Json& value) {
-  if (value.is_object()) return value.contains("x") && value.contains("y");
-  return value.is_array() && !value.empty() && value[0].is_primitive();
+bool has_coordinates(const Json& value) {
+  return value.is_object() && value.contains("x") && value.contains("y");
 }
 
-/// True for a list whose first entry that is any is a point, and for one without any.
+bool is_list_of_coordinates(const Json& value) {
+  return value.is_array() && (value.size() == 2 || value.size() == 3);
+}
+
+/// Whether a value is one point, [x, y] or {"x", "y"}; none where it is null, or so few nulls that
+/// they may be coordinates as well as points.
+std::optional<bool> is_point(const Json& value) {
+  if (value.is_null()) return {};
+  if (!value.is_array()) return has_coordinates(value);
+  const auto seen = std::ranges::find_if_not(value, &Json::is_null);
+  if (seen != value.end()) return seen->is_primitive();
+  if (is_list_of_coordinates(value)) return {};
+  return false;
+}
+
+/// Judged by the first entry that is surely a point, or surely none; true for a list without any.
 bool are_points(const Json& list) {
-  const auto first = std::ranges::find_if(list, [](const Json& entry) { return !entry.is_null(); });
-  return first == list.end() || is_point(*first);
+  for (const Json& entry : list) {
+    if (const auto known = is_point(entry)) return *known;
+  }
+  return true;
 }
 
 class JsonReader {
@@ -83,22 +98,17 @@ class JsonReader {
   void read_frame(const Json& frame, const std::string& place) {
     add_faces(frame, place, faces_.emplace_back());
     if (!frame.is_object()) return;
-    if (frame.contains("timestamp")) {
-      fail(place + "/timestamp",
-           "in which unit? call it \"time\" for seconds, or \"timestamp_ms\"");
-    }
-    for (const auto& [key, per_second] : kTimeKeys) {
-      if (!frame.contains(key)) continue;
-      const double time = number(frame[key], place + '/' + key) / per_second;
-      if (!times_.empty() && time <= times_.back()) {
-        fail(place + '/' + key, "times do not ascend");
-      }
-      times_.push_back(time);
-      break;
-    }
+    bool has_time = false;
     for (const auto& [key, value] : frame.items()) {
-      if (holds_frame_numbers(key) && value.is_number_integer()) {
-        frame_numbers_.push_back(value.get<long long>());
+      const std::string entry = place + '/' + key;
+      if (lower_case(key) == "timestamp") {
+        fail(entry, "in which unit? call it \"time\" for seconds, or \"timestamp_ms\"");
+      }
+      if (const auto units = units_per_second(key); units && !has_time) {
+        read_time(number(value, entry) / *units, entry);
+        has_time = true;
+      } else if (holds_frame_numbers(key)) {
+        read_frame_number(value, frame_numbers_[key]);
       }
     }
     if (frame.contains("confidence")) {
@@ -106,6 +116,17 @@ class JsonReader {
       if (!(confidence >= 0 && confidence <= 1)) fail(place + "/confidence", "is outside [0, 1]");
       confidences_.push_back(confidence);
     }
+  }
+
+  void read_time(double time, const std::string& place) {
+    if (!times_.empty() && time <= times_.back()) fail(place, "times do not ascend");
+    times_.push_back(time);
+  }
+
+  /// pandas writes whole numbers as 1.0.
+  static void read_frame_number(const Json& value, std::vector<long long>& numbers) {
+    const auto number = value.is_number() ? frame_number(value.get<double>()) : std::nullopt;
+    if (number) numbers.push_back(*number);
   }
 
   /// All faces in a frame or in a part of it of which something is seen.
@@ -146,15 +167,21 @@ class JsonReader {
   void read_point(const Json& point, const std::string& place, Points& points) const {
     if (point.is_null()) {
       points.insert(points.end(), 2, kUnseenPoint);
-    } else if (point.is_object() && is_point(point)) {
-      points.push_back(number(point["x"], place + "/x"));
-      points.push_back(number(point["y"], place + "/y"));
-    } else if (point.is_array() && (point.size() == 2 || point.size() == 3)) {
-      points.push_back(number(point[0], place));
-      points.push_back(number(point[1], place));
+    } else if (has_coordinates(point)) {
+      read_coordinates(point["x"], point["y"], place + "/x", place + "/y", points);
+    } else if (is_list_of_coordinates(point)) {
+      read_coordinates(point[0], point[1], place, place, points);
     } else {
       fail(place, "expected [x, y] or null");
     }
+  }
+
+  /// Those of a point that was not seen are both null.
+  void read_coordinates(const Json& x, const Json& y, const std::string& place_of_x,
+                        const std::string& place_of_y, Points& points) const {
+    const bool is_seen = !x.is_null() || !y.is_null();
+    points.push_back(is_seen ? number(x, place_of_x) : kUnseenPoint);
+    points.push_back(is_seen ? number(y, place_of_y) : kUnseenPoint);
   }
 
   static FaceBox box_of(const Points& points) {
@@ -244,6 +271,19 @@ class JsonReader {
     return 0;
   }
 
+  /// Of the first key that has one in each frame, and rises; none, and a note, where none does.
+  std::vector<long long> frame_numbers(std::vector<std::string>& notes) const {
+    for (const auto& [key, numbers] : frame_numbers_) {
+      const bool rise =
+          std::ranges::adjacent_find(numbers, std::ranges::greater_equal()) == numbers.end();
+      if (rise && numbers.size() == faces_.size()) return numbers;
+    }
+    if (!frame_numbers_.empty()) {
+      notes.push_back(note_on_frame_numbers(frame_numbers_.begin()->first));
+    }
+    return {};
+  }
+
   LandmarkTrack track() const {
     if (landmarks_ == 0) fail("", "shows no face in any frame; expected a list of points");
     const FollowedFace person = followed();
@@ -251,8 +291,7 @@ class JsonReader {
                            of_frames(confidences_, "confidence")};
     note_faces(person, track.notes);
     if (track.times.size() > 0) return track;
-    const bool each_has_one = frame_numbers_.size() == faces_.size();
-    const std::vector<long long> numbers = each_has_one ? frame_numbers_ : std::vector<long long>();
+    const std::vector<long long> numbers = frame_numbers(track.notes);
     if (const double fps = rate(); fps > 0) {
       track.times = times_at_rate(fps, track.frames(), numbers);
     } else {
@@ -266,7 +305,7 @@ class JsonReader {
   std::size_t landmarks_ = 0;
   std::vector<std::vector<Points>> faces_;  ///< of each frame
   std::vector<double> times_, confidences_;
-  std::vector<long long> frame_numbers_;
+  std::map<std::string, std::vector<long long>> frame_numbers_;  ///< by key, as "frame"
 };
 
 }  // namespace

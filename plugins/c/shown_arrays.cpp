@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "toolkit/mesh/whole_numbers.h"
+
 namespace mimetra {
 
 namespace {
@@ -187,7 +189,7 @@ void ShownArrays::show(const Field& field) {
   const char* name = names_.emplace_back(field.name).c_str();
   const Eigen::Index rows = field.values.rows(), columns = field.values.cols();
   std::vector<double> values = by_rows(field.values);
-  if (!field.integer) {
+  if (!field.integer || !all_are_held_by<std::int32_t>(field.values)) {
     if (columns == 1) return add_numbers(name, {rows}, std::move(values), location);
     return add_numbers(name, {rows, columns}, std::move(values), location);
   }

@@ -95,6 +95,23 @@ TEST_F(Landmarks, OfOpenFaceAreRead) {
   EXPECT_EQ(track.confidence, Eigen::Vector2d(0.98, 0.1));
 }
 
+TEST_F(Landmarks, OfACsvTrackHaveTimesUnderSeveralNames) {
+  for (const char* name : {"Time", "Timestamp", "seconds", "time (s)"}) {
+    const LandmarkTrack track = read("a.csv", name + std::string(",x0,y0\n0,1,2\n0.04,1,2\n"));
+    EXPECT_EQ(track.times, Eigen::Vector2d(0, 0.04)) << name;
+  }
+  EXPECT_EQ(read("a.csv", "timestamp_ms,x0,y0\n0,1,2\n40,1,2\n").times, Eigen::Vector2d(0, 0.04));
+  EXPECT_EQ(read("a.csv", "time_s,ms,x0,y0\n0,7,1,2\n0.04,7,1,2\n").times,
+            Eigen::Vector2d(0, 0.04));
+}
+
+TEST_F(Landmarks, OfACsvTrackHaveSuccessAndConfidenceInAnyCase) {
+  const LandmarkTrack track = read("a.csv", "Success,Confidence,x0,y0\n1,0.5,1,2\n0,0.25,3,4\n");
+  EXPECT_FALSE(track.points.row(0).array().isNaN().any());
+  EXPECT_TRUE(track.points.row(1).array().isNaN().all());
+  EXPECT_EQ(track.confidence, Eigen::Vector2d(0.5, 0.25));
+}
+
 TEST_F(Landmarks, OfABrokenCsvTrackNameTheLine) {
   EXPECT_THAT(message("a.csv", ""), HasSubstr("is empty; expected a line of column names"));
   EXPECT_THAT(message("a.csv", "x0,y0\n"), HasSubstr("has column names but no frame"));
@@ -135,6 +152,47 @@ TEST_F(Landmarks, OfAJsonFileMayBeOneFrame) {
   const LandmarkTrack track = read("a.json", R"({"points": [[1, 2]]})");
   EXPECT_EQ(track.points, Eigen::RowVector2d(1, 2));
   EXPECT_THAT(track.names, ElementsAre("1"));
+}
+
+TEST_F(Landmarks, OfAJsonFileHaveTimesUnderSeveralNames) {
+  for (const char* time : {R"("Time": 0.5)", R"("time_s": 0.5)", R"("timestampMs": 500)"}) {
+    const std::string frame = "[{" + std::string(time) + R"(, "points": [[1, 2]]}])";
+    EXPECT_EQ(read("a.json", frame).times, Eigen::VectorXd::Constant(1, 0.5)) << time;
+  }
+}
+
+/// The second of four is (1, 2) in the first frame, and nothing else is seen.
+TEST_F(Landmarks, OfAJsonFileMayBeginWithOneThatWasNotSeen) {
+  const std::string face = "[null, [1, 2], null, null]", none = "[null, null, null, null]";
+  const std::string pairs = "[[null, null], [1, 2], [null, null], null]";
+  const std::string no_pairs = "[[null, null], [null, null], [null, null], [null, null]]";
+  const std::string unseen = R"({"x": null, "y": null})";
+  const std::string keys = "[" + unseen + R"(, {"x": 1, "y": 2}, null, )" + unseen + "]";
+  const std::vector<std::string> files = {
+      "[" + face + ", " + none + "]",
+      "[[" + face + "], [" + none + "]]",
+      "[" + pairs + ", " + no_pairs + "]",
+      R"({"frames": [{"points": )" + face + R"(}, {"points": )" + none + "}]}",
+      R"({"frames": [{"points": [)" + face + R"(]}, {"points": )" + no_pairs + "}]}",
+      R"([{"landmarks": )" + keys + "}, null]",
+      R"([{"faceLandmarks": [)" + keys + R"(]}, {"faceLandmarks": [)" + none + "]}]",
+  };
+  for (const std::string& file : files) {
+    const LandmarkTrack track = read("a.json", file);
+    ASSERT_EQ(track.frames(), 2) << file;
+    ASSERT_EQ(track.landmarks(), 4) << file;
+    EXPECT_EQ(track.points.row(0).segment(2, 2), Eigen::RowVector2d(1, 2)) << file;
+    EXPECT_EQ(track.points.array().isNaN().count(), 14) << file;
+  }
+  EXPECT_EQ(read("a.json", "[" + none + ", [[1, 2], [3, 4], [5, 6], [7, 8]]]").frames(), 2);
+  EXPECT_EQ(read("a.json", pairs).frames(), 1);
+}
+
+TEST_F(Landmarks, OfAJsonFileNeedBothCoordinates) {
+  EXPECT_THAT(message("a.json", R"({"points": [[1, null]]})"),
+              HasSubstr("/points/0: expected a finite number"));
+  EXPECT_THAT(message("a.json", R"({"points": [{"x": 1, "y": null}]})"),
+              HasSubstr("/points/0/y: expected a finite number"));
 }
 
 TEST_F(Landmarks, OfABrokenJsonFileNameTheElement) {
@@ -298,6 +356,70 @@ TEST_F(Landmarks, NameFramesThatAreMissingWhereThereAreNoTimes) {
               testing::IsEmpty());
   EXPECT_THAT(message("a.csv", "frame,x0,y0\n1,0,10\n1,0,10\n"),
               HasSubstr("line 3: frame 1 follows 1; expected one face and one row a frame"));
+}
+
+/// Frames of (1, 2), with these numbers by some keys, ten in a second.
+std::string numbered_frames(const std::vector<std::string>& numbers) {
+  std::string frames;
+  for (const std::string& number : numbers) {
+    frames += (frames.empty() ? "{" : ", {") + number + R"(, "points": [[1, 2]]})";
+  }
+  return R"({"fps": 10, "frames": [)" + frames + "]}";
+}
+
+TEST_F(Landmarks, OfAJsonFileTakeWholeNumbersOfFramesWithAPoint) {
+  const LandmarkTrack track =
+      read("a.json", numbered_frames({R"("frame": 1.0)", R"("frame": 3.0)"}));
+  EXPECT_EQ(track.times, Eigen::Vector2d(0, 0.2));
+  EXPECT_THAT(track.notes, testing::IsEmpty());
+}
+
+TEST_F(Landmarks, OfAJsonFileTakeNumbersOfFramesByOneKey) {
+  const LandmarkTrack track =
+      read("a.json",
+           numbered_frames({R"("frame_index": 0, "frame": 1)", R"("frame_index": 1, "frame": 3)"}));
+  EXPECT_EQ(track.times, Eigen::Vector2d(0, 0.2));
+  const LandmarkTrack images =
+      read("a.json", numbered_frames({R"("frame": "a.png", "frame_index": 5)",
+                                      R"("frame": "b.png", "frame_index": 8)"}));
+  EXPECT_EQ(images.times, Eigen::Vector2d(0, 0.3));
+  EXPECT_THAT(images.notes, testing::IsEmpty());
+}
+
+TEST_F(Landmarks, SayWhereNumbersOfFramesAreNotUsed) {
+  for (const char* second : {R"("frame": 3.5)", R"("frame": 1)", R"("frame": null)",
+                             R"("frame": "b.png")", R"("frame": 1e300)", R"("other": 3)"}) {
+    const LandmarkTrack track = read("a.json", numbered_frames({R"("frame": 1)", second}));
+    EXPECT_EQ(track.times, Eigen::Vector2d(0, 0.1)) << second;
+    EXPECT_THAT(track.notes, ElementsAre(HasSubstr("'frame' is not used"))) << second;
+  }
+  EXPECT_THAT(
+      read("a.json", numbered_frames({R"("time": 0, "frame": 9)", R"("time": 1, "frame": 1)"}))
+          .notes,
+      testing::IsEmpty());
+}
+
+TEST_F(Landmarks, OfACsvTrackMayHaveNamesOfImagesForFrames) {
+  for (const char* second : {"img_2.png", "2.png", "", "2.5", "1e300"}) {
+    const LandmarkTrack track =
+        read("a.csv", std::string("Frame,x0,y0\n1,5,6\n") + second + ",7,8\n4,9,10\n");
+    EXPECT_EQ(track.points.col(0), Eigen::Vector3d(5, 7, 9)) << second;
+    EXPECT_EQ(track.step, 1) << second;
+    EXPECT_THAT(track.notes, ElementsAre(HasSubstr("'Frame' is not used"))) << second;
+  }
+  const LandmarkTrack commas = read("a.csv", "frame;x0;y0\n1,0;5;6\n3,0;7;8\n");
+  EXPECT_EQ(commas.step, 2);
+  EXPECT_THAT(commas.notes, testing::IsEmpty());
+}
+
+TEST_F(Landmarks, BeyondAnyImageAreRefused) {
+  EXPECT_THAT(message("a.pts", "version: 1\nn_points: 2\n{\n1 1\n1e308 7\n}\n"),
+              AllOf(StartsWith((folder_ / "a.pts").string()),
+                    HasSubstr("frame 0: x of landmark '2' is 1e+308, expected a place")));
+  EXPECT_THAT(message("a.csv", "x0,y0\n1,2\n1,-2e7\n"), HasSubstr("frame 1: y of landmark '1'"));
+  EXPECT_THAT(message("a.json", R"([{"points": [[1, 2]]}, {"points": [[1, 1e308]]}])"),
+              HasSubstr("frame 1: y of landmark '1'"));
+  EXPECT_EQ(read("a.csv", "x0,y0\n1e6,-1e6\n").points, Eigen::RowVector2d(1e6, -1e6));
 }
 
 }  // namespace

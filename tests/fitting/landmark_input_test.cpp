@@ -126,6 +126,16 @@ TEST_F(LandmarkInput, InSharesAreKnownByTheirRange) {
   EXPECT_EQ(this->read("p.csv").track.points(0, 0), 0.25);
 }
 
+TEST_F(LandmarkInput, InSharesIsKnownAlthoughOneIsFoundWrong) {
+  std::string rows = "x0,y0,x1,y1,x2,y2,x3,y3,x4,y4\n0.25,0.5,0.3,0.5,0.35,0.5,0.4,0.5,2.4,0.6\n";
+  for (int f = 1; f < 3; ++f) rows += "0.25,0.5,0.3,0.5,0.35,0.5,0.4,0.5,0.5,0.6\n";
+  write("s.csv", rows);
+  const LandmarksRead read = this->read("s.csv", {}, {.image_size = "640x480"});
+  EXPECT_EQ(read.track.points(1, 0), 159.5);
+  EXPECT_THAT(test::message_of<MismatchError>([&] { this->read("s.csv"); }),
+              HasSubstr("at least nine in ten have no coordinate above 2"));
+}
+
 TEST_F(LandmarkInput, InSharesNeedsTheSizeOfTheImage) {
   write("m.json", quarter_of_an_image());
   EXPECT_THAT(test::message_of<MismatchError>([&] { read("m.json"); }),

@@ -50,4 +50,36 @@ inline std::string draco_octahedron(bool hanging = false) {
   return {buffer.data(), buffer.size()};
 }
 
+/// The octahedron's corners times 32767 in 16 bits, which glTF shows as -1 to 1, and a texture
+/// coordinate of each (attribute 1) in 16 bits without a sign: its corner's y from 0 to 65535.
+inline std::string quantised_draco_octahedron() {
+  const Shape shape = octahedron();
+  draco::TriangleSoupMeshBuilder builder;
+  builder.Start(static_cast<int>(shape.triangles.rows()));
+  const int id = builder.AddAttribute(draco::GeometryAttribute::POSITION, 3, draco::DT_INT16);
+  const int uv = builder.AddAttribute(draco::GeometryAttribute::TEX_COORD, 2, draco::DT_UINT16);
+  for (int t = 0; t < shape.triangles.rows(); ++t) {
+    std::array<std::array<std::int16_t, 3>, 3> corner{};
+    std::array<std::array<std::uint16_t, 2>, 3> texture{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Eigen::RowVector3d point =
+          shape.positions.row(shape.triangles(t, static_cast<Eigen::Index>(k)));
+      for (std::size_t c = 0; c < 3; ++c) {
+        corner[k][c] = static_cast<std::int16_t>(32767 * point[static_cast<Eigen::Index>(c)]);
+      }
+      texture[k] = {0, static_cast<std::uint16_t>(point.y() > 0 ? 65535 : 0)};
+    }
+    const draco::FaceIndex face(static_cast<std::uint32_t>(t));
+    builder.SetAttributeValuesForFace(id, face, corner[0].data(), corner[1].data(),
+                                      corner[2].data());
+    builder.SetAttributeValuesForFace(uv, face, texture[0].data(), texture[1].data(),
+                                      texture[2].data());
+  }
+  const auto mesh = builder.Finalize();
+  draco::Encoder encoder;
+  draco::EncoderBuffer buffer;
+  if (!encoder.EncodeMeshToBuffer(*mesh, &buffer).ok()) throw std::runtime_error("Draco failed");
+  return {buffer.data(), buffer.size()};
+}
+
 }  // namespace mimetra::test

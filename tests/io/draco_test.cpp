@@ -15,6 +15,7 @@ namespace {
 using test::draco_octahedron;
 using test::GltfBuilder;
 using test::GltfJson;
+using test::quantised_draco_octahedron;
 using testing::HasSubstr;
 
 GltfBuilder draco_gltf(const std::string& encoded) {
@@ -79,6 +80,40 @@ TEST(Draco, ASkinHoldsTheVerticesOfACompressedMesh) {
     expected.emplace_back(point.begin(), point.end());
   }
   EXPECT_THAT(points, testing::UnorderedElementsAreArray(expected));
+}
+
+TEST(Draco, IntegersAreWhatTheirAccessorsNormaliseThemTo) {
+  test::TemporaryFolder folder;
+  for (const bool is_normalized : {true, false}) {
+    GltfBuilder gltf = draco_gltf(quantised_draco_octahedron());
+    GltfJson& primitive = gltf.root["meshes"][0]["primitives"][0];
+    primitive["extensions"]["KHR_draco_mesh_compression"]["attributes"] = {{"POSITION", 0},
+                                                                           {"TEXCOORD_0", 1}};
+    primitive["attributes"] = {
+        {"POSITION", gltf.accessor({{"componentType", 5122},
+                                    {"count", 6},
+                                    {"type", "VEC3"},
+                                    {"normalized", is_normalized}})},
+        {"TEXCOORD_0",
+         gltf.accessor(
+             {{"componentType", 5123}, {"count", 6}, {"type", "VEC2"}, {"normalized", true}})}};
+    write_bytes(folder / "a.glb", gltf.glb());
+    const BlendshapeModel found = read_blendshapes((folder / "a.glb").string());
+    std::vector<std::vector<double>> points, expected;
+    for (const auto& point : found.neutral().rowwise()) {
+      points.emplace_back(point.begin(), point.end());
+    }
+    const double scale = is_normalized ? 1 : 32767;
+    const Positions shown = scale * test::octahedron().positions;
+    for (const auto& point : shown.rowwise()) expected.emplace_back(point.begin(), point.end());
+    EXPECT_THAT(points, testing::UnorderedElementsAreArray(expected));
+    // Upside down.
+    const auto& texture = found.connectivity().texture.coordinates;
+    ASSERT_EQ(texture.size(), 6U);
+    for (int v = 0; v < 6; ++v) {
+      EXPECT_EQ(texture[static_cast<std::size_t>(v)].y(), found.neutral()(v, 1) > 0 ? 0 : 1);
+    }
+  }
 }
 
 TEST(Draco, AMeshWithoutTheJointsThatItsFileNamesSaysSo) {

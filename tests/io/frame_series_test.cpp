@@ -1,9 +1,14 @@
 // Folders that hold more, less or other than the frames of one sequence.
 
+#include <algorithm>
+#include <array>
+#include <cstdio>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "tests/temporary_folder.h"
+#include "toolkit/io/file_numbers.h"
 #include "toolkit/io/frame_files.h"
 #include "toolkit/io/model_file.h"
 #include "toolkit/io/sequence_file.h"
@@ -16,6 +21,7 @@ namespace {
 namespace fs = std::filesystem;
 using testing::AllOf;
 using testing::ElementsAre;
+using testing::ElementsAreArray;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
@@ -211,6 +217,23 @@ TEST_F(OrderOfFrames, IsThatOfDecimalNumbersWithoutEvenSteps) {
               ElementsAre("0.033", "0.1", "0.133", "2.5"));
 }
 
+TEST_F(OrderOfFrames, IsThatOfDecimalNumbersSomeOfWhichHaveNoPoint) {
+  const std::vector<std::string> stems = {"t_9", "t_9.5", "t_10", "t_10.5", "t_11", "t_11.5"};
+  EXPECT_THAT(ordered(stems), ElementsAreArray(stems));
+  EXPECT_THAT(series().notes, ElementsAre(HasSubstr("the numbers 9 to 11.5")));
+}
+
+TEST_F(OrderOfFrames, BeginsWithTheOneThatHasNoPoint) {
+  const std::vector<std::string> stems = {"t_0", "t_0.04", "t_0.08", "t_0.12"};
+  EXPECT_THAT(ordered(stems), ElementsAreArray(stems));
+}
+
+TEST_F(OrderOfFrames, LeavesOutAMeshThatIsNamedAsItsTake) {
+  EXPECT_THAT(ordered({"take1", "take1.1", "take1.2", "take1.3"}),
+              ElementsAre("take1.1", "take1.2", "take1.3"));
+  EXPECT_THAT(series().notes, ElementsAre(HasSubstr("take1.obj is left out of the 3 frames")));
+}
+
 TEST_F(OrderOfFrames, BehindANumberAndAPointIsThatOfIntegers) {
   EXPECT_THAT(ordered({"v1.8", "v1.9", "v1.10", "v1.11"}),
               ElementsAre("v1.8", "v1.9", "v1.10", "v1.11"));
@@ -221,6 +244,84 @@ TEST_F(OrderOfFrames, BehindANumberAndAPointIsThatOfPaddedIntegers) {
   EXPECT_THAT(ordered({"v2.0009", "v2.0010", "v2.0011"}),
               ElementsAre("v2.0009", "v2.0010", "v2.0011"));
   EXPECT_THAT(series().notes, IsEmpty());
+}
+
+TEST_F(OrderOfFrames, BehindANumberAndAPointIsThatOfIntegersThatAreEvenAsDecimals) {
+  const std::vector<std::string> stems = {"s1.2", "s1.3", "s1.4", "s1.5", "s1.6",
+                                          "s1.7", "s1.8", "s1.9", "s1.10"};
+  EXPECT_THAT(ordered(stems), ElementsAreArray(stems));
+  EXPECT_THAT(series().notes, IsEmpty());
+}
+
+TEST_F(OrderOfFrames, ThatNothingTellsIsRefused) {
+  for (const char* name : {"t_0.1.obj", "t_0.25.obj", "t_0.5.obj", "t_0.75.obj"}) write(name);
+  const auto names_both =
+      AllOf(HasSubstr("/t_0.25.obj: comes before t_0.5.obj if their numbers are "
+                      "decimal, and behind it if not"),
+            HasSubstr("give all names as many digits behind the point"));
+  EXPECT_THAT(refusal(), names_both);
+  const std::string pattern = (folder_ / "t_*.obj").string();
+  EXPECT_THAT(test::message_of<IoError>([&] { frames_of_pattern(pattern); }), names_both);
+}
+
+TEST_F(OrderOfFrames, IsClearWithAsManyDigitsBehindThePoint) {
+  EXPECT_THAT(ordered({"t_0.10", "t_0.25", "t_0.50", "t_0.75"}),
+              ElementsAre("t_0.10", "t_0.25", "t_0.50", "t_0.75"));
+}
+
+TEST_F(OrderOfFrames, OfUnevenNumbersWithAndWithoutAPointIsRefused) {
+  for (const char* name : {"t_9.5.obj", "t_10.obj", "t_10.7.obj", "t_11.obj"}) write(name);
+  EXPECT_THAT(refusal(), HasSubstr("/t_10.obj: comes before t_10.7.obj if"));
+}
+
+TEST_F(OrderOfFrames, OfNumbersThatAreEvenEitherWayIsRefused) {
+  // 0.12, 0.21 and 0.3, or 3, 12 and 21.
+  for (const char* name : {"t_0.3.obj", "t_0.12.obj", "t_0.21.obj"}) write(name);
+  EXPECT_THAT(refusal(), HasSubstr("/t_0.12.obj: comes before t_0.3.obj if"));
+}
+
+TEST_F(OrderOfFrames, IsAskedOfThoseThatAreTakenOnly) {
+  write_frames({0, 1, 2, 3});
+  write("f_1.5.obj");
+  EXPECT_EQ(series().frames.size(), 4u);
+  const std::string pattern = (folder_ / "f_*.obj").string();
+  EXPECT_THAT(test::message_of<IoError>([&] { frames_of_pattern(pattern); }),
+              HasSubstr("/f_1.obj: comes before f_1.5.obj if"));
+}
+
+/// Files of these numbers in another order, sorted.
+std::vector<fs::path> sorted_again(std::vector<fs::path> files) {
+  std::ranges::reverse(files);
+  sort_by_numbers(files);
+  return files;
+}
+
+TEST(SortedNumbers, AreInTheOrderOfTimesAsProgramsWriteThem) {
+  for (const char* format : {"t_%g.obj", "t_%.17g.obj"}) {
+    for (const double step : {0.5, 0.25, 0.1, 0.04, 0.01, 1.0 / 24, 1.0 / 30, 1.0 / 60}) {
+      std::vector<fs::path> files;
+      for (int i = 0; i < 130; ++i) {
+        std::array<char, 64> name;
+        std::snprintf(name.data(), name.size(), format, i * step);
+        files.emplace_back(name.data());
+      }
+      EXPECT_EQ(sorted_again(files), files) << format << " in steps of " << step;
+      EXPECT_FALSE(unclear_order(files)) << format << " in steps of " << step;
+    }
+  }
+}
+
+TEST(SortedNumbers, AreInTheOrderOfFramesBehindTheNumberOfATake) {
+  for (int first = 0; first < 120; ++first) {
+    for (int count = 2; count < 30; ++count) {
+      std::vector<fs::path> files;
+      for (int i = 0; i < count; ++i) {
+        files.emplace_back("take1." + std::to_string(first + i) + ".obj");
+      }
+      EXPECT_EQ(sorted_again(files), files) << count << " from " << first;
+      EXPECT_FALSE(unclear_order(files)) << count << " from " << first;
+    }
+  }
 }
 
 TEST_F(FolderOfFrames, OfOneNumberAreNamedByTheirFoldersOrPatterns) {

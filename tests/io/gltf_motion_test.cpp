@@ -111,7 +111,42 @@ TEST_F(GltfFiles, WeightsOfOneNameThatDifferAreTwoExpressions) {
   EXPECT_EQ(sequence.frame(1).bottomRows(6), sequence.rest().bottomRows(6));
   ASSERT_EQ(notes_.size(), 1U);
   EXPECT_THAT(notes_[0], HasSubstr("'smile' of 'big' is 'smile_2'"));
-  EXPECT_THAT(model(gltf.glb()).expressions().names, ElementsAre("smile", "smile_2"));
+}
+
+TEST_F(GltfFiles, TargetsOfOneNameAreOneExpressionOfTheModelHoweverItsFileMovesThem) {
+  GltfBuilder gltf = two_nodes(plain());
+  gltf.animate(0, {0, 2}, {0, 1});
+  gltf.animate(2, {0, 2}, {0, 0.25F});
+  const BlendshapeModel face = model(gltf.glb());
+  EXPECT_THAT(face.expressions().names, ElementsAre("smile"));
+  write_bytes(folder_ / "w.csv", "smile\n1\n");
+  const MeshSequence driven = read(gltf.glb(), {.weights = folder_ / "w.csv"});
+  EXPECT_EQ(driven.frame(0).topRows(6), driven.rest().topRows(6) + moved());
+  EXPECT_NE(driven.frame(0).bottomRows(6), driven.rest().bottomRows(6));
+  EXPECT_TRUE(notes_.empty());
+}
+
+TEST_F(GltfFiles, WeightsThatStayAreSaidToBeMissingFromTheNeutral) {
+  GltfBuilder gltf = plain();
+  gltf.root["meshes"][0]["weights"] = {0.5};
+  read(gltf.glb());
+  EXPECT_TRUE(notes_.empty());  // the frame has them
+  write_bytes(folder_ / "w.csv", "smile\n0\n");
+  EXPECT_EQ(read(gltf.glb(), {.weights = folder_ / "w.csv"}).frame(0), quarters());
+  EXPECT_THAT(notes_, ElementsAre(HasSubstr("its neutral is without weights that the file shows: "
+                                            "'smile' at 0.5")));
+}
+
+TEST_F(GltfFiles, StepsStayUntilTheirNextKey) {
+  GltfBuilder gltf = plain();
+  gltf.animate(0, {0, 1, 1 + 1.f / 30, 2}, {0, 1, 0.5F, 0.5F}, "STEP");
+  const MeshSequence sequence = read(gltf.glb());
+  ASSERT_EQ(sequence.frames(), 5);
+  EXPECT_NEAR(sequence.times()[1], 29. / 30, 1e-6);
+  EXPECT_EQ(sequence.frame(1), quarters());
+  EXPECT_EQ(sequence.times()[2], 1);
+  EXPECT_EQ(sequence.frame(2), quarters() + moved());
+  EXPECT_EQ(sequence.frame(3), sequence.frame(4));
 }
 
 TEST_F(GltfFiles, ATargetThatATakeLeavesStillIsPartOfTheModelsExpression) {
@@ -151,8 +186,11 @@ TEST_F(GltfFiles, KeysThatRoundingPartsAreOneFrame) {
   gltf.animate(0, {1, 2, 3}, {0, 0.5F, 1}, "STEP");
   gltf.animate(2, {1 + 1e-6F, 2 + 1e-6F, 3 + 1e-6F}, {0, 0.5F, 1}, "STEP");
   const MeshSequence sequence = read(gltf.glb());
-  EXPECT_EQ(sequence.times(), Eigen::Vector3d(1, 2, 3));
-  EXPECT_EQ(sequence.frame(1).bottomRows(6), sequence.rest().bottomRows(6) + moved());
+  // Each step stays for one more frame.
+  ASSERT_EQ(sequence.frames(), 5);
+  EXPECT_EQ(sequence.times()({0, 2, 4}), Eigen::Vector3d(1, 2, 3));
+  EXPECT_EQ(sequence.frame(1).bottomRows(6), sequence.rest().bottomRows(6));
+  EXPECT_EQ(sequence.frame(2).bottomRows(6), sequence.rest().bottomRows(6) + moved());
   EXPECT_TRUE(notes_.empty());
 }
 
@@ -198,7 +236,7 @@ TEST_F(GltfFiles, WeightsThatStayAndDifferAreSaidToDoSo) {
   EXPECT_EQ(read(gltf.glb()).frame(0).topRows(6), quarters() + 0.5 * moved());
   ASSERT_EQ(notes_.size(), 1U);
   EXPECT_THAT(notes_[0],
-              AllOf(HasSubstr("some with weights that stay and differ"),
+              AllOf(HasSubstr("in several meshes, whose weights differ"),
                     HasSubstr("'smile' of 'big' is 'smile_2'"), testing::Not(HasSubstr("take"))));
   EXPECT_THAT(model(gltf.glb()).expressions().names, ElementsAre("smile"));
 }

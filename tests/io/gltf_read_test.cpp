@@ -85,9 +85,10 @@ TEST_F(GltfFiles, StepsAndSplinesHaveTheirValuesAtTheirKeys) {
   steps.animate(0, {0, 1}, {0.25, 0.5}, "STEP");
   splines.animate(0, {0, 1}, {9, 0.25, 8, 7, 0.5, 6}, "CUBICSPLINE");
   const MeshSequence stepped = read(steps.glb()), splined = read(splines.glb());
-  ASSERT_EQ(stepped.frames(), 2);
+  ASSERT_EQ(stepped.frames(), 3);
+  EXPECT_EQ(stepped.frame(0), quarters() + 0.25 * moved());
   EXPECT_EQ(splined.frame(0), stepped.frame(0));
-  EXPECT_EQ(splined.frame(splined.frames() - 1), stepped.frame(1));
+  EXPECT_EQ(splined.frame(splined.frames() - 1), stepped.frame(2));
 }
 
 TEST_F(GltfFiles, SplinesAreShownBetweenTheirKeys) {

@@ -84,6 +84,20 @@ TEST(Losses, OfOneFrameAreItsTime) {
   EXPECT_THAT(notes_on(at(0.2), "pose/"), Not(Contains(HasSubstr("time ("))));
 }
 
+TEST(Losses, OfACacheWithOneStepAreUnevenTimes) {
+  const auto at = [](const Eigen::VectorXd& times) {
+    return FieldSequence(
+        MeshSequence(Connectivity::from_triangles(3, (Triangles(1, 3) << 0, 1, 2).finished()),
+                     Frames::Random(3, 9), times));
+  };
+  EXPECT_THAT(notes_on(at(Eigen::Vector3d(0, 0.1, 0.4)), "a.pc2"),
+              Contains(HasSubstr("show frames 0.1 s off")));
+  EXPECT_THAT(notes_on(at(Eigen::Vector3d(0, 0.1, 0.4)), "a.mdd"),
+              Not(Contains(HasSubstr("uneven"))));
+  EXPECT_THAT(notes_on(at(Eigen::Vector3d(0.1, 0.2, 0.3)), "a.pc2"),
+              Not(Contains(HasSubstr("uneven"))));
+}
+
 TEST(Losses, AreNoneWhereTheOnlyFrameIsTheRestPoseAndNumbersAreKept) {
   Connectivity faces = Connectivity::from_triangles(3, (Triangles(1, 3) << 0, 1, 2).finished());
   const Positions triangle = test::grid(3, 3).positions.bottomRows(3);

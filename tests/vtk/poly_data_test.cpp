@@ -9,9 +9,11 @@
 #include <vtkCellData.h>
 #include <vtkDoubleArray.h>
 #include <vtkFieldData.h>
+#include <vtkIdTypeArray.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
 #include <vtkPolyData.h>
+#include <vtkTypeUInt64Array.h>
 
 #include "tests/vtk/vtp_fixture.h"
 #include "toolkit/mesh/errors.h"
@@ -60,6 +62,22 @@ TEST_F(PolyData, HoldsZeroOnCellsOfOtherKinds) {
   EXPECT_EQ(array.GetTuple1(2), 1);
   EXPECT_EQ(array.GetTuple1(3), 0);
   EXPECT_TRUE(fields_of(*data_, faces()).front().values == Eigen::Vector3d(1, 1, 0));
+}
+
+TEST_F(PolyData, HasTheWholeNumbersOfAllIntegerArrays) {
+  const auto add = [this](vtkDataArray& array, const char* name) {
+    array.SetName(name);
+    for (int v = 0; v < 5; ++v) array.InsertNextTuple1(5e9 + v);
+    data_->GetPointData()->AddArray(&array);
+  };
+  add(*vtkNew<vtkIdTypeArray>(), "ids");
+  add(*vtkNew<vtkTypeUInt64Array>(), "hashes");
+  const std::vector<Field> fields = fields_of(*data_, faces());
+  ASSERT_EQ(fields.size(), 2u);
+  for (const Field& field : fields) {
+    EXPECT_TRUE(field.values == Eigen::VectorXd::LinSpaced(5, 5e9, 5e9 + 4)) << field.name;
+    EXPECT_TRUE(field.integer) << field.name;
+  }
 }
 
 TEST_F(PolyData, CarriesTheRestPoseToTheLastBit) {

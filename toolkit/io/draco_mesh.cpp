@@ -1,5 +1,6 @@
 #include "toolkit/io/draco_mesh.h"
 
+#include <cstdint>
 #include <new>
 
 #include <draco/compression/decode.h>
@@ -11,16 +12,18 @@
 namespace mimetra {
 namespace {
 
+/// As `Number`: integers to integers, since Draco would scale some of them on the way to others.
+template <typename Number>
 Frames draco_values(const std::string& path, const std::string& what, const draco::Mesh& mesh,
                     const draco::PointAttribute& attribute, int components) {
   // Its bytes would be taken for truth values, whatever they are.
   const bool is_of_numbers = attribute.data_type() != draco::DT_BOOL;
   Frames values(mesh.num_points(), components);
-  float element[4] = {};
+  Number element[4] = {};
   for (draco::PointIndex point(0); point < mesh.num_points(); ++point) {
     if (!is_of_numbers ||
-        !attribute.ConvertValue<float>(attribute.mapped_index(point),
-                                       static_cast<int8_t>(components), element)) {
+        !attribute.ConvertValue<Number>(attribute.mapped_index(point),
+                                        static_cast<int8_t>(components), element)) {
       throw IoError(path, what + ": its compressed mesh has no number for a vertex");
     }
     for (int c = 0; c < components; ++c) {
@@ -28,6 +31,14 @@ Frames draco_values(const std::string& path, const std::string& what, const drac
     }
   }
   return values;
+}
+
+Frames draco_values(const std::string& path, const std::string& what, const draco::Mesh& mesh,
+                    const draco::PointAttribute& attribute, int components) {
+  const bool is_real =
+      attribute.data_type() == draco::DT_FLOAT32 || attribute.data_type() == draco::DT_FLOAT64;
+  return is_real ? draco_values<float>(path, what, mesh, attribute, components)
+                 : draco_values<std::int64_t>(path, what, mesh, attribute, components);
 }
 
 DracoMesh draco_parts(const std::string& path, const std::string& what, const draco::Mesh& mesh,

@@ -15,7 +15,8 @@ struct VertexJoints {
   Frames joints, weights;
 };
 
-/// What a primitive's compressed mesh holds.
+/// What a primitive's compressed mesh holds, integers as they are stored: its accessors say whether
+/// they are normalised.
 struct DracoMesh {
   Triangles triangles;
   Frames positions;               ///< N x 3

@@ -75,6 +75,7 @@ OpenSequence drive(std::shared_ptr<const BlendshapeModel> model, const fs::path&
   FrameTimes times = frame_times(driver.string(), frames, std::move(of_track), source);
   if (track.times.size() == 0 && track.step != 1) {
     times.seconds *= track.step;
+    times.are_known = true;
     const std::string odd = note_on_steps(times.seconds);
     if (!odd.empty()) open.notes.push_back(driver.string() + ": " + odd);
   }
@@ -119,9 +120,8 @@ OpenSequence open_scene(const fs::path& path, const SequenceSource& source) {
   open.files = scene.files;
   if (source.weights) open.files.push_back(*source.weights);
   std::vector<std::string>& notes = scene.notes;
-  if (!source.weights) {
-    notes.insert(notes.end(), scene.motion_notes.begin(), scene.motion_notes.end());
-  }
+  const auto& of_use = source.weights ? scene.model_notes : scene.motion_notes;
+  notes.insert(notes.end(), of_use.begin(), of_use.end());
   open.notes.insert(open.notes.begin(), notes.begin(), notes.end());
   return open;
 }

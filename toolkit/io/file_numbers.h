@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <string_view>
@@ -13,7 +14,7 @@ namespace mimetra {
 /// "smile_0012.v.OBJ" is number 12 of the series "smile_*.v.obj".
 struct NumberedName {
   std::string series;     ///< empty for a name without a number
-  long long number = 0;   ///< of decimal numbers in units of the last decimal of their series
+  long long number = 0;   ///< of decimal numbers in units of the last decimal, at most the ninth
   std::string text = {};  ///< as the name has it, "0012", "-12" or "0.25"
 };
 
@@ -25,9 +26,10 @@ bool minus_is_sign(std::string_view before);
 NumberedName numbered(const std::filesystem::path& file);
 
 /// The numbers of files beside each other. Two numbers with a point between them are a decimal
-/// number where the files say so: their integer parts or counts of decimals differ and all are
-/// evenly spaced (0.25, 0.5, 0.75, 1.0), or decimals begin with 0 and others are shorter (0.033,
-/// 0.1).
+/// number where the files say so: decimals begin with 0 and others are shorter (0.033, 0.1), or all
+/// are evenly spaced, and their integer parts or counts of decimals differ (0.25, 0.5, 0.75, 1.0).
+/// Numbers without a point are of such a series, too (9, 9.5, 10). Where digits behind the point
+/// end with 0 and others are shorter (1.8, 1.9, 1.10), they are whole numbers.
 class FileNumbers {
  public:
   explicit FileNumbers(const std::vector<std::filesystem::path>& files);
@@ -44,5 +46,14 @@ class FileNumbers {
 /// Sorts files in the natural order of their names, and those of one series in a folder by their
 /// numbers.
 void sort_by_numbers(std::vector<std::filesystem::path>& files);
+
+/// Neighbours that would change places if they had decimal numbers.
+struct UnclearOrder {
+  std::filesystem::path first, second;
+};
+
+/// The first of them where nothing tells whether they have: 0.5 and 0.25 of 0.1, 0.5, 0.25, 0.75.
+/// \pre `sorted` as by sort_by_numbers
+std::optional<UnclearOrder> unclear_order(const std::vector<std::filesystem::path>& sorted);
 
 }  // namespace mimetra

@@ -47,6 +47,17 @@ void check_numbers(const std::vector<fs::path>& frames, const FileNumbers& numbe
   }
 }
 
+void check_order(const std::vector<fs::path>& frames) {
+  const auto unclear = unclear_order(frames);
+  if (!unclear) return;
+  throw IoError(unclear->second.string(),
+                "comes before " + unclear->first.filename().string() +
+                    " if their numbers are decimal, and behind it if not, and nothing tells which; "
+                    "name by a pattern only those that are meant, or give all names as many digits "
+                    "behind the point, with zeros at the end of "
+                    "decimals or in front of whole numbers");
+}
+
 /// "7", or "12 to 15".
 std::string run_of(long long first, long long last) {
   const std::string text = std::to_string(first);
@@ -171,6 +182,7 @@ FrameSeries series_in_folder(std::vector<fs::path> files, const fs::path& folder
   }
   check_links(found.frames);
   check_numbers(found.frames, numbers);
+  check_order(found.frames);
   note_numbers(found, numbers, place_of(folder));
   note_missing(found, place_of(folder));
   return found;
@@ -196,6 +208,7 @@ FrameSeries series_of_pattern(std::vector<fs::path> files, const std::string& pa
   const FileNumbers numbers(found.frames);
   check_links(found.frames);
   check_numbers(found.frames, numbers);
+  check_order(found.frames);
   std::vector<fs::path> numbered_frames = found.frames;
   const std::vector<fs::path> strangers = strangers_in(numbered_frames, numbers);
   if (!strangers.empty()) {

@@ -27,7 +27,7 @@ FrameSeries frames_among(std::vector<std::filesystem::path> files);
 
 /// Takes `neutral.*` out of the files of a folder as the rest pose, and files that are not of the
 /// numbered series that most of the files are of. Throws IoError where two frames have one number,
-/// or one is a link that leads nowhere.
+/// their order is unclear (file_numbers.h), or one is a link that leads nowhere.
 FrameSeries series_in_folder(std::vector<std::filesystem::path> files,
                              const std::filesystem::path& folder);
 

@@ -28,7 +28,7 @@ bool is_known_extension(const std::string& extension) {
       "KHR_mesh_quantization",      "EXT_meshopt_compression", "KHR_texture_transform",
       "FB_ngon_encoding",           "KHR_texture_basisu",      "EXT_texture_webp",
       "EXT_texture_avif",           "MSFT_texture_dds",        "KHR_lights_punctual",
-      "KHR_draco_mesh_compression", "KHR_animation_pointer"};
+      "KHR_draco_mesh_compression", "KHR_animation_pointer",   "KHR_xmp_json_ld"};
   return extension.starts_with("KHR_materials_") ||
          std::find(known.begin(), known.end(), extension) != known.end();
 }

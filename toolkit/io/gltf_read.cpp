@@ -233,8 +233,7 @@ class GltfReader {
     part.name = name;
     std::optional<DracoMesh> draco;
     if (primitive.draco) {
-      draco = decode_draco(document_.path, "'" + name + "'", *primitive.draco,
-                           values_.bytes(primitive.draco->view));
+      draco = decoded(primitive, name);
       part.positions = draco->positions;
     } else {
       part.positions = values_.read(*primitive.positions, 3);
@@ -256,9 +255,10 @@ class GltfReader {
     }
     part.weights = weights_of(placed.node);
     if (draco && draco->texture) {
-      part.texture.coordinates = shown(*draco->texture);
+      part.texture.coordinates = shown(texture_of(primitive, *draco->texture));
     } else if (!draco && primitive.texture) {
-      part.texture.coordinates = shown(texture_of(primitive, vertices));
+      part.texture.coordinates =
+          shown(texture_of(primitive, values_.read(*primitive.texture, 2, vertices)));
     }
     if (draco) {
       add_group(primitive, part);
@@ -268,6 +268,22 @@ class GltfReader {
       add_faces(primitive, made);
     }
     return made;
+  }
+
+  /// What a primitive's compressed mesh holds, its numbers as their accessors normalise them.
+  /// \pre the primitive has positions
+  DracoMesh decoded(const GltfPrimitive& primitive, const std::string& name) {
+    DracoMesh mesh = decode_draco(document_.path, "'" + name + "'", *primitive.draco,
+                                  values_.bytes(primitive.draco->view));
+    mesh.positions = values_.scaled(*primitive.positions, std::move(mesh.positions));
+    if (mesh.texture && primitive.texture) {
+      mesh.texture = values_.scaled(*primitive.texture, std::move(*mesh.texture));
+    }
+    for (std::size_t set = 0; set < std::min(mesh.joints.size(), primitive.joints.size()); ++set) {
+      Frames& weights = mesh.joints[set].weights;
+      weights = values_.scaled(primitive.joints[set].second, std::move(weights));
+    }
+    return mesh;
   }
 
   /// From the file's upper left corner to the lower left one.
@@ -300,9 +316,9 @@ class GltfReader {
     return false;
   }
 
-  Frames texture_of(const GltfPrimitive& primitive, Eigen::Index vertices) {
-    Frames texture = values_.read(*primitive.texture, 2, vertices);
-    if (!primitive.material) return texture;
+  /// Shown coordinates of those that are stored, where a material's transform undoes quantisation.
+  Frames texture_of(const GltfPrimitive& primitive, Frames texture) const {
+    if (!primitive.material || !primitive.texture) return texture;
     const auto& transform = document_.materials[*primitive.material].texture;
     if (!undoes_quantisation(transform, document_.accessors[*primitive.texture])) return texture;
     texture =
@@ -395,11 +411,15 @@ class GltfReader {
     append_triangles(triangles_of(primitive.mode, corners, part.name), primitive, placed);
   }
 
+  /// Faces without a material do not have that of the faces before them.
   void add_group(const GltfPrimitive& primitive, ScenePart& part) const {
-    if (!primitive.material) return;
-    const std::string& name = document_.materials[*primitive.material].name;
-    part.groups.push_back({part.polygons.size(),
-                           name.empty() ? number_name("material_", *primitive.material) : name});
+    if (document_.materials.empty()) return;
+    std::string name = "none";
+    if (primitive.material) {
+      name = document_.materials[*primitive.material].name;
+      if (name.empty()) name = number_name("material_", *primitive.material);
+    }
+    part.groups.push_back({part.polygons.size(), std::move(name)});
   }
 
   /// Corners of triangles, one after the other. [glTF 2.0, 3.7.2.1]

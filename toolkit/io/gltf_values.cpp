@@ -160,9 +160,15 @@ Frames GltfValues::read(std::size_t index, int components) {
     values = Frames::Zero(count, components);
   }
   if (accessor.sparse) replace_sparse(what, accessor, values);
-  if (accessor.normalized) values = (values / gltf_one(accessor.type)).cwiseMax(-1);
+  values = scaled(index, std::move(values));
   if (!values.allFinite()) fail(what, "holds a number that is not finite");
   return values;
+}
+
+Frames GltfValues::scaled(std::size_t index, Frames stored) const {
+  const GltfAccessor& accessor = document_.accessors[index];
+  if (accessor.normalized) stored = (stored / gltf_one(accessor.type)).cwiseMax(-1);
+  return stored;
 }
 
 Frames GltfValues::read(std::size_t accessor, int components, Eigen::Index count) {

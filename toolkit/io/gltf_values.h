@@ -21,6 +21,8 @@ class GltfValues {
   Frames read(std::size_t accessor, int components);
   /// The same of `count` elements.
   Frames read(std::size_t accessor, int components, Eigen::Index count);
+  /// Numbers that are stored elsewhere for an accessor, scaled as it normalises them.
+  Frames scaled(std::size_t accessor, Frames stored) const;
   /// Indices below `size`.
   std::vector<int> indices(std::size_t accessor, Eigen::Index size);
   /// Bytes of a view.

@@ -60,6 +60,18 @@ double rounding_of(const Eigen::VectorXd& times) {
   return rounded > kLeastShare * step ? rounded : 0;
 }
 
+/// How far the furthest time is from where it would be if all were evenly apart, in seconds; 0
+/// where that is no more than a hundredth of what lies between two.
+double unevenness_of(const Eigen::VectorXd& times) {
+  constexpr double kLeastShare = 0.01;
+  if (times.size() < 3) return 0;
+  const double first = times[0], last = times[times.size() - 1];
+  const auto even = Eigen::VectorXd::LinSpaced(times.size(), first, last);
+  const double farthest = (times - even).cwiseAbs().maxCoeff();
+  const double step = (last - first) / static_cast<double>(times.size() - 1);
+  return farthest > kLeastShare * step ? farthest : 0;
+}
+
 }  // namespace
 
 std::string description(const HeldParts& held) {
@@ -92,6 +104,10 @@ std::vector<std::string> parts_left_out(const HeldParts& held, const FrameSource
   if (const Eigen::VectorXd times = sequence.known_times();
       !held.times && times.size() > 0 && times[0] != 0) {
     lost.push_back("time (its frame is at " + readable(times[0]) + " s)");
+  }
+  if (const double off = held.uneven_times ? 0 : unevenness_of(sequence.known_times()); off > 0) {
+    lost.push_back("uneven times (programs that do not read the .times.csv beside it show frames " +
+                   readable(off, 2) + " s off)");
   }
   if (const double rounded = held.exact_times ? 0 : rounding_of(sequence.known_times());
       rounded > 0) {

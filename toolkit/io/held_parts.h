@@ -24,6 +24,8 @@ struct HeldParts {
   bool vertex_order = true;
   /// Times at all.
   bool times = true;
+  /// Times that are not evenly apart, where other programs find them.
+  bool uneven_times = true;
   /// Times as they are; otherwise in single precision.
   bool exact_times = true;
   /// Positions in double precision where single precision would round motion that one sees, or not

@@ -75,16 +75,18 @@ std::unique_ptr<FrameSink> begin_pc2(const SequenceHeader& header, const fs::pat
                            [&](const fs::path& path) { return begin_pc2_file(header, path); });
 }
 
+/// It counts frames by one step.
+HeldParts held_by_pc2() {
+  HeldParts held = parts_held_by(MeshFormat::ply);
+  held.uneven_times = false;
+  return held;
+}
+
 }  // namespace
 
 SequenceFormat pc2_format() {
-  return {"PC2 point cache",
-          {".pc2"},
-          true,
-          SequenceFormat::Precision::single,
-          open_pc2,
-          begin_pc2,
-          parts_held_by(MeshFormat::ply)};
+  return {"PC2 point cache", {".pc2"},  true,         SequenceFormat::Precision::single,
+          open_pc2,          begin_pc2, held_by_pc2()};
 }
 
 }  // namespace mimetra

@@ -66,9 +66,8 @@ struct JoinedExpression {
 /// Gathers targets by name.
 class ExpressionList {
  public:
-  /// \pre targets that are animated come before those that are not
   void add(std::size_t part, const std::string& part_name, int target, const std::string& name,
-           const Eigen::VectorXd& weights, bool is_animated) {
+           const Eigen::VectorXd& weights) {
     constexpr double kRounding = 1e-6;
     Namesakes& namesakes = by_name_[name];
     for (const std::size_t index : namesakes.expressions) {
@@ -83,8 +82,7 @@ class ExpressionList {
     for (; !names_.insert(free).second; ++namesakes.next) {
       free = name + '_' + std::to_string(namesakes.next);
     }
-    JoinedExpression expression{free, weights, {{part, target}}};
-    if (!is_animated) expression.joins = joined_by(namesakes, part);
+    JoinedExpression expression{free, weights, {{part, target}}, joined_by(namesakes, part)};
     if (free != name) {
       (expression.joins ? renamed_in_take : renamed)
           .push_back("'" + name + "' of '" + part_name + "' is '" + free + "'");
@@ -130,6 +128,7 @@ bool is_animated(const ScenePart& part) {
   return part.weights && part.weights->times.size() > 0;
 }
 
+/// Those that are animated first, to which the names belong.
 ExpressionList expressions_of(const std::vector<ScenePart>& parts, const Eigen::VectorXd& times,
                               int frames) {
   ExpressionList list;
@@ -139,7 +138,7 @@ ExpressionList expressions_of(const std::vector<ScenePart>& parts, const Eigen::
       const Eigen::MatrixXd weights = weights_at(parts[p], times, frames);
       for (int j = 0; j < weights.cols(); ++j) {
         list.add(p, parts[p].name, j, parts[p].targets[static_cast<std::size_t>(j)].name,
-                 weights.col(j), animated);
+                 weights.col(j));
       }
     }
   }
@@ -171,6 +170,21 @@ std::vector<std::string> united_by_number(const std::vector<ScenePart>& parts,
   return names;
 }
 
+/// "'fatFace' at 1": targets that the file shows at a weight other than 0 and does not move.
+std::vector<std::string> standing_weights(const std::vector<ScenePart>& parts) {
+  std::vector<std::string> standing;
+  std::set<std::string> known;
+  for (const ScenePart& part : parts) {
+    if (!part.weights || is_animated(part)) continue;
+    for (std::size_t j = 0; j < part.targets.size(); ++j) {
+      const double weight = part.weights->values(0, static_cast<Eigen::Index>(j));
+      if (weight == 0 || !known.insert(part.targets[j].name).second) continue;
+      standing.push_back("'" + part.targets[j].name + "' at " + readable(weight));
+    }
+  }
+  return standing;
+}
+
 /// Many parts may share one.
 std::vector<const WeightCurve*> all_curves(const std::vector<ScenePart>& parts) {
   std::vector<const WeightCurve*> curves;
@@ -191,12 +205,26 @@ double steps_between(double key, double next) {
   return std::max(1., std::ceil((next - key) * kDefaultFramesPerSecond - kAllowance));
 }
 
-/// The keys of a curve, and times between those of splines, which move on a line nowhere. They
-/// rise.
+/// The keys of a curve on steps, and a frame before each at which it jumps: until then it stays.
+std::vector<double> times_of_steps(const WeightCurve& curve) {
+  const Eigen::VectorXd& keys = curve.times;
+  std::vector<double> times = {keys[0]};
+  for (Eigen::Index k = 1; k < keys.size(); ++k) {
+    const double interval = keys[k] - keys[k - 1], steps = steps_between(keys[k - 1], keys[k]);
+    const bool jumps = curve.values.row(k) != curve.values.row(k - 1);
+    if (jumps && steps > 1) times.push_back(keys[k] - interval / steps);
+    times.push_back(keys[k]);
+  }
+  return times;
+}
+
+/// The keys of a curve, and times between those of splines and steps, which move on a line nowhere.
+/// They rise.
 std::vector<double> shown_times(const std::string& path, const WeightCurve& curve) {
   const Eigen::VectorXd& keys = curve.times;
   std::vector<double> times(keys.begin(), keys.end());
-  if (curve.between != WeightCurve::Between::cubic || times.empty()) return times;
+  if (curve.between == WeightCurve::Between::linear || times.empty()) return times;
+  if (curve.between == WeightCurve::Between::step) return times_of_steps(curve);
   double most = 0;
   for (Eigen::Index k = 1; k < keys.size(); ++k) most += steps_between(keys[k - 1], keys[k]);
   constexpr double kMostFrames = 1e6;
@@ -408,10 +436,16 @@ Scene joined_scene(const std::string& path, std::vector<ScenePart> parts, std::s
   scene.notes = notes_of(path, parts, list);
   if (!list.renamed_in_take.empty()) {
     scene.motion_notes.push_back(path +
-                                 ": targets of one name, some with weights that stay and differ "
-                                 "from the others': they are one expression of the model, and "
-                                 "several where the file's own weights drive them: " +
+                                 ": targets of one name in several meshes, whose weights differ: "
+                                 "they are one expression of the model, and several where the "
+                                 "file's own weights drive them: " +
                                  listed(list.renamed_in_take));
+  }
+  if (const std::vector<std::string> standing = standing_weights(parts); !standing.empty()) {
+    scene.model_notes.push_back(
+        path + ": its neutral is without weights that the file shows: " + listed(standing) +
+        "; where they belong to the face itself, apply them to its mesh "
+        "and export it again");
   }
   scene.times = times;
   scene.weights.resize(frames, static_cast<Eigen::Index>(list.expressions.size()));

@@ -64,6 +64,8 @@ struct Scene {
   std::vector<std::string> notes = {};
   /// What was left out of its movement: of no interest for its shapes.
   std::vector<std::string> motion_notes = {};
+  /// What its shapes are without the file's own weights: of no interest for its movement.
+  std::vector<std::string> model_notes = {};
 };
 
 /// Throws IoError where `vertices` in `poses` poses would take far more memory than a file of
@@ -72,8 +74,8 @@ void check_scene_size(const std::string& path, double vertices, double poses,
                       std::size_t file_bytes);
 
 /// One model of all parts, one after the other. Targets of equal names are one expression of the
-/// performer where their weights are equal at all times, and one of the model also where some have
-/// weights that stay; frames are at the keys of all curves. Throws IoError where there is no part,
+/// model, and of the performer where their weights are equal at all times; two of one name in one
+/// part are two. Frames are at the keys of all curves. Throws IoError where there is no part,
 /// a face has a bad index, a key's time does not rise, or all of them would take more memory than a
 /// file of `file_bytes` can mean.
 Scene joined_scene(const std::string& path, std::vector<ScenePart> parts, std::size_t file_bytes);

@@ -9,6 +9,7 @@
 #include "toolkit/io/sequence_parts.h"
 #include "toolkit/io/single_precision.h"
 #include "toolkit/mesh/progress.h"
+#include "toolkit/mesh/whole_numbers.h"
 
 namespace mimetra {
 namespace fs = std::filesystem;
@@ -80,8 +81,9 @@ void add_field(Hdf5Image& image, const Field& field, const FrameSource& frames) 
   const Hdf5Array::Rows<double> values =
       of_points ? field.values : on_polygons(field.values, frames.connectivity());
   const std::string kind = of_points ? "Point" : "Cell", name = link_name(field.name);
-  Hdf5Array array = field.integer ? Hdf5Array::of(Hdf5Array::Rows<int>(values.cast<int>()))
-                                  : Hdf5Array::of(values);
+  const bool is_integer = field.integer && all_are_held_by<int>(values);
+  Hdf5Array array =
+      is_integer ? Hdf5Array::of(Hdf5Array::Rows<int>(values.cast<int>())) : Hdf5Array::of(values);
   if (values.cols() == 1) array.shape.pop_back();
   image.add(kTop + "/" + kind + "Data/" + name, std::move(array));
   image.add(kSteps + "/" + kind + "DataOffsets/" + name, places(frames.frames(), 0));

@@ -3,29 +3,24 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <limits>
 #include <set>
 #include <string_view>
 
 #include "toolkit/io/csv.h"
 #include "toolkit/io/frame_series.h"
+#include "toolkit/io/missing_weights.h"
 #include "toolkit/io/pending_output.h"
 #include "toolkit/io/sequence_options.h"
+#include "toolkit/io/time_columns.h"
 #include "toolkit/io/timecode.h"
 #include "toolkit/io/weight_json.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/text.h"
+#include "toolkit/model/expression_names.h"
 
 namespace mimetra {
 
 namespace {
-
-constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
-
-/// Names of a column of seconds, in lower case.
-bool is_time(const std::string& name) {
-  return name == "time" || name == "time (s)" || name == "time_s" || name == "seconds";
-}
 
 class WeightReader {
  public:
@@ -53,9 +48,10 @@ class WeightReader {
       if (name.empty()) csv_.fail("column " + std::to_string(column + 1) + " has no name");
       if (!seen.insert(name).second) csv_.fail("the name '" + std::string(name) + "' occurs twice");
       const std::string plain = lower_case(std::string(name));
-      if (is_time(plain)) {
+      if (const auto units = units_per_second(std::string(name))) {
         if (time_column_) csv_.fail("there are two columns of times");
         time_column_ = column;
+        units_per_second_ = *units;
       } else if (plain == "timecode") {
         timecode_column_ = column;
       } else if (plain == kTimestamp) {
@@ -74,13 +70,12 @@ class WeightReader {
       return csv_.field(column).empty() || lower_case(std::string(csv_.field(column))) == "nan";
     };
     const bool is_lost = std::ranges::all_of(weight_columns_, is_missing);
-    if (is_lost) lost_.push_back(frames_);
     for (const std::size_t column : weight_columns_) {
       const bool is_given = !is_missing(column) || (!is_lost && !csv_.is_given(column));
-      weights_.push_back(is_given ? csv_.number(column) : kMissing);
+      weights_.push_back(is_given ? csv_.number(column) : kMissingWeight);
     }
     if (time_column_) {
-      const double time = csv_.number(*time_column_);
+      const double time = csv_.number(*time_column_) / units_per_second_;
       if (!times_.empty() && time <= times_.back()) csv_.fail("times do not ascend");
       times_.push_back(time);
     } else if (timecode_column_) {
@@ -96,14 +91,13 @@ class WeightReader {
     ++frames_;
   }
 
-  /// A column of other things than numbers tells nothing.
+  /// A column of other things than whole numbers tells nothing.
   void read_frame_number(std::string_view text) {
-    long long number = 0;
+    double number = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-    constexpr long long kMost = 1'000'000'000'000;
     const bool is_number = error == std::errc() && end == text.data() + text.size();
-    if (is_number && -kMost < number && number < kMost) {
-      frame_numbers_.push_back(number);
+    if (const auto frame = is_number ? frame_number(number) : std::nullopt) {
+      frame_numbers_.push_back(*frame);
     } else {
       frame_column_.reset();
       frame_numbers_.clear();
@@ -149,68 +143,34 @@ class WeightReader {
       result.names.push_back(text_of_csv(csv_.names()[column]));
     }
     result.weights = Eigen::Map<const Frames>(weights_.data(), frames_, columns);
-    fill_missing(result);
     result.times =
         Eigen::Map<const Eigen::VectorXd>(times_.data(), static_cast<Eigen::Index>(times_.size()));
+    check_columns(result);
     return result;
   }
 
-  /// Weights that are missing, as in rows where a capture lost the face, lie between their
-  /// neighbours in the order of frames.
-  void fill_missing(WeightTrack& result) const {
+  /// Each column holds a number.
+  void check_columns(const WeightTrack& result) const {
     const bool is_empty = std::ranges::all_of(first_fields_, &std::string::empty);
-    if (static_cast<int>(lost_.size()) == frames_ && is_empty) {
+    if (result.weights.array().isNaN().all() && is_empty) {
       throw IoError(path_.string(), "has no row with weights");
     }
-    std::vector<std::string> gaps;
     for (Eigen::Index column = 0; column < result.weights.cols(); ++column) {
-      const std::string& name = result.names[static_cast<std::size_t>(column)];
-      const auto missing = result.weights.col(column).array().isNaN().count();
-      if (missing == frames_) {
-        throw IoError(path_.string(), "line " + std::to_string(first_line_) + ": column '" + name +
-                                          "': expected a finite number, found '" +
-                                          first_fields_[static_cast<std::size_t>(column)] +
-                                          "' and no other");
-      }
-      if (missing > std::ssize(lost_)) gaps.push_back(name);
-      if (missing > 0) fill_gaps(result.weights.col(column));
-    }
-    if (!lost_.empty()) {
-      result.notes.push_back(
-          "rows without weights, which are taken from between their neighbours': " +
-          listed(words_of(lost_)));
-    }
-    if (!gaps.empty()) {
-      result.notes.push_back(
-          "columns in which weights are missing, which are taken from between their neighbours': " +
-          listed(gaps));
-    }
-  }
-
-  /// \pre one number at least is not NaN
-  static void fill_gaps(Eigen::Ref<Eigen::VectorXd> weights) {
-    std::vector<Eigen::Index> seen;
-    for (Eigen::Index f = 0; f < weights.size(); ++f) {
-      if (!std::isnan(weights[f])) seen.push_back(f);
-    }
-    for (Eigen::Index f = 0; f < weights.size(); ++f) {
-      if (!std::isnan(weights[f])) continue;
-      const auto next = std::ranges::lower_bound(seen, f);
-      const Eigen::Index after = next == seen.end() ? seen.back() : *next;
-      const Eigen::Index before = next == seen.begin() ? after : *std::prev(next);
-      const double share =
-          after > before ? static_cast<double>(f - before) / static_cast<double>(after - before)
-                         : 0;
-      weights[f] = (1 - share) * weights[before] + share * weights[after];
+      if (!result.weights.col(column).array().isNaN().all()) continue;
+      const auto index = static_cast<std::size_t>(column);
+      throw IoError(path_.string(), "line " + std::to_string(first_line_) + ": column '" +
+                                        result.names[index] +
+                                        "': expected a finite number, found '" +
+                                        first_fields_[index] + "' and no other");
     }
   }
 
   std::filesystem::path path_;
   CsvReader csv_;
-  std::vector<int> lost_;                  ///< frames, ascending
   int first_line_ = 0;                     ///< of weights
   std::vector<std::string> first_fields_;  ///< of the columns of weights
   std::optional<std::size_t> time_column_, timecode_column_, frame_column_;
+  double units_per_second_ = 1;
   std::vector<long long> frame_numbers_;
   std::vector<std::size_t> weight_columns_;
   std::vector<double> weights_;
@@ -226,39 +186,60 @@ constexpr double kMostUsual = 2, kLeastUsual = -0.1;
 /// Weights that go beyond this and look like percent are nothing else.
 constexpr double kLeastPercent = 10;
 
-bool look_like_percent(const Eigen::MatrixXd& weights) {
-  constexpr double kMany = 0.05;
-  const auto beyond = static_cast<double>((weights.array() > 1.5).count());
-  return beyond > kMany * static_cast<double>(weights.size()) && weights.maxCoeff() <= 100 &&
-         weights.minCoeff() >= 0;
+/// Rotations of head and eyes, which captures write beside the weights.
+bool is_rotation(const std::string& name) {
+  const std::string plain = folded_name(name);
+  const bool is_angle =
+      plain.ends_with("yaw") || plain.ends_with("pitch") || plain.ends_with("roll");
+  return plain.starts_with("head") || (is_angle && plain.find("eye") != std::string::npos);
 }
 
-std::string note_on_weight(const WeightTrack& track, Eigen::Index frame, Eigen::Index column) {
-  return "the weight of '" + track.names[static_cast<std::size_t>(column)] + "' is " +
-         readable(track.weights(frame, column)) + " in frame " + std::to_string(frame) +
-         ", expected 0 to 1";
+std::vector<Eigen::Index> columns_of_weights(const WeightTrack& track) {
+  std::vector<Eigen::Index> columns;
+  for (std::size_t column = 0; column < track.names.size(); ++column) {
+    if (!is_rotation(track.names[column])) columns.push_back(static_cast<Eigen::Index>(column));
+  }
+  return columns;
+}
+
+/// Whether many weights, in most columns that move, are beyond what weights from 0 to 1 are.
+bool look_like_percent(const Eigen::MatrixXd& weights) {
+  constexpr double kBeyond = 1.5, kMany = 0.05;
+  const auto beyond = static_cast<double>((weights.array() > kBeyond).count());
+  const Eigen::ArrayXd most = weights.colwise().maxCoeff().transpose();
+  return beyond > kMany * static_cast<double>(weights.size()) &&
+         2 * (most > kBeyond).count() > (most > 0).count() && most.maxCoeff() <= 100 &&
+         weights.minCoeff() >= 100 * kLeastUsual;
 }
 
 /// Divides weights in percent by 100; notes that, and weights that nobody means.
 void note_sizes(WeightTrack& track) {
+  const std::vector<Eigen::Index> columns = columns_of_weights(track);
+  if (columns.empty()) return;
+  const Eigen::MatrixXd weights = track.weights(Eigen::all, columns);
+  const auto note = [&](Eigen::Index frame, Eigen::Index column) {
+    return "the weight of '" +
+           track.names[static_cast<std::size_t>(columns[static_cast<std::size_t>(column)])] +
+           "' is " + readable(weights(frame, column)) + " in frame " + std::to_string(frame) +
+           ", expected 0 to 1";
+  };
   Eigen::Index frame = 0, column = 0;
-  const double most = track.weights.cwiseAbs().maxCoeff(&frame, &column);
+  const double most = weights.cwiseAbs().maxCoeff(&frame, &column);
   if (most <= kMostUsual) {
-    if (track.weights.minCoeff(&frame, &column) >= kLeastUsual) return;
-    track.notes.push_back(note_on_weight(track, frame, column) +
-                          "; those below 0 are taken as they are");
+    if (weights.minCoeff(&frame, &column) >= kLeastUsual) return;
+    track.notes.push_back(note(frame, column) + "; those below 0 are taken as they are");
     return;
   }
-  if (look_like_percent(track.weights)) {
+  if (look_like_percent(weights)) {
     const bool is_percent = most > kLeastPercent;
-    if (is_percent) track.weights /= 100;
+    if (is_percent) track.weights(Eigen::all, columns) = weights / 100;
     track.notes.push_back("weights go up to " + readable(most) +
                           " and look like percent, expected 0 to 1; " +
                           (is_percent ? "they are divided by 100"
                                       : "they are taken as they are: divide them by 100"));
     return;
   }
-  track.notes.push_back(note_on_weight(track, frame, column));
+  track.notes.push_back(note(frame, column));
 }
 
 void append(std::string& text, double number) {
@@ -287,6 +268,7 @@ WeightTrack read_weights(const std::filesystem::path& path) {
   }
   const bool is_json = extension == ".json";
   WeightTrack track = is_json ? read_weights_json(path) : WeightReader(path).read();
+  fill_missing_weights(track);
   note_odd_weights(track);
   return track;
 }

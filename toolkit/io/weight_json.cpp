@@ -2,15 +2,18 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
+#include <optional>
+#include <utility>
 
 #include <nlohmann/json.hpp>
 
 #include "toolkit/io/fit_file.h"
 #include "toolkit/io/frame_series.h"
 #include "toolkit/io/json_text.h"
+#include "toolkit/io/missing_weights.h"
 #include "toolkit/io/text_cursor.h"
+#include "toolkit/io/time_columns.h"
 #include "toolkit/io/whole_file.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/text.h"
@@ -27,7 +30,6 @@ const std::vector<std::string> kRows = {"rows", "frames"};
 // MediaPipe's Face Landmarker, from JavaScript and Python.
 const std::vector<std::string> kCategories = {"faceBlendshapes", "face_blendshapes"};
 const std::vector<std::string> kCategoryNames = {"categoryName", "category_name"};
-const std::vector<std::string> kMilliseconds = {"timestamp_ms", "timestampMs"};
 
 Json parsed(const std::filesystem::path& path) {
   const std::string bytes = read_file(path);
@@ -82,6 +84,20 @@ class WeightJson {
     fail(place, "expected a finite number");
   }
 
+  /// NaN for null, which is a weight that is missing.
+  double weight(const Json& value, const std::string& place) const {
+    return value.is_null() ? kMissingWeight : number(value, place);
+  }
+
+  /// Each column holds a number.
+  void check_columns(const std::string& place) const {
+    for (Eigen::Index column = 0; column < track_.weights.cols(); ++column) {
+      if (!track_.weights.col(column).array().isNaN().all()) continue;
+      fail(place + ", '" + track_.names[static_cast<std::size_t>(column)] + "'",
+           "expected a finite number there or in another row");
+    }
+  }
+
   void add_name(const std::string& name, const std::string& place) {
     if (name.empty()) fail(place, "expected a name, found ''");
     const auto index = static_cast<Eigen::Index>(track_.names.size());
@@ -107,9 +123,10 @@ class WeightJson {
       }
       for (std::size_t j = 0; j < row.size(); ++j) {
         track_.weights(static_cast<Eigen::Index>(f), static_cast<Eigen::Index>(j)) =
-            number(row[j], place + "/" + std::to_string(j));
+            weight(row[j], place + "/" + std::to_string(j));
       }
     }
+    check_columns("weights/0");
     read_times();
   }
 
@@ -127,9 +144,9 @@ class WeightJson {
     } else if (const Json* rate = member(root_, kRate)) {
       const double fps = number(*rate, "fps");
       if (!(fps > 0)) fail("fps", "expected more than 0, found " + readable(fps));
-      track_.times = times_at_rate(fps, frames, frame_numbers_);
+      track_.times = times_at_rate(fps, frames, numbers_of_all());
     } else {
-      RowNumbers numbers = row_numbers(frame_numbers_);
+      RowNumbers numbers = row_numbers(numbers_of_all());
       track_.step = static_cast<double>(numbers.step);
       if (!numbers.note.empty()) track_.notes.push_back(std::move(numbers.note));
     }
@@ -145,10 +162,6 @@ class WeightJson {
   void read_rows(const Json& rows) {
     if (!rows.is_array() || rows.empty()) fail("rows", "expected a list of rows");
     const auto frames = static_cast<Eigen::Index>(rows.size());
-    const auto time_of = [](const Json& row) {
-      const Json* seconds = member(row, {"time"});
-      return seconds ? std::pair(seconds, 1.0) : std::pair(member(row, kMilliseconds), 1000.0);
-    };
     const bool timed = time_of(rows.front()).first != nullptr;
     if (timed) track_.times.resize(frames);
     for (const auto& [key, value] : rows.front().items()) {
@@ -162,30 +175,61 @@ class WeightJson {
       const Json* categories = member(row, kCategories);
       const Json scores = categories ? scores_of(*categories, place) : Json();
       const Json& weights = categories ? scores : nested && nested->is_object() ? *nested : row;
-      const auto [time, per_second] = time_of(row);
+      const auto [time, units_per_second] = time_of(row);
       if ((time != nullptr) != timed)
         fail(place, timed ? "has no time" : "has a time, others none");
-      if (time) set_time(f, number(*time, place + ", time") / per_second, place);
-      for (const auto& [key, value] : row.items()) {
-        if (holds_frame_numbers(key) && value.is_number_integer()) {
-          frame_numbers_.push_back(value.get<long long>());
-        }
-      }
-      read_row(weights, f, frames, place);
+      if (time) set_time(f, number(*time, place + ", time") / units_per_second, place);
+      if (const auto frame = frame_number_of(row)) frame_numbers_.push_back(*frame);
+      const bool is_lost = categories && scores.empty();
+      if (!is_lost) read_row(weights, f, frames, place);
     }
+    if (track_.names.empty()) {
+      fail("row 0", "expected the categories of one face there or in another row");
+    }
+    check_columns("row 0");
     if (!timed) read_times();
   }
 
+  /// A row's time and in how many units it counts a second; null where it has none.
+  static std::pair<const Json*, double> time_of(const Json& row) {
+    if (!row.is_object()) return {nullptr, 1};
+    for (const auto& [key, value] : row.items()) {
+      if (const auto units = units_per_second(key)) return {&value, *units};
+    }
+    return {nullptr, 1};
+  }
+
+  /// Of the first key that has one.
+  static std::optional<long long> frame_number_of(const Json& row) {
+    for (const auto& [key, value] : row.items()) {
+      if (!holds_frame_numbers(key) || !value.is_number()) continue;
+      if (const auto number = frame_number(value.get<double>())) return number;
+    }
+    return {};
+  }
+
+  /// The numbers of all rows; none where some have none, which is noted.
+  std::vector<long long> numbers_of_all() {
+    if (frame_numbers_.empty() || std::ssize(frame_numbers_) == track_.weights.rows()) {
+      return frame_numbers_;
+    }
+    track_.notes.emplace_back(
+        "numbers of frames are not used, since some rows have none; without times frames follow "
+        "each other without a pause");
+    return {};
+  }
+
   /// MediaPipe's categories of one face, maybe in a list of faces, as an object of names and
-  /// weights, without "_neutral", which is no expression.
+  /// weights, without "_neutral", which is no expression; of no face an empty one.
   Json scores_of(const Json& found, const std::string& place) const {
     const Json* list = &found;
     while (list->is_array() && list->size() == 1 && !member(list->front(), kCategoryNames)) {
       list = &list->front();
     }
     if (const Json* inner = member(*list, {"categories"})) list = inner;
-    if (!list->is_array() || list->empty()) fail(place, "expected the categories of one face");
     Json scores = Json::object();
+    if (list->is_array() && list->empty()) return scores;
+    if (!list->is_array()) fail(place, "expected the categories of one face");
     for (const Json& category : *list) {
       const Json* name = member(category, kCategoryNames);
       const Json* score = member(category, {"score"});
@@ -200,22 +244,22 @@ class WeightJson {
   void read_row(const Json& row, Eigen::Index frame, Eigen::Index frames,
                 const std::string& place) {
     const auto is_weight = [](const std::string& key) {
-      return key != "time" && std::ranges::find(kMilliseconds, key) == kMilliseconds.end() &&
-             !holds_frame_numbers(key) && lower_case(key) != kTimestamp;
+      return !units_per_second(key) && !holds_frame_numbers(key) && lower_case(key) != kTimestamp;
     };
-    if (frame == 0) {
+    if (track_.names.empty()) {
       for (const auto& [key, value] : row.items()) {
         if (is_weight(key)) add_name(key, place);
       }
       if (track_.names.empty()) fail(place, "holds no weights");
-      track_.weights.resize(frames, static_cast<Eigen::Index>(track_.names.size()));
+      const auto columns = static_cast<Eigen::Index>(track_.names.size());
+      track_.weights.setConstant(frames, columns, kMissingWeight);
     }
     Eigen::Index found = 0;
     for (const auto& [key, value] : row.items()) {
       if (!is_weight(key)) continue;
       const auto column = columns_.find(key);
       if (column == columns_.end()) fail(place, "'" + key + "' is no name of the first row");
-      track_.weights(frame, column->second) = number(value, place + ", '" + key + "'");
+      track_.weights(frame, column->second) = weight(value, place + ", '" + key + "'");
       ++found;
     }
     if (found != track_.weights.cols()) {

@@ -24,7 +24,8 @@ int column_of(const std::vector<std::string>& names, const std::string& expressi
                           [](const std::string& name) { return folded_name(spelled_out(name)); });
     if (of_column != names.end()) return static_cast<int>(of_column - names.begin());
   }
-  return -1;
+  const std::string shape = without_node(expression);
+  return shape == expression ? -1 : column_of(names, shape);
 }
 
 }  // namespace

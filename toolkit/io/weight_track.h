@@ -30,7 +30,8 @@ struct WeightMatch {
 
 /// Names match exactly, then with Left/Right for _L/_R of the expression, then of the column, then
 /// one name drives both halves; without regard to case and underscores at each step only where
-/// nothing matched exactly.
+/// nothing matched exactly. What matches nothing is tried without the node that its name begins
+/// with (`blendShape1.jawOpen`).
 WeightMatch match_weights(const WeightTrack& track, const std::vector<std::string>& expressions);
 
 /// Weights in the order of the expressions (F x D), 0 where nothing drives one. Throws

@@ -15,7 +15,7 @@ struct Field {
   std::string name;
   Location location = Location::vertices;
   Eigen::MatrixXd values;
-  /// Written as 32-bit integers: indices, counts and masks.
+  /// Written as integers, of 32 bits where they hold them: indices, counts and masks.
   bool integer = false;
 };
 

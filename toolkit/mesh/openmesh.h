@@ -11,6 +11,7 @@
 #include <OpenMesh/Core/Utils/PropertyManager.hh>
 
 #include "toolkit/mesh/fields.h"
+#include "toolkit/mesh/whole_numbers.h"
 
 namespace mimetra {
 
@@ -52,9 +53,9 @@ Mesh with_positions(Mesh mesh, const Eigen::Ref<const Positions>& positions);
 
 /// Puts each field into the property `v:NAME`, on vertices, or `f:NAME`, on faces, where it takes
 /// the place of one of that name and type: `v:region`, `v:roi`, `v:distance`, `f:in_L`. Its type is
-/// int for integer fields, OpenMesh::Vec3d for three columns (`v:component_3`), else double; a face
-/// has the largest value of its triangles. Throws std::invalid_argument that names a field of
-/// another number of columns, or of values that are not one for each vertex or triangle.
+/// int for integer fields that it holds, OpenMesh::Vec3d for three columns (`v:component_3`), else
+/// double; a face has the largest value of its triangles. Throws std::invalid_argument that names a
+/// field of another number of columns, or of values that are not one for each vertex or triangle.
 template <OpenMeshClass Mesh>
 void set_fields(Mesh& mesh, const std::vector<Field>& fields);
 
@@ -192,7 +193,7 @@ void write_field(Mesh& mesh, const std::string& name, const Field& field,
   } else if (values.cols() != 1) {
     throw std::invalid_argument("field '" + field.name + "' has " + std::to_string(values.cols()) +
                                 " columns; expected one number, or a vector of three");
-  } else if (field.integer) {
+  } else if (field.integer && all_are_held_by<int>(values)) {
     write_property<int, Handle>(mesh, name, values);
   } else {
     write_property<double, Handle>(mesh, name, values);

@@ -76,6 +76,13 @@ std::string spelled_out(const std::string& name) {
   return half.given_stem + (half.half == Half::left ? "Left" : "Right");
 }
 
+std::string without_node(const std::string& name) {
+  constexpr std::size_t kShortest = 2;  // shorter ones are sides
+  const auto point = name.find('.');
+  if (point == std::string::npos || name.size() - point <= kShortest) return name;
+  return name.substr(point + 1);
+}
+
 std::string without_side(const std::string& name) {
   const HalfName half = half_of(name);
   return half.half == Half::none || is_side_movement(half.stem) ? name : half.given_stem;
@@ -119,7 +126,9 @@ std::vector<std::vector<int>> known_exclusives(const std::vector<std::string>& n
                                                Exclusive which) {
   std::vector<std::string> folded;
   folded.reserve(names.size());
-  for (const std::string& name : names) folded.push_back(folded_name(spelled_out(name)));
+  for (const std::string& name : names) {
+    folded.push_back(folded_name(spelled_out(without_node(name))));
+  }
   std::vector<std::vector<int>> groups;
   for (const KnownGroup& known : known_groups()) {
     if (which < known.least) continue;

@@ -34,6 +34,10 @@ constexpr std::string_view choice_name(Exclusive value) {
 /// `mouthSmileLeft`.
 std::string spelled_out(const std::string& name);
 
+/// `jawOpen` of `blendShape1.jawOpen`, as the shapes of a node are called; the same where no node
+/// is named, also of `smile.L`.
+std::string without_node(const std::string& name);
+
 /// `browInnerUp` of `browInnerUp_L`, `browInnerUpLeft` and the like. `jawLeft` and `mouthLeft`,
 /// which are no halves, stay.
 std::string without_side(const std::string& name);

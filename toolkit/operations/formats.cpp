@@ -115,6 +115,7 @@ ReadValue read_model_files(const std::string& text, const ReadRequest& request) 
   const ModelSpec spec = ModelSpec::parse(text);
   if (is_scene_file(spec.path) && !spec.fit && spec.identity_text.empty()) {
     Scene scene = read_scene(spec.path);
+    std::ranges::move(scene.model_notes, std::back_inserter(scene.notes));
     return {{spec.name(), ModelData{MorphableModel(*scene.model)}, {.path = spec.path}},
             std::move(scene.files),
             std::move(scene.notes)};

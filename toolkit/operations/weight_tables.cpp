@@ -61,11 +61,20 @@ std::vector<std::string> live_link_losses(const Data& data, const std::filesyste
   return notes;
 }
 
+/// An expression may be called as the column of times is.
+void check_one_time(const Table& table, const std::filesystem::path& target) {
+  if (std::ranges::count(table.columns, kTimeColumn) < 2) return;
+  throw MismatchError(target.string() + ": an expression is called '" + kTimeColumn +
+                      "', as the column of times is; rename the expression");
+}
+
 /// A format of tables, or of a sequence's weights as such a table.
 template <std::string (Table::*Text)() const>
 Paths write_table(const Data& data, const WriteRequest& request) {
-  if (const auto* table = std::get_if<Table>(&data)) return write_text(request, (table->*Text)());
-  return write_text(request, (weight_table(track_of(data, request.target)).*Text)());
+  const auto* given = std::get_if<Table>(&data);
+  const Table table = given ? *given : weight_table(track_of(data, request.target));
+  check_one_time(table, request.target);
+  return write_text(request, (table.*Text)());
 }
 
 }  // namespace

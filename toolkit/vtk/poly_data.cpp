@@ -18,8 +18,10 @@
 #include <vtkPolyData.h>
 #include <vtkSmartPointer.h>
 #include <vtkTypeInt32Array.h>
+#include <vtkTypeInt64Array.h>
 
 #include "toolkit/mesh/errors.h"
+#include "toolkit/mesh/whole_numbers.h"
 
 namespace mimetra {
 
@@ -75,11 +77,20 @@ vtkSmartPointer<vtkDataArray> double_array(const std::string& name, const Values
   return array_of<vtkDoubleArray>(name, values, [](double x) { return x; });
 }
 
+template <typename Array>
+vtkSmartPointer<vtkDataArray> integer_array(const std::string& name,
+                                            const Eigen::MatrixXd& values) {
+  return array_of<Array>(name, values, [](double x) {
+    return static_cast<typename Array::ValueType>(std::llround(x));
+  });
+}
+
 vtkSmartPointer<vtkDataArray> array_of(const std::string& name, const Eigen::MatrixXd& values,
                                        bool integer) {
   if (!integer) return float_array(name, values);
-  return array_of<vtkTypeInt32Array>(
-      name, values, [](double x) { return static_cast<vtkTypeInt32>(std::lround(x)); });
+  if (all_are_held_by<vtkTypeInt32>(values)) return integer_array<vtkTypeInt32Array>(name, values);
+  if (all_are_held_by<vtkTypeInt64>(values)) return integer_array<vtkTypeInt64Array>(name, values);
+  return double_array(name, values);
 }
 
 vtkSmartPointer<vtkTypeInt32Array> index_array(const std::vector<int>& indices) {

@@ -34,7 +34,8 @@ std::optional<CarriedRest> rest_of(vtkPolyData& data, const Positions& positions
 /// Throws IoError where a vertex of a rest pose is not finite.
 void check_rest(const Positions& rest, const std::string& name);
 
-/// All numeric point data, and cell data of the polygons, save rest poses.
+/// All numeric point data, and cell data of the polygons, save rest poses. Whole numbers from 2^53
+/// on are rounded to double precision.
 std::vector<Field> fields_of(vtkPolyData& data, const Connectivity& connectivity);
 
 /// A point array (N x c), or nothing.
@@ -46,8 +47,9 @@ enum class Precision { single_precision, double_precision };
 /// A rest pose that was set stays that of the new positions.
 void set_positions(vtkPolyData& data, const Eigen::Ref<const Positions>& positions, Precision);
 
-/// Adds or replaces a field: float, or 32-bit integers. Triangle fields go on the polygon, the
-/// largest of its triangles', and are 0 on cells of other kinds.
+/// Adds or replaces a field: float, or integers of 32 bits, of 64 where a value needs them, and
+/// double where one is beyond these or not finite. Triangle fields go on the polygon, the largest
+/// of its triangles', and are 0 on cells of other kinds.
 void add_field(vtkPolyData& data, const Field& field, const Connectivity& connectivity);
 
 /// Point data of FieldSequence::displacement: the vector from the rest pose, and its length.

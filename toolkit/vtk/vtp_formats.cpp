@@ -55,14 +55,14 @@ ReadValue read_sequence_data(const std::string& text, const ReadRequest& request
   const auto selected = [&](int count) { return selected_frames(source.frames, count); };
   std::vector<std::string> notes;
   const auto note = [&](const std::string& odd) { notes.push_back(text + ": " + odd); };
-  const VtpReadOptions options{.selected = selected, .note = note, .progress = request.progress};
+  const VtpReadOptions options{
+      .selected = selected, .fields = request.fields, .note = note, .progress = request.progress};
   FieldSequence read =
       request.may_stream ? open_vtp_series(text, options) : read_vtp_series(text, options);
   check_rate(text, read.frames->known_times(), source);
   // Chosen frames may lie far apart.
   const std::string odd = source.frames ? "" : note_on_steps(read.frames->known_times());
   if (!odd.empty()) note(odd);
-  if (!request.fields) read.fields.clear();
   return {{text, std::move(read)}, vtp_series_files(text), std::move(notes)};
 }
 

@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <iterator>
+#include <limits>
 
 #include <vtkErrorCode.h>
 #include <vtkExecutive.h>
@@ -16,6 +18,7 @@
 #include "toolkit/io/opened_file.h"
 #include "toolkit/io/whole_file.h"
 #include "toolkit/mesh/errors.h"
+#include "toolkit/mesh/face_order.h"
 #include "toolkit/mesh/progress.h"
 #include "toolkit/mesh/text.h"
 #include "toolkit/vtk/displaced_rest.h"
@@ -118,6 +121,17 @@ std::vector<FrameFile> entries_of(const fs::path& path) {
   return entries;
 }
 
+/// The faces of a later frame in the order of the first one's: equal lists are the rule.
+Connectivity faces_of(vtkPolyData& data, const fs::path& file, const Connectivity& first,
+                      const fs::path& first_file) {
+  Connectivity found = connectivity_of(data, file.string());
+  if (same_faces(found, first)) return found;
+  // In another order, or cut otherwise, but none flipped.
+  std::optional<Connectivity> ordered = in_order_of(first, found);
+  if (ordered && ordered->triangles == first.triangles) return *std::move(ordered);
+  throw MismatchError(file.string() + ": other vertices or faces than " + first_file.string());
+}
+
 /// Frames that are read from their files; the first one again.
 class VtpFrames : public FrameSource {
  public:
@@ -129,10 +143,7 @@ class VtpFrames : public FrameSource {
     for (Eigen::Index row = 0; row < poses.rows(); ++row) {
       const fs::path& file = files_[static_cast<std::size_t>(first + row)].file;
       const auto data = read_poly_data(file);
-      if (!same_faces(connectivity_of(*data, file.string()), connectivity())) {
-        throw MismatchError(file.string() + ": other vertices or faces than " +
-                            files_.front().file.string());
-      }
+      faces_of(*data, file, connectivity(), files_.front().file);  // throws where they are others
       const Positions positions = positions_of(*data, file.string());
       poses.row(row) = Eigen::Map<const Eigen::RowVectorXd>(positions.data(), positions.size());
     }
@@ -141,31 +152,96 @@ class VtpFrames : public FrameSource {
   std::vector<FrameFile> files_;
 };
 
-/// Rest poses that files hold, of which the first is read already: as displacements lead from it,
-/// and as it came along a pipeline.
-struct FoundRest {
-  std::optional<Positions> displaced;
-  std::optional<CarriedRest> carried;
+/// What is not a number equals itself.
+bool is_same(const Field& a, const Field& b) {
+  const auto& x = a.values;
+  const auto& y = b.values;
+  return a.name == b.name && a.location == b.location && x.rows() == y.rows() &&
+         x.cols() == y.cols() &&
+         (x.array() == y.array() || (x.array().isNaN() && y.array().isNaN())).all();
+}
+
+/// The fields of the first frame, parted into those that all frames looked at have, and others.
+class ComparedFields {
+ public:
+  explicit ComparedFields(std::vector<Field> first) : steady_(std::move(first)) {}
+
+  void look_at(const std::vector<Field>& later) {
+    const auto changed = std::ranges::stable_partition(steady_, [&later](const Field& field) {
+      return std::ranges::any_of(later, [&](const Field& other) { return is_same(field, other); });
+    });
+    std::ranges::move(changed, std::back_inserter(changing_));
+    steady_.erase(changed.begin(), changed.end());
+  }
+
+  const std::vector<Field>& steady() const { return steady_; }
+  const std::vector<Field>& changing() const { return changing_; }
+
+ private:
+  std::vector<Field> steady_, changing_;
 };
 
-FoundRest found_rest(vtkPolyData& first, const Positions& positions,
-                     const std::vector<FrameFile>& files) {
+/// What several frames show, of which the first is read already: rest poses, as displacements lead
+/// from it and as it came along a pipeline, and the fields beside them.
+struct Findings {
+  std::optional<Positions> displaced;
+  std::optional<CarriedRest> carried;
+  std::vector<Field> fields, changing;
+};
+
+Findings look_through(vtkPolyData& first, const Positions& positions,
+                      const Connectivity& connectivity, const std::vector<FrameFile>& files,
+                      bool with_fields) {
   const std::string name = files.front().file.string();
   DisplacedRest displaced(static_cast<int>(files.size()));
   displaced.look_at(first, positions);
   std::optional<CarriedRest> carried = rest_of(first, positions, name);
   const auto is_whole = [&carried] { return carried && carried->note.empty(); };
+  ComparedFields fields(with_fields ? fields_of(first, connectivity) : std::vector<Field>());
   for (int f = 1; f < static_cast<int>(files.size()); ++f) {
     if (!displaced.looks_at(f)) continue;
-    if (!displaced.is_possible() && !is_whole()) break;
-    const std::string file = files[static_cast<std::size_t>(f)].file.string();
+    if (!displaced.is_possible() && !is_whole() && fields.steady().empty()) break;
+    const fs::path& file = files[static_cast<std::size_t>(f)].file;
     const auto data = read_poly_data(file);
-    const Positions later = positions_of(*data, file);
+    const Positions later = positions_of(*data, file.string());
     displaced.look_at(*data, later);
+    if (!fields.steady().empty()) {
+      fields.look_at(fields_of(*data, faces_of(*data, file, connectivity, files.front().file)));
+    }
     if (!is_whole()) continue;
-    if (const auto of_this = rest_of(*data, later, file)) carried->note = of_this->note;
+    if (const auto of_this = rest_of(*data, later, file.string())) carried->note = of_this->note;
   }
-  return {displaced.found(name), std::move(carried)};
+  Findings found{displaced.found(name), std::move(carried), fields.steady(), fields.changing()};
+  if (found.displaced) {
+    std::erase_if(found.fields, is_displacement);
+    std::erase_if(found.changing, is_displacement);
+  }
+  return found;
+}
+
+bool may_be_rounded(const Field& field) {
+  // Double precision holds all whole numbers up to here.
+  const double limit = std::ldexp(1.0, std::numeric_limits<double>::digits);
+  return field.integer && (field.values.array().abs() >= limit).any();
+}
+
+std::vector<std::string> notes_on(const Findings& found) {
+  std::vector<std::string> notes, changing, rounded;
+  if (found.carried && !found.carried->note.empty()) notes.push_back(found.carried->note);
+  for (const Field& field : found.changing) changing.push_back(field.name);
+  for (const Field& field : found.fields) {
+    if (may_be_rounded(field)) rounded.push_back(field.name);
+  }
+  if (!changing.empty()) {
+    notes.push_back(
+        "a field that changes over the frames is left out: " + listed(changing) +
+        "; to keep that of frame k, convert it alone into .vtp (option 'frames' k:k+1)");
+  }
+  if (!rounded.empty()) {
+    notes.push_back("whole numbers from 2^53 on are rounded to double precision: field " +
+                    listed(rounded) + "; where they must stay apart, number them from 0");
+  }
+  return notes;
 }
 
 }  // namespace
@@ -183,19 +259,17 @@ FieldSequence open_vtp_series(const fs::path& path, const VtpReadOptions& option
   const Positions positions = positions_of(*data, first);
   SequenceHeader header;
   header.connectivity = std::make_shared<Connectivity>(connectivity_of(*data, first));
-  const auto& [displaced, carried] = found_rest(*data, positions, chosen);
-  if (carried && !carried->note.empty() && options.note) options.note(carried->note);
-  header.rest = carried ? carried->positions : displaced.value_or(positions);
-  header.rest_is_known = carried || displaced;
+  Findings found = look_through(*data, positions, *header.connectivity, chosen, options.fields);
+  if (options.note) std::ranges::for_each(notes_on(found), options.note);
+  header.rest = found.carried ? found.carried->positions : found.displaced.value_or(positions);
+  header.rest_is_known = found.carried || found.displaced;
   header.times_are_known = lower_extension(path) != ".vtp";
   header.times = default_times(static_cast<int>(chosen.size()));
   for (std::size_t f = 0; header.times_are_known && f < chosen.size(); ++f) {
     header.times[static_cast<Eigen::Index>(f)] = chosen[f].time;
   }
-  std::vector<Field> fields = fields_of(*data, *header.connectivity);
-  if (displaced) std::erase_if(fields, is_displacement);
   return {std::make_shared<const VtpFrames>(std::move(chosen), std::move(header)),
-          std::move(fields)};
+          std::move(found.fields)};
 }
 
 FieldSequence read_vtp_series(const fs::path& path, const VtpReadOptions& options) {
