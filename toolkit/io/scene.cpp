@@ -401,10 +401,10 @@ Eigen::RowVectorXd WeightCurve::at(double time) const {
 void check_scene_size(const std::string& path, double vertices, double poses,
                       std::size_t file_bytes) {
   // A few thousand sparse targets of a large head take some hundred times their file.
-  constexpr double kLeast = 1 << 30, kTimes = 512;
+  constexpr double kLeast = 1 << 30, kMostOfFile = 512;
   constexpr double kMostVertices = 7e8;  // three coordinates each, counted by an int
   const double bytes = vertices * poses * 3 * sizeof(double);
-  const double most = std::max(kLeast, kTimes * static_cast<double>(file_bytes));
+  const double most = std::max(kLeast, kMostOfFile * static_cast<double>(file_bytes));
   if (vertices <= kMostVertices && bytes <= most) return;
   throw IoError(path, readable(vertices, 8) + " vertices in " + readable(poses, 8) +
                           " poses would take " + readable(bytes / 1e9, 3) +

@@ -170,7 +170,7 @@ class ComparedFields {
     const auto changed = std::ranges::stable_partition(steady_, [&later](const Field& field) {
       return std::ranges::any_of(later, [&](const Field& other) { return is_same(field, other); });
     });
-    std::ranges::move(changed, std::back_inserter(changing_));
+    std::move(changed.begin(), changed.end(), std::back_inserter(changing_));
     steady_.erase(changed.begin(), changed.end());
   }
 
