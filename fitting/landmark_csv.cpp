@@ -35,17 +35,6 @@ std::optional<std::size_t> landmark_number(std::string_view name, char letter) {
   return number;
 }
 
-/// The number of a frame in a field, whose point may be a comma; none for other text.
-std::optional<long long> frame_number_in(std::string_view field) {
-  std::string text(field);
-  std::ranges::replace(text, ',', '.');
-  double value = 0;
-  const char* const last = text.data() + text.size();
-  const auto [end, error] = std::from_chars(text.data(), last, value);
-  if (error != std::errc() || end != last) return {};
-  return frame_number(value);
-}
-
 /// Those that read back equal.
 std::string shortest_digits(double value) {
   std::array<char, 32> digits;

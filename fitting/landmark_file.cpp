@@ -44,12 +44,6 @@ void number_frames(LandmarkTrack& track, const std::vector<long long>& numbers) 
   if (!found.note.empty()) track.notes.push_back(std::move(found.note));
 }
 
-std::string note_on_frame_numbers(const std::string& name) {
-  return "'" + name +
-         "' is not used, since it does not have a whole number in every frame, each higher than "
-         "the one before; without times frames follow each other without a pause";
-}
-
 LandmarkTrack read_pts(const std::filesystem::path& path) {
   const std::string name = path.string(), bytes = read_file(path);
   TextCursor text(name, without_byte_order_mark(bytes), {});

@@ -16,9 +16,6 @@ LandmarkTrack read_landmark_json(const std::filesystem::path& path);
 /// What numbers of frames say of a track without times: its step, and what is missing.
 void number_frames(LandmarkTrack& track, const std::vector<long long>& numbers);
 
-/// Says that what a column or key of this name holds does not number the frames.
-std::string note_on_frame_numbers(const std::string& name);
-
 /// "1", "2", ...: iBUG counts its landmarks so.
 std::vector<std::string> numbered_names(std::size_t count);
 

@@ -240,6 +240,16 @@ TEST_F(OrderOfFrames, BehindANumberAndAPointIsThatOfIntegers) {
   EXPECT_THAT(series().notes, IsEmpty());
 }
 
+TEST_F(OrderOfFrames, BehindANumberAndAPointIsThatOfIntegersSomeOfWhichAreMissing) {
+  EXPECT_THAT(ordered({"v1.8", "v1.9", "v1.11", "v1.12"}),
+              ElementsAre("v1.8", "v1.9", "v1.11", "v1.12"));
+}
+
+TEST_F(OrderOfFrames, LeavesOutAMeshBesideFramesOfAnyStep) {
+  EXPECT_THAT(ordered({"mesh_1", "mesh_1.0002", "mesh_1.0004", "mesh_1.0006"}),
+              ElementsAre("mesh_1.0002", "mesh_1.0004", "mesh_1.0006"));
+}
+
 TEST_F(OrderOfFrames, BehindANumberAndAPointIsThatOfPaddedIntegers) {
   EXPECT_THAT(ordered({"v2.0009", "v2.0010", "v2.0011"}),
               ElementsAre("v2.0009", "v2.0010", "v2.0011"));

@@ -126,6 +126,60 @@ TEST_F(GltfFiles, TargetsOfOneNameAreOneExpressionOfTheModelHoweverItsFileMovesT
   EXPECT_TRUE(notes_.empty());
 }
 
+/// The second node shows a mesh of its own, with these targets, all alike.
+GltfBuilder with_second_mesh(GltfBuilder gltf, const std::vector<std::string>& names) {
+  gltf = two_nodes(std::move(gltf));
+  GltfJson mesh = gltf.root["meshes"][0];
+  const GltfJson target = mesh["primitives"][0]["targets"][0];
+  mesh["primitives"][0]["targets"] = std::vector<GltfJson>(names.size(), target);
+  mesh["extras"]["targetNames"] = names;
+  gltf.root["meshes"].push_back(mesh);
+  gltf.root["nodes"][2]["mesh"] = 1;
+  return gltf;
+}
+
+TEST_F(GltfFiles, AMeshWithoutAMaterialDoesNotHaveThatOfTheOneBefore) {
+  GltfBuilder gltf = with_second_mesh(plain(), {"smile"});
+  const auto statements = [&] {
+    std::vector<std::string> found;
+    for (const FaceGroup& group : model(gltf.glb()).connectivity().groups) {
+      found.push_back(group.statement);
+    }
+    return found;
+  };
+  gltf.root["materials"] = {{{"name", "skin"}}};
+  EXPECT_THAT(statements(), ElementsAre("g face", "g big"));  // nothing has it
+  gltf.root["meshes"][0]["primitives"][0]["material"] = 0;
+  EXPECT_THAT(statements(), ElementsAre("g face", "usemtl skin", "g big", "usemtl none"));
+}
+
+TEST_F(GltfFiles, TwoTargetsOfOneNameInOneMeshAreTwoExpressionsOfTheModel) {
+  GltfBuilder gltf = with_second_mesh(plain(), {"smile", "smile"});
+  gltf.animate(0, {0, 2}, {0, 1});
+  gltf.animate(2, {0, 2}, {0, 0, 0.25F, 1});
+  const BlendshapeModel face = model(gltf.glb());
+  EXPECT_THAT(face.expressions().names, ElementsAre("smile", "smile_2"));
+  const Positions first = face.pose(Eigen::Vector2d(1, 0)),
+                  second = face.pose(Eigen::Vector2d(0, 1));
+  const Positions own = (face.pose(Eigen::Vector2d(1, 1)) - face.neutral()).bottomRows(6);
+  EXPECT_LT(((first - face.neutral()).bottomRows(6) - own / 2).norm(), 1e-12);
+  EXPECT_LT(((second - face.neutral()).bottomRows(6) - own / 2).norm(), 1e-12);
+}
+
+TEST_F(GltfFiles, ATargetKeepsItsNameWhateverAnotherOneIsCalledInATake) {
+  GltfBuilder gltf = with_second_mesh(plain(), {"smile", "smile_2"});
+  gltf.animate(0, {0, 2}, {0, 1});
+  gltf.animate(2, {0, 2}, {0, 0, 0.25F, 1});
+  EXPECT_THAT(model(gltf.glb()).expressions().names, ElementsAre("smile", "smile_2"));
+}
+
+TEST_F(GltfFiles, StepsBesideCurvesWithFramesOfTheirOwnAddNone) {
+  GltfBuilder gltf = two_nodes(plain());
+  gltf.animate(0, {0, 1.F / 24, 2.F / 24, 3.F / 24, 4.F / 24}, {0, 0.1F, 0.3F, 0.4F, 1});
+  gltf.animate(2, {0, 2.F / 24, 4.F / 24}, {0, 1, 0}, "STEP");
+  EXPECT_EQ(read(gltf.glb()).frames(), 5);
+}
+
 TEST_F(GltfFiles, WeightsThatStayAreSaidToBeMissingFromTheNeutral) {
   GltfBuilder gltf = plain();
   gltf.root["meshes"][0]["weights"] = {0.5};

@@ -94,7 +94,7 @@ TEST_F(OddWeights, CountByTheNumbersOfTheirFramesWhereAllHaveOne) {
   }
   const WeightTrack some = read(R"([{"frame": 0, "a": 0}, {"a": 1}, {"frame": 2, "a": 0}])");
   EXPECT_EQ(some.step, 1);
-  EXPECT_THAT(some.notes, ElementsAre(HasSubstr("some rows have none")));
+  EXPECT_THAT(some.notes, ElementsAre(HasSubstr("'frame' is not used")));
 }
 
 TEST_F(OddWeights, OfShapesOfANodeMatchWithoutIt) {

@@ -76,6 +76,11 @@ OpenSequence drive(std::shared_ptr<const BlendshapeModel> model, const fs::path&
   if (track.times.size() == 0 && track.step != 1) {
     times.seconds *= track.step;
     times.are_known = true;
+    if (!source.fps) {
+      open.notes.push_back(driver.string() + ": rows are " + readable(track.step) +
+                           " frames apart, of which " + readable(kDefaultFramesPerSecond) +
+                           " a second are assumed; option 'fps' gives the rate");
+    }
     const std::string odd = note_on_steps(times.seconds);
     if (!odd.empty()) open.notes.push_back(driver.string() + ": " + odd);
   }

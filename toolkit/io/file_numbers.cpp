@@ -120,9 +120,9 @@ bool are_distinct(std::vector<long long> numbers) {
   return !numbers.empty() && std::ranges::adjacent_find(numbers) == numbers.end();
 }
 
-/// \pre ascending
-bool run_one_by_one(const std::vector<long long>& numbers) {
-  return !numbers.empty() && numbers.back() - numbers.front() < std::ssize(numbers);
+/// Whether about half of the numbers between the first and the last are there. \pre ascending
+bool are_close(const std::vector<long long>& numbers) {
+  return !numbers.empty() && numbers.back() - numbers.front() < 2 * std::ssize(numbers);
 }
 
 /// The names of one series, some of which have a point.
@@ -147,8 +147,9 @@ class DecimalSeries {
   }
   bool is_whole() const {
     constexpr std::size_t kFewest = 4;  // 5, 15 and 25 may be 0.15, 0.25 and 0.5
-    if (has_plain() && !has_one_integer_part()) return false;
+    if (has_plain()) return is_one_take();
     if (ends_with_zero()) return !begins_with_zero();
+    if (has_close_whole_numbers() && !has_even_decimals()) return !begins_with_zero();
     return names_.size() >= kFewest && has_even_whole_numbers() && !has_even_decimals();
   }
 
@@ -174,12 +175,14 @@ class DecimalSeries {
     return !has_plain() && has_one_integer_part() && names_[0].integer_part[0] != '-' &&
            are_even(whole_numbers(pointed_));
   }
+  bool has_close_whole_numbers() const {
+    return has_one_integer_part() && are_close(whole_numbers(pointed_));
+  }
   /// "take1.1.obj" and "take1.2.obj", of which "take1.obj" is no frame; but "t_0.obj" is one of
   /// "t_0.1.obj" and "t_0.2.obj".
   bool is_one_take() const {
     if (!has_one_integer_part() || !longer_.empty()) return false;
-    return !has_plain() ||
-           (integer(names_[0].integer_part) != 0 && run_one_by_one(whole_numbers(pointed_)));
+    return !has_plain() || integer(names_[0].integer_part) != 0;
   }
 
   DecimalNames names_, pointed_;

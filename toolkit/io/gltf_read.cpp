@@ -114,7 +114,7 @@ class GltfReader {
   }
 
   Scene read() {
-    check_size();
+    look_through();
     read_motion();
     std::vector<ScenePart> parts;
     bool shows_mesh = false;
@@ -158,7 +158,7 @@ class GltfReader {
   }
 
   /// Before anything is made of the counts.
-  void check_size() const {
+  void look_through() {
     double vertices = 0;
     std::size_t targets = 0;
     for (const PlacedNode& placed : placed_) {
@@ -168,6 +168,7 @@ class GltfReader {
           vertices += static_cast<double>(document_.accessors[*primitive.positions].count);
         }
         targets = std::max(targets, primitive.targets.size());
+        has_materials_ = has_materials_ || primitive.material;
       }
     }
     check_scene_size(document_.path, vertices, static_cast<double>(targets) + 1,
@@ -413,7 +414,7 @@ class GltfReader {
 
   /// Faces without a material do not have that of the faces before them.
   void add_group(const GltfPrimitive& primitive, ScenePart& part) const {
-    if (document_.materials.empty()) return;
+    if (!has_materials_) return;
     std::string name = "none";
     if (primitive.material) {
       name = document_.materials[*primitive.material].name;
@@ -507,6 +508,7 @@ class GltfReader {
   std::map<std::size_t, Eigen::Matrix4d> worlds_;
   GltfMotion motion_;
   std::set<std::size_t> joints_;
+  bool has_materials_ = false;  ///< whether a primitive that is shown has one
   std::set<std::string> left_out_, unread_;
   std::vector<std::string> notes_, motion_notes_;
 };

@@ -66,6 +66,9 @@ struct JoinedExpression {
 /// Gathers targets by name.
 class ExpressionList {
  public:
+  /// \param names of all targets, which none gets that is called otherwise
+  explicit ExpressionList(std::set<std::string> names) : of_targets_(std::move(names)) {}
+
   void add(std::size_t part, const std::string& part_name, int target, const std::string& name,
            const Eigen::VectorXd& weights) {
     constexpr double kRounding = 1e-6;
@@ -74,14 +77,15 @@ class ExpressionList {
       JoinedExpression& expression = expressions[index];
       // Two of one name in one mesh are two.
       const bool is_same = (expression.weights - weights).isZero(kRounding);
-      if (expression.from.back().first == part || !is_same) continue;
+      if (!is_same || moves_part(namesakes, index, part)) continue;
       expression.from.emplace_back(part, target);
       return;
     }
     std::string free = name;
-    for (; !names_.insert(free).second; ++namesakes.next) {
-      free = name + '_' + std::to_string(namesakes.next);
-    }
+    const auto is_taken = [&] {
+      return (free != name && of_targets_.contains(free)) || !names_.insert(free).second;
+    };
+    for (; is_taken(); ++namesakes.next) free = name + '_' + std::to_string(namesakes.next);
     JoinedExpression expression{free, weights, {{part, target}}, joined_by(namesakes, part)};
     if (free != name) {
       (expression.joins ? renamed_in_take : renamed)
@@ -100,17 +104,26 @@ class ExpressionList {
     int next = 2;  ///< the number of the next one that is not the same
   };
 
-  /// The first of a name, if `part` has no other one of it.
+  /// Whether an expression of the model moves `part` already, by itself or one that joins it.
+  bool moves_part(const Namesakes& namesakes, std::size_t expression, std::size_t part) const {
+    const std::size_t whole = expressions[expression].joins.value_or(expression);
+    return std::ranges::any_of(namesakes.expressions, [&](std::size_t index) {
+      return expressions[index].joins.value_or(index) == whole &&
+             std::ranges::any_of(expressions[index].from,
+                                 [part](const auto& from) { return from.first == part; });
+    });
+  }
+
+  /// The first of a name that does not move `part` yet.
   std::optional<std::size_t> joined_by(const Namesakes& namesakes, std::size_t part) const {
-    if (namesakes.expressions.empty()) return std::nullopt;
     for (const std::size_t index : namesakes.expressions) {
-      if (expressions[index].from.back().first == part) return std::nullopt;
+      if (!expressions[index].joins && !moves_part(namesakes, index, part)) return index;
     }
-    return namesakes.expressions.front();
+    return std::nullopt;
   }
 
   std::map<std::string, Namesakes> by_name_;
-  std::set<std::string> names_;
+  std::set<std::string> of_targets_, names_;
 };
 
 /// Weights of a part's targets in all frames (frames x targets); 0 where nothing is said.
@@ -131,7 +144,11 @@ bool is_animated(const ScenePart& part) {
 /// Those that are animated first, to which the names belong.
 ExpressionList expressions_of(const std::vector<ScenePart>& parts, const Eigen::VectorXd& times,
                               int frames) {
-  ExpressionList list;
+  std::set<std::string> names;
+  for (const ScenePart& part : parts) {
+    for (const SceneTarget& target : part.targets) names.insert(target.name);
+  }
+  ExpressionList list(std::move(names));
   for (const bool animated : {true, false}) {
     for (std::size_t p = 0; p < parts.size(); ++p) {
       if (is_animated(parts[p]) != animated) continue;
@@ -205,26 +222,12 @@ double steps_between(double key, double next) {
   return std::max(1., std::ceil((next - key) * kDefaultFramesPerSecond - kAllowance));
 }
 
-/// The keys of a curve on steps, and a frame before each at which it jumps: until then it stays.
-std::vector<double> times_of_steps(const WeightCurve& curve) {
-  const Eigen::VectorXd& keys = curve.times;
-  std::vector<double> times = {keys[0]};
-  for (Eigen::Index k = 1; k < keys.size(); ++k) {
-    const double interval = keys[k] - keys[k - 1], steps = steps_between(keys[k - 1], keys[k]);
-    const bool jumps = curve.values.row(k) != curve.values.row(k - 1);
-    if (jumps && steps > 1) times.push_back(keys[k] - interval / steps);
-    times.push_back(keys[k]);
-  }
-  return times;
-}
-
-/// The keys of a curve, and times between those of splines and steps, which move on a line nowhere.
-/// They rise.
+/// The keys of a curve, and times between those of splines, which move on a line nowhere. They
+/// rise.
 std::vector<double> shown_times(const std::string& path, const WeightCurve& curve) {
   const Eigen::VectorXd& keys = curve.times;
   std::vector<double> times(keys.begin(), keys.end());
-  if (curve.between == WeightCurve::Between::linear || times.empty()) return times;
-  if (curve.between == WeightCurve::Between::step) return times_of_steps(curve);
+  if (curve.between != WeightCurve::Between::cubic || times.empty()) return times;
   double most = 0;
   for (Eigen::Index k = 1; k < keys.size(); ++k) most += steps_between(keys[k - 1], keys[k]);
   constexpr double kMostFrames = 1e6;
@@ -242,6 +245,19 @@ std::vector<double> shown_times(const std::string& path, const WeightCurve& curv
     times.push_back(keys[k]);
   }
   return times;
+}
+
+/// A frame before each jump of a curve on steps, until which it stays, unless there is one.
+void add_times_before_jumps(const WeightCurve& curve, std::set<double>& times) {
+  constexpr double kLongestFrame = 1. / 20;  // of other curves
+  const Eigen::VectorXd& keys = curve.times;
+  for (Eigen::Index k = 1; k < keys.size(); ++k) {
+    const double steps = steps_between(keys[k - 1], keys[k]);
+    if (steps < 2 || curve.values.row(k) == curve.values.row(k - 1)) continue;
+    const auto next = times.lower_bound(keys[k] - kLongestFrame);
+    const bool has_frame = next != times.end() && *next < keys[k] && key_place(keys, *next).key < k;
+    if (!has_frame) times.insert(keys[k] - (keys[k] - keys[k - 1]) / steps);
+  }
 }
 
 /// Those of all curves. Times that only rounding parts are that of the first curve.
@@ -262,6 +278,9 @@ Eigen::VectorXd shown_times(const std::string& path,
       if (!is_known) added.push_back(*time);
     }
     times.insert(added.begin(), added.end());
+  }
+  for (const WeightCurve* curve : curves) {
+    if (curve->between == WeightCurve::Between::step) add_times_before_jumps(*curve, times);
   }
   Eigen::VectorXd all(static_cast<Eigen::Index>(times.size()));
   std::copy(times.begin(), times.end(), all.begin());

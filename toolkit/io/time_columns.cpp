@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
 #include <string_view>
 #include <utility>
@@ -13,13 +14,12 @@ namespace {
 
 constexpr std::array<std::string_view, 6> kNamesOfSeconds = {"time",    "seconds",  "time_s",
                                                              "time(s)", "time_sec", "time(sec)"};
-constexpr std::array<std::string_view, 5> kNamesOfMilliseconds = {"timestamp_ms", "timestampms",
-                                                                  "time_ms", "time(ms)", "ms"};
+constexpr std::array<std::string_view, 4> kNamesOfMilliseconds = {"timestamp_ms", "timestampms",
+                                                                  "time_ms", "time(ms)"};
 
 }  // namespace
 
 std::optional<double> units_per_second(std::string name) {
-  if (name == "t") return 1;
   std::erase(name, ' ');
   const std::string plain = lower_case(std::move(name));
   if (std::ranges::find(kNamesOfSeconds, plain) != kNamesOfSeconds.end()) return 1;
@@ -31,6 +31,22 @@ std::optional<long long> frame_number(double value) {
   constexpr double kMost = 1e12;
   if (!(std::abs(value) < kMost) || value != std::floor(value)) return {};
   return static_cast<long long>(value);
+}
+
+std::optional<long long> frame_number_in(std::string_view field) {
+  std::string text(field);
+  std::ranges::replace(text, ',', '.');
+  double value = 0;
+  const char* const last = text.data() + text.size();
+  const auto [end, error] = std::from_chars(text.data(), last, value);
+  if (error != std::errc() || end != last) return {};
+  return frame_number(value);
+}
+
+std::string note_on_frame_numbers(const std::string& name) {
+  return "'" + name +
+         "' is not used, since it does not have a whole number in every frame, each higher than "
+         "the one before; without times frames follow each other without a pause";
 }
 
 }  // namespace mimetra

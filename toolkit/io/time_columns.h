@@ -2,19 +2,25 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 
 /// What columns and keys of times are called, and the numbers of frames. For the readers of weights
 /// and landmarks.
 namespace mimetra {
 
 /// In how many units a column or key of this name counts a second, in any case and with or without
-/// blanks: 1 for "time", "seconds", "time_s", "time (s)", "time_sec" and "time (sec)", and for "t",
-/// 1000 for "timestamp_ms", "timestampMs", "time_ms", "time (ms)" and "ms". None for others: "T" is
-/// a mouth's shape, and "timestamp" does not say its unit.
+/// blanks: 1 for "time", "seconds", "time_s", "time (s)", "time_sec" and "time (sec)", 1000 for
+/// "timestamp_ms", "timestampMs", "time_ms" and "time (ms)". None for others: "t" may be a mouth's
+/// shape, "ms" how long something took, and "timestamp" does not say its unit.
 std::optional<double> units_per_second(std::string name);
 
 /// The number of a frame that a file has as `value`; none for one with a fraction or of more than
 /// 12 digits.
 std::optional<long long> frame_number(double value);
+/// That in a field of a table, whose point may be a comma; none for other text.
+std::optional<long long> frame_number_in(std::string_view field);
+
+/// Says that what a column or key of this name holds does not number the frames.
+std::string note_on_frame_numbers(const std::string& name);
 
 }  // namespace mimetra

@@ -49,9 +49,7 @@ class WeightReader {
       if (!seen.insert(name).second) csv_.fail("the name '" + std::string(name) + "' occurs twice");
       const std::string plain = lower_case(std::string(name));
       if (const auto units = units_per_second(std::string(name))) {
-        if (time_column_) csv_.fail("there are two columns of times");
-        time_column_ = column;
-        units_per_second_ = *units;
+        take_times(column, *units);
       } else if (plain == "timecode") {
         timecode_column_ = column;
       } else if (plain == kTimestamp) {
@@ -63,6 +61,14 @@ class WeightReader {
       }
     }
     if (weight_columns_.empty()) csv_.fail("no column of weights");
+  }
+
+  /// Seconds go before milliseconds.
+  void take_times(std::size_t column, double units) {
+    if (time_column_ && units == units_per_second_) csv_.fail("there are two columns of times");
+    if (time_column_ && units > units_per_second_) return;
+    time_column_ = column;
+    units_per_second_ = units;
   }
 
   void read_row() {
@@ -93,12 +99,10 @@ class WeightReader {
 
   /// A column of other things than whole numbers tells nothing.
   void read_frame_number(std::string_view text) {
-    double number = 0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-    const bool is_number = error == std::errc() && end == text.data() + text.size();
-    if (const auto frame = is_number ? frame_number(number) : std::nullopt) {
+    if (const auto frame = frame_number_in(text)) {
       frame_numbers_.push_back(*frame);
     } else {
+      frame_note_ = note_on_frame_numbers(std::string(csv_.names()[*frame_column_]));
       frame_column_.reset();
       frame_numbers_.clear();
     }
@@ -137,6 +141,7 @@ class WeightReader {
       RowNumbers numbers = row_numbers(frame_numbers_);
       result.step = static_cast<double>(numbers.step);
       if (!numbers.note.empty()) result.notes.push_back(std::move(numbers.note));
+      if (!frame_note_.empty()) result.notes.push_back(frame_note_);
     }
     const auto columns = static_cast<Eigen::Index>(weight_columns_.size());
     for (const std::size_t column : weight_columns_) {
@@ -177,6 +182,7 @@ class WeightReader {
   std::vector<double> times_;
   std::vector<Timecode> timecodes_;
   std::vector<std::string> notes_;
+  std::string frame_note_;  ///< on numbers of frames that are not used
   int frames_ = 0;
 };
 
@@ -188,10 +194,11 @@ constexpr double kLeastPercent = 10;
 
 /// Rotations of head and eyes, which captures write beside the weights.
 bool is_rotation(const std::string& name) {
+  constexpr std::string_view kBones[] = {"head", "lefteye", "righteye"};
+  constexpr std::string_view kAngles[] = {"yaw", "pitch", "roll", "rx", "ry", "rz"};
   const std::string plain = folded_name(name);
-  const bool is_angle =
-      plain.ends_with("yaw") || plain.ends_with("pitch") || plain.ends_with("roll");
-  return plain.starts_with("head") || (is_angle && plain.find("eye") != std::string::npos);
+  return std::ranges::any_of(kBones, [&](auto bone) { return plain.starts_with(bone); }) &&
+         std::ranges::any_of(kAngles, [&](auto angle) { return plain.ends_with(angle); });
 }
 
 std::vector<Eigen::Index> columns_of_weights(const WeightTrack& track) {
@@ -207,9 +214,10 @@ bool look_like_percent(const Eigen::MatrixXd& weights) {
   constexpr double kBeyond = 1.5, kMany = 0.05;
   const auto beyond = static_cast<double>((weights.array() > kBeyond).count());
   const Eigen::ArrayXd most = weights.colwise().maxCoeff().transpose();
-  return beyond > kMany * static_cast<double>(weights.size()) &&
-         2 * (most > kBeyond).count() > (most > 0).count() && most.maxCoeff() <= 100 &&
-         weights.minCoeff() >= 100 * kLeastUsual;
+  const double many = kMany * static_cast<double>(weights.size());
+  const auto below = static_cast<double>((weights.array() < 10 * kLeastUsual).count());
+  return beyond > many && below <= many && 2 * (most > kBeyond).count() > (most > 0).count() &&
+         most.maxCoeff() <= 100 && weights.minCoeff() >= 100 * kLeastUsual;
 }
 
 /// Divides weights in percent by 100; notes that, and weights that nobody means.

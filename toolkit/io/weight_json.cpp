@@ -190,19 +190,24 @@ class WeightJson {
     if (!timed) read_times();
   }
 
-  /// A row's time and in how many units it counts a second; null where it has none.
+  /// A row's time and in how many units it counts a second, seconds before milliseconds; null
+  /// where it has none.
   static std::pair<const Json*, double> time_of(const Json& row) {
     if (!row.is_object()) return {nullptr, 1};
+    std::pair<const Json*, double> found = {nullptr, 1};
     for (const auto& [key, value] : row.items()) {
-      if (const auto units = units_per_second(key)) return {&value, *units};
+      const auto units = units_per_second(key);
+      if (units && (!found.first || *units < found.second)) found = {&value, *units};
     }
-    return {nullptr, 1};
+    return found;
   }
 
   /// Of the first key that has one.
-  static std::optional<long long> frame_number_of(const Json& row) {
+  std::optional<long long> frame_number_of(const Json& row) {
     for (const auto& [key, value] : row.items()) {
-      if (!holds_frame_numbers(key) || !value.is_number()) continue;
+      if (!holds_frame_numbers(key)) continue;
+      frame_key_ = key;
+      if (!value.is_number()) continue;
       if (const auto number = frame_number(value.get<double>())) return number;
     }
     return {};
@@ -210,12 +215,9 @@ class WeightJson {
 
   /// The numbers of all rows; none where some have none, which is noted.
   std::vector<long long> numbers_of_all() {
-    if (frame_numbers_.empty() || std::ssize(frame_numbers_) == track_.weights.rows()) {
-      return frame_numbers_;
-    }
-    track_.notes.emplace_back(
-        "numbers of frames are not used, since some rows have none; without times frames follow "
-        "each other without a pause");
+    const bool all_have_one = std::ssize(frame_numbers_) == track_.weights.rows();
+    if (frame_key_.empty() || all_have_one) return frame_numbers_;
+    track_.notes.push_back(note_on_frame_numbers(frame_key_));
     return {};
   }
 
@@ -223,6 +225,7 @@ class WeightJson {
   /// weights, without "_neutral", which is no expression; of no face an empty one.
   Json scores_of(const Json& found, const std::string& place) const {
     const Json* list = &found;
+    if (list->is_null()) return Json::object();
     while (list->is_array() && list->size() == 1 && !member(list->front(), kCategoryNames)) {
       list = &list->front();
     }
@@ -272,6 +275,7 @@ class WeightJson {
   Json root_;
   WeightTrack track_;
   std::vector<long long> frame_numbers_;
+  std::string frame_key_;
   std::map<std::string, Eigen::Index> columns_;
 };
 

@@ -35,7 +35,7 @@ constexpr std::string_view choice_name(Exclusive value) {
 std::string spelled_out(const std::string& name);
 
 /// `jawOpen` of `blendShape1.jawOpen`, as the shapes of a node are called; the same where no node
-/// is named, also of `smile.L`.
+/// is named, also of `smile.L`, `smile.left` and `smile.001`.
 std::string without_node(const std::string& name);
 
 /// `browInnerUp` of `browInnerUp_L`, `browInnerUpLeft` and the like. `jawLeft` and `mouthLeft`,

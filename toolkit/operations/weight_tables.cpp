@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "toolkit/io/live_link.h"
+#include "toolkit/io/time_columns.h"
 #include "toolkit/io/weight_file.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/text.h"
@@ -61,11 +62,15 @@ std::vector<std::string> live_link_losses(const Data& data, const std::filesyste
   return notes;
 }
 
-/// An expression may be called as the column of times is.
+/// An expression may be called as a column of times is, and would be read as one.
 void check_one_time(const Table& table, const std::filesystem::path& target) {
-  if (std::ranges::count(table.columns, kTimeColumn) < 2) return;
-  throw MismatchError(target.string() + ": an expression is called '" + kTimeColumn +
-                      "', as the column of times is; rename the expression");
+  if (table.columns.empty() || table.columns.front() != kTimeColumn) return;
+  const auto other =
+      std::find_if(table.columns.begin() + 1, table.columns.end(),
+                   [](const std::string& column) { return units_per_second(column).has_value(); });
+  if (other == table.columns.end()) return;
+  throw MismatchError(target.string() + ": an expression is called '" + *other +
+                      "', as a column of times is; rename the expression");
 }
 
 /// A format of tables, or of a sequence's weights as such a table.

@@ -161,28 +161,38 @@ bool is_same(const Field& a, const Field& b) {
          (x.array() == y.array() || (x.array().isNaN() && y.array().isNaN())).all();
 }
 
-/// The fields of the first frame, parted into those that all frames looked at have, and others.
+/// The fields of all frames looked at, parted into those that are the same in each, and others.
 class ComparedFields {
  public:
   explicit ComparedFields(std::vector<Field> first) : steady_(std::move(first)) {}
 
   void look_at(const std::vector<Field>& later) {
-    const auto changed = std::ranges::stable_partition(steady_, [&later](const Field& field) {
+    const auto stays = [&later](const Field& field) {
       return std::ranges::any_of(later, [&](const Field& other) { return is_same(field, other); });
-    });
-    std::move(changed.begin(), changed.end(), std::back_inserter(changing_));
-    steady_.erase(changed.begin(), changed.end());
+    };
+    const auto changed = std::stable_partition(steady_.begin(), steady_.end(), stays);
+    std::move(changed, steady_.end(), std::back_inserter(changing_));
+    steady_.erase(changed, steady_.end());
+    for (const Field& field : later) {
+      if (!has(steady_, field) && !has(changing_, field)) changing_.push_back(field);
+    }
   }
 
   const std::vector<Field>& steady() const { return steady_; }
   const std::vector<Field>& changing() const { return changing_; }
 
  private:
+  static bool has(const std::vector<Field>& fields, const Field& wanted) {
+    return std::ranges::any_of(fields, [&wanted](const Field& field) {
+      return field.name == wanted.name && field.location == wanted.location;
+    });
+  }
+
   std::vector<Field> steady_, changing_;
 };
 
-/// What several frames show, of which the first is read already: rest poses, as displacements lead
-/// from it and as it came along a pipeline, and the fields beside them.
+/// What the frames show, of which the first is read already: rest poses in some, as displacements
+/// lead from it and as it came along a pipeline, and the fields of all.
 struct Findings {
   std::optional<Positions> displaced;
   std::optional<CarriedRest> carried;
@@ -199,15 +209,17 @@ Findings look_through(vtkPolyData& first, const Positions& positions,
   const auto is_whole = [&carried] { return carried && carried->note.empty(); };
   ComparedFields fields(with_fields ? fields_of(first, connectivity) : std::vector<Field>());
   for (int f = 1; f < static_cast<int>(files.size()); ++f) {
-    if (!displaced.looks_at(f)) continue;
-    if (!displaced.is_possible() && !is_whole() && fields.steady().empty()) break;
+    const bool is_sampled = displaced.looks_at(f);
+    if (!is_sampled && fields.steady().empty()) continue;
+    if (!displaced.is_possible() && !is_whole() && !with_fields) break;
     const fs::path& file = files[static_cast<std::size_t>(f)].file;
     const auto data = read_poly_data(file);
-    const Positions later = positions_of(*data, file.string());
-    displaced.look_at(*data, later);
-    if (!fields.steady().empty()) {
+    if (with_fields) {
       fields.look_at(fields_of(*data, faces_of(*data, file, connectivity, files.front().file)));
     }
+    if (!is_sampled) continue;
+    const Positions later = positions_of(*data, file.string());
+    displaced.look_at(*data, later);
     if (!is_whole()) continue;
     if (const auto of_this = rest_of(*data, later, file.string())) carried->note = of_this->note;
   }
@@ -234,7 +246,7 @@ std::vector<std::string> notes_on(const Findings& found) {
   }
   if (!changing.empty()) {
     notes.push_back(
-        "a field that changes over the frames is left out: " + listed(changing) +
+        "a field that changes over the frames, or is not in all, is left out: " + listed(changing) +
         "; to keep that of frame k, convert it alone into .vtp (option 'frames' k:k+1)");
   }
   if (!rounded.empty()) {

@@ -66,13 +66,12 @@ struct VtpReadOptions {
 };
 
 /// A series as write_vtp_series writes it, and ParaView too: NAME.pvd, NAME.vtp.series, or one
-/// NAME.vtp. Fields are those of the first chosen frame that do not change over the frames; those
-/// that do are left out, which is noted. The frames compared are those that DisplacedRest looks at:
-/// all of up to 15, and a sample of more, so that a field which changes only between these stays as
-/// it is in the first. `displacement` gives the rest pose, and is not a field, where DisplacedRest
-/// finds one. The other frames are read when they are needed, which throws as this does: IoError
-/// that names the file, MismatchError where a frame has other vertices or faces; these may come in
-/// another order or be cut otherwise, as long as none is flipped.
+/// NAME.vtp. Fields are those that all chosen frames have and that do not change over them, for
+/// which each is read once; others are left out, which is noted (those that only some have and the
+/// first has not where DisplacedRest looks). `displacement` gives the rest pose, and is not a
+/// field, where DisplacedRest finds one. The other frames are read when they are needed, which
+/// throws as this does: IoError that names the file, MismatchError where a frame has other vertices
+/// or faces; these may come in another order or be cut otherwise, as long as none is flipped.
 FieldSequence open_vtp_series(const std::filesystem::path& path, const VtpReadOptions& = {});
 
 /// The same with all frames in memory. Throws Cancelled, too.
