@@ -228,6 +228,10 @@ TEST_F(OrderOfFrames, BeginsWithTheOneThatHasNoPoint) {
   EXPECT_THAT(ordered(stems), ElementsAreArray(stems));
 }
 
+TEST_F(OrderOfFrames, BeginsAtZeroHoweverFewFollow) {
+  EXPECT_THAT(ordered({"0", "0.5"}), ElementsAre("0", "0.5"));
+}
+
 TEST_F(OrderOfFrames, LeavesOutAMeshThatIsNamedAsItsTake) {
   EXPECT_THAT(ordered({"take1", "take1.1", "take1.2", "take1.3"}),
               ElementsAre("take1.1", "take1.2", "take1.3"));

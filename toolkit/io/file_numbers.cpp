@@ -142,7 +142,7 @@ class DecimalSeries {
 
   /// What is neither decimal nor whole is unclear.
   bool is_decimal() const {
-    if (begins_with_zero()) return are_distinct(numbers_);
+    if (begins_with_zero() || begins_at_zero()) return are_distinct(numbers_);
     return has_even_decimals() && !has_even_whole_numbers();
   }
   bool is_whole() const {
@@ -174,6 +174,11 @@ class DecimalSeries {
   bool has_even_whole_numbers() const {
     return !has_plain() && has_one_integer_part() && names_[0].integer_part[0] != '-' &&
            are_even(whole_numbers(pointed_));
+  }
+  /// "0.obj" and "0.5.obj".
+  bool begins_at_zero() const {
+    return has_plain() && has_one_integer_part() && longer_.empty() &&
+           integer(names_[0].integer_part) == 0;
   }
   bool has_close_whole_numbers() const {
     return has_one_integer_part() && are_close(whole_numbers(pointed_));
