@@ -338,7 +338,8 @@ TEST_F(Weights, NameFramesThatNoRowHasWhereThereAreNoTimes) {
               ElementsAre(HasSubstr("no row has these frames: 3 to 6")));
   EXPECT_THAT(notes_of("frame,a\n0,0\n2,0\n4,0\n"), testing::IsEmpty());
   EXPECT_THAT(notes_of("frame,time,a\n1,0,0\n7,0.2,0\n8,0.3,0\n"), testing::IsEmpty());
-  EXPECT_THAT(notes_of("frame,a\nfirst,0\n2,0\n7,0\n"), testing::IsEmpty());
+  EXPECT_THAT(notes_of("frame,a\nfirst,0\n2,0\n7,0\n"),
+              ElementsAre(HasSubstr("'frame' is not used")));
 }
 
 TEST_F(Weights, OfRowsThatCountInStepsAreAsManyFramesApart) {
