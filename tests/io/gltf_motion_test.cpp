@@ -141,10 +141,9 @@ GltfBuilder with_second_mesh(GltfBuilder gltf, const std::vector<std::string>& n
 TEST_F(GltfFiles, AMeshWithoutAMaterialDoesNotHaveThatOfTheOneBefore) {
   GltfBuilder gltf = with_second_mesh(plain(), {"smile"});
   const auto statements = [&] {
+    const BlendshapeModel face = model(gltf.glb());
     std::vector<std::string> found;
-    for (const FaceGroup& group : model(gltf.glb()).connectivity().groups) {
-      found.push_back(group.statement);
-    }
+    for (const FaceGroup& group : face.connectivity().groups) found.push_back(group.statement);
     return found;
   };
   gltf.root["materials"] = {{{"name", "skin"}}};
