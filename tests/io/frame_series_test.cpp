@@ -329,6 +329,7 @@ TEST(SortedNumbers, AreInTheOrderOfFramesBehindTheNumberOfATake) {
   for (int first = 0; first < 120; ++first) {
     for (int count = 2; count < 30; ++count) {
       std::vector<fs::path> files;
+      files.reserve(static_cast<std::size_t>(count));
       for (int i = 0; i < count; ++i) {
         files.emplace_back("take1." + std::to_string(first + i) + ".obj");
       }
