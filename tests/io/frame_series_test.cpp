@@ -249,6 +249,16 @@ TEST_F(OrderOfFrames, BehindANumberAndAPointIsThatOfIntegersSomeOfWhichAreMissin
               ElementsAre("v1.8", "v1.9", "v1.11", "v1.12"));
 }
 
+TEST_F(OrderOfFrames, OfAPatternTakesAMeshBesideItsFrames) {
+  for (const char* name : {"take1.obj", "take1.8.obj", "take1.9.obj", "take1.10.obj"}) write(name);
+  EXPECT_EQ(frames_of_pattern((folder_ / "take1*.obj").string()).frames.size(), 4u);
+}
+
+TEST_F(OrderOfFrames, LeavesOutAMeshOfTheNumberZeroBesidePaddedFrames) {
+  EXPECT_THAT(ordered({"shot0", "shot0.0101", "shot0.0102", "shot0.0103"}),
+              ElementsAre("shot0.0101", "shot0.0102", "shot0.0103"));
+}
+
 TEST_F(OrderOfFrames, LeavesOutAMeshBesideFramesOfAnyStep) {
   EXPECT_THAT(ordered({"mesh_1", "mesh_1.0002", "mesh_1.0004", "mesh_1.0006"}),
               ElementsAre("mesh_1.0002", "mesh_1.0004", "mesh_1.0006"));

@@ -43,6 +43,9 @@ TEST_F(OddWeights, InPercentAreKnownBesideRotations) {
 }
 
 TEST_F(OddWeights, OfRotationsAreNoReasonToWarn) {
+  const WeightTrack few = read("jawOpen,headRotX,headRotationY,eyeYaw\n0.2,12,6,18\n0.8,14,7,19\n");
+  EXPECT_THAT(few.weights.col(0), ElementsAre(0.2, 0.8));
+  EXPECT_THAT(few.notes, testing::IsEmpty());
   EXPECT_THAT(read("JawOpen,HeadYaw,RightEyeRoll\n0.5,-0.3,2.5\n").notes, testing::IsEmpty());
   EXPECT_THAT(read("headYaw,headPitch\n20,30\n").notes, testing::IsEmpty());
 }
@@ -100,6 +103,9 @@ TEST_F(OddWeights, CountByTheNumbersOfTheirFramesWhereAllHaveOne) {
 TEST_F(OddWeights, OfShapesOfANodeMatchWithoutIt) {
   const WeightTrack track = read("jawOpen,mouthSmileLeft\n0.5,1\n");
   EXPECT_THAT(match_weights(track, {"blendShape1.jawOpen", "face.mouthSmile_L", "smile.L"}).column,
+              ElementsAre(0, 1, -1));
+  const WeightTrack visemes = read("aa,PP,left\n0.5,1,0\n");
+  EXPECT_THAT(match_weights(visemes, {"visemes.aa", "visemes.PP", "smile.left"}).column,
               ElementsAre(0, 1, -1));
 }
 

@@ -147,7 +147,8 @@ class DecimalSeries {
   }
   bool is_whole() const {
     constexpr std::size_t kFewest = 4;  // 5, 15 and 25 may be 0.15, 0.25 and 0.5
-    if (has_plain()) return is_one_take();
+    if (has_plain() && !has_one_integer_part()) return false;
+    if (has_plain() && is_one_take()) return true;
     if (ends_with_zero()) return !begins_with_zero();
     if (has_close_whole_numbers() && !has_even_decimals()) return !begins_with_zero();
     return names_.size() >= kFewest && has_even_whole_numbers() && !has_even_decimals();
@@ -175,10 +176,17 @@ class DecimalSeries {
     return !has_plain() && has_one_integer_part() && names_[0].integer_part[0] != '-' &&
            are_even(whole_numbers(pointed_));
   }
+  /// "0101" and "0102", as frames are numbered.
+  bool are_padded() const {
+    return are_close(whole_numbers(pointed_)) &&
+           std::ranges::all_of(pointed_, [](const auto& name) {
+             return name.count() > 1 && name.decimals[0] == '0';
+           });
+  }
   /// "0.obj" and "0.5.obj".
   bool begins_at_zero() const {
     return has_plain() && has_one_integer_part() && longer_.empty() &&
-           integer(names_[0].integer_part) == 0;
+           integer(names_[0].integer_part) == 0 && !are_padded();
   }
   bool has_close_whole_numbers() const {
     return has_one_integer_part() && are_close(whole_numbers(pointed_));

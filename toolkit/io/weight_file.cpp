@@ -194,10 +194,13 @@ constexpr double kLeastPercent = 10;
 
 /// Rotations of head and eyes, which captures write beside the weights.
 bool is_rotation(const std::string& name) {
-  constexpr std::string_view kBones[] = {"head", "lefteye", "righteye"};
-  constexpr std::string_view kAngles[] = {"yaw", "pitch", "roll", "rx", "ry", "rz"};
+  constexpr std::string_view kBones[] = {"head", "neck", "eye", "lefteye", "righteye"};
+  constexpr std::string_view kAngles[] = {"yaw",  "pitch",     "roll",      "rx",
+                                          "ry",   "rz",        "rotx",      "roty",
+                                          "rotz", "rotationx", "rotationy", "rotationz"};
   const std::string plain = folded_name(name);
-  return std::ranges::any_of(kBones, [&](auto bone) { return plain.starts_with(bone); }) &&
+  return plain != "eyeroll" &&
+         std::ranges::any_of(kBones, [&](auto bone) { return plain.starts_with(bone); }) &&
          std::ranges::any_of(kAngles, [&](auto angle) { return plain.ends_with(angle); });
 }
 

@@ -77,12 +77,11 @@ std::string spelled_out(const std::string& name) {
 }
 
 std::string without_node(const std::string& name) {
-  constexpr std::size_t kShortest = 3;
   const auto point = name.find('.');
   if (point == std::string::npos) return name;
   std::string shape = name.substr(point + 1);
   const std::string plain = lower_case(shape);
-  const bool is_side = plain.size() < kShortest || plain == "left" || plain == "right";
+  const bool is_side = plain.size() < 2 || plain == "left" || plain == "right";
   const bool is_number = plain.find_first_not_of("0123456789") == std::string::npos;
   return is_side || is_number ? name : shape;
 }

@@ -63,12 +63,11 @@ std::vector<std::string> live_link_losses(const Data& data, const std::filesyste
 }
 
 /// An expression may be called as a column of times is, and would be read as one.
-void check_one_time(const Table& table, const std::filesystem::path& target) {
-  if (table.columns.empty() || table.columns.front() != kTimeColumn) return;
+void check_names(const Table& weights, bool timed, const std::filesystem::path& target) {
   const auto other =
-      std::find_if(table.columns.begin() + 1, table.columns.end(),
+      std::find_if(weights.columns.begin() + (timed ? 1 : 0), weights.columns.end(),
                    [](const std::string& column) { return units_per_second(column).has_value(); });
-  if (other == table.columns.end()) return;
+  if (other == weights.columns.end()) return;
   throw MismatchError(target.string() + ": an expression is called '" + *other +
                       "', as a column of times is; rename the expression");
 }
@@ -78,7 +77,8 @@ template <std::string (Table::*Text)() const>
 Paths write_table(const Data& data, const WriteRequest& request) {
   const auto* given = std::get_if<Table>(&data);
   const Table table = given ? *given : weight_table(track_of(data, request.target));
-  check_one_time(table, request.target);
+  const bool timed = !table.columns.empty() && table.columns.front() == kTimeColumn;
+  if (timed || !given) check_names(table, timed, request.target);
   return write_text(request, (table.*Text)());
 }
 
