@@ -146,6 +146,27 @@ TEST(Draco, EveryTruncatedPrefixIsAnError) {
   }
 }
 
+TEST(Draco, VersionsFromBeforeGltfAreRefused) {
+  test::TemporaryFolder folder;
+  std::string encoded = draco_octahedron();
+  encoded[5] = encoded[6] = 1;
+  write_bytes(folder / "a.glb", draco_glb(encoded));
+  EXPECT_THAT(test::message_of<IoError>([&] { read_blendshapes((folder / "a.glb").string()); }),
+              HasSubstr("it has version 1.1 of Draco's stream, expected 2.2"));
+}
+
+TEST(Draco, MoreFacesThanAFileCanMeanAreRefusedBeforeTheyTakeMemory) {
+  test::TemporaryFolder folder;
+  std::string encoded = draco_octahedron();
+  // Behind the header, the kind of traversal and the number of vertices, if it has these.
+  const std::size_t faces = encoded[8] == 1 ? 13 : 11;
+  ASSERT_EQ(encoded[faces], 8);
+  encoded.replace(faces, 1, "\xff\xff\xff\x7f");  // 2^28 - 1
+  write_bytes(folder / "a.glb", draco_glb(encoded));
+  EXPECT_THAT(test::message_of<IoError>([&] { read_blendshapes((folder / "a.glb").string()); }),
+              HasSubstr("bytes cannot mean"));
+}
+
 TEST(Draco, TruthValuesAreNoPositions) {
   test::TemporaryFolder folder;
   std::string encoded = draco_octahedron();
