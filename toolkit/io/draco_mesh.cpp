@@ -92,7 +92,8 @@ void check_version(const std::string& path, const std::string& what, std::string
 std::optional<std::uint64_t> stated_faces(std::string_view bytes) {
   constexpr std::size_t kHeader = 11, kMajor = 5, kMinor = 6, kMethod = 8, kFlags = 10;
   if (bytes.size() < kHeader || bytes[kMajor] != 2 || bytes[kMinor] != 2) return {};
-  if (bytes[kFlags] != 0) return {};  // metadata
+  constexpr int kHasMetadata = 0x80;
+  if ((bytes[kFlags] & kHasMetadata) != 0) return {};
   const bool is_edgebreaker = bytes[kMethod] == 1;
   std::size_t at = is_edgebreaker ? kHeader + 1 : kHeader;
   const auto next_count = [&]() -> std::uint64_t {
