@@ -5,10 +5,9 @@
 #include <span>
 #include <string_view>
 
-#include <Eigen/LU>
-
 #include "toolkit/io/draco_mesh.h"
 #include "toolkit/io/gltf_motion.h"
+#include "toolkit/io/gltf_placement.h"
 #include "toolkit/io/gltf_values.h"
 #include "toolkit/io/scene.h"
 #include "toolkit/mesh/errors.h"
@@ -17,82 +16,6 @@
 namespace mimetra {
 namespace fs = std::filesystem;
 namespace {
-
-/// A node with a mesh, or a joint, and where it stands.
-struct PlacedNode {
-  std::size_t node;
-  std::string_view name;  ///< its own, else that of the nearest node above; in the document
-  Eigen::Matrix4d world;
-};
-
-/// Nodes of a scene, depth first in the file's order. Throws IoError for one that is met twice.
-std::vector<PlacedNode> placed_nodes(const GltfDocument& document) {
-  std::vector<PlacedNode> placed, open;
-  for (auto root = document.roots.rbegin(); root != document.roots.rend(); ++root) {
-    open.push_back({*root, {}, Eigen::Matrix4d::Identity()});
-  }
-  std::vector<bool> met(document.nodes.size(), false);
-  while (!open.empty()) {
-    PlacedNode here = std::move(open.back());
-    open.pop_back();
-    if (met[here.node]) {
-      throw IoError(document.path, "nodes[" + std::to_string(here.node) +
-                                       "] is met twice; nodes must form a tree");
-    }
-    met[here.node] = true;
-    const GltfNode& node = document.nodes[here.node];
-    here.world *= node.local;
-    if (!node.name.empty()) here.name = node.name;
-    for (auto child = node.children.rbegin(); child != node.children.rend(); ++child) {
-      open.push_back({*child, here.name, here.world});
-    }
-    placed.push_back(std::move(here));
-  }
-  return placed;
-}
-
-/// A transform of each vertex: one of a node, or one blended of joints.
-class Placement {
- public:
-  explicit Placement(const Eigen::Matrix4d& world) : all_(world.topRows<3>()) {}
-  /// A row of 12 numbers for each vertex, 3 x 4 column by column.
-  explicit Placement(Frames blended) : blended_(std::move(blended)) {}
-
-  /// Which of `vertices` vertices are mirrored. \pre there is a transform for each of them
-  std::vector<bool> mirrored(Eigen::Index vertices) const {
-    if (blended_.rows() == 0) {
-      return std::vector<bool>(static_cast<std::size_t>(vertices), mirrors(all_));
-    }
-    std::vector<bool> flags;
-    for (Eigen::Index v = 0; v < vertices; ++v) flags.push_back(mirrors(of(v)));
-    return flags;
-  }
-
-  /// `points` in place, or as directions. \pre there is a transform for each of them
-  void apply(Positions& points, bool directions) const {
-    for (Eigen::Index v = 0; v < points.rows(); ++v) {
-      const Transform transform = of(v);
-      Eigen::Vector3d moved = transform.leftCols<3>() * points.row(v).transpose();
-      if (!directions) moved += transform.col(3);
-      points.row(v) = moved;
-    }
-  }
-
- private:
-  using Transform = Eigen::Matrix<double, 3, 4>;
-
-  static bool mirrors(const Transform& transform) {
-    return transform.leftCols<3>().determinant() < 0;
-  }
-
-  Transform of(Eigen::Index vertex) const {
-    if (blended_.rows() == 0) return all_;
-    return Eigen::Map<const Transform>(blended_.row(vertex).data());
-  }
-
-  Transform all_ = Transform::Zero();
-  Frames blended_;
-};
 
 std::string number_name(const char* stem, std::size_t number) {
   std::string digits = std::to_string(number);
