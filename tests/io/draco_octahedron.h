@@ -12,6 +12,15 @@
 
 namespace mimetra::test {
 
+/// What a builder has made, as Draco's bytes.
+inline std::string draco_bytes(draco::TriangleSoupMeshBuilder& builder) {
+  const auto mesh = builder.Finalize();
+  draco::Encoder encoder;
+  draco::EncoderBuffer buffer;
+  if (!encoder.EncodeMeshToBuffer(*mesh, &buffer).ok()) throw std::runtime_error("Draco failed");
+  return {buffer.data(), buffer.size()};
+}
+
 /// An octahedron as Draco's bytes: no number is rounded, every point stands once. `hanging` adds
 /// joints (attribute 1) and their weights (2): what lies at x > 0 hangs on joint 1, the rest on 0.
 inline std::string draco_octahedron(bool hanging = false) {
@@ -43,11 +52,7 @@ inline std::string draco_octahedron(bool hanging = false) {
     builder.SetAttributeValuesForFace(weights, draco::FaceIndex(static_cast<std::uint32_t>(t)),
                                       all.data(), all.data(), all.data());
   }
-  const auto mesh = builder.Finalize();
-  draco::Encoder encoder;
-  draco::EncoderBuffer buffer;
-  if (!encoder.EncodeMeshToBuffer(*mesh, &buffer).ok()) throw std::runtime_error("Draco failed");
-  return {buffer.data(), buffer.size()};
+  return draco_bytes(builder);
 }
 
 /// The octahedron's corners times 32767 in 16 bits, which glTF shows as -1 to 1, and a texture
@@ -75,11 +80,7 @@ inline std::string quantised_draco_octahedron() {
     builder.SetAttributeValuesForFace(uv, face, texture[0].data(), texture[1].data(),
                                       texture[2].data());
   }
-  const auto mesh = builder.Finalize();
-  draco::Encoder encoder;
-  draco::EncoderBuffer buffer;
-  if (!encoder.EncodeMeshToBuffer(*mesh, &buffer).ok()) throw std::runtime_error("Draco failed");
-  return {buffer.data(), buffer.size()};
+  return draco_bytes(builder);
 }
 
 }  // namespace mimetra::test

@@ -116,66 +116,57 @@ TEST(Draco, IntegersAreWhatTheirAccessorsNormaliseThemTo) {
   }
 }
 
-TEST(Draco, AMeshWithoutTheJointsThatItsFileNamesSaysSo) {
+/// What reading says of a file.
+std::string refusal(const std::string& glb) {
   test::TemporaryFolder folder;
+  write_bytes(folder / "a.glb", glb);
+  return test::message_of<IoError>([&] { read_blendshapes((folder / "a.glb").string()); });
+}
+
+TEST(Draco, AMeshWithoutTheJointsThatItsFileNamesSaysSo) {
   GltfBuilder gltf = hanging_gltf();
   gltf.root["meshes"][0]["primitives"][0]["extensions"]["KHR_draco_mesh_compression"]["attributes"]
            ["WEIGHTS_0"] = 7;
-  write_bytes(folder / "a.glb", gltf.glb());
-  EXPECT_THAT(test::message_of<IoError>([&] { read_blendshapes((folder / "a.glb").string()); }),
-              HasSubstr("its compressed mesh has no joints"));
+  EXPECT_THAT(refusal(gltf.glb()), HasSubstr("its compressed mesh has no joints"));
 }
 
 TEST(Draco, AVertexOnAJointThatItsSkinDoesNotHaveIsAnError) {
-  test::TemporaryFolder folder;
   GltfBuilder gltf = hanging_gltf();
   gltf.root["skins"][0]["joints"] = {1};
-  write_bytes(folder / "a.glb", gltf.glb());
-  EXPECT_THAT(test::message_of<IoError>([&] { read_blendshapes((folder / "a.glb").string()); }),
-              HasSubstr("hangs on joint 1 of 1, which count from 0"));
+  EXPECT_THAT(refusal(gltf.glb()), HasSubstr("hangs on joint 1 of 1, which count from 0"));
 }
 
 TEST(Draco, EveryTruncatedPrefixIsAnError) {
-  test::TemporaryFolder folder;
   const std::string encoded = draco_octahedron();
   for (std::size_t bytes = 0; bytes < encoded.size(); ++bytes) {
-    write_bytes(folder / "a.glb", draco_glb(encoded.substr(0, bytes)));
-    EXPECT_THAT(test::message_of<IoError>([&] { read_blendshapes((folder / "a.glb").string()); }),
-                HasSubstr("a.glb: 'mesh_000'"))
+    EXPECT_THAT(refusal(draco_glb(encoded.substr(0, bytes))), HasSubstr("a.glb: 'mesh_000'"))
         << bytes;
   }
 }
 
 TEST(Draco, VersionsFromBeforeGltfAreRefused) {
-  test::TemporaryFolder folder;
   std::string encoded = draco_octahedron();
   encoded[5] = encoded[6] = 1;
-  write_bytes(folder / "a.glb", draco_glb(encoded));
-  EXPECT_THAT(test::message_of<IoError>([&] { read_blendshapes((folder / "a.glb").string()); }),
+  EXPECT_THAT(refusal(draco_glb(encoded)),
               HasSubstr("it has version 1.1 of Draco's stream, expected 2.2"));
 }
 
 TEST(Draco, MoreFacesThanAFileCanMeanAreRefusedBeforeTheyTakeMemory) {
-  test::TemporaryFolder folder;
   std::string encoded = draco_octahedron();
   // Behind the header, the kind of traversal and the number of vertices, if it has these.
   const std::size_t faces = encoded[8] == 1 ? 13 : 11;
   ASSERT_EQ(encoded[faces], 8);
   encoded.replace(faces, 1, "\xff\xff\xff\x7f");  // 2^28 - 1
-  write_bytes(folder / "a.glb", draco_glb(encoded));
-  EXPECT_THAT(test::message_of<IoError>([&] { read_blendshapes((folder / "a.glb").string()); }),
-              HasSubstr("bytes cannot mean"));
+  EXPECT_THAT(refusal(draco_glb(encoded)), HasSubstr("bytes cannot mean"));
 }
 
 TEST(Draco, TruthValuesAreNoPositions) {
-  test::TemporaryFolder folder;
   std::string encoded = draco_octahedron();
   const std::string positions("\x01\x00\x09\x03", 4);  // one attribute: positions, float32, 3 each
   const auto at = encoded.find(positions);
   ASSERT_NE(at, std::string::npos);
   encoded[at + 2] = 11;
-  write_bytes(folder / "a.glb", draco_glb(encoded));
-  EXPECT_THAT(test::message_of<IoError>([&] { read_blendshapes((folder / "a.glb").string()); }),
+  EXPECT_THAT(refusal(draco_glb(encoded)),
               HasSubstr("its compressed mesh has no number for a vertex"));
 }
 

@@ -1,8 +1,8 @@
 #include "toolkit/io/draco_mesh.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <new>
-#include <optional>
 
 #include <draco/compression/decode.h>
 #include <draco/mesh/mesh.h>
@@ -75,49 +75,48 @@ DracoMesh draco_parts(const std::string& path, const std::string& what, const dr
   return parts;
 }
 
-/// The library also reads versions from before glTF's, in which damage goes further.
-/// [KHR_draco_mesh_compression]
-void check_version(const std::string& path, const std::string& what, std::string_view bytes) {
-  constexpr std::size_t kMajor = 5, kMinor = 6;
-  if (bytes.size() <= kMinor) return;
-  const int major = static_cast<unsigned char>(bytes[kMajor]);
-  const int minor = static_cast<unsigned char>(bytes[kMinor]);
-  if (major > 2 || (major == 2 && minor >= 2)) return;
-  throw IoError(path, what + " cannot be decompressed: it has version " + std::to_string(major) +
-                          '.' + std::to_string(minor) + " of Draco's stream, expected 2.2");
+/// A count of Draco's stream: seven bits a byte, the lowest first.
+std::uint64_t take_count(std::string_view& bytes) {
+  std::uint64_t count = 0;
+  for (int shift = 0; shift < 63 && !bytes.empty(); shift += 7) {
+    const auto byte = static_cast<unsigned char>(bytes.front());
+    bytes.remove_prefix(1);
+    count |= static_cast<std::uint64_t>(byte & 127) << shift;
+    if (byte < 128) break;
+  }
+  return count;
 }
 
-/// The number of faces that a mesh says it has; nothing where it is of another version, or says
-/// something else first. [Draco bitstream 2.2]
-std::optional<std::uint64_t> stated_faces(std::string_view bytes) {
+/// What the library takes for granted: it also reads versions from before glTF's, in which damage
+/// goes further, and takes memory for as many faces as a mesh says it has.
+/// [KHR_draco_mesh_compression; Draco bitstream 2.2]
+void check_header(const std::string& path, const std::string& what, std::string_view bytes) {
   constexpr std::size_t kHeader = 11, kMajor = 5, kMinor = 6, kMethod = 8, kFlags = 10;
-  if (bytes.size() < kHeader || bytes[kMajor] != 2 || bytes[kMinor] != 2) return {};
-  constexpr int kHasMetadata = 0x80;
-  if ((bytes[kFlags] & kHasMetadata) != 0) return {};
+  if (bytes.size() < kHeader) return;  // the library says that it is cut
+  const int major = static_cast<unsigned char>(bytes[kMajor]);
+  const int minor = static_cast<unsigned char>(bytes[kMinor]);
+  if (major < 2 || (major == 2 && minor < 2)) {
+    throw IoError(path, what + " cannot be decompressed: it has version " + std::to_string(major) +
+                            '.' + std::to_string(minor) + " of Draco's stream, expected 2.2");
+  }
+  constexpr int kHasMetadata = 0x80;  // which comes first
+  if ((bytes[kFlags] & kHasMetadata) != 0) return;
+  const std::size_t size = bytes.size();
   const bool is_edgebreaker = bytes[kMethod] == 1;
-  std::size_t at = is_edgebreaker ? kHeader + 1 : kHeader;
-  const auto next_count = [&]() -> std::uint64_t {
-    std::uint64_t count = 0;
-    for (int shift = 0; shift < 63 && at < bytes.size(); shift += 7) {
-      const auto byte = static_cast<unsigned char>(bytes[at++]);
-      count |= static_cast<std::uint64_t>(byte & 127) << shift;
-      if (byte < 128) break;
-    }
-    return count;
-  };
-  if (is_edgebreaker) next_count();  // vertices
-  return next_count();
+  bytes.remove_prefix(kHeader);
+  if (is_edgebreaker) {
+    bytes.remove_prefix(std::min<std::size_t>(1, bytes.size()));  // how it goes from face to face
+    take_count(bytes);                                            // vertices
+  }
+  // As much memory for a face as the positions of a vertex are.
+  check_scene_size(path + ": " + what, static_cast<double>(take_count(bytes)), 1, size);
 }
 
 }  // namespace
 
 DracoMesh decode_draco(const std::string& path, const std::string& what, const GltfDraco& draco,
                        std::string_view bytes) {
-  check_version(path, what, bytes);
-  // The library takes about as much memory for a face as positions of a vertex are.
-  if (const auto faces = stated_faces(bytes)) {
-    check_scene_size(path + ": " + what, static_cast<double>(*faces), 1, bytes.size());
-  }
+  check_header(path, what, bytes);
   draco::DecoderBuffer buffer;
   buffer.Init(bytes.data(), bytes.size());
   draco::Decoder decoder;
