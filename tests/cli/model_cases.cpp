@@ -116,6 +116,8 @@ std::vector<BadInput> weight_cases() {
   add("json_in_a_csv", "[{\"left\": 1}]", 3, {"holds JSON", "call it .json"});
   add("percent", "time,left,right,top\n0,0,50,0\n1,100,20,80\n", 0,
       {"\"frames\": 2", "look like percent", "divided by 100"});
+  add("frames_in_steps", "frame,left,right,top\n1001,0,0,0\n1003,1,0,0\n", 0,
+      {"\"frames\": 2", "rows are 2 frames apart", "--fps gives the rate"});
   add("timecode_that_repeats", "Timecode,left\n01:00:00:01,0\n01:00:00:01,1\n", 3,
       {"line 3", "01:00:00:01 is not later"});
   add("no_timecode", "Timecode,left\nlater,0\n", 3, {"line 2", "HH:MM:SS:FF", "'later'"});

@@ -124,6 +124,12 @@ TEST_F(Vtkhdf, HoldsFieldsOnceAndDisplacementsForEachStep) {
   }
 }
 
+TEST_F(Vtkhdf, KeepsWholeNumbersThatAnIntDoesNotHold) {
+  sequence_.fields = {{"id", Field::Location::vertices, Eigen::VectorXd::Constant(5, 5e9), true}};
+  write_vtkhdf(sequence_, folder_ / "b.vtkhdf");
+  EXPECT_THAT(library_values(folder_ / "b.vtkhdf", "VTKHDF/PointData/id"), Each(5e9));
+}
+
 TEST_F(Vtkhdf, IsTheSameBytesEveryTime) {
   write_vtkhdf(sequence_, folder_ / "b.vtkhdf", {.threads = 1});
   EXPECT_TRUE(read_file(file_) == read_file(folder_ / "b.vtkhdf"));

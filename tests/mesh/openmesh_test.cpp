@@ -241,6 +241,13 @@ TEST(OpenMeshBridge, PutsFieldsIntoPropertiesAndTakesThemBack) {
   EXPECT_EQ(faces.values, (Eigen::VectorXd(5) << 1, 1, 0, 0, 1).finished());
 }
 
+TEST(OpenMeshBridge, KeepsWholeNumbersThatAnIntDoesNotHold) {
+  QuadMesh mesh = house();
+  const Eigen::VectorXd numbers = Eigen::VectorXd::LinSpaced(7, 5e9, 5e9 + 6);
+  set_fields(mesh, {{"id", Field::Location::vertices, numbers, true}});
+  EXPECT_EQ(field_from_openmesh(mesh, "v:id").values, numbers);
+}
+
 TEST(OpenMeshBridge, TakesMasksAndWeightsOfAnyType) {
   QuadMesh mesh = house();
   auto mask = OpenMesh::getOrMakeProperty<OpenMesh::VertexHandle, bool>(mesh, "v:roi");

@@ -37,6 +37,20 @@ Format format_of(const std::string& extension) {
   return format;
 }
 
+TEST(FormatTable, WritesNoWeightsThatWouldBeReadAsTimes) {
+  const OperationTable table = toolkit_table();
+  const test::TemporaryFolder folder;
+  for (const char* extension : {".csv", ".json"}) {
+    const std::filesystem::path target = folder / (std::string("w") + extension);
+    const Format& format = table.writer({"weights", DataKind::table, ""}, target);
+    const Table timed{{"time", "jawOpen", "Time_ms"}, {{0, 0.5, 1}}};
+    const Parameters parameters(format.writing);
+    EXPECT_THAT([&] { format.write(timed, {.target = target, .parameters = parameters}); },
+                ThrowsMessage<MismatchError>(HasSubstr("an expression is called 'Time_ms'")));
+    EXPECT_FALSE(std::filesystem::exists(target));
+  }
+}
+
 TEST(FormatTable, ChoosesTheReaderByExtensionInAnyCase) {
   const OperationTable table = toolkit_table();
   const auto name = [&](DataKind kind, const char* text) { return table.reader(kind, text).name; };

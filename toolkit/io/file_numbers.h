@@ -28,8 +28,9 @@ NumberedName numbered(const std::filesystem::path& file);
 /// The numbers of files beside each other. Two numbers with a point between them are a decimal
 /// number where the files say so: decimals begin with 0 and others are shorter (0.033, 0.1), or all
 /// are evenly spaced, and their integer parts or counts of decimals differ (0.25, 0.5, 0.75, 1.0).
-/// Numbers without a point are of such a series, too (9, 9.5, 10). Where digits behind the point
-/// end with 0 and others are shorter (1.8, 1.9, 1.10), they are whole numbers.
+/// Numbers without a point are of such a series, too (9, 9.5, 10), also 0 before 0.5. Where digits
+/// behind the point end with 0 and others are shorter (1.8, 1.9, 1.10), or half of the whole
+/// numbers between the first and the last are there (1.8, 1.9, 1.11), they are whole numbers.
 class FileNumbers {
  public:
   explicit FileNumbers(const std::vector<std::filesystem::path>& files);

@@ -54,8 +54,8 @@ void check_order(const std::vector<fs::path>& frames) {
                 "comes before " + unclear->first.filename().string() +
                     " if their numbers are decimal, and behind it if not, and nothing tells which; "
                     "name by a pattern only those that are meant, or give all names as many digits "
-                    "behind the point, with zeros at the end of "
-                    "decimals or in front of whole numbers");
+                    "behind the point, with zeros at the end of decimals or in front of whole "
+                    "numbers");
 }
 
 /// "7", or "12 to 15".

@@ -66,7 +66,7 @@ double unevenness_of(const Eigen::VectorXd& times) {
   constexpr double kLeastShare = 0.01;
   if (times.size() < 3) return 0;
   const double first = times[0], last = times[times.size() - 1];
-  const auto even = Eigen::VectorXd::LinSpaced(times.size(), first, last);
+  const Eigen::VectorXd even = Eigen::VectorXd::LinSpaced(times.size(), first, last);
   const double farthest = (times - even).cwiseAbs().maxCoeff();
   const double step = (last - first) / static_cast<double>(times.size() - 1);
   return farthest > kLeastShare * step ? farthest : 0;
