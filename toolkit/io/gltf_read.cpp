@@ -3,7 +3,6 @@
 #include <map>
 #include <set>
 #include <span>
-#include <string_view>
 
 #include "toolkit/io/draco_mesh.h"
 #include "toolkit/io/gltf_motion.h"

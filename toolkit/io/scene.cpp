@@ -1,9 +1,6 @@
 #include "toolkit/io/scene.h"
 
 #include <algorithm>
-#include <cmath>
-#include <iterator>
-#include <limits>
 #include <map>
 #include <set>
 #include <stdexcept>

@@ -6,8 +6,8 @@
 #include <limits>
 #include <set>
 
-#include "toolkit/io/sequence_parts.h"
 #include "toolkit/mesh/errors.h"
+#include "toolkit/mesh/frame_source.h"
 #include "toolkit/mesh/text.h"
 
 namespace mimetra {

@@ -1,5 +1,8 @@
 #include "toolkit/operations/formats.h"
 
+#include <algorithm>
+#include <iterator>
+
 #include "toolkit/io/components_file.h"
 #include "toolkit/io/gltf_write.h"
 #include "toolkit/io/mesh_file.h"
