@@ -10,9 +10,9 @@
 namespace mimetra {
 namespace {
 
-// Types of components.
+// Types of components; the remaining one is that of floats.
 constexpr int kGltfByte = 5120, kGltfUnsignedByte = 5121, kGltfShort = 5122,
-              kGltfUnsignedShort = 5123, kGltfUnsignedInt = 5125, kGltfFloat = 5126;
+              kGltfUnsignedShort = 5123, kGltfUnsignedInt = 5125;
 
 std::size_t gltf_bytes(int type) {
   if (type == kGltfByte || type == kGltfUnsignedByte) return 1;
