@@ -5,6 +5,7 @@
 #include <iterator>
 #include <limits>
 
+#include <Eigen/Geometry>
 #include <nlohmann/json.hpp>
 
 #include "fitting/camera_distance.h"
