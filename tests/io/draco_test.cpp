@@ -68,9 +68,10 @@ GltfBuilder hanging_gltf() {
   return gltf;
 }
 
-TEST(Draco, ASkinHoldsTheVerticesOfACompressedMesh) {
+/// Expects what lies at x > 0 to hang on the joint above.
+void expect_hanging(GltfBuilder gltf) {
   test::TemporaryFolder folder;
-  write_bytes(folder / "a.glb", hanging_gltf().glb());
+  write_bytes(folder / "a.glb", gltf.glb());
   const Positions found = read_blendshapes((folder / "a.glb").string()).neutral();
   std::vector<std::vector<double>> points, expected;
   for (const auto& point : found.rowwise()) points.emplace_back(point.begin(), point.end());
@@ -80,6 +81,34 @@ TEST(Draco, ASkinHoldsTheVerticesOfACompressedMesh) {
     expected.emplace_back(point.begin(), point.end());
   }
   EXPECT_THAT(points, testing::UnorderedElementsAreArray(expected));
+}
+
+TEST(Draco, ASkinHoldsTheVerticesOfACompressedMesh) {
+  expect_hanging(hanging_gltf());
+}
+
+TEST(Draco, AttributesThatTheCompressedMeshLeavesToTheirAccessorsAreReadThere) {
+  GltfBuilder gltf = hanging_gltf();
+  GltfJson& primitive = gltf.root["meshes"][0]["primitives"][0];
+  primitive["extensions"]["KHR_draco_mesh_compression"]["attributes"].erase("WEIGHTS_0");
+  std::vector<float> all, uv;
+  for (int v = 0; v < 6; ++v) {
+    all.insert(all.end(), {1, 0, 0, 0});
+    uv.insert(uv.end(), {0.125F * static_cast<float>(v), 0.25F});
+  }
+  primitive["attributes"]["WEIGHTS_0"] =
+      gltf.accessor(gltf.view(GltfBuilder::bytes_of(all)), 5126, 6, "VEC4");
+  primitive["attributes"]["TEXCOORD_0"] =
+      gltf.accessor(gltf.view(GltfBuilder::bytes_of(uv)), 5126, 6, "VEC2");
+  expect_hanging(gltf);
+  test::TemporaryFolder folder;
+  write_bytes(folder / "a.glb", gltf.glb());
+  const BlendshapeModel found = read_blendshapes((folder / "a.glb").string());
+  const TextureCoordinates& texture = found.connectivity().texture;
+  ASSERT_EQ(texture.corners, found.connectivity().polygons.corners);
+  for (int v = 0; v < 6; ++v) {
+    EXPECT_EQ(texture.coordinates[static_cast<std::size_t>(v)], Eigen::Vector2d(0.125 * v, 0.75));
+  }
 }
 
 TEST(Draco, IntegersAreWhatTheirAccessorsNormaliseThemTo) {
@@ -127,7 +156,7 @@ TEST(Draco, AMeshWithoutTheJointsThatItsFileNamesSaysSo) {
   GltfBuilder gltf = hanging_gltf();
   gltf.root["meshes"][0]["primitives"][0]["extensions"]["KHR_draco_mesh_compression"]["attributes"]
            ["WEIGHTS_0"] = 7;
-  EXPECT_THAT(refusal(gltf.glb()), HasSubstr("its compressed mesh has no joints"));
+  EXPECT_THAT(refusal(gltf.glb()), HasSubstr("its compressed mesh has no weights of joints"));
 }
 
 TEST(Draco, AVertexOnAJointThatItsSkinDoesNotHaveIsAnError) {

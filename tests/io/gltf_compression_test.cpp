@@ -70,6 +70,7 @@ TEST_F(GltfFiles, CompressedViewsArePlainOnes) {
     gltf.root["extensionsRequired"] = {"EXT_meshopt_compression"};
     gltf.root["buffers"] = {{{"byteLength", gltf.binary.size()}},
                             {{"byteLength", 9999},
+                             {"uri", "which_is_not_there.bin"},
                              {"extensions", {{"EXT_meshopt_compression", {{"fallback", true}}}}}}};
     const BlendshapeModel found = model(gltf.glb());
     EXPECT_EQ(found.neutral(), quarters());

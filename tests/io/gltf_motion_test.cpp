@@ -66,6 +66,44 @@ TEST_F(GltfFiles, APoseOfOneKeyDoesNotDisplaceALaterClip) {
   EXPECT_EQ(read(gltf.glb()).frame(0), quarters() + 0.25 * moved());
 }
 
+TEST_F(GltfFiles, AClipThatHoldsAPoseDoesNotDisplaceOneThatMoves) {
+  GltfBuilder gltf = plain();
+  gltf.animate(0, {0, 1}, {0.5, 0.5});
+  gltf.animate(0, {0, 2}, {0, 1});
+  gltf.root["animations"][0]["name"] = "hold";
+  gltf.root["animations"][1]["name"] = "talk";
+  const MeshSequence sequence = read(gltf.glb());
+  EXPECT_EQ(sequence.times(), Eigen::Vector2d(0, 2));
+  EXPECT_EQ(sequence.frame(1), quarters() + moved());
+  EXPECT_THAT(notes_, ElementsAre(AllOf(HasSubstr("'talk' is read"), HasSubstr(": 'hold'"))));
+}
+
+TEST_F(GltfFiles, AClipOfWhatNoSceneShowsDoesNotDisplaceOneOfWhatItShows) {
+  GltfBuilder gltf = plain();
+  gltf.root["nodes"].push_back({{"name", "LOD1"}, {"mesh", 0}});
+  gltf.animate(1, {0, 3}, {0, 0.5});
+  gltf.animate(0, {0, 1}, {0, 1});
+  gltf.animate(1, {0, 1}, {0, 1});
+  join_last(gltf);
+  const MeshSequence sequence = read(gltf.glb());
+  ASSERT_EQ(sequence.frames(), 2);
+  EXPECT_EQ(sequence.times(), Eigen::Vector2d(0, 1));
+  EXPECT_EQ(sequence.frame(1), quarters() + moved());
+  EXPECT_TRUE(notes_.empty());
+}
+
+TEST_F(GltfFiles, ClipsThatAreReadTogetherAreNamed) {
+  GltfBuilder gltf = two_nodes(plain());
+  gltf.animate(0, {0, 1}, {0, 1});
+  gltf.animate(2, {0, 1}, {0, 1});
+  gltf.animate(0, {0, 1}, {1, 0});
+  const std::vector<std::string> names = {"head", "teeth", "smile"};
+  for (std::size_t a = 0; a < names.size(); ++a) gltf.root["animations"][a]["name"] = names[a];
+  read(gltf.glb());
+  EXPECT_THAT(notes_, ElementsAre(AllOf(HasSubstr("'head', 'teeth' are read together"),
+                                        HasSubstr(": 'smile'"))));
+}
+
 /// A channel as KHR_animation_pointer has it.
 GltfJson pointing_to(const char* pointer) {
   return {{"path", "pointer"}, {"extensions", {{"KHR_animation_pointer", {{"pointer", pointer}}}}}};

@@ -274,14 +274,54 @@ TEST_F(GltfFiles, ATransformThatUndoesQuantisationMakesTextureCoordinates) {
   const Eigen::Vector2d quarter(1023. / 4095, 1 - 2047. / 4095);
   EXPECT_LT((of_2(textured(stored, {{"scale", {scale, scale}}})) - quarter).norm(), 1e-12);
   // One that repeats a picture says nothing of where its coordinates are.
+  const std::vector<std::uint16_t> others = {0, 0, 4, 8, 1023, 2047, 0, 0, 4095, 4000, 0, 0};
   const Eigen::Vector2d as_stored(1023. / 65535, 1 - 2047. / 65535);
-  EXPECT_LT((of_2(textured(stored, {{"scale", {2, 2}}})) - as_stored).norm(), 1e-12);
-  EXPECT_LT((of_2(textured(stored, {{"scale", {scale, 1}}})) - as_stored).norm(), 1e-12);
-  // gltfpack scales to the range of the coordinates, here half of the picture from its middle.
-  GltfBuilder packed = textured(stored, {{"scale", {scale / 2, scale}}, {"offset", {0.5, 0}}});
-  packed.root["asset"]["generator"] = "gltfpack 0.20";
+  EXPECT_LT((of_2(textured(others, {{"scale", {2, 2}}})) - as_stored).norm(), 1e-12);
+  EXPECT_LT((of_2(textured(others, {{"scale", {scale, 1}}})) - as_stored).norm(), 1e-12);
+  // gltfpack scales to the range of the coordinates, here half of the picture from its middle; so
+  // it does where another program wrote its file again.
+  const GltfJson to_range = {{"scale", {scale / 2, scale}}, {"offset", {0.5, 0}}};
   const Eigen::Vector2d in_range(0.5 + quarter.x() / 2, quarter.y());
-  EXPECT_LT((of_2(packed) - in_range).norm(), 1e-12);
+  for (const char* generator : {"gltfpack 0.20", "another"}) {
+    GltfBuilder packed = textured(stored, to_range);
+    packed.root["asset"]["generator"] = generator;
+    EXPECT_LT((of_2(packed) - in_range).norm(), 1e-12) << generator;
+  }
+}
+
+TEST_F(GltfFiles, ATransformOfAnyPictureUndoesQuantisationWhereThereIsNoBaseColour) {
+  const std::vector<std::uint16_t> stored = {0, 0, 4, 8, 1023, 2047, 0, 0, 4095, 4095, 0, 0};
+  const double scale = 65535. / 4095;
+  const GltfJson transform = {{"KHR_texture_transform", {{"scale", {scale, scale}}}}};
+  const GltfJson picture = {{"index", 0}, {"extensions", transform}};
+  const auto of_2 = [&](const GltfJson& material) -> Eigen::Vector2d {
+    GltfBuilder gltf = textured(stored, {});
+    gltf.root["materials"] = {material};
+    return model(gltf.glb()).connectivity().texture.coordinates[2];
+  };
+  const Eigen::Vector2d quarter(1023. / 4095, 1 - 2047. / 4095);
+  const Eigen::Vector2d as_stored(1023. / 65535, 1 - 2047. / 65535);
+  for (const char* name : {"normalTexture", "occlusionTexture", "emissiveTexture"}) {
+    EXPECT_LT((of_2({{name, picture}}) - quarter).norm(), 1e-12) << name;
+  }
+  EXPECT_LT(
+      (of_2({{"pbrMetallicRoughness", {{"metallicRoughnessTexture", picture}}}}) - quarter).norm(),
+      1e-12);
+  const GltfJson glossy = {
+      {"extensions", {{"KHR_materials_pbrSpecularGlossiness", {{"diffuseTexture", picture}}}}}};
+  EXPECT_LT((of_2(glossy) - quarter).norm(), 1e-12);
+  // The base colour is shown as stored.
+  EXPECT_LT((of_2({{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}},
+                   {"normalTexture", picture}}) -
+             as_stored)
+                .norm(),
+            1e-12);
+  // That is a picture on other coordinates.
+  GltfJson elsewhere = picture;
+  elsewhere["texCoord"] = 1;
+  EXPECT_LT((of_2({{"normalTexture", elsewhere}}) - as_stored).norm(), 1e-12);
+  EXPECT_LT((of_2({{"normalTexture", elsewhere}, {"emissiveTexture", picture}}) - quarter).norm(),
+            1e-12);
 }
 
 TEST_F(GltfFiles, ColoursAndFurtherTexturesAreSaidToBeLeftOut) {
@@ -417,12 +457,17 @@ TEST_F(GltfFiles, NamesThatAreNoneAreNotThere) {
   }
 }
 
+TEST_F(GltfFiles, AnAvatarIsGltf) {
+  file_ = folder_ / "avatar.VRM";
+  expect_plain(plain().glb());
+}
+
 TEST_F(GltfFiles, AnotherNamesBytesAreKnownForGltf) {
-  file_ = folder_ / "avatar.vrm";
+  file_ = folder_ / "avatar.pkg";
   EXPECT_THAT(
       error(plain().glb()),
-      HasSubstr("avatar.vrm: is glTF by its first bytes; give it a name that ends in .glb"));
-  EXPECT_THAT(error("gl"), HasSubstr("avatar.vrm: is no sequence"));
+      HasSubstr("avatar.pkg: is glTF by its first bytes; give it a name that ends in .glb"));
+  EXPECT_THAT(error("gl"), HasSubstr("avatar.pkg: is no sequence"));
 }
 
 TEST_F(GltfFiles, NothingOutsideItsOwnFolderIsRead) {
@@ -439,6 +484,28 @@ TEST_F(GltfFiles, NothingOutsideItsOwnFolderIsRead) {
   GltfBuilder gltf = plain();
   gltf.root["buffers"] = {{{"byteLength", 10}, {"uri", "none.bin"}}};
   EXPECT_THAT(error(gltf.root.dump()), HasSubstr("its buffer 'none.bin' is not there"));
+}
+
+TEST_F(GltfFiles, LinksLeadToTheFolderThatHoldsWhatTheFileItselfLinksTo) {
+  GltfBuilder gltf = plain();
+  gltf.root["buffers"] = {{{"byteLength", gltf.binary.size()}, {"uri", "a.bin"}}};
+  std::filesystem::create_directories(folder_ / "store");
+  std::filesystem::create_directories(folder_ / "shown");
+  write_bytes(folder_ / "store/1", gltf.root.dump());
+  write_bytes(folder_ / "store/2", gltf.binary);
+  std::filesystem::create_symlink("../store/1", folder_ / "shown/a.gltf");
+  std::filesystem::create_symlink("../store/2", folder_ / "shown/a.bin");
+  EXPECT_EQ(read_blendshapes((folder_ / "shown/a.gltf").string()).neutral(), quarters());
+}
+
+TEST_F(GltfFiles, BuffersThatNoMeshNeedsMayBeMissing) {
+  GltfBuilder gltf = plain();
+  gltf.root["buffers"] = {{{"byteLength", gltf.binary.size()}},
+                          {{"byteLength", 10}, {"uri", "pictures.bin"}}};
+  gltf.root["bufferViews"].push_back({{"buffer", 1}, {"byteLength", 10}});
+  expect_plain(gltf.glb());
+  gltf.root["bufferViews"][0]["buffer"] = 1;
+  EXPECT_THAT(error(gltf.glb()), HasSubstr("its buffer 'pictures.bin' is not there"));
 }
 
 /// Vertices `v` of an OBJ file.

@@ -5,8 +5,10 @@
 #include "tests/shapes.h"
 #include "tests/temporary_folder.h"
 #include "toolkit/io/gltf_write.h"
+#include "toolkit/io/held_parts.h"
 #include "toolkit/io/model_file.h"
 #include "toolkit/io/sequence_file.h"
+#include "toolkit/io/sequence_format.h"
 #include "toolkit/io/whole_file.h"
 #include "toolkit/mesh/errors.h"
 
@@ -201,6 +203,38 @@ TEST_P(GltfOutputs, NamesAreTextWhateverTheirBytes) {
                                                              sphere->neutral(), basis);
   write_sequence(Animation(model, Eigen::MatrixXd::Zero(1, 2)), file());
   EXPECT_EQ(read_blendshapes(file().string()).expressions().names[1], basis.names[1]);
+}
+
+TEST(GltfText, FacesWithoutTextureCoordinatesDoNotTakeThoseOfOthers) {
+  TemporaryFolder folder;
+  Connectivity faces = Connectivity::from_triangles(6, test::octahedron().triangles);
+  Polygons& polygons = faces.polygons;
+  faces.texture.corners.assign(polygons.corners.size(), -1);
+  // The first face has some, the vertices of the others do where it shares them.
+  for (std::size_t k = 0; k < 3; ++k) {
+    faces.texture.corners[k] = static_cast<int>(k);
+    faces.texture.coordinates.emplace_back(0.25, 0.125 * static_cast<double>(k));
+  }
+  Frames poses(1, 18);
+  const Positions points = test::octahedron().positions;
+  poses.row(0) = Eigen::Map<const Eigen::RowVectorXd>(points.data(), 18);
+  const std::vector<int> corners = polygons.corners;
+  const std::vector<Eigen::Vector2d> given = faces.texture.coordinates;
+  const MeshSequence sequence(std::move(faces), poses);
+  for (const char* name : {"a.glb", "a.usda"}) {
+    write_sequence(sequence, folder / name);
+    const Connectivity found = read_sequence((folder / name).string()).sequence.connectivity();
+    ASSERT_EQ(found.texture.corners.size(), corners.size()) << name;
+    for (std::size_t k = 0; k < 3; ++k) {
+      EXPECT_EQ(found.texture.coordinates[static_cast<std::size_t>(found.texture.corners[k])],
+                given[k])
+          << name;
+    }
+    const SequenceFormat* format = sequence_format(name);
+    ASSERT_NE(format, nullptr);
+    EXPECT_THAT(parts_left_out(format->holds, sequence),
+                ElementsAre("faces without texture coordinates (they get 0, 0)"));
+  }
 }
 
 /// Weights of which few are not 0 take few bytes, and every target has bounds, as the specification

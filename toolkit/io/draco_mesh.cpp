@@ -59,18 +59,18 @@ DracoMesh draco_parts(const std::string& path, const std::string& what, const dr
     }
   }
   if (!parts.positions.allFinite()) throw IoError(path, what + ": a position is not finite");
-  if (const auto* texture = attribute(draco.texture)) {
-    parts.texture = draco_values(path, what, mesh, *texture, 2);
-  }
-  for (const auto& [joints_id, weights_id] : draco.joints) {
-    const auto *joints = attribute(joints_id), *weights = attribute(weights_id);
-    if (!joints || !weights) throw IoError(path, what + ": its compressed mesh has no joints");
-    VertexJoints set{draco_values(path, what, mesh, *joints, 4),
-                     draco_values(path, what, mesh, *weights, 4)};
-    if (!set.joints.allFinite() || !set.weights.allFinite()) {
-      throw IoError(path, what + ": a joint or its weight is not finite");
-    }
-    parts.joints.push_back(std::move(set));
+  const auto held = [&](std::optional<std::size_t> id, const char* name, int components) {
+    Frames values;
+    if (!id) return values;
+    const auto* values_of = attribute(id);
+    if (!values_of) throw IoError(path, what + ": its compressed mesh has no " + name);
+    values = draco_values(path, what, mesh, *values_of, components);
+    if (!values.allFinite()) throw IoError(path, what + ": its " + name + " are not finite");
+    return values;
+  };
+  parts.texture = held(draco.texture, "texture coordinates", 2);
+  for (const auto& [joints, weights] : draco.joints) {
+    parts.joints.push_back({held(joints, "joints", 4), held(weights, "weights of joints", 4)});
   }
   return parts;
 }

@@ -16,11 +16,11 @@ struct VertexJoints {
 };
 
 /// What a primitive's compressed mesh holds, integers as they are stored: its accessors say whether
-/// they are normalised.
+/// they are normalised. Numbers that it does not hold have no rows.
 struct DracoMesh {
   Triangles triangles;
-  Frames positions;               ///< N x 3
-  std::optional<Frames> texture;  ///< N x 2
+  Frames positions;  ///< N x 3
+  Frames texture;    ///< N x 2
   std::vector<VertexJoints> joints;
 };
 

@@ -58,7 +58,7 @@ std::string foreign_file(const std::filesystem::path& path) {
   if (found != kKinds.end()) return std::string(found->name).append(found->remedy);
   std::error_code unreadable;
   if (!std::filesystem::is_regular_file(path, unreadable)) return {};
-  // An avatar (.vrm) and the like.
+  // Another program's name for it.
   std::array<char, 4> start{};
   std::ifstream(path, std::ios::binary).read(start.data(), start.size());
   if (std::string_view(start.data(), start.size()) != "glTF") return {};

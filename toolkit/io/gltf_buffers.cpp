@@ -86,14 +86,17 @@ GltfBuffer read_gltf_buffer(const std::string& path, const std::string& uri) {
   const std::string name = decoded_uri(uri);
   const bool is_plain = !name.empty() && name.find('\0') == std::string::npos &&
                         name.find(':') == std::string::npos && fs::path(name).is_relative();
-  if (!is_plain || !is_inside(folder, folder / name)) {
+  std::error_code unresolved;
+  // As stores of files have it: a folder of links to one that holds everything.
+  const fs::path store = fs::weakly_canonical(path, unresolved).parent_path();
+  if (!is_plain || !(is_inside(folder, folder / name) || is_inside(store, folder / name))) {
     throw IoError(path, "its buffer " + shown_uri(uri) +
                             " is no file in its own folder, and nothing else is read");
   }
   const fs::path file = fs::path(path).parent_path() / name;
   std::error_code unreadable;
   if (!fs::exists(file, unreadable)) {
-    throw IoError(path, "its buffer " + shown_uri(uri) + " is not there; keep both together");
+    return {{}, std::nullopt, "its buffer " + shown_uri(uri) + " is not there; keep both together"};
   }
   if (!fs::is_regular_file(file, unreadable)) {
     throw IoError(path, "its buffer " + shown_uri(uri) + " is not an ordinary file");

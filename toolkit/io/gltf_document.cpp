@@ -166,14 +166,21 @@ GltfAccessor gltf_accessor(const GltfValue& value, std::size_t views) {
   return accessor;
 }
 
+std::string joints_name(std::size_t set) {
+  return "JOINTS_" + std::to_string(set);
+}
+
+std::string weights_name(std::size_t set) {
+  return "WEIGHTS_" + std::to_string(set);
+}
+
 /// Attributes of joints and their weights, set by set.
 std::vector<std::pair<std::size_t, std::size_t>> joint_sets(const GltfValue& attributes,
                                                             std::size_t size) {
   std::vector<std::pair<std::size_t, std::size_t>> sets;
-  for (int set = 0;; ++set) {
-    const std::string number = std::to_string(set);
-    const auto joints = attributes.maybe_index(("JOINTS_" + number).c_str(), size);
-    const auto weights = attributes.maybe_index(("WEIGHTS_" + number).c_str(), size);
+  for (std::size_t set = 0;; ++set) {
+    const auto joints = attributes.maybe_index(joints_name(set).c_str(), size);
+    const auto weights = attributes.maybe_index(weights_name(set).c_str(), size);
     if (!joints || !weights) return sets;
     sets.emplace_back(*joints, *weights);
   }
@@ -204,7 +211,12 @@ GltfPrimitive gltf_primitive(const GltfValue& value, const GltfDocument& documen
     constexpr std::size_t kMostIds = std::numeric_limits<int>::max();
     primitive.draco = GltfDraco{draco->index("bufferView", document.views.size()),
                                 ids.maybe_index("POSITION", kMostIds),
-                                ids.maybe_index("TEXCOORD_0", kMostIds), joint_sets(ids, kMostIds)};
+                                ids.maybe_index("TEXCOORD_0", kMostIds),
+                                {}};
+    for (std::size_t set = 0; set < primitive.joints.size(); ++set) {
+      primitive.draco->joints.emplace_back(ids.maybe_index(joints_name(set).c_str(), kMostIds),
+                                           ids.maybe_index(weights_name(set).c_str(), kMostIds));
+    }
   }
   return primitive;
 }
@@ -268,18 +280,40 @@ GltfSkin gltf_skin(const GltfValue& value, const GltfDocument& document) {
   return skin;
 }
 
+/// The pictures of a material, its base colour first.
+std::vector<GltfValue> gltf_pictures(const GltfValue& material) {
+  std::vector<GltfValue> pictures;
+  const auto add = [&pictures](const GltfValue& surface, const char* name) {
+    if (surface.has(name)) pictures.push_back(surface.at(name));
+  };
+  const bool is_metallic = material.has("pbrMetallicRoughness");
+  if (is_metallic) add(material.at("pbrMetallicRoughness"), "baseColorTexture");
+  if (const auto glossy = material.extension("KHR_materials_pbrSpecularGlossiness")) {
+    add(*glossy, "diffuseTexture");
+    add(*glossy, "specularGlossinessTexture");
+  }
+  if (is_metallic) add(material.at("pbrMetallicRoughness"), "metallicRoughnessTexture");
+  for (const char* name : {"normalTexture", "occlusionTexture", "emissiveTexture"}) {
+    add(material, name);
+  }
+  return pictures;
+}
+
 GltfMaterial gltf_material(const GltfValue& value) {
   GltfMaterial material{value.name_or_nothing(), Eigen::Matrix<double, 2, 3>::Identity()};
-  if (!value.has("pbrMetallicRoughness")) return material;
-  const GltfValue surface = value.at("pbrMetallicRoughness");
-  if (!surface.has("baseColorTexture")) return material;
-  const auto transform = surface.at("baseColorTexture").extension("KHR_texture_transform");
-  if (!transform) return material;
-  const auto offset = transform->numbers_or<2>("offset", {0, 0});
-  const auto scale = transform->numbers_or<2>("scale", {1, 1});
-  const double angle = transform->has("rotation") ? transform->at("rotation").number() : 0;
-  const double c = std::cos(angle), s = std::sin(angle);
-  material.texture << c * scale[0], s * scale[1], offset[0], -s * scale[0], c * scale[1], offset[1];
+  for (const GltfValue& picture : gltf_pictures(value)) {
+    const auto transform = picture.extension("KHR_texture_transform");
+    const std::size_t set = picture.count_or("texCoord", 0);
+    if ((transform ? transform->count_or("texCoord", set) : set) != 0) continue;
+    if (!transform) break;
+    const auto offset = transform->numbers_or<2>("offset", {0, 0});
+    const auto scale = transform->numbers_or<2>("scale", {1, 1});
+    const double angle = transform->has("rotation") ? transform->at("rotation").number() : 0;
+    const double c = std::cos(angle), s = std::sin(angle);
+    material.texture << c * scale[0], s * scale[1], offset[0], -s * scale[0], c * scale[1],
+        offset[1];
+    break;
+  }
   return material;
 }
 
@@ -354,17 +388,24 @@ void read_gltf_buffers(const GltfValue& root, const std::optional<std::string_vi
   for (const GltfValue& buffer : root.list("buffers")) {
     const std::size_t bytes = buffer.count("byteLength");
     std::string content;
-    const bool stands_for_another = buffer.extension("EXT_meshopt_compression").has_value();
-    if (buffer.has("uri")) {
+    const bool is_chunk = !buffer.has("uri") && document.buffers.empty() && binary;
+    // What programs read that know no compression, and may not be there.
+    const auto compression = buffer.extension("EXT_meshopt_compression");
+    const bool stands_for_another =
+        compression && (compression->flag("fallback") || !(buffer.has("uri") || is_chunk));
+    if (!stands_for_another && buffer.has("uri")) {
       GltfBuffer read = read_gltf_buffer(document.path, buffer.at("uri").text());
       if (read.file) document.files.push_back(*read.file);
+      if (!read.missing.empty()) document.missing_buffers[document.buffers.size()] = read.missing;
       content = std::move(read.bytes);
-    } else if (document.buffers.empty() && binary && !stands_for_another) {
+    } else if (is_chunk && !stands_for_another) {
       content = std::string(*binary);
     } else if (!stands_for_another) {
       buffer.fail("has no 'uri'");
     }
-    if (content.size() < bytes && !stands_for_another) {
+    const bool is_needed =
+        !stands_for_another && !document.missing_buffers.contains(document.buffers.size());
+    if (content.size() < bytes && is_needed) {
       buffer.fail("is truncated: " + std::to_string(content.size()) + " bytes, expected " +
                   std::to_string(bytes));
     }

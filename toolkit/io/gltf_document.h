@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <tuple>
@@ -52,11 +53,13 @@ struct GltfAccessor {
   std::optional<GltfSparse> sparse;
 };
 
-/// Attributes by their ids in the compressed mesh. [KHR_draco_mesh_compression]
+/// Attributes by their ids in the compressed mesh; none of those that their accessors hold.
+/// [KHR_draco_mesh_compression]
 struct GltfDraco {
   std::size_t view;
   std::optional<std::size_t> positions, texture;
-  std::vector<std::pair<std::size_t, std::size_t>> joints;  ///< as of GltfPrimitive
+  /// Joints and weights of each set of the primitive.
+  std::vector<std::pair<std::optional<std::size_t>, std::optional<std::size_t>>> joints;
 };
 
 struct GltfPrimitive {
@@ -102,7 +105,8 @@ struct GltfSkin {
 
 struct GltfMaterial {
   std::string name;
-  /// From stored to shown coordinates of its base colour. [KHR_texture_transform]
+  /// From stored to shown coordinates of its base colour, or of another picture where it has none
+  /// of that. [KHR_texture_transform]
   Eigen::Matrix<double, 2, 3> texture;
 };
 
@@ -126,6 +130,8 @@ struct GltfDocument {
   std::size_t file_bytes = 0;
   /// Bytes of each buffer; none of one that only stands for what is decompressed.
   std::vector<std::string> buffers;
+  /// What to say of those whose files are not there, by number, where one is needed.
+  std::map<std::size_t, std::string> missing_buffers;
   std::vector<GltfView> views;
   std::vector<GltfAccessor> accessors;
   std::vector<GltfMesh> meshes;

@@ -34,17 +34,37 @@ std::shared_ptr<const WeightCurve> curve_of(const GltfDocument& document, GltfVa
   return std::make_shared<const WeightCurve>(std::move(curve));
 }
 
-/// Channels of an animation that drive targets which there are.
-std::vector<const GltfChannel*> weight_channels(const GltfDocument& document,
-                                                const GltfAnimation& animation) {
+/// An animation, and its channels that drive targets which are shown.
+struct GltfClip {
+  const GltfAnimation* animation;
   std::vector<const GltfChannel*> channels;
+};
+
+GltfClip clip_of(const GltfDocument& document, const GltfAnimation& animation,
+                 const std::set<std::size_t>& shown) {
+  GltfClip clip{&animation, {}};
   for (const GltfChannel& channel : animation.channels) {
     const auto& mesh = document.nodes[channel.node].mesh;
-    if (channel.drives_weights && mesh && document.meshes[*mesh].most_targets() > 0) {
-      channels.push_back(&channel);
+    if (channel.drives_weights && shown.contains(channel.node) && mesh &&
+        document.meshes[*mesh].most_targets() > 0) {
+      clip.channels.push_back(&channel);
     }
   }
-  return channels;
+  return clip;
+}
+
+bool has_several_keys(const GltfDocument& document, const GltfClip& clip) {
+  return std::ranges::any_of(clip.channels, [&](const GltfChannel* channel) {
+    return document.accessors[channel->times].count > 1;
+  });
+}
+
+/// Whether any weight changes over time. \pre the values are as many as the keys want
+bool changes_weights(const GltfDocument& document, GltfValues& values, const GltfClip& clip) {
+  return std::ranges::any_of(clip.channels, [&](const GltfChannel* channel) {
+    const Eigen::MatrixXd keys = curve_of(document, values, *channel)->values;
+    return (keys.rowwise() - keys.row(0)).any();
+  });
 }
 
 std::string shown_name(const GltfDocument& document, const GltfAnimation& animation) {
@@ -54,32 +74,35 @@ std::string shown_name(const GltfDocument& document, const GltfAnimation& animat
 
 }  // namespace
 
-GltfMotion gltf_motion(const GltfDocument& document, GltfValues& values) {
+GltfMotion gltf_motion(const GltfDocument& document, GltfValues& values,
+                       const std::set<std::size_t>& shown) {
   GltfMotion motion;
   motion.weights.resize(document.nodes.size());
-  std::vector<const GltfAnimation*> clips;
+  std::vector<GltfClip> clips;
   for (const GltfAnimation& animation : document.animations) {
-    clips.push_back(&animation);
+    clips.push_back(clip_of(document, animation, shown));
     motion.unread.insert(animation.unread.begin(), animation.unread.end());
     for (const GltfChannel& channel : animation.channels) {
       if (!channel.drives_weights) motion.moved.insert(channel.node);
     }
   }
-  std::stable_partition(clips.begin(), clips.end(), [&](const GltfAnimation* clip) {
-    return std::ranges::any_of(weight_channels(document, *clip), [&](const GltfChannel* channel) {
-      return document.accessors[channel->times].count > 1;
+  std::erase_if(clips, [](const GltfClip& clip) { return clip.channels.empty(); });
+  if (clips.size() > 1) {
+    const auto poses = std::stable_partition(clips.begin(), clips.end(), [&](const GltfClip& clip) {
+      return has_several_keys(document, clip);
     });
-  });
-  for (const GltfAnimation* clip : clips) {
-    const std::vector<const GltfChannel*> channels = weight_channels(document, *clip);
-    const bool is_another = std::ranges::any_of(channels, [&](const GltfChannel* channel) {
+    std::stable_partition(clips.begin(), poses, [&](const GltfClip& clip) {
+      return changes_weights(document, values, clip);
+    });
+  }
+  for (const GltfClip& clip : clips) {
+    const std::string name = "'" + shown_name(document, *clip.animation) + "'";
+    const bool is_another = std::ranges::any_of(clip.channels, [&](const GltfChannel* channel) {
       return motion.weights[channel->node] != nullptr;
     });
-    if (is_another) {
-      motion.other_clips.insert("'" + shown_name(document, *clip) + "'");
-      continue;
-    }
-    for (const GltfChannel* channel : channels) {
+    (is_another ? motion.other_clips : motion.clips).insert(name);
+    if (is_another) continue;
+    for (const GltfChannel* channel : clip.channels) {
       auto& weights = motion.weights[channel->node];
       if (!weights) weights = curve_of(document, values, *channel);
     }

@@ -16,15 +16,19 @@ struct GltfMotion {
   std::vector<std::shared_ptr<const WeightCurve>> weights;
   /// Nodes that move as a whole.
   std::set<std::size_t> moved;
-  /// Animations that drive weights which another one drives.
+  /// Animations whose weights those are.
+  std::set<std::string> clips;
+  /// Animations that drive weights which one of those drives.
   std::set<std::string> other_clips;
   /// What drives weights in a way that is not read.
   std::set<std::string> unread;
 };
 
-/// One clip: animations that drive weights of different nodes belong together, and one that drives
-/// any weights which an earlier one drives is another clip, of which nothing is taken. Animations
-/// of several keys come before poses of one. Throws IoError.
-GltfMotion gltf_motion(const GltfDocument& document, GltfValues& values);
+/// One clip of the nodes that are `shown`: animations that drive weights of different nodes belong
+/// together, and one that drives any weights which an earlier one drives is another clip, of which
+/// nothing is taken. Animations whose weights change come before those that hold a pose, and these
+/// before poses of one key. Throws IoError.
+GltfMotion gltf_motion(const GltfDocument& document, GltfValues& values,
+                       const std::set<std::size_t>& shown);
 
 }  // namespace mimetra

@@ -1,5 +1,7 @@
 #include <algorithm>
 #include <array>
+#include <bit>
+#include <cmath>
 #include <map>
 #include <set>
 #include <span>
@@ -98,10 +100,14 @@ class GltfReader {
   }
 
   void read_motion() {
-    motion_ = gltf_motion(document_, values_);
-    note(motion_.other_clips,
-         "several clips drive the same weights: one is read, others are left out as a whole "
-         "(export each to a file of its own)");
+    std::set<std::size_t> shown;
+    for (const PlacedNode& placed : placed_) shown.insert(placed.node);
+    motion_ = gltf_motion(document_, values_, shown);
+    const std::vector<std::string> read(motion_.clips.begin(), motion_.clips.end());
+    note(motion_.other_clips, "several clips drive the same weights: " + listed(read) +
+                                  (read.size() > 1 ? " are read together" : " is read") +
+                                  ", others are left out as a whole (export each to a file of its "
+                                  "own)");
     note(motion_.unread,
          "animations point to weights by other than '/nodes/N/weights', which is left out");
   }
@@ -177,11 +183,8 @@ class GltfReader {
       part.targets.push_back(std::move(target));
     }
     part.weights = weights_of(placed.node);
-    if (draco && draco->texture) {
-      part.texture.coordinates = shown(texture_of(primitive, *draco->texture));
-    } else if (!draco && primitive.texture) {
-      part.texture.coordinates =
-          shown(texture_of(primitive, values_.read(*primitive.texture, 2, vertices)));
+    if (primitive.texture) {
+      part.texture.coordinates = shown(texture_of(primitive, stored_texture(primitive, draco)));
     }
     if (draco) {
       add_group(primitive, part);
@@ -199,14 +202,28 @@ class GltfReader {
     DracoMesh mesh = decode_draco(document_.path, "'" + name + "'", *primitive.draco,
                                   values_.bytes(primitive.draco->view));
     mesh.positions = values_.scaled(*primitive.positions, std::move(mesh.positions));
-    if (mesh.texture && primitive.texture) {
-      mesh.texture = values_.scaled(*primitive.texture, std::move(*mesh.texture));
+    if (primitive.texture) {
+      mesh.texture = values_.scaled(*primitive.texture, std::move(mesh.texture));
     }
-    for (std::size_t set = 0; set < std::min(mesh.joints.size(), primitive.joints.size()); ++set) {
+    for (std::size_t set = 0; set < mesh.joints.size(); ++set) {
       Frames& weights = mesh.joints[set].weights;
       weights = values_.scaled(primitive.joints[set].second, std::move(weights));
     }
     return mesh;
+  }
+
+  /// Numbers of a primitive: those of its compressed mesh, or of its accessor where that has none.
+  Frames held_or_read(const Frames& held, std::size_t accessor, int components,
+                      Eigen::Index vertices) {
+    return held.rows() > 0 ? held : values_.read(accessor, components, vertices);
+  }
+
+  /// \pre the primitive has texture coordinates
+  Frames stored_texture(const GltfPrimitive& primitive, const std::optional<DracoMesh>& draco) {
+    const auto vertices =
+        draco ? draco->positions.rows()
+              : static_cast<Eigen::Index>(document_.accessors[*primitive.positions].count);
+    return held_or_read(draco ? draco->texture : Frames(), *primitive.texture, 2, vertices);
   }
 
   /// From the file's upper left corner to the lower left one.
@@ -219,15 +236,37 @@ class GltfReader {
     return coordinates;
   }
 
+  /// Whether the coordinates that are shown with a material are stored in fewer bits than there is
+  /// room for, with the first and the last number in both directions: shares of their own range.
+  bool fills_fewer_bits(std::size_t material) {
+    Eigen::RowVector2d least = Eigen::RowVector2d::Ones(), most = -least;
+    for (const PlacedNode& placed : placed_) {
+      if (!document_.nodes[placed.node].mesh) continue;
+      for (const GltfPrimitive& primitive : mesh_at(placed.node).primitives) {
+        if (primitive.material != material || !primitive.texture || !primitive.positions) continue;
+        std::optional<DracoMesh> draco;
+        if (primitive.draco) draco = decoded(primitive, std::string(placed.name));
+        const Frames stored = stored_texture(primitive, draco);
+        least = least.cwiseMin(stored.colwise().minCoeff());
+        most = most.cwiseMax(stored.colwise().maxCoeff());
+      }
+    }
+    constexpr double kLast = 65535, kRounding = 1e-6;
+    const double last = std::round(kLast * most.maxCoeff());
+    const bool is_filled = least.isZero(0) && (kLast * most.array() - last).isZero(kRounding);
+    return is_filled && last > 0 && last < kLast &&
+           std::has_single_bit(static_cast<unsigned>(last) + 1);
+  }
+
   /// Whether a material's transform brings integers to texture coordinates; others move or repeat
-  /// its picture.
-  bool undoes_quantisation(const Eigen::Matrix<double, 2, 3>& transform,
-                           const GltfAccessor& accessor) const {
+  /// its picture. \pre the material is of a primitive that is shown
+  bool undoes_quantisation(std::size_t material, const GltfAccessor& accessor) {
     constexpr int kUnsignedShort = 5123, kFloat = 5126;
+    const auto& transform = document_.materials[material].texture;
     if (accessor.type == kFloat) return false;
     // gltfpack stores shares of the range that a material's coordinates have.
     if (!accessor.normalized || document_.generator.starts_with("gltfpack")) return true;
-    if (accessor.type != kUnsignedShort) return false;
+    if (accessor.type != kUnsignedShort || transform.isIdentity(0)) return false;
     // Fewer bits than 16 of the range from 0 to 1.
     constexpr double kRounding = 1e-6;
     for (int bits = 8; bits < 16; ++bits) {
@@ -236,14 +275,20 @@ class GltfReader {
         return true;
       }
     }
-    return false;
+    // What gltfpack made and another program wrote again.
+    const auto [known, is_new] = fills_fewer_bits_.try_emplace(material, false);
+    if (is_new) known->second = fills_fewer_bits(material);
+    return known->second;
   }
 
   /// Shown coordinates of those that are stored, where a material's transform undoes quantisation.
-  Frames texture_of(const GltfPrimitive& primitive, Frames texture) const {
-    if (!primitive.material || !primitive.texture) return texture;
+  /// \pre the primitive has texture coordinates
+  Frames texture_of(const GltfPrimitive& primitive, Frames texture) {
+    if (!primitive.material) return texture;
+    if (!undoes_quantisation(*primitive.material, document_.accessors[*primitive.texture])) {
+      return texture;
+    }
     const auto& transform = document_.materials[*primitive.material].texture;
-    if (!undoes_quantisation(transform, document_.accessors[*primitive.texture])) return texture;
     texture =
         ((texture * transform.leftCols<2>().transpose()).rowwise() + transform.col(2).transpose())
             .eval();
@@ -254,10 +299,12 @@ class GltfReader {
   std::vector<VertexJoints> joint_sets(const GltfPrimitive& primitive,
                                        const std::optional<DracoMesh>& draco,
                                        Eigen::Index vertices) {
-    if (draco && !draco->joints.empty()) return draco->joints;
     std::vector<VertexJoints> sets;
-    for (const auto& [joints, weights] : primitive.joints) {
-      sets.push_back({values_.read(joints, 4, vertices), values_.read(weights, 4, vertices)});
+    for (std::size_t set = 0; set < primitive.joints.size(); ++set) {
+      const auto& [joints, weights] = primitive.joints[set];
+      const VertexJoints held = draco ? draco->joints[set] : VertexJoints();
+      sets.push_back({held_or_read(held.joints, joints, 4, vertices),
+                      held_or_read(held.weights, weights, 4, vertices)});
     }
     return sets;
   }
@@ -430,7 +477,8 @@ class GltfReader {
   std::map<std::size_t, Eigen::Matrix4d> worlds_;
   GltfMotion motion_;
   std::set<std::size_t> joints_;
-  bool has_materials_ = false;  ///< whether a primitive that is shown has one
+  std::map<std::size_t, bool> fills_fewer_bits_;  ///< by material
+  bool has_materials_ = false;                    ///< whether a primitive that is shown has one
   std::set<std::string> left_out_, unread_;
   std::vector<std::string> notes_, motion_notes_;
 };

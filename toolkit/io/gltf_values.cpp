@@ -71,6 +71,8 @@ std::string_view GltfValues::bytes(std::size_t view) {
   const std::string what = "bufferViews[" + std::to_string(view) + ']';
   const GltfView& stored = document_.views[view];
   const auto part = [&](std::size_t buffer, std::size_t offset, std::size_t size) {
+    const auto missing = document_.missing_buffers.find(buffer);
+    if (missing != document_.missing_buffers.end()) throw IoError(document_.path, missing->second);
     const std::string_view all = document_.buffers[buffer];
     if (offset > all.size() || size > all.size() - offset) {
       fail(what, "ends at byte " + std::to_string(offset) + " + " + std::to_string(size) +

@@ -16,6 +16,7 @@
 #include "toolkit/io/single_precision.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/text.h"
+#include "toolkit/mesh/texture.h"
 
 namespace mimetra {
 namespace fs = std::filesystem;
@@ -91,27 +92,6 @@ class GltfLayout {
   Json views_ = Json::array(), accessors_ = Json::array();
   std::size_t bytes_ = 0;
 };
-
-/// Coordinates of each vertex (N), from the upper left corner; none where corners of one vertex
-/// differ, for which glTF has no place.
-std::vector<Eigen::Vector2d> vertex_texture(const Connectivity& faces) {
-  const TextureCoordinates& texture = faces.texture;
-  std::vector<Eigen::Vector2d> of_vertex(static_cast<std::size_t>(faces.vertices),
-                                         Eigen::Vector2d::Zero());
-  std::vector<bool> is_known(of_vertex.size(), false);
-  if (texture.coordinates.empty()) return {};
-  for (std::size_t corner = 0; corner < texture.corners.size(); ++corner) {
-    if (texture.corners[corner] < 0) return {};
-    const auto vertex = static_cast<std::size_t>(faces.polygons.corners[corner]);
-    const Eigen::Vector2d& given =
-        texture.coordinates[static_cast<std::size_t>(texture.corners[corner])];
-    const Eigen::Vector2d stored(given.x(), 1 - given.y());
-    if (is_known[vertex] && of_vertex[vertex] != stored) return {};
-    is_known[vertex] = true;
-    of_vertex[vertex] = stored;
-  }
-  return of_vertex;
-}
 
 /// Fans of the polygons. Of neighbours none starts with the same corner, so that triangles which
 /// share their first one are one polygon. [FB_ngon_encoding]
@@ -264,9 +244,11 @@ class GltfFile {
     GltfBounds bounds = kUnknownBounds;
     for (Eigen::Index v = 0; v < neutral_.rows(); ++v) include(bounds, v, neutral_.row(v).data());
     layout_.set_bounds(positions_, bounds);
-    if (const auto texture = vertex_texture(faces); !texture.empty()) {
+    if (auto texture = texture_of_vertices(faces)) {
+      // From the upper left corner.
+      for (Eigen::Vector2d& coordinates : *texture) coordinates.y() = 1 - coordinates.y();
       texture_ = layout_.add(
-          put(float_bytes(texture.front().data(), 2 * static_cast<Eigen::Index>(texture.size())),
+          put(float_bytes(texture->front().data(), 2 * static_cast<Eigen::Index>(texture->size())),
               kVertexData),
           kFloatType, "VEC2", vertices);
     }

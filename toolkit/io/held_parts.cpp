@@ -39,13 +39,17 @@ bool is_its_only_frame(const FrameSource& sequence) {
              PositionsView(sequence.rest().data(), sequence.vertices(), 3);
 }
 
-void add_lost_texture(std::vector<std::string>& lost, HeldParts::Texture held,
+void add_lost_texture(std::vector<std::string>& lost, const HeldParts& held,
                       const Connectivity& connectivity) {
-  if (connectivity.texture.coordinates.empty() || held == HeldParts::Texture::corners) return;
-  if (held == HeldParts::Texture::none) {
+  const TextureCoordinates& texture = connectivity.texture;
+  if (texture.coordinates.empty()) return;
+  if (held.texture == HeldParts::Texture::none) {
     lost.emplace_back("texture coordinates");
-  } else if (!texture_of_vertices(connectivity)) {
+  } else if (held.texture == HeldParts::Texture::vertices && !texture_of_vertices(connectivity)) {
     lost.emplace_back("several texture coordinates at a vertex");
+  } else if (!held.bare_faces &&
+             std::ranges::any_of(texture.corners, [](int i) { return i < 0; })) {
+    lost.emplace_back("faces without texture coordinates (they get 0, 0)");
   }
 }
 
@@ -90,7 +94,7 @@ std::vector<std::string> parts_left_out(const HeldParts& held, const FrameSource
   if (!held.polygons && has_polygons(connectivity)) {
     lost.emplace_back("faces of more than three corners");
   }
-  add_lost_texture(lost, held.texture, connectivity);
+  add_lost_texture(lost, held, connectivity);
   if (!held.groups) {
     if (has_statement(connectivity, "g") || has_statement(connectivity, "o")) {
       lost.emplace_back("groups");

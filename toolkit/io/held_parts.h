@@ -16,6 +16,8 @@ struct HeldParts {
   bool polygons = false;
   /// Texture coordinates: none, one for each vertex, or one for each corner of a face.
   Texture texture = Texture::none;
+  /// Faces without texture coordinates where others have them.
+  bool bare_faces = true;
   /// Groups, and which material a face has.
   bool groups = false;
   /// A rest pose that is no frame.

@@ -363,7 +363,7 @@ bool is_scene_file(const fs::path& path) {
   const std::string extension = lower_extension(path);
   std::error_code unreadable;
   if (fs::is_directory(path, unreadable)) return false;
-  for (const char* known : {".glb", ".gltf", ".usda", ".usd", ".usdc", ".usdz"}) {
+  for (const char* known : {".glb", ".gltf", ".vrm", ".usda", ".usd", ".usdc", ".usdz"}) {
     if (extension == known) return true;
   }
   return false;

@@ -106,9 +106,14 @@ std::string usd_faces(const Connectivity& faces) {
   std::string text = "    int[] faceVertexCounts = " + usd_list(counts) +
                      "\n    int[] faceVertexIndices = " + usd_list(faces.polygons.corners) +
                      "\n    uniform token subdivisionScheme = \"none\"\n";
-  const TextureCoordinates& texture = faces.texture;
-  const bool every_corner = std::ranges::all_of(texture.corners, [](int i) { return i >= 0; });
-  if (texture.coordinates.empty() || !every_corner) return text;
+  TextureCoordinates texture = faces.texture;
+  if (texture.coordinates.empty()) return text;
+  const auto none = static_cast<int>(texture.coordinates.size());
+  if (std::ranges::any_of(texture.corners, [](int i) { return i < 0; })) {
+    texture.coordinates.emplace_back(0, 0);
+    std::ranges::replace_if(
+        texture.corners, [](int i) { return i < 0; }, none);
+  }
   text += "    texCoord2f[] primvars:st = [";
   for (std::size_t i = 0; i < texture.coordinates.size(); ++i) {
     text += i == 0 ? "(" : ", (";
@@ -272,7 +277,7 @@ std::vector<fs::path> write_usd(const Animation& animation, const fs::path& targ
 SequenceFormat usd_format() {
   SequenceFormat format{"USD text", {".usda"}, false, SequenceFormat::Precision::single,
                         open_scene, begin_usd};
-  format.holds = {.polygons = true, .texture = HeldParts::Texture::corners};
+  format.holds = {.polygons = true, .texture = HeldParts::Texture::corners, .bare_faces = false};
   format.write_animation = write_usd;
   return format;
 }

@@ -204,6 +204,7 @@ BoundParameters<SequenceWriteOptions> writing_parameters(SequenceFormat::Precisi
 
 /// Listed because the reader says of the others how they become text.
 constexpr auto kUsdOfAnyKind = "USD, of which only text is read";
+constexpr auto kAvatar = "VRM avatar, read as glTF";
 
 void add_sequence_formats(OperationTable& table) {
   const auto add = [&table](std::string name, std::vector<std::string> extensions,
@@ -230,6 +231,11 @@ void add_sequence_formats(OperationTable& table) {
       [](const Parameters& options) {
         return parts_held_by(folder_writing_parameters().read(options).format);
       });
+  table.add(Format{.name = kAvatar,
+                   .kind = DataKind::sequence,
+                   .extensions = {".vrm"},
+                   .reading = sequence_parameters().declared(),
+                   .read = read_sequence_data});
   table.add(Format{.name = kUsdOfAnyKind,
                    .kind = DataKind::sequence,
                    .extensions = {".usd", ".usdc", ".usdz"},
@@ -261,6 +267,8 @@ void add_model_formats(OperationTable& table) {
                    .kind = DataKind::model,
                    .extensions = {".usda"},
                    .read = read_model_data});
+  table.add(Format{
+      .name = kAvatar, .kind = DataKind::model, .extensions = {".vrm"}, .read = read_model_data});
   table.add(Format{.name = kUsdOfAnyKind,
                    .kind = DataKind::model,
                    .extensions = {".usd", ".usdc", ".usdz"},
