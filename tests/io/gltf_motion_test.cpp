@@ -78,6 +78,14 @@ TEST_F(GltfFiles, AClipThatHoldsAPoseDoesNotDisplaceOneThatMoves) {
   EXPECT_THAT(notes_, ElementsAre(AllOf(HasSubstr("'talk' is read"), HasSubstr(": 'hold'"))));
 }
 
+TEST_F(GltfFiles, AClipThatIsLeftOutNeedNotBeSound) {
+  GltfBuilder gltf = plain();
+  gltf.animate(0, {0, 1}, {0, 1});
+  gltf.animate(0, {0, 1}, {0, 1, 0});
+  EXPECT_EQ(read(gltf.glb()).frame(1), quarters() + moved());
+  EXPECT_THAT(notes_, ElementsAre(HasSubstr(": 'animations[1]'")));
+}
+
 TEST_F(GltfFiles, AClipOfWhatNoSceneShowsDoesNotDisplaceOneOfWhatItShows) {
   GltfBuilder gltf = plain();
   gltf.root["nodes"].push_back({{"name", "LOD1"}, {"mesh", 0}});
