@@ -188,13 +188,14 @@ std::vector<Target> model_targets() {
        [](const fs::path& file) { read_image(file); },
        {text(smallest_jpeg()), text(smallest_png())}}};
 #ifdef MIMETRA_HAS_DRACO
-  targets.push_back({"draco",
-                     "view.bin",
-                     [](const fs::path& file) {
-                       decode_draco("a.glb", "mesh 0", {.view = 0, .positions = 0, .texture = 1},
-                                    read_file(file));
-                     },
-                     {text(test::draco_octahedron())}});
+  targets.push_back(
+      {"draco",
+       "view.bin",
+       [](const fs::path& file) {
+         decode_draco("a.glb", "mesh 0", {.view = 0, .positions = 0, .texture = 1},
+                      read_file(file));
+       },
+       {text(test::draco_octahedron(true)), text(test::quantised_draco_octahedron())}});
 #endif
   return targets;
 }
