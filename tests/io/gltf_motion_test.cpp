@@ -1,3 +1,5 @@
+#include <limits>
+
 #include <gmock/gmock.h>
 
 #include "tests/io/gltf_fixture.h"
@@ -78,12 +80,37 @@ TEST_F(GltfFiles, AClipThatHoldsAPoseDoesNotDisplaceOneThatMoves) {
   EXPECT_THAT(notes_, ElementsAre(AllOf(HasSubstr("'talk' is read"), HasSubstr(": 'hold'"))));
 }
 
+TEST_F(GltfFiles, AnObjectThatATakeHoldsStillStaysInItsTake) {
+  GltfBuilder gltf = two_nodes(plain());
+  gltf.animate(0, {0, 1}, {0, 1});
+  gltf.animate(2, {0, 1}, {0.5, 0.5});
+  gltf.animate(0, {0, 1}, {1, 0});
+  gltf.animate(2, {0, 1}, {0, 1});
+  const std::vector<std::string> names = {"head A", "teeth A", "head B", "teeth B"};
+  for (std::size_t a = 0; a < names.size(); ++a) gltf.root["animations"][a]["name"] = names[a];
+  const MeshSequence sequence = read(gltf.glb());
+  EXPECT_EQ(sequence.frame(1).bottomRows(6), sequence.rest().bottomRows(6) + moved());
+  EXPECT_THAT(notes_, testing::Contains(HasSubstr("'head A', 'teeth A' are read together")));
+}
+
+TEST_F(GltfFiles, ASplineThatLeavesEqualKeysMoves) {
+  GltfBuilder gltf = plain();
+  gltf.animate(0, {0, 1}, {5, 0, 5, 5, 0, 5}, "CUBICSPLINE");
+  gltf.animate(0, {0, 1}, {0, 1});
+  EXPECT_GT(read(gltf.glb()).frames(), 2);
+}
+
 TEST_F(GltfFiles, AClipThatIsLeftOutNeedNotBeSound) {
   GltfBuilder gltf = plain();
   gltf.animate(0, {0, 1}, {0, 1});
   gltf.animate(0, {0, 1}, {0, 1, 0});
   EXPECT_EQ(read(gltf.glb()).frame(1), quarters() + moved());
   EXPECT_THAT(notes_, ElementsAre(HasSubstr(": 'animations[1]'")));
+  // Nor where it is looked at, as the first holds still.
+  GltfBuilder still = plain();
+  still.animate(0, {0, 1}, {0.25, 0.25});
+  still.animate(0, {0, 1}, {0, std::numeric_limits<float>::quiet_NaN()});
+  EXPECT_EQ(read(still.glb()).frame(1), quarters() + 0.25 * moved());
 }
 
 TEST_F(GltfFiles, AClipOfWhatNoSceneShowsDoesNotDisplaceOneOfWhatItShows) {

@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include <gmock/gmock.h>
 
 #include <nlohmann/json.hpp>
@@ -230,10 +232,40 @@ TEST(GltfText, FacesWithoutTextureCoordinatesDoNotTakeThoseOfOthers) {
                 given[k])
           << name;
     }
+    // The corner opposite of the first face's: no face with texture coordinates is at its vertex.
+    int farthest = 0;
+    while (std::ranges::find(corners.begin(), corners.begin() + 3, farthest) !=
+           corners.begin() + 3) {
+      ++farthest;
+    }
+    for (std::size_t k = 3; k < corners.size(); ++k) {
+      if (corners[k] != farthest) continue;
+      EXPECT_EQ(found.texture.coordinates[static_cast<std::size_t>(found.texture.corners[k])],
+                Eigen::Vector2d(0, 0))
+          << name;
+    }
     const SequenceFormat* format = sequence_format(name);
     ASSERT_NE(format, nullptr);
     EXPECT_THAT(parts_left_out(format->holds, sequence),
-                ElementsAre("faces without texture coordinates (they get 0, 0)"));
+                ElementsAre("faces without texture coordinates"));
+  }
+}
+
+TEST(GltfText, TextureCoordinatesThatNoCornerHasAreNotWritten) {
+  TemporaryFolder folder;
+  Connectivity faces = Connectivity::from_triangles(6, test::octahedron().triangles);
+  faces.texture.corners.assign(faces.polygons.corners.size(), -1);
+  faces.texture.coordinates.emplace_back(0.25, 0.5);
+  Frames poses(1, 18);
+  const Positions points = test::octahedron().positions;
+  poses.row(0) = Eigen::Map<const Eigen::RowVectorXd>(points.data(), 18);
+  const MeshSequence sequence(std::move(faces), poses);
+  for (const char* name : {"a.glb", "a.usda"}) {
+    write_sequence(sequence, folder / name);
+    EXPECT_TRUE(
+        read_sequence((folder / name).string()).sequence.connectivity().texture.coordinates.empty())
+        << name;
+    EXPECT_THAT(parts_left_out(sequence_format(name)->holds, sequence), testing::IsEmpty());
   }
 }
 

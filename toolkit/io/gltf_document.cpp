@@ -208,6 +208,10 @@ GltfPrimitive gltf_primitive(const GltfValue& value, const GltfDocument& documen
   primitive.polygons = value.extension("FB_ngon_encoding").has_value();
   if (const auto draco = value.extension("KHR_draco_mesh_compression")) {
     const GltfValue ids = draco->at("attributes");
+    for (const char* name : {"TEXCOORD_0", "JOINTS_0", "WEIGHTS_0"}) {
+      if (!ids.has(name) || attributes.has(name)) continue;
+      ids.fail(std::string("names ") + name + ", which the primitive itself does not");
+    }
     constexpr std::size_t kMostIds = std::numeric_limits<int>::max();
     primitive.draco = GltfDraco{draco->index("bufferView", document.views.size()),
                                 ids.maybe_index("POSITION", kMostIds),

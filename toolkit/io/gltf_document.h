@@ -105,8 +105,8 @@ struct GltfSkin {
 
 struct GltfMaterial {
   std::string name;
-  /// From stored to shown coordinates of its base colour, or of another picture where it has none
-  /// of that. [KHR_texture_transform]
+  /// From stored to shown coordinates of the first of its pictures on TEXCOORD_0, its base colour
+  /// before others. [KHR_texture_transform]
   Eigen::Matrix<double, 2, 3> texture;
 };
 
@@ -145,7 +145,8 @@ struct GltfDocument {
   std::vector<std::string> notes;
 };
 
-/// Reads a .glb or .gltf with its buffers, which must lie in the file's own folder. Indices of
+/// Reads a .glb or .gltf with its buffers, which must lie in the file's own folder, or in the one
+/// that it links to. Indices of
 /// everything but vertices are sound. Throws IoError.
 GltfDocument read_gltf_document(const std::filesystem::path& path);
 

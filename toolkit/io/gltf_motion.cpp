@@ -1,6 +1,7 @@
 #include "toolkit/io/gltf_motion.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "toolkit/mesh/errors.h"
 
@@ -59,14 +60,16 @@ bool has_several_keys(const GltfDocument& document, const GltfClip& clip) {
   });
 }
 
-/// Whether any weight changes over time, as far as one can tell of a clip that may be left out.
-bool changes_weights(const GltfDocument& document, GltfValues& values, const GltfClip& clip) {
+/// Whether a clip that is not read yet would move anything; one that cannot be read does not.
+bool moves_weights(const GltfDocument& document, GltfValues& values, const GltfClip& clip) {
+  std::set<std::pair<std::size_t, std::size_t>> seen;
   return std::ranges::any_of(clip.channels, [&](const GltfChannel* channel) {
-    const Frames stored = values.read(channel->values, 1);
-    const auto keys = static_cast<Eigen::Index>(document.accessors[channel->times].count);
-    if (stored.rows() % keys != 0) return true;
-    const auto of_keys = stored.reshaped<Eigen::RowMajor>(keys, stored.rows() / keys);
-    return (of_keys.rowwise() - of_keys.row(0)).any();
+    if (!seen.emplace(channel->times, channel->values).second) return false;
+    try {
+      return !curve_of(document, values, *channel)->is_still();
+    } catch (const IoError&) {
+      return false;
+    }
   });
 }
 
@@ -75,29 +78,12 @@ std::string shown_name(const GltfDocument& document, const GltfAnimation& animat
   return "animations[" + std::to_string(&animation - document.animations.data()) + ']';
 }
 
-}  // namespace
-
-GltfMotion gltf_motion(const GltfDocument& document, GltfValues& values,
-                       const std::set<std::size_t>& shown) {
-  GltfMotion motion;
-  motion.weights.resize(document.nodes.size());
-  std::vector<GltfClip> clips;
-  for (const GltfAnimation& animation : document.animations) {
-    clips.push_back(clip_of(document, animation, shown));
-    motion.unread.insert(animation.unread.begin(), animation.unread.end());
-    for (const GltfChannel& channel : animation.channels) {
-      if (!channel.drives_weights) motion.moved.insert(channel.node);
-    }
-  }
-  std::erase_if(clips, [](const GltfClip& clip) { return clip.channels.empty(); });
-  if (clips.size() > 1) {
-    const auto poses = std::stable_partition(clips.begin(), clips.end(), [&](const GltfClip& clip) {
-      return has_several_keys(document, clip);
-    });
-    std::stable_partition(clips.begin(), poses, [&](const GltfClip& clip) {
-      return changes_weights(document, values, clip);
-    });
-  }
+/// Takes the first clip of all nodes that each drives weights of, in their order.
+void take_clips(const GltfDocument& document, GltfValues& values,
+                const std::vector<GltfClip>& clips, GltfMotion& motion) {
+  motion.weights.assign(document.nodes.size(), nullptr);
+  motion.clips.clear();
+  motion.other_clips.clear();
   for (const GltfClip& clip : clips) {
     const std::string name = "'" + shown_name(document, *clip.animation) + "'";
     const bool is_another = std::ranges::any_of(clip.channels, [&](const GltfChannel* channel) {
@@ -109,6 +95,33 @@ GltfMotion gltf_motion(const GltfDocument& document, GltfValues& values,
       auto& weights = motion.weights[channel->node];
       if (!weights) weights = curve_of(document, values, *channel);
     }
+  }
+}
+
+}  // namespace
+
+GltfMotion gltf_motion(const GltfDocument& document, GltfValues& values,
+                       const std::set<std::size_t>& shown) {
+  GltfMotion motion;
+  std::vector<GltfClip> clips;
+  for (const GltfAnimation& animation : document.animations) {
+    clips.push_back(clip_of(document, animation, shown));
+    motion.unread.insert(animation.unread.begin(), animation.unread.end());
+    for (const GltfChannel& channel : animation.channels) {
+      if (!channel.drives_weights) motion.moved.insert(channel.node);
+    }
+  }
+  std::erase_if(clips, [](const GltfClip& clip) { return clip.channels.empty(); });
+  std::stable_partition(clips.begin(), clips.end(),
+                        [&](const GltfClip& clip) { return has_several_keys(document, clip); });
+  take_clips(document, values, clips, motion);
+  const bool is_still = std::ranges::all_of(
+      motion.weights, [](const auto& weights) { return !weights || weights->is_still(); });
+  if (is_still && !motion.other_clips.empty()) {
+    std::stable_partition(clips.begin(), clips.end(), [&](const GltfClip& clip) {
+      return moves_weights(document, values, clip);
+    });
+    take_clips(document, values, clips, motion);
   }
   return motion;
 }

@@ -26,8 +26,8 @@ struct GltfMotion {
 
 /// One clip of the nodes that are `shown`: animations that drive weights of different nodes belong
 /// together, and one that drives any weights which an earlier one drives is another clip, of which
-/// nothing is taken. Animations whose weights change come before those that hold a pose, and these
-/// before poses of one key. Throws IoError.
+/// nothing is taken. Animations of several keys come before poses of one; where those that are read
+/// hold still, one that moves is read instead. Throws IoError.
 GltfMotion gltf_motion(const GltfDocument& document, GltfValues& values,
                        const std::set<std::size_t>& shown);
 

@@ -1,7 +1,5 @@
 #include <algorithm>
 #include <array>
-#include <bit>
-#include <cmath>
 #include <map>
 #include <set>
 #include <span>
@@ -130,6 +128,11 @@ class GltfReader {
     return "'" + std::string(placed.name) + "'";
   }
 
+  static bool has_faces(const GltfPrimitive& primitive) {
+    constexpr int kFirstOfFaces = 4;
+    return primitive.mode >= kFirstOfFaces && primitive.positions;
+  }
+
   void add_parts(const PlacedNode& placed, std::vector<ScenePart>& parts) {
     const GltfMesh& mesh = mesh_at(placed.node);
     const bool is_named = !document_.nodes[placed.node].name.empty() || mesh.name.empty();
@@ -139,8 +142,7 @@ class GltfReader {
     std::map<GltfPrimitive::Vertices, std::size_t> made;
     std::vector<PlacedPart> own;
     for (const GltfPrimitive& primitive : mesh.primitives) {
-      constexpr int kFirstOfFaces = 4;
-      if (primitive.mode < kFirstOfFaces || !primitive.positions) {
+      if (!has_faces(primitive)) {
         left_out_.insert("'" + name + "'");
         continue;
       }
@@ -236,14 +238,19 @@ class GltfReader {
     return coordinates;
   }
 
-  /// Whether the coordinates that are shown with a material are stored in fewer bits than there is
-  /// room for, with the first and the last number in both directions: shares of their own range.
-  bool fills_fewer_bits(std::size_t material) {
+  /// Whether a material's coordinates lie in a corner of what 16 bits can say, from which its
+  /// transform brings them to the picture: numbers of fewer bits, scaled to a range of their own.
+  bool brings_from_corner(std::size_t material) {
+    constexpr double kCorner = 16383. / 65535, kLeastScale = 2, kRounding = 1. / 256;
+    const auto& transform = document_.materials[material].texture;
+    const bool is_turned = transform(0, 1) != 0 || transform(1, 0) != 0;
+    if (is_turned || !(transform.leftCols<2>().diagonal().array() > kLeastScale).all())
+      return false;
     Eigen::RowVector2d least = Eigen::RowVector2d::Ones(), most = -least;
     for (const PlacedNode& placed : placed_) {
       if (!document_.nodes[placed.node].mesh) continue;
       for (const GltfPrimitive& primitive : mesh_at(placed.node).primitives) {
-        if (primitive.material != material || !primitive.texture || !primitive.positions) continue;
+        if (primitive.material != material || !primitive.texture || !has_faces(primitive)) continue;
         std::optional<DracoMesh> draco;
         if (primitive.draco) draco = decoded(primitive, std::string(placed.name));
         const Frames stored = stored_texture(primitive, draco);
@@ -251,11 +258,11 @@ class GltfReader {
         most = most.cwiseMax(stored.colwise().maxCoeff());
       }
     }
-    constexpr double kLast = 65535, kRounding = 1e-6;
-    const double last = std::round(kLast * most.maxCoeff());
-    const bool is_filled = least.isZero(0) && (kLast * most.array() - last).isZero(kRounding);
-    return is_filled && last > 0 && last < kLast &&
-           std::has_single_bit(static_cast<unsigned>(last) + 1);
+    const auto shown = [&transform](const Eigen::RowVector2d& stored) -> Eigen::Array2d {
+      return transform.leftCols<2>() * stored.transpose() + transform.col(2);
+    };
+    return most.maxCoeff() <= kCorner && (shown(least) >= -kRounding).all() &&
+           (shown(most) <= 1 + kRounding).all();
   }
 
   /// Whether a material's transform brings integers to texture coordinates; others move or repeat
@@ -266,7 +273,7 @@ class GltfReader {
     if (accessor.type == kFloat) return false;
     // gltfpack stores shares of the range that a material's coordinates have.
     if (!accessor.normalized || document_.generator.starts_with("gltfpack")) return true;
-    if (accessor.type != kUnsignedShort || transform.isIdentity(0)) return false;
+    if (accessor.type != kUnsignedShort) return false;
     // Fewer bits than 16 of the range from 0 to 1.
     constexpr double kRounding = 1e-6;
     for (int bits = 8; bits < 16; ++bits) {
@@ -276,8 +283,8 @@ class GltfReader {
       }
     }
     // What gltfpack made and another program wrote again.
-    const auto [known, is_new] = fills_fewer_bits_.try_emplace(material, false);
-    if (is_new) known->second = fills_fewer_bits(material);
+    const auto [known, is_new] = brings_from_corner_.try_emplace(material, false);
+    if (is_new) known->second = brings_from_corner(material);
     return known->second;
   }
 
@@ -477,8 +484,8 @@ class GltfReader {
   std::map<std::size_t, Eigen::Matrix4d> worlds_;
   GltfMotion motion_;
   std::set<std::size_t> joints_;
-  std::map<std::size_t, bool> fills_fewer_bits_;  ///< by material
-  bool has_materials_ = false;                    ///< whether a primitive that is shown has one
+  std::map<std::size_t, bool> brings_from_corner_;  ///< by material
+  bool has_materials_ = false;                      ///< whether a primitive that is shown has one
   std::set<std::string> left_out_, unread_;
   std::vector<std::string> notes_, motion_notes_;
 };

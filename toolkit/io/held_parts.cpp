@@ -41,15 +41,14 @@ bool is_its_only_frame(const FrameSource& sequence) {
 
 void add_lost_texture(std::vector<std::string>& lost, const HeldParts& held,
                       const Connectivity& connectivity) {
-  const TextureCoordinates& texture = connectivity.texture;
-  if (texture.coordinates.empty()) return;
+  if (!has_texture(connectivity)) return;
+  const auto is_bare = [](int coordinates) { return coordinates < 0; };
   if (held.texture == HeldParts::Texture::none) {
     lost.emplace_back("texture coordinates");
   } else if (held.texture == HeldParts::Texture::vertices && !texture_of_vertices(connectivity)) {
     lost.emplace_back("several texture coordinates at a vertex");
-  } else if (!held.bare_faces &&
-             std::ranges::any_of(texture.corners, [](int i) { return i < 0; })) {
-    lost.emplace_back("faces without texture coordinates (they get 0, 0)");
+  } else if (!held.bare_faces && std::ranges::any_of(connectivity.texture.corners, is_bare)) {
+    lost.emplace_back("faces without texture coordinates");
   }
 }
 

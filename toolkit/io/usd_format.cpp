@@ -13,6 +13,7 @@
 #include "toolkit/io/sequence_parts.h"
 #include "toolkit/io/single_precision.h"
 #include "toolkit/mesh/errors.h"
+#include "toolkit/mesh/texture.h"
 #include "toolkit/model/animation.h"
 
 namespace mimetra {
@@ -107,7 +108,7 @@ std::string usd_faces(const Connectivity& faces) {
                      "\n    int[] faceVertexIndices = " + usd_list(faces.polygons.corners) +
                      "\n    uniform token subdivisionScheme = \"none\"\n";
   TextureCoordinates texture = faces.texture;
-  if (texture.coordinates.empty()) return text;
+  if (!has_texture(faces)) return text;
   const auto none = static_cast<int>(texture.coordinates.size());
   if (std::ranges::any_of(texture.corners, [](int i) { return i < 0; })) {
     texture.coordinates.emplace_back(0, 0);

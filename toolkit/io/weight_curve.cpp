@@ -99,6 +99,11 @@ void add_times_before_jumps(const WeightCurve& curve, std::set<double>& times) {
 
 }  // namespace
 
+bool WeightCurve::is_still() const {
+  const bool is_level = between != Between::cubic || (slopes_in.isZero(0) && slopes_out.isZero(0));
+  return is_level && (values.rowwise() - values.row(0)).isZero(0);
+}
+
 Eigen::RowVectorXd WeightCurve::at(double time) const {
   if (times.size() == 0) return values.row(0);
   const auto [key, share] = key_place(times, time);

@@ -20,6 +20,8 @@ struct WeightCurve {
 
   /// The weights at a time; those of the nearest key outside of the keys. \pre there is a row
   Eigen::RowVectorXd at(double time) const;
+  /// Whether they are the same at all times. \pre there is a row
+  bool is_still() const;
 };
 
 /// The times of the frames that show all curves: their keys, those that only rounding parts as the

@@ -1,10 +1,18 @@
 #include "toolkit/mesh/texture.h"
 
+#include <algorithm>
+
 namespace mimetra {
+
+bool has_texture(const Connectivity& connectivity) {
+  const TextureCoordinates& texture = connectivity.texture;
+  return !texture.coordinates.empty() &&
+         std::ranges::any_of(texture.corners, [](int coordinates) { return coordinates >= 0; });
+}
 
 std::optional<std::vector<Eigen::Vector2d>> texture_of_vertices(const Connectivity& connectivity) {
   const TextureCoordinates& texture = connectivity.texture;
-  if (texture.coordinates.empty()) return std::nullopt;
+  if (!has_texture(connectivity)) return std::nullopt;
   const auto vertices = static_cast<std::size_t>(connectivity.vertices);
   std::vector<Eigen::Vector2d> of_vertices(vertices, Eigen::Vector2d::Zero());
   std::vector<char> is_known(vertices, 0);
