@@ -301,7 +301,7 @@ TEST_F(GltfFiles, ATransformOfAnyPictureUndoesQuantisationWhereThereIsNoBaseColo
   const GltfJson picture = {{"index", 0}, {"extensions", transform}};
   const auto of_2 = [&](const GltfJson& material) -> Eigen::Vector2d {
     GltfBuilder gltf = textured(stored, {});
-    gltf.root["materials"] = {material};
+    gltf.root["materials"] = GltfJson::array({material});
     return model(gltf.glb()).connectivity().texture.coordinates[2];
   };
   const Eigen::Vector2d quarter(1023. / 4095, 1 - 2047. / 4095);
