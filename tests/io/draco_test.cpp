@@ -159,6 +159,15 @@ TEST(Draco, AMeshWithoutTheJointsThatItsFileNamesSaysSo) {
   EXPECT_THAT(refusal(gltf.glb()), HasSubstr("its compressed mesh has no weights of joints"));
 }
 
+TEST(Draco, AttributesThatThePrimitiveItselfDoesNotNameAreRefused) {
+  for (const char* name : {"JOINTS_0", "WEIGHTS_0"}) {
+    GltfBuilder gltf = hanging_gltf();
+    gltf.root["meshes"][0]["primitives"][0]["attributes"].erase(name);
+    EXPECT_THAT(refusal(gltf.glb()),
+                HasSubstr(std::string("names ") + name + ", which the primitive itself does not"));
+  }
+}
+
 TEST(Draco, AVertexOnAJointThatItsSkinDoesNotHaveIsAnError) {
   GltfBuilder gltf = hanging_gltf();
   gltf.root["skins"][0]["joints"] = {1};
