@@ -207,7 +207,7 @@ TEST_P(GltfOutputs, NamesAreTextWhateverTheirBytes) {
   EXPECT_EQ(read_blendshapes(file().string()).expressions().names[1], basis.names[1]);
 }
 
-TEST(GltfText, FacesWithoutTextureCoordinatesDoNotTakeThoseOfOthers) {
+TEST(GltfText, TextureCoordinatesStayWhereSomeFacesHaveNone) {
   TemporaryFolder folder;
   Connectivity faces = Connectivity::from_triangles(6, test::octahedron().triangles);
   Polygons& polygons = faces.polygons;

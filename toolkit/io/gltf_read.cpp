@@ -244,8 +244,8 @@ class GltfReader {
     constexpr double kCorner = 16383. / 65535, kLeastScale = 2, kRounding = 1. / 256;
     const auto& transform = document_.materials[material].texture;
     const bool is_turned = transform(0, 1) != 0 || transform(1, 0) != 0;
-    if (is_turned || !(transform.leftCols<2>().diagonal().array() > kLeastScale).all())
-      return false;
+    const auto scale = transform.leftCols<2>().diagonal();
+    if (is_turned || scale.minCoeff() <= kLeastScale) return false;
     Eigen::RowVector2d least = Eigen::RowVector2d::Ones(), most = -least;
     for (const PlacedNode& placed : placed_) {
       if (!document_.nodes[placed.node].mesh) continue;
