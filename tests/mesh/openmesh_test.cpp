@@ -217,6 +217,21 @@ TEST(OpenMeshBridge, MakesASequenceOfPointProperties) {
       ThrowsMessage<std::invalid_argument>("the mesh has no points of vertices 'shut'"));
 }
 
+struct IntegerPoints : OpenMesh::DefaultTraits {
+  using Point = OpenMesh::Vec3i;
+};
+
+TEST(OpenMeshBridge, TakesPosesOfWhateverTypeTheMeshHasPointsOf) {
+  OpenMesh::TriMesh_ArrayKernelT<IntegerPoints> mesh;
+  mesh.add_face(mesh.add_vertex({0, 0, 0}), mesh.add_vertex({1, 0, 0}), mesh.add_vertex({0, 1, 0}));
+  auto open = OpenMesh::getOrMakeProperty<OpenMesh::VertexHandle, OpenMesh::Vec3i>(mesh, "open");
+  for (const auto vertex : mesh.vertices()) open[vertex] = {vertex.idx(), 20, -3};
+  const MeshSequence sequence = sequence_from_openmesh(mesh, {"open"});
+  Positions expected(3, 3);
+  expected << 0, 20, -3, 1, 20, -3, 2, 20, -3;
+  EXPECT_EQ(Positions(sequence.frame(0)), expected);
+}
+
 TEST(OpenMeshBridge, PutsFieldsIntoPropertiesAndTakesThemBack) {
   QuadMesh mesh = house();
   Eigen::MatrixXd region(7, 1), way(7, 3), in_l(5, 1);

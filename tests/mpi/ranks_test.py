@@ -98,6 +98,20 @@ class Ranks(unittest.TestCase):
                          for row in json.loads(said)["rows"]])
         self.assertEqual(rows[1], rows[0])
 
+    def test_options_of_what_is_written_are_those_of_one_rank(self):
+        for options in (["convert", "take.npy", "--single", "-o", "{}.npy"],
+                        ["regions", "take.npy", "-k", "4", "-o", "{}.pvd", "--paraview", "{}.py",
+                         "--up", "z"],
+                        ["transfer", "take.npy", "sample", "-k", "4", "--weights-out", "{}.csv",
+                         "--format", "off", "-o", "{}/"]):
+            for name, ranks in (("one", 1), ("two", 2)):
+                self.run_on(ranks, *[option.format(name) for option in options])
+        self.assertEqual(self.bytes_of("two.npy"), self.bytes_of("one.npy"))
+        self.assertEqual(self.bytes_of("two.csv"), self.bytes_of("one.csv"))
+        self.assertEqual(self.bytes_of("two.py").replace(b"two.pvd", b"one.pvd"),
+                         self.bytes_of("one.py"))
+        self.assertEqual(self.bytes_of("two/frame_0007.off"), self.bytes_of("one/frame_0007.off"))
+
     def test_a_broken_frame_ends_the_run_with_one_message(self):
         self.run_on(1, "convert", "take.npy", "-o", "frames/")
         broken = sorted((self.folder / "frames").glob("*.ply"))[7]
@@ -145,6 +159,10 @@ class Ranks(unittest.TestCase):
         said = self.end_of_run(1, f'cd "{tempfile.gettempdir()}"', "decompose", "take.npy", "-k", "4",
                                "-o", "c.h5", code=3)
         self.assertIn("take.npy", said)
+        # Reads for itself what the first writes: without the others nothing stands.
+        for name in ("c.npy", "c/"):
+            said = self.end_of_run(1, "cd /", "convert", "take.npy", "-o", name, code=3)
+            self.assertIn("take.npy", said)
 
     def test_a_rank_with_a_full_disk_ends_the_run(self):
         # Files end at 64 KB, with the error of a disk that is full.

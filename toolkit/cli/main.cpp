@@ -1,5 +1,8 @@
+#include <fcntl.h>
+
 #include <chrono>
 #include <csignal>
+#include <cstdlib>
 #include <exception>
 #include <iostream>
 #include <new>
@@ -166,6 +169,7 @@ int exit_code_of(const std::vector<std::string>& arguments, const mimetra::Ranks
 /// As one of the processes that mpirun started: one that fails ends all of them.
 int shared_exit_code(const std::vector<std::string>& arguments) {
   const mimetra::cli::MpiRanks ranks;
+  mimetra::share_memory(ranks.on_this_machine());
   // What all find wrong, the first says.
   const bool is_first = ranks.rank() == 0;
   std::ostringstream said;
@@ -179,17 +183,40 @@ int shared_exit_code(const std::vector<std::string>& arguments) {
   }
   ranks.end_all(code);
 }
+#else
+/// As the only process. Where mpirun started several, each would write the same files.
+int single_exit_code(const std::vector<std::string>& arguments) {
+  for (const char* variable : {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE"}) {
+    const char* processes = std::getenv(variable);
+    if (!processes || std::atoi(processes) < 2) continue;
+    spdlog::error(
+        "mpirun started {} processes, and this build does the whole work in each; take the "
+        "command that './dev build mpi' makes, or start each with its own work and without {}",
+        processes, variable);
+    return kUsage;
+  }
+  return exit_code_of(arguments, nullptr);
+}
 #endif
+
+/// A file that is opened later would get the place of standard output or error where that is
+/// closed, and what is said would be written into it. Writing fails as before.
+void keep_standard_streams() {
+  for (int stream = 0; stream <= 2; ++stream) {
+    if (fcntl(stream, F_GETFD) < 0) open("/dev/null", O_RDONLY | O_CLOEXEC);
+  }
+}
 
 }  // namespace
 
 int main(int argc, char** argv) {
+  keep_standard_streams();
   say_to(std::cerr);
   take_signals();
   const std::vector<std::string> arguments(argv + 1, argv + argc);
 #ifdef MIMETRA_HAS_MPI
   return shared_exit_code(arguments);
 #else
-  return exit_code_of(arguments, nullptr);
+  return single_exit_code(arguments);
 #endif
 }

@@ -1,9 +1,13 @@
 #include "toolkit/cli/mpi_ranks.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cstdlib>
+#include <thread>
 
 #include <mpi.h>
+
+#include "toolkit/mesh/errors.h"
 
 namespace mimetra::cli {
 namespace {
@@ -51,6 +55,27 @@ void MpiRanks::broadcast(int from, std::span<double> numbers) const {
   in_pieces(numbers, [from](double* data, int count) {
     MPI_Bcast(data, count, MPI_DOUBLE, from, MPI_COMM_WORLD);
   });
+}
+
+void MpiRanks::meet(const std::function<bool()>& goes_on) const {
+  // A barrier that waits would hear of no signal.
+  MPI_Request all_are_here = MPI_REQUEST_NULL;
+  MPI_Ibarrier(MPI_COMM_WORLD, &all_are_here);
+  for (int done = 0; !done;) {
+    MPI_Test(&all_are_here, &done, MPI_STATUS_IGNORE);
+    if (done) return;
+    if (!goes_on()) throw Cancelled();
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+}
+
+int MpiRanks::on_this_machine() const {
+  MPI_Comm machine = MPI_COMM_NULL;
+  MPI_Comm_split_type(MPI_COMM_WORLD, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &machine);
+  int count = 1;
+  MPI_Comm_size(machine, &count);
+  MPI_Comm_free(&machine);
+  return count;
 }
 
 void MpiRanks::end_all(int code) const {

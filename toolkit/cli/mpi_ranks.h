@@ -19,6 +19,10 @@ class MpiRanks : public Ranks {
   void send(int to, std::span<const double> numbers) const override;
   void receive(int from, std::span<double> numbers) const override;
   void broadcast(int from, std::span<double> numbers) const override;
+  void meet(const std::function<bool()>& goes_on) const override;
+
+  /// How many of the processes share this one's machine, with itself.
+  int on_this_machine() const;
 
   /// Ends all processes; mpirun returns `code`.
   [[noreturn]] void end_all(int code) const;

@@ -87,17 +87,17 @@ void print_result(const Request& request, const Outcome& outcome,
   if (!std::cout.flush()) throw OutputError("standard output", "cannot be written");
 }
 
-/// Computes what the operation shares, in silence.
+/// Computes what the operation shares, in silence; the first process writes.
 void help_first(const OperationTable& table, const Request& request, const Ranks& ranks) {
   if (!request.operation->shared || request.dry_run) return;
   CallRequest asked = call_of(request);
-  asked.destinations.clear();
   asked.ranks = &ranks;
   asked.progress = [](double) { return !interrupted; };
   asked.log = [](LogLevel, const std::string&) {};
   Call call(table, std::move(asked));
   call.load();
   call.run();
+  call.write();
 }
 
 /// What a run that wrote something has cost.

@@ -117,27 +117,19 @@ TextureCoordinates texture_of(const Mesh& mesh) {
   return texture;
 }
 
-inline Eigen::Index columns(const OpenMesh::Vec3f& /*type*/) {
-  return 3;
-}
-inline Eigen::Index columns(const OpenMesh::Vec3d& /*type*/) {
-  return 3;
-}
-template <typename Number>
-Eigen::Index columns(const Number& /*type*/) {
-  return 1;
-}
-
 /// Numbers of a property of this type, a row for each element; none where there is no such one.
 template <typename Type, typename Handle, OpenMeshClass Mesh>
 bool read_property(const Mesh& mesh, const std::string& name, Eigen::MatrixXd& values) {
   typename OpenMesh::PropHandle<Handle>::template type<Type> property;
   if (!mesh.get_property_handle(property, name)) return false;
   const auto count = static_cast<Eigen::Index>(mesh.template n_elements<Handle>());
-  values.resize(count, columns(Type()));
+  constexpr bool kIsVector = requires(const Type& value) {
+    value[0];
+  };
+  values.resize(count, kIsVector ? 3 : 1);
   for (Eigen::Index i = 0; i < count; ++i) {
     const auto& value = mesh.property(property, Handle(static_cast<int>(i)));
-    if constexpr (requires { value[0]; }) {
+    if constexpr (kIsVector) {
       for (Eigen::Index axis = 0; axis < 3; ++axis) {
         values(i, axis) = static_cast<double>(value[static_cast<std::size_t>(axis)]);
       }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <span>
 
 namespace mimetra {
@@ -17,6 +18,8 @@ class Ranks {
   virtual void receive(int from, std::span<double> numbers) const = 0;
   /// Gives the numbers of rank `from` to all, which all call it with as many.
   virtual void broadcast(int from, std::span<double> numbers) const = 0;
+  /// Waits until all have called it. Throws Cancelled where `goes_on`, asked meanwhile, is false.
+  virtual void meet(const std::function<bool()>& goes_on) const = 0;
 };
 
 }  // namespace mimetra

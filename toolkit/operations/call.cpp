@@ -48,6 +48,10 @@ Call::Call(const OperationTable& table, CallRequest request)
   check_outputs();
 }
 
+bool Call::helps_another() const {
+  return request_.ranks && request_.ranks->rank() > 0;
+}
+
 std::optional<Destination> Call::destination_of(const Output& output) const {
   const auto asked = request_.destinations.find(output.name);
   if (asked != request_.destinations.end()) return asked->second;
@@ -101,6 +105,7 @@ void Call::check_parameters_of_files() const {
 
 /// Refuses, before anything is read, what cannot be written.
 void Call::check_outputs() const {
+  if (helps_another()) return;
   const auto is_several = [](const auto& input) { return input.second.size() > 1; };
   const bool several = std::ranges::any_of(request_.named, is_several) ||
                        std::ranges::any_of(request_.given, is_several);
@@ -172,8 +177,10 @@ void Call::place_outputs() {
     const bool is_folder = table_.writes_folder(output, asked->path);
     paths_[output.name] = table_.output_paths(output, asked->path, names);
     for (const auto& path : paths_[output.name]) {
-      table_.check_writable(output, is_folder ? path / "" : path, asked->overwrite,
-                            inputs_that_stay());
+      if (!helps_another()) {
+        table_.check_writable(output, is_folder ? path / "" : path, asked->overwrite,
+                              inputs_that_stay());
+      }
       claim(path);
       if (is_folder) folders.emplace(place_of(path), path);
     }
@@ -311,8 +318,19 @@ void Call::write_values(const Output& output, const Paths& targets, const std::s
 }
 
 void Call::write() {
-  if (!writes() && !request_.manifest) return;
   const Stopwatch stopwatch;
+  // An interrupted run leaves all of its outputs or none.
+  PendingOutputs together(false, inputs_that_stay());
+  if ((writes() || request_.manifest) && !helps_another()) write_outputs(together);
+  // Nothing stands of a run that another process could not finish.
+  if (request_.ranks && request_.operation->shared) {
+    request_.ranks->meet([this] { return !request_.progress || request_.progress(1); });
+  }
+  together.commit();
+  write_seconds_ = stopwatch.seconds();
+}
+
+void Call::write_outputs(PendingOutputs& together) const {
   const std::string manifest = mimetra::manifest(finished_, outcome_.report);
   std::size_t count = 0, written = 0;
   for (const auto& [name, targets] : paths_) count += targets.size();
@@ -321,8 +339,6 @@ void Call::write() {
     const double all = 1 - kWritingShare + kWritingShare * done;
     return !request_.progress || request_.progress(all);
   };
-  // An interrupted run leaves all of its outputs or none.
-  PendingOutputs together(false, inputs_that_stay());
   for (const Output& output : request_.operation->outputs) {
     const auto targets = paths_.find(output.name);
     if (targets != paths_.end()) {
@@ -332,8 +348,6 @@ void Call::write() {
   if (request_.manifest) {
     write_file(request_.manifest->path, manifest, request_.manifest->overwrite, &together);
   }
-  together.commit();
-  write_seconds_ = stopwatch.seconds();
 }
 
 }  // namespace mimetra

@@ -40,7 +40,7 @@ struct CallRequest {
   bool may_stream = false;
   /// 0 for all there are.
   int threads = 0;
-  /// Of a program that several processes run, all of which make this call.
+  /// Of a program that several processes run, all of which make this call: the first one writes.
   const Ranks* ranks = nullptr;
   Progress progress = {};
   Log log = {};
@@ -90,6 +90,7 @@ class Call {
  private:
   using Paths = std::vector<std::filesystem::path>;
 
+  bool helps_another() const;
   std::optional<Destination> destination_of(const Output& output) const;
   void check_inputs() const;
   void check_parameters_of_files() const;
@@ -98,6 +99,7 @@ class Call {
   std::vector<std::string> repeated_names() const;
   Paths inputs_that_stay() const;
   void place_outputs();
+  void write_outputs(PendingOutputs& together) const;
   void write_values(const Output& output, const Paths& targets, const std::string& manifest,
                     const Progress& progress, PendingOutputs& together, std::size_t& written) const;
 

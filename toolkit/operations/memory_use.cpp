@@ -12,6 +12,8 @@ namespace {
 
 constexpr double kKilobyte = 1024;
 
+int sharing_processes = 1;
+
 /// "NAME: NUMBER kB" lines, in bytes.
 std::map<std::string, double> kilobytes_in(const std::string& path) {
   std::map<std::string, double> bytes;
@@ -50,7 +52,11 @@ double available_memory() {
   const auto available = bytes.find("MemAvailable:");
   const double of_machine =
       available == bytes.end() ? std::numeric_limits<double>::infinity() : available->second;
-  return std::min(of_machine, left_in_group());
+  return std::min(of_machine, left_in_group()) / sharing_processes;
+}
+
+void share_memory(int processes) {
+  sharing_processes = processes;
 }
 
 }  // namespace mimetra

@@ -15,4 +15,8 @@ struct MemoryUse {
 /// besides what this process has; +infinity where the system does not tell.
 double available_memory();
 
+/// available_memory() is one's share of it from now on, where so many processes of a run are on
+/// this machine. \pre Nobody asks for it at the same time.
+void share_memory(int processes);
+
 }  // namespace mimetra

@@ -9,8 +9,8 @@
 namespace mimetra {
 
 /// A script that shows the regions of a written series (.pvd or .vtp) in ParaView (`paraview
-/// --script=VIEW.py`): each in a colour of its own with a legend, the time, and the face from the
-/// front. Under pvpython it draws the picture that is named behind it.
+/// --script=VIEW.py`): neighbours in different colours with a legend, the time, and the face from
+/// the front. Under pvpython it draws the picture that is named behind it.
 std::string paraview_view(const RegionData& regions, const std::filesystem::path& series,
                           UpAxis up = UpAxis::y);
 
