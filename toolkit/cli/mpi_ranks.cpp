@@ -58,14 +58,16 @@ void MpiRanks::broadcast(int from, std::span<double> numbers) const {
 }
 
 void MpiRanks::meet(const std::function<bool()>& goes_on) const {
-  // A barrier that waits would hear of no signal.
-  MPI_Request all_are_here = MPI_REQUEST_NULL;
-  MPI_Ibarrier(MPI_COMM_WORLD, &all_are_here);
-  for (int done = 0; !done;) {
-    MPI_Test(&all_are_here, &done, MPI_STATUS_IGNORE);
-    if (done) return;
-    if (!goes_on()) throw Cancelled();
-    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  // A barrier that waits would hear of no signal. Twice, as one that has come may have died since.
+  for (int round = 0; round < 2; ++round) {
+    MPI_Request all_are_here = MPI_REQUEST_NULL;
+    MPI_Ibarrier(MPI_COMM_WORLD, &all_are_here);
+    for (int done = 0; !done;) {
+      MPI_Test(&all_are_here, &done, MPI_STATUS_IGNORE);
+      if (done) break;
+      if (!goes_on()) throw Cancelled();
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
   }
 }
 
