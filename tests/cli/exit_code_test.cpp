@@ -29,6 +29,32 @@ TEST_F(ExitCode, Is2ForAnUnknownOptionAndSuggestsTheNearest) {
                  "unknown option --radios; did you mean '--radius'?");
 }
 
+TEST_F(ExitCode, Is2WhereSeveralProcessesWouldEachDoAllOfTheWork) {
+  const auto before = listing();
+  for (const std::string variable : {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE"}) {
+    const auto several = run("convert head --weights take.csv -o x.npy", variable + "=3");
+    EXPECT_EQ(several.code, 2);
+    EXPECT_THAT(several.err, HasSubstr("mpirun started 3 processes"));
+    EXPECT_THAT(several.err, HasSubstr("'./dev build mpi'"));
+    EXPECT_EQ(listing(), before);
+    EXPECT_EQ(run("info head", variable + "=1").code, 0);
+  }
+}
+
+TEST_F(ExitCode, Is5ForAStandardOutputThatIsClosedWhateverFilesAreOpened) {
+  // More than is kept in memory of files that are read once: the rest is in a file without a name.
+  std::string weights = "time,left\n";
+  for (int frame = 0; frame < 3200; ++frame) {
+    weights += std::to_string(frame / 60.0) + ',' + std::to_string(frame % 100 / 100.0) + '\n';
+  }
+  write("long.csv", weights);
+  ASSERT_EQ(run("convert head --weights long.csv -o frames/").code, 0);
+  EXPECT_EQ(run("align frames -o a.npy >&-").code, 5);
+  EXPECT_EQ(run("align frames -o b.npy --on all 2>&-").code, 0);
+  EXPECT_EQ(run("align frames -o c.npy --on all").code, 0);
+  EXPECT_EQ(text_of(folder_ / "b.npy"), text_of(folder_ / "c.npy"));
+}
+
 TEST_F(ExitCode, Is2ForAPatternWithoutQuotesWhichIsNamed) {
   run("convert head --weights take.csv --frames 0:5 -o f/ --format obj");
   for (const std::string line :
