@@ -30,14 +30,20 @@ TEST_F(ExitCode, Is2ForAnUnknownOptionAndSuggestsTheNearest) {
 }
 
 TEST_F(ExitCode, Is2WhereSeveralProcessesWouldEachDoAllOfTheWork) {
-  const auto before = listing();
+  std::filesystem::copy("/bin/sh", folder_ / "mpirun");
+  const std::string starts_it = R"( -c '"$0" "$@"; exit $?')";
+  const std::string work = "convert head --weights take.csv -o x.npy --force";
   for (const std::string variable : {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE"}) {
-    const auto several = run("convert head --weights take.csv -o x.npy", variable + "=3");
+    const auto before = listing();
+    const auto several = run(work, variable + "=3 ./mpirun" + starts_it);
     EXPECT_EQ(several.code, 2);
     EXPECT_THAT(several.err, HasSubstr("mpirun started 3 processes"));
     EXPECT_THAT(several.err, HasSubstr("'./dev build mpi'"));
     EXPECT_EQ(listing(), before);
-    EXPECT_EQ(run("info head", variable + "=1").code, 0);
+    EXPECT_EQ(run(work, variable + "=1 ./mpirun" + starts_it).code, 0);
+    // Scripts that run on processes of MPI start it for work of their own.
+    EXPECT_EQ(run(work, variable + "=3 sh" + starts_it).code, 0);
+    EXPECT_EQ(run(work).code, 0);
   }
 }
 

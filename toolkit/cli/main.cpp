@@ -1,9 +1,13 @@
 #include <fcntl.h>
+#include <unistd.h>
 
+#include <algorithm>
+#include <array>
 #include <chrono>
 #include <csignal>
 #include <cstdlib>
 #include <exception>
+#include <fstream>
 #include <iostream>
 #include <new>
 #include <sstream>
@@ -184,11 +188,21 @@ int shared_exit_code(const std::vector<std::string>& arguments) {
   ranks.end_all(code);
 }
 #else
+/// Whether a program that starts processes of MPI has started this one itself: scripts that run
+/// there may well start it, and hand on their environment.
+bool is_started_by_mpirun() {
+  std::ifstream file("/proc/" + std::to_string(getppid()) + "/comm");
+  std::string parent;
+  std::getline(file, parent);
+  const auto begins = [&parent](const char* name) { return parent.starts_with(name); };
+  return std::ranges::any_of(std::array{"mpirun", "mpiexec", "orte", "hydra_pmi"}, begins);
+}
+
 /// As the only process. Where mpirun started several, each would write the same files.
 int single_exit_code(const std::vector<std::string>& arguments) {
   for (const char* variable : {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE"}) {
     const char* processes = std::getenv(variable);
-    if (!processes || std::atoi(processes) < 2) continue;
+    if (!processes || std::atoi(processes) < 2 || !is_started_by_mpirun()) continue;
     spdlog::error(
         "mpirun started {} processes, and this build does the whole work in each; take the "
         "command that './dev build mpi' makes, or start each with its own work and without {}",
