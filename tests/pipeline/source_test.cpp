@@ -65,6 +65,32 @@ TEST(SourceRestPose, IsRefusedWithAnotherNumberOfVertices) {
   EXPECT_THROW(prepare_source(take(), {.rest = Positions(3, 3)}), std::invalid_argument);
 }
 
+/// As of another face: each vertex is elsewhere, by a tenth of the size.
+Positions of_another_face(const Positions& rest) {
+  Positions other = rest;
+  const double size = 0.1 * (rest.colwise().maxCoeff() - rest.colwise().minCoeff()).norm();
+  for (Eigen::Index v = 0; v < rest.rows(); ++v) {
+    other.row(v) +=
+        size * Eigen::RowVector3d(std::sin(7.0 * v), std::cos(5.0 * v), std::sin(3.0 * v));
+  }
+  return other;
+}
+
+TEST(SourceRestPose, OfAnotherFaceIsNoted) {
+  const MeshSequence sequence = take(150);
+  const Positions other = of_another_face(sequence.rest());
+  const auto is_noted = [&](SourceOptions options) {
+    Noted noted;
+    options.notes = noted.sink();
+    prepare_source(sequence, options);
+    return noted.has(Topic::other_rest);
+  };
+  EXPECT_TRUE(is_noted({.rest = other}));
+  EXPECT_FALSE(is_noted({}));
+  EXPECT_FALSE(is_noted({.rest = SourceRest::mean}));
+  EXPECT_FALSE(is_noted({.rest = other, .model_driven = true}));
+}
+
 TEST(HeadMotion, IsLookedForOnlyWhereTheSourceMayHaveSome) {
   const auto taken_out = [](const MeshSequence& sequence, const SourceOptions& options = {}) {
     return prepare_source(sequence, options).head_motion.how;

@@ -6,6 +6,7 @@
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/frame_shapes.h"
 #include "toolkit/mesh/inspection.h"
+#include "toolkit/mesh/rest_beyond_frames.h"
 #include "toolkit/mesh/text.h"
 #include "toolkit/mesh/whole_motion.h"
 #include "toolkit/operations/bound_parameters.h"
@@ -37,7 +38,9 @@ std::string from(const std::vector<int>& found, const std::string& what) {
 }
 
 /// Reads all frames.
-std::vector<std::string> frame_warnings(const FrameSource& sequence, const BlockOptions& options) {
+std::vector<std::string> frame_warnings(const std::shared_ptr<const FrameSource>& frames,
+                                        const BlockOptions& options) {
+  const FrameSource& sequence = *frames;
   const std::vector<FrameShape> shapes = frame_shapes(sequence, options);
   const OddFrames odd = odd_frames(sequence, shapes);
   std::vector<std::string> warnings;
@@ -59,6 +62,9 @@ std::vector<std::string> frame_warnings(const FrameSource& sequence, const Block
                        " degrees and moves by up to " + readable(whole.shift, 3) +
                        " against the rest pose, " + percent(1 - whole.left_by_motion) +
                        " of all motion");
+  } else if (sequence.rest_is_known()) {
+    const RestBeyondFrames rest = rest_beyond_frames(frames, options);
+    if (rest.is_of_other_face()) warnings.push_back(described(rest));
   }
   const double of_rest = spread(sequence.rest(), sequence.triangles());
   if (is_other_size(of_rest, odd.usual_spread)) {
@@ -118,12 +124,13 @@ std::vector<std::string> numbering_warnings(const Invocation& invocation) {
 
 Outcome run_check(const Invocation& invocation) {
   const NamedData& input = invocation.input("sequence");
-  const FrameSource& sequence = *std::get<FieldSequence>(input.data).frames;
+  const std::shared_ptr<const FrameSource>& frames = std::get<FieldSequence>(input.data).frames;
+  const FrameSource& sequence = *frames;
   std::vector<std::string> found = numbering_warnings(invocation);
   const std::vector<std::string> own = mesh_warnings(sequence);
   found.insert(found.end(), own.begin(), own.end());
   const std::vector<std::string> of_frames =
-      frame_warnings(sequence, {.threads = invocation.threads, .progress = invocation.progress});
+      frame_warnings(frames, {.threads = invocation.threads, .progress = invocation.progress});
   found.insert(found.end(), of_frames.begin(), of_frames.end());
   // What reading said is not said again.
   std::vector<std::string> warnings = input.origin.notes;

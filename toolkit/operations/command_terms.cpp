@@ -35,6 +35,9 @@ std::string in_command_terms(Topic topic, const std::string& text, const Paramet
     case Topic::unknown_neutral:
     case Topic::unneutral_rest:
       return text + "; give it with " + rest_option + " FILE";
+    case Topic::other_rest:
+      return text + "; give this face's with " + rest_option + " FILE, or take " + rest_option +
+             " mean";
     case Topic::turning_head:
       return text + "; --align stable takes it out, --align none keeps it";
     case Topic::uncertain_motion:

@@ -17,6 +17,7 @@ enum class Topic {
   uncertain_motion,    ///< no vertex of the source is still enough to tell its head motion
   joint_motion,        ///< its head motion was found together with a target's expressions
   no_joint_motion,     ///< that was asked for, and there are no expressions
+  other_rest,          ///< the rest pose is likely not that of the source's face
   unneutral_rest,      ///< the source's rest pose is likely not its neutral
   poor_condition,      ///< the regions hardly tell the target's expressions apart
   completed_regions,   ///< discs were added to the regions for a target's expressions

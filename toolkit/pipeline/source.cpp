@@ -7,6 +7,7 @@
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/frame_shapes.h"
 #include "toolkit/mesh/frame_store.h"
+#include "toolkit/mesh/rest_beyond_frames.h"
 #include "toolkit/mesh/text.h"
 #include "toolkit/mesh/triangle_quality.h"
 #include "toolkit/mesh/whole_motion.h"
@@ -180,8 +181,8 @@ void note_uncertainty(const MotionChoice& choice, const Source& source,
 }
 
 /// Says where frames are another size or elsewhere than the rest pose, by a motion of the whole
-/// head that was not taken out.
-void note_whole_motion(const MotionChoice& choice, const Source& source,
+/// head that was not taken out; whether they are.
+bool note_whole_motion(const MotionChoice& choice, const Source& source,
                        const SourceOptions& options) {
   const WholeMotion whole =
       whole_motion(*source.sequence, {.threads = options.threads, .ranks = options.ranks});
@@ -193,29 +194,39 @@ void note_whole_motion(const MotionChoice& choice, const Source& source,
              in_percent(1 - whole.left_by_similarity) +
              " of how they differ from it and counts as deformation; bring both into one unit "
              "(`mimetra convert --scale X`)");
-    return;
+    return true;
   }
-  if (whole.angle < kTurning && !whole.moves()) return;
+  if (whole.angle < kTurning && !whole.moves()) return false;
   note(options.notes,
        options.name + ": the head turns by up to " + readable(whole.angle, 3) +
            " degrees and moves by up to " + readable(whole.shift, 3) + " against the rest pose, " +
            in_percent(1 - whole.left_by_motion) + " of all motion, which counts as deformation" +
            reason,
        Topic::turning_head);
+  return true;
 }
 
-/// Says what nobody asked for: that motion was taken out, or that the head moves and it was not.
-void note_motion(const MotionChoice& choice, const Source& source, const SourceOptions& options) {
-  if (choice.is_asked || options.model_driven) return;
-  if (!takes_out(choice.motion)) {
-    note_whole_motion(choice, source, options);
-    return;
-  }
+/// Says what nobody asked for: that motion was taken out, or that the head moves and it was not;
+/// whether frames are elsewhere than the rest pose.
+bool note_motion(const MotionChoice& choice, const Source& source, const SourceOptions& options) {
+  if (choice.is_asked || options.model_driven) return false;
+  if (!takes_out(choice.motion)) return note_whole_motion(choice, source, options);
   const HeadMotionTaken& motion = source.head_motion;
-  if (motion.angle == 0 && motion.shift == 0) return;
+  if (motion.angle == 0 && motion.shift == 0) return false;
   note(options.notes, options.name + ": a head motion of up to " + readable(motion.angle, 3) +
                           " degrees and " + readable(motion.shift, 3) + " is taken out, as " +
                           std::string(motion.why));
+  return false;
+}
+
+/// Says where a neutral is likely not this face's: all that two faces differ by would be taken for
+/// its deformation.
+void note_other_face(const Source& source, const SourceOptions& options) {
+  const RestBeyondFrames rest =
+      rest_beyond_frames(source.sequence, {.threads = options.threads, .ranks = options.ranks});
+  if (rest.is_of_other_face()) {
+    note(options.notes, options.name + ": " + described(rest), Topic::other_rest);
+  }
 }
 
 /// Says which frames can be no poses of the mesh: they take regions over, and targets follow them.
@@ -276,10 +287,13 @@ Source prepare_source(Shared sequence, const SourceOptions& options) {
                .ranks = options.ranks});
   measure_motion(source);
   if (!options.model_driven) note_odd_frames(*source.sequence, options);
-  note_motion(choice, source, options);
+  const bool is_elsewhere = note_motion(choice, source, options);
   note_uncertainty(choice, source, options);
   if (takes_out(choice.motion)) {
     source.sequence = without_motion(source.sequence, source.motion);
+  }
+  if (source.neutral_is_known && !options.model_driven && !is_elsewhere) {
+    note_other_face(source, options);
   }
   if (is_mean(options)) source.sequence = with_rest(source.sequence, mean_pose(*source.sequence));
   return source;

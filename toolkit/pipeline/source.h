@@ -141,8 +141,9 @@ Positions asked_rest(const FrameSource& sequence, const SourceOptions& options);
 /// that of the aligned frames. Notes a first frame that stands in for the neutral
 /// (Topic::unknown_neutral), a motion that nobody asked to take out, a head that turns although
 /// none was (Topic::turning_head), one whose motion no vertex is still enough to tell
-/// (Topic::uncertain_motion), frames that can be no poses of the mesh, and a joint motion that
-/// nobody asked for (Topic::joint_motion).
+/// (Topic::uncertain_motion), frames that can be no poses of the mesh, a joint motion that nobody
+/// asked for (Topic::joint_motion), and a neutral that is likely another face's
+/// (Topic::other_rest).
 ///
 /// Throws OptionError (Topic::unknown_neutral) where the neutral is asked for and not known, and
 /// (Topic::no_joint_motion) where HeadMotion::joint is and options.joint is empty,
