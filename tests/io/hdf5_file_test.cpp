@@ -1,5 +1,7 @@
+#include <algorithm>
 #include <cstring>
 #include <fstream>
+#include <span>
 
 #include <gmock/gmock.h>
 
@@ -85,6 +87,22 @@ TEST_F(Hdf5, NumbersInEveryLayoutAreThoseOfTheLibrary) {
       EXPECT_EQ(rows.back(), rows.front() + 239) << name;
     }
   }
+}
+
+TEST_F(Hdf5, RowsOfBlocksThatAreKeptInAFileAreThoseOfTheLibrary) {
+  // Of 26 MB, all in one row of blocks.
+  const Hdf5Made::Sizes sizes = {1000, 1100, 3};
+  const auto values = counted_up(sizes);
+  {
+    const Hdf5Made made(file_);
+    made.add("tall", sizes, values, H5T_IEEE_F64LE,
+             in_chunks({1000, 300, 2}, [](hid_t set) { H5Pset_deflate(set, 1); }));
+  }
+  const Hdf5Dataset set = Hdf5File(file_).dataset("tall");
+  EXPECT_TRUE(set.values() == values);
+  std::vector<double> rows(3 * 3300);
+  set.read(500, rows);
+  EXPECT_TRUE(std::ranges::equal(rows, std::span(values).subspan(500 * 3300, 3 * 3300)));
 }
 
 TEST_F(Hdf5, OfTheLatestFormatIsReadWhereItHasFewParts) {

@@ -164,6 +164,24 @@ class Ranks(unittest.TestCase):
             said = self.end_of_run(1, "cd /", "convert", "take.npy", "-o", name, code=3)
             self.assertIn("take.npy", said)
 
+    def test_a_rank_with_another_input_ends_the_run(self):
+        elsewhere = self.folder / "elsewhere"
+        elsewhere.mkdir()
+        # As many frames and vertices, of another head.
+        self.run_on(1, "convert", "sample@identity001=1", "--weights", "sample/performance.csv",
+                    "-o", "elsewhere/take.npy")
+        for operation in (["decompose", "take.npy", "-k", "4", "-o", "c.h5"],
+                          ["convert", "take.npy", "-o", "c/"]):
+            said = self.end_of_run(1, f'cd "{elsewhere}"', *operation, code=4)
+            self.assertIn("process 1 reads another content than process 0", said)
+
+    def test_the_plan_is_that_of_one_of_the_ranks(self):
+        plans = [json.loads(self.run_on(ranks, "decompose", "take.npy", "-k", "8", "-o", "c.h5",
+                                        "--dry-run", "--json").stdout) for ranks in (1, 2, 3)]
+        self.assertEqual([plan["processes"] for plan in plans], [1, 2, 3])
+        memory = [plan["memory_bytes"] for plan in plans]
+        self.assertEqual(memory, sorted(memory, reverse=True))
+
     def test_a_rank_with_a_full_disk_ends_the_run(self):
         # Files end at 64 KB, with the error of a disk that is full.
         full = "trap '' XFSZ; ulimit -f 128"

@@ -61,6 +61,24 @@ class Clips(SampleTest):
                 "OUT": str(out), "K": "3", "SLURM_ARRAY_TASK_ID": str(pair)})
         self.assert_expected(out)
 
+    def test_of_jobs_with_all_memory_and_clips_of_one_name(self):
+        job = {**os.environ, "CLIPS": f"{self.takes}/a.npy", "TARGETS": str(self.head), "K": "3",
+               "OUT": str(self.path / "whole"), "SLURM_ARRAY_TASK_ID": "0",
+               "SLURM_MEM_PER_NODE": "0"}
+        subprocess.run([CLUSTER / "clips.slurm"], check=True, env=job)
+        self.assertTrue((self.path / "whole" / "a_head.npy").exists())
+        more = self.path / "more"
+        more.mkdir()
+        (more / "a.obj").write_bytes(b"")
+        job["OUT"] = str(self.path / "both")
+        for changed in ({"CLIPS": f"{self.takes}/a.npy {more}/*.obj"},
+                        {"TARGETS": f"{self.head} {more}/head"}):
+            refused = subprocess.run([CLUSTER / "clips.slurm"], env=job | changed,
+                                     capture_output=True, text=True)
+            self.assertEqual(refused.returncode, 2)
+            self.assertIn("have one name", refused.stderr)
+            self.assertFalse((self.path / "both").exists())
+
 
 if __name__ == "__main__":
     unittest.main()

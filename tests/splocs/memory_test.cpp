@@ -30,7 +30,9 @@ double motion_bytes(const FrameSource& frames) {
 
 /// As much as everything but the motion takes.
 DecompositionOptions within_less(DecompositionOptions options, const FrameSource& frames) {
-  options.memory = plan_of(frames, options).bytes - motion_bytes(frames) / 2;
+  DecompositionOptions without_basis = options;
+  without_basis.basis_tolerance = 0;
+  options.memory = plan_of(frames, without_basis).bytes - motion_bytes(frames) / 2;
   return options;
 }
 
@@ -95,7 +97,7 @@ TEST_F(MemoryTest, IsRefusedWhereItDoesNotHoldABasisOfTime) {
   const DecompositionOptions bounded = within_less(options_, sequence_);
   ASSERT_LT(plan_of(sequence_, bounded).poses, 12);
   EXPECT_THAT([&] { decompose(sequence_, bounded); },
-              ThrowsMessage<MismatchError>(HasSubstr("option 'basis_tolerance': ")));
+              ThrowsMessage<MismatchError>(HasSubstr("option 'basis-tolerance': ")));
 }
 
 TEST_F(MemoryTest, DoesNotChangeTheResultWhereTheSequenceIsReadAgain) {
@@ -123,6 +125,24 @@ TEST_F(MemoryTest, IsNeverMoreThanAllowed) {
     const DecompositionPlan plan = plan_of(sequence_, bounded);
     EXPECT_LE(plan.bytes, *bounded.memory);
     EXPECT_EQ(plan.scratch_bytes, plan.place == MotionPlace::scratch ? motion_bytes(sequence_) : 0);
+  }
+}
+
+TEST_F(MemoryTest, CountsThePosesOfABasisOfTime) {
+  sequence_ = restless_grid(70, 54, 100);
+  options_ = grid_options(sequence_, 4);
+  const double without = plan_of(sequence_, options_).bytes;
+  options_.basis_tolerance = 0.3;
+  const DecompositionPlan all = plan_of(sequence_, options_);
+  EXPECT_EQ(all.poses, 50);
+  // Each is at least a course over time and a shape, twice.
+  EXPECT_GE(all.bytes, without + 50 * 16.0 * (100 + 3 * sequence_.vertices()));
+  for (const double share : {0.2, 0.6, 0.9, 1.0}) {
+    DecompositionOptions bounded = options_;
+    bounded.memory = without + share * (all.bytes - without);
+    const DecompositionPlan plan = plan_of(sequence_, bounded);
+    EXPECT_LE(plan.bytes, *bounded.memory);
+    EXPECT_GT(plan.poses, 0);
   }
 }
 

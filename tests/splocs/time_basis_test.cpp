@@ -8,6 +8,7 @@
 #include <Eigen/SVD>
 
 #include "tests/splocs/synthetic.h"
+#include "toolkit/mesh/errors.h"
 
 namespace mimetra::test {
 namespace {
@@ -73,6 +74,22 @@ TEST(TimeBasis, IsFoundUpToHalfAsManyPosesAsFrames) {
 TEST(TimeBasis, IsNoneWhereEveryFrameIsNew) {
   const Frames X = Frames::Random(kFrames, 600);
   EXPECT_FALSE(basis_of(X, 0.01, 1));
+}
+
+TEST(TimeBasis, TellsHowFarItIsAndStops) {
+  const Frames X = Frames::Random(kFrames, 600);
+  const VertexBlocks<double> blocks(X);
+  const Reduction reduction(200, 2);
+  double done = 0;
+  const auto rising = [&done](double share) {
+    EXPECT_GE(share, done);
+    done = share;
+    return true;
+  };
+  EXPECT_FALSE(time_basis(blocks, X.squaredNorm(), 0.01, reduction, kFrames, rising));
+  EXPECT_EQ(done, 1);
+  const auto stop = [](double share) { return share < 0.5; };
+  EXPECT_THROW(time_basis(blocks, X.squaredNorm(), 0.01, reduction, kFrames, stop), Cancelled);
 }
 
 TEST(TimeBasis, DoesNotDependOnThreads) {

@@ -7,6 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "toolkit/mesh/ranks.h"
 #include "toolkit/operations/counted.h"
 #include "toolkit/operations/json.h"
 #include "toolkit/operations/memory_use.h"
@@ -81,8 +82,10 @@ Outcome planned(const Operation& operation, const Invocation& invocation) {
   }
   const MemoryUse use = MemoryUse::of_this_process();
   const double peak = std::max(use.peak, use.now + computing);
-  text << "  memory  " << megabytes(peak) << ", of which " << megabytes(use.now)
-       << " hold program and inputs\n";
+  const int processes = operation.shared && invocation.ranks ? invocation.ranks->count() : 1;
+  text << "  memory  " << megabytes(peak)
+       << (processes > 1 ? " in each of " + std::to_string(processes) + " processes" : "")
+       << ", of which " << megabytes(use.now) << " hold program and inputs\n";
   const double scratch = operation.scratch ? operation.scratch(invocation) : 0;
   if (scratch > 0) {
     text << "  scratch " << megabytes(scratch) << " in "
@@ -93,6 +96,7 @@ Outcome planned(const Operation& operation, const Invocation& invocation) {
           json_text(Json{{"operation", operation.name},
                          {"inputs", inputs},
                          {"outputs", outputs},
+                         {"processes", processes},
                          {"memory_bytes", peak},
                          {"scratch_bytes", scratch}}),
           text.str()};

@@ -2,11 +2,14 @@
 #include <array>
 #include <cstring>
 #include <mutex>
+#include <optional>
+#include <span>
 
 #include <zlib.h>
 
 #include "toolkit/io/hdf5_fields.h"
 #include "toolkit/io/hdf5_file.h"
+#include "toolkit/mesh/scratch_file.h"
 
 namespace mimetra {
 namespace {
@@ -106,6 +109,43 @@ std::string unshuffled(std::string_view bytes, std::size_t number) {
   return numbers;
 }
 
+/// Decoded blocks of the same rows: in memory while they are few, otherwise in a ScratchFile.
+class DecodedBlocks {
+ public:
+  DecodedBlocks(std::uint64_t count, std::uint64_t block_bytes) : block_bytes_(block_bytes) {
+    constexpr std::uint64_t kMemoryBytes = std::uint64_t{16} << 20;
+    if (count > kMemoryBytes / block_bytes) {
+      file_.emplace();
+    } else {
+      memory_.resize(count * block_bytes);
+    }
+  }
+
+  void put(std::uint64_t block, std::string_view bytes) {
+    bytes = bytes.substr(0, block_bytes_);
+    if (file_) {
+      file_->write(block * block_bytes_, std::as_bytes(std::span(bytes)));
+    } else {
+      std::ranges::copy(bytes, memory_.data() + block * block_bytes_);
+    }
+  }
+
+  /// `count` bytes of a block from `offset` on, which may be put into `held`. From several threads.
+  const char* bytes(std::uint64_t block, std::uint64_t offset, std::uint64_t count,
+                    std::string& held) const {
+    const std::uint64_t at = block * block_bytes_ + offset;
+    if (!file_) return memory_.data() + at;
+    held.resize(count);
+    file_->read(at, std::as_writable_bytes(std::span(held)));
+    return held.data();
+  }
+
+ private:
+  std::uint64_t block_bytes_;
+  std::string memory_;
+  std::optional<ScratchFile> file_;
+};
+
 /// A dataset in blocks, each of which is compressed for itself. Blocks of the same rows are kept
 /// once they are decoded, as neighbouring rows are read one after the other.
 class ChunkedRows : public Storage {
@@ -125,11 +165,12 @@ class ChunkedRows : public Storage {
     constexpr std::uint64_t kMostBytes = std::uint64_t{1} << 30;
     for (std::size_t d = 0; d < shape_.size(); ++d) {
       // A block may reach beyond the dataset, whose rows are what is kept.
-      if (chunk_bytes_ > kMostBytes / extents_[d]) fail_size();
+      if (chunk_bytes_ > kMostBytes / extents_[d]) {
+        dataset_.fail("is cut into blocks of more than 1 GiB; rewrite it by `h5repack` with less");
+      }
       chunk_bytes_ *= extents_[d];
       counts_.push_back((shape_[d] + extents_[d] - 1) / extents_[d]);
     }
-    if (row_bytes_ > 0 && std::min(extents_[0], shape_[0]) > kMostBytes / row_bytes_) fail_size();
   }
 
   std::uint64_t count() const {
@@ -172,18 +213,21 @@ class ChunkedRows : public Storage {
     for (std::uint64_t row = first; row < first + rows;) {
       const std::uint64_t slab = row / extents_[0], begin = slab * extents_[0];
       const std::uint64_t end = std::min({begin + extents_[0], shape_[0], first + rows});
-      const auto bytes = slab_of(slab);
-      std::memcpy(to, bytes->data() + (row - begin) * row_bytes_, (end - row) * row_bytes_);
+      const auto blocks = blocks_of(slab);
+      const std::uint64_t of_slab = chunks_.size() / counts_[0];
+      const std::uint64_t in_block = chunk_bytes_ / extents_[0];
+      std::string held;
+      for (std::uint64_t i = 0; i < of_slab; ++i) {
+        const char* const bytes =
+            blocks->bytes(i, (row - begin) * in_block, (end - row) * in_block, held);
+        copy_block(bytes, i, end - row, to);
+      }
       to += (end - row) * row_bytes_;
       row = end;
     }
   }
 
  private:
-  [[noreturn]] void fail_size() const {
-    dataset_.fail("is cut into blocks of more than 1 GiB; rewrite it by `h5repack` with less");
-  }
-
   bool is_deflated(const Chunk& chunk) const {
     for (std::size_t i = 0; i < filters_.size(); ++i) {
       if (filters_[i] == Filter::deflate && (chunk.left_out >> i & 1) == 0) return true;
@@ -191,19 +235,18 @@ class ChunkedRows : public Storage {
     return false;
   }
 
-  /// The rows of one row of blocks.
-  std::shared_ptr<const std::string> slab_of(std::uint64_t slab) const {
+  /// The blocks of one row of them.
+  std::shared_ptr<const DecodedBlocks> blocks_of(std::uint64_t slab) const {
     const std::lock_guard lock(mutex_);
     if (kept_ && kept_slab_ == slab) return kept_;
     kept_.reset();
-    const std::uint64_t rows = std::min(extents_[0], shape_[0] - slab * extents_[0]);
-    auto bytes = std::make_shared<std::string>(rows * row_bytes_, '\0');
     const std::uint64_t of_slab = chunks_.size() / counts_[0];
+    auto blocks = std::make_shared<DecodedBlocks>(of_slab, chunk_bytes_);
     for (std::uint64_t i = 0; i < of_slab; ++i) {
-      copy_chunk(decoded(chunks_[slab * of_slab + i]), i, rows, bytes->data());
+      blocks->put(i, decoded(chunks_[slab * of_slab + i]));
     }
     kept_slab_ = slab;
-    kept_ = std::move(bytes);
+    kept_ = std::move(blocks);
     return kept_;
   }
 
@@ -224,9 +267,8 @@ class ChunkedRows : public Storage {
     return bytes;
   }
 
-  /// Copies the part of block number `index` of a slab that is in the dataset.
-  void copy_chunk(const std::string& chunk, std::uint64_t index, std::uint64_t rows,
-                  char* slab) const {
+  /// Copies the part of some rows of block number `index` that is in the dataset.
+  void copy_block(const char* from, std::uint64_t index, std::uint64_t rows, char* to) const {
     // Three dimensions at most: rows, columns, and numbers that stand together.
     std::array<std::uint64_t, 3> size = {1, 1, 1}, extent = {1, 1, 1}, begin = {0, 0, 0};
     for (std::size_t d = shape_.size(); d > 0; --d) {
@@ -240,9 +282,9 @@ class ChunkedRows : public Storage {
     const std::size_t run = std::min(extent[2], size[2] - begin[2]) * number_;
     for (std::uint64_t row = 0; row < rows; ++row) {
       for (std::uint64_t column = 0; column < columns; ++column) {
-        const std::uint64_t from = (row * extent[1] + column) * extent[2];
-        const std::uint64_t to = (row * size[1] + begin[1] + column) * size[2] + begin[2];
-        std::memcpy(slab + to * number_, chunk.data() + from * number_, run);
+        const std::uint64_t source = (row * extent[1] + column) * extent[2];
+        const std::uint64_t place = (row * size[1] + begin[1] + column) * size[2] + begin[2];
+        std::memcpy(to + place * number_, from + source * number_, run);
       }
     }
   }
@@ -258,7 +300,7 @@ class ChunkedRows : public Storage {
 
   mutable std::mutex mutex_;
   mutable std::uint64_t kept_slab_ = 0;
-  mutable std::shared_ptr<const std::string> kept_;
+  mutable std::shared_ptr<const DecodedBlocks> kept_;
 };
 
 /// The blocks that a B-tree of version 1 lists.

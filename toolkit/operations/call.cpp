@@ -5,6 +5,7 @@
 #include "toolkit/io/pending_output.h"
 #include "toolkit/io/sequence_companions.h"
 #include "toolkit/mesh/stopwatch.h"
+#include "toolkit/operations/input_files.h"
 #include "toolkit/operations/loading.h"
 #include "toolkit/operations/memory_use.h"
 
@@ -272,6 +273,9 @@ void Call::give(const std::string& input, NamedData data) {
 
 const Outcome& Call::run() {
   const Stopwatch stopwatch;
+  if (request_.ranks && request_.operation->shared) {
+    check_same_inputs(finished_.inputs, *request_.ranks);
+  }
   outcome_ = request_.operation->run(invocation_);
   finished_.run_seconds = stopwatch.seconds();
   for (const auto& [name, targets] : paths_) {
@@ -305,14 +309,14 @@ void Call::write_values(const Output& output, const Paths& targets, const std::s
       const std::string name = is_folder ? ending.substr(1) : target.stem().string() + ending;
       write.extra.emplace_back(name, text);
     }
-    for (const std::string& note : notes_on_losses(format, made->second[i].data, write)) {
-      if (request_.log) request_.log(LogLevel::warning, note);
-    }
     const NamedData& value = made->second[i];
     if (format.fields && !value.more_fields.empty()) {
       format.write(with_more_fields(value), write);
     } else {
       format.write(value.data, write);
+    }
+    for (const std::string& note : notes_on_losses(format, value.data, write)) {
+      if (request_.log) request_.log(LogLevel::warning, note);
     }
   }
 }

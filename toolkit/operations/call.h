@@ -75,7 +75,8 @@ class Call {
   /// Also gives an input a value, in place of its others.
   void give(const std::string& input, NamedData data);
 
-  /// Runs the operation. Throws what it throws. \pre load()
+  /// Runs the operation. Throws what it throws, and MismatchError on a process that reads other
+  /// inputs than the first. \pre load()
   const Outcome& run();
   /// Writes the outputs that have a path, each with the run's manifest, and the manifest. Throws
   /// what the writers throw; Cancelled while nothing stands yet. \pre run()

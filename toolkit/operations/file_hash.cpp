@@ -1,5 +1,6 @@
 #include "toolkit/operations/file_hash.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <fstream>
 #include <memory>
@@ -30,6 +31,21 @@ std::string file_hash(const std::filesystem::path& path) {
   std::snprintf(text, sizeof text, "%016llx",
                 static_cast<unsigned long long>(XXH3_64bits_digest(state.get())));
   return text;
+}
+
+std::uint64_t hash_of_ends(const std::filesystem::path& path) {
+  constexpr std::uint64_t kEnd = 1 << 16;
+  std::error_code unreadable;
+  const std::uint64_t size = std::filesystem::file_size(path, unreadable);
+  if (unreadable) return 0;
+  std::ifstream stream(path, std::ios::binary);
+  std::vector<char> ends(static_cast<std::size_t>(std::min(size, 2 * kEnd)));
+  const auto half = static_cast<std::streamsize>(std::min(size, kEnd));
+  const auto rest = static_cast<std::streamsize>(ends.size()) - half;
+  stream.read(ends.data(), half);
+  stream.seekg(-rest, std::ios::end);
+  stream.read(ends.data() + half, rest);
+  return stream ? XXH3_64bits_withSeed(ends.data(), ends.size(), size) : 0;
 }
 
 }  // namespace mimetra

@@ -1,40 +1,14 @@
 #include "toolkit/operations/manifest.h"
 
-#include <algorithm>
-
 #include <nlohmann/json.hpp>
 
-#include "toolkit/io/model_file.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/operations/file_hash.h"
+#include "toolkit/operations/input_files.h"
 #include "toolkit/operations/json.h"
 #include "toolkit/operations/run_file.h"
 
 namespace mimetra {
-
-namespace {
-
-/// Files, what is read of models, and the files below other folders, in order of their names.
-std::vector<std::filesystem::path> files_of(const std::vector<std::filesystem::path>& inputs) {
-  std::vector<std::filesystem::path> files;
-  for (const auto& input : inputs) {
-    const auto start = static_cast<std::ptrdiff_t>(files.size());
-    std::error_code unreadable;
-    if (!std::filesystem::is_directory(input, unreadable)) {
-      files.push_back(input);
-    } else if (is_model(input)) {
-      std::ranges::copy(model_files(input), std::back_inserter(files));
-    } else {
-      for (const auto& entry : std::filesystem::recursive_directory_iterator(input)) {
-        if (entry.is_regular_file(unreadable)) files.push_back(entry.path());
-      }
-    }
-    std::sort(files.begin() + start, files.end());
-  }
-  return files;
-}
-
-}  // namespace
 
 std::string manifest(const FinishedRun& run, const std::string& report) {
   Json options = Json::object();
@@ -42,7 +16,7 @@ std::string manifest(const FinishedRun& run, const std::string& report) {
     options[parameter.name] = to_text(run.parameters.value(parameter.name));
   }
   Json inputs = Json::array();
-  for (const auto& path : files_of(run.inputs)) {
+  for (const auto& path : input_files(run.inputs)) {
     inputs.push_back({{"path", path.string()}, {"xxh3", file_hash(path)}});
   }
   Json outputs = Json::array();

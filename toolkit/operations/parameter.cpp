@@ -309,14 +309,24 @@ std::optional<std::string> Parameters::optional_text(const std::string& name) co
 std::optional<double> Parameters::bytes(const std::string& name) const {
   const auto given = optional_text(name);
   if (!given) return {};
-  constexpr std::string_view kUnits = "kMGT";
+  constexpr std::string_view kUnits = "kmgt";
   std::string_view text = *given;
-  if (text.ends_with('B')) text.remove_suffix(1);
-  const auto power = text.empty() ? kUnits.npos : kUnits.find(text.back());
-  if (power != kUnits.npos) text.remove_suffix(1);
+  const auto stripped = [&text](std::string_view letters) {
+    const auto place = text.empty() ? letters.npos
+                                    : letters.find(static_cast<char>(
+                                          std::tolower(static_cast<unsigned char>(text.back()))));
+    if (place != letters.npos) text.remove_suffix(1);
+    return place;
+  };
+  const bool is_named = stripped("b") == 0, is_binary = is_named && stripped("i") == 0;
+  const auto unit = stripped(kUnits);
+  const double power = unit == kUnits.npos ? 0 : static_cast<double>(unit + 1);
   const auto number = parse_number<double>(text);
-  const double unit = power == kUnits.npos ? 1 : std::pow(1e3, static_cast<double>(power + 1));
-  if (number && *number > 0 && std::isfinite(*number * unit)) return *number * unit;
+  // Nobody means so few bytes.
+  constexpr double kLeastWithoutUnit = 1e6;
+  const double bytes = number ? *number * std::pow(is_binary ? 1024 : 1000, power) : 0;
+  const bool has_unit = power > 0 || (!is_binary && bytes >= kLeastWithoutUnit);
+  if (has_unit && bytes > 0 && std::isfinite(bytes)) return bytes;
   throw UsageError("--" + name +
                    ": expected a number with the unit k, M, G or T, such as 4G, found '" + *given +
                    "'");

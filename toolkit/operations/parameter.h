@@ -126,8 +126,9 @@ class Parameters {
     throw std::invalid_argument("parameter '" + name + "': no such choice as '" + text(name) + "'");
   }
   Length length(const std::string& name) const;
-  /// "4G" or "500M" in bytes (k, M, G and T are powers of 1000); nothing where none is given.
-  /// Throws UsageError for any other text.
+  /// "4G" or "500M" in bytes (k, M, G and T are powers of 1000, KiB to TiB of 1024, large and small
+  /// letters alike); nothing where none is given. Throws UsageError for any other text, and for a
+  /// number below a million without a unit.
   std::optional<double> bytes(const std::string& name) const;
 
  private:

@@ -183,7 +183,8 @@ BoundParameters<SourceOptions> alignment_parameters(const FrameSource* sequence)
 }
 
 BoundParameters<SourceOptions> source_rest_parameters(const FrameSource* sequence) {
-  return rest_named("source-rest", "source's undeformed shape", sequence);
+  return rest_named("source-rest", "source's undeformed shape", sequence)
+      .brief("source's undeformed shape {neutral,first,mean,FILE}");
 }
 
 BoundParameters<SourceOptions> rest_parameters(const FrameSource* sequence) {
@@ -417,6 +418,7 @@ DecompositionPlan analysis_plan(const Invocation& invocation, const FrameSource&
   AnalysisOptions analysis = analysis_parameters().read(invocation.parameters);
   analysis.decomposition.count = count;
   analysis.threads = invocation.threads;
+  analysis.ranks = invocation.ranks;
   plan = analysis_plan(source, analysis);
   plan.bytes += stored_bytes(source);
   if (!source.is_quick()) plan.scratch_bytes += frame_bytes(source) - stored_bytes(source);

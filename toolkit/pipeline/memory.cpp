@@ -5,6 +5,7 @@
 
 #include "toolkit/mesh/frame_store.h"
 #include "toolkit/pipeline/region_selector.h"
+#include "toolkit/splocs/reduction.h"
 
 namespace mimetra {
 
@@ -46,7 +47,8 @@ DecompositionPlan analysis_plan(const FrameSource& sequence, const AnalysisOptio
   DecompositionOptions decomposition = options.decomposition;
   decomposition.count = component_count(sequence, options);
   decomposition.threads = options.threads;
-  return planned_decomposition(sequence, VertexPart(sequence.vertices()), decomposition);
+  const Reduction reduction(sequence.vertices(), options.threads, options.ranks);
+  return planned_decomposition(sequence, reduction.part(), decomposition);
 }
 
 double selection_bytes(const FrameSource& sequence, const BlendshapeModel& target) {

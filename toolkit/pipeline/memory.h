@@ -18,7 +18,8 @@ double simplify_bytes(const FrameSource& sequence);
 /// What stored() has in memory; 0 for a source that is quick to read.
 double stored_bytes(const FrameSource& sequence);
 
-/// How analyse() keeps within the memory of its options. Throws as planned_decomposition().
+/// How analyse() keeps within the memory of its options, on this one of its ranks. Throws as
+/// planned_decomposition().
 DecompositionPlan analysis_plan(const FrameSource& sequence, const AnalysisOptions& options);
 
 /// The choice of regions for a transfer to `target`.

@@ -217,18 +217,22 @@ Eigen::Index poses_for_all(const DecompositionPlan& plan, const Reduction& reduc
 void iterate(Components& result, Motion motion, Start start, SupportMaps support,
              const Progress& progress, const Reduction& reduction, const DecompositionPlan& plan) {
   const DecompositionOptions& options = result.options;
+  // Of the progress.
+  const double basis_share = options.basis_tolerance > 0 ? 0.3 : 0;
   std::optional<TimeBasis> basis;
   if (options.basis_tolerance > 0) {
     const Eigen::Index most = poses_for_all(plan, reduction);
-    basis = time_basis(*motion.X, motion.norm2, options.basis_tolerance, reduction, most);
+    basis = time_basis(*motion.X, motion.norm2, options.basis_tolerance, reduction, most,
+                       part_of(progress, 0, basis_share));
     if (!basis && most < motion.X->rows() / 2) {
       throw MismatchError(
-          "option 'basis_tolerance': the motion needs a basis of many poses, of which option "
+          "option 'basis-tolerance': the motion needs a basis of many poses, of which option "
           "'memory' holds " +
           std::to_string(most) +
           "; allow more memory or a larger tolerance, or take all frames: tolerance 0");
     }
   }
+  const Progress of_iterations = part_of(progress, basis_share, 1);
   MotionPlace place = plan.place;
   if (basis) {
     // What is not needed any more is released: it is the largest array there is.
@@ -240,11 +244,11 @@ void iterate(Components& result, Motion motion, Start start, SupportMaps support
   if (options.precision == IterationPrecision::single_precision) {
     const auto X = in_single_precision(*motion.kept, place);
     motion.X.reset();
-    alternate(result, motion.norm2, *X, basis, std::move(start), std::move(support), progress,
+    alternate(result, motion.norm2, *X, basis, std::move(start), std::move(support), of_iterations,
               reduction);
   } else {
     alternate(result, motion.norm2, *motion.X, basis, std::move(start), std::move(support),
-              progress, reduction);
+              of_iterations, reduction);
   }
 }
 

@@ -36,6 +36,13 @@ constexpr double kLevels = 6;
 /// step makes of them.
 constexpr double kWeightMatrices = 6;
 
+/// Poses that a basis of a face's motion may have; where the memory left holds fewer besides the
+/// motion, that is kept elsewhere.
+constexpr double kPosesBesideMotion = 256;
+
+/// Matrices of frames x poses while the sketch of a basis is made orthonormal.
+constexpr double kOrthonormalized = 4;
+
 /// Working on the motion read once more from a sequence, and writing it into a file and scaling it
 /// there, in times of working on it read from that file: measured on 20 000 frames of 6706
 /// vertices.
@@ -61,6 +68,14 @@ struct Sizes {
     return kFactorsPerVertex * mesh_vertices +
            kNumber * (components + maps + kWeightMatrices * frames * count) + distances +
            kLevels * sums() + block();
+  }
+  /// Each pose that a basis in time is looked for among: of the sketch, its sums on each thread and
+  /// level of the tree, and random signs of a block; then two bases, and the motion in both.
+  double of_pose(int threads) const {
+    const double signs = 3 * std::min<double>(VertexPart::kBlock, vertices);
+    const double sketch = (threads + kLevels + kOrthonormalized) * frames + threads * signs;
+    // The directions, too, are no more than half the frames.
+    return kNumber * std::max(sketch, 3 * frames + 6 * vertices);
   }
   double per_thread() const { return kBlocksPerThread * block() + kSumsPerThread * sums(); }
 };
@@ -107,11 +122,22 @@ DecompositionPlan planned_decomposition(const FrameSource& frames, const VertexP
   const Sizes sizes{static_cast<double>(frames.frames()), static_cast<double>(part.vertices()),
                     static_cast<double>(part.mesh_vertices()), static_cast<double>(options.count)};
   const int threads = threads_of(options);
+  const bool wants_basis = options.basis_tolerance > 0;
+  const double worth = wants_basis ? frames.frames() / 2 : 0;
+  // As many poses as are worth it and fit.
+  const auto with_poses = [&](DecompositionPlan plan, int working) {
+    const double of_pose = sizes.of_pose(working);
+    const double fitting =
+        options.memory ? std::max(0.0, (*options.memory - plan.bytes) / of_pose) : worth;
+    plan.poses = static_cast<Eigen::Index>(std::min(worth, fitting));
+    plan.bytes += static_cast<double>(plan.poses) * of_pose;
+    return plan;
+  };
   DecompositionPlan plan;
   plan.threads = options.threads;
-  plan.poses = frames.frames() / 2;
   plan.bytes = sizes.fixed() + sizes.motion() + threads * sizes.per_thread();
-  if (!options.memory || plan.bytes <= *options.memory) return plan;
+  const double beside = std::min(worth, kPosesBesideMotion) * sizes.of_pose(threads);
+  if (!options.memory || plan.bytes + beside <= *options.memory) return with_poses(plan, threads);
 
   const double free = *options.memory - sizes.fixed();
   if (free < sizes.per_thread()) {
@@ -125,12 +151,7 @@ DecompositionPlan planned_decomposition(const FrameSource& frames, const VertexP
   plan.bytes = sizes.fixed() + plan.threads * sizes.per_thread();
   plan.place = place_outside_memory(frames, sizes.motion(), options);
   if (plan.place == MotionPlace::scratch) plan.scratch_bytes = sizes.motion();
-  // A basis, the motion in it, and both again where fewer poses do.
-  const double of_pose = kNumber * 2 * (sizes.frames + 3 * sizes.vertices);
-  plan.poses =
-      std::min(plan.poses,
-               static_cast<Eigen::Index>(std::max(0.0, (*options.memory - plan.bytes) / of_pose)));
-  return plan;
+  return with_poses(plan, plan.threads);
 }
 
 }  // namespace mimetra

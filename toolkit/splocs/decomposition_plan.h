@@ -17,10 +17,11 @@ struct DecompositionPlan {
   MotionPlace place = MotionPlace::memory;
   /// That work at a time, each on a block of 192 vertices over all frames; 0 for all there are.
   int threads = 0;
-  /// Among which a basis in time may be looked for; half the frames where memory is no question.
+  /// Among which a basis in time may be looked for: half the frames, or what memory allows; 0 where
+  /// none is wanted.
   Eigen::Index poses = 0;
-  /// At the peak, besides what the caller holds: arrays that grow with frames, vertices or
-  /// components.
+  /// At the peak, besides what the caller holds: arrays that grow with frames, vertices, components
+  /// or poses, of which a motion may need fewer.
   double bytes = 0;
   /// In the file.
   double scratch_bytes = 0;

@@ -124,22 +124,25 @@ Reduction::Reduction(Eigen::Index vertices, int threads, const Ranks* ranks)
       ranks_(ranks) {}
 
 Eigen::MatrixXd Reduction::joined(Eigen::Index rows, Eigen::Index columns, const OfRun& of_run,
-                                  const Join& join) const {
+                                  const Join& join, const Progress& progress) const {
   if (part_.mesh_runs() == 0) return Eigen::MatrixXd::Zero(rows, columns);
   RunTree tree(part_, join);
-  parallel_for(part_.runs().count(), threads_, [&](int i) {
+  const auto add_run = [&](int i) {
     const int run = part_.runs().first + i;
     Eigen::MatrixXd result = Eigen::MatrixXd::Zero(rows, columns);
     of_run(run, result);
     tree.add(run, std::move(result));
-  });
+  };
+  parallel_for(part_.runs().count(), threads_, add_run, progress);
   if (ranks_) tree.join_ranks(*ranks_);
   return is_first() ? std::move(tree).root() : Eigen::MatrixXd();
 }
 
-Eigen::MatrixXd Reduction::sum(Eigen::Index rows, Eigen::Index columns, const OfRun& of_run) const {
-  return joined(rows, columns, of_run,
-                [](Eigen::MatrixXd& left, const Eigen::MatrixXd& right) { left += right; });
+Eigen::MatrixXd Reduction::sum(Eigen::Index rows, Eigen::Index columns, const OfRun& of_run,
+                               const Progress& progress) const {
+  return joined(
+      rows, columns, of_run,
+      [](Eigen::MatrixXd& left, const Eigen::MatrixXd& right) { left += right; }, progress);
 }
 
 Eigen::MatrixXd Reduction::largest(Eigen::Index rows, Eigen::Index columns,

@@ -3,6 +3,7 @@
 #include <functional>
 #include <vector>
 
+#include "toolkit/mesh/progress.h"
 #include "toolkit/mesh/ranks.h"
 #include "toolkit/splocs/vertex_part.h"
 
@@ -39,11 +40,12 @@ class Reduction {
 
   /// What all runs give (rows x columns), joined; on the first rank, 0 x 0 on others. `of_run` and
   /// `join` are called from several threads. Matrices are joined as soon as they can be, so that no
-  /// more are held than there are threads and levels of the tree.
+  /// more are held than there are threads and levels of the tree. Throws Cancelled.
   Eigen::MatrixXd joined(Eigen::Index rows, Eigen::Index columns, const OfRun& of_run,
-                         const Join& join) const;
+                         const Join& join, const Progress& progress = {}) const;
   /// Joined by adding; on the first rank, 0 x 0 on others.
-  Eigen::MatrixXd sum(Eigen::Index rows, Eigen::Index columns, const OfRun& of_run) const;
+  Eigen::MatrixXd sum(Eigen::Index rows, Eigen::Index columns, const OfRun& of_run,
+                      const Progress& progress = {}) const;
   /// Joined by taking the larger number of two; on the first rank, 0 x 0 on others.
   Eigen::MatrixXd largest(Eigen::Index rows, Eigen::Index columns, const OfRun& of_run) const;
 

@@ -43,14 +43,15 @@ Eigen::MatrixXd random_signs(Eigen::Index first, Eigen::Index vertices, Eigen::I
 
 /// `poses` random mixtures of the vertices' motions, orthonormalised (F x poses).
 Eigen::MatrixXd sketched_basis(const BlockSource<double>& X, Eigen::Index poses,
-                               const Reduction& reduction) {
+                               const Reduction& reduction, const Progress& progress) {
   const VertexPart& part = reduction.part();
-  const Eigen::MatrixXd sketch = reduction.sum(X.rows(), poses, [&](int run, Eigen::MatrixXd& sum) {
+  const auto of_run = [&](int run, Eigen::MatrixXd& sum) {
     const IndexRange blocks = part.blocks_of(run);
     for (int b = blocks.first; b < blocks.end; ++b) {
       sum.noalias() += *X.block(b) * random_signs(part.first() + X.first(b), X.size(b), poses);
     }
-  });
+  };
+  const Eigen::MatrixXd sketch = reduction.sum(X.rows(), poses, of_run, progress);
   return reduction.on_first([&]() -> Eigen::MatrixXd {
     const Eigen::HouseholderQR<Eigen::MatrixXd> qr(sketch);
     return qr.householderQ() * Eigen::MatrixXd::Identity(X.rows(), poses);
@@ -58,9 +59,10 @@ Eigen::MatrixXd sketched_basis(const BlockSource<double>& X, Eigen::Index poses,
 }
 
 VertexBlocks<double> coordinates(const Eigen::MatrixXd& Q, const BlockSource<double>& X,
-                                 int threads) {
+                                 int threads, const Progress& progress = {}) {
   VertexBlocks<double> B(Q.cols(), X.part());
-  parallel_for(X.count(), threads, [&](int b) { B[b] = Q.transpose() * *X.block(b); });
+  parallel_for(
+      X.count(), threads, [&](int b) { B[b] = Q.transpose() * *X.block(b); }, progress);
   return B;
 }
 
@@ -82,12 +84,18 @@ Eigen::MatrixXd directions_of(const VertexBlocks<double>& B, const Reduction& re
 }  // namespace
 
 std::optional<TimeBasis> time_basis(const BlockSource<double>& X, double norm2, double tolerance,
-                                    const Reduction& reduction, Eigen::Index most) {
+                                    const Reduction& reduction, Eigen::Index most,
+                                    const Progress& progress) {
   const Eigen::Index worth = X.rows() / 2;
   for (Eigen::Index poses = std::min(kFirstSketch, worth), tried = 0;
        poses > tried && poses <= most; tried = poses, poses = std::min(2 * poses, worth)) {
-    const Eigen::MatrixXd sketch = sketched_basis(X, poses, reduction);
-    const VertexBlocks<double> B = coordinates(sketch, X, reduction.threads());
+    const double from = static_cast<double>(tried) / static_cast<double>(worth),
+                 to = static_cast<double>(poses) / static_cast<double>(worth),
+                 between = (from + to) / 2;
+    const Eigen::MatrixXd sketch =
+        sketched_basis(X, poses, reduction, part_of(progress, from, between));
+    const VertexBlocks<double> B =
+        coordinates(sketch, X, reduction.threads(), part_of(progress, between, to));
     const Eigen::MatrixXd directions = directions_of(B, reduction);
     const Eigen::VectorXd energies = directions.row(0);
     double lost = norm2 - energies.sum();
