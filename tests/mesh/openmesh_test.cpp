@@ -277,9 +277,8 @@ TEST(OpenMeshBridge, TakesMasksAndWeightsOfAnyType) {
 
 TEST(OpenMeshBridge, DoesNotChooseAmongPropertiesOfOneName) {
   QuadMesh mesh = house();
-  auto own = OpenMesh::getOrMakeProperty<OpenMesh::VertexHandle, float>(mesh, "v:x");
-  for (const auto vertex : mesh.vertices()) own[vertex] = 0;
-  set_fields(mesh, {{"x", Field::Location::vertices, Eigen::VectorXd::Constant(7, 7), false}});
+  OpenMesh::getOrMakeProperty<OpenMesh::VertexHandle, float>(mesh, "v:x");
+  OpenMesh::getOrMakeProperty<OpenMesh::VertexHandle, double>(mesh, "v:x");
   EXPECT_THAT([&] { field_from_openmesh(mesh, "v:x"); },
               ThrowsMessage<std::invalid_argument>(HasSubstr("'v:x' of several types")));
   OpenMesh::getOrMakeProperty<OpenMesh::VertexHandle, OpenMesh::Vec3f>(mesh, "pose");
@@ -289,12 +288,55 @@ TEST(OpenMeshBridge, DoesNotChooseAmongPropertiesOfOneName) {
               ThrowsMessage<std::invalid_argument>(HasSubstr("'pose' of several types")));
 }
 
+TEST(OpenMeshBridge, PutsAFieldInPlaceOfAnyPropertyOfItsName) {
+  QuadMesh mesh = house();
+  const auto held = OpenMesh::getOrMakeProperty<OpenMesh::VertexHandle, double>(mesh, "v:x");
+  OpenMesh::getOrMakeProperty<OpenMesh::VertexHandle, float>(mesh, "v:x");
+  OpenMesh::getOrMakeProperty<OpenMesh::FaceHandle, float>(mesh, "v:y");
+  set_fields(mesh, {{"x", Field::Location::vertices, Eigen::VectorXd::Constant(7, 7), false}});
+  EXPECT_EQ(field_from_openmesh(mesh, "v:x").values, Eigen::VectorXd::Constant(7, 7));
+  EXPECT_EQ(held[OpenMesh::VertexHandle(6)], 7);
+  // On faces, which is another one.
+  EXPECT_TRUE((OpenMesh::hasProperty<OpenMesh::FaceHandle, float>(mesh, "v:y")));
+}
+
+TEST(OpenMeshBridge, TakesPropertiesOfAnyName) {
+  QuadMesh mesh = house();
+  auto region = OpenMesh::getOrMakeProperty<OpenMesh::VertexHandle, int>(mesh, "region");
+  auto in_l = OpenMesh::getOrMakeProperty<OpenMesh::FaceHandle, int>(mesh, "in_L");
+  for (const auto vertex : mesh.vertices()) region[vertex] = vertex.idx();
+  for (const auto face : mesh.faces()) in_l[face] = 1;
+  const Field of_vertices = field_from_openmesh(mesh, "region");
+  EXPECT_EQ(of_vertices.name, "region");
+  EXPECT_EQ(of_vertices.values, Eigen::VectorXd::LinSpaced(7, 0, 6));
+  EXPECT_EQ(field_from_openmesh(mesh, "in_L").location, Field::Location::triangles);
+  OpenMesh::getOrMakeProperty<OpenMesh::FaceHandle, double>(mesh, "region");
+  EXPECT_THAT([&] { field_from_openmesh(mesh, "region"); },
+              ThrowsMessage<std::invalid_argument>(HasSubstr("on vertices and faces")));
+}
+
+TEST(OpenMeshBridge, LeavesTheMeshAsItWasWhereAFieldCannotBeHeld) {
+  QuadMesh mesh = house();
+  const Field good{"good", Field::Location::vertices, Eigen::VectorXd::Zero(7)};
+  const Field wide{"wide", Field::Location::vertices, Eigen::MatrixXd::Zero(7, 2)};
+  EXPECT_THROW(set_fields(mesh, {good, wide}), std::invalid_argument);
+  const Field points{"points", Field::Location::vertices, Eigen::MatrixXd::Zero(7, 3)};
+  const auto before = from_openmesh(mesh).positions;
+  EXPECT_THAT(
+      [&] {
+        set_fields(mesh, {good, points});
+      },
+      ThrowsMessage<std::invalid_argument>(HasSubstr("an attribute that OpenMesh keeps")));
+  EXPECT_EQ(from_openmesh(mesh).positions, before);
+  EXPECT_FALSE((OpenMesh::hasProperty<OpenMesh::VertexHandle, double>(mesh, "v:good")));
+}
+
 TEST(OpenMeshBridge, NamesWhatItCannotHoldOrFind) {
   QuadMesh mesh = house();
   EXPECT_THAT([&] { field_from_openmesh(mesh, "v:roi"); },
               ThrowsMessage<std::invalid_argument>(HasSubstr("the mesh has no property 'v:roi'")));
   EXPECT_THAT([&] { field_from_openmesh(mesh, "roi"); },
-              ThrowsMessage<std::invalid_argument>(HasSubstr("begins with v: or f:")));
+              ThrowsMessage<std::invalid_argument>(HasSubstr("the mesh has no property 'roi'")));
   const Field wide{"wide", Field::Location::vertices, Eigen::MatrixXd::Zero(7, 2)};
   EXPECT_THAT([&] { set_fields(mesh, {wide}); },
               ThrowsMessage<std::invalid_argument>(HasSubstr("field 'wide' has 2 columns")));

@@ -1,9 +1,12 @@
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <concepts>
 #include <stdexcept>
 #include <string>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 #include <OpenMesh/Core/Mesh/PolyMesh_ArrayKernelT.hh>
@@ -52,16 +55,18 @@ template <OpenMeshClass Mesh>
 Mesh with_positions(Mesh mesh, const Eigen::Ref<const Positions>& positions);
 
 /// Puts each field into the property `v:NAME`, on vertices, or `f:NAME`, on faces, where it takes
-/// the place of one of that name and type: `v:region`, `v:roi`, `v:distance`, `f:in_L`. Its type is
-/// int for integer fields that it holds, OpenMesh::Vec3d for three columns (`v:component_3`), else
-/// double; a face has the largest value of its triangles. Throws std::invalid_argument that names a
-/// field of another number of columns, or of values that are not one for each vertex or triangle.
+/// the place of one of that name: `v:region`, `v:roi`, `v:distance`, `f:in_L`. Its type is int for
+/// integer fields that it holds, OpenMesh::Vec3d for three columns (`v:component_3`), else double;
+/// a face has the largest value of its triangles. Throws std::invalid_argument that names a field
+/// of another number of columns, of values that are not one for each vertex or triangle, or of the
+/// name of an attribute of OpenMesh's (`points`, `normals`); the mesh is as it was then.
 template <OpenMeshClass Mesh>
 void set_fields(Mesh& mesh, const std::vector<Field>& fields);
 
-/// The property of that name on vertices (`v:...`) or faces (`f:...`), of type bool, int, unsigned,
-/// float, double, Vec3f or Vec3d: masks, regions, weights, displacements. Values of faces are those
-/// of their triangles. Throws std::invalid_argument where there is none, or there are several.
+/// The property of that name on vertices or faces, of type bool, int, unsigned, float, double,
+/// Vec3f or Vec3d: masks, regions, weights, displacements. Values of faces are those of their
+/// triangles. The field's name is what follows `v:` or `f:`, where the property's begins so. Throws
+/// std::invalid_argument where there is none, or there are several.
 template <OpenMeshClass Mesh>
 Field field_from_openmesh(const Mesh& mesh, const std::string& name);
 
@@ -146,26 +151,35 @@ int read_properties(const Mesh& mesh, const std::string& name, Eigen::MatrixXd& 
   return (int{read_property<Types, Handle>(mesh, name, values)} + ...);
 }
 
+/// How many such properties there are; the values of one of them.
 template <typename Handle, OpenMeshClass Mesh>
-Field read_field(const Mesh& mesh, const std::string& name) {
-  Field field;
-  field.name = name.substr(2);
+int read_field(const Mesh& mesh, const std::string& name, Field& field) {
   using Vec3f = OpenMesh::Vec3f;
   using Vec3d = OpenMesh::Vec3d;
   const int integers = read_properties<Handle, bool, int, unsigned>(mesh, name, field.values);
   const int others = read_properties<Handle, float, double, Vec3f, Vec3d>(mesh, name, field.values);
-  if (integers + others > 1) {
-    throw std::invalid_argument("the mesh has properties '" + name +
-                                "' of several types; remove all but the one that is meant");
-  }
-  field.integer = integers == 1;
-  if (integers + others == 1) return field;
-  throw std::invalid_argument("the mesh has no property '" + name +
-                              "' of bool, int, unsigned, float, double, Vec3f or Vec3d");
+  if (integers > 0) field.integer = true;
+  return integers + others;
+}
+
+/// Removes properties of that name of another type.
+template <typename Kept, typename Handle, typename... Types, OpenMeshClass Mesh>
+void remove_others(Mesh& mesh, const std::string& name) {
+  const auto remove = [&mesh, &name](auto property) {
+    while (mesh.get_property_handle(property, name)) mesh.remove_property(property);
+  };
+  const auto remove_other = [&remove]<typename Type>(std::type_identity<Type>) {
+    if constexpr (!std::same_as<Type, Kept>) {
+      remove(typename OpenMesh::PropHandle<Handle>::template type<Type>());
+    }
+  };
+  (remove_other(std::type_identity<Types>()), ...);
 }
 
 template <typename Type, typename Handle, OpenMeshClass Mesh>
 void write_property(Mesh& mesh, const std::string& name, const Eigen::MatrixXd& values) {
+  remove_others<Type, Handle, bool, int, unsigned, float, double, OpenMesh::Vec3f, OpenMesh::Vec3d>(
+      mesh, name);
   auto property = OpenMesh::getOrMakeProperty<Handle, Type>(mesh, name.c_str());
   for (Eigen::Index i = 0; i < values.rows(); ++i) {
     const Handle handle(static_cast<int>(i));
@@ -177,14 +191,34 @@ void write_property(Mesh& mesh, const std::string& name, const Eigen::MatrixXd& 
   }
 }
 
+inline void check_field(const Field& field, const Connectivity& connectivity) {
+  const bool on_vertices = field.location == Field::Location::vertices;
+  constexpr std::array kOfMesh = {"points",      "normals",     "colors",      "status",
+                                  "texcoords1D", "texcoords2D", "texcoords3D", "textureindex"};
+  if (std::ranges::find(kOfMesh, field.name) != kOfMesh.end()) {
+    throw std::invalid_argument("field '" + field.name +
+                                "' would take the place of an attribute that OpenMesh keeps by "
+                                "that name; give it another");
+  }
+  const Eigen::Index expected = on_vertices ? connectivity.vertices : connectivity.triangles.rows();
+  if (field.values.rows() != expected) {
+    throw std::invalid_argument("field '" + field.name + "' has " +
+                                std::to_string(field.values.rows()) + " values, expected " +
+                                std::to_string(expected) +
+                                (on_vertices ? ", one a vertex" : ", one a triangle"));
+  }
+  if (field.values.cols() != 1 && (field.values.cols() != 3 || field.integer)) {
+    throw std::invalid_argument("field '" + field.name + "' has " +
+                                std::to_string(field.values.cols()) +
+                                " columns; expected one number, or a vector of three");
+  }
+}
+
 template <typename Handle, OpenMeshClass Mesh>
 void write_field(Mesh& mesh, const std::string& name, const Field& field,
                  const Eigen::MatrixXd& values) {
   if (values.cols() == 3 && !field.integer) {
     write_property<OpenMesh::Vec3d, Handle>(mesh, name, values);
-  } else if (values.cols() != 1) {
-    throw std::invalid_argument("field '" + field.name + "' has " + std::to_string(values.cols()) +
-                                " columns; expected one number, or a vector of three");
   } else if (field.integer && all_are_held_by<int>(values)) {
     write_property<int, Handle>(mesh, name, values);
   } else {
@@ -272,17 +306,9 @@ template <OpenMeshClass Mesh>
 void set_fields(Mesh& mesh, const std::vector<Field>& fields) {
   const Connectivity connectivity = Connectivity::from_polygons(static_cast<int>(mesh.n_vertices()),
                                                                 openmesh_bridge::polygons_of(mesh));
+  for (const Field& field : fields) openmesh_bridge::check_field(field, connectivity);
   for (const Field& field : fields) {
-    const bool on_vertices = field.location == Field::Location::vertices;
-    const Eigen::Index expected =
-        on_vertices ? connectivity.vertices : connectivity.triangles.rows();
-    if (field.values.rows() != expected) {
-      throw std::invalid_argument("field '" + field.name + "' has " +
-                                  std::to_string(field.values.rows()) + " values, expected " +
-                                  std::to_string(expected) +
-                                  (on_vertices ? ", one a vertex" : ", one a triangle"));
-    }
-    if (on_vertices) {
+    if (field.location == Field::Location::vertices) {
       openmesh_bridge::write_field<OpenMesh::VertexHandle>(mesh, "v:" + field.name, field,
                                                            field.values);
     } else {
@@ -294,13 +320,22 @@ void set_fields(Mesh& mesh, const std::vector<Field>& fields) {
 
 template <OpenMeshClass Mesh>
 Field field_from_openmesh(const Mesh& mesh, const std::string& name) {
-  if (name.starts_with("v:"))
-    return openmesh_bridge::read_field<OpenMesh::VertexHandle>(mesh, name);
-  if (!name.starts_with("f:")) {
-    throw std::invalid_argument("property '" + name +
-                                "': expected a name that begins with v: or f:");
+  Field of_vertices, of_faces;
+  const int on_vertices =
+      openmesh_bridge::read_field<OpenMesh::VertexHandle>(mesh, name, of_vertices);
+  const int on_faces = openmesh_bridge::read_field<OpenMesh::FaceHandle>(mesh, name, of_faces);
+  if (on_vertices + on_faces == 0) {
+    throw std::invalid_argument("the mesh has no property '" + name +
+                                "' of bool, int, unsigned, float, double, Vec3f or Vec3d");
   }
-  Field field = openmesh_bridge::read_field<OpenMesh::FaceHandle>(mesh, name);
+  if (on_vertices + on_faces > 1) {
+    throw std::invalid_argument("the mesh has properties '" + name +
+                                "' of several types, or on vertices and faces; remove all but the "
+                                "one that is meant");
+  }
+  Field field = std::move(on_vertices == 1 ? of_vertices : of_faces);
+  field.name = name.starts_with("v:") || name.starts_with("f:") ? name.substr(2) : name;
+  if (on_vertices == 1) return field;
   field.location = Field::Location::triangles;
   const Connectivity connectivity = Connectivity::from_polygons(static_cast<int>(mesh.n_vertices()),
                                                                 openmesh_bridge::polygons_of(mesh));
