@@ -295,7 +295,7 @@ Data data_of(mimetra_kind kind, GivenArrays& given, const Base& base) {
 Names shown_only(mimetra_kind kind, const GivenArrays& given) {
   Names names;
   if (kind == MIMETRA_REGIONS) {
-    names = {"centers", "radii", "energies", "energy_shares", "vertex_energy"};
+    names = {"centers", "radii", "energies", "energy_shares", "vertex_energy", "colors"};
     for (const mimetra_array& array : given.all()) {
       if (array.location != MIMETRA_NOWHERE) names.insert(array.name);
     }

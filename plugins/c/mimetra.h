@@ -186,7 +186,9 @@ typedef struct mimetra_array {
  *   regions     masks U8 R x N, triangles or faces, [weight N on vertices: the share of the motion
  *               that each takes, 0 to 1, where the border is soft; other masks leave it out of what
  *               is derived] | centers I32 R, radii R, energies R,
- *               energy_shares R, vertex_energy N, faces of a mesh that they are shown on, and
+ *               energy_shares R, vertex_energy N, faces of a mesh that they are shown on, colors
+ *               U8 R x 3 (sRGB, as pictures and reports draw each; light where it is nowhere the
+ *               strongest) where faces are known, and
  *               fields: region I32 N (strongest region, -1 outside), region_count I32 N, roi I32 N
  *               (0/1), in_L I32 T (0/1), ...; centers, radii and energies say nothing of regions
  *               that were made or read

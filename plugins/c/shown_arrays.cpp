@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "toolkit/mesh/whole_numbers.h"
+#include "toolkit/operations/colors.h"
 
 namespace mimetra {
 
@@ -180,7 +181,26 @@ void ShownArrays::show(const RegionData& data) {
   } else if (data.faces) {
     show_triangles(data.faces->triangles);
   }
-  for (const Field& field : has_mesh ? data.fields.fields : fields_of(regions)) show(field);
+  const std::vector<Field> own = has_mesh ? std::vector<Field>() : fields_of(regions);
+  const std::vector<Field>& fields = has_mesh ? data.fields.fields : own;
+  const auto strongest = std::ranges::find(fields, "region", &Field::name);
+  if (strongest != fields.end() && (has_mesh || data.faces)) {
+    show_colors(*strongest, regions,
+                has_mesh ? data.fields.frames->triangles() : data.faces->triangles);
+  }
+  for (const Field& field : fields) show(field);
+}
+
+void ShownArrays::show_colors(const Field& strongest, const Regions& regions,
+                              const Triangles& triangles) {
+  if (strongest.values.rows() != regions.vertices) return;
+  const Eigen::VectorXi region = strongest.values.col(0).cast<int>();
+  std::vector<std::uint8_t> colors;
+  for (const Color& color :
+       colors_by_category({region.begin(), region.end()}, triangles, regions.regions.size())) {
+    colors.insert(colors.end(), {color.red, color.green, color.blue});
+  }
+  add_bytes("colors", {static_cast<Eigen::Index>(regions.regions.size()), 3}, std::move(colors));
 }
 
 void ShownArrays::show(const Field& field) {

@@ -41,6 +41,8 @@ class ShownArrays {
   void show(const MeshSequence& sequence);
   void show(const Connectivity& faces);
   void show(const Field& field);
+  /// As pictures draw each region, by the field that says which is the strongest.
+  void show_colors(const Field& strongest, const Regions& regions, const Triangles& triangles);
   void show_basis(const ShapeBasis& basis, const char* shapes, const char* names);
 
   void add(const char* name, int type, Shape shape, const void* values,

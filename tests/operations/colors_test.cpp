@@ -82,5 +82,17 @@ TEST(CategoryColors, LeaveWhatHasNoCategoryAsItIs) {
   EXPECT_EQ(colors[1], colors[2]);
 }
 
+TEST(ColorsByCategory, AreThoseOfTheVertices) {
+  const test::Shape shape = test::grid(4, 4);
+  const std::vector<int> categories = {0, 0, 2, 2, 0, 0, 2, 2, -1, -1, 5, 5, -1, -1, 5, 5};
+  const std::vector<Color> of_vertices = category_colors(categories, shape.triangles);
+  const std::vector<Color> colors = colors_by_category(categories, shape.triangles, 4);
+  ASSERT_EQ(colors.size(), 4U);
+  EXPECT_EQ(colors[0], of_vertices[0]);
+  EXPECT_EQ(colors[1], kClay);
+  EXPECT_EQ(colors[2], of_vertices[2]);
+  EXPECT_TRUE(colors_by_category({2000000000}, test::grid(2, 2).triangles.topRows(0), 0).empty());
+}
+
 }  // namespace
 }  // namespace mimetra

@@ -146,4 +146,17 @@ std::vector<Color> category_colors(const std::vector<int>& categories, const Tri
   return colors;
 }
 
+std::vector<Color> colors_by_category(const std::vector<int>& categories,
+                                      const Triangles& triangles, std::size_t count) {
+  const std::vector<Color> of_vertices = category_colors(categories, triangles);
+  std::vector<Color> colors(count, kClay);
+  for (std::size_t v = 0; v < categories.size(); ++v) {
+    const int category = categories[v];
+    if (category >= 0 && static_cast<std::size_t>(category) < count) {
+      colors[static_cast<std::size_t>(category)] = of_vertices[v];
+    }
+  }
+  return colors;
+}
+
 }  // namespace mimetra

@@ -26,4 +26,9 @@ Color even_color(double share);
 /// [Okabe, Ito. Color universal design. 2008; Tol. Colour schemes. 2021]
 std::vector<Color> category_colors(const std::vector<int>& categories, const Triangles& triangles);
 
+/// The colour that each of the categories 0 .. count - 1 has there; kClay of those that no vertex
+/// has.
+std::vector<Color> colors_by_category(const std::vector<int>& categories,
+                                      const Triangles& triangles, std::size_t count);
+
 }  // namespace mimetra

@@ -84,11 +84,10 @@ Json json_of(const Eigen::Vector3d& vector) {
 /// The colour that the still pictures give each region.
 Json region_colors(const ViewerMesh& mesh) {
   const int last = mesh.regions.empty() ? -1 : *std::ranges::max_element(mesh.regions);
-  std::vector<Json> colors(static_cast<std::size_t>(last + 1), json_of(kClay));
-  const std::vector<Color> vertices = category_colors(mesh.regions, mesh.sequence.triangles());
-  for (std::size_t v = 0; v < vertices.size(); ++v) {
-    const int region = mesh.regions[v];
-    if (region >= 0) colors[static_cast<std::size_t>(region)] = json_of(vertices[v]);
+  Json colors = Json::array();
+  for (const Color& color : colors_by_category(mesh.regions, mesh.sequence.triangles(),
+                                               static_cast<std::size_t>(last + 1))) {
+    colors.push_back(json_of(color));
   }
   return colors;
 }

@@ -4,7 +4,7 @@ import colorsys
 
 import numpy as np
 
-_OUTSIDE = (0.55, 0.55, 0.55)
+_OUTSIDE = (205 / 255, 190 / 255, 178 / 255)
 # Dark blue over green to yellow, in sRGB: even steps look even, in grey too.
 _RAMP = np.array([[68, 1, 84], [59, 82, 139], [33, 145, 140], [94, 201, 98], [253, 231, 37]]) / 255
 _GOLDEN = 0.61803398875
@@ -36,3 +36,16 @@ def of_field(values):
     places = np.linspace(0, 1, len(_RAMP))
     return _with_alpha(np.column_stack([np.interp(shares, places, channel)
                                         for channel in _RAMP.T]))
+
+
+def of_regions(region, colors, faces):
+    """C x 4 for all corners: each face has the colour of the region (N, -1 outside) of most of its
+    corners, of those the lowest number; `colors` (R x 3, 0 to 255) are those of pictures."""
+    sizes, corners = faces
+    face = np.repeat(np.arange(len(sizes)), sizes)
+    pairs, counts = np.unique(np.column_stack([face, region[corners]]), axis=0, return_counts=True)
+    most = np.lexsort((pairs[:, 1], -counts, pairs[:, 0]))
+    _, first = np.unique(pairs[most, 0], return_index=True)
+    of_face = pairs[most[first], 1]
+    table = np.vstack([np.asarray(colors) / 255, _OUTSIDE])
+    return _with_alpha(np.repeat(table[of_face], sizes, axis=0))

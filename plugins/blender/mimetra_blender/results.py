@@ -268,8 +268,12 @@ def show_fields(value, subject):
     for name in names:
         _show_attribute(mesh, value, name)
     for name in shown:
-        made = _replace(mesh, f"mimetra {name} color", "FLOAT_COLOR", "POINT")
-        made.data.foreach_set("color", colors.of_field(value[name]).ravel())
+        is_region = name == "region" and "colors" in value
+        made = _replace(mesh, f"mimetra {name} color", "FLOAT_COLOR",
+                        "CORNER" if is_region else "POINT")
+        shades = (colors.of_regions(value[name], value["colors"], sources.faces_of(mesh))
+                  if is_region else colors.of_field(value[name]))
+        made.data.foreach_set("color", shades.ravel())
     if shown:
         first = _attribute_name(f"mimetra {shown[0]} color")
         mesh.color_attributes.active_color = mesh.color_attributes[first]
