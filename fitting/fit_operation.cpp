@@ -436,7 +436,7 @@ double memory(const Invocation& invocation) {
 void add_fitting(OperationTable& table) {
   Operation operation;
   operation.name = "fit";
-  operation.summary = "Fit a morphable face model to 2D landmarks: a sequence in correspondence";
+  operation.summary = "Fit a morphable face model to 2D landmarks";
   operation.inputs = {
       {"landmarks", DataKind::landmarks,
        "images of a face, a video, or landmarks that were found: one file, a track, a folder, a "

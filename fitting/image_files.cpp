@@ -8,6 +8,7 @@
 
 #include "fitting/image_codec.h"
 #include "toolkit/io/frame_files.h"
+#include "toolkit/io/missing_path.h"
 #include "toolkit/io/whole_file.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/text.h"
@@ -75,7 +76,7 @@ std::vector<std::filesystem::path> image_files(const std::string& text) {
   std::error_code missing;
   const bool is_folder = std::filesystem::is_directory(text, missing);
   if (!is_folder && std::filesystem::exists(text, missing)) return {text};
-  if (!is_folder && !is_frame_pattern(text)) throw IoError(text, "no such file or folder");
+  if (!is_folder && !is_frame_pattern(text)) fail_missing(text);
   std::vector<std::filesystem::path> files = files_named(text);
   std::erase_if(files, std::not_fn(is_image));
   if (files.empty()) {

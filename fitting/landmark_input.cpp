@@ -13,6 +13,7 @@
 #include "fitting/video_file.h"
 #include "toolkit/io/frame_files.h"
 #include "toolkit/io/frame_series.h"
+#include "toolkit/io/missing_path.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/progress.h"
 #include "toolkit/mesh/text.h"
@@ -40,7 +41,7 @@ LandmarkFiles input_of(const std::string& text) {
   std::error_code unreadable;
   const bool is_folder = fs::is_directory(text, unreadable);
   if (!is_folder && (fs::exists(text, unreadable) || !is_frame_pattern(text))) {
-    if (!fs::exists(text, unreadable)) throw IoError(text, "no such file or folder");
+    if (!fs::exists(text, unreadable)) fail_missing(text);
     if (is_image(text) || is_points(text)) return {{text}, {}, {}};
     return {{}, text, {}};
   }

@@ -5,6 +5,7 @@
 #include "plugins/c/make_data.h"
 #include "plugins/c/plugin_description.h"
 #include "plugins/c/plugin_run.h"
+#include "toolkit/io/missing_path.h"
 #include "toolkit/io/pending_output.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/operations/formats.h"
@@ -73,7 +74,7 @@ void fit_to(const ReadRequest& request, const std::string& text, Data& data) {
 
 ReadValue read_by(PluginFunction function, const Operation& operation, const std::string& text,
                   const ReadRequest& request) {
-  if (!fs::exists(text)) throw IoError(text, "no such file or folder");
+  if (!fs::exists(text)) fail_missing(text);
   function.subject = text + " (" + function.subject + ")";
   ReadValue read;
   Invocation invocation = invocation_of(text, operation.parameters, request.parameters,

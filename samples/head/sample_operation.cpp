@@ -31,8 +31,7 @@ Outcome run(const Invocation&) {
 void add_sample(OperationTable& table) {
   Operation operation;
   operation.name = "sample";
-  operation.summary =
-      "Write the built-in sample: a parametric head and a performance of 120 frames";
+  operation.summary = "Write the built-in sample: a head and a performance of 120 frames";
   operation.outputs = {{"out", DataKind::model, "folder of the model"}};
   operation.outputs.front().extensions = {""};  // its identities need one
   operation.examples = {

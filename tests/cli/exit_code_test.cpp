@@ -74,10 +74,14 @@ TEST_F(ExitCode, Is2ForAValueThatIsWrongWhateverTheData) {
   expect_failure("decompose head --weights take.csv -k 0 -o c.h5", 2, "-k: expected");
   expect_failure("decompose head --weights take.csv --d-min 0.8 -o c.h5", 2, "--d-min");
   expect_failure("decompose head --weights take.csv -o c.txt", 2, ".h5");
-  for (const std::string memory : {"much", "-1G", "0", "4X", "nan"}) {
+  for (const std::string memory : {"much", "-1G", "0", "4X", "nan", "4", "4Ki", "B"}) {
     expect_failure("decompose head --weights take.csv -o c.h5 --memory " + memory, 2,
                    "--memory: expected a number with the unit k, M, G or T, such as 4G, found '" +
                        memory + "'");
+  }
+  for (const std::string memory : {"4g", "4GB", "4GiB", "4096m", "4000000000"}) {
+    EXPECT_EQ(run("decompose head --weights take.csv -o c.h5 --dry-run --memory " + memory).code, 0)
+        << memory;
   }
   expect_failure("transfer head --weights take.csv head -o x --region ball", 2, "disc, support");
   expect_failure("info head --weights take.csv --frames 5:2", 2, "5:2");

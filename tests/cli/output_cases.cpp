@@ -66,7 +66,8 @@ void add_making(std::vector<BadInput>& all, const Making& making) {
       fs::create_directory(folder / name);
       std::ofstream(folder / name / "notes.txt") << "mine";
     };
-    add("existing_output", name, of_users, {name, "exists already", "--force"}, "");
+    // Which --force would not replace.
+    add("existing_output", name, of_users, {name, "holds 'notes.txt'", "manifest"}, "");
     add("existing_file", name + " --force", file(name, "mine"), {name, "exists and is no folder"},
         "");
     add("folder_of_others", name + " --force", of_users, {name, "holds 'notes.txt'", "manifest"},

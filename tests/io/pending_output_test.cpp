@@ -191,8 +191,7 @@ TEST_P(ForeignFile, KeepsAFolderFromBeingReplaced) {
   GetParam().make(folder / "out");
   EXPECT_EQ(message_of<OutputError>([&] { write_folder(folder / "out", "new"); }),
             (folder / "out").string() + ": holds " + GetParam().named +
-                ", which no manifest of an earlier run lists; option 'overwrite' replaces nothing "
-                "else: move "
+                ", which no manifest of an earlier run lists, so that it cannot be replaced: move "
                 "what is yours, or choose another name");
   EXPECT_EQ(read_file(folder / "out/frame_0000.ply"), "old");
   EXPECT_THAT(folder.names(), ElementsAre("out"));

@@ -170,7 +170,7 @@ TEST_F(TransferTest, CompletesRegionsThatLeaveExpressionsUnseen) {
   EXPECT_TRUE(target.solution.conditions.weakly_seen.empty());
   EXPECT_LT(missed_share(target.error), 0.1);
   ASSERT_TRUE(noted.has(Topic::completed_regions));
-  EXPECT_THAT(noted.notes.front().text, HasSubstr("were added to the regions, which hardly see"));
+  EXPECT_THAT(noted.notes.front().text, HasSubstr("which hardly see"));
 
   options_.regions.completion.share = 0;
   const TransferredTarget as_given = to(actor_);

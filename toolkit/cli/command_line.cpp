@@ -1,6 +1,7 @@
 #include "toolkit/cli/command_line.h"
 
 #include <algorithm>
+#include <filesystem>
 #include <list>
 
 #include <CLI/CLI.hpp>
@@ -63,6 +64,16 @@ void refuse_empty(const CLI::App& app, const Command& command, const Slots& slot
   }
 }
 
+/// Quoted, ~ comes here as it is, and would become a folder of that name.
+void refuse_tilde(const std::string& output) {
+  std::error_code unreadable;
+  const std::filesystem::path path = output;
+  if (*path.begin() != "~" || std::filesystem::exists("~", unreadable)) return;
+  throw UsageError("output '" + output +
+                   "': a shell puts your home folder in place of ~ only without quotes, and at a "
+                   "word's beginning; write $HOME (`./~` is a folder of that name)");
+}
+
 Parameters parameters_of(const CLI::App& app, const Command& command, const Slots& slots) {
   Parameters parameters(command.parameters);
   if (const auto config = slots.value("config")) set_from_file(*config, parameters);
@@ -101,7 +112,10 @@ Request request_of(const CLI::App& app, const Command& command, const Slots& slo
     }
   }
   for (const Output& output : command.operation->outputs) {
-    if (const auto text = slots.value(output.name)) request.outputs[output.name] = *text;
+    const auto text = slots.value(output.name);
+    if (!text) continue;
+    refuse_tilde(*text);
+    request.outputs[output.name] = *text;
   }
   if (const auto config = slots.value("config")) request.files.push_back(*config);
   if (const auto progress = slots.value("progress")) request.progress = progress_bar(*progress);

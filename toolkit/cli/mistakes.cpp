@@ -68,6 +68,23 @@ std::string split_list(const Command& command, const std::vector<std::string>& a
   return "";
 }
 
+/// What is wrong with "-k 5 -k 6"; "" where no option with a value is given twice.
+std::string repeated_option(const Command& command, const std::vector<std::string>& arguments) {
+  const std::vector<std::string> known = option_names(command);
+  for (const CommandOption& option : command.options) {
+    if (option.is_flag()) continue;
+    const auto end = std::ranges::find(arguments, "--");
+    const auto given = std::count_if(arguments.begin(), end, [&](const std::string& argument) {
+      return std::ranges::find(option.forms, option_of(argument, known)) != option.forms.end();
+    });
+    if (given < 2) continue;
+    return joined(option.forms, ", ") + " is given " + std::to_string(given) +
+           " times, and takes one value" +
+           (option.value.ends_with(",...") ? "; write several as in 5,10" : "");
+  }
+  return "";
+}
+
 }  // namespace
 
 std::string lost_hyphen(const Command& command, const std::vector<std::string>& arguments) {
@@ -111,7 +128,8 @@ std::string explained(const std::vector<Command>& commands,
                            : "; did you mean '" + option + "'?");
   }
   for (const std::string& mistake :
-       {split_list(*command, arguments), unquoted_pattern(arguments, true)}) {
+       {split_list(*command, arguments), repeated_option(*command, arguments),
+        unquoted_pattern(arguments, true)}) {
     if (!mistake.empty()) return first + ": " + mistake;
   }
   return first + ": " + refused + "; write: " + synopsis(*command);

@@ -76,7 +76,7 @@ CallRequest call_of(const Request& request) {
 }
 
 void print_result(const Request& request, const Outcome& outcome,
-                  const std::vector<std::string>& warnings) {
+                  const std::vector<std::string>& warnings, bool has_outputs) {
   if (request.json) {
     Json report = Json::parse(outcome.report);
     if (!warnings.empty() && !report.contains("warnings")) report["warnings"] = warnings;
@@ -84,7 +84,9 @@ void print_result(const Request& request, const Outcome& outcome,
   } else if (!request.quiet) {
     std::cout << terminal_text(outcome.summary);
   }
-  if (!std::cout.flush()) throw OutputError("standard output", "cannot be written");
+  if (std::cout.flush()) return;
+  throw OutputError("standard output", std::string("cannot be written") +
+                                           (has_outputs ? "; the outputs are in place" : ""));
 }
 
 /// Computes what the operation shares, in silence; the first process writes.
@@ -136,14 +138,14 @@ void run_command(const OperationTable& table, const Request& request, const Rank
   if (request.dry_run) {
     call.foresee();
     bar.clear();
-    print_result(request, planned(*request.operation, call.invocation()), warnings);
+    print_result(request, planned(*request.operation, call.invocation()), warnings, false);
     return;
   }
   call.run();
   call.write();
   bar.clear();
   if (call.writes() && !request.quiet) std::cerr << cost(call);
-  print_result(request, call.outcome(), warnings);
+  print_result(request, call.outcome(), warnings, call.writes());
 }
 
 }  // namespace mimetra::cli

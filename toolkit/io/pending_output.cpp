@@ -94,11 +94,10 @@ void check_replaceable(const fs::path& target, const fs::path& folder) {
   std::vector<std::string> quoted_names;
   quoted_names.reserve(others.size());
   for (const fs::path& other : others) quoted_names.push_back("'" + other.string() + "'");
-  throw OutputError(
-      target.string(),
-      "holds " + listed(quoted_names, 3) +
-          ", which no manifest of an earlier run lists; option 'overwrite' replaces nothing "
-          "else: move what is yours, or choose another name");
+  throw OutputError(target.string(),
+                    "holds " + listed(quoted_names, 3) +
+                        ", which no manifest of an earlier run lists, so that it cannot be "
+                        "replaced: move what is yours, or choose another name");
 }
 
 /// Renames in one step: `flags` RENAME_EXCHANGE changes the two names, RENAME_NOREPLACE replaces
@@ -209,8 +208,9 @@ void PendingOutput::check_target() const {
   if (kind_ == Kind::file && !fs::is_regular_file(status)) {
     throw OutputError(target_.string(), "exists and is no ordinary file; choose another name");
   }
-  if (!overwrite_) throw OutputError(target_.string(), kExistsAlready);
+  // What overwriting would not help is said at once.
   if (kind_ == Kind::folder) check_replaceable(target_, target_);
+  if (!overwrite_) throw OutputError(target_.string(), kExistsAlready);
 }
 
 void PendingOutput::create_parents() {

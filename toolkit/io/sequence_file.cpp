@@ -6,6 +6,7 @@
 #include "toolkit/io/frame_files.h"
 #include "toolkit/io/frame_sequence.h"
 #include "toolkit/io/mesh_file.h"
+#include "toolkit/io/missing_path.h"
 #include "toolkit/io/model_file.h"
 #include "toolkit/io/scene.h"
 #include "toolkit/io/sequence_format.h"
@@ -86,7 +87,7 @@ OpenSequence opened(const std::string& text, const SequenceSource& source) {
     }
     return open_driven(spec, source);
   }
-  if (!exists && !is_frame_pattern(text)) throw IoError(text, "no such file or folder");
+  if (!exists && !is_frame_pattern(text)) fail_missing(text);
   check_undriven(text, source);
   return exists ? open_path(text, source) : open_frames(frames_of_pattern(text), {}, source);
 }

@@ -193,8 +193,7 @@ Outcome run_convert(const Invocation& invocation) {
 Operation convert_operation() {
   Operation operation;
   operation.name = "convert";
-  operation.summary =
-      "Write a sequence in another format; vertex order and faces stay, or become another's";
+  operation.summary = "Write a sequence in another format, or in another's numbering";
   operation.inputs = {{"sequence", DataKind::sequence, "sequence to convert"}};
   operation.inputs.front().streamed = operation.inputs.front().fields = true;
   operation.inputs.push_back({.name = "match",

@@ -6,6 +6,7 @@
 #include "toolkit/io/components_file.h"
 #include "toolkit/io/gltf_write.h"
 #include "toolkit/io/mesh_file.h"
+#include "toolkit/io/missing_path.h"
 #include "toolkit/io/model_file.h"
 #include "toolkit/io/pending_output.h"
 #include "toolkit/io/regions_file.h"
@@ -103,9 +104,7 @@ MorphableModel model_of(const ModelSpec& spec, const ReadRequest& request) {
   if (request.identities && !is_person && !is_mesh_extension(spec.path.extension().string())) {
     return read_model(spec.path, request.threads);
   }
-  if (!std::filesystem::exists(spec.path)) {
-    throw IoError(spec.path.string(), "no such file or folder");
-  }
+  if (!std::filesystem::exists(spec.path)) fail_missing(spec.path.string());
   if (std::filesystem::is_directory(spec.path) || is_model(spec.path)) {
     return MorphableModel(read_person(spec, request.threads));
   }

@@ -81,7 +81,7 @@ std::string summary_of(const FrameSource& sequence, const MeshReport& mesh,
 Operation info_operation() {
   Operation operation;
   operation.name = "info";
-  operation.summary = "What a sequence is made of: frames, vertices, faces, components, defects";
+  operation.summary = "What a sequence is made of: frames, vertices, faces, defects";
   operation.inputs = {{"sequence", DataKind::sequence, "sequence to look at"}};
   operation.inputs.front().streamed = true;
   operation.examples = {"info takes/smile_%04d.obj", "info actor/ --weights take.csv --json"};

@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "toolkit/io/missing_path.h"
 #include "toolkit/io/whole_file.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/operations/file_hash.h"
@@ -132,7 +133,7 @@ RunRecord run_of(const fs::path& path) {
     const fs::path manifest = path / kFolderManifest;
     return fs::exists(manifest) && is_of_a_run(manifest) ? parse(manifest) : main_run(path);
   }
-  if (!fs::exists(path)) throw IoError(path.string(), "no such file or folder");
+  if (!fs::exists(path)) fail_missing(path.string());
   if (accompanies_an_output(path)) return parse(path);
   const fs::path manifest = manifest_beside(path);
   if (manifest.empty()) {

@@ -105,9 +105,9 @@ Regions RegionCompleter::operator()(const Regions& regions, const Target& target
     const double share = completed.regions.triangle_share() - before.triangle_share();
     const std::size_t left_out = regions.regions.size() - kept;
     note(options_.notes,
-         target.name + ": " + std::to_string(completed.added) + " discs, " + percent(share) +
-             " of the triangles, were added to the regions, which hardly see " +
-             listed(reasons(completed)) +
+         target.name + ": " + std::to_string(completed.added) +
+             (completed.added == 1 ? " disc was" : " discs were") + " added to the regions (" +
+             percent(share) + " of the triangles), which hardly see " + listed(reasons(completed)) +
              (left_out > 0 ? "; the " + std::to_string(left_out) + " weakest regions made room"
                            : ""),
          Topic::completed_regions);

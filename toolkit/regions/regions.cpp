@@ -90,9 +90,11 @@ std::vector<std::string> notes_on(const Components& components, const std::vecto
   for (int k = 0; k < components.count(); ++k) {
     if (components.centers[k] < 0) dead.push_back(k);
   }
+  constexpr std::size_t kNamed = 8;
   if (!dead.empty()) {
     notes.push_back((dead.size() > 1 ? "components " : "component ") +
-                    joined(words_of(dead), ", ", " and ") +
+                    (dead.size() > kNamed ? listed(words_of(dead), kNamed)
+                                          : joined(words_of(dead), ", ", " and ")) +
                     " died in the decomposition: no region");
   }
   std::string merged;

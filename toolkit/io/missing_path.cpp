@@ -1,0 +1,37 @@
+#include "toolkit/io/missing_path.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <system_error>
+#include <vector>
+
+#include "toolkit/mesh/errors.h"
+#include "toolkit/mesh/suggestion.h"
+
+namespace mimetra {
+namespace fs = std::filesystem;
+
+void fail_missing(const std::string& path) {
+  const std::string message = "no such file or folder";
+  const fs::path named = (fs::path(path) / "").parent_path();
+  std::vector<std::string> names;
+  std::error_code unreadable;
+  for (fs::directory_iterator entry(named.has_parent_path() ? named.parent_path() : ".",
+                                    unreadable);
+       !unreadable && entry != fs::directory_iterator(); entry.increment(unreadable)) {
+    names.push_back(entry->path().filename().string());
+  }
+  std::ranges::sort(names);
+  // Any short name is near to another, and a hidden file is seldom meant.
+  constexpr std::size_t kTelling = 3;
+  const std::string asked = named.filename().string();
+  if (!asked.starts_with('.')) {
+    std::erase_if(names, [](const std::string& name) { return name.starts_with('.'); });
+  }
+  const std::string nearest = asked.size() < kTelling ? "" : nearest_word(asked, names);
+  if (nearest.empty()) throw IoError(path, message);
+  throw IoError(path,
+                message + "; did you mean '" + (named.parent_path() / nearest).string() + "'?");
+}
+
+}  // namespace mimetra
