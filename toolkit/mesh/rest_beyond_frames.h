@@ -24,8 +24,8 @@ struct RestBeyondFrames {
 
   /// Whether the rest pose is likely that of another face. Measured on two captured takes and their
   /// own neutrals: 120 frames leave up to 0.014 % of them, 60 frames 0.15 %, 30 frames 0.8 %; with
-  /// expressions that are held over 60 frames 0.5 %. Neutrals of other people leave 0.07 to 0.26 %
-  /// at one, and 0.13 to 0.52 % at two standard deviations of one identity, 0.3 to 2.5 % where all
+  /// expressions that are held over 60 frames 0.5 %. Neutrals of other people leave up to 0.35 %
+  /// at one, and 0.17 to 0.69 % at two standard deviations of one identity, 0.3 to 2.5 % where all
   /// differ, a fourth to a half of it everywhere. Where a part is still and the same, it says no.
   bool is_of_other_face() const;
 };
