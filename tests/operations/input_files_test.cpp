@@ -75,7 +75,7 @@ TEST_F(InputFiles, OfAnotherSizeBeginningOrEndAreNamed) {
 
 TEST_F(InputFiles, OfAnotherNumberAreCounted) {
   for (const std::string name : {"own/f/1.obj", "own/f/2.obj", "other/f/1.obj"}) write(name, "v");
-  EXPECT_THAT(said_by_second({"f"}), HasSubstr("process 1 reads 1 files, process 0 2"));
+  EXPECT_THAT(said_by_second({"f"}), HasSubstr("process 1 reads 1 file, process 0 2"));
 }
 
 }  // namespace

@@ -10,6 +10,7 @@ namespace {
 using test::bare;
 using test::nodding;
 using test::take;
+using testing::AllOf;
 using testing::HasSubstr;
 using testing::ThrowsMessage;
 
@@ -170,7 +171,8 @@ TEST_F(TransferTest, CompletesRegionsThatLeaveExpressionsUnseen) {
   EXPECT_TRUE(target.solution.conditions.weakly_seen.empty());
   EXPECT_LT(missed_share(target.error), 0.1);
   ASSERT_TRUE(noted.has(Topic::completed_regions));
-  EXPECT_THAT(noted.notes.front().text, HasSubstr("which hardly see"));
+  EXPECT_THAT(noted.notes.front().text, AllOf(HasSubstr("added to the regions ("),
+                                              HasSubstr("of the triangles), which hardly see")));
 
   options_.regions.completion.share = 0;
   const TransferredTarget as_given = to(actor_);

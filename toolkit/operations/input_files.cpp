@@ -7,6 +7,7 @@
 
 #include "toolkit/io/model_file.h"
 #include "toolkit/mesh/errors.h"
+#include "toolkit/operations/counted.h"
 #include "toolkit/operations/file_hash.h"
 
 namespace mimetra {
@@ -60,7 +61,7 @@ void check_same_inputs(const std::vector<std::filesystem::path>& inputs, const R
   if (of_first == own) return;
   const std::string process = "process " + std::to_string(ranks.rank());
   if (of_first.size() != own.size()) {
-    throw MismatchError(process + " reads " + std::to_string(files.size()) + " files, process 0 " +
+    throw MismatchError(process + " reads " + counted(std::ssize(files), "file") + ", process 0 " +
                         std::to_string(of_first.size() / kHalves) +
                         "; all must see the same inputs");
   }

@@ -1,6 +1,7 @@
 #include "toolkit/operations/parameter.h"
 
 #include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <sstream>
