@@ -3,6 +3,7 @@ one of them cannot finish.
 
 usage: ranks_test.py MIMETRA"""
 
+import csv
 import json
 import os
 import pathlib
@@ -28,6 +29,23 @@ class Ranks(unittest.TestCase):
 
     def tearDown(self):
         self._folder.cleanup()
+
+    def make_long_take(self):
+        """The performance ten times, ever weaker: its motion is much larger than the program, of which
+        one run holds a few MB more than another."""
+        with open(self.folder / "sample/performance.csv", newline="") as file:
+            names, *rows = csv.reader(file)
+        with open(self.folder / "long.csv", "w", newline="") as file:
+            writer = csv.writer(file)
+            writer.writerow(names)
+            for i in range(10):
+                for time_, *weights in rows:
+                    writer.writerow([float(time_) + 4 * i,
+                                     *(0.95 ** i * float(weight) for weight in weights)])
+        self.run_on(1, "convert", "sample", "--weights", "long.csv", "-o", "long.npy")
+
+    def plan(self, ranks, *arguments):
+        return json.loads(self.run_on(ranks, *arguments, "--dry-run", "--json").stdout)
 
     def command(self, ranks, *arguments):
         return [*MPIRUN, "-n", str(ranks), str(MIMETRA), *arguments]
@@ -56,11 +74,14 @@ class Ranks(unittest.TestCase):
             self.assertEqual(self.bytes_of(name), self.bytes_of("one.h5"), name)
 
     def test_components_do_not_depend_on_the_memory_of_ranks(self):
-        self.run_on(1, "decompose", "take.npy", "-k", "8", "-o", "one.h5")
-        plan = json.loads(self.run_on(2, "decompose", "take.npy", "-k", "8", "-o", "two.h5",
-                                      "--dry-run", "--json").stdout)
-        less = int(plan["memory_bytes"] - 8e6)
-        self.run_on(2, "decompose", "take.npy", "-k", "8", "-o", "two.h5", "--memory", str(less))
+        self.make_long_take()
+        command = ["decompose", "long.npy", "-k", "8", "--iterations", "5"]
+        self.run_on(1, *command, "-o", "one.h5")
+        whole = self.plan(2, *command, "-o", "two.h5")
+        self.assertEqual(whole["scratch_bytes"], 0)
+        less = ["--memory", str(int(0.75 * whole["memory_bytes"]))]
+        self.assertGreater(self.plan(2, *command, *less, "-o", "two.h5")["scratch_bytes"], 0)
+        self.run_on(2, *command, *less, "-o", "two.h5")
         self.assertEqual(self.bytes_of("two.h5"), self.bytes_of("one.h5"))
 
     def test_regions_are_the_same_bytes_on_any_number_of_ranks(self):
@@ -134,8 +155,10 @@ class Ranks(unittest.TestCase):
         self.assertEqual(result.stderr.count("-k: expected"), 1, result.stderr)
         self.assertEqual(self.names(), before)
 
-    def run_beside(self, rank, before_it, *arguments):
-        """The command on two processes, of which one is in another state: how it ended, in time."""
+    def end_of_run(self, rank, before_it, *arguments, code):
+        """What the command on two processes, one of them in another state, says that has failed, in
+        time, and left nothing behind."""
+        names = self.names()
         script = self.folder / "elsewhere.sh"
         script.write_text(f'#!/bin/sh\n[ "$OMPI_COMM_WORLD_RANK" = {rank} ] && {{ {before_it}; }}\n'
                           f'exec "{MIMETRA}" "$@"\n')
@@ -145,12 +168,6 @@ class Ranks(unittest.TestCase):
                                 text=True, capture_output=True, timeout=60)
         script.unlink()
         self.assertLess(time.monotonic() - started, 10)
-        return result
-
-    def end_of_run(self, rank, before_it, *arguments, code):
-        """What such a run says that has failed and left nothing behind."""
-        names = self.names()
-        result = self.run_beside(rank, before_it, *arguments)
         self.assertEqual(result.returncode, code, result.stderr)
         self.assertEqual(self.names(), names)
         return result.stderr
@@ -176,8 +193,9 @@ class Ranks(unittest.TestCase):
             self.assertIn("process 1 reads another content than process 0", said)
 
     def test_the_plan_is_that_of_one_of_the_ranks(self):
-        plans = [json.loads(self.run_on(ranks, "decompose", "take.npy", "-k", "8", "-o", "c.h5",
-                                        "--dry-run", "--json").stdout) for ranks in (1, 2, 3)]
+        self.make_long_take()
+        plans = [self.plan(ranks, "decompose", "long.npy", "-k", "8", "-o", "c.h5")
+                 for ranks in (1, 2, 3)]
         self.assertEqual([plan["processes"] for plan in plans], [1, 2, 3])
         memory = [plan["memory_bytes"] for plan in plans]
         self.assertEqual(memory, sorted(memory, reverse=True))
@@ -187,21 +205,11 @@ class Ranks(unittest.TestCase):
         full = "trap '' XFSZ; ulimit -f 128"
         said = self.end_of_run(0, full, "decompose", "take.npy", "-k", "4", "-o", "c.h5", code=5)
         self.assertIn("c.h5", said)
-        plan = json.loads(self.run_on(2, "decompose", "take.npy", "-k", "4", "-o", "c.h5",
-                                      "--dry-run", "--json").stdout)
-        # A few MB lie between what holds the motion and what is too little for a decomposition, and
-        # what a process takes besides differs by one from run to run.
-        said = []
-        for megabytes in sorted((each / 4 for each in range(16, 37)),
-                                key=lambda each: abs(each - 6)):
-            memory = str(int(plan["memory_bytes"] - megabytes * 1e6))
-            result = self.run_beside(1, full, "decompose", "take.npy", "-k", "4", "-o", "c.h5",
-                                     "--force", "--memory", memory)
-            said.append(result.stderr)
-            if "TMPDIR" in result.stderr:
-                self.assertEqual(result.returncode, 5)
-                return
-        self.fail("no amount of memory led to a scratch file:\n" + "\n".join(said))
+        self.make_long_take()
+        command = ["decompose", "long.npy", "-k", "4", "-o", "c.h5"]
+        less = ["--memory", str(int(0.75 * self.plan(2, *command)["memory_bytes"]))]
+        self.assertGreater(self.plan(2, *command, *less)["scratch_bytes"], 0)
+        self.assertIn("TMPDIR", self.end_of_run(1, full, *command, *less, code=5))
 
     def test_a_rank_that_is_killed_ends_the_run(self):
         before = self.names()

@@ -72,14 +72,15 @@ Range range_of(const Chart& chart, const ChartAxis& axis,
   return {range.first - space, range.last + space};
 }
 
-/// Round numbers at even distances, about five of them.
+/// Round numbers at even distances, as near to five of them as 1, 2 and 5 allow.
 std::vector<double> even_ticks(const Range& range) {
   constexpr double kTicks = 5;
   const double rough = range.length() / kTicks;
   const double decade = std::pow(10, std::floor(std::log10(rough)));
-  double step = 10 * decade;
-  for (const double factor : {5, 2, 1}) {
-    if (factor * decade >= rough) step = factor * decade;
+  double step = decade;
+  for (const double factor : {2, 5, 10}) {
+    const double larger = factor * decade;
+    if (larger * step <= rough * rough) step = larger;
   }
   std::vector<double> ticks;
   for (double i = std::ceil(range.first / step); i * step <= range.last; ++i) {

@@ -73,7 +73,7 @@ std::vector<double> shown_times(const std::string& path, const WeightCurve& curv
                             readable(keys[keys.size() - 1] - keys[0], 8) + " s; expected at most " +
                             readable(kMostFrames, 8) + " frames of it");
   }
-  times.resize(1);
+  times.erase(times.begin() + 1, times.end());
   for (Eigen::Index k = 1; k < keys.size(); ++k) {
     const double steps = steps_between(keys[k - 1], keys[k]);
     for (double step = 1; step < steps; ++step) {
