@@ -116,9 +116,9 @@ const mimetra_array* GivenArrays::find(std::string_view name) const {
   return found == arrays_.end() ? nullptr : &*found;
 }
 
-int GivenArrays::rank(std::string_view name) const {
+std::vector<std::int64_t> GivenArrays::shape(std::string_view name) const {
   const mimetra_array* array = find(name);
-  return array ? array->rank : 0;
+  return array ? shape_of(*array) : std::vector<std::int64_t>();
 }
 
 void GivenArrays::set_size(char letter, int size, const std::string& where) {

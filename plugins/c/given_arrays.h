@@ -29,8 +29,8 @@ class GivenArrays {
   const std::vector<mimetra_array>& all() const { return arrays_; }
   /// By name; fields, which have a location, are not meant here or below.
   bool has(std::string_view name) const { return find(name) != nullptr; }
-  /// 0 where there is none of that name.
-  int rank(std::string_view name) const;
+  /// Empty where there is none of that name.
+  std::vector<std::int64_t> shape(std::string_view name) const;
   /// The size that a letter stands for. \pre an array with it was asked for
   int size(char letter) const { return static_cast<int>(sizes_.at(letter).first); }
   /// Says what a letter stands for before any array does.

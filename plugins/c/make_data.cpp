@@ -90,7 +90,8 @@ Eigen::VectorXd times_of(GivenArrays& given) {
 }
 
 MeshSequence sequence_of(GivenArrays& given, const Base& base) {
-  const bool is_one = given.rank("positions") == 2;
+  const std::vector<std::int64_t> shape = given.shape("positions");
+  const bool is_one = shape.size() == 2 && shape.back() == 3;
   Frames frames = given.numbers("positions", is_one ? "N x 3" : "F x N x 3");
   if (is_one) {
     frames = Frames(Eigen::Map<const Frames>(frames.data(), 1, frames.size()));

@@ -41,6 +41,7 @@ TEST_F(Slips, AreAnsweredByWhatWasMeant) {
       {"", {"expected a command"}},
       {"info", {"sequence is required", "mimetra info [OPTIONS] SEQUENCE"}},
       {"info tak", {"tak: no such file or folder; did you mean 'take'?"}, 3},
+      {"info -", {"-: standard input is not read"}, 3},
       {"info takes/", {"takes/: no such file or folder; did you mean 'take'?"}, 3},
       {"info bare/smile_3.ob", {"did you mean 'bare/smile_3.obj'?"}, 3},
       {"convert take.npy -o '~/x.npy'", {"$HOME"}},

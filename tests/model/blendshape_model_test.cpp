@@ -41,6 +41,31 @@ TEST(BlendshapeModel, PosesAsNeutralPlusWeightedDisplacements) {
   }
 }
 
+TEST(BlendshapeModel, IsMadeOfTheFacesThatShowItsExpressions) {
+  const TriMesh rest = test::octahedron();
+  TriMesh smile = rest, frown = rest;
+  smile.positions = model().pose(Eigen::Vector2d(1, 0));
+  frown.positions = model().pose(Eigen::Vector2d(0, 1));
+  const BlendshapeModel made(rest, {{"smile", smile}, {"frown", frown}});
+  EXPECT_EQ(made.expressions().names, model().expressions().names);
+  EXPECT_EQ(made.expressions().displacements, model().expressions().displacements);
+  EXPECT_EQ(made.neutral(), neutral());
+
+  EXPECT_EQ(BlendshapeModel(rest, {}).expressions().displacements.rows(), rest.positions.size());
+  Triangles flipped = rest.connectivity.triangles;
+  flipped.row(0).reverseInPlace();
+  const TriMesh turned{smile.positions, Connectivity::from_triangles(6, flipped)};
+  EXPECT_THAT(
+      ([&] {
+        BlendshapeModel(rest, {{"smile", smile}, {"turned", turned}});
+      }),
+      ThrowsMessage<std::invalid_argument>("expression 'turned' has other faces than the neutral"));
+  EXPECT_THAT(([&] {
+                BlendshapeModel(rest, {{"smile", smile}, {"smile", frown}});
+              }),
+              ThrowsMessage<std::invalid_argument>(HasSubstr("'smile' occurs twice")));
+}
+
 TEST(BlendshapeModel, OfZeroWeightsIsTheNeutralExactly) {
   EXPECT_EQ(model().pose(Eigen::Vector2d::Zero()), neutral());
 }

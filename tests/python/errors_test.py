@@ -46,6 +46,10 @@ class Errors(SampleTest):
                 ("integers of 32 bits", lambda: mimetra.Sequence(np.zeros((3, 3)), TRIANGLE << 40)),
                 ("expected numbers", lambda: mimetra.Sequence([["a"]], TRIANGLE)),
                 ("expected 1 to 4 dimensions, found 0", lambda: mimetra.Sequence(1.0, TRIANGLE)),
+                ("120 x 9, expected F x N x 3",
+                 lambda: mimetra.Sequence(np.zeros((120, 9)), TRIANGLE)),
+                ("faces: expected triangles T x 3 or a list of polygons, found None",
+                 lambda: mimetra.Sequence(np.zeros((3, 3)), None)),
                 ("list of polygons", lambda: mimetra.Sequence(np.zeros((3, 3)), [[[0, 1, 2]]])),
                 ("booleans or uint8", lambda: mimetra.Regions(np.ones((1, 3)), TRIANGLE))]:
             with self.subTest(text), self.assertRaisesRegex(mimetra.Error, text) as caught:
@@ -56,12 +60,21 @@ class Errors(SampleTest):
         table = mimetra.Table({"k": [1.0]})
         self.assert_fails(mimetra.UsageError, 2, "expected the kind 'sequence', found 'table'",
                           lambda: mimetra.regions(table))
-        with self.assertRaisesRegex(TypeError, "expected a mimetra.Sequence or a path, found int"):
+        self.assert_fails(mimetra.UsageError, 2, "found 'sequence'; a pose and its faces are a model",
+                          lambda: mimetra.transfer(self.arrays, self.arrays))
+        with self.assertRaisesRegex(TypeError, "expected a mimetra.Sequence, positions and faces or"
+                                               " a path, found int"):
             mimetra.regions(3)
+        with self.assertRaisesRegex(TypeError, "expected a mimetra.Components or a path"):
+            mimetra.regions(self.arrays, components=3)
 
     def test_unknown_options_are_told_of_by_the_functions_name(self):
         with self.assertRaisesRegex(TypeError, r"regions\(\) got an unexpected keyword .*'kk'"):
             mimetra.regions(self.arrays, kk=3)
+        with self.assertRaisesRegex(TypeError, r"'K'; did you mean 'k'\?"):
+            mimetra.regions(self.arrays, K=3)
+        with self.assertRaisesRegex(TypeError, r"'verbose'$"):
+            mimetra.info(self.arrays, verbose=True)
         with self.assertRaisesRegex(TypeError, r"transfer\(\) missing a required .*'target'"):
             mimetra.transfer(self.arrays)
 

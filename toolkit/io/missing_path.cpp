@@ -12,6 +12,9 @@ namespace mimetra {
 namespace fs = std::filesystem;
 
 void fail_missing(const std::string& path) {
+  if (path == "-") {
+    throw IoError(path, "standard input is not read; expected a file or folder of that name");
+  }
   const std::string message = "no such file or folder";
   const fs::path named = (fs::path(path) / "").parent_path();
   std::vector<std::string> names;

@@ -19,6 +19,20 @@ void check_weight_count(Eigen::Index weights, int expressions) {
                               std::to_string(expressions) + " expressions");
 }
 
+ShapeBasis differences(const TriMesh& neutral,
+                       const std::vector<std::pair<std::string, TriMesh>>& poses) {
+  ShapeBasis basis;
+  basis.displacements.resize(neutral.positions.size(), std::ssize(poses));
+  for (const auto& [name, pose] : poses) {
+    if (!same_faces(pose.connectivity, neutral.connectivity)) {
+      throw std::invalid_argument("expression '" + name + "' has other faces than the neutral");
+    }
+    basis.displacements.col(basis.size()) = flat(pose.positions) - flat(neutral.positions);
+    basis.names.push_back(name);
+  }
+  return basis;
+}
+
 }  // namespace
 
 int ShapeBasis::find(const std::string& name) const {
@@ -57,6 +71,11 @@ BlendshapeModel::BlendshapeModel(std::shared_ptr<const Connectivity> connectivit
   expressions_.check(vertices());
   if (expressions_.size() == 0) expressions_.displacements.resize(neutral_.size(), 0);
 }
+
+BlendshapeModel::BlendshapeModel(const TriMesh& neutral,
+                                 const std::vector<std::pair<std::string, TriMesh>>& expressions)
+    : BlendshapeModel(std::make_shared<const Connectivity>(neutral.connectivity), neutral.positions,
+                      differences(neutral, expressions)) {}
 
 Positions BlendshapeModel::pose(const Eigen::VectorXd& beta) const {
   check_weight_count(beta.size(), expressions_.size());

@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "toolkit/mesh/mesh_sequence.h"
@@ -30,6 +31,10 @@ class BlendshapeModel {
   /// disagree or a name occurs twice.
   BlendshapeModel(std::shared_ptr<const Connectivity> connectivity, Positions neutral,
                   ShapeBasis expressions);
+  /// The neutral, and each expression by its name and the whole face that shows it. Throws
+  /// std::invalid_argument where one has other faces than the neutral or a name occurs twice.
+  BlendshapeModel(const TriMesh& neutral,
+                  const std::vector<std::pair<std::string, TriMesh>>& expressions);
 
   int vertices() const { return static_cast<int>(neutral_.rows()); }
   const Connectivity& connectivity() const { return *connectivity_; }

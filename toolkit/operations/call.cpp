@@ -37,9 +37,14 @@ FieldSequence with_more_fields(const NamedData& value) {
 void check_kind(const Operation& operation, const Input& input, const Data& data) {
   const DataKind found = kind_of(data);
   if (found == input.kind) return;
+  const std::string expected(kind_name(input.kind));
+  const auto holds_poses = [](DataKind kind) {
+    return kind == DataKind::sequence || kind == DataKind::model;
+  };
+  const bool is_near = holds_poses(input.kind) && holds_poses(found);
   throw UsageError("input '" + input.name + "' of '" + operation.name + "': expected the kind '" +
-                   std::string(kind_name(input.kind)) + "', found '" +
-                   std::string(kind_name(found)) + "'");
+                   expected + "', found '" + std::string(kind_name(found)) + "'" +
+                   (is_near ? "; a pose and its faces are a " + expected : ""));
 }
 
 Call::Call(const OperationTable& table, CallRequest request)

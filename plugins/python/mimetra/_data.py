@@ -332,6 +332,8 @@ def _faces(faces):
         return {"face_sizes": faces.sizes, "corners": faces.corners}
     if isinstance(faces, np.ndarray) and faces.ndim == 2 and faces.shape[1] == 3:
         return {"triangles": faces}
+    if not np.iterable(faces):
+        raise UsageError(f"faces: expected triangles T x 3 or a list of polygons, found {faces!r}")
     polygons = [np.asarray(polygon) for polygon in faces]
     if any(polygon.ndim != 1 for polygon in polygons):
         raise UsageError("faces: expected a list of polygons, each a list of vertices")

@@ -1,6 +1,7 @@
 """One Python function for each operation of the library's table."""
 
 import ctypes
+import difflib
 import inspect
 import json
 import keyword
@@ -160,8 +161,9 @@ class _Call:
         if isinstance(value, tuple) and len(value) == 2 and port.kind in (Sequence, Model):
             value = port.kind(*value, name=port.name)
         if not isinstance(value, Data):
-            raise TypeError(f"{port.name}: expected a mimetra.{port.kind.__name__} or a path, found"
-                            f" {type(value).__name__}")
+            arrays = ", positions and faces" if port.kind in (Sequence, Model) else ""
+            raise TypeError(f"{port.name}: expected a mimetra.{port.kind.__name__}{arrays} or a path,"
+                            f" found {type(value).__name__}")
         self.own.check(library.call_give(self.handle, name, value._handle))
 
     def ask(self, name, wish, force):
@@ -251,6 +253,14 @@ def _signature(operation):
     return inspect.Signature(slots, return_annotation="Result")
 
 
+def _suggestion(options, signature):
+    """"; did you mean 'k'?" for the first option that there is not, or nothing."""
+    known = {name.lower(): name for name in signature.parameters}
+    unknown = next((name for name in options if name not in signature.parameters), "")
+    near = difflib.get_close_matches(unknown.lower(), known, n=1)
+    return f"; did you mean '{known[near[0]]}'?" if near else ""
+
+
 def _docstring(operation):
     lines = [operation.summary + ".", ""]
     lines += [f"    {python_name(port.name)}: {port.help}" for port in operation.inputs]
@@ -276,7 +286,7 @@ def function_of(operation):
         try:
             given = dict(signature.bind(*arguments, **options).arguments)
         except TypeError as error:
-            raise TypeError(f"{function.__name__}() {error}") from None
+            raise TypeError(f"{function.__name__}() {error}{_suggestion(options, signature)}") from None
         return _run(operation, given, progress=given.pop("progress", None),
                     threads=given.pop("threads", None))
 
