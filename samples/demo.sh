@@ -2,10 +2,11 @@
 # The main job on the built-in sample: regions of one head's performance, and the performance on
 # another head, by all triangles and by regions.  usage: demo.sh MIMETRA OUT
 set -euo pipefail
+[ $# -eq 2 ] || { echo "usage: demo.sh MIMETRA OUT" >&2; exit 2; }
+. "$(dirname "$0")/own_folder.sh"
 mimetra=$1
 out=$2
-rm -rf "$out"
-mkdir -p "$out"
+own_folder "$out"
 
 "$mimetra" sample -o "$out/head"
 "$mimetra" convert "$out/head@identity001=1" --weights "$out/head/performance.csv" -o "$out/source"

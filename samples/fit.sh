@@ -2,10 +2,11 @@
 # Five pictures of the built-in head while it talks, and the head fitted to the faces that are found
 # in them.  usage: fit.sh MIMETRA OUT
 set -euo pipefail
+[ $# -eq 2 ] || { echo "usage: fit.sh MIMETRA OUT" >&2; exit 2; }
+. "$(dirname "$0")/own_folder.sh"
 mimetra=$1
 out=$2
-rm -rf "$out"
-mkdir -p "$out"
+own_folder "$out"
 
 "$mimetra" sample -o "$out/head"
 for frame in 17 28 42 51 68; do

@@ -3,14 +3,16 @@
 # the plugin's filters. Needs what `./dev hosts` installs.
 # usage: paraview_pictures.sh MIMETRA FOLDER_OF_MIMETRA_SO OUT
 set -euo pipefail
+[ $# -eq 3 ] || { echo "usage: paraview_pictures.sh MIMETRA FOLDER_OF_MIMETRA_SO OUT" >&2; exit 2; }
+. "$(dirname "$0")/own_folder.sh"
 mimetra=$(realpath "$1")
 plugin=$(realpath "$2")
-rm -rf "$3"
+own_folder "$3"
 mkdir -p "$3/settings/ParaView" "$3/screen"
 cd "$3"
 
 "$mimetra" sample -o head
-"$mimetra" convert head --weights head/performance.csv -o takes
+"$mimetra" convert head@identity001=1 --weights head/performance.csv -o takes
 "$mimetra" regions takes -k 30 -o rois/take.pvd --paraview rois/view.py
 xvfb-run -a -n 220 -s "-screen 0 1280x1024x24 -noreset" pvpython rois/view.py view.png
 

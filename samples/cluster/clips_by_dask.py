@@ -16,11 +16,10 @@ import argparse
 import pathlib
 import sys
 
-import distributed
-import mimetra
-
 
 def transfer(clip, target, out, k):
+    import mimetra
+
     mimetra.transfer(clip, target, k=k, out=out, threads=1)
 
 
@@ -41,7 +40,7 @@ def jobs_of(arguments):
     return [(clip, target, out) for out, (clip, target) in jobs.items()]
 
 
-def client_of(arguments):
+def client_of(distributed, arguments):
     if arguments.scheduler:
         return distributed.Client(arguments.scheduler)
     return distributed.Client(n_workers=arguments.workers, threads_per_worker=1,
@@ -58,12 +57,18 @@ def main():
     parser.add_argument("--workers", type=int, default=2)
     parser.add_argument("--scheduler")
     arguments = parser.parse_args()
+    try:
+        import distributed
+        import mimetra  # now, not on each of the workers
+    except ImportError as error:
+        sys.exit(f"clips_by_dask.py: {error}; install python3-distributed, and set PYTHONPATH to"
+                 " mimetra's PREFIX/lib/python3/dist-packages")
     arguments.out.mkdir(parents=True, exist_ok=True)
     jobs = jobs_of(arguments)
     left = [job for job in jobs if not job[2].exists()]
     print(f"{len(jobs)} pairs, {len(jobs) - len(left)} of them done", flush=True)
     failed = 0
-    with client_of(arguments) as client:
+    with client_of(distributed, arguments) as client:
         running = {client.submit(transfer, clip, target, str(out), arguments.k, pure=False): out
                    for clip, target, out in left}
         for future in distributed.as_completed(running):

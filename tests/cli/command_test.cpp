@@ -1,3 +1,4 @@
+#include <map>
 #include <regex>
 
 #include <gmock/gmock.h>
@@ -31,6 +32,21 @@ TEST_F(Command, HelpOfACommandEndsInTwoExamples) {
   EXPECT_EQ(std::count(examples.begin(), examples.end(), '\n'), 4);
   EXPECT_THAT(examples, HasSubstr("mimetra transfer "));
   EXPECT_THAT(examples, HasSubstr("mimetra transfer --help all"));
+}
+
+TEST_F(Command, LongHelpExplainsWhatIsPrinted) {
+  for (const auto& [name, measures] : std::map<std::string, std::vector<std::string>>{
+           {"decompose", {"RMS error", "KG error", "displacements are zero"}},
+           {"regions", {"motion energy"}},
+           {"transfer", {"DE", "leak", "crease", "flipped"}},
+           {"evaluate", {"DE", "MPE", "leak", "flipped"}}}) {
+    const std::string help = run(name + " --help all").out;
+    const auto prints = help.find("\nPrints:\n");
+    ASSERT_NE(prints, std::string::npos) << name;
+    for (const std::string& measure : measures) {
+      EXPECT_THAT(help.substr(prints), HasSubstr("\n  " + measure)) << name;
+    }
+  }
 }
 
 TEST_F(Command, HelpOfEachFitsAScreenAndNamesAllOptionsThatItsLongHelpExplains) {

@@ -189,5 +189,14 @@ TEST_F(MatchTest, ConvertSaysWhereAModelsExpressionsAreLost) {
   }
 }
 
+TEST_F(MatchTest, WhatChangesAModelsMeshSaysThatItsExpressionsAreLost) {
+  for (const char* line : {"simplify head --share 0.9 -o small.glb", "subdivide head -o fine.glb",
+                           "align head -o still.npy"}) {
+    const auto result = run(line);
+    EXPECT_EQ(result.code, 0) << result.err;
+    EXPECT_THAT(result.err, HasSubstr("holds the neutral alone, not the 3 expressions")) << line;
+  }
+}
+
 }  // namespace
 }  // namespace mimetra

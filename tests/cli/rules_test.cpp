@@ -193,5 +193,17 @@ TEST_F(RulesTest, SmoothnessOfZeroChangesNothingAndMoreSmoothsBothSpaces) {
   }
 }
 
+TEST_F(RulesTest, SmoothnessSaysWhereTheInputSaysNothingOfTime) {
+  ASSERT_EQ(run("convert head --weights take.csv -o take.npy").code, 0);
+  std::filesystem::remove(folder_ / "take.times.csv");
+  const std::string line = "transfer take.npy head@wide=1 --full -o out.npy --force ";
+  const std::string said =
+      "take.npy: says nothing of time, so that --smoothness takes its frames "
+      "for 30 a second";
+  EXPECT_THAT(run(line + "--smoothness 0.1").err, HasSubstr(said));
+  EXPECT_THAT(run(line + "--smoothness 0.1 --fps 25").err, testing::Not(HasSubstr(said)));
+  EXPECT_THAT(run(line).err, testing::Not(HasSubstr(said)));
+}
+
 }  // namespace
 }  // namespace mimetra

@@ -133,8 +133,8 @@ void add_stray_files(std::vector<BadInput>& all) {
                  "frames_obj",
                  take("obj", {}),
                  "info take/f%04d.obj",
-                 3,
-                 {"there is f0.obj: write 'take/f%d.obj'"}});
+                 0,
+                 {"take/f%04d.obj: matches no file; 'take/f%d.obj' is taken for it, f0.obj to f"}});
   all.push_back({"rest_of_other_faces",
                  "frames_obj",
                  [](const fs::path& folder) {

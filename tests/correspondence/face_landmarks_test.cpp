@@ -54,7 +54,7 @@ class KnownFace : public testing::Test {
   }
 
   /// Where those are in a view's drawing.
-  static LandmarkFinder projections(const View& view) {
+  static LandmarkFinder projections(const MeshView& view) {
     return [view](const GreyImage& image) {
       FoundFace face;
       face.confidence = 0.5;
@@ -85,7 +85,7 @@ class KnownFace : public testing::Test {
 
 TEST_F(KnownFace, IsCarriedBackToAPixel) {
   const MeshPainter painter(head_.mesh);
-  View view;
+  MeshView view;
   view.pixels = 100;
   view.side = 2.4;
   for (const double turn : {-0.2, 0.0, 0.25}) {
@@ -104,7 +104,7 @@ TEST_F(KnownFace, IsCarriedBackToAPixel) {
 
 TEST_F(KnownFace, IsCarriedBackToWantedTrianglesOnly) {
   const MeshPainter painter(head_.mesh);
-  View view;
+  MeshView view;
   view.pixels = 100;
   view.side = 2.4;
   const auto upper = [&](int t) {
@@ -118,7 +118,7 @@ TEST_F(KnownFace, IsCarriedBackToWantedTrianglesOnly) {
 
 TEST_F(KnownFace, HasItsOwnAxes) {
   const MeshPainter painter(head_.mesh);
-  View view;
+  MeshView view;
   view.pixels = 100;
   view.side = 2.4;
   const auto front =
@@ -133,7 +133,7 @@ TEST_F(KnownFace, HasItsOwnAxes) {
 
 TEST_F(KnownFace, OnTheInsideOfAMaskIsNone) {
   const MeshPainter painter(head_.mesh);
-  View view;
+  MeshView view;
   view.pixels = 100;
   view.side = 2.4;
   auto seen = *seen_face(painter, view, projections(view), [](int) { return true; });
@@ -174,6 +174,15 @@ TEST_F(KnownFace, LosesLandmarksOnWhichViewsDisagree) {
     EXPECT_EQ(one[i].vertex, found.found[i].vertex);
     EXPECT_EQ(one[i].place, found.found[i].place);
   }
+}
+
+TEST_F(KnownFace, WithoutCornersOfItsEyesOnTheSkinIsNotFound) {
+  const LandmarkFinder off = [all = pixels_of_all()](const GreyImage& image) {
+    std::optional<FoundFace> face = all(image);
+    for (const int corner : {36, 39, 42, 45}) face->landmarks.row(corner).setZero();
+    return face;
+  };
+  EXPECT_THROW(find_landmarks(head_, off, {.pixels = 96}), MismatchError);
 }
 
 TEST_F(KnownFace, HasMarkersThatLieAlikeBesideItsLandmarks) {

@@ -15,8 +15,8 @@ namespace {
 using Eigen::Vector3d;
 
 /// A pixel for each unit; the middle of pixel x, y is at x + 0.5, -y - 0.5.
-View of_pixels(int pixels) {
-  View view;
+MeshView of_pixels(int pixels) {
+  MeshView view;
   view.pixels = pixels;
   view.side = pixels;
   view.centre = Vector3d(pixels / 2.0, -pixels / 2.0, 0);
@@ -63,7 +63,7 @@ TEST(MeshDrawing, ShowsATriangleAtThePixelsWhoseMiddleItHolds) {
 }
 
 TEST(MeshDrawing, LooksAlongTheAxesOfItsView) {
-  View view = of_pixels(8);
+  MeshView view = of_pixels(8);
   // What is up in the mesh leads to the right, its right towards the viewer.
   view.axes << 0, 1, 0, 0, 0, 1, 1, 0, 0;
   view.centre = Vector3d(5, 4, 4);
@@ -88,8 +88,8 @@ TEST(MeshDrawing, ShowsTheNearestTriangleInAnyOrder) {
   }
 }
 
-View around_a_sphere(int pixels) {
-  View view;
+MeshView around_a_sphere(int pixels) {
+  MeshView view;
   view.pixels = pixels;
   view.side = 2.3;
   view.axes = Eigen::AngleAxisd(0.4, Vector3d(1, 2, 3).normalized()).toRotationMatrix();
@@ -109,7 +109,7 @@ TEST(MeshDrawing, OfTrianglesInAnotherOrderHasTheSameBytes) {
 
 TEST(MeshDrawing, LeavesNoGapBetweenNeighbours) {
   const test::Shape grid = test::grid(23, 17);
-  View view;
+  MeshView view;
   view.pixels = 50;
   view.centre = Vector3d(11, 8, 0);
   view.axes = Eigen::AngleAxisd(0.3, Vector3d::UnitZ()).toRotationMatrix();
@@ -121,7 +121,7 @@ TEST(MeshDrawing, LeavesNoGapBetweenNeighbours) {
 
 TEST(MeshDrawing, IsBrightestWhereTheSurfaceFacesTheLight) {
   const MeshPainter painter(test::mesh_of(test::sphere(5)));
-  View view = around_a_sphere(101);
+  MeshView view = around_a_sphere(101);
   view.light = Vector3d(0.6, 0, 0.8);
   const MeshDrawing drawing = painter.draw(view);
   const auto brightest = std::ranges::max_element(drawing.image.pixels);
@@ -157,7 +157,7 @@ TEST(MeshDrawing, IsDarkWhereAnOpenMeshShowsItsInside) {
     }
   }
   half.triangles = front.topRows(count);
-  View view;
+  MeshView view;
   view.pixels = 21;
   view.side = 2.3;
   const MeshPainter painter(test::mesh_of(half));
@@ -169,7 +169,7 @@ TEST(MeshDrawing, IsDarkWhereAnOpenMeshShowsItsInside) {
 
 TEST(MeshDrawing, NeedsAViewWithASize) {
   const MeshPainter painter(test::mesh_of(test::sphere(1)));
-  View view;
+  MeshView view;
   view.side = 0;
   EXPECT_THROW(painter.draw(view), std::invalid_argument);
   view.side = 1;

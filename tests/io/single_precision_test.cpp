@@ -55,6 +55,24 @@ TEST(SinglePrecision, RefusesWhatItCannotHoldAndNamesFrameAndVertex) {
               HasSubstr("take/frame_0001.stl: vertex 7 is at 1e+39"));
 }
 
+TEST(SinglePrecision, ThatIsAskedForIsRefusedWhereItWouldRoundMotion) {
+  const test::Shape shape = test::grid(4, 4);
+  const Positions far_away = shape.positions.rowwise() + Eigen::RowVector3d(4.5e6, 5e5, 100);
+  const MeshSequence take(Connectivity::from_triangles(16, shape.triangles),
+                          Frames(far_away.reshaped<Eigen::RowMajor>().transpose()));
+  for (const char* name : {"take.npy", "take.npz", "take.h5"}) {
+    const test::TemporaryFolder folder;
+    EXPECT_THAT(test::message_of<MismatchError>(
+                    [&] { write_sequence(take, folder / name, {.single_precision = true}); }),
+                AllOf(HasSubstr("option 'single' would round motion that one sees"),
+                      HasSubstr("1.5e+06 times its size from the origin; leave the option out")))
+        << name;
+    EXPECT_TRUE(folder.names().empty()) << name;
+    write_sequence(take, folder / name);
+    EXPECT_EQ(read_sequence(folder / name).sequence.positions(), take.positions()) << name;
+  }
+}
+
 TEST(SinglePrecision, OfOneMeshIsRefusedWhereNobodyAskedForMore) {
   const test::TemporaryFolder folder;
   const MeshSequence sequence = leaping_grid();

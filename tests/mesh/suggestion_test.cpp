@@ -10,6 +10,11 @@ TEST(NearestWord, IsTheOneWithTheFewestEdits) {
   EXPECT_EQ(nearest_word("--radios", {"--ratio", "--radius"}), "--radius");
 }
 
+TEST(NearestWord, MayBeInOtherLetters) {
+  EXPECT_EQ(nearest_word("JAWOPEN", {"jawLeft", "jawOpen"}), "jawOpen");
+  EXPECT_EQ(nearest_word("--K", {"-o", "-k"}), "-k");
+}
+
 TEST(NearestWord, IsEmptyWhereNothingIsNear) {
   EXPECT_EQ(nearest_word("banana", {"align", "decompose", "info"}), "");
 }

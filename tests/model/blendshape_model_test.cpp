@@ -42,7 +42,7 @@ TEST(BlendshapeModel, PosesAsNeutralPlusWeightedDisplacements) {
 }
 
 TEST(BlendshapeModel, IsMadeOfTheFacesThatShowItsExpressions) {
-  const TriMesh rest = test::octahedron();
+  const TriMesh rest{neutral(), *octahedron_connectivity()};
   TriMesh smile = rest, frown = rest;
   smile.positions = model().pose(Eigen::Vector2d(1, 0));
   frown.positions = model().pose(Eigen::Vector2d(0, 1));

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/option_ranges.h"
+#include "tests/shapes.h"
 #include "tests/temporary_folder.h"
 #include "tests/vtk/vtp_fixture.h"
 #include "toolkit/drawing/sheet_layout.h"
@@ -92,10 +93,37 @@ TEST(FilmStrip, NumbersTheRegionsThatAreSeen) {
   EXPECT_TRUE(row.tiles[0].crisp);
   ASSERT_EQ(row.tiles[0].labels.size(), 2U);
   EXPECT_EQ(row.tiles[0].labels[1].text, "1");
-  EXPECT_EQ(row.tiles[0].labels[1].position, Eigen::RowVector3d(1, 1, 0));
   EXPECT_TRUE(row.tiles[1].labels.empty());
   const TileRow back = film_strip({fields}, {.colors = {"region"}, .viewpoint = {180, 0}}).rows[0];
   EXPECT_TRUE(back.tiles[0].labels.empty());
+}
+
+TEST(FilmStrip, NumbersRegionsInTheirMiddleAndNoneThatAreHidden) {
+  // Three sheets of 9 x 9 vertices, one behind the other: the nearest covers the left half.
+  const test::Shape sheet = test::grid(9, 9);
+  Positions rest(3 * 81, 3);
+  Triangles triangles(3 * sheet.triangles.rows(), 3);
+  for (int i = 0; i < 3; ++i) {
+    rest.middleRows(81 * i, 81) = sheet.positions.rowwise() + Eigen::RowVector3d(0, 0, -i);
+    triangles.middleRows(i * sheet.triangles.rows(), sheet.triangles.rows()) =
+        sheet.triangles.array() + 81 * i;
+  }
+  rest.topRows(81).col(0) /= 2;
+  Eigen::VectorXd regions(3 * 81);
+  regions << Eigen::VectorXd::Constant(81, 4), Eigen::VectorXd::Constant(81, 7),
+      Eigen::VectorXd::Constant(81, 9);
+  const Frames frames = rest.reshaped<Eigen::RowMajor>().transpose();
+  const FieldSequence fields(
+      std::make_shared<MeshSequence>(Connectivity::from_triangles(3 * 81, triangles), frames),
+      {{"region", Field::Location::vertices, regions, true}});
+  const TileRow row = film_strip({fields}, {.colors = {"region"}, .viewpoint = {0, 0}}).rows[0];
+  const std::vector<TileLabel>& labels = row.tiles[0].labels;
+  ASSERT_EQ(labels.size(), 2U);
+  EXPECT_EQ(labels[0].text, "4");
+  EXPECT_NEAR(labels[0].position.x(), 2, 0.1);
+  EXPECT_EQ(labels[1].text, "7");
+  EXPECT_NEAR(labels[1].position.x(), 6, 0.1);
+  EXPECT_EQ(labels[1].position.z(), -1);
 }
 
 TEST(FilmStrip, TurnsATurntableOnceAround) {

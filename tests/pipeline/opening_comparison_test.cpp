@@ -56,6 +56,19 @@ TEST(OpeningsAtRest, AreThoseOfTheRestPoses) {
   EXPECT_NEAR(at_rest[0].target, 0.9 / 24, 1e-12);
 }
 
+TEST(LoneOpenings, AreThoseThatOneFaceHas) {
+  const TriMesh cut = test::sheet(true, 0.1), whole = test::sheet(false, 0.1);
+  EXPECT_TRUE(lone_openings(cut, cut, mouths()).empty());
+  EXPECT_TRUE(lone_openings(whole, whole, mouths()).empty());
+  const auto on_source = lone_openings(cut, whole, mouths());
+  ASSERT_EQ(on_source.size(), 1U);
+  EXPECT_EQ(on_source[0].name, "mouth");
+  EXPECT_TRUE(on_source[0].is_sources);
+  const auto on_target = lone_openings(whole, cut, mouths());
+  ASSERT_EQ(on_target.size(), 1U);
+  EXPECT_FALSE(on_target[0].is_sources);
+}
+
 TEST(OpeningsAtRest, DifferWhereOneMouthIsOpen) {
   EXPECT_TRUE((OpeningAtRest{"mouth", 0, 0.3}).differs());
   EXPECT_TRUE((OpeningAtRest{"mouth", 0.3, 0}).differs());

@@ -99,6 +99,21 @@ TEST(Regions, HoldTheShareOfMotionEnergyOnTheirVertices) {
   EXPECT_DOUBLE_EQ(find_regions(components, disc_of(components, 1)).energy_share, 1);
 }
 
+TEST(Regions, HoldTheEnergyOfWhatOverlappingComponentsGiveTogether) {
+  Components components = lifted({at(2, 2), at(4, 2), at(8, 2)}, {2, -1, 1});
+  components.weights = Eigen::MatrixXd::Random(7, 3);
+  components.displacements += 0.3 * Frames::Random(3, components.displacements.cols());
+  const Frames motion = components.weights * components.displacements;
+  const Regions regions = find_regions(components, disc_of(components, 1.5));
+  double inside = 0;
+  for (int v = 0; v < components.vertices(); ++v) {
+    const double energy = motion.middleCols(3 * v, 3).squaredNorm();
+    EXPECT_NEAR(regions.vertex_energy[v], energy / motion.squaredNorm(), 1e-12);
+    if (regions.inside[v]) inside += energy;
+  }
+  EXPECT_NEAR(regions.energy_share, inside / motion.squaredNorm(), 1e-12);
+}
+
 TEST(Regions, UnionCountsSharedVerticesOnce) {
   const Components components = lifted({at(2, 2), at(3, 2)}, {2, 1});
   const Regions regions = find_regions(components, disc_of(components, 3));

@@ -1,6 +1,7 @@
 #include "toolkit/report/viewer_data.h"
 
 #include <cmath>
+#include <random>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -10,6 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/shapes.h"
+#include "toolkit/report/coded_poses.h"
 
 namespace mimetra {
 namespace {
@@ -33,6 +35,16 @@ MeshSequence swinging(int frames, double seconds, int side = 12) {
   }
   const auto n = static_cast<int>(rest.rows());
   return MeshSequence(Connectivity::from_triangles(n, shape.triangles), positions, times, rest);
+}
+
+/// The same with noise, so that no frame follows from others.
+MeshSequence restless(int frames, double seconds, int side = 12) {
+  const MeshSequence smooth = swinging(frames, seconds, side);
+  Frames positions = smooth.positions();
+  std::mt19937 random(1);
+  std::normal_distribution<double> noise(0, 0.1);
+  for (double& number : positions.reshaped()) number += noise(random);
+  return smooth.with_frames(std::move(positions));
 }
 
 ViewerScene scene_of(const MeshSequence& sequence) {
@@ -69,32 +81,36 @@ std::vector<int> indices(const json& text, std::size_t count) {
   return result;
 }
 
-/// Poses of a mesh in steps, the one at rest first, as a browser unpacks them.
-Eigen::MatrixXd poses_in(const json& mesh, int poses, int width) {
-  const auto bytes =
-      inflated(mesh.at("poses").get<std::string>(),
-               2 * static_cast<std::size_t>(poses) * static_cast<std::size_t>(width));
-  Eigen::MatrixXd result(poses, width);
-  for (int f = 0; f < poses; ++f) {
+/// Rows of 16-bit numbers, or of differences from the row before, as a browser unpacks them.
+Eigen::MatrixXd rows_in(const json& text, int rows, int width, bool differs) {
+  const auto bytes = inflated(text.get<std::string>(),
+                              2 * static_cast<std::size_t>(rows) * static_cast<std::size_t>(width));
+  Eigen::MatrixXd result(rows, width);
+  for (int f = 0; f < rows; ++f) {
     const unsigned char* row = bytes.data() + 2 * f * width;
     for (int i = 0; i < width; ++i) {
-      const auto difference = static_cast<std::int16_t>(row[i] | (row[width + i] << 8));
-      result(f, i) = difference + (f > 0 ? result(f - 1, i) : 0);
+      const auto number = static_cast<std::int16_t>(row[i] | (row[width + i] << 8));
+      result(f, i) = number + (differs && f > 0 ? result(f - 1, i) : 0);
     }
   }
   return result;
 }
 
 TEST(ViewerData, HoldsEveryPositionWithinHalfAStep) {
-  const MeshSequence sequence = swinging(9, 0.3);
+  const MeshSequence sequence = restless(9, 0.3);
   const PackedScene scene = packed(scene_of(sequence), kPlenty);
   ASSERT_EQ(scene.frames, 9);
   const json mesh = json::parse(scene.json).at("meshes").at(1);
   const double step = mesh.at("step").get<double>();
-  // The wave reaches 1 beyond the grid of side 11, whose centre is half of that away.
-  EXPECT_LE(step, 5.5 / kMostSteps * (1 + 1e-9));
-  const Eigen::MatrixXd poses = poses_in(mesh, 10, 3 * sequence.vertices());
   const Eigen::RowVector3d center(105.5, -44.5, 7);
+  // From the centre of the rest pose to the farthest coordinate of all.
+  double reach = 5.5;
+  for (int f = 0; f < 9; ++f) {
+    const Positions from_center = sequence.frame(f).rowwise() - center;
+    reach = std::max(reach, from_center.cwiseAbs().maxCoeff());
+  }
+  EXPECT_NEAR(step, reach / kMostSteps, 1e-9);
+  const Eigen::MatrixXd poses = rows_in(mesh.at("poses"), 10, 3 * sequence.vertices(), true);
   for (int f = 0; f < 10; ++f) {
     const Positions pose = f == 0 ? sequence.rest() : Positions(sequence.frame(f - 1));
     for (int i = 0; i < pose.size(); ++i) {
@@ -102,6 +118,46 @@ TEST(ViewerData, HoldsEveryPositionWithinHalfAStep) {
       ASSERT_NEAR(shown, pose.data()[i], (0.5 + 1e-6) * step) << "pose " << f << ", " << i;
     }
   }
+}
+
+TEST(ViewerData, HoldsMixturesOfFewPosesAndWhereTheyAreOff) {
+  const MeshSequence smooth = swinging(40, 2);
+  Frames frames = smooth.positions();
+  frames(4, 7) += 2;  // follow from nothing
+  frames(31, 100) -= 3;
+  const MeshSequence sequence = smooth.with_frames(frames);
+  const json mesh = json::parse(packed(scene_of(sequence), kPlenty).json).at("meshes").at(1);
+  const double step = mesh.at("step").get<double>();
+  const int width = 3 * sequence.vertices(), size = mesh.at("basisSize").get<int>();
+  const Eigen::MatrixXd basis = rows_in(mesh.at("basis"), size, width, false),
+                        weights = rows_in(mesh.at("weights"), 40, size, true);
+  Eigen::MatrixXd shown = mesh.at("basisStep").get<double>() * weights * basis;
+  shown.rowwise() +=
+      rows_in(mesh.at("rest"), 1, width, false).row(0) / mesh.at("stepsOfRest").get<double>();
+  const Eigen::RowVectorXd center = Eigen::RowVector3d(105.5, -44.5, 7).replicate(1, width / 3);
+  Eigen::MatrixXd missed = ((sequence.positions().rowwise() - center) / step) - shown;
+
+  std::vector<int> places;
+  for (int f = 0; f < 40; ++f) {
+    for (int i = 0; i < width; ++i) {
+      if (std::abs(missed(f, i)) > 1) places.push_back(f * width + i);
+    }
+  }
+  ASSERT_FALSE(places.empty());
+  EXPECT_EQ(indices(mesh.at("correctedPlaces"), places.size()), places);
+  const std::vector<int> corrections = indices(mesh.at("corrections"), places.size());
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    missed(places[i] / width, places[i] % width) -= corrections[i];
+  }
+  EXPECT_LE(missed.cwiseAbs().maxCoeff(), 1 + 1e-9);
+}
+
+TEST(ViewerData, HasAllFramesOfALongTakeThatAreMixtures) {
+  const MeshSequence sequence = swinging(4000, 160);
+  const PackedScene scene = packed(scene_of(sequence), 200'000);
+  EXPECT_EQ(scene.frames, 4000);
+  EXPECT_LE(scene.json.size(), 200'000U);
+  EXPECT_EQ(json::parse(scene.json).at("times").size(), 4000U);
 }
 
 TEST(ViewerData, HoldsTrianglesAndRegionsAsTheyAre) {
@@ -167,7 +223,7 @@ TEST(ViewerData, ThinsEvenlyAndKeepsBothEnds) {
 }
 
 TEST(ViewerData, ThinsFramesUntilTheyFit) {
-  const MeshSequence sequence = swinging(100, 4, 30);
+  const MeshSequence sequence = restless(100, 4, 30);
   const std::size_t all = packed(scene_of(sequence), kPlenty).json.size();
   const PackedScene half = packed(scene_of(sequence), all / 2);
   EXPECT_LE(half.json.size(), all / 2);
@@ -180,8 +236,9 @@ TEST(ViewerData, ThinsFramesUntilTheyFit) {
   EXPECT_DOUBLE_EQ(times.back().get<double>(), sequence.times()[99]);
 }
 
-TEST(ViewerData, HasNoMoreThanThirtyFramesASecond) {
-  EXPECT_EQ(packed(scene_of(swinging(120, 2)), kPlenty).frames, 61);
+TEST(ViewerData, HasNoMoreThanThirtyWholeFramesASecond) {
+  EXPECT_EQ(packed(scene_of(swinging(120, 2)), kPlenty).frames, 120);
+  EXPECT_EQ(packed(scene_of(restless(120, 2)), kPlenty).frames, 61);
 }
 
 TEST(ViewerData, IsEmptyWhereNotEvenTwoFramesFit) {

@@ -77,6 +77,10 @@ std::string help_page(const Command& command, HelpLength length) {
                   length == HelpLength::all ? input.help : own->help);
   }
   for (const std::string& heading : headings_of(command)) text += section(command, heading, length);
+  if (length == HelpLength::all && !operation.measures.empty()) {
+    text += "\nPrints:\n";
+    for (const Measure& measure : operation.measures) text += entry(measure.name, measure.meaning);
+  }
   text += "\nExamples:\n";
   for (const std::string& example : operation.examples) text += "  mimetra " + example + '\n';
   if (length == HelpLength::brief) {

@@ -56,6 +56,10 @@ std::string command_section(const Command& command) {
       text += ".TP\n.B " + roff(forms_of(option)) + "\n" + roff(option.help) + "\n";
     }
   }
+  if (!command.operation->measures.empty()) text += ".PP\nPrints:\n";
+  for (const Measure& measure : command.operation->measures) {
+    text += ".TP\n.I " + roff(measure.name) + "\n" + roff(measure.meaning) + "\n";
+  }
   for (const std::string& example : command.operation->examples) {
     text += ".PP\n.nf\n  mimetra " + roff(example) + "\n.fi\n";
   }
@@ -155,6 +159,12 @@ std::string reference_page(const std::vector<Command>& commands) {
     }
     for (const std::string& heading : headings_of(command)) {
       if (heading != CommandOption::kCommon) text += table_of(command.options, heading);
+    }
+    if (!command.operation->measures.empty()) {
+      text += "\n| [prints](glossary.md) | |\n| --- | --- |\n";
+      for (const Measure& measure : command.operation->measures) {
+        text += "| " + cell(measure.name) + " | " + cell(measure.meaning) + " |\n";
+      }
     }
     text += "\n```\n";
     for (const std::string& example : command.operation->examples) {

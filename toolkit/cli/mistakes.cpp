@@ -38,7 +38,12 @@ std::string option_of(const std::string& argument, const std::vector<std::string
 
 /// The option that is meant: the nearest, or one that begins as `name` does.
 std::string meant(const std::string& name, const std::vector<std::string>& known) {
-  if (name.size() == 2) return "";  // any letter is as near as another
+  if (name.size() == 2) {
+    // Any letter is as near as another, but for the same one.
+    const std::string small{'-',
+                            static_cast<char>(std::tolower(static_cast<unsigned char>(name[1])))};
+    return std::ranges::find(known, small) == known.end() ? "" : small;
+  }
   const std::string full = name[1] == '-' ? name : '-' + name;
   const std::string nearest = nearest_word(full, known);
   if (!nearest.empty()) return nearest;

@@ -106,7 +106,7 @@ class FaceSearch {
     if (!first) fail("no face was found in drawings of it along all of its axes");
     skin_ = skin_part(*first, triangles_, parts_);
     const FacePlace place = nearer_place(*face_place(*first));
-    const std::vector<View> views = views_of(place, options_.pixels);
+    const std::vector<MeshView> views = views_of(place, options_.pixels);
     const std::vector<SeenFace> seen = faces_in(views, part_of(options_.progress, kSearchShare, 1));
     FaceLandmarks found;
     found.axes = place.axes;
@@ -130,7 +130,8 @@ class FaceSearch {
 
   bool is_skin(int t) const { return parts_.of_vertex[triangles_(t, 0)] == skin_; }
 
-  std::vector<SeenFace> faces_in(const std::vector<View>& views, const Progress& progress) const {
+  std::vector<SeenFace> faces_in(const std::vector<MeshView>& views,
+                                 const Progress& progress) const {
     std::vector<std::optional<SeenFace>> seen(views.size());
     const auto look = [&](int i) {
       seen[i] = seen_face(painter_, views[i], finder_, [this](int t) { return is_skin(t); });
@@ -145,7 +146,7 @@ class FaceSearch {
 
   /// From the front of the face instead of along an axis of the mesh.
   FacePlace nearer_place(const FacePlace& place) const {
-    std::vector<View> views = views_of(place, options_.pixels);
+    std::vector<MeshView> views = views_of(place, options_.pixels);
     views.resize(kFaceLights);
     std::optional<FacePlace> best;
     double confidence = 0;
@@ -167,10 +168,14 @@ class FaceSearch {
   }
 
   void agree(const std::vector<SeenFace>& seen, FaceLandmarks& found) const {
-    const auto corner = [&](int number) {
-      return agreement(points_of(seen, number), std::numeric_limits<double>::infinity()).centre;
+    const std::vector<Vector3d> left = points_of(seen, kLeftCorner),
+                                right = points_of(seen, kRightCorner);
+    // Not on the skin, where eyes are set in as parts of their own: nothing tells the face's size.
+    if (left.empty() || right.empty()) return;
+    const auto corner = [](const std::vector<Vector3d>& points) {
+      return agreement(points, std::numeric_limits<double>::infinity()).centre;
     };
-    found.size = (corner(kLeftCorner) - corner(kRightCorner)).norm();
+    found.size = (corner(left) - corner(right)).norm();
     const double most = options_.max_spread * found.size;
     for (int number = 0; number < kFaceLandmarks; ++number) {
       if (!is_sought(number)) continue;
@@ -183,7 +188,7 @@ class FaceSearch {
   }
 
   /// Corners of skin that is seen from outside.
-  std::set<VertexIndex> seen_vertices(const std::vector<View>& views) const {
+  std::set<VertexIndex> seen_vertices(const std::vector<MeshView>& views) const {
     std::set<VertexIndex> vertices;
     for (std::size_t i = 0; i < views.size(); i += kFaceLights) {
       for (const SeenPlace& place : painter_.draw(views[i]).places) {
@@ -196,7 +201,7 @@ class FaceSearch {
   }
 
   /// Gives landmarks their vertices. Of two at one vertex the nearer stays.
-  void snap(const std::vector<View>& views, FaceLandmarks& found) const {
+  void snap(const std::vector<MeshView>& views, FaceLandmarks& found) const {
     std::map<VertexIndex, std::pair<double, int>> nearest;  // distance and number of its landmark
     const std::set<VertexIndex> vertices = seen_vertices(views);
     for (FaceLandmark& landmark : found.found) {

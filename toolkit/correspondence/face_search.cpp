@@ -60,14 +60,15 @@ std::vector<Matrix3d> axis_rotations() {
   return rotations;
 }
 
-std::vector<View> views_along_axes(const Positions& positions, int pixels) {
+std::vector<MeshView> views_along_axes(const Positions& positions, int pixels) {
   if (positions.rows() == 0) return {};
   const Eigen::RowVector3d low = positions.colwise().minCoeff(),
                            high = positions.colwise().maxCoeff();
-  std::vector<View> views;
+  std::vector<MeshView> views;
   for (const Matrix3d& axes : axis_rotations()) {
     const Vector3d size = axes.cwiseAbs() * (high - low).transpose();
-    View view{axes, (low + high).transpose() / 2, kMargin * std::max(size[0], size[1]), pixels, 1};
+    MeshView view{axes, (low + high).transpose() / 2, kMargin * std::max(size[0], size[1]), pixels,
+                  1};
     for (const Vector3d& light : {kLights[0], kLights[1]}) {
       view.light = light;
       if (view.side > 0) views.push_back(view);
@@ -104,7 +105,7 @@ Vector3d middle_of(const SeenFace& seen, int first, int count) {
 
 }  // namespace
 
-std::optional<SeenFace> seen_face(const MeshPainter& painter, const View& view,
+std::optional<SeenFace> seen_face(const MeshPainter& painter, const MeshView& view,
                                   const LandmarkFinder& finder,
                                   const std::function<bool(int)>& wanted) {
   const MeshDrawing drawing = painter.draw(view);
@@ -149,7 +150,7 @@ std::optional<SeenFace> most_certain_face(const MeshPainter& painter, const Posi
                                           const Progress& progress) {
   for (const double share : kOfWholeMesh) {
     if (share > 1 && positions.rows() < kFewestOfBody) break;
-    const std::vector<View> views =
+    const std::vector<MeshView> views =
         views_along_axes(positions, static_cast<int>(std::lround(share * pixels)));
     std::vector<std::optional<SeenFace>> seen(views.size());
     const auto look = [&](int i) {
@@ -166,8 +167,8 @@ std::optional<SeenFace> most_certain_face(const MeshPainter& painter, const Posi
   return {};
 }
 
-std::vector<View> views_of(const FacePlace& face, int pixels) {
-  std::vector<View> views;
+std::vector<MeshView> views_of(const FacePlace& face, int pixels) {
+  std::vector<MeshView> views;
   for (const auto& [yaw, pitch] : kTurns) {
     const Matrix3d turn = (Eigen::AngleAxisd(yaw * kDegree, Vector3d::UnitY()) *
                            Eigen::AngleAxisd(pitch * kDegree, Vector3d::UnitX()))

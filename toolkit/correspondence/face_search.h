@@ -34,7 +34,7 @@ struct FacePlace {
 
 /// Draws, finds, and carries each landmark back to the nearest pixel that shows a wanted triangle's
 /// outside; none where there is no face.
-std::optional<SeenFace> seen_face(const MeshPainter& painter, const View& view,
+std::optional<SeenFace> seen_face(const MeshPainter& painter, const MeshView& view,
                                   const LandmarkFinder& finder,
                                   const std::function<bool(int)>& wanted);
 
@@ -49,6 +49,6 @@ std::optional<SeenFace> most_certain_face(const MeshPainter& painter, const Posi
 
 /// From several sides, the front first, each under all lights; large enough for the finder.
 constexpr int kFaceLights = 3;
-std::vector<View> views_of(const FacePlace& face, int pixels);
+std::vector<MeshView> views_of(const FacePlace& face, int pixels);
 
 }  // namespace mimetra

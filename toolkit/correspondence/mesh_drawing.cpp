@@ -172,7 +172,7 @@ MeshPainter::MeshPainter(const TriMesh& mesh)
   for (Eigen::Index v = 0; v < normals_.rows(); ++v) normals_.row(v).normalize();
 }
 
-MeshDrawing MeshPainter::draw(const View& view) const {
+MeshDrawing MeshPainter::draw(const MeshView& view) const {
   if (!(view.side > 0) || view.pixels < 1 || view.pixels > kMostPixels) {
     throw std::invalid_argument("a view of " + std::to_string(view.pixels) +
                                 " pixels, expected 1 to " + std::to_string(kMostPixels) +
@@ -233,7 +233,7 @@ Vector3d MeshPainter::position(const SeenPlace& place) const {
   return position;
 }
 
-bool MeshPainter::shows_outside(int triangle, const View& view) const {
+bool MeshPainter::shows_outside(int triangle, const MeshView& view) const {
   const auto corner = [&](int c) -> Vector3d { return positions_.row(triangles_(triangle, c)); };
   const Vector3d normal = (corner(1) - corner(0)).cross(corner(2) - corner(0));
   return (normal.dot(view.axes.row(2)) > 0) != inside_out_;

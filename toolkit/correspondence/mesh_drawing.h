@@ -8,7 +8,7 @@
 namespace mimetra {
 
 /// From where and in which light a mesh is looked at, without perspective.
-struct View {
+struct MeshView {
   /// Rows: the drawing's right, its up, and towards the viewer; a rotation, in the mesh's axes.
   Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();
   /// The point in the drawing's middle.
@@ -47,12 +47,12 @@ class MeshPainter {
 
   /// Throws std::invalid_argument for a view without size, more than 4096 pixels, or an even number
   /// of samples.
-  MeshDrawing draw(const View& view) const;
+  MeshDrawing draw(const MeshView& view) const;
 
   /// The point of the mesh at a place that is seen.
   Eigen::Vector3d position(const SeenPlace& place) const;
   /// Whether it is a triangle's outside that is seen.
-  bool shows_outside(int triangle, const View& view) const;
+  bool shows_outside(int triangle, const MeshView& view) const;
 
  private:
   Positions positions_;

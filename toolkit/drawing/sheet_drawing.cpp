@@ -69,29 +69,33 @@ struct Cells {
   std::vector<Eigen::RowVector3d> added_positions, added_normals;
 };
 
-/// Splits triangles whose corners differ from their middle to those of their edges.
+/// Splits triangles whose corners differ from their middle to their corners and to those of their
+/// edges that change colour: the others stay whole, as the triangle beyond them has them.
 Cells crisp_cells(const Tile& tile, const Triangles& triangles, Positions normals) {
   Cells cells{tile.positions, std::move(normals), {}, {}, {}, {}};
   const auto color = [&tile](int v) { return tile.colors[static_cast<std::size_t>(v)]; };
+  const auto add = [&cells](std::vector<vtkIdType> corners, const Color& of_cell) {
+    cells.corners.push_back(std::move(corners));
+    cells.colors.push_back(of_cell);
+  };
   for (const auto& t : triangles.rowwise()) {
     if (color(t[0]) == color(t[1]) && color(t[1]) == color(t[2])) {
-      cells.corners.push_back({t[0], t[1], t[2]});
-      cells.colors.push_back(color(t[0]));
+      add({t[0], t[1], t[2]}, color(t[0]));
       continue;
     }
-    Eigen::RowVector3d middle = Eigen::RowVector3d::Zero(), normal = middle;
-    vtkIdType edges[3];
+    const vtkIdType middle = cells.add_point(
+        (cells.positions.row(t[0]) + cells.positions.row(t[1]) + cells.positions.row(t[2])) / 3,
+        cells.normals.row(t[0]) + cells.normals.row(t[1]) + cells.normals.row(t[2]));
     for (int c = 0; c < 3; ++c) {
       const int a = t[c], b = t[(c + 1) % 3];
-      middle += cells.positions.row(a) / 3;
-      normal += cells.normals.row(a);
-      edges[c] = cells.add_point((cells.positions.row(a) + cells.positions.row(b)) / 2,
-                                 cells.normals.row(a) + cells.normals.row(b));
-    }
-    const vtkIdType center = cells.add_point(middle, normal);
-    for (int c = 0; c < 3; ++c) {
-      cells.corners.push_back({t[c], edges[c], center, edges[(c + 2) % 3]});
-      cells.colors.push_back(color(t[c]));
+      if (color(a) == color(b)) {
+        add({a, b, middle}, color(a));
+        continue;
+      }
+      const vtkIdType edge = cells.add_point((cells.positions.row(a) + cells.positions.row(b)) / 2,
+                                             cells.normals.row(a) + cells.normals.row(b));
+      add({a, edge, middle}, color(a));
+      add({edge, b, middle}, color(b));
     }
   }
   cells.finish();

@@ -197,21 +197,6 @@ std::string fitting_pattern(const fs::path& pattern, const std::vector<fs::path>
   return (pattern.parent_path() / (before + '*' + after)).string();
 }
 
-/// What to say of a pattern that matches nothing: a `%04d` for files that are not padded, or the
-/// other way round, is named.
-std::string no_match(const std::string& pattern) {
-  const std::string nothing = "matches no OBJ, PLY, OFF or STL file";
-  const std::vector<fs::path> near = files_of_any_digits(pattern);
-  if (near.empty()) {
-    const bool is_both =
-        !printf_field(pattern) && number_field(fs::path(pattern).filename().string());
-    return nothing +
-           (is_both ? "; beside '*' or '?' write '*' in the place of the number, too" : "");
-  }
-  return nothing + ", but there is " + near.front().filename().string() + ": write '" +
-         fitting_pattern(pattern, near) + "'";
-}
-
 /// Without a slash at its end, so that the folder that it stands in is its parent.
 fs::path normal_absolute(const fs::path& path) {
   const fs::path normal = fs::absolute(path).lexically_normal();
@@ -307,8 +292,21 @@ std::string note_on_digits(const std::string& pattern) {
 
 FrameSeries frames_of_pattern(const std::string& pattern) {
   std::vector<fs::path> files = files_of_pattern(pattern);
+  const std::vector<fs::path> near = files_of_any_digits(pattern);
+  if (files.empty() && !near.empty()) {
+    const std::string fitting = fitting_pattern(pattern, near);
+    FrameSeries found = frames_of_pattern(fitting);
+    found.notes.push_back(pattern + ": matches no file; '" + fitting + "' is taken for it, " +
+                          near.front().filename().string() + " to " +
+                          near.back().filename().string());
+    return found;
+  }
+  const bool is_both =
+      !printf_field(pattern) && number_field(fs::path(pattern).filename().string());
   const std::string nothing =
-      files.empty() ? no_match(pattern) : "matches no OBJ, PLY, OFF or STL file";
+      std::string("matches no OBJ, PLY, OFF or STL file") +
+      (files.empty() && is_both ? "; beside '*' or '?' write '*' in the place of the number, too"
+                                : "");
   FrameSeries found = series_of_pattern(mesh_files(std::move(files), pattern, nothing), pattern);
   check_one_format(found.frames, pattern, "matches");
   if (std::string note = note_on_digits(pattern); !note.empty()) {

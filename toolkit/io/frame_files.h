@@ -30,10 +30,11 @@ std::string printf_pattern(const std::filesystem::path& pattern);
 /// digits, and the pattern that takes all; "" where there are none.
 std::string note_on_digits(const std::string& pattern);
 
-/// The mesh files that a glob or printf pattern matches, in natural order. Throws IoError where
-/// there is none, they are of several formats, two have one number, nothing tells their order, or
-/// one is a link that leads nowhere. Rest poses and topologies of other sequences are no frames,
-/// unless the pattern asks for them by their suffix.
+/// The mesh files that a glob or printf pattern matches, in natural order; where a printf pattern
+/// matches none, those whose numbers have other digits, with a note. Throws IoError where there is
+/// none, they are of several formats, two have one number, nothing tells their order, or one is a
+/// link that leads nowhere. Rest poses and topologies of other sequences are no frames, unless the
+/// pattern asks for them by their suffix.
 FrameSeries frames_of_pattern(const std::string& pattern);
 
 /// The mesh files of a folder, hidden ones and those that belong to other sequences left out, in

@@ -31,6 +31,11 @@ void fail_missing(const std::string& path) {
   if (!asked.starts_with('.')) {
     std::erase_if(names, [](const std::string& name) { return name.starts_with('.'); });
   }
+  // Names of one kind of file are alike by their endings.
+  const std::string stem = named.stem().string();
+  std::erase_if(names, [&stem](const std::string& name) {
+    return nearest_word(stem, {fs::path(name).stem().string()}).empty();
+  });
   const std::string nearest = asked.size() < kTelling ? "" : nearest_word(asked, names);
   if (nearest.empty()) throw IoError(path, message);
   throw IoError(path,

@@ -212,7 +212,11 @@ class NpzSink : public FrameSink {
   }
 
   void write(int first, const Frames& poses) override {
-    if (positions_.positions.bytes == sizeof(float)) check_single_range(target_, first, poses);
+    if (positions_.positions.bytes == sizeof(float)) {
+      check_single_range(target_, first, poses);
+      check_single_precision(target_, PositionsView(poses.data(), poses.size() / 3, 3),
+                             extent(header_.rest), SinglePrecision::asked);
+    }
     const auto columns = static_cast<std::size_t>(poses.cols());
     positions_.positions.write(*positions_.file, columns * static_cast<std::size_t>(first),
                                {poses.data(), static_cast<std::size_t>(poses.size())});

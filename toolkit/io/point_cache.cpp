@@ -115,10 +115,11 @@ class PointCacheSink : public FrameSink {
   }
 
   void write(int first, const Frames& poses) override {
-    if (cache_.positions.bytes == sizeof(float)) check_single_range(target_, first, poses);
-    if (cache_.only_single_precision) {
-      check_single_precision(target_, PositionsView(poses.data(), poses.size() / 3, 3),
-                             extent(header_.rest));
+    if (cache_.positions.bytes == sizeof(float)) {
+      check_single_range(target_, first, poses);
+      check_single_precision(
+          target_, PositionsView(poses.data(), poses.size() / 3, 3), extent(header_.rest),
+          cache_.only_single_precision ? SinglePrecision::only : SinglePrecision::asked);
     }
     cache_.positions.write(*cache_.file, columns_ * static_cast<std::size_t>(first),
                            {poses.data(), static_cast<std::size_t>(poses.size())});

@@ -28,13 +28,17 @@ void check_single_range(const fs::path& target, int first, const Frames& poses) 
                       beyond_single(column / 3, farthest));
 }
 
-void check_single_precision(const fs::path& target, const PositionsView& poses, double extent) {
+void check_single_precision(const fs::path& target, const PositionsView& poses, double extent,
+                            SinglePrecision why) {
   if (!needs_double(poses, extent)) return;
-  throw MismatchError(target.string() + ": " + target.extension().string() +
-                      " holds single precision only, which would round motion that one sees: "
-                      "the mesh lies " +
-                      readable(poses.cwiseAbs().maxCoeff() / extent, 2) +
-                      " times its size from the origin; move it, or write .npy");
+  const bool is_asked = why == SinglePrecision::asked;
+  throw MismatchError(
+      target.string() + ": " +
+      (is_asked ? "option 'single'"
+                : target.extension().string() + " holds single precision only, which") +
+      " would round motion that one sees: the mesh lies " +
+      readable(poses.cwiseAbs().maxCoeff() / extent, 2) + " times its size from the origin; " +
+      (is_asked ? "leave the option out, or move it" : "move it, or write .npy"));
 }
 
 }  // namespace mimetra

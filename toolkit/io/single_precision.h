@@ -21,8 +21,10 @@ bool needs_double(const PositionsView& poses, double extent);
 /// Throws MismatchError that names frame and vertex where single precision would make a coordinate
 /// infinite. `poses` are the frames from `first` on.
 void check_single_range(const std::filesystem::path& target, int first, const Frames& poses);
-/// Throws MismatchError for these, of a `target` that holds single precision only.
+/// Whether a format knows nothing else, or was asked for it.
+enum class SinglePrecision { only, asked };
+/// Throws MismatchError where a `target` in single precision needs_double().
 void check_single_precision(const std::filesystem::path& target, const PositionsView& poses,
-                            double extent);
+                            double extent, SinglePrecision why = SinglePrecision::only);
 
 }  // namespace mimetra

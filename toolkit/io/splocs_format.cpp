@@ -227,7 +227,8 @@ class SplocsSink : public FrameSink {
       : target_(target),
         outputs_(options.overwrite, options.inputs, options.together),
         file_(outputs_.add(target, PendingOutput::Kind::file)),
-        columns_(3 * static_cast<std::size_t>(header.connectivity->vertices)) {
+        columns_(3 * static_cast<std::size_t>(header.connectivity->vertices)),
+        extent_(extent(header.rest)) {
     const bool single = options.single_precision;
     Hdf5Image image =
         image_of(header, single ? Hdf5Array::Type::float32 : Hdf5Array::Type::float64);
@@ -237,7 +238,11 @@ class SplocsSink : public FrameSink {
   }
 
   void write(int first, const Frames& poses) override {
-    if (verts_.bytes == sizeof(float)) check_single_range(target_, first, poses);
+    if (verts_.bytes == sizeof(float)) {
+      check_single_range(target_, first, poses);
+      check_single_precision(target_, PositionsView(poses.data(), poses.size() / 3, 3), extent_,
+                             SinglePrecision::asked);
+    }
     verts_.write(file_, columns_ * static_cast<std::size_t>(first),
                  {poses.data(), static_cast<std::size_t>(poses.size())});
   }
@@ -257,6 +262,7 @@ class SplocsSink : public FrameSink {
   OutputFile file_;
   StoredFloats verts_;
   std::size_t columns_;
+  double extent_;  ///< of the rest pose
 };
 
 std::unique_ptr<FrameSink> begin_splocs(const SequenceHeader& header, const fs::path& target,

@@ -1,11 +1,19 @@
 #include "toolkit/mesh/suggestion.h"
 
 #include <algorithm>
+#include <cctype>
 #include <numeric>
 
 namespace mimetra {
 
 namespace {
+
+std::string in_small_letters(std::string text) {
+  std::ranges::transform(text, text.begin(), [](unsigned char letter) {
+    return static_cast<char>(std::tolower(letter));
+  });
+  return text;
+}
 
 /// Levenshtein distance.
 std::size_t edit_distance(const std::string& a, const std::string& b) {
@@ -27,10 +35,11 @@ std::size_t edit_distance(const std::string& a, const std::string& b) {
 
 std::string nearest_word(const std::string& word, const std::vector<std::string>& known) {
   std::string nearest;
+  const std::string small = in_small_letters(word);
   // A third of the letters may be wrong, as in "decompse" or "--radios"; more is another word.
   std::size_t best = std::max<std::size_t>(2, word.size() / 3) + 1;
   for (const std::string& candidate : known) {
-    const std::size_t distance = edit_distance(word, candidate);
+    const std::size_t distance = edit_distance(small, in_small_letters(candidate));
     if (distance < best) {
       best = distance;
       nearest = candidate;

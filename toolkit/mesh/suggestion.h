@@ -5,8 +5,8 @@
 
 namespace mimetra {
 
-/// The known word nearest to `word` by edit distance, where it is near enough to be meant; empty
-/// otherwise. Ties go to the earlier word.
+/// The known word nearest to `word` by edit distance, capital or not, where it is near enough to be
+/// meant; empty otherwise. Ties go to the earlier word.
 std::string nearest_word(const std::string& word, const std::vector<std::string>& known);
 
 /// "; did you mean 'WORD'?" with that one, to end a message; empty where there is none.

@@ -9,6 +9,7 @@
 #include "toolkit/operations/bound_parameters.h"
 #include "toolkit/operations/formats.h"
 #include "toolkit/operations/json.h"
+#include "toolkit/operations/lost_expressions.h"
 #include "toolkit/operations/parameter_files.h"
 #include "toolkit/operations/toolkit_operations.h"
 #include "toolkit/pipeline/memory.h"
@@ -116,6 +117,7 @@ Outcome run_align(const Invocation& invocation) {
   outcome.summary = "largest rotation " + readable(degrees) + " degrees, largest translation " +
                     readable(shift) + '\n';
   const auto& given = std::get<FieldSequence>(input.data);
+  warn_of_lost_expressions(invocation, *given.frames, KeptInScenes::no);
   FieldSequence made = held_like(
       given, result.frames,
       {.threads = invocation.threads, .progress = part_of(invocation.progress, kFittingTo, 1)});

@@ -13,6 +13,7 @@
 #include "toolkit/operations/counted.h"
 #include "toolkit/operations/formats.h"
 #include "toolkit/operations/json.h"
+#include "toolkit/operations/lost_expressions.h"
 #include "toolkit/operations/times_text.h"
 #include "toolkit/operations/toolkit_operations.h"
 #include "toolkit/operations/weight_tables.h"
@@ -124,24 +125,6 @@ void check_weights(const Invocation& invocation, const FrameSource& frames) {
   check_live_link(invocation, "out", animation->model().expressions().names);
 }
 
-/// A model that nothing drives is one frame at rest where its expressions have no place; one mesh
-/// is what is asked for.
-void warn_of_lost_expressions(const Invocation& invocation, const FrameSource& frames) {
-  const auto* animation = dynamic_cast<const Animation*>(&frames);
-  const auto paths = invocation.wanted.find("out");
-  if (!animation || animation->model().expressions().size() == 0 || animation->frames() > 1 ||
-      !animation->weights().isZero(0) || paths == invocation.wanted.end() ||
-      paths->second.empty()) {
-    return;
-  }
-  const std::filesystem::path& path = paths->second.front();
-  const bool is_one_mesh = is_mesh_extension(path.extension().string());
-  if (is_one_mesh || is_scene_file(path) || is_weight_file(path.string())) return;
-  invocation.warn(path.string() + ": holds the neutral alone, not the " +
-                  counted(animation->model().expressions().size(), "expression") +
-                  " of the model; .glb and .usda hold them, and --weights moves them");
-}
-
 bool is_shared(const Invocation& invocation) {
   return invocation.ranks && invocation.ranks->count() > 1;
 }
@@ -169,7 +152,7 @@ Outcome run_convert(const Invocation& invocation) {
     made.fields = given.fields;
   }
   if (is_shared(invocation)) made.frames = read_by_all(invocation, made.frames);
-  warn_of_lost_expressions(invocation, *made.frames);
+  warn_of_lost_expressions(invocation, *made.frames, KeptInScenes::yes);
   Outcome outcome;
   Json report = Json{{"frames", made.frames->frames()},
                      {"vertices", made.frames->vertices()},

@@ -7,6 +7,7 @@
 #include "toolkit/operations/convergence_report.h"
 #include "toolkit/operations/counted.h"
 #include "toolkit/operations/json.h"
+#include "toolkit/operations/measures.h"
 #include "toolkit/operations/pipeline_parameters.h"
 #include "toolkit/operations/toolkit_operations.h"
 
@@ -134,6 +135,7 @@ Operation decompose_operation() {
   operation.parameters = decompose_parameters().declared();
   operation.examples = {"decompose takes/ -k 30 -o take.h5",
                         "decompose take.npy -k 50 --compat splocs2013 -o take.h5"};
+  operation.measures = decomposition_measures();
   operation.run = run_decompose;
   operation.shared = true;
   const auto plan = [](const Invocation& invocation) {

@@ -7,9 +7,11 @@
 #include "toolkit/operations/evaluation_table.h"
 #include "toolkit/operations/json.h"
 #include "toolkit/operations/match_parameters.h"
+#include "toolkit/operations/measures.h"
 #include "toolkit/operations/paint_parameter.h"
 #include "toolkit/operations/pipeline_parameters.h"
 #include "toolkit/operations/selection_parameters.h"
+#include "toolkit/operations/times_text.h"
 #include "toolkit/operations/toolkit_operations.h"
 #include "toolkit/pipeline/memory.h"
 
@@ -90,6 +92,7 @@ Outcome run_evaluate(const Invocation& invocation) {
   check_rows(invocation);
   check_solving(invocation);
   const FrameSource& sequence = *invocation.get<FieldSequence>("source").frames;
+  warn_of_guessed_rate(invocation, invocation.input("source").name, sequence.times_are_known());
   EvaluationOptions options =
       evaluation_parameters(&invocation.get<FieldSequence>("source")).read(invocation.parameters);
   options.source = described(options.source, invocation.input("source"));
@@ -161,6 +164,7 @@ Operation evaluate_operation() {
   operation.parameters.insert(operation.parameters.end(), matching.begin(), matching.end());
   operation.examples = {"evaluate take.npy actor/ -k 10,30,40",
                         "evaluate takes/ actor@identity007=2 -k 10,20,30,40,50 -o table.csv"};
+  operation.measures = evaluation_measures();
   operation.run = run_evaluate;
   operation.shared = true;
   operation.memory = memory_of_evaluate;

@@ -258,9 +258,10 @@ const Format& OperationTable::writer(const Output& output,
   const std::string kind =
       std::string(kind_name(output.kind)) + (output.fields ? " with fields" : "");
   if (known.empty()) throw UsageError(target.string() + ": this program writes no " + kind);
+  const std::string ending = wanted.empty() ? target.extension().string() : wanted;
   throw UsageError(target.string() + ": " + kind + " can be written as " +
-                   listed_extensions(known) + ", not as '" +
-                   (wanted.empty() ? target.extension().string() : wanted) + "'" +
+                   listed_extensions(known) +
+                   (ending.empty() ? "; the name has no extension" : ", not as '" + ending + "'") +
                    hint_of_folder(known, target));
 }
 

@@ -118,6 +118,12 @@ struct Outcome {
   std::string summary;  ///< the same for people, lines of text
 };
 
+/// What an operation prints of its result, as it is called there, and what that means.
+struct Measure {
+  std::string name;
+  std::string meaning;
+};
+
 /// An operation, declared once: the command, its help, the reference page and every host's dialog
 /// are made of this.
 struct Operation {
@@ -128,6 +134,7 @@ struct Operation {
   std::vector<Parameter> parameters;
   std::vector<std::string> examples;  ///< two command lines without the program's name
   std::function<Outcome(const Invocation&)> run;
+  std::vector<Measure> measures = {};
   /// Several processes compute it together: frames are dealt out to them, and vertices of the
   /// decomposition. The first one writes.
   bool shared = false;

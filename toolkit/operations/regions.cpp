@@ -7,6 +7,7 @@
 #include "toolkit/operations/convergence_report.h"
 #include "toolkit/operations/json.h"
 #include "toolkit/operations/match_parameters.h"
+#include "toolkit/operations/measures.h"
 #include "toolkit/operations/paraview_view.h"
 #include "toolkit/operations/pipeline_parameters.h"
 #include "toolkit/operations/region_report.h"
@@ -279,6 +280,7 @@ Operation regions_operation() {
   operation.parameters.insert(operation.parameters.end(), matching.begin(), matching.end());
   operation.examples = {"regions takes/ -k 30 -o rois/take.pvd --paraview view.py",
                         "regions take.npy --coverage 0.8 --radius 12abs -o rois.json"};
+  operation.measures = region_measures();
   operation.run = run_regions;
   operation.shared = true;
   operation.foresee = foresee_regions;

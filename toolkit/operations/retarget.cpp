@@ -17,6 +17,7 @@
 #include "toolkit/operations/match_parameters.h"
 #include "toolkit/operations/pipeline_parameters.h"
 #include "toolkit/operations/sequence_parameters.h"
+#include "toolkit/operations/times_text.h"
 #include "toolkit/operations/toolkit_operations.h"
 #include "toolkit/operations/weight_tables.h"
 #include "toolkit/pipeline/retarget.h"
@@ -350,6 +351,7 @@ RetargetCall read_call(const Invocation& invocation) {
   call.of_map.threads = invocation.threads;
   call.of_map.smoothness = call.solving.smoothness;
   call.track = chosen_track(invocation);
+  warn_of_guessed_rate(invocation, invocation.input("weights").name, call.track.times.size() > 0);
   note_options(invocation);
   return call;
 }

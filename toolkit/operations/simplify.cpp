@@ -5,6 +5,7 @@
 #include "toolkit/mesh/text.h"
 #include "toolkit/operations/bound_parameters.h"
 #include "toolkit/operations/json.h"
+#include "toolkit/operations/lost_expressions.h"
 #include "toolkit/operations/toolkit_operations.h"
 #include "toolkit/pipeline/memory.h"
 
@@ -58,6 +59,7 @@ std::string report_with(const Json& report, const std::vector<VertexIndex>& vert
 Outcome run_simplify(const Invocation& invocation) {
   const NamedData& input = invocation.input("sequence");
   const auto& given = std::get<FieldSequence>(input.data);
+  warn_of_lost_expressions(invocation, *given.frames, KeptInScenes::no);
   SimplifyOptions options = simplify_parameters().read(invocation.parameters);
   options.threads = invocation.threads;
   options.progress = part_of(invocation.progress, 0, kChoosing);

@@ -5,6 +5,7 @@
 #include "toolkit/mesh/subdivision.h"
 #include "toolkit/operations/bound_parameters.h"
 #include "toolkit/operations/json.h"
+#include "toolkit/operations/lost_expressions.h"
 #include "toolkit/operations/toolkit_operations.h"
 #include "toolkit/pipeline/memory.h"
 
@@ -23,6 +24,7 @@ BoundParameters<SubdivideOptions> subdivide_parameters() {
 Outcome run_subdivide(const Invocation& invocation) {
   const NamedData& input = invocation.input("sequence");
   const auto& given = std::get<FieldSequence>(input.data);
+  warn_of_lost_expressions(invocation, *given.frames, KeptInScenes::no);
   const SubdivideOptions options = subdivide_parameters().read(invocation.parameters);
   const Subdivision finer = subdivide(given.frames->rest(), given.frames->connectivity(), options);
   FieldSequence made = held_like(given, subdivided(given.frames, finer),

@@ -16,4 +16,11 @@ std::string times_text(const FrameSource& sequence) {
          " per second: the input says nothing of time";
 }
 
+void warn_of_guessed_rate(const Invocation& invocation, const std::string& name,
+                          bool times_are_known) {
+  if (times_are_known || invocation.parameters.number("smoothness") == 0) return;
+  invocation.warn(name + ": says nothing of time, so that --smoothness takes its frames for " +
+                  readable(kDefaultFramesPerSecond) + " a second; --fps tells how many there are");
+}
+
 }  // namespace mimetra

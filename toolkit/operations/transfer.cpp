@@ -11,10 +11,12 @@
 #include "toolkit/operations/formats.h"
 #include "toolkit/operations/json.h"
 #include "toolkit/operations/match_parameters.h"
+#include "toolkit/operations/measures.h"
 #include "toolkit/operations/paint_parameter.h"
 #include "toolkit/operations/pipeline_parameters.h"
 #include "toolkit/operations/region_report.h"
 #include "toolkit/operations/selection_parameters.h"
+#include "toolkit/operations/times_text.h"
 #include "toolkit/operations/toolkit_operations.h"
 #include "toolkit/operations/weight_tables.h"
 #include "toolkit/pipeline/memory.h"
@@ -257,9 +259,10 @@ void add_regions(Outcome& outcome, Json& report, const Invocation& invocation,
 Outcome run_transfer(const Invocation& invocation) {
   const Stopwatch stopwatch;
   check_outputs(invocation);
+  const FrameSource& source = *invocation.get<FieldSequence>("source").frames;
+  warn_of_guessed_rate(invocation, invocation.input("source").name, source.times_are_known());
   TransferResult result = in_command_terms(invocation.parameters, [&] {
-    return transfer(*invocation.get<FieldSequence>("source").frames, targets_of(invocation),
-                    options_of(invocation));
+    return transfer(source, targets_of(invocation), options_of(invocation));
   });
   Outcome outcome;
   Json report = Json::object();
@@ -348,6 +351,7 @@ Operation transfer_operation() {
   operation.examples = {
       "transfer takes/smile_%04d.obj actor/ -k 30 -o actor_smile/ --regions-out rois/smile.pvd",
       "transfer take.npy actor@identity007=2 double/ --full -o results/"};
+  operation.measures = transfer_measures();
   operation.run = run_transfer;
   operation.shared = true;
   operation.memory = memory_of_transfer;

@@ -6,10 +6,11 @@
 #include <map>
 #include <stdexcept>
 
+#include "toolkit/correspondence/mesh_drawing.h"
 #include "toolkit/drawing/sheet_layout.h"
 #include "toolkit/mesh/errors.h"
-#include "toolkit/mesh/normals.h"
 #include "toolkit/mesh/text.h"
+#include "toolkit/mesh/triangle_quality.h"
 
 namespace mimetra {
 
@@ -123,6 +124,53 @@ bool is_category(const Field& field) {
          (field.name == "region" || field.values.minCoeff() < 0);
 }
 
+/// All of a mesh as a picture shows it.
+MeshView whole_view(const TriMesh& mesh, const View& view) {
+  MeshView whole;
+  whole.axes << view.right.transpose(), view.up.transpose(), view.towards_eye.transpose();
+  const Positions used =
+      mesh.positions(surface_vertices(mesh.positions, mesh.connectivity.triangles), Eigen::all);
+  const Positions turned = used * whole.axes.transpose();
+  const Eigen::RowVector3d low = turned.colwise().minCoeff(), high = turned.colwise().maxCoeff();
+  whole.centre = whole.axes.transpose() * ((low + high) / 2).transpose();
+  constexpr double kRim = 1.02;
+  whole.side = kRim * (high - low).head<2>().maxCoeff();
+  whole.pixels = 400;
+  whole.samples = 1;
+  return whole;
+}
+
+/// How far each pixel of a square of `side` pixels is from one of another number, diagonals counted
+/// as steps.
+std::vector<int> margins_of(const std::vector<int>& numbers, int side) {
+  std::vector<int> margins(numbers.size(), 0);
+  const auto index = [side](int column, int row) {
+    return static_cast<std::size_t>(row) * side + column;
+  };
+  const auto margin = [&](int column, int row, int step) {
+    const std::size_t here = index(column, row);
+    int least = std::numeric_limits<int>::max();
+    for (const auto& [across, down] : {std::pair(-step, 0), {-1, -step}, {0, -step}, {1, -step}}) {
+      const int x = column + across, y = row + down;
+      const bool is_inside = x >= 0 && x < side && y >= 0 && y < side;
+      const bool is_same = is_inside && numbers[index(x, y)] == numbers[here];
+      least = std::min(least, is_same ? margins[index(x, y)] : 0);
+    }
+    return least + 1;
+  };
+  for (int row = 0; row < side; ++row) {
+    for (int column = 0; column < side; ++column)
+      margins[index(column, row)] = margin(column, row, 1);
+  }
+  for (int row = side - 1; row >= 0; --row) {
+    for (int column = side - 1; column >= 0; --column) {
+      int& known = margins[index(column, row)];
+      known = std::min(known, margin(column, row, -1));
+    }
+  }
+  return margins;
+}
+
 /// The colours of one row.
 class RowPainter {
  public:
@@ -165,27 +213,32 @@ class RowPainter {
 
   bool is_crisp() const { return !categories_.empty(); }
 
-  /// The numbers, each on the vertex in the middle of those that `view` sees.
+  /// The numbers, each where most of its own colour is around it as `view` sees the mesh.
   std::vector<TileLabel> labels(const Positions& pose, const View& view) const {
-    std::map<int, std::vector<VertexIndex>> seen;
-    if (!numbers_.empty()) {
-      const Positions normals =
-          vertex_normals(pose, sequences_[row_].frames->triangles()).rowwise().normalized();
-      constexpr double kSeen = 0.3;
-      for (std::size_t v = 0; v < numbers_.size(); ++v) {
-        const double facing = normals.row(static_cast<Eigen::Index>(v)).dot(view.towards_eye);
-        if (numbers_[v] >= 0 && facing > kSeen) {
-          seen[numbers_[v]].push_back(static_cast<VertexIndex>(v));
-        }
-      }
+    if (numbers_.empty()) return {};
+    const TriMesh mesh{pose, sequences_[row_].frames->connectivity()};
+    const MeshPainter painter(mesh);
+    const MeshView from = whole_view(mesh, view);
+    const std::vector<SeenPlace> places = painter.draw(from).places;
+    std::vector<int> seen(places.size(), -1);
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      const SeenPlace& place = places[i];
+      if (place.triangle < 0 || !painter.shows_outside(place.triangle, from)) continue;
+      int nearest = 0;
+      place.shares.maxCoeff(&nearest);
+      const VertexIndex v = mesh.connectivity.triangles(place.triangle, nearest);
+      seen[i] = numbers_[static_cast<std::size_t>(v)];
+    }
+    const std::vector<int> margins = margins_of(seen, from.pixels);
+    std::map<int, std::size_t> deepest;
+    for (std::size_t i = 0; i < seen.size(); ++i) {
+      if (seen[i] < 0) continue;
+      const auto best = deepest.try_emplace(seen[i], i).first;
+      if (margins[i] > margins[best->second]) best->second = i;
     }
     std::vector<TileLabel> labels;
-    for (const auto& [number, vertices] : seen) {
-      const Positions places = pose(vertices, Eigen::all);
-      const Eigen::RowVector3d middle = places.colwise().mean();
-      Eigen::Index nearest = 0;
-      (places.rowwise() - middle).rowwise().squaredNorm().minCoeff(&nearest);
-      labels.push_back({std::to_string(number), places.row(nearest)});
+    for (const auto& [number, pixel] : deepest) {
+      labels.push_back({std::to_string(number), painter.position(places[pixel]).transpose()});
     }
     return labels;
   }

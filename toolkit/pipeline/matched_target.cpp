@@ -80,7 +80,7 @@ AutomaticMarkers found_between(const MarkersBetween& search, const TriMesh& sour
   }
 }
 
-/// Says where a face is open at rest as the other one is not.
+/// Says where a face is open at rest as the other one is not, or has no opening at all.
 void note_openings(const TriMesh& source, const TriMesh& target, const AutomaticMarkers& markers,
                    const std::string& name, const Notes& notes) {
   for (const OpeningAtRest& opening : openings_at_rest(source, target, markers)) {
@@ -92,6 +92,14 @@ void note_openings(const TriMesh& source, const TriMesh& target, const Automatic
              percent(opening.source) + ": " + (is_sources ? "the source's" : "its") +
              " rest pose is likely not neutral",
          is_sources ? Topic::unneutral_rest : Topic::other);
+  }
+  for (const LoneOpening& opening : lone_openings(source, target, markers)) {
+    note(notes,
+         name + ": the " + std::string(opening.name) + "'s edges were found on the " +
+             (opening.is_sources ? "source" : "target") +
+             " only; the other's markers there may lie beside them, and what opens and closes it "
+             "may be lost: look at them, and give markers of both edges",
+         Topic::poor_match);
   }
 }
 

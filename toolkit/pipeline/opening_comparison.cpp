@@ -19,12 +19,16 @@ constexpr double kStaysOpen = 0.06;
 /// Mouths at rest are closed; eyes of people are open by different shares of their width.
 constexpr double kMouthsAtRest = 0.15, kEyesAtRest = 0.25;
 
-std::vector<FaceOpening> openings_of(const FrameSource& sequence, const FaceLandmarks& face) {
+std::vector<FaceOpening> openings_of(const TriMesh& rest, const FaceLandmarks& face) {
   LandmarkVertices landmarks;
   for (const FaceLandmark& landmark : face.found) {
     landmarks.emplace_back(landmark.number, landmark.vertex);
   }
-  return face_openings({sequence.rest(), sequence.connectivity()}, landmarks);
+  return face_openings(rest, landmarks);
+}
+
+std::vector<FaceOpening> openings_of(const FrameSource& sequence, const FaceLandmarks& face) {
+  return openings_of(TriMesh{sequence.rest(), sequence.connectivity()}, face);
 }
 
 MeshSequence one_pose(const TriMesh& mesh) {
@@ -47,6 +51,22 @@ std::vector<OpeningAtRest> openings_at_rest(const TriMesh& source, const TriMesh
     at_rest.push_back({opening.name, opening.source_least, opening.target_least});
   }
   return at_rest;
+}
+
+std::vector<LoneOpening> lone_openings(const TriMesh& source, const TriMesh& target,
+                                       const AutomaticMarkers& markers) {
+  const std::vector<FaceOpening> of_source = openings_of(source, markers.source),
+                                 of_target = openings_of(target, markers.target);
+  std::vector<LoneOpening> lone;
+  const auto add = [&lone](const auto& some, const auto& others, bool is_sources) {
+    for (const FaceOpening& opening : some) {
+      if (std::ranges::find(others, opening.name, &FaceOpening::name) != others.end()) continue;
+      lone.push_back({opening.name, is_sources});
+    }
+  };
+  add(of_source, of_target, true);
+  add(of_target, of_source, false);
+  return lone;
 }
 
 bool ComparedOpening::stays_open() const {

@@ -35,6 +35,17 @@ struct OpeningAtRest {
 std::vector<OpeningAtRest> openings_at_rest(const TriMesh& source, const TriMesh& target,
                                             const AutomaticMarkers& markers);
 
+/// An opening that only one of two faces has, as their landmarks show it.
+struct LoneOpening {
+  std::string_view name;
+  bool is_sources = false;
+};
+
+/// Those of two faces at rest. The other's landmarks are likely not on the edges of its opening,
+/// such as on an eyeball or inside of the socket, where they mislead whoever pairs the two.
+std::vector<LoneOpening> lone_openings(const TriMesh& source, const TriMesh& target,
+                                       const AutomaticMarkers& markers);
+
 /// Of the openings that both faces have where their landmarks are known. `result` follows `source`
 /// frame by frame; the rest poses are neutral. Throws MismatchError for other numbers of frames,
 /// what reading throws, Cancelled.

@@ -106,14 +106,21 @@ std::vector<std::string> notes_on(const Components& components, const std::vecto
   return notes;
 }
 
-/// Motion energy of some components on each vertex: sum over k of |w_k|^2 |c_k^(i)|^2 (N).
+/// Motion energy of what some components give together on each vertex:
+/// sum over frames of |sum over k of w_k c_k^(i)|^2 (N).
 Eigen::VectorXd energy_on_vertices(const Components& components, const std::vector<int>& some) {
-  Eigen::VectorXd energy = Eigen::VectorXd::Zero(components.vertices());
-  for (const int k : some) {
-    const PositionsView c(components.displacements.row(k).data(), components.vertices(), 3);
-    energy += components.weights.col(k).squaredNorm() * c.rowwise().squaredNorm();
+  const Eigen::MatrixXd weights = components.weights(Eigen::all, some);
+  const Eigen::MatrixXd gram = weights.transpose() * weights;
+  Eigen::VectorXd energy(components.vertices());
+  // In blocks, so that no second copy of all components is made.
+  constexpr Eigen::Index kBlock = 4096;
+  for (Eigen::Index first = 0; first < energy.size(); first += kBlock) {
+    const Eigen::Index count = std::min(kBlock, energy.size() - first);
+    const Eigen::MatrixXd c = components.displacements(some, Eigen::seqN(3 * first, 3 * count));
+    const Eigen::RowVectorXd each = (gram * c).cwiseProduct(c).colwise().sum();
+    energy.segment(first, count) = each.reshaped(3, count).colwise().sum().transpose();
   }
-  return energy;
+  return energy.cwiseMax(0);
 }
 
 std::vector<VertexIndex> disc(const Site& site, double radius) {

@@ -1,7 +1,9 @@
 #include "toolkit/report/viewer_data.h"
 
 #include <algorithm>
-#include <cmath>
+#include <cstdint>
+#include <functional>
+#include <numeric>
 
 #include <nlohmann/json.hpp>
 
@@ -14,6 +16,7 @@
 #include "toolkit/operations/colors.h"
 #include "toolkit/operations/json.h"
 #include "toolkit/report/base64.h"
+#include "toolkit/report/coded_poses.h"
 
 namespace mimetra {
 
@@ -31,20 +34,22 @@ std::string compressed(const std::vector<unsigned char>& bytes) {
   return base64({reinterpret_cast<const char*>(packed.data()), packed.size()});
 }
 
-/// The difference of each pose from the one before, all low bytes of a pose before its high ones:
-/// what hardly moves becomes long runs of zeros.
-std::string packed_poses(const QuantizedPoses& quantized) {
-  const auto& poses = quantized.poses;
-  const auto width = static_cast<std::size_t>(poses.cols());
-  std::vector<unsigned char> bytes(2 * width * static_cast<std::size_t>(poses.rows()));
+enum class Rows { as_they_are, as_differences };
+
+/// Low bytes of a row before its high ones; of differences, each from the row before, what hardly
+/// moves becomes long runs of zeros.
+std::string packed_rows(const StepMatrix& rows, Rows kind) {
+  const auto width = static_cast<std::size_t>(rows.cols());
+  std::vector<unsigned char> bytes(2 * width * static_cast<std::size_t>(rows.rows()));
   unsigned char* out = bytes.data();
-  for (Eigen::Index f = 0; f < poses.rows(); ++f, out += 2 * width) {
+  for (Eigen::Index f = 0; f < rows.rows(); ++f, out += 2 * width) {
+    const bool differs = kind == Rows::as_differences && f > 0;
     for (std::size_t i = 0; i < width; ++i) {
       const auto column = static_cast<Eigen::Index>(i);
-      const int before = f > 0 ? poses(f - 1, column) : 0;
-      const auto difference = static_cast<unsigned>(poses(f, column) - before);
-      out[i] = static_cast<unsigned char>(difference & 0xffU);
-      out[width + i] = static_cast<unsigned char>((difference >> 8U) & 0xffU);
+      const int before = differs ? rows(f - 1, column) : 0;
+      const auto number = static_cast<unsigned>(rows(f, column) - before);
+      out[i] = static_cast<unsigned char>(number & 0xffU);
+      out[width + i] = static_cast<unsigned char>((number >> 8U) & 0xffU);
     }
   }
   return compressed(bytes);
@@ -183,7 +188,34 @@ std::string script_text(const Json& json) {
   return text;
 }
 
-std::string with_frames(Json json, const ViewerScene& scene, const std::vector<int>& frames) {
+/// A mesh's frames, in either of two codings.
+using PackPoses = std::function<Json(const MeshSequence& sequence)>;
+
+Json json_of_poses(const QuantizedPoses& poses) {
+  return {{"step", poses.step}, {"poses", packed_rows(poses.poses, Rows::as_differences)}};
+}
+
+Json json_of_poses(const MixedPoses& mixed) {
+  std::vector<int> places, steps;
+  for (const MixedPoses::Correction& correction : mixed.corrections) {
+    places.push_back(correction.frame * static_cast<int>(mixed.rest.cols()) +
+                     correction.coordinate);
+    steps.push_back(correction.steps);
+  }
+  return {{"step", mixed.step},
+          {"rest", packed_rows(mixed.rest, Rows::as_they_are)},
+          {"stepsOfRest", MixedPoses::kStepsOfRest},
+          {"basis", packed_rows(mixed.basis, Rows::as_they_are)},
+          {"basisSize", mixed.basis.rows()},
+          {"basisStep", mixed.basis_step / MixedPoses::kWeightOfOne},
+          {"weights", packed_rows(mixed.weights, Rows::as_differences)},
+          {"correctedPlaces", packed_indices(places)},
+          {"corrections", packed_indices(steps)}};
+}
+
+/// All of a scene; empty where a mesh's poses are null.
+std::string with_frames(Json json, const ViewerScene& scene, const std::vector<int>& frames,
+                        const PackPoses& pack) {
   Json times = Json::array();
   for (const int frame : frames) times.push_back(scene.meshes.front().sequence.times()[frame]);
   json["times"] = times;
@@ -194,54 +226,51 @@ std::string with_frames(Json json, const ViewerScene& scene, const std::vector<i
   parallel_for(count, scene.threads, [&](int i) {
     const auto place = static_cast<std::size_t>(i);
     const ViewerMesh& mesh = scene.meshes[place];
-    const QuantizedPoses poses = quantized(mesh.sequence, frames);
-    meshes[place] = {{"role", mesh.role},
-                     {"name", mesh.name},
-                     {"surface", surface[place]},
-                     {"step", poses.step},
-                     {"poses", packed_poses(poses)}};
+    Json packed = pack(mesh.sequence);
+    if (packed.is_null()) return;
+    packed.update({{"role", mesh.role}, {"name", mesh.name}, {"surface", surface[place]}});
+    meshes[place] = std::move(packed);
   });
-  for (Json& mesh : meshes) json["meshes"].push_back(std::move(mesh));
+  for (Json& mesh : meshes) {
+    if (mesh.is_null()) return "";
+    json["meshes"].push_back(std::move(mesh));
+  }
   return script_text(json);
 }
 
-/// Frames that may be seen, and that may fit: zlib makes poses hardly ever this much smaller.
-int most_frames(const ViewerScene& scene, std::size_t bytes) {
-  constexpr double kBestCompression = 40;
+/// Whole frames that may be seen.
+int seen_frames(const ViewerScene& scene) {
   const MeshSequence& first = scene.meshes.front().sequence;
   const double seconds = first.times()[first.frames() - 1] - first.times()[0];
-  double pose = 0;
-  for (const ViewerMesh& mesh : scene.meshes) pose += 6.0 * mesh.sequence.vertices();
-  const double most = std::min({double(first.frames()), seconds * kMostFramesPerSecond + 1.5,
-                                kBestCompression * static_cast<double>(bytes) / pose});
-  return std::max(2, static_cast<int>(most));
+  const double most = std::min(double(first.frames()), seconds * kMostFramesPerSecond + 1.5);
+  return std::max(std::min(2, first.frames()), static_cast<int>(most));
+}
+
+/// The bytes of all meshes' coordinates in one pose.
+double pose_bytes(const ViewerScene& scene) {
+  double bytes = 0;
+  for (const ViewerMesh& mesh : scene.meshes) bytes += 6.0 * mesh.sequence.vertices();
+  return bytes;
+}
+
+/// All frames, as mixtures of few poses; empty where these do not give them, or are too many for
+/// `bytes`.
+std::string with_mixed_frames(const Json& still, const ViewerScene& scene, std::size_t bytes) {
+  // zlib and base64 leave hardly less of poses that nothing follows from.
+  constexpr double kLeastShare = 0.5;
+  const auto most =
+      static_cast<Eigen::Index>(static_cast<double>(bytes) / (kLeastShare * pose_bytes(scene)));
+  std::vector<int> frames(static_cast<std::size_t>(scene.meshes.front().sequence.frames()));
+  std::iota(frames.begin(), frames.end(), 0);
+  const int threads = scene.meshes.size() == 1 ? scene.threads : 1;
+  return with_frames(still, scene, frames, [&](const MeshSequence& sequence) -> Json {
+    if (std::ssize(frames) * std::int64_t{3} * sequence.vertices() > INT32_MAX) return {};
+    const auto poses = mixed(sequence, frames, most, threads);
+    return poses ? json_of_poses(*poses) : Json();
+  });
 }
 
 }  // namespace
-
-QuantizedPoses quantized(const MeshSequence& sequence, const std::vector<int>& frames) {
-  QuantizedPoses result;
-  const Positions& rest = sequence.rest();
-  result.center = (rest.colwise().minCoeff() + rest.colwise().maxCoeff()) / 2;
-  double reach = (rest.rowwise() - result.center).cwiseAbs().maxCoeff();
-  for (const int frame : frames) {
-    reach =
-        std::max(reach, (sequence.frame(frame).rowwise() - result.center).cwiseAbs().maxCoeff());
-  }
-  result.step = reach > 0 ? reach / kMostSteps : 1;
-  result.poses.resize(static_cast<Eigen::Index>(frames.size()) + 1, rest.size());
-  const auto add = [&](Eigen::Index row, const Positions& pose) {
-    const Positions steps = (pose.rowwise() - result.center) / result.step;
-    for (Eigen::Index i = 0; i < steps.size(); ++i) {
-      result.poses(row, i) = static_cast<std::int16_t>(std::lround(steps.data()[i]));
-    }
-  };
-  add(0, rest);
-  for (std::size_t i = 0; i < frames.size(); ++i) {
-    add(static_cast<Eigen::Index>(i) + 1, sequence.frame(frames[i]));
-  }
-  return result;
-}
 
 std::vector<int> thinned(int frames, int count) {
   const int kept = std::min(frames, count);
@@ -254,12 +283,22 @@ std::vector<int> thinned(int frames, int count) {
 }
 
 PackedScene packed(const ViewerScene& scene, std::size_t bytes) {
+  // zlib makes poses hardly ever this much smaller.
+  constexpr double kBestCompression = 40;
   constexpr double kSafety = 0.97;
   const Json still = still_part(scene);
-  const auto always = static_cast<double>(script_text(still).size());
   const int frames = scene.meshes.front().sequence.frames();
-  for (int count = std::min(frames, most_frames(scene, bytes));;) {
-    std::string json = with_frames(still, scene, thinned(frames, count));
+  std::string mixed = with_mixed_frames(still, scene, bytes);
+  if (!mixed.empty() && mixed.size() <= bytes) return {std::move(mixed), frames};
+
+  const auto always = static_cast<double>(script_text(still).size());
+  const double most = kBestCompression * static_cast<double>(bytes) / pose_bytes(scene);
+  int count = std::min(seen_frames(scene), std::max(2, static_cast<int>(most)));
+  while (true) {
+    const std::vector<int> kept = thinned(frames, count);
+    std::string json = with_frames(still, scene, kept, [&kept](const MeshSequence& sequence) {
+      return json_of_poses(quantized(sequence, kept));
+    });
     if (json.size() <= bytes) return {std::move(json), count};
     if (count <= 2) return {};
     const double share =

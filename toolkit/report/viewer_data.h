@@ -1,6 +1,5 @@
 #pragma once
 
-#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -24,19 +23,6 @@ struct ViewerScene {
   int threads = 0;  ///< to pack with, 0 for all there are; what is packed does not depend on it
 };
 
-/// Poses as whole numbers of steps from a centre.
-struct QuantizedPoses {
-  Eigen::RowVector3d center;  ///< of the rest pose's bounding box
-  double step = 0;            ///< length; every coordinate is off by half of it at most
-  /// The pose at rest, then the frames, 1 + F x 3N.
-  Eigen::Matrix<std::int16_t, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> poses;
-};
-
-/// Coordinates are at most this many steps from the centre.
-constexpr int kMostSteps = 4095;
-
-QuantizedPoses quantized(const MeshSequence& sequence, const std::vector<int>& frames);
-
 /// `count` of `frames` frames, evenly spread, the first and the last among them (all where there
 /// are fewer). \pre count >= 2
 std::vector<int> thinned(int frames, int count);
@@ -47,7 +33,8 @@ struct PackedScene {
   int frames = 0;
 };
 
-/// As many frames as `bytes` hold, but not more than 30 a second.
+/// All frames, where the poses of each mesh are mixtures of few, to a step, that `bytes` hold;
+/// otherwise as many as they hold, but not more than 30 a second.
 PackedScene packed(const ViewerScene& scene, std::size_t bytes);
 
 }  // namespace mimetra

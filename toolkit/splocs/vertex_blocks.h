@@ -13,7 +13,6 @@ namespace mimetra {
 /// Displacements of the n vertices that a rank owns in R rows (R x 3n), cut into blocks of
 /// vertices, so that what happens to one block happens in a core's cache. On one rank they are all
 /// vertices of the mesh. Where the blocks are kept is open: they may be more than memory holds.
-/// Internal to the decomposition.
 template <typename Scalar>
 class BlockSource {
  public:

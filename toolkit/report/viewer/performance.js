@@ -5,19 +5,22 @@ function unpackBytes(text) {
   return unzlibSync(Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0)));
 }
 
-// Numbers of 16 bits, each the difference from the one `stride` before it; low bytes of a row of
-// `stride` numbers come before its high bytes.
-function unpackDifferences(text, stride) {
+// Rows of `width` numbers of 16 bits, low bytes of a row before its high ones.
+function unpackRows(text, width) {
   const bytes = unpackBytes(text);
   const numbers = new Int16Array(bytes.length / 2);
-  for (let start = 0; start < numbers.length; start += stride) {
-    for (let i = 0; i < stride; ++i) {
-      const low = bytes[2 * start + i];
-      const high = bytes[2 * start + stride + i];
-      const before = start > 0 ? numbers[start - stride + i] : 0;
-      numbers[start + i] = before + (low | (high << 8));
+  for (let start = 0; start < numbers.length; start += width) {
+    for (let i = 0; i < width; ++i) {
+      numbers[start + i] = bytes[2 * start + i] | (bytes[2 * start + width + i] << 8);
     }
   }
+  return numbers;
+}
+
+// The same, of which each row is the difference from the one before.
+function unpackDifferences(text, width) {
+  const numbers = unpackRows(text, width);
+  for (let i = width; i < numbers.length; ++i) numbers[i] += numbers[i - width];
   return numbers;
 }
 
@@ -26,6 +29,67 @@ function unpackIndices(text) {
   const indices = new Int32Array(bytes.buffer, bytes.byteOffset, bytes.length / 4);
   for (let i = 1; i < indices.length; ++i) indices[i] += indices[i - 1];
   return indices;
+}
+
+// Frames that are whole: the first pose is the one at rest.
+class WholePoses {
+  constructor(packed, width) {
+    this.width = width;
+    this.step = packed.step;
+    this.poses = unpackDifferences(packed.poses, width);
+    this.rest = Float32Array.from(this.poses.subarray(0, width), (steps) => this.step * steps);
+  }
+
+  // Positions between frame `first` and the next one, into the beginning of `out`.
+  mix(first, share, out) {
+    const from = (first + 1) * this.width;
+    const to = share > 0 ? from + this.width : from;
+    for (let i = 0; i < this.width; ++i) {
+      out[i] = this.step * (this.poses[from + i] * (1 - share) + this.poses[to + i] * share);
+    }
+  }
+}
+
+// Frames that are mixtures of few poses, and what some of their coordinates need besides.
+class MixedPoses {
+  constructor(packed, width) {
+    this.width = width;
+    this.step = packed.step;
+    this.size = packed.basisSize;
+    this.basis = unpackRows(packed.basis, width);
+    this.basisStep = packed.basisStep * packed.step;
+    this.weights = unpackDifferences(packed.weights, this.size);
+    this.places = unpackIndices(packed.correctedPlaces);
+    this.corrections = unpackIndices(packed.corrections);
+    this.rest = Float32Array.from(unpackRows(packed.rest, width),
+      (steps) => (this.step * steps) / packed.stepsOfRest);
+    // The first correction of each frame.
+    this.starts = [0];
+    for (let i = 0; i < this.places.length; ++i) {
+      while (this.places[i] >= this.starts.length * width) this.starts.push(i);
+    }
+  }
+
+  mix(first, share, out) {
+    out.set(this.rest);
+    for (let k = 0; k < this.size; ++k) {
+      const here = this.weights[first * this.size + k];
+      const next = share > 0 ? this.weights[(first + 1) * this.size + k] : 0;
+      const weight = this.basisStep * (here * (1 - share) + next * share);
+      if (weight === 0) continue;
+      const row = k * this.width;
+      for (let i = 0; i < this.width; ++i) out[i] += weight * this.basis[row + i];
+    }
+    this.correct(first, 1 - share, out);
+    if (share > 0) this.correct(first + 1, share, out);
+  }
+
+  correct(frame, share, out) {
+    const end = this.starts[frame + 1] ?? this.places.length;
+    for (let i = this.starts[frame] ?? end; i < end; ++i) {
+      out[this.places[i] - frame * this.width] += share * this.step * this.corrections[i];
+    }
+  }
 }
 
 export function unpackPerformance(packed) {
@@ -38,11 +102,10 @@ export function unpackPerformance(packed) {
   return {
     ...packed,
     surfaces,
-    // The first pose is the one at rest.
-    meshes: packed.meshes.map((mesh) => ({
-      ...mesh,
-      surface: surfaces[mesh.surface],
-      poses: unpackDifferences(mesh.poses, 3 * surfaces[mesh.surface].vertices),
-    })),
+    meshes: packed.meshes.map((mesh) => {
+      const surface = surfaces[mesh.surface];
+      const Poses = mesh.basis === undefined ? WholePoses : MixedPoses;
+      return { ...mesh, surface, poses: new Poses(mesh, 3 * surface.vertices) };
+    }),
   };
 }

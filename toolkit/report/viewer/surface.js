@@ -15,7 +15,8 @@ const lights = [
 ];
 
 // What is drawn: triangles within one region, and around each corner of the others the part nearest
-// to it, so that colours do not run into each other. `between` holds the vertices in whose middle
+// to it, so that colours do not run into each other. Edges within a region stay whole, as the
+// triangle beyond them has them: the background would shine through. `between` holds the vertices in whose middle
 // each added point is, `cells` VTK's list, and of each cell `triangles` and `regions`.
 function cellsOf({ vertices, triangles, regions }) {
   const between = [], cells = [], ofTriangle = [], ofRegion = [];
@@ -32,9 +33,17 @@ function cellsOf({ vertices, triangles, regions }) {
       addCell(corners, t, a);
       continue;
     }
-    const edges = corners.map((v, i) => add([v, corners[(i + 1) % 3]]));
     const middle = add(corners);
-    corners.forEach((v, i) => addCell([v, edges[i], middle, edges[(i + 2) % 3]], t, regions[v]));
+    corners.forEach((v, i) => {
+      const next = corners[(i + 1) % 3];
+      if (regions[v] === regions[next]) {
+        addCell([v, next, middle], t, regions[v]);
+        return;
+      }
+      const edge = add([v, next]);
+      addCell([v, edge, middle], t, regions[v]);
+      addCell([edge, next, middle], t, regions[next]);
+    });
   }
   return {
     between,
@@ -99,15 +108,10 @@ export class Surface {
     return `${this.mesh.role}: ${region < 0 ? 'no region' : `region ${region}`}, vertex ${nearest}`;
   }
 
-  // Between pose `first` and the next one; poses count from 0, the one at rest is not among them.
+  // Between frame `first` and the next one.
   show(first, share, coloring) {
-    const { poses, step } = this.mesh;
     const coordinates = 3 * this.mesh.surface.vertices;
-    const from = (first + 1) * coordinates;
-    const to = share > 0 ? from + coordinates : from;
-    for (let i = 0; i < coordinates; ++i) {
-      this.positions[i] = step * (poses[from + i] * (1 - share) + poses[to + i] * share);
-    }
+    this.mesh.poses.mix(first, share, this.positions);
     this.updateNormals();
     this.updateColors(coloring);
     this.drawn.between.forEach((corners, i) => this.put(corners, coordinates + 3 * i));
@@ -174,14 +178,14 @@ export class Surface {
     }
     this.mapper.setScalarModeToUsePointData();
     const { evenColors, clay, largest } = this.performance;
-    const { poses, step } = this.mesh;
+    const { rest } = this.mesh.poses;
     for (let v = 0; v < this.mesh.surface.vertices; ++v) {
       let color = clay;
       if (coloring === 'displacement') {
         const moved = Math.hypot(
-          this.positions[3 * v] - step * poses[3 * v],
-          this.positions[3 * v + 1] - step * poses[3 * v + 1],
-          this.positions[3 * v + 2] - step * poses[3 * v + 2]);
+          this.positions[3 * v] - rest[3 * v],
+          this.positions[3 * v + 1] - rest[3 * v + 1],
+          this.positions[3 * v + 2] - rest[3 * v + 2]);
         const share = largest > 0 ? Math.min(1, moved / largest) : 0;
         color = evenColors[Math.round(share * (evenColors.length - 1))];
       }
