@@ -134,19 +134,19 @@ TEST_F(FolderOfFrames, OfAModelRefusesALinkThatLeadsNowhereToo) {
 }
 
 TEST_F(FolderOfFrames, PatternThatMatchesNothingIsTakenForTheOneThatFits) {
-  write_frames({1, 2, 10});
+  write_frames({8, 9, 10});
   const auto found = [this](const std::string& name) {
     return frames_of_pattern((folder_ / name).string());
   };
   const FrameSeries unpadded = found("f_%04d.obj");
   EXPECT_THAT(unpadded.frames,
-              ElementsAre(folder_ / "f_1.obj", folder_ / "f_2.obj", folder_ / "f_10.obj"));
+              ElementsAre(folder_ / "f_8.obj", folder_ / "f_9.obj", folder_ / "f_10.obj"));
   EXPECT_THAT(unpadded.notes,
               ElementsAre(AllOf(HasSubstr("f_%04d.obj: matches no file; '"),
-                                HasSubstr("f_%d.obj' is taken for it, f_1.obj to f_10.obj"))));
+                                HasSubstr("f_%d.obj' is taken for it, f_8.obj to f_10.obj"))));
   fs::remove(folder_ / "f_10.obj");
-  fs::rename(folder_ / "f_1.obj", folder_ / "f_0001.obj");
-  fs::rename(folder_ / "f_2.obj", folder_ / "f_0002.obj");
+  fs::rename(folder_ / "f_8.obj", folder_ / "f_0008.obj");
+  fs::rename(folder_ / "f_9.obj", folder_ / "f_0009.obj");
   EXPECT_EQ(found("f_%d.obj").frames.size(), 2U);
   EXPECT_THAT(found("f_%d.obj").notes, ElementsAre(HasSubstr("f_%04d.obj' is taken for it")));
   EXPECT_THAT(test::message_of<IoError>([&] { found("g_%d.obj"); }), testing::EndsWith("STL file"));

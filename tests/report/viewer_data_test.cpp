@@ -90,7 +90,8 @@ Eigen::MatrixXd rows_in(const json& text, int rows, int width, bool differs) {
     const unsigned char* row = bytes.data() + 2 * f * width;
     for (int i = 0; i < width; ++i) {
       const auto number = static_cast<std::int16_t>(row[i] | (row[width + i] << 8));
-      result(f, i) = number + (differs && f > 0 ? result(f - 1, i) : 0);
+      const int before = differs && f > 0 ? static_cast<int>(result(f - 1, i)) : 0;
+      result(f, i) = static_cast<std::int16_t>(before + number);  // as an Int16Array wraps
     }
   }
   return result;
@@ -123,8 +124,9 @@ TEST(ViewerData, HoldsEveryPositionWithinHalfAStep) {
 TEST(ViewerData, HoldsMixturesOfFewPosesAndWhereTheyAreOff) {
   const MeshSequence smooth = swinging(40, 2);
   Frames frames = smooth.positions();
-  frames(4, 7) += 2;  // follow from nothing
-  frames(31, 100) -= 3;
+  // Some steps that follow from nothing, too few to be worth a pose of their own.
+  frames(4, 7) += 0.01;
+  frames(31, 100) -= 0.02;
   const MeshSequence sequence = smooth.with_frames(frames);
   const json mesh = json::parse(packed(scene_of(sequence), kPlenty).json).at("meshes").at(1);
   const double step = mesh.at("step").get<double>();
