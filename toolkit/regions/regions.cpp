@@ -12,6 +12,7 @@
 #include "toolkit/mesh/diameter.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/near_tie.h"
+#include "toolkit/mesh/product_blocking.h"
 #include "toolkit/mesh/surface_parts.h"
 #include "toolkit/mesh/text.h"
 
@@ -109,6 +110,7 @@ std::vector<std::string> notes_on(const Components& components, const std::vecto
 /// Motion energy of what some components give together on each vertex:
 /// sum over frames of |sum over k of w_k c_k^(i)|^2 (N).
 Eigen::VectorXd energy_on_vertices(const Components& components, const std::vector<int>& some) {
+  fix_product_blocking();
   const Eigen::MatrixXd weights = components.weights(Eigen::all, some);
   const Eigen::MatrixXd gram = weights.transpose() * weights;
   Eigen::VectorXd energy(components.vertices());

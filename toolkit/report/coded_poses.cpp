@@ -4,6 +4,7 @@
 #include <cmath>
 #include <memory>
 
+#include "toolkit/mesh/product_blocking.h"
 #include "toolkit/splocs/time_basis.h"
 
 namespace mimetra {
@@ -107,6 +108,7 @@ QuantizedPoses quantized(const MeshSequence& sequence, const std::vector<int>& f
 
 std::optional<MixedPoses> mixed(const MeshSequence& sequence, const std::vector<int>& frames,
                                 Eigen::Index most, int threads) {
+  fix_product_blocking();
   constexpr double kOffByBasis = 1. / 4, kOffByRounding = 1. / 8;  // root mean squares, in steps
   const Grid grid = grid_of(sequence, frames);
   const Reduction reduction(sequence.vertices(), threads);
