@@ -32,6 +32,8 @@ says 5 "own exists" "$samples/demo.sh" true own
 says 5 "own exists" "$samples/fit.sh" true own
 says 5 "own exists" "$samples/paraview_pictures.sh" /bin/true . own
 [ "$(cat own/file)" = dear ] || fail "a file of somebody else's is gone"
+mkdir empty
+"$samples/demo.sh" true empty >/dev/null || fail "an empty folder is refused"
 # What a run of the same script has left is replaced.
 "$samples/demo.sh" true made >/dev/null
 touch made/old

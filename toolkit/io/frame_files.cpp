@@ -292,21 +292,20 @@ std::string note_on_digits(const std::string& pattern) {
 
 FrameSeries frames_of_pattern(const std::string& pattern) {
   std::vector<fs::path> files = files_of_pattern(pattern);
-  const std::vector<fs::path> near = files_of_any_digits(pattern);
-  if (files.empty() && !near.empty()) {
-    const std::string fitting = fitting_pattern(pattern, near);
-    FrameSeries found = frames_of_pattern(fitting);
-    found.notes.push_back(pattern + ": matches no file; '" + fitting + "' is taken for it, " +
-                          near.front().filename().string() + " to " +
-                          near.back().filename().string());
-    return found;
+  std::string nothing = "matches no OBJ, PLY, OFF or STL file";
+  if (files.empty()) {
+    if (const std::vector<fs::path> near = files_of_any_digits(pattern); !near.empty()) {
+      const std::string fitting = fitting_pattern(pattern, near);
+      FrameSeries found = frames_of_pattern(fitting);
+      found.notes.push_back(pattern + ": matches no file; '" + fitting + "' is taken for it, " +
+                            near.front().filename().string() + " to " +
+                            near.back().filename().string());
+      return found;
+    }
+    const bool is_both =
+        !printf_field(pattern) && number_field(fs::path(pattern).filename().string());
+    if (is_both) nothing += "; beside '*' or '?' write '*' in the place of the number, too";
   }
-  const bool is_both =
-      !printf_field(pattern) && number_field(fs::path(pattern).filename().string());
-  const std::string nothing =
-      std::string("matches no OBJ, PLY, OFF or STL file") +
-      (files.empty() && is_both ? "; beside '*' or '?' write '*' in the place of the number, too"
-                                : "");
   FrameSeries found = series_of_pattern(mesh_files(std::move(files), pattern, nothing), pattern);
   check_one_format(found.frames, pattern, "matches");
   if (std::string note = note_on_digits(pattern); !note.empty()) {

@@ -187,6 +187,7 @@ void check_outputs(const Invocation& invocation) {
 void foresee_transfer(const Invocation& invocation) {
   check_outputs(invocation);
   const FrameSource& source = *invocation.get<FieldSequence>("source").frames;
+  warn_of_guessed_rate(invocation, invocation.input("source").name, source.times_are_known());
   const TransferOptions options = options_of(invocation);
   const auto* regions = std::get_if<GivenRegions>(&options.given);
   if (regions) check_regions(*regions, source);

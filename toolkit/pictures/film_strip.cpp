@@ -159,8 +159,9 @@ std::vector<int> margins_of(const std::vector<int>& numbers, int side) {
     return least + 1;
   };
   for (int row = 0; row < side; ++row) {
-    for (int column = 0; column < side; ++column)
+    for (int column = 0; column < side; ++column) {
       margins[index(column, row)] = margin(column, row, 1);
+    }
   }
   for (int row = side - 1; row >= 0; --row) {
     for (int column = side - 1; column >= 0; --column) {
@@ -217,8 +218,9 @@ class RowPainter {
   std::vector<TileLabel> labels(const Positions& pose, const View& view) const {
     if (numbers_.empty()) return {};
     const TriMesh mesh{pose, sequences_[row_].frames->connectivity()};
-    const MeshPainter painter(mesh);
     const MeshView from = whole_view(mesh, view);
+    if (!(from.side > 0)) return {};  // seen as one point
+    const MeshPainter painter(mesh);
     const std::vector<SeenPlace> places = painter.draw(from).places;
     std::vector<int> seen(places.size(), -1);
     for (std::size_t i = 0; i < places.size(); ++i) {
