@@ -122,7 +122,7 @@ void add_gltf_cases(std::vector<BadInput>& all) {
   add("nodes_in_a_circle", scene(R"({"mesh": 0})", R"({"mesh": 0, "children": [0]})"), 3,
       {"nodes must form a tree"});
   add("a_folder", [](const fs::path& folder) { fs::create_directory(folder / "s.glb"); }, 3,
-      {"holds no OBJ, PLY, OFF or STL file"});
+      {"holds no OBJ, PLY, OFF, STL or OM file"});
 }
 
 void add_usd_cases(std::vector<BadInput>& all) {
@@ -153,7 +153,7 @@ void add_usd_cases(std::vector<BadInput>& all) {
       {"line 2: 'references' is not read"});
   add("nested_deeply", stage("[3, 3]", std::string(100000, '[')), 3, {"nested deeper"});
   add("a_folder", [](const fs::path& folder) { fs::create_directory(folder / "s.usda"); }, 3,
-      {"holds no OBJ, PLY, OFF or STL file"});
+      {"holds no OBJ, PLY, OFF, STL or OM file"});
 }
 
 /// What scenes and VTKHDF cannot hold.

@@ -162,7 +162,7 @@ std::vector<BadInput> sequence_cases() {
                  empty_folder,
                  "info none",
                  3,
-                 {"none: holds no OBJ, PLY, OFF or STL file"}});
+                 {"none: holds no OBJ, PLY, OFF, STL or OM file"}});
   all.push_back({"missing", "frames", {}, "info nowhere", 3, {"nowhere", "no such"}});
   all.push_back({"pattern_without_match",
                  "frames",

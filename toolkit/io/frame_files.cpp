@@ -292,7 +292,7 @@ std::string note_on_digits(const std::string& pattern) {
 
 FrameSeries frames_of_pattern(const std::string& pattern) {
   std::vector<fs::path> files = files_of_pattern(pattern);
-  std::string nothing = "matches no OBJ, PLY, OFF or STL file";
+  std::string nothing = "matches no OBJ, PLY, OFF, STL or OM file";
   if (files.empty()) {
     if (const std::vector<fs::path> near = files_of_any_digits(pattern); !near.empty()) {
       const std::string fitting = fitting_pattern(pattern, near);
@@ -317,7 +317,7 @@ FrameSeries frames_of_pattern(const std::string& pattern) {
 FrameSeries frames_of_folder(const fs::path& folder) {
   const std::string name = folder.string();
   FrameSeries found = series_in_folder(
-      mesh_files(files_in(folder), name, "holds no OBJ, PLY, OFF or STL file"), folder);
+      mesh_files(files_in(folder), name, "holds no OBJ, PLY, OFF, STL or OM file"), folder);
   check_one_format(found.frames, name, "holds");
   check_one_series(found.frames, folder);
   return found;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "toolkit/io/om_file.h"
 #include "toolkit/mesh/text.h"
 
 namespace mimetra {
@@ -27,7 +28,14 @@ constexpr std::array kCodecs = {
               nullptr,
               nullptr,
               stl_frame,
-              {.rest = false, .vertex_order = false, .exact_positions = false}}};
+              {.rest = false, .vertex_order = false, .exact_positions = false}},
+    MeshCodec{MeshFormat::om,
+              read_om,
+              nullptr,
+              om_frame,
+              {.polygons = true, .texture = Texture::corners, .bare_faces = false},
+              read_om_fields,
+              om_properties}};
 
 }  // namespace
 
@@ -38,6 +46,12 @@ std::string MeshCodec::extension() const {
 const MeshCodec* mesh_codec(const std::string& extension) {
   const auto found = std::ranges::find(kCodecs, lower_case(extension), &MeshCodec::extension);
   return found == kCodecs.end() ? nullptr : &*found;
+}
+
+bool is_textured_by_vertex(const Connectivity& connectivity) {
+  const TextureCoordinates& texture = connectivity.texture;
+  return static_cast<int>(texture.coordinates.size()) == connectivity.vertices &&
+         texture.corners == connectivity.polygons.corners;
 }
 
 HeldParts parts_held_by(MeshFormat format) {

@@ -1,14 +1,17 @@
 #pragma once
 
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "toolkit/io/bytes.h"
 #include "toolkit/io/held_parts.h"
 #include "toolkit/io/mesh_formats.h"
 #include "toolkit/io/mesh_layout.h"
+#include "toolkit/mesh/fields.h"
 #include "toolkit/mesh/tri_mesh.h"
 
 /// The table of mesh formats: one reader and one writer for each, on bytes in memory. Internal to
@@ -33,6 +36,7 @@ struct MeshContent {
 MeshContent read_obj(const std::string& path, std::string_view bytes);
 MeshContent read_ply(const std::string& path, std::string_view bytes);
 MeshContent read_off(const std::string& path, std::string_view bytes);
+MeshContent read_om(const std::string& path, std::string_view bytes);
 /// The corners of all triangles, one after the other, not welded (x y z each).
 std::vector<double> read_stl_corners(const std::string& path, std::string_view bytes);
 
@@ -50,6 +54,12 @@ MeshFrame obj_frame(const Connectivity& connectivity, bool double_precision);
 MeshFrame ply_frame(const Connectivity& connectivity, bool double_precision);
 MeshFrame off_frame(const Connectivity& connectivity, bool double_precision);
 MeshFrame stl_frame(const Connectivity& connectivity, bool double_precision);
+/// Throws MismatchError that names a vertex or faces which half-edges cannot hold.
+MeshFrame om_frame(const Connectivity& connectivity, bool double_precision);
+
+/// What ends OpenMesh's files: fields as properties, and a last chunk. Throws MismatchError that
+/// names a field which they cannot hold.
+std::string om_properties(const std::vector<Field>& fields, const Connectivity& connectivity);
 
 /// A format, declared once.
 struct MeshCodec {
@@ -62,6 +72,9 @@ struct MeshCodec {
   MeshFrame (*frame)(const Connectivity& connectivity, bool double_precision);
   /// In its files; a rest pose stands beside them.
   HeldParts holds;
+  /// Fields in a file, and the bytes that end it with them; null for a format without.
+  std::vector<Field> (*fields)(const std::filesystem::path& path, const Connectivity&) = nullptr;
+  std::string (*properties)(const std::vector<Field>& fields, const Connectivity&) = nullptr;
 
   /// ".ply".
   std::string extension() const;
@@ -83,5 +96,21 @@ bool fits_single_precision(const TextureCoordinates& texture);
 /// A line "x y z" for each vertex, with `before` in front of it.
 std::string position_lines(std::string_view before, const PositionsView& positions,
                            bool double_precision);
+
+/// Texture coordinates stand on vertices where each has one of its own number, else on corners.
+bool is_textured_by_vertex(const Connectivity& connectivity);
+
+/// x y z of each vertex, least significant byte first.
+template <typename Scalar>
+std::string position_bytes(const PositionsView& positions) {
+  std::string bytes(sizeof(Scalar) * static_cast<std::size_t>(positions.size()), '\0');
+  char* at = bytes.data();
+  for (Eigen::Index vertex = 0; vertex < positions.rows(); ++vertex) {
+    for (int axis = 0; axis < 3; ++axis, at += sizeof(Scalar)) {
+      put_little_endian(at, static_cast<Scalar>(positions(vertex, axis)));
+    }
+  }
+  return bytes;
+}
 
 }  // namespace mimetra

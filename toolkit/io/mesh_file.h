@@ -8,6 +8,7 @@
 
 #include "toolkit/io/held_parts.h"
 #include "toolkit/io/mesh_formats.h"
+#include "toolkit/mesh/fields.h"
 #include "toolkit/mesh/tri_mesh.h"
 
 namespace mimetra {
@@ -15,8 +16,9 @@ namespace mimetra {
 class MeshLayout;
 struct MeshFrame;
 
-/// Reads one mesh by its extension: .obj, .ply (ascii, binary little and big endian), .off, .stl
-/// (ascii and binary; corners at one place become one vertex, in order of first use). Vertices and
+/// Reads one mesh by its extension: .obj, .ply (ascii, binary little and big endian), .off, .om
+/// (OpenMesh's own), .stl (ascii and binary; corners at one place become one vertex, in order of
+/// first use). Vertices and
 /// polygons keep the file's order and count, whatever the surface looks like. Throws IoError.
 TriMesh read_mesh(const std::filesystem::path& path);
 
@@ -62,12 +64,15 @@ struct MeshWriteOptions {
   /// Extension (".ply") of the format to write; empty for the path's own. For paths whose extension
   /// says nothing, such as PendingOutput's.
   std::string extension = {};
+  /// As properties of .om; of other formats none are written.
+  std::vector<Field> fields = {};
 };
 
 /// Writes one mesh by its extension with its own polygons: .obj (with texture coordinates and
 /// groups; not with the library of its materials, which a sequence has beside it), .ply (binary
-/// little endian, with texture coordinates), .off, .stl (binary, triangles). Throws OutputError,
-/// MismatchError for what the precision cannot hold. Not atomic: see PendingOutput.
+/// little endian, with texture coordinates), .off, .om (with texture coordinates), .stl (binary,
+/// triangles). Throws OutputError, MismatchError for what the precision or the format cannot hold.
+/// Not atomic: see PendingOutput.
 void write_mesh(const std::filesystem::path& path, const PositionsView& positions,
                 const Connectivity& connectivity, const MeshWriteOptions& = {});
 void write_mesh(const std::filesystem::path& path, const TriMesh& mesh,
@@ -77,10 +82,10 @@ void write_mesh(const std::filesystem::path& path, const TriMesh& mesh,
 /// Files may be written from several threads.
 class MeshFileWriter {
  public:
-  /// `extension` as in MeshWriteOptions; throws std::invalid_argument for one that is not a mesh
-  /// format.
+  /// `extension` and `fields` as in MeshWriteOptions; throws std::invalid_argument for one that is
+  /// not a mesh format, MismatchError for what .om cannot hold.
   MeshFileWriter(const Connectivity& connectivity, const std::string& extension,
-                 bool double_precision = false);
+                 bool double_precision = false, const std::vector<Field>& fields = {});
   ~MeshFileWriter();
 
   /// Writes what write_mesh() writes. Throws OutputError; MismatchError that names a vertex whose

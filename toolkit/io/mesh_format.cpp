@@ -1,5 +1,6 @@
 #include "toolkit/io/frame_sequence.h"
 #include "toolkit/io/material_library.h"
+#include "toolkit/io/mesh_codecs.h"
 #include "toolkit/io/mesh_file.h"
 #include "toolkit/io/sequence_format.h"
 #include "toolkit/io/sequence_parts.h"
@@ -24,6 +25,7 @@ class MeshSink : public FrameSink {
         target_(target),
         extra_(extra),
         double_precision_(options.double_precision),
+        fields_(options.fields),
         outputs_(options.overwrite, options.inputs, options.together),
         path_(outputs_.add(target, PendingOutput::Kind::file)) {
     if (lower_extension(target) != ".obj" || !header.connectivity->materials) return;
@@ -42,7 +44,8 @@ class MeshSink : public FrameSink {
     const bool far_out = needs_double(pose, extent(header_.rest));
     write_mesh(path_, pose, *header_.connectivity,
                {.double_precision = double_precision_ || far_out,
-                .extension = target_.extension().string()});
+                .extension = target_.extension().string(),
+                .fields = fields_});
   }
 
   std::vector<fs::path> commit() override {
@@ -58,6 +61,7 @@ class MeshSink : public FrameSink {
   fs::path target_;
   ExtraFiles extra_;
   bool double_precision_;
+  std::vector<Field> fields_;
   PendingOutputs outputs_;
   fs::path path_;
   /// Of its materials; empty where none is written.
@@ -88,7 +92,9 @@ SequenceFormat mesh_format(MeshFormat format) {
           SequenceFormat::Precision::single_or_double,
           open_mesh,
           begin_mesh,
-          holds};
+          holds,
+          nullptr,
+          mesh_codec('.' + name)->fields};
 }
 
 }  // namespace mimetra

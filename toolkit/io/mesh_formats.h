@@ -6,7 +6,7 @@
 
 namespace mimetra {
 
-enum class MeshFormat { ply, obj, off, stl };
+enum class MeshFormat { ply, obj, off, stl, om };
 
 /// As people choose it; with a dot before it, its extension.
 constexpr std::string_view choice_name(MeshFormat value) {
@@ -19,6 +19,8 @@ constexpr std::string_view choice_name(MeshFormat value) {
       return "off";
     case MeshFormat::stl:
       return "stl";
+    case MeshFormat::om:
+      return "om";
   }
   return {};
 }

@@ -3,6 +3,7 @@
 #include <charconv>
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 
 #include "toolkit/io/binary_file.h"
 #include "toolkit/io/mesh_codecs.h"
@@ -25,12 +26,14 @@ char* put_shortest(char* text, Number value) {
 }  // namespace
 
 MeshFileWriter::MeshFileWriter(const Connectivity& connectivity, const std::string& extension,
-                               bool double_precision)
+                               bool double_precision, const std::vector<Field>& fields)
     : vertices_(connectivity.vertices),
       single_precision_(!double_precision || lower_case(extension) == ".stl") {
   const MeshCodec* codec = mesh_codec(extension);
   if (!codec) throw std::invalid_argument(unknown_mesh_extension(lower_case(extension)));
-  frame_ = std::make_unique<const MeshFrame>(codec->frame(connectivity, double_precision));
+  MeshFrame frame = codec->frame(connectivity, double_precision);
+  if (codec->properties) frame.after += codec->properties(fields, connectivity);
+  frame_ = std::make_unique<const MeshFrame>(std::move(frame));
 }
 
 MeshFileWriter::~MeshFileWriter() = default;
@@ -59,7 +62,8 @@ void write_mesh(const fs::path& path, const PositionsView& positions,
   if (!is_mesh_extension(extension)) {
     throw OutputError(path.string(), unknown_mesh_extension(extension));
   }
-  MeshFileWriter(connectivity, extension, options.double_precision).write(path, positions);
+  MeshFileWriter(connectivity, extension, options.double_precision, options.fields)
+      .write(path, positions);
 }
 
 void write_mesh(const fs::path& path, const TriMesh& mesh, const MeshWriteOptions& options) {

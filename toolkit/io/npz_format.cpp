@@ -179,20 +179,20 @@ std::string npy_bytes(const Connectivity& connectivity) {
 }
 
 /// A file that goes with this.
-struct ScratchFile {
+struct FileBeside {
   fs::path path;
 
-  explicit ScratchFile(const fs::path& target) {
+  explicit FileBeside(const fs::path& target) {
     std::error_code error;
     path = make_temporary_beside(target, OutputKind::file, error);
     if (error) throw OutputError(target.string(), "cannot be written: " + error.message());
   }
-  ~ScratchFile() {
+  ~FileBeside() {
     std::error_code gone;
     fs::remove(path, gone);
   }
-  ScratchFile(const ScratchFile&) = delete;
-  ScratchFile& operator=(const ScratchFile&) = delete;
+  FileBeside(const FileBeside&) = delete;
+  FileBeside& operator=(const FileBeside&) = delete;
 };
 
 /// The positions go to a file of their own first, since an archive has one member after the other.
@@ -251,7 +251,7 @@ class NpzSink : public FrameSink {
   std::vector<fs::path> extra_files_;
   PendingOutputs outputs_;
   fs::path archive_;
-  ScratchFile scratch_;
+  FileBeside scratch_;
   PointCacheTarget positions_;
 };
 

@@ -6,13 +6,6 @@
 namespace mimetra {
 namespace {
 
-/// Texture coordinates stand on vertices where each has one of its own number, else on corners.
-bool is_textured_by_vertex(const Connectivity& connectivity) {
-  const TextureCoordinates& texture = connectivity.texture;
-  return static_cast<int>(texture.coordinates.size()) == connectivity.vertices &&
-         texture.corners == connectivity.polygons.corners;
-}
-
 bool is_textured_by_corner(const Connectivity& connectivity) {
   return !connectivity.texture.coordinates.empty() && !is_textured_by_vertex(connectivity);
 }
@@ -44,18 +37,6 @@ std::string header(const Connectivity& connectivity, bool double_precision) {
     text += "property list " + count + ' ' + scalar + " texcoord\n";
   }
   return text + "end_header\n";
-}
-
-template <typename Scalar>
-std::string position_bytes(const PositionsView& positions) {
-  std::string bytes(sizeof(Scalar) * static_cast<std::size_t>(positions.size()), '\0');
-  char* at = bytes.data();
-  for (Eigen::Index vertex = 0; vertex < positions.rows(); ++vertex) {
-    for (int axis = 0; axis < 3; ++axis, at += sizeof(Scalar)) {
-      put_little_endian(at, static_cast<Scalar>(positions(vertex, axis)));
-    }
-  }
-  return bytes;
 }
 
 /// x y z s t of each vertex.

@@ -19,8 +19,8 @@ struct SequenceRead {
   std::vector<std::string> notes = {};
 };
 
-/// Opens `text`: a directory, glob or printf pattern of OBJ/PLY/OFF/STL files in natural order (2
-/// before 10), a file in one of sequence_formats(), or a model with weights; a model without
+/// Opens `text`: a directory, glob or printf pattern of OBJ/PLY/OFF/STL/OM files in natural order
+/// (2 before 10), a file in one of sequence_formats(), or a model with weights; a model without
 /// weights is its neutral, and MODEL@NAME.fit.json the performance that was fitted. The rest pose
 /// of a directory or of a file without faces is NAME.rest.ply where that stands beside it; its
 /// faces are those of `topology` or NAME.topology.ply.

@@ -7,6 +7,7 @@
 
 #include "toolkit/io/held_parts.h"
 #include "toolkit/io/sequence_options.h"
+#include "toolkit/mesh/fields.h"
 
 namespace mimetra {
 
@@ -34,6 +35,8 @@ struct SequenceFormat {
                                                         const std::filesystem::path& target,
                                                         const SequenceWriteOptions&,
                                                         const ExtraFiles&) = nullptr;
+  /// The fields on its mesh; null for a format that has no place for any.
+  std::vector<Field> (*fields)(const std::filesystem::path&, const Connectivity&) = nullptr;
 };
 
 /// All formats, in the order in which lists have them.

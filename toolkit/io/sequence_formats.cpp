@@ -21,7 +21,8 @@ const std::vector<SequenceFormat>& sequence_formats() {
                                                       mesh_format(MeshFormat::ply),
                                                       mesh_format(MeshFormat::obj),
                                                       mesh_format(MeshFormat::off),
-                                                      mesh_format(MeshFormat::stl)};
+                                                      mesh_format(MeshFormat::stl),
+                                                      mesh_format(MeshFormat::om)};
   return formats;
 }
 

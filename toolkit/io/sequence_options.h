@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "toolkit/io/mesh_formats.h"
+#include "toolkit/mesh/fields.h"
 #include "toolkit/mesh/frame_source.h"
 #include "toolkit/mesh/option.h"
 #include "toolkit/mesh/progress.h"
@@ -66,6 +67,8 @@ struct SequenceWriteOptions {
   /// precision in arrays.
   bool double_precision = false;
   bool single_precision = false;
+  /// Written on the mesh where SequenceFormat::fields reads them back.
+  std::vector<Field> fields = {};
   bool overwrite = false;
   /// Files and folders that were read, which must stay.
   std::vector<std::filesystem::path> inputs = {};

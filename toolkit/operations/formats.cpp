@@ -25,11 +25,22 @@ using Paths = std::vector<std::filesystem::path>;
 
 namespace {
 
+/// Throws MismatchError for regions without a mesh.
+void check_shown(const FieldSequence& regions, const std::filesystem::path& target) {
+  if (regions.frames->frames() > 0) return;
+  throw MismatchError(target.string() +
+                      ": the regions come without a mesh to show them on; write .json or .csv");
+}
+
 ReadValue read_sequence_data(const std::string& text, const ReadRequest& request) {
   SequenceSource source = sequence_parameters().read(request.parameters);
   source.threads = request.threads;
   source.progress = request.progress;
-  const auto value_of = [&text](FieldSequence sequence, auto& read) -> ReadValue {
+  const auto value_of = [&](FieldSequence sequence, auto& read) -> ReadValue {
+    const SequenceFormat* format = sequence_format(text);
+    if (request.fields && format && format->fields && std::filesystem::is_regular_file(text)) {
+      sequence.fields = format->fields(text, sequence.frames->connectivity());
+    }
     return {{text, std::move(sequence), {.model_driven = read.model_driven}},
             std::move(read.files),
             std::move(read.notes)};
@@ -49,8 +60,20 @@ Paths write_sequence_data(const Data& data, const WriteRequest& request,
   options.together = request.together;
   options.threads = request.threads;
   options.progress = request.progress;
-  return write_sequence(*std::get<FieldSequence>(data).frames, request.target, options,
-                        request.extra);
+  const auto& sequence = std::get<FieldSequence>(data);
+  options.fields = sequence.fields;
+  return write_sequence(*sequence.frames, request.target, options, request.extra);
+}
+
+/// The rest pose with the fields, as one mesh.
+Paths write_om_regions(const Data& data, const WriteRequest& request) {
+  const FieldSequence& shown = std::get<RegionData>(data).fields;
+  check_shown(shown, request.target);
+  const FrameSource& frames = *shown.frames;
+  const Frames rest = frames.rest().reshaped<Eigen::RowMajor>().transpose();
+  return write_sequence_data(
+      FieldSequence(MeshSequence(frames.shared_connectivity(), rest), shown.fields), request,
+      mesh_writing_parameters().read(request.parameters));
 }
 
 SequenceWriteOptions vtkhdf_options(const WriteRequest& request) {
@@ -71,10 +94,7 @@ Paths write_vtkhdf_sequence(const Data& data, const WriteRequest& request) {
 
 Paths write_vtkhdf_regions(const Data& data, const WriteRequest& request) {
   const FieldSequence& shown = std::get<RegionData>(data).fields;
-  if (shown.frames->frames() == 0) {
-    throw MismatchError(request.target.string() +
-                        ": the regions come without a mesh to show them on; write .json or .csv");
-  }
+  check_shown(shown, request.target);
   return write_vtkhdf(shown, request.target, vtkhdf_options(request), request.extra);
 }
 
@@ -208,7 +228,8 @@ constexpr auto kAvatar = "VRM avatar, read as glTF";
 void add_sequence_formats(OperationTable& table) {
   const auto add = [&table](std::string name, std::vector<std::string> extensions,
                             const BoundParameters<SequenceWriteOptions>& writing,
-                            std::function<HeldParts(const Parameters&)> holds) {
+                            std::function<HeldParts(const Parameters&)> holds,
+                            bool has_fields = false) {
     table.add(Format{.name = std::move(name),
                      .kind = DataKind::sequence,
                      .extensions = std::move(extensions),
@@ -220,11 +241,13 @@ void add_sequence_formats(OperationTable& table) {
                            return write_sequence_data(data, request,
                                                       writing.read(request.parameters));
                          },
+                     .fields = has_fields,
                      .holds = std::move(holds)});
   };
   for (const SequenceFormat& format : sequence_formats()) {
-    add(format.name, format.extensions, writing_parameters(format.precision),
-        [held = format.holds](const Parameters&) { return held; });
+    add(
+        format.name, format.extensions, writing_parameters(format.precision),
+        [held = format.holds](const Parameters&) { return held; }, format.fields != nullptr);
   }
   add("folder of meshes", {Format::kFolder}, folder_writing_parameters(),
       [](const Parameters& options) {
@@ -330,6 +353,11 @@ void add_formats(OperationTable& table) {
                    .extensions = {".vtkhdf"},
                    .writing = mesh_writing_parameters().declared(),
                    .write = write_vtkhdf_regions});
+  table.add(Format{.name = "OM mesh with region properties",
+                   .kind = DataKind::regions,
+                   .extensions = {".om"},
+                   .writing = mesh_writing_parameters().declared(),
+                   .write = write_om_regions});
   table.add(Format{.name = "SPLOCS components (HDF5)",
                    .kind = DataKind::components,
                    .extensions = {".h5", ".hdf5"},
