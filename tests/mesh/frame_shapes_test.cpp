@@ -97,6 +97,20 @@ TEST_F(FrameShapes, WithAVertexThatStraysInOneFrameAreSpiked) {
   EXPECT_THAT(odd().spiked, IsEmpty());
 }
 
+TEST_F(FrameShapes, WithVerticesThatStrayForAWhileAreSpiked) {
+  for (const int f : {2, 3, 4, 5}) poses_[f].row(17) += Eigen::RowVector3d(0, 0.4 + 0.01 * f, 0);
+  for (const int f : {3, 4}) poses_[f].row(20) += Eigen::RowVector3d(0.42, 0, 0);
+  EXPECT_THAT(odd().spiked, ElementsAre(2, 3, 4, 5));
+}
+
+TEST_F(FrameShapes, WithAVertexThatGlidesAwayAndBackAreNotSpiked) {
+  const double away[] = {0, 0.1, 0.2, 0.3, 0.4, 0.3, 0.2, 0.1, 0};
+  for (std::size_t f = 0; f < poses_.size(); ++f) {
+    poses_[f].row(17) += Eigen::RowVector3d(0, away[f], 0);
+  }
+  EXPECT_THAT(odd().spiked, IsEmpty());
+}
+
 TEST_F(FrameShapes, AreDescribedWithTheVertexThatStrays) {
   poses_[3].row(17) += Eigen::RowVector3d(0, 0.4, 0);
   Frames frames(9, ball_.positions.size());

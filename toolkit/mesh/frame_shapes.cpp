@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include <Eigen/LU>
 
@@ -148,18 +149,59 @@ std::vector<int> jumping_frames(const std::vector<FrameShape>& shapes, double si
   return jumping;
 }
 
-/// Whether a vertex that strays in a frame strays by so much less in the frames beside it.
-bool strays_alone(const FrameSource& sequence, const RestShape& rest, int frame,
-                  const FrameShape& shape, double least) {
-  for (const int beside : {frame - 1, frame + 1}) {
-    if (beside < 0 || beside >= sequence.frames()) continue;
-    const FrameBlock block(sequence, beside, 1);
-    if (rest.strays.distances(block.frame(0))[shape.stray_vertex] > shape.stray - least) {
-      return false;
+/// Frames, one after the other, in which a vertex strays.
+struct StrayRun {
+  int first = 0, last = 0;
+  /// Whether it is away in these alone, from one frame to the next: a sequence that begins or ends
+  /// with more than one of them may have changed its shape for good.
+  bool is_spike = false;
+
+  bool holds(int frame) const { return first <= frame && frame <= last; }
+};
+
+/// Around a frame in which a vertex strays: those in which it does not stray by so much less.
+StrayRun stray_run(const FrameSource& sequence, const RestShape& rest, int frame,
+                   const FrameShape& shape, double least) {
+  StrayRun run{frame, frame};
+  int leaps = 0, ends = 0;
+  for (const int step : {-1, 1}) {
+    double nearer = shape.stray;
+    int& end = step < 0 ? run.first : run.last;
+    for (int f = frame + step; f >= 0 && f < sequence.frames(); f += step) {
+      const FrameBlock block(sequence, f, 1);
+      const double there = rest.strays.distances(block.frame(0))[shape.stray_vertex];
+      if (there <= shape.stray - least) {
+        ++ends;
+        if (nearer - there >= least) ++leaps;
+        break;
+      }
+      nearer = there;
+      end = f;
     }
   }
-  return sequence.frames() > 1;
+  const bool is_one = run.first == run.last;
+  run.is_spike = leaps == ends && (ends == 2 || (is_one && ends == 1));
+  return run;
 }
+
+/// By vertices that strayed before: frames are asked for in ascending order.
+class StrayRuns {
+ public:
+  StrayRuns(const FrameSource& sequence, const RestShape& rest)
+      : sequence_(sequence), rest_(rest) {}
+
+  bool is_spike(int frame, const FrameShape& shape, double least) {
+    const auto [found, is_new] = last_.try_emplace(shape.stray_vertex);
+    StrayRun& run = found->second;
+    if (is_new || !run.holds(frame)) run = stray_run(sequence_, rest_, frame, shape, least);
+    return run.is_spike;
+  }
+
+ private:
+  const FrameSource& sequence_;
+  const RestShape& rest_;
+  std::map<VertexIndex, StrayRun> last_;
+};
 
 /// "frames 7, 9 are WHAT".
 std::string told(const std::vector<int>& frames, const std::string& what) {
@@ -184,6 +226,7 @@ OddFrames odd_frames(const FrameSource& sequence, const std::vector<FrameShape>&
   const RestShape rest(sequence);
   const FrameShape of_rest = shape_of(RestShape::view_of(sequence.rest()), rest);
   const double size = sequence.diameter();
+  StrayRuns runs(sequence, rest);
   odd.jumping = jumping_frames(shapes, size);
   for (std::size_t f = 0; f < shapes.size(); ++f) {
     const FrameShape& shape = shapes[f];
@@ -196,7 +239,7 @@ OddFrames odd_frames(const FrameSource& sequence, const std::vector<FrameShape>&
       odd.torn.push_back(frame);
     } else if (rest.triangles.rows() > 0 &&
                rest.strays.is_torn_off(shape.stray_vertex, shape.stray, size, unit) &&
-               strays_alone(sequence, rest, frame, shape, unit * StrayVertices::kStray * size)) {
+               runs.is_spike(frame, shape, unit * StrayVertices::kStray * size)) {
       odd.spiked.push_back(frame);
     }
   }
@@ -226,7 +269,7 @@ std::vector<std::string> described(const OddFrames& odd, const std::vector<Frame
     const FrameShape& shape = of_first(odd.spiked);
     texts.push_back(told(odd.spiked, "spiked: vertex ") + std::to_string(shape.stray_vertex) +
                     " alone lies " + readable(shape.stray) +
-                    " farther from its neighbours than at rest, not so in the frames beside");
+                    " farther from its neighbours than at rest, not so before and after");
   }
   if (!odd.jumping.empty()) {
     texts.push_back(told(odd.jumping, "far from the frames before and after"));

@@ -53,8 +53,8 @@ struct OddFrames {
   /// One frame at a time: a fifth of the size away from the middle of the frames before and after,
   /// which are next to each other.
   std::vector<int> jumping;
-  /// Not torn, but a vertex is_torn_off() as it is not in the frames before and after, by a
-  /// twentieth of the size.
+  /// Not torn, but a vertex is_torn_off(), by a twentieth of the size and from one frame to the
+  /// next, and comes back so, be it many frames later.
   std::vector<int> spiked;
   double usual_spread = 0;  ///< the median
 
