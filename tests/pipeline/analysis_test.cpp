@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include "tests/pipeline/takes.h"
+#include "tests/shapes.h"
 
 namespace mimetra {
 namespace {
@@ -48,6 +49,24 @@ TEST(Analysis, AlignsARestPoseThatIsTurnedAgainstTheSource) {
   options.rest = motion.back().apply(sequence.rest());
   EXPECT_LT((analyse(source, options).components.rest - sequence.rest()).cwiseAbs().maxCoeff(),
             1e-12);
+}
+
+TEST(Analysis, NotesSeamsThatRoundingOpened) {
+  const test::Shape halves = test::both(test::grid(3, 3), test::grid(3, 3));
+  const auto notes_of = [](const Positions& positions, const Triangles& triangles,
+                           Welding welding) {
+    std::vector<std::string> said;
+    distances_along(positions, triangles, {.welding = welding, .notes = [&said](const Note& n) {
+                                             said.push_back(n.text);
+                                           }});
+    return said;
+  };
+  Positions rest = halves.positions;
+  EXPECT_THAT(notes_of(rest, halves.triangles, Welding::exact), testing::IsEmpty());
+  rest(12, 2) += 1e-8;
+  EXPECT_THAT(notes_of(rest, halves.triangles, Welding::exact),
+              testing::ElementsAre(HasSubstr("2 places of vertices within a millionth")));
+  EXPECT_THAT(notes_of(rest, halves.triangles, Welding::none), testing::IsEmpty());
 }
 
 TEST(Analysis, TakesLengthsAsSharesOrAsTheyAre) {

@@ -131,32 +131,6 @@ std::vector<int> degenerate_triangles(const Positions& positions, const Triangle
   return degenerate;
 }
 
-/// Of the places at which vertices of the surface are.
-int almost_welded(const Positions& positions, const Triangles& triangles, const Weld& weld) {
-  constexpr double kAlmost = 1e-6;
-  const double reach = kAlmost * diameter(positions, triangles);
-  // Along a line that no grid is straight to.
-  const Eigen::VectorXd along = positions * Eigen::Vector3d(1, 1.7, 2.3).normalized();
-  std::vector<VertexIndex> order;
-  for (const VertexIndex v : surface_vertices(positions, triangles)) {
-    order.push_back(weld.representative[static_cast<std::size_t>(v)]);
-  }
-  std::ranges::sort(order, {}, [&along](VertexIndex v) { return std::pair(along[v], v); });
-  order.erase(std::unique(order.begin(), order.end()), order.end());
-  const auto has_near = [&](std::ptrdiff_t i, std::ptrdiff_t step) {
-    const VertexIndex v = order[static_cast<std::size_t>(i)];
-    for (std::ptrdiff_t j = i + step; j >= 0 && j < std::ssize(order); j += step) {
-      const VertexIndex other = order[static_cast<std::size_t>(j)];
-      if (std::abs(along[other] - along[v]) > reach) break;
-      if ((positions.row(other) - positions.row(v)).norm() <= reach) return true;
-    }
-    return false;
-  };
-  int count = 0;
-  for (std::ptrdiff_t i = 0; i < std::ssize(order); ++i) count += has_near(i, 1) || has_near(i, -1);
-  return count;
-}
-
 std::vector<VertexIndex> vertices_without_face(int vertices, const Triangles& triangles) {
   std::vector<char> used(vertices, 0);
   for (const VertexIndex vertex : triangles.reshaped()) used[vertex] = 1;
@@ -188,6 +162,38 @@ ConnectedComponents connected_components(int vertices, const Triangles& triangle
   return components;
 }
 
+int almost_welded_vertices(const Positions& positions, const Triangles& triangles) {
+  const Weld weld = Weld::exact(positions);
+  constexpr double kAlmost = 1e-6;
+  const double reach = kAlmost * diameter(positions, triangles);
+  // Along a line that no grid is straight to.
+  const Eigen::VectorXd along = positions * Eigen::Vector3d(1, 1.7, 2.3).normalized();
+  std::vector<VertexIndex> order;
+  for (const VertexIndex v : surface_vertices(positions, triangles)) {
+    order.push_back(weld.representative[static_cast<std::size_t>(v)]);
+  }
+  std::ranges::sort(order, {}, [&along](VertexIndex v) { return std::pair(along[v], v); });
+  order.erase(std::unique(order.begin(), order.end()), order.end());
+  const auto has_near = [&](std::ptrdiff_t i, std::ptrdiff_t step) {
+    const VertexIndex v = order[static_cast<std::size_t>(i)];
+    for (std::ptrdiff_t j = i + step; j >= 0 && j < std::ssize(order); j += step) {
+      const VertexIndex other = order[static_cast<std::size_t>(j)];
+      if (std::abs(along[other] - along[v]) > reach) break;
+      if ((positions.row(other) - positions.row(v)).norm() <= reach) return true;
+    }
+    return false;
+  };
+  int count = 0;
+  for (std::ptrdiff_t i = 0; i < std::ssize(order); ++i) count += has_near(i, 1) || has_near(i, -1);
+  return count;
+}
+
+std::string described_almost_welded(int places) {
+  return std::to_string(places) + (places == 1 ? " place" : " places") +
+         " of vertices within a millionth of the size of another, as where rounding opened seams: "
+         "distances end there, and results come apart; give both copies one place";
+}
+
 MeshReport inspect(const Positions& positions, const Connectivity& connectivity) {
   if (positions.rows() != connectivity.vertices) {
     throw std::invalid_argument(std::to_string(positions.rows()) + " positions, expected " +
@@ -212,7 +218,7 @@ MeshReport inspect(const Positions& positions, const Connectivity& connectivity)
   report.degenerate_triangles = degenerate_triangles(positions, triangles);
   report.vertices_without_face = vertices_without_face(report.vertices, triangles);
   report.welded_vertices = weld.count;
-  report.almost_welded_vertices = almost_welded(positions, triangles, weld);
+  report.almost_welded_vertices = almost_welded_vertices(positions, triangles);
   if (positions.rows() > 0) {
     report.extent = positions.colwise().maxCoeff() - positions.colwise().minCoeff();
   }

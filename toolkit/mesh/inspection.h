@@ -1,5 +1,6 @@
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "toolkit/mesh/triangle_quality.h"
@@ -40,6 +41,13 @@ struct MeshReport {
   int almost_welded_vertices = 0;
   Eigen::Vector3d extent = Eigen::Vector3d::Zero();
 };
+
+/// MeshReport::almost_welded_vertices. Throws std::invalid_argument that names a vertex which is
+/// not finite.
+int almost_welded_vertices(const Positions& positions, const Triangles& triangles);
+
+/// What that many mean to a person; not for 0.
+std::string described_almost_welded(int places);
 
 MeshReport inspect(const Positions& positions, const Connectivity& connectivity);
 

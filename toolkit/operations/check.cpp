@@ -87,10 +87,7 @@ std::vector<std::string> mesh_warnings(const FrameSource& sequence) {
     warnings.push_back(counted(mesh.nonmanifold_edges, "edge") + " of more than two triangles");
   }
   if (mesh.almost_welded_vertices > 0) {
-    warnings.push_back(counted(mesh.almost_welded_vertices, "place") +
-                       " of vertices within a millionth of the size of another, as where rounding "
-                       "opened seams: distances end there, and results come apart; give both "
-                       "copies one place");
+    warnings.push_back(described_almost_welded(mesh.almost_welded_vertices));
   }
   if (mesh.inconsistent_edges > 0) {
     warnings.push_back(counted(mesh.inconsistent_edges, "edge") +

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "toolkit/mesh/inspection.h"
 #include "toolkit/mesh/stopwatch.h"
 #include "toolkit/mesh/surface_parts.h"
 #include "toolkit/mesh/text.h"
@@ -69,6 +70,11 @@ void note_parting(const FrameSource& sequence, const AnalysisOptions& options) {
            " vertices coincide at rest and part later (the first is vertex " +
            std::to_string(parting.front()) + "); distances pass from one to the other",
        Topic::parting_vertices);
+}
+
+int almost_welded_at(const Positions& rest, const Triangles& triangles,
+                     const DistanceOptions& options) {
+  return options.welding == Welding::exact ? almost_welded_vertices(rest, triangles) : 0;
 }
 
 DistanceOptions distance_options(const AnalysisOptions& options) {
@@ -158,6 +164,9 @@ SurfaceDistances distances_along(const Positions& rest, const Triangles& triangl
   check_options(options);
   SurfaceDistances distances(rest, triangles, weld_of(rest, options.welding), options.method,
                              options.threads);
+  if (const int places = almost_welded_at(rest, triangles, options)) {
+    note(options.notes, described_almost_welded(places));
+  }
   if (distances.degenerate_triangles() > 0) {
     note(options.notes, std::to_string(distances.degenerate_triangles()) +
                             " triangles without area were left out of the geodesic distances");

@@ -44,8 +44,9 @@ struct DistanceOptions {
   static constexpr auto declared() { return std::tuple(kMethod, kWelding); }
 };
 
-/// Distances along a mesh. Notes triangles and vertices that had to be left out. Throws
-/// std::invalid_argument as SurfaceDistances does, and for options out of range.
+/// Distances along a mesh. Notes triangles and vertices that had to be left out, and seams that
+/// rounding opened. Throws std::invalid_argument as SurfaceDistances does, and for options out of
+/// range.
 SurfaceDistances distances_along(const Positions& rest, const Triangles& triangles,
                                  const DistanceOptions& options = {});
 

@@ -293,8 +293,9 @@ Rig rig(const BlendshapeModel& source, const Target& given, std::vector<RigExamp
     note(options.notes, target.name + ": " + std::to_string(transfer.slivers()) +
                             " slivers, triangles of hardly any area, follow their neighbours");
   }
-  TargetNotes(target.name, options.notes)
-      .add_following(parts_with(transfer.following(), model), transfer.following().size());
+  const TargetNotes notes(target.name, options.notes);
+  notes.add_following(parts_with(transfer.following(), model), transfer.following().size());
+  notes.add_almost_welded(model);
   const BlendshapeModel transferred(model.shared_connectivity(), model.neutral(),
                                     {source.expressions().names, transfer.displacements()});
   check_sizes(examples, model.neutral(), target.name);

@@ -171,6 +171,7 @@ Solution solve_vertices(const Source& source, const Target& target, const Select
   solution.following_parts = parts_with(following, model);
   const TargetNotes notes(target.name, options.notes);
   notes.add_following(solution.following_parts, following.size());
+  notes.add_almost_welded(model);
   notes.add_unmoved(model.connectivity());
   notes.add_degenerate({.source = solution.degenerate_source_triangles,
                         .target = solution.degenerate_target_triangles,

@@ -2,6 +2,7 @@
 
 #include <set>
 
+#include "toolkit/mesh/inspection.h"
 #include "toolkit/mesh/surface_parts.h"
 #include "toolkit/mesh/text.h"
 
@@ -44,6 +45,12 @@ void TargetNotes::add_following(const std::vector<int>& parts, std::size_t verti
   add(std::to_string(parts.size()) + " connected parts without partner in the source (" +
       std::to_string(vertices) +
       " vertices) move rigidly with the surface around them: " + listed(names));
+}
+
+void TargetNotes::add_almost_welded(const BlendshapeModel& model) const {
+  if (const int places = almost_welded_vertices(model.neutral(), model.triangles())) {
+    add(described_almost_welded(places));
+  }
 }
 
 void TargetNotes::add_unmoved(const Connectivity& connectivity) const {

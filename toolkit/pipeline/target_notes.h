@@ -22,6 +22,8 @@ class TargetNotes {
   void add(const BlendshapeConditions& conditions) const;
   /// Connected parts, by their numbers, that follow the surface around them, and their vertices.
   void add_following(const std::vector<int>& parts, std::size_t vertices) const;
+  /// Seams that rounding opened, which nothing holds together.
+  void add_almost_welded(const BlendshapeModel& model) const;
   /// Vertices that no triangle moves, where a mesh has triangles.
   void add_unmoved(const Connectivity& connectivity) const;
 
