@@ -280,6 +280,31 @@ TEST_F(Command, AlignIsUndoneByItsManifest) {
   EXPECT_LT((before.positions() - after.positions()).cwiseAbs().maxCoeff(), 1e-12 * 15);
 }
 
+TEST_F(Command, SaysWhereAMotionIsGivenBackOrTakenOutTwice) {
+  ASSERT_EQ(run("convert head --weights take.csv -o still.npy").code, 0);
+  // Quarter turns around z.
+  const int frames = read_sequence((folder_ / "still.npy").string()).sequence.frames();
+  json motion = json::array();
+  for (int f = 0; f < frames; ++f) {
+    motion.push_back({{"rotation", {0, -1, 0, 1, 0, 0, 0, 0, 1}}, {"translation", {0, 3, f}}});
+  }
+  write("motion.json", json{{"result", {{"motion", motion}}}}.dump());
+  const std::string undo = " --undo motion.json -o ";
+  const std::string before = "before --undo gives a motion back";
+  const auto once = run("align still.npy" + undo + "turned.npy");
+  ASSERT_EQ(once.code, 0) << once.err;
+  EXPECT_THAT(once.err, Not(HasSubstr(before)));
+  EXPECT_THAT(run("align turned.npy" + undo + "twice.npy").err, HasSubstr(before));
+
+  const std::string still = "was it taken out already";
+  for (const auto& [name, twice] : {std::pair("turned.npy", false), std::pair("still.npy", true)}) {
+    const auto result = run(std::string("transfer ") + name +
+                            " head@wide=1 --align motion.json --full -o out.npy --force");
+    ASSERT_EQ(result.code, 0) << result.err;
+    EXPECT_EQ(result.err.find(still) != std::string::npos, twice) << name << '\n' << result.err;
+  }
+}
+
 TEST_F(Command, GeodesicWritesDistanceAndSupport) {
   const auto result = run("geodesic head --source 112 -o d.vtp --json");
   ASSERT_EQ(result.code, 0) << result.err;

@@ -6,6 +6,7 @@
 #include "toolkit/mesh/alignment.h"
 #include "toolkit/mesh/frame_store.h"
 #include "toolkit/mesh/text.h"
+#include "toolkit/mesh/whole_motion.h"
 #include "toolkit/operations/bound_parameters.h"
 #include "toolkit/operations/formats.h"
 #include "toolkit/operations/json.h"
@@ -68,11 +69,24 @@ struct Moved {
   std::optional<double> disagreement = {};
 };
 
+/// Says where frames that motion is to be given back to have one of the whole mesh.
+void warn_of_motion_before(const FrameSource& given, const Invocation& invocation) {
+  const WholeMotion whole =
+      whole_motion(given, {.threads = invocation.threads, .ranks = invocation.ranks});
+  if (!whole.moves()) return;
+  invocation.warn(invocation.input("sequence").name + ": turns by up to " +
+                  readable(whole.angle, 3) + " degrees and moves by up to " +
+                  readable(whole.shift, 3) +
+                  " against the rest pose before --undo gives a motion back: it is for frames that "
+                  "the motion was taken out of");
+}
+
 Moved moved(const Invocation& invocation) {
   std::shared_ptr<const FrameSource> given = invocation.get<FieldSequence>("sequence").frames;
   AlignCall call = align_parameters().read(invocation.parameters);
   if (call.undo) {
     std::vector<RigidTransform> motion = read_motion(call.undo->string(), given->frames());
+    warn_of_motion_before(*given, invocation);
     return {with_motion(given, motion), std::move(motion)};
   }
   given = stored(given, {.threads = invocation.threads,

@@ -206,9 +206,26 @@ bool note_whole_motion(const MotionChoice& choice, const Source& source,
   return true;
 }
 
+/// Says where frames still move as a whole without the motion that was given; whether they do.
+bool note_given_motion(const Source& source, const SourceOptions& options) {
+  const WholeMotion whole = whole_motion(*without_motion(source.sequence, source.motion),
+                                         {.threads = options.threads, .ranks = options.ranks});
+  if (!whole.moves()) return false;
+  note(options.notes,
+       options.name + ": without the motion that is given the head turns by up to " +
+           readable(whole.angle, 3) + " degrees and moves by up to " + readable(whole.shift, 3) +
+           " against the rest pose, " + in_percent(1 - whole.left_by_motion) +
+           " of all motion, which counts as deformation; was it taken out already, or is it that "
+           "of other frames?");
+  return true;
+}
+
 /// Says what nobody asked for: that motion was taken out, or that the head moves and it was not;
 /// whether frames are elsewhere than the rest pose.
 bool note_motion(const MotionChoice& choice, const Source& source, const SourceOptions& options) {
+  if (std::holds_alternative<std::vector<RigidTransform>>(choice.motion)) {
+    return note_given_motion(source, options);
+  }
   if (choice.is_asked || options.model_driven) return false;
   if (!takes_out(choice.motion)) return note_whole_motion(choice, source, options);
   const HeadMotionTaken& motion = source.head_motion;
