@@ -30,6 +30,7 @@
 #include "toolkit/operations/formats.h"
 #include "toolkit/operations/json.h"
 #include "toolkit/operations/sequence_parameters.h"
+#include "toolkit/operations/times_text.h"
 
 namespace mimetra {
 
@@ -272,6 +273,9 @@ Outcome run(const Invocation& invocation) {
   check_images(invocation);
   const FitCall call = fit_parameters().read(invocation.parameters);
   check_fit(call.fit);
+  if (track.frames() > 1) {
+    warn_of_guessed_rate(invocation, landmarks.name, track.times_are_known);
+  }
   const LandmarkMapping mapping = mapping_of(call, invocation.input("model"));
   MappedLandmarks mapped =
       naming_landmarks(invocation, [&] { return map_landmarks(track, mapping); });

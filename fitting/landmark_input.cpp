@@ -168,6 +168,7 @@ void set_times(LandmarksRead& read, const std::string& text, const std::vector<i
     if (!odd.empty()) read.notes.push_back(text + ": " + odd);
     return;
   }
+  track.times_are_known = source.fps.has_value();
   track.times.resize(track.frames());
   for (int f = 0; f < track.frames(); ++f) {
     track.times[f] = frames[static_cast<std::size_t>(f)] * track.step /

@@ -257,7 +257,8 @@ LandmarkTrack landmarks_of(GivenArrays& given) {
   track.names = given.strings("names", "L");
   if (track.names.empty()) throw IoError(given.subject(), "needs a landmark or more");
   const int frames = given.size('F');
-  track.times = given.has("times")
+  track.times_are_known = given.has("times");
+  track.times = track.times_are_known
                     ? times_of(given)
                     : Eigen::VectorXd::LinSpaced(frames, 0, (frames - 1) / kDefaultFramesPerSecond);
   if (given.has("confidence")) track.confidence = given.vector("confidence", "F");

@@ -29,13 +29,14 @@ class Fit : public test::CommandTest {
   }
 
   /// A track with all digits.
-  std::string csv_of(const Frames& points) const {
+  std::string csv_of(const Frames& points, bool with_times = true) const {
     std::ostringstream text;
     text.precision(17);
-    text << "frame,time";
+    text << (with_times ? "frame,time" : "frame");
     for (int i = 0; i < points.cols() / 2; ++i) text << ",x" << i << ",y" << i;
     for (int f = 0; f < points.rows(); ++f) {
-      text << '\n' << f << ',' << clip_.times[f];
+      text << '\n' << f;
+      if (with_times) text << ',' << clip_.times[f];
       for (const double value : points.row(f)) text << ',' << value;
     }
     return text.str() + '\n';
@@ -53,6 +54,19 @@ class Fit : public test::CommandTest {
 
   test::SyntheticClip clip_;
 };
+
+TEST_F(Fit, SaysWhereSmoothnessIsATimeAndTheTrackHasNone) {
+  write("timeless.csv", csv_of(clip_.points, false));
+  const std::string said = "--smoothness takes its frames for 30 a second";
+  const std::string line = "fit timeless.csv --model face --force -o a.npy ";
+  const auto result = run(line + "--smoothness 0.1");
+  ASSERT_EQ(result.code, 0) << result.err;
+  EXPECT_THAT(result.err, HasSubstr(said));
+  EXPECT_THAT(run(line + "--smoothness 0.1 --fps 25").err, testing::Not(HasSubstr(said)));
+  EXPECT_THAT(run(line).err, testing::Not(HasSubstr(said)));
+  EXPECT_THAT(run("fit track.csv --model face -o b.npy --smoothness 0.1").err,
+              testing::Not(HasSubstr(said)));
+}
 
 TEST_F(Fit, WritesTheSequenceAndItsCoefficientsBeside) {
   const auto result = run("fit track.csv --model face -o take/");

@@ -19,6 +19,8 @@ struct LandmarkTrack {
   double step = 1;
   /// What was noticed while reading: numbers of frames that are missing.
   std::vector<std::string> notes = {};
+  /// Whether `times` tell when the frames were taken, not at a rate that is guessed.
+  bool times_are_known = true;
 
   int landmarks() const { return static_cast<int>(names.size()); }
   int frames() const { return static_cast<int>(points.rows()); }
