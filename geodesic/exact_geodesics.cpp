@@ -1,5 +1,7 @@
 #include <algorithm>
+#include <array>
 #include <limits>
+#include <set>
 #include <vector>
 
 #include <OpenMesh/Core/Mesh/TriMesh_ArrayKernelT.hh>
@@ -41,9 +43,23 @@ class ExactComponent {
   std::vector<std::vector<Mesh::VertexHandle>> copies_of_;
 };
 
+/// The first of each three corners. Paths gain nothing by a face that lies in the place of another,
+/// and around each such pair all three vertices would be passages between sheets.
+Triangles without_doubles(const Triangles& triangles) {
+  std::vector<Eigen::Index> kept;
+  std::set<std::array<VertexIndex, 3>> known;
+  for (Eigen::Index t = 0; t < triangles.rows(); ++t) {
+    std::array<VertexIndex, 3> corners = {triangles(t, 0), triangles(t, 1), triangles(t, 2)};
+    std::ranges::sort(corners);
+    if (known.insert(corners).second) kept.push_back(t);
+  }
+  return triangles(kept, Eigen::all);
+}
+
 ExactComponent::ExactComponent(const SurfaceComponent& component)
     : copies_of_(component.positions.rows()) {
-  const GluedSurface surface = glued(component.positions.rows(), component.triangles);
+  const GluedSurface surface =
+      glued(component.positions.rows(), without_doubles(component.triangles));
   mesh_ = mesh_of<Mesh>(surface, component.positions);
   row_of_ = surface.vertex;
   for (const auto vertex : mesh_.vertices()) copies_of_[row_of_[vertex.idx()]].push_back(vertex);

@@ -59,6 +59,20 @@ TEST(ExactGeodesics, AreTheNearestOfSeveralSources) {
       kRounding);
 }
 
+TEST(ExactGeodesics, AreNotChangedByDoubledFaces) {
+  const Shape once = test::bumpy_sphere(3);
+  Shape twice = once;
+  const Eigen::Index count = once.triangles.rows();
+  twice.triangles.conservativeResize(count + count / 2, 3);
+  for (Eigen::Index t = 0; t < count / 2; ++t) {
+    // Of either side, from any corner.
+    const auto corners = once.triangles.row(2 * t);
+    twice.triangles.row(count + t) << corners[1], corners[t % 2 == 0 ? 2 : 0],
+        corners[t % 2 == 0 ? 0 : 2];
+  }
+  EXPECT_EQ(exact_on(twice).distances(11), exact_on(once).distances(11));
+}
+
 TEST(ExactGeodesics, AreInfiniteOnOtherComponents) {
   const Shape two = test::both(test::octahedron(), test::octahedron());
   const double infinity = std::numeric_limits<double>::infinity();
