@@ -5,6 +5,8 @@
 #include "toolkit/io/pending_output.h"
 #include "toolkit/io/sequence_companions.h"
 #include "toolkit/mesh/stopwatch.h"
+#include "toolkit/mesh/suggestion.h"
+#include "toolkit/mesh/text.h"
 #include "toolkit/operations/input_files.h"
 #include "toolkit/operations/loading.h"
 #include "toolkit/operations/memory_use.h"
@@ -51,6 +53,7 @@ Call::Call(const OperationTable& table, CallRequest request)
     : table_(table), request_(std::move(request)) {
   check_inputs();
   check_parameters_of_files();
+  check_words();
   check_outputs();
 }
 
@@ -106,6 +109,20 @@ void Call::check_parameters_of_files() const {
     throw UsageError("parameter '" + parameter.name + "' is about files (" + parameter.help +
                      "), and nothing that it applies to is read or written; leave "
                      "it out");
+  }
+}
+
+/// Throws IoError for what is given where a word could be, and is neither one nor a path.
+void Call::check_words() const {
+  for (const Parameter& parameter : request_.operation->parameters) {
+    if (parameter.kind != ParameterKind::file || parameter.choices.empty()) continue;
+    for (const std::string& text : request_.parameters.paths(parameter.name)) {
+      std::error_code unreadable;
+      if (std::filesystem::exists(text, unreadable) || unreadable) continue;
+      throw IoError(text, "no such file; " + parameter.option() + " takes " +
+                              joined(parameter.choices, ", ", " or ") + ", or a file" +
+                              suggestion_for(text, parameter.choices));
+    }
   }
 }
 

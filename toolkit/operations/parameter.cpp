@@ -52,11 +52,6 @@ std::string range_text(const Parameter& parameter) {
   return "";
 }
 
-[[noreturn]] void refuse(const Parameter& parameter, const std::string& expected,
-                         const std::string& found) {
-  throw UsageError(parameter.option() + ": expected " + expected + ", found '" + found + "'");
-}
-
 template <typename Number>
 std::optional<Number> parse_number(std::string_view text) {
   Number number{};
@@ -74,6 +69,24 @@ std::optional<double> parse_ratio(std::string_view text) {
   const auto divisor = parse_number<double>(text.substr(slash + 1));
   if (!divisor || *divisor == 0) return {};
   return *number / *divisor;
+}
+
+/// "; 80 % is 0.8" where a share was likely meant in percent; "" elsewhere.
+std::string percent_hint(const Parameter& parameter, std::string_view found) {
+  const bool is_share = parameter.kind == ParameterKind::number && parameter.maximum == 1;
+  if (!is_share && parameter.kind != ParameterKind::length) return "";
+  const bool is_percent = found.ends_with('%');
+  if (is_percent) found.remove_suffix(1);
+  constexpr double kPercent = 100;
+  const auto number = parse_number<double>(found);
+  if (!number || !(*number > (is_percent ? 0 : 1) && *number <= kPercent)) return "";
+  return "; " + shortest(*number) + " % is " + shortest(*number / kPercent);
+}
+
+[[noreturn]] void refuse(const Parameter& parameter, const std::string& expected,
+                         const std::string& found) {
+  throw UsageError(parameter.option() + ": expected " + expected + ", found '" + found + "'" +
+                   percent_hint(parameter, found));
 }
 
 std::string expected_text(const Parameter& parameter) {
