@@ -82,6 +82,26 @@ TEST(CategoryColors, LeaveWhatHasNoCategoryAsItIs) {
   EXPECT_EQ(colors[1], colors[2]);
 }
 
+TEST(RegionColorField, HasTheColorOfMostCornersOnEachFace) {
+  // Two quads and two triangles in a row.
+  const Connectivity connectivity = Connectivity::from_polygons(
+      9, {{0, 1, 4, 3, 1, 2, 5, 4, 3, 4, 6, 4, 7, 8}, {0, 4, 8, 11, 14}});
+  const std::vector<int> labels = {0, 2, 2, 0, 2, 2, -1, -1, -1};
+  const Field region{"region", Field::Location::vertices,
+                     Eigen::Map<const Eigen::VectorXi>(labels.data(), 9).cast<double>(), true};
+  const std::vector<Color> colors = category_colors(labels, connectivity.triangles);
+  const Field found = region_color_field(region, connectivity);
+  EXPECT_EQ(found.name, "region_color");
+  EXPECT_EQ(found.location, Field::Location::triangles);
+  // A draw between 0 and 2, region 2, a draw of three, nothing.
+  const std::vector<Color> expected = {colors[0], colors[1], kClay, kClay};
+  ASSERT_EQ(found.values.rows(), 6);
+  for (int t = 0; t < 6; ++t) {
+    const Color& color = expected[std::size_t(connectivity.polygon_of_triangle[std::size_t(t)])];
+    EXPECT_EQ(found.values.row(t), Eigen::RowVector3d(color.red, color.green, color.blue)) << t;
+  }
+}
+
 TEST(ColorsByCategory, AreThoseOfTheVertices) {
   const test::Shape shape = test::grid(4, 4);
   const std::vector<int> categories = {0, 0, 2, 2, 0, 0, 2, 2, -1, -1, 5, 5, -1, -1, 5, 5};

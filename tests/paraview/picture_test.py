@@ -37,6 +37,23 @@ class Picture(HostTest):
         self.assertTrue((first != later).any())
         simple.Delete(view)
 
+    def test_shows_the_colours_of_pictures_where_no_scalars_are_mapped(self):
+        source = simple.mimetraSequence(FileName=str(self.sample.take))
+        filter = simple.RegionsofInterest(Input=source, K=6)
+        view = simple.CreateView("RenderView")
+        display = simple.Show(filter, view)
+        simple.ColorBy(display, ("CELLS", "region_color"))
+        display.MapScalars = 0
+        display.Ambient, display.Diffuse, display.Specular = 1, 0, 0
+        simple.ResetCamera(view)
+        pixels = self.picture(view, "colours", 0).reshape(-1, 3)
+        regions = cell_array(at(filter, 0), "region_color")
+        colors, faces = np.unique(regions, axis=0, return_counts=True)
+        self.assertGreater(len(colors), 3)
+        for color in colors[faces > 100]:
+            self.assertGreater((pixels == color).all(axis=1).sum(), 20, color)
+        simple.Delete(view)
+
 
 if __name__ == "__main__":
     run_tests()

@@ -21,7 +21,8 @@ class RegionsOfInterest(HostTest):
     def assert_command_fields(self, found, expected):
         for name in ["region", "region_count", "roi", "displacement", "displacement_length"]:
             self.assert_same(point_array(found, name), point_array(expected, name), name)
-        self.assert_same(cell_array(found, "in_L"), cell_array(expected, "in_L"), "in_L")
+        for name in ["in_L", "region_color"]:
+            self.assert_same(cell_array(found, name), cell_array(expected, name), name)
 
     def test_has_the_fields_of_the_command_at_every_time(self):
         expected = simple.PVDReader(FileName=str(self.pvd))

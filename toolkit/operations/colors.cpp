@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 #include <set>
+#include <utility>
 
 namespace mimetra {
 
@@ -157,6 +158,29 @@ std::vector<Color> colors_by_category(const std::vector<int>& categories,
     }
   }
   return colors;
+}
+
+Field region_color_field(const Field& region, const Connectivity& connectivity) {
+  std::vector<int> labels;
+  for (const double value : region.values.col(0)) labels.push_back(static_cast<int>(value));
+  const std::vector<Color> colors = category_colors(labels, connectivity.triangles);
+  const Polygons& polygons = connectivity.polygons;
+  Eigen::MatrixXd of_faces(polygons.size(), 3);
+  for (int face = 0; face < polygons.size(); ++face) {
+    std::map<int, std::pair<int, VertexIndex>> corners;  // of each region: how many, and one
+    for (int c = polygons.offsets[face]; c < polygons.offsets[face + 1]; ++c) {
+      const VertexIndex vertex = polygons.corners[c];
+      auto& [count, of_region] = corners[labels[static_cast<std::size_t>(vertex)]];
+      ++count;
+      of_region = vertex;
+    }
+    const auto most =
+        std::ranges::max_element(corners, {}, [](const auto& entry) { return entry.second.first; });
+    const Color& color = colors[static_cast<std::size_t>(most->second.second)];
+    of_faces.row(face) << color.red, color.green, color.blue;
+  }
+  return {"region_color", Field::Location::triangles,
+          of_faces(connectivity.polygon_of_triangle, Eigen::all), true};
 }
 
 }  // namespace mimetra

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "toolkit/mesh/fields.h"
 #include "toolkit/mesh/tri_mesh.h"
 #include "toolkit/operations/image.h"
 
@@ -30,5 +31,10 @@ std::vector<Color> category_colors(const std::vector<int>& categories, const Tri
 /// has.
 std::vector<Color> colors_by_category(const std::vector<int>& categories,
                                       const Triangles& triangles, std::size_t count);
+
+/// The field `region_color` beside a field `region` (N x 1): red, green and blue, 0 to 255, which
+/// ParaView shows as they are where it maps no scalars. A face has the category_colors() of most of
+/// its corners' region, of equals that of the lowest.
+Field region_color_field(const Field& region, const Connectivity& connectivity);
 
 }  // namespace mimetra

@@ -9,6 +9,7 @@
 #include "toolkit/mesh/progress.h"
 #include "toolkit/mesh/text.h"
 #include "toolkit/operations/bound_parameters.h"
+#include "toolkit/operations/colors.h"
 #include "toolkit/operations/formats.h"
 #include "toolkit/operations/sequence_parameters.h"
 #include "toolkit/vtk/vtp_series.h"
@@ -68,8 +69,14 @@ ReadValue read_sequence_data(const std::string& text, const ReadRequest& request
 
 std::vector<std::filesystem::path> write_region_data(const Data& data,
                                                      const WriteRequest& request) {
-  const FieldSequence& shown = std::get<RegionData>(data).fields;
-  if (shown.frames->frames() > 0) return write(shown, request);
+  FieldSequence shown = std::get<RegionData>(data).fields;
+  if (shown.frames->frames() > 0) {
+    const auto region = std::ranges::find(shown.fields, "region", &Field::name);
+    if (region != shown.fields.end() && region->values.rows() == shown.frames->vertices()) {
+      shown.fields.push_back(region_color_field(*region, shown.frames->connectivity()));
+    }
+    return write(shown, request);
+  }
   throw MismatchError(request.target.string() +
                       ": the regions come without a mesh to show them on; write .json or .csv");
 }

@@ -4,6 +4,7 @@
 
 #include "plugins/paraview/mimetra/filters/host_output.h"
 #include "plugins/paraview/mimetra/filters/time_steps.h"
+#include "toolkit/operations/colors.h"
 #include "toolkit/operations/operation.h"
 #include "toolkit/vtk/poly_data.h"
 
@@ -41,6 +42,8 @@ void vtkMimetraRegions::prepare(const Outcome& outcome, vtkPolyData& input) {
   const Regions& regions = made.regions;
   const FieldSequence& shown = made.fields;
   std::vector<Field> fields = shown.fields;
+  const auto region = std::ranges::find(fields, "region", &Field::name);
+  fields.push_back(region_color_field(*region, shown.frames->connectivity()));
   if (DisplayedRegion >= 0) fields.push_back(mask_of(regions, DisplayedRegion));
   make_fields(*fields_, input, fields, shown.sequence().connectivity());
 }
