@@ -70,6 +70,27 @@ function(mimetra_library name)
   mimetra_component(${name} USES ${uses} PACKAGES ${ARG_PACKAGES})
 endfunction()
 
+# documented_lines(DOCUMENT NUMBER VARIABLE): the C++ lines in a document of the project, those of
+# its block of that number, from 1 on; read again where the document changes.
+function(documented_lines document number variable)
+  set(path ${PROJECT_SOURCE_DIR}/${document})
+  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${path})
+  file(READ ${path} text)
+  set(fence "```cpp\n")
+  string(LENGTH "${fence}" length)
+  foreach(block RANGE 1 ${number})
+    string(FIND "${text}" "${fence}" begin)
+    if(begin EQUAL -1)
+      message(FATAL_ERROR "${document} has no C++ lines of number ${block}")
+    endif()
+    math(EXPR begin "${begin} + ${length}")
+    string(SUBSTRING "${text}" ${begin} -1 text)
+  endforeach()
+  string(FIND "${text}" "```" end)
+  string(SUBSTRING "${text}" 0 ${end} lines)
+  set(${variable} "${lines}" PARENT_SCOPE)
+endfunction()
+
 # mimetra_test(NAME SOURCES ... USES ... [PROCESSES ...]): one GoogleTest program, whose tests are
 # dealt out to so many processes, each of which is one of ctest's: with sanitizers a program takes
 # longer to start than most tests do.
