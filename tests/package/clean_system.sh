@@ -12,6 +12,7 @@ inside() {
     DEBIAN_FRONTEND=noninteractive "$@"
 }
 
+command -v debootstrap >/dev/null || apt-get install -y -q --no-install-recommends debootstrap
 [ -e "$root/etc/debian_version" ] || debootstrap --variant=minbase bookworm "$root"
 rm -rf "$root/packages" "$root/trial"
 mkdir -p "$root/packages" "$root/trial"
