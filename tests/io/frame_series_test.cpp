@@ -149,7 +149,7 @@ TEST_F(FolderOfFrames, PatternThatMatchesNothingIsTakenForTheOneThatFits) {
   fs::rename(folder_ / "f_9.obj", folder_ / "f_0009.obj");
   EXPECT_EQ(found("f_%d.obj").frames.size(), 2U);
   EXPECT_THAT(found("f_%d.obj").notes, ElementsAre(HasSubstr("f_%04d.obj' is taken for it")));
-  EXPECT_THAT(test::message_of<IoError>([&] { found("g_%d.obj"); }), testing::EndsWith("STL file"));
+  EXPECT_THAT(test::message_of<IoError>([&] { found("g_%d.obj"); }), testing::EndsWith("OM file"));
 }
 
 TEST_F(FolderOfFrames, PatternThatMatchesSomeFilesNamesTheOthersAndThePatternOfAll) {

@@ -444,7 +444,7 @@ TEST(MeshFile, ExtensionDecidesInAnyCase) {
   EXPECT_FALSE(is_mesh_extension(".npy"));
   EXPECT_FALSE(is_mesh_extension(""));
   EXPECT_THAT(error_of(".xyz", ""),
-              HasSubstr("'.xyz' is no mesh format; expected .ply, .obj, .off or .stl"));
+              HasSubstr("'.xyz' is no mesh format; expected .ply, .obj, .off, .stl or .om"));
 }
 
 TEST(MeshFile, WritesAsTheExtensionInTheOptionsSays) {

@@ -34,6 +34,31 @@ FieldSequence with_more_fields(const NamedData& value) {
   return sequence;
 }
 
+/// Throws IoError for what is given where a word could be, and is neither one nor a path.
+void check_words(const CallRequest& request) {
+  for (const Parameter& parameter : request.operation->parameters) {
+    if (parameter.kind != ParameterKind::file || parameter.choices.empty()) continue;
+    for (const std::string& text : request.parameters.paths(parameter.name)) {
+      std::error_code unreadable;
+      if (std::filesystem::exists(text, unreadable) || unreadable) continue;
+      throw IoError(text, "no such file; " + parameter.option() + " takes " +
+                              joined(parameter.choices, ", ", " or ") + ", or a file" +
+                              suggestion_for(text, parameter.choices));
+    }
+  }
+}
+
+/// Does `work`; where it cannot read a file, a word that was mistaken for one is what is wrong.
+template <typename Work>
+void reading_files(const CallRequest& request, const Work& work) {
+  try {
+    work();
+  } catch (const IoError&) {
+    check_words(request);
+    throw;
+  }
+}
+
 }  // namespace
 
 void check_kind(const Operation& operation, const Input& input, const Data& data) {
@@ -53,7 +78,6 @@ Call::Call(const OperationTable& table, CallRequest request)
     : table_(table), request_(std::move(request)) {
   check_inputs();
   check_parameters_of_files();
-  check_words();
   check_outputs();
 }
 
@@ -109,20 +133,6 @@ void Call::check_parameters_of_files() const {
     throw UsageError("parameter '" + parameter.name + "' is about files (" + parameter.help +
                      "), and nothing that it applies to is read or written; leave "
                      "it out");
-  }
-}
-
-/// Throws IoError for what is given where a word could be, and is neither one nor a path.
-void Call::check_words() const {
-  for (const Parameter& parameter : request_.operation->parameters) {
-    if (parameter.kind != ParameterKind::file || parameter.choices.empty()) continue;
-    for (const std::string& text : request_.parameters.paths(parameter.name)) {
-      std::error_code unreadable;
-      if (std::filesystem::exists(text, unreadable) || unreadable) continue;
-      throw IoError(text, "no such file; " + parameter.option() + " takes " +
-                              joined(parameter.choices, ", ", " or ") + ", or a file" +
-                              suggestion_for(text, parameter.choices));
-    }
   }
 }
 
@@ -268,7 +278,8 @@ void Call::load() {
 }
 
 void Call::foresee() const {
-  if (request_.operation->foresee) request_.operation->foresee(invocation_);
+  const Operation& operation = *request_.operation;
+  if (operation.foresee) reading_files(request_, [&] { operation.foresee(invocation_); });
   for (const Output& output : request_.operation->outputs) {
     const auto targets = paths_.find(output.name);
     if (targets == paths_.end()) continue;
@@ -298,7 +309,7 @@ const Outcome& Call::run() {
   if (request_.ranks && request_.operation->shared) {
     check_same_inputs(finished_.inputs, *request_.ranks);
   }
-  outcome_ = request_.operation->run(invocation_);
+  reading_files(request_, [this] { outcome_ = request_.operation->run(invocation_); });
   finished_.run_seconds = stopwatch.seconds();
   for (const auto& [name, targets] : paths_) {
     finished_.outputs.insert(finished_.outputs.end(), targets.begin(), targets.end());

@@ -95,7 +95,6 @@ class Call {
   std::optional<Destination> destination_of(const Output& output) const;
   void check_inputs() const;
   void check_parameters_of_files() const;
-  void check_words() const;
   void check_outputs() const;
   void check_manifest() const;
   std::vector<std::string> repeated_names() const;

@@ -77,6 +77,8 @@ std::string percent_hint(const Parameter& parameter, std::string_view found) {
   if (!is_share && parameter.kind != ParameterKind::length) return "";
   const bool is_percent = found.ends_with('%');
   if (is_percent) found.remove_suffix(1);
+  // A length of 12 may lack its unit.
+  if (!is_share && !is_percent) return "";
   constexpr double kPercent = 100;
   const auto number = parse_number<double>(found);
   if (!number || !(*number > (is_percent ? 0 : 1) && *number <= kPercent)) return "";
