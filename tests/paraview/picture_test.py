@@ -18,12 +18,17 @@ class Picture(HostTest):
         pixels = vtk_to_numpy(reader.GetOutput().GetPointData().GetScalars())
         return pixels.reshape(480, 640, -1)[:, :, :3].astype(int)
 
-    def test_shows_regions_in_their_colours_over_time(self):
+    def shown_regions(self, colored_by):
+        """The sequence, its regions, and how they are shown in a view of their own."""
         source = simple.mimetraSequence(FileName=str(self.sample.take))
         filter = simple.RegionsofInterest(Input=source, K=6)
         view = simple.CreateView("RenderView")
         display = simple.Show(filter, view)
-        simple.ColorBy(display, ("POINTS", "region"))
+        simple.ColorBy(display, colored_by)
+        return source, filter, view, display
+
+    def test_shows_regions_in_their_colours_over_time(self):
+        source, _, view, display = self.shown_regions(("POINTS", "region"))
         display.RescaleTransferFunctionToDataRange()
         simple.ResetCamera(view)
         first = self.picture(view, "first", 0)
@@ -38,11 +43,7 @@ class Picture(HostTest):
         simple.Delete(view)
 
     def test_shows_the_colours_of_pictures_where_no_scalars_are_mapped(self):
-        source = simple.mimetraSequence(FileName=str(self.sample.take))
-        filter = simple.RegionsofInterest(Input=source, K=6)
-        view = simple.CreateView("RenderView")
-        display = simple.Show(filter, view)
-        simple.ColorBy(display, ("CELLS", "region_color"))
+        _, filter, view, display = self.shown_regions(("CELLS", "region_color"))
         display.MapScalars = 0
         display.Ambient, display.Diffuse, display.Specular = 1, 0, 0
         simple.ResetCamera(view)

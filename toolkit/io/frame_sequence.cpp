@@ -109,7 +109,7 @@ class FolderSink : public FrameSink {
         extension_('.' + std::string(choice_name(options.format))),
         outputs_(options.overwrite, options.inputs, options.together),
         folder_(outputs_.add(target, PendingOutput::Kind::folder)),
-        writer_(*header.connectivity, extension_, options.double_precision),
+        writer_(*header.connectivity, extension_, options.double_precision, {}, target.string()),
         exact_writer_(*header.connectivity, extension_, true) {
     const auto frames = static_cast<int>(header.times.size());
     for (int frame = 0; frame < frames; ++frame) {

@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "toolkit/io/bytes.h"
+#include "toolkit/io/fields_read.h"
 #include "toolkit/io/held_parts.h"
 #include "toolkit/io/mesh_formats.h"
 #include "toolkit/io/mesh_layout.h"
-#include "toolkit/mesh/fields.h"
 #include "toolkit/mesh/tri_mesh.h"
 
 /// The table of mesh formats: one reader and one writer for each, on bytes in memory. Internal to
@@ -73,7 +73,7 @@ struct MeshCodec {
   /// In its files; a rest pose stands beside them.
   HeldParts holds;
   /// Fields in a file, and the bytes that end it with them; null for a format without.
-  std::vector<Field> (*fields)(const std::filesystem::path& path, const Connectivity&) = nullptr;
+  FieldsRead (*fields)(const std::filesystem::path& path, const Connectivity&) = nullptr;
   std::string (*properties)(const std::vector<Field>& fields, const Connectivity&) = nullptr;
 
   /// ".ply".

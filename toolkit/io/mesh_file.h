@@ -18,8 +18,8 @@ struct MeshFrame;
 
 /// Reads one mesh by its extension: .obj, .ply (ascii, binary little and big endian), .off, .om
 /// (OpenMesh's own), .stl (ascii and binary; corners at one place become one vertex, in order of
-/// first use). Vertices and
-/// polygons keep the file's order and count, whatever the surface looks like. Throws IoError.
+/// first use). Vertices and polygons keep the file's order and count, whatever the surface looks
+/// like. Throws IoError.
 TriMesh read_mesh(const std::filesystem::path& path);
 
 /// Reads the positions of a further file of the same mesh and compares its faces with `expected`.
@@ -83,9 +83,10 @@ void write_mesh(const std::filesystem::path& path, const TriMesh& mesh,
 class MeshFileWriter {
  public:
   /// `extension` and `fields` as in MeshWriteOptions; throws std::invalid_argument for one that is
-  /// not a mesh format, MismatchError for what .om cannot hold.
+  /// not a mesh format, MismatchError that begins with `name` for what .om cannot hold.
   MeshFileWriter(const Connectivity& connectivity, const std::string& extension,
-                 bool double_precision = false, const std::vector<Field>& fields = {});
+                 bool double_precision = false, const std::vector<Field>& fields = {},
+                 const std::string& name = "the mesh");
   ~MeshFileWriter();
 
   /// Writes what write_mesh() writes. Throws OutputError; MismatchError that names a vertex whose

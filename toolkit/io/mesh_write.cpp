@@ -26,14 +26,19 @@ char* put_shortest(char* text, Number value) {
 }  // namespace
 
 MeshFileWriter::MeshFileWriter(const Connectivity& connectivity, const std::string& extension,
-                               bool double_precision, const std::vector<Field>& fields)
+                               bool double_precision, const std::vector<Field>& fields,
+                               const std::string& name)
     : vertices_(connectivity.vertices),
       single_precision_(!double_precision || lower_case(extension) == ".stl") {
   const MeshCodec* codec = mesh_codec(extension);
   if (!codec) throw std::invalid_argument(unknown_mesh_extension(lower_case(extension)));
-  MeshFrame frame = codec->frame(connectivity, double_precision);
-  if (codec->properties) frame.after += codec->properties(fields, connectivity);
-  frame_ = std::make_unique<const MeshFrame>(std::move(frame));
+  try {
+    MeshFrame frame = codec->frame(connectivity, double_precision);
+    if (codec->properties) frame.after += codec->properties(fields, connectivity);
+    frame_ = std::make_unique<const MeshFrame>(std::move(frame));
+  } catch (const MismatchError& error) {
+    throw MismatchError(name + ": " + error.what());
+  }
 }
 
 MeshFileWriter::~MeshFileWriter() = default;
@@ -62,7 +67,8 @@ void write_mesh(const fs::path& path, const PositionsView& positions,
   if (!is_mesh_extension(extension)) {
     throw OutputError(path.string(), unknown_mesh_extension(extension));
   }
-  MeshFileWriter(connectivity, extension, options.double_precision, options.fields)
+  MeshFileWriter(connectivity, extension, options.double_precision, options.fields,
+                 committed_name(path).string())
       .write(path, positions);
 }
 

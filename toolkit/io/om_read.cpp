@@ -282,7 +282,7 @@ class OmFaces {
   const std::vector<std::size_t>& corners() const { return corners_; }
 
  private:
-  enum Number { kNext, kTo, kFace };
+  enum Number { kNext, kTo };  // of the three of a half-edge
 
   std::int64_t of(std::size_t halfedge, Number number) const {
     return parts_.halfedges[3 * halfedge + static_cast<std::size_t>(number)];
@@ -327,9 +327,11 @@ constexpr std::array kNumberTypes = {
     number_type<std::int32_t>("Vec2i", 2), number_type<std::int32_t>("Vec3i", 3),
     number_type<std::int32_t>("Vec4i", 4)};
 
-/// Bits, eight a byte, the first the lowest.
+/// Of a byte.
+constexpr std::size_t kBits = 8;
+
+/// Values of bool, the first of a byte the lowest.
 Eigen::MatrixXd bits_of(std::string_view stored, std::size_t rows) {
-  constexpr std::size_t kBits = 8;
   Eigen::MatrixXd values(rows, 1);
   for (std::size_t i = 0; i < rows; ++i) {
     const auto byte = static_cast<unsigned char>(stored[i / kBits]);
@@ -342,7 +344,6 @@ Eigen::MatrixXd bits_of(std::string_view stored, std::size_t rows) {
 /// where they are not as many as elements.
 std::optional<std::pair<Eigen::MatrixXd, bool>> values_of(const OmProperty& property,
                                                           std::size_t rows) {
-  constexpr std::size_t kBits = 8;
   if (property.type == "bool") {
     if (property.values.size() != (rows + kBits - 1) / kBits) return {};
     return std::pair(bits_of(property.values, rows), true);
@@ -383,27 +384,31 @@ MeshContent read_om(const std::string& path, std::string_view bytes) {
   return content;
 }
 
-std::vector<Field> read_om_fields(const std::filesystem::path& path,
-                                  const Connectivity& connectivity) {
+FieldsRead read_om_fields(const std::filesystem::path& path, const Connectivity& connectivity) {
   const std::string name = path.string(), bytes = read_file(path);
   const OmParts parts = OmReader(name, bytes).read();
   const auto faces = static_cast<std::size_t>(connectivity.polygons.size());
-  std::vector<Field> fields;
+  FieldsRead read;
   for (const OmProperty& property : parts.properties) {
-    const bool on_vertices = property.of == OmOf::vertices;
-    if (!on_vertices && property.of != OmOf::faces) continue;
-    const auto found =
-        values_of(property, on_vertices ? static_cast<std::size_t>(connectivity.vertices) : faces);
-    if (!found || property.name.empty()) continue;
+    const bool on_vertices = property.of == OmOf::vertices, on_faces = property.of == OmOf::faces;
+    std::optional<std::pair<Eigen::MatrixXd, bool>> found;
+    if (on_vertices || on_faces) {
+      found = values_of(property,
+                        on_vertices ? static_cast<std::size_t>(connectivity.vertices) : faces);
+    }
+    if (!found || property.name.empty()) {
+      read.left_out.push_back(property.name.empty() ? "without a name" : property.name);
+      continue;
+    }
     const auto& [values, is_integer] = *found;
     if (on_vertices) {
-      fields.push_back({property.name, Field::Location::vertices, values, is_integer});
+      read.fields.push_back({property.name, Field::Location::vertices, values, is_integer});
     } else {
-      fields.push_back({property.name, Field::Location::triangles,
-                        values(connectivity.polygon_of_triangle, Eigen::all), is_integer});
+      read.fields.push_back({property.name, Field::Location::triangles,
+                             values(connectivity.polygon_of_triangle, Eigen::all), is_integer});
     }
   }
-  return fields;
+  return read;
 }
 
 }  // namespace mimetra

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "toolkit/io/fields_read.h"
 #include "toolkit/io/held_parts.h"
 #include "toolkit/io/sequence_options.h"
-#include "toolkit/mesh/fields.h"
 
 namespace mimetra {
 
@@ -36,7 +36,7 @@ struct SequenceFormat {
                                                         const SequenceWriteOptions&,
                                                         const ExtraFiles&) = nullptr;
   /// The fields on its mesh; null for a format that has no place for any.
-  std::vector<Field> (*fields)(const std::filesystem::path&, const Connectivity&) = nullptr;
+  FieldsRead (*fields)(const std::filesystem::path&, const Connectivity&) = nullptr;
 };
 
 /// All formats, in the order in which lists have them.

@@ -16,6 +16,7 @@
 #include "toolkit/io/vtkhdf_file.h"
 #include "toolkit/io/whole_file.h"
 #include "toolkit/mesh/errors.h"
+#include "toolkit/mesh/text.h"
 #include "toolkit/model/expression_notes.h"
 #include "toolkit/operations/sequence_parameters.h"
 
@@ -39,7 +40,12 @@ ReadValue read_sequence_data(const std::string& text, const ReadRequest& request
   const auto value_of = [&](FieldSequence sequence, auto& read) -> ReadValue {
     const SequenceFormat* format = sequence_format(text);
     if (request.fields && format && format->fields && std::filesystem::is_regular_file(text)) {
-      sequence.fields = format->fields(text, sequence.frames->connectivity());
+      FieldsRead own = format->fields(text, sequence.frames->connectivity());
+      sequence.fields = std::move(own.fields);
+      if (!own.left_out.empty()) {
+        read.notes.push_back(text + ": its properties " + listed(own.left_out) +
+                             " hold no numbers of vertices or faces, and are left out");
+      }
     }
     return {{text, std::move(sequence), {.model_driven = read.model_driven}},
             std::move(read.files),

@@ -1,5 +1,7 @@
 #include "plugins/paraview/mimetra/filters/vtkMimetraRegions.h"
 
+#include <algorithm>
+
 #include <vtkObjectFactory.h>
 
 #include "plugins/paraview/mimetra/filters/host_output.h"
