@@ -268,6 +268,39 @@ TEST(Coverage, OutOfReachIsReported) {
               ElementsAre("all 2 regions hold 50 % of the motion energy; 80 % were asked for"));
 }
 
+/// Components of a grid with three triangles beside it, of which component 0 lifts one corner each.
+Components with_loose_triangles(double height) {
+  Components components = lifted({at(2, 2)}, {2});
+  const Shape grid{components.rest, components.triangles};
+  Shape whole = grid;
+  for (int i = 0; i < 3; ++i) {
+    const Shape triangle{
+        (Positions(3, 3) << 20 + 2 * i, 0, 0, 21 + 2 * i, 0, 0, 20 + 2 * i, 1, 0).finished(),
+        (Triangles(1, 3) << 0, 1, 2).finished()};
+    whole = both(whole, triangle);
+  }
+  components.rest = whole.positions;
+  components.triangles = whole.triangles;
+  const Frames alone = components.displacements;
+  components.displacements = Frames::Zero(1, whole.positions.size());
+  components.displacements.leftCols(alone.cols()) = alone;
+  for (int i = 0; i < 3; ++i) components.displacements(0, alone.cols() + 9 * i + 2) = height;
+  components.support = Eigen::MatrixXd::Zero(1, whole.positions.rows());
+  return components;
+}
+
+TEST(Coverage, OutOfReachSaysHowMuchMovesOnPartsWithoutARegion) {
+  // On the grid 2^2 + 4 = 8, on each triangle 2^2.
+  const Components components = with_loose_triangles(2);
+  RegionOptions options = disc_of(components, 1.5);
+  options.coverage = 0.8;
+  EXPECT_THAT(
+      find_regions(components, options).notes,
+      ElementsAre("the one region holds 40 % of the motion energy; 80 % were asked for; 60 % is "
+                  "on parts of the mesh that have no region, since small ones, such as teeth, "
+                  "move with components of others"));
+}
+
 TEST(RegionOptions, RefuseARadiusOfZero) {
   const Components components = lifted({at(1, 2)}, {1});
   for (const double radius : {0.0, -1.0, std::numeric_limits<double>::quiet_NaN()}) {

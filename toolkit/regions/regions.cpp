@@ -241,13 +241,36 @@ std::string whole_percent(double share) {
   return std::to_string(static_cast<int>(std::lround(100 * share))) + " %";
 }
 
-void cover(Regions& regions, double coverage, const Triangles& triangles) {
+/// The share of the motion on parts of the mesh that no region reaches.
+double energy_on_parts_without_region(const Regions& regions, const SurfaceParts& parts) {
+  std::vector<bool> reached(parts.count(), false);
+  for (int v = 0; v < regions.vertices; ++v) {
+    if (regions.inside[v]) reached[parts.of_vertex[v]] = true;
+  }
+  double energy = 0;
+  for (int v = 0; v < regions.vertices; ++v) {
+    if (!reached[parts.of_vertex[v]]) energy += regions.vertex_energy[v];
+  }
+  return energy;
+}
+
+void cover(Regions& regions, double coverage, const Triangles& triangles,
+           const SurfaceParts& parts) {
   regions.regions.resize(regions_to_cover(regions, coverage));
   complete(regions, triangles);
   if (regions.energy_share >= coverage - kSumRounding) return;
-  regions.notes.push_back("all " + std::to_string(regions.regions.size()) + " regions hold " +
-                          whole_percent(regions.energy_share) + " of the motion energy; " +
-                          whole_percent(coverage) + " were asked for");
+  const std::size_t count = regions.regions.size();
+  std::string note =
+      (count == 1 ? "the one region holds " : "all " + std::to_string(count) + " regions hold ") +
+      whole_percent(regions.energy_share) + " of the motion energy; " + whole_percent(coverage) +
+      " were asked for";
+  const double elsewhere = energy_on_parts_without_region(regions, parts);
+  if (elsewhere >= 0.005) {
+    note += "; " + whole_percent(elsewhere) +
+            " is on parts of the mesh that have no region, since small ones, such as teeth, move "
+            "with components of others";
+  }
+  regions.notes.push_back(note);
 }
 
 }  // namespace
@@ -296,7 +319,7 @@ Regions find_regions(const Components& components, const RegionOptions& options)
     regions.regions.push_back(std::move(region));
   }
   complete(regions, components.triangles);
-  if (options.coverage) cover(regions, *options.coverage, components.triangles);
+  if (options.coverage) cover(regions, *options.coverage, components.triangles, parts);
   return regions;
 }
 
