@@ -87,6 +87,19 @@ TEST_F(Command, InfoCountsWhatTheSequenceHolds) {
   EXPECT_GT(info.at("motion").get<double>(), 0);
 }
 
+TEST_F(Command, InfoListsTheFieldsThatTheSequenceHas) {
+  ASSERT_EQ(run("regions head --weights take.csv -k 2 -o rois.pvd").code, 0);
+  const auto text = run("info rois.pvd");
+  EXPECT_THAT(text.out, HasSubstr("\nfields      region, region_count, roi on vertices; in_L, "
+                                  "region_color on faces\n"));
+  const json fields = json::parse(run("info rois.pvd --json").out).at("fields");
+  ASSERT_EQ(fields.size(), 5u);
+  EXPECT_EQ(fields[0], json({{"name", "region"}, {"on", "vertices"}, {"numbers", 1}}));
+  EXPECT_EQ(fields[4], json({{"name", "region_color"}, {"on", "faces"}, {"numbers", 3}}));
+
+  EXPECT_THAT(run("info head --weights take.csv").out, Not(HasSubstr("fields")));
+}
+
 TEST_F(Command, FramesTakesAPartOfTheSequence) {
   const auto result = run("info head --weights take.csv --frames 2:10:4 --json");
   ASSERT_EQ(result.code, 0) << result.err;

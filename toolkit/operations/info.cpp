@@ -32,6 +32,32 @@ std::string shares_of(const SurfaceParts& parts) {
   return listed(shares);
 }
 
+const char* place_of(Field::Location location) {
+  return location == Field::Location::vertices ? "vertices" : "faces";
+}
+
+Json json_of(const std::vector<Field>& fields) {
+  Json list = Json::array();
+  for (const Field& field : fields) {
+    list.push_back(
+        {{"name", field.name}, {"on", place_of(field.location)}, {"numbers", field.values.cols()}});
+  }
+  return list;
+}
+
+/// "region, roi on vertices; in_L on faces", the first of many.
+std::string names_of(const std::vector<Field>& fields) {
+  std::vector<std::string> places;
+  for (const auto location : {Field::Location::vertices, Field::Location::triangles}) {
+    std::vector<std::string> names;
+    for (const Field& field : fields) {
+      if (field.location == location) names.push_back(field.name);
+    }
+    if (!names.empty()) places.push_back(listed(names) + " on " + place_of(location));
+  }
+  return joined(places, "; ");
+}
+
 Json report_of(const FrameSource& sequence, const MeshReport& mesh, const SurfaceParts& parts,
                double motion) {
   return {{"frames", sequence.frames()},
@@ -83,17 +109,20 @@ Operation info_operation() {
   operation.name = "info";
   operation.summary = "What a sequence is made of: frames, vertices, faces, defects";
   operation.inputs = {{"sequence", DataKind::sequence, "sequence to look at"}};
-  operation.inputs.front().streamed = true;
+  operation.inputs.front().streamed = operation.inputs.front().fields = true;
   operation.examples = {"info takes/smile_%04d.obj", "info actor/ --weights take.csv --json"};
   operation.run = [](const Invocation& invocation) {
-    const FrameSource& sequence = *invocation.get<FieldSequence>("sequence").frames;
+    const FieldSequence& shown = invocation.get<FieldSequence>("sequence");
+    const FrameSource& sequence = *shown.frames;
     const MeshReport mesh = inspect(sequence.rest(), sequence.connectivity());
     const SurfaceParts parts = surface_parts(sequence.rest(), sequence.triangles());
     const double moved =
         motion(sequence, {.threads = invocation.threads, .progress = invocation.progress});
-    return Outcome{{},
-                   json_text(report_of(sequence, mesh, parts, moved)),
-                   summary_of(sequence, mesh, parts, moved)};
+    Json report = report_of(sequence, mesh, parts, moved);
+    report["fields"] = json_of(shown.fields);
+    std::string summary = summary_of(sequence, mesh, parts, moved);
+    if (!shown.fields.empty()) summary += "fields      " + names_of(shown.fields) + '\n';
+    return Outcome{{}, json_text(report), summary};
   };
   return operation;
 }
