@@ -18,7 +18,7 @@ rm -rf "$root/packages" "$root/trial"
 mkdir -p "$root/packages" "$root/trial"
 cp "$packages"/*.deb "$root/packages"
 cp "$here/in_clean_system.sh" "$here/pkg_config/version.c" "$root/trial"
-cp -r "$here/consumer" "$root/trial"
+cp -r "$here/consumer" "$here/../../docs/tutorial.md" "$root/trial"
 inside apt-get -q update
 inside sh -c 'apt-get install -y -q --no-install-recommends --reinstall /packages/*.deb \
   python3-paraview g++ cmake make pkg-config'

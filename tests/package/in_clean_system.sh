@@ -14,6 +14,11 @@ mimetra report moved.npy -o report.html
 [ "$(wc -c <report.html)" -gt 100000 ]
 [ -s /usr/share/man/man1/mimetra.1.gz ]
 
+# The commands of the tutorial.
+mkdir tutorial
+(cd tutorial && bash -ex <(awk '/^```sh$/ { on = 1; next } /^```$/ { on = 0 } on' ../tutorial.md))
+[ -s tutorial/report.html ]
+
 # No program or library looks for others where it was built.
 for file in /usr/bin/mimetra "$libraries"/mimetra/x86-64*/mimetra "$libraries"/libmimetra_*.so.1 \
   "$libraries"/mimetra/*.so; do
