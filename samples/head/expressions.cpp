@@ -79,28 +79,35 @@ double jaw_share(const HeadVertex& vertex, const Vector& p) {
   return beside * in_front * below_jaw;
 }
 
-Vector jaw_open(const HeadVertex& vertex, const Vector& p) {
+/// How the whole jaw moves a place when it opens: by a turn about the joints at the ears.
+Vector jaw_turn(const Vector& p) {
   const Vector hinge(0, -25, -5);
   constexpr double kSine = 0.24;
   const double cosine_less_one = std::sqrt(1 - kSine * kSine) - 1;
   const Vector arm = p - hinge;
-  const Vector turned(0, cosine_less_one * arm.y() - kSine * arm.z(),
-                      kSine * arm.y() + cosine_less_one * arm.z());
-  return jaw_share(vertex, p) * turned;
+  return {0, cosine_less_one * arm.y() - kSine * arm.z(),
+          kSine * arm.y() + cosine_less_one * arm.z()};
 }
 
-/// How a vertex of the pocket behind the skin vertex `lip` at `p` moves: as the lips in front, as
-/// the lower lip at the back. The roof of the open mouth falls to its floor and lies in the dark.
-Vector mouth_motion(const HeadVertex& vertex, const HeadVertex& lip, const Vector& p,
-                    const Motion& motion) {
-  const double depth = vertex.ring / double(kMouthRings);
-  HeadVertex below = lip;
-  if (below.rim > 0) below.rim = -1;
-  return (1 - depth) * motion(lip, p) + depth * motion(below, p);
+Vector jaw_open(const HeadVertex& vertex, const Vector& p) {
+  return jaw_share(vertex, p) * jaw_turn(p);
 }
 
-/// Displacements (3N) of the skin by `motion`; what lies behind lips and lids moves with them.
-Eigen::VectorXd field_of(const HeadGrid& grid, const Positions& mean, const Motion& motion) {
+/// How the bones behind the skin move: the upper jaw not at all, the lower one with its teeth and
+/// the tongue as a whole, and what hangs between them half as far.
+Vector jaw_open_inside(const HeadVertex& vertex, const Vector& p) {
+  return (1 - vertex.rim) / 2.0 * jaw_turn(p);
+}
+
+Vector still(const HeadVertex&, const Vector&) {
+  return Vector::Zero();
+}
+
+/// Displacements (3N) of the skin by `motion`, of teeth and tongue by `inside`. What lies behind
+/// the lids moves with them; behind the lips it moves as they do in front and by `inside` at the
+/// back.
+Eigen::VectorXd field_of(const HeadGrid& grid, const Positions& mean, const Motion& motion,
+                         const Motion& inside) {
   Positions field = Positions::Zero(mean.rows(), 3);
   for (Eigen::Index i = 0; i < field.rows(); ++i) {
     const HeadVertex& vertex = grid.vertices[static_cast<std::size_t>(i)];
@@ -111,9 +118,15 @@ Eigen::VectorXd field_of(const HeadGrid& grid, const Positions& mean, const Moti
       case HeadVertex::Part::eyelid:
         field.row(i) = field.row(vertex.source);
         break;
-      case HeadVertex::Part::mouth:
-        field.row(i) = mouth_motion(vertex, grid.vertices[static_cast<std::size_t>(vertex.source)],
-                                    mean.row(vertex.source), motion);
+      case HeadVertex::Part::mouth: {
+        const double depth = square((vertex.ring - 1) / (kMouthRings - 1.0));
+        field.row(i) = (1 - depth) * field.row(vertex.source) +
+                       depth * inside(vertex, mean.row(i)).transpose();
+        break;
+      }
+      case HeadVertex::Part::teeth:
+      case HeadVertex::Part::tongue:
+        field.row(i) = inside(vertex, mean.row(i));
         break;
       case HeadVertex::Part::eyeball:
         break;
@@ -134,7 +147,9 @@ Eigen::VectorXd lid_field(const HeadGrid& grid, const Positions& mean, const Eye
 ShapeBasis head_expressions(const HeadGrid& grid) {
   const Positions mean = head_positions(grid);
   const Eyelids open, shut{0.2, 0.2}, wide{12.8, 2.2};
-  const auto moved = [&](const Motion& motion) { return field_of(grid, mean, motion); };
+  const auto moved = [&](const Motion& motion, const Motion& inside = still) {
+    return field_of(grid, mean, motion, inside);
+  };
   const std::pair<const char*, Eigen::VectorXd> fields[] = {
       {"eyeBlinkLeft", lid_field(grid, mean, shut, open)},
       {"eyeBlinkRight", lid_field(grid, mean, open, shut)},
@@ -143,7 +158,7 @@ ShapeBasis head_expressions(const HeadGrid& grid) {
       {"browInnerUp", moved(sculpting_both_sides(kBrowInnerUp))},
       {"browDownLeft", moved(sculpting(kBrowDownLeft))},
       {"browDownRight", moved(mirrored(sculpting(kBrowDownLeft)))},
-      {"jawOpen", moved(jaw_open)},
+      {"jawOpen", moved(jaw_open, jaw_open_inside)},
       {"mouthPucker", moved(pucker)},
       {"mouthSmileLeft", moved(sculpting(kSmileLeft))},
       {"mouthSmileRight", moved(mirrored(sculpting(kSmileLeft)))},

@@ -9,8 +9,8 @@
 namespace mimetra::samples {
 
 /// The built-in sample: a head made by formulas, with eyes that close, a mouth
-/// that opens, nose and ears, 12 expressions named as ARKit names them and 4 identities. The same
-/// numbers on every machine.
+/// that opens on teeth and tongue, nose and ears, 12 expressions named as ARKit names them and 4
+/// identities. The same numbers on every machine.
 MorphableModel parametric_head();
 
 /// The head's vertex of each of iBUG's landmarks (1 to 68), in their order, without those of the

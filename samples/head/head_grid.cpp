@@ -1,9 +1,10 @@
 #include "samples/head/head_grid.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
-#include <initializer_list>
 #include <map>
+#include <span>
 
 namespace mimetra::samples {
 namespace {
@@ -32,9 +33,11 @@ constexpr std::array kRows = {
     8.0,  8.2,  8.45, 8.7,  9.0,  9.4,  9.9,  10.5, 11.2, 12.0};      // chin, neck
 
 constexpr int kEyelidRings = 2;
-constexpr int kEyeballColumns = 12;
 // Pit of the pupil, dish of the iris, ball.
 constexpr std::array kEyeballRows = {0.06, 0.10, 0.185, 0.205, 0.28, 0.37, 0.48, 0.60, 0.76, 0.89};
+constexpr std::array kTongueRows = {0.14, 0.27, 0.40, 0.50, 0.60, 0.73, 0.86};
+// Within a tooth, from one of its sides to the other.
+constexpr std::array kToothColumns = {0.0, 0.22, 0.78};
 
 /// Column in -kBackColumn + 1 .. kBackColumn to the parameter u.
 double around(int column) {
@@ -56,8 +59,10 @@ class Builder {
       const int from = eye < 0 ? -kOuterEyeCorner : kInnerEyeCorner;
       const int to = eye < 0 ? -kInnerEyeCorner : kOuterEyeCorner;
       add_rim(eye_row, from, to, HeadVertex::Part::eyelid, kEyelidRings, eye);
-      add_eyeball(eye);
+      add_ball({.part = HeadVertex::Part::eyeball, .eye = eye}, kEyeballRows);
     }
+    for (const int jaw : {1, -1}) add_teeth(jaw);
+    add_ball({.part = HeadVertex::Part::tongue, .rim = -1}, kTongueRows);
     return std::move(grid_);
   }
 
@@ -79,8 +84,8 @@ class Builder {
     return static_cast<VertexIndex>(grid_.vertices.size()) - 1;
   }
 
-  void add_face(std::initializer_list<VertexIndex> corners) {
-    grid_.faces.corners.insert(grid_.faces.corners.end(), corners);
+  void add_face(const std::vector<VertexIndex>& corners) {
+    grid_.faces.corners.insert(grid_.faces.corners.end(), corners.begin(), corners.end());
     grid_.faces.offsets.push_back(static_cast<int>(grid_.faces.corners.size()));
   }
 
@@ -151,27 +156,59 @@ class Builder {
     add_face({ring[half - 1], below(half - 1), ring[half]});
   }
 
-  void add_eyeball(int eye) {
-    const auto vertex = [eye](double u, double v) {
-      return HeadVertex{HeadVertex::Part::eyeball, u, v, 0, -1, 0, eye};
+  /// A closed surface around an axis from back to front, with a ring in each of the rows `v`.
+  void add_ball(HeadVertex vertex, std::span<const double> rows) {
+    const auto at = [&](double u, double v) {
+      vertex.u = u;
+      vertex.v = v;
+      return add(vertex);
     };
-    const VertexIndex pupil = add(vertex(0, 0));
-    const int first = pupil + 1;
-    for (const double v : kEyeballRows) {
-      for (int i = 0; i < kEyeballColumns; ++i) add(vertex(i / double(kEyeballColumns), v));
+    const VertexIndex front = at(0, 0);
+    for (const double v : rows) {
+      for (int i = 0; i < kBallColumns; ++i) at(i / double(kBallColumns), v);
     }
-    const VertexIndex back = add(vertex(0, 1));
-    const int rows = static_cast<int>(kEyeballRows.size());
-    for (int i = 0; i < kEyeballColumns; ++i) {
-      const int next = (i + 1) % kEyeballColumns;
-      const auto at = [first](int row, int column) {
-        return first + row * kEyeballColumns + column;
-      };
-      add_face({pupil, at(0, i), at(0, next)});
-      for (int row = 0; row + 1 < rows; ++row) {
-        add_face({at(row, i), at(row + 1, i), at(row + 1, next), at(row, next)});
+    const VertexIndex back = at(0, 1);
+    add_tube(front + 1, kBallColumns, static_cast<int>(rows.size()), front, back, false);
+  }
+
+  /// The teeth and the gum of the upper (1) or the lower (-1) jaw, from the head's right to its
+  /// left.
+  void add_teeth(int jaw) {
+    std::vector<double> columns;
+    for (int tooth = 0; tooth < kTeeth; ++tooth) {
+      for (const double within : kToothColumns) columns.push_back(tooth + within);
+    }
+    columns.push_back(kTeeth);
+    constexpr double kEnd = kTeeth + 0.1;
+    const auto at = [&](double u, double v) {
+      return add({.part = HeadVertex::Part::teeth, .u = u, .v = v, .rim = jaw});
+    };
+    const VertexIndex right = at(-kEnd, 0);
+    const auto ring = [&](double u) {
+      for (int point = 0; point < kToothPoints; ++point) at(u, point);
+    };
+    for (auto u = columns.rbegin(); u != columns.rend() - 1; ++u) ring(-*u);
+    for (const double u : columns) ring(u);
+    const VertexIndex left = at(kEnd, 0);
+    add_tube(right + 1, kToothPoints, 2 * static_cast<int>(columns.size()) - 1, right, left,
+             jaw < 0);
+  }
+
+  /// Faces of a tube of rings of `around` vertices from `first` on, closed by a vertex at each end.
+  void add_tube(VertexIndex first, int around, int rings, VertexIndex begin, VertexIndex end,
+                bool inside_out) {
+    const auto face = [&](std::vector<VertexIndex> corners) {
+      if (inside_out) std::ranges::reverse(corners);
+      add_face(corners);
+    };
+    for (int i = 0; i < around; ++i) {
+      const int next = (i + 1) % around;
+      const auto at = [&](int ring, int column) { return first + ring * around + column; };
+      face({begin, at(0, i), at(0, next)});
+      for (int ring = 0; ring + 1 < rings; ++ring) {
+        face({at(ring, i), at(ring + 1, i), at(ring + 1, next), at(ring, next)});
       }
-      add_face({back, at(rows - 1, next), at(rows - 1, i)});
+      face({end, at(rings - 1, next), at(rings - 1, i)});
     }
   }
 

@@ -10,7 +10,13 @@ namespace mimetra::samples {
 constexpr double kEyeRow = 5;
 constexpr double kMouthRow = 7;
 /// Rings behind the lips; the last one closes the pocket.
-constexpr int kMouthRings = 4;
+constexpr int kMouthRings = 5;
+/// Teeth on either side of each jaw.
+constexpr int kTeeth = 6;
+/// Points around a tooth and its gum, see `HeadVertex`.
+constexpr int kToothPoints = 9;
+/// Vertices around an eyeball and the tongue.
+constexpr int kBallColumns = 12;
 
 /// Where a vertex of the sample lies, in the terms of the formulas that place it.
 struct HeadVertex {
@@ -19,6 +25,10 @@ struct HeadVertex {
     mouth,    ///< behind the lips: ring `ring` (1, 2, ...) behind the skin vertex `source`
     eyelid,   ///< behind an eyelid, likewise
     eyeball,  ///< `u` around the line of sight, `v` from the pupil (0) to the back (1)
+    /// `u` along the jaw in teeth from its middle, whole between two of them and beyond kTeeth past
+    /// the last; `v` the point around them, from the edge in front over the gum to the edge behind
+    teeth,
+    tongue,  ///< `u` around its length, `v` from the tip (0) to the root (1)
   };
   Part part = Part::skin;
   /// Around the head: 0 at the middle of the face, 1 and -1 at the ears (1 on the head's own left),
@@ -26,7 +36,7 @@ struct HeadVertex {
   double u = 0;
   /// Down the head: 0 at the crown, kEyeRow, kMouthRow, kNeckRow at the neck's end.
   double v = 0;
-  /// Above (1) or below (-1) the cut of its row; 0 off the cuts.
+  /// Above (1) or below (-1) the cut of its row; 0 off the cuts. Of the upper or of the lower jaw.
   int rim = 0;
   VertexIndex source = -1;
   int ring = 0;
@@ -35,8 +45,8 @@ struct HeadVertex {
 };
 
 /// The sample's vertices and faces: a grid of quadrilaterals around the head, cut open along the
-/// mouth and the eyes, with a pocket behind the lips, rims behind the lids, and two eyeballs.
-/// Mirror symmetric in its vertices.
+/// mouth and the eyes, with a pocket behind the lips, rims behind the lids, two eyeballs, the teeth
+/// of both jaws, a piece each, and a tongue. Mirror symmetric in its vertices.
 struct HeadGrid {
   std::vector<HeadVertex> vertices;
   Polygons faces;

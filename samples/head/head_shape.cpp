@@ -6,6 +6,7 @@
 #include "samples/head/curves.h"
 #include "samples/head/features.h"
 #include "samples/head/skull.h"
+#include "samples/head/teeth.h"
 
 namespace mimetra::samples {
 namespace {
@@ -89,13 +90,15 @@ Eigen::Vector3d eye_center(int eye) {
   return {eye * kLeftEye.x(), kLeftEye.y(), kLeftEye.z()};
 }
 
-/// Behind the lips: the lips' inner side, then a pocket.
+/// Behind the lips: the lips' inner side, then up and down before the gums, palate and floor.
 Eigen::Vector3d mouth_point(const HeadVertex& vertex, const Eigen::Vector3d& source) {
-  constexpr double kDepth[] = {3, 9, 22, 40}, kHeight[] = {0.7, 0.8, 0.8, 0.5},
-                   kWidth[] = {0.95, 0.92, 0.9, 0.85};
+  constexpr double kDepth[] = {3, 6, 13, 28, 48}, kHeight[] = {0.7, 8, 14, 16, 12},
+                   kWidth[] = {0.95, 1, 1.05, 1.1, 1.1};
   const auto ring = static_cast<std::size_t>(vertex.ring - 1);
-  return {source.x() * kWidth[ring], source.y() + vertex.rim * kHeight[ring],
-          source.z() - kDepth[ring]};
+  const double rest = 1 - square(source.x() / kMouthHalfWidth);
+  const double height = vertex.rim * kHeight[ring] * (rest > 0 ? std::sqrt(rest) : 0);
+  const double chin = height < -1 ? 5 : 0;  // lies further back than the lips
+  return {source.x() * kWidth[ring], source.y() + height, source.z() - kDepth[ring] - chin};
 }
 
 /// Behind the lids: the lid's edge down to the eyeball, then the inside of it, so that no gap
@@ -107,21 +110,27 @@ Eigen::Vector3d eyelid_point(const HeadVertex& vertex, const Eigen::Vector3d& so
   return center + radius * (source - center).normalized();
 }
 
+/// Of the unit sphere, (0, 0, 1) at v = 0, around the axis with u.
+Eigen::Vector3d ball_point(double u, double v) {
+  constexpr double kHalf = 0.5;
+  const double h = std::sqrt(3.0) / 2;
+  const std::array<double, kBallColumns> cosines = {1,  h,  kHalf,  0, -kHalf, -h,
+                                                    -1, -h, -kHalf, 0, kHalf,  h};
+  if (v >= 1) return {0, 0, -1};
+  const auto column = static_cast<std::size_t>(std::lround(u * kBallColumns));
+  const double t = v / (1 - v), scale = 1 / (1 + t * t);
+  return {2 * t * scale * cosines[column], 2 * t * scale * cosines[(column + 9) % kBallColumns],
+          (1 - t * t) * scale};
+}
+
 /// A sphere with a dent for the pupil, as in marble.
 Eigen::Vector3d eyeball_point(const HeadVertex& vertex) {
-  constexpr double kHalf = 0.5, kIris = 0.23, kPupil = 0.12;
-  const double h = std::sqrt(3.0) / 2;
-  const std::array<double, 12> cosines = {1, h, kHalf, 0, -kHalf, -h, -1, -h, -kHalf, 0, kHalf, h};
-  const auto column = static_cast<std::size_t>(std::lround(vertex.u * 12));
-  const double cos_around = cosines[column], sin_around = cosines[(column + 9) % 12];
-  if (vertex.v >= 1) return eye_center(vertex.eye) - Eigen::Vector3d(0, 0, kEyeballRadius);
-  const double t = vertex.v / (1 - vertex.v);
-  const double sine = 2 * t / (1 + t * t), cosine = (1 - t * t) / (1 + t * t);
+  constexpr double kIris = 0.23, kPupil = 0.12;
+  const double t = vertex.v < 1 ? vertex.v / (1 - vertex.v) : 1;
   // The iris is a shallow dish, the pupil a pit in it.
   const double dent = t > kIris ? 0 : 0.9 + 2.2 * bump(square(t / kPupil));
-  return eye_center(vertex.eye) + Eigen::Vector3d(kEyeballRadius * sine * cos_around,
-                                                  kEyeballRadius * sine * sin_around,
-                                                  (kEyeballRadius - dent) * cosine);
+  const Eigen::Vector3d radii(kEyeballRadius, kEyeballRadius, kEyeballRadius - dent);
+  return eye_center(vertex.eye) + radii.cwiseProduct(ball_point(vertex.u, vertex.v));
 }
 
 }  // namespace
@@ -144,6 +153,12 @@ Positions head_positions(const HeadGrid& grid, const Eyelids& left, const Eyelid
         break;
       case HeadVertex::Part::eyeball:
         positions.row(i) = eyeball_point(vertex);
+        break;
+      case HeadVertex::Part::teeth:
+        positions.row(i) = teeth_point(vertex);
+        break;
+      case HeadVertex::Part::tongue:
+        positions.row(i) = tongue_point(ball_point(vertex.u, vertex.v));
         break;
     }
   }

@@ -28,7 +28,7 @@ class BadInput(HostTest):
         bpy.ops.mesh.primitive_cube_add()
         bpy.context.active_object.name = "cube"
         self.activate(self.source)
-        self.assert_fails("cube: 8 vertices, expected 4334 as in the source",
+        self.assert_fails("cube: 8 vertices, expected 5126 as in the source",
                           bpy.ops.mimetra.transfer, target="cube", full=True)
 
     def test_no_target(self):
@@ -62,7 +62,7 @@ class BadInput(HostTest):
         group.links.new(first.outputs[0], join.inputs[0])
         group.links.new(join.outputs[0], last.inputs[0])
         geometry.node_group = group
-        self.assert_fails("source: [0-9]+ vertices in frame 1, expected 4334 as in its mesh",
+        self.assert_fails("source: [0-9]+ vertices in frame 1, expected 5126 as in its mesh",
                           bpy.ops.mimetra.regions, k=3)
 
     def test_a_mesh_without_faces(self):
@@ -125,7 +125,7 @@ class BadInput(HostTest):
                               components_out=path)
 
     def test_cancelling_ends_the_computation(self):
-        poses = np.random.default_rng(1).normal(size=(60, 4334, 3))
+        poses = np.random.default_rng(1).normal(size=(60, 5126, 3))
         take = mimetra.Sequence(poses, mimetra.Sequence.load(self.take).faces)
         steps = operators._computed(mimetra.operations["decompose"], {"sequence": take},
                                     {"k": 40, "tolerance": 0, "iterations": 100000})

@@ -150,7 +150,7 @@ class Fields(HostTest):
 
     def test_a_check_is_text(self):
         bpy.ops.mimetra.check()
-        self.assertIn("usable, 120 frames of 4334 vertices",
+        self.assertIn("usable, 120 frames of 5126 vertices",
                       bpy.data.texts["mimetra check"].as_string())
 
     def test_the_sample_is_a_head_that_performs_and_its_identities(self):

@@ -44,8 +44,8 @@ class Transfer(HostTest):
                                             "support"))
 
     def test_takes_lengths_in_the_meshes_unit(self):
-        bpy.ops.mimetra.transfer(target="target", k=8, radius=30, radius_absolute=True)
-        self.assert_performs(*self.expected("-k", 8, "--radius", "30abs"))
+        bpy.ops.mimetra.transfer(target="target", k=12, radius=30, radius_absolute=True)
+        self.assert_performs(*self.expected("-k", 12, "--radius", "30abs"))
 
     def test_uses_all_triangles_where_asked(self):
         bpy.ops.mimetra.transfer(target="target", full=True)
@@ -55,8 +55,8 @@ class Transfer(HostTest):
         """A vertex group of the source, and a file with its weights."""
         group = self.source.vertex_groups.new(name="mouth")
         heights = sources.coordinates(self.source.data.vertices)[:, 1]
-        weights = np.select([heights < np.quantile(heights, 0.3),
-                             heights < np.quantile(heights, 0.5)], [1.0, 0.25], 0.0)
+        # Above the lips and across the cheeks, mm.
+        weights = np.select([heights < -59, heights < -34], [1.0, 0.25], 0.0)
         for weight in (1.0, 0.25):
             group.add(np.flatnonzero(weights == weight).tolist(), weight, "REPLACE")
         path = self.path / "mouth.txt"

@@ -15,7 +15,7 @@ class Readme(unittest.TestCase):
         printed = io.StringIO()
         with contextlib.redirect_stdout(printed):
             exec(compile(example, "README.md", "exec"), {})
-        self.assertRegex(printed.getvalue(), r"\(120, 4334, 3\) 0\.\d+")
+        self.assertRegex(printed.getvalue(), r"\(120, 5126, 3\) 0\.\d+")
 
 
 if __name__ == "__main__":

@@ -82,7 +82,7 @@ class Watching(SampleTest):
 
     def test_control_c_ends_a_run_without_progress(self):
         # A run that would take minutes.
-        poses = np.random.default_rng(1).normal(size=(60, 4334, 3))
+        poses = np.random.default_rng(1).normal(size=(60, 5126, 3))
         take = mimetra.Sequence(poses, self.arrays.faces)
         pressed = threading.Timer(0.5, os.kill, (os.getpid(), signal.SIGINT))
         begun = time.monotonic()

@@ -31,6 +31,17 @@ inline const samples::HeadGrid& grid() {
   return result;
 }
 
+inline samples::HeadVertex::Part part_of(int vertex) {
+  return grid().vertices[static_cast<std::size_t>(vertex)].part;
+}
+
+/// On the teeth, the tongue or behind the lips.
+inline bool is_inside_the_mouth(int vertex) {
+  using Part = samples::HeadVertex::Part;
+  return part_of(vertex) == Part::mouth || part_of(vertex) == Part::teeth ||
+         part_of(vertex) == Part::tongue;
+}
+
 /// The vertices above and below a cut in the skin, column by column.
 using Edges = std::vector<std::pair<int, int>>;
 
