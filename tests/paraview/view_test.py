@@ -43,6 +43,14 @@ class View(HostTest):
             self.assertGreater((np.abs(pixels - color).max(axis=1) <= 2).sum(), 50, color)
         self.assertGreater((pixels == 255).all(axis=1).mean(), 0.3)
 
+        # Light changes from one pixel of the head to the next: within a face that is lit as a whole
+        # it would not, and most neighbours lie in one.
+        rows = pixels.reshape(800, 1280, 3)[:, :900]
+        head = (rows != 255).any(axis=2)
+        beside = head[:, 1:] & head[:, :-1]
+        alike = (rows[:, 1:] == rows[:, :-1]).all(axis=2)
+        self.assertLess(alike[beside].mean(), 0.4)
+
 
 if __name__ == "__main__":
     run_tests()

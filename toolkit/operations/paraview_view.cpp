@@ -89,6 +89,9 @@ view.FillLightKFRatio = 1.5
 view.HeadLightKHRatio = 1.5
 # Each face in the colour of the region that most of its points are in: colours do not blend.
 faces = PointDatatoCellData(reader, CategoricalData=1, PassPointData=1)
+# Without normals the light shows every face. Newer versions name the filter SurfaceNormals.
+add_normals = globals().get("SurfaceNormals") or GenerateSurfaceNormals
+faces = add_normals(faces, Splitting=0, Consistency=0)
 display = Show(faces, view)
 ColorBy(display, ("CELLS", "region"))
 colors = GetColorTransferFunction("region")
