@@ -119,9 +119,11 @@ Operation info_operation() {
     const double moved =
         motion(sequence, {.threads = invocation.threads, .progress = invocation.progress});
     Json report = report_of(sequence, mesh, parts, moved);
-    report["fields"] = json_of(shown.fields);
     std::string summary = summary_of(sequence, mesh, parts, moved);
-    if (!shown.fields.empty()) summary += "fields      " + names_of(shown.fields) + '\n';
+    if (!shown.fields.empty()) {
+      report["fields"] = json_of(shown.fields);
+      summary += "fields      " + names_of(shown.fields) + '\n';
+    }
     return Outcome{{}, json_text(report), summary};
   };
   return operation;
