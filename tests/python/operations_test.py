@@ -69,10 +69,17 @@ class Operations(SampleTest):
     def test_fields_of_a_sequence_do_not_change_what_looks_at_none(self):
         shown = mimetra.geodesic(self.arrays, source=[3]).out
         self.assertTrue(mimetra.operations["geodesic"].outputs[0].fields)
-        self.assertFalse(mimetra.operations["info"].inputs[0].fields)
+        self.assertFalse(mimetra.operations["check"].inputs[0].fields)
         self.assertTrue(mimetra.operations["decompose"].inputs[0].fields)
         bare = mimetra.Sequence(shown.positions, shown.faces, shown.times, shown.rest)
-        self.assertEqual(mimetra.info(shown).report, mimetra.info(bare).report)
+        self.assertEqual(mimetra.check(shown).report, mimetra.check(bare).report)
+
+    def test_info_lists_the_fields_of_a_sequence(self):
+        shown = mimetra.geodesic(self.arrays, source=[3]).out
+        self.assertEqual(mimetra.info(shown).report["fields"],
+                         [{"name": "distance", "on": "vertices", "numbers": 1},
+                          {"name": "support", "on": "vertices", "numbers": 1}])
+        self.assertNotIn("fields", mimetra.info(self.arrays).report)
 
     def test_a_list_of_targets_gives_lists(self):
         out = self.path / "results"
