@@ -36,7 +36,7 @@ struct HeadVertex {
   double u = 0;
   /// Down the head: 0 at the crown, kEyeRow, kMouthRow, kNeckRow at the neck's end.
   double v = 0;
-  /// Above (1) or below (-1) the cut of its row; 0 off the cuts. Of the upper or of the lower jaw.
+  /// Above (1) or below (-1) the cut of its row, of the upper or the lower jaw; 0 for all else.
   int rim = 0;
   VertexIndex source = -1;
   int ring = 0;

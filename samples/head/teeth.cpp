@@ -76,7 +76,7 @@ Eigen::Vector3d teeth_point(const HeadVertex& vertex) {
   };
   const auto point = static_cast<std::size_t>(vertex.v);
   Around around = blend(kIncisor[point], kMolar[point]);
-  if (u > kTeeth) around = {-1.5, 8};
+  if (u > kTeeth) around = {-1.5, 8};  // closes the end
   if (u == std::floor(u)) {
     around.out += kBetween[point].out;
     around.up += kBetween[point].up;
