@@ -14,7 +14,7 @@ namespace mimetra::samples {
 namespace {
 
 using Vector = Eigen::Vector3d;
-/// How an expression moves a skin vertex at a place.
+/// How an expression moves a vertex at a place.
 using Motion = std::function<Vector(const HeadVertex&, const Vector&)>;
 
 /// The motion of the head's left half mirrored onto its right one, and the other way round.

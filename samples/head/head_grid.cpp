@@ -156,7 +156,8 @@ class Builder {
     add_face({ring[half - 1], below(half - 1), ring[half]});
   }
 
-  /// A closed surface around an axis from back to front, with a ring in each of the rows `v`.
+  /// A closed surface around the z axis from its front (v = 0) to its back (1), with a ring in each
+  /// of the rows `v`.
   void add_ball(HeadVertex vertex, std::span<const double> rows) {
     const auto at = [&](double u, double v) {
       vertex.u = u;
@@ -194,16 +195,17 @@ class Builder {
              jaw < 0);
   }
 
-  /// Faces of a tube of rings of `around` vertices from `first` on, closed by a vertex at each end.
-  void add_tube(VertexIndex first, int around, int rings, VertexIndex begin, VertexIndex end,
+  /// Faces of a tube of rings of `columns` vertices from `first` on, closed by a vertex at each
+  /// end.
+  void add_tube(VertexIndex first, int columns, int rings, VertexIndex begin, VertexIndex end,
                 bool inside_out) {
     const auto face = [&](std::vector<VertexIndex> corners) {
       if (inside_out) std::ranges::reverse(corners);
       add_face(corners);
     };
-    for (int i = 0; i < around; ++i) {
-      const int next = (i + 1) % around;
-      const auto at = [&](int ring, int column) { return first + ring * around + column; };
+    for (int i = 0; i < columns; ++i) {
+      const int next = (i + 1) % columns;
+      const auto at = [&](int ring, int column) { return first + ring * columns + column; };
       face({begin, at(0, i), at(0, next)});
       for (int ring = 0; ring + 1 < rings; ++ring) {
         face({at(ring, i), at(ring + 1, i), at(ring + 1, next), at(ring, next)});

@@ -97,7 +97,8 @@ Eigen::Vector3d mouth_point(const HeadVertex& vertex, const Eigen::Vector3d& sou
   const auto ring = static_cast<std::size_t>(vertex.ring - 1);
   const double rest = 1 - square(source.x() / kMouthHalfWidth);
   const double height = vertex.rim * kHeight[ring] * (rest > 0 ? std::sqrt(rest) : 0);
-  const double chin = height < -1 ? 5 : 0;  // lies further back than the lips
+  // The inner side of the chin lies further back than that of the lips.
+  const double chin = vertex.rim < 0 && vertex.ring > 1 ? 5 : 0;
   return {source.x() * kWidth[ring], source.y() + height, source.z() - kDepth[ring] - chin};
 }
 
@@ -112,6 +113,7 @@ Eigen::Vector3d eyelid_point(const HeadVertex& vertex, const Eigen::Vector3d& so
 
 /// Of the unit sphere, (0, 0, 1) at v = 0, around the axis with u.
 Eigen::Vector3d ball_point(double u, double v) {
+  static_assert(kBallColumns == 12);  // as many as the cosines below
   constexpr double kHalf = 0.5;
   const double h = std::sqrt(3.0) / 2;
   const std::array<double, kBallColumns> cosines = {1,  h,  kHalf,  0, -kHalf, -h,

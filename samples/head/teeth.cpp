@@ -9,10 +9,12 @@
 namespace mimetra::samples {
 namespace {
 
-/// Where the teeth of the upper jaw begin in front, and how far its edge is below the lips' line.
+/// z of the upper teeth in front, and height of the edges of both jaws' teeth above the line
+/// between the lips, mm.
 constexpr double kFront = 80, kEdge = -3;
 
-/// A point around a tooth: before (+) or behind the arch of the jaw, and from the edge to the gum.
+/// A point around a tooth: before (+) or behind the arch of the jaw, and from the edge to the gum,
+/// mm.
 struct Around {
   double out;
   double up;
@@ -28,7 +30,7 @@ constexpr std::array<Around, kToothPoints> kIncisor = {{{0.6, 0},
                                                         {-0.6, 0}}};
 constexpr std::array<Around, kToothPoints> kMolar = {
     {{1.6, 0}, {2.6, 3}, {2, 6.5}, {3, 7.8}, {2.4, 15}, {-8, 15}, {-7.5, 8}, {-6.4, 3}, {-5, 0}}};
-/// Between two teeth: a groove, with the gum in its corner.
+/// Added to a tooth's points between two of them: a groove, with the gum in its corner.
 constexpr std::array<Around, kToothPoints> kBetween = {{{-0.5, 0.6},
                                                         {-1.2, 0},
                                                         {-0.8, -2.2},

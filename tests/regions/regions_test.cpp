@@ -269,7 +269,7 @@ TEST(Coverage, OutOfReachIsReported) {
 }
 
 /// Components of a grid with three triangles beside it, of which component 0 lifts one corner each.
-Components with_loose_triangles(double height) {
+Components with_loose_triangles() {
   Components components = lifted({at(2, 2)}, {2});
   const Shape grid{components.rest, components.triangles};
   Shape whole = grid;
@@ -284,21 +284,21 @@ Components with_loose_triangles(double height) {
   const Frames alone = components.displacements;
   components.displacements = Frames::Zero(1, whole.positions.size());
   components.displacements.leftCols(alone.cols()) = alone;
-  for (int i = 0; i < 3; ++i) components.displacements(0, alone.cols() + 9 * i + 2) = height;
+  for (int i = 0; i < 3; ++i) components.displacements(0, alone.cols() + 9 * i + 2) = 2;
   components.support = Eigen::MatrixXd::Zero(1, whole.positions.rows());
   return components;
 }
 
 TEST(Coverage, OutOfReachSaysHowMuchMovesOnPartsWithoutARegion) {
   // On the grid 2^2 + 4 = 8, on each triangle 2^2.
-  const Components components = with_loose_triangles(2);
+  const Components components = with_loose_triangles();
   RegionOptions options = disc_of(components, 1.5);
   options.coverage = 0.8;
   EXPECT_THAT(
       find_regions(components, options).notes,
       ElementsAre("the one region holds 40 % of the motion energy; 80 % were asked for; 60 % is "
-                  "on parts of the mesh that have no region, since small ones, such as teeth, "
-                  "move with components of others"));
+                  "on parts of the mesh that have no region: small ones, such as teeth, move with "
+                  "components of others"));
 }
 
 TEST(RegionOptions, RefuseARadiusOfZero) {

@@ -53,15 +53,16 @@ TEST_P(HeadExpression, MovesTeethAndTongueAsBonesOnly) {
                         vertex.part == samples::HeadVertex::Part::tongue;
       if (hard && vertex.rim == jaw) bone.push_back(v);
     }
-    ASSERT_GT(bone.size(), 300u);
+    ASSERT_FALSE(bone.empty());
     const Positions rest = head().mean()(bone, Eigen::all), offsets = field(bone, Eigen::all);
     if (jaw > 0 || !opens) {
       EXPECT_TRUE(offsets.isZero(0)) << jaw;
       continue;
     }
     const RigidTransform turn = rigid_fit(rest, rest + offsets);
+    // Rounding of a fit at 100 mm; the whole is a turn by the sine 0.24 at 30 mm and more.
     EXPECT_LT((turn.apply(rest) - rest - offsets).cwiseAbs().maxCoeff(), 1e-9);
-    EXPECT_GT(offsets.rowwise().norm().minCoeff(), 8);
+    EXPECT_GT(offsets.rowwise().norm().minCoeff(), 0.24 * 30);
   }
 }
 
@@ -128,15 +129,20 @@ TEST(HeadExpressions, JawOpenLowersTheChinAndLeavesTheUpperLip) {
 
 TEST(HeadExpressions, JawOpenHasAPalateThatStaysAndAFloorThatFalls) {
   const Positions moved = field("jawOpen");
+  int palate = 0, floor = 0;
   for (int v = 0; v < head().vertices(); ++v) {
     const samples::HeadVertex& vertex = grid().vertices[static_cast<std::size_t>(v)];
     if (vertex.part != samples::HeadVertex::Part::mouth || vertex.u != 0) continue;
     if (vertex.rim > 0) {
       EXPECT_TRUE(moved.row(v).isZero(0)) << vertex.ring;
+      ++palate;
     } else {
-      EXPECT_LT(moved(v, 1), -8) << vertex.ring;
+      EXPECT_LT(moved(v, 1), -8) << vertex.ring;  // all of it is far in front of the joints
+      ++floor;
     }
   }
+  EXPECT_EQ(palate, samples::kMouthRings);
+  EXPECT_EQ(floor, samples::kMouthRings);
 }
 
 TEST(HeadExpressions, BlinkClosesTheEyeToAFewHundredthsOfItsOpening) {

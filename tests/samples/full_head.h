@@ -1,7 +1,6 @@
 #pragma once
 
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "tests/shapes.h"
@@ -19,23 +18,6 @@ struct FacePlaces {
   std::vector<Eigen::Vector3d> eyes;
   /// Length of a millimetre.
   double millimetre = 1;
-};
-
-/// A face with all that a full head has besides: every tooth by itself and dense, gums, tongue,
-/// lashes. Its own vertices come first.
-struct FullHead {
-  MeshSequence sequence;
-  /// Names of the parts that were added, and the first vertex of each.
-  std::vector<std::pair<std::string, VertexIndex>> parts;
-
-  /// The name of the part of a vertex; empty on the face itself.
-  std::string part_of(VertexIndex vertex) const {
-    std::string name;
-    for (const auto& [part, first] : parts) {
-      if (vertex >= first) name = part;
-    }
-    return name;
-  }
 };
 
 /// A sphere of unit radius, stretched and put somewhere.
@@ -80,8 +62,10 @@ inline Shape lash(const Eigen::Vector3d& eye, int side, double millimetre) {
   return shape;
 }
 
-inline FullHead full_head(const BlendshapeModel& face, const Eigen::MatrixXd& weights,
-                          const FacePlaces& places) {
+/// A face with all that a full head has besides: every tooth by itself and dense, gums, tongue,
+/// lashes. Its own vertices come first.
+inline MeshSequence full_head(const BlendshapeModel& face, const Eigen::MatrixXd& weights,
+                              const FacePlaces& places) {
   const MeshSequence performance = face.animate(weights);
   // The jaw turns as the chin does: the vertices that it moves most.
   const auto& basis = face.expressions();
@@ -96,12 +80,10 @@ inline FullHead full_head(const BlendshapeModel& face, const Eigen::MatrixXd& we
     jaw.push_back(rigid_fit(face.neutral(), performance.frame(f), chin));
   }
 
-  FullHead head;
   Shape whole{face.neutral(), face.triangles()};
   std::vector<Eigen::MatrixXd> moved(performance.frames());
   for (int f = 0; f < performance.frames(); ++f) moved[f] = performance.frame(f);
-  const auto add = [&](const std::string& name, const Shape& part, const auto& motion) {
-    head.parts.emplace_back(name, static_cast<VertexIndex>(whole.positions.rows()));
+  const auto add = [&](const Shape& part, const auto& motion) {
     whole = both(whole, part);
     for (int f = 0; f < performance.frames(); ++f) {
       const Positions pose = motion(f, part.positions);
@@ -120,16 +102,16 @@ inline FullHead full_head(const BlendshapeModel& face, const Eigen::MatrixXd& we
     const double side = lower ? -1 : 1;
     for (int i = 0; i < 14; ++i) {
       const Eigen::Vector3d middle = arch((i - 6.5) / 7) + Eigen::Vector3d(0, 5 * side, 0);
-      add("tooth", placed(ball(3, middle, {3.2, 4.5, 3})), rigid);
+      add(placed(ball(3, middle, {3.2, 4.5, 3})), rigid);
     }
-    add("gum", placed(gum(12 * side)), rigid);
+    add(placed(gum(12 * side)), rigid);
   }
-  add("tongue", placed(ball(4, {0, -6, -30}, {18, 6, 22})),
+  add(placed(ball(4, {0, -6, -30}, {18, 6, 22})),
       [&](int f, const Positions& rest) { return jaw[f].apply(rest); });
   for (const Eigen::Vector3d& eye : places.eyes) {
     for (const int side : {1, -1}) {
       // A lash goes where the skin next to each of its vertices goes.
-      add("lash", lash(eye, side, places.millimetre), [&](int f, const Positions& rest) {
+      add(lash(eye, side, places.millimetre), [&](int f, const Positions& rest) {
         Positions pose = rest;
         for (Eigen::Index v = 0; v < rest.rows(); ++v) {
           Eigen::Index nearest = 0;
@@ -144,10 +126,9 @@ inline FullHead full_head(const BlendshapeModel& face, const Eigen::MatrixXd& we
   for (int f = 0; f < performance.frames(); ++f) {
     frames.row(f) = Positions(moved[f]).reshaped<Eigen::RowMajor>().transpose();
   }
-  head.sequence = MeshSequence(
+  return MeshSequence(
       Connectivity::from_triangles(static_cast<int>(whole.positions.rows()), whole.triangles),
       std::move(frames), performance.times(), whole.positions);
-  return head;
 }
 
 }  // namespace mimetra::test

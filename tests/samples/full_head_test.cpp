@@ -9,8 +9,8 @@ namespace mimetra::test {
 namespace {
 
 /// The built-in head with denser teeth over its own, in every sixth frame of its performance.
-const FullHead& with_teeth() {
-  static const FullHead head = [] {
+const MeshSequence& with_teeth() {
+  static const MeshSequence head = [] {
     const Eigen::Vector3d left = samples::kLeftEye, right(-left.x(), left.y(), left.z());
     const Eigen::MatrixXd weights = samples::parametric_performance().weights;
     const Eigen::MatrixXd some = weights(Eigen::seqN(0, 20, 6), Eigen::all);
@@ -24,7 +24,7 @@ const FullHead& with_teeth() {
 long on_the_face(AnalysisOptions options) {
   // The places are settled by the start; more iterations only take longer.
   options.decomposition.iterations = 1;
-  const Source source = prepare_source(with_teeth().sequence, {.head_motion = HeadMotion::none});
+  const Source source = prepare_source(with_teeth(), {.head_motion = HeadMotion::none});
   const Regions regions = choose_regions(analyse(source, options));
   return std::ranges::count_if(regions.regions, [](const Region& region) {
     return region.center < head().vertices() && !is_inside_the_mouth(region.center);

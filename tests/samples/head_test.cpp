@@ -91,6 +91,20 @@ TEST(Head, FacesOutwards) {
   }
 }
 
+TEST(Head, HasEyeballsTeethAndATongueThatFaceOutwards) {
+  const Triangles& triangles = head().connectivity().triangles;
+  const ConnectedComponents parts = connected_components(head().vertices(), triangles);
+  std::map<int, double> volumes;
+  for (int t = 0; t < triangles.rows(); ++t) {
+    volumes[parts.of_vertex[static_cast<std::size_t>(triangles(t, 0))]] +=
+        corner(head().mean(), t, 0)
+            .dot(corner(head().mean(), t, 1).cross(corner(head().mean(), t, 2))) /
+        6;
+  }
+  ASSERT_EQ(volumes.size(), 6u);
+  for (const auto& [part, volume] : volumes) EXPECT_GT(volume, 0) << part;
+}
+
 TEST(Head, IsOpenAtNeckAndEyesAndClosedBehindTheMouth) {
   const std::vector<double> heights = loop_heights();
   ASSERT_EQ(heights.size(), 3u);

@@ -265,10 +265,11 @@ void cover(Regions& regions, double coverage, const Triangles& triangles,
       whole_percent(regions.energy_share) + " of the motion energy; " + whole_percent(coverage) +
       " were asked for";
   const double elsewhere = energy_on_parts_without_region(regions, parts);
-  if (elsewhere >= 0.005) {
+  constexpr double kWorthSaying = 0.005;  // 1 % when rounded
+  if (elsewhere >= kWorthSaying) {
     note += "; " + whole_percent(elsewhere) +
-            " is on parts of the mesh that have no region, since small ones, such as teeth, move "
-            "with components of others";
+            " is on parts of the mesh that have no region: small ones, such as teeth, move with "
+            "components of others";
   }
   regions.notes.push_back(note);
 }
