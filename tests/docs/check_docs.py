@@ -21,7 +21,9 @@ import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").rglob("*.md"))]
-RUN = ["tutorial", "howto/scan", "howto/arkit", "howto/cluster", "howto/videos"]
+RUN = ["tutorial", "howto/scan", "howto/arkit", "howto/cluster", "howto/videos",
+       *(f"algorithms/{page.stem}" for page in PAGES
+         if page.parent.name == "algorithms" and "\nmimetra sample " in page.read_text())]
 # Pages all of whose options are the command's.
 OPTION_PAGES = [ROOT / "docs" / "glossary.md", *sorted((ROOT / "docs" / "algorithms").glob("*.md"))]
 # Operations of the example plugins.

@@ -91,6 +91,53 @@ TEST(Picture, ShowsCrispColoursWithoutAnyBetweenThem) {
   EXPECT_NEAR(blue, 0.5 * layout.pixels_per_unit(), 1.5);
 }
 
+/// The square as four quads, with another one behind it, which it hides.
+Sheet quads_sheet() {
+  Sheet sheet = square_sheet();
+  TileRow& row = sheet.rows.front();
+  std::vector<int> corners, offsets = {0};
+  for (const int first : {0, 1, 3, 4, 9, 10, 12, 13}) {
+    for (const int corner : {first, first + 1, first + 4, first + 3}) corners.push_back(corner);
+    offsets.push_back(static_cast<int>(corners.size()));
+  }
+  row.connectivity =
+      std::make_shared<Connectivity>(Connectivity::from_polygons(18, {corners, offsets}));
+  Tile& tile = row.tiles.front();
+  tile.colors.resize(18, tile.colors.front());
+  Positions both(18, 3);
+  both << tile.positions, 0.8 * tile.positions;
+  both.bottomRows(9).col(2).array() -= 0.5;
+  tile.positions = both;
+  return sheet;
+}
+
+TEST(Picture, ShowsTheEdgesOfPolygonsThatAreSeenAndNotOfTheirTriangles) {
+  Sheet sheet = quads_sheet();
+  const SheetLayout layout = SheetLayout::of(sheet);
+  const Box box = layout.tile(0, 0);
+  const double unit = layout.pixels_per_unit();
+  // Whether anything is dark on the way between two points, in units from the middle.
+  const auto is_crossed = [&](const Image& image, double from_x, double from_y, double to_x,
+                              double to_y) {
+    bool crossed = false;
+    for (double t = 0; t <= 1; t += 0.01) {
+      const double x = from_x + t * (to_x - from_x), y = from_y + t * (to_y - from_y);
+      const Color color = image.at(static_cast<int>(box.left + box.width / 2.0 + x * unit),
+                                   static_cast<int>(box.top + box.height / 2.0 + y * unit));
+      crossed |= color.red < 110;
+    }
+    return crossed;
+  };
+  const Image plain = draw(sheet);
+  sheet.edges = true;
+  const Image lined = draw(sheet);
+  EXPECT_FALSE(is_crossed(plain, -0.5, 0.3, 0.5, 0.3));
+  EXPECT_TRUE(is_crossed(lined, -0.5, 0.3, 0.5, 0.3));  // the edge in the middle
+  // Ways across diagonals of quads and borders of the hidden square.
+  for (const double y : {-0.5, 0.5}) EXPECT_FALSE(is_crossed(lined, 0.1, y, 0.9, y));
+  EXPECT_FALSE(is_crossed(lined, 0.3, 0.1, 0.3, 0.9));
+}
+
 TEST(Picture, WritesLabelsWhereTheyAre) {
   Sheet sheet = square_sheet();
   const Image plain = draw(sheet);

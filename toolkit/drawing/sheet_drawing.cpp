@@ -162,6 +162,35 @@ vtkSmartPointer<vtkActor> actor_of(vtkPolyData& surface) {
   return actor;
 }
 
+/// The outlines of the polygons, moved by `lift` towards the eye, so that the surface hides none of
+/// those that are seen.
+vtkSmartPointer<vtkActor> edges_of(const Tile& tile, const Polygons& polygons,
+                                   const Eigen::RowVector3d& center,
+                                   const Eigen::RowVector3d& lift) {
+  vtkNew<vtkPoints> points;
+  points->SetData(float_rows(tile.positions.rowwise() - (center - lift)));
+  vtkNew<vtkCellArray> outlines;
+  for (int face = 0; face < polygons.size(); ++face) {
+    const int first = polygons.offsets[static_cast<std::size_t>(face)];
+    const int end = polygons.offsets[static_cast<std::size_t>(face) + 1];
+    outlines->InsertNextCell(end - first + 1);
+    for (int c = first; c < end; ++c) {
+      outlines->InsertCellPoint(polygons.corners[static_cast<std::size_t>(c)]);
+    }
+    outlines->InsertCellPoint(polygons.corners[static_cast<std::size_t>(first)]);
+  }
+  vtkNew<vtkPolyData> lines;
+  lines->SetPoints(points);
+  lines->SetLines(outlines);
+  vtkNew<vtkPolyDataMapper> mapper;
+  mapper->SetInputData(lines);
+  const auto actor = vtkSmartPointer<vtkActor>::New();
+  actor->SetMapper(mapper);
+  actor->GetProperty()->SetColor(0.2, 0.22, 0.26);
+  actor->GetProperty()->LightingOff();
+  return actor;
+}
+
 /// A key light from the upper left, near enough to the eye that a face has no dark side, a weak one
 /// opposite, and one from above, by which wrinkles show.
 void add_lights(vtkRenderer& renderer) {
@@ -206,9 +235,13 @@ void add_tile(vtkRenderWindow& window, const Sheet& sheet, const SheetLayout& la
   const Tile& tile = tiles.tiles[column];
   const auto renderer = empty_renderer(layout.tile(row, column), layout);
   renderer->AddActor(actor_of(*surface_of(tile, tiles, layout.centers[row], weld)));
+  const View view = view_of(sheet.viewpoint, tile.turn);
+  if (sheet.edges) {
+    const Eigen::RowVector3d lift = 0.002 * layout.reach * view.towards_eye.transpose();
+    renderer->AddActor(edges_of(tile, tiles.connectivity->polygons, layout.centers[row], lift));
+  }
   add_lights(*renderer);
-  aim(*renderer->GetActiveCamera(), view_of(sheet.viewpoint, tile.turn), layout.half_height,
-      4 * layout.reach);
+  aim(*renderer->GetActiveCamera(), view, layout.half_height, 4 * layout.reach);
   window.AddRenderer(renderer);
 }
 

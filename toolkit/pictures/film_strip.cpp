@@ -347,6 +347,7 @@ Sheet film_strip(const std::vector<FieldSequence>& sequences, const StripOptions
   sheet.tile_height = options.tile_height;
   sheet.letters = options.letters;
   sheet.unit = options.unit;
+  sheet.edges = options.edges;
   sheet.column_titles = column_titles(sequences, frames, options);
   for (std::size_t row = 0; row < sequences.size(); ++row) {
     const RowPainter painter(sequences, options, row, frames);

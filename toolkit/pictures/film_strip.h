@@ -70,6 +70,7 @@ struct StripOptions {
   int tile_height = 320;
   int letters = 0;        ///< height of letters, pixels; 0 for what suits the tiles
   std::string unit = {};  ///< of positions
+  bool edges = false;     ///< of the polygons are drawn, too
 
   static constexpr Option kLayout{"layout", &StripOptions::layout};
   static constexpr Option kColumns{
@@ -79,6 +80,7 @@ struct StripOptions {
   static constexpr Option kTileHeight{
       "tile_height", &StripOptions::tile_height, {.minimum = 16, .maximum = 4096}, "pixels"};
   static constexpr Option kUnit{"unit", &StripOptions::unit};
+  static constexpr Option kEdges{"edges", &StripOptions::edges};
   static constexpr auto declared() {
     return std::tuple(kLayout, kColumns, kFrames, kMaximum, kTileHeight);
   }

@@ -59,7 +59,8 @@ BoundParameters<StripOptions> strip_parameters() {
       .add("maximum", StripOptions::kMaximum, "value of the darkest colour; default the largest")
       .add(&StripOptions::viewpoint, viewpoint_parameters())
       .add("size", StripOptions::kTileHeight, "height of one picture")
-      .add("unit", StripOptions::kUnit, "name of the meshes' unit of length, for the scale bar");
+      .add("unit", StripOptions::kUnit, "name of the meshes' unit of length, for the scale bar")
+      .add("edges", StripOptions::kEdges, "draw the edges of the faces, too");
 }
 
 StripOptions options_of(const Invocation& invocation) {
@@ -145,7 +146,8 @@ Operation render_operation() {
   operation.parameters = strip_parameters().declared();
   operation.examples = {
       "render take.npy regions.pvd actor_smile/ --color none,region,none -o strip.png",
-      "render actor/ --layout turntable --columns 6 --unit mm -o actor.png"};
+      "render actor/ --layout turntable --columns 6 --unit mm -o actor.png",
+      "render take.npy take_coarse.npy --layout frame --edges --size 800 -o topology.png"};
   operation.run = run_render;
   operation.memory = [](const Invocation& invocation) {
     return drawing_bytes(sheet_of(invocation));
