@@ -293,6 +293,58 @@ TEST_F(Command, AlignIsUndoneByItsManifest) {
   EXPECT_LT((before.positions() - after.positions()).cwiseAbs().maxCoeff(), 1e-12 * 15);
 }
 
+TEST_F(Command, SaysWhereAMotionIsGivenBackInAnotherUnitOrAboutOtherAxes) {
+  ASSERT_EQ(run("convert head --weights take.csv -o a.npy").code, 0);
+  ASSERT_EQ(run("align a.npy --on all -o b.npy").code, 0);
+  const auto undone = [&](const std::string& changed) {
+    EXPECT_EQ(run("convert b.npy " + changed + " -o changed.npy --force").code, 0);
+    const auto result = run("align changed.npy --undo b.run.json -o c.npy --force");
+    EXPECT_EQ(result.code, 0) << result.err;
+    return result.err;
+  };
+  EXPECT_THAT(undone("--scale 0.01"), HasSubstr("100 times as small as the sequence that"));
+  EXPECT_THAT(undone("--up y-to-z"), HasSubstr("has another axis up than the sequence"));
+  for (const char* changed : {"", "--scale 1.9"}) {
+    EXPECT_THAT(undone(changed), Not(HasSubstr("the sequence that the motion was taken out of")));
+  }
+}
+
+TEST_F(Command, SaysWherePositionsAreNumberedOtherwiseThanTheFacesThatTheyAreGiven) {
+  ASSERT_EQ(run("convert head --weights take.csv -o a.npy").code, 0);
+  const MeshSequence given = read_sequence((folder_ / "a.npy").string()).sequence;
+  const int count = given.vertices();
+  ASSERT_NE(count % 7, 0);
+  Frames other(given.frames(), 3 * count);
+  for (int v = 0; v < count; ++v) {
+    other.middleCols<3>(3 * (v * 7 % count)) = given.positions().middleCols<3>(3 * v);
+  }
+  write_sequence(MeshSequence(given.shared_connectivity(), other), folder_ / "b.npy", {});
+  const std::string odd = "of the edges are more than twice as long or as short as in";
+  for (const auto& [line, is_odd] :
+       {std::pair("check a.npy --topology head/neutral.ply --strict", false),
+        std::pair("check b.npy --topology head/neutral.ply --strict", true),
+        std::pair("convert b.npy --topology head/neutral.ply -o c.npy", true)}) {
+    const auto result = run(line);
+    EXPECT_EQ(result.err.find(odd) != std::string::npos, is_odd) << line << '\n' << result.err;
+    if (!std::string(line).starts_with("check")) continue;
+    EXPECT_EQ(result.code == 0, !is_odd) << line << '\n' << result.err;
+  }
+}
+
+TEST_F(Command, SaysWhereComponentsAreWorseThanTheMeanFrame) {
+  // Two frames that are alike, far from the neutral.
+  write("near.csv", "time,left,right\n0,1,1\n1,1,0.99\n");
+  EXPECT_THAT(run("decompose head --weights near.csv -k 1 -o near.h5").err,
+              HasSubstr("times as much of the motion as the mean of the frames does"));
+  // Frames that are all the same, and those that move.
+  write("same.csv", "time,left,right\n0,1,1\n1,1,1\n");
+  for (const char* weights : {"same.csv", "take.csv"}) {
+    const std::string line = std::string("decompose head --weights ") + weights;
+    EXPECT_THAT(run(line + " -k 1 -o other.h5 --force").err,
+                Not(HasSubstr("as the mean of the frames does")));
+  }
+}
+
 TEST_F(Command, SaysWhereAMotionIsGivenBackOrTakenOutTwice) {
   ASSERT_EQ(run("convert head --weights take.csv -o still.npy").code, 0);
   // Quarter turns around z.

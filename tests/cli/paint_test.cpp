@@ -105,6 +105,15 @@ TEST_F(PaintTest, SaysWhereTheWeightsCameFromAndHowManyThereAre) {
   EXPECT_GT(faded["between"], 2 * kSide);
 }
 
+TEST_F(PaintTest, SaysWhereNothingIsPaintedMuch) {
+  std::string faint;
+  for (int v = 0; v < kSide * kSide; ++v) faint += std::to_string(weight(v) / 100) + '\n';
+  write("faint.txt", faint);
+  const std::string warning = "the largest weight is 0.01, so that at most 1.0 % of the motion";
+  EXPECT_THAT(run(transfer("--paint faint.txt")).err, HasSubstr(warning));
+  EXPECT_THAT(run(transfer("--paint w.txt")).err, testing::Not(HasSubstr("largest weight")));
+}
+
 TEST_F(PaintTest, TakesAPictureInTheSourcesTextureSpace) {
   write_textured_takes();
   std::vector<std::uint8_t> grey;

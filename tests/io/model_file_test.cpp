@@ -369,6 +369,16 @@ TEST_F(Model, SaysWhichMeshesItLeavesUnread) {
               testing::ElementsAre(HasSubstr("1 other mesh files and shapes/")));
 }
 
+TEST_F(Model, IsNotBesideItsExpressionsRestPose) {
+  write_model(folder_ / "m", small_model(), {}, false);
+  std::filesystem::copy_file(folder_ / "m/neutral.ply", folder_ / "m/expressions.rest.ply");
+  EXPECT_THAT(meshes_beside_model(folder_ / "m"), testing::IsEmpty());
+  std::filesystem::copy_file(folder_ / "m/neutral.ply", folder_ / "m/scan.ply");
+  EXPECT_THAT(
+      meshes_beside_model(folder_ / "m"),
+      testing::ElementsAre(testing::Property(&std::filesystem::path::filename, "scan.ply")));
+}
+
 TEST_F(Model, WithExpressionsSaysWhichMeshesItLeavesUnread) {
   namespace fs = std::filesystem;
   write_model(folder_ / "m", small_model(), {}, false);

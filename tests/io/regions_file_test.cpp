@@ -6,6 +6,7 @@
 
 #include "tests/shapes.h"
 #include "tests/temporary_folder.h"
+#include "toolkit/io/mesh_file.h"
 #include "toolkit/io/regions_file.h"
 #include "toolkit/mesh/errors.h"
 
@@ -119,6 +120,37 @@ TEST_F(RegionsFile, WeightsSayWhatIsInside) {
   const Regions again = read("t.json", regions_json(soft));
   EXPECT_EQ(again.weights, soft.weights);
   EXPECT_EQ(again.inside, soft.inside);
+}
+
+TEST_F(RegionsFile, PropertiesOfAnOmFileAreOneRegion) {
+  const TriMesh mesh{shape_.positions, Connectivity::from_triangles(20, shape_.triangles)};
+  const auto read_with = [&](const std::vector<Field>& fields) {
+    std::filesystem::remove(folder_ / "r.om");
+    write_mesh(folder_ / "r.om", mesh, {.double_precision = true, .fields = fields});
+    return read_regions(folder_ / "r.om", 20, shape_.triangles);
+  };
+  Eigen::VectorXd mask = Eigen::VectorXd::Zero(20), weights = Eigen::VectorXd::Zero(20);
+  for (const int v : {0, 1, 6}) mask[v] = 1;
+  weights[0] = 1;
+  weights[7] = 0.25;
+  const Field roi{"roi", Field::Location::vertices, mask, true};
+  const Regions hard = read_with({{"region", Field::Location::vertices, mask, true}, roi});
+  ASSERT_EQ(hard.regions.size(), 1u);
+  EXPECT_THAT(hard.regions.front().vertices, testing::ElementsAre(0, 1, 6));
+  EXPECT_EQ(hard.weights.size(), 0);
+
+  const Regions soft = read_with({roi, {"weight", Field::Location::vertices, weights}});
+  EXPECT_EQ(soft.weights, weights);
+
+  const auto message = [&](const std::vector<Field>& fields) {
+    return test::message_of<IoError>([&] { read_with(fields); });
+  };
+  EXPECT_THAT(message({{"region", Field::Location::vertices, mask, true}}),
+              testing::HasSubstr("r.om: no field 'roi' of numbers on the vertices; it has region"));
+  mask[3] = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THAT(message({{"roi", Field::Location::vertices, mask}}),
+              testing::HasSubstr("'roi' of vertex 3 is nan"));
+  EXPECT_THROW(read_regions(folder_ / "r.om", 21, shape_.triangles), MismatchError);
 }
 
 TEST_F(RegionsFile, WrongWeightsAreNamed) {

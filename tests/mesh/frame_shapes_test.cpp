@@ -152,6 +152,30 @@ TEST(CapturedFrameShapes, AreNotOdd) {
   EXPECT_THAT(found.mirrored, IsEmpty());
   EXPECT_THAT(found.torn, IsEmpty());
   EXPECT_THAT(found.spiked, IsEmpty());
+  for (const int f : {0, performance.frames() / 2, performance.frames() - 1}) {
+    const Positions pose = performance.frame(f);
+    EXPECT_LT(share_of_other_edges(pose, performance.rest(), performance.triangles()), 0.02);
+    // A number off by one, as where vertices are counted from 1.
+    Positions other = pose;
+    other << pose.bottomRows(pose.rows() - 1), pose.topRows(1);
+    EXPECT_GT(share_of_other_edges(other, performance.rest(), performance.triangles()), 0.3);
+  }
+}
+
+TEST_F(FrameShapes, TellAnotherNumberingByTheirEdges) {
+  const Positions& ball = ball_.positions;
+  const auto share = [this](const Positions& pose) {
+    return share_of_other_edges(pose, ball_.positions, ball_.triangles);
+  };
+  EXPECT_EQ(share(ball), 0);
+  EXPECT_EQ(share(3 * ball), 0);
+  EXPECT_LT(share(pose(2)), 0.02);
+  Positions other(ball.rows(), 3);
+  ASSERT_NE(ball.rows() % 7, 0);
+  for (Eigen::Index v = 0; v < ball.rows(); ++v) other.row(v * 7 % ball.rows()) = ball.row(v);
+  EXPECT_GT(share(other), 0.5);
+  EXPECT_EQ(share(0 * ball), 0);
+  EXPECT_EQ(share_of_other_edges(ball, ball, Triangles(0, 3)), 0);
 }
 
 TEST_F(FrameShapes, ThatJumpAwayAndBackAreOdd) {

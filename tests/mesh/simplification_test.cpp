@@ -1,6 +1,7 @@
 #include "toolkit/mesh/simplification.h"
 
 #include <cmath>
+#include <numeric>
 #include <set>
 
 #include <gmock/gmock.h>
@@ -167,6 +168,45 @@ TEST(Simplification, KeepsTextureCoordinatesWithTheirVertices) {
     const int own = simple.vertices[static_cast<std::size_t>(left.polygons.corners[c])];
     EXPECT_EQ(left.texture.coordinates[static_cast<std::size_t>(left.texture.corners[c])],
               place(own));
+  }
+}
+
+/// Two charts that lie on each other in texture space, with a seam at x = 8.
+TEST(Simplification, KeepsChartsThatOverlapApart) {
+  const Shape grid = test::grid(17, 17);
+  Connectivity mesh = Connectivity::from_triangles(289, grid.triangles);
+  const auto place = [](int v, bool is_right) {
+    return Eigen::Vector2d(is_right ? 19 - v % 17 : v % 17, v / 17);
+  };
+  const auto is_right = [&](const Triangles& triangles, const std::vector<VertexIndex>& vertices,
+                            Eigen::Index t) {
+    int columns = 0;
+    for (const int v : triangles.row(t)) columns += vertices[std::size_t(v)] % 17;
+    return columns > 3 * 8;
+  };
+  for (const bool right : {false, true}) {
+    for (int v = 0; v < 289; ++v) mesh.texture.coordinates.push_back(place(v, right));
+  }
+  std::vector<VertexIndex> all(289);
+  std::iota(all.begin(), all.end(), 0);
+  for (std::size_t c = 0; c < mesh.polygons.corners.size(); ++c) {
+    const bool right = is_right(mesh.triangles, all, static_cast<Eigen::Index>(c / 3));
+    mesh.texture.corners.push_back(mesh.polygons.corners[c] + (right ? 289 : 0));
+  }
+  const MeshSequence sheet(mesh, grid.positions.reshaped<Eigen::RowMajor>().transpose());
+  for (const double share : {0.5, 0.2}) {
+    const Simplification simple = simplify(sheet, {.share = share});
+    const Connectivity& left = *simple.connectivity;
+    ASSERT_LT(left.vertices, 200);
+    for (Eigen::Index t = 0; t < left.triangles.rows(); ++t) {
+      const bool right = is_right(left.triangles, simple.vertices, t);
+      for (int c = 0; c < 3; ++c) {
+        const int number = left.texture.corners[static_cast<std::size_t>(3 * t + c)];
+        const int own = simple.vertices[static_cast<std::size_t>(left.triangles(t, c))];
+        EXPECT_EQ(left.texture.coordinates[static_cast<std::size_t>(number)], place(own, right))
+            << "corner " << c << " of triangle " << t;
+      }
+    }
   }
 }
 

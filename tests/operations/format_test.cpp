@@ -48,6 +48,12 @@ TEST(FormatTable, WritesNoWeightsThatWouldBeReadAsTimes) {
     EXPECT_THAT([&] { format.write(timed, {.target = target, .parameters = parameters}); },
                 ThrowsMessage<MismatchError>(HasSubstr("an expression is called 'Time_ms'")));
     EXPECT_FALSE(std::filesystem::exists(target));
+    for (const char* name : {"Frame", "frame_index", "Timecode", "BlendShapeCount", "timestamp"}) {
+      const Table numbered{{"time", "jawOpen", name}, {{0, 0.5, 1}}};
+      EXPECT_THROW(format.write(numbered, {.target = target, .parameters = parameters}),
+                   MismatchError)
+          << name;
+    }
   }
 }
 
@@ -102,7 +108,7 @@ TEST(FormatTable, IsWhatHelpAndMessagesOfAnOutputSay) {
   EXPECT_THAT(help(), Not(HasSubstr(".mine")));
   table.add(format_of(".mine"));
   EXPECT_THAT(help(), AllOf(HasSubstr("the regions"), HasSubstr(".json, .csv or .mine")));
-  EXPECT_THAT(help_of_input(), HasSubstr(": .json, .csv, .txt or .mine"));
+  EXPECT_THAT(help_of_input(), HasSubstr(": .om, .json, .csv, .txt or .mine"));
   EXPECT_THAT([&] { table.writer(table.find("regions")->outputs.front(), "a.xyz"); },
               ThrowsMessage<UsageError>(HasSubstr(".json, .csv or .mine, not as '.xyz'")));
 }

@@ -110,7 +110,7 @@ TEST(Losses, OfTextureCoordinatesAreNoneWhereOneForEachVertexDoes) {
   const HeldParts held{.polygons = true, .texture = HeldParts::Texture::vertices, .groups = true};
   EXPECT_THAT(parts_left_out(held, *quads(false).frames), IsEmpty());
   EXPECT_THAT(parts_left_out(held, *quads(true).frames),
-              ElementsAre("several texture coordinates at a vertex"));
+              ElementsAre("texture coordinates of a mesh with several at a vertex"));
 }
 
 }  // namespace

@@ -63,7 +63,7 @@ struct Sheet {
   int tile_height = 320;  ///< pixels
   int letters = 0;        ///< height of letters, pixels; 0 for what suits the tiles
   std::string unit;       ///< of positions, written at the scale bar
-  bool edges = false;     ///< of the polygons are drawn, too
+  bool edges = false;     ///< draws those of the polygons
 };
 
 /// Largest width and height of a picture.

@@ -237,7 +237,9 @@ void add_tile(vtkRenderWindow& window, const Sheet& sheet, const SheetLayout& la
   renderer->AddActor(actor_of(*surface_of(tile, tiles, layout.centers[row], weld)));
   const View view = view_of(sheet.viewpoint, tile.turn);
   if (sheet.edges) {
-    const Eigen::RowVector3d lift = 0.002 * layout.reach * view.towards_eye.transpose();
+    // Far enough for a depth buffer, and nearer than a lip is thick.
+    constexpr double kLift = 0.002;
+    const Eigen::RowVector3d lift = kLift * layout.reach * view.towards_eye.transpose();
     renderer->AddActor(edges_of(tile, tiles.connectivity->polygons, layout.centers[row], lift));
   }
   add_lights(*renderer);

@@ -55,7 +55,11 @@ void read_example_rows(CsvReader& csv, ExampleFolder& folder) {
              "' with names of meshes, then one for each expression");
   }
   for (std::size_t c = 1; c < csv.names().size(); ++c) {
-    folder.weights.names.push_back(text_of_csv(csv.names()[c]));
+    const std::string name = text_of_csv(csv.names()[c]);
+    if (std::ranges::find(folder.weights.names, name) != folder.weights.names.end()) {
+      csv.fail("the name '" + name + "' occurs twice");
+    }
+    folder.weights.names.push_back(name);
   }
   const auto columns = static_cast<Eigen::Index>(folder.weights.names.size());
   folder.weights.weights.resize(0, columns);
@@ -63,7 +67,11 @@ void read_example_rows(CsvReader& csv, ExampleFolder& folder) {
     const std::string name = text_of_csv(csv.field(0));
     const auto is_it = [&name](const ExampleShape& shape) { return shape.name == name; };
     if (std::ranges::none_of(folder.shapes, is_it)) {
-      csv.fail("there is no mesh '" + name + "' in its folder");
+      const bool is_file = std::ranges::any_of(folder.shapes, [&name](const ExampleShape& shape) {
+        return shape.path.filename() == name;
+      });
+      csv.fail("there is no mesh '" + name + "' in its folder" +
+               (is_file ? "; leave out the file's extension" : ""));
     }
     if (std::ranges::find(folder.weighted, name) != folder.weighted.end()) {
       csv.fail("the mesh '" + name + "' occurs twice");

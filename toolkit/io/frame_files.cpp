@@ -114,14 +114,6 @@ std::vector<fs::path> files_of_glob(const std::string& pattern) {
   return files;
 }
 
-/// True for a file that belongs to another sequence, unless `name` asks for such files.
-bool is_companion(const fs::path& file, const std::string& name) {
-  for (const std::string suffix : {kRestSuffix, kTopologySuffix}) {
-    if (file.string().ends_with(suffix) && !name.ends_with(suffix)) return true;
-  }
-  return false;
-}
-
 /// The number that a printf pattern has; none where `*` or `?` make it a glob, but for those in the
 /// name of a folder that is there.
 std::optional<NumberField> printf_field(const fs::path& pattern) {
@@ -143,7 +135,8 @@ std::vector<fs::path> files_of_pattern(const std::string& pattern) {
 std::vector<fs::path> mesh_files(std::vector<fs::path> files, const std::string& name,
                                  const std::string& nothing) {
   std::erase_if(files, [&](const fs::path& file) {
-    return !is_mesh_extension(file.extension().string()) || is_companion(file, name);
+    return !is_mesh_extension(file.extension().string()) ||
+           (is_companion(file) && !is_companion(name));
   });
   if (files.empty()) throw IoError(name, nothing);
   sort_by_numbers(files);
@@ -238,6 +231,11 @@ FrameRange parsed_range(const std::string& text) {
 
 }  // namespace
 
+bool is_companion(const fs::path& file) {
+  const std::string name = file.string();
+  return name.ends_with(kRestSuffix) || name.ends_with(kTopologySuffix);
+}
+
 bool is_frame_pattern(const std::string& text) {
   return text.find_first_of("*?") != std::string::npos ||
          number_field(fs::path(text).filename().string()).has_value();
@@ -326,7 +324,7 @@ FrameSeries frames_of_folder(const fs::path& folder) {
 std::vector<fs::path> frames_of_format(const fs::path& folder, const std::string& extension) {
   std::vector<fs::path> files = files_in(folder);
   std::erase_if(files, [&](const fs::path& file) {
-    return lower_extension(file) != lower_case(extension) || is_companion(file, folder.string());
+    return lower_extension(file) != lower_case(extension) || is_companion(file);
   });
   sort_by_numbers(files);
   return frames_among(std::move(files)).frames;

@@ -15,6 +15,9 @@ inline constexpr const char* kRestSuffix = ".rest.ply";
 inline constexpr const char* kTimesSuffix = ".times.csv";
 inline constexpr const char* kTopologySuffix = ".topology.ply";
 
+/// True for a mesh beside a sequence that belongs to it: its rest pose or its faces.
+bool is_companion(const std::filesystem::path& file);
+
 /// True for text with `*`, `?` or `%04d` that names files only by way of a pattern.
 bool is_frame_pattern(const std::string& text);
 

@@ -46,7 +46,7 @@ void add_lost_texture(std::vector<std::string>& lost, const HeldParts& held,
   if (held.texture == HeldParts::Texture::none) {
     lost.emplace_back("texture coordinates");
   } else if (held.texture == HeldParts::Texture::vertices && !texture_of_vertices(connectivity)) {
-    lost.emplace_back("several texture coordinates at a vertex");
+    lost.emplace_back("texture coordinates of a mesh with several at a vertex");
   } else if (!held.bare_faces && std::ranges::any_of(connectivity.texture.corners, is_bare)) {
     lost.emplace_back("faces without texture coordinates");
   }

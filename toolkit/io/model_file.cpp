@@ -7,6 +7,7 @@
 
 #include "toolkit/io/eos.h"
 #include "toolkit/io/fit_file.h"
+#include "toolkit/io/frame_files.h"
 #include "toolkit/io/frame_series.h"
 #include "toolkit/io/json_text.h"
 #include "toolkit/io/mesh_file.h"
@@ -288,7 +289,7 @@ std::vector<fs::path> meshes_beside_model(const fs::path& path) {
   const bool is_named_by_parts = !fs::exists(path / "model.json", unreadable) && neutral_of(path);
   if (!is_named_by_parts) return {};
   std::vector<fs::path> files = meshes_in(path);
-  std::erase_if(files, is_neutral);
+  std::erase_if(files, [](const fs::path& file) { return is_neutral(file) || is_companion(file); });
   return files;
 }
 

@@ -12,6 +12,7 @@
 #include "toolkit/io/sequence_parts.h"
 #include "toolkit/io/single_precision.h"
 #include "toolkit/mesh/errors.h"
+#include "toolkit/mesh/frame_shapes.h"
 #include "toolkit/mesh/text.h"
 
 namespace mimetra {
@@ -70,9 +71,30 @@ Positions pose_of(const PointCache& cache, int frame) {
   return pose;
 }
 
-/// Faces, and where it is not known the rest pose, of files that stand beside a cache.
-void add_parts_beside(const PointCache& cache, const SequenceSource& source, PointCacheParts& parts,
-                      std::vector<fs::path>& files) {
+/// A frame of a cache that is read first.
+struct FirstPose {
+  int frame = 0;
+  Positions positions;
+};
+
+/// What to say of a frame that is no pose of the mesh whose faces it takes; "" where it may be one.
+std::string note_on_numbering(const fs::path& path, const FirstPose& first,
+                              const fs::path& topology, const TriMesh& mesh) {
+  constexpr double kMostOfAPose = 0.2;
+  const double share =
+      share_of_other_edges(first.positions, mesh.positions, mesh.connectivity.triangles);
+  if (share <= kMostOfAPose) return {};
+  return path.string() + ": in frame " + std::to_string(first.frame) + ' ' + percent(share) +
+         " of the edges are more than twice as long or as short as in " + topology.string() +
+         ", as where its vertices are in another order, or x, y and z are not beside each other; "
+         "take faces from the program that wrote the positions";
+}
+
+/// Faces, and where it is not known the rest pose, of files that stand beside a cache, and what is
+/// odd about them in its first pose.
+void add_parts_beside(const PointCache& cache, const FirstPose& first, const SequenceSource& source,
+                      PointCacheParts& parts, OpenSequence& open) {
+  std::vector<fs::path>& files = open.files;
   const fs::path path = files.front();
   files.push_back(topology_of(name_with(path, kTopologySuffix), source));
   const MeshFileReader reader(files.back());
@@ -82,6 +104,8 @@ void add_parts_beside(const PointCache& cache, const SequenceSource& source, Poi
                         " as in " + files.back().string());
   }
   parts.faces = std::make_shared<const Connectivity>(reader.mesh().connectivity);
+  const std::string odd = note_on_numbering(path, first, files.back(), reader.mesh());
+  if (!odd.empty()) open.notes.push_back(odd);
   if (!parts.rest) parts.rest = rest_beside(name_with(path, kRestSuffix), reader, files);
 }
 
@@ -233,16 +257,18 @@ OpenSequence open_point_cache(std::unique_ptr<const PointCache> cache, const Seq
                               PointCacheParts parts) {
   OpenSequence open;
   open.files = {parts.path.empty() ? cache->path() : parts.path};
-  if (!parts.faces) add_parts_beside(*cache, source, parts, open.files);
+  const std::vector<int> chosen = selected_frames(source.frames, cache->frames());
+  // Frames that nobody asks for are not read.
+  FirstPose first{chosen.front(), {}};
+  if (!parts.faces || !parts.rest) first.positions = pose_of(*cache, first.frame);
+  if (!parts.faces) add_parts_beside(*cache, first, source, parts, open);
   SequenceHeader header;
   header.connectivity = std::move(parts.faces);
   FrameTimes times = times_of(*cache, source, std::move(parts.times), open.files);
   header.times = std::move(times.seconds);
   header.times_are_known = times.are_known;
   header.rest_is_known = parts.rest.has_value();
-  const std::vector<int> chosen = selected_frames(source.frames, cache->frames());
-  // Frames that nobody asks for are not read.
-  header.rest = parts.rest ? *std::move(parts.rest) : pose_of(*cache, chosen.front());
+  header.rest = parts.rest ? *std::move(parts.rest) : std::move(first.positions);
   open.frames = std::make_shared<const CachedFrames>(std::move(cache), std::move(header));
   if (source.frames) open.frames = selected(open.frames, chosen);
   return open;

@@ -1,6 +1,7 @@
 #include "toolkit/io/regions_file.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <map>
 #include <utility>
@@ -8,6 +9,8 @@
 #include <nlohmann/json.hpp>
 
 #include "toolkit/io/json_text.h"
+#include "toolkit/io/mesh_file.h"
+#include "toolkit/io/om_file.h"
 #include "toolkit/io/painting_file.h"
 #include "toolkit/io/text_cursor.h"
 #include "toolkit/io/whole_file.h"
@@ -182,10 +185,59 @@ Lists read_list(const std::string& path, const std::string& text, int vertices) 
   return {list};
 }
 
+Regions regions_of_om(const std::filesystem::path& path, int vertices, const Triangles& triangles) {
+  const FieldsRead read = read_om_fields(path, read_mesh(path).connectivity);
+  std::map<std::string, Eigen::MatrixXd> on_vertices;
+  std::vector<std::string> known;
+  for (const Field& field : read.fields) {
+    if (field.location != Field::Location::vertices) continue;
+    on_vertices.emplace(field.name, field.values);
+    known.push_back(field.name);
+  }
+  const auto roi = on_vertices.find("roi"), weight = on_vertices.find("weight");
+  if (roi == on_vertices.end()) {
+    known.insert(known.end(), read.left_out.begin(), read.left_out.end());
+    throw IoError(path.string(), "no field 'roi' of numbers on the vertices; it has " +
+                                     (known.empty() ? "no properties" : joined(known)));
+  }
+  return region_of_mask(path.string(), roi->second,
+                        weight == on_vertices.end() ? std::nullopt : std::optional(weight->second),
+                        vertices, triangles);
+}
+
 }  // namespace
+
+Regions region_of_mask(const std::string& name, const Eigen::MatrixXd& roi,
+                       const std::optional<Eigen::MatrixXd>& weight, int vertices,
+                       const Triangles& triangles) {
+  const auto check_single = [&name](const std::string& field, const Eigen::MatrixXd& values) {
+    if (values.cols() == 1) return;
+    throw MismatchError(name + ": field '" + field + "' holds " + std::to_string(values.cols()) +
+                        " numbers for each vertex, expected one");
+  };
+  check_single("roi", roi);
+  if (roi.rows() != vertices) {
+    throw MismatchError(name + ": " + std::to_string(roi.rows()) + " vertices, expected " +
+                        std::to_string(vertices) + " as in the source");
+  }
+  std::vector<VertexIndex> inside;
+  for (int v = 0; v < vertices; ++v) {
+    if (!std::isfinite(roi(v, 0))) {
+      throw IoError(name, "the field 'roi' of vertex " + std::to_string(v) + " is " +
+                              std::to_string(roi(v, 0)) + ", expected 0 or 1");
+    }
+    if (roi(v, 0) != 0) inside.push_back(v);
+  }
+  Regions regions = regions_from_vertices(vertices, triangles, {inside});
+  if (!weight) return regions;
+  check_single("weight", *weight);
+  check_painting(name + ": field 'weight'", weight->col(0));
+  return with_weights(std::move(regions), weight->col(0), triangles);
+}
 
 Regions read_regions(const std::filesystem::path& path, int vertices, const Triangles& triangles) {
   const std::string name = path.string(), extension = lower_extension(path);
+  if (extension == ".om") return regions_of_om(path, vertices, triangles);
   const std::string text = read_file(path);
   if (extension == ".json") return regions_of_json(name, text, vertices, triangles);
   if (extension == ".csv")
@@ -193,7 +245,7 @@ Regions read_regions(const std::filesystem::path& path, int vertices, const Tria
   if (extension == ".txt") {
     return regions_from_vertices(vertices, triangles, read_list(name, text, vertices));
   }
-  throw IoError(name, "expected a region set in .json, .csv or .txt");
+  throw IoError(name, "expected a region set in .json, .csv, .txt or .om");
 }
 
 std::string regions_json(const Regions& regions) {

@@ -21,6 +21,8 @@ namespace mimetra {
 
 namespace {
 
+constexpr std::string_view kTimecode = "timecode", kBlendshapeCount = "blendshapecount";
+
 class WeightReader {
  public:
   explicit WeightReader(const std::filesystem::path& path) : path_(path), csv_(path) {}
@@ -49,13 +51,13 @@ class WeightReader {
       const std::string plain = lower_case(std::string(name));
       if (const auto units = units_per_second(std::string(name))) {
         take_times(column, *units);
-      } else if (plain == "timecode") {
+      } else if (plain == kTimecode) {
         timecode_column_ = column;
       } else if (plain == kTimestamp) {
         notes_.push_back(note_on_timestamp(std::string(name)));
       } else if (holds_frame_numbers(plain)) {
         frame_column_ = column;
-      } else if (plain != "blendshapecount") {
+      } else if (plain != kBlendshapeCount) {
         weight_columns_.push_back(column);
       }
     }
@@ -281,6 +283,12 @@ WeightTrack read_weights(const std::filesystem::path& path) {
   fill_missing_weights(track);
   note_odd_weights(track);
   return track;
+}
+
+bool is_no_weight(const std::string& name) {
+  const std::string plain = lower_case(name);
+  return units_per_second(name) || holds_frame_numbers(name) || plain == kTimestamp ||
+         plain == kTimecode || plain == kBlendshapeCount;
 }
 
 void note_odd_weights(WeightTrack& track) {

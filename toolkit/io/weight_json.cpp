@@ -14,6 +14,7 @@
 #include "toolkit/io/missing_weights.h"
 #include "toolkit/io/text_cursor.h"
 #include "toolkit/io/time_columns.h"
+#include "toolkit/io/weight_file.h"
 #include "toolkit/io/whole_file.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/text.h"
@@ -246,9 +247,7 @@ class WeightJson {
 
   void read_row(const Json& row, Eigen::Index frame, Eigen::Index frames,
                 const std::string& place) {
-    const auto is_weight = [](const std::string& key) {
-      return !units_per_second(key) && !holds_frame_numbers(key) && lower_case(key) != kTimestamp;
-    };
+    const auto is_weight = [](const std::string& key) { return !is_no_weight(key); };
     if (track_.names.empty()) {
       for (const auto& [key, value] : row.items()) {
         if (is_weight(key)) add_name(key, place);

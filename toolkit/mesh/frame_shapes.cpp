@@ -108,8 +108,24 @@ double spread(const Positions& positions, const Triangles& triangles) {
   return spread(positions(surface_vertices(positions, triangles), Eigen::all));
 }
 
-bool is_other_size(double spread, double usual) {
-  return spread > kOtherSize * usual || usual > kOtherSize * spread;
+bool is_other_size(double length, double usual) {
+  return length > kOtherSize * usual || usual > kOtherSize * length;
+}
+
+double share_of_other_edges(const Positions& pose, const Positions& other,
+                            const Triangles& triangles) {
+  const double of_pose = spread(pose, triangles), of_other = spread(other, triangles);
+  if (!(of_pose > 0 && of_other > 0)) return 0;
+  Eigen::Index unlike = 0;
+  for (const auto& corners : triangles.rowwise()) {
+    for (int c = 0; c < 3; ++c) {
+      const VertexIndex a = corners[c], b = corners[(c + 1) % 3];
+      unlike += is_other_size((pose.row(a) - pose.row(b)).norm() / of_pose,
+                              (other.row(a) - other.row(b)).norm() / of_other);
+    }
+  }
+  return static_cast<double>(unlike) /
+         static_cast<double>(std::max<Eigen::Index>(1, triangles.size()));
 }
 
 std::vector<FrameShape> frame_shapes(const FrameSource& sequence, const BlockOptions& options) {

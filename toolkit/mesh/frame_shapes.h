@@ -15,11 +15,19 @@ double spread(const Eigen::Ref<const Positions>& positions);
 /// That of the surface_vertices(), so that stray points are no part of it.
 double spread(const Positions& positions, const Triangles& triangles);
 
-/// Spreads of one mesh differ by less than this factor, unless something is wrong with one.
+/// Spreads of one mesh, and lengths of most of its edges, differ by less than this factor, unless
+/// something is wrong with one.
 constexpr double kOtherSize = 2;
 
-/// Whether one of two spreads is more than kOtherSize times the other. \pre both are finite
-bool is_other_size(double spread, double usual);
+/// Whether one of two lengths is more than kOtherSize times the other. \pre both are finite
+bool is_other_size(double length, double usual);
+
+/// Share of the triangles' edges that are more than kOtherSize times as long in either pose as in
+/// the other, each against the spread of its surface: 1 % at most of two expressions or two
+/// people's faces, 36 % and more where vertices are numbered otherwise. 0 where either pose has no
+/// extent. \pre both have the triangles' vertices
+double share_of_other_edges(const Positions& pose, const Positions& other,
+                            const Triangles& triangles);
 
 /// What of a frame tells whether it is a pose of its mesh: of the surface_vertices() and the
 /// triangles with_area() of its rest pose.

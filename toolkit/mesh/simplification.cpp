@@ -60,18 +60,58 @@ Surface surface_of(const Connectivity& mesh) {
   return surface;
 }
 
-/// Coordinates of each corner's vertex; one number where all corners of a vertex share it.
-std::vector<std::set<int>> texture_of_vertices(const Connectivity& mesh) {
-  std::vector<std::set<int>> of_vertex(static_cast<std::size_t>(mesh.vertices));
-  for (std::size_t c = 0; c < mesh.texture.corners.size(); ++c) {
-    of_vertex[static_cast<std::size_t>(mesh.polygons.corners[c])].insert(mesh.texture.corners[c]);
+/// Charts of a texture: polygons that have the same coordinates at a vertex, and all that hang
+/// together so.
+struct TextureCharts {
+  /// Chart of each polygon; none without a texture.
+  std::vector<int> of_polygon;
+  /// Charts and coordinates at each vertex (N): one pair away from seams, several at them.
+  std::vector<std::set<std::pair<int, int>>> of_vertex;
+};
+
+TextureCharts charts_of(const Connectivity& mesh) {
+  TextureCharts charts;
+  charts.of_vertex.resize(static_cast<std::size_t>(mesh.vertices));
+  if (mesh.texture.corners.empty()) return charts;
+  const Polygons& polygons = mesh.polygons;
+  const auto for_corners = [&](int polygon, const auto& visit) {
+    const auto p = static_cast<std::size_t>(polygon);
+    for (auto c = std::size_t(polygons.offsets[p]); c < std::size_t(polygons.offsets[p + 1]); ++c) {
+      visit(std::pair(polygons.corners[c], mesh.texture.corners[c]));
+    }
+  };
+  std::map<std::pair<int, int>, std::vector<int>> around;
+  for (int polygon = 0; polygon < polygons.size(); ++polygon) {
+    for_corners(polygon, [&](const auto& corner) { around[corner].push_back(polygon); });
   }
-  return of_vertex;
+  charts.of_polygon.assign(static_cast<std::size_t>(polygons.size()), -1);
+  int chart = 0;
+  for (int first = 0; first < polygons.size(); ++first) {
+    std::vector<int> open;
+    const auto reach = [&](int polygon) {
+      int& known = charts.of_polygon[static_cast<std::size_t>(polygon)];
+      if (known >= 0) return;
+      known = chart;
+      open.push_back(polygon);
+    };
+    reach(first);
+    if (open.empty()) continue;
+    while (!open.empty()) {
+      const int polygon = open.back();
+      open.pop_back();
+      for_corners(polygon, [&](const auto& corner) {
+        charts.of_vertex[static_cast<std::size_t>(corner.first)].emplace(chart, corner.second);
+        std::ranges::for_each(around[corner], reach);
+      });
+    }
+    ++chart;
+  }
+  return charts;
 }
 
 /// Vertices of the input that must not go (N).
 std::vector<bool> locked_vertices(const FrameSource& sequence, const Surface& surface,
-                                  const std::vector<std::set<int>>& texture) {
+                                  const TextureCharts& charts) {
   const auto count = static_cast<std::size_t>(sequence.vertices());
   std::vector<int> times(count, 0), at_place(count, 0);
   for (const VertexIndex v : surface.glued.vertex) ++times[static_cast<std::size_t>(v)];
@@ -80,7 +120,7 @@ std::vector<bool> locked_vertices(const FrameSource& sequence, const Surface& su
   std::vector<bool> locked(count);
   for (std::size_t v = 0; v < count; ++v) {
     const auto place = static_cast<std::size_t>(weld.representative[v]);
-    locked[v] = times[v] != 1 || at_place[place] > 1 || texture[v].size() > 1;
+    locked[v] = times[v] != 1 || at_place[place] > 1 || charts.of_vertex[v].size() > 1;
   }
   return locked;
 }
@@ -195,21 +235,12 @@ void keep_around(const Folds& folds, const CollapsedSurface& mesh, const Surface
   }
 }
 
-/// Texture coordinates of `vertex` next to those that the corner had before.
-int nearest_texture(const TextureCoordinates& texture, const std::set<int>& of_vertex, int before) {
-  if (of_vertex.empty()) return -1;
-  if (of_vertex.size() == 1 || before < 0) return *of_vertex.begin();
-  const auto at = [&texture](int i) { return texture.coordinates[std::size_t(i)]; };
-  return *std::ranges::min_element(
-      of_vertex, {}, [&](int i) { return i < 0 ? HUGE_VAL : (at(i) - at(before)).squaredNorm(); });
-}
-
 /// Makes the connectivity of what is left of a mesh.
 class Remaining {
  public:
   Remaining(const Connectivity& mesh, const Surface& surface, const CollapsedSurface& left,
-            const std::vector<std::set<int>>& texture)
-      : mesh_(mesh), surface_(surface), left_(left), texture_(texture) {}
+            const TextureCharts& charts)
+      : mesh_(mesh), surface_(surface), left_(left), charts_(charts) {}
 
   /// Vertices of the input that are kept, ascending.
   std::vector<VertexIndex> vertices() const {
@@ -258,17 +289,41 @@ class Remaining {
     return false;
   }
 
+  /// Coordinates of the vertex in the polygon's chart: its own where it is a corner; where the
+  /// chart has several there, those next to the polygon's.
+  int texture_at(VertexIndex vertex, int polygon) const {
+    const TextureCoordinates& texture = mesh_.texture;
+    const auto p = static_cast<std::size_t>(polygon);
+    Eigen::Vector2d middle = Eigen::Vector2d::Zero();
+    int corners = 0;
+    for (int c = mesh_.polygons.offsets[p]; c < mesh_.polygons.offsets[p + 1]; ++c) {
+      const int own = texture.corners[std::size_t(c)];
+      if (mesh_.polygons.corners[std::size_t(c)] == vertex) return own;
+      if (own < 0) continue;
+      middle += texture.coordinates[std::size_t(own)];
+      ++corners;
+    }
+    middle /= std::max(1, corners);
+    // Of the polygon's chart before others.
+    const auto distance = [&](const std::pair<int, int>& at) {
+      const double apart =
+          at.second < 0 ? HUGE_VAL
+                        : (texture.coordinates[std::size_t(at.second)] - middle).squaredNorm();
+      return std::pair(at.first != charts_.of_polygon[p], apart);
+    };
+    const auto& known = charts_.of_vertex[std::size_t(vertex)];
+    return known.empty() ? -1 : std::ranges::min_element(known, {}, distance)->second;
+  }
+
   void add_texture(Connectivity& made) const {
     if (mesh_.texture.coordinates.empty()) return;
     std::map<int, int> number;
     for (std::size_t i = 0; i < left_.triangles.size(); ++i) {
       const int polygon = mesh_.polygon_of_triangle[std::size_t(given_triangle(i))];
-      const int before =
-          mesh_.texture.corners[std::size_t(mesh_.polygons.offsets[std::size_t(polygon)])];
       for (int c = 0; c < 3; ++c) {
         const VertexIndex v =
             surface_.glued.vertex[std::size_t(left_.corners(static_cast<Eigen::Index>(i), c))];
-        const int given = nearest_texture(mesh_.texture, texture_[std::size_t(v)], before);
+        const int given = texture_at(v, polygon);
         const auto [place, is_new] =
             number.try_emplace(given, int(made.texture.coordinates.size()));
         if (given < 0) place->second = -1;
@@ -295,7 +350,7 @@ class Remaining {
   const Connectivity& mesh_;
   const Surface& surface_;
   const CollapsedSurface& left_;
-  const std::vector<std::set<int>>& texture_;
+  const TextureCharts& charts_;
 };
 
 }  // namespace
@@ -306,8 +361,8 @@ Simplification simplify(const FrameSource& sequence, const SimplifyOptions& opti
     return {.threads = options.threads, .progress = part_of(options.progress, from, to)};
   };
   const Surface surface = surface_of(sequence.connectivity());
-  const std::vector<std::set<int>> texture = texture_of_vertices(sequence.connectivity());
-  const std::vector<bool> locked = locked_vertices(sequence, surface, texture);
+  const TextureCharts charts = charts_of(sequence.connectivity());
+  const std::vector<bool> locked = locked_vertices(sequence, surface, charts);
   std::vector<bool> on_glued;
   for (const VertexIndex v : surface.glued.vertex) on_glued.push_back(locked[std::size_t(v)]);
   const Vector middle = sequence.rest().colwise().mean();
@@ -335,7 +390,7 @@ Simplification simplify(const FrameSource& sequence, const SimplifyOptions& opti
     keep_around(folds, left, surface, on_glued);
     for (const int frame : frames) add(FrameBlock(sequence, frame, 1).frame(0));
   }
-  const Remaining remaining(sequence.connectivity(), surface, left, texture);
+  const Remaining remaining(sequence.connectivity(), surface, left, charts);
   Simplification result;
   result.vertices = remaining.vertices();
   result.connectivity = remaining.connectivity(result.vertices);

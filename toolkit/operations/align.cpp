@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "toolkit/mesh/alignment.h"
+#include "toolkit/mesh/frame_shapes.h"
 #include "toolkit/mesh/frame_store.h"
 #include "toolkit/mesh/text.h"
 #include "toolkit/mesh/whole_motion.h"
@@ -81,13 +82,47 @@ void warn_of_motion_before(const FrameSource& given, const Invocation& invocatio
                   "the motion was taken out of");
 }
 
+/// Of the box around the rest pose.
+Eigen::Vector3d extent_of(const FrameSource& sequence) {
+  const Positions& rest = sequence.rest();
+  return (rest.colwise().maxCoeff() - rest.colwise().minCoeff()).transpose();
+}
+
+/// Says where a motion is of a mesh in another unit, or with another axis up: its translations and
+/// axes are that one's.
+void warn_of_other_space(const KeptMotion& kept, const Invocation& invocation) {
+  if (!kept.extent) return;
+  const NamedData& input = invocation.input("sequence");
+  const Eigen::Vector3d was = *kept.extent;
+  const Eigen::Vector3d now = extent_of(*std::get<FieldSequence>(input.data).frames);
+  constexpr const char* kAdvice =
+      "; give the motion back first, then convert (--scale, --up) what is made";
+  if (is_other_size(now.norm(), was.norm())) {
+    const bool larger = now.norm() > was.norm();
+    const double ratio = larger ? now.norm() / was.norm() : was.norm() / now.norm();
+    invocation.warn(
+        input.name + " is " + readable(ratio) + " times as " + (larger ? "large" : "small") +
+        " as the sequence that the motion was taken out of, in whose unit it is" + kAdvice);
+    return;
+  }
+  constexpr double kOfSize = 0.1;
+  const Eigen::Vector3d turned(was.x(), was.z(), was.y());
+  const double apart = (now - was).norm();
+  if (apart > kOfSize * was.norm() && (now - turned).norm() < apart / 2) {
+    invocation.warn(input.name +
+                    " has another axis up than the sequence that the motion was taken out of" +
+                    kAdvice);
+  }
+}
+
 Moved moved(const Invocation& invocation) {
   std::shared_ptr<const FrameSource> given = invocation.get<FieldSequence>("sequence").frames;
   AlignCall call = align_parameters().read(invocation.parameters);
   if (call.undo) {
-    std::vector<RigidTransform> motion = read_motion(call.undo->string(), given->frames());
+    KeptMotion kept = read_motion(call.undo->string(), given->frames());
+    warn_of_other_space(kept, invocation);
     warn_of_motion_before(*given, invocation);
-    return {with_motion(given, motion), std::move(motion)};
+    return {with_motion(given, kept.transforms), std::move(kept.transforms)};
   }
   given = stored(given, {.threads = invocation.threads,
                          .progress = part_of(invocation.progress, 0, kFittingFrom),
@@ -111,7 +146,9 @@ Outcome run_align(const Invocation& invocation) {
     degrees = std::max(degrees, transform.angle());
     shift = std::max(shift, transform.translation.norm());
   }
+  const Eigen::Vector3d extent = extent_of(*result.frames);
   Json report = {{"frames", result.frames->frames()},
+                 {"extent", {extent.x(), extent.y(), extent.z()}},
                  {"largest_rotation_degrees", degrees},
                  {"largest_translation", shift}};
   if (result.disagreement) {

@@ -95,6 +95,12 @@ Outcome run_decompose(const Invocation& invocation) {
     invocation.warn(std::to_string(dead) + " of " + std::to_string(components.count()) +
                     " components died: fewer tell the same");
   }
+  if (error.kg > 100) {
+    invocation.warn(
+        "the components leave " + readable(error.kg / 100) +
+        " times as much of the motion as the mean of the frames does (KG error): the frames are "
+        "far from the rest pose and near to each other; take more frames, or another --rest");
+  }
   Outcome outcome;
   Json report = {{"frames", still.sequence->frames()},
                  {"vertices", still.sequence->vertices()},

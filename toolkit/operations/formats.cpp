@@ -362,6 +362,7 @@ void add_formats(OperationTable& table) {
   table.add(Format{.name = "OM mesh with region properties",
                    .kind = DataKind::regions,
                    .extensions = {".om"},
+                   .read = read_regions_data,
                    .writing = mesh_writing_parameters().declared(),
                    .write = write_om_regions});
   table.add(Format{.name = "SPLOCS components (HDF5)",

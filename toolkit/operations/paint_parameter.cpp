@@ -113,6 +113,11 @@ std::optional<GivenRegions> painted_region_of(const Invocation& invocation) {
   const NamedData& source = invocation.input("source");
   Painting painting = painting_of(*text, source);
   for (const std::string& note : painting.notes) invocation.warn(note);
+  constexpr double kFaint = 0.1;
+  if (const double most = painting.weights.maxCoeff(); most < kFaint) {
+    invocation.warn(*text + ": the largest weight is " + readable(most) + ", so that at most " +
+                    percent(most) + " of the motion is taken; expected weights up to 1");
+  }
   const Triangles& triangles = std::get<FieldSequence>(source.data).frames->triangles();
   return GivenRegions{*text, painted_region(painting.weights, triangles)};
 }

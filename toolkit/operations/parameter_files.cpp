@@ -1,5 +1,7 @@
 #include "toolkit/operations/parameter_files.h"
 
+#include <array>
+
 #include <Eigen/LU>
 #include <nlohmann/json.hpp>
 
@@ -41,22 +43,29 @@ Positions read_rest(const std::string& path, const FrameSource& sequence) {
   return rest;
 }
 
-std::vector<RigidTransform> read_motion(const std::string& path, int frames) {
-  std::vector<RigidTransform> motion;
+KeptMotion read_motion(const std::string& path, int frames) {
+  KeptMotion kept;
   try {
     const Json json = read_json(path, "the manifest of an align run with result.motion");
-    for (const Json& entry : json.at("result").at("motion")) motion.push_back(transform_of(entry));
+    const Json& result = json.at("result");
+    for (const Json& entry : result.at("motion")) kept.transforms.push_back(transform_of(entry));
+    if (result.contains("extent")) {
+      const auto extent = result["extent"].get<std::array<double, 3>>();
+      kept.extent = Eigen::Vector3d(extent.data());
+    }
   } catch (const Json::exception&) {
-    throw IoError(path, "expected the manifest of an align run with result.motion");
+    throw IoError(path,
+                  "expected the manifest of an align run with result.motion and result.extent");
   } catch (const std::invalid_argument& error) {
-    throw IoError(path, "motion of frame " + std::to_string(motion.size()) + ": " + error.what());
+    throw IoError(
+        path, "motion of frame " + std::to_string(kept.transforms.size()) + ": " + error.what());
   }
-  if (static_cast<int>(motion.size()) != frames) {
-    throw MismatchError(path + ": " + std::to_string(motion.size()) +
+  if (std::ssize(kept.transforms) != frames) {
+    throw MismatchError(path + ": " + std::to_string(kept.transforms.size()) +
                         " rigid transforms, expected " + std::to_string(frames) +
                         ", one per frame of the sequence");
   }
-  return motion;
+  return kept;
 }
 
 }  // namespace mimetra

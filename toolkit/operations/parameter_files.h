@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,7 +14,14 @@ namespace mimetra {
 /// MismatchError.
 Positions read_rest(const std::string& path, const FrameSource& sequence);
 
-/// A motion of `frames` frames as align's manifest keeps it. Throws IoError, MismatchError.
-std::vector<RigidTransform> read_motion(const std::string& path, int frames);
+/// A motion as align's manifest keeps it.
+struct KeptMotion {
+  std::vector<RigidTransform> transforms;
+  /// Of the box around the aligned sequence's rest pose; earlier manifests have none.
+  std::optional<Eigen::Vector3d> extent = {};
+};
+
+/// Of `frames` frames. Throws IoError, MismatchError.
+KeptMotion read_motion(const std::string& path, int frames);
 
 }  // namespace mimetra

@@ -177,7 +177,7 @@ BoundParameters<SourceOptions> alignment_parameters(const FrameSource* sequence)
       "target's expressions, none, or as an align run's manifest tells; default none where the "
       "neutral is known, else stable, or joint where no vertex is still and that predicts better",
       [sequence](const std::string& path) {
-        return sequence ? read_motion(path, sequence->frames()) : Motion();
+        return sequence ? read_motion(path, sequence->frames()).transforms : Motion();
       });
   return list.brief("head motion to take out {stable,all,joint,none,FILE}").under(kSourceGroup);
 }

@@ -210,6 +210,11 @@ DecompositionPlan of_share(DecompositionPlan plan, const Invocation& invocation,
                            const FrameSource& sequence) {
   const double share = invocation.parameters.number("simplify");
   plan.bytes = std::max(simplify_bytes(sequence), share * plan.bytes);
+  // Discs are measured along the whole mesh.
+  if (invocation.parameters.choice<GeodesicMethod>("geodesics") == GeodesicMethod::exact) {
+    plan.bytes = std::max(plan.bytes, exact_distance_bytes(sequence.vertices(), invocation.threads,
+                                                           invocation.parameters.integer("k")));
+  }
   plan.scratch_bytes *= share;
   return plan;
 }

@@ -336,7 +336,7 @@ Operation transfer_operation() {
       {"target", DataKind::model, "model (MODEL@identity=1.5) or mesh that receives it", false,
        true},
       {"components", DataKind::components, "components of an earlier decompose", true},
-      {"regions", DataKind::regions, "region set, in .vtp the field roi", true}};
+      {"regions", DataKind::regions, "region set, in .vtp and .om the field roi", true}};
   operation.inputs.front().streamed = operation.inputs.front().fields = true;
   operation.outputs = {
       {"out", DataKind::sequence, "the new sequence; of several targets one each", false, true},

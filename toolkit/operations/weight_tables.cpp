@@ -4,7 +4,6 @@
 #include <stdexcept>
 
 #include "toolkit/io/live_link.h"
-#include "toolkit/io/time_columns.h"
 #include "toolkit/io/weight_file.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/text.h"
@@ -62,14 +61,14 @@ std::vector<std::string> live_link_losses(const Data& data, const std::filesyste
   return notes;
 }
 
-/// An expression may be called as a column of times is, and would be read as one.
+/// An expression may be called as a column of times or of numbers of frames is, and would be read
+/// as one.
 void check_names(const Table& weights, bool timed, const std::filesystem::path& target) {
   const auto other =
-      std::find_if(weights.columns.begin() + (timed ? 1 : 0), weights.columns.end(),
-                   [](const std::string& column) { return units_per_second(column).has_value(); });
+      std::find_if(weights.columns.begin() + (timed ? 1 : 0), weights.columns.end(), is_no_weight);
   if (other == weights.columns.end()) return;
   throw MismatchError(target.string() + ": an expression is called '" + *other +
-                      "', as a column of times is; rename the expression");
+                      "', as a column that holds no weights is; rename the expression");
 }
 
 /// A format of tables, or of a sequence's weights as such a table.

@@ -70,7 +70,7 @@ struct StripOptions {
   int tile_height = 320;
   int letters = 0;        ///< height of letters, pixels; 0 for what suits the tiles
   std::string unit = {};  ///< of positions
-  bool edges = false;     ///< of the polygons are drawn, too
+  bool edges = false;     ///< draws those of the polygons
 
   static constexpr Option kLayout{"layout", &StripOptions::layout};
   static constexpr Option kColumns{

@@ -139,11 +139,15 @@ DecompositionError decomposition_error(const SequencePart& sequence, const Compo
   const double residual = std::sqrt(sums.residual2), variation = std::sqrt(sums.variation2);
   const double diagonal = box_diagonal(components.rest);
   const auto displacements = static_cast<double>(vertices) * components.count();
+  const double coordinates =
+      std::sqrt(3 * static_cast<double>(vertices) * static_cast<double>(sequence.frames.frames()));
   DecompositionError error;
-  error.rms = residual / std::sqrt(3 * static_cast<double>(vertices) *
-                                   static_cast<double>(sequence.frames.frames()));
+  error.rms = residual / coordinates;
   error.relative_rms = diagonal > 0 ? error.rms / diagonal : 0;
-  error.kg = variation > 0 ? 100 * residual / variation : 0;
+  // Frames that are all the same vary by rounding.
+  constexpr double kRounding = 1e-12;
+  const bool varies = variation > kRounding * coordinates * diagonal;
+  error.kg = varies ? 100 * residual / variation : 0;
   error.sparsity = displacements > 0 ? sums.zeros / displacements : 0;
   return error;
 }

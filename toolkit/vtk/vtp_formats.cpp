@@ -1,10 +1,9 @@
 #include "toolkit/vtk/vtp_formats.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "toolkit/io/frame_files.h"
-#include "toolkit/io/painting_file.h"
+#include "toolkit/io/regions_file.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/progress.h"
 #include "toolkit/mesh/text.h"
@@ -81,42 +80,11 @@ std::vector<std::filesystem::path> write_region_data(const Data& data,
                       ": the regions come without a mesh to show them on; write .json or .csv");
 }
 
-/// The field `weight` of regions with a soft border (N); empty where there is none.
-Eigen::VectorXd weights_of_vtp(const std::filesystem::path& path) {
-  const std::optional<Eigen::MatrixXd> field = find_vtp_field(path, "weight");
-  if (!field) return {};
-  const std::string place = path.string() + ": field 'weight'";
-  if (field->cols() != 1) {
-    throw MismatchError(place + " holds " + std::to_string(field->cols()) +
-                        " numbers for each vertex, expected one");
-  }
-  check_painting(place, field->col(0));
-  return field->col(0);
-}
-
-/// One region: the vertices where the field `roi` is not 0, and what the field `weight` says of its
-/// border.
-Regions region_of_vtp(const std::filesystem::path& path, int vertices, const Triangles& triangles) {
-  const Eigen::MatrixXd mask = read_vtp_field(path, "roi");
-  if (mask.rows() != vertices) {
-    throw MismatchError(path.string() + ": " + std::to_string(mask.rows()) +
-                        " vertices, expected " + std::to_string(vertices) + " as in the source");
-  }
-  std::vector<VertexIndex> inside;
-  for (int v = 0; v < vertices; ++v) {
-    if (!std::isfinite(mask(v, 0))) {
-      throw IoError(path.string(), "the field 'roi' of vertex " + std::to_string(v) + " is " +
-                                       std::to_string(mask(v, 0)) + ", expected 0 or 1");
-    }
-    if (mask(v, 0) != 0) inside.push_back(v);
-  }
-  Regions regions = regions_from_vertices(vertices, triangles, {inside});
-  const Eigen::VectorXd weights = weights_of_vtp(path);
-  return weights.size() > 0 ? with_weights(std::move(regions), weights, triangles) : regions;
-}
-
 ReadValue read_region_data(const std::string& text, const ReadRequest& request) {
-  return {{text, RegionData{region_of_vtp(text, request.vertices, *request.triangles), {}}},
+  return {{text, RegionData{region_of_mask(text, read_vtp_field(text, "roi"),
+                                           find_vtp_field(text, "weight"), request.vertices,
+                                           *request.triangles),
+                            {}}},
           {text}};
 }
 
