@@ -7,6 +7,7 @@
 #include <string_view>
 #include <utility>
 
+#include "toolkit/io/frame_series.h"
 #include "toolkit/mesh/text.h"
 
 namespace mimetra {
@@ -25,6 +26,12 @@ std::optional<double> units_per_second(std::string name) {
   if (std::ranges::find(kNamesOfSeconds, plain) != kNamesOfSeconds.end()) return 1;
   if (std::ranges::find(kNamesOfMilliseconds, plain) != kNamesOfMilliseconds.end()) return 1000;
   return {};
+}
+
+bool is_no_weight(const std::string& name) {
+  const std::string plain = lower_case(name);
+  return units_per_second(name) || holds_frame_numbers(name) || plain == kTimestamp ||
+         plain == kTimecode || plain == kBlendshapeCount;
 }
 
 std::optional<long long> frame_number(double value) {

@@ -14,6 +14,14 @@ namespace mimetra {
 /// shape, "ms" how long something took, and "timestamp" does not say its unit.
 std::optional<double> units_per_second(std::string name);
 
+/// Other columns of weights' files that are not weights, in lower case: a time without its unit,
+/// HH:MM:SS:FF, and how many weights there are.
+inline constexpr std::string_view kTimestamp = "timestamp", kTimecode = "timecode",
+                                  kBlendshapeCount = "blendshapecount";
+
+/// Whether a column or key of this name holds times, numbers of frames, or one of those.
+bool is_no_weight(const std::string& name);
+
 /// The number of a frame that a file has as `value`; none for one with a fraction or of more than
 /// 12 digits.
 std::optional<long long> frame_number(double value);

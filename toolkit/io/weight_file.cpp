@@ -21,8 +21,6 @@ namespace mimetra {
 
 namespace {
 
-constexpr std::string_view kTimecode = "timecode", kBlendshapeCount = "blendshapecount";
-
 class WeightReader {
  public:
   explicit WeightReader(const std::filesystem::path& path) : path_(path), csv_(path) {}
@@ -283,12 +281,6 @@ WeightTrack read_weights(const std::filesystem::path& path) {
   fill_missing_weights(track);
   note_odd_weights(track);
   return track;
-}
-
-bool is_no_weight(const std::string& name) {
-  const std::string plain = lower_case(name);
-  return units_per_second(name) || holds_frame_numbers(name) || plain == kTimestamp ||
-         plain == kTimecode || plain == kBlendshapeCount;
 }
 
 void note_odd_weights(WeightTrack& track) {

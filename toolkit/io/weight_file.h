@@ -24,9 +24,6 @@ namespace mimetra {
 /// names, JSON in a CSV and the other way round.
 WeightTrack read_weights(const std::filesystem::path& path);
 
-/// Whether a column or key of this name is one of those that are not weights.
-bool is_no_weight(const std::string& name);
-
 /// Divides weights in percent by 100, and adds what was noticed to the track's notes: that, weights
 /// that nobody means, and times that nobody captures at. read_weights() has done it.
 void note_odd_weights(WeightTrack& track);

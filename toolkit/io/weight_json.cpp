@@ -14,7 +14,6 @@
 #include "toolkit/io/missing_weights.h"
 #include "toolkit/io/text_cursor.h"
 #include "toolkit/io/time_columns.h"
-#include "toolkit/io/weight_file.h"
 #include "toolkit/io/whole_file.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/text.h"

@@ -7,8 +7,7 @@
 
 namespace mimetra {
 
-/// What looks like a time and does not say its unit, in lower case.
-inline constexpr const char* kTimestamp = "timestamp";
+/// Says that a column of kTimestamp is not used.
 std::string note_on_timestamp(const std::string& name);
 
 /// Reads weights as JSON, in any of the shapes of read_weights(). Internal to it.

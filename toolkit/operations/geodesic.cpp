@@ -11,7 +11,7 @@
 #include "toolkit/operations/json.h"
 #include "toolkit/operations/pipeline_parameters.h"
 #include "toolkit/operations/toolkit_operations.h"
-#include "toolkit/pipeline/memory.h"
+#include "toolkit/pipeline/distance_memory.h"
 
 namespace mimetra {
 

@@ -13,6 +13,7 @@
 #include "toolkit/operations/region_report.h"
 #include "toolkit/operations/selection_parameters.h"
 #include "toolkit/operations/toolkit_operations.h"
+#include "toolkit/pipeline/distance_memory.h"
 #include "toolkit/pipeline/joint_motion.h"
 #include "toolkit/pipeline/memory.h"
 #include "toolkit/pipeline/region_selector.h"

@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "toolkit/io/live_link.h"
+#include "toolkit/io/time_columns.h"
 #include "toolkit/io/weight_file.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/text.h"

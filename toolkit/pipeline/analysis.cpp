@@ -9,7 +9,7 @@
 #include "toolkit/mesh/surface_parts.h"
 #include "toolkit/mesh/text.h"
 #include "toolkit/pipeline/cutout.h"
-#include "toolkit/pipeline/memory.h"
+#include "toolkit/pipeline/distance_memory.h"
 #include "toolkit/splocs/vertex_energies.h"
 
 namespace mimetra {
@@ -247,7 +247,7 @@ Analysis analyse(const Source& source, const AnalysisOptions& options) {
   }
   decomposition.distances = distances;
   decomposition.threads = options.threads;
-  reserved_for_distances(decomposition, work.vertices(), options);
+  reserved_for_distances(decomposition, options.distances.method, work.vertices(), options.threads);
   decomposition.progress = options.progress;
   Components components =
       decomposed_inside(sequence, of_surface.inside, decomposition, options.ranks);

@@ -1,12 +1,10 @@
 #include "toolkit/pipeline/memory.h"
 
 #include <algorithm>
-#include <cmath>
 #include <thread>
 
-#include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/frame_store.h"
-#include "toolkit/mesh/text.h"
+#include "toolkit/pipeline/distance_memory.h"
 #include "toolkit/pipeline/region_selector.h"
 #include "toolkit/splocs/reduction.h"
 
@@ -46,34 +44,13 @@ double stored_bytes(const FrameSource& sequence) {
   return sequence.is_quick() ? 0 : kept_bytes(frame_bytes(sequence));
 }
 
-double exact_distance_bytes(Eigen::Index vertices, int threads, int sources) {
-  // CGAL's sequence trees: measured on faces of 7 to 105 thousand vertices.
-  constexpr double kOfTree = 210;
-  const int most =
-      threads > 0 ? threads : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
-  return std::min(most, sources) * kOfTree * std::pow(static_cast<double>(vertices), 1.5);
-}
-
-double reserved_for_distances(DecompositionOptions& decomposition, Eigen::Index vertices,
-                              const AnalysisOptions& options) {
-  if (options.distances.method != GeodesicMethod::exact) return 0;
-  const double bytes = exact_distance_bytes(vertices, options.threads, decomposition.count);
-  if (!decomposition.memory) return bytes;
-  if (bytes > *decomposition.memory) {
-    throw MismatchError("option 'memory': exact distances along " + std::to_string(vertices) +
-                        " vertices take " + fixed(std::ceil(bytes / 1e6), 0) +
-                        " MB on all threads; allow more, take fewer threads, or distances by heat");
-  }
-  *decomposition.memory -= bytes;
-  return bytes;
-}
-
 DecompositionPlan analysis_plan(const FrameSource& sequence, const AnalysisOptions& options) {
   DecompositionOptions decomposition = options.decomposition;
   decomposition.count = component_count(sequence, options);
   decomposition.threads = options.threads;
   const Reduction reduction(sequence.vertices(), options.threads, options.ranks);
-  const double distances = reserved_for_distances(decomposition, sequence.vertices(), options);
+  const double distances = reserved_for_distances(decomposition, options.distances.method,
+                                                  sequence.vertices(), options.threads);
   DecompositionPlan plan = planned_decomposition(sequence, reduction.part(), decomposition);
   plan.bytes += distances;
   return plan;

@@ -18,16 +18,6 @@ double simplify_bytes(const FrameSource& sequence);
 /// What stored() has in memory; 0 for a source that is quick to read.
 double stored_bytes(const FrameSource& sequence);
 
-/// What exact distances from several sources take on `threads` threads (0 for all there are), each
-/// of which asks from one at a time.
-double exact_distance_bytes(Eigen::Index vertices, int threads, int sources);
-
-/// What the distances of an analysis take besides what planned_decomposition() counts of them, and
-/// what they leave of the memory that its decomposition may take. Throws MismatchError where they
-/// leave none.
-double reserved_for_distances(DecompositionOptions& decomposition, Eigen::Index vertices,
-                              const AnalysisOptions& options);
-
 /// How analyse() keeps within the memory of its options, on this one of its ranks. Throws as
 /// planned_decomposition().
 DecompositionPlan analysis_plan(const FrameSource& sequence, const AnalysisOptions& options);
