@@ -82,7 +82,7 @@ class Pages:
         """All documents of the repository and their pictures."""
         shutil.copytree(self.root / "docs", self.folder,
                         ignore=lambda folder, names: [
-                            name for name in names if not name.endswith(".png")
+                            name for name in names if not name.endswith((".png", ".svg"))
                             and not os.path.isdir(os.path.join(folder, name))])
         for path in sorted((self.root / "docs").rglob("*.md")):
             self.add_document(path.relative_to(self.root),
