@@ -63,7 +63,7 @@ struct Sheet {
   int tile_height = 320;  ///< pixels
   int letters = 0;        ///< height of letters, pixels; 0 for what suits the tiles
   std::string unit;       ///< of positions, written at the scale bar
-  bool edges = false;     ///< draws those of the polygons
+  bool edges = false;     ///< whether those of polygons are drawn
 };
 
 /// Largest width and height of a picture.

@@ -70,7 +70,7 @@ struct StripOptions {
   int tile_height = 320;
   int letters = 0;        ///< height of letters, pixels; 0 for what suits the tiles
   std::string unit = {};  ///< of positions
-  bool edges = false;     ///< draws those of the polygons
+  bool edges = false;     ///< whether those of polygons are drawn
 
   static constexpr Option kLayout{"layout", &StripOptions::layout};
   static constexpr Option kColumns{

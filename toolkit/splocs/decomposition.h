@@ -81,7 +81,7 @@ struct DecompositionError {
   double rms = 0;
   /// rms divided by the diagonal of the rest pose's bounding box.
   double relative_rms = 0;
-  /// 100 ||X - W C||_F / ||X - mean over frames||_F, percent.
+  /// 100 ||X - W C||_F / ||X - mean over frames||_F, percent; 0 where all frames are the same.
   double kg = 0;
   /// Share of vertex displacements in C that are exactly zero.
   double sparsity = 0;
