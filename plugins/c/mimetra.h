@@ -300,7 +300,7 @@ typedef struct mimetra_call mimetra_call;
 typedef struct mimetra_interface {
   uint32_t struct_size;
   uint32_t version;            /* MIMETRA_INTERFACE_VERSION of this table */
-  const char* toolkit_version; /* "0.1.0" */
+  const char* toolkit_version; /* "0.2.0" */
 
   /* -- Contexts -- */
 

@@ -309,6 +309,35 @@ TEST_F(Command, SaysWhereAMotionIsGivenBackInAnotherUnitOrAboutOtherAxes) {
   }
 }
 
+TEST_F(Command, SaysWhereAMotionIsGivenBackToAFaceThatIsTurnedAndAsWideAsHigh) {
+  ASSERT_EQ(run("convert head --weights take.csv -o a.npy").code, 0);
+  MeshSequence take = read_sequence((folder_ / "a.npy").string()).sequence;
+  const Eigen::RowVector3d extent =
+      take.rest().colwise().maxCoeff() - take.rest().colwise().minCoeff();
+  Frames poses = take.positions();
+  for (Eigen::Index y = 1; y < poses.cols(); y += 3) poses.col(y) *= extent.z() / extent.y();
+  write_sequence(take.with_frames(poses), folder_ / "even.npy");
+  ASSERT_EQ(run("align even.npy --on all -o b.npy").code, 0);
+  ASSERT_EQ(run("convert b.npy --up y-to-z -o changed.npy").code, 0);
+  const std::string said = "has another axis up than the sequence";
+  EXPECT_THAT(run("align changed.npy --undo b.run.json -o c.npy").err, HasSubstr(said));
+  // Other vertices of the same head tell nothing of it.
+  ASSERT_EQ(run("simplify b.npy --share 0.5 -o small.npy").code, 0);
+  EXPECT_THAT(run("align small.npy --undo b.run.json -o d.npy").err, Not(HasSubstr(said)));
+  std::vector<int> shuffled(static_cast<std::size_t>(take.vertices()));
+  for (std::size_t v = 0; v < shuffled.size(); ++v) {
+    shuffled[v] = static_cast<int>((v * 7919) % shuffled.size());
+  }
+  const MeshSequence still = read_sequence((folder_ / "b.npy").string()).sequence;
+  Frames other(still.frames(), 3 * still.vertices());
+  for (int v = 0; v < still.vertices(); ++v) {
+    other.middleCols<3>(3 * v) =
+        still.positions().middleCols<3>(3 * shuffled[static_cast<std::size_t>(v)]);
+  }
+  write_sequence(still.with_frames(other), folder_ / "other.npy");
+  EXPECT_THAT(run("align other.npy --undo b.run.json -o e.npy").err, Not(HasSubstr(said)));
+}
+
 TEST_F(Command, SaysWherePositionsAreNumberedOtherwiseThanTheFacesThatTheyAreGiven) {
   ASSERT_EQ(run("convert head --weights take.csv -o a.npy").code, 0);
   const MeshSequence given = read_sequence((folder_ / "a.npy").string()).sequence;

@@ -48,6 +48,7 @@ TEST_F(Slips, AreAnsweredByWhatWasMeant) {
       {"regions take -k 5 -k 6 -o r.vtp", {"-k is given 2 times"}},
       {"info take/*.obj", {"got 12 files", "'take/*.obj' in quotes"}},
       {"info bare/smile_%04d.obj", {"'bare/smile_%d.obj' is taken for it, smile_0.obj to"}, 0},
+      {"info 'bare/smile_{0..11}.obj'", {"is written 'bare/smile_%d.obj'"}, 3},
       {"info take/frame_%03d.obj", {"'take/frame_%04d.obj' is taken for it"}, 0},
       {"check take head", {"head", "mimetra check [OPTIONS] SEQUENCE"}},
       {"transfer take -o out", {"target is required", "-o OUT SOURCE TARGET..."}},

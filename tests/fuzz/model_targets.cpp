@@ -178,7 +178,10 @@ std::vector<Target> model_targets() {
       {"weights_json",
        "w.json",
        [](const fs::path& file) {
-         weights_for(read_weights(file), {"smile", "brow_L", "jawOpen"});
+         const std::vector<std::string> expressions = {"smile", "brow_L", "jawOpen"};
+         WeightTrack track = read_weights(file);
+         note_odd_weights(track, expressions);
+         weights_for(track, expressions);
        },
        {text(R"([{"time": 0, "smile": 0.5}, {"time": 1, "smile": 0.25}])"),
         text(R"({"names": ["smile", "jawOpen"], "weights": [[0, 1], [0.5, 0]], "fps": 30})")}},

@@ -376,6 +376,14 @@ TEST(Patterns, OfOtherProgramsAreWrittenForPrintf) {
   EXPECT_EQ(printf_pattern("head.$F4.obj"), "head.%04d.obj");
   EXPECT_EQ(printf_pattern("head_#.obj"), "head_%d.obj");
   EXPECT_EQ(printf_pattern("head_$F.obj"), "head_%d.obj");
+  EXPECT_EQ(printf_pattern("head_{0..11}.obj"), "head_%d.obj");
+  EXPECT_EQ(printf_pattern("head_{0001..0300}.obj"), "head_%04d.obj");
+  EXPECT_EQ(printf_pattern("head_[0-9].obj"), "head_%d.obj");
+  EXPECT_EQ(printf_pattern("head_[0-9][0-9].obj"), "head_%02d.obj");
+  EXPECT_EQ(printf_pattern("head_{smile}.obj"), "");
+  EXPECT_EQ(printf_pattern("head_{a..b}.obj"), "");
+  EXPECT_EQ(printf_pattern("head_}..{.obj"), "");
+  EXPECT_EQ(printf_pattern("head_{..}.obj"), "");
   EXPECT_EQ(printf_pattern("actor@identity003=1.5"), "");
   EXPECT_EQ(printf_pattern("head.obj"), "");
   for (const char* name : {"gone/h.####.obj", "gone/h.@@@@.obj", "gone/h.$F4.obj"}) {

@@ -22,32 +22,48 @@ class OddWeights : public testing::Test {
     return read_weights(path);
   }
 
+  WeightTrack driving(const std::vector<std::string>& expressions,
+                      const std::string& content) const {
+    WeightTrack track = read(content);
+    note_odd_weights(track, expressions);
+    return track;
+  }
+
   test::TemporaryFolder folder_;
 };
 
 TEST_F(OddWeights, ArePercentOnlyWhereMostColumnsAre) {
-  // Degrees of a rotation and a stranger's column are no weights in percent.
-  const WeightTrack usual =
-      read("jawOpen,smile,HeadYaw,neckBend\n0,0.5,0,0\n0.8,0.25,20,15\n0.4,0,30,40\n");
+  const WeightTrack usual = driving({"jawOpen", "smile", "blink", "cheekPuff"},
+                                    "jawOpen,smile,blink,cheekPuff\n0,0.5,0,0\n0.8,0.25,20,15\n"
+                                    "0.4,0,30,40\n");
   EXPECT_EQ(usual.weights(1, 0), 0.8);
   EXPECT_EQ(usual.weights(1, 2), 20);
-  EXPECT_THAT(usual.notes, ElementsAre(HasSubstr("the weight of 'neckBend' is 40")));
+  EXPECT_THAT(usual.notes, ElementsAre(HasSubstr("the weight of 'cheekPuff' is 40")));
 }
 
-TEST_F(OddWeights, InPercentAreKnownBesideRotations) {
+TEST_F(OddWeights, AreThoseOfColumnsThatDriveAnExpression) {
+  // A head's pose in degrees and millimetres outnumbers the weights.
+  const std::string pose = "jawOpen,smile,pitch,yaw,roll,tx,ty,tz\n";
+  const std::vector<std::string> expressions = {"jawOpen", "smile", "frown"};
+  const WeightTrack usual =
+      driving(expressions, pose + "0,0.5,12,7,3,40,55,60\n1,0.25,14,9,4,41,52,61\n");
+  EXPECT_EQ(usual.weights.leftCols(2), (Eigen::Matrix2d() << 0, 0.5, 1, 0.25).finished());
+  EXPECT_THAT(usual.notes, testing::IsEmpty());
   const WeightTrack percent =
-      read("jawOpen,smile,headRX,LeftEyePitch\n0,55,-3.2,-0.3\n80,12,4,0\n");
+      driving(expressions, pose + "0,55,-120,0,0,0,0,0\n80,12,-130,0,0,0,0,0\n");
   EXPECT_EQ(percent.weights,
-            (Eigen::MatrixXd(2, 4) << 0, 0.55, -3.2, -0.3, 0.8, 0.12, 4, 0).finished());
+            (Eigen::MatrixXd(2, 8) << 0, 0.55, -120, 0, 0, 0, 0, 0, 0.8, 0.12, -130, 0, 0, 0, 0, 0)
+                .finished());
   EXPECT_THAT(percent.notes, ElementsAre(HasSubstr("go up to 80 and look like percent")));
+  const WeightTrack foreign = driving({"blink"}, pose + "0,55,1,0,0,0,0,0\n80,12,1,0,0,0,0,0\n");
+  EXPECT_EQ(foreign.weights(1, 0), 80);
+  EXPECT_THAT(foreign.notes, testing::IsEmpty());
 }
 
-TEST_F(OddWeights, OfRotationsAreNoReasonToWarn) {
-  const WeightTrack few = read("jawOpen,headRotX,headRotationY,eyeYaw\n0.2,12,6,18\n0.8,14,7,19\n");
-  EXPECT_THAT(few.weights.col(0), ElementsAre(0.2, 0.8));
-  EXPECT_THAT(few.notes, testing::IsEmpty());
-  EXPECT_THAT(read("JawOpen,HeadYaw,RightEyeRoll\n0.5,-0.3,2.5\n").notes, testing::IsEmpty());
-  EXPECT_THAT(read("headYaw,headPitch\n20,30\n").notes, testing::IsEmpty());
+TEST_F(OddWeights, ThatDriveTwoHalvesAreDividedOnce) {
+  const WeightTrack percent =
+      driving({"browInnerUp_L", "browInnerUp_R", "jawOpen"}, "browInnerUp,jawOpen\n55,80\n");
+  EXPECT_EQ(percent.weights, Eigen::RowVector2d(0.55, 0.8));
 }
 
 TEST_F(OddWeights, ThatAreMissingLieBetweenTheirNeighboursInTime) {
@@ -98,6 +114,88 @@ TEST_F(OddWeights, CountByTheNumbersOfTheirFramesWhereAllHaveOne) {
   const WeightTrack some = read(R"([{"frame": 0, "a": 0}, {"a": 1}, {"frame": 2, "a": 0}])");
   EXPECT_EQ(some.step, 1);
   EXPECT_THAT(some.notes, ElementsAre(HasSubstr("'frame' is not used")));
+}
+
+TEST_F(OddWeights, MayHaveTheirNodesInTheColumns) {
+  const WeightTrack track =
+      read("blendShape1.jawOpen,blendShape1.mouthSmileLeft,smile.L\n0.5,1,0\n");
+  EXPECT_THAT(match_weights(track, {"jawOpen", "mouthSmile_L", "smile_L"}).column,
+              ElementsAre(0, 1, 2));
+  // Another node's shape is another one.
+  EXPECT_THAT(match_weights(track, {"face.jawOpen", "brow"}).column, ElementsAre(-1, -1));
+  // The one without a node goes first.
+  const WeightTrack both = read("teeth.jawOpen,jawOpen\n0.5,1\n");
+  EXPECT_THAT(match_weights(both, {"jawOpen"}).column, ElementsAre(1));
+  const WeightTrack two = read("teeth.jawOpen,face.jawOpen\n0.5,1\n");
+  EXPECT_THAT(match_weights(two, {"jawOpen"}).column, ElementsAre(-1));
+}
+
+TEST_F(OddWeights, ByColumnsAreThoseByRows) {
+  for (const char* text :
+       {R"({"time": [0, 0.5, 1], "a": [0, 0.25, 1], "b": [1, null, 0]})",
+        R"({"time": {"0": 0, "1": 0.5, "2": 1}, "a": {"0": 0, "1": 0.25, "2": 1},
+            "b": {"0": 1, "1": null, "2": 0}})",
+        R"({"take": "smile", "fps": 2, "a": [0, 0.25, 1], "b": [1, null, 0]})",
+        R"({"times": [0, 0.5, 1], "a": [0, 0.25, 1], "b": [1, null, 0]})",
+        R"({"fps": 2, "frame": [0, 1, 2], "a": [0, 0.25, 1], "b": [1, null, 0]})"}) {
+    const WeightTrack track = read(text);
+    EXPECT_THAT(track.names, ElementsAre("a", "b")) << text;
+    EXPECT_EQ(track.weights, (Eigen::MatrixXd(3, 2) << 0, 1, 0.25, 0.5, 1, 0).finished()) << text;
+    EXPECT_EQ(track.times, Eigen::Vector3d(0, 0.5, 1)) << text;
+  }
+  // As many as need two digits are in the order of their numbers.
+  std::string numbers;
+  for (int i = 11; i >= 0; --i) {
+    numbers += "\"" + std::to_string(i) + "\": " + std::to_string(i) + (i > 0 ? ", " : "");
+  }
+  EXPECT_EQ(read("{\"a\": {" + numbers + "}}").weights.col(0),
+            Eigen::VectorXd(Eigen::VectorXd::LinSpaced(12, 0, 11)));
+  const auto message_of = [&](const char* text) {
+    return test::message_of<IoError>([&] { read(text); });
+  };
+  EXPECT_THAT(message_of(R"({"a": [0, 1], "b": [0]})"),
+              HasSubstr("'b': 1 numbers, expected 2 as 'a' has"));
+  EXPECT_THAT(message_of(R"({"a": {"0": 0, "2": 1}})"), HasSubstr("'a': has no row 1"));
+  EXPECT_THAT(message_of(R"({"a": [null, null]})"),
+              HasSubstr("row 0, 'a': expected a finite number"));
+  for (const char* other : {R"({"a": ["x"]})", R"({"a": []})", R"({"a": [0], "b": [{}, {}]})"}) {
+    EXPECT_THAT(message_of(other), HasSubstr("holds no weights")) << other;
+  }
+}
+
+TEST_F(OddWeights, WhoseTimesRepeatNameThem) {
+  const auto message_of = [&](const char* text) {
+    return test::message_of<IoError>([&] { read(text); });
+  };
+  EXPECT_THAT(message_of("time,a\n0.25,0\n0.25,1\n"),
+              HasSubstr("line 3: times do not ascend: 0.25 is not later than the 0.25 of the row "
+                        "before; leave out one of the rows, or the column"));
+  EXPECT_THAT(message_of(R"([{"time": 0.5, "a": 0}, {"time": 0.25, "a": 1}])"),
+              HasSubstr("row 1: times do not ascend: 0.25 is not later than the 0.5"));
+}
+
+TEST_F(OddWeights, OfDropFrameTimecodesWrittenWithColonsAreNoted) {
+  const auto coded = [](const std::vector<std::string>& codes) {
+    std::string text = "Timecode,BlendShapeCount,a\n";
+    for (const std::string& code : codes) text += code + ",61,0.5\n";
+    return text;
+  };
+  std::vector<std::string> codes = {"10:58:58:29"};
+  for (int frame = 0; frame < 30; ++frame) {
+    codes.push_back("10:58:59:" + std::string(frame < 10 ? "0" : "") + std::to_string(frame));
+  }
+  const auto with = [&](const std::string& code) {
+    std::vector<std::string> all = codes;
+    all.push_back(code);
+    return read(coded(all)).notes;
+  };
+  EXPECT_THAT(with("10:59:00:02"), ElementsAre(HasSubstr("write ';' before their frames")));
+  EXPECT_THAT(with("10:59:00:00"), testing::IsEmpty());
+  // More was lost than numbers are left out.
+  EXPECT_THAT(with("10:59:00:05"), testing::IsEmpty());
+  // One minute has all numbers.
+  codes.insert(codes.begin(), {"10:57:59:29", "10:58:00:00"});
+  EXPECT_THAT(with("10:59:00:02"), testing::IsEmpty());
 }
 
 TEST_F(OddWeights, OfShapesOfANodeMatchWithoutIt) {

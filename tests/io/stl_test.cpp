@@ -98,6 +98,25 @@ TEST(Stl, VerticesThatPartOrMeetStayWhatTheyAre) {
   EXPECT_EQ(second.row(vertex), mesh.positions.row(1));
 }
 
+TEST(Stl, WhatTouchesInTheFirstFrameAndPartsLaterIsRefused) {
+  const TemporaryFolder folder;
+  TriMesh mesh = test::mesh_of(test::sphere(2));
+  const Positions open = mesh.positions;
+  const double size = box_diagonal(open);
+  mesh.positions.row(1) = mesh.positions.row(0);
+  write_mesh(folder / "a.stl", mesh);
+  const TriMesh first = read_mesh(folder / "a.stl");
+  // By the last digits of single precision.
+  mesh.positions(1, 0) += 1e-7 * size;
+  write_mesh(folder / "b.stl", mesh);
+  EXPECT_EQ(read_positions(folder / "b.stl", first.connectivity, "a.stl").rows(), open.rows() - 1);
+  mesh.positions = open;
+  write_mesh(folder / "b.stl", mesh);
+  EXPECT_THAT(message_of<MismatchError>(
+                  [&] { read_positions(folder / "b.stl", first.connectivity, "a.stl"); }),
+              AllOf(HasSubstr("b.stl: 1 vertex of a.stl"), HasSubstr("as OBJ or PLY")));
+}
+
 TEST(Stl, FurtherFileWithOtherTrianglesNamesBoth) {
   const TemporaryFolder folder;
   write_mesh(folder / "b.stl", test::mesh_of(test::octahedron()));

@@ -134,20 +134,25 @@ TEST_F(Weights, WithTimecodesThatRepeatOrFallBackNameTheLine) {
 }
 
 TEST_F(Weights, ThatLookLikePercentOrAreFarOffAreNoted) {
-  const WeightTrack percent = read("jawOpen,smile\n0,55\n87,12\n");
+  const auto noted = [this](const std::string& content) {
+    WeightTrack track = read(content);
+    note_odd_weights(track, track.names);
+    return track;
+  };
+  const WeightTrack percent = noted("jawOpen,smile\n0,55\n87,12\n");
   EXPECT_THAT(percent.notes, ElementsAre(testing::AllOf(HasSubstr("look like percent"),
                                                         HasSubstr("87"), HasSubstr("divided"))));
   EXPECT_EQ(percent.weights, (Eigen::Matrix2d() << 0, 0.55, 0.87, 0.12).finished());
-  const WeightTrack unclear = read("jawOpen,smile\n0,5\n8,1\n");
+  const WeightTrack unclear = noted("jawOpen,smile\n0,5\n8,1\n");
   EXPECT_THAT(unclear.notes, ElementsAre(HasSubstr("taken as they are")));
   EXPECT_EQ(unclear.weights(1, 0), 8);
   std::string mostly_usual = "jawOpen,smile\n0.5,0\n99,0\n";
   for (int row = 0; row < 50; ++row) mostly_usual += "0.25,1\n";
-  EXPECT_THAT(read(mostly_usual).notes,
+  EXPECT_THAT(noted(mostly_usual).notes,
               ElementsAre("the weight of 'jawOpen' is 99 in frame 1, expected 0 to 1"));
-  EXPECT_THAT(read("a\n1.5\n-0.05\n").notes, testing::IsEmpty());
+  EXPECT_THAT(noted("a\n1.5\n-0.05\n").notes, testing::IsEmpty());
   EXPECT_THAT(
-      read("a,b\n1.5,0\n-0.05,-1\n").notes,
+      noted("a,b\n1.5,0\n-0.05,-1\n").notes,
       ElementsAre(
           "the weight of 'b' is -1 in frame 1, expected 0 to 1; those below 0 are taken as they "
           "are"));
@@ -207,7 +212,9 @@ TEST_F(WeightsJson, DoNotUseATimestampAndSaySo) {
 }
 
 TEST_F(WeightsJson, InPercentAreDividedBy100) {
-  EXPECT_EQ(read(R"([{"a": 50}, {"a": 100}])").weights, Eigen::Vector2d(0.5, 1));
+  WeightTrack track = read(R"([{"a": 50}, {"a": 100}])");
+  note_odd_weights(track, {"a"});
+  EXPECT_EQ(track.weights, Eigen::Vector2d(0.5, 1));
 }
 
 TEST_F(WeightsJson, OfAFitAreItsExpressions) {

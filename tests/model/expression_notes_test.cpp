@@ -126,8 +126,10 @@ const Eigen::Matrix3d kSomeTurn =
 TEST(ExpressionNotes, NameExpressionsThatAreWrittenInTwoWays) {
   Face face = face_with_names();
   face.add("eye_blink_left", 2, 2);
-  EXPECT_THAT(face.notes(),
-              ElementsAre(HasSubstr("'eyeBlink_L' and 'eye_blink_left'; one column")));
+  EXPECT_THAT(
+      face.notes(),
+      ElementsAre(HasSubstr(
+          "'eyeBlink_L' and 'eye_blink_left'; weights with a column for one of them drive both")));
 }
 
 TEST(ExchangedSides, AreNoneInAFaceHoweverItIsTurned) {

@@ -66,6 +66,24 @@ TEST_F(EvaluationTest, ByAllTrianglesHasTheLeastErrorOverThem) {
   EXPECT_LE(*rows[0].mpe_all, 0);
 }
 
+TEST_F(EvaluationTest, SaysWhichRowsMayNotBeUsable) {
+  test::Noted noted;
+  options_.notes = noted.sink();
+  const auto said = [&noted] {
+    std::string text;
+    for (const Note& note : noted.notes) text += note.text + '\n';
+    return text;
+  };
+  const BlendshapeModel same = test::model_on(test::patch(), 5);
+  evaluate(source_, {"same", same}, options_);
+  EXPECT_EQ(said().find("may not be usable"), std::string::npos) << said();
+  // One expression tells little of what the source does.
+  const BlendshapeModel poor = test::model_on(test::bent_patch(), 1);
+  evaluate(source_, {"actor", poor}, options_);
+  EXPECT_THAT(said(), HasSubstr("actor: rows of which the result may not be usable: K = 2: "));
+  EXPECT_THAT(said(), HasSubstr("; 100.0 % of the triangles: "));
+}
+
 TEST_F(EvaluationTest, RefusesASourceThatDoesNotMove) {
   const Frames at_rest = source_.rest().reshaped<Eigen::RowMajor>().transpose().replicate(8, 1);
   const MeshSequence still = source_.with_frames(at_rest);

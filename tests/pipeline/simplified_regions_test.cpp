@@ -48,6 +48,42 @@ TEST(SimplifiedRegions, AreDiscsAlongTheWholeMesh) {
   }
 }
 
+/// Share of all motion on the vertices that are inside.
+double motion_inside(const MeshSequence& sequence, const std::vector<bool>& inside) {
+  double all = 0, held = 0;
+  for (VertexIndex v = 0; v < sequence.vertices(); ++v) {
+    for (int f = 0; f < sequence.frames(); ++f) {
+      const double squared = (sequence.frame(f) - sequence.rest()).row(v).squaredNorm();
+      all += squared;
+      if (inside[static_cast<std::size_t>(v)]) held += squared;
+    }
+  }
+  return held / all;
+}
+
+TEST(SimplifiedRegions, HoldTheShareOfTheMotionOfAllVertices) {
+  const MeshSequence sequence = take();
+  const RegionChoiceOptions choice{.radius = Length::share(0.15)};
+  const Regions all =
+      regions_by_simplified(source_of(sequence), {.share = 0.4}, kThree, choice).regions;
+  EXPECT_NEAR(all.energy_share, motion_inside(sequence, all.inside), 1e-12);
+  // As many as it takes by that share.
+  RegionChoiceOptions of_first = choice;
+  of_first.regions.coverage = 0.99 * all.regions.front().energy_share;
+  const Regions first =
+      regions_by_simplified(source_of(sequence), {.share = 0.4}, kThree, of_first).regions;
+  EXPECT_EQ(first.regions.size(), 1U);
+  EXPECT_GE(first.energy_share, *of_first.regions.coverage);
+  // More than there is is said.
+  test::Noted noted;
+  of_first.regions.coverage = 1;
+  of_first.notes = noted.sink();
+  regions_by_simplified(source_of(sequence), {.share = 0.4}, kThree, of_first);
+  EXPECT_TRUE(std::ranges::any_of(noted.notes, [](const Note& note) {
+    return note.text.find("100 % were asked for") != std::string::npos;
+  }));
+}
+
 TEST(SimplifiedRegions, LieWhereTheyMay) {
   const MeshSequence sequence = take();
   AnalysisOptions right = kThree;
@@ -60,6 +96,9 @@ TEST(SimplifiedRegions, LieWhereTheyMay) {
     const auto i = static_cast<std::size_t>(v);
     EXPECT_TRUE(right.inside[i] || !found.inside[i]);
   }
+  // Of the motion there.
+  EXPECT_NEAR(found.energy_share,
+              motion_inside(sequence, found.inside) / motion_inside(sequence, right.inside), 1e-12);
 }
 
 TEST(SimplifiedRegions, RefuseRegionsThatAreNoDiscs) {

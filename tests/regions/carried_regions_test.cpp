@@ -36,14 +36,17 @@ struct Sheet {
     for (std::size_t i = 0; i < centers.size(); ++i) {
       regions.regions[i].center = centers[i];
       regions.regions[i].radius = radius;
-      regions.regions[i].energy_share = 0.1 * double(i + 1);
     }
-    regions.energy_share = 0.3;
     return regions;
   }
 
+  /// More to one side.
+  Eigen::VectorXd energy() const {
+    return Eigen::VectorXd::LinSpaced(651, 0, 1) / Eigen::VectorXd::LinSpaced(651, 0, 1).sum();
+  }
+
   Regions carried(const Regions& regions, const std::vector<bool>& inside = {}) const {
-    return carried_regions(regions, coarse, 651, fine.triangles, distances(), inside);
+    return carried_regions(regions, coarse, energy(), fine.triangles, distances(), inside);
   }
 };
 
@@ -60,11 +63,14 @@ TEST(CarriedRegions, AreDiscsOfTheWholeMeshAroundTheSameVertices) {
       if (way.norm() <= 4.5) expected.push_back(v);
     }
     EXPECT_EQ(region.vertices, expected);
-    EXPECT_EQ(region.energy_share, 0.1 * double(i + 1));
+    EXPECT_EQ(region.energy_share, sheet.energy()(expected).sum());
+    EXPECT_GT(region.energy_share, 0);
   }
   EXPECT_EQ(carried.vertices, 651);
   EXPECT_EQ(carried.all_triangles, sheet.fine.triangles.rows());
-  EXPECT_EQ(carried.energy_share, 0.3);
+  double share = 0;
+  for (int v = 0; v < 651; ++v) share += carried.inside[std::size_t(v)] ? sheet.energy()[v] : 0;
+  EXPECT_EQ(carried.energy_share, share);
   EXPECT_TRUE(carried.energy_is_known());
 }
 

@@ -1,5 +1,7 @@
 #include "toolkit/transfer/seams.h"
 
+#include <random>
+
 #include <gmock/gmock.h>
 
 #include "tests/streams.h"
@@ -99,14 +101,53 @@ TEST_F(SeamTest, WeldsWithinTheToleranceInEveryFrame) {
   EXPECT_EQ(weld.representative[85], 85);
 }
 
-TEST_F(SeamTest, DoesNotWeldWhatIsApartInOneOfTheRestPoses) {
+TEST_F(SeamTest, WeldsWhatIsAtOnePlaceInOneRestPoseAndNearInTheOther) {
+  const double at_source = kPartedShare * take_.diameter();
+  const double at_target = kPartedShare * diameter(target_.positions);
   Positions source = take_.rest(), target = target_.positions;
-  source(84, 0) += 1e-9;
-  target(85, 0) += 1e-9;
+  source(84, 0) += 0.9 * at_source;
+  source(85, 0) += 1.1 * at_source;
+  target(86, 0) += 0.9 * at_target;
+  target(87, 0) += 1.1 * at_target;
+  // Near in both, as neighbours of a fine mesh are.
+  source(88, 0) += 0.1 * at_source;
+  target(88, 0) += 0.1 * at_target;
   const Weld weld = closed_seams(take_.with_rest(source), target);
-  EXPECT_EQ(weld.representative[84], 84);
-  EXPECT_EQ(weld.representative[85], 85);
-  EXPECT_EQ(weld.count, 8);
+  for (const int v : {84, 86}) EXPECT_EQ(weld.representative[v], face_.original[v]) << v;
+  for (const int v : {85, 87, 88}) EXPECT_EQ(weld.representative[v], v) << v;
+  EXPECT_EQ(weld.count, 7);
+}
+
+TEST_F(SeamTest, StaysAsFarOpenAsTheTargetIs) {
+  Shape target = target_;
+  target.positions(86, 0) += 0.5 * kPartedShare * diameter(target_.positions);
+  VertexTransferOptions options;
+  options.weld = closed_seams(take_, target.positions);
+  const Frames found =
+      VertexTransfer(take_.rest(), target.positions, face_.triangles, all_, options).frames(take_);
+  const Eigen::Index other = face_.original[86];
+  const Eigen::RowVector3d apart = target.positions.row(86) - target.positions.row(other);
+  for (const auto& frame : found.rowwise()) {
+    const Eigen::RowVector3d now = frame.segment<3>(3 * 86) - frame.segment<3>(3 * other);
+    EXPECT_LT((now - apart).norm(), kSameSolve * diameter(target.positions));
+  }
+}
+
+TEST_F(SeamTest, StaysClosedUnderTheNoiseOfATrackedScan) {
+  std::mt19937 random(7);
+  std::normal_distribution<double> noise(0, 0.1 * kPartedShare * take_.diameter());
+  Frames poses = take_.positions();
+  for (double& coordinate : poses.reshaped()) coordinate += noise(random);
+  Positions rest = take_.rest();
+  for (double& coordinate : rest.reshaped()) coordinate += noise(random);
+  const MeshSequence tracked = take_.with_frames(poses).with_rest(rest);
+  VertexTransferOptions options;
+  options.weld = closed_seams(tracked, target_.positions);
+  EXPECT_EQ(options.weld.representative, face_.original);
+  const Frames found =
+      VertexTransfer(tracked.rest(), target_.positions, face_.triangles, all_, options)
+          .frames(tracked);
+  EXPECT_EQ(gap(found), 0);
 }
 
 TEST_F(SeamTest, DoesNotWeldAVertexOfNoTriangle) {

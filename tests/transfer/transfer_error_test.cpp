@@ -5,6 +5,7 @@
 
 #include "tests/transfer/faces.h"
 #include "toolkit/mesh/errors.h"
+#include "toolkit/mesh/triangle_quality.h"
 #include "toolkit/transfer/blendshape_transfer.h"
 #include "toolkit/transfer/deformation_gradients.h"
 #include "toolkit/transfer/edges.h"
@@ -100,6 +101,22 @@ TEST(TransferError, CountsFlippedTriangles) {
   pose.row(0) << 5, 5, 0;  // across the opposite edges of its two triangles
   Frames frames = Eigen::Map<const Eigen::RowVectorXd>(pose.data(), pose.size());
   EXPECT_EQ(transfer_error(source, source.with_frames(frames), {0}).flipped, 2);
+}
+
+TEST(TransferError, CountsNoFlippedSlivers) {
+  Shape shape = test::grid(3, 3);
+  // Across its long edge and back: a sliver of a thousandth, and its neighbour.
+  const Eigen::RowVector3d middle =
+      (shape.positions.row(shape.triangles(0, 1)) + shape.positions.row(shape.triangles(0, 2))) / 2;
+  const Eigen::RowVector3d corner = shape.positions.row(shape.triangles(0, 0));
+  Positions pose = shape.positions;
+  shape.positions.row(shape.triangles(0, 0)) = middle + 5e-4 * (corner - middle);
+  pose.row(shape.triangles(0, 0)) = middle - 5e-4 * (corner - middle);
+  const MeshSequence source = test::shaken(shape, 1, 0);
+  const Frames frames = Eigen::Map<const Eigen::RowVectorXd>(pose.data(), pose.size());
+  const TransferError error = transfer_error(source, source.with_frames(frames), {0});
+  ASSERT_LT(quality_of(shape.positions, shape.triangles, 0), kSliverQuality);
+  EXPECT_EQ(error.flipped, 0);
 }
 
 TEST(TransferError, MeasuresADegenerateSourceTriangleAgainstItsStandIn) {

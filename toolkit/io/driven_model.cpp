@@ -49,7 +49,9 @@ Eigen::MatrixXd weights_of(const fs::path& path, const WeightTrack& track,
 OpenSequence drive(std::shared_ptr<const BlendshapeModel> model, const fs::path& path,
                    const SequenceSource& source) {
   if (source.weights) {
-    return drive(std::move(model), path, source, *source.weights, read_weights(*source.weights));
+    WeightTrack track = read_weights(*source.weights);
+    note_odd_weights(track, model->expressions().names);
+    return drive(std::move(model), path, source, *source.weights, std::move(track));
   }
   return {resting(std::move(model), source), true, {path}, {}};
 }

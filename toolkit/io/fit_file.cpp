@@ -134,7 +134,7 @@ class FitReader {
 }  // namespace
 
 Eigen::VectorXd FittedCoefficients::identity() const {
-  if ((alpha.rowwise() - alpha.row(0)).isZero(0)) return alpha.row(0);
+  if (has_one_identity()) return alpha.row(0);
   Eigen::VectorXd sum = Eigen::VectorXd::Zero(alpha.cols());
   int seen = 0;
   for (int f = 0; f < frames(); ++f) {

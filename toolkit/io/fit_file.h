@@ -30,6 +30,7 @@ struct FittedCoefficients {
   /// What was noticed in each frame (F, "" for nothing), or none.
   std::vector<std::string> notes = {};
 
+  bool has_one_identity() const { return (alpha.rowwise() - alpha.row(0)).isZero(0); }
   int frames() const { return static_cast<int>(alpha.rows()); }
   /// The one alpha of all frames; the mean over the frames that were seen where they differ.
   Eigen::VectorXd identity() const;

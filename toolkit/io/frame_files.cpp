@@ -38,6 +38,38 @@ std::optional<NumberField> number_field(const std::string& name) {
   return NumberField{begin, at + 1, width};
 }
 
+/// From `begin` on as many times `part` as there are.
+std::size_t times_at(const std::string& name, std::size_t begin, std::string_view part) {
+  std::size_t times = 0;
+  while (name.compare(begin + times * part.size(), part.size(), part) == 0) ++times;
+  return times;
+}
+
+/// `####`, `@@@@`, `$F4`, `[0-9][0-9]` or `{0001..0300}` in a file's name.
+std::optional<NumberField> foreign_field(const std::string& name) {
+  for (const auto& [first, part] :
+       {std::pair<std::string_view, std::string_view>{"#", "#"}, {"@@", "@"}, {"[0-9]", "[0-9]"}}) {
+    const std::size_t begin = name.find(first);
+    if (begin == std::string::npos) continue;
+    const std::size_t digits = times_at(name, begin, part);
+    return NumberField{begin, begin + digits * part.size(), digits};
+  }
+  if (const std::size_t begin = name.find("$F"); begin != std::string::npos) {
+    const std::size_t end = begin + 2;
+    if (end == name.size() || !is_digit(name[end])) return NumberField{begin, end, 0};
+    return NumberField{begin, end + 1, static_cast<std::size_t>(name[end] - '0')};
+  }
+  const std::size_t begin = name.find('{'), dots = name.find("..", begin),
+                    end = name.find('}', dots);
+  if (end == std::string::npos) return std::nullopt;
+  const std::string first = name.substr(begin + 1, dots - begin - 1);
+  const std::string last = name.substr(dots + 2, end - dots - 2);
+  if (first.empty() || last.empty() || !std::ranges::all_of(first + last, is_digit)) {
+    return std::nullopt;
+  }
+  return NumberField{begin, end + 1, first[0] == '0' ? first.size() : 0};
+}
+
 /// The digits between `before` and `after` in a name that has nothing else between them, but a '-'
 /// where it is a sign (file_numbers.h); else "".
 std::string digits_between(const std::string& name, const std::string& before,
@@ -251,24 +283,11 @@ std::vector<fs::path> files_named(const std::string& text) {
 
 std::string printf_pattern(const fs::path& pattern) {
   const std::string name = pattern.filename().string();
-  std::size_t begin = name.find('#'), end = name.find_first_not_of('#', begin), digits = 0;
-  if (begin == std::string::npos) {
-    begin = name.find("@@");
-    end = name.find_first_not_of('@', begin);
-  }
-  if (begin != std::string::npos) {
-    end = std::min(end, name.size());
-    digits = end - begin;
-  } else if (begin = name.find("$F"); begin != std::string::npos) {
-    end = begin + 2;
-    if (end < name.size() && is_digit(name[end])) {
-      digits = static_cast<std::size_t>(name[end++] - '0');
-    }
-  } else {
-    return {};
-  }
-  const std::string number = digits > 1 ? "%0" + std::to_string(digits) + "d" : "%d";
-  return (pattern.parent_path() / (name.substr(0, begin) + number + name.substr(end))).string();
+  const std::optional<NumberField> field = foreign_field(name);
+  if (!field) return {};
+  const std::string number = field->width > 1 ? "%0" + std::to_string(field->width) + "d" : "%d";
+  return (pattern.parent_path() / (name.substr(0, field->begin) + number + name.substr(field->end)))
+      .string();
 }
 
 std::string note_on_digits(const std::string& pattern) {

@@ -25,8 +25,9 @@ bool is_frame_pattern(const std::string& text);
 /// natural order; maybe none. Throws IoError for a folder that cannot be read.
 std::vector<std::filesystem::path> files_named(const std::string& text);
 
-/// The printf pattern for a number as other programs write it, "head.####.obj", "head.@@@@.obj" and
-/// "head.$F4.obj"; "" for another name.
+/// The printf pattern for a number as other programs and shells write it, "head.####.obj",
+/// "head.@@@@.obj", "head.$F4.obj", "head.{0001..0300}.obj" and "head.[0-9][0-9].obj"; "" for
+/// another name.
 std::string printf_pattern(const std::filesystem::path& pattern);
 
 /// What to say of a printf pattern that matches some files and leaves out others with more or fewer

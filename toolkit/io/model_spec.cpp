@@ -5,6 +5,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "toolkit/io/fit_file.h"
 #include "toolkit/mesh/text.h"
 
 namespace mimetra {
@@ -80,6 +81,11 @@ std::vector<std::string> ModelSpec::notes() const {
     if (std::abs(coefficient) <= kMostDeviations) continue;
     notes.push_back(path.string() + ": " + identity_name + " is " + readable(coefficient) +
                     ", expected about -3 to 3");
+  }
+  if (fit && !read_fit(*fit).has_one_identity()) {
+    notes.push_back(fit->string() +
+                    ": holds an identity for each frame, and the person is their mean; `mimetra "
+                    "fit` without `--shape frame` fits one for the clip");
   }
   return notes;
 }

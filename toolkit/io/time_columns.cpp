@@ -50,6 +50,11 @@ std::optional<long long> frame_number_in(std::string_view field) {
   return frame_number(value);
 }
 
+std::string note_on_falling_time(double before, double time) {
+  return "times do not ascend: " + readable(time, 9) + " is not later than the " +
+         readable(before, 9) + " of the row before; leave out one of the rows, or the column";
+}
+
 std::string note_on_frame_numbers(const std::string& name) {
   return "'" + name +
          "' is not used, since it does not have a whole number in every frame, each higher than "

@@ -28,6 +28,9 @@ std::optional<long long> frame_number(double value);
 /// That in a field of a table, whose point may be a comma; none for other text.
 std::optional<long long> frame_number_in(std::string_view field);
 
+/// Says that `time`, in seconds, is not later than that of the row before.
+std::string note_on_falling_time(double before, double time);
+
 /// Says that what a column or key of this name holds does not number the frames.
 std::string note_on_frame_numbers(const std::string& name);
 

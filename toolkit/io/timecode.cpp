@@ -55,6 +55,22 @@ double dropped_count(const Timecode& code, int rate) {
          numbers_left_out * (minutes - tens);
 }
 
+/// Whether frames go on past a whole minute from the last number to that which drop-frame timecodes
+/// have first, and never to an earlier one. Every tenth minute has all numbers.
+bool skip_numbers(const std::vector<Timecode>& codes, int rate) {
+  if (rate % 30 != 0) return false;
+  const int left_out = rate / 15;
+  bool skip = false;
+  for (std::size_t i = 1; i < codes.size(); ++i) {
+    const Timecode &code = codes[i - 1], &next = codes[i];
+    if (next.seconds % 60 != 0 || next.seconds % 600 == 0) continue;
+    if (next.frames < left_out) return false;
+    const bool is_next = seconds_between(code, next) == 1 && code.frames >= rate - 1;
+    skip = skip || (is_next && next.frames < left_out + 1);
+  }
+  return skip;
+}
+
 }  // namespace
 
 std::optional<Timecode> Timecode::parse(std::string_view text) {
@@ -87,6 +103,7 @@ TimecodeTimes times_of(const std::vector<Timecode>& codes) {
   const bool drops = codes.front().drops_frames;
   // Those whose numbers are left out now and then are as much slower.
   result.rate = drops ? *rate / 1.001 : *rate;
+  result.skips_numbers = !drops && skip_numbers(codes, *rate);
   double days = 0;
   for (std::size_t i = 0; i < codes.size(); ++i) {
     if (i > 0 && codes[i].seconds < codes[i - 1].seconds) days += kDay;

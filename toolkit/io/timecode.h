@@ -25,6 +25,8 @@ struct Timecode {
 struct TimecodeTimes {
   std::optional<double> rate;
   std::vector<double> times;
+  /// Numbers that drop-frame timecodes leave out are not there either, though all are counted.
+  bool skips_numbers = false;
 };
 
 /// Timecodes may pass midnight once. \pre each is later than the one before: passes()

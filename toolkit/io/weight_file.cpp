@@ -15,7 +15,6 @@
 #include "toolkit/io/weight_json.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/text.h"
-#include "toolkit/model/expression_names.h"
 
 namespace mimetra {
 
@@ -81,7 +80,9 @@ class WeightReader {
     }
     if (time_column_) {
       const double time = csv_.number(*time_column_) / units_per_second_;
-      if (!times_.empty() && time <= times_.back()) csv_.fail("times do not ascend");
+      if (!times_.empty() && time <= times_.back()) {
+        csv_.fail(note_on_falling_time(times_.back(), time));
+      }
       times_.push_back(time);
     } else if (timecode_column_) {
       read_timecode(csv_.field(*timecode_column_));
@@ -125,6 +126,11 @@ class WeightReader {
     const TimecodeTimes found = times_of(timecodes_);
     if (found.rate) {
       times_ = found.times;
+      if (found.skips_numbers) {
+        result.notes.push_back(
+            "its timecodes leave out the first numbers of minutes, as drop-frame timecodes do, and "
+            "are read with a pause there; where no frame was lost, write ';' before their frames");
+      }
     } else {
       result.notes.push_back(
           "no second ends among its timecodes, which would tell their rate; give it by option "
@@ -191,26 +197,6 @@ constexpr double kMostUsual = 2, kLeastUsual = -0.1;
 /// Weights that go beyond this and look like percent are nothing else.
 constexpr double kLeastPercent = 10;
 
-/// Rotations of head and eyes, which captures write beside the weights.
-bool is_rotation(const std::string& name) {
-  constexpr std::string_view kBones[] = {"head", "neck", "eye", "lefteye", "righteye"};
-  constexpr std::string_view kAngles[] = {"yaw",  "pitch",     "roll",      "rx",
-                                          "ry",   "rz",        "rotx",      "roty",
-                                          "rotz", "rotationx", "rotationy", "rotationz"};
-  const std::string plain = folded_name(name);
-  return plain != "eyeroll" &&
-         std::ranges::any_of(kBones, [&](auto bone) { return plain.starts_with(bone); }) &&
-         std::ranges::any_of(kAngles, [&](auto angle) { return plain.ends_with(angle); });
-}
-
-std::vector<Eigen::Index> columns_of_weights(const WeightTrack& track) {
-  std::vector<Eigen::Index> columns;
-  for (std::size_t column = 0; column < track.names.size(); ++column) {
-    if (!is_rotation(track.names[column])) columns.push_back(static_cast<Eigen::Index>(column));
-  }
-  return columns;
-}
-
 /// Whether many weights, in most columns that move, are beyond what weights from 0 to 1 are.
 bool look_like_percent(const Eigen::MatrixXd& weights) {
   constexpr double kBeyond = 1.5, kMany = 0.05;
@@ -222,10 +208,8 @@ bool look_like_percent(const Eigen::MatrixXd& weights) {
          most.maxCoeff() <= 100 && weights.minCoeff() >= 100 * kLeastUsual;
 }
 
-/// Divides weights in percent by 100; notes that, and weights that nobody means.
-void note_sizes(WeightTrack& track) {
-  const std::vector<Eigen::Index> columns = columns_of_weights(track);
-  if (columns.empty()) return;
+/// Divides weights in percent by 100; notes that, and weights that nobody means. Only of `columns`.
+void note_sizes(WeightTrack& track, const std::vector<int>& columns) {
   const Eigen::MatrixXd weights = track.weights(Eigen::all, columns);
   const auto note = [&](Eigen::Index frame, Eigen::Index column) {
     return "the weight of '" +
@@ -250,6 +234,13 @@ void note_sizes(WeightTrack& track) {
     return;
   }
   track.notes.push_back(note(frame, column));
+}
+
+/// Once.
+void note_odd_times(WeightTrack& track) {
+  const std::string odd = note_on_steps(track.times);
+  if (odd.empty() || std::ranges::find(track.notes, odd) != track.notes.end()) return;
+  track.notes.push_back(odd);
 }
 
 void append(std::string& text, double number) {
@@ -279,13 +270,17 @@ WeightTrack read_weights(const std::filesystem::path& path) {
   const bool is_json = extension == ".json";
   WeightTrack track = is_json ? read_weights_json(path) : WeightReader(path).read();
   fill_missing_weights(track);
-  note_odd_weights(track);
+  note_odd_times(track);
   return track;
 }
 
-void note_odd_weights(WeightTrack& track) {
-  if (track.weights.size() > 0) note_sizes(track);
-  if (const std::string odd = note_on_steps(track.times); !odd.empty()) track.notes.push_back(odd);
+void note_odd_weights(WeightTrack& track, const std::vector<std::string>& expressions) {
+  std::vector<int> driving = match_weights(track, expressions).column;
+  std::erase(driving, -1);
+  std::ranges::sort(driving);
+  driving.erase(std::ranges::unique(driving).begin(), driving.end());
+  if (!driving.empty() && track.weights.rows() > 0) note_sizes(track, driving);
+  note_odd_times(track);
 }
 
 void write_weights(const std::filesystem::path& path, const WeightTrack& track, bool overwrite) {

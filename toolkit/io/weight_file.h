@@ -14,19 +14,21 @@ namespace mimetra {
 ///
 /// NAME.json holds rows of objects ([{"time": 0, "jawOpen": 0.5}], or these as "rows" or "frames"),
 /// which may be MediaPipe's results ("faceBlendshapes" with "timestamp_ms"); or "names" and
-/// "weights" (F x names) with "times" or "fps", by Audio2Face's keys too; or is what `mimetra fit`
-/// wrote.
+/// "weights" (F x names) with "times" or "fps", by Audio2Face's keys too; or a list for each name,
+/// as pandas writes tables; or is what `mimetra fit` wrote.
 ///
 /// An empty or NaN weight of a CSV is missing: it lies between its neighbours'.
 ///
 /// Throws IoError that names line and column for ragged rows (decimal commas between commas make
 /// some), tabs between fields, what is not a finite number, times that do not ascend, duplicate
-/// names, JSON in a CSV and the other way round.
+/// names, JSON in a CSV and the other way round. What is odd about the weights themselves is told
+/// where the expressions are known: note_odd_weights().
 WeightTrack read_weights(const std::filesystem::path& path);
 
 /// Divides weights in percent by 100, and adds what was noticed to the track's notes: that, weights
-/// that nobody means, and times that nobody captures at. read_weights() has done it.
-void note_odd_weights(WeightTrack& track);
+/// that nobody means, and times that nobody captures at. Columns that drive none of `expressions`,
+/// such as a head's pose in degrees, have no say and stay.
+void note_odd_weights(WeightTrack& track, const std::vector<std::string>& expressions);
 
 /// Writes `time` and one column per name, the shortest digits that read back equal. Throws
 /// OutputError; std::invalid_argument where names, times and weights differ in number.

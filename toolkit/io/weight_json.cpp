@@ -24,6 +24,7 @@ namespace {
 // The keys of files in use: ours, Audio2Face's export for ARKit, and plain ones.
 const std::vector<std::string> kNames = {"names", "facsNames", "blendShapeNames", "blendshapes"};
 const std::vector<std::string> kMatrix = {"weights", "weightMat"};
+const std::string kTimes = "times";
 const std::vector<std::string> kRate = {"fps", "exportFps"};
 const std::vector<std::string> kRows = {"rows", "frames"};
 
@@ -59,8 +60,12 @@ class WeightJson {
       read_matrix(*names, *matrix);
     } else if (const Json* rows = root_.is_array() ? &root_ : member(root_, kRows)) {
       read_rows(*rows);
+    } else if (const Json of_columns = rows_of_columns(); !of_columns.empty()) {
+      read_rows(of_columns);
     } else {
-      throw IoError(path_, "holds no weights; expected names and weights, or rows of them");
+      throw IoError(path_,
+                    "holds no weights; expected names and weights, rows of them, or a list "
+                    "for each name");
     }
     return std::move(track_);
   }
@@ -105,6 +110,39 @@ class WeightJson {
     track_.names.push_back(name);
   }
 
+  static bool holds_numbers(const Json& column) {
+    return std::ranges::all_of(
+        column, [](const Json& value) { return value.is_number() || value.is_null(); });
+  }
+
+  /// Of a list for each name, {"time": [0, 0.1], "jawOpen": [0, 1]}, or an object of rows' numbers,
+  /// {"jawOpen": {"0": 0, "1": 1}}; empty where the file holds something else.
+  Json rows_of_columns() const {
+    Json rows = Json::array();
+    if (!root_.is_object()) return rows;
+    std::string first;
+    for (const auto& [name, column] : root_.items()) {
+      // Times by that name are read for every shape.
+      if ((!column.is_array() && !column.is_object()) || name == kTimes) continue;
+      if (!holds_numbers(column)) return Json::array();
+      if (first.empty()) {
+        first = name;
+        rows.get_ref<Json::array_t&>().resize(column.size(), Json::object());
+      } else if (column.size() != rows.size()) {
+        fail("'" + name + "'", std::to_string(column.size()) + " numbers, expected " +
+                                   std::to_string(rows.size()) + " as '" + first + "' has");
+      }
+      for (std::size_t row = 0; row < rows.size(); ++row) {
+        const std::string index = std::to_string(row);
+        if (column.is_object() && !column.contains(index)) {
+          fail("'" + name + "'", "has no row " + index);
+        }
+        rows[row][name] = column.is_array() ? column[row] : column[index];
+      }
+    }
+    return rows;
+  }
+
   void read_matrix(const Json& names, const Json& matrix) {
     if (!names.is_array() || names.empty()) fail("names", "expected a list of names");
     for (const Json& name : names) {
@@ -132,7 +170,7 @@ class WeightJson {
 
   void read_times() {
     const Eigen::Index frames = track_.weights.rows();
-    if (const Json* times = member(root_, {"times"})) {
+    if (const Json* times = member(root_, {kTimes})) {
       if (!times->is_array() || static_cast<Eigen::Index>(times->size()) != frames) {
         fail("times", "expected " + std::to_string(frames) + " numbers, one for each row");
       }
@@ -153,7 +191,9 @@ class WeightJson {
   }
 
   void set_time(Eigen::Index frame, double time, const std::string& place) {
-    if (frame > 0 && time <= track_.times[frame - 1]) fail(place, "times do not ascend");
+    if (frame > 0 && time <= track_.times[frame - 1]) {
+      fail(place, note_on_falling_time(track_.times[frame - 1], time));
+    }
     track_.times[frame] = time;
   }
 

@@ -1,6 +1,7 @@
 #include "toolkit/io/weight_track.h"
 
 #include <algorithm>
+#include <map>
 
 #include "toolkit/mesh/errors.h"
 #include "toolkit/model/expression_names.h"
@@ -28,13 +29,30 @@ int column_of(const std::vector<std::string>& names, const std::string& expressi
   return shape == expression ? -1 : column_of(names, shape);
 }
 
+/// The columns without the node that their name begins with, where one of them is called so.
+std::vector<std::string> shapes_of_nodes(const std::vector<std::string>& columns) {
+  std::map<std::string, int> times;
+  for (const std::string& column : columns) ++times[without_node(column)];
+  std::vector<std::string> shapes;
+  for (const std::string& column : columns) {
+    const std::string shape = without_node(column);
+    shapes.push_back(times[shape] == 1 ? shape : column);
+  }
+  return shapes;
+}
+
 }  // namespace
 
 WeightMatch match_weights(const WeightTrack& track, const std::vector<std::string>& expressions) {
   WeightMatch match;
   std::vector<bool> used(track.names.size(), false);
+  const std::vector<std::string> shapes = shapes_of_nodes(track.names);
   for (const std::string& expression : expressions) {
-    const int column = column_of(track.names, expression);
+    int column = column_of(track.names, expression);
+    // A node of the model may be another one than that of a column.
+    if (column < 0 && without_node(expression) == expression) {
+      column = column_of(shapes, expression);
+    }
     match.column.push_back(column);
     if (column >= 0)
       used[static_cast<std::size_t>(column)] = true;

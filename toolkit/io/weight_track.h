@@ -31,7 +31,8 @@ struct WeightMatch {
 /// Names match exactly, then with Left/Right for _L/_R of the expression, then of the column, then
 /// one name drives both halves; without regard to case and underscores at each step only where
 /// nothing matched exactly. What matches nothing is tried without the node that its name begins
-/// with (`blendShape1.jawOpen`).
+/// with (`blendShape1.jawOpen`), or where it has none, that a column's does, if one column only is
+/// called so.
 WeightMatch match_weights(const WeightTrack& track, const std::vector<std::string>& expressions);
 
 /// Weights in the order of the expressions (F x D), 0 where nothing drives one. Throws

@@ -14,6 +14,9 @@ double triangle_quality(const Eigen::Vector3d& a, const Eigen::Vector3d& b,
 /// Triangles of lower quality carry no usable deformation gradient; valid faces go down to 4e-3.
 constexpr double kDegenerateQuality = 1e-6;
 
+/// Below this a triangle is a sliver, whose side nobody sees.
+constexpr double kSliverQuality = 2e-3;
+
 /// Whether triangle `t` repeats no vertex and is not degenerate.
 bool has_area(const Positions& positions, const Triangles& triangles, Eigen::Index t);
 

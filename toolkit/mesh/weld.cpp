@@ -58,7 +58,7 @@ Weld Weld::exact(const Positions& positions) {
   return weld;
 }
 
-void Weld::check(const Positions& positions) const {
+void Weld::check(const Positions& positions, double tolerance) const {
   const auto vertices = static_cast<VertexIndex>(representative.size());
   if (vertices != positions.rows()) {
     throw std::invalid_argument("a weld of " + std::to_string(vertices) + " vertices for " +
@@ -72,7 +72,7 @@ void Weld::check(const Positions& positions) const {
     if (first < 0 || first > vertex || representative[first] != first) {
       throw std::invalid_argument(what + ", expected the lowest one that it is welded to");
     }
-    if (positions.row(vertex) != positions.row(first)) {
+    if ((positions.row(vertex) - positions.row(first)).norm() > tolerance) {
       throw std::invalid_argument(what + ", which is at another place");
     }
   }

@@ -8,7 +8,8 @@ namespace mimetra {
 
 /// Which vertices are one point of the surface: UV seams, every STL file.
 struct Weld {
-  /// Lowest vertex at the same place, for each vertex (N); itself where it is alone or the first.
+  /// Lowest vertex at the same place, or near it where it says so, for each vertex (N); itself
+  /// where it is alone or the first.
   std::vector<VertexIndex> representative;
   /// Vertices that are not their own representative.
   int count = 0;
@@ -20,8 +21,9 @@ struct Weld {
   static Weld exact(const Positions& positions);
 
   /// Throws std::invalid_argument unless there is one representative for each of `positions` (N x
-  /// 3), which is at the same place, its own representative, and not above its vertex.
-  void check(const Positions& positions) const;
+  /// 3), which is within `tolerance` (length) of it, its own representative, and not above its
+  /// vertex.
+  void check(const Positions& positions, double tolerance = 0) const;
 
   /// The same triangles on representatives, M x 3.
   Triangles welded(const Triangles& triangles) const;

@@ -58,7 +58,7 @@ std::vector<std::string> notes_on_expressions(const std::string& name, const Pos
   const std::vector<std::string> twice = written_twice(expressions.names);
   if (!twice.empty()) {
     notes.push_back(name + ": expressions that differ in how they are written only: " +
-                    listed(twice) + "; one column of weights drives both");
+                    listed(twice) + "; weights with a column for one of them drive both");
   }
   const ExchangedSides sides = exchanged_sides(neutral, triangles, expressions);
   if (!sides.left_halves.empty()) notes.push_back(name + ": " + described(sides));

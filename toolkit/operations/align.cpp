@@ -88,6 +88,28 @@ Eigen::Vector3d extent_of(const FrameSource& sequence) {
   return (rest.colwise().maxCoeff() - rest.colwise().minCoeff()).transpose();
 }
 
+Positions places_on(const FrameSource& sequence) {
+  return sequence.rest()(spread_vertices(sequence.vertices()), Eigen::all);
+}
+
+/// Whether a sequence is turned against the one that a motion was taken out of, by what is known of
+/// that: places of the same vertices, or how far it reaches along each axis.
+bool is_turned(const KeptMotion& kept, const FrameSource& sequence) {
+  constexpr double kOfSize = 0.1;
+  const Eigen::Vector3d was = *kept.extent, now = extent_of(sequence);
+  if (kept.places && kept.vertices == sequence.vertices()) {
+    constexpr double kTurned = 45;  // degrees; another character's face is not turned by so much
+    const Positions places = places_on(sequence);
+    const RigidTransform turn = rigid_fit(*kept.places, places);
+    const double off = (turn.apply(*kept.places) - places).rowwise().norm().maxCoeff();
+    // Numbered otherwise they fit nowhere.
+    if (off < kOfSize * was.norm()) return turn.angle() > kTurned;
+  }
+  const Eigen::Vector3d turned(was.x(), was.z(), was.y());
+  const double apart = (now - was).norm();
+  return apart > kOfSize * was.norm() && (now - turned).norm() < apart / 2;
+}
+
 /// Says where a motion is of a mesh in another unit, or with another axis up: its translations and
 /// axes are that one's.
 void warn_of_other_space(const KeptMotion& kept, const Invocation& invocation) {
@@ -105,10 +127,7 @@ void warn_of_other_space(const KeptMotion& kept, const Invocation& invocation) {
         " as the sequence that the motion was taken out of, in whose unit it is" + kAdvice);
     return;
   }
-  constexpr double kOfSize = 0.1;
-  const Eigen::Vector3d turned(was.x(), was.z(), was.y());
-  const double apart = (now - was).norm();
-  if (apart > kOfSize * was.norm() && (now - turned).norm() < apart / 2) {
+  if (is_turned(kept, *std::get<FieldSequence>(input.data).frames)) {
     invocation.warn(input.name +
                     " has another axis up than the sequence that the motion was taken out of" +
                     kAdvice);
@@ -147,10 +166,15 @@ Outcome run_align(const Invocation& invocation) {
     shift = std::max(shift, transform.translation.norm());
   }
   const Eigen::Vector3d extent = extent_of(*result.frames);
-  Json report = {{"frames", result.frames->frames()},
-                 {"extent", {extent.x(), extent.y(), extent.z()}},
-                 {"largest_rotation_degrees", degrees},
-                 {"largest_translation", shift}};
+  Json places = Json::array();
+  const Positions kept = places_on(*result.frames);
+  for (const auto& place : kept.rowwise()) {
+    places.push_back({place[0], place[1], place[2]});
+  }
+  Json report = {
+      {"frames", result.frames->frames()},     {"extent", {extent.x(), extent.y(), extent.z()}},
+      {"vertices", result.frames->vertices()}, {"places", std::move(places)},
+      {"largest_rotation_degrees", degrees},   {"largest_translation", shift}};
   if (result.disagreement) {
     report["disagreement_degrees"] = *result.disagreement;
     report["uncertain"] = *result.disagreement > kUncertainDisagreement;

@@ -43,6 +43,14 @@ Positions read_rest(const std::string& path, const FrameSource& sequence) {
   return rest;
 }
 
+std::vector<VertexIndex> spread_vertices(int vertices) {
+  std::vector<VertexIndex> spread(8);
+  for (std::size_t i = 0; i < spread.size(); ++i) {
+    spread[i] = static_cast<VertexIndex>(static_cast<long long>(i) * (vertices - 1) / 7);
+  }
+  return spread;
+}
+
 KeptMotion read_motion(const std::string& path, int frames) {
   KeptMotion kept;
   try {
@@ -52,6 +60,11 @@ KeptMotion read_motion(const std::string& path, int frames) {
     if (result.contains("extent")) {
       const auto extent = result["extent"].get<std::array<double, 3>>();
       kept.extent = Eigen::Vector3d(extent.data());
+    }
+    if (result.contains("places")) {
+      kept.vertices = result.at("vertices").get<int>();
+      const auto places = result["places"].get<std::array<std::array<double, 3>, 8>>();
+      kept.places = Eigen::Map<const Positions>(places.front().data(), 8, 3);
     }
   } catch (const Json::exception&) {
     throw IoError(path,

@@ -75,12 +75,13 @@ void check_request(const Invocation& invocation) {
   }
 }
 
-/// The weights and their times of those frames that are asked for.
-WeightTrack chosen_track(const Invocation& invocation) {
+/// The weights and their times of those frames that are asked for, which drive `expressions`.
+WeightTrack chosen_track(const Invocation& invocation,
+                         const std::vector<std::string>& expressions) {
   const SequenceSource source = frame_parameters().read(invocation.parameters);
   const NamedData& weights = invocation.input("weights");
   WeightTrack track = track_of(std::get<Table>(weights.data));
-  note_odd_weights(track);
+  note_odd_weights(track, expressions);
   const std::string name = weights.name.empty() ? "weights" : weights.name;
   for (const std::string& note : track.notes) {
     const std::string text = name + ": " + note;
@@ -126,32 +127,44 @@ void drive_source(const Invocation& invocation, const WeightTrack& track, Retarg
   made.report["undriven"] = match.undriven_expressions;
 }
 
+/// What a call asks for.
+struct RetargetCall {
+  SolveOptions solving;
+  BlendshapeTransferOptions of_map;
+  /// In place of two models.
+  std::optional<Retargeting> map;
+  WeightTrack track;
+};
+
 /// A call by a map, before it is solved.
-Retargeted read_map(const Invocation& invocation, const WeightTrack& track,
-                    const BlendshapeTransferOptions& options) {
-  const std::string& name = invocation.input("map").name;
+Retargeted read_map(const Invocation& invocation, const RetargetCall& call) {
   Retargeted made;
   made.by_map = true;
-  made.map = parse_retargeting(name, invocation.get<Document>("map").text);
+  made.map = call.map;
   try {
-    check_map(*made.map, options);
+    check_map(*made.map, call.of_map);
   } catch (const MismatchError& error) {
-    throw MismatchError(name + ": " + error.what());
+    throw MismatchError(invocation.input("map").name + ": " + error.what());
   }
   made.source_names = made.map->source_names;
   made.target_names = made.map->target_names;
   check_live_link(invocation, "out", made.target_names);
-  drive_source(invocation, track, made);
+  drive_source(invocation, call.track, made);
   return made;
 }
 
-Retargeted by_map(const Invocation& invocation, const WeightTrack& track,
-                  const BlendshapeTransferOptions& options) {
-  Retargeted made = read_map(invocation, track, options);
-  const bool timed = track.times.size() > 0;
-  made.weights = retargeted(
+/// The weights of a map, which keeps the rigs.
+Eigen::MatrixXd weights_by_map(const Retargeted& made, const RetargetCall& call) {
+  const Eigen::VectorXd& times = call.track.times;
+  return retargeted(
       *made.map, made.driving,
-      timed ? track.times : default_times(static_cast<int>(track.weights.rows())), options);
+      times.size() > 0 ? times : default_times(static_cast<int>(call.track.weights.rows())),
+      call.of_map);
+}
+
+Retargeted by_map(const Invocation& invocation, const RetargetCall& call) {
+  Retargeted made = read_map(invocation, call);
+  made.weights = weights_by_map(made, call);
   return made;
 }
 
@@ -200,16 +213,15 @@ void check_wanted(const Invocation& invocation, const Target& target) {
   check_live_link(invocation, "out", target.model.get().expressions().names);
 }
 
-Retargeted by_meshes(const Invocation& invocation, const WeightTrack& track,
-                     const SolveOptions& solving) {
-  Driven driven = driven_source(invocation, track);
+Retargeted by_meshes(const Invocation& invocation, const RetargetCall& call) {
+  Driven driven = driven_source(invocation, call.track);
   const Target target = targets_of(driven.invocation).front();
   check_wanted(invocation, target);
   Retargeted made = std::move(driven.made);
   made.target_names = target.model.get().expressions().names;
   RetargetOptions options;
   options.source_name = invocation.input("source").name;
-  options.solving = solving;
+  options.solving = call.solving;
   options.keep_map = invocation.wants("map-out") || invocation.wants("matrix-out");
   options.threads = invocation.threads;
   options.progress = invocation.progress;
@@ -278,14 +290,9 @@ void add_weights(const Invocation& invocation, Retargeted& made) {
 }
 
 /// How far the kept map's weights are from those of the meshes.
-void add_map(const Invocation& invocation, const WeightTrack& track,
-             const BlendshapeTransferOptions& options, Retargeted& made) {
+void add_map(const Invocation& invocation, const RetargetCall& call, Retargeted& made) {
   if (made.by_map || !invocation.wants("map-out")) return;
-  const bool timed = track.times.size() > 0;
-  const Eigen::MatrixXd weights = retargeted(
-      *made.map, made.driving,
-      timed ? track.times : default_times(static_cast<int>(track.weights.rows())), options);
-  const WeightDifference difference = difference_of(weights, made.weights);
+  const WeightDifference difference = difference_of(weights_by_map(made, call), made.weights);
   made.report["map"] = json_of(difference);
   made.summary += "the map's weights differ from these by " + summary_of(difference) + '\n';
 }
@@ -336,13 +343,6 @@ void note_options(const Invocation& invocation) {
   }
 }
 
-/// What a call asks for.
-struct RetargetCall {
-  SolveOptions solving;
-  BlendshapeTransferOptions of_map;
-  WeightTrack track;
-};
-
 RetargetCall read_call(const Invocation& invocation) {
   check_request(invocation);
   RetargetCall call;
@@ -350,7 +350,12 @@ RetargetCall read_call(const Invocation& invocation) {
   call.of_map = call.solving.blendshape;
   call.of_map.threads = invocation.threads;
   call.of_map.smoothness = call.solving.smoothness;
-  call.track = chosen_track(invocation);
+  if (const auto* map = invocation.find<Document>("map")) {
+    call.map = parse_retargeting(invocation.input("map").name, map->text);
+  }
+  call.track = chosen_track(
+      invocation, call.map ? call.map->source_names
+                           : invocation.get<ModelData>("source").model.expressions().names);
   warn_of_guessed_rate(invocation, invocation.input("weights").name, call.track.times.size() > 0);
   note_options(invocation);
   return call;
@@ -358,8 +363,8 @@ RetargetCall read_call(const Invocation& invocation) {
 
 void foresee_retarget(const Invocation& invocation) {
   const RetargetCall call = read_call(invocation);
-  if (invocation.find<Document>("map")) {
-    read_map(invocation, call.track, call.of_map);
+  if (call.map) {
+    read_map(invocation, call);
     return;
   }
   const Driven driven = driven_source(invocation, call.track);
@@ -372,15 +377,13 @@ void foresee_retarget(const Invocation& invocation) {
 Outcome run_retarget(const Invocation& invocation) {
   const Stopwatch stopwatch;
   const RetargetCall call = read_call(invocation);
-  const WeightTrack& track = call.track;
   Retargeted made = in_command_terms(invocation.parameters, [&] {
-    return invocation.find<Document>("map") ? by_map(invocation, track, call.of_map)
-                                            : by_meshes(invocation, track, call.solving);
+    return call.map ? by_map(invocation, call) : by_meshes(invocation, call);
   });
   add_weights(invocation, made);
-  add_map(invocation, track, call.of_map, made);
+  add_map(invocation, call, made);
   Outcome outcome;
-  NamedData out{"", weight_table(WeightTrack{made.target_names, made.weights, track.times})};
+  NamedData out{"", weight_table(WeightTrack{made.target_names, made.weights, call.track.times})};
   if (made.correspondence) out.beside[".correspondence.json"] = std::move(*made.correspondence);
   outcome.outputs["out"].push_back(std::move(out));
   if (invocation.wants("map-out")) {

@@ -2,6 +2,7 @@
 
 #include "toolkit/correspondence/renumbered_frames.h"
 #include "toolkit/mesh/simplification.h"
+#include "toolkit/mesh/surface_parts.h"
 #include "toolkit/mesh/text.h"
 #include "toolkit/operations/bound_parameters.h"
 #include "toolkit/operations/json.h"
@@ -21,6 +22,13 @@ BoundParameters<SimplifyOptions> simplify_parameters() {
 /// Choosing vertices, beside writing the frames.
 constexpr double kChoosing = 0.8;
 
+/// Share of the surface at rest that is gone.
+double lost_area(const Simplification& made, const FrameSource& given) {
+  const double before = vertex_areas(given.rest(), given.triangles()).sum();
+  const Positions kept = given.rest()(made.vertices, Eigen::all);
+  return before > 0 ? 1 - vertex_areas(kept, made.connectivity->triangles).sum() / before : 0;
+}
+
 /// Warns of what is not as asked for.
 void warn_of(const Simplification& made, const FieldSequence& given, double share,
              const Invocation& invocation) {
@@ -38,6 +46,13 @@ void warn_of(const Simplification& made, const FieldSequence& given, double shar
   if (made.folded > 0) {
     invocation.warn(name + ": " + std::to_string(made.folded) +
                     " triangles are turned over in some frame; keep a larger share");
+  }
+  // Wrinkles and rounding are less.
+  constexpr double kLost = 0.05;
+  if (const double lost = lost_area(made, *given.frames); lost > kLost) {
+    invocation.warn(name + ": " + percent(lost) +
+                    " of the surface is gone, since so few vertices cannot hold its shape; look at "
+                    "it, and keep a larger share");
   }
   for (const Field& field : given.fields) {
     if (field.location == Field::Location::vertices) continue;

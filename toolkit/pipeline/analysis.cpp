@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "toolkit/mesh/inspection.h"
+#include "toolkit/mesh/parallel.h"
 #include "toolkit/mesh/stopwatch.h"
 #include "toolkit/mesh/surface_parts.h"
 #include "toolkit/mesh/text.h"
@@ -26,7 +27,8 @@ Positions first_pose(const FrameSource& sequence) {
   return FrameBlock(sequence, 0, 1).frame(0);
 }
 
-/// The source with the rest pose of the decomposition.
+}  // namespace
+
 std::shared_ptr<const FrameSource> work_of(const Source& source, const AnalysisOptions& options) {
   const std::shared_ptr<const FrameSource>& sequence = source.sequence;
   const bool reference = options.compatibility != Compatibility::none;
@@ -46,6 +48,8 @@ std::shared_ptr<const FrameSource> work_of(const Source& source, const AnalysisO
   }
   return with_rest(sequence, mean_pose(*sequence));
 }
+
+namespace {
 
 /// Longest side that any single frame's bounding box has: the reference's unit of length.
 double largest_frame_extent(const FrameSource& sequence) {
@@ -135,6 +139,32 @@ Components centered_inside(Components components, const std::vector<bool>& insid
 }
 
 }  // namespace
+
+Eigen::VectorXd motion_on_vertices(const FrameSource& sequence, const std::vector<bool>& inside,
+                                   const BlockOptions& options) {
+  // So many parts for any number of threads: their sums are the same bytes.
+  constexpr int kParts = 8;
+  const int frames = sequence.frames();
+  std::vector<Eigen::VectorXd> sums(kParts, Eigen::VectorXd::Zero(sequence.vertices()));
+  parallel_for(
+      kParts, options.threads,
+      [&](int part) {
+        const int first = frames * part / kParts, end = frames * (part + 1) / kParts;
+        for (int f = first; f < end; ++f) {
+          const FrameBlock block(sequence, f, 1);
+          sums[part] += (block.frame(0) - sequence.rest()).rowwise().squaredNorm();
+        }
+      },
+      options.progress);
+  Eigen::VectorXd motion = Eigen::VectorXd::Zero(sequence.vertices());
+  for (const Eigen::VectorXd& sum : sums) motion += sum;
+  for (std::size_t v = 0; v < inside.size(); ++v) {
+    if (!inside[v]) motion[static_cast<Eigen::Index>(v)] = 0;
+  }
+  const double all = motion.sum();
+  if (all > 0) motion /= all;
+  return motion;
+}
 
 Weld weld_of(const Positions& positions, Welding welding) {
   switch (welding) {
@@ -249,8 +279,15 @@ Analysis analyse(const Source& source, const AnalysisOptions& options) {
   decomposition.threads = options.threads;
   reserved_for_distances(decomposition, options.distances.method, work.vertices(), options.threads);
   decomposition.progress = options.progress;
-  Components components =
-      decomposed_inside(sequence, of_surface.inside, decomposition, options.ranks);
+  Components components;
+  try {
+    components = decomposed_inside(sequence, of_surface.inside, decomposition, options.ranks);
+  } catch (const MismatchError& error) {
+    // All frames may move elsewhere.
+    const std::string text = error.what();
+    if (options.inside.empty() || !text.starts_with("nothing moves")) throw;
+    throw MismatchError("where regions may lie " + text);
+  }
   return {std::move(components), std::move(distances), options.inside, stopwatch.seconds(),
           options.distances.welding};
 }

@@ -140,6 +140,16 @@ struct Analysis {
   Welding welding = Welding::exact;
 };
 
+/// The source's frames with the rest pose that analyse() decomposes them about.
+std::shared_ptr<const FrameSource> work_of(const Source& source, const AnalysisOptions& options);
+
+/// Share of the motion energy, squared distances from the rest pose, on each vertex (N), of that on
+/// those `inside` (N, empty for all); 0 where nothing moves. The same bytes for any number of
+/// threads.
+Eigen::VectorXd motion_on_vertices(const FrameSource& sequence,
+                                   const std::vector<bool>& inside = {},
+                                   const BlockOptions& options = {});
+
 /// Connected parts of a surface, each weighing its area as a share of the largest part's, of which
 /// only vertices `inside` (N, or empty) count: what moves a tooth counts as little as a tooth is of
 /// the skin, however dense its mesh. Empty where there is one part, or nothing has area.

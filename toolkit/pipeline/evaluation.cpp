@@ -5,11 +5,13 @@
 #include <utility>
 
 #include "toolkit/mesh/stopwatch.h"
+#include "toolkit/mesh/text.h"
 #include "toolkit/pipeline/joint_motion.h"
 #include "toolkit/pipeline/region_border.h"
 #include "toolkit/pipeline/region_completer.h"
 #include "toolkit/pipeline/region_selector.h"
 #include "toolkit/pipeline/solution_error.h"
+#include "toolkit/pipeline/usability.h"
 
 namespace mimetra {
 
@@ -130,7 +132,7 @@ class Rows {
     RegionCompleter completion(source_.sequence->rest(), source_.sequence->triangles(),
                                options_.regions, options_.analysis);
     const Regions regions = completion(given.regions, target_, options_.solving);
-    rows_.push_back(evaluate_by(regions, full_, source_, target_, options_.solving).row);
+    add(evaluate_by(regions, full_, source_, target_, options_.solving));
   }
 
   /// A row of the strongest regions of k components.
@@ -139,7 +141,7 @@ class Rows {
     const Analysis analysis = analysis_of(k);
     const Regions regions =
         completer(analysis)(choose_regions(analysis, options_.regions), target_, options_.solving);
-    add(regions, analysis, stopwatch.seconds());
+    add(regions, analysis, analysis.components.count(), stopwatch.seconds());
   }
 
   /// A row of regions that are chosen for the transfer.
@@ -152,11 +154,11 @@ class Rows {
         selector_->within({&bound, 1}, placed.source, target_, options_.solving).front();
     const double seconds = stopwatch.seconds();
     options_.solving.progress = next_part(kAnalysisShare, 1);
-    EvaluationRow row = evaluate_by(regions, full_, source_, target_, options_.solving).row;
-    row.k = static_cast<int>(regions.regions.size());
-    row.by = Selector::transfer;
-    row.decompose_seconds = seconds;
-    rows_.push_back(row);
+    EvaluatedTransfer result = evaluate_by(regions, full_, source_, target_, options_.solving);
+    result.row.k = static_cast<int>(regions.regions.size());
+    result.row.by = Selector::transfer;
+    result.row.decompose_seconds = seconds;
+    add(result);
   }
 
   /// A row for each share of a curve by the strongest regions, of one decomposition; none where
@@ -176,8 +178,7 @@ class Rows {
           completion(choose_regions(analysis, of_share), target_, options_.solving);
       const auto triangles = static_cast<int>(regions.triangles.size());
       if (!rows_.empty() && rows_.back().triangles == triangles) continue;
-      add(regions, analysis, seconds);
-      rows_.back().k = static_cast<int>(regions.regions.size());
+      add(regions, analysis, static_cast<int>(regions.regions.size()), seconds);
     }
   }
 
@@ -187,6 +188,11 @@ class Rows {
   }
 
   std::vector<EvaluationRow> with_full() && {
+    judge(full_);
+    if (!unusable_.empty()) {
+      note(options_.notes, target_.name + ": rows of which the result may not be usable: " +
+                               joined(unusable_, "; ", "; "));
+    }
     rows_.push_back(full_.row);
     return std::move(rows_);
   }
@@ -215,6 +221,26 @@ class Rows {
                    std::min(1.0, (done + to) / steps_));
   }
 
+  /// Keeps what is wrong with a result that people would not use.
+  void judge(const EvaluatedTransfer& result) {
+    std::string wrong = unusable_by(result.error);
+    if (result.error.crease >= kVisibleCrease) {
+      wrong += (wrong.empty() ? "" : ", and ") + std::string("a crease of ") +
+               readable(result.error.crease, 2) + " degrees is seen";
+    }
+    if (wrong.empty()) return;
+    const EvaluationRow& row = result.row;
+    unusable_.push_back((row.k ? "K = " + std::to_string(*row.k)
+                               : percent(row.triangle_share) + " of the triangles") +
+                        ": " + wrong);
+  }
+
+  /// \pre what the row tells beside the transfer is known
+  void add(const EvaluatedTransfer& result) {
+    judge(result);
+    rows_.push_back(result.row);
+  }
+
   Analysis analysis_of(int k) {
     options_.analysis.decomposition.count = k;
     options_.analysis.progress = next_part(0, kAnalysisShare);
@@ -226,14 +252,14 @@ class Rows {
     return *completer_;
   }
 
-  void add(const Regions& regions, const Analysis& analysis, double seconds) {
+  void add(const Regions& regions, const Analysis& analysis, int k, double seconds) {
     options_.solving.progress = next_part(kAnalysisShare, 1);
-    EvaluationRow row = evaluate_by(regions, full_, source_, target_, options_.solving).row;
-    row.k = analysis.components.count();
-    row.by = Selector::energy;
-    row.decompose_seconds = seconds;
-    row.converged = analysis.components.converged;
-    rows_.push_back(row);
+    EvaluatedTransfer result = evaluate_by(regions, full_, source_, target_, options_.solving);
+    result.row.k = k;
+    result.row.by = Selector::energy;
+    result.row.decompose_seconds = seconds;
+    result.row.converged = analysis.components.converged;
+    add(result);
   }
 
   EvaluationOptions options_;
@@ -245,6 +271,7 @@ class Rows {
   std::optional<RegionCompleter> completer_;
   std::optional<RegionSelector> selector_;
   std::vector<EvaluationRow> rows_;
+  std::vector<std::string> unusable_;
 };
 
 }  // namespace

@@ -37,17 +37,6 @@ MeshSequence spread_frames(const std::shared_ptr<const FrameSource>& sequence, i
                       BlockOptions{.threads = threads});
 }
 
-/// Share of the motion on each vertex (N).
-Eigen::VectorXd motion_on_vertices(const MeshSequence& sequence) {
-  Eigen::VectorXd motion = Eigen::VectorXd::Zero(sequence.vertices());
-  for (int f = 0; f < sequence.frames(); ++f) {
-    motion += (sequence.frame(f) - sequence.rest()).rowwise().squaredNorm();
-  }
-  const double all = motion.sum();
-  if (all > 0) motion /= all;
-  return motion;
-}
-
 Region region_of(const Disc& disc, double radius) {
   Region region;
   region.center = disc.center;
@@ -124,7 +113,7 @@ std::vector<Regions> RegionSelector::within(std::span<const SelectionBound> boun
   Regions none;
   none.vertices = static_cast<int>(rest_.rows());
   none.all_triangles = static_cast<int>(triangles_.rows());
-  none.vertex_energy = motion_on_vertices(frames);
+  none.vertex_energy = motion_on_vertices(frames, {}, {.threads = options.threads});
   std::vector<Regions> result;
   for (const SelectionBound& bound : bounds) {
     std::vector<Region> chosen;

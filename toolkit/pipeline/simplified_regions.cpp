@@ -10,8 +10,8 @@
 namespace mimetra {
 namespace {
 
-/// Of all the work, choosing the vertices.
-constexpr double kSimplifying = 0.3;
+/// Of all the work, choosing the vertices, and until the motion of all is added up.
+constexpr double kSimplifying = 0.3, kAnalysed = 0.9;
 
 /// What is said of the vertices of the mesh, of those that are kept.
 AnalysisOptions of_kept(AnalysisOptions options, const std::vector<VertexIndex>& kept) {
@@ -50,17 +50,29 @@ SimplifiedRegions regions_by_simplified(const Source& source, const SimplifyOpti
   on_kept.sequence = renumbered(source.sequence, result.mesh.connectivity, kept);
   on_kept.given = renumbered(source.given, result.mesh.connectivity, kept);
   AnalysisOptions of_kept_mesh = of_kept(analysis, kept);
-  of_kept_mesh.progress = part_of(analysis.progress, kSimplifying, 1);
+  of_kept_mesh.progress = part_of(analysis.progress, kSimplifying, kAnalysed);
   const FrameSource& whole = *source.sequence;
   RegionChoiceOptions of_choice = choice;
   of_choice.radius = Length::of(choice.radius.in(whole.diameter()));
+  of_choice.regions.coverage.reset();  // of the energy on all vertices
   const Regions found = choose_regions(analyse(on_kept, of_kept_mesh), of_choice);
   DistanceOptions of_distances = analysis.distances;
   of_distances.threads = analysis.threads;
   of_distances.notes = analysis.notes;
-  result.regions = carried_regions(found, result.mesh, whole.vertices(), whole.triangles(),
+  Eigen::VectorXd energy = motion_on_vertices(
+      *work_of(source, analysis), analysis.inside,
+      {.threads = analysis.threads, .progress = part_of(analysis.progress, kAnalysed, 1)});
+  result.regions = carried_regions(found, result.mesh, std::move(energy), whole.triangles(),
                                    distances_along(whole.rest(), whole.triangles(), of_distances),
                                    analysis.inside);
+  if (choice.regions.coverage) {
+    const std::size_t said = result.regions.notes.size();
+    result.regions = covering(std::move(result.regions), *choice.regions.coverage, whole.rest(),
+                              whole.triangles());
+    for (std::size_t i = said; i < result.regions.notes.size(); ++i) {
+      note(choice.notes, result.regions.notes[i]);
+    }
+  }
   note_large_regions(result.regions, choice, whole.diameter(), whole.triangles());
   result.seconds = stopwatch.seconds();
   return result;

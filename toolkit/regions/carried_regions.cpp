@@ -6,14 +6,15 @@
 
 namespace mimetra {
 
-Regions carried_regions(const Regions& regions, const Simplification& simplified, int vertices,
-                        const Triangles& triangles, const DistanceFunction& distances,
-                        const std::vector<bool>& inside) {
+Regions carried_regions(const Regions& regions, const Simplification& simplified,
+                        Eigen::VectorXd vertex_energy, const Triangles& triangles,
+                        const DistanceFunction& distances, const std::vector<bool>& inside) {
   if (regions.vertices != static_cast<int>(simplified.vertices.size())) {
     throw std::invalid_argument("regions of " + std::to_string(regions.vertices) +
                                 " vertices, expected " +
                                 std::to_string(simplified.vertices.size()) + " that were kept");
   }
+  const auto vertices = static_cast<VertexIndex>(vertex_energy.size());
   std::vector<Region> carried = regions.regions;
   for (Region& region : carried) {
     if (region.center < 0) throw std::invalid_argument("a region has no centre to carry it by");
@@ -27,7 +28,7 @@ Regions carried_regions(const Regions& regions, const Simplification& simplified
   }
   Regions empty;
   empty.vertices = vertices;
-  empty.energy_share = regions.energy_share;
+  empty.vertex_energy = std::move(vertex_energy);
   empty.notes = regions.notes;
   return with_added(empty, std::move(carried), triangles);
 }

@@ -324,6 +324,12 @@ Regions find_regions(const Components& components, const RegionOptions& options)
   return regions;
 }
 
+Regions covering(Regions regions, double coverage, const Positions& rest,
+                 const Triangles& triangles) {
+  cover(regions, coverage, triangles, surface_parts(rest, triangles));
+  return regions;
+}
+
 Regions strongest(const Regions& regions, int count, const Triangles& triangles) {
   if (count < 1) {
     throw std::invalid_argument("count is " + std::to_string(count) + "; at least 1 region");

@@ -108,6 +108,11 @@ Regions find_regions(const Components& components, const RegionOptions& options 
 /// count < 1.
 Regions strongest(const Regions& regions, int count, const Triangles& triangles);
 
+/// The first regions, as many as it takes until their union holds the share `coverage` of the
+/// motion energy, or all, with a note. \pre vertex_energy is known. `rest` N x 3.
+Regions covering(Regions regions, double coverage, const Positions& rest,
+                 const Triangles& triangles);
+
 /// How many of the first regions have no more than this share of the triangles in their union; 0
 /// where the first has more.
 int regions_within(const Regions& regions, double share, const Triangles& triangles);

@@ -29,8 +29,12 @@ struct PicturePair {
   PagePicture narrow;
 };
 
-PagePicture page_picture(const Image& image) {
-  return {"data:image/png;base64," + base64(png_of(image)), image.width, image.height};
+/// Compressed beside what is drawn next, unless there is one thread only.
+std::future<PagePicture> page_picture(Image image, int threads) {
+  return std::async(threads == 1 ? std::launch::deferred : std::launch::async, [image = std::move(
+                                                                                    image)] {
+    return PagePicture{"data:image/png;base64," + base64(png_of(image)), image.width, image.height};
+  });
 }
 
 std::string size_of(const PagePicture& picture) {
@@ -240,13 +244,15 @@ ViewerScene scene_of(const ReportStudy& study, const ReportView& view) {
   return scene;
 }
 
-std::string charts(const std::vector<Chart>& list) {
+std::string charts(const std::vector<Chart>& list, int threads) {
   // Large letters: on a phone the picture is drawn at less than half its size.
   constexpr ChartSize kSize{900, 700, 26};
-  std::string figures;
+  std::vector<std::future<PagePicture>> pictures;
   for (const Chart& chart : list) {
-    figures += figure(page_picture(draw(std::vector<Chart>{chart}, kSize)), chart.title);
+    pictures.push_back(page_picture(draw(std::vector<Chart>{chart}, kSize), threads));
   }
+  std::string figures;
+  for (std::size_t i = 0; i < list.size(); ++i) figures += figure(pictures[i].get(), list[i].title);
   return "<div class=\"charts\">\n" + figures + "</div>\n";
 }
 
@@ -270,17 +276,18 @@ struct SheetSize {
 /// Smaller where the pictures of a mesh with much detail would take more than `bytes`.
 template <typename SheetOf>
 PicturePair drawn(const SheetOf& sheet_of, SheetSize wide, SheetSize narrow, std::size_t bytes,
-                  const Progress& progress) {
+                  int threads, const Progress& progress) {
   const auto draw_one = [&](const SheetSize& size, const Progress& part) {
     Sheet sheet = sheet_of(size.columns);
     sheet.tile_height = size.tile_height;
     sheet.letters = size.letters;
-    return page_picture(draw(sheet, {.progress = part}));
+    return page_picture(draw(sheet, {.progress = part}), threads);
   };
   for (double from = 0;; from += (1 - from) / 2) {
     const Progress part = part_of(progress, from, from + (1 - from) / 2);
-    PicturePair pair{draw_one(wide, part_of(part, 0, 0.6)),
-                     draw_one(narrow, part_of(part, 0.6, 1))};
+    std::future<PagePicture> wide_picture = draw_one(wide, part_of(part, 0, 0.6));
+    std::future<PagePicture> narrow_picture = draw_one(narrow, part_of(part, 0.6, 1));
+    PicturePair pair{wide_picture.get(), narrow_picture.get()};
     const double share = static_cast<double>(bytes) /
                          static_cast<double>(pair.wide.address.size() + pair.narrow.address.size());
     if (share >= 1 || wide.tile_height == SheetSize::kSmallestTile) return pair;
@@ -293,7 +300,7 @@ std::string strip_section(const ReportStudy& study, const ReportView& view, std:
                           const Progress& progress) {
   const auto sheet = [&](int columns) { return report_strip(study, view, columns); };
   return section("Over time", "Frames at even distances, all at one scale.",
-                 figure(drawn(sheet, {7, 230, 15}, {3, 220, 20}, bytes, progress),
+                 figure(drawn(sheet, {7, 230, 15}, {3, 220, 20}, bytes, view.threads, progress),
                         "Film strip of the source, its regions and what became of it"));
 }
 
@@ -304,14 +311,14 @@ std::string gallery_section(const Components& components, const ReportView& view
     return component_gallery(components, shown, view, columns);
   };
   const bool has_all = static_cast<int>(shown.size()) == components.count();
-  return section(
-      "Components",
-      (has_all ? "Each component"
-               : "The " + std::to_string(shown.size()) + " strongest of " +
-                     std::to_string(components.count()) + " components") +
-          " at weight 1, the strongest first: its number, and its largest displacement, "
-          "where it is darkest.",
-      figure(drawn(sheet, {8, 210, 16}, {3, 220, 19}, bytes, progress), "Gallery of components"));
+  return section("Components",
+                 (has_all ? "Each component"
+                          : "The " + std::to_string(shown.size()) + " strongest of " +
+                                std::to_string(components.count()) + " components") +
+                     " at weight 1, the strongest first: its number, and its largest displacement, "
+                     "where it is darkest.",
+                 figure(drawn(sheet, {8, 210, 16}, {3, 220, 19}, bytes, view.threads, progress),
+                        "Gallery of components"));
 }
 
 /// What follows the player; strip and gallery leave something of `largest` bytes for it.
@@ -325,14 +332,14 @@ std::string sections_below(const PageText& page, const ReportStudy& study, const
                 "The paper's Table I. DE: mean squared distance of the target's triangles from "
                 "what the source's deformation makes of them (eq. 12). MPE: against the "
                 "transfer by all triangles; negative is worse.",
-                page.table() + charts(table_charts(*study.transfer, view.unit)));
+                page.table() + charts(table_charts(*study.transfer, view.unit), view.threads));
   }
   if (study.components) {
     sections += gallery_section(*study.components, view, each, part_of(progress, 0.5, 0.9));
   }
   const std::vector<Chart> weights = weight_charts(study);
   if (!weights.empty()) {
-    sections += section("Weights", "The strongest ones over time.", charts(weights));
+    sections += section("Weights", "The strongest ones over time.", charts(weights, view.threads));
   }
   return sections + page.run();
 }

@@ -67,10 +67,12 @@ class StandIns {
  public:
   using Parts = std::vector<DeformationGradients::Part>;
 
-  StandIns(const Positions& rest, const Triangles& triangles)
+  /// Neighbours share an edge of `joined`.
+  StandIns(const Positions& rest, const Triangles& triangles, const Triangles& joined)
       : rest_(rest),
         triangles_(triangles),
-        neighbors_(triangle_neighbors(static_cast<int>(rest.rows()), triangles)) {}
+        joined_(joined),
+        neighbors_(triangle_neighbors(static_cast<int>(rest.rows()), joined)) {}
 
   /// The parts of a sliver's gradient, ring by ring.
   Parts parts_of(int sliver) const {
@@ -113,7 +115,7 @@ class StandIns {
       double sum = 0;
       for (const int neighbor : neighbors_[triangle]) {
         if (seen.contains(neighbor)) continue;
-        edges.emplace_back(neighbor, shared_edge(rest_, triangles_, triangle, neighbor));
+        edges.emplace_back(neighbor, shared_edge(rest_, joined_, triangle, neighbor));
         sum += edges.back().second;
       }
       for (const auto& [neighbor, edge] : edges) {
@@ -126,6 +128,7 @@ class StandIns {
 
   const Positions& rest_;
   const Triangles& triangles_;
+  const Triangles& joined_;  // by which they are neighbours
   std::vector<std::vector<int>> neighbors_;
 };
 
@@ -145,15 +148,25 @@ std::vector<Correspondence::Part> partners_of(int triangle, const Correspondence
 }  // namespace
 
 DeformationGradients::DeformationGradients(const Positions& rest, const Triangles& triangles,
+                                           std::vector<int> selected, const Triangles& joined)
+    : DeformationGradients(rest, triangles, nullptr, std::move(selected), joined) {}
+
+DeformationGradients::DeformationGradients(const Positions& rest, const Triangles& triangles,
                                            std::vector<int> selected)
-    : DeformationGradients(rest, triangles, nullptr, std::move(selected)) {}
+    : DeformationGradients(rest, triangles, std::move(selected), triangles) {}
+
+DeformationGradients::DeformationGradients(const Positions& rest, const Triangles& triangles,
+                                           const Correspondence& pairs, std::vector<int> selected,
+                                           const Triangles& joined)
+    : DeformationGradients(rest, triangles, &pairs, std::move(selected), joined) {}
 
 DeformationGradients::DeformationGradients(const Positions& rest, const Triangles& triangles,
                                            const Correspondence& pairs, std::vector<int> selected)
-    : DeformationGradients(rest, triangles, &pairs, std::move(selected)) {}
+    : DeformationGradients(rest, triangles, pairs, std::move(selected), triangles) {}
 
 DeformationGradients::DeformationGradients(const Positions& rest, const Triangles& triangles,
-                                           const Correspondence* pairs, std::vector<int> selected)
+                                           const Correspondence* pairs, std::vector<int> selected,
+                                           const Triangles& joined)
     : triangles_(triangles),
       selected_(std::move(selected)),
       parts_(selected_.size()),
@@ -170,7 +183,7 @@ DeformationGradients::DeformationGradients(const Positions& rest, const Triangle
         continue;
       }
       replaced += weight * (1 - own);
-      if (!stand_ins) stand_ins.emplace(rest, triangles);
+      if (!stand_ins) stand_ins.emplace(rest, triangles, joined);
       for (const Part& part : stand_ins->parts_of(triangle)) {
         parts_[s].push_back({part.triangle, weight * part.share});
       }

@@ -42,11 +42,17 @@ double quality_of(const Eigen::Ref<const Positions>& positions, const Triangles&
 /// their weights, and the identity without one: it keeps its shape.
 class DeformationGradients {
  public:
-  /// `triangles` M x 3; `selected` (L) are rows of it. Throws std::invalid_argument for a row out
-  /// of range.
+  /// `triangles` M x 3; `selected` (L) are rows of it. `joined` (M x 3): the same triangles on
+  /// vertices that are one (Weld::welded()), by which neighbours are found. Throws
+  /// std::invalid_argument for a row out of range.
+  DeformationGradients(const Positions& rest, const Triangles& triangles, std::vector<int> selected,
+                       const Triangles& joined);
   DeformationGradients(const Positions& rest, const Triangles& triangles,
                        std::vector<int> selected);
-  /// `rest` and `triangles` of the source, `selected` are triangles of the target.
+  /// `rest`, `triangles` and `joined` of the source, `selected` are triangles of the target.
+  DeformationGradients(const Positions& rest, const Triangles& triangles,
+                       const Correspondence& pairs, std::vector<int> selected,
+                       const Triangles& joined);
   DeformationGradients(const Positions& rest, const Triangles& triangles,
                        const Correspondence& pairs, std::vector<int> selected);
 
@@ -74,7 +80,8 @@ class DeformationGradients {
 
  private:
   DeformationGradients(const Positions& rest, const Triangles& triangles,
-                       const Correspondence* pairs, std::vector<int> selected);
+                       const Correspondence* pairs, std::vector<int> selected,
+                       const Triangles& joined);
 
   Triangles triangles_;
   std::vector<int> selected_;

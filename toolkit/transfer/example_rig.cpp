@@ -12,6 +12,7 @@
 #include "toolkit/mesh/product_blocking.h"
 #include "toolkit/model/box_least_squares.h"
 #include "toolkit/transfer/plane_gradients.h"
+#include "toolkit/transfer/seams.h"
 
 namespace mimetra {
 
@@ -50,7 +51,7 @@ void check_weights(const RigExample& example, const Eigen::VectorXd& weights, in
 void check(const BlendshapeModel& transferred, const std::vector<RigExample>& examples,
            const Weld& weld, const ExampleRigOptions& options) {
   check_options(options);
-  weld.check(transferred.neutral());
+  weld.check(transferred.neutral(), 2 * kPartedShare * box_diagonal(transferred.neutral()));
   const int expressions = transferred.expressions().size();
   std::vector<bool> is_given(expressions, false);
   for (const RigExample& example : examples) {

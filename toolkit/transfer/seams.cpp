@@ -1,6 +1,7 @@
 #include "toolkit/transfer/seams.h"
 
 #include <algorithm>
+#include <limits>
 #include <map>
 #include <memory>
 #include <optional>
@@ -8,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "toolkit/mesh/diameter.h"
 #include "toolkit/mesh/edge_graph.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/triangle_quality.h"
@@ -55,6 +57,10 @@ std::vector<VertexIndex> carried_at_place(const Weld& at_target, const Pairing& 
 /// neighbours need not be neighbours.
 constexpr double kNearEdges = 2;
 
+/// Vertices of a source of other faces, at one place at rest, are lips once they are farther apart
+/// than this share of its diameter: more than single precision's rounding.
+constexpr double kRoundingShare = 1e-6;
+
 /// Target vertices at one place by what carries them. Vertices of the source at one place that part
 /// later, as lips do, are not neighbours.
 class PlacesOverPairs {
@@ -63,7 +69,7 @@ class PlacesOverPairs {
                   const Triangles& target_triangles, const Pairing& pairing,
                   const std::vector<VertexIndex>& moves_as, const BlockOptions& options)
       : at_source_(staying_together(source, Weld::exact(source.rest()),
-                                    kPartedShare * source.diameter(), options)),
+                                    kRoundingShare * source.diameter(), options)),
         source_(source.rest(), at_source_.welded(source.triangles())),
         target_(target_rest, target_triangles),
         pairing_(pairing),
@@ -110,6 +116,91 @@ class PlacesOverPairs {
   const std::vector<VertexIndex>& moves_as_;
 };
 
+/// Of vertices at one place, for each the lowest that it is near to.
+template <typename Near>
+std::vector<VertexIndex> lowest_near(const std::vector<VertexIndex>& place, const Near& near) {
+  std::vector<VertexIndex> lowest, firsts;
+  for (const VertexIndex v : place) {
+    auto first = std::ranges::find_if(firsts, [&](VertexIndex f) { return near(f, v); });
+    if (first == firsts.end()) first = firsts.insert(first, v);
+    lowest.push_back(*first);
+  }
+  return lowest;
+}
+
+/// Vertices that are joined, by and by.
+class Joined {
+ public:
+  explicit Joined(std::vector<bool> on)
+      : on_(std::move(on)), weld_(Weld::none(static_cast<int>(on_.size()))) {}
+
+  /// Those of one place (N, -1 for none), each with the lowest that `lowest_of` tells.
+  template <typename LowestOf>
+  void add(const std::vector<VertexIndex>& place_of, const LowestOf& lowest_of) {
+    std::map<VertexIndex, std::vector<VertexIndex>> places;
+    for (VertexIndex v = 0; v < std::ssize(place_of); ++v) {
+      if (on_[v] && place_of[v] >= 0) places[place_of[v]].push_back(v);
+    }
+    for (const auto& [name, place] : places) {
+      if (place.size() == 1) continue;
+      const std::vector<VertexIndex> lowest = lowest_of(place);
+      for (std::size_t i = 0; i < place.size(); ++i) join(lowest[i], place[i]);
+    }
+  }
+
+  Weld weld() && {
+    for (VertexIndex v = 0; v < std::ssize(on_); ++v) {
+      weld_.representative[v] = root(v);
+      if (weld_.representative[v] != v) ++weld_.count;
+    }
+    return std::move(weld_);
+  }
+
+ private:
+  VertexIndex root(VertexIndex v) const {
+    while (weld_.representative[v] != v) v = weld_.representative[v];
+    return v;
+  }
+
+  void join(VertexIndex a, VertexIndex b) {
+    const VertexIndex one = root(a), other = root(b);
+    weld_.representative[std::max(one, other)] = std::min(one, other);
+  }
+
+  std::vector<bool> on_;
+  Weld weld_;
+};
+
+/// Vertices of a target that are at one place of it and near to each other in the source, or the
+/// other way round. `place_at_source` (N x 3, NaN without): where what carries each vertex is at
+/// rest.
+Weld near_in_both(const Positions& place_at_source, double near_at_source,
+                  const Positions& target_rest, double near_at_target, const Weld& at_target,
+                  std::vector<bool> on) {
+  const auto are_near = [](const Positions& places, double near) {
+    return [&places, near](VertexIndex a, VertexIndex b) {
+      const bool unknown = places.row(a).hasNaN() && places.row(b).hasNaN();
+      return unknown || (places.row(a) - places.row(b)).norm() <= near;
+    };
+  };
+  std::vector<VertexIndex> known;
+  for (VertexIndex v = 0; v < place_at_source.rows(); ++v) {
+    if (!place_at_source.row(v).hasNaN()) known.push_back(v);
+  }
+  const Weld of_known = Weld::exact(place_at_source(known, Eigen::all));
+  std::vector<VertexIndex> at_source(on.size(), -1);
+  for (std::size_t i = 0; i < known.size(); ++i) {
+    at_source[known[i]] = known[of_known.representative[i]];
+  }
+  const auto by_source = are_near(place_at_source, near_at_source);
+  const auto by_target = are_near(target_rest, near_at_target);
+  Joined joined(std::move(on));
+  joined.add(at_target.representative,
+             [&](const auto& place) { return lowest_near(place, by_source); });
+  joined.add(at_source, [&](const auto& place) { return lowest_near(place, by_target); });
+  return std::move(joined).weld();
+}
+
 /// A target's rest pose whose vertices are moved as what carries them.
 class CarriedFrames : public FrameSource {
  public:
@@ -154,55 +245,45 @@ Weld closed_seams(const FrameSource& source, const Positions& target_rest,
     throw MismatchError("the source has " + std::to_string(source.vertices()) +
                         " vertices, the target " + std::to_string(target_rest.rows()));
   }
-  const Weld at_source = Weld::exact(source.rest()), at_target = Weld::exact(target_rest);
+  const Weld at_target = Weld::exact(target_rest);
   const std::vector<bool> on = on_surface(target_rest, source.triangles(), at_target);
-  Weld together = Weld::none(source.vertices());
-  std::map<std::pair<VertexIndex, VertexIndex>, VertexIndex> lowest;
-  for (VertexIndex v = 0; v < source.vertices(); ++v) {
-    if (!on[v]) continue;
-    const std::pair places(at_source.representative[v], at_target.representative[v]);
-    together.representative[v] = lowest.try_emplace(places, v).first->second;
-    if (together.representative[v] != v) ++together.count;
-  }
-  return staying_together(source, together, kPartedShare * source.diameter(), options);
+  const double parted = kPartedShare * source.diameter();
+  const Weld near =
+      near_in_both(source.rest(), parted, target_rest,
+                   kPartedShare * diameter(target_rest, source.triangles()), at_target, on);
+  return staying_together(source, near, parted, options);
 }
 
 Weld closed_seams(const FrameSource& source, const Positions& target_rest,
                   const Triangles& target_triangles, const Pairing& pairing,
                   const BlockOptions& options) {
   check_sizes(source.rest(), target_rest, &pairing);
-  const Weld at_source = Weld::exact(source.rest()), at_target = Weld::exact(target_rest);
+  const Weld at_target = Weld::exact(target_rest);
   const std::vector<bool> on = on_surface(target_rest, target_triangles, at_target);
   const std::vector<VertexIndex> moves_as = carried_at_place(at_target, pairing);
-  const bool only_numbers = pairing.is_one_to_one();
-  Weld together = Weld::none(pairing.target_vertices());
-  std::map<std::pair<VertexIndex, VertexIndex>, std::vector<VertexIndex>> places;
-  for (VertexIndex v = 0; v < pairing.target_vertices(); ++v) {
-    if (!on[v]) continue;
-    const auto carriers = pairing.carriers(moves_as[v]);
-    const bool at_one = only_numbers && !carriers.empty();
-    places[{at_one ? at_source.representative[carriers.front().vertex] : -1,
-            at_target.representative[v]}]
-        .push_back(v);
+  if (pairing.is_one_to_one()) {
+    const double parted = kPartedShare * source.diameter();
+    Positions place_at_source(pairing.target_vertices(), 3);
+    place_at_source.setConstant(std::numeric_limits<double>::quiet_NaN());
+    for (VertexIndex v = 0; v < pairing.target_vertices(); ++v) {
+      const auto carriers = pairing.carriers(moves_as[v]);
+      if (!carriers.empty()) place_at_source.row(v) = source.rest().row(carriers.front().vertex);
+    }
+    const Weld near =
+        near_in_both(place_at_source, parted, target_rest,
+                     kPartedShare * diameter(target_rest, target_triangles), at_target, on);
+    return staying_together(CarriedFrames(source, target_rest, pairing, moves_as), near, parted,
+                            options);
   }
   std::optional<PlacesOverPairs> over_pairs;
-  for (const auto& [key, place] : places) {
-    if (place.size() == 1) continue;
-    std::vector<VertexIndex> lowest(place.size(), place.front());
-    if (!only_numbers) {
-      if (!over_pairs) {
-        over_pairs.emplace(source, target_rest, target_triangles, pairing, moves_as, options);
-      }
-      lowest = over_pairs->lowest_of(place);
+  Joined joined(on);
+  joined.add(at_target.representative, [&](const auto& place) {
+    if (!over_pairs) {
+      over_pairs.emplace(source, target_rest, target_triangles, pairing, moves_as, options);
     }
-    for (std::size_t i = 0; i < place.size(); ++i) {
-      together.representative[place[i]] = lowest[i];
-      if (lowest[i] != place[i]) ++together.count;
-    }
-  }
-  if (!only_numbers) return together;
-  return staying_together(CarriedFrames(source, target_rest, pairing, moves_as), together,
-                          kPartedShare * source.diameter(), options);
+    return over_pairs->lowest_of(place);
+  });
+  return std::move(joined).weld();
 }
 
 }  // namespace mimetra

@@ -5,15 +5,17 @@
 
 namespace mimetra {
 
-/// Vertices of a source farther apart than this share of its diameter have parted: well above
-/// the rounding of single precision, well below what one sees.
-constexpr double kPartedShare = 1e-6;
+/// Vertices of a source farther apart than this share of its diameter have parted: above the noise
+/// of a tracked scan (on one captured face, of a ten-thousandth, two sides of a seam were half of
+/// it apart at most), well below an open mouth.
+constexpr double kPartedShare = 1e-3;
 
 /// Which vertices are one point of a surface that a source and a target of its connectivity share:
-/// the two sides of a UV seam, but not lips that open. They are at the same place in both rest
-/// poses, exactly, and in every frame of the source within kPartedShare of the lowest of them.
-/// Vertices that are at one place and no longer together later are split as by staying_together().
-/// Those of no triangle, or at a place where no triangle of the target has area, are left alone.
+/// the two sides of a UV seam, but not lips that open. They are at the same place in one of the
+/// rest poses, exactly, within kPartedShare of the other's diameter in that one, and of the lowest
+/// of them in every frame of the source. Vertices that are at one place and no longer together
+/// later are split as by staying_together(). Those of no triangle, or at a place where no triangle
+/// of the target has area, are left alone.
 ///
 /// `target_rest` N x 3. Frames are read in blocks, and only where vertices coincide at rest. Throws
 /// MismatchError for another number of vertices, std::invalid_argument that names a vertex of a

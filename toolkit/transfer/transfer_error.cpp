@@ -8,6 +8,7 @@
 #include <Eigen/Geometry>
 
 #include "toolkit/mesh/errors.h"
+#include "toolkit/mesh/triangle_quality.h"
 #include "toolkit/regions/regions.h"
 #include "toolkit/transfer/border_crease.h"
 #include "toolkit/transfer/deformation_gradients.h"
@@ -172,10 +173,14 @@ class FrameErrors {
         triangles_(result.triangles()),
         counted_(with_partners(all_triangles(triangles_), options.pairing.get())),
         rest_(result.rest()),
+        has_side_(triangles_.rows()),
         shares_(shares_of(result, options)),
         outside_(outside_of(selected, result, options)),
         crease_(crease_of(result, counted_, options)) {
     if (shares_.size() > 0) largest_share_ = shares_.maxCoeff();
+    for (int t = 0; t < triangles_.rows(); ++t) {
+      has_side_[t] = quality_of(rest_, triangles_, t) >= kSliverQuality;
+    }
   }
 
   /// Those of some triangles of which all corners take all of the motion.
@@ -205,7 +210,7 @@ class FrameErrors {
         measured[kStill] += sum_of_squares(asked);
       }
       wanted[t] += neutral;
-      if (is_flipped(neutral + asked, found)) ++measured[kFlipped];
+      if (has_side_[t] && is_flipped(neutral + asked, found)) ++measured[kFlipped];
     }
     const BorderCrease::Excess excess = crease_(wanted, result);
     measured[kCrease] = excess.rms;
@@ -232,7 +237,8 @@ class FrameErrors {
   const Triangles& triangles_;
   std::vector<int> counted_;
   const Positions& rest_;
-  Eigen::VectorXd shares_;  // that triangles take; none where all take all
+  std::vector<bool> has_side_;  // whether a triangle is no sliver (M)
+  Eigen::VectorXd shares_;      // that triangles take; none where all take all
   double largest_share_ = 1;
   std::vector<VertexIndex> outside_;
   BorderCrease crease_;

@@ -38,7 +38,8 @@ struct TransferError {
   double crease = 0;
   double largest_crease = 0;
   /// Triangles, over all frames, that turned by more than 90 degrees against where the source's
-  /// gradient, or the share of it that is asked for, wants them.
+  /// gradient, or the share of it that is asked for, wants them; slivers of the target (below
+  /// kSliverQuality) do not count.
   int flipped = 0;
 };
 

@@ -17,6 +17,7 @@
 #include "toolkit/transfer/following_parts.h"
 #include "toolkit/transfer/gradient_system.h"
 #include "toolkit/transfer/pairs.h"
+#include "toolkit/transfer/seams.h"
 #include "toolkit/transfer/smooth_edges.h"
 #include "toolkit/transfer/soft_border.h"
 #include "toolkit/transfer/vertex_pull.h"
@@ -68,8 +69,10 @@ void check(const Positions& source_rest, const Positions& target_rest, const Tri
   }
   check_options(options, target_rest.rows());
   if (options.weld.representative.empty()) return;
-  if (!options.pairing) options.weld.check(source_rest);
-  options.weld.check(target_rest);
+  // A box is as long across as a mesh at least; two may be one by way of a third.
+  constexpr double kApart = 2 * kPartedShare;
+  if (!options.pairing) options.weld.check(source_rest, kApart * box_diagonal(source_rest));
+  options.weld.check(target_rest, kApart * box_diagonal(target_rest));
 }
 
 /// With an entry of the weld for each vertex, as the anchor the lowest of those that are one, and
@@ -117,8 +120,8 @@ std::vector<bool> mask_of(const std::vector<int>& selected, Eigen::Index triangl
 /// one N x N matrix for x, y and z. With Q_i - I = (U~_i - U_i) U_i^-1 a frame needs only the
 /// constant vectors U_i^-1 g_iv. Only differences occur: where the mesh lies does not matter.
 ///
-/// Vertices that are one share d: their rows and columns add up. At rest the corners of a triangle
-/// are where those of the welded one are, so that g_iv and U_i are the same for both.
+/// Vertices that are one share d: their rows and columns add up. Where rounding or noise holds them
+/// apart at rest they stay so.
 struct VertexTransfer::State {
   State(const Positions& source, const Positions& target, const Triangles& triangles,
         const std::vector<int>& selected, const VertexTransferOptions& options);
@@ -172,11 +175,12 @@ VertexTransfer::State::State(const Positions& source, const Positions& target,
   if (pairing) following.emplace(target_rest, triangles, options.weld, *pairing);
   if (options.weights.size() > 0) border.emplace(target_rest, triangles, options.weights);
   const std::vector<int> solved = uncollapsed(selected);
-  // Welded only to find neighbours across seams: at rest both are the same.
-  const Triangles source_faces = welded_source(welded, options.weld, pairing);
+  // To find neighbours across seams.
+  const Triangles joined = welded_source(welded, options.weld, pairing);
   const DeformationGradients gradients =
-      pairing ? DeformationGradients(source_rest, source_faces, pairing->triangles(), solved)
-              : DeformationGradients(source_rest, source_faces, solved);
+      pairing ? DeformationGradients(source_rest, pairing->source_triangles(), pairing->triangles(),
+                                     solved, joined)
+              : DeformationGradients(source_rest, triangles, solved, joined);
   in_l = mask_of(selected, triangles.rows());
   degenerate_source = gradients.replaced();
   weigh();

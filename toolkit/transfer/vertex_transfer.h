@@ -107,7 +107,8 @@ struct VertexTransferOptions {
 /// triangles that share one vertex are one piece), and a translation afterwards.
 ///
 /// Vertices that are one (VertexTransferOptions::weld) are one unknown of the system: the result is
-/// that of the mesh without duplicates, though each triangle has its own corners' gradient.
+/// that of the mesh without duplicates, though each triangle has its own corners' gradient. Those
+/// that rounding or noise holds apart at rest stay as far apart.
 ///
 /// A triangle without partner wants to keep its shape, with the weight of those outside L, so that
 /// a mouth's inside does not hold the lips; connected parts without any take no part in the solve
@@ -125,7 +126,8 @@ class VertexTransfer {
   /// with weights those that have a corner of weight above 0.
   /// Throws MismatchError where vertex counts differ, std::invalid_argument for options out of
   /// range, an explicit anchor where vertices are fixed, an index out of range, vertices that are
-  /// one but lie apart in a rest pose, or weights together with Outside::identity.
+  /// one but lie apart in a rest pose (by more than 2 kPartedShare of its box), or weights together
+  /// with Outside::identity.
   VertexTransfer(const Positions& source_rest, const Positions& target_rest,
                  const Triangles& triangles, const std::vector<int>& selected,
                  const VertexTransferOptions& = {});
