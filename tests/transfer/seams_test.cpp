@@ -3,6 +3,7 @@
 #include <random>
 
 #include <gmock/gmock.h>
+#include <Eigen/Geometry>
 
 #include "tests/streams.h"
 #include "tests/transfer/seamed_face.h"
@@ -116,6 +117,34 @@ TEST_F(SeamTest, WeldsWhatIsAtOnePlaceInOneRestPoseAndNearInTheOther) {
   for (const int v : {84, 86}) EXPECT_EQ(weld.representative[v], face_.original[v]) << v;
   for (const int v : {85, 87, 88}) EXPECT_EQ(weld.representative[v], v) << v;
   EXPECT_EQ(weld.count, 7);
+}
+
+TEST_F(SeamTest, FollowsTheSourcesOwnCornersWhereNoiseHoldsThemApart) {
+  // Turned and made larger as a whole, triangles have that as their gradient wherever their corners
+  // are.
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> noise(-0.2, 0.2);
+  Positions rest = take_.rest();
+  for (double& coordinate : rest.reshaped()) {
+    coordinate += noise(random) * kPartedShare * take_.diameter();
+  }
+  const Eigen::Matrix3d turn =
+      1.2 * Eigen::AngleAxisd(0.4, Eigen::Vector3d(1, 2, 3).normalized()).toRotationMatrix();
+  const Positions pose = rest * turn.transpose();
+  Frames poses = take_.positions();
+  poses.rowwise() = Eigen::RowVectorXd(pose.reshaped<Eigen::RowMajor>().transpose());
+  const MeshSequence take = take_.with_frames(poses).with_rest(rest);
+  VertexTransferOptions options;
+  options.weld = closed_seams(take, target_.positions);
+  EXPECT_GE(options.weld.count, 10);
+  const Frames found =
+      VertexTransfer(rest, target_.positions, face_.triangles, all_, options).frames(take);
+  const Positions expected = target_.positions * turn.transpose();
+  const Eigen::RowVector3d moved = found.row(0).head<3>() - expected.row(0);
+  for (Eigen::Index v = 0; v < expected.rows(); ++v) {
+    const Eigen::RowVector3d off = found.row(0).segment<3>(3 * v) - moved - expected.row(v);
+    EXPECT_LT(off.norm(), 1e-9) << v;
+  }
 }
 
 TEST_F(SeamTest, StaysAsFarOpenAsTheTargetIs) {

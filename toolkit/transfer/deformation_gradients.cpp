@@ -148,25 +148,17 @@ std::vector<Correspondence::Part> partners_of(int triangle, const Correspondence
 }  // namespace
 
 DeformationGradients::DeformationGradients(const Positions& rest, const Triangles& triangles,
-                                           std::vector<int> selected, const Triangles& joined)
+                                           std::vector<int> selected, const Triangles* joined)
     : DeformationGradients(rest, triangles, nullptr, std::move(selected), joined) {}
 
 DeformationGradients::DeformationGradients(const Positions& rest, const Triangles& triangles,
-                                           std::vector<int> selected)
-    : DeformationGradients(rest, triangles, std::move(selected), triangles) {}
-
-DeformationGradients::DeformationGradients(const Positions& rest, const Triangles& triangles,
                                            const Correspondence& pairs, std::vector<int> selected,
-                                           const Triangles& joined)
+                                           const Triangles* joined)
     : DeformationGradients(rest, triangles, &pairs, std::move(selected), joined) {}
 
 DeformationGradients::DeformationGradients(const Positions& rest, const Triangles& triangles,
-                                           const Correspondence& pairs, std::vector<int> selected)
-    : DeformationGradients(rest, triangles, pairs, std::move(selected), triangles) {}
-
-DeformationGradients::DeformationGradients(const Positions& rest, const Triangles& triangles,
                                            const Correspondence* pairs, std::vector<int> selected,
-                                           const Triangles& joined)
+                                           const Triangles* joined)
     : triangles_(triangles),
       selected_(std::move(selected)),
       parts_(selected_.size()),
@@ -183,7 +175,7 @@ DeformationGradients::DeformationGradients(const Positions& rest, const Triangle
         continue;
       }
       replaced += weight * (1 - own);
-      if (!stand_ins) stand_ins.emplace(rest, triangles, joined);
+      if (!stand_ins) stand_ins.emplace(rest, triangles, joined ? *joined : triangles);
       for (const Part& part : stand_ins->parts_of(triangle)) {
         parts_[s].push_back({part.triangle, weight * part.share});
       }

@@ -43,18 +43,14 @@ double quality_of(const Eigen::Ref<const Positions>& positions, const Triangles&
 class DeformationGradients {
  public:
   /// `triangles` M x 3; `selected` (L) are rows of it. `joined` (M x 3): the same triangles on
-  /// vertices that are one (Weld::welded()), by which neighbours are found. Throws
-  /// std::invalid_argument for a row out of range.
+  /// vertices that are one (Weld::welded()), by which neighbours are found; null where none are.
+  /// Throws std::invalid_argument for a row out of range.
   DeformationGradients(const Positions& rest, const Triangles& triangles, std::vector<int> selected,
-                       const Triangles& joined);
-  DeformationGradients(const Positions& rest, const Triangles& triangles,
-                       std::vector<int> selected);
+                       const Triangles* joined = nullptr);
   /// `rest`, `triangles` and `joined` of the source, `selected` are triangles of the target.
   DeformationGradients(const Positions& rest, const Triangles& triangles,
                        const Correspondence& pairs, std::vector<int> selected,
-                       const Triangles& joined);
-  DeformationGradients(const Positions& rest, const Triangles& triangles,
-                       const Correspondence& pairs, std::vector<int> selected);
+                       const Triangles* joined = nullptr);
 
   /// Q_i of each selected triangle, 3 L x 3 (three rows a triangle), for one frame (N x 3).
   Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor> operator()(
@@ -81,7 +77,7 @@ class DeformationGradients {
  private:
   DeformationGradients(const Positions& rest, const Triangles& triangles,
                        const Correspondence* pairs, std::vector<int> selected,
-                       const Triangles& joined);
+                       const Triangles* joined);
 
   Triangles triangles_;
   std::vector<int> selected_;

@@ -179,8 +179,8 @@ VertexTransfer::State::State(const Positions& source, const Positions& target,
   const Triangles joined = welded_source(welded, options.weld, pairing);
   const DeformationGradients gradients =
       pairing ? DeformationGradients(source_rest, pairing->source_triangles(), pairing->triangles(),
-                                     solved, joined)
-              : DeformationGradients(source_rest, triangles, solved, joined);
+                                     solved, &joined)
+              : DeformationGradients(source_rest, triangles, solved, &joined);
   in_l = mask_of(selected, triangles.rows());
   degenerate_source = gradients.replaced();
   weigh();
