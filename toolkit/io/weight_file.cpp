@@ -278,7 +278,7 @@ void note_odd_weights(WeightTrack& track, const std::vector<std::string>& expres
   std::vector<int> driving = match_weights(track, expressions).column;
   std::erase(driving, -1);
   std::ranges::sort(driving);
-  driving.erase(std::ranges::unique(driving).begin(), driving.end());
+  driving.erase(std::unique(driving.begin(), driving.end()), driving.end());
   if (!driving.empty() && track.weights.rows() > 0) note_sizes(track, driving);
   note_odd_times(track);
 }
