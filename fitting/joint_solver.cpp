@@ -238,8 +238,11 @@ FittedClip fit_jointly(std::vector<FittedFrame> frames, const FitOptions& option
   const double count = double(frames.size());
   if (known.all()) {
     const ClipNoise noise{.repeated = *known.repeated};
-    return descended(std::move(frames), options, prior_of(known, noise, count), options.iterations)
-        .clip;
+    FittedClip clip =
+        descended(std::move(frames), options, prior_of(known, noise, count), options.iterations)
+            .clip;
+    clip.noise = noise;
+    return clip;
   }
   ClipNoise noise = rough_noise(frames, known);
   set_noise(frames, noise, known);

@@ -68,6 +68,8 @@ TEST(CameraModel, OfTheJointSolverEndsAtAMinimumOfItsEnergy) {
       cameras.push_back(fits[f].camera);
       cameras.back().leftCols<3>() -= fits[f].camera.col(3) * fits[f].depth.head<3>();
     }
+    EXPECT_EQ(fits.front().sigma, 1.5);
+    EXPECT_EQ(fits.front().repeated, 0.3);
     const LiteralEnergy energy{clip, 1.5, 0.3, 0.02, focal_length};
     const Eigen::VectorXd& alpha = fits.front().alpha;
     const double least = energy(cameras, alpha, beta);
@@ -99,7 +101,7 @@ TEST(CameraModel, OfTheJointSolverEndsAtAMinimumOfItsEnergy) {
 }
 
 TEST(CameraModel, OfAPerspectiveCameraFindsTheFaceThatAnOrthographicOneBends) {
-  const MorphableModel head = samples::parametric_head();
+  const MorphableModel& head = test::built_in_head();
   std::mt19937 random(1);
   test::SyntheticClip clip{head, test::vertices_of_landmarks(), {}, {}, {}, {}, {}};
   constexpr int kFrames = 40;
