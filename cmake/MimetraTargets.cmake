@@ -91,14 +91,19 @@ function(documented_lines document number variable)
   set(${variable} "${lines}" PARENT_SCOPE)
 endfunction()
 
-# mimetra_test(NAME SOURCES ... USES ... [PROCESSES ...]): one GoogleTest program, whose tests are
-# dealt out to so many processes, each of which is one of ctest's: with sanitizers a program takes
-# longer to start than most tests do.
+# mimetra_test(NAME SOURCES ... USES ... [PROCESSES ...] [OPTIMIZED]): one GoogleTest program, whose
+# tests are dealt out to so many processes, each of which is one of ctest's: with sanitizers a program
+# takes longer to start than most tests do.
 function(mimetra_test name)
-  cmake_parse_arguments(ARG "" "PROCESSES" "SOURCES;USES" ${ARGN})
+  cmake_parse_arguments(ARG "OPTIMIZED" "PROCESSES" "SOURCES;USES" ${ARGN})
   add_executable(${name}_test ${ARG_SOURCES})
   target_link_libraries(${name}_test PRIVATE ${ARG_USES} mimetra_flags mimetra_test_folders
                                              GTest::gmock GTest::gtest_main)
+  # Most tests take longer to compile than to run. The linker takes templates of Eigen from the test's
+  # files, though, also for the libraries: tests that compute much are OPTIMIZED.
+  if(MIMETRA_SANITIZE AND NOT ARG_OPTIMIZED)
+    target_compile_options(${name}_test PRIVATE -O0)
+  endif()
   if(NOT ARG_PROCESSES)
     set(ARG_PROCESSES 4)
   endif()
