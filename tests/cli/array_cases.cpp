@@ -49,7 +49,7 @@ std::vector<BadInput> array_cases() {
   const auto add = [&all](const std::string& kind, std::function<void(const fs::path&)> make,
                           int code, std::vector<std::string> says) {
     says.push_back(code == 0 ? "frames" : "a.npy");
-    all.push_back({kind, "npy", std::move(make), "info a.npy --json", code, std::move(says)});
+    add_case(all, kind, "npy", std::move(make), "info a.npy --json", code, std::move(says));
   };
   const std::string good = header("<f8", "(2, 4, 3)");
   add("missing", {}, 3, {"no such file"});
@@ -77,18 +77,10 @@ std::vector<BadInput> array_cases() {
       {"4 vertices, expected 5", "a.topology.ply"});
   RawMesh bare = square();
   bare.faces.clear();
-  all.push_back({"topology_without_faces",
-                 "npy",
-                 array(good + values(2), bare),
-                 "info a.npy",
-                 3,
-                 {"a.topology.ply", "has no faces"}});
-  all.push_back({"missing_topology",
-                 "npy",
-                 array(good + values(2)),
-                 "info a.npy --topology no.obj",
-                 3,
-                 {"no.obj", "no such file"}});
+  add_case(all, "topology_without_faces", "npy", array(good + values(2), bare), "info a.npy", 3,
+           {"a.topology.ply", "has no faces"});
+  add_case(all, "missing_topology", "npy", array(good + values(2)), "info a.npy --topology no.obj",
+           3, {"no.obj", "no such file"});
   return all;
 }
 

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "tests/cli/command_fixture.h"
@@ -23,6 +24,14 @@ struct BadInput {
   std::vector<std::string> says;
   std::string prefix = "";  ///< the shell's words before the command: limits of the system
 };
+
+/// Adds a case of these members.
+inline void add_case(std::vector<BadInput>& cases, std::string kind, std::string subject,
+                     std::function<void(const fs::path&)> make, std::string arguments, int code,
+                     std::vector<std::string> says, std::string prefix = "") {
+  cases.push_back({std::move(kind), std::move(subject), std::move(make), std::move(arguments), code,
+                   std::move(says), std::move(prefix)});
+}
 
 /// The cases, by what they are about. A folder that they work in holds a model `head` of 225
 /// vertices with the expressions left, right and top, and `take.csv`, 12 frames of its weights.

@@ -4,7 +4,7 @@
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 
-#include "tests/cli/command_fixture.h"
+#include "tests/cli/run_here.h"
 #include "toolkit/io/array_file.h"
 #include "toolkit/io/mesh_file.h"
 #include "toolkit/io/weight_file.h"
@@ -16,7 +16,7 @@ using nlohmann::json;
 using testing::HasSubstr;
 using testing::Not;
 
-class Command : public test::CommandTest {};
+class Command : public test::QuickCommandTest {};
 
 TEST_F(Command, HelpListsTheCommandsOnStdout) {
   const auto result = run("--help");
@@ -54,7 +54,9 @@ TEST_F(Command, HelpOfEachFitsAScreenAndNamesAllOptionsThatItsLongHelpExplains) 
   ASSERT_GT(table.size(), 20u);
   for (const json& operation : table) {
     const std::string name = operation.at("name");
-    const auto brief = run(name + " --help"), all = run(name + " --help all");
+    const std::string asked = name + " --help all";
+    const auto brief = run(name + " --help");
+    const auto all = test::is_linked_here(name) ? test::run_here(folder_, asked) : run(asked);
     EXPECT_LE(std::count(brief.out.begin(), brief.out.end(), '\n'), 50) << name;
     std::istringstream lines(brief.out);
     for (std::string line; std::getline(lines, line);) {
@@ -123,16 +125,12 @@ TEST_F(Command, FramesReadsOnlyThoseOfALargeArray) {
   EXPECT_EQ(read_npy_frames(folder_ / "part.npy"), Frames::Zero(10, 30000));
 }
 
-TEST_F(Command, DryRunSaysWhatIsReadIntoMemoryAsAWhole) {
-  const auto plan_of = [this](const std::string& arguments) {
-    return json::parse(run(arguments + " --dry-run --json").out).at("inputs").at(0);
-  };
-  EXPECT_EQ(plan_of("convert head --weights take.csv -o a.npy").at("in_memory"), false);
-  EXPECT_EQ(plan_of("geodesic head --weights take.csv --source 3 -o d.vtp").at("in_memory"), true);
-}
-
 TEST_F(Command, ConvertsThroughEveryFormatOfOneFile) {
   ASSERT_EQ(run("convert head --weights take.csv -o take.npy").code, 0);
+  EXPECT_THAT(listing(), testing::IsSupersetOf({"take.topology.ply", "take.rest.ply"}));
+  const json info = json::parse(run("info take.npy --json").out);
+  EXPECT_EQ(info.at("frames"), 12);
+  EXPECT_EQ(info.at("rest_known"), true);
   const Frames frames = read_npy_frames(folder_ / "take.npy");
   std::string from = "take.npy";
   for (const std::string to : {"a.npz", "b.pc2", "c.mdd", "d.npy"}) {
@@ -143,15 +141,6 @@ TEST_F(Command, ConvertsThroughEveryFormatOfOneFile) {
   EXPECT_EQ(read_npy_frames(folder_ / "d.npy"), frames.cast<float>().cast<double>());
   EXPECT_TRUE(listing().contains("b.topology.ply"));
   EXPECT_FALSE(listing().contains("a.topology.ply"));
-}
-
-TEST_F(Command, ConvertToNpyKeepsTopologyAndRestBeside) {
-  ASSERT_EQ(run("convert head --weights take.csv -o take.npy").code, 0);
-  EXPECT_TRUE(listing().contains("take.topology.ply"));
-  EXPECT_TRUE(listing().contains("take.rest.ply"));
-  const json info = json::parse(run("info take.npy --json").out);
-  EXPECT_EQ(info.at("frames"), 12);
-  EXPECT_EQ(info.at("rest_known"), true);
 }
 
 TEST_F(Command, DecomposeWritesComponentsThatRegionsReads) {
@@ -256,19 +245,12 @@ TEST_F(Command, EvaluateMeasuresWeightsOfEachRegionBesideTheWholeFaces) {
   EXPECT_LE(rows[0].at("de_all").get<double>(), rows[1].at("de_all").get<double>() * (1 + 1e-12));
 }
 
-TEST_F(Command, TransferWithSeveralTargetsGivesEachAFolder) {
-  const auto result =
-      run("transfer head --weights take.csv head@wide=1 head@wide=2 -k 3 -o out --json");
-  ASSERT_EQ(result.code, 0) << result.err;
-  EXPECT_THAT(listing("out"), testing::IsSupersetOf({"head@wide=1", "head@wide=2"}));
-  EXPECT_TRUE(listing("out/head@wide=1").contains("frame_0011.ply"));
-}
-
 TEST_F(Command, TransferTakesARegionSetFromAFile) {
   ASSERT_EQ(run("regions head --weights take.csv -k 2 -o r.json").code, 0);
   ASSERT_EQ(run("regions head --weights take.csv -k 2 -o r.vtp").code, 0);
-  ASSERT_EQ(run("transfer head --weights take.csv head@wide=1 --regions r.json -o a.npy").code, 0);
-  const auto result = run("transfer head --weights take.csv head@wide=1 --regions r.vtp -o b.npy");
+  const std::string transfer = "transfer head --weights take.csv head@wide=1 --regions ";
+  ASSERT_EQ(CommandTest::run(transfer + "r.json -o a.npy").code, 0);
+  const auto result = CommandTest::run(transfer + "r.vtp -o b.npy");
   ASSERT_EQ(result.code, 0) << result.err;
   EXPECT_EQ(text_of(folder_ / "a.npy"), text_of(folder_ / "b.npy"));
 }
@@ -397,12 +379,6 @@ TEST_F(Command, SaysWhereAMotionIsGivenBackOrTakenOutTwice) {
     ASSERT_EQ(result.code, 0) << result.err;
     EXPECT_EQ(result.err.find(still) != std::string::npos, twice) << name << '\n' << result.err;
   }
-}
-
-TEST_F(Command, GeodesicWritesDistanceAndSupport) {
-  const auto result = run("geodesic head --source 112 -o d.vtp --json");
-  ASSERT_EQ(result.code, 0) << result.err;
-  EXPECT_EQ(json::parse(result.out).at("reached"), 15 * 15);
 }
 
 TEST_F(Command, OptionsCanComeFromAFile) {

@@ -39,9 +39,9 @@ std::vector<BadInput> component_cases() {
   const auto add = [&all](const std::string& kind, std::function<void(const fs::path&)> make,
                           int code, std::vector<std::string> says) {
     if (code != 0) says.push_back("c.h5");
-    all.push_back({kind, "components", std::move(make),
-                   "regions head --weights take.csv --components c.h5 -o r.json --json", code,
-                   std::move(says)});
+    add_case(all, kind, "components", std::move(make),
+             "regions head --weights take.csv --components c.h5 -o r.json --json", code,
+             std::move(says));
   };
   add("whole", stored([](Components&) {}), 0, {"\"energy_share\""});
   add("missing", {}, 3, {"no such file"});
@@ -74,15 +74,13 @@ std::vector<BadInput> component_cases() {
       {"other triangles"});
   add("other_frames",
       stored([](Components& c) { c.weights.conservativeResize(7, Eigen::NoChange); }), 0, {});
-  all.push_back({"other_vertex_count",
-                 "components",
-                 [](const fs::path& folder) {
-                   stored([](Components&) {})(folder);
-                   write_bytes_to(folder / "one.obj", bytes_of(square(), "obj"));
-                 },
-                 "regions one.obj --components c.h5 -o r.json",
-                 4,
-                 {"c.h5", "225 vertices", "4 vertices"}});
+  add_case(all, "other_vertex_count", "components",
+           [](const fs::path& folder) {
+             stored([](Components&) {})(folder);
+             write_bytes_to(folder / "one.obj", bytes_of(square(), "obj"));
+           },
+           "regions one.obj --components c.h5 -o r.json", 4,
+           {"c.h5", "225 vertices", "4 vertices"});
   return all;
 }
 

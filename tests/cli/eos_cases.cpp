@@ -59,8 +59,8 @@ std::vector<BadInput> eos_cases() {
   const auto add = [&all](const std::string& kind, const std::string& shape_bytes,
                           const std::string& expression_bytes, int code,
                           std::vector<std::string> says) {
-    all.push_back(
-        {kind, "eos", pair(shape_bytes, expression_bytes), "info e --json", code, std::move(says)});
+    add_case(all, kind, "eos", pair(shape_bytes, expression_bytes), "info e --json", code,
+             std::move(says));
   };
   const std::string broken = "sfm_shape_4.bin", faces = "expression_blendshapes_4.bin";
   Floats mean = coordinates();
@@ -82,15 +82,12 @@ std::vector<BadInput> eos_cases() {
   add("not_a_number", shape(mean), expressions(), 3, {broken, "the mean", "not finite"});
   mean[4] = std::numeric_limits<float>::infinity();
   add("infinity", shape(mean), expressions(), 3, {broken, "the mean", "not finite"});
-  all.push_back({"without_expressions",
-                 "eos",
-                 [](const fs::path& folder) {
-                   write_bytes_to(folder / "e/sfm_shape_4.bin", shape());
-                   write_bytes_to(folder / "e/model.json", R"({"shape": "sfm_shape_4.bin"})");
-                 },
-                 "info e",
-                 3,
-                 {"expression_blendshapes_*.bin"}});
+  add_case(all, "without_expressions", "eos",
+           [](const fs::path& folder) {
+             write_bytes_to(folder / "e/sfm_shape_4.bin", shape());
+             write_bytes_to(folder / "e/model.json", R"({"shape": "sfm_shape_4.bin"})");
+           },
+           "info e", 3, {"expression_blendshapes_*.bin"});
   return all;
 }
 

@@ -72,9 +72,9 @@ void add_tracks(std::vector<BadInput>& all) {
                           std::vector<std::string> says,
                           const std::string& mapping = sound_mapping()) {
     if (code != 0) says.push_back("t.csv");
-    all.push_back({kind, "landmarks_csv", mapped({{"t.csv", text}}, mapping), kTrack, code, says});
+    add_case(all, kind, "landmarks_csv", mapped({{"t.csv", text}}, mapping), kTrack, code, says);
   };
-  all.push_back({"missing", "landmarks_csv", mapped({}), kTrack, 3, {"t.csv", "no such file"}});
+  add_case(all, "missing", "landmarks_csv", mapped({}), kTrack, 3, {"t.csv", "no such file"});
   add("whole", sound_track(), 0, {"\"rms_px\""});
   add("empty", "", 3, {"is empty"});
   add("names_only", header(10), 3, {"no frame"});
@@ -104,8 +104,8 @@ void add_tracks(std::vector<BadInput>& all) {
 void add_points(std::vector<BadInput>& all) {
   const auto add = [&all](const std::string& kind, const Files& files, const std::string& name,
                           int code, std::vector<std::string> says) {
-    all.push_back({kind, "landmarks_pts", mapped(files),
-                   "fit " + name + " --model head -o o.npy --json", code, std::move(says)});
+    add_case(all, kind, "landmarks_pts", mapped(files),
+             "fit " + name + " --model head -o o.npy --json", code, std::move(says));
   };
   add("missing", {}, "p.pts", 3, {"p.pts", "no such file"});
   add("whole", {{"p.pts", points(10, "10")}}, "p.pts", 0, {"\"rms_px\""});
@@ -128,8 +128,8 @@ void add_points(std::vector<BadInput>& all) {
 void add_json(std::vector<BadInput>& all) {
   const auto add = [&all](const std::string& kind, const std::string& text, int code,
                           std::vector<std::string> says) {
-    all.push_back({kind, "landmarks_json", mapped({{"t.json", text}}),
-                   "fit t.json --model head -o o.npy --json", code, std::move(says)});
+    add_case(all, kind, "landmarks_json", mapped({{"t.json", text}}),
+             "fit t.json --model head -o o.npy --json", code, std::move(says));
   };
   add("empty", "", 3, {"t.json", "JSON"});
   add("truncated", R"({"points": [[1, 2], [3)", 3, {"t.json", "JSON"});
@@ -144,19 +144,11 @@ void add_json(std::vector<BadInput>& all) {
 
 void add_videos(std::vector<BadInput>& all) {
   const auto add = [&all](const std::string& kind, const std::string& bytes) {
-    all.push_back({kind,
-                   "landmarks_video",
-                   mapped({{"v.mp4", bytes}}),
-                   "fit v.mp4 --model head -o o.npy",
-                   3,
-                   {"v.mp4: "}});
+    add_case(all, kind, "landmarks_video", mapped({{"v.mp4", bytes}}),
+             "fit v.mp4 --model head -o o.npy", 3, {"v.mp4: "});
   };
-  all.push_back({"missing",
-                 "landmarks_video",
-                 mapped({}),
-                 "fit v.mp4 --model head -o o.npy",
-                 3,
-                 {"v.mp4: no such file"}});
+  add_case(all, "missing", "landmarks_video", mapped({}), "fit v.mp4 --model head -o o.npy", 3,
+           {"v.mp4: no such file"});
   add("empty", "");
   add("other_type", bytes_of(square(), "ply"));
   add("list_of_files", "#EXTM3U\n#EXT-X-TARGETDURATION:1\n#EXTINF:1,\nfile:///etc/hostname\n");
@@ -165,28 +157,16 @@ void add_videos(std::vector<BadInput>& all) {
 void add_mappings(std::vector<BadInput>& all) {
   const auto add = [&all](const std::string& kind, const std::string& text, int code,
                           std::vector<std::string> says) {
-    all.push_back({kind, "mapping", mapped({{"t.csv", sound_track()}, {"m.txt", text}}, ""),
-                   "fit t.csv --model head --mapping m.txt -o o.npy --json", code,
-                   std::move(says)});
+    add_case(all, kind, "mapping", mapped({{"t.csv", sound_track()}, {"m.txt", text}}, ""),
+             "fit t.csv --model head --mapping m.txt -o o.npy --json", code, std::move(says));
   };
-  all.push_back({"missing",
-                 "mapping",
-                 mapped({{"t.csv", sound_track()}}, ""),
-                 "fit t.csv --model head --mapping m.txt -o o.npy",
-                 3,
-                 {"m.txt", "no such file"}});
-  all.push_back({"missing_in_the_model",
-                 "mapping",
-                 mapped({{"t.csv", sound_track()}}, ""),
-                 kTrack,
-                 3,
-                 {"head", "no landmark mapping", "ibug_to_*.txt or landmarks68.txt", "--mapping"}});
-  all.push_back({"several",
-                 "mapping",
-                 mapped({{"t.csv", sound_track()}, {"head/ibug_to_head.txt", sound_mapping()}}),
-                 kTrack,
-                 3,
-                 {"several landmark mappings", "--mapping"}});
+  add_case(all, "missing", "mapping", mapped({{"t.csv", sound_track()}}, ""),
+           "fit t.csv --model head --mapping m.txt -o o.npy", 3, {"m.txt", "no such file"});
+  add_case(all, "missing_in_the_model", "mapping", mapped({{"t.csv", sound_track()}}, ""), kTrack,
+           3, {"head", "no landmark mapping", "ibug_to_*.txt or landmarks68.txt", "--mapping"});
+  add_case(all, "several", "mapping",
+           mapped({{"t.csv", sound_track()}, {"head/ibug_to_head.txt", sound_mapping()}}), kTrack,
+           3, {"several landmark mappings", "--mapping"});
   add("whole", sound_mapping(), 0, {"\"rms_px\""});
   add("empty", "", 3, {"m.txt", "maps no landmark"});
   add("text_for_a_number", "1\nnose\n", 3, {"m.txt", "line 2", "nose"});
@@ -208,10 +188,10 @@ void add_fits(std::vector<BadInput>& all) {
   const auto add = [&all](const std::string& kind, const std::string& text, int code,
                           std::vector<std::string> says) {
     if (code != 0) says.push_back("f.json");
-    all.push_back(
-        {kind, "fit_json", file("f.json", text), "info head@f.json --json", code, std::move(says)});
+    add_case(all, kind, "fit_json", file("f.json", text), "info head@f.json --json", code,
+             std::move(says));
   };
-  all.push_back({"missing", "fit_json", {}, "info head@f.json", 3, {"f.json", "no such file"}});
+  add_case(all, "missing", "fit_json", {}, "info head@f.json", 3, {"f.json", "no such file"});
   add("whole", fitted(), 0, {"\"frames\": 1"});
   add("windows_lines_and_bom", "\xEF\xBB\xBF" + fitted() + "\r\n", 0, {"\"frames\": 1"});
   add("empty", "", 3, {"JSON"});
@@ -221,15 +201,13 @@ void add_fits(std::vector<BadInput>& all) {
   add("not_a_number", fitted("wide", "null"), 3, {"/frames/0/alpha/0", "finite"});
   add("too_few_numbers", fitted("wide", "1", "0, 1"), 3, {"/frames/0/beta", "expected 3 numbers"});
   add("of_another_model", fitted("broad"), 4, {"'broad'", "'wide'", "another model"});
-  all.push_back({"of_no_model",
-                 "fit_json",
-                 [](const fs::path& folder) {
-                   write_bytes_to(folder / "f.json", fitted());
-                   write_bytes_to(folder / "one.obj", bytes_of(square(), "obj"));
-                 },
-                 "transfer head one.obj@f.json --weights take.csv --full -o o.npy",
-                 4,
-                 {"one.obj", "one mesh"}});
+  add_case(all, "of_no_model", "fit_json",
+           [](const fs::path& folder) {
+             write_bytes_to(folder / "f.json", fitted());
+             write_bytes_to(folder / "one.obj", bytes_of(square(), "obj"));
+           },
+           "transfer head one.obj@f.json --weights take.csv --full -o o.npy", 4,
+           {"one.obj", "one mesh"});
 }
 
 void add_requests(std::vector<BadInput>& all) {
@@ -238,7 +216,7 @@ void add_requests(std::vector<BadInput>& all) {
                        std::vector<std::string> says, const Files& more = {}) {
     Files files = track;
     files.insert(files.end(), more.begin(), more.end());
-    all.push_back({kind, "fit", mapped(files), "fit " + arguments, code, std::move(says)});
+    add_case(all, kind, "fit", mapped(files), "fit " + arguments, code, std::move(says));
   };
   add("without_model", "t.csv -o o", 2, {"--model", "required"});
   add("without_output", "t.csv --model head", 2, {"--out", "required"});

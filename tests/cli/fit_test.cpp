@@ -4,7 +4,7 @@
 #include <Eigen/Geometry>
 #include <nlohmann/json.hpp>
 
-#include "tests/cli/command_fixture.h"
+#include "tests/cli/run_here.h"
 #include "tests/fitting/synthetic_clip.h"
 #include "toolkit/io/fit_file.h"
 
@@ -16,7 +16,7 @@ using testing::HasSubstr;
 
 constexpr int kFrames = 6;
 
-class Fit : public test::CommandTest {
+class Fit : public test::QuickCommandTest {
  protected:
   void SetUp() override {
     CommandTest::SetUp();

@@ -53,8 +53,8 @@ void add_targets(std::vector<BadInput>& all) {
                           const std::vector<std::string>& says) {
     for (const std::string operation : {"transfer", "evaluate"}) {
       const std::string output = operation == "transfer" ? " -o x.npy" : " -o x.csv";
-      all.push_back({kind, operation, target(change),
-                     operation + " head --weights take.csv other.obj -k 2" + output, 4, says});
+      add_case(all, kind, operation, target(change),
+               operation + " head --weights take.csv other.obj -k 2" + output, 4, says);
     }
   };
   add("target_of_other_count",
@@ -76,7 +76,7 @@ std::vector<BadInput> geometry_cases() {
   std::vector<BadInput> all;
   const auto add = [&all](const std::string& subject, const std::string& arguments,
                           std::vector<std::string> says) {
-    all.push_back({"useless_elements", subject, odd_model, arguments, 0, std::move(says)});
+    add_case(all, "useless_elements", subject, odd_model, arguments, 0, std::move(says));
   };
   const std::string odd = " odd --weights take.csv";
   add("info", "info odd --json",
@@ -86,12 +86,8 @@ std::vector<BadInput> geometry_cases() {
       {"\"vertices\": 226", "\"reached\": 225", "2 triangles without area", "vertex 225"});
   add("geodesic_exact", "geodesic odd --source 112 --geodesics exact -o d.vtp --json",
       {"\"vertices\": 226", "\"reached\": 225"});
-  all.push_back({"source_vertex_without_face",
-                 "geodesic",
-                 odd_model,
-                 "geodesic odd --source 225 -o d.vtp",
-                 4,
-                 {"--source", "vertex 225", "no triangle"}});
+  add_case(all, "source_vertex_without_face", "geodesic", odd_model,
+           "geodesic odd --source 225 -o d.vtp", 4, {"--source", "vertex 225", "no triangle"});
   add("decompose", "decompose" + odd + " -k 3 -o c.h5 --json",
       {"\"vertices\": 226", "2 triangles without area"});
   add("regions", "regions" + odd + " -k 3 -o r.pvd --json", {"no region", "vertex 225"});
@@ -103,36 +99,18 @@ std::vector<BadInput> geometry_cases() {
   add("simplify", "simplify" + odd + " --share 0.5 -o x.npy --json", {"\"given_vertices\": 226"});
   add("subdivide", "subdivide" + odd + " -o x.npy --json", {"\"vertices\": "});
   add_targets(all);
-  all.push_back({"source_vertex_out_of_range",
-                 "geodesic",
-                 {},
-                 "geodesic head --source 225 -o d.vtp",
-                 4,
-                 {"--source", "vertex 225", "225"}});
-  all.push_back({"source_vertex_negative",
-                 "geodesic",
-                 {},
-                 "geodesic head --source -1 -o d.vtp",
-                 2,
-                 {"--source", "-1"}});
-  all.push_back({"support_map_upside_down",
-                 "geodesic",
-                 {},
-                 "geodesic head --source 1 --d-min 0.8 -o d.vtp",
-                 2,
-                 {"--d-min", "--d-max"}});
-  all.push_back({"rest_of_other_count",
-                 "transfer",
-                 file("one.obj", bytes_of(square(), "obj")),
-                 "transfer head --weights take.csv head --source-rest one.obj -o x",
-                 4,
-                 {"one.obj", "4 vertices, expected 225"}});
-  all.push_back({"rest_of_other_count",
-                 "decompose",
-                 file("one.obj", bytes_of(square(), "obj")),
-                 "decompose head --weights take.csv --rest one.obj -o c.h5",
-                 4,
-                 {"one.obj", "4 vertices, expected 225"}});
+  add_case(all, "source_vertex_out_of_range", "geodesic", {}, "geodesic head --source 225 -o d.vtp",
+           4, {"--source", "vertex 225", "225"});
+  add_case(all, "source_vertex_negative", "geodesic", {}, "geodesic head --source -1 -o d.vtp", 2,
+           {"--source", "-1"});
+  add_case(all, "support_map_upside_down", "geodesic", {},
+           "geodesic head --source 1 --d-min 0.8 -o d.vtp", 2, {"--d-min", "--d-max"});
+  add_case(all, "rest_of_other_count", "transfer", file("one.obj", bytes_of(square(), "obj")),
+           "transfer head --weights take.csv head --source-rest one.obj -o x", 4,
+           {"one.obj", "4 vertices, expected 225"});
+  add_case(all, "rest_of_other_count", "decompose", file("one.obj", bytes_of(square(), "obj")),
+           "decompose head --weights take.csv --rest one.obj -o c.h5", 4,
+           {"one.obj", "4 vertices, expected 225"});
   return all;
 }
 

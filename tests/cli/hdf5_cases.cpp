@@ -45,7 +45,7 @@ std::vector<BadInput> hdf5_cases() {
   const auto add = [&all](const std::string& kind, std::function<void(const fs::path&)> make,
                           int code, std::vector<std::string> says) {
     says.push_back(code == 0 ? "frames" : "s.h5");
-    all.push_back({kind, "hdf5", std::move(make), "info s.h5 --json", code, std::move(says)});
+    add_case(all, kind, "hdf5", std::move(make), "info s.h5 --json", code, std::move(says));
   };
   const auto changed = [](const std::function<void(Parts&)>& change) {
     Parts parts;

@@ -21,23 +21,19 @@ std::vector<BadInput> json_cases() {
   const auto add_manifest = [&all](const std::string& kind, const std::string& text, int code,
                                    std::vector<std::string> says) {
     if (code != 0) says.push_back("a.run.json");
-    all.push_back({kind, "manifest", file("a.run.json", text),
-                   "align head --weights take.csv --undo a.run.json -o b.npy --json", code,
-                   std::move(says)});
+    add_case(all, kind, "manifest", file("a.run.json", text),
+             "align head --weights take.csv --undo a.run.json -o b.npy --json", code,
+             std::move(says));
   };
   const auto add_config = [&all](const std::string& kind, const std::string& text, int code,
                                  std::vector<std::string> says) {
     if (code != 0) says.push_back("c.json");
-    all.push_back({kind, "config", file("c.json", text),
-                   "regions head --weights take.csv --config c.json -o r.json --json", code,
-                   std::move(says)});
+    add_case(all, kind, "config", file("c.json", text),
+             "regions head --weights take.csv --config c.json -o r.json --json", code,
+             std::move(says));
   };
-  all.push_back({"missing",
-                 "manifest",
-                 {},
-                 "align head --weights take.csv --undo no.json -o b.npy",
-                 3,
-                 {"no.json", "no such file"}});
+  add_case(all, "missing", "manifest", {}, "align head --weights take.csv --undo no.json -o b.npy",
+           3, {"no.json", "no such file"});
   add_manifest("empty", "", 3, {"result.motion"});
   add_manifest("truncated", motions(12).substr(0, 60), 3, {"result.motion"});
   add_manifest("other_type", "[]", 3, {"result.motion"});
@@ -48,12 +44,9 @@ std::vector<BadInput> json_cases() {
   add_manifest("other_frame_count", motions(3), 4, {"3 rigid transforms, expected 12"});
   add_manifest("windows_lines_and_bom", "\xEF\xBB\xBF" + motions(12) + "\r\n", 0, {"\"frames\""});
 
-  all.push_back({"missing",
-                 "config",
-                 {},
-                 "regions head --weights take.csv --config no.json -o r.json",
-                 3,
-                 {"no.json", "no such file"}});
+  add_case(all, "missing", "config", {},
+           "regions head --weights take.csv --config no.json -o r.json", 3,
+           {"no.json", "no such file"});
   add_config("empty", "", 3, {"expected JSON"});
   add_config("truncated", "{\"k\": 3", 3, {"expected JSON"});
   add_config("other_type", "[1]", 3, {"expected an object"});

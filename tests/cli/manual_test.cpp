@@ -1,7 +1,7 @@
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 
-#include "tests/cli/command_fixture.h"
+#include "tests/cli/run_here.h"
 #include "tests/test_folders.h"
 
 namespace mimetra {
@@ -59,8 +59,15 @@ TEST_F(Manual, FormatsInTheDocumentsAreUpToDate) {
       << "mimetra formats --markdown > docs/formats.md";
 }
 
-TEST_F(Manual, CompletionOffersFilesThatAnInputCanBeReadFrom) {
+TEST_F(Manual, CompletionOffersCommandsOptionsChoicesAndFilesThatCanBeRead) {
   ASSERT_EQ(run("completion --shell bash > completion.bash").code, 0);
+  EXPECT_EQ(offered("mimetra trans"), "transfer\n");
+  EXPECT_EQ(offered("mimetra transfer --wei"), "--weights-out --weights\n");
+  EXPECT_EQ(offered("mimetra transfer --space b"), "blendshape\n");
+  EXPECT_THAT(offered("mimetra transfer --weights take"), HasSubstr("take.csv"));
+  EXPECT_THAT(offered("mimetra transfer he"), HasSubstr("head"));
+  EXPECT_THAT(offered("mimetra transfer --source-rest n"), HasSubstr("neutral"));
+  EXPECT_EQ(offered("mimetra transfer -k t"), "\n");
   for (const char* name : {"set.json", "set two.csv", "set.vtp", "set.npy", "set.h5"})
     write(name, "");
   std::filesystem::create_directory(folder_ / "sets");
@@ -70,18 +77,7 @@ TEST_F(Manual, CompletionOffersFilesThatAnInputCanBeReadFrom) {
   EXPECT_THAT(offered("mimetra transfer -o se"), HasSubstr("set.npy"));
 }
 
-TEST_F(Manual, CompletionOffersCommandsOptionsChoicesAndFiles) {
-  ASSERT_EQ(run("completion --shell bash > completion.bash").code, 0);
-  EXPECT_EQ(offered("mimetra trans"), "transfer\n");
-  EXPECT_EQ(offered("mimetra transfer --wei"), "--weights-out --weights\n");
-  EXPECT_EQ(offered("mimetra transfer --space b"), "blendshape\n");
-  EXPECT_THAT(offered("mimetra transfer --weights take"), HasSubstr("take.csv"));
-  EXPECT_THAT(offered("mimetra transfer he"), HasSubstr("head"));
-  EXPECT_THAT(offered("mimetra transfer --source-rest n"), HasSubstr("neutral"));
-  EXPECT_EQ(offered("mimetra transfer -k t"), "\n");
-}
-
-class Check : public test::CommandTest {};
+class Check : public test::QuickCommandTest {};
 
 TEST_F(Check, FindsASoundSequenceUsable) {
   const auto result = run("check head --weights take.csv --json");

@@ -2,6 +2,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/cli/matched_patch.h"
+#include "tests/cli/run_here.h"
 #include "toolkit/io/correspondence_file.h"
 #include "toolkit/io/mesh_file.h"
 
@@ -11,7 +12,7 @@ namespace {
 using testing::HasSubstr;
 
 /// A performance of the model, and a mesh of other faces.
-class MatchTest : public test::CommandTest {
+class MatchTest : public test::QuickCommandTest {
  protected:
   void SetUp() override {
     CommandTest::SetUp();

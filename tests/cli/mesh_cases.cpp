@@ -39,8 +39,8 @@ class MeshCases {
   void add(const std::string& kind, std::function<void(const fs::path&)> make, int code,
            std::vector<std::string> says) {
     if (code != 0) says.push_back(name_);
-    cases_.push_back(
-        {kind, format_, std::move(make), "info " + name_ + " --json", code, std::move(says)});
+    add_case(cases_, kind, format_, std::move(make), "info " + name_ + " --json", code,
+             std::move(says));
   }
   void add_bytes(const std::string& kind, const std::string& bytes, int code,
                  std::vector<std::string> says) {
@@ -135,12 +135,9 @@ std::vector<BadInput> mesh_cases() {
   }
   for (const std::string format : {"obj", "ply", "off", "stl"}) {
     const std::string name = "windows." + format;
-    all.push_back({"windows_lines_and_bom",
-                   format,
-                   file(name, "\xEF\xBB\xBF" + with_windows_lines(bytes_of(square(), format))),
-                   "info " + name + " --json",
-                   0,
-                   {"\"vertices\": 4", "\"triangles\": 2"}});
+    add_case(all, "windows_lines_and_bom", format,
+             file(name, "\xEF\xBB\xBF" + with_windows_lines(bytes_of(square(), format))),
+             "info " + name + " --json", 0, {"\"vertices\": 4", "\"triangles\": 2"});
   }
   return all;
 }

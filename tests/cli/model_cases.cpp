@@ -36,7 +36,7 @@ std::vector<BadInput> model_cases() {
   std::vector<BadInput> all;
   const auto add = [&all](const std::string& kind, const std::function<void(const fs::path&)>& make,
                           const std::string& arguments, int code, std::vector<std::string> says) {
-    all.push_back({kind, "model", make, arguments, code, std::move(says)});
+    add_case(all, kind, "model", make, arguments, code, std::move(says));
   };
   const auto write = [](const std::string& name, const std::string& bytes) {
     return model([name, bytes](const fs::path& m) { write_bytes_to(m / name, bytes); });
@@ -91,10 +91,10 @@ std::vector<BadInput> weight_cases() {
   const auto add = [&all](const std::string& kind, const std::string& text, int code,
                           std::vector<std::string> says) {
     if (code != 0) says.push_back("w.csv");
-    all.push_back({kind, "weights", weights(text), "info head --weights w.csv --json", code,
-                   std::move(says)});
+    add_case(all, kind, "weights", weights(text), "info head --weights w.csv --json", code,
+             std::move(says));
   };
-  all.push_back({"missing", "weights", {}, "info head --weights no.csv", 3, {"no.csv", "no such"}});
+  add_case(all, "missing", "weights", {}, "info head --weights no.csv", 3, {"no.csv", "no such"});
   add("empty", "", 3, {"is empty"});
   add("names_only", "time,left\n", 3, {"no row"});
   add("other_type", bytes_of(square(), "stl_binary"), 3, {});
@@ -126,8 +126,8 @@ std::vector<BadInput> weight_cases() {
   const auto add_json = [&all](const std::string& kind, const std::string& text, int code,
                                std::vector<std::string> says) {
     if (code != 0) says.push_back("w.json");
-    all.push_back({kind, "weights_json", file("w.json", text), "info head --weights w.json --json",
-                   code, std::move(says)});
+    add_case(all, kind, "weights_json", file("w.json", text), "info head --weights w.json --json",
+             code, std::move(says));
   };
   add_json("whole", R"([{"left": 1, "right": 0, "top": 0}])", 0, {"\"frames\": 1"});
   add_json("empty", "", 3, {"is empty"});

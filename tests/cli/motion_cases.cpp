@@ -48,9 +48,9 @@ void add_to_all(std::vector<BadInput>& all, const std::string& kind, const std::
     const bool says_so = is_refused || (says == "nothing moves" && kind != "identical_frames" &&
                                         request.operation.starts_with("transfer"));
     const std::string options = request.needs_motion ? where_motion_is_needed : "";
-    all.push_back({kind, request.operation, make,
-                   with_sequence(request.arguments, sequence) + options, is_refused ? 4 : 0,
-                   says_so ? std::vector{says} : std::vector<std::string>{"{"}});
+    add_case(all, kind, request.operation, make,
+             with_sequence(request.arguments, sequence) + options, is_refused ? 4 : 0,
+             says_so ? std::vector{says} : std::vector<std::string>{"{"});
   }
 }
 
@@ -75,21 +75,17 @@ void add_counts(std::vector<BadInput>& all) {
       return arguments.replace(arguments.find("-k 2") + 3, 1, count);
     };
     const std::string name = request.operation;
-    all.push_back({"k_zero", name, {}, with_count("0"), 2, {"-k", "at least 1", "'0'"}});
-    all.push_back({"k_negative", name, {}, with_count("-3"), 2, {"-k", "at least 1", "'-3'"}});
-    all.push_back({"k_no_number", name, {}, with_count("many"), 2, {"-k", "whole number", "many"}});
-    all.push_back(
-        {"k_above_vertices", name, {}, with_count("226"), 4, {"226 components", "225 vertices"}});
+    add_case(all, "k_zero", name, {}, with_count("0"), 2, {"-k", "at least 1", "'0'"});
+    add_case(all, "k_negative", name, {}, with_count("-3"), 2, {"-k", "at least 1", "'-3'"});
+    add_case(all, "k_no_number", name, {}, with_count("many"), 2, {"-k", "whole number", "many"});
+    add_case(all, "k_above_vertices", name, {}, with_count("226"), 4,
+             {"226 components", "225 vertices"});
     // One vertex moves, in two directions: two components meet there, the others have none.
     std::string dot = with_sequence(request.arguments, "dot --weights dot.csv");
     dot.replace(dot.find("-k 2") + 3, 1, "5");
     if (dot.find("head") != std::string::npos) dot.replace(dot.find("head"), 4, "dot");
-    all.push_back({"k_above_distinct_centers",
-                   name,
-                   moving_dot,
-                   dot,
-                   0,
-                   {name == "decompose" ? "components died" : "share a region"}});
+    add_case(all, "k_above_distinct_centers", name, moving_dot, dot, 0,
+             {name == "decompose" ? "components died" : "share a region"});
   }
 }
 
@@ -124,30 +120,20 @@ std::vector<BadInput> motion_cases() {
   for (const std::string arguments :
        {"transfer head --weights take.csv idle --full -o x.npy --weights-out w.csv",
         "evaluate head --weights take.csv idle -k 2"}) {
-    all.push_back({"all_zero_expression",
-                   arguments.substr(0, arguments.find(' ')),
-                   with_idle_expression,
-                   arguments,
-                   0,
-                   {"expressions do not move", "idle"}});
+    add_case(all, "all_zero_expression", arguments.substr(0, arguments.find(' ')),
+             with_idle_expression, arguments, 0, {"expressions do not move", "idle"});
   }
-  all.push_back({"rest_in_another_unit",
-                 "transfer",
-                 [](const fs::path& folder) {
-                   const SequenceRead head = read_sequence((folder / "head").string());
-                   write_sequence(
-                       *with_units(std::make_shared<MeshSequence>(head.sequence), {.scale = 0.01}),
-                       folder / "small.ply");
-                 },
-                 "transfer head --weights take.csv head --full --source-rest small.ply -o x.npy",
-                 4,
-                 {"head: the rest pose is 100 times as small as frame 0", "--scale"}});
-  all.push_back({"all_zero_expression",
-                 "info",
-                 with_idle_expression,
-                 "info idle --json",
-                 0,
-                 {"\"vertices\": 225"}});
+  add_case(all, "rest_in_another_unit", "transfer",
+           [](const fs::path& folder) {
+             const SequenceRead head = read_sequence((folder / "head").string());
+             write_sequence(
+                 *with_units(std::make_shared<MeshSequence>(head.sequence), {.scale = 0.01}),
+                 folder / "small.ply");
+           },
+           "transfer head --weights take.csv head --full --source-rest small.ply -o x.npy", 4,
+           {"head: the rest pose is 100 times as small as frame 0", "--scale"});
+  add_case(all, "all_zero_expression", "info", with_idle_expression, "info idle --json", 0,
+           {"\"vertices\": 225"});
   return all;
 }
 

@@ -23,9 +23,9 @@ class PaintCases {
                 std::vector<std::string> says) {
     const std::string name = "p." + extension;
     if (code != 0) says.push_back(name);
-    all.push_back({kind, "paint_" + extension, std::move(make),
-                   "transfer head --weights take.csv head --paint " + name + " -o x.npy --json",
-                   code, std::move(says)});
+    add_case(all, kind, "paint_" + extension, std::move(make),
+             "transfer head --weights take.csv head --paint " + name + " -o x.npy --json", code,
+             std::move(says));
   }
   std::vector<BadInput> all;
 };

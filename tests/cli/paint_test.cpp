@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 
-#include "tests/cli/command_fixture.h"
+#include "tests/cli/run_here.h"
 #include "tests/image_bytes.h"
 
 namespace mimetra {
@@ -14,7 +14,7 @@ using testing::AllOf;
 using testing::HasSubstr;
 
 /// Regions as somebody painted them, by the command.
-class PaintTest : public test::CommandTest {
+class PaintTest : public test::QuickCommandTest {
  protected:
   static constexpr int kSide = 15;
 

@@ -35,9 +35,9 @@ class RegionCases {
            std::function<void(const fs::path&)> make, int code, std::vector<std::string> says) {
     const std::string name = "r." + extension;
     if (code != 0) says.push_back(name);
-    all.push_back({kind, "regions_" + extension, std::move(make),
-                   "transfer head --weights take.csv head --regions " + name + " -o x.npy --json",
-                   code, std::move(says)});
+    add_case(all, kind, "regions_" + extension, std::move(make),
+             "transfer head --weights take.csv head --regions " + name + " -o x.npy --json", code,
+             std::move(says));
   }
   std::vector<BadInput> all;
 };
@@ -95,9 +95,8 @@ void add_vtp(RegionCases& cases) {
 void add_places(RegionCases& cases) {
   const auto add = [&cases](const std::string& kind, const std::string& options, int code,
                             std::vector<std::string> says) {
-    cases.all.push_back({kind, "place", file("set.txt", "225\n"),
-                         "transfer head --weights take.csv head -o x.npy " + options, code,
-                         std::move(says)});
+    add_case(cases.all, kind, "place", file("set.txt", "225\n"),
+             "transfer head --weights take.csv head -o x.npy " + options, code, std::move(says));
   };
   add("unknown_component", "--only component:7", 4, {"component '7'", "there are 0"});
   add("unknown_group", "--without group:lips", 4, {"group 'lips'", "has none"});
@@ -118,12 +117,9 @@ std::vector<BadInput> region_cases() {
   add_json(cases);
   add_text(cases);
   add_vtp(cases);
-  cases.all.push_back({"unknown_format",
-                       "regions_xml",
-                       file("r.xml", "<r/>"),
-                       "transfer head --weights take.csv head --regions r.xml -o x",
-                       2,
-                       {"r.xml", ".json", ".csv", ".txt", ".vtp"}});
+  add_case(cases.all, "unknown_format", "regions_xml", file("r.xml", "<r/>"),
+           "transfer head --weights take.csv head --regions r.xml -o x", 2,
+           {"r.xml", ".json", ".csv", ".txt", ".vtp"});
   return cases.all;
 }
 

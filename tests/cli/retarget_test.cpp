@@ -2,6 +2,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/cli/matched_patch.h"
+#include "tests/cli/run_here.h"
 #include "toolkit/io/mesh_file.h"
 
 namespace mimetra {
@@ -12,7 +13,7 @@ using testing::HasSubstr;
 using testing::Not;
 
 /// A model, its weights, and another identity of it.
-class RetargetCommand : public test::CommandTest {
+class RetargetCommand : public test::QuickCommandTest {
  protected:
   test::CommandResult done(const std::string& arguments) const {
     test::CommandResult result = run(arguments);

@@ -5,6 +5,7 @@
 
 #include "samples/head/head.h"
 #include "tests/cli/matched_patch.h"
+#include "tests/cli/run_here.h"
 #include "toolkit/io/mesh_file.h"
 
 namespace mimetra {
@@ -12,7 +13,7 @@ namespace {
 
 using testing::HasSubstr;
 
-class RigCommand : public test::CommandTest {
+class RigCommand : public test::QuickCommandTest {
  protected:
   void SetUp() override {
     CommandTest::SetUp();
@@ -66,7 +67,11 @@ class RigCommand : public test::CommandTest {
 
 const std::vector<std::string> kGiven = {"jawOpen", "mouthSmileLeft", "mouthSmileRight"};
 
-TEST_F(RigCommand, OfThreeExamplesIsNearerToTheTruthThanOfNone) {
+TEST_F(RigCommand, KeepsThreeTrueExamplesAndIsNearerToTheTruthWithThemThanWithout) {
+  const auto before = listing();
+  const auto planned = run("rig sample double.ply -o none --dry-run");
+  EXPECT_EQ(planned.code, 0) << planned.err;
+  EXPECT_EQ(listing(), before);
   const auto report = rig("-o none");
   EXPECT_EQ(report["expressions"].size(), 12u);
   for (const auto& each : report["expressions"]) EXPECT_EQ(each["origin"], "transferred");
@@ -77,12 +82,7 @@ TEST_F(RigCommand, OfThreeExamplesIsNearerToTheTruthThanOfNone) {
   EXPECT_LT(error_of("none"), 1e-3);
   EXPECT_LT(error_of("three"), error_of("none"));
   EXPECT_LT(error_of("three", kGiven), error_of("none", kGiven));
-}
-
-TEST_F(RigCommand, TakesTrueShapesAsTheyAre) {
-  for (const std::string& name : kGiven) save_example(name);
-  const auto report = rig("--examples scans -o three");
-  for (const auto& each : report["expressions"]) {
+  for (const auto& each : of_three["expressions"]) {
     const bool is_given =
         std::ranges::find(kGiven, each["name"].get<std::string>()) != kGiven.end();
     EXPECT_EQ(each["origin"] == "example", is_given) << each;
@@ -125,13 +125,6 @@ TEST_F(RigCommand, WritesAModelThatDrivesAndSaysWhatItDidInItsManifest) {
   EXPECT_EQ(run("info double.glb --weights sample/performance.csv --json").code, 0);
   EXPECT_THAT(text_of(folder_ / "double.glb.run.json") + text_of(folder_ / "double.run.json"),
               HasSubstr("\"rig\""));
-}
-
-TEST_F(RigCommand, DryRunWritesNothing) {
-  const auto before = listing();
-  const auto result = run("rig sample double.ply -o out --dry-run");
-  EXPECT_EQ(result.code, 0) << result.err;
-  EXPECT_EQ(listing(), before);
 }
 
 TEST_F(RigCommand, TakesATargetOfOtherFaces) {

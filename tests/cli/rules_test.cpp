@@ -1,7 +1,7 @@
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 
-#include "tests/cli/command_fixture.h"
+#include "tests/cli/run_here.h"
 
 namespace mimetra {
 namespace {
@@ -10,7 +10,7 @@ using testing::HasSubstr;
 using testing::Not;
 
 /// Options of weights, and rules in a file or in a model's folder.
-class RulesTest : public test::CommandTest {
+class RulesTest : public test::QuickCommandTest {
  protected:
   void SetUp() override {
     CommandTest::SetUp();

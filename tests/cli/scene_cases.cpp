@@ -77,7 +77,7 @@ void add_gltf_cases(std::vector<BadInput>& all) {
   const auto add = [&all](const std::string& kind, std::function<void(const fs::path&)> make,
                           int code, std::vector<std::string> says) {
     says.push_back(code == 0 ? "frames" : "s.glb");
-    all.push_back({kind, "gltf", std::move(make), "info s.glb --json", code, std::move(says)});
+    add_case(all, kind, "gltf", std::move(make), "info s.glb --json", code, std::move(says));
   };
   const auto scene = [](const std::string& old, const std::string& now) {
     return file("s.glb", glb(with(kScene, old, now)));
@@ -129,7 +129,7 @@ void add_usd_cases(std::vector<BadInput>& all) {
   const auto add = [&all](const std::string& kind, std::function<void(const fs::path&)> make,
                           int code, std::vector<std::string> says) {
     says.push_back(code == 0 ? "frames" : "s.usda");
-    all.push_back({kind, "usd", std::move(make), "info s.usda --json", code, std::move(says)});
+    add_case(all, kind, "usd", std::move(make), "info s.usda --json", code, std::move(says));
   };
   const auto stage = [](const std::string& old, const std::string& now) {
     return file("s.usda", with(kStage, old, now));
@@ -160,19 +160,15 @@ void add_usd_cases(std::vector<BadInput>& all) {
 void add_outputs(std::vector<BadInput>& all) {
   const auto add = [&all](const std::string& kind, const std::string& subject,
                           const std::string& arguments, int code, std::vector<std::string> says) {
-    all.push_back({kind, subject, {}, arguments, code, std::move(says)});
+    add_case(all, kind, subject, {}, arguments, code, std::move(says));
   };
   for (const std::string name : {"out.usd", "out.usdc", "out.fbx", "out.abc"}) {
     add("unknown_extension_" + name.substr(4), "convert",
         "convert head --weights take.csv -o " + name, 2, {name, ".usda", ".glb"});
   }
   for (const std::string name : {"out.glb", "out.gltf", "out.usda", "out.vtkhdf"}) {
-    all.push_back({"output_exists",
-                   name.substr(4),
-                   file(name, "somebody's"),
-                   "convert head --weights take.csv -o " + name,
-                   5,
-                   {name, "--force"}});
+    add_case(all, "output_exists", name.substr(4), file(name, "somebody's"),
+             "convert head --weights take.csv -o " + name, 5, {name, "--force"});
   }
 }
 

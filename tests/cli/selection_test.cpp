@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 
-#include "tests/cli/command_fixture.h"
+#include "tests/cli/run_here.h"
 
 namespace mimetra {
 namespace {
@@ -12,10 +12,8 @@ using Json = nlohmann::json;
 using testing::HasSubstr;
 
 /// Regions by energy and for the transfer, by the command.
-class SelectionTest : public test::CommandTest {
+class SelectionTest : public test::QuickCommandTest {
  protected:
-  static constexpr const char* kTake = "head --weights take.csv ";
-
   Json report(const std::string& arguments) const {
     const test::CommandResult result = run(arguments + " --json");
     EXPECT_EQ(result.code, 0) << result.err;

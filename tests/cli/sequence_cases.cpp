@@ -26,8 +26,8 @@ void add_frames(std::vector<BadInput>& all, const std::string& format) {
   const bool is_stl = extension_of(format) == "stl";
   const auto add = [&](const std::string& kind, const Change& change, int code,
                        std::vector<std::string> says) {
-    all.push_back({kind, "frames_" + format, take(format, change), "info take --json", code,
-                   std::move(says)});
+    add_case(all, kind, "frames_" + format, take(format, change), "info take --json", code,
+             std::move(says));
   };
   add("one_vertex_more_later",
       [](RawMesh& mesh) {
@@ -64,88 +64,44 @@ void add_stray_files(std::vector<BadInput>& all) {
       write_bytes_to(folder / "take" / name, bytes);
     };
   };
-  all.push_back({"temporary_file_of_a_killed_run",
-                 "frames_obj",
-                 with(".f3.obj.123-0.tmp", "half"),
-                 "info take --json",
-                 0,
-                 {"\"frames\": 3"}});
-  all.push_back({"hidden_mesh",
-                 "frames_obj",
-                 with("._f3.obj", "resource fork"),
-                 "info take --json",
-                 0,
-                 {"\"frames\": 3"}});
-  all.push_back({"text_beside",
-                 "frames_obj",
-                 with("notes.txt", "hello"),
-                 "info take --json",
-                 0,
-                 {"\"frames\": 3"}});
-  all.push_back({"two_formats",
-                 "frames_obj",
-                 with("f3.ply", bytes_of(square(), "ply")),
-                 "info take",
-                 3,
-                 {"take", "several formats", "pattern"}});
-  all.push_back({"neutral_among_frames",
-                 "frames_obj",
-                 with("neutral.obj", bytes_of(square(), "obj")),
-                 "check take --json",
-                 0,
-                 {"neutral.obj: is taken for the rest pose of the other 3 files"}});
+  add_case(all, "temporary_file_of_a_killed_run", "frames_obj", with(".f3.obj.123-0.tmp", "half"),
+           "info take --json", 0, {"\"frames\": 3"});
+  add_case(all, "hidden_mesh", "frames_obj", with("._f3.obj", "resource fork"), "info take --json",
+           0, {"\"frames\": 3"});
+  add_case(all, "text_beside", "frames_obj", with("notes.txt", "hello"), "info take --json", 0,
+           {"\"frames\": 3"});
+  add_case(all, "two_formats", "frames_obj", with("f3.ply", bytes_of(square(), "ply")), "info take",
+           3, {"take", "several formats", "pattern"});
+  add_case(all, "neutral_among_frames", "frames_obj",
+           with("neutral.obj", bytes_of(square(), "obj")), "check take --json", 0,
+           {"neutral.obj: is taken for the rest pose of the other 3 files"});
   RawMesh other = square();
   other.faces.pop_back();
-  all.push_back({"neutral_of_other_faces",
-                 "frames_obj",
-                 with("neutral.obj", bytes_of(other, "obj")),
-                 "info take",
-                 4,
-                 {"neutral.obj", "1 faces, expected 2"}});
-  all.push_back({"stranger_of_other_faces",
-                 "frames_obj",
-                 with("teeth.obj", bytes_of(other, "obj")),
-                 "check take --json",
-                 0,
-                 {"teeth.obj is left out of the 3 frames f*.obj"}});
-  all.push_back({"missing_number",
-                 "frames_obj",
-                 with("f5.obj", bytes_of(square(), "obj")),
-                 "check take --json",
-                 0,
-                 {"no file has these numbers: 3 to 4"}});
-  all.push_back({"two_files_of_one_number",
-                 "frames_obj",
-                 with("f02.obj", bytes_of(square(), "obj")),
-                 "info take",
-                 3,
-                 {"take/f", "has the number of f", ", 2;"}});
-  all.push_back({"link_that_leads_nowhere",
-                 "frames_obj",
-                 [](const fs::path& folder) {
-                   take("obj", {})(folder);
-                   fs::create_symlink("gone.obj", folder / "take/f3.obj");
-                 },
-                 "info take",
-                 3,
-                 {"take/f3.obj", "leads nowhere, to gone.obj"}});
-  all.push_back({"padded_pattern_for_unpadded_files",
-                 "frames_obj",
-                 take("obj", {}),
-                 "info take/f%04d.obj",
-                 0,
-                 {"take/f%04d.obj: matches no file; 'take/f%d.obj' is taken for it, f0.obj to f"}});
-  all.push_back({"rest_of_other_faces",
-                 "frames_obj",
-                 [](const fs::path& folder) {
-                   take("obj", {})(folder);
-                   RawMesh rest = square();
-                   rest.faces.pop_back();
-                   write_bytes_to(folder / "take.rest.ply", bytes_of(rest, "ply"));
-                 },
-                 "info take",
-                 4,
-                 {"take.rest.ply", "1 faces, expected 2"}});
+  add_case(all, "neutral_of_other_faces", "frames_obj", with("neutral.obj", bytes_of(other, "obj")),
+           "info take", 4, {"neutral.obj", "1 faces, expected 2"});
+  add_case(all, "stranger_of_other_faces", "frames_obj", with("teeth.obj", bytes_of(other, "obj")),
+           "check take --json", 0, {"teeth.obj is left out of the 3 frames f*.obj"});
+  add_case(all, "missing_number", "frames_obj", with("f5.obj", bytes_of(square(), "obj")),
+           "check take --json", 0, {"no file has these numbers: 3 to 4"});
+  add_case(all, "two_files_of_one_number", "frames_obj", with("f02.obj", bytes_of(square(), "obj")),
+           "info take", 3, {"take/f", "has the number of f", ", 2;"});
+  add_case(all, "link_that_leads_nowhere", "frames_obj",
+           [](const fs::path& folder) {
+             take("obj", {})(folder);
+             fs::create_symlink("gone.obj", folder / "take/f3.obj");
+           },
+           "info take", 3, {"take/f3.obj", "leads nowhere, to gone.obj"});
+  add_case(all, "padded_pattern_for_unpadded_files", "frames_obj", take("obj", {}),
+           "info take/f%04d.obj", 0,
+           {"take/f%04d.obj: matches no file; 'take/f%d.obj' is taken for it, f0.obj to f"});
+  add_case(all, "rest_of_other_faces", "frames_obj",
+           [](const fs::path& folder) {
+             take("obj", {})(folder);
+             RawMesh rest = square();
+             rest.faces.pop_back();
+             write_bytes_to(folder / "take.rest.ply", bytes_of(rest, "ply"));
+           },
+           "info take", 4, {"take.rest.ply", "1 faces, expected 2"});
 }
 
 }  // namespace
@@ -157,55 +113,26 @@ std::vector<BadInput> sequence_cases() {
   }
   add_stray_files(all);
   const auto empty_folder = [](const fs::path& folder) { fs::create_directory(folder / "none"); };
-  all.push_back({"empty_folder",
-                 "frames",
-                 empty_folder,
-                 "info none",
-                 3,
-                 {"none: holds no OBJ, PLY, OFF, STL or OM file"}});
-  all.push_back({"missing", "frames", {}, "info nowhere", 3, {"nowhere", "no such"}});
-  all.push_back({"pattern_without_match",
-                 "frames",
-                 {},
-                 "info 'no_%04d.obj'",
-                 3,
-                 {"no_%04d.obj: matches no"}});
-  all.push_back({"unknown_format",
-                 "frames",
-                 file("take.fbx", "x"),
-                 "info take.fbx",
-                 3,
-                 {"take.fbx", ".npz, .pc2, .mdd", " or a folder"}});
-  all.push_back({"video",
-                 "frames",
-                 file("take.mp4", "x"),
-                 "info take.mp4",
-                 3,
-                 {"take.mp4: is a video", "mimetra fit VIDEO"}});
-  all.push_back({"beyond_single_precision",
-                 "frames",
-                 file("huge.obj", "v 0 0 0\nv 1e39 0 0\nv 0 1e39 0\nf 1 2 3\n"),
-                 "convert huge.obj -o huge.stl",
-                 4,
-                 {"huge.stl: vertex 1 is at 1e+39", "double precision"}});
-  all.push_back({"index_beyond_an_int",
-                 "frames",
-                 file("far.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 2147483648\n"),
-                 "info far.obj",
-                 3,
-                 {"far.obj: line 4: index 2147483648"}});
-  all.push_back({"frames_beyond_the_end",
-                 "frames",
-                 take("obj", {}),
-                 "info take --frames 1:9",
-                 4,
-                 {"1:9", "3 frames"}});
-  all.push_back({"weights_for_meshes",
-                 "frames",
-                 take("obj", {}),
-                 "info take --weights take.csv",
-                 4,
-                 {"take", "no model"}});
+  add_case(all, "empty_folder", "frames", empty_folder, "info none", 3,
+           {"none: holds no OBJ, PLY, OFF, STL or OM file"});
+  add_case(all, "missing", "frames", {}, "info nowhere", 3, {"nowhere", "no such"});
+  add_case(all, "pattern_without_match", "frames", {}, "info 'no_%04d.obj'", 3,
+           {"no_%04d.obj: matches no"});
+  add_case(all, "unknown_format", "frames", file("take.fbx", "x"), "info take.fbx", 3,
+           {"take.fbx", ".npz, .pc2, .mdd", " or a folder"});
+  add_case(all, "video", "frames", file("take.mp4", "x"), "info take.mp4", 3,
+           {"take.mp4: is a video", "mimetra fit VIDEO"});
+  add_case(all, "beyond_single_precision", "frames",
+           file("huge.obj", "v 0 0 0\nv 1e39 0 0\nv 0 1e39 0\nf 1 2 3\n"),
+           "convert huge.obj -o huge.stl", 4,
+           {"huge.stl: vertex 1 is at 1e+39", "double precision"});
+  add_case(all, "index_beyond_an_int", "frames",
+           file("far.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 2147483648\n"), "info far.obj", 3,
+           {"far.obj: line 4: index 2147483648"});
+  add_case(all, "frames_beyond_the_end", "frames", take("obj", {}), "info take --frames 1:9", 4,
+           {"1:9", "3 frames"});
+  add_case(all, "weights_for_meshes", "frames", take("obj", {}), "info take --weights take.csv", 4,
+           {"take", "no model"});
   return all;
 }
 

@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 
-#include "tests/cli/command_fixture.h"
+#include "tests/cli/run_here.h"
 #include "toolkit/io/array_file.h"
 #include "toolkit/io/mesh_file.h"
 #include "toolkit/io/whole_file.h"
@@ -15,7 +15,7 @@ using nlohmann::json;
 using testing::HasSubstr;
 
 /// Runs that read their frames when they need them.
-class Streamed : public test::CommandTest {
+class Streamed : public test::QuickCommandTest {
  protected:
   static constexpr int kShort = 50, kLong = 500;
   static constexpr int kSide = 50;
@@ -93,7 +93,7 @@ TEST_F(Streamed, TransfersKeepFramesInAFolderThatThereMustBe) {
 TEST_F(Streamed, DecompositionsKeepWithinTheMemoryAllowed) {
   write_take("long", kLong);
   const std::string decompose = "decompose long.npy --align none -k 2 --iterations 8 ";
-  ASSERT_EQ(run(decompose + "-o a.h5").code, 0);
+  ASSERT_EQ(CommandTest::run(decompose + "-o a.h5").code, 0);
   const auto planned = [this](const std::string& arguments) {
     return json::parse(run(arguments + " --dry-run --json", "TMPDIR=tmp").out);
   };
@@ -126,6 +126,7 @@ TEST_F(Streamed, PlansSayWhatIsReadAsAWhole) {
   EXPECT_FALSE(reads_all("decompose head --weights take.csv -k 2 -o c.h5"));
   EXPECT_FALSE(reads_all("regions head --weights take.csv -k 2 -o s.json"));
   EXPECT_FALSE(reads_all("align head --weights take.csv -o a.npy"));
+  EXPECT_FALSE(reads_all("convert head --weights take.csv -o a.npy"));
   EXPECT_FALSE(reads_all("evaluate head --weights take.csv head -k 2"));
   EXPECT_FALSE(reads_all("render head --weights take.csv -o a.png"));
   EXPECT_TRUE(reads_all("geodesic head --weights take.csv --source 3 -o d.vtp"));

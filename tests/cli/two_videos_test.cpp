@@ -3,12 +3,12 @@
 #include <gtest/gtest.h>
 
 #include "samples/head/head.h"
-#include "tests/cli/command_fixture.h"
+#include "tests/cli/run_here.h"
 
 namespace mimetra {
 namespace {
 
-class TwoVideos : public test::CommandTest {
+class TwoVideos : public test::QuickCommandTest {
  protected:
   std::string csv_of(const Frames& points, const Eigen::VectorXd& times) const {
     std::ostringstream text;

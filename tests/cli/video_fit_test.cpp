@@ -3,7 +3,7 @@
 
 #include "fitting/face_images.h"
 #include "fitting/video_file.h"
-#include "tests/cli/command_fixture.h"
+#include "tests/cli/run_here.h"
 #include "tests/fitting/drawn_head.h"
 #include "tests/fitting/made_video.h"
 #include "tests/shared_data.h"
@@ -21,7 +21,7 @@ class VideoFit : public test::CommandTest {
   void SetUp() override {
     MIMETRA_SKIP_WITHOUT(kDebianFaceModel);
     CommandTest::SetUp();
-    ASSERT_EQ(run("sample -o face").code, 0);
+    ASSERT_EQ(test::run_here(folder_, "sample -o face").code, 0);
   }
   void TearDown() override {
     if (!folder_.empty()) CommandTest::TearDown();

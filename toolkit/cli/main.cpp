@@ -6,14 +6,12 @@
 #include <chrono>
 #include <csignal>
 #include <cstdlib>
-#include <exception>
 #include <fstream>
 #include <iostream>
 #include <new>
 #include <sstream>
 #include <thread>
 
-#include <spdlog/sinks/ostream_sink.h>
 #include <spdlog/spdlog.h>
 
 #include "plugins/c/plugins.h"
@@ -21,6 +19,7 @@
 #include "toolkit/cli/command_line.h"
 #include "toolkit/cli/completion.h"
 #include "toolkit/cli/dry_run.h"
+#include "toolkit/cli/exit_code.h"
 #include "toolkit/cli/failed_allocation.h"
 #include "toolkit/cli/manual.h"
 #include "toolkit/cli/run_command.h"
@@ -29,7 +28,6 @@
 #include "toolkit/operations/listing.h"
 #include "toolkit/operations/marker_operation.h"
 #include "toolkit/operations/memory_use.h"
-#include "toolkit/operations/option_words.h"
 
 #ifdef MIMETRA_HAS_VTK
 #include "toolkit/pictures/picture_formats.h"
@@ -44,23 +42,6 @@
 #endif
 
 namespace {
-
-enum ExitCode {
-  kDone = 0,
-  kFailed = 1,
-  kUsage = 2,
-  kBadInput = 3,
-  kMismatch = 4,
-  kOutput = 5,
-  kInterrupted = 130
-};
-
-/// Where messages go.
-void say_to(std::ostream& stream) {
-  spdlog::set_default_logger(std::make_shared<spdlog::logger>(
-      "mimetra", std::make_shared<spdlog::sinks::ostream_sink_st>(stream, true)));
-  spdlog::set_pattern("%n: %l: %v");
-}
 
 void set_level(const mimetra::cli::Request& request) {
   spdlog::set_level(request.quiet     ? spdlog::level::err
@@ -105,20 +86,18 @@ void add_built(mimetra::OperationTable& table) {
   mimetra::cli::add_manual(table);
 }
 
-int run(const std::vector<std::string>& arguments, const mimetra::Ranks* ranks) {
+void run(const std::vector<std::string>& arguments, const mimetra::Ranks* ranks) {
   mimetra::OperationTable table;
   add_built(table);
   const std::vector<std::string> left_out = mimetra::add_plugins(table, mimetra::plugin_folders());
   const mimetra::cli::ParsedLine line = parse(table, arguments, left_out);
-  if (!line.request) {
-    if (ranks && ranks->rank() > 0) return kDone;
+  if (line.request) {
+    mimetra::cli::run_command(table, *line.request, ranks);
+  } else if (!ranks || ranks->rank() == 0) {
     if (!(std::cout << line.text << std::flush)) {
       throw mimetra::OutputError("standard output", "cannot be written");
     }
-    return kDone;
   }
-  mimetra::cli::run_command(table, *line.request, ranks);
-  return kDone;
 }
 
 std::string memory_message() {
@@ -130,12 +109,6 @@ std::string memory_message() {
          " are held; take fewer frames with --frames";
 }
 
-int fail(int code, const std::exception& error) {
-  spdlog::error(mimetra::cli::terminal_text(
-      mimetra::with_options_spelled(error.what(), mimetra::spelled_for_command)));
-  return code;
-}
-
 /// Whoever ends a run finds nothing half-written, and a limit of the system's is an error.
 void take_signals() {
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
@@ -145,27 +118,13 @@ void take_signals() {
   std::signal(SIGXFSZ, SIG_IGN);
 }
 
-/// Returns the exit code of a run, whose error it has said.
+/// Exit code of a run, whose error it has printed.
 int exit_code_of(const std::vector<std::string>& arguments, const mimetra::Ranks* ranks) {
   try {
-    return run(arguments, ranks);
-  } catch (const mimetra::UsageError& error) {
-    return fail(kUsage, error);
-  } catch (const mimetra::MismatchError& error) {
-    return fail(kMismatch, error);
-  } catch (const mimetra::IoError& error) {
-    return fail(kBadInput, error);
-  } catch (const mimetra::OutputError& error) {
-    return fail(kOutput, error);
-  } catch (const mimetra::Cancelled& error) {
-    return fail(kInterrupted, error);
-  } catch (const std::invalid_argument& error) {
-    return fail(kUsage, error);
+    return mimetra::cli::exit_code_of([&] { run(arguments, ranks); });
   } catch (const std::bad_alloc&) {
     spdlog::error(memory_message());
-    return kFailed;
-  } catch (const std::exception& error) {
-    return fail(kFailed, error);
+    return mimetra::cli::kFailed;
   }
 }
 
@@ -177,10 +136,10 @@ int shared_exit_code(const std::vector<std::string>& arguments) {
   // What all find wrong, the first says.
   const bool is_first = ranks.rank() == 0;
   std::ostringstream said;
-  if (!is_first) say_to(said);
+  if (!is_first) mimetra::cli::say_to(said);
   const int code = exit_code_of(arguments, &ranks);
-  if (!is_first) say_to(std::cerr);
-  if (code == kDone || ranks.count() == 1) return code;
+  if (!is_first) mimetra::cli::say_to(std::cerr);
+  if (code == mimetra::cli::kDone || ranks.count() == 1) return code;
   if (!is_first) {
     std::this_thread::sleep_for(std::chrono::seconds(2));
     std::cerr << said.str() << std::flush;
@@ -207,7 +166,7 @@ int single_exit_code(const std::vector<std::string>& arguments) {
         "mpirun started {} processes, and this build does the whole work in each; take the "
         "command that './dev build mpi' makes, or start each with its own work and without {}",
         processes, variable);
-    return kUsage;
+    return mimetra::cli::kUsage;
   }
   return exit_code_of(arguments, nullptr);
 }
@@ -225,7 +184,7 @@ void keep_standard_streams() {
 
 int main(int argc, char** argv) {
   keep_standard_streams();
-  say_to(std::cerr);
+  mimetra::cli::say_to(std::cerr);
   take_signals();
   const std::vector<std::string> arguments(argv + 1, argv + argc);
 #ifdef MIMETRA_HAS_MPI

@@ -1,0 +1,56 @@
+#include "toolkit/cli/exit_code.h"
+
+#include <memory>
+#include <new>
+#include <ostream>
+#include <stdexcept>
+
+#include <spdlog/sinks/ostream_sink.h>
+#include <spdlog/spdlog.h>
+
+#include "toolkit/cli/terminal_text.h"
+#include "toolkit/mesh/errors.h"
+#include "toolkit/mesh/progress.h"
+#include "toolkit/operations/option_words.h"
+
+namespace mimetra::cli {
+
+namespace {
+
+ExitCode fail(ExitCode code, const std::exception& error) {
+  spdlog::error(terminal_text(with_options_spelled(error.what(), spelled_for_command)));
+  return code;
+}
+
+}  // namespace
+
+void say_to(std::ostream& stream) {
+  spdlog::set_default_logger(std::make_shared<spdlog::logger>(
+      "mimetra", std::make_shared<spdlog::sinks::ostream_sink_st>(stream, true)));
+  spdlog::set_pattern("%n: %l: %v");
+}
+
+ExitCode exit_code_of(const std::function<void()>& run) {
+  try {
+    run();
+    return kDone;
+  } catch (const UsageError& error) {
+    return fail(kUsage, error);
+  } catch (const MismatchError& error) {
+    return fail(kMismatch, error);
+  } catch (const IoError& error) {
+    return fail(kBadInput, error);
+  } catch (const OutputError& error) {
+    return fail(kOutput, error);
+  } catch (const Cancelled& error) {
+    return fail(kInterrupted, error);
+  } catch (const std::invalid_argument& error) {
+    return fail(kUsage, error);
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const std::exception& error) {
+    return fail(kFailed, error);
+  }
+}
+
+}  // namespace mimetra::cli
