@@ -28,10 +28,8 @@ TEST_F(PluginCommand, IsInHelpListingAndCompletion) {
               AllOf(HasSubstr("--strength X"), HasSubstr("(default 0.5)"),
                     HasSubstr("mimetra smooth take.npy --strength 0.3 -o smoothed.npy")));
   EXPECT_THAT(run_with("samples", "operations --json").out, HasSubstr("\"name\": \"smooth\""));
-  for (const char* shell : {"bash", "zsh", "fish"}) {
-    EXPECT_THAT(run_with("samples", std::string("completion --shell ") + shell).out,
-                AllOf(HasSubstr("smooth"), HasSubstr("strength")));
-  }
+  EXPECT_THAT(run_with("samples", "completion --shell bash").out,
+              AllOf(HasSubstr("smooth"), HasSubstr("strength")));
   EXPECT_THAT(run("--help").out, Not(HasSubstr("smooth")));
 }
 

@@ -64,7 +64,7 @@ MeshSequence take() {
 }
 
 Outcome misbehave(const std::string& how, const Progress& progress = {}) {
-  const Loaded loaded({kPlugins / "misbehaving"});
+  static const Loaded loaded({kPlugins / "misbehaving"});
   const Operation& operation = *loaded.table.find("misbehave");
   Invocation invocation;
   invocation.inputs["sequence"] = {{"take", FieldSequence(take())}};

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 #include <Eigen/Geometry>
 
+#include "tests/correspondence/closest_in_triangle.h"
 #include "tests/shapes.h"
 #include "toolkit/mesh/normals.h"
 
@@ -19,24 +20,6 @@ using Eigen::Vector3d;
 Vector3d random_vector(std::mt19937& generator) {
   std::uniform_real_distribution<double> coordinate(-1.5, 1.5);
   return {coordinate(generator), coordinate(generator), coordinate(generator)};
-}
-
-double distance_to_segment(const Vector3d& p, const Vector3d& a, const Vector3d& b) {
-  const double share = std::clamp((p - a).dot(b - a) / (b - a).squaredNorm(), 0.0, 1.0);
-  return (a + share * (b - a) - p).norm();
-}
-
-/// By the plane where the foot is inside, by the edges elsewhere.
-double distance_to_triangle(const Vector3d& p, const Vector3d& a, const Vector3d& b,
-                            const Vector3d& c) {
-  const Vector3d normal = (b - a).cross(c - a).normalized();
-  const Vector3d foot = p - (p - a).dot(normal) * normal;
-  const bool inside = (b - a).cross(foot - a).dot(normal) >= 0 &&
-                      (c - b).cross(foot - b).dot(normal) >= 0 &&
-                      (a - c).cross(foot - c).dot(normal) >= 0;
-  if (inside) return (p - foot).norm();
-  return std::min(
-      {distance_to_segment(p, a, b), distance_to_segment(p, b, c), distance_to_segment(p, c, a)});
 }
 
 /// The lowest of the nearest triangles that face `normal`, by looking at each.
@@ -63,7 +46,7 @@ TEST(ClosestSurface, FindsWhatLookingAtEachTriangleFinds) {
     const Vector3d point = random_vector(generator), normal = random_vector(generator);
     const auto [distance, t] =
         nearest_of_all(shape, normal, [&](const Vector3d& a, const Vector3d& b, const Vector3d& c) {
-          return distance_to_triangle(point, a, b, c);
+          return (test::closest_in(point, a, b, c) - point).norm();
         });
     const SurfacePoint found = surface.closest(point, normal);
     // Rounding only: both are of the size of the sphere.

@@ -35,27 +35,19 @@ TEST(Pairing, TakesTargetTrianglesOfWhichHalfIsOverTheSelectedOnes) {
   EXPECT_THAT(triangles_over(pairs, {}), IsEmpty());
 }
 
-TEST(Pairing, OfAMeshWithItselfCarriesEachVertexByItself) {
-  const TriMesh sphere = test::mesh_of(test::sphere(2));
-  const Pairing pairing(sphere, sphere, Correspondence::identity(128));
-  EXPECT_TRUE(pairing.is_one_to_one());
-  for (VertexIndex v = 0; v < pairing.target_vertices(); ++v) {
-    ASSERT_EQ(pairing.carriers(v).size(), 1u);
-    EXPECT_EQ(pairing.carriers(v).front().vertex, v);
-    EXPECT_EQ(pairing.carriers(v).front().weight, 1);  // bit by bit
-  }
-}
-
-TEST(Pairing, OfAMeshThatIsInsideOutCarriesEachVertexByItself) {
+TEST(Pairing, OfAMeshWithItselfCarriesEachVertexByItselfAlsoInsideOut) {
   const test::Shape sphere = test::sphere(2);
   test::Shape turned = sphere;
   turned.triangles.col(1).swap(turned.triangles.col(2));
-  const Pairing pairing(test::mesh_of(sphere), test::mesh_of(turned),
-                        Correspondence::identity(128));
-  EXPECT_TRUE(pairing.is_one_to_one());
-  for (VertexIndex v = 0; v < pairing.target_vertices(); ++v) {
-    ASSERT_EQ(pairing.carriers(v).size(), 1u);
-    EXPECT_EQ(pairing.carriers(v).front().vertex, v);
+  for (const test::Shape& target : {sphere, turned}) {
+    const Pairing pairing(test::mesh_of(sphere), test::mesh_of(target),
+                          Correspondence::identity(128));
+    EXPECT_TRUE(pairing.is_one_to_one());
+    for (VertexIndex v = 0; v < pairing.target_vertices(); ++v) {
+      ASSERT_EQ(pairing.carriers(v).size(), 1u);
+      EXPECT_EQ(pairing.carriers(v).front().vertex, v);
+      EXPECT_EQ(pairing.carriers(v).front().weight, 1);  // bit by bit
+    }
   }
 }
 

@@ -91,34 +91,26 @@ TEST(Renumbering, OfAMeshToItselfMovesNothing) {
   EXPECT_EQ(found.summary(), "the same faces");
 }
 
-TEST(Renumbering, FollowsFacesInOrder) {
+TEST(Renumbering, FollowsFacesInOrderFromAnyFirstCorners) {
   // A sphere has many maps to itself: only the order of its faces tells which one it is.
   const TriMesh mesh = test::mesh_of(test::sphere(2));
-  const Shuffled other(mesh, {});
-  const Renumbering found = renumbering(mesh.connectivity, other.moved.connectivity);
-  EXPECT_EQ(found.vertices, other.vertices);
-  EXPECT_THAT(found.summary(), HasSubstr("the same faces, "));
-  EXPECT_THAT(found.summary(), HasSubstr("vertices renumbered"));
+  for (const bool corners : {false, true}) {
+    const Shuffled other(mesh, {.corners = corners});
+    const Renumbering found = renumbering(mesh.connectivity, other.moved.connectivity);
+    EXPECT_EQ(found.vertices, other.vertices);
+    EXPECT_THAT(found.summary(), HasSubstr("the same faces, "));
+    EXPECT_THAT(found.summary(), HasSubstr("vertices renumbered"));
+  }
 }
 
-TEST(Renumbering, FollowsFacesInOrderFromOtherFirstCorners) {
-  const TriMesh mesh = test::mesh_of(test::sphere(2));
-  const Shuffled other(mesh, {.corners = true});
-  EXPECT_EQ(renumbering(mesh.connectivity, other.moved.connectivity).vertices, other.vertices);
-}
-
-TEST(Renumbering, IsFoundByTheGraphWhereFacesAreShuffled) {
-  const TriMesh mesh = test::mesh_of(notched_grid());
-  const Shuffled other(mesh, {.corners = true, .faces = true});
-  EXPECT_EQ(renumbering(mesh.connectivity, other.moved.connectivity).vertices, other.vertices);
-}
-
-TEST(Renumbering, FindsEachOfSeveralParts) {
+TEST(Renumbering, FindsEachPartByTheGraphWhereFacesAreShuffled) {
   test::Shape other_part = test::grid(4, 6);
   other_part.triangles = Triangles(other_part.triangles.bottomRows(29));
-  const TriMesh mesh = test::mesh_of(test::both(notched_grid(), other_part));
-  const Shuffled other(mesh, {.corners = true, .faces = true});
-  EXPECT_EQ(renumbering(mesh.connectivity, other.moved.connectivity).vertices, other.vertices);
+  for (const test::Shape& shape : {notched_grid(), test::both(notched_grid(), other_part)}) {
+    const TriMesh mesh = test::mesh_of(shape);
+    const Shuffled other(mesh, {.corners = true, .faces = true});
+    EXPECT_EQ(renumbering(mesh.connectivity, other.moved.connectivity).vertices, other.vertices);
+  }
 }
 
 TEST(Renumbering, IsRefusedWhereTwoPartsAreAlike) {

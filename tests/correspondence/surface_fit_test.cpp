@@ -10,6 +10,7 @@
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 
+#include "tests/correspondence/closest_in_triangle.h"
 #include "tests/shapes.h"
 #include "toolkit/correspondence/deformation_system.h"
 #include "toolkit/mesh/errors.h"
@@ -23,27 +24,6 @@ using testing::HasSubstr;
 using testing::ThrowsMessage;
 
 const std::vector<Marker> kCorners = {{0, 0}, {1, 1}, {2, 2}, {3, 3}, {4, 4}, {5, 5}};
-
-/// The closest point of a triangle by trying its plane, edges and corners.
-Vector3d closest_in(const Vector3d& p, const Vector3d& a, const Vector3d& b, const Vector3d& c) {
-  const Vector3d normal = (b - a).cross(c - a).normalized();
-  const Vector3d foot = p - (p - a).dot(normal) * normal;
-  if ((b - a).cross(foot - a).dot(normal) >= 0 && (c - b).cross(foot - b).dot(normal) >= 0 &&
-      (a - c).cross(foot - c).dot(normal) >= 0) {
-    return foot;
-  }
-  Vector3d best = a;
-  const auto try_edge = [&](const Vector3d& from, const Vector3d& to) {
-    const double share =
-        std::clamp((p - from).dot(to - from) / (to - from).squaredNorm(), 0.0, 1.0);
-    const Vector3d at = from + share * (to - from);
-    if ((at - p).norm() < (best - p).norm()) best = at;
-  };
-  try_edge(a, b);
-  try_edge(b, c);
-  try_edge(c, a);
-  return best;
-}
 
 /// Section 4 as it stands, with dense normal equations and no tricks, for closed surfaces without
 /// seams whose box has a diagonal of 1.
@@ -139,7 +119,7 @@ class LiteralFit {
         const Vector3d normal = (corner(1) - corner(0)).cross(corner(2) - corner(0));
         if (normal.dot(normals.row(v)) <= 0) continue;
         const Vector3d p = positions.row(v);
-        const Vector3d at = closest_in(p, corner(0), corner(1), corner(2));
+        const Vector3d at = test::closest_in(p, corner(0), corner(1), corner(2));
         if ((at - p).norm() >= least) continue;
         least = (at - p).norm();
         result.row(v) = at;
@@ -197,7 +177,8 @@ TEST(SurfaceFit, PutsMarkersOnMarkersAndTheRestOnTheSurface) {
         return target.positions.row(target.triangles(t, c));
       };
       const Vector3d p = fit.positions.row(v);
-      nearest = std::min(nearest, (closest_in(p, corner(0), corner(1), corner(2)) - p).norm());
+      nearest =
+          std::min(nearest, (test::closest_in(p, corner(0), corner(1), corner(2)) - p).norm());
     }
     farthest = std::max(farthest, nearest);
   }

@@ -4,8 +4,7 @@
 
 #include <gmock/gmock.h>
 
-#include "samples/head/head.h"
-#include "tests/fitting/synthetic_clip.h"
+#include "tests/fitting/two_videos.h"
 #include "tests/temporary_folder.h"
 #include "toolkit/operations/parameter.h"
 
@@ -16,7 +15,7 @@ using testing::AllOf;
 using testing::HasSubstr;
 
 struct HeadFromAfar {
-  MorphableModel head = samples::parametric_head();
+  const MorphableModel& head = test::built_in_head();
   MappedLandmarks mapped;
   double side = 0;  ///< of the landmarks' box on the head
 };

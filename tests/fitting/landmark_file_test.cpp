@@ -36,9 +36,7 @@ TEST_F(Landmarks, OfAPtsFileBecomeZeroBased) {
   EXPECT_THAT(track.names, ElementsAre("1", "2"));
   EXPECT_EQ(track.points, Eigen::RowVector4d(0, 0, 2.5, 6));
   EXPECT_EQ(track.times.size(), 0);
-}
-
-TEST_F(Landmarks, OfAPtsFileMayHaveAByteOrderMarkAndCarriageReturns) {
+  // With a byte order mark and carriage returns.
   EXPECT_EQ(read("a.PTS", "\xEF\xBB\xBFversion: 1\r\nn_points: 1\r\n{\r\n2 3\r\n}\r\n").points,
             Eigen::RowVector2d(1, 2));
 }
@@ -64,15 +62,6 @@ TEST_F(Landmarks, OfABrokenPtsFileNameTheLine) {
               HasSubstr("line 5: expected '}', found '3'"));
   EXPECT_THAT(message("a.pts", "version: 1\nn_points: 99999999999\n{\n1 2\n}\n"),
               HasSubstr("line 2: n_points is 99999999999"));
-}
-
-TEST_F(Landmarks, OfACsvTrackHaveTimesAndGaps) {
-  const LandmarkTrack track =
-      read("a.csv", "frame,time,x0,y0,x1,y1\n1,0,10,20,30,40\n2,0.04,,,31,41\n");
-  EXPECT_EQ(track.frames(), 2);
-  EXPECT_THAT(track.names, ElementsAre("1", "2"));
-  EXPECT_EQ(track.times, Eigen::Vector2d(0, 0.04));
-  EXPECT_EQ(track.points.row(0), Eigen::RowVector4d(10, 20, 30, 40));
 }
 
 TEST_F(Landmarks, OfACsvTrackAreWholeOrMissing) {

@@ -106,13 +106,6 @@ std::string quarter_of_an_image() {
   return "[[" + points + "]]";
 }
 
-TEST_F(LandmarkInput, InSharesOfTheImageBecomePixels) {
-  write("m.json", quarter_of_an_image());
-  const LandmarksRead read = this->read("m.json", {}, {.image_size = "1920x1080"});
-  EXPECT_EQ(read.track.points(0, 0), 479.5);
-  EXPECT_EQ(read.track.points(0, 1), 539.5);
-}
-
 TEST_F(LandmarkInput, InSharesAreKnownByTheirRange) {
   // Six landmarks that nobody numbers as MediaPipe does.
   const std::string names = "x0,y0,x1,y1,x2,y2,x3,y3,x4,y4,x5,y5\n";
@@ -136,8 +129,11 @@ TEST_F(LandmarkInput, InSharesIsKnownAlthoughOneIsFoundWrong) {
               HasSubstr("at least nine in ten have no coordinate above 2"));
 }
 
-TEST_F(LandmarkInput, InSharesNeedsTheSizeOfTheImage) {
+TEST_F(LandmarkInput, InSharesBecomesPixelsOfTheImageWhoseSizeItNeeds) {
   write("m.json", quarter_of_an_image());
+  const LandmarksRead pixels = read("m.json", {}, {.image_size = "1920x1080"});
+  EXPECT_EQ(pixels.track.points(0, 0), 479.5);
+  EXPECT_EQ(pixels.track.points(0, 1), 539.5);
   EXPECT_THAT(test::message_of<MismatchError>([&] { read("m.json"); }),
               AllOf(HasSubstr("in shares"), HasSubstr("option 'image-size'")));
   for (const std::string size : {"", "1920", "1920x", "x1080", "1920x1080x3", "0x5", "-3x4"}) {

@@ -17,7 +17,7 @@ namespace {
 
 using testing::HasSubstr;
 
-/// The built-in head, whose landmarks are known, is looked for once.
+/// The built-in head's landmarks are known.
 class LandmarksOfDrawings : public testing::Test {
  protected:
   void SetUp() override { MIMETRA_SKIP_WITHOUT(kDebianFaceModel); }
@@ -31,17 +31,14 @@ class LandmarksOfDrawings : public testing::Test {
     static const LandmarkFinder finder = landmarks_of_drawings();
     return find_landmarks(head, finder, {.pixels = 288});
   }
-  static const FaceLandmarks& of_the_head() {
-    static const FaceLandmarks found = found_in(sample_head());
-    return found;
-  }
 };
 
-TEST_F(LandmarksOfDrawings, AreWhereTheHeadHasThem) {
-  const FaceLandmarks& found = of_the_head();
-  std::map<int, VertexIndex> known;
+TEST_F(LandmarksOfDrawings, AreWhereTheHeadHasThemHoweverItLiesInWhateverUnit) {
+  const Head head = sample_head();
+  const FaceLandmarks found = found_in(head);
+  std::map<int, VertexIndex> known, upright;
   for (const auto& [number, vertex] : samples::head_landmarks()) known[number - 1] = vertex;
-  const Positions positions = sample_head().mesh.positions;
+  const Positions& positions = head.mesh.positions;
   double sum = 0, largest = 0;
   for (const FaceLandmark& landmark : found.found) {
     ASSERT_TRUE(known.contains(landmark.number));
@@ -49,6 +46,7 @@ TEST_F(LandmarksOfDrawings, AreWhereTheHeadHasThem) {
         (positions.row(landmark.vertex) - positions.row(known.at(landmark.number))).norm();
     sum += off / found.size;
     largest = std::max(largest, off / found.size);
+    upright[landmark.number] = landmark.vertex;
   }
   EXPECT_GE(found.found.size(), 36u);
   EXPECT_GE(found.views_with_face, found.views - 1);
@@ -58,24 +56,19 @@ TEST_F(LandmarksOfDrawings, AreWhereTheHeadHasThem) {
   EXPECT_LT(largest, 0.16);
   EXPECT_GT(found.axes(1, 1), 0.95);
   EXPECT_GT(found.axes(2, 2), 0.95);
-}
 
-TEST_F(LandmarksOfDrawings, AreTheSameOnAHeadThatLiesOnItsBackInAnotherUnit) {
-  Head lying = sample_head();
+  Head lying = head;  // on its back
   for (auto row : lying.mesh.positions.rowwise())
     row = Eigen::RowVector3d(row[0], -row[2], row[1]) / 1000;
-  const FaceLandmarks found = found_in(lying);
-  std::map<int, VertexIndex> upright;
-  for (const FaceLandmark& landmark : of_the_head().found)
-    upright[landmark.number] = landmark.vertex;
+  const FaceLandmarks there = found_in(lying);
   int same = 0;
-  for (const FaceLandmark& landmark : found.found) {
+  for (const FaceLandmark& landmark : there.found) {
     same += upright.contains(landmark.number) && upright[landmark.number] == landmark.vertex;
   }
   // Rounding may carry a few to the next pixel.
   EXPECT_GE(same, 0.9 * double(upright.size()));
-  EXPECT_GT(found.axes(2, 1), -1);
-  EXPECT_LT(found.axes(2, 1), -0.95);
+  EXPECT_GT(there.axes(2, 1), -1);
+  EXPECT_LT(there.axes(2, 1), -0.95);
 }
 
 TEST_F(LandmarksOfDrawings, AreNotOnABall) {

@@ -9,8 +9,7 @@
 
 #include "fitting/head_rotation.h"
 #include "fitting/landmark_fitter.h"
-#include "samples/head/head.h"
-#include "tests/fitting/synthetic_clip.h"
+#include "tests/fitting/two_videos.h"
 
 namespace mimetra {
 namespace {
@@ -29,7 +28,7 @@ MappedLandmarks still_head(int frames) {
   AffineCamera camera = AffineCamera::Zero();
   camera(0, 0) = 2;
   camera(1, 1) = -2;
-  const Positions points = samples::parametric_head().mean()(mapped.vertices, Eigen::all);
+  const Positions points = test::built_in_head().mean()(mapped.vertices, Eigen::all);
   mapped.points.resize(frames, 2 * points.rows());
   mapped.points.rowwise() = test::as_row(project(camera, points));
   return mapped;
@@ -66,7 +65,7 @@ TEST(PartialFrames, AreThoseOfEyesOrMouthOrAFewLandmarksAlone) {
   keep(mapped, 2, is_of_mouth);
   keep(mapped, 3, [](int number) { return number == 31 || number == 37 || number == 46; });
   keep(mapped, 4, [](int) { return false; });
-  EXPECT_THAT(partial_frames(samples::parametric_head(), mapped), ElementsAre(1, 2, 3));
+  EXPECT_THAT(partial_frames(test::built_in_head(), mapped), ElementsAre(1, 2, 3));
 }
 
 TEST(PartialFrames, AreNotThoseOfAHalfNorOfEverySecondLandmark) {
@@ -75,26 +74,26 @@ TEST(PartialFrames, AreNotThoseOfAHalfNorOfEverySecondLandmark) {
   keep(mapped, 2, [](int number) { return !is_of_mouth(number); });
   keep(mapped, 3, [](int number) { return number % 2 == 0; });
   keep(mapped, 4, [](int number) { return !is_of_eyes(number); });
-  EXPECT_THAT(partial_frames(samples::parametric_head(), mapped), IsEmpty());
+  EXPECT_THAT(partial_frames(test::built_in_head(), mapped), IsEmpty());
 }
 
 TEST(PartialFrames, AreNoneWhereFewFramesShowMore) {
   MappedLandmarks mapped = still_head(5);
   for (const int frame : {0, 1}) keep(mapped, frame, is_of_eyes);
-  EXPECT_THAT(partial_frames(samples::parametric_head(), mapped), ElementsAre(0, 1));
+  EXPECT_THAT(partial_frames(test::built_in_head(), mapped), ElementsAre(0, 1));
   for (const int frame : {2, 3}) keep(mapped, frame, is_of_eyes);
-  EXPECT_THAT(partial_frames(samples::parametric_head(), mapped), IsEmpty());
+  EXPECT_THAT(partial_frames(test::built_in_head(), mapped), IsEmpty());
   // Three landmarks make no camera.
   keep(mapped, 1, [](int number) { return number == 37 || number == 40 || number == 46; });
-  EXPECT_THAT(partial_frames(samples::parametric_head(), mapped), ElementsAre(1));
+  EXPECT_THAT(partial_frames(test::built_in_head(), mapped), ElementsAre(1));
   keep(mapped, 4, is_of_eyes);
-  EXPECT_THAT(partial_frames(samples::parametric_head(), mapped), IsEmpty());
+  EXPECT_THAT(partial_frames(test::built_in_head(), mapped), IsEmpty());
 }
 
 /// The uncertainty is that of the fit: turns that are found for landmarks with its noise spread as
 /// it says. Without expressions, whose bounds make them no normal variables.
 TEST(TurnUncertainty, IsTheSpreadOfTheTurnsThatAreFound) {
-  const MorphableModel head = samples::parametric_head();
+  const MorphableModel& head = test::built_in_head();
   const MorphableModel rigid(head.shared_connectivity(), head.mean(), {}, {});
   const MappedLandmarks mapped = still_head(1);
   std::vector<Eigen::Index> all, right;

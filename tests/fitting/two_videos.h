@@ -75,7 +75,13 @@ inline TwoVideos two_videos(const MorphableModel& model, std::vector<int> vertic
   return videos;
 }
 
-/// The built-in head's vertices of iBUG's landmarks.
+/// Made once for all tests.
+inline const MorphableModel& built_in_head() {
+  static const MorphableModel head = samples::parametric_head();
+  return head;
+}
+
+/// Its vertices of iBUG's landmarks.
 inline std::vector<int> vertices_of_landmarks() {
   std::vector<int> vertices;
   for (const auto& [landmark, vertex] : samples::head_landmarks()) vertices.push_back(vertex);

@@ -100,7 +100,7 @@ double distance_of_mean(const test::TwoVideos& videos) {
 
 TEST(TwoVideos, GiveTheSourcesExpressionsOnTheTargetsFaceForTheBuiltInHead) {
   const WeightTrack track = samples::parametric_performance();
-  const MorphableModel head = samples::parametric_head();
+  const MorphableModel& head = test::built_in_head();
   const test::TwoVideos videos =
       test::two_videos(head, test::vertices_of_landmarks(), track.weights, track.times, 1);
   // Four identities are seen by 52 landmarks in 120 frames: half a pixel of each.

@@ -250,7 +250,8 @@ TEST_F(Video, KeepsTheSoundOfAnother) {
   add(16, 2);
   wav += "data";
   add(16000, 4);
-  for (int i = 0; i < 8000; ++i) add(static_cast<std::uint32_t>(8000 * std::sin(0.3 * i)), 2);
+  for (int i = 0; i < 8000; ++i)
+    add(static_cast<std::uint32_t>(std::lround(8000 * std::sin(0.3 * i))), 2);
   write_bytes_of(folder_ / "tone.wav", wav);
   const std::string samples = wav.substr(44);
 

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <fstream>
 
 #include <gmock/gmock.h>
@@ -74,6 +75,12 @@ double landmark_distance(const LandmarkTrack& a, const LandmarkTrack& b) {
   return sum / count;
 }
 
+/// Frames without landmarks have NaN, which is not equal to itself.
+bool same_bytes(const Frames& a, const Frames& b) {
+  return a.rows() == b.rows() && a.cols() == b.cols() &&
+         std::memcmp(a.data(), b.data(), sizeof(double) * std::size_t(a.size())) == 0;
+}
+
 class VideoTrack : public testing::Test {
  protected:
   void SetUp() override { MIMETRA_SKIP_WITHOUT(kDebianFaceModel); }
@@ -98,31 +105,36 @@ class VideoTrack : public testing::Test {
   TemporaryFolder folder_;
 };
 
-TEST_F(VideoTrack, FindsWhatASearchOfEveryFrameFinds) {
-  const std::vector<Image> images = talking_head(33, 320, 240);
-  const FaceTrack near = track_face(DrawnImages(images, true));
+/// A face that leaves meanwhile, in more frames than one thread searches at a time.
+TEST_F(VideoTrack, FindsWhatASearchOfEveryFrameFindsOnAnyNumberOfThreads) {
+  std::vector<Image> images = talking_head(33, 320, 240);
+  std::fill(images.begin() + 10, images.begin() + 20, Image(320, 240, {90, 100, 110}));
+  const FaceTrack near = track_face(DrawnImages(images, true), {.threads = 1});
+  EXPECT_EQ(seen(near.landmarks), all_but(33, 10, 20));
+  EXPECT_THAT(near.notes, testing::Contains(HasSubstr("10 of 33 images show no face")));
+
   const FaceTrack everywhere = track_face(DrawnImages(images, false));
   EXPECT_EQ(seen(near.landmarks), seen(everywhere.landmarks));
   const double distance = landmark_distance(near.landmarks, everywhere.landmarks);
   RecordProperty("distance", std::to_string(distance));
   EXPECT_LT(distance, 0.5);
-}
 
-TEST_F(VideoTrack, IsTheSameOnAnyNumberOfThreads) {
-  const DrawnImages images(talking_head(40, 320, 240), true);
-  const FaceTrack one = track_face(images, {.threads = 1});
-  const FaceTrack several = track_face(images, {.threads = 3});
-  EXPECT_EQ(one.landmarks.points, several.landmarks.points);
-  EXPECT_EQ(one.landmarks.confidence, several.landmarks.confidence);
+  const FaceTrack several = track_face(DrawnImages(images, true), {.threads = 3});
+  EXPECT_TRUE(same_bytes(near.landmarks.points, several.landmarks.points));
+  EXPECT_EQ(near.landmarks.confidence, several.landmarks.confidence);
 }
 
 TEST_F(VideoTrack, HasTheTimesOfTheFrames) {
   const std::vector<double> uneven = {0, 0.05, 0.1, 0.3, 0.35};
-  write_video(folder_ / "v.mp4", talking_head(5), uneven);
+  std::vector<Image> images = talking_head(5);
+  images[3] = Image(images[3].width, images[3].height, {90, 100, 110});
+  write_video(folder_ / "v.mp4", images, uneven);
   const LandmarksRead read = read_landmark_input(folder_ / "v.mp4", {.frames = "1::2"});
   ASSERT_EQ(read.track.frames(), 2);
   EXPECT_NEAR(read.track.times[0], 0.05, 1e-4);
   EXPECT_NEAR(read.track.times[1], 0.3, 1e-4);
+  ASSERT_EQ(read.frame_notes.size(), 2u);
+  EXPECT_EQ(read.frame_notes[1], "no face found");
   EXPECT_THAT(read.files, ElementsAre(folder_ / "v.mp4"));
   ASSERT_TRUE(read.images);
   EXPECT_EQ(read.images->frames(), 2);
@@ -132,26 +144,16 @@ TEST_F(VideoTrack, HasTheTimesOfTheFrames) {
               AllOf(HasSubstr("5 frames have times of their own"), HasSubstr("'fps'")));
 }
 
-TEST_F(VideoTrack, OfAFaceThatLeavesAndReturnsHasNoneMeanwhile) {
-  std::vector<Image> images = talking_head(33, 320, 240);
-  const Image nobody(images.front().width, images.front().height, {90, 100, 110});
-  std::fill(images.begin() + 10, images.begin() + 20, nobody);
-  const LandmarksRead read = read_landmark_input(written("v.mp4", images));
-  EXPECT_EQ(seen(read.track), all_but(33, 10, 20));
-  EXPECT_THAT(read.notes, testing::Contains(HasSubstr("10 of 33 images show no face")));
-  EXPECT_EQ(read.frame_notes[12], "no face found");
-}
-
 TEST_F(VideoTrack, WithoutAFaceIsAnError) {
-  const std::vector<Image> images(5, Image(320, 240, {90, 100, 110}));
+  const std::vector<Image> images(2, Image(320, 240, {90, 100, 110}));
   EXPECT_THAT(message_of<IoError>([&] { read_landmark_input(written("v.mp4", images)); }),
-              AllOf(HasSubstr("v.mp4"), HasSubstr("shows no face"), HasSubstr("other 4")));
+              AllOf(HasSubstr("v.mp4"), HasSubstr("shows no face"), HasSubstr("other 1")));
 }
 
 TEST_F(VideoTrack, OfTwoFacesFollowsTheLargerOne) {
   const BlendshapeModel person = samples::parametric_head().person();
   std::vector<Image> images;
-  for (int f = 0; f < 35; ++f) {
+  for (int f = 0; f < 32; ++f) {
     // The smaller one grows beyond the other, which it does not pass.
     Image image = drawn_head(640, 360, {.x = 180 + 2.0 * f, .y = 180, .height = 240});
     draw_head(person.neutral(), person.connectivity().triangles,
@@ -159,8 +161,8 @@ TEST_F(VideoTrack, OfTwoFacesFollowsTheLargerOne) {
     images.push_back(image);
   }
   const LandmarksRead read = read_landmark_input(written("v.mp4", images));
-  ASSERT_EQ(seen(read.track).size(), 35u);
-  for (int f = 0; f < 35; ++f) EXPECT_NEAR(read.track.points(f, 2 * 30), 180 + 2.0 * f, 40);
+  ASSERT_EQ(seen(read.track).size(), 32u);
+  for (int f = 0; f < 32; ++f) EXPECT_NEAR(read.track.points(f, 2 * 30), 180 + 2.0 * f, 40);
   EXPECT_THAT(read.notes, testing::Contains(HasSubstr("show several faces")));
 }
 
@@ -178,7 +180,7 @@ TEST_F(VideoTrack, ThatBreaksOffIsAnErrorUnlessOnlySoundFramesAreTaken) {
 }
 
 TEST_F(VideoTrack, CanBeCancelled) {
-  const DrawnImages images(talking_head(40, 320, 240), true);
+  const DrawnImages images(std::vector<Image>(40, talking_head(1, 320, 240).front()), true);
   for (const int threads : {1, 2}) {
     const FaceOptions options{.threads = threads, .progress = [](double) { return false; }};
     EXPECT_THROW(track_face(images, options), Cancelled);

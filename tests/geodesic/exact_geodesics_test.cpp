@@ -2,7 +2,6 @@
 #include <cstring>
 #include <fstream>
 #include <limits>
-#include <thread>
 
 #include <gtest/gtest.h>
 
@@ -79,19 +78,6 @@ TEST(ExactGeodesics, AreInfiniteOnOtherComponents) {
   const Eigen::VectorXd distances = exact_on(two).distances(8);
   EXPECT_EQ(distances.head(6), Eigen::VectorXd::Constant(6, infinity));
   EXPECT_TRUE(distances.tail(6).allFinite());
-}
-
-TEST(ExactGeodesics, GiveTheSameBytesInEveryThread) {
-  const ExactGeodesics exact = exact_on(test::bumpy_sphere(3));
-  const Eigen::VectorXd expected = exact.distances(4);
-  std::array<Eigen::VectorXd, 2> results;
-  {
-    std::vector<std::jthread> threads;
-    threads.reserve(results.size());
-    for (auto& result : results) threads.emplace_back([&] { result = exact.distances(4); });
-  }
-  EXPECT_EQ(results[0], expected);
-  EXPECT_EQ(results[1], expected);
 }
 
 TEST(ExactGeodesics, RefuseSourcesThatDoNotExist) {

@@ -8,17 +8,10 @@ namespace mimetra::geodesic {
 namespace {
 
 TEST(SupportMap, IsZeroUpToTheFirstDistanceOneFromTheSecondAndLinearBetween) {
-  const Eigen::VectorXd distances{{0, 0.5, 1, 1.5, 2, 2.5, 3, 4}};
-  const Eigen::VectorXd expected{{0, 0, 0, 0.25, 0.5, 0.75, 1, 1}};
-  EXPECT_EQ(support_map(distances, 1, 3), expected);
-}
-
-TEST(SupportMap, IsOneAtInfinity) {
   const double infinity = std::numeric_limits<double>::infinity();
-  EXPECT_EQ(support_map(Eigen::VectorXd::Constant(1, infinity), 0, 1)[0], 1);
-}
-
-TEST(SupportMap, MayStartAtZero) {
+  const Eigen::VectorXd distances{{0, 0.5, 1, 1.5, 2, 2.5, 3, 4, infinity}};
+  const Eigen::VectorXd expected{{0, 0, 0, 0.25, 0.5, 0.75, 1, 1, 1}};
+  EXPECT_EQ(support_map(distances, 1, 3), expected);
   EXPECT_EQ(support_map(Eigen::VectorXd{{0, 1}}, 0, 2), (Eigen::VectorXd{{0, 0.5}}));
 }
 

@@ -168,12 +168,6 @@ TEST(Draco, AttributesThatThePrimitiveItselfDoesNotNameAreRefused) {
   }
 }
 
-TEST(Draco, AVertexOnAJointThatItsSkinDoesNotHaveIsAnError) {
-  GltfBuilder gltf = hanging_gltf();
-  gltf.root["skins"][0]["joints"] = {1};
-  EXPECT_THAT(refusal(gltf.glb()), HasSubstr("hangs on joint 1 of 1, which count from 0"));
-}
-
 TEST(Draco, EveryTruncatedPrefixIsAnError) {
   const std::string encoded = draco_octahedron();
   for (std::size_t bytes = 0; bytes < encoded.size(); ++bytes) {

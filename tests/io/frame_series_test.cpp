@@ -109,12 +109,6 @@ TEST_F(FolderOfFrames, RefusesTwoFilesOfOneNumber) {
   EXPECT_THAT(refusal(), AllOf(HasSubstr("f_01.obj"), HasSubstr("f_1.obj"), HasSubstr("number")));
 }
 
-TEST_F(FolderOfFrames, RefusesFramesOfTwoFormats) {
-  write_frames({0, 1, 2});
-  write_bytes(folder_ / "f_3.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
-  EXPECT_THAT(refusal(), HasSubstr("several formats"));
-}
-
 TEST_F(FolderOfFrames, RefusesALinkThatLeadsNowhere) {
   write_frames({0, 1});
   fs::create_symlink("gone.obj", folder_ / "f_2.obj");
@@ -168,9 +162,15 @@ TEST_F(FolderOfFrames, PatternThatMatchesSomeFilesNamesTheOthersAndThePatternOfA
 
 class OrderOfFrames : public FolderOfFrames {
  protected:
-  /// Writes the files and returns their names in the order of frames.
-  std::vector<std::string> ordered(const std::vector<std::string>& stems) {
+  /// Writes the files, and no others.
+  void write_alone(const std::vector<std::string>& stems) {
+    for (const std::string& name : folder_.names()) fs::remove(folder_ / name);
     for (const std::string& stem : stems) write(stem + ".obj");
+  }
+
+  /// Writes the files, and no others, and returns their names in the order of frames.
+  std::vector<std::string> ordered(const std::vector<std::string>& stems) {
+    write_alone(stems);
     std::vector<std::string> names;
     for (const fs::path& frame : series().frames) names.push_back(frame.stem().string());
     return names;
@@ -187,9 +187,6 @@ TEST_F(OrderOfFrames, TakesAMinusForASignBehindASeparatorOnly) {
   EXPECT_THAT(ordered({"head.-1", "head.-2", "head.0"}),
               ElementsAre("head.-2", "head.-1", "head.0"));
   EXPECT_EQ(frames_of_pattern((folder_ / "head.%d.obj").string()).frames.size(), 3u);
-}
-
-TEST_F(OrderOfFrames, BehindALetterAndAMinusIsThatOfTheDigits) {
   EXPECT_THAT(ordered({"head-001", "head-002", "head-003"}),
               ElementsAre("head-001", "head-002", "head-003"));
 }
@@ -212,75 +209,52 @@ TEST_F(OrderOfFrames, OfPaddedNumbersBelowZeroMatchesThePatternOfAnyProgram) {
 }
 
 TEST_F(OrderOfFrames, IsThatOfDecimalNumbers) {
-  EXPECT_THAT(ordered({"t_0.0", "t_0.25", "t_0.5", "t_0.75", "t_1.0", "t_1.25"}),
-              ElementsAre("t_0.0", "t_0.25", "t_0.5", "t_0.75", "t_1.0", "t_1.25"));
+  // Without even steps, without a point in some, with as many digits behind the point.
+  const std::vector<std::vector<std::string>> takes = {{"0.033", "0.1", "0.133", "2.5"},
+                                                       {"0", "0.5"},
+                                                       {"t_0", "t_0.04", "t_0.08", "t_0.12"},
+                                                       {"t_0.10", "t_0.25", "t_0.50", "t_0.75"}};
+  for (const std::vector<std::string>& stems : takes) {
+    EXPECT_THAT(ordered(stems), ElementsAreArray(stems));
+  }
+  const std::vector<std::string> some = {"t_9", "t_9.5", "t_10", "t_10.5", "t_11", "t_11.5"};
+  EXPECT_THAT(ordered(some), ElementsAreArray(some));
+  EXPECT_THAT(series().notes, ElementsAre(HasSubstr("the numbers 9 to 11.5")));
+  const std::vector<std::string> even = {"t_0.0", "t_0.25", "t_0.5", "t_0.75", "t_1.0", "t_1.25"};
+  EXPECT_THAT(ordered(even), ElementsAreArray(even));
   EXPECT_THAT(series().notes,
               ElementsAre(AllOf(HasSubstr("0.0 to 1.25"), HasSubstr("not taken for times"))));
 }
 
-TEST_F(OrderOfFrames, IsThatOfDecimalNumbersWithoutEvenSteps) {
-  EXPECT_THAT(ordered({"0.033", "0.1", "0.133", "2.5"}),
-              ElementsAre("0.033", "0.1", "0.133", "2.5"));
-}
-
-TEST_F(OrderOfFrames, IsThatOfDecimalNumbersSomeOfWhichHaveNoPoint) {
-  const std::vector<std::string> stems = {"t_9", "t_9.5", "t_10", "t_10.5", "t_11", "t_11.5"};
-  EXPECT_THAT(ordered(stems), ElementsAreArray(stems));
-  EXPECT_THAT(series().notes, ElementsAre(HasSubstr("the numbers 9 to 11.5")));
-}
-
-TEST_F(OrderOfFrames, BeginsWithTheOneThatHasNoPoint) {
-  const std::vector<std::string> stems = {"t_0", "t_0.04", "t_0.08", "t_0.12"};
-  EXPECT_THAT(ordered(stems), ElementsAreArray(stems));
-}
-
-TEST_F(OrderOfFrames, BeginsAtZeroHoweverFewFollow) {
-  EXPECT_THAT(ordered({"0", "0.5"}), ElementsAre("0", "0.5"));
-}
-
 TEST_F(OrderOfFrames, LeavesOutAMeshThatIsNamedAsItsTake) {
-  EXPECT_THAT(ordered({"take1", "take1.1", "take1.2", "take1.3"}),
-              ElementsAre("take1.1", "take1.2", "take1.3"));
+  // Beside frames of any step, also where its number is 0.
+  const std::vector<std::vector<std::string>> takes = {
+      {"shot0", "shot0.0101", "shot0.0102", "shot0.0103"},
+      {"mesh_1", "mesh_1.0002", "mesh_1.0004", "mesh_1.0006"},
+      {"take1", "take1.1", "take1.2", "take1.3"}};
+  for (const std::vector<std::string>& stems : takes) {
+    EXPECT_THAT(ordered(stems), ElementsAreArray(stems.begin() + 1, stems.end()));
+  }
   EXPECT_THAT(series().notes, ElementsAre(HasSubstr("take1.obj is left out of the 3 frames")));
 }
 
 TEST_F(OrderOfFrames, BehindANumberAndAPointIsThatOfIntegers) {
-  EXPECT_THAT(ordered({"v1.8", "v1.9", "v1.10", "v1.11"}),
-              ElementsAre("v1.8", "v1.9", "v1.10", "v1.11"));
-  EXPECT_THAT(series().notes, IsEmpty());
-}
-
-TEST_F(OrderOfFrames, BehindANumberAndAPointIsThatOfIntegersSomeOfWhichAreMissing) {
-  EXPECT_THAT(ordered({"v1.8", "v1.9", "v1.11", "v1.12"}),
-              ElementsAre("v1.8", "v1.9", "v1.11", "v1.12"));
+  const std::vector<std::string> some = {"v1.8", "v1.9", "v1.11", "v1.12"};
+  EXPECT_THAT(ordered(some), ElementsAreArray(some));
+  // The last ones are even as decimals, too.
+  const std::vector<std::vector<std::string>> takes = {
+      {"v1.8", "v1.9", "v1.10", "v1.11"},
+      {"v2.0009", "v2.0010", "v2.0011"},
+      {"s1.2", "s1.3", "s1.4", "s1.5", "s1.6", "s1.7", "s1.8", "s1.9", "s1.10"}};
+  for (const std::vector<std::string>& all : takes) {
+    EXPECT_THAT(ordered(all), ElementsAreArray(all));
+    EXPECT_THAT(series().notes, IsEmpty());
+  }
 }
 
 TEST_F(OrderOfFrames, OfAPatternTakesAMeshBesideItsFrames) {
   for (const char* name : {"take1.obj", "take1.8.obj", "take1.9.obj", "take1.10.obj"}) write(name);
   EXPECT_EQ(frames_of_pattern((folder_ / "take1*.obj").string()).frames.size(), 4u);
-}
-
-TEST_F(OrderOfFrames, LeavesOutAMeshOfTheNumberZeroBesidePaddedFrames) {
-  EXPECT_THAT(ordered({"shot0", "shot0.0101", "shot0.0102", "shot0.0103"}),
-              ElementsAre("shot0.0101", "shot0.0102", "shot0.0103"));
-}
-
-TEST_F(OrderOfFrames, LeavesOutAMeshBesideFramesOfAnyStep) {
-  EXPECT_THAT(ordered({"mesh_1", "mesh_1.0002", "mesh_1.0004", "mesh_1.0006"}),
-              ElementsAre("mesh_1.0002", "mesh_1.0004", "mesh_1.0006"));
-}
-
-TEST_F(OrderOfFrames, BehindANumberAndAPointIsThatOfPaddedIntegers) {
-  EXPECT_THAT(ordered({"v2.0009", "v2.0010", "v2.0011"}),
-              ElementsAre("v2.0009", "v2.0010", "v2.0011"));
-  EXPECT_THAT(series().notes, IsEmpty());
-}
-
-TEST_F(OrderOfFrames, BehindANumberAndAPointIsThatOfIntegersThatAreEvenAsDecimals) {
-  const std::vector<std::string> stems = {"s1.2", "s1.3", "s1.4", "s1.5", "s1.6",
-                                          "s1.7", "s1.8", "s1.9", "s1.10"};
-  EXPECT_THAT(ordered(stems), ElementsAreArray(stems));
-  EXPECT_THAT(series().notes, IsEmpty());
 }
 
 TEST_F(OrderOfFrames, ThatNothingTellsIsRefused) {
@@ -294,19 +268,11 @@ TEST_F(OrderOfFrames, ThatNothingTellsIsRefused) {
   EXPECT_THAT(test::message_of<IoError>([&] { frames_of_pattern(pattern); }), names_both);
 }
 
-TEST_F(OrderOfFrames, IsClearWithAsManyDigitsBehindThePoint) {
-  EXPECT_THAT(ordered({"t_0.10", "t_0.25", "t_0.50", "t_0.75"}),
-              ElementsAre("t_0.10", "t_0.25", "t_0.50", "t_0.75"));
-}
-
-TEST_F(OrderOfFrames, OfUnevenNumbersWithAndWithoutAPointIsRefused) {
-  for (const char* name : {"t_9.5.obj", "t_10.obj", "t_10.7.obj", "t_11.obj"}) write(name);
+TEST_F(OrderOfFrames, OfNumbersThatAreEvenEitherWayOrNeitherIsRefused) {
+  write_alone({"t_9.5", "t_10", "t_10.7", "t_11"});
   EXPECT_THAT(refusal(), HasSubstr("/t_10.obj: comes before t_10.7.obj if"));
-}
-
-TEST_F(OrderOfFrames, OfNumbersThatAreEvenEitherWayIsRefused) {
   // 0.12, 0.21 and 0.3, or 3, 12 and 21.
-  for (const char* name : {"t_0.3.obj", "t_0.12.obj", "t_0.21.obj"}) write(name);
+  write_alone({"t_0.3", "t_0.12", "t_0.21"});
   EXPECT_THAT(refusal(), HasSubstr("/t_0.12.obj: comes before t_0.3.obj if"));
 }
 

@@ -31,31 +31,22 @@ using test::two_nodes;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-TEST_F(GltfFiles, AModelIsANeutralAndItsTargets) {
+TEST_F(GltfFiles, AModelIsANeutralAndItsTargetsAndASequenceTheNeutral) {
   const BlendshapeModel face = model(plain().glb());
   EXPECT_EQ(face.neutral(), quarters());
   EXPECT_EQ(face.triangles(), eight());
   EXPECT_THAT(face.expressions().names, ElementsAre("smile"));
   EXPECT_EQ(face.pose(Eigen::VectorXd::Ones(1)), quarters() + moved());
-}
-
-TEST_F(GltfFiles, TargetsWithoutNamesAreNumbered) {
-  GltfBuilder gltf = plain();
-  gltf.root["meshes"][0].erase("extras");
-  EXPECT_THAT(model(gltf.glb()).expressions().names, ElementsAre("target_000"));
+  const MeshSequence sequence = read(plain().glb());
+  EXPECT_EQ(sequence.frames(), 1);
+  EXPECT_EQ(sequence.rest(), quarters());
+  EXPECT_TRUE(sequence.rest_is_known());
 }
 
 TEST_F(GltfFiles, WhoseMeshesNoNodeShowsSaySo) {
   GltfBuilder gltf = plain();
   for (auto& node : gltf.root["nodes"]) node.erase("mesh");
   EXPECT_THAT(error(gltf.glb()), HasSubstr("has meshes, and no node of its scene shows one"));
-}
-
-TEST_F(GltfFiles, WithoutAnAnimationASequenceIsTheNeutral) {
-  const MeshSequence sequence = read(plain().glb());
-  EXPECT_EQ(sequence.frames(), 1);
-  EXPECT_EQ(sequence.rest(), quarters());
-  EXPECT_TRUE(sequence.rest_is_known());
 }
 
 TEST_F(GltfFiles, FramesAreAtTheKeysOfTheWeights) {
@@ -80,17 +71,6 @@ TEST_F(GltfFiles, OtherWeightsDriveTheModelInstead) {
   EXPECT_EQ(sequence.frame(0), quarters() + 0.5 * moved());
 }
 
-TEST_F(GltfFiles, StepsAndSplinesHaveTheirValuesAtTheirKeys) {
-  GltfBuilder steps = plain(), splines = plain();
-  steps.animate(0, {0, 1}, {0.25, 0.5}, "STEP");
-  splines.animate(0, {0, 1}, {9, 0.25, 8, 7, 0.5, 6}, "CUBICSPLINE");
-  const MeshSequence stepped = read(steps.glb()), splined = read(splines.glb());
-  ASSERT_EQ(stepped.frames(), 3);
-  EXPECT_EQ(stepped.frame(0), quarters() + 0.25 * moved());
-  EXPECT_EQ(splined.frame(0), stepped.frame(0));
-  EXPECT_EQ(splined.frame(splined.frames() - 1), stepped.frame(2));
-}
-
 TEST_F(GltfFiles, SplinesAreShownBetweenTheirKeys) {
   // The spline of w(t) = t^3 through 0 and 2, whose slopes are 3 t^2; and keys as close as frames.
   GltfBuilder gltf = plain();
@@ -110,12 +90,6 @@ TEST_F(GltfFiles, SplinesThatLastForDaysAreRefused) {
   GltfBuilder gltf = plain();
   gltf.animate(0, {0, 1e6}, {0, 0, 0, 0, 1, 0}, "CUBICSPLINE");
   EXPECT_THAT(error(gltf.glb()), HasSubstr("on splines lasts 1000000 s"));
-}
-
-TEST_F(GltfFiles, WeightsThatStayShowInOneFrame) {
-  GltfBuilder gltf = plain();
-  gltf.root["meshes"][0]["weights"] = {0.5};
-  EXPECT_EQ(read(gltf.glb()).frame(0), quarters() + 0.5 * moved());
 }
 
 TEST_F(GltfFiles, SparseTargetsArePlainOnes) {

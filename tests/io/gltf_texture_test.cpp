@@ -13,18 +13,6 @@ using test::GltfFiles;
 using test::GltfJson;
 using test::quarters;
 
-TEST_F(GltfFiles, TextureCoordinatesHaveTheirOriginBelow) {
-  GltfBuilder gltf;
-  std::vector<float> uv;
-  for (int v = 0; v < 6; ++v) uv.insert(uv.end(), {0.125F * static_cast<float>(v), 0.25F});
-  const int texture = gltf.accessor(gltf.view(GltfBuilder::bytes_of(uv)), 5126, 6, "VEC2");
-  gltf.primitive(gltf.points(quarters()), gltf.faces(eight()))["attributes"]["TEXCOORD_0"] =
-      texture;
-  const Connectivity faces = model(gltf.glb()).connectivity();
-  ASSERT_EQ(faces.texture.corners, faces.polygons.corners);
-  EXPECT_EQ(faces.texture.coordinates[2], Eigen::Vector2d(0.25, 0.75));
-}
-
 /// A mesh with shares of 65535 as texture coordinates, whose material has `transform`.
 GltfBuilder textured(const std::vector<std::uint16_t>& stored, const GltfJson& transform) {
   GltfBuilder gltf;

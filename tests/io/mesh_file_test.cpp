@@ -6,7 +6,6 @@
 
 #include "tests/io/mesh_text.h"
 #include "tests/shapes.h"
-#include "tests/shared_data.h"
 #include "tests/temporary_folder.h"
 #include "toolkit/io/sequence_file.h"
 #include "toolkit/io/whole_file.h"
@@ -35,21 +34,16 @@ TriMesh mixed_polygons() {
 
 class EveryPolygonFormat : public testing::TestWithParam<std::string> {};
 
-TEST_P(EveryPolygonFormat, DoublesComeBackBitByBit) {
+TEST_P(EveryPolygonFormat, DoublesComeBackBitByBitAndFloatsAsFloats) {
   const TemporaryFolder folder;
   const TriMesh mesh = mixed_polygons();
   write_mesh(folder / ("a" + GetParam()), mesh, {.double_precision = true});
   const TriMesh read = read_mesh(folder / ("a" + GetParam()));
   EXPECT_EQ(read.positions, mesh.positions);
   EXPECT_EQ(read.connectivity.polygons, mesh.connectivity.polygons);
-}
-
-TEST_P(EveryPolygonFormat, FloatsComeBackAsFloats) {
-  const TemporaryFolder folder;
-  const TriMesh mesh = mixed_polygons();
-  write_mesh(folder / ("a" + GetParam()), mesh);
-  const Positions read = read_mesh(folder / ("a" + GetParam())).positions;
-  EXPECT_EQ(read.cast<float>(), mesh.positions.cast<float>());
+  write_mesh(folder / ("b" + GetParam()), mesh);
+  const Positions rounded = read_mesh(folder / ("b" + GetParam())).positions;
+  EXPECT_EQ(rounded.cast<float>(), mesh.positions.cast<float>());
 }
 
 TEST_P(EveryPolygonFormat, KeepsUnusedVerticesAndRepeatedOnes) {
@@ -264,9 +258,6 @@ TEST(Obj, IndexBeyondAnIntIsAnError) {
                 HasSubstr("texture coordinate"))
         << index;
   }
-  const auto overflow = test::shared_path("data/hostile/obj_overflow.obj");
-  MIMETRA_SKIP_WITHOUT(overflow);
-  EXPECT_THROW(read_mesh(overflow), IoError);
 }
 
 TEST(Ply, ReadsAnyPropertiesInEitherByteOrder) {
@@ -452,20 +443,6 @@ TEST(MeshFile, WritesAsTheExtensionInTheOptionsSays) {
   write_mesh(folder / "a.tmp", mixed_polygons(), {.extension = ".off"});
   EXPECT_THAT(read_file(folder / "a.tmp"), StartsWith("OFF\n"));
   EXPECT_THROW(write_mesh(folder / "b.tmp", mixed_polygons()), OutputError);
-}
-
-TEST(MeshFile, RealMeshesKeepTheirCounts) {
-  const fs::path facecap = test::shared_path("data/facecap/neutral.obj");
-  const fs::path ict = test::shared_path("data/ict-face/neutral.obj");
-  MIMETRA_SKIP_WITHOUT(facecap);
-  MIMETRA_SKIP_WITHOUT(ict);
-  const TriMesh head = read_mesh(facecap);
-  EXPECT_EQ(head.positions.rows(), 2694);
-  EXPECT_EQ(head.connectivity.triangles.rows(), 5032);
-  const TriMesh face = read_mesh(ict);
-  EXPECT_EQ(face.positions.rows(), 6706);
-  EXPECT_EQ(face.connectivity.polygons.size(), 6560);
-  EXPECT_EQ(face.connectivity.polygons.corners.size(), 4 * 6560);
 }
 
 }  // namespace

@@ -147,15 +147,6 @@ TEST_F(NpzFiles, AreTheSameBytesEveryTime) {
   EXPECT_EQ(read_file(folder_ / "a.npz"), read_file(folder_ / "b.npz"));
 }
 
-TEST_F(NpzFiles, LeaveNothingWhenCancelled) {
-  const MeshSequence sequence(test::mesh_of(test::octahedron()).connectivity,
-                              Frames::Constant(30, 18, 0.5));
-  EXPECT_THROW(write_sequence(sequence, folder_ / "a.npz",
-                              {.progress = [](double share) { return share < 0.5; }}),
-               Cancelled);
-  EXPECT_THAT(folder_.names(), testing::IsEmpty());
-}
-
 TEST_F(NpzFiles, EveryPrefixIsAnError) {
   write({positions_, faces_});
   const std::string whole = read_file(folder_ / "a.npz");
@@ -202,10 +193,6 @@ TEST_F(NpzFiles, AreRefusedByTheBeginningOfAMemberBeforeAllOfItIsDecoded) {
   }
 }
 
-TEST_F(NpzFiles, MayHoldAMemberWithoutBytes) {
-  EXPECT_THAT(error({positions_, {"faces.npy", ""}}), HasSubstr("a.npz: faces"));
-}
-
 TEST_F(NpzFiles, NameWhatIsWrongInThem) {
   EXPECT_THAT(error({faces_}), HasSubstr("holds faces.npy, expected an array positions"));
   EXPECT_THAT(error({{"positions.npy", npy("<i8", "1, 3", kFace)}, faces_}),
@@ -222,6 +209,7 @@ TEST_F(NpzFiles, NameWhatIsWrongInThem) {
               HasSubstr("a.npz: times: has shape 3, expected 2"));
   EXPECT_THAT(error({positions_, faces_, {"rest.npy", npy<double>("<f8", "1, 3", {1, 2, 3})}}),
               HasSubstr("a.npz: rest: has shape 1 x 3, expected 4 x 3"));
+  EXPECT_THAT(error({positions_, {"faces.npy", ""}}), HasSubstr("a.npz: faces"));
   write_bytes(folder_ / "a.npz", "no archive");
   EXPECT_THAT(message_of<IoError>([this] { read(); }), HasSubstr("a.npz: is no ZIP archive"));
 }

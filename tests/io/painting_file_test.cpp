@@ -105,15 +105,6 @@ TEST_F(PaintingFileTest, OfAMeshWithoutTextureIsRefusedWithWhatToDo) {
                   testing::AllOf(HasSubstr("no texture coordinates"), HasSubstr("vertex field"))));
 }
 
-TEST_F(PaintingFileTest, TakesTheEdgeAtCoordinatesThatAreRoundedBeyondIt) {
-  std::vector<std::uint8_t> grey(kColumns * kRows, 0);
-  std::fill_n(grey.begin(), kColumns, 255);  // the first row, at v = 1
-  mesh_.texture.coordinates[2].y() = 1.000001;
-  const Painting painting = read(picture(grey));
-  EXPECT_EQ(painting.weights[2], 1);
-  EXPECT_THAT(painting.notes, IsEmpty());
-}
-
 TEST_F(PaintingFileTest, NotesTilesAndMaterials) {
   const std::string path = picture(std::vector<std::uint8_t>(kColumns * kRows, 255));
   mesh_.texture.coordinates[2].x() += 1;

@@ -54,14 +54,10 @@ TEST(PendingOutput, RemovesWhatWasNotCommitted) {
   EXPECT_THAT(folder.names(), IsEmpty());
 }
 
-TEST(PendingOutput, RemovesParentsThatItCreatedForNothing) {
+TEST(PendingOutput, RemovesParentsThatItCreatedForNothingAndNoOthers) {
   const TemporaryFolder folder;
   { const PendingOutput output(folder / "a/b/out.txt", Kind::file, false); }
   EXPECT_THAT(folder.names(), IsEmpty());
-}
-
-TEST(PendingOutput, KeepsParentsThatWereThere) {
-  const TemporaryFolder folder;
   fs::create_directory(folder / "a");
   { const PendingOutput output(folder / "a/b/out.txt", Kind::file, false); }
   EXPECT_TRUE(fs::is_directory(folder / "a"));
@@ -92,20 +88,26 @@ TEST(PendingOutput, RefusesATargetThatAppearedMeanwhile) {
   EXPECT_EQ(read_file(folder / "out.txt"), "somebody else's");
 }
 
+/// A folder as an earlier run left it.
+void write_folder(const fs::path& target, const std::string& content) {
+  PendingOutput output(target, Kind::folder, true);
+  write_bytes(output.path() / "frame_0000.ply", content);
+  fs::create_directory(output.path() / "expressions");
+  write_bytes(output.path() / "expressions/smile.ply", content);
+  output.commit();
+}
+
 TEST(PendingOutput, OverwritingReplacesAFolderAsAWhole) {
   const TemporaryFolder folder;
-  {
-    PendingOutput before(folder / "out", Kind::folder, false);
-    write_bytes(before.path() / "old", "old");
-    before.commit();
-  }
+  write_folder(folder / "out", "old");
   PendingOutput output(folder / "out", Kind::folder, true);
   write_bytes(output.path() / "new", "new");
-  EXPECT_TRUE(fs::exists(folder / "out/old"));
+  EXPECT_EQ(read_file(folder / "out/expressions/smile.ply"), "old");
   output.commit();
   EXPECT_THAT(folder.names(), ElementsAre("out"));
-  EXPECT_FALSE(fs::exists(folder / "out/old"));
-  EXPECT_TRUE(fs::exists(folder / "out/new"));
+  EXPECT_FALSE(fs::exists(folder / "out/expressions"));
+  EXPECT_FALSE(fs::exists(folder / "out/frame_0000.ply"));
+  EXPECT_EQ(read_file(folder / "out/new"), "new");
 }
 
 TEST(PendingOutput, NeverReplacesAFolderByAFileOrAFileByAFolder) {
@@ -132,30 +134,6 @@ TEST(PendingOutput, NameThatNoFolderTakesIsAnOutputError) {
     EXPECT_THROW(PendingOutput(target, Kind::folder, true), OutputError);
   }
   EXPECT_THAT(folder.names(), IsEmpty());
-}
-
-TEST(WriteFile, WritesAllBytes) {
-  const TemporaryFolder folder;
-  const std::string content("a\0b\r\n", 5);
-  write_file(folder / "out", content, false);
-  EXPECT_EQ(read_file(folder / "out"), content);
-}
-
-/// A folder as an earlier run left it.
-void write_folder(const fs::path& target, const std::string& content) {
-  PendingOutput output(target, Kind::folder, true);
-  write_bytes(output.path() / "frame_0000.ply", content);
-  fs::create_directory(output.path() / "expressions");
-  write_bytes(output.path() / "expressions/smile.ply", content);
-  output.commit();
-}
-
-TEST(PendingOutput, ReplacesAFolderOfAnEarlierRun) {
-  const TemporaryFolder folder;
-  write_folder(folder / "out", "old");
-  write_folder(folder / "out", "new");
-  EXPECT_EQ(read_file(folder / "out/expressions/smile.ply"), "new");
-  EXPECT_THAT(folder.names(), ElementsAre("out"));
 }
 
 TEST(PendingOutput, ReplacesAnEmptyFolder) {
@@ -295,9 +273,10 @@ TEST(PendingOutputs, AreWrittenWhereALinkLeads) {
   fs::create_directory(folder / "real");
   write_bytes(folder / "real/a", "old");
   fs::create_symlink("real/a", folder / "link");
-  write_file(folder / "link", "new", true);
+  const std::string content("a\0b\r\n", 5);
+  write_file(folder / "link", content, true);
   EXPECT_TRUE(fs::is_symlink(folder / "link"));
-  EXPECT_EQ(read_file(folder / "real/a"), "new");
+  EXPECT_EQ(read_file(folder / "real/a"), content);
   fs::remove_all(folder / "real");
   for (const bool overwrite : {false, true}) {
     EXPECT_THAT(message_of<OutputError>([&] { write_file(folder / "link", "new", overwrite); }),

@@ -61,27 +61,18 @@ TEST_F(RegionsFile, TextIsAListOrAMask) {
   EXPECT_EQ(read("m.txt", mask).regions[0].vertices, (std::vector<int>{7, 8}));
 }
 
-TEST_F(RegionsFile, MayHaveAnExtensionInCapitals) {
-  EXPECT_EQ(read("R.JSON", "[[3, 4]]").regions[0].vertices, (std::vector<int>{3, 4}));
-}
-
 TEST_F(RegionsFile, VertexOutsideTheMeshIsAMismatchThatNamesIt) {
-  try {
-    read("a.txt", "3\n20\n");
-    FAIL();
-  } catch (const MismatchError& error) {
-    EXPECT_THAT(error.what(), testing::HasSubstr("20"));
-    EXPECT_THAT(error.what(), testing::HasSubstr("a.txt"));
-  }
-}
-
-TEST_F(RegionsFile, VertexTooLargeForAnIndexIsAMismatch) {
+  const auto refusal = [this](const std::string& name, const std::string& content) {
+    return test::message_of<MismatchError>([&] { read(name, content); });
+  };
+  EXPECT_THAT(refusal("a.txt", "3\n20\n"),
+              testing::AllOf(testing::HasSubstr("20"), testing::HasSubstr("a.txt")));
   // 2^32 + 1 would be vertex 1 where it is cut to 32 bits.
-  EXPECT_THROW(read("a.txt", "4294967297\n"), MismatchError);
-  EXPECT_THROW(read("b.csv", "vertex,region\n4294967297,0\n"), MismatchError);
-  EXPECT_THROW(read("c.json", "[[4294967297]]"), MismatchError);
-  EXPECT_THROW(read("d.json", "[[-1]]"), MismatchError);
-  EXPECT_THROW(read("e.json", R"({"regions": [{"center": 20, "vertices": [1]}]})"), MismatchError);
+  refusal("a.txt", "4294967297\n");
+  refusal("b.csv", "vertex,region\n4294967297,0\n");
+  refusal("c.json", "[[4294967297]]");
+  refusal("d.json", "[[-1]]");
+  refusal("e.json", R"({"regions": [{"center": 20, "vertices": [1]}]})");
 }
 
 TEST_F(RegionsFile, OfAnotherMeshIsAMismatch) {
@@ -91,7 +82,7 @@ TEST_F(RegionsFile, OfAnotherMeshIsAMismatch) {
 }
 
 TEST_F(RegionsFile, JsonMayBeListsAndTheyMayStandUnderRegions) {
-  EXPECT_EQ(read("a.json", "[[3, 4], [9]]").regions[1].vertices, (std::vector<int>{9}));
+  EXPECT_EQ(read("A.JSON", "[[3, 4], [9]]").regions[1].vertices, (std::vector<int>{9}));
   EXPECT_EQ(read("b.json", R"({"regions": [[3, 4]]})").regions[0].vertices,
             (std::vector<int>{3, 4}));
 }

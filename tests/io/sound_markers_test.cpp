@@ -28,9 +28,13 @@ MarkedPair by_hand(const std::string& source, const std::string& target, const s
           read_mesh(test::shared_path("data/" + target + "/neutral.obj")), read_markers(markers)};
 }
 
+std::vector<MarkedPair> pairs_of_two_faces() {
+  return {by_hand("facecap", "ict-face", "facecap_to_ict_face.markers"),
+          by_hand("ict-face", "facecap", "ict_face_to_facecap.markers")};
+}
+
 std::vector<MarkedPair> sound_pairs() {
-  std::vector<MarkedPair> pairs = {by_hand("facecap", "ict-face", "facecap_to_ict_face.markers"),
-                                   by_hand("ict-face", "facecap", "ict_face_to_facecap.markers")};
+  std::vector<MarkedPair> pairs = pairs_of_two_faces();
   const fs::path folder = test::shared_path("data/ict-face");
   std::vector<Marker> landmarks;
   for (const auto& [number, vertex] :
@@ -52,14 +56,11 @@ class SoundMarkers : public testing::Test {
   void SetUp() override {
     MIMETRA_SKIP_WITHOUT(test::shared_path("data/facecap/neutral.obj"));
     MIMETRA_SKIP_WITHOUT(test::shared_path("data/ict-face/neutral.obj"));
-    pairs_ = sound_pairs();
   }
-
-  std::vector<MarkedPair> pairs_;
 };
 
 TEST_F(SoundMarkers, AreNotDoubtedOrRefused) {
-  for (const auto& [source, target, markers] : pairs_) {
+  for (const auto& [source, target, markers] : sound_pairs()) {
     EXPECT_THAT(described(doubtful_markers(markers, source.positions, target.positions), markers),
                 IsEmpty());
     EXPECT_FALSE(is_inside_out(source, target, markers));
@@ -69,25 +70,20 @@ TEST_F(SoundMarkers, AreNotDoubtedOrRefused) {
   }
 }
 
-TEST_F(SoundMarkers, AreRefusedOnAMirroredTarget) {
-  for (auto& [source, target, markers] : pairs_) {
+TEST_F(SoundMarkers, TellATargetThatIsInsideOutAndAreRefusedOnAMirroredOne) {
+  for (auto& [source, target, markers] : sound_pairs()) {
+    TriMesh inside_out = target;
+    inside_out.connectivity.triangles.col(1).swap(inside_out.connectivity.triangles.col(2));
+    EXPECT_TRUE(is_inside_out(source, inside_out, markers));
     target.positions.col(0) *= -1;
-    Triangles triangles = target.connectivity.triangles;
-    triangles.col(1).swap(triangles.col(2));
-    target.connectivity = Connectivity::from_triangles(target.connectivity.vertices, triangles);
+    target.connectivity = Connectivity::from_triangles(target.connectivity.vertices,
+                                                       inside_out.connectivity.triangles);
     EXPECT_THROW(is_inside_out(source, target, markers), MismatchError);
   }
 }
 
-TEST_F(SoundMarkers, TellATargetThatIsInsideOut) {
-  for (auto& [source, target, markers] : pairs_) {
-    target.connectivity.triangles.col(1).swap(target.connectivity.triangles.col(2));
-    EXPECT_TRUE(is_inside_out(source, target, markers));
-  }
-}
-
 TEST_F(SoundMarkers, TellEachTwoOfThemThatAreExchanged) {
-  const auto& [source, target, markers] = pairs_.front();
+  const auto [source, target, markers] = pairs_of_two_faces().front();
   for (std::size_t i = 0; i < markers.size(); ++i) {
     for (std::size_t j = i + 1; j < markers.size(); ++j) {
       std::vector<Marker> exchanged = markers;
@@ -101,8 +97,7 @@ TEST_F(SoundMarkers, TellEachTwoOfThemThatAreExchanged) {
 }
 
 TEST_F(SoundMarkers, AreToldFromThoseOfAnotherBaseWhereFacesDiffer) {
-  for (std::size_t pair = 0; pair < 2; ++pair) {
-    auto [source, target, markers] = pairs_[pair];
+  for (auto& [source, target, markers] : pairs_of_two_faces()) {
     for (Marker& marker : markers) marker = {marker.source + 1, marker.target + 1};
     EXPECT_TRUE(fit_better_shifted(markers, 1, source.positions, target.positions));
   }

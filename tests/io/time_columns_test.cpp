@@ -9,7 +9,7 @@ namespace {
 
 TEST(TimeColumns, CountInSecondsUnderSeveralNames) {
   for (const char* name :
-       {"time", "Time", "seconds", "time_s", "time(s)", "Time (s)", "time_sec", "time (sec)"}) {
+       {"time", "Time", "Seconds", "time_s", "time(s)", "Time (s)", "time_sec", "time (sec)"}) {
     EXPECT_THAT(units_per_second(name), testing::Optional(1.0)) << name;
   }
 }

@@ -111,15 +111,10 @@ TEST(RigidFit, FindsTheMotionOfRigidPoints) {
 
 TEST(RigidFit, NeverReflects) {
   const Positions points = test::sphere(1).positions;
-  const RigidTransform fit = rigid_fit(points, -points);
-  EXPECT_NEAR(fit.rotation.determinant(), 1, kRounding);
-}
-
-TEST(RigidFit, OfAPlaneDoesNotReflect) {
+  EXPECT_NEAR(rigid_fit(points, -points).rotation.determinant(), 1, kRounding);
   const RigidTransform motion = random_motion(1, 180, 5)[0];
-  const Positions points = test::grid(4, 3).positions;
-  const RigidTransform fit = rigid_fit(points, motion.apply(points));
-  EXPECT_TRUE(fit.rotation.isApprox(motion.rotation, 1e-13));
+  const Positions flat = test::grid(4, 3).positions;
+  EXPECT_TRUE(rigid_fit(flat, motion.apply(flat)).rotation.isApprox(motion.rotation, 1e-13));
 }
 
 TEST(RigidFit, IgnoresPointsOfWeightZero) {
@@ -153,16 +148,12 @@ TEST(RigidFit, KeepsItsDigitsFarFromTheOrigin) {
   EXPECT_TRUE(rigid_fit(points, far).rotation.isIdentity(1e3 * kRounding));
 }
 
-TEST(RigidFit, RefusesOtherSizes) {
+TEST(RigidFit, RefusesOtherSizesAndWeightsWithoutASum) {
   const Positions four = Positions::Random(4, 3), five = Positions::Random(5, 3);
   EXPECT_THAT([&] { rigid_fit(four, five); },
               ThrowsMessage<std::invalid_argument>(HasSubstr("rigid fit of 4 points to 5")));
   EXPECT_THAT([&] { rigid_fit(four, four, Eigen::VectorXd::Ones(3)); },
               ThrowsMessage<std::invalid_argument>(HasSubstr("3 weights for 4 points")));
-}
-
-TEST(RigidFit, RefusesWeightsWithoutASum) {
-  const Positions four = Positions::Random(4, 3);
   EXPECT_THAT([&] { rigid_fit(four, four, Eigen::VectorXd::Zero(4)); },
               ThrowsMessage<std::invalid_argument>(HasSubstr("not all 0")));
 }
@@ -173,6 +164,7 @@ TEST(StableAlignment, FindsTheHeadsMotionBehindAnOpeningJaw) {
   const Alignment alignment = align(with_motion(jaw, motion));
   // The still half locks: what is left is kLeastWeight's 1e-10 of the jaw's motion.
   EXPECT_LT(difference(alignment.sequence, jaw), 1e-9);
+  EXPECT_EQ(alignment.sequence.rest(), jaw.rest());
   EXPECT_LT(largest_angle(alignment.motion, motion), 1e-9);
 }
 
@@ -193,27 +185,22 @@ TEST(StableAlignment, IsAsGoodAsTheNoise) {
   EXPECT_LT(largest_angle(alignment.motion, motion), sigma);
 }
 
-TEST(StableAlignment, OfAStillHeadIsTheInputBitByBit) {
+TEST(StableAlignment, OfAStillHeadIsTheInputBitByBitDespiteNoise) {
   const MeshSequence jaw = opening_jaw(24);
-  const Alignment alignment = align(jaw);
-  EXPECT_EQ(alignment.sequence.positions(), jaw.positions());
-  for (const RigidTransform& transform : alignment.motion) EXPECT_TRUE(transform.is_identity());
-}
-
-TEST(StableAlignment, OfANoisyStillHeadIsTheInputBitByBit) {
-  const MeshSequence noisy = with_noise(opening_jaw(24), 1e-3);
-  EXPECT_EQ(rigidly_aligned(noisy).positions(), noisy.positions());
+  for (const MeshSequence& still : {jaw, with_noise(jaw, 1e-3)}) {
+    const Alignment alignment = align(still);
+    EXPECT_EQ(alignment.sequence.positions(), still.positions());
+    for (const RigidTransform& transform : alignment.motion) EXPECT_TRUE(transform.is_identity());
+  }
 }
 
 TEST(StableAlignment, DoesNotDependOnTheMotionItRemoves) {
-  EXPECT_LT(change_by_motion(opening_jaw(24), random_motion(24, 40, 0.6)), 1e-9);
-}
-
-TEST(StableAlignment, DoesNotDependOnTheMotionItRemovesFromNoise) {
+  const MeshSequence jaw = opening_jaw(24);
   // Nothing but residuals enters, so that only rounding differs, which 40 iterations amplify.
-  const MeshSequence noisy = with_noise(opening_jaw(24), 1e-2);
-  const MeshSequence nodding = with_motion(noisy, random_motion(24, 10, 0.2));
-  EXPECT_LT(change_by_motion(nodding, random_motion(24, 40, 0.6)), 1e-9);
+  const MeshSequence nodding = with_motion(with_noise(jaw, 1e-2), random_motion(24, 10, 0.2));
+  for (const MeshSequence& sequence : {jaw, nodding}) {
+    EXPECT_LT(change_by_motion(sequence, random_motion(24, 40, 0.6)), 1e-9);
+  }
 }
 
 /// Every vertex moves; the motion itself is not rigid.
@@ -238,11 +225,6 @@ TEST(StableAlignment, OfAFrameThatIsTheRestPoseIsTheIdentity) {
   const Alignment alignment = align(bare(with_motion(breathing(4), random_motion(4, 30, 1))));
   EXPECT_TRUE(alignment.motion[0].is_identity());
   EXPECT_FALSE(alignment.motion[1].is_identity());
-}
-
-TEST(StableAlignment, KeepsTheRestPose) {
-  const MeshSequence jaw = opening_jaw(4);
-  EXPECT_EQ(rigidly_aligned(with_motion(jaw, random_motion(4, 10, 1))).rest(), jaw.rest());
 }
 
 TEST(StableAlignment, OfStillVerticesOnALineDoesNotSpinAboutIt) {
@@ -331,11 +313,7 @@ TEST(StableAlignment, OfAStreamThatBreaksThrowsWhatReadingThrows) {
               ThrowsMessage<std::runtime_error>("frame 13 is broken"));
 }
 
-TEST(StableAlignment, StopsWhenAskedTo) {
-  EXPECT_THROW(align(opening_jaw(2), {.progress = [](double) { return false; }}), Cancelled);
-}
-
-TEST(StableAlignment, ReportsProgressThatEndsAtOne) {
+TEST(StableAlignment, ReportsProgressThatEndsAtOneOrWhenAskedTo) {
   double last = -1;
   align(opening_jaw(2), {.progress = [&last](double share) {
           EXPECT_GE(share, last);
@@ -343,6 +321,7 @@ TEST(StableAlignment, ReportsProgressThatEndsAtOne) {
           return true;
         }});
   EXPECT_EQ(last, 1);
+  EXPECT_THROW(align(opening_jaw(2), {.progress = [](double) { return false; }}), Cancelled);
 }
 
 TEST(Alignment, OfAllVerticesIsTheRigidFitOfEachFrame) {

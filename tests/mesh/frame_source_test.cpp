@@ -60,17 +60,14 @@ TEST(FrameSource, ReadsNothingUntilItIsAsked) {
   EXPECT_EQ(source.frames_read(), 3);
 }
 
-TEST(FrameSource, NamesFramesThatAreNotThere) {
-  const Counted source(5, 1);
-  EXPECT_THAT([&] { source.read(3, 3); },
+TEST(FrameSource, NamesFramesThatAreNotThereAndNeedsRoomForAllCoordinates) {
+  const auto source = std::make_shared<const Counted>(5, 2);
+  EXPECT_THAT([&] { source->read(3, 3); },
               ThrowsMessage<std::out_of_range>(HasSubstr("frames 3 to 5 of a sequence of 5")));
-  EXPECT_THROW(source.read(-1, 1), std::out_of_range);
-}
-
-TEST(FrameSource, NeedsRoomForAllCoordinates) {
-  const Counted source(5, 2);
+  EXPECT_THROW(source->read(-1, 1), std::out_of_range);
+  EXPECT_THROW(selected(source, {4, 5}), std::out_of_range);
   Frames room(1, 5);
-  EXPECT_THAT([&] { source.read(0, FramesView(room.data(), 1, 5)); },
+  EXPECT_THAT([&] { source->read(0, FramesView(room.data(), 1, 5)); },
               ThrowsMessage<std::invalid_argument>(HasSubstr("3 x 2 vertices")));
 }
 
@@ -111,12 +108,6 @@ TEST(FrameSource, BecomesASequenceInMemory) {
   EXPECT_EQ(sequence.shared_connectivity(), source.shared_connectivity());
 }
 
-TEST(FrameSource, ASequenceInMemoryIsOne) {
-  const MeshSequence sequence(Counted(9, 2));
-  const FrameSource& source = sequence;
-  EXPECT_EQ(source.read(4, 2), sequence.positions().middleRows(4, 2));
-}
-
 TEST(FrameSource, InMemoryIsSharedAndNotCopied) {
   const auto sequence = std::make_shared<const MeshSequence>(Counted(9, 2));
   const auto rested = with_rest(sequence, Positions::Ones(2, 3));
@@ -124,20 +115,17 @@ TEST(FrameSource, InMemoryIsSharedAndNotCopied) {
   EXPECT_EQ(MeshSequence(*rested).rest(), Positions::Ones(2, 3));
 }
 
-TEST(FrameBlock, IsAViewOfFramesInMemory) {
-  const MeshSequence sequence(Counted(9, 2));
-  const FrameBlock block(sequence, 4, 3);
-  EXPECT_EQ(block.frames(), 3);
-  EXPECT_EQ(block.poses().data(), sequence.positions().row(4).data());
-  EXPECT_EQ(block.frame(2), sequence.frame(6));
-  EXPECT_THROW(FrameBlock(sequence, 8, 2), std::out_of_range);
-}
-
-TEST(FrameBlock, ReadsOtherFrames) {
+TEST(FrameBlock, IsAViewOfFramesInMemoryAndReadsOthers) {
   const Counted source(9, 2);
-  const FrameBlock block(source, 4, 3);
-  EXPECT_EQ(block.poses(), source.read(4, 3));
-  EXPECT_EQ(block.frame(1), PositionsView(source.read(5, 1).data(), 2, 3));
+  const MeshSequence sequence(source);
+  const FrameBlock view(sequence, 4, 3), read(source, 4, 3);
+  EXPECT_EQ(view.poses().data(), sequence.positions().row(4).data());
+  for (const FrameBlock* block : {&view, &read}) {
+    EXPECT_EQ(block->frames(), 3);
+    EXPECT_EQ(block->poses(), sequence.positions().middleRows(4, 3));
+    EXPECT_EQ(block->frame(2), sequence.frame(6));
+  }
+  EXPECT_THROW(FrameBlock(sequence, 8, 2), std::out_of_range);
   EXPECT_THROW(FrameBlock(source, 8, 2), std::out_of_range);
 }
 
@@ -148,18 +136,12 @@ TEST(WithRest, ChangesTheRestPoseOnly) {
   EXPECT_TRUE(rested->rest_is_known());
   EXPECT_EQ(rested->times(), source->times());
   EXPECT_EQ(rested->read(3, 4), source->read(3, 4));
-}
-
-TEST(WithRest, OfNoneIsTheFirstFrameWhichIsNotKnownToBeIt) {
-  const auto source = std::make_shared<const Counted>(9, 1);
+  // To none: the first frame, which is not known to be it.
   const auto unknown = with_rest(source, {});
-  EXPECT_EQ(unknown->rest(), Eigen::RowVector3d(0, 1, 2));
+  EXPECT_EQ(unknown->rest().row(0), Eigen::RowVector3d(0, 1, 2));
   EXPECT_FALSE(unknown->rest_is_known());
-}
-
-TEST(WithRest, RefusesAnotherNumberOfVertices) {
   EXPECT_THAT(
-      [] { with_rest(std::make_shared<const Counted>(9, 2), Positions::Ones(3, 3)); },
+      [&] { with_rest(source, Positions::Ones(3, 3)); },
       ThrowsMessage<std::invalid_argument>(HasSubstr("the rest pose has 3 vertices, expected 2")));
 }
 
@@ -215,16 +197,13 @@ TEST(OverFrames, GivesTheSameOnAllRanksOfWhichEachReadsItsShare) {
   }
 }
 
-TEST(OverFrames, ThrowsWhatWorkThrows) {
+TEST(OverFrames, ThrowsWhatWorkThrowsAndEndsWhereProgressAsksForIt) {
   const auto work = [](int, const FrameBlock&, FrameRows&) { throw std::runtime_error("broken"); };
   EXPECT_THAT([&] { over_frames(Counted(9, 2), 1, 0, {}, work); },
               ThrowsMessage<std::runtime_error>("broken"));
-}
-
-TEST(OverFrames, EndsWhereProgressAsksForIt) {
-  const auto work = [](int, const FrameBlock&, FrameRows&) {};
+  const auto none = [](int, const FrameBlock&, FrameRows&) {};
   EXPECT_THROW(
-      over_frames(Counted(9, 2), 1, 0, {.progress = [](double share) { return share < 1; }}, work),
+      over_frames(Counted(9, 2), 1, 0, {.progress = [](double share) { return share < 1; }}, none),
       Cancelled);
 }
 
@@ -350,10 +329,6 @@ TEST(SelectedFrames, RestInTheFirstOneWhereTheRestIsNotKnown) {
   EXPECT_EQ(selected(unknown, {3, 4})->rest(), Eigen::RowVector3d(3000, 3001, 3002));
   const auto known = std::make_shared<const Counted>(5, 1);
   EXPECT_EQ(selected(known, {3, 4})->rest(), Positions::Zero(1, 3));
-}
-
-TEST(SelectedFrames, NamesAFrameThatIsNotThere) {
-  EXPECT_THROW(selected(std::make_shared<const Counted>(5, 1), {4, 5}), std::out_of_range);
 }
 
 }  // namespace

@@ -44,31 +44,19 @@ class FrameStoreTest : public testing::TestWithParam<std::size_t> {
   const TemporaryFiles here_{folder_.path()};
 };
 
-TEST_P(FrameStoreTest, GivesBackWhatSeveralThreadsWrote) {
+TEST_P(FrameStoreTest, GivesBackWhatSeveralThreadsWroteAndLeavesNoName) {
   const MeshSequence sequence = numbered(50, 11);
   FrameStore store(sequence.header(), GetParam());
   parallel_for(25, 3, [&](int i) { store.write(2 * i, sequence.read(2 * i, 2)); });
+  EXPECT_THAT(folder_.names(), IsEmpty());
   EXPECT_THAT(store.commit(), IsEmpty());
   EXPECT_TRUE(store.read(0, 50) == sequence.positions());
   EXPECT_TRUE(store.read(17, 5) == sequence.positions().middleRows(17, 5));
   EXPECT_TRUE(MeshSequence(store, {.threads = 3}).positions() == sequence.positions());
   EXPECT_TRUE(store.times() == sequence.times());
-}
-
-TEST_P(FrameStoreTest, GivesBackSomeVertices) {
-  const MeshSequence sequence = numbered(9, 7);
-  FrameStore store(sequence.header(), GetParam());
-  store.write(0, sequence.positions());
   Frames some(4, 6);
   store.read_vertices(3, 5, FramesView(some.data(), 4, 6));
   EXPECT_TRUE(some == sequence.positions().block(3, 15, 4, 6));
-}
-
-TEST_P(FrameStoreTest, LeavesNoNameInTheFolder) {
-  const MeshSequence sequence = numbered(9, 2);
-  FrameStore store(sequence.header(), GetParam());
-  store.write(0, sequence.positions());
-  EXPECT_THAT(folder_.names(), IsEmpty());
 }
 
 TEST_P(FrameStoreTest, RefusesFramesThatAreNotThere) {

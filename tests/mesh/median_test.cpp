@@ -5,13 +5,10 @@
 namespace mimetra {
 namespace {
 
-TEST(Median, IsInTheMiddleInAnyOrder) {
+TEST(Median, IsInTheMiddleInAnyOrderOrTheUpperOfTwo) {
   EXPECT_EQ(median({7}), 7);
   EXPECT_EQ(median({5, 1, 3}), 3);
   EXPECT_EQ(median({-1, 9, 9, -1, 4}), 4);
-}
-
-TEST(Median, OfAnEvenNumberIsTheUpper) {
   EXPECT_EQ(median({4, 2}), 4);
   EXPECT_EQ(median({1, 8, 2, 6}), 6);
 }

@@ -29,12 +29,9 @@ MeshSequence counting(int count) {
   return {triangle(), counting_frames(count)};
 }
 
-TEST(MeshSequence, ShowsAFrameAsRowsOfPoints) {
-  EXPECT_EQ(counting(3).frame(2).row(1), Eigen::RowVector3d(203, 204, 205));
-}
-
-TEST(MeshSequence, ShowsItsOwnMemory) {
-  const MeshSequence sequence = counting(2);
+TEST(MeshSequence, ShowsAFrameInItsOwnMemoryAsRowsOfPoints) {
+  const MeshSequence sequence = counting(3);
+  EXPECT_EQ(sequence.frame(2).row(1), Eigen::RowVector3d(203, 204, 205));
   EXPECT_EQ(sequence.frame(1).data(), sequence.positions().row(1).data());
 }
 
@@ -55,51 +52,33 @@ TEST(MeshSequence, KnowsTheRestPoseItWasGiven) {
   EXPECT_EQ(sequence.rest(), Positions::Ones(3, 3));
 }
 
-TEST(MeshSequence, NeedsAFrame) {
-  EXPECT_THAT([] { counting(0); },
-              ThrowsMessage<std::invalid_argument>(HasSubstr("at least one frame")));
-}
-
-TEST(MeshSequence, NeedsAConnectivity) {
+TEST(MeshSequence, RefusesPartsThatDoNotFit) {
+  const auto refusal = [](const char* message) {
+    return ThrowsMessage<std::invalid_argument>(HasSubstr(message));
+  };
+  EXPECT_THAT([] { counting(0); }, refusal("at least one frame"));
   EXPECT_THAT([] { MeshSequence(std::shared_ptr<const Connectivity>(), counting_frames(1)); },
-              ThrowsMessage<std::invalid_argument>(HasSubstr("needs a connectivity")));
-}
-
-TEST(MeshSequence, RefusesFramesOfAnotherVertexCount) {
+              refusal("needs a connectivity"));
   EXPECT_THAT([] { MeshSequence(triangle(), Frames::Zero(2, 12)); },
-              ThrowsMessage<std::invalid_argument>(HasSubstr("12 coordinates, expected 3 x 3")));
-}
-
-TEST(MeshSequence, RefusesAnotherNumberOfTimes) {
+              refusal("12 coordinates, expected 3 x 3"));
   EXPECT_THAT([] { MeshSequence(triangle(), counting_frames(2), Eigen::VectorXd::Zero(3)); },
-              ThrowsMessage<std::invalid_argument>(HasSubstr("3 times for 2 frames")));
+              refusal("3 times for 2 frames"));
+  EXPECT_THAT([] { counting(2).with_rest(Positions::Zero(4, 3)); },
+              refusal("rest pose has 4 vertices, expected 3"));
+  EXPECT_THAT([] { counting(2).with_frames(Frames::Zero(3, 9)); }, refusal("3 frames, expected 2"));
 }
 
-TEST(MeshSequence, RefusesARestOfAnotherVertexCount) {
-  EXPECT_THAT(
-      [] { counting(2).with_rest(Positions::Zero(4, 3)); },
-      ThrowsMessage<std::invalid_argument>(HasSubstr("rest pose has 4 vertices, expected 3")));
-}
-
-TEST(Slice, TakesEveryStepthFrameAndItsTime) {
-  const MeshSequence part = counting(10).slice(1, 8, 3);
+TEST(Slice, TakesEveryStepthFrameAndItsTimeOfTheSameFaces) {
+  const MeshSequence sequence = counting(10), part = sequence.slice(1, 8, 3);
   ASSERT_EQ(part.frames(), 3);
   EXPECT_EQ(part.positions()(2, 0), 700);
   EXPECT_DOUBLE_EQ(part.times()[2], 7 / kDefaultFramesPerSecond);
+  EXPECT_EQ(part.shared_connectivity(), sequence.shared_connectivity());
 }
 
-TEST(Slice, SharesTheConnectivity) {
+TEST(Slice, KeepsAKnownRestPoseOrRestsInItsOwnFirstFrame) {
   const MeshSequence sequence = counting(3);
-  EXPECT_EQ(sequence.slice(0, 2).shared_connectivity(), sequence.shared_connectivity());
-}
-
-TEST(Slice, KeepsAKnownRestPose) {
-  const MeshSequence sequence = counting(3).with_rest(Positions::Ones(3, 3));
-  EXPECT_EQ(sequence.slice(1, 3).rest(), Positions::Ones(3, 3));
-}
-
-TEST(Slice, OfAnUnknownRestPoseRestsInItsOwnFirstFrame) {
-  const MeshSequence sequence = counting(3);
+  EXPECT_EQ(sequence.with_rest(Positions::Ones(3, 3)).slice(1, 3).rest(), Positions::Ones(3, 3));
   EXPECT_EQ(sequence.slice(1, 3).rest(), sequence.frame(1));
 }
 
@@ -122,16 +101,6 @@ TEST(WithFrames, KeepsTimesAndRest) {
   EXPECT_EQ(other.rest(), sequence.rest());
   EXPECT_FALSE(other.rest_is_known());
   EXPECT_TRUE(other.positions().isZero(0));
-}
-
-TEST(WithFrames, RefusesAnotherFrameCount) {
-  EXPECT_THAT([] { counting(2).with_frames(Frames::Zero(3, 9)); },
-              ThrowsMessage<std::invalid_argument>(HasSubstr("3 frames, expected 2")));
-}
-
-TEST(MeanPose, IsTheMeanOverFrames) {
-  // Frames 0 and 2 lie 100 below and above frame 1, all whole numbers: exact.
-  EXPECT_EQ(mean_pose(counting(3)), counting(3).frame(1));
 }
 
 TEST(Motion, OfAUniformShiftIsItsLengthTimesTheShareOfFrames) {

@@ -45,10 +45,6 @@ void expect_refusal(const PaperOptions& options, const std::string& message) {
   EXPECT_THAT([&] { check_options(options); }, ThrowsMessage<std::invalid_argument>(message));
 }
 
-TEST(Option, DefaultsAreInRange) {
-  EXPECT_NO_THROW(check_options(PaperOptions()));
-}
-
 TEST(Option, OutOfRangeIsNamedWithItsRange) {
   expect_refusal({.sheets = 0}, "sheets is 0; it must be at least 1");
   expect_refusal({.weight = 400.5}, "weight is 400.5; it must be from 20 to 400");
@@ -68,12 +64,10 @@ TEST(Option, OfAnEnumIsOneOfItsValues) {
   expect_refusal({.kind = static_cast<Kind>(2)}, "kind: no such choice");
 }
 
-TEST(Option, OfALengthIsNotBelowZero) {
+TEST(Option, OfALengthIsNotBelowZeroAndNoShareAboveOne) {
+  EXPECT_NO_THROW(check_options(PaperOptions{.side = Length::of(12)}));
   expect_refusal({.side = Length::share(-0.1)}, "side is -0.1; it must be from 0 to 1");
   expect_refusal({.side = Length::of(-0.1)}, "side is -0.1; it must be at least 0");
-}
-
-TEST(Option, OfALengthIsNoShareAboveOne) {
   expect_refusal({.side = Length::share(12)}, "side is 12; it must be from 0 to 1");
 }
 

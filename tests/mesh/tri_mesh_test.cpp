@@ -22,13 +22,10 @@ TEST(Connectivity, CutsAPolygonIntoAFanAboutItsFirstCorner) {
   EXPECT_EQ(pentagon.triangles, fan);
 }
 
-TEST(Connectivity, KnowsThePolygonOfEachTriangle) {
-  EXPECT_THAT(quad_and_triangle().polygon_of_triangle, ElementsAre(0, 0, 1));
-}
-
-TEST(Connectivity, KeepsThePolygonsAsGiven) {
+TEST(Connectivity, KeepsThePolygonsAndKnowsThatOfEachTriangle) {
   const Polygons polygons{{0, 1, 2, 3, 3, 2, 4}, {0, 4, 7}};
   EXPECT_EQ(quad_and_triangle().polygons, polygons);
+  EXPECT_THAT(quad_and_triangle().polygon_of_triangle, ElementsAre(0, 0, 1));
 }
 
 TEST(Connectivity, OfTrianglesHasThemAsPolygons) {
@@ -36,10 +33,6 @@ TEST(Connectivity, OfTrianglesHasThemAsPolygons) {
   const Connectivity connectivity = Connectivity::from_triangles(6, shape.triangles);
   EXPECT_EQ(connectivity.triangles, shape.triangles);
   EXPECT_EQ(connectivity.polygons.size(), 8);
-}
-
-TEST(Connectivity, MayHaveVerticesWithoutFaces) {
-  EXPECT_EQ(Connectivity::from_triangles(7, Triangles(0, 3)).vertices, 7);
 }
 
 TEST(Connectivity, NamesTheFirstPolygonWithTooFewCorners) {
@@ -78,10 +71,13 @@ TEST(SameFaces, HoldsForRotatedPolygons) {
   EXPECT_TRUE(same_faces(quad_and_triangle(), rotated));
 }
 
-TEST(SameFaces, FailsForAFlippedPolygon) {
+TEST(SameFaces, FailsForAFlippedPolygonAndForMoreVertices) {
   const Connectivity flipped = Connectivity::from_polygons(5, {{0, 1, 2, 3, 4, 2, 3}, {0, 4, 7}});
   EXPECT_FALSE(same_faces(quad_and_triangle(), flipped));
   EXPECT_EQ(first_different_face(quad_and_triangle(), flipped), 1);
+  Connectivity larger = quad_and_triangle();
+  larger.vertices = 6;
+  EXPECT_FALSE(same_faces(quad_and_triangle(), larger));
 }
 
 TEST(SameFaces, FailsForASplitPolygon) {
@@ -91,26 +87,17 @@ TEST(SameFaces, FailsForASplitPolygon) {
   EXPECT_EQ(first_different_face(quad_and_triangle(), split), 0);
 }
 
-TEST(SameFaces, FailsForMoreVertices) {
-  Connectivity larger = quad_and_triangle();
-  larger.vertices = 6;
-  EXPECT_FALSE(same_faces(quad_and_triangle(), larger));
-}
-
 TEST(FirstDifferentFace, IsTheFirstOneThatOnlyOneMeshHas) {
   const Connectivity shorter = Connectivity::from_polygons(5, {{0, 1, 2, 3}, {0, 4}});
   EXPECT_EQ(first_different_face(quad_and_triangle(), shorter), 1);
   EXPECT_EQ(first_different_face(quad_and_triangle(), quad_and_triangle()), -1);
 }
 
-TEST(Extent, IsTheLongestSideOfTheBox) {
+TEST(Extent, IsTheLongestSideOfTheBoxAndZeroOfNothing) {
   Positions positions(2, 3);
   positions << 1, 1, 1, 3, 4, 7;
   EXPECT_EQ(extent(positions), 6);
   EXPECT_EQ(box_diagonal(positions), 7);
-}
-
-TEST(Extent, OfNothingIsZero) {
   EXPECT_EQ(extent(Positions(0, 3)), 0);
   EXPECT_EQ(box_diagonal(Positions(0, 3)), 0);
 }

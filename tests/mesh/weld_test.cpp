@@ -23,13 +23,10 @@ Positions seam() {
   return positions;
 }
 
-TEST(Weld, JoinsVerticesInOnePlaceToTheLowest) {
+TEST(Weld, JoinsVerticesInOnePlaceAndNoneBesideItToTheLowest) {
   const Weld weld = Weld::exact(seam());
   EXPECT_THAT(weld.representative, ElementsAre(0, 1, 2, 1, 1, 0));
   EXPECT_EQ(weld.count, 3);
-}
-
-TEST(Weld, LeavesNeighbouringNumbersApart) {
   Positions positions = Positions::Ones(2, 3);
   positions(1, 2) = std::nextafter(1.0, 2.0);
   EXPECT_EQ(Weld::exact(positions).count, 0);
@@ -63,25 +60,19 @@ MeshSequence seam_that_opens(double gap) {
 }
 
 TEST(PartingVertices, AreTheWeldedOnesThatLeaveTheirRepresentative) {
-  EXPECT_THAT(parting_vertices(seam_that_opens(0.5), Weld::exact(seam()), 0.25), ElementsAre(3));
-}
-
-TEST(PartingVertices, WithinTheToleranceAreNone) {
-  EXPECT_THAT(parting_vertices(seam_that_opens(0.25), Weld::exact(seam()), 0.25), IsEmpty());
+  const Weld weld = Weld::exact(seam());
+  EXPECT_THAT(parting_vertices(seam_that_opens(0.5), weld, 0.25), ElementsAre(3));
+  EXPECT_THAT(parting_vertices(seam_that_opens(0.25), weld, 0.25), IsEmpty());
+  const test::Stream stream(seam_that_opens(0.5));
+  for (const int threads : {1, 3}) {
+    EXPECT_THAT(parting_vertices(stream, weld, 0.25, {.threads = threads}), ElementsAre(3));
+  }
 }
 
 TEST(PartingVertices, OfAnotherVertexCountAreRefused) {
   EXPECT_THAT(
       [] { parting_vertices(seam_that_opens(0), Weld::none(5), 0); },
       ThrowsMessage<std::invalid_argument>(HasSubstr("weld of 5 vertices for a sequence of 6")));
-}
-
-TEST(PartingVertices, AreThoseOfAStreamForEveryNumberOfThreads) {
-  const test::Stream stream(seam_that_opens(0.5));
-  for (const int threads : {1, 3}) {
-    EXPECT_THAT(parting_vertices(stream, Weld::exact(seam()), 0.25, {.threads = threads}),
-                ElementsAre(3));
-  }
 }
 
 TEST(PartingVertices, OfNothingWeldedNeedNoFrame) {

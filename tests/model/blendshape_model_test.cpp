@@ -66,35 +66,20 @@ TEST(BlendshapeModel, IsMadeOfTheFacesThatShowItsExpressions) {
               ThrowsMessage<std::invalid_argument>(HasSubstr("'smile' occurs twice")));
 }
 
-TEST(BlendshapeModel, OfZeroWeightsIsTheNeutralExactly) {
-  EXPECT_EQ(model().pose(Eigen::Vector2d::Zero()), neutral());
-}
-
-TEST(BlendshapeModel, AnimatesOnePosePerRow) {
+TEST(BlendshapeModel, AnimatesOnePosePerRowFromItsNeutral) {
+  const BlendshapeModel face = model();
   const Eigen::MatrixXd weights = Eigen::MatrixXd::Random(5, 2);
-  const MeshSequence sequence = model().animate(weights);
+  const Eigen::VectorXd times = Eigen::VectorXd::LinSpaced(5, 0.5, 2);
+  const MeshSequence sequence = face.animate(weights, times);
   ASSERT_EQ(sequence.frames(), 5);
   for (int f = 0; f < 5; ++f) {
     // The same sums, perhaps in another order: rounding of numbers up to 20.
-    EXPECT_TRUE(sequence.frame(f).isApprox(model().pose(weights.row(f)), 1e-15));
+    EXPECT_TRUE(sequence.frame(f).isApprox(face.pose(weights.row(f)), 1e-15));
   }
-}
-
-TEST(BlendshapeModel, AnimatesFromItsNeutral) {
-  const MeshSequence sequence = model().animate(Eigen::MatrixXd::Ones(2, 2));
   EXPECT_TRUE(sequence.rest_is_known());
   EXPECT_EQ(sequence.rest(), neutral());
-}
-
-TEST(BlendshapeModel, AnimatesAtTheGivenTimes) {
-  const Eigen::Vector2d times(0.5, 2);
-  EXPECT_EQ(model().animate(Eigen::MatrixXd::Ones(2, 2), times).times(), times);
-}
-
-TEST(BlendshapeModel, SharesItsConnectivityWithItsAnimation) {
-  const BlendshapeModel face = model();
-  EXPECT_EQ(face.animate(Eigen::MatrixXd::Ones(1, 2)).shared_connectivity(),
-            face.shared_connectivity());
+  EXPECT_EQ(sequence.times(), times);
+  EXPECT_EQ(sequence.shared_connectivity(), face.shared_connectivity());
 }
 
 TEST(BlendshapeModel, MayHaveNoExpressions) {
@@ -111,40 +96,20 @@ TEST(BlendshapeModel, RefusesAnotherNumberOfWeights) {
   EXPECT_THAT([] { model().animate(Eigen::MatrixXd::Zero(4, 3)); }, refusal);
 }
 
-TEST(BlendshapeModel, RefusesANeutralOfAnotherVertexCount) {
-  EXPECT_THAT(
-      [] { BlendshapeModel(octahedron_connectivity(), Positions::Zero(5, 3), {}); },
-      ThrowsMessage<std::invalid_argument>(HasSubstr("the neutral has 5 vertices, expected 6")));
-}
-
-TEST(BlendshapeModel, RefusesDisplacementsOfAnotherVertexCount) {
-  EXPECT_THAT(
-      [] {
-        BlendshapeModel(octahedron_connectivity(), neutral(),
-                        {{"smile"}, Eigen::MatrixXd::Zero(15, 1)});
-      },
-      ThrowsMessage<std::invalid_argument>(HasSubstr("15 rows, expected 3 x 6")));
-}
-
-TEST(BlendshapeModel, RefusesDisplacementsWithoutNames) {
-  EXPECT_THAT(
-      [] {
-        BlendshapeModel(octahedron_connectivity(), neutral(),
-                        {{"smile"}, Eigen::MatrixXd::Zero(18, 2)});
-      },
-      ThrowsMessage<std::invalid_argument>(HasSubstr("2 displacement fields for 1 shape names")));
-}
-
-TEST(BlendshapeModel, RefusesANameThatOccursTwice) {
-  ShapeBasis basis = smile_and_frown();
-  basis.names[1] = "smile";
-  EXPECT_THAT([&] { BlendshapeModel(octahedron_connectivity(), neutral(), basis); },
-              ThrowsMessage<std::invalid_argument>(HasSubstr("shape name 'smile' occurs twice")));
-}
-
-TEST(BlendshapeModel, NeedsAConnectivity) {
-  EXPECT_THAT([] { BlendshapeModel(nullptr, neutral(), {}); },
-              ThrowsMessage<std::invalid_argument>(HasSubstr("needs a connectivity")));
+TEST(BlendshapeModel, RefusesPartsThatDoNotFit) {
+  const auto refuse = [](const auto& connectivity, const Positions& rest, const ShapeBasis& shapes,
+                         const char* message) {
+    EXPECT_THAT([&] { BlendshapeModel(connectivity, rest, shapes); },
+                ThrowsMessage<std::invalid_argument>(HasSubstr(message)));
+  };
+  const auto faces = octahedron_connectivity();
+  refuse(decltype(octahedron_connectivity())(), neutral(), {}, "needs a connectivity");
+  refuse(faces, Positions::Zero(5, 3), {}, "the neutral has 5 vertices, expected 6");
+  refuse(faces, neutral(), {{"smile"}, Eigen::MatrixXd::Zero(15, 1)}, "15 rows, expected 3 x 6");
+  refuse(faces, neutral(), {{"smile"}, Eigen::MatrixXd::Zero(18, 2)},
+         "2 displacement fields for 1 shape names");
+  refuse(faces, neutral(), {{"smile", "smile"}, Eigen::MatrixXd::Zero(18, 2)},
+         "shape name 'smile' occurs twice");
 }
 
 }  // namespace

@@ -142,26 +142,14 @@ TEST(BoxLeastSquares, KeepsVariablesWhoseBoundsMeet) {
   EXPECT_EQ(x[2], 0);
 }
 
-TEST(BoxLeastSquares, RefusesASystemThatIsNotFinite) {
+TEST(BoxLeastSquares, RefusesOtherSizesCrossedBoundsAndWhatIsNotFinite) {
+  const Eigen::VectorXd zero = Eigen::VectorXd::Zero(3), one = Eigen::VectorXd::Ones(3);
   Problem problem = random_problem(3, 5, 1);
+  EXPECT_THROW(box_least_squares(problem.gram, problem.h, zero.head(2), one),
+               std::invalid_argument);
+  EXPECT_THROW(box_least_squares(problem.gram, problem.h, one, zero), std::invalid_argument);
   problem.h[1] = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_THROW(box_least_squares(problem.gram, problem.h, Eigen::VectorXd::Zero(3),
-                                 Eigen::VectorXd::Ones(3)),
-               std::runtime_error);
-}
-
-TEST(BoxLeastSquares, RefusesSizesThatDisagree) {
-  const Problem problem = random_problem(3, 5, 1);
-  EXPECT_THROW(box_least_squares(problem.gram, problem.h, Eigen::VectorXd::Zero(2),
-                                 Eigen::VectorXd::Ones(3)),
-               std::invalid_argument);
-}
-
-TEST(BoxLeastSquares, RefusesBoundsThatCross) {
-  const Problem problem = random_problem(3, 5, 1);
-  EXPECT_THROW(box_least_squares(problem.gram, problem.h, Eigen::VectorXd::Ones(3),
-                                 Eigen::VectorXd::Zero(3)),
-               std::invalid_argument);
+  EXPECT_THROW(box_least_squares(problem.gram, problem.h, zero, one), std::runtime_error);
 }
 
 TEST(BoxOptimalityViolation, SeesAWrongSolution) {

@@ -24,20 +24,14 @@ MorphableModel face() {
   return {octahedron_connectivity(), mean(), constant_shape("0", 3), constant_shape("smile", 5)};
 }
 
-TEST(MorphableModel, OfNoCoefficientsIsTheMeanPerson) {
-  EXPECT_EQ(face().person().neutral(), mean());
-}
-
-TEST(MorphableModel, MovesThePersonAlongIdentities) {
-  const BlendshapeModel person = face().person(Eigen::VectorXd::Constant(1, -2));
-  EXPECT_EQ(person.neutral(), Positions(mean().array() - 6));
-}
-
 TEST(MorphableModel, AddsIdentityAndExpression) {
   // M(alpha, beta) = mean + alpha V + beta B, eq. 3.
   const Eigen::VectorXd alpha = Eigen::VectorXd::Constant(1, 2);
   const Eigen::VectorXd beta = Eigen::VectorXd::Constant(1, 1);
-  EXPECT_EQ(face().person(alpha).pose(beta), Positions(mean().array() + 2 * 3 + 5));
+  const BlendshapeModel person = face().person(alpha);
+  EXPECT_EQ(person.neutral(), Positions(mean().array() + 2 * 3));
+  EXPECT_EQ(person.pose(beta), Positions(mean().array() + 2 * 3 + 5));
+  EXPECT_EQ(face().person().neutral(), mean());
 }
 
 TEST(MorphableModel, GivesEveryPersonTheSameExpressions) {
@@ -59,32 +53,18 @@ TEST(MorphableModel, RefusesAnotherNumberOfCoefficients) {
                   HasSubstr("2 identity coefficients for a model of 1 identities")));
 }
 
-TEST(MorphableModel, RefusesAMeanOfAnotherVertexCount) {
-  EXPECT_THAT(
-      [] { MorphableModel(octahedron_connectivity(), Positions::Zero(7, 3), {}, {}); },
-      ThrowsMessage<std::invalid_argument>(HasSubstr("the neutral has 7 vertices, expected 6")));
-}
-
-TEST(MorphableModel, RefusesABasisOfAnotherVertexCount) {
-  EXPECT_THAT(
-      [] {
-        MorphableModel(octahedron_connectivity(), mean(), {{"0"}, Eigen::MatrixXd::Zero(3, 1)}, {});
-      },
-      ThrowsMessage<std::invalid_argument>(HasSubstr("3 rows, expected 3 x 6")));
-}
-
-TEST(MorphableModel, RefusesANameThatOccursTwice) {
-  EXPECT_THAT(
-      [] {
-        MorphableModel(octahedron_connectivity(), mean(), {},
-                       {{"a", "a"}, Eigen::MatrixXd::Zero(18, 2)});
-      },
-      ThrowsMessage<std::invalid_argument>(HasSubstr("'a' occurs twice")));
-}
-
-TEST(MorphableModel, NeedsAConnectivity) {
-  EXPECT_THAT([] { MorphableModel(nullptr, mean(), {}, {}); },
-              ThrowsMessage<std::invalid_argument>(HasSubstr("needs a connectivity")));
+TEST(MorphableModel, RefusesPartsThatDoNotFit) {
+  const auto refuse = [](const auto& connectivity, const Positions& middle,
+                         const ShapeBasis& identities, const ShapeBasis& expressions,
+                         const char* message) {
+    EXPECT_THAT([&] { MorphableModel(connectivity, middle, identities, expressions); },
+                ThrowsMessage<std::invalid_argument>(HasSubstr(message)));
+  };
+  const auto faces = octahedron_connectivity();
+  refuse(decltype(octahedron_connectivity())(), mean(), {}, {}, "needs a connectivity");
+  refuse(faces, Positions::Zero(7, 3), {}, {}, "the neutral has 7 vertices, expected 6");
+  refuse(faces, mean(), {{"0"}, Eigen::MatrixXd::Zero(3, 1)}, {}, "3 rows, expected 3 x 6");
+  refuse(faces, mean(), {}, {{"a", "a"}, Eigen::MatrixXd::Zero(18, 2)}, "'a' occurs twice");
 }
 
 }  // namespace

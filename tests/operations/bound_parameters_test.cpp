@@ -5,6 +5,7 @@
 
 #include <gmock/gmock.h>
 
+#include "tests/temporary_folder.h"
 #include "toolkit/operations/command_terms.h"
 #include "toolkit/operations/pipeline_parameters.h"
 
@@ -289,11 +290,8 @@ TEST(PipelineParameters, LeaveFilesUnreadWithoutAMesh) {
 
 std::string refusal_of(Topic topic) {
   Parameters values(analysis_parameters().declared());
-  try {
-    refuse(OptionError(topic, "something"), values);
-  } catch (const std::invalid_argument& error) {
-    return error.what();
-  }
+  return test::message_of<std::invalid_argument>(
+      [&] { refuse(OptionError(topic, "something"), values); });
 }
 
 TEST(CommandTerms, NameTheOptionThatHelps) {

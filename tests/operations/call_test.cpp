@@ -117,30 +117,22 @@ TEST_F(CallOfAnOperation, WritesWhatItHandsOver) {
 
 TEST_F(CallOfAnOperation, RefusesBeforeAnythingIsRead) {
   const auto refusal = [&](const CallRequest& request) {
-    return [this, request] { Call(table_, request); };
+    return test::message_of<UsageError>([&] { Call(table_, request); });
   };
-  EXPECT_THAT(refusal(request("align")),
-              testing::ThrowsMessage<UsageError>(HasSubstr("needs its input 'sequence'")));
-
+  EXPECT_THAT(refusal(request("align")), HasSubstr("needs its input 'sequence'"));
   CallRequest table = request("align");
   table.given["sequence"] = {{"rows", Table{}}};
-  EXPECT_THAT(refusal(table), testing::ThrowsMessage<UsageError>(
-                                  HasSubstr("expected the kind 'sequence', found 'table'")));
-
+  EXPECT_THAT(refusal(table), HasSubstr("expected the kind 'sequence', found 'table'"));
   CallRequest frames = align_of(turning_grid());
   frames.parameters.set("frames", std::string("0:2"));
-  EXPECT_THAT(refusal(frames),
-              testing::ThrowsMessage<UsageError>(HasSubstr("parameter 'frames' is about files")));
-
+  EXPECT_THAT(refusal(frames), HasSubstr("parameter 'frames' is about files"));
   CallRequest format = align_of(turning_grid());
   format.parameters.set("format", std::string("obj"));
-  EXPECT_THAT(refusal(format),
-              testing::ThrowsMessage<UsageError>(HasSubstr("parameter 'format' is about files")));
-
+  EXPECT_THAT(refusal(format), HasSubstr("parameter 'format' is about files"));
   std::ofstream(at("there.json")) << "{}";
   CallRequest manifest = align_of(turning_grid());
   manifest.manifest = Destination{at("there.json")};
-  EXPECT_THAT(refusal(manifest),
+  EXPECT_THAT([&] { Call(table_, manifest); },
               testing::ThrowsMessage<OutputError>(HasSubstr("there.json: exists")));
 }
 

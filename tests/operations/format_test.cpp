@@ -19,9 +19,12 @@ using testing::HasSubstr;
 using testing::Not;
 using testing::ThrowsMessage;
 
-OperationTable toolkit_table() {
-  OperationTable table;
-  add_toolkit(table);
+const OperationTable& toolkit_table() {
+  static const OperationTable table = [] {
+    OperationTable made;
+    add_toolkit(made);
+    return made;
+  }();
   return table;
 }
 
@@ -38,7 +41,7 @@ Format format_of(const std::string& extension) {
 }
 
 TEST(FormatTable, WritesNoWeightsThatWouldBeReadAsTimes) {
-  const OperationTable table = toolkit_table();
+  const OperationTable& table = toolkit_table();
   const test::TemporaryFolder folder;
   for (const char* extension : {".csv", ".json"}) {
     const std::filesystem::path target = folder / (std::string("w") + extension);
@@ -58,7 +61,7 @@ TEST(FormatTable, WritesNoWeightsThatWouldBeReadAsTimes) {
 }
 
 TEST(FormatTable, ChoosesTheReaderByExtensionInAnyCase) {
-  const OperationTable table = toolkit_table();
+  const OperationTable& table = toolkit_table();
   const auto name = [&](DataKind kind, const char* text) { return table.reader(kind, text).name; };
   EXPECT_EQ(name(DataKind::sequence, "take.NPY"), "NumPy array");
   EXPECT_EQ(name(DataKind::sequence, "take.v2/"), "folder of meshes");
@@ -70,7 +73,7 @@ TEST(FormatTable, ChoosesTheReaderByExtensionInAnyCase) {
 }
 
 TEST(FormatTable, ListsWhatItKnowsWhereNothingReadsAFile) {
-  const OperationTable table = toolkit_table();
+  const OperationTable& table = toolkit_table();
   const test::TemporaryFolder folder;
   const std::string file = folder.path() / "take.fbx";
   std::ofstream(file) << "text\n";

@@ -18,9 +18,12 @@ namespace {
 using nlohmann::json;
 using testing::HasSubstr;
 
-OperationTable toolkit() {
-  OperationTable table;
-  add_toolkit(table);
+const OperationTable& toolkit() {
+  static const OperationTable table = [] {
+    OperationTable made;
+    add_toolkit(made);
+    return made;
+  }();
   return table;
 }
 
@@ -84,7 +87,7 @@ TEST(Table, QuotesNamesThatHoldACommaOrAQuotationMark) {
 }
 
 TEST(OperationTable, EveryOperationHasTwoExamplesThatStartWithItsName) {
-  const OperationTable table = toolkit();
+  const OperationTable& table = toolkit();
   for (const Operation& operation : table.operations()) {
     EXPECT_EQ(operation.examples.size(), 2u) << operation.name;
     for (const std::string& example : operation.examples) {
@@ -94,23 +97,13 @@ TEST(OperationTable, EveryOperationHasTwoExamplesThatStartWithItsName) {
 }
 
 TEST(OperationTable, EveryDefaultIsAValueTheParameterAccepts) {
-  const OperationTable table = toolkit();
+  const OperationTable& table = toolkit();
   for (const Operation& operation : table.operations()) {
     for (const Parameter& parameter : table.parameters_of(operation)) {
       if (std::holds_alternative<std::monostate>(parameter.fallback)) continue;
       EXPECT_NO_THROW(check_value(parameter, parameter.fallback))
           << operation.name << ' ' << parameter.name;
     }
-  }
-}
-
-TEST(OperationTable, NamesTheKnownExtensionsWhereOneIsUnknown) {
-  const OperationTable table = toolkit();
-  try {
-    table.writer({"out", DataKind::components, ""}, "out.txt");
-    FAIL();
-  } catch (const UsageError& error) {
-    EXPECT_THAT(error.what(), HasSubstr(".h5"));
   }
 }
 
@@ -129,7 +122,7 @@ TEST(OperationTable, ListsItselfAsJson) {
 
 TEST(OutputPaths, GiveEachOfSeveralTargetsItsOwn) {
   using Paths = std::vector<std::filesystem::path>;
-  const OperationTable table = toolkit();
+  const OperationTable& table = toolkit();
   const Output output{"out", DataKind::sequence, "", false, true};
   EXPECT_EQ(table.output_paths(output, "T/", {"b"}), Paths{"T/"});
   EXPECT_EQ(table.output_paths(output, "T", {"a", "b"}), (Paths{"T/a", "T/b"}));
@@ -139,7 +132,7 @@ TEST(OutputPaths, GiveEachOfSeveralTargetsItsOwn) {
 }
 
 TEST(OutputNames, AreWhatTheirExtensionsSay) {
-  const OperationTable table = toolkit();
+  const OperationTable& table = toolkit();
   const Output sequence{"out", DataKind::sequence, ""};
   for (const char* folder : {"take", "take/", "take.v2/", "a.b/take", ".hidden"}) {
     EXPECT_TRUE(table.writes_folder(sequence, folder)) << folder;
@@ -155,7 +148,7 @@ TEST(OutputNames, AreWhatTheirExtensionsSay) {
 }
 
 TEST(OutputPaths, PutACompanionBesideTheMainOutput) {
-  const OperationTable table = toolkit();
+  const OperationTable& table = toolkit();
   Operation operation;
   operation.outputs = {{"out", DataKind::sequence, ""},
                        {"fit-out", DataKind::fit, "", true, false, ".fit.json"}};
@@ -182,7 +175,7 @@ Invocation transfer_of_the_grid(const OperationTable& table) {
 }
 
 TEST(Operations, RunOnValuesWithoutFiles) {
-  const OperationTable table = toolkit();
+  const OperationTable& table = toolkit();
   const MeshSequence source = waving_grid();
   const Outcome outcome = table.find("transfer")->run(transfer_of_the_grid(table));
   const MeshSequence& result =
@@ -192,7 +185,7 @@ TEST(Operations, RunOnValuesWithoutFiles) {
 }
 
 TEST(Operations, StartFromTheComponentsOfAnEarlierRunAndGiveTheSame) {
-  const OperationTable table = toolkit();
+  const OperationTable& table = toolkit();
   Invocation transfer = transfer_of_the_grid(table);
   Invocation regions = invocation_of(table, "regions");
   regions.parameters.set("k", std::int64_t{2});
@@ -215,7 +208,7 @@ TEST(Operations, StartFromTheComponentsOfAnEarlierRunAndGiveTheSame) {
 }
 
 TEST(Operations, ReadARegionSetForASequenceThatTheCallerHas) {
-  const OperationTable table = toolkit();
+  const OperationTable& table = toolkit();
   const test::TemporaryFolder folder;
   std::ofstream(folder / "list.txt") << "24\n25\n";
   const Invocation call = transfer_of_the_grid(table);
@@ -229,7 +222,7 @@ TEST(Operations, ReadARegionSetForASequenceThatTheCallerHas) {
 }
 
 TEST(Operations, DecomposeTellsTheWeightsOverTime) {
-  const OperationTable table = toolkit();
+  const OperationTable& table = toolkit();
   Invocation invocation = invocation_of(table, "decompose");
   invocation.parameters.set("k", std::int64_t{2});
   const MeshSequence sequence = waving_grid();
@@ -250,7 +243,7 @@ TEST(Operations, DecomposeTellsTheWeightsOverTime) {
 }
 
 TEST(Operations, RefuseATargetWithOtherFaces) {
-  const OperationTable table = toolkit();
+  const OperationTable& table = toolkit();
   const MeshSequence source = waving_grid();
   Triangles others = source.triangles();
   others(5, 0) = others(9, 2);
@@ -262,16 +255,12 @@ TEST(Operations, RefuseATargetWithOtherFaces) {
        ModelData{MorphableModel(BlendshapeModel(
            std::make_shared<Connectivity>(Connectivity::from_triangles(source.vertices(), others)),
            source.rest(), none))}});
-  try {
-    table.find("transfer")->run(invocation);
-    FAIL();
-  } catch (const MismatchError& error) {
-    EXPECT_THAT(error.what(), HasSubstr("other: face 5"));
-  }
+  EXPECT_THAT([&] { table.find("transfer")->run(invocation); },
+              testing::ThrowsMessage<MismatchError>(HasSubstr("other: face 5")));
 }
 
 TEST(Operations, EvaluateNeverBeatsTheFullTransferOverAllTriangles) {
-  const OperationTable table = toolkit();
+  const OperationTable& table = toolkit();
   const MeshSequence source = waving_grid();
   Eigen::MatrixXd basis(source.vertices() * 3, 2);
   basis.setZero();

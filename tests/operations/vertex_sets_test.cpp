@@ -31,22 +31,14 @@ std::vector<bool> named(const std::string& text) {
   return named_vertices(text, triangles());
 }
 
-TEST(NamedVertices, AreThoseOfAComponentTheLargestFirst) {
+TEST(NamedVertices, AreThoseOfAComponentGroupMaterialFieldOrFile) {
+  // The largest component first.
   EXPECT_THAT(named("component:0"), ElementsAre(0, 0, 0, 1, 1, 1));
   EXPECT_THAT(named("component:1"), ElementsAre(1, 1, 1, 0, 0, 0));
   EXPECT_THAT(named("component:0,1"), ElementsAre(1, 1, 1, 1, 1, 1));
-}
-
-TEST(NamedVertices, AreThoseOfAGroupOrMaterial) {
   EXPECT_THAT(named("group:tooth"), ElementsAre(1, 1, 1, 0, 0, 0));
   EXPECT_THAT(named("material:flesh"), ElementsAre(0, 0, 0, 1, 1, 1));
-}
-
-TEST(NamedVertices, AreThoseWhereAFieldIsNotZero) {
   EXPECT_THAT(named("field:mask"), ElementsAre(1, 0, 0, 0, 0, 0));
-}
-
-TEST(NamedVertices, AreThoseThatAFileLists) {
   const test::TemporaryFolder folder;
   const std::string path = (folder.path() / "list.txt").string();
   std::ofstream(path) << "1\n4\n5\n";

@@ -171,10 +171,6 @@ TEST(SheetLayout, HasRoomForALegendOfManyNumbers) {
   EXPECT_LE(SheetLayout::kLegendLine * layout.legend_lines() * layout.text, layout.tile_height);
 }
 
-TEST(Picture, IsTheSameEveryTime) {
-  EXPECT_EQ(draw(square_sheet()).pixels, draw(square_sheet()).pixels);
-}
-
 TEST(Picture, IsTheSameInASessionWhateverWasDrawnBefore) {
   Sheet large = square_sheet(), small = square_sheet();
   large.tile_height = 160;

@@ -29,6 +29,12 @@ TEST_F(EvaluationTest, HasARowForEachCountAndOneByAllTriangles) {
   EXPECT_EQ(rows[2].triangles, source_.triangles().rows());
   EXPECT_TRUE(rows[0].converged);
   EXPECT_FALSE(rows[2].converged);
+  EXPECT_EQ(rows[0].radius, 0.2 * source_.diameter());
+  EXPECT_FALSE(rows[2].radius);
+  // All triangles have the least error over them.
+  for (const EvaluationRow& row : rows) EXPECT_GE(row.de_all, rows[2].de_all);
+  EXPECT_EQ(*rows[0].mpe_all, mean_percentage_error(rows[2].de_all, rows[0].de_all));
+  EXPECT_LE(*rows[0].mpe_all, 0);
 }
 
 TEST_F(EvaluationTest, IsTheErrorOfTheTransferByTheSameRegions) {
@@ -43,12 +49,6 @@ TEST_F(EvaluationTest, IsTheErrorOfTheTransferByTheSameRegions) {
             transfer(source_, {{"actor", actor_}}, options).targets[0].error.de_all);
 }
 
-TEST_F(EvaluationTest, StatesTheRadiusOfTheRegions) {
-  const auto rows = evaluate(source_, {"actor", actor_}, options_);
-  EXPECT_EQ(rows[0].radius, 0.2 * source_.diameter());
-  EXPECT_FALSE(rows.back().radius);
-}
-
 TEST_F(EvaluationTest, CompletesRegionsThatLeaveExpressionsUnseen) {
   options_.counts = {1};
   options_.regions = {.radius = Length::share(0.05), .completion = {.limit = 1}};
@@ -57,13 +57,6 @@ TEST_F(EvaluationTest, CompletesRegionsThatLeaveExpressionsUnseen) {
   const auto as_found = evaluate(source_, {"actor", actor_}, options_);
   EXPECT_GT(completed[0].triangles, as_found[0].triangles);
   EXPECT_GT(*completed[0].mpe_all, *as_found[0].mpe_all);
-}
-
-TEST_F(EvaluationTest, ByAllTrianglesHasTheLeastErrorOverThem) {
-  const auto rows = evaluate(source_, {"actor", actor_}, options_);
-  for (const EvaluationRow& row : rows) EXPECT_GE(row.de_all, rows.back().de_all);
-  EXPECT_EQ(*rows[0].mpe_all, mean_percentage_error(rows.back().de_all, rows[0].de_all));
-  EXPECT_LE(*rows[0].mpe_all, 0);
 }
 
 TEST_F(EvaluationTest, SaysWhichRowsMayNotBeUsable) {

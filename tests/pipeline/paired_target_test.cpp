@@ -84,23 +84,7 @@ class FinerTargetTest : public PairedTargetTest {
   std::vector<Marker> markers_;
 };
 
-TEST_F(FinerTargetTest, IsFoundByMarkersAndFollows) {
-  const auto found = transferred({"fine", *mesh_, markers_}, {.full = true});
-  ASSERT_TRUE(found.match);
-  EXPECT_EQ(found.match->quality.verdict(), "good");
-  EXPECT_EQ(found.match->markers, 8);
-  // Of a face 8 wide whose bumps are up to 1 high.
-  double farthest = 0;
-  for (int f = 0; f < take_.frames(); ++f) {
-    const Frames pose = found.solution.sequence->read(f, 1);
-    const PositionsView result(pose.data(), mesh_->vertices(), 3);
-    farthest =
-        std::max(farthest, (result.topRows(81) - take_.frame(f)).rowwise().norm().maxCoeff());
-  }
-  EXPECT_LT(farthest, 0.15);
-}
-
-TEST_F(FinerTargetTest, IsPairedByMarkersThatAreLookedFor) {
+TEST_F(FinerTargetTest, IsPairedByMarkersThatAreGivenOrLookedForAndFollows) {
   const MarkersBetween search = [this](const TriMesh& source) {
     EXPECT_TRUE(source.positions == take_.rest());
     AutomaticMarkers found;
@@ -111,6 +95,18 @@ TEST_F(FinerTargetTest, IsPairedByMarkersThatAreLookedFor) {
   const auto looked_for =
       transferred({"fine", *mesh_, search}, {.full = true, .notes = noted.sink()});
   const auto given = transferred({"fine", *mesh_, markers_}, {.full = true});
+  ASSERT_TRUE(given.match);
+  EXPECT_EQ(given.match->quality.verdict(), "good");
+  EXPECT_EQ(given.match->markers, 8);
+  // Of a face 8 wide whose bumps are up to 1 high.
+  double farthest = 0;
+  for (int f = 0; f < take_.frames(); ++f) {
+    const Frames pose = given.solution.sequence->read(f, 1);
+    const PositionsView result(pose.data(), mesh_->vertices(), 3);
+    farthest =
+        std::max(farthest, (result.topRows(81) - take_.frame(f)).rowwise().norm().maxCoeff());
+  }
+  EXPECT_LT(farthest, 0.15);
   EXPECT_TRUE(test::frames_of(looked_for.solution.sequence) ==
               test::frames_of(given.solution.sequence));
   ASSERT_TRUE(looked_for.match && looked_for.match->found);
@@ -165,12 +161,11 @@ TEST_F(FinerTargetTest, HasNoAnchorOnAPartThatFollows) {
       1e-9);
 }
 
-TEST_F(FinerTargetTest, IsRefusedWithoutMatch) {
-  const auto work = [this] { transferred({"fine", *mesh_}, {.full = true}); };
-  EXPECT_EQ(test::topic_of(work), Topic::other_faces);
-}
-
-TEST_F(FinerTargetTest, IsRefusedWhereNoMarkersAreFound) {
+TEST_F(FinerTargetTest, IsRefusedWithoutMatchAndWhereNoMarkersAreFound) {
+  EXPECT_EQ(test::topic_of([this] {
+              transferred({"fine", *mesh_}, {.full = true});
+            }),
+            Topic::other_faces);
   const MarkersBetween search = [](const TriMesh&) -> AutomaticMarkers {
     throw MismatchError("fine.obj: no face was found");
   };

@@ -88,8 +88,9 @@ class PlacedSourceTest : public testing::Test {
 TEST_F(PlacedSourceTest, FollowsItsUnitPlaceAndAxesInBothSpaces) {
   for (const bool in_vertices : {false, true}) {
     const BlendshapeModel target = in_vertices ? mesh_of(actor_) : actor_;
-    const Frames expected = frames_of(transferred({}, target).solution.sequence);
-    const double error = transferred({}, target).error.de_all;
+    const TransferredTarget plain = transferred({}, target);
+    const Frames expected = frames_of(plain.solution.sequence);
+    const double error = plain.error.de_all;
     for (const double scale : {1e-3, 1.0, 1e3}) {
       const Stand of_source = some_stand(1, scale), of_target = some_stand(2, 1 / scale);
       const TransferredTarget by_source = transferred(of_source, target);

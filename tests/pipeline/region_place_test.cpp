@@ -30,15 +30,12 @@ AnalysisOptions in_first_half() {
   return {.inside = first_half(), .decomposition = {.count = 3}};
 }
 
-TEST(RegionPlace, HoldsAllCentresAndDisplacements) {
-  const Components components = analyse(still_source(take()), in_first_half()).components;
+TEST(RegionPlace, HoldsAllCentresDisplacementsAndRegions) {
+  const Analysis analysis = analyse(still_source(take()), in_first_half());
+  const Components& components = analysis.components;
   EXPECT_THAT(components.centers, Each(testing::Lt(40)));
   EXPECT_TRUE(components.displacements.rightCols(3 * 41).isZero(0));
   EXPECT_FALSE(components.displacements.leftCols(3 * 40).isZero(0));
-}
-
-TEST(RegionPlace, HoldsAllRegions) {
-  const Analysis analysis = analyse(still_source(take()), in_first_half());
   for (const Region& region : choose_regions(analysis).regions) {
     EXPECT_THAT(region.vertices, Each(testing::Lt(40)));
   }

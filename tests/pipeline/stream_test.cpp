@@ -1,3 +1,5 @@
+#include <set>
+
 #include <gmock/gmock.h>
 
 #include "tests/pipeline/takes.h"
@@ -72,13 +74,13 @@ TEST_F(StreamedTransferTest, ByAllTrianglesIsTheOneInMemoryBitByBit) {
 }
 
 TEST_F(StreamedTransferTest, WithHeadMotionIsTheOneInMemoryBitByBit) {
+  for (const HeadMotion motion : choices<HeadMotion>()) {
+    options_.source.head_motion = motion;
+    expect_the_same(moved_);
+  }
+  options_.source.head_motion = nodding(kFrames);
   for (const RemovedMotion removed : choices<RemovedMotion>()) {
     options_.head_motion = removed;
-    for (const HeadMotion motion : choices<HeadMotion>()) {
-      options_.source.head_motion = motion;
-      expect_the_same(moved_);
-    }
-    options_.source.head_motion = nodding(kFrames);
     expect_the_same(moved_);
   }
 }
@@ -126,7 +128,7 @@ TEST_F(StreamedTransferTest, EndsWhereverProgressAsksForIt) {
   const test::Stream stream(moved_);
   transfer(stream, targets_, options_);
   EXPECT_TRUE(std::ranges::is_sorted(shares));
-  for (const double last : shares) {
+  for (const double last : std::set<double>(shares.begin(), shares.end())) {
     options_.progress = [last](double share) { return share < last; };
     EXPECT_THROW(transfer(stream, targets_, options_), Cancelled) << last;
   }

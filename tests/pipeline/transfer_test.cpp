@@ -56,6 +56,8 @@ TEST_F(TransferTest, IsItsPartsDoneByHand) {
   const MeshSequence expected = actor_.animate(weights, source_.times());
   EXPECT_TRUE(result.targets.front().solution.weights() == weights);
   EXPECT_TRUE(frames_of(result.targets.front()) == expected.positions());
+  // No head motion is given back, since none was looked for.
+  EXPECT_TRUE(result.targets.front().solution.sequence->rest_is_known());
   EXPECT_EQ(result.targets.front().error.de_all,
             transfer_error(*placed(), expected, regions.triangles).de_all);
 }
@@ -170,23 +172,19 @@ TEST_F(TransferTest, CompletesRegionsThatLeaveExpressionsUnseen) {
   EXPECT_EQ(result.regions->triangles, target.regions->triangles);
   EXPECT_TRUE(target.solution.conditions.weakly_seen.empty());
   EXPECT_LT(missed_share(target.error), 0.1);
+  EXPECT_FALSE(noted.has(Topic::completion_limit));
   ASSERT_TRUE(noted.has(Topic::completed_regions));
   EXPECT_THAT(noted.notes.front().text, AllOf(HasSubstr("added to the regions ("),
                                               HasSubstr("of the triangles), which hardly see")));
+
+  options_.regions.completion.limit = 0;
+  to(actor_);
+  EXPECT_TRUE(noted.has(Topic::completion_limit));
 
   options_.regions.completion.share = 0;
   const TransferredTarget as_given = to(actor_);
   EXPECT_EQ(as_given.regions->regions.size(), 1U);
   EXPECT_GT(as_given.error.de_all, target.error.de_all);
-}
-
-TEST_F(TransferTest, SaysWhereRegionsCannotBeCompleted) {
-  test::Noted noted;
-  options_.notes = noted.sink();
-  options_.given = a_corner(actor_);
-  options_.regions.completion.limit = 0;
-  to(actor_);
-  EXPECT_TRUE(noted.has(Topic::completion_limit));
 }
 
 TEST_F(TransferTest, CompletesRegionsForEachTargetByItself) {
@@ -237,10 +235,6 @@ TEST_F(TransferTest, GivesHeadMotionBackUnlessItIsDropped) {
   EXPECT_TRUE(dropped->rest() == actor_.neutral());
   EXPECT_TRUE(dropped->rest_is_known());
   EXPECT_FALSE(kept->rest_is_known());
-}
-
-TEST_F(TransferTest, GivesBackNothingWhereNoneWasLookedFor) {
-  EXPECT_TRUE(to(actor_).solution.sequence->rest_is_known());
 }
 
 TEST_F(TransferTest, RefusesATargetBeforeAnythingIsComputed) {
@@ -300,23 +294,20 @@ TEST_F(TransferTest, CutsQuadsThatBeginAtAnotherCornerAsTheSourceDoes) {
   }
 }
 
-TEST_F(TransferTest, RefusesRegionsOfAnotherMesh) {
-  Regions regions = this->regions();
-  regions.all_triangles = 7;
-  options_.given = GivenRegions{"rois.json", regions};
+TEST_F(TransferTest, RefusesRegionsOfAnotherMeshOrWithoutATriangle) {
+  const Regions regions = a_corner(actor_).regions;
+  Regions other = regions, empty = regions;
+  other.all_triangles = 7;
+  options_.given = GivenRegions{"rois.json", other};
   EXPECT_THAT([&] { to(actor_); },
               ThrowsMessage<MismatchError>(HasSubstr("rois.json: regions of a mesh with 81")));
-}
-
-TEST_F(TransferTest, RefusesRegionsWithoutATriangle) {
-  Regions regions = this->regions();
-  regions.triangles.clear();
-  options_.given = GivenRegions{"rois.json", regions};
+  empty.triangles.clear();
+  options_.given = GivenRegions{"rois.json", empty};
   EXPECT_THAT([&] { to(actor_); },
               ThrowsMessage<MismatchError>(HasSubstr("hold no triangle of the mesh")));
 }
 
-TEST_F(TransferTest, ReportsProgressThatRises) {
+TEST_F(TransferTest, ReportsProgressThatRisesAndEndsWhereItIsAskedTo) {
   std::vector<double> shares;
   options_.progress = [&shares](double share) {
     shares.push_back(share);
@@ -325,9 +316,6 @@ TEST_F(TransferTest, ReportsProgressThatRises) {
   to(actor_);
   EXPECT_TRUE(std::ranges::is_sorted(shares));
   EXPECT_EQ(shares.back(), 1);
-}
-
-TEST_F(TransferTest, EndsWhereProgressAsksForIt) {
   options_.progress = [](double share) { return share < 0.5; };
   EXPECT_THROW(to(actor_), Cancelled);
 }

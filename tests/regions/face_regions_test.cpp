@@ -53,43 +53,32 @@ TEST(RegionsAlongASurface, DoNotReachAnotherSurfaceNearby) {
 }
 
 /// The facecap head: 17 components (head, eyes, teeth), UV seams.
-class FacecapRegions : public testing::Test {
- protected:
-  void SetUp() override {
-    const auto folder = shared_path("data/facecap");
-    MIMETRA_SKIP_WITHOUT(folder);
-    const MeshSequence sequence = captured_performance(folder / "neutral.obj", folder / "targets",
-                                                       folder / "weights.csv", 100);
-    components_ = decompose(sequence, {.count = 20, .iterations = 3});
-    regions_ = find_regions(components_);
-  }
+TEST(FacecapRegions, StayOnTheirOwnPartAndHoldBothSidesOfEverySeam) {
+  const auto folder = shared_path("data/facecap");
+  MIMETRA_SKIP_WITHOUT(folder);
+  const MeshSequence sequence =
+      captured_performance(folder / "neutral.obj", folder / "targets", folder / "weights.csv", 100);
+  const Components components = decompose(sequence, {.count = 20, .iterations = 3});
+  const Weld weld = Weld::exact(components.rest);
+  ASSERT_GT(weld.count, 0);
 
-  Components components_;
-  Regions regions_;
-};
-
-TEST_F(FacecapRegions, KeepEveryVertexAndStayOnTheirOwnPart) {
-  EXPECT_EQ(regions_.vertices, 2694);
-  const Weld weld = Weld::exact(components_.rest);
+  const Regions regions = find_regions(components);
+  EXPECT_EQ(regions.vertices, 2694);
   const ConnectedComponents parts =
-      connected_components(regions_.vertices, weld.welded(components_.triangles));
+      connected_components(regions.vertices, weld.welded(components.triangles));
   const auto part_of = [&](VertexIndex v) { return parts.of_vertex[weld.representative[v]]; };
-  for (const Region& region : regions_.regions) {
+  for (const Region& region : regions.regions) {
     for (const VertexIndex v : region.vertices) {
       EXPECT_EQ(part_of(v), part_of(region.center)) << v << " around " << region.center;
     }
   }
-}
 
-TEST_F(FacecapRegions, HoldBothSidesOfEverySeam) {
-  const Weld weld = Weld::exact(components_.rest);
-  ASSERT_GT(weld.count, 0);
   int on_seams = 0;
   // The seams lie at the back of the head: discs of the default radius do not reach them.
-  const Regions wide = find_regions(components_, {.radius = 0.5 * diameter(components_.rest)});
+  const Regions wide = find_regions(components, {.radius = 0.5 * diameter(components.rest)});
   for (const Region& region : wide.regions) {
     const std::set<VertexIndex> held(region.vertices.begin(), region.vertices.end());
-    for (int v = 0; v < regions_.vertices; ++v) {
+    for (int v = 0; v < wide.vertices; ++v) {
       if (weld.representative[v] == v) continue;
       EXPECT_EQ(held.count(v), held.count(weld.representative[v])) << v;
       on_seams += static_cast<int>(held.count(v));

@@ -2,7 +2,7 @@
 
 #include <limits>
 
-#include "tests/shapes.h"
+#include "tests/splocs/synthetic.h"
 #include "toolkit/regions/regions.h"
 
 /// Components written down by hand on a flat grid of 12 x 5 vertices.
@@ -10,15 +10,6 @@ namespace mimetra::test {
 
 constexpr int kColumns = 12;
 constexpr int kRows = 5;
-
-using DistanceFrom = std::function<Eigen::VectorXd(VertexIndex)>;
-
-/// Straight distances on the grid.
-inline DistanceFrom straight_distances(const Positions& rest) {
-  return [rest](VertexIndex source) {
-    return Eigen::VectorXd((rest.rowwise() - rest.row(source)).rowwise().norm());
-  };
-}
 
 /// Component k lifts vertex centers[k] by heights[k] and its grid neighbours by half of that; its
 /// weights are 1 in every one of 4 frames.

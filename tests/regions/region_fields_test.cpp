@@ -19,49 +19,36 @@ struct Overlapping {
   Regions regions = find_regions(components, disc_of(components, 1));
 };
 
-TEST(RegionField, HoldsTheStrongestRegionAndMinusOneOutside) {
+TEST(RegionFields, HoldTheStrongestRegionItsCountTheUnionAndL) {
   const Overlapping discs;
-  const Field region = named(fields_of(discs.regions), "region");
+  const std::vector<Field> fields = fields_of(discs.regions);
+  for (const Field& field : fields) EXPECT_TRUE(field.integer);
+  // -1 outside of all regions.
+  const Field& region = named(fields, "region");
   EXPECT_EQ(region.values(at(4, 2)), 0);
   EXPECT_EQ(region.values(at(2, 2)), 1);
   EXPECT_EQ(region.values(at(3, 2)), 0);
   EXPECT_EQ(region.values(at(9, 2)), -1);
-}
-
-TEST(RegionCountField, CountsTheRegionsOfAVertex) {
-  const Overlapping discs;
-  const Field count = named(fields_of(discs.regions), "region_count");
+  const Field& count = named(fields, "region_count");
   EXPECT_EQ(count.values(at(3, 2)), 2);
   EXPECT_EQ(count.values(at(4, 2)), 1);
   EXPECT_EQ(count.values(at(9, 2)), 0);
-}
-
-TEST(RoiField, IsTheUnion) {
-  const Overlapping discs;
-  const Field roi = named(fields_of(discs.regions), "roi");
+  const Field& roi = named(fields, "roi");
   for (int v = 0; v < discs.regions.vertices; ++v) {
     EXPECT_EQ(roi.values(v), discs.regions.inside[v] ? 1 : 0);
   }
+  const Field& in_L = named(fields, "in_L");
+  EXPECT_EQ(in_L.location, Field::Location::triangles);
+  EXPECT_EQ(in_L.values.sum(), discs.regions.triangles.size());
+  for (const int t : discs.regions.triangles) EXPECT_EQ(in_L.values(t), 1);
 }
 
-TEST(AddedField, MarksWhatIsInAddedRegionsOnly) {
-  Overlapping discs;
+TEST(AddedRegions, AreBehindTheOthersInTheUnionAndMarked) {
+  const Overlapping discs;
   EXPECT_EQ(fields_of(discs.regions).size(), 4u);
   Region disc;
   disc.center = at(9, 2);
   disc.vertices = {at(4, 2), at(9, 2)};
-  disc.added_for = "smile";
-  const Regions more = with_added(discs.regions, {disc}, discs.components.triangles);
-  const Field added = named(fields_of(more), "added");
-  EXPECT_EQ(added.values(at(9, 2)), 1);
-  EXPECT_EQ(added.values(at(4, 2)), 0);
-  EXPECT_EQ(added.values.sum(), 1);
-}
-
-TEST(AddedRegions, AreBehindTheOthersAndBelongToTheUnion) {
-  const Overlapping discs;
-  Region disc;
-  disc.vertices = {at(9, 2)};
   disc.added_for = "smile";
   const Regions more = with_added(discs.regions, {disc}, discs.components.triangles);
   ASSERT_EQ(more.regions.size(), 3u);
@@ -69,18 +56,11 @@ TEST(AddedRegions, AreBehindTheOthersAndBelongToTheUnion) {
   EXPECT_TRUE(more.inside[at(9, 2)]);
   EXPECT_EQ(more.vertex_count(), discs.regions.vertex_count() + 1);
   EXPECT_GT(more.triangles.size(), discs.regions.triangles.size());
-}
-
-TEST(InLField, IsOneOnTheTrianglesOfL) {
-  const Overlapping discs;
-  const Field in_L = named(fields_of(discs.regions), "in_L");
-  EXPECT_EQ(in_L.location, Field::Location::triangles);
-  EXPECT_EQ(in_L.values.sum(), discs.regions.triangles.size());
-  for (const int t : discs.regions.triangles) EXPECT_EQ(in_L.values(t), 1);
-}
-
-TEST(RegionFields, AreIntegers) {
-  for (const Field& field : fields_of(Overlapping().regions)) EXPECT_TRUE(field.integer);
+  // What other regions hold is not added.
+  const Field added = named(fields_of(more), "added");
+  EXPECT_EQ(added.values(at(9, 2)), 1);
+  EXPECT_EQ(added.values(at(4, 2)), 0);
+  EXPECT_EQ(added.values.sum(), 1);
 }
 
 TEST(ComponentFields, BelongToTheRegionsInTheirOrder) {

@@ -114,14 +114,6 @@ TEST(Regions, HoldTheEnergyOfWhatOverlappingComponentsGiveTogether) {
   EXPECT_NEAR(regions.energy_share, inside / motion.squaredNorm(), 1e-12);
 }
 
-TEST(Regions, UnionCountsSharedVerticesOnce) {
-  const Components components = lifted({at(2, 2), at(3, 2)}, {2, 1});
-  const Regions regions = find_regions(components, disc_of(components, 3));
-  EXPECT_DOUBLE_EQ(regions.regions[0].energy_share, 1);
-  EXPECT_DOUBLE_EQ(regions.regions[1].energy_share, 1);
-  EXPECT_DOUBLE_EQ(regions.energy_share, 1);
-}
-
 TEST(Regions, OfOneCenterAreMergedAndTheirEnergyAdded) {
   const Components components = lifted({at(2, 2), at(8, 2), at(2, 2)}, {2, 2.5, 2});
   const Regions regions = find_regions(components, disc_of(components, 1));
@@ -301,16 +293,12 @@ TEST(Coverage, OutOfReachSaysHowMuchMovesOnPartsWithoutARegion) {
                   "components of others"));
 }
 
-TEST(RegionOptions, RefuseARadiusOfZero) {
+TEST(RegionOptions, RefuseARadiusAndACoverageOutOfRange) {
   const Components components = lifted({at(1, 2)}, {1});
   for (const double radius : {0.0, -1.0, std::numeric_limits<double>::quiet_NaN()}) {
     EXPECT_THAT([&] { find_regions(components, disc_of(components, radius)); },
                 ThrowsMessage<std::invalid_argument>(HasSubstr("radius is")));
   }
-}
-
-TEST(RegionOptions, RefuseACoverageOutsideZeroToOne) {
-  const Components components = lifted({at(1, 2)}, {1});
   for (const double coverage : {0.0, 1.1}) {
     RegionOptions options = disc_of(components, 1);
     options.coverage = coverage;
@@ -328,12 +316,7 @@ TEST(StrongestRegions, AreThoseOfTheStrongestComponentsAlone) {
   EXPECT_EQ(two.triangles, expected.triangles);
   // Of the motion of all three components.
   EXPECT_DOUBLE_EQ(two.energy_share, 13.0 / 14);
-}
-
-TEST(StrongestRegions, AreAllWhereThereAreFewer) {
-  const Components components = lifted({at(1, 2)}, {1});
-  const Regions regions = find_regions(components, disc_of(components, 1));
-  EXPECT_EQ(strongest(regions, 7, components.triangles).regions.size(), 1u);
+  EXPECT_EQ(strongest(two, 7, all.triangles).regions.size(), 2u);
 }
 
 TEST(StrongestRegions, RefuseACountOfZero) {

@@ -194,8 +194,11 @@ nlohmann::json Browser::call(const std::string& method, const nlohmann::json& pa
 }
 
 void Browser::open(const std::filesystem::path& page) {
-  call("Page.navigate", {{"url", "file://" + std::filesystem::absolute(page).string()}});
-  wait_until("location.protocol === 'file:' && document.readyState === 'complete'");
+  // The page before may still be there.
+  const std::string address = "file://" + std::filesystem::absolute(page).string();
+  call("Page.navigate", {{"url", address}});
+  wait_until("decodeURI(location.href) === " + json(address).dump() +
+             " && document.readyState === 'complete'");
 }
 
 nlohmann::json Browser::value(const std::string& expression) {

@@ -44,11 +44,17 @@ class OpenReport : public testing::Test {
     if (viewer_script().empty()) GTEST_SKIP() << "built without npm, reports have no viewer";
     if (Browser::program().empty()) GTEST_SKIP() << "no Chromium; ./dev hosts installs it";
   }
+  static void TearDownTestSuite() { windows_.clear(); }
 
-  /// Opens it in a window of this size, and waits for its first picture.
-  Browser& open(int width, int height, bool phone, const std::string& operation = "transfer") {
+  /// Opens it anew in the window of this kind, and waits for its first picture.
+  Browser& open(bool phone = false, const std::string& operation = "transfer") {
     std::ofstream(folder_ / "report.html") << page_of(operation);
-    browser_ = std::make_unique<Browser>(width, height, phone);
+    std::unique_ptr<Browser>& window = windows_[phone];
+    if (!window) {
+      window = phone ? std::make_unique<Browser>(390, 844, true)
+                     : std::make_unique<Browser>(1280, 800, false);
+    }
+    browser_ = window.get();
     browser_->open(folder_ / "report.html");
     browser_->wait_until("document.getElementById('clock').textContent !== ''");
     return *browser_;
@@ -88,11 +94,13 @@ class OpenReport : public testing::Test {
   }
 
   test::TemporaryFolder folder_;
-  std::unique_ptr<Browser> browser_;
+  Browser* browser_ = nullptr;
+  /// By whether they are a phone's; starting one takes seconds.
+  static inline std::map<bool, std::unique_ptr<Browser>> windows_;
 };
 
 TEST_F(OpenReport, DrawsItsMeshesWithoutAComplaint) {
-  Browser& browser = open(1280, 800, false);
+  Browser& browser = open();
   EXPECT_GT(drawn_share(stage()), 0.1);
   // Source and target, each in a half of its own.
   PageBox half = browser.box_of("stage");
@@ -104,7 +112,7 @@ TEST_F(OpenReport, DrawsItsMeshesWithoutAComplaint) {
 }
 
 TEST_F(OpenReport, ChangesItsPictureWithTheTimeSlider) {
-  Browser& browser = open(1280, 800, false);
+  Browser& browser = open();
   const Image before = stage();
   browser.click("time", 0.5);
   EXPECT_GT(changed_share(before, stage()), 0.005);
@@ -115,7 +123,7 @@ TEST_F(OpenReport, ChangesItsPictureWithTheTimeSlider) {
 }
 
 TEST_F(OpenReport, PlaysAndPauses) {
-  Browser& browser = open(1280, 800, false);
+  Browser& browser = open();
   browser.click("play");
   browser.wait_until("document.getElementById('clock').textContent !== '0.00 s'");
   EXPECT_EQ(browser.value("document.getElementById('play').textContent"), "Pause");
@@ -128,7 +136,7 @@ TEST_F(OpenReport, PlaysAndPauses) {
 }
 
 TEST_F(OpenReport, ShowsRegionsDisplacementOrNothing) {
-  Browser& browser = open(1280, 800, false);
+  Browser& browser = open();
   browser.click("time", 0.3);
   const Image regions = stage();
   choose("coloring", "displacement");
@@ -142,7 +150,7 @@ TEST_F(OpenReport, ShowsRegionsDisplacementOrNothing) {
 }
 
 TEST_F(OpenReport, NamesWhatIsClicked) {
-  Browser& browser = open(1280, 800, false);
+  Browser& browser = open();
   const auto picked = [&browser] {
     return browser.value("document.getElementById('picked').textContent").get<std::string>();
   };
@@ -156,7 +164,7 @@ TEST_F(OpenReport, NamesWhatIsClicked) {
 }
 
 TEST_F(OpenReport, HasALegendOfItsRegions) {
-  Browser& browser = open(1280, 800, false);
+  Browser& browser = open();
   const std::string shown = "[...document.querySelectorAll('#legend span:not([hidden])')]";
   EXPECT_GT(browser.value(shown + ".length"), 1);
   EXPECT_EQ(browser.value(shown + "[0].textContent"), "0");
@@ -166,7 +174,7 @@ TEST_F(OpenReport, HasALegendOfItsRegions) {
 }
 
 TEST_F(OpenReport, ShowsOneMeshInTheWholeStage) {
-  Browser& browser = open(1280, 800, false);
+  Browser& browser = open();
   const double both = drawn_share(stage());
   choose("shown", "target");
   EXPECT_GT(drawn_share(stage()), 0.5 * both);
@@ -175,7 +183,7 @@ TEST_F(OpenReport, ShowsOneMeshInTheWholeStage) {
 }
 
 TEST_F(OpenReport, TurnsAndGoesBack) {
-  Browser& browser = open(1280, 800, false);
+  Browser& browser = open();
   const Image before = stage();
   browser.drag("stage", 120, 30);
   EXPECT_GT(changed_share(before, stage()), 0.02);
@@ -185,7 +193,7 @@ TEST_F(OpenReport, TurnsAndGoesBack) {
 }
 
 TEST_F(OpenReport, TakesNoCommandsByKeys) {
-  Browser& browser = open(1280, 800, false);
+  Browser& browser = open();
   const auto press = [&browser](const std::string& key) {
     browser.value(
         "document.querySelector('#stage canvas').dispatchEvent(new KeyboardEvent("
@@ -199,7 +207,7 @@ TEST_F(OpenReport, TakesNoCommandsByKeys) {
 }
 
 TEST_F(OpenReport, FitsAPhone) {
-  Browser& browser = open(390, 844, true);
+  Browser& browser = open(true);
   EXPECT_EQ(browser.value("document.documentElement.scrollWidth"), 390);
   const std::string beyond =
       "[...document.querySelectorAll('body *')].filter((element) => {"
@@ -215,7 +223,7 @@ TEST_F(OpenReport, FitsAPhone) {
 }
 
 TEST_F(OpenReport, OfRegionsPlaysOneMesh) {
-  Browser& browser = open(1280, 800, false, "regions");
+  Browser& browser = open(false, "regions");
   EXPECT_GT(drawn_share(stage()), 0.1);
   EXPECT_TRUE(browser.value("document.getElementById('shown')").is_null());
   EXPECT_THAT(browser.complaints(), IsEmpty());

@@ -10,32 +10,21 @@ const WeightTrack& performance() {
   return track;
 }
 
-double peak(const std::string& name) {
-  return performance().weights.col(head().expressions().find(name)).maxCoeff();
-}
-
 TEST(Performance, HasFourSecondsAtThirtyFramesPerSecond) {
   ASSERT_EQ(performance().weights.rows(), 120);
   ASSERT_EQ(performance().times.size(), 120);
   for (int f = 0; f < 120; ++f) EXPECT_DOUBLE_EQ(performance().times[f], f / 30.0);
 }
 
-TEST(Performance, DrivesTheExpressionsOfTheHead) {
+TEST(Performance, DrivesEveryExpressionOfTheHeadFromZeroTowardsOneAndBack) {
+  const Eigen::MatrixXd& weights = performance().weights;
   EXPECT_EQ(performance().names, head().expressions().names);
-}
-
-TEST(Performance, KeepsEveryWeightFromZeroToOne) {
-  EXPECT_GE(performance().weights.minCoeff(), 0);
-  EXPECT_LE(performance().weights.maxCoeff(), 1);
-}
-
-TEST(Performance, BeginsAndEndsNeutral) {
-  EXPECT_TRUE(performance().weights.row(0).isZero(0));
-  EXPECT_TRUE(performance().weights.row(119).isZero(0));
-}
-
-TEST(Performance, UsesEveryExpression) {
-  for (const std::string& name : performance().names) EXPECT_GT(peak(name), 0.5) << name;
+  ASSERT_EQ(weights.cols(), 12);
+  EXPECT_GE(weights.minCoeff(), 0);
+  EXPECT_LE(weights.maxCoeff(), 1);
+  for (int j = 0; j < 12; ++j) EXPECT_GT(weights.col(j).maxCoeff(), 0.5) << j;
+  EXPECT_TRUE(weights.row(0).isZero(0));
+  EXPECT_TRUE(weights.row(119).isZero(0));
 }
 
 TEST(Performance, MovesWithoutJumps) {
@@ -50,10 +39,10 @@ TEST(Performance, FlipsAndCrushesNoTriangleOfAnyPerson) {
     Eigen::VectorXd identity = Eigen::VectorXd::Zero(head().identities().size());
     if (i >= 0) identity[i] = 1;
     const BlendshapeModel person = head().person(identity);
-    for (int f = 0; f < 120; f += 5) {
+    for (int f = 0; f < 120; f += 5) {  // the first is neutral
       const Positions pose = person.pose(performance().weights.row(f));
       EXPECT_EQ(flipped(person.neutral(), pose), 0) << "identity " << i << ", frame " << f;
-      EXPECT_GT(worst_quality(pose), 1e-3) << "identity " << i << ", frame " << f;
+      EXPECT_GT(worst_quality(pose), kFewestQuality) << "identity " << i << ", frame " << f;
     }
   }
 }

@@ -131,25 +131,6 @@ TEST(Reduction, GivesTheSameBitsWhereverRanksPartTheRuns) {
   EXPECT_NE(in_order, expected);
 }
 
-TEST(Reduction, EachCompleteSubtreeIsTheTreeOfItsRuns) {
-  for (int runs = 1; runs <= 64; ++runs) {
-    for (int size = 1; size <= 64; size *= 2) {
-      // The nodes of one level, and the tree above them.
-      std::vector<double> nodes;
-      for (int first = 0; first < runs; first += size) {
-        nodes.push_back(literal_node(first, size, runs, kSums));
-      }
-      for (std::size_t half = 1; half < nodes.size(); half *= 2) {
-        for (std::size_t left = 0; left + half < nodes.size(); left += 2 * half) {
-          nodes[left] += nodes[left + half];
-        }
-      }
-      EXPECT_EQ(nodes.front(), root_of(kSums, Reduction(runs * kBlock, 2))(0))
-          << runs << " runs in nodes of " << size;
-    }
-  }
-}
-
 TEST(Reduction, OfAPowerOfTwoRanksSendsOneMatrixEach) {
   for (const int ranks : {1, 2, 4, 8, 16}) {
     const Traffic sent = on_ranks(

@@ -53,13 +53,16 @@ Start start_of(const Frames& X, const SupportFunction& support,
   return greedy_start(VertexBlocks<double>(X), support, options, Reduction(X.cols() / 3));
 }
 
-TEST(GreedyStart, ExplainsDisjointBumpsCompletely) {
+TEST(GreedyStart, ExplainsDisjointBumpsCompletelyAndStopsWhereNothingIsLeft) {
   const Bumps bumps;
   DecompositionOptions options;
-  options.count = 3;
+  options.count = 5;
   const Frames X = bumps.W * bumps.C;
   const Start start = start_of(X, around_one_bump(bumps), options);
   EXPECT_LT((X - start.weights * start.components.frames()).norm(), 1e-13 * X.norm());
+  EXPECT_THAT(std::vector(start.centers.begin() + 3, start.centers.end()), testing::Each(-1));
+  EXPECT_TRUE(start.components.frames().bottomRows(2).isZero(0));
+  EXPECT_TRUE(start.weights.rightCols(2).isZero(0));
 }
 
 TEST(GreedyStart, TakesTheStrongestVertexOfWhatIsLeft) {
@@ -78,16 +81,6 @@ TEST(GreedyStart, TakesTheStrongestVertexOfWhatIsLeft) {
     EXPECT_EQ(start.centers[k], strongest_vertex(energies));
     residual -= start.weights.col(k) * C.row(k);
   }
-}
-
-TEST(GreedyStart, StopsWhereNothingIsLeft) {
-  const Bumps bumps;
-  DecompositionOptions options;
-  options.count = 5;
-  const Start start = start_of(bumps.W * bumps.C, around_one_bump(bumps), options);
-  EXPECT_THAT(std::vector(start.centers.begin() + 3, start.centers.end()), testing::Each(-1));
-  EXPECT_TRUE(start.components.frames().bottomRows(2).isZero(0));
-  EXPECT_TRUE(start.weights.rightCols(2).isZero(0));
 }
 
 TEST(GreedyStart, LetsASmallPartGoWithAnother) {
@@ -129,19 +122,16 @@ TEST(GreedyStart, TakesPartsOfFullWeightAsThePaperDoes) {
   EXPECT_TRUE(one.components.frames() == other.components.frames());
 }
 
-TEST(StrongestVertex, IsWhereWeightTimesEnergyIsLargest) {
+TEST(StrongestVertex, IsWhereWeightTimesEnergyIsLargestAndNoneWhereItIsZero) {
   EXPECT_EQ(strongest_vertex(Eigen::Vector4d(1, 3, 3, 2), Eigen::Vector4d(0, 0.5, 0, 1)), 3);
   EXPECT_EQ(strongest_vertex(Eigen::Vector4d(1, 3, 3, 2), Eigen::Vector4d::Zero()), -1);
+  EXPECT_EQ(strongest_vertex(Eigen::Vector4d::Zero()), -1);
 }
 
 TEST(StrongestVertex, IsTheLowestOfEquals) {
   EXPECT_EQ(strongest_vertex(Eigen::Vector4d(1, 3, 3, 2)), 1);
   EXPECT_EQ(strongest_vertex(Eigen::Vector4d(1, 3, 3 * (1 + 1e-12), 2)), 1);
   EXPECT_EQ(strongest_vertex(Eigen::Vector4d(1, 3, 3 * (1 + 1e-8), 2)), 2);
-}
-
-TEST(StrongestVertex, IsNoneWhereNothingMoves) {
-  EXPECT_EQ(strongest_vertex(Eigen::Vector4d::Zero()), -1);
 }
 
 }  // namespace

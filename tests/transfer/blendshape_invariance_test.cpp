@@ -61,17 +61,9 @@ class BlendshapeInvariance : public testing::Test {
   }
 };
 
-TEST_F(BlendshapeInvariance, HoldsForTheSourcesScale) {
+TEST_F(BlendshapeInvariance, HoldsForTheScaleOfEither) {
   expect_the_same(mapped(source_, 1000 * identity_, {0, 0, 0}), target_);
-}
-
-TEST_F(BlendshapeInvariance, HoldsForTheTargetsScale) {
   expect_the_same(source_, mapped(target_, 0.001 * identity_, {0, 0, 0}));
-}
-
-TEST_F(BlendshapeInvariance, HoldsForTheScaleOfBoth) {
-  expect_the_same(mapped(source_, 20 * identity_, {0, 0, 0}),
-                  mapped(target_, 20 * identity_, {0, 0, 0}));
 }
 
 TEST_F(BlendshapeInvariance, HoldsForAPlaceFarFromTheOrigin) {
@@ -82,11 +74,6 @@ TEST_F(BlendshapeInvariance, HoldsForAPlaceFarFromTheOrigin) {
 
 TEST_F(BlendshapeInvariance, HoldsForARotationOfBoth) {
   expect_the_same(mapped(source_, turn(), {1, 2, 3}), mapped(target_, turn(), {-3, 0, 1}));
-}
-
-TEST_F(BlendshapeInvariance, HoldsForTheOtherFramesOfTheSequence) {
-  const MeshSequence one = source_.slice(3, 4).with_rest(source_.rest());
-  EXPECT_LT((weights_of(one, target_) - weights_.row(3)).lpNorm<Eigen::Infinity>(), kRounding);
 }
 
 TEST(BlendshapeTransfer, GivesExactlyZeroWhereAFrameOfAMovingTakeIsTheRestPose) {
@@ -116,61 +103,18 @@ TEST(BlendshapeTransfer, GivesTheSameBytesAgain) {
   EXPECT_EQ(weights_of(take, target), weights_of(take, target));
 }
 
-/// A patch whose vertex `tip` of triangle 60 lies `height` above the triangle's first edge.
-MeshSequence needled(const MeshSequence& take, double height) {
-  const auto corners = take.triangles().row(60);
-  const auto flatten = [&](auto positions) {
-    const Eigen::RowVector3d a = positions.row(corners[0]), b = positions.row(corners[1]);
-    const Eigen::RowVector3d tip = positions.row(corners[2]), middle = (a + b) / 2;
-    positions.row(corners[2]) = middle + height * (tip - middle);
-  };
-  Frames frames = take.positions();
-  for (int f = 0; f < take.frames(); ++f) {
-    flatten(Eigen::Map<Positions>(frames.row(f).data(), take.vertices(), 3));
-  }
-  Positions rest = take.rest();
-  flatten(Eigen::Map<Positions>(rest.data(), take.vertices(), 3));
-  return {take.shared_connectivity(), frames, {}, rest};
-}
-
-TEST(BlendshapeTransfer, CountsANeedleInTheSource) {
-  const MeshSequence source = needled(test::shaken(patch(), 1, 0.1), 1e-9);
-  const BlendshapeTransfer transfer(source.rest(), test::model_on(patch(), 5), {59, 60, 61});
-  EXPECT_EQ(transfer.conditions().degenerate_source_triangles, 1);
-}
-
-TEST(BlendshapeTransfer, IsChangedLittleByANeedleInTheSource) {
-  const BlendshapeModel target = test::model_on(patch(), 5);
-  // Noise of 0.1 on the needle's height of 1e-9 would make a gradient of 1e8.
-  const MeshSequence take = target.animate(test::random_weights(6, 5));
-  const MeshSequence needle = needled(take, 1e-9);
-  Frames noisy = needle.positions();
-  noisy.col(3 * take.triangles()(60, 2) + 2).array() += 0.1;
-  const Eigen::MatrixXd found = weights_of(needle.with_frames(noisy), target);
-  // The vertex moved by half an edge in six of 128 triangles, which is worth less than this.
-  EXPECT_LT((found - weights_of(take, target)).lpNorm<Eigen::Infinity>(), 0.25);
-}
-
-TEST(BlendshapeTransfer, TakesTrianglesOfTheRegionOnly) {
-  const BlendshapeModel target = test::model_on(bent_patch(), 5);
-  const MeshSequence take = test::shaken(patch(), 4, 0.3);
-  const BlendshapeTransfer upper(take.rest(), target, [] {
-    std::vector<int> rows(64);
-    for (int t = 0; t < 64; ++t) rows[t] = t;
-    return rows;
-  }());
-  // Row 8 of the grid belongs to none of the first 64 triangles.
-  Frames frames = take.positions();
-  frames.rightCols(3 * 9).array() += 1;
-  EXPECT_EQ(upper.weights(take), upper.weights(take.with_frames(frames)));
-}
-
-TEST(BlendshapeTransfer, CountsDegenerateTargetTriangles) {
-  Shape shape = patch();
-  shape.positions.row(shape.triangles(60, 2)) = shape.positions.row(shape.triangles(60, 0));
-  const BlendshapeModel target = test::model_on(shape, 4);
-  const BlendshapeTransfer transfer(patch().positions, target, {60});
-  EXPECT_EQ(transfer.conditions().degenerate_target_triangles, 1);
+TEST(BlendshapeTransfer, CountsNeedlesAndCollapsedTriangles) {
+  Shape needle = patch(), collapsed = patch();
+  const auto corners = needle.triangles.row(60);
+  const Eigen::RowVector3d middle =
+      (needle.positions.row(corners[0]) + needle.positions.row(corners[1])) / 2;
+  const Eigen::RowVector3d tip = needle.positions.row(corners[2]);
+  needle.positions.row(corners[2]) = middle + 1e-9 * (tip - middle);
+  const BlendshapeTransfer of_source(needle.positions, test::model_on(patch(), 5), {59, 60, 61});
+  EXPECT_EQ(of_source.conditions().degenerate_source_triangles, 1);
+  collapsed.positions.row(corners[2]) = collapsed.positions.row(corners[0]);
+  const BlendshapeTransfer of_target(patch().positions, test::model_on(collapsed, 4), {60});
+  EXPECT_EQ(of_target.conditions().degenerate_target_triangles, 1);
 }
 
 }  // namespace

@@ -27,12 +27,6 @@ TEST(DeformationGradients, AreALinearMapWhereTheMapIsASimilarity) {
   }
 }
 
-TEST(DeformationGradients, OfUniformScalingAreTheScaledIdentity) {
-  const Shape shape = patch();
-  const auto q = DeformationGradients(shape.positions, shape.triangles, {7})(3 * shape.positions);
-  EXPECT_LT((q - 3 * Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff(), 1e-12);
-}
-
 TEST(DeformationGradients, OfDegenerateTrianglesAreTheMeanOfTheirNeighbours) {
   Shape shape = patch();
   const int needle = 40;

@@ -142,9 +142,12 @@ class Slivers : public testing::TestWithParam<bool> {
 const std::vector<double> kLeft = {0.1,  0.05, 0.03, 0.02, 0.01, 3e-3,
                                    1e-3, 1e-4, 1e-5, 3e-6, 1e-6, 1e-12};
 
+/// Some of them, one at least for each rule.
+const std::vector<double> kSomeLeft = {0.05, 0.01, 1e-3, 1e-5, 1e-6, 1e-12};
+
 TEST_P(Slivers, OfTheSourceLeaveTheResultAsItWas) {
   const Frames expected = transferred(source_, actor_);
-  for (const int triangle : {triangle_of(24, 24), triangle_of(20, 17) + 1, triangle_of(30, 9)}) {
+  for (const int triangle : {triangle_of(24, 24), triangle_of(20, 17) + 1}) {
     double before = 0;
     for (const double left : kLeft) {
       const MeshSequence source = with_slides({{triangle}}, left);
@@ -160,7 +163,7 @@ TEST_P(Slivers, OfTheSourceLeaveTheResultAsItWas) {
 
 TEST_P(Slivers, OfTheSourceThatMoveOnTheirOwnHardlyShow) {
   const Frames expected = transferred(source_, actor_);
-  for (const double left : kLeft) {
+  for (const double left : kSomeLeft) {
     const MeshSequence source =
         with_slides({{.triangle = triangle_of(24, 24), .own_motion = true}}, left);
     EXPECT_LT(difference(transferred(source, actor_), expected), 5e-3) << left;
@@ -173,7 +176,7 @@ TEST_P(Slivers, InPairsAndStripsLeaveTheResultAsItWas) {
   std::vector<Slide> strip;
   strip.reserve(10);
   for (int i = 0; i < 10; ++i) strip.push_back({triangle_of(14 + 2 * i, 24)});
-  for (const double left : kLeft) {
+  for (const double left : kSomeLeft) {
     EXPECT_LT(difference(transferred(with_needles(left), actor_), expected), 1e-3) << left;
     EXPECT_LT(difference(transferred(with_slides(strip, left), actor_), expected), 1e-3) << left;
   }
@@ -182,7 +185,7 @@ TEST_P(Slivers, InPairsAndStripsLeaveTheResultAsItWas) {
 TEST_P(Slivers, OfTheTargetLeaveTheOtherVerticesWhereTheyWere) {
   const Frames expected = transferred(source_, actor_);
   const Slide slide{triangle_of(24, 24)};
-  for (const double left : kLeft) {
+  for (const double left : kSomeLeft) {
     ShapeBasis expressions = actor_.expressions();
     for (Eigen::Index j = 0; j < expressions.displacements.cols(); ++j) {
       Eigen::Map<Positions> field(expressions.displacements.col(j).data(), actor_.vertices(), 3);

@@ -152,11 +152,8 @@ TEST(TransferError, RefusesOtherSizes) {
   EXPECT_THROW(transfer_error(three, two, {0}), MismatchError);
 }
 
-TEST(MeanPercentageError, IsNegativeWhereWorseThanFull) {
+TEST(MeanPercentageError, IsZeroWhereBothAreEqualAndNegativeWhereWorseThanFull) {
   EXPECT_DOUBLE_EQ(mean_percentage_error(2, 2.5), -25);
-}
-
-TEST(MeanPercentageError, IsZeroWhereBothAreEqual) {
   EXPECT_EQ(mean_percentage_error(2, 2), 0);
   EXPECT_EQ(mean_percentage_error(0, 0), 0);
 }

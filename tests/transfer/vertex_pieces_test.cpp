@@ -25,17 +25,12 @@ Triangles bow_tie_and_triangle() {
   return triangles;
 }
 
-TEST(VertexUnknowns, TakeTrianglesThatShareOneVertexAsOnePiece) {
+TEST(VertexUnknowns, TakeTrianglesThatShareOneVertexAsOnePieceAndPinItsLowestVertex) {
   const VertexUnknowns unknowns = number_unknowns(bow_tie_and_triangle(), {1, 1, 1},
                                                   std::vector<bool>(8, false), Weld::none(8));
   ASSERT_EQ(unknowns.floating.size(), 2);
   EXPECT_THAT(unknowns.floating[0].vertices, ElementsAre(0, 1, 2, 3, 4));
   EXPECT_THAT(unknowns.floating[1].vertices, ElementsAre(5, 6, 7));
-}
-
-TEST(VertexUnknowns, PinTheLowestVertexOfAFloatingPiece) {
-  const VertexUnknowns unknowns = number_unknowns(bow_tie_and_triangle(), {1, 1, 1},
-                                                  std::vector<bool>(8, false), Weld::none(8));
   EXPECT_THAT(unknowns.of_vertex, ElementsAre(-1, 0, 1, 2, 3, -1, 4, 5));
   EXPECT_EQ(unknowns.count, 6);
 }

@@ -97,9 +97,12 @@ TEST_F(VtpFields, OfAChosenFrameAreItsOwn) {
 
 TEST_F(VtpFields, AreComparedInAllFrames) {
   constexpr int kFrames = 40;
+  write(kFrames, [](int) { return with_heat(0); });
   for (const int changed : {1, 7, 22, kFrames - 1}) {
-    write(kFrames, [changed](int frame) { return with_heat(frame == changed); });
+    const auto file = in_folder(std::to_string(changed) + ".vtp");
+    write_vtp_series(with_heat(1), file, {.overwrite = true});
     EXPECT_THAT(read().notes, ElementsAre(HasSubstr("heat"))) << changed;
+    write_vtp_series(with_heat(0), file, {.overwrite = true});
   }
 }
 

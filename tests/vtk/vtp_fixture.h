@@ -5,33 +5,21 @@
 #include <iterator>
 #include <string>
 
-#include <unistd.h>
-
 #include <gtest/gtest.h>
 
+#include "tests/temporary_folder.h"
 #include "toolkit/vtk/vtp_series.h"
 
 namespace mimetra::test {
 
-/// A folder of its own for each test, removed afterwards.
+/// A folder of its own for each test.
 class VtpTest : public ::testing::Test {
  protected:
-  void SetUp() override {
-    const auto* info = ::testing::UnitTest::GetInstance()->current_test_info();
-    folder_ = std::filesystem::temp_directory_path() /
-              (std::string("mimetra_vtk_") + info->test_suite_name() + "_" + info->name() + "_" +
-               std::to_string(getpid()));
-    std::filesystem::remove_all(folder_);
-    std::filesystem::create_directories(folder_);
-  }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-
   std::filesystem::path in_folder(const std::string& name) const { return folder_ / name; }
-
-  bool folder_is_empty() const { return std::filesystem::is_empty(folder_); }
+  bool folder_is_empty() const { return folder_.names().empty(); }
 
  private:
-  std::filesystem::path folder_;
+  const TemporaryFolder folder_;
 };
 
 inline std::string bytes_of(const std::filesystem::path& path) {
