@@ -90,9 +90,9 @@ bool is_linked_here(const std::string& operation) {
 
 bool can_run_here(const std::string& arguments) {
   if (arguments.find_first_of("'\"\\*?[]{}~$&|;<>()`") != std::string::npos) return false;
-  static constexpr std::array kElsewhere = {".vtp",   ".VTP",      ".pvd",      ".png",
-                                            ".mp4",   "--overlay", "--strip",   "--paraview",
-                                            "--help", " -h",       "--progress"};
+  static constexpr std::array kElsewhere = {".vtp",   ".VTP",      ".pvd",       ".png",
+                                            ".mp4",   "--overlay", "--strip",    "--paraview",
+                                            "--help", " -h",       "--progress", "--compress"};
   const auto is_named = [&arguments](const char* part) {
     return arguments.find(part) != std::string::npos;
   };
