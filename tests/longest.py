@@ -12,13 +12,19 @@ import sys
 
 
 def build_steps(build, since):
-    """[seconds, name] of each step of Ninja's logs: milliseconds of start and end, when it wrote."""
+    """[seconds, name] of each step in Ninja's logs that started since then.
+
+    A line has milliseconds of start and end, the time of its start, an output and the command."""
     for log in build.glob("*/.ninja_log"):
+        steps = {}
         for line in log.read_text().splitlines()[1:]:
-            start, end, written, output, _ = line.split("\t")
-            if int(written) >= since * 10**9:
-                name = re.sub(r"CMakeFiles/\w+\.dir/|_cxx\.cxx\.o$|\.cpp\.o$", "", output)
-                yield (int(end) - int(start)) / 1000, f"{log.parent.name}: {name}"
+            fields = line.split("\t")
+            if len(fields) == 5 and int(fields[2]) >= since * 10**9:
+                start, end, _, output, command = fields
+                steps[start, end, command] = output
+        for (start, end, _), output in steps.items():
+            name = re.sub(r"CMakeFiles/\w+\.dir/|_cxx\.cxx\.o$|\.cpp\.o$", "", output)
+            yield (int(end) - int(start)) / 1000, f"{log.parent.name}: {name}"
 
 
 def tests(folder):

@@ -68,6 +68,7 @@ TEST_F(ExitCode, Is5ForAStandardOutputThatIsClosedWhateverFilesAreOpened) {
 
 TEST_F(ExitCode, Is2ForAPatternWithoutQuotesWhichIsNamed) {
   run("convert head --weights take.csv --frames 0:5 -o f/ --format obj");
+  const auto before = listing();
   for (const std::string line :
        {"info f/*.obj", "convert f/*.obj -o g/", "transfer f/*.obj head -o x"}) {
     const auto result = run(line);
@@ -77,6 +78,7 @@ TEST_F(ExitCode, Is2ForAPatternWithoutQuotesWhichIsNamed) {
                                HasSubstr("write 'f/*.obj' in quotes")))
         << line;
     EXPECT_EQ(result.out, "") << line;
+    EXPECT_EQ(listing(), before) << line;
   }
 }
 

@@ -56,9 +56,10 @@ void add_making(std::vector<BadInput>& all, const Making& making) {
              std::move(says), prefix);
   };
   const std::string& name = making.output;
-  // One for each way to write: a file, several, a folder, and VTK's.
-  static const std::set<std::string> kOneOfAKind = {"decompose_h5", "convert_npy", "convert_folder",
-                                                    "regions_pvd"};
+  // One for each way to write: a file, several, a folder, a table, and VTK's.
+  static const std::set<std::string> kOneOfAKind = {"decompose_h5",   "convert_npy",
+                                                    "convert_folder", "evaluate_csv",
+                                                    "geodesic_vtp",   "regions_pvd"};
   if (kOneOfAKind.contains(making.subject)) {
     add("unwritable_folder", "locked/" + name, read_only_folder,
         {"locked/" + name, "cannot be written", "Permission denied"}, without_override());

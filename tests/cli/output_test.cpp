@@ -133,7 +133,7 @@ TEST_F(Output, LeavesTheManifestOfAnotherOutputAlone) {
 }
 
 TEST_F(Output, QuietPrintsNothing) {
-  const auto result = run("convert head --weights take.csv -o take.npy -q");
+  const auto result = CommandTest::run("convert head --weights take.csv -o take.npy -q");
   EXPECT_EQ(result.code, 0);
   EXPECT_EQ(result.out + result.err, "");
 }

@@ -41,11 +41,10 @@ std::vector<std::string> words_of(const std::string& arguments) {
 class Surroundings {
  public:
   explicit Surroundings(const std::filesystem::path& folder)
-      : folder_before_(std::filesystem::current_path()),
-        logger_before_(spdlog::default_logger()),
-        out_before_(std::cout.rdbuf(out_.rdbuf())),
-        err_before_(std::cerr.rdbuf(err_.rdbuf())) {
+      : folder_before_(std::filesystem::current_path()), logger_before_(spdlog::default_logger()) {
     std::filesystem::current_path(folder);
+    out_before_ = std::cout.rdbuf(out_.rdbuf());
+    err_before_ = std::cerr.rdbuf(err_.rdbuf());
     cli::say_to(err_);
   }
   ~Surroundings() {
@@ -65,8 +64,8 @@ class Surroundings {
   std::ostringstream out_, err_;
   std::filesystem::path folder_before_;
   std::shared_ptr<spdlog::logger> logger_before_;
-  std::streambuf* out_before_;
-  std::streambuf* err_before_;
+  std::streambuf* out_before_ = nullptr;
+  std::streambuf* err_before_ = nullptr;
 };
 
 void answer(const std::vector<std::string>& arguments) {
@@ -89,7 +88,7 @@ bool is_linked_here(const std::string& operation) {
 }
 
 bool can_run_here(const std::string& arguments) {
-  if (arguments.find_first_of("'\"\\*?[]{}~$&|;<>()`") != std::string::npos) return false;
+  if (arguments.find_first_of("'\"\\*?[]{}~$&|;<>()`#!") != std::string::npos) return false;
   static constexpr std::array kElsewhere = {".vtp",   ".VTP",      ".pvd",       ".png",
                                             ".mp4",   "--overlay", "--strip",    "--paraview",
                                             "--help", " -h",       "--progress", "--compress"};

@@ -64,6 +64,8 @@ TEST(ClipNoise, IsFoundInWhatTheFitLeaves) {
     EXPECT_NEAR(half.sigma, std::sqrt(2), 0.25);
     EXPECT_NEAR(half.repeated, 0.5, 0.2);
   }
+  // One that is given is not estimated.
+  EXPECT_EQ(test::fit(head_with(1, {1, 0}), {.repeated = 0.3}).front().repeated, 0.3);
 }
 
 TEST(ClipNoise, OfOneLandmarkFarOffInEveryFrameDoesNotMoveTheIdentity) {

@@ -109,6 +109,7 @@ TEST_F(PaintingFileTest, NotesTilesAndMaterials) {
   const std::string path = picture(std::vector<std::uint8_t>(kColumns * kRows, 255));
   mesh_.texture.coordinates[2].x() += 1;
   mesh_.texture.coordinates[4].y() -= 3;
+  mesh_.texture.coordinates[6].y() = 1 + 1e-6;  // rounded, and no tile
   mesh_.groups = {{0, "usemtl skin"}, {5, "usemtl teeth"}};
   EXPECT_THAT(read(path).notes,
               ElementsAre(HasSubstr("2 of 20 texture coordinates lie outside [0, 1]"),

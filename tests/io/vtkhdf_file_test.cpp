@@ -1,4 +1,3 @@
-
 #include <gmock/gmock.h>
 
 #include "tests/io/hdf5_library.h"

@@ -117,5 +117,19 @@ TEST(BlendshapeTransfer, CountsNeedlesAndCollapsedTriangles) {
   EXPECT_EQ(of_target.conditions().degenerate_target_triangles, 1);
 }
 
+TEST(BlendshapeTransfer, TakesTrianglesOfTheRegionOnly) {
+  const BlendshapeModel target = test::model_on(bent_patch(), 5);
+  const MeshSequence take = test::shaken(patch(), 4, 0.3);
+  const BlendshapeTransfer upper(take.rest(), target, [] {
+    std::vector<int> rows(64);
+    for (int t = 0; t < 64; ++t) rows[t] = t;
+    return rows;
+  }());
+  // Row 8 of the grid belongs to none of the first 64 triangles.
+  Frames frames = take.positions();
+  frames.rightCols(3 * 9).array() += 1;
+  EXPECT_EQ(upper.weights(take), upper.weights(take.with_frames(frames)));
+}
+
 }  // namespace
 }  // namespace mimetra

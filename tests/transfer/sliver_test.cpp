@@ -147,7 +147,7 @@ const std::vector<double> kSomeLeft = {0.05, 0.01, 1e-3, 1e-5, 1e-6, 1e-12};
 
 TEST_P(Slivers, OfTheSourceLeaveTheResultAsItWas) {
   const Frames expected = transferred(source_, actor_);
-  for (const int triangle : {triangle_of(24, 24), triangle_of(20, 17) + 1}) {
+  for (const int triangle : {triangle_of(24, 24), triangle_of(20, 17) + 1, triangle_of(30, 9)}) {
     double before = 0;
     for (const double left : kLeft) {
       const MeshSequence source = with_slides({{triangle}}, left);
