@@ -29,6 +29,9 @@ TEST(FollowedFace, IsNotSomebodyElseWhereItIsMissed) {
   const FollowedFace face = followed_face({{at(100, 110), at(500)}, {at(501)}, {at(105), at(502)}});
   EXPECT_THAT(face.chosen, ElementsAre(0, -1, 0));
   EXPECT_THAT(face.jumps, IsEmpty());
+  // Whichever of them comes first.
+  EXPECT_THAT(followed_face({{at(100), at(500, 110)}, {at(101)}, {at(102), at(505)}}).chosen,
+              ElementsAre(1, -1, 1));
 }
 
 /// Also where that one is there for the first time, which only later frames tell.

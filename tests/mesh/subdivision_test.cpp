@@ -151,6 +151,15 @@ TEST(Subdivision, OfPolygonsBeginsWithTheirTriangles) {
   EXPECT_EQ(fine.connectivity->vertices, 9);
 }
 
+TEST(Subdivision, OfPolygonsKeepsEachTriangleInItsGroup) {
+  Connectivity quads = Connectivity::from_polygons(6, {{0, 1, 2, 3, 1, 4, 5, 2}, {0, 4, 8}});
+  quads.groups = {{0, "g a"}, {1, "g b"}};
+  Positions strip(6, 3);
+  strip << 0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0, 2, 0, 0, 2, 1, 0;
+  const Subdivision fine = subdivide(strip, quads, {SubdivisionScheme::midpoint, 1});
+  EXPECT_EQ(fine.connectivity->groups[1].first_face, 8);  // four for each half of the first quad
+}
+
 TEST(Subdivision, CarriesFramesAndTheRestPose) {
   const Shape shape = test::octahedron();
   Frames frames(3, shape.positions.size());
