@@ -43,7 +43,7 @@ if(MIMETRA_SANITIZE)
   set(MIMETRA_SANITIZER_FLAGS -fsanitize=address,undefined -fno-sanitize-recover=undefined
                               -fno-omit-frame-pointer)
   # Checks of every pointer that Eigen passes on are a third of the build. AddressSanitizer finds
-  # nearly all of these faults when memory is read; ./dev fuzz keeps the checks.
+  # most of these faults when memory is accessed; ./dev fuzz keeps the checks.
   if(NOT MIMETRA_FUZZING)
     list(APPEND MIMETRA_SANITIZER_FLAGS
          -fno-sanitize=null,alignment,object-size,vptr,pointer-overflow)

@@ -83,10 +83,6 @@ void answer(const std::vector<std::string>& arguments) {
 
 }  // namespace
 
-bool is_linked_here(const std::string& operation) {
-  return linked_operations().find(operation) != nullptr;
-}
-
 bool can_run_here(const std::string& arguments) {
   if (arguments.find_first_of("'\"\\*?[]{}~$&|;<>()`#!") != std::string::npos) return false;
   static constexpr std::array kElsewhere = {".vtp",   ".VTP",      ".pvd",       ".png",
@@ -97,7 +93,7 @@ bool can_run_here(const std::string& arguments) {
   };
   if (std::ranges::any_of(kElsewhere, is_named)) return false;
   const std::vector<std::string> words = words_of(arguments);
-  return !words.empty() && is_linked_here(words.front());
+  return !words.empty() && linked_operations().find(words.front()) != nullptr;
 }
 
 CommandResult run_here(const std::filesystem::path& folder, const std::string& arguments) {

@@ -4,11 +4,8 @@
 
 namespace mimetra::test {
 
-/// Whether this program is linked with an operation: with all but those of pictures, VTK, and the
-/// command itself.
-bool is_linked_here(const std::string& operation);
-
-/// Whether `arguments` need neither a shell nor a part of the command that is not linked here.
+/// Whether `arguments` need neither a shell nor a part of the command that is not linked here:
+/// pictures, VTK and the command's own operations.
 bool can_run_here(const std::string& arguments);
 
 /// What the command would answer to `arguments` in `folder`. Runs them in this process: with

@@ -109,7 +109,7 @@ std::string memory_message() {
          " are held; take fewer frames with --frames";
 }
 
-/// Whoever ends a run finds nothing half-written, and a limit of the system's is an error.
+/// An interrupted run leaves nothing half-written, and exceeding a limit of the system is an error.
 void take_signals() {
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
     const auto before = std::signal(signal, [](int) { mimetra::cli::interrupt(); });
@@ -118,7 +118,7 @@ void take_signals() {
   std::signal(SIGXFSZ, SIG_IGN);
 }
 
-/// Exit code of a run, whose error it has printed.
+/// Runs a command line, prints its error and returns the exit code.
 int exit_code_of(const std::vector<std::string>& arguments, const mimetra::Ranks* ranks) {
   try {
     return mimetra::cli::exit_code_of([&] { run(arguments, ranks); });
@@ -129,11 +129,11 @@ int exit_code_of(const std::vector<std::string>& arguments, const mimetra::Ranks
 }
 
 #ifdef MIMETRA_HAS_MPI
-/// As one of the processes that mpirun started: one that fails ends all of them.
+/// Runs as one of the processes that mpirun started; one that fails ends all of them.
 int shared_exit_code(const std::vector<std::string>& arguments) {
   const mimetra::cli::MpiRanks ranks;
   mimetra::share_memory(ranks.on_this_machine());
-  // What all find wrong, the first says.
+  // The first process reports an error that all of them have.
   const bool is_first = ranks.rank() == 0;
   std::ostringstream said;
   if (!is_first) mimetra::cli::say_to(said);
@@ -157,7 +157,7 @@ bool is_started_by_mpirun() {
   return std::ranges::any_of(std::array{"mpirun", "mpiexec", "orte", "hydra_pmi"}, begins);
 }
 
-/// As the only process. Where mpirun started several, each would write the same files.
+/// Runs as the only process. If mpirun started several, each would write the same files.
 int single_exit_code(const std::vector<std::string>& arguments) {
   for (const char* variable : {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE"}) {
     const char* processes = std::getenv(variable);
