@@ -16,7 +16,8 @@ using testing::HasSubstr;
 
 /// On a target of any size up to 10000 vertices, all of which markers reach.
 SurfaceFit lying_at(const Positions& positions) {
-  return {positions, std::vector<bool>(positions.rows(), true), std::vector<bool>(10000, true)};
+  return {positions, std::vector<bool>(positions.rows(), true), std::vector<bool>(10000, true),
+          SubjectBox{.diagonal = box_diagonal(positions)}};
 }
 
 std::vector<int> partners_of(const Correspondence& pairs, int target_triangle) {
@@ -151,8 +152,7 @@ TEST(CorrespondenceQuality, NamesWhatIsPoor) {
   EXPECT_EQ(quality.verdict(), "usable");
   quality.mean_residual = 0.05;
   quality.folded = 20;
-  EXPECT_THAT(quality.verdict(),
-              HasSubstr("poor: the deformed source is 5.0 % of the diagonal from"));
+  EXPECT_THAT(quality.verdict(), HasSubstr("poor: the deformed source is 5.0 % of its size from"));
   EXPECT_THAT(quality.verdict(), HasSubstr("20 triangles of the deformed source are folded"));
 }
 

@@ -278,6 +278,17 @@ TEST(SurfaceFit, CarriesPartsWithoutAMarkerByTheSimilarity) {
   EXPECT_LT((fit.positions.bottomRows(18) - 3 * source.positions.bottomRows(18)).norm(), 1e-12);
 }
 
+TEST(SurfaceFit, DoesNotDependOnOtherPartsOfTheTarget) {
+  test::Shape body = test::sphere(2);
+  body.positions = (4 * body.positions).rowwise() + Eigen::RowVector3d(0, -8, 0);
+  const test::Shape head = egg(2);
+  const TriMesh source = test::mesh_of(test::sphere(2));
+  const SurfaceFit alone = fit_to_surface(source, test::mesh_of(head), kCorners);
+  const SurfaceFit with_body =
+      fit_to_surface(source, test::mesh_of(test::both(head, body)), kCorners);
+  EXPECT_EQ(with_body.positions, alone.positions);
+}
+
 TEST(SurfaceFit, PassesOverTrianglesWithoutArea) {
   test::Shape sphere = test::sphere(1);
   sphere.positions.conservativeResize(20, 3);

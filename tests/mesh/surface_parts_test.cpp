@@ -1,5 +1,7 @@
 #include "toolkit/mesh/surface_parts.h"
 
+#include <cmath>
+
 #include <gmock/gmock.h>
 
 #include "tests/shapes.h"
@@ -35,6 +37,28 @@ TEST(SurfaceParts, AreNotCutByASeam) {
   const test::Shape shape = both(left, right);
   EXPECT_EQ(surface_parts(shape.positions, shape.triangles).count(), 1);
   EXPECT_EQ(surface_parts(shape.positions, shape.triangles, Weld::none(8)).count(), 2);
+}
+
+TEST(SubjectBox, IsThatOfThePartsWithTheVertices) {
+  const test::Shape shape = squares();
+  const SurfaceParts parts = surface_parts(shape.positions, shape.triangles);
+  const SubjectBox small = subject_box(shape.positions, parts, {0, 3});
+  EXPECT_DOUBLE_EQ(small.diagonal, std::sqrt(2));
+  EXPECT_EQ(small.center, Eigen::RowVector3d(0.5, 0.5, 0));
+  EXPECT_FALSE(small.is_section);
+  EXPECT_DOUBLE_EQ(subject_box(shape.positions, parts, {1, 4, 7}).diagonal,
+                   std::sqrt(3 * 3 + 3 * 3 + 5 * 5));
+}
+
+TEST(SubjectBox, GrowsThatOfVerticesInASmallSectionOfAPart) {
+  const test::Shape strip = test::grid(13, 2);
+  const SurfaceParts parts = surface_parts(strip.positions, strip.triangles);
+  // From x = 2 to 5 of 12, and from 2 to 7.
+  const SubjectBox box = subject_box(strip.positions, parts, {2, 5});
+  EXPECT_TRUE(box.is_section);
+  EXPECT_DOUBLE_EQ(box.diagonal, 1.5 * 3);
+  EXPECT_EQ(box.center, Eigen::RowVector3d(3.5, 0, 0));
+  EXPECT_FALSE(subject_box(strip.positions, parts, {2, 7}).is_section);
 }
 
 TEST(VertexAreas, AddUpToTheSurface) {

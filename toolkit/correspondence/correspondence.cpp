@@ -14,12 +14,12 @@
 namespace mimetra {
 namespace {
 
-/// Triangles whose edges are shorter may still be this share of the target's diagonal apart.
+/// Triangles whose edges are shorter may still be this share of the target's size apart.
 constexpr double kPairReach = 0.02;
 
 constexpr int kTrianglesAtATime = 256;
 
-/// Limits of the verdict: shares of the target's diagonal, and of triangles. A face that fits to 1
+/// Limits of the verdict: shares of the target's size, and of triangles. A face that fits to 1
 /// % shows the same wrinkles in other places; folds turn deformations around.
 constexpr double kGoodResidual = 0.005, kUsableResidual = 0.01;
 constexpr double kGoodFolds = 0.001, kUsableFolds = 0.01;
@@ -132,13 +132,13 @@ Correspondence Correspondence::identity(int triangles) {
   return result;
 }
 
-CorrespondenceQuality quality_of(const Correspondence& pairs, double diagonal) {
+CorrespondenceQuality quality_of(const Correspondence& pairs, double size) {
   CorrespondenceQuality quality;
   int with_partner = 0;
   for (int t = 0; t < pairs.target_triangles(); ++t) {
     if (!pairs.has_partner(t)) continue;
     ++with_partner;
-    const double residual = pairs.residuals[t] / diagonal;
+    const double residual = pairs.residuals[t] / size;
     quality.mean_residual += residual;
     quality.largest_residual = std::max(quality.largest_residual, residual);
   }
@@ -156,7 +156,7 @@ std::string CorrespondenceQuality::verdict() const {
   }
   if (mean_residual > kUsableResidual) {
     poor.push_back("the deformed source is " + percent(mean_residual) +
-                   " of the diagonal from the target");
+                   " of its size from the target");
   }
   if (folds > kUsableFolds) {
     poor.push_back(std::to_string(folded) + " triangles of the deformed source are folded");
@@ -172,7 +172,7 @@ Correspondence pair_triangles(const SurfaceFit& fitted, const Triangles& source,
                                    fitted.target_reached);
   const PairedSurface from(fitted.positions, of_source.triangles);
   const PairedSurface to(target.positions, of_target.triangles);
-  const double reach = kPairReach * box_diagonal(target.positions);
+  const double reach = kPairReach * fitted.target_box.diagonal;
   const Partners found = found_on(to, from, reach, threads);
   const auto partners = partners_of(to, found, found_on(from, to, reach, threads));
 

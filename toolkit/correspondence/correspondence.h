@@ -38,7 +38,7 @@ struct Correspondence {
 /// How well a correspondence holds, in numbers; shares are 0 to 1.
 struct CorrespondenceQuality {
   double without_partner = 0;   ///< share of the target's triangles
-  double mean_residual = 0;     ///< of those with a partner, as a share of the target's diagonal
+  double mean_residual = 0;     ///< of those with a partner, as a share of the target's size
   double largest_residual = 0;  ///< likewise
   /// Partners whose triangle faces against its neighbours on the deformed source.
   int folded = 0;
@@ -48,13 +48,14 @@ struct CorrespondenceQuality {
   std::string verdict() const;
 };
 
-/// What the residuals tell of it; nothing is known of folds. `diagonal` of the target's box.
-CorrespondenceQuality quality_of(const Correspondence& pairs, double diagonal);
+/// What the residuals tell; nothing is known of folds. `size` is the diagonal of the target's
+/// subject_box().
+CorrespondenceQuality quality_of(const Correspondence& pairs, double size);
 
 /// Pairs triangles whose centroids are nearest to each other's surface, both ways: a target
 /// triangle's partners are the triangle of `fitted` (N x 3, on the target's surface) whose centroid
 /// is nearest to its own, and those to which it is the nearest; both must face less than 90 degrees
-/// apart, be no farther apart than their longest edges (or 2 % of the target's diagonal where they
+/// apart, be no farther apart than their longest edges (or 2 % of SurfaceFit::target_box where they
 /// are shorter), and have its place inside the other's surface, not on its border. Weights are the
 /// partners' areas. Triangles that no marker reaches have no partner, and are none.
 Correspondence pair_triangles(const SurfaceFit& fitted, const Triangles& source,

@@ -44,7 +44,7 @@ FoundCorrespondence find_correspondence(const TriMesh& source, const TriMesh& ta
   found.correspondence =
       with_unmarked_parts(pair_triangles(found.fit, triangles, facing, options.threads), found.fit,
                           source, facing, options.threads);
-  found.quality = quality_of(found.correspondence, box_diagonal(target.positions));
+  found.quality = quality_of(found.correspondence, found.fit.target_box.diagonal);
   const ReachedTriangles parts(found.fit.positions, triangles, found.fit.reached);
   std::vector<bool> is_partner(triangles.rows(), false);
   for (const Correspondence::Part& part : found.correspondence.parts) {

@@ -12,13 +12,12 @@
 #include "toolkit/mesh/normals.h"
 #include "toolkit/mesh/parallel.h"
 #include "toolkit/mesh/similarity.h"
-#include "toolkit/mesh/surface_parts.h"
 #include "toolkit/mesh/weld.h"
 
 namespace mimetra {
 namespace {
 
-/// Borders are matched to borders that are nearer than this share of the target's diagonal.
+/// Borders are matched to borders that are nearer than this share of the target's size.
 constexpr double kBorderReach = 0.02;
 
 /// Closest points that are farther than this share do not count: the back of a head has no place
@@ -36,9 +35,7 @@ void check_mesh(const TriMesh& mesh, const char* name) {
 
 /// x -> (x - place) / size makes the target's box about as large as 1, around the origin.
 struct Normalisation {
-  explicit Normalisation(const Positions& target)
-      : place((target.colwise().maxCoeff() + target.colwise().minCoeff()) / 2),
-        size(box_diagonal(target)) {}
+  explicit Normalisation(const SubjectBox& target) : place(target.center), size(target.diagonal) {}
 
   Positions apply(const Positions& positions) const { return (positions.rowwise() - place) / size; }
   Positions undo(const Positions& positions) const { return (size * positions).rowwise() + place; }
@@ -48,9 +45,8 @@ struct Normalisation {
 };
 
 /// Whether a marker is on the connected part of each vertex (N).
-std::vector<bool> reached_parts(const Positions& positions, const Triangles& triangles,
-                                const Weld& weld, const std::vector<VertexIndex>& markers) {
-  const SurfaceParts parts = surface_parts(positions, triangles, weld);
+std::vector<bool> reached_parts(const SurfaceParts& parts,
+                                const std::vector<VertexIndex>& markers) {
   std::vector<bool> part_reached(parts.count(), false);
   for (const VertexIndex v : markers) part_reached[parts.of_vertex[v]] = true;
   std::vector<bool> reached;
@@ -88,7 +84,7 @@ struct Source {
     std::vector<VertexIndex> marked;
     marked.reserve(markers.size());
     for (const Marker& marker : markers) marked.push_back(marker.source);
-    reached = reached_parts(mesh.positions, triangles, weld, marked);
+    reached = reached_parts(surface_parts(mesh.positions, triangles, weld), marked);
     std::vector<bool> in_triangle(target_of.size(), false);
     for (const VertexIndex v : triangles.reshaped()) in_triangle[v] = true;
     for (std::size_t v = 0; v < target_of.size(); ++v) {
@@ -183,7 +179,13 @@ SurfaceFit fit_to_surface(const TriMesh& source_mesh, const TriMesh& target_mesh
     from.push_back(marker.source);
     to.push_back(marker.target);
   }
-  const Normalisation normalisation(target_mesh.positions);
+  const Weld target_weld = Weld::exact(target_mesh.positions);
+  check_places(to, target_weld);
+  const Triangles target_triangles = target_weld.welded(target_mesh.connectivity.triangles);
+  const SurfaceParts target_parts =
+      surface_parts(target_mesh.positions, target_triangles, target_weld);
+  const SubjectBox target_box = subject_box(target_mesh.positions, target_parts, to);
+  const Normalisation normalisation(target_box);
   const Positions target = normalisation.apply(target_mesh.positions);
   const Similarity similarity = similarity_fit(source_mesh.positions(from, Eigen::all),
                                                target_mesh.positions(to, Eigen::all));
@@ -197,10 +199,7 @@ SurfaceFit fit_to_surface(const TriMesh& source_mesh, const TriMesh& target_mesh
   const double share = 1.0 / (options.steps + 2);
   DeformationSystem system(start, source.triangles, source.free, options.smoothness,
                            options.identity);
-  const Weld target_weld = Weld::exact(target);
-  check_places(to, target_weld);
-  const Triangles target_triangles = target_weld.welded(target_mesh.connectivity.triangles);
-  const std::vector<bool> target_reached = reached_parts(target, target_triangles, target_weld, to);
+  const std::vector<bool> target_reached = reached_parts(target_parts, to);
   std::vector<int> rows;
   for (int t = 0; t < target_triangles.rows(); ++t) {
     if (target_reached[target_triangles(t, 0)]) rows.push_back(t);
@@ -218,7 +217,7 @@ SurfaceFit fit_to_surface(const TriMesh& source_mesh, const TriMesh& target_mesh
   for (Eigen::Index v = 0; v < positions.rows(); ++v) {
     if (source.reached[v]) positions.row(v) = positions.row(source.weld.representative[v]);
   }
-  return {normalisation.undo(positions), source.reached, target_reached};
+  return {normalisation.undo(positions), source.reached, target_reached, target_box};
 }
 
 }  // namespace mimetra

@@ -5,6 +5,7 @@
 #include "toolkit/correspondence/markers.h"
 #include "toolkit/mesh/option.h"
 #include "toolkit/mesh/progress.h"
+#include "toolkit/mesh/surface_parts.h"
 
 namespace mimetra {
 
@@ -14,7 +15,7 @@ struct SurfaceFitOptions {
   /// Weight of what each triangle's deformation differs from none.
   double identity = 0.001;
   /// Weights of the distances to the closest points, first and last; between them it grows by one
-  /// factor a step. Distances are shares of the target's box diagonal.
+  /// factor a step. Distances are shares of the size of the target (SurfaceFit::target_box).
   double first_closest = 1;
   double last_closest = 5000;
   /// Solves with closest points, after the one with markers only.
@@ -46,6 +47,8 @@ struct SurfaceFit {
   std::vector<bool> reached;
   /// The same of the target's vertices, which are no place for the source's.
   std::vector<bool> target_reached;
+  /// Of the target's parts that a marker reaches: the unit of distances.
+  SubjectBox target_box = {};
 };
 
 /// Throws std::invalid_argument for a mesh that has not a position for each vertex, and what
@@ -61,9 +64,9 @@ void check_fit(const TriMesh& source, const TriMesh& target, const std::vector<M
 /// target that is nearest to v and faces less than 90 degrees from v's normal. A c on the target's
 /// border does not count, unless v is on the source's border; such a v is matched to nothing else,
 /// and only to border edges that lead the same way. A c does not count either where it is farther
-/// from v than 10 % of the target's diagonal, or 2 % on borders: what reaches beyond an open target
-/// stays there; nor does one on a part of the target that no marker reaches, such as teeth.
-/// Vertices at one place are one.
+/// from v than 10 % of the diagonal of the target's parts with markers, or 2 % on borders: what
+/// reaches beyond an open target stays there; nor does one on a part of the target that no marker
+/// reaches, such as teeth. Vertices at one place are one.
 ///
 /// One sparse system for the x, y and z of vertices and fourth vertices; its pattern is analysed
 /// once. Throws what check_fit() throws, std::invalid_argument for options out of range,

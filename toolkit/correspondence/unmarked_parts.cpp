@@ -101,7 +101,8 @@ Correspondence with_unmarked_parts(Correspondence pairs, const SurfaceFit& fit,
   const auto of_target = unreached_parts(target.positions, to, fit.target_reached);
   if (of_source.empty() || of_target.empty()) return pairs;
 
-  SurfaceFit others{carried_parts(fit, source, of_source), fit.reached, fit.target_reached};
+  SurfaceFit others{carried_parts(fit, source, of_source), fit.reached, fit.target_reached,
+                    fit.target_box};
   others.reached.flip();
   others.target_reached.flip();
   const Correspondence found = pair_triangles(others, from, target, threads);

@@ -57,6 +57,25 @@ SurfaceParts surface_parts(const Positions& positions, const Triangles& triangle
   return surface_parts(positions, triangles, Weld::exact(positions));
 }
 
+SubjectBox subject_box(const Positions& positions, const SurfaceParts& parts,
+                       const std::vector<VertexIndex>& vertices) {
+  constexpr double kSectionShare = 1.0 / 3, kSectionGrowth = 1.5;
+  std::vector<bool> has_vertex(parts.areas.size(), false);
+  for (const VertexIndex v : vertices) has_vertex[parts.of_vertex.at(v)] = true;
+  std::vector<VertexIndex> around;
+  for (std::size_t v = 0; v < parts.of_vertex.size(); ++v) {
+    if (has_vertex[parts.of_vertex[v]]) around.push_back(static_cast<VertexIndex>(v));
+  }
+  const auto box_of = [&](const std::vector<VertexIndex>& some) {
+    const Positions places = positions(some, Eigen::all);
+    return SubjectBox{(places.colwise().maxCoeff() + places.colwise().minCoeff()) / 2,
+                      box_diagonal(places)};
+  };
+  const SubjectBox whole = box_of(around), section = box_of(vertices);
+  if (section.diagonal >= kSectionShare * whole.diagonal) return whole;
+  return {section.center, kSectionGrowth * section.diagonal, true};
+}
+
 Eigen::VectorXd vertex_areas(const Positions& positions, const Triangles& triangles) {
   Eigen::VectorXd areas = Eigen::VectorXd::Zero(positions.rows());
   for (Eigen::Index t = 0; t < triangles.rows(); ++t) {

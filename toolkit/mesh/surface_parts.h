@@ -25,6 +25,21 @@ SurfaceParts surface_parts(const Positions& positions, const Triangles& triangle
 /// The same with the vertices at one place welded.
 SurfaceParts surface_parts(const Positions& positions, const Triangles& triangles);
 
+/// The box of what a computation is about, by which it measures lengths.
+struct SubjectBox {
+  Eigen::RowVector3d center = Eigen::RowVector3d::Zero();
+  double diagonal = 0;
+  /// True if the vertices span less than a third of the parts that they are in, as on a head and
+  /// body in one piece. The diagonal is then 1.5 times that of the vertices' own box.
+  bool is_section = false;
+};
+
+/// Box of the parts with one of some vertices, such as those that move or have a marker: what else
+/// is in the file does not count. `vertices` must not be empty. Throws std::out_of_range for one
+/// that is not there.
+SubjectBox subject_box(const Positions& positions, const SurfaceParts& parts,
+                       const std::vector<VertexIndex>& vertices);
+
 /// A third of the area of each vertex's triangles (N).
 Eigen::VectorXd vertex_areas(const Positions& positions, const Triangles& triangles);
 

@@ -9,6 +9,7 @@
 #include "toolkit/mesh/face_order.h"
 #include "toolkit/mesh/similarity.h"
 #include "toolkit/mesh/stopwatch.h"
+#include "toolkit/mesh/surface_parts.h"
 #include "toolkit/mesh/text.h"
 #include "toolkit/pipeline/given_markers.h"
 #include "toolkit/pipeline/opening_comparison.h"
@@ -56,10 +57,27 @@ FoundCorrespondence found_by(const std::vector<Marker>& markers, const TriMesh& 
                "is inside out); they are paired as if turned; if one was mirrored, left and "
                "right are exchanged");
     }
+    if (found.fit.target_box.is_section) {
+      note(options.notes, name +
+                              ": the markers span less than a third of the part they are on; "
+                              "lengths are measured by the markers' extent");
+    }
     return found;
   } catch (const MismatchError& error) {
     throw MismatchError(name + ": " + error.what());
   }
+}
+
+/// Size of the parts of a target that have partners; 0 if none has.
+double paired_size(const Correspondence& pairs, const TriMesh& target) {
+  const Triangles& triangles = target.connectivity.triangles;
+  std::vector<VertexIndex> paired;
+  for (int t = 0; t < pairs.target_triangles(); ++t) {
+    if (pairs.has_partner(t))
+      paired.insert(paired.end(), triangles.row(t).begin(), triangles.row(t).end());
+  }
+  if (paired.empty()) return 0;
+  return subject_box(target.positions, surface_parts(target.positions, triangles), paired).diagonal;
 }
 
 /// Says that it was needed, and what makes the markers doubtful.
@@ -185,7 +203,7 @@ void MatchedTarget::pair(const TriMesh& source, const MatchOptions& options) {
     pairs = std::move(found.correspondence);
   } else {
     pairs = std::get<Correspondence>(target_.match);
-    report.quality = quality_of(pairs, box_diagonal(target.positions));
+    report.quality = quality_of(pairs, paired_size(pairs, target));
   }
   if (pairs.parts.empty()) {
     throw MismatchError(target_.name + ": no triangle has a partner in the source");
