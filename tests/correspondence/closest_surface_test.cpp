@@ -38,6 +38,31 @@ std::pair<double, int> nearest_of_all(const test::Shape& shape, const Vector3d& 
   return best;
 }
 
+TEST(ClosestSurface, MeasuresTheDistanceWhicheverWayItFaces) {
+  const test::Shape shape = test::sphere(2);
+  const ClosestSurface surface(shape.positions, shape.triangles);
+  std::mt19937 generator(5);
+  for (int i = 0; i < 100; ++i) {
+    const Vector3d point = random_vector(generator);
+    double nearest = std::numeric_limits<double>::infinity();
+    for (const auto& corners : shape.triangles.rowwise()) {
+      const Vector3d at =
+          test::closest_in(point, shape.positions.row(corners[0]), shape.positions.row(corners[1]),
+                           shape.positions.row(corners[2]));
+      nearest = std::min(nearest, (at - point).norm());
+    }
+    EXPECT_NEAR(surface.distance(point), nearest, 1e-14);
+  }
+}
+
+TEST(ClosestSurface, SeesTheSideThatARayMeets) {
+  const test::Shape shape = test::sphere(2);
+  const ClosestSurface surface(shape.positions, shape.triangles);
+  EXPECT_EQ(surface.seen_from({0.1, 0.2, 0}, {1, 2, 3}), Seen::back);
+  EXPECT_EQ(surface.seen_from({3, 0.1, 0.2}, {-1, 0, 0}), Seen::front);
+  EXPECT_EQ(surface.seen_from({3, 0.1, 0.2}, {1, 0, 0}), Seen::nothing);
+}
+
 TEST(ClosestSurface, FindsWhatLookingAtEachTriangleFinds) {
   const test::Shape shape = test::sphere(2);
   const ClosestSurface surface(shape.positions, shape.triangles);

@@ -295,12 +295,12 @@ TEST_F(CarriedWeights, AreNoneOnPartsWithoutPartner) {
 }
 
 TEST_F(CarriedWeights, OfPartsThatFollowAreThoseOfTheSurfaceAround) {
-  // A pebble over each end of the target, of which the source has none.
+  // A pebble on each end of the target, of which the source has none.
   test::Shape pebble = test::octahedron();
-  pebble.positions *= 0.2;
+  pebble.positions *= 0.05;
   test::Shape left = pebble, right = pebble;
-  left.positions.rowwise() += Eigen::RowVector3d(1, 3, 0.4);
-  right.positions.rowwise() += Eigen::RowVector3d(5, 3, 0.4);
+  left.positions.rowwise() += Eigen::RowVector3d(1, 3, 0.05);
+  right.positions.rowwise() += Eigen::RowVector3d(5, 3, 0.05);
   const test::Shape all = test::both(test::both(fine_, left), right);
   Correspondence pairs;
   pairs.source_triangles = static_cast<int>(coarse_.triangles.rows());

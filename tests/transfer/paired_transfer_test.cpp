@@ -315,27 +315,5 @@ TEST(PairedTransfer, ApproachesTheKnownAnswerAsTheSourceIsRefined) {
   EXPECT_LT(fine, 0.5 * coarse);
 }
 
-TEST(PairedTransfer, MovesPartsWithoutPartnerWithTheSurfaceAround) {
-  test::Shape pebble = test::octahedron();
-  pebble.positions = (0.2 * pebble.positions).rowwise() + Eigen::RowVector3d(4, 4, 2);
-  const test::Shape face = test::patch(), with_pebble = test::both(face, pebble);
-  Correspondence pairs = Correspondence::identity(128);
-  pairs.offsets.resize(137, 128);
-  pairs.residuals.conservativeResize(136);
-  const RigidTransform turn{
-      Eigen::AngleAxisd(0.4, Eigen::Vector3d(1, 2, 3).normalized()).toRotationMatrix(),
-      Eigen::Vector3d(3, 2, 1)};
-  const Positions moved = turn.apply(face.positions);
-  Frames frames(1, moved.size());
-  frames.row(0) = Eigen::Map<const Eigen::RowVectorXd>(moved.data(), moved.size());
-  const MeshSequence take(test::connectivity_of(face), frames, {}, face.positions);
-  const TriMesh to = test::mesh_of(with_pebble);
-  const VertexTransfer transfer(take.rest(), to.positions, to.connectivity.triangles,
-                                all_triangles(to.connectivity.triangles),
-                                {.pairing = paired(test::mesh_of(face), to, pairs)});
-  const Positions result = test::only_frame(transfer.frames(take));
-  EXPECT_LT((result - turn.apply(to.positions)).lpNorm<Eigen::Infinity>(), 1e-9);
-}
-
 }  // namespace
 }  // namespace mimetra

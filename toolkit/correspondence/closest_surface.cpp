@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 #include <tuple>
 #include <utility>
@@ -97,6 +98,14 @@ struct ClosestSurface::State {
   Vector3d corner(int t, int number) const { return positions.row(triangles(t, number)); }
   bool faces(int t, const Vector3d& normal) const { return normals.row(t).dot(normal) > 0; }
 
+  /// Squared distance to a triangle, and the shares of its nearest point.
+  std::pair<double, Shares> nearest_in(int t, const Vector3d& point) const {
+    const Vector3d a = corner(t, 0), b = corner(t, 1), c = corner(t, 2);
+    const Shares shares = closest_shares(point, a, b, c);
+    const Vector3d at = shares[0] * a + shares[1] * b + shares[2] * c;
+    return {(at - point).squaredNorm(), shares};
+  }
+
   /// Whether the point of these shares in triangle t is on the border.
   bool on_border(int t, const Shares& shares) const {
     for (int c = 0; c < 3; ++c) {
@@ -187,13 +196,7 @@ ClosestSurface::ClosestSurface(const Positions& positions, const Triangles& tria
 ClosestSurface::~ClosestSurface() = default;
 
 SurfacePoint ClosestSurface::closest(const Vector3d& point, const Vector3d& normal) const {
-  const State& s = *state_;
-  return nearest(s, point, normal, [&](int t) {
-    const Vector3d a = s.corner(t, 0), b = s.corner(t, 1), c = s.corner(t, 2);
-    const Shares shares = closest_shares(point, a, b, c);
-    const Vector3d at = shares[0] * a + shares[1] * b + shares[2] * c;
-    return std::pair((at - point).squaredNorm(), shares);
-  });
+  return nearest(*state_, point, normal, [&](int t) { return state_->nearest_in(t, point); });
 }
 
 SurfacePoint ClosestSurface::nearest_centroid(const Vector3d& point, const Vector3d& normal) const {
@@ -219,6 +222,24 @@ SurfacePoint ClosestSurface::closest_on_border(const Vector3d& point, const Vect
     if (distance < best.squared_distance) best = {edge.triangle, at, distance, true};
   }
   return best.triangle < 0 ? SurfacePoint{} : best;
+}
+
+double ClosestSurface::distance(const Vector3d& point) const {
+  const State& s = *state_;
+  NearestFirst search(
+      point, s.corners.begin(), [](int) { return true; },
+      [&](int t) { return s.nearest_in(t, point); });
+  s.tree.traversal_with_priority(point, search);
+  return std::sqrt(search.distance());
+}
+
+Seen ClosestSurface::seen_from(const Vector3d& point, const Vector3d& direction) const {
+  const State& s = *state_;
+  const Kernel::Ray_3 ray({point[0], point[1], point[2]},
+                          Kernel::Direction_3(direction[0], direction[1], direction[2]));
+  const auto hit = s.tree.first_intersected_primitive(ray);
+  if (!hit) return Seen::nothing;
+  return s.faces(static_cast<int>(*hit - s.corners.begin()), -direction) ? Seen::front : Seen::back;
 }
 
 std::vector<BorderEdge> border_edges(const Triangles& triangles) {

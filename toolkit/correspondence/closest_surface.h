@@ -15,6 +15,9 @@ struct SurfacePoint {
   bool on_border = false;
 };
 
+/// The side of a surface that a ray meets.
+enum class Seen { nothing, front, back };
+
 /// A surface that is asked for its nearest part that faces the same way. Queries are const and may
 /// run from several threads. Of equally near triangles the lowest counts.
 class ClosestSurface {
@@ -35,6 +38,10 @@ class ClosestSurface {
   /// lower lip's.
   SurfacePoint closest_on_border(const Eigen::Vector3d& point, const Eigen::Vector3d& normal,
                                  const Eigen::Vector3d& direction) const;
+  /// Distance to the surface, whichever way it faces; +infinity if it has no triangles.
+  double distance(const Eigen::Vector3d& point) const;
+  /// What a ray from `point` meets first.
+  Seen seen_from(const Eigen::Vector3d& point, const Eigen::Vector3d& direction) const;
 
  private:
   struct State;

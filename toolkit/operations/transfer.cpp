@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 
 #include <nlohmann/json.hpp>
 
@@ -29,7 +30,11 @@ BoundParameters<TransferOptions> transfer_parameters(const FieldSequence* source
   using Options = TransferOptions;
   const FrameSource* sequence = source ? source->frames.get() : nullptr;
   BoundParameters<Options> list;
-  return list.add("full", Options::kFull, "use all triangles instead of regions")
+  return list
+      .add("full", Options::kFull,
+           "use all triangles instead of regions; the default for meshes without expressions if no "
+           "option asks for regions")
+      .brief("use all triangles instead of regions")
       .add("head-motion", Options::kHeadMotion,
            "give the motion that --align took out back to the target, or drop it")
       .brief("motion that --align took")
@@ -47,10 +52,36 @@ const BlendshapeModel& model_of(const NamedData& target) {
   return std::get<ModelData>(target.data).model.average();
 }
 
+bool asks_for_regions(const Invocation& invocation) {
+  const Parameters& parameters = invocation.parameters;
+  const auto is_set = [&](const std::string& name) {
+    return parameters.find(name) && parameters.is_set(name);
+  };
+  static constexpr std::array kNames = {
+      "k",         "coverage", "radius",   "only",           "without", "select",     "triangles",
+      "drop-rims", "region",   "complete", "complete-limit", "falloff", "per-region", "paint"};
+  return std::ranges::any_of(kNames, is_set) ||
+         std::ranges::any_of(options_of_decomposition(), is_set) ||
+         invocation.find<RegionData>("regions") || invocation.find<Components>("components") ||
+         invocation.wants("regions-out") || invocation.wants("components-out");
+}
+
+/// All triangles, because the call says so, or by default: without expressions to solve for, what
+/// lies outside the regions would stay behind.
+bool takes_all_triangles(const Invocation& invocation) {
+  if (invocation.parameters.flag("full")) return true;
+  const auto has_expressions = [](const NamedData& target) {
+    return model_of(target).expressions().size() > 0;
+  };
+  return std::ranges::none_of(invocation.inputs.at("target"), has_expressions) &&
+         !asks_for_regions(invocation);
+}
+
 TransferOptions options_of(const Invocation& invocation) {
   const NamedData& source = invocation.input("source");
   TransferOptions options =
       transfer_parameters(&std::get<FieldSequence>(source.data)).read(invocation.parameters);
+  options.full = takes_all_triangles(invocation);
   options.source = described(std::move(options.source), source);
   options.regions = with_most_discs(std::move(options.regions), invocation.parameters);
   if (auto painted = painted_region_of(invocation)) {
@@ -90,7 +121,11 @@ Json report_of(const NamedData& target, const TransferredTarget& transferred, bo
                   {"scale", similarity.scale},
                   {"mirrored", similarity.mirrors()}};
   json["collapsed_triangles"] = solution.collapsed_triangles;
-  json["following_parts"] = solution.following_parts;
+  json["following_parts"] = Json::array();
+  for (const FollowingPart& part : solution.following_parts) {
+    json["following_parts"].push_back(
+        {{"component", part.component}, {"vertices", part.vertices}, {"farthest", part.farthest}});
+  }
   json["degenerate_source_triangles"] = solution.degenerate_source_triangles;
   json["degenerate_target_triangles"] = solution.degenerate_target_triangles;
   if (regions) {
@@ -124,15 +159,16 @@ std::string summary_of(const NamedData& target, const TransferredTarget& transfe
          (match ? "; " + summary_of(*match) : "") + '\n' + summary_of(openings);
 }
 
-/// False where the call names them, or all triangles.
+/// False if the call names regions, or takes all triangles.
 bool looks_for_regions(const Invocation& invocation) {
-  return !invocation.parameters.flag("full") && !invocation.find<RegionData>("regions") &&
+  return !takes_all_triangles(invocation) && !invocation.find<RegionData>("regions") &&
          !invocation.parameters.optional_text("paint");
 }
 
 /// Refuses outputs that this request cannot make, before anything is computed.
 void check_outputs(const Invocation& invocation) {
-  const TransferOptions options = transfer_parameters().read(invocation.parameters);
+  TransferOptions options = transfer_parameters().read(invocation.parameters);
+  options.full = takes_all_triangles(invocation);
   check_paint(invocation);
   check_solving(invocation);
   if (options.full) {

@@ -11,6 +11,7 @@
 #include "toolkit/model/expression_names.h"
 #include "toolkit/pipeline/target_notes.h"
 #include "toolkit/pipeline/usability.h"
+#include "toolkit/transfer/following_parts.h"
 #include "toolkit/transfer/seams.h"
 #include "toolkit/transfer/transfer_error.h"
 
@@ -60,24 +61,32 @@ class ExpressionTransfer {
     const BlendshapeModel& model = target.model;
     displacements_ = Eigen::MatrixXd::Zero(model.neutral().size(), source.frames());
     std::vector<int> slivers(static_cast<std::size_t>(source.frames()), 0);
-    std::vector<std::vector<VertexIndex>> following(slivers.size());
+    if (target.pairing) {
+      options_.following = std::make_shared<FollowingParts>(model.neutral(), model.triangles(),
+                                                            weld, *target.pairing);
+    }
     parallel_for(
-        source.frames(), options.threads,
-        [&](int j) { slivers[j] = transfer(j, following[static_cast<std::size_t>(j)]); },
+        source.frames(), options.threads, [&](int j) { slivers[j] = transfer(j); },
         part_of(options.progress, 0, kTransferPart));
     slivers_ = std::ranges::max(slivers);
-    following_ = *std::ranges::max_element(following, {}, &std::vector<VertexIndex>::size);
   }
 
   const Eigen::MatrixXd& displacements() const { return displacements_; }
   /// Of the target, at most of any expression.
   int slivers() const { return slivers_; }
-  /// Vertices of parts without partner, ascending.
-  const std::vector<VertexIndex>& following() const { return following_; }
+  /// Parts that follow, with how far any expression moves each.
+  std::vector<FollowingPart> following() const {
+    if (!options_.following) return {};
+    const BlendshapeModel& model = target_.model;
+    const Eigen::Map<const Eigen::RowVectorXd> neutral(model.neutral().data(),
+                                                       model.neutral().size());
+    const Frames poses = displacements_.transpose().rowwise() + neutral;
+    return described(*options_.following, options_.following->farthest(poses), model);
+  }
 
  private:
   /// Returns the slivers of the target.
-  int transfer(int j, std::vector<VertexIndex>& following) {
+  int transfer(int j) {
     const Frames frame = source_.read(j, 1);
     const PositionsView pose(frame.data(), source_.rest().rows(), 3);
     const Regions moving = moving_part(source_.rest(), pose, source_.triangles());
@@ -92,7 +101,6 @@ class ExpressionTransfer {
     const Eigen::Map<const Eigen::RowVectorXd> neutral(model.neutral().data(),
                                                        model.neutral().size());
     displacements_.col(j) = (solver.frames(single).row(0) - neutral).transpose();
-    following = solver.following_vertices();
     return solver.degenerate_target_triangles();
   }
 
@@ -101,7 +109,6 @@ class ExpressionTransfer {
   VertexTransferOptions options_;
   Eigen::MatrixXd displacements_;
   int slivers_ = 0;
-  std::vector<VertexIndex> following_;
 };
 
 /// The target's own expressions that the source has, by the same name or one written otherwise, are
@@ -294,7 +301,7 @@ Rig rig(const BlendshapeModel& source, const Target& given, std::vector<RigExamp
                             " slivers, triangles of hardly any area, follow their neighbours");
   }
   const TargetNotes notes(target.name, options.notes);
-  notes.add_following(parts_with(transfer.following(), model), transfer.following().size());
+  notes.add(transfer.following());
   notes.add_almost_welded(model);
   const BlendshapeModel transferred(model.shared_connectivity(), model.neutral(),
                                     {source.expressions().names, transfer.displacements()});

@@ -1,12 +1,14 @@
 #include "toolkit/pipeline/solution.h"
 
+#include <algorithm>
+#include <mutex>
+
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/frame_store.h"
 #include "toolkit/mesh/stopwatch.h"
 #include "toolkit/model/animation.h"
 #include "toolkit/model/motion_filter.h"
 #include "toolkit/pipeline/regional_solution.h"
-#include "toolkit/pipeline/target_notes.h"
 #include "toolkit/transfer/following_parts.h"
 #include "toolkit/transfer/seams.h"
 #include "toolkit/transfer/soft_border.h"
@@ -102,11 +104,11 @@ void check_anchor(const VertexTransferOptions& options, const Target& target,
   if (is_vertex && target.pairing) {
     const FollowingParts following(model.neutral(), model.triangles(), Weld::exact(model.neutral()),
                                    *target.pairing);
-    if (following.vertices()[options.anchor_vertex]) {
+    if (following.without_partner()[options.anchor_vertex]) {
       throw OptionError(Topic::anchor_vertex,
                         vertex +
-                            " is on a part without partner in the source, which follows the "
-                            "surface around it; name a vertex of that");
+                            " is on a part without a partner in the source; name a vertex of the "
+                            "face");
     }
   }
   if (selection.weights.size() > 0) {
@@ -131,6 +133,33 @@ void check_weights_of(const Selection& selection, const Target& target,
   check_soft_border(target, options);
 }
 
+/// Hands poses on and keeps how far each part that follows moves.
+class WatchedSink : public FrameSink {
+ public:
+  WatchedSink(FrameSink& sink, const FollowingParts& following)
+      : sink_(sink), following_(following), farthest_(following.parts().size(), 0) {}
+
+  void write(int first, const Frames& poses) override {
+    const std::vector<double> moves = following_.farthest(poses);
+    {
+      const std::scoped_lock lock(mutex_);
+      for (std::size_t p = 0; p < moves.size(); ++p) {
+        farthest_[p] = std::max(farthest_[p], moves[p]);
+      }
+    }
+    sink_.write(first, poses);
+  }
+  std::vector<std::filesystem::path> commit() override { return sink_.commit(); }
+
+  const std::vector<double>& farthest() const { return farthest_; }
+
+ private:
+  FrameSink& sink_;
+  const FollowingParts& following_;
+  std::mutex mutex_;
+  std::vector<double> farthest_;
+};
+
 Solution solve_vertices(const Source& source, const Target& target, const Selection& selection,
                         const SolveOptions& options) {
   const Stopwatch stopwatch;
@@ -145,6 +174,10 @@ Solution solve_vertices(const Source& source, const Target& target, const Select
   of_space.pairing = target.pairing;
   of_space.weld =
       closed_seams_of(source, target, {options.threads, part_of(options.progress, 0, kSeamShare)});
+  if (target.pairing) {
+    of_space.following = std::make_shared<FollowingParts>(model.neutral(), model.triangles(),
+                                                          of_space.weld, *target.pairing);
+  }
   const bool smooths = options.smoothness > 0;
   const double solved = smooths ? kUnsmoothedShare : 1;
   of_space.progress = part_of(options.progress, kSeamShare, solved);
@@ -153,24 +186,28 @@ Solution solve_vertices(const Source& source, const Target& target, const Select
   const auto store = std::make_shared<FrameStore>(
       SequenceHeader{model.shared_connectivity(), performance.times(), model.neutral(), true,
                      performance.times_are_known()});
+  std::optional<WatchedSink> watched;
+  if (of_space.following) watched.emplace(*store, *of_space.following);
+  FrameSink& sink = watched ? static_cast<FrameSink&>(*watched) : *store;
   if (smooths) {
     const MotionFilter filter(performance.times(), options.smoothness);
-    store->write(0, filter(transfer.frames(performance),
-                           {options.threads, part_of(options.progress, solved, 1)}));
+    sink.write(0, filter(transfer.frames(performance),
+                         {options.threads, part_of(options.progress, solved, 1)}));
   } else {
-    transfer.write_frames(performance, *store);
+    transfer.write_frames(performance, sink);
   }
-  store->commit();
+  sink.commit();
   Solution solution;
   solution.sequence = store;
   solution.seconds = stopwatch.seconds();
   solution.collapsed_triangles = transfer.collapsed_triangles();
   solution.degenerate_source_triangles = transfer.degenerate_source_triangles();
   solution.degenerate_target_triangles = transfer.degenerate_target_triangles();
-  const std::vector<VertexIndex> following = transfer.following_vertices();
-  solution.following_parts = parts_with(following, model);
+  if (watched) {
+    solution.following_parts = described(*of_space.following, watched->farthest(), model);
+  }
   const TargetNotes notes(target.name, options.notes);
-  notes.add_following(solution.following_parts, following.size());
+  notes.add(solution.following_parts);
   notes.add_almost_welded(model);
   notes.add_unmoved(model.connectivity());
   notes.add_degenerate({.source = solution.degenerate_source_triangles,

@@ -10,6 +10,7 @@
 #include "toolkit/model/regional_animation.h"
 #include "toolkit/pipeline/matched_target.h"
 #include "toolkit/pipeline/region_choice.h"
+#include "toolkit/pipeline/target_notes.h"
 #include "toolkit/transfer/blendshape_transfer.h"
 #include "toolkit/transfer/local_weights.h"
 #include "toolkit/transfer/vertex_transfer.h"
@@ -130,9 +131,8 @@ struct Solution {
   /// Between vertices that are one, in vertex space: they take no part, and are none of the
   /// degenerate ones.
   int collapsed_triangles = 0;
-  /// Connected parts without partner, by their rank among surface_parts(), that moved rigidly with
-  /// the surface around them.
-  std::vector<int> following_parts = {};
+  /// In vertex space, by component.
+  std::vector<FollowingPart> following_parts = {};
   int degenerate_source_triangles = 0;
   int degenerate_target_triangles = 0;
   double seconds = 0;  ///< set-up and the solve of all frames

@@ -1,6 +1,6 @@
 #include "toolkit/pipeline/target_notes.h"
 
-#include <set>
+#include <algorithm>
 
 #include "toolkit/mesh/inspection.h"
 #include "toolkit/mesh/surface_parts.h"
@@ -8,13 +8,19 @@
 
 namespace mimetra {
 
-std::vector<int> parts_with(const std::vector<VertexIndex>& vertices,
-                            const BlendshapeModel& model) {
-  if (vertices.empty()) return {};
+std::vector<FollowingPart> described(const FollowingParts& following,
+                                     const std::vector<double>& farthest,
+                                     const BlendshapeModel& model) {
+  const auto lists = following.parts();
+  if (lists.empty()) return {};
   const SurfaceParts parts = surface_parts(model.neutral(), model.triangles());
-  std::set<int> found;
-  for (const VertexIndex v : vertices) found.insert(parts.of_vertex[v]);
-  return {found.begin(), found.end()};
+  std::vector<FollowingPart> list;
+  for (std::size_t p = 0; p < lists.size(); ++p) {
+    list.push_back(
+        {parts.of_vertex[lists[p].front()], static_cast<int>(lists[p].size()), farthest[p]});
+  }
+  std::ranges::sort(list, {}, &FollowingPart::component);
+  return list;
 }
 
 void TargetNotes::add(const std::string& text, Topic topic) const {
@@ -37,14 +43,19 @@ void TargetNotes::add(const BlendshapeConditions& conditions) const {
   }
 }
 
-void TargetNotes::add_following(const std::vector<int>& parts, std::size_t vertices) const {
+void TargetNotes::add(const std::vector<FollowingPart>& parts) const {
   if (parts.empty()) return;
   std::vector<std::string> names;
   names.reserve(parts.size());
-  for (const int part : parts) names.push_back("component:" + std::to_string(part));
-  add(std::to_string(parts.size()) + " connected parts without partner in the source (" +
-      std::to_string(vertices) +
-      " vertices) move rigidly with the surface around them: " + listed(names));
+  for (const FollowingPart& part : parts) {
+    names.push_back("component:" + std::to_string(part.component) + " by up to " +
+                    readable(part.farthest));
+  }
+  const bool one = parts.size() == 1;
+  add(std::to_string(parts.size()) +
+      (one ? " part without a partner in the source follows"
+           : " parts without a partner in the source follow") +
+      " the surface around " + (one ? "it: " : "them: ") + listed(names));
 }
 
 void TargetNotes::add_almost_welded(const BlendshapeModel& model) const {

@@ -6,11 +6,22 @@
 #include "toolkit/model/blendshape_model.h"
 #include "toolkit/pipeline/note.h"
 #include "toolkit/transfer/blendshape_transfer.h"
+#include "toolkit/transfer/following_parts.h"
 
 namespace mimetra {
 
-/// The connected parts of a model that some vertices are in, ascending.
-std::vector<int> parts_with(const std::vector<VertexIndex>& vertices, const BlendshapeModel& model);
+/// A connected part of a target without a partner in the source that followed the surface around
+/// it.
+struct FollowingPart {
+  int component;  ///< rank among surface_parts()
+  int vertices;
+  double farthest;  ///< largest move of a vertex from rest in any frame, in the target's unit
+};
+
+/// The parts that follow, by component, with how far each moves at most.
+std::vector<FollowingPart> described(const FollowingParts& parts,
+                                     const std::vector<double>& farthest,
+                                     const BlendshapeModel& model);
 
 /// What a solve notes of a target, under its name.
 class TargetNotes {
@@ -20,8 +31,7 @@ class TargetNotes {
   void add(const std::string& text, Topic topic = Topic::other) const;
   /// Expressions that are not or hardly seen.
   void add(const BlendshapeConditions& conditions) const;
-  /// Connected parts, by their numbers, that follow the surface around them, and their vertices.
-  void add_following(const std::vector<int>& parts, std::size_t vertices) const;
+  void add(const std::vector<FollowingPart>& parts) const;
   /// Seams that rounding opened, which nothing holds together.
   void add_almost_welded(const BlendshapeModel& model) const;
   /// Vertices that no triangle moves, where a mesh has triangles.

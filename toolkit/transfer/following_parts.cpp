@@ -4,23 +4,33 @@
 #include <map>
 #include <utility>
 
+#include "toolkit/correspondence/closest_surface.h"
 #include "toolkit/mesh/alignment.h"
 #include "toolkit/mesh/inspection.h"
 #include "toolkit/mesh/median.h"
+#include "toolkit/mesh/triangle_quality.h"
 
 namespace mimetra {
 
 namespace {
 
+/// Vertices of a part that look for the surface around it: rays, and nearest vertices.
+constexpr std::size_t kRayVertices = 50;
 constexpr std::size_t kLookingVertices = 200;
 /// A vertex looks at so many, and at all that are farther than the nearest by no more than this
-/// share of the target's size: a tooth is to move as a lip does, not as a wrinkle of it.
+/// share of the face's size: a tooth is to move as a lip does, not as a wrinkle of it.
 constexpr std::size_t kSeenVertices = 8;
 constexpr double kSeenShare = 0.02;
 
+/// A part is enclosed if rays from it meet the surface this often, or its back this often.
+constexpr double kEnclosedShare = 0.6;
+constexpr double kBackShare = 0.3;
+/// A part lies against the surface if no vertex is farther away than this share of the face's size.
+constexpr double kTouchingShare = 0.02;
+
 /// Weighing by what is left settles in a few steps.
 constexpr int kFollowingSteps = 8;
-/// What is left of a point is seen from this share of the target's size on.
+/// Residuals below this share of the face's size count as none.
 constexpr double kSeenResidual = 1e-4;
 
 /// The rigid motion from `from` to `to` that most of the points agree on, beginning with none.
@@ -36,13 +46,56 @@ RigidTransform common_motion(const Positions& from, const Positions& to,
   return motion;
 }
 
+/// To the faces, edges and corners of a cube.
+std::vector<Eigen::Vector3d> ray_directions() {
+  std::vector<Eigen::Vector3d> directions;
+  for (const int x : {-1, 0, 1}) {
+    for (const int y : {-1, 0, 1}) {
+      for (const int z : {-1, 0, 1}) {
+        if (x != 0 || y != 0 || z != 0) directions.emplace_back(x, y, z);
+      }
+    }
+  }
+  return directions;
+}
+
+/// Up to `most` of some vertices, evenly spread over their numbers.
+std::vector<VertexIndex> some_of(const std::vector<VertexIndex>& vertices, std::size_t most) {
+  const std::size_t count = std::min(vertices.size(), most);
+  std::vector<VertexIndex> some;
+  for (std::size_t i = 0; i < count; ++i) some.push_back(vertices[i * vertices.size() / count]);
+  return some;
+}
+
+bool is_enclosed(const std::vector<VertexIndex>& part, const Positions& rest,
+                 const ClosestSurface& surface) {
+  static const std::vector<Eigen::Vector3d> directions = ray_directions();
+  double all = 0, seen = 0, back = 0;
+  for (const VertexIndex v : some_of(part, kRayVertices)) {
+    for (const Eigen::Vector3d& direction : directions) {
+      const Seen side = surface.seen_from(rest.row(v), direction);
+      ++all;
+      if (side != Seen::nothing) ++seen;
+      if (side == Seen::back) ++back;
+    }
+  }
+  return seen >= kEnclosedShare * all || back >= kBackShare * all;
+}
+
+bool lies_against(const std::vector<VertexIndex>& part, const Positions& rest,
+                  const ClosestSurface& surface, double reach) {
+  return std::ranges::all_of(part,
+                             [&](VertexIndex v) { return surface.distance(rest.row(v)) <= reach; });
+}
+
 }  // namespace
 
 FollowingParts::FollowingParts(Positions rest, const Triangles& triangles, const Weld& weld,
                                const Pairing& pairing)
-    : rest_(std::move(rest)), is_following_(rest_.rows(), false) {
+    : rest_(std::move(rest)), without_partner_(rest_.rows(), false) {
+  const Triangles welded = weld.welded(triangles);
   const ConnectedComponents components =
-      connected_components(static_cast<int>(rest_.rows()), weld.welded(triangles));
+      connected_components(static_cast<int>(rest_.rows()), welded);
   const auto part_of = [&](VertexIndex v) { return components.of_vertex[weld.representative[v]]; };
   std::vector<bool> has_partner(components.count, false), has_triangle(components.count, false);
   for (int t = 0; t < triangles.rows(); ++t) {
@@ -51,15 +104,26 @@ FollowingParts::FollowingParts(Positions rest, const Triangles& triangles, const
   }
   const std::vector<VertexIndex> carried = pairing.carried_vertices();
   if (carried.size() < 3) return;
-  size_ = (rest_.colwise().maxCoeff() - rest_.colwise().minCoeff()).norm();
-  std::map<int, Part> parts;
+  std::map<int, std::vector<VertexIndex>> others;
   for (VertexIndex v = 0; v < rest_.rows(); ++v) {
     const int part = part_of(v);
     if (has_partner[part] || !has_triangle[part]) continue;
-    is_following_[v] = true;
-    parts[part].vertices.push_back(v);
+    without_partner_[v] = true;
+    others[part].push_back(v);
   }
-  for (auto& [number, part] : parts) {
+  if (others.empty()) return;
+  size_ = box_diagonal(rest_(carried, Eigen::all));
+  std::vector<int> paired;
+  for (int t = 0; t < welded.rows(); ++t) {
+    if (has_partner[part_of(triangles(t, 0))]) paired.push_back(t);
+  }
+  const ClosestSurface surface(rest_, with_area(rest_, welded(paired, Eigen::all)));
+  for (auto& [number, vertices] : others) {
+    if (!is_enclosed(vertices, rest_, surface) &&
+        !lies_against(vertices, rest_, surface, kTouchingShare * size_)) {
+      continue;
+    }
+    Part part{std::move(vertices), {}, {}};
     look_around(part, carried);
     parts_.push_back(std::move(part));
   }
@@ -67,10 +131,8 @@ FollowingParts::FollowingParts(Positions rest, const Triangles& triangles, const
 
 void FollowingParts::look_around(Part& part, const std::vector<VertexIndex>& carried) const {
   const Positions surface = rest_(carried, Eigen::all);
-  const std::size_t count = std::min(part.vertices.size(), kLookingVertices);
   std::map<VertexIndex, double> counts;
-  for (std::size_t i = 0; i < count; ++i) {
-    const VertexIndex from = part.vertices[i * part.vertices.size() / count];
+  for (const VertexIndex from : some_of(part.vertices, kLookingVertices)) {
     const Eigen::VectorXd distances = (surface.rowwise() - rest_.row(from)).rowwise().norm();
     std::vector<double> sorted(distances.begin(), distances.end());
     const auto last =
@@ -88,6 +150,25 @@ void FollowingParts::look_around(Part& part, const std::vector<VertexIndex>& car
   }
 }
 
+std::vector<std::vector<VertexIndex>> FollowingParts::parts() const {
+  std::vector<std::vector<VertexIndex>> lists;
+  for (const Part& part : parts_) lists.push_back(part.vertices);
+  return lists;
+}
+
+std::vector<double> FollowingParts::farthest(const Eigen::Ref<const Frames>& poses) const {
+  std::vector<double> moves(parts_.size(), 0);
+  for (Eigen::Index f = 0; f < poses.rows(); ++f) {
+    const PositionsView pose(poses.row(f).data(), rest_.rows(), 3);
+    for (std::size_t p = 0; p < parts_.size(); ++p) {
+      for (const VertexIndex v : parts_[p].vertices) {
+        moves[p] = std::max(moves[p], (pose.row(v) - rest_.row(v)).norm());
+      }
+    }
+  }
+  return moves;
+}
+
 void FollowingParts::place(Eigen::Map<Positions> pose) const {
   for (const Part& part : parts_) {
     const Positions from = rest_(part.around, Eigen::all), to = pose(part.around, Eigen::all);
@@ -100,9 +181,12 @@ void FollowingParts::place(Eigen::Map<Positions> pose) const {
 }
 
 Eigen::VectorXd FollowingParts::with_surface(Eigen::VectorXd weights) const {
+  for (std::size_t v = 0; v < without_partner_.size(); ++v) {
+    if (without_partner_[v]) weights[static_cast<Eigen::Index>(v)] = 0;
+  }
   for (const Part& part : parts_) {
     const Eigen::VectorXd around = weights(part.around);
-    // Bit by bit theirs where they agree.
+    // If they agree, the mean is theirs bit by bit.
     const double least = around.minCoeff();
     const double mean = part.counts.dot((around.array() - least).matrix()) / part.counts.sum();
     weights(part.vertices).setConstant(std::min(least + mean, 1.0));

@@ -3,28 +3,43 @@
 #include <vector>
 
 #include "toolkit/correspondence/pairing.h"
+#include "toolkit/mesh/frame_source.h"
 #include "toolkit/mesh/weld.h"
 
 namespace mimetra {
 
-/// Connected parts of a target none of whose triangles has a partner, such as the eyes and teeth of
-/// a head that no marker reaches: each moves rigidly with the surface around it, so that it neither
-/// stays behind nor is bent.
+/// Connected parts of a target none of whose triangles has a partner in the source.
 ///
-/// What is around a part are vertices that have carriers, those near up to 200 of its own. Its
-/// motion is the rigid one that fits them best, where those count most that it fits already, from
-/// no motion on: lids that close over an eye do not turn it, a jaw takes its teeth along.
+/// Parts that the paired surface encloses (eyes, teeth, a tongue) or that lie against it (lashes,
+/// brows, a beard) follow it: each moves rigidly with the surface around it. All others, such as
+/// hair, glasses, clothes and a body, stay where they are.
+///
+/// A part is enclosed if, averaged over its vertices, six of ten directions end on the surface of
+/// the paired parts, or three of ten on its back. It lies against that surface if no vertex is
+/// farther from it than 2 % of the box diagonal of the vertices with carriers. On published heads
+/// and avatars, eyes, teeth and tongues meet the surface in 71 to 100 % of the directions, glasses
+/// in 41, hair in 21, bodies and clothes in up to 6.
+///
+/// The motion is the rigid one that fits best what is around the part, the vertices with carriers
+/// that are nearest to up to 200 of its own. Those that the motion fits already count most,
+/// starting with no motion: lids that close over an eye do not turn it, a jaw takes its teeth
+/// along.
 class FollowingParts {
  public:
-  /// `rest` N x 3 and `triangles` of the target.
+  /// `rest` (N x 3) and `triangles` of the target.
   FollowingParts(Positions rest, const Triangles& triangles, const Weld& weld,
                  const Pairing& pairing);
 
-  /// Whether a vertex is of such a part (N).
-  const std::vector<bool>& vertices() const { return is_following_; }
-  /// A pose whose other vertices are where they belong, with these parts where they follow to.
+  /// True for vertices of parts without a partner, whether they follow or stay (N).
+  const std::vector<bool>& without_partner() const { return without_partner_; }
+  /// Vertices of each part that follows, ascending.
+  std::vector<std::vector<VertexIndex>> parts() const;
+  /// How far a vertex of each of parts() is from its rest position at most, over poses (F x 3N).
+  std::vector<double> farthest(const Eigen::Ref<const Frames>& poses) const;
+  /// Moves the parts that follow; the other vertices of the pose are where they belong already.
   void place(Eigen::Map<Positions> pose) const;
-  /// Weights of vertices (N) with those of each part replaced by one, the mean of what is around.
+  /// Weights of vertices (N): parts that follow get the mean weight of what is around them, parts
+  /// that stay get 0.
   Eigen::VectorXd with_surface(Eigen::VectorXd weights) const;
 
  private:
@@ -37,7 +52,7 @@ class FollowingParts {
   void look_around(Part& part, const std::vector<VertexIndex>& carried) const;
 
   Positions rest_;
-  std::vector<bool> is_following_;
+  std::vector<bool> without_partner_;
   std::vector<Part> parts_;
   double size_ = 0;
 };

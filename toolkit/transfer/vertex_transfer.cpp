@@ -149,7 +149,7 @@ struct VertexTransfer::State {
   const Pairing* pairing;  // of the options, or null
   Triangles triangles,
       welded;  // of the target: as given, and on the lowest of vertices that are one
-  std::optional<FollowingParts> following;
+  std::shared_ptr<const FollowingParts> following;  // null without a pairing
   std::optional<SoftBorder> border;
   std::vector<SmoothEdge> edges;
   std::vector<bool> in_l;       // of each triangle
@@ -172,7 +172,10 @@ VertexTransfer::State::State(const Positions& source, const Positions& target,
       pairing(options.pairing.get()),
       triangles(faces),
       welded(options.weld.welded(faces)) {
-  if (pairing) following.emplace(target_rest, triangles, options.weld, *pairing);
+  following = options.following;
+  if (pairing && !following) {
+    following = std::make_shared<FollowingParts>(target_rest, triangles, options.weld, *pairing);
+  }
   if (options.weights.size() > 0) border.emplace(target_rest, triangles, options.weights);
   const std::vector<int> solved = uncollapsed(selected);
   // To find neighbours across seams.
@@ -208,7 +211,7 @@ std::vector<int> VertexTransfer::State::uncollapsed(std::vector<int> selected) c
 
 /// By what is known of a triangle, whatever its shape.
 double VertexTransfer::State::wanted_weight(int triangle) const {
-  if (following && following->vertices()[triangles(triangle, 0)]) return 0;
+  if (following && following->without_partner()[triangles(triangle, 0)]) return 0;
   if (!in_l[triangle]) return options.outside == Outside::identity ? options.outside_weight : 0;
   const bool is_shown = !pairing || pairing->triangles().has_partner(triangle);
   const double weight = is_shown ? 1 : options.outside_weight;
@@ -459,16 +462,6 @@ Frames VertexTransfer::frames(const FrameSource& performance) const {
 void VertexTransfer::write_frames(const FrameSource& performance, FrameSink& sink) const {
   state_->solve_all(performance,
                     [&sink](int first, const Frames& poses) { sink.write(first, poses); });
-}
-
-std::vector<VertexIndex> VertexTransfer::following_vertices() const {
-  std::vector<VertexIndex> vertices;
-  if (!state_->following) return vertices;
-  const std::vector<bool>& follows = state_->following->vertices();
-  for (std::size_t v = 0; v < follows.size(); ++v) {
-    if (follows[v]) vertices.push_back(static_cast<VertexIndex>(v));
-  }
-  return vertices;
 }
 
 int VertexTransfer::collapsed_triangles() const {

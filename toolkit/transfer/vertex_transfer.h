@@ -14,6 +14,8 @@
 
 namespace mimetra {
 
+class FollowingParts;
+
 enum class TriangleWeight {
   unit,  ///< every triangle counts the same [Sumner, Popovic 2004]
   area   ///< by the area of the target's triangle
@@ -69,6 +71,8 @@ struct VertexTransferOptions {
   Weld weld = {};
   /// Of source and target where their faces differ, or null.
   std::shared_ptr<const Pairing> pairing = {};
+  /// Parts of the target without a partner; by default found from the pairing.
+  std::shared_ptr<const FollowingParts> following = {};
   /// Weight of triangles outside L for Outside::identity, and of those without partner, relative
   /// to the others.
   double outside_weight = 0.1;
@@ -111,8 +115,9 @@ struct VertexTransferOptions {
 /// that rounding or noise holds apart at rest stay as far apart.
 ///
 /// A triangle without partner wants to keep its shape, with the weight of those outside L, so that
-/// a mouth's inside does not hold the lips; connected parts without any take no part in the solve
-/// and move with the surface around them (FollowingParts), whether they are in L or not.
+/// a mouth's inside does not hold the lips. Connected parts without any partner take no part in the
+/// solve: they follow the surface around them or stay (FollowingParts), whether they are in L or
+/// not.
 ///
 /// Where vertices take a share of the motion (VertexTransferOptions::weights), the deformation
 /// fades as SoftBorder describes: weights of 1 everywhere give what none give, bit by bit, and
@@ -145,9 +150,6 @@ class VertexTransfer {
   /// Triangles of which two corners are one vertex: they take no part, and are none of the
   /// degenerate ones.
   int collapsed_triangles() const;
-  /// Vertices of connected parts without partner, which move rigidly with the surface around them,
-  /// ascending.
-  std::vector<VertexIndex> following_vertices() const;
   int degenerate_source_triangles() const;
   int degenerate_target_triangles() const;
   /// Vertices that stay exactly at the target's rest pose (N), or follow.
