@@ -1,5 +1,6 @@
 #include "toolkit/io/pending_output.h"
 
+#include <chrono>
 #include <csignal>
 #include <functional>
 #include <set>
@@ -316,6 +317,88 @@ TEST(PendingOutputs, TwoOfOneNameAreRefused) {
   EXPECT_THAT(message_of<OutputError>([&] { together.commit(); }),
               testing::HasSubstr("two outputs would be written there"));
   EXPECT_FALSE(fs::exists(folder / "x"));
+}
+
+TEST(PendingOutputs, TwoPathsOfOneFileAreRefused) {
+  const TemporaryFolder folder;
+  fs::create_directory(folder / "real");
+  fs::create_directory_symlink(folder / "real", folder / "link");
+  PendingOutputs together(true);
+  write_file(folder / "real/x", "one", true, &together);
+  write_file(folder / "link/x", "another", true, &together);
+  EXPECT_THAT(message_of<OutputError>([&] { together.commit(); }),
+              testing::HasSubstr("two outputs would be written there"));
+  EXPECT_THAT(folder.names(), ElementsAre("link", "real"));
+  EXPECT_FALSE(fs::exists(folder / "real/x"));
+}
+
+TEST(PendingOutputs, OfOneFolderWithTwoPathsDoNotWaitForEachOther) {
+  const TemporaryFolder folder;
+  fs::create_directory(folder / "real");
+  fs::create_directory_symlink(folder / "real", folder / "link");
+  const auto start = std::chrono::steady_clock::now();
+  PendingOutputs together(false);
+  write_file(folder / "real/x", "one", false, &together);
+  write_file(folder / "link/y", "another", false, &together);
+  together.commit();
+  // A lock that another run holds is waited for ten seconds.
+  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(5));
+}
+
+/// Names of one file need not be equal: a second mount and a case-blind folder show it under
+/// another name as a second link does.
+TEST(PendingOutputs, DoNotReplaceAnInputUnderAnotherName) {
+  const TemporaryFolder folder;
+  write_bytes(folder / "take.npy", "input");
+  fs::create_hard_link(folder / "take.npy", folder / "TAKE.npy");
+  EXPECT_THAT(message_of<OutputError>(
+                  [&] { check_inputs_stay(folder / "TAKE.npy", {folder / "take.npy"}); }),
+              testing::HasSubstr("is an input of this run"));
+}
+
+TEST(PendingOutputs, KeepThePermissionsOfWhatTheyReplace) {
+  const TemporaryFolder folder;
+  write_bytes(folder / "secret", "old");
+  fs::permissions(folder / "secret", fs::perms::owner_read | fs::perms::owner_write);
+  write_folder(folder / "private", "old");
+  fs::permissions(folder / "private", fs::perms::owner_all);
+  PendingOutputs outputs(true);
+  write_bytes(outputs.add(folder / "secret", Kind::file), "new");
+  write_bytes(outputs.add(folder / "private", Kind::folder) / "frame", "new");
+  outputs.commit();
+  EXPECT_EQ(read_file(folder / "secret"), "new");
+  EXPECT_EQ(fs::status(folder / "secret").permissions(),
+            fs::perms::owner_read | fs::perms::owner_write);
+  EXPECT_EQ(fs::status(folder / "private").permissions(), fs::perms::owner_all);
+}
+
+TEST(PendingOutputs, ThatBeginAtOnceInAMissingFolderAreAllWritten) {
+  const TemporaryFolder folder;
+  const auto run = [&folder](const std::string& name) {
+    { const PendingOutput trial(folder / "results/a" / name, Kind::file, false); }
+    write_file(folder / "results/a" / name, name, false);
+  };
+  for (int round = 0; round < 50; ++round) {
+    std::vector<std::thread> runs;
+    for (const char* name : {"one", "two", "three", "four"}) runs.emplace_back(run, name);
+    for (std::thread& each : runs) each.join();
+    EXPECT_EQ(read_file(folder / "results/a/four"), "four");
+    fs::remove_all(folder / "results");
+  }
+}
+
+/// Two writers whose outputs have a file in common: the second sees what the first has written.
+TEST(PendingOutputs, SeeACommonFileThatAnotherRunWroteMeanwhile) {
+  const TemporaryFolder folder;
+  PendingOutputs one(false), other(false);
+  write_bytes(one.add(folder / "x.npy", Kind::file), "one");
+  write_bytes(one.add(folder / "x.times", Kind::file, PendingOutputs::Existing::same), "one");
+  write_bytes(other.add(folder / "x.pc2", Kind::file), "other");
+  write_bytes(other.add(folder / "x.times", Kind::file, PendingOutputs::Existing::same), "other");
+  one.commit();
+  EXPECT_THROW(other.commit(), OutputError);
+  EXPECT_EQ(read_file(folder / "x.times"), "one");
+  EXPECT_FALSE(fs::exists(folder / "x.pc2"));
 }
 
 /// Ends this process at its `fatal`-th rename, unlink, mkdir or write, counted by its parent.

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
+#include <cerrno>
 #include <chrono>
 #include <csignal>
 #include <cstdlib>
@@ -24,6 +26,7 @@
 #include "toolkit/cli/manual.h"
 #include "toolkit/cli/run_command.h"
 #include "toolkit/cli/terminal_text.h"
+#include "toolkit/io/pending_output.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/operations/listing.h"
 #include "toolkit/operations/marker_operation.h"
@@ -109,10 +112,36 @@ std::string memory_message() {
          " are held; take fewer frames with --frames";
 }
 
-/// An interrupted run leaves nothing half-written, and exceeding a limit of the system is an error.
+/// A pipe: handlers of signals may write to one, and do little else.
+std::array<int, 2> second_interrupt;
+
+/// Waits for a second interrupt, removes temporary files and ends the process.
+void end_on_second_interrupt() {
+  char byte = 0;
+  while (read(second_interrupt[0], &byte, 1) != 1) {
+    if (errno != EINTR) return;
+  }
+  mimetra::remove_pending_outputs();
+  _exit(mimetra::cli::kInterrupted);
+}
+
+void handle_signal(int) {
+  static std::atomic<bool> interrupted = false;
+  if (!interrupted.exchange(true)) {
+    mimetra::cli::interrupt();
+  } else if (write(second_interrupt[1], "!", 1) < 0) {
+    _exit(mimetra::cli::kInterrupted);
+  }
+}
+
+/// An interrupted run leaves nothing half-written: the first signal ends it at the next step, a
+/// second one at once. Exceeding a limit of the system is an error.
 void take_signals() {
+  if (pipe2(second_interrupt.data(), O_CLOEXEC) == 0) {
+    std::thread(end_on_second_interrupt).detach();
+  }
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
-    const auto before = std::signal(signal, [](int) { mimetra::cli::interrupt(); });
+    const auto before = std::signal(signal, handle_signal);
     if (before == SIG_IGN) std::signal(signal, SIG_IGN);  // as nohup has it
   }
   std::signal(SIGXFSZ, SIG_IGN);

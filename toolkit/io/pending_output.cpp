@@ -4,13 +4,18 @@
 #include <cerrno>
 #include <chrono>
 #include <cstdio>
+#include <map>
+#include <mutex>
 #include <new>
+#include <optional>
 #include <set>
 #include <system_error>
 #include <thread>
+#include <utility>
 
 #include <fcntl.h>
 #include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "toolkit/io/temporary_name.h"
@@ -45,6 +50,15 @@ fs::path real_target(const fs::path& target) {
 
 constexpr const char* kExistsAlready = "exists already; use option 'overwrite' to replace it";
 
+/// Device and inode: what a file or folder is, whatever its path.
+using FileId = std::pair<dev_t, ino_t>;
+
+std::optional<FileId> id_of(const fs::path& path) {
+  struct stat status = {};
+  if (stat(path.c_str(), &status) != 0) return std::nullopt;
+  return FileId(status.st_dev, status.st_ino);
+}
+
 /// Without links, dots and a slash at the end, as far as the file system tells.
 fs::path place_of(const fs::path& path) {
   std::error_code error;
@@ -52,27 +66,37 @@ fs::path place_of(const fs::path& path) {
   return without_trailing_slash(error ? path : place);
 }
 
-/// True for a path below `folder`, and for that itself.
-bool is_within(const fs::path& path, const fs::path& folder) {
-  return std::mismatch(folder.begin(), folder.end(), path.begin(), path.end()).first ==
-         folder.end();
+/// The folders that a place is in, outermost last, as far as they exist.
+std::vector<FileId> folders_around(const fs::path& place) {
+  std::vector<FileId> ids;
+  for (fs::path folder = place; folder != folder.parent_path();) {
+    folder = folder.parent_path();
+    if (const auto id = id_of(folder)) ids.push_back(*id);
+  }
+  return ids;
 }
 
-/// What writing `output` would do to one of `inputs`; empty where they all stay.
+bool holds(const std::vector<FileId>& ids, const FileId& id) {
+  return std::ranges::find(ids, id) != ids.end();
+}
+
+/// What writing `output` would do to one of `inputs`; empty if they all stay. Paths do not tell: a
+/// folder may be mounted twice, and some file systems ignore case.
 std::string harm_to(const std::vector<fs::path>& inputs, const fs::path& output) {
   const fs::path place = place_of(output);
-  std::error_code unreadable;
+  const std::optional<FileId> id = id_of(place);
+  const std::vector<FileId> around = folders_around(place);
   for (const fs::path& input : inputs) {
     const fs::path read = place_of(input);
+    const std::optional<FileId> of_input = id_of(read);
     std::string what;
-    if (read == place) {
+    if (id && id == of_input) {
       what = "is an input of this run";
-    } else if (is_within(read, place)) {
+    } else if (id && holds(folders_around(read), *id)) {
       what = "holds " + input.string() + ", an input of this run";
-    } else if (is_within(place, read) && fs::exists(place, unreadable)) {
-      what = "is a part of " + input.string() + ", an input of this run";
-    } else if (is_within(place.parent_path(), read)) {
-      what = "would become a part of " + input.string() + ", an input of this run";
+    } else if (of_input && holds(around, *of_input)) {
+      what = std::string(id ? "is" : "would become") + " a part of " + input.string() +
+             ", an input of this run";
     }
     if (!what.empty()) return what + "; choose another name";
   }
@@ -116,7 +140,12 @@ std::error_code exchange(const fs::path& temporary, const fs::path& target) {
   std::error_code error = rename_by(temporary, target, RENAME_EXCHANGE);
   if (!is_unknown(error)) return error;
   const fs::path aside = temporary.string() + ".old";
-  fs::rename(target, aside, error);
+  // A second name keeps a file while its first one changes hands; folders cannot have two.
+  if (fs::is_directory(target, error)) {
+    fs::rename(target, aside, error);
+  } else {
+    fs::create_hard_link(target, aside, error);
+  }
   if (error) return error;
   fs::rename(temporary, target, error);
   std::error_code ignored;
@@ -147,33 +176,121 @@ void remove_quietly(const fs::path& path) noexcept {
   }
 }
 
-/// Keeps other runs from committing in the same folders, where the file system can do that.
+/// Temporary names that are in use, for remove_pending_outputs().
+struct TemporaryNames {
+  std::mutex mutex;
+  std::set<fs::path> names;
+};
+
+TemporaryNames& temporary_names() {
+  static auto* const names = new TemporaryNames;  // outlives all outputs
+  return *names;
+}
+
+void remember(const fs::path& temporary) {
+  const std::scoped_lock lock(temporary_names().mutex);
+  temporary_names().names.insert(temporary);
+}
+
+void forget(const fs::path& temporary) {
+  const std::scoped_lock lock(temporary_names().mutex);
+  temporary_names().names.erase(temporary);
+}
+
+/// A file or folder that is open as long as this lives; -1 if it cannot be opened.
+class OpenFile {
+ public:
+  OpenFile(const fs::path& path, int flags) : number_(open(path.c_str(), flags | O_CLOEXEC)) {}
+  ~OpenFile() {
+    if (number_ >= 0) close(number_);
+  }
+  OpenFile(OpenFile&& other) noexcept : number_(std::exchange(other.number_, -1)) {}
+  OpenFile(const OpenFile&) = delete;
+  OpenFile& operator=(const OpenFile&) = delete;
+  OpenFile& operator=(OpenFile&&) = delete;
+
+  int number() const { return number_; }
+
+ private:
+  int number_;
+};
+
+std::set<fs::path> folders_of(const std::vector<PendingOutput*>& outputs) {
+  std::set<fs::path> folders;
+  for (const PendingOutput* output : outputs) {
+    folders.insert(fs::absolute(output->target()).parent_path());
+  }
+  return folders;
+}
+
+/// Keeps other runs from committing in the same folders, where the file system can do that. A
+/// folder with two paths is locked once.
 class FolderLocks {
  public:
   explicit FolderLocks(const std::set<fs::path>& folders) {
-    for (const fs::path& folder : folders) lock(folder);
+    std::map<FileId, fs::path> each;  // in one order for all runs
+    for (const fs::path& folder : folders) {
+      if (const auto id = id_of(folder)) each.emplace(*id, folder);
+    }
+    for (const auto& [id, folder] : each) lock(folder);
   }
-  ~FolderLocks() {
-    for (const int folder : opened_) close(folder);
-  }
-  FolderLocks(const FolderLocks&) = delete;
-  FolderLocks& operator=(const FolderLocks&) = delete;
 
  private:
   /// Whoever has a folder renames a few files and lets it go.
   void lock(const fs::path& folder) {
     constexpr int kAttempts = 1000;
-    const int opened = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-    if (opened < 0) return;
-    opened_.push_back(opened);
+    const OpenFile& opened = opened_.emplace_back(folder, O_RDONLY | O_DIRECTORY);
+    if (opened.number() < 0) return;
     for (int attempt = 0; attempt < kAttempts; ++attempt) {
-      if (flock(opened, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return;
+      if (flock(opened.number(), LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return;
       std::this_thread::sleep_for(std::chrono::milliseconds(10));
     }
   }
 
-  std::vector<int> opened_;
+  std::vector<OpenFile> opened_;
 };
+
+/// Files of an output up to which each is synced by itself; more go with their file system.
+constexpr std::size_t kSyncedFiles = 8;
+
+/// A file, or a folder with the files and folders in it.
+std::vector<fs::path> all_within(const fs::path& path) {
+  std::vector<fs::path> all = {path};
+  std::error_code error;
+  if (!fs::is_directory(path, error)) return all;
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(path)) {
+    if (!entry.is_symlink()) all.push_back(entry.path());
+  }
+  return all;
+}
+
+/// Brings what was written to the disk, so that after a power cut no name leads to an empty file.
+/// File systems that cannot do this are left alone. Throws OutputError if the disk fails.
+void sync_content(const std::vector<PendingOutput*>& outputs) {
+  std::set<dev_t> synced;
+  for (const PendingOutput* output : outputs) {
+    const std::vector<fs::path> all = all_within(output->path());
+    const auto sync = [&](const fs::path& path, int (*call)(int)) {
+      const OpenFile file(path, O_RDONLY);
+      if (file.number() < 0 || call(file.number()) == 0) return;
+      if (errno == EIO || errno == ENOSPC || errno == EDQUOT) {
+        throw OutputError(output->target().string(), cannot_write(last_error()));
+      }
+    };
+    if (all.size() <= kSyncedFiles) {
+      for (const fs::path& path : all) sync(path, fdatasync);
+    } else if (const auto id = id_of(output->path()); id && synced.insert(id->first).second) {
+      sync(output->path(), syncfs);
+    }
+  }
+}
+
+void sync_names(const std::set<fs::path>& folders) {
+  for (const fs::path& folder : folders) {
+    const OpenFile opened(folder, O_RDONLY | O_DIRECTORY);
+    if (opened.number() >= 0) fsync(opened.number());
+  }
+}
 
 }  // namespace
 
@@ -181,7 +298,6 @@ PendingOutput::PendingOutput(const fs::path& target, Kind kind, bool overwrite)
     : target_(real_target(target)), kind_(kind), overwrite_(overwrite) {
   check_target();
   try {
-    create_parents();
     create_temporary();
   } catch (...) {
     discard();
@@ -213,24 +329,31 @@ void PendingOutput::check_target() const {
   if (!overwrite_) throw OutputError(target_.string(), kExistsAlready);
 }
 
-void PendingOutput::create_parents() {
+std::error_code PendingOutput::create_parents() {
   std::vector<fs::path> missing;
-  std::error_code unreadable;
-  for (fs::path parent = target_.parent_path(); !parent.empty() && !fs::exists(parent, unreadable);
+  std::error_code error;
+  for (fs::path parent = target_.parent_path(); !parent.empty() && !fs::exists(parent, error);
        parent = parent.parent_path()) {
     missing.insert(missing.begin(), parent);
   }
   for (const fs::path& parent : missing) {
-    std::error_code error;
     if (fs::create_directory(parent, error)) created_parents_.push_back(parent);
-    if (error) throw OutputError(target_.string(), cannot_write(error));
+    if (error) return error;
   }
+  return {};
 }
 
+/// Another run that began at the same time may remove parents that it made and found empty.
 void PendingOutput::create_temporary() {
+  constexpr int kAttempts = 100;
   std::error_code error;
-  temporary_ = make_temporary_beside(target_, kind_, error);
+  for (int attempt = 0; attempt < kAttempts; ++attempt) {
+    error = create_parents();
+    if (!error) temporary_ = make_temporary_beside(target_, kind_, error);
+    if (error != std::errc::no_such_file_or_directory) break;
+  }
   if (error) throw OutputError(target_.string(), cannot_write(error));
+  remember(temporary_);
 }
 
 void PendingOutput::complete() {
@@ -240,7 +363,9 @@ void PendingOutput::complete() {
 void PendingOutput::take_place() {
   check_target();
   std::error_code error;
-  const bool replaces = fs::exists(fs::symlink_status(target_, error));
+  const fs::file_status replaced = fs::symlink_status(target_, error);
+  const bool replaces = fs::exists(replaced);
+  if (replaces) fs::permissions(temporary_, replaced.permissions(), error);
   error = replaces ? exchange(temporary_, target_) : put(temporary_, target_);
   if (error == std::errc::file_exists) throw OutputError(target_.string(), kExistsAlready);
   if (error) throw OutputError(target_.string(), cannot_write(error));
@@ -267,6 +392,7 @@ void PendingOutput::give_place_back() noexcept {
 
 void PendingOutput::keep_place() noexcept {
   if (stage_ == Stage::stands_for_another) remove_quietly(temporary_);
+  forget(temporary_);
   stage_ = Stage::kept;
 }
 
@@ -277,7 +403,10 @@ void PendingOutput::commit() {
 }
 
 void PendingOutput::discard() noexcept {
-  if (!temporary_.empty()) remove_quietly(temporary_);
+  if (!temporary_.empty()) {
+    remove_quietly(temporary_);
+    forget(temporary_);
+  }
   std::error_code ignored;
   // Removing fails, as it should, where somebody else has put something.
   for (auto parent = created_parents_.rbegin(); parent != created_parents_.rend(); ++parent) {
@@ -321,18 +450,25 @@ std::string PendingOutputs::reason_to_keep(const fs::path& owner) const {
 }
 
 void PendingOutputs::commit() {
+  for (const Entry& entry : entries_) entry.output->complete();
+  if (together_) {
+    check();
+    hand_over();
+    return;
+  }
+  drop_repeated();
+  const std::vector<PendingOutput*> outputs = in_order();
+  sync_content(outputs);
+  const FolderLocks locks(folders_of(outputs));
+  check();  // what another run has written meanwhile counts
+  swap(outputs);
+  sync_names(folders_of(outputs));
+}
+
+void PendingOutputs::check() const {
   check_same();
   check_inputs_stay();
-  for (const Entry& entry : entries_) {
-    entry.output->check_target();
-    entry.output->complete();
-  }
-  if (together_) {
-    hand_over();
-  } else {
-    drop_repeated();
-    swap();
-  }
+  for (const Entry& entry : entries_) entry.output->check_target();
 }
 
 void PendingOutputs::hand_over() {
@@ -359,22 +495,29 @@ void PendingOutputs::drop_repeated() {
   }
 }
 
-/// Everything takes its place, or nothing does.
-void PendingOutputs::swap() {
+/// What was added first comes last, but for what tells of it.
+std::vector<PendingOutput*> PendingOutputs::in_order() const {
   std::vector<PendingOutput*> order;
-  for (auto entry = entries_.rbegin(); entry != entries_.rend(); ++entry) {
-    if (!entry->tells_of_another) order.push_back(entry->output.get());
+  for (const bool tells : {false, true}) {
+    for (auto entry = entries_.rbegin(); entry != entries_.rend(); ++entry) {
+      if (entry->tells_of_another == tells) order.push_back(entry->output.get());
+    }
   }
-  for (auto entry = entries_.rbegin(); entry != entries_.rend(); ++entry) {
-    if (entry->tells_of_another) order.push_back(entry->output.get());
-  }
-  std::set<fs::path> folders;
-  for (const PendingOutput* output : order) {
-    folders.insert(fs::absolute(output->target()).parent_path());
-  }
-  const FolderLocks locks(folders);
+  return order;
+}
+
+/// Everything takes its place, or nothing does.
+void PendingOutputs::swap(const std::vector<PendingOutput*>& order) {
   try {
-    for (PendingOutput* output : order) output->take_place();
+    std::set<FileId> taken;
+    for (PendingOutput* output : order) {
+      const auto id = id_of(output->target());
+      if (id && taken.contains(*id)) {
+        throw OutputError(output->target().string(), "two outputs would be written there");
+      }
+      output->take_place();
+      if (const auto now = id_of(output->target())) taken.insert(*now);
+    }
   } catch (...) {
     for (auto output = order.rbegin(); output != order.rend(); ++output) {
       (*output)->give_place_back();
@@ -408,6 +551,15 @@ void PendingOutputs::check_inputs_stay() const {
     // A rest pose that was read is written again as it was.
     if (is_file && read_file(output.target()) == read_file(output.path())) continue;
     throw OutputError(output.target().string(), harm);
+  }
+}
+
+void remove_pending_outputs() noexcept {
+  const std::scoped_lock lock(temporary_names().mutex);
+  // Other threads may still write into a folder.
+  constexpr int kAttempts = 3;
+  for (int attempt = 0; attempt < kAttempts; ++attempt) {
+    for (const fs::path& name : temporary_names().names) remove_quietly(name);
   }
 }
 

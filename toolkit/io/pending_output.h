@@ -4,6 +4,7 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <system_error>
 #include <vector>
 
 #include "toolkit/io/temporary_name.h"
@@ -37,8 +38,8 @@ class PendingOutput {
 
   /// Makes it whole: a folder gets a manifest that lists its files. Throws OutputError.
   void complete();
-  /// Stands under its name from now on, what stood there under the temporary one. Throws as
-  /// check_target(), and then nothing has changed. \pre complete()
+  /// Stands under its name from now on, what stood there under the temporary one, whose permissions
+  /// it takes. Throws as check_target(), and then nothing has changed. \pre complete()
   void take_place();
   /// Undoes take_place(), where that was done.
   void give_place_back() noexcept;
@@ -50,7 +51,7 @@ class PendingOutput {
  private:
   enum class Stage { pending, stands_where_nothing_was, stands_for_another, kept };
 
-  void create_parents();
+  std::error_code create_parents();
   void create_temporary();
   void discard() noexcept;
 
@@ -91,8 +92,9 @@ class PendingOutputs {
   void add_stale(const std::filesystem::path& path, const std::filesystem::path& owner = {});
 
   /// What was added first comes last, but for what tells of it: whoever sees it sees all that
-  /// belongs to it. Other runs that commit in the same folders wait. Throws OutputError, and then
-  /// everything is as it was.
+  /// belongs to it. Contents are on the disk before names change, names when this returns. Other
+  /// runs that commit in the same folders wait. Throws OutputError, and then everything is as it
+  /// was.
   void commit();
 
  private:
@@ -105,9 +107,11 @@ class PendingOutputs {
   std::string reason_to_keep(const std::filesystem::path& owner) const;
   void hand_over();
   void drop_repeated();
+  void check() const;
   void check_same() const;
   void check_inputs_stay() const;
-  void swap();
+  std::vector<PendingOutput*> in_order() const;
+  void swap(const std::vector<PendingOutput*>& order);
 
   bool overwrite_;
   std::vector<std::filesystem::path> inputs_;
@@ -116,8 +120,13 @@ class PendingOutputs {
   std::vector<std::filesystem::path> stale_;
 };
 
-/// Throws OutputError where writing `output` would replace one of `inputs`, or become a part of it:
-/// it is that file or folder, holds it, is something that exists in it, or a new file in it.
+/// Removes what outputs of this process have written under temporary names. For a process that is
+/// about to end: outputs that are not done must not be used afterwards.
+void remove_pending_outputs() noexcept;
+
+/// Throws OutputError if writing `output` would replace one of `inputs`, or become a part of it: it
+/// is that file or folder, by whatever path, holds it, is something that exists in it, or a new
+/// file in it.
 void check_inputs_stay(const std::filesystem::path& output,
                        const std::vector<std::filesystem::path>& inputs);
 
