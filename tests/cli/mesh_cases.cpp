@@ -61,9 +61,9 @@ class MeshCases {
   void add_positions() {
     RawMesh mesh = square();
     mesh.vertices[2][1] = kNan;
-    add_mesh("not_a_number", mesh, 3, {"no finite position", "y is"});
+    add_mesh("not_a_number", mesh, 3, {"no usable position", "y is"});
     mesh.vertices[2][1] = kInfinity;
-    add_mesh("infinity", mesh, 3, {"no finite position", "y is inf"});
+    add_mesh("infinity", mesh, 3, {"no usable position", "y is inf"});
   }
 
   void add_faces() {

@@ -92,6 +92,9 @@ TEST_F(GltfFiles, BadNumbersAreNamed) {
   const int there = infinite.points(points);
   infinite.primitive(there, infinite.faces(eight()));
   EXPECT_THAT(error(infinite.glb()), HasSubstr("accessors[0]: holds a number that is not finite"));
+  GltfBuilder far = plain();
+  far.root["nodes"][0]["scale"] = {1e308, 1, 1};
+  EXPECT_THAT(error(far.glb()), HasSubstr("vertex 0 has no usable position"));
   GltfBuilder corner;
   Triangles faces = eight();
   faces(3, 1) = 6;

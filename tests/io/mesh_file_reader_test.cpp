@@ -1,5 +1,6 @@
 #include "toolkit/io/mesh_file.h"
 
+#include <cmath>
 #include <functional>
 #include <limits>
 #include <random>
@@ -12,7 +13,9 @@
 #include "toolkit/io/sequence_file.h"
 #include "toolkit/io/whole_file.h"
 #include "toolkit/mesh/choice.h"
+#include "toolkit/mesh/coordinate.h"
 #include "toolkit/mesh/errors.h"
+#include "toolkit/mesh/text.h"
 
 namespace mimetra {
 namespace {
@@ -341,13 +344,14 @@ TEST(LargeArrays, NameTheFirstVertexWithoutAFinitePosition) {
   const TemporaryFolder folder;
   for (const double bad :
        {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(),
-        -std::numeric_limits<double>::infinity()}) {
+        -std::numeric_limits<double>::infinity(), 1e200}) {
     Frames frames = large_frames();
     frames(9, 29999) = frames(3, 20002) = frames(3, 20004) = bad;
     write_npy_frames(folder / "a.npy", frames);
     for (const int threads : {1, 2, 3}) {
       EXPECT_EQ(message_of<IoError>([&] { read_npy_frames(folder / "a.npy", threads); }),
-                (folder / "a.npy").string() + ": frame 3: vertex 6667 has no finite position");
+                (folder / "a.npy").string() +
+                    ": frame 3: vertex 6667 has no usable position: " + readable(bad));
     }
   }
 }
@@ -355,7 +359,7 @@ TEST(LargeArrays, NameTheFirstVertexWithoutAFinitePosition) {
 TEST(LargeArrays, HoldTheLargestNumbers) {
   const TemporaryFolder folder;
   Frames frames = large_frames();
-  frames(0, 0) = std::numeric_limits<double>::max();
+  frames(0, 0) = std::nextafter(kCoordinateLimit, 0);
   frames(0, 1) = -std::numeric_limits<double>::denorm_min();
   write_npy_frames(folder / "a.npy", frames);
   EXPECT_EQ(read_npy_frames(folder / "a.npy"), frames);

@@ -61,7 +61,7 @@ TEST_P(EveryPolygonFormat, NonFinitePositionIsNamed) {
   mesh.positions(2, 1) = std::numeric_limits<double>::infinity();
   write_mesh(folder / ("a" + GetParam()), mesh);
   EXPECT_THAT(message_of<IoError>([&] { read_mesh(folder / ("a" + GetParam())); }),
-              testing::ContainsRegex("vertex [23] has no finite position: y is inf"));
+              testing::ContainsRegex("vertex [23] has no usable position: y is inf"));
 }
 
 TEST_P(EveryPolygonFormat, MeshWithoutFacesIsAnError) {
@@ -208,7 +208,7 @@ TEST(Obj, ErrorsNameTheLine) {
   EXPECT_THAT(error_of(".obj", vertices + "f 1/1 2/1 3/1\n"),
               HasSubstr("the face of line 4 uses texture coordinate 1"));
   EXPECT_THAT(error_of(".obj", "v 0 0 nan\n" + vertices + "f 1 2 3\n"),
-              HasSubstr("vertex 1 has no finite position: z is nan"));
+              HasSubstr("vertex 1 has no usable position: z is nan"));
 }
 
 const std::string kPlyHeader =

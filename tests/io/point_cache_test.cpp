@@ -117,6 +117,15 @@ TEST_F(PointCaches, Pc2KeepsEvenTimes) {
   EXPECT_TRUE(read("b.pc2").times().isApprox(Eigen::Vector3d(0.5, 0.75, 1), 1e-15));
 }
 
+TEST_F(PointCaches, Pc2CountsFramesOfTheSequencesOwnRate) {
+  const MeshSequence sequence = moving_octahedron(3);
+  write_sequence(MeshSequence(sequence.shared_connectivity(), sequence.positions(),
+                              Eigen::Vector3d(1, 1.25, 1.5)),
+                 folder_ / "b.pc2");
+  EXPECT_EQ(read_file(folder_ / "b.pc2"), pc2_bytes(3, 4, 1));
+  EXPECT_THAT(folder_.names(), testing::Contains("b.times.csv"));
+}
+
 TEST_F(PointCaches, MddRefusesTimesThatItWouldMakeOne) {
   const MeshSequence sequence = moving_octahedron(3);
   const double day = 86400;
@@ -198,7 +207,7 @@ TEST_F(PointCaches, APositionThatIsNotFiniteIsNamed) {
   std::string bytes = pc2_bytes(3);
   const std::string infinite = bytes_in(kLittle, std::numeric_limits<float>::infinity());
   bytes.replace(32 + 4 * (2 * 18 + 3 * 5 + 1), 4, infinite);
-  EXPECT_THAT(error("a.pc2", bytes), HasSubstr("a.pc2: frame 2: vertex 5 has no finite position"));
+  EXPECT_THAT(error("a.pc2", bytes), HasSubstr("a.pc2: frame 2: vertex 5 has no usable position"));
 }
 
 TEST_F(PointCaches, RefuseWhatSinglePrecisionWouldSpoil) {

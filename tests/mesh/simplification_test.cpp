@@ -1,6 +1,7 @@
 #include "toolkit/mesh/simplification.h"
 
 #include <cmath>
+#include <numbers>
 #include <numeric>
 #include <set>
 
@@ -249,6 +250,21 @@ TEST(Simplification, TakesWhatIsNoManifold) {
   EXPECT_LT(vertices.size(), 0.7 * double(flat));
   EXPECT_NEAR(area(shape.positions(mesh.vertices, Eigen::all), mesh.connectivity->triangles),
               64 + 8, 1e-9);
+}
+
+TEST(Simplification, KeepsTheMiddleOfAFan) {
+  // A disc of 600 triangles around one vertex, whose edges are all candidates at every collapse.
+  constexpr int kRim = 600;
+  Shape disc{Positions(kRim + 1, 3), Triangles(kRim, 3)};
+  disc.positions.row(kRim) << 0, 0, 0;
+  for (int v = 0; v < kRim; ++v) {
+    const double angle = 2 * std::numbers::pi * v / kRim;
+    disc.positions.row(v) << std::cos(angle), std::sin(angle), 0;
+    disc.triangles.row(v) << kRim, v, (v + 1) % kRim;
+  }
+  const Simplification mesh = simplify(still(disc), {.share = 0.5});
+  EXPECT_EQ(mesh.vertices.back(), kRim);
+  EXPECT_LT(mesh.vertices.size(), 0.6 * kRim);
 }
 
 TEST(Simplification, KeepsGroupsBeforeTheirFaces) {

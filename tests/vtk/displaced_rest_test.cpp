@@ -130,7 +130,7 @@ TEST_F(DisplacedRestOf, AVertexThatIsNotFiniteIsRefused) {
   Positions broken = way(1);
   broken(2, 1) = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THAT(message_of<IoError>([&] { found_alone(broken); }),
-              Eq("mesh: rest pose: vertex 2 is not finite"));
+              Eq("mesh: rest pose: vertex 2 has no usable position"));
 }
 
 TEST(DisplacedRest, LooksAtTheFirstAndTheLastFrameAndSomeBetween) {

@@ -194,7 +194,7 @@ TEST_F(PolyData, RefusesARestPoseThatIsNotFinite) {
   rest(2, 1) = std::numeric_limits<double>::quiet_NaN();
   set_rest(*data_, rest);
   EXPECT_EQ(message_of<IoError>([&] { rest_of(*data_, fields_.sequence().frame(1), "mesh"); }),
-            "mesh: rest pose: vertex 2 is not finite");
+            "mesh: rest pose: vertex 2 has no usable position");
 }
 
 TEST_F(PolyData, RefusesTriangleStrips) {

@@ -86,6 +86,23 @@ TEST_F(VtpHostile, BlocksThatAreLargerThanTheFileAreRefused) {
               HasSubstr("offset"));
 }
 
+TEST_F(VtpHostile, BlocksThatUnpackToFarMoreThanTheFileAreRefused) {
+  std::string text = triangle_;
+  text.replace(text.find("header_type"), 11, "compressor=\"vtkZLibDataCompressor\" header_type");
+  const std::string ascii = "Name=\"roi\" format=\"ascii\">0 1 1";
+  // One block of 300 MB in 40002 bytes.
+  text.replace(text.find(ascii), ascii.size(),
+               "Name=\"roi\" format=\"binary\">AQAAAACj4REAAAAAQpwAAA==" + std::string(53336, 'A'));
+  EXPECT_THAT(refusal_of("a.vtp", text), HasSubstr("would take more than 300 MB"));
+}
+
+TEST_F(VtpHostile, ThousandsOfAttributesAreRefused) {
+  std::string attributes;
+  for (int i = 0; i < 1000; ++i) attributes += "a" + std::to_string(i) + "=\"\" ";
+  EXPECT_THAT(refusal_with("Name=\"roi\"", attributes + "Name=\"roi\""),
+              HasSubstr("DataArray has 1003 attributes, expected at most 100"));
+}
+
 /// VTK would look for the last of them before the first.
 TEST_F(VtpHostile, NoBlocksOfWhichTheLastHoldsSomethingAreRefused) {
   const std::string compressed = "compressor=\"vtkLZ4DataCompressor\" header_type";

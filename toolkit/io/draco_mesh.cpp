@@ -8,6 +8,7 @@
 #include <draco/mesh/mesh.h>
 
 #include "toolkit/io/scene.h"
+#include "toolkit/mesh/coordinate.h"
 #include "toolkit/mesh/errors.h"
 
 namespace mimetra {
@@ -58,7 +59,9 @@ DracoMesh draco_parts(const std::string& path, const std::string& what, const dr
       parts.triangles(face.value(), corner) = static_cast<int>(point);
     }
   }
-  if (!parts.positions.allFinite()) throw IoError(path, what + ": a position is not finite");
+  if (const Eigen::Index v = first_unusable(parts.positions); v >= 0) {
+    throw IoError(path, what + ": vertex " + std::to_string(v) + " has no usable position");
+  }
   const auto held = [&](std::optional<std::size_t> id, const char* name, int components) {
     Frames values;
     if (!id) return values;

@@ -10,6 +10,7 @@
 #include "toolkit/io/mesh_codecs.h"
 #include "toolkit/io/mesh_layout.h"
 #include "toolkit/io/whole_file.h"
+#include "toolkit/mesh/coordinate.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/face_order.h"
 #include "toolkit/mesh/text.h"
@@ -37,11 +38,10 @@ Positions positions_of(const std::vector<double>& coordinates) {
 void check_finite(const std::string& path, const std::vector<double>& coordinates,
                   const std::string& element, int first_index) {
   for (std::size_t i = 0; i < coordinates.size(); ++i) {
-    if (std::isfinite(coordinates[i])) continue;
-    throw IoError(path, element + " " +
-                            std::to_string(i / 3 + static_cast<std::size_t>(first_index)) +
-                            " has no finite position: " + "xyz"[i % 3] + " is " +
-                            std::to_string(coordinates[i]));
+    if (is_coordinate(coordinates[i])) continue;
+    throw IoError(
+        path, element + " " + std::to_string(i / 3 + static_cast<std::size_t>(first_index)) +
+                  " has no usable position: " + "xyz"[i % 3] + " is " + readable(coordinates[i]));
   }
 }
 

@@ -13,6 +13,7 @@
 #include "toolkit/io/single_precision.h"
 #include "toolkit/io/temporary_name.h"
 #include "toolkit/io/zip_archive.h"
+#include "toolkit/mesh/coordinate.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/text.h"
 
@@ -122,8 +123,9 @@ Positions rest_in(const std::string& name, const NumericArray& array, int vertic
     fail_shape(name, array, std::to_string(vertices) + " x 3 as the positions have vertices");
   }
   for (std::size_t i = 0; i < array.values.size(); ++i) {
-    if (std::isfinite(array.values[i])) continue;
-    throw IoError(name, "vertex " + std::to_string(i / 3) + " has no finite position");
+    if (is_coordinate(array.values[i])) continue;
+    throw IoError(name, "vertex " + std::to_string(i / 3) +
+                            " has no usable position: " + readable(array.values[i]));
   }
   return Eigen::Map<const Positions>(array.values.data(), vertices, 3);
 }

@@ -49,19 +49,21 @@ OpenSequence open_pc2(const fs::path& path, const SequenceSource& source) {
   return open_point_cache(std::make_unique<const Pc2File>(path), source);
 }
 
-/// Frames of the animation from one to the next, on average; 1 where there is only one.
-double frames_between(const Eigen::VectorXd& times) {
+/// Frames per second, on average.
+double rate_of(const Eigen::VectorXd& times) {
   const auto last = times.size() - 1;
-  if (last < 1) return 1;
-  return kDefaultFramesPerSecond * (times[last] - times[0]) / static_cast<double>(last);
+  if (last < 1) return kDefaultFramesPerSecond;
+  return static_cast<double>(last) / (times[last] - times[0]);
 }
 
 PointCacheTarget begin_pc2_file(const SequenceHeader& header, const fs::path& path) {
   std::string head(kPc2Magic);
   append_little_endian(head, kPc2Version);
   append_little_endian(head, static_cast<std::int32_t>(header.connectivity->vertices));
-  append_little_endian(head, static_cast<float>(kDefaultFramesPerSecond * header.times[0]));
-  append_little_endian(head, static_cast<float>(frames_between(header.times)));
+  // Start and step count frames of a scene that plays at the sequence's own rate, as Blender's
+  // exporter counts them.
+  append_little_endian(head, static_cast<float>(rate_of(header.times) * header.times[0]));
+  append_little_endian(head, 1.0F);
   append_little_endian(head, static_cast<std::int32_t>(header.times.size()));
   PointCacheTarget target{
       std::make_unique<OutputFile>(path), {head.size(), sizeof(float), std::endian::little}, true};

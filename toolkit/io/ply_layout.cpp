@@ -6,6 +6,7 @@
 #include "toolkit/io/bytes.h"
 #include "toolkit/io/mesh_layout.h"
 #include "toolkit/io/ply_header.h"
+#include "toolkit/mesh/coordinate.h"
 
 namespace mimetra {
 namespace {
@@ -45,15 +46,15 @@ std::optional<VertexBlock> block_of(const PlyHeader& header) {
 
 template <typename Number>
 bool decode(const VertexBlock& block, const char* vertex, std::span<double> coordinates) {
-  double all = 0;  // not a number where some coordinate is not finite
+  bool all = true;
   for (std::size_t i = 0; i < coordinates.size(); i += 3, vertex += block.stride) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const double value = number_at<Number>(vertex + block.at[axis], block.order);
       coordinates[i + axis] = value;
-      all += 0 * value;
+      all = all && is_coordinate(value);
     }
   }
-  return std::isfinite(all);
+  return all;
 }
 
 /// What stands before and after the vertices.

@@ -11,6 +11,7 @@
 #include "toolkit/io/mesh_file.h"
 #include "toolkit/io/sequence_parts.h"
 #include "toolkit/io/single_precision.h"
+#include "toolkit/mesh/coordinate.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/frame_shapes.h"
 #include "toolkit/mesh/text.h"
@@ -19,23 +20,26 @@ namespace mimetra {
 namespace fs = std::filesystem;
 namespace {
 
-/// True where no exponent is that of infinity and of what is not a number.
-bool all_finite(std::span<const double> values) {
-  constexpr std::uint64_t kSign = std::uint64_t{1} << 63, kOne = std::uint64_t{1} << 52;
-  std::uint64_t carried = 0;  // adding one to the largest exponent carries into the sign
-  for (const double value : values)
-    carried |= (std::bit_cast<std::uint64_t>(value) & ~kSign) + kOne;
+/// True if all values are coordinates, told by their exponents.
+bool all_usable(std::span<const double> values) {
+  constexpr std::uint64_t kSign = std::uint64_t{1} << 63;
+  // From the limit's exponent on, adding this carries into the sign.
+  constexpr std::uint64_t kRest = kSign - std::bit_cast<std::uint64_t>(kCoordinateLimit);
+  std::uint64_t carried = 0;
+  for (const double value : values) {
+    carried |= (std::bit_cast<std::uint64_t>(value) & ~kSign) + kRest;
+  }
   return (carried & kSign) == 0;
 }
 
 void check_finite(const fs::path& path, int first, VertexIndex vertex, const FramesView& poses) {
   const std::span<const double> values(poses.data(), static_cast<std::size_t>(poses.size()));
-  if (all_finite(values)) return;
-  const auto bad = std::ranges::find_if(values, [](double value) { return !std::isfinite(value); });
+  if (all_usable(values)) return;
+  const auto bad = std::ranges::find_if_not(values, is_coordinate);
   const Eigen::Index at = bad - values.begin();
   throw IoError(path.string(), "frame " + std::to_string(first + at / poses.cols()) + ": vertex " +
                                    std::to_string(vertex + at % poses.cols() / 3) +
-                                   " has no finite position");
+                                   " has no usable position: " + readable(*bad));
 }
 
 template <typename Stored>

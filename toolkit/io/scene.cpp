@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "toolkit/io/sequence_parts.h"
+#include "toolkit/mesh/coordinate.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/text.h"
 
@@ -32,12 +33,16 @@ class ExpressionList {
            const Eigen::VectorXd& weights) {
     constexpr double kRounding = 1e-6;
     Namesakes& namesakes = by_name_[name];
+    std::set<std::size_t>& moving = namesakes.moving[part];
+    // Two of one name in one mesh are two.
+    const bool all_move = moving.size() == namesakes.wholes;
     for (const std::size_t index : namesakes.expressions) {
+      if (all_move) break;
       JoinedExpression& expression = expressions[index];
-      // Two of one name in one mesh are two.
-      const bool is_same = (expression.weights - weights).isZero(kRounding);
-      if (!is_same || moves_part(namesakes, index, part)) continue;
+      if (moving.contains(whole_of(index))) continue;
+      if (!(expression.weights - weights).isZero(kRounding)) continue;
       expression.from.emplace_back(part, target);
+      moving.insert(whole_of(index));
       return;
     }
     std::string free = name;
@@ -45,7 +50,10 @@ class ExpressionList {
       return (free != name && of_targets_.contains(free)) || !names_.insert(free).second;
     };
     for (; is_taken(); ++namesakes.next) free = name + '_' + std::to_string(namesakes.next);
-    JoinedExpression expression{free, weights, {{part, target}}, joined_by(namesakes, part)};
+    JoinedExpression expression{free, weights, {{part, target}}, {}};
+    if (!all_move) expression.joins = joined_by(namesakes, moving);
+    if (!expression.joins) ++namesakes.wholes;
+    moving.insert(expression.joins.value_or(expressions.size()));
     if (free != name) {
       (expression.joins ? renamed_in_take : renamed)
           .push_back("'" + name + "' of '" + part_name + "' is '" + free + "'");
@@ -60,23 +68,21 @@ class ExpressionList {
  private:
   struct Namesakes {
     std::vector<std::size_t> expressions;
+    std::size_t wholes = 0;  ///< expressions of the model: those that join no other
+    /// Of each part, the wholes that move it already, by themselves or by one that joins them.
+    std::map<std::size_t, std::set<std::size_t>> moving = {};
     int next = 2;  ///< the number of the next one that is not the same
   };
 
-  /// Whether an expression of the model moves `part` already, by itself or one that joins it.
-  bool moves_part(const Namesakes& namesakes, std::size_t expression, std::size_t part) const {
-    const std::size_t whole = expressions[expression].joins.value_or(expression);
-    return std::ranges::any_of(namesakes.expressions, [&](std::size_t index) {
-      return expressions[index].joins.value_or(index) == whole &&
-             std::ranges::any_of(expressions[index].from,
-                                 [part](const auto& from) { return from.first == part; });
-    });
+  std::size_t whole_of(std::size_t expression) const {
+    return expressions[expression].joins.value_or(expression);
   }
 
-  /// The first of a name that does not move `part` yet.
-  std::optional<std::size_t> joined_by(const Namesakes& namesakes, std::size_t part) const {
+  /// The first of a name that is not among those that move a part.
+  std::optional<std::size_t> joined_by(const Namesakes& namesakes,
+                                       const std::set<std::size_t>& moving) const {
     for (const std::size_t index : namesakes.expressions) {
-      if (!expressions[index].joins && !moves_part(namesakes, index, part)) return index;
+      if (!expressions[index].joins && !moving.contains(index)) return index;
     }
     return std::nullopt;
   }
@@ -241,6 +247,20 @@ std::vector<std::string> notes_of(const std::string& path, const std::vector<Sce
   return notes;
 }
 
+/// Nodes may carry what is finite in the file to where it is not.
+void check_positions(const std::string& path, const ScenePart& part) {
+  const auto check = [&](const Positions& positions, const std::string& of) {
+    const Eigen::Index v = first_unusable(positions);
+    if (v < 0) return;
+    throw IoError(path, "mesh '" + part.name + "'" + of + ": vertex " + std::to_string(v) +
+                            " has no usable position");
+  };
+  check(part.positions, "");
+  for (const SceneTarget& target : part.targets) {
+    check(target.displacements, ", target '" + target.name + "'");
+  }
+}
+
 /// Displacements of the joined parts, a column for each expression.
 ShapeBasis joined_basis(std::vector<ScenePart> parts,
                         const std::vector<JoinedExpression>& expressions, Eigen::Index vertices) {
@@ -307,6 +327,7 @@ Scene joined_scene(const std::string& path, std::vector<ScenePart> parts, std::s
   double targets = 0;
   bool still = true;
   for (const ScenePart& part : parts) {
+    check_positions(path, part);
     vertices += part.positions.rows();
     targets += static_cast<double>(part.targets.size());
   }

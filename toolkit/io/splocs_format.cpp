@@ -8,6 +8,7 @@
 #include "toolkit/io/sequence_format.h"
 #include "toolkit/io/sequence_parts.h"
 #include "toolkit/io/single_precision.h"
+#include "toolkit/mesh/coordinate.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/text.h"
 
@@ -171,7 +172,9 @@ Positions rest_in(const Hdf5Dataset& set, int vertices) {
   check_shape(set, {static_cast<std::uint64_t>(vertices), 3}, std::to_string(vertices) + " x 3");
   Positions rest(vertices, 3);
   set.read(0, {rest.data(), set.size()});
-  if (!rest.allFinite()) set.fail("holds a position that is not finite");
+  if (const Eigen::Index v = first_unusable(rest); v >= 0) {
+    set.fail("vertex " + std::to_string(v) + " has no usable position");
+  }
   return rest;
 }
 

@@ -6,6 +6,7 @@
 
 #include "toolkit/io/mesh_layout.h"
 #include "toolkit/io/text_cursor.h"
+#include "toolkit/mesh/coordinate.h"
 
 namespace mimetra {
 namespace {
@@ -44,7 +45,7 @@ const char* read_position(const char* at, const char* end, double* position) {
   for (int axis = 0; axis < 3; ++axis) {
     at = skipped_blanks(at, end);
     const auto [last, error] = std::from_chars(at, end, position[axis]);
-    if (error != std::errc() || !std::isfinite(position[axis])) return nullptr;
+    if (error != std::errc() || !is_coordinate(position[axis])) return nullptr;
     if (last != end && !ends_word(*last)) return nullptr;
     at = last;
   }

@@ -30,6 +30,10 @@ constexpr double kBorder = 10;
 /// Of edges to the fourth, so that the shortest goes first where all is flat.
 constexpr double kShort = 1e-6;
 
+/// A vertex with more edges stays: OpenMesh tests each of them anew at every collapse beside it, so
+/// that time would grow with the cube of their number.
+constexpr unsigned kMostEdges = 200;
+
 double quality(const Vector& a, const Vector& b, const Vector& c) {
   const double squares = (b - a).squaredNorm() + (c - b).squaredNorm() + (a - c).squaredNorm();
   return squares > 0 ? 2 * std::sqrt(3.0) * (b - a).cross(c - a).norm() / squares : 0;
@@ -128,6 +132,8 @@ class PoseModule : public OpenMesh::Decimater::ModBaseT<MeshT> {
       quadrics_[to * planes_ + p].add(quadrics_[from * planes_ + p]);
     }
     ranked_ = OpenMesh::VertexHandle();
+    MeshT& mesh = Base::mesh();
+    if (mesh.valence(collapse.v1) > kMostEdges) mesh.status(collapse.v1).set_locked(true);
   }
 
  private:
@@ -191,7 +197,7 @@ class CollapseProgress : public OpenMesh::Decimater::Observer {
   void notify(std::size_t done) override { report_progress(progress_, double(done) / collapses_); }
 
  private:
-  static constexpr std::size_t kSteps = 1000;
+  static constexpr std::size_t kSteps = 100;
   Progress progress_;
   double collapses_;
 };
@@ -217,7 +223,7 @@ CollapsedSurface collapsed(const geodesic::GluedSurface& surface, const Decimati
   mesh.request_halfedge_status();
   OpenMesh::Decimater::DecimaterT<Mesh> decimater(mesh);
   for (const auto v : mesh.vertices()) {
-    mesh.status(v).set_locked(locked[std::size_t(v.idx())]);
+    mesh.status(v).set_locked(locked[std::size_t(v.idx())] || mesh.valence(v) > kMostEdges);
   }
   PoseModule<Mesh>::Handle module;
   decimater.add(module);

@@ -20,6 +20,7 @@
 #include <vtkTypeInt32Array.h>
 #include <vtkTypeInt64Array.h>
 
+#include "toolkit/mesh/coordinate.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/whole_numbers.h"
 
@@ -166,10 +167,8 @@ void keep_places(vtkPolyData& data) {
 }
 
 void check_finite(const Positions& positions, const std::string& name, const std::string& what) {
-  for (Eigen::Index v = 0; v < positions.rows(); ++v) {
-    if (!positions.row(v).allFinite()) {
-      throw IoError(name, what + std::to_string(v) + " is not finite");
-    }
+  if (const Eigen::Index v = first_unusable(positions); v >= 0) {
+    throw IoError(name, what + std::to_string(v) + " has no usable position");
   }
 }
 

@@ -19,6 +19,10 @@ namespace {
 /// No compressor of VTK's makes anything smaller than this share.
 constexpr std::uint64_t kMostCompressed = 8192;
 constexpr std::uint64_t kMostComponents = 4096;
+/// Values of a whole file may take this much, or so many times the file.
+constexpr double kUnpackedBytes = 256e6, kUnpackedShare = 64;
+/// VTK's time grows with the square of an element's attributes; it writes up to 10.
+constexpr std::size_t kMostAttributes = 100;
 
 constexpr std::array<std::string_view, 4> kCells = {"Verts", "Lines", "Strips", "Polys"};
 constexpr std::array<std::string_view, 12> kTypes = {"Int8",    "UInt8",   "Int16",  "UInt16",
@@ -48,6 +52,10 @@ class VtpHeader {
     const XmlElement* piece = nullptr;
     Cells cells;
     for (const XmlElement& element : elements_) {
+      if (element.attributes.size() > kMostAttributes) {
+        fail(element.name + " has " + std::to_string(element.attributes.size()) +
+             " attributes, expected at most " + std::to_string(kMostAttributes));
+      }
       if (element.name == "Piece") {
         check_piece(element);
         piece = &element;
@@ -141,7 +149,7 @@ class VtpHeader {
   }
 
   /// Its values; nothing where there are none.
-  std::optional<StoredValues> checked_array(const XmlElement& array) const {
+  std::optional<StoredValues> checked_array(const XmlElement& array) {
     using Form = StoredValues::Form;
     const std::string type = array.attribute("type"), format = array.attribute("format");
     if (!is_one_of(kTypes, type)) fail(shown(array) + "no such type as '" + type + "'");
@@ -180,7 +188,7 @@ class VtpHeader {
   }
 
   /// The numbers before binary values: their bytes, or how many blocks of which sizes there are.
-  void check_blocks(const XmlElement& array, const StoredValues& values, std::size_t size) const {
+  void check_blocks(const XmlElement& array, const StoredValues& values, std::size_t size) {
     const auto lies = [&] { fail(shown(array) + "the sizes of its blocks cannot be true"); };
     const auto words = [&](std::size_t count) {
       const std::string bytes = values.words(count);
@@ -206,6 +214,11 @@ class VtpHeader {
           i + 1 == blocks.count && blocks.last > 0 ? blocks.last : blocks.size;
       if (packed > left || unpacked / kMostCompressed > packed) lies();
       left -= packed;
+      unpacked_ += static_cast<double>(unpacked);
+    }
+    if (unpacked_ > std::max(kUnpackedBytes, kUnpackedShare * static_cast<double>(text_.size()))) {
+      fail("its arrays would take more than " + readable(unpacked_ / 1e6, 3) +
+           " MB, which a file of " + std::to_string(text_.size()) + " bytes cannot mean");
     }
     check_bytes(array, values);
   }
@@ -223,6 +236,7 @@ class VtpHeader {
   bool appended_raw_ = false;
   std::size_t appended_ = std::numeric_limits<std::size_t>::max();
   std::uint64_t most_bytes_ = 0;
+  double unpacked_ = 0;  ///< bytes of the values of compressed arrays so far
 };
 
 }  // namespace
