@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cstring>
 
 #include <gmock/gmock.h>
 
@@ -13,6 +14,7 @@
 #include "toolkit/io/sequence_format.h"
 #include "toolkit/io/whole_file.h"
 #include "toolkit/mesh/errors.h"
+#include "toolkit/mesh/normals.h"
 
 namespace mimetra {
 namespace {
@@ -197,6 +199,64 @@ TEST_P(GltfOutputs, NamesAreTextWhateverTheirBytes) {
                                                              sphere->neutral(), basis);
   write_sequence(Animation(model, Eigen::MatrixXd::Zero(1, 2)), file());
   EXPECT_EQ(read_blendshapes(file().string()).expressions().names[1], basis.names[1]);
+}
+
+TEST(GltfText, HasNormalsOfTheNeutralAndOfEachExpression) {
+  const TemporaryFolder folder;
+  const TriMesh mesh = test::mesh_of(test::sphere(2));
+  // One expression turns all normals a little, another a few by more than 60 degrees.
+  ShapeBasis basis{{"wide", "spike"}, Eigen::MatrixXd::Zero(mesh.positions.size(), 2)};
+  Positions wide = Positions::Zero(mesh.positions.rows(), 3);
+  wide.col(0) = 0.3 * mesh.positions.col(0);
+  basis.displacements.col(0) = Eigen::Map<const Eigen::VectorXd>(wide.data(), wide.size());
+  basis.displacements(3 * 7, 1) = 3;
+  const BlendshapeModel model(std::make_shared<const Connectivity>(mesh.connectivity),
+                              mesh.positions, basis);
+  write_gltf_model(MorphableModel(model), {}, folder / "actor.gltf", {}, {});
+  const auto json = nlohmann::json::parse(read_file(folder / "actor.gltf"));
+  const std::string data = read_file(folder / "actor.bin");
+  EXPECT_EQ(json["nodes"][0]["name"], "actor");
+  EXPECT_EQ(json["meshes"][0]["name"], "actor");
+  const auto& primitive = json["meshes"][0]["primitives"][0];
+  const auto view = [&](const auto& of) {
+    return data.data() + json["bufferViews"][of["bufferView"].template get<int>()]["byteOffset"]
+                             .template get<std::size_t>();
+  };
+  const auto floats = [&](const auto& accessor) -> Positions {
+    using Stored = Eigen::Matrix<float, Eigen::Dynamic, 3, Eigen::RowMajor>;
+    return Eigen::Map<const Stored>(reinterpret_cast<const float*>(view(accessor)),
+                                    accessor["count"].template get<int>(), 3)
+        .template cast<double>();
+  };
+  const auto unit = [&](const Positions& pose) -> Positions {
+    return vertex_normals(pose, mesh.connectivity.triangles).rowwise().normalized();
+  };
+  const Positions normals = floats(json["accessors"][primitive["attributes"]["NORMAL"].get<int>()]);
+  EXPECT_LT((normals - unit(mesh.positions)).cwiseAbs().maxCoeff(), 1e-6);
+  for (int j = 0; j < 2; ++j) {
+    const auto& accessor =
+        json["accessors"][primitive["targets"][std::size_t(j)]["NORMAL"].get<int>()];
+    Positions changed = normals;
+    if (accessor["componentType"] == 5120) {
+      const auto& sparse = accessor["sparse"];
+      const char* indices = view(sparse["indices"]);
+      const char* values = view(sparse["values"]);
+      for (int i = 0; i < sparse["count"].get<int>(); ++i) {
+        std::uint32_t v = 0;
+        std::memcpy(&v, indices + 4 * i, 4);
+        for (int c = 0; c < 3; ++c) {
+          changed(v, c) += static_cast<signed char>(values[3 * i + c]) / 127.0;
+        }
+      }
+    } else {
+      changed += floats(accessor);
+    }
+    EXPECT_EQ(accessor["componentType"], j == 0 ? 5120 : 5126);
+    const Positions expected = unit(model.pose(Eigen::VectorXd::Unit(2, j)));
+    // Half a step of a byte, and single precision.
+    EXPECT_LT((changed - expected).cwiseAbs().maxCoeff(), 0.5 / 127 + 1e-6) << j;
+  }
+  EXPECT_EQ(json["extensionsRequired"], nlohmann::json({"KHR_mesh_quantization"}));
 }
 
 TEST(GltfText, TextureCoordinatesStayWhereSomeFacesHaveNone) {

@@ -15,6 +15,7 @@
 #include "toolkit/io/sequence_parts.h"
 #include "toolkit/io/single_precision.h"
 #include "toolkit/mesh/errors.h"
+#include "toolkit/mesh/normals.h"
 #include "toolkit/mesh/text.h"
 #include "toolkit/mesh/texture.h"
 
@@ -22,7 +23,7 @@ namespace mimetra {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr int kFloatType = 5126, kIndexType = 5125;
+constexpr int kFloatType = 5126, kIndexType = 5125, kByteType = 5120;
 constexpr int kVertexData = 34962, kFaceData = 34963;
 
 /// Smallest and largest x, y and z.
@@ -60,10 +61,10 @@ class GltfLayout {
         {{"bufferView", view}, {"componentType", type}, {"count", count}, {"type", shape}});
     return accessors_.size() - 1;
   }
-  /// The same of numbers in single precision of which only some are not 0.
-  std::size_t add_sparse(const char* shape, std::size_t count, std::size_t stored,
+  /// The same of numbers of which only some are not 0.
+  std::size_t add_sparse(int type, const char* shape, std::size_t count, std::size_t stored,
                          std::size_t indices, std::size_t values) {
-    accessors_.push_back({{"componentType", kFloatType},
+    accessors_.push_back({{"componentType", type},
                           {"count", count},
                           {"type", shape},
                           {"sparse",
@@ -72,6 +73,7 @@ class GltfLayout {
                             {"values", {{"bufferView", values}}}}}});
     return accessors_.size() - 1;
   }
+  void set_normalized(std::size_t accessor) { accessors_[accessor]["normalized"] = true; }
   void set_bounds(std::size_t accessor, const GltfBounds& bounds) {
     accessors_[accessor]["min"] = bounds[0];
     accessors_[accessor]["max"] = bounds[1];
@@ -116,6 +118,46 @@ std::vector<int> fan_corners(const Polygons& polygons) {
   return corners;
 }
 
+/// Unit normals of vertices (N x 3); vertices at one place share theirs, and those of no triangle
+/// have the z axis.
+Positions unit_normals(const Positions& positions, const Triangles& triangles, const Weld& weld) {
+  Positions normals = vertex_normals(positions, triangles, weld);
+  for (auto normal : normals.rowwise()) {
+    const double length = normal.norm();
+    if (length > 0) {
+      normal /= length;
+    } else {
+      normal = Eigen::RowVector3d::UnitZ();
+    }
+  }
+  return normals;
+}
+
+/// Numbers in [-1, 1] as bytes of which 127 is 1. [KHR_mesh_quantization]
+struct NormalBytes {
+  std::size_t stored = 0;
+  std::string indices, values;  ///< of the vertices whose normal changes; one at least
+};
+
+std::string padded(std::string bytes) {
+  bytes.resize((bytes.size() + 3) / 4 * 4, '\0');
+  return bytes;
+}
+
+NormalBytes normal_bytes(const Positions& changes) {
+  constexpr double kOne = 127;
+  NormalBytes result;
+  for (Eigen::Index v = 0; v < changes.rows(); ++v) {
+    const Eigen::RowVector3d rounded = (kOne * changes.row(v)).array().round();
+    if (rounded.isZero(0) && !(v + 1 == changes.rows() && result.stored == 0)) continue;
+    append_little_endian(result.indices, static_cast<std::uint32_t>(v));
+    for (const double value : rounded) result.values += static_cast<char>(value);
+    ++result.stored;
+  }
+  result.values = padded(std::move(result.values));
+  return result;
+}
+
 bool has_polygons(const Connectivity& faces) {
   return static_cast<int>(faces.triangles.rows()) != faces.polygons.size();
 }
@@ -154,6 +196,7 @@ class GltfFile {
         is_binary_(lower_extension(target) == ".glb"),
         names_(plan.targets),
         has_polygons_(has_polygons(*plan.header.connectivity)),
+        name_(target.stem().string()),
         rest_is_known_(plan.header.rest_is_known),
         neutral_(plan.header.rest.cast<float>()),
         outputs_(options.overwrite, options.inputs, options.together) {
@@ -244,6 +287,12 @@ class GltfFile {
     GltfBounds bounds = kUnknownBounds;
     for (Eigen::Index v = 0; v < neutral_.rows(); ++v) include(bounds, v, neutral_.row(v).data());
     layout_.set_bounds(positions_, bounds);
+    // Of positions as they are stored, so that a file that is read and written again is the same.
+    const Positions stored = neutral_.cast<double>();
+    const Weld weld = Weld::exact(stored);
+    const Positions normals = unit_normals(stored, faces.triangles, weld);
+    normals_ = layout_.add(put(float_bytes(normals.data(), normals.size()), kVertexData),
+                           kFloatType, "VEC3", vertices);
     if (auto texture = texture_of_vertices(faces)) {
       // From the upper left corner.
       for (Eigen::Vector2d& coordinates : *texture) coordinates.y() = 1 - coordinates.y();
@@ -254,7 +303,12 @@ class GltfFile {
     }
     for (std::size_t j = 0; j < names_.size(); ++j) {
       if (plan.displacements) {
-        add_known_target(plan.displacements->col(static_cast<Eigen::Index>(j)).data(), put);
+        const double* displacements = plan.displacements->col(static_cast<Eigen::Index>(j)).data();
+        add_known_target(displacements, put);
+        const Positions moved = Eigen::Map<const Positions>(displacements, stored.rows(), 3)
+                                    .cast<float>()
+                                    .cast<double>();
+        add_target_normals(unit_normals(stored + moved, faces.triangles, weld) - normals, put);
       } else {
         views_of_targets_.push_back(layout_.add_view(12 * vertices, kVertexData));
         accessors_of_targets_.push_back(
@@ -274,7 +328,7 @@ class GltfFile {
     std::size_t accessor = 0;
     if (sparse) {
       const std::size_t indices = put(sparse->indices), values = put(sparse->values);
-      accessor = layout_.add_sparse("VEC3", vertices, sparse->stored, indices, values);
+      accessor = layout_.add_sparse(kFloatType, "VEC3", vertices, sparse->stored, indices, values);
     } else {
       accessor = layout_.add(put(float_bytes(displacements, neutral_.size()), kVertexData),
                              kFloatType, "VEC3", vertices);
@@ -290,6 +344,26 @@ class GltfFile {
     accessors_of_targets_.push_back(accessor);
   }
 
+  /// Changes of normals: as bytes, or in single precision if a normal turns by more than 60
+  /// degrees.
+  template <typename Put>
+  void add_target_normals(const Positions& changes, const Put& put) {
+    const auto vertices = static_cast<std::size_t>(changes.rows());
+    if (changes.cwiseAbs().maxCoeff() > 1) {
+      normals_of_targets_.push_back(
+          layout_.add(put(float_bytes(changes.data(), changes.size()), kVertexData), kFloatType,
+                      "VEC3", vertices));
+      return;
+    }
+    NormalBytes bytes = normal_bytes(changes);
+    const std::size_t indices = put(std::move(bytes.indices)),
+                      values = put(std::move(bytes.values));
+    normals_of_targets_.push_back(
+        layout_.add_sparse(kByteType, "VEC3", vertices, bytes.stored, indices, values));
+    layout_.set_normalized(normals_of_targets_.back());
+    is_quantized_ = true;
+  }
+
   template <typename Put>
   void add_weights(const Plan& plan, const Put& put) {
     const Eigen::VectorXd& times = plan.header.times;
@@ -301,7 +375,7 @@ class GltfFile {
     const auto count = static_cast<std::size_t>(plan.weights.size());
     if (const auto sparse = sparse_numbers(plan.weights.data(), plan.weights.size(), 1)) {
       const std::size_t indices = put(sparse->indices), values = put(sparse->values);
-      weights_ = layout_.add_sparse("SCALAR", count, sparse->stored, indices, values);
+      weights_ = layout_.add_sparse(kFloatType, "SCALAR", count, sparse->stored, indices, values);
     } else {
       weights_ = layout_.add(put(float_bytes(plan.weights.data(), plan.weights.size())), kFloatType,
                              "SCALAR", count);
@@ -309,20 +383,28 @@ class GltfFile {
   }
 
   std::string json() const {
-    Json primitive = {{"attributes", {{"POSITION", positions_}}}, {"indices", faces_}};
+    Json primitive = {{"attributes", {{"POSITION", positions_}, {"NORMAL", normals_}}},
+                      {"indices", faces_}};
     if (texture_) primitive["attributes"]["TEXCOORD_0"] = *texture_;
-    for (const std::size_t accessor : accessors_of_targets_) {
-      primitive["targets"].push_back({{"POSITION", accessor}});
+    for (std::size_t j = 0; j < accessors_of_targets_.size(); ++j) {
+      primitive["targets"].push_back({{"POSITION", accessors_of_targets_[j]}});
+      if (!normals_of_targets_.empty()) {
+        primitive["targets"].back()["NORMAL"] = normals_of_targets_[j];
+      }
     }
     if (has_polygons_) primitive["extensions"]["FB_ngon_encoding"] = Json::object();
-    Json mesh = {{"primitives", Json::array({primitive})}};
+    Json mesh = {{"name", name_}, {"primitives", Json::array({primitive})}};
     if (!names_.empty()) mesh["extras"] = {{"targetNames", names_}};
     Json root = {{"asset", {{"version", "2.0"}, {"generator", "mimetra"}}}};
     if (!rest_is_known_) root["asset"]["extras"] = {{"restIsFirstFrame", true}};
-    if (has_polygons_) root["extensionsUsed"] = {"FB_ngon_encoding"};
+    if (has_polygons_) root["extensionsUsed"].push_back("FB_ngon_encoding");
+    if (is_quantized_) {
+      root["extensionsUsed"].push_back("KHR_mesh_quantization");
+      root["extensionsRequired"] = {"KHR_mesh_quantization"};
+    }
     root["scene"] = 0;
     root["scenes"] = Json::array({{{"nodes", {0}}}});
-    root["nodes"] = Json::array({{{"name", "face"}, {"mesh", 0}}});
+    root["nodes"] = Json::array({{{"name", name_}, {"mesh", 0}}});
     root["meshes"] = Json::array({mesh});
     if (times_) {
       const Json sampler = {{"input", *times_}, {"interpolation", "LINEAR"}, {"output", weights_}};
@@ -371,12 +453,14 @@ class GltfFile {
   fs::path target_;
   bool is_binary_;
   std::vector<std::string> names_;
-  bool has_polygons_, rest_is_known_;
+  bool has_polygons_;
+  std::string name_;
+  bool rest_is_known_, is_quantized_ = false;
   Eigen::Matrix<float, Eigen::Dynamic, 3, Eigen::RowMajor> neutral_;
   GltfLayout layout_;
-  std::size_t faces_ = 0, positions_ = 0, weights_ = 0, json_room_ = 0;
+  std::size_t faces_ = 0, positions_ = 0, normals_ = 0, weights_ = 0, json_room_ = 0;
   std::optional<std::size_t> texture_, times_;
-  std::vector<std::size_t> views_of_targets_, accessors_of_targets_;
+  std::vector<std::size_t> views_of_targets_, accessors_of_targets_, normals_of_targets_;
   std::vector<GltfBounds> bounds_;
   PendingOutputs outputs_;
   fs::path json_path_;
