@@ -111,6 +111,13 @@ std::vector<BadInput> geometry_cases() {
   add_case(all, "rest_of_other_count", "decompose", file("one.obj", bytes_of(square(), "obj")),
            "decompose head --weights take.csv --rest one.obj -o c.h5", 4,
            {"one.obj", "4 vertices, expected 225"});
+  add_case(all, "rest_of_other_faces", "transfer", target([](RawMesh& mesh) {
+             for (auto& face : mesh.faces) {
+               for (auto& corner : face) corner = corner == 3 ? 40 : corner == 40 ? 3 : corner;
+             }
+           }),
+           "transfer head --weights take.csv head --source-rest other.obj -o x", 4,
+           {"other.obj", "other vertices than in the sequence", "check --match"});
   return all;
 }
 

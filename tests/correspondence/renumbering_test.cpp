@@ -256,6 +256,21 @@ TEST(Renumbering, PairsVerticesWithoutAFaceInOrder) {
       ElementsAre(1, 0, 2, 4, 3));
 }
 
+TEST(Renumbering, PairsPartsOfOneShapeByPlace) {
+  // Two eyes above a face: in the order of their faces each would be paired with the other one.
+  test::Shape left = test::octahedron(), right = left;
+  left.positions.rowwise() += Eigen::RowVector3d(-1, 2, 3);
+  right.positions.rowwise() += Eigen::RowVector3d(5, 2, 3);
+  const TriMesh mesh = test::mesh_of(test::both(test::both(left, right), notched_grid()));
+  const TriMesh other = test::mesh_of(test::both(test::both(right, left), notched_grid()));
+  const std::vector<VertexIndex> vertices = renumbering(mesh, other).vertices;
+  ASSERT_EQ(vertices.size(), 42U);
+  for (int v = 0; v < 6; ++v) {
+    EXPECT_EQ(vertices[std::size_t(v)], v + 6);
+    EXPECT_EQ(vertices[std::size_t(v) + 6], v);
+  }
+}
+
 TEST(Renumbering, PairsVerticesWithoutAFaceByPlace) {
   const TriMesh grid = test::mesh_of(notched_grid());
   TriMesh mesh = grid;

@@ -112,7 +112,9 @@ TEST_F(Attributes, OfALibraryThatIsMissingAreLeftOutAndNamed) {
   EXPECT_THAT(text("out/frame_0000.obj"), Not(HasSubstr("mtllib")));
   const auto open = open_sequence(folder_ / "take");
   EXPECT_THAT(materials_in_folder(open.frames->connectivity(), folder_ / "out").notes,
-              ElementsAre(HasSubstr("without the materials of face.mtl")));
+              ElementsAre(HasSubstr("/out: without the materials of face.mtl")));
+  EXPECT_THAT(materials_beside(open.frames->connectivity(), folder_ / "one.obj").notes,
+              ElementsAre(HasSubstr("/one.obj: without the materials of face.mtl")));
 }
 
 TEST_F(Attributes, OfWhatIsNoLibraryAreNotRead) {

@@ -53,6 +53,18 @@ TEST_F(FolderOfFrames, TakesANeutralForTheRestPose) {
   EXPECT_THAT(open.notes, ElementsAre(AllOf(HasSubstr("Neutral.obj"), HasSubstr("rest pose"))));
 }
 
+TEST_F(FolderOfFrames, HasNumbersInItsNames) {
+  for (const char* name : {"neutral.obj", "blink.obj", "frown.obj", "smile.obj"}) write(name);
+  write("identity0.obj");
+  write("identity1.obj");
+  EXPECT_THAT(test::message_of<MismatchError>([this] { frames_of_folder(folder_.path()); }),
+              AllOf(HasSubstr("5 meshes without frame numbers"), HasSubstr("/*.obj'")));
+  EXPECT_EQ(open_sequence(folder_ / "*.obj").frames->frames(), 6);
+  write("identity2.obj");
+  write("identity3.obj");
+  EXPECT_EQ(series().frames.size(), 4U);
+}
+
 TEST_F(FolderOfFrames, IsAModelWithExpressionsWhateverElseItHolds) {
   write_frames({0, 1, 2});
   write("neutral.obj", 7);
@@ -75,12 +87,6 @@ TEST_F(FolderOfFrames, LeavesStrangersOutAndNamesThem) {
   const FrameSeries asked = frames_of_pattern((folder_ / "*.obj").string());
   EXPECT_EQ(asked.frames.size(), 4u);
   EXPECT_THAT(asked.notes, ElementsAre(HasSubstr("smile.obj is a frame too")));
-}
-
-TEST_F(FolderOfFrames, TakesAllFilesWhereMostAreOfNoSeries) {
-  for (const char* name : {"happy.obj", "sad.obj", "au_1.obj", "au_2.obj"}) write(name);
-  EXPECT_EQ(series().frames.size(), 4u);
-  EXPECT_THAT(series().notes, IsEmpty());
 }
 
 TEST_F(FolderOfFrames, RefusesTwoTakesAndNamesAPatternForEach) {

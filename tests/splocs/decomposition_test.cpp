@@ -1,6 +1,7 @@
 #include "toolkit/splocs/decomposition.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 #include <gmock/gmock.h>
@@ -137,6 +138,32 @@ TEST(Decomposition, PutsCentersAtTheTopsOfDisjointBumps) {
   // Vertices of the grid, 30 a row, at (5, 6), (15, 5) and (24, 6).
   EXPECT_THAT(components.centers,
               testing::UnorderedElementsAre(6 * 30 + 5, 5 * 30 + 15, 6 * 30 + 24));
+}
+
+TEST(Decomposition, PutsCentersWherePartsCountMost) {
+  // The right half moves twice as far as the left one, and counts a thousandth.
+  const Shape shape = grid(20, 3);
+  DecompositionOptions options;
+  options.count = 1;
+  options.sparsity = 0;
+  options.distances = one_by_one(straight_distances(shape.positions));
+  options.d_min = 1;
+  options.d_max = 40;
+  options.parts.weights = {1, 0.001};
+  Frames poses =
+      Eigen::Map<const Eigen::RowVectorXd>(shape.positions.data(), shape.positions.size())
+          .replicate(2, 1);
+  for (int v = 0; v < shape.positions.rows(); ++v) {
+    const double x = shape.positions(v, 0);
+    options.parts.of_vertex.push_back(x < 10 ? 0 : 1);
+    poses(1, 3 * v + 2) += (x < 10 ? 1 : 2) * std::exp(-(x - 9) * (x - 9) / 8);
+  }
+  const MeshSequence sequence(
+      Connectivity::from_triangles(static_cast<int>(shape.positions.rows()), shape.triangles),
+      poses);
+  const Components components = decompose(sequence, options);
+  ASSERT_GE(components.centers[0], 0);
+  EXPECT_EQ(shape.positions(components.centers[0], 0), 9);
 }
 
 TEST(Decomposition, ComponentsBeyondTheSequencesRankDie) {

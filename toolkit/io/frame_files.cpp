@@ -337,6 +337,7 @@ FrameSeries frames_of_folder(const fs::path& folder) {
       mesh_files(files_in(folder), name, "holds no OBJ, PLY, OFF, STL or OM file"), folder);
   check_one_format(found.frames, name, "holds");
   check_one_series(found.frames, folder);
+  check_are_numbered(found.frames, folder);
   return found;
 }
 

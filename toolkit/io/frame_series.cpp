@@ -203,6 +203,18 @@ void check_one_series(const std::vector<fs::path>& files, const fs::path& folder
                                      files.front().extension().string() + "'");
 }
 
+void check_are_numbered(const std::vector<fs::path>& files, const fs::path& folder) {
+  const FileNumbers numbers(files);
+  std::size_t numbered = 0;
+  for (const auto& [series, size] : numbered_series(files, numbers)) numbered += size;
+  if (files.size() < 2 || 2 * numbered > files.size()) return;
+  throw MismatchError(folder.string() + ": holds " + std::to_string(files.size()) +
+                      " meshes without frame numbers (" + names_of(files) +
+                      "), which look like named shapes of a model; to read them as frames in this "
+                      "order, give the pattern '" +
+                      place_of(folder) + '*' + files.front().extension().string() + "'");
+}
+
 FrameSeries series_of_pattern(std::vector<fs::path> files, const std::string& pattern) {
   FrameSeries found{std::move(files)};
   const FileNumbers numbers(found.frames);

@@ -35,6 +35,11 @@ FrameSeries series_in_folder(std::vector<std::filesystem::path> files,
 void check_one_series(const std::vector<std::filesystem::path>& files,
                       const std::filesystem::path& folder);
 
+/// Throws MismatchError if half of `files` or more have no number that others count on from, such
+/// as the named shapes of a model.
+void check_are_numbered(const std::vector<std::filesystem::path>& files,
+                        const std::filesystem::path& folder);
+
 /// All `files` are frames. Throws as series_in_folder.
 FrameSeries series_of_pattern(std::vector<std::filesystem::path> files, const std::string& pattern);
 

@@ -120,7 +120,9 @@ std::string moved_text(const MaterialLibrary& library, const fs::path& folder,
   return text;
 }
 
-WrittenMaterials written(const Materials& materials, const fs::path& folder, std::string name) {
+/// `output` is the mesh or folder that notes name.
+WrittenMaterials written(const Materials& materials, const fs::path& folder, std::string name,
+                         const fs::path& output) {
   WrittenMaterials result;
   std::vector<std::string> textures;
   if (!materials.libraries.empty()) {
@@ -140,7 +142,8 @@ WrittenMaterials written(const Materials& materials, const fs::path& folder, std
                            listed(textures, 3));
   }
   if (!materials.missing.empty()) {
-    result.notes.push_back(place + ": without the materials of " + listed(materials.missing, 3) +
+    result.notes.push_back(output.string() + ": without the materials of " +
+                           listed(materials.missing, 3) +
                            ", which the source names and which is not beside it");
   }
   return result;
@@ -163,14 +166,14 @@ WrittenMaterials materials_in_folder(const Connectivity& connectivity, const fs:
   if (!materials) return {};
   const auto& libraries = materials->libraries;
   return written(*materials, folder,
-                 libraries.empty() ? "" : libraries.front().path.filename().string());
+                 libraries.empty() ? "" : libraries.front().path.filename().string(), folder);
 }
 
 WrittenMaterials materials_beside(const Connectivity& connectivity, const fs::path& mesh) {
   const auto& materials = connectivity.materials;
   if (!materials) return {};
   const fs::path folder = mesh.parent_path();
-  WrittenMaterials result = written(*materials, folder, mesh.stem().string() + ".mtl");
+  WrittenMaterials result = written(*materials, folder, mesh.stem().string() + ".mtl", mesh);
   const auto& libraries = materials->libraries;
   const bool lies_there =
       libraries.size() == 1 &&

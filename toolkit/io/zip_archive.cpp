@@ -188,7 +188,10 @@ struct ZipWriter::State {
       fail();
     }
     const auto place = static_cast<zip_uint64_t>(index);
+    // A file that anybody reads, whatever the umask.
+    constexpr zip_uint32_t kMode = 0100644U << 16;
     if (zip_set_file_compression(archive, place, ZIP_CM_STORE, 0) != 0 ||
+        zip_file_set_external_attributes(archive, place, 0, ZIP_OPSYS_UNIX, kMode) != 0 ||
         zip_file_set_dostime(archive, place, 0, kFirstDate, 0) != 0) {
       fail();
     }

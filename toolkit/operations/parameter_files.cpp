@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "toolkit/io/mesh_file.h"
+#include "toolkit/mesh/face_order.h"
 #include "toolkit/operations/json.h"
 
 namespace mimetra {
@@ -35,12 +36,21 @@ RigidTransform transform_of(const Json& json) {
 }  // namespace
 
 Positions read_rest(const std::string& path, const FrameSource& sequence) {
-  Positions rest = read_mesh(path).positions;
-  if (rest.rows() != sequence.vertices()) {
-    throw MismatchError(path + ": " + std::to_string(rest.rows()) + " vertices, expected " +
-                        std::to_string(sequence.vertices()) + " as in the sequence");
+  TriMesh rest = read_mesh(path);
+  if (rest.positions.rows() != sequence.vertices()) {
+    throw MismatchError(path + ": " + std::to_string(rest.positions.rows()) +
+                        " vertices, expected " + std::to_string(sequence.vertices()) +
+                        " as in the sequence");
   }
-  return rest;
+  const Connectivity& faces = sequence.connectivity();
+  if (rest.connectivity.triangles.rows() > 0 && !same_faces(faces, rest.connectivity) &&
+      !in_order_of(faces, rest.connectivity)) {
+    throw MismatchError(
+        path + ": face " + std::to_string(first_different_face(faces, rest.connectivity)) +
+        " has other vertices than in the sequence; check --match compares the numbering, "
+        "convert --match renumbers");
+  }
+  return std::move(rest.positions);
 }
 
 std::vector<VertexIndex> spread_vertices(int vertices) {

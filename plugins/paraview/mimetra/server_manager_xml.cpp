@@ -32,22 +32,29 @@ std::string file_extensions(const OperationTable& table) {
   return words;
 }
 
-Proxy sequence_proxy(const OperationTable& table) {
+Proxy sequence_proxy(const OperationTable& table, const std::string& name, const std::string& label,
+                     const std::string& hints) {
   Operation operation = reading_operation();
   operation.inputs.front().help = table.help(operation.inputs.front());
   return {operation,
           table.parameters_of(operation),
           "vtkMimetraSequence",
-          "MimetraSequence",
-          "mimetra Sequence",
+          name,
+          label,
           {"FileName", "weights"},
           {},
           {},
           kTimes,
-          "<ShowInMenu category=\"mimetra\"/>"
-          "<DefaultFileNameProperty name=\"FileName\"/>"
-          "<ReaderFactory extensions=\"" +
-              file_extensions(table) + "\" file_description=\"Mesh sequences (mimetra)\"/>"};
+          hints + "<DefaultFileNameProperty name=\"FileName\"/>"};
+}
+
+/// One proxy for the menu of sources and one for File > Open: ParaView leaves readers out of menus.
+std::string sequence_proxies(const OperationTable& table) {
+  return proxy_xml(sequence_proxy(table, "MimetraSequence", "mimetra Sequence",
+                                  "<ShowInMenu category=\"mimetra\"/>")) +
+         proxy_xml(sequence_proxy(table, "MimetraSequenceReader", "mimetra Sequence Reader",
+                                  "<ReaderFactory extensions=\"" + file_extensions(table) +
+                                      "\" file_description=\"Mesh sequences (mimetra)\"/>"));
 }
 
 }  // namespace
@@ -56,8 +63,7 @@ int main(int, char** argv) {
   OperationTable table;
   add_toolkit(table);
   std::string xml = "<ServerManagerConfiguration>\n  <ProxyGroup name=\"sources\">\n" +
-                    proxy_xml(sequence_proxy(table)) +
-                    "  </ProxyGroup>\n  <ProxyGroup name=\"filters\">\n";
+                    sequence_proxies(table) + "  </ProxyGroup>\n  <ProxyGroup name=\"filters\">\n";
   for (const Proxy& proxy : filter_proxies(table)) xml += proxy_xml(proxy);
   xml += "  </ProxyGroup>\n</ServerManagerConfiguration>\n";
   if (std::ofstream(argv[1]) << xml << std::flush) return 0;
