@@ -71,8 +71,8 @@ class BadInput(HostTest):
         positions[7, 1] = np.nan
         meshes[1] = mesh_of(positions, grid()[1])
         series = self.series_of("nan", meshes)
-        self.assert_refused(series, "time 1: point 7 is not finite", SERIES_FILTERS)
-        self.assert_refused(series, "the mesh: point 7 is not finite", ["GeodesicDistance"], 1)
+        self.assert_refused(series, "time 1: point 7 has no usable position", SERIES_FILTERS)
+        self.assert_refused(series, "the mesh: point 7 has no usable position", ["GeodesicDistance"], 1)
 
     def test_a_rest_pose_that_is_not_a_number(self):
         meshes = moving()
@@ -83,7 +83,7 @@ class BadInput(HostTest):
             array.SetName("displacement")
             mesh.GetPointData().AddArray(array)
         self.assert_refused(self.series_of("rest", meshes),
-                            "time 0: rest pose: vertex 4 is not finite", SERIES_FILTERS)
+                            "time 0: rest pose: vertex 4 has no usable position", SERIES_FILTERS)
 
     def test_triangle_strips(self):
         strips = vtkCellArray()

@@ -74,7 +74,7 @@ class MimetraSequence(HostTest):
 
     def test_is_what_opens_an_array(self):
         source = simple.OpenDataFile(str(self.sample.take))
-        self.assertEqual(source.GetXMLLabel(), "mimetra Sequence")
+        self.assertEqual(source.GetXMLLabel(), "mimetra Sequence Reader")
         self.assert_frames(source, np.load(self.sample.take))
 
     def test_shows_what_is_wrong_in_the_words_of_the_library(self):
