@@ -140,16 +140,16 @@ std::error_code exchange(const fs::path& temporary, const fs::path& target) {
   std::error_code error = rename_by(temporary, target, RENAME_EXCHANGE);
   if (!is_unknown(error)) return error;
   const fs::path aside = temporary.string() + ".old";
-  // A second name keeps a file while its first one changes hands; folders cannot have two.
-  if (fs::is_directory(target, error)) {
-    fs::rename(target, aside, error);
-  } else {
-    fs::create_hard_link(target, aside, error);
-  }
+  // A second name keeps a file while its first one changes hands. Folders cannot have two, nor can
+  // files on some file systems.
+  if (!fs::is_directory(target, error)) fs::create_hard_link(target, aside, error);
+  const bool is_linked = fs::exists(aside, error);
+  if (!is_linked) fs::rename(target, aside, error);
   if (error) return error;
   fs::rename(temporary, target, error);
   std::error_code ignored;
   fs::rename(aside, error ? target : temporary, ignored);
+  if (is_linked) fs::remove(aside, ignored);  // two names of a file do not replace each other
   return error;
 }
 
