@@ -99,6 +99,9 @@ std::vector<BadInput> geometry_cases() {
   add("simplify", "simplify" + odd + " --share 0.5 -o x.npy --json", {"\"given_vertices\": 226"});
   add("subdivide", "subdivide" + odd + " -o x.npy --json", {"\"vertices\": "});
   add_targets(all);
+  add_case(all, "mesh_without_size", "geodesic",
+           file("dot.obj", "v 1 1 1\nv 1 1 1\nv 1 1 1\nf 1 2 3\n"), "geodesic dot.obj -o d.vtp", 3,
+           {"dot.obj", "no size"});
   add_case(all, "source_vertex_out_of_range", "geodesic", {}, "geodesic head --source 225 -o d.vtp",
            4, {"--source", "vertex 225", "225"});
   add_case(all, "source_vertex_negative", "geodesic", {}, "geodesic head --source -1 -o d.vtp", 2,

@@ -178,6 +178,19 @@ TEST_F(NpzFiles, ClaimsOfAHugeSizeAreRefusedBeforeMemoryIsAskedFor) {
   }
 }
 
+TEST_F(NpzFiles, ThatUnpackToFarMoreThanTheyStoreAreRefused) {
+  // Packed 2e6 bytes, which are there, and unpacked 2e9, which deflate could make of them.
+  write({positions_, faces_, {"noise.npy", std::string(std::size_t{1} << 21, 'x')}}, false);
+  std::string bytes = read_file(folder_ / "a.npz");
+  const std::size_t entry = bytes.find("PK\1\2");
+  bytes
+      .replace(entry + 10, 2, std::string("\x08\x00", 2))  // deflated
+      .replace(entry + 20, 4, std::string("\x80\x84\x1e\x00", 4))
+      .replace(entry + 24, 4, std::string("\x00\x94\x35\x77", 4));
+  write_bytes(folder_ / "a.npz", bytes);
+  EXPECT_THAT(message_of<IoError>([this] { read(); }), HasSubstr("would take 2000 MB"));
+}
+
 TEST_F(NpzFiles, AreRefusedByTheBeginningOfAMemberBeforeAllOfItIsDecoded) {
   // Damage behind what the header needs is not seen where the header is wrong already.
   const std::string noise(std::size_t{1} << 22, 'x');

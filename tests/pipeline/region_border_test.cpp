@@ -74,6 +74,29 @@ TEST_F(RegionBorder, FadesOutAlongTheTargetsSurface) {
               expected);
 }
 
+TEST_F(RegionBorder, FadesOutByDefaultOnATargetWithoutExpressions) {
+  const BlendshapeModel bare(TriMesh{actor_.neutral(), actor_.connectivity()}, {});
+  const auto weights_of = [&](const Regions& regions, const SolveOptions& options) {
+    return bordered_selection(regions, {"actor", bare}, options).weights;
+  };
+  SolveOptions identity;
+  identity.vertex.outside = Outside::identity;
+  EXPECT_TRUE(weights_of(hard_, {}) == weights_of(hard_, with_falloff(Length::share(0.2))));
+  EXPECT_EQ(weights_of(hard_, identity).size(), 0);
+  EXPECT_TRUE(weights_of(painted_, {}) == ramp(take_.rest()));
+}
+
+TEST_F(RegionBorder, IsAsWideWhateverPartsLieBesideTheRegions) {
+  test::Shape body = test::grid(3, 3);
+  body.positions *= 10 * diameter(actor_.neutral());
+  const test::Shape shape = both({actor_.neutral(), actor_.triangles()}, body);
+  const BlendshapeModel beside(test::mesh_of(shape), {});
+  const Regions regions = regions_from_vertices(90, shape.triangles, {{40, 41, 49, 50}, {0}});
+  const SolveOptions options = with_falloff(Length::share(0.2));
+  EXPECT_TRUE(bordered_selection(regions, {"beside", beside}, options).weights.head(81) ==
+              selected(hard_, options).weights);
+}
+
 TEST_F(RegionBorder, FadesOutAroundWhatIsPaintedOne) {
   const Eigen::VectorXd painted = ramp(take_.rest());
   const Eigen::VectorXd faded = selected(painted_, with_falloff(Length::share(0.4))).weights;

@@ -164,7 +164,7 @@ TEST(ComponentCount, IsBoundedByWhatFramesTell) {
   ASSERT_FALSE(noted.notes.empty());
   EXPECT_THAT(noted.notes.front().text, HasSubstr("K = 60: 8 frames tell at most 8"));
   options.compatibility = Compatibility::splocs2013;
-  EXPECT_EQ(component_count(take(), options), 60);
+  EXPECT_EQ(component_count(take(), take().diameter(), options), 60);
 }
 
 }  // namespace

@@ -91,6 +91,26 @@ TEST(FollowingParts, MoveRigidlyWithTheSurfaceAround) {
   EXPECT_NEAR(both.parts().farthest(poses).at(0), farthest, 1e-9);
 }
 
+TEST(FollowingParts, AreThoseWithoutWeightOnATargetOfTheSameFaces) {
+  const test::Shape face = test::sphere(3);
+  const test::Shape shape =
+      both(both(face, ball(0.2, {0.3, 0.2, 0.5})), ball(0.2, {-0.3, 0.2, 0.5}));
+  const Weld weld = Weld::exact(shape.positions);
+  const Eigen::Index count = face.positions.rows();
+  Eigen::VectorXd weights = Eigen::VectorXd::Zero(shape.positions.rows());
+  weights[5] = 1;          // of the face
+  weights[count + 2] = 1;  // of one ball
+  const FollowingParts following(shape.positions, shape.triangles, weld, weights);
+  ASSERT_EQ(following.parts().size(), 1U);
+  EXPECT_EQ(following.parts()[0].front(), count + 6);
+  // Where the face moves as a whole, the ball goes along.
+  Positions pose = shape.positions;
+  pose.topRows(count + 6).rowwise() += Eigen::RowVector3d(0, -1, 2);
+  following.place(Eigen::Map<Positions>(pose.data(), pose.rows(), 3));
+  const Positions expected = shape.positions.rowwise() + Eigen::RowVector3d(0, -1, 2);
+  EXPECT_LT((pose - expected).lpNorm<Eigen::Infinity>(), 1e-12);
+}
+
 TEST(FollowingParts, LeaveAllOthersExactlyWhereTheyAre) {
   const test::Shape face = test::sphere(3);
   const TwoParts both(face, ball(3, {0, -4.5, 0}));

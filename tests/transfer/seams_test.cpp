@@ -428,7 +428,7 @@ TEST_F(SeamedPair, IsHeldByAFixedVertexBeyondTheSeam) {
   const VertexUnknowns unknowns = number_unknowns(triangles_, {1, 1}, fixed, weld_);
   EXPECT_TRUE(unknowns.floating.empty());
   EXPECT_THAT(unknowns.of_vertex, ElementsAre(0, 1, 2, 2, 3, -1));
-  EXPECT_TRUE(unknowns.some_held);
+  EXPECT_FALSE(unknowns.held.empty());
 }
 
 TEST_F(SeamedPair, PinsBothSidesWhereTheLowestVertexIsOnTheSeam) {

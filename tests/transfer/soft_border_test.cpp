@@ -58,7 +58,8 @@ Eigen::MatrixXd gradient_rows(const Positions& rest, const Triangles& triangles,
   return rows;
 }
 
-/// What the header of SoftBorder says, by dense least squares. Vertices of weight 0 stay.
+/// What the headers of SoftBorder and VertexTransfer say, by dense least squares. Vertices of
+/// weight 0 stay.
 Positions literal_fade(const MeshSequence& pose, const Positions& target,
                        const Eigen::VectorXd& weights) {
   const Triangles& triangles = pose.triangles();
@@ -108,7 +109,12 @@ Positions literal_fade(const MeshSequence& pose, const Positions& target,
     a.middleRows<3>(static_cast<Eigen::Index>(3 * i)) = left[i](Eigen::all, free);
     wanted.middleRows<3>(static_cast<Eigen::Index>(3 * i)) = right[i];
   }
-  const Eigen::MatrixXd moved = a.colPivHouseholderQr().solve(wanted);
+  Eigen::MatrixXd moved = a.colPivHouseholderQr().solve(wanted);
+  const Eigen::MatrixXd source = (pose.frame(0) - pose.rest())(free, Eigen::all);
+  const Eigen::VectorXd shares_of_motion = weights(free);
+  const Eigen::RowVector3d shift =
+      (shares_of_motion.transpose() * source - moved.colwise().sum()) / shares_of_motion.sum();
+  moved += shares_of_motion * shift / std::hypot(1, shift.norm() / (0.1 * width));
   Positions result = target;
   for (std::size_t i = 0; i < free.size(); ++i) {
     result.row(free[i]) += moved.row(static_cast<Eigen::Index>(i));
@@ -208,9 +214,10 @@ TEST_F(SoftBorderTest, ScalesWithSourceAndTarget) {
   const MeshSequence pose = test::shaken(source_, 1, 0.2);
   VertexTransferOptions options;
   options.weights = disc_;
-  const VertexTransfer large(source_.positions, 100 * target_, triangles_,
+  const VertexTransfer large(100 * source_.positions, 100 * target_, triangles_,
                              with_weight(triangles_, disc_), options);
-  EXPECT_LT((only_frame(large.frames(pose)) - 100 * only_frame(transferred(pose, disc_)))
+  const MeshSequence large_pose = pose.with_frames(100 * pose.positions());
+  EXPECT_LT((only_frame(large.frames(large_pose)) - 100 * only_frame(transferred(pose, disc_)))
                 .lpNorm<Eigen::Infinity>(),
             1e-10);
 }

@@ -1,9 +1,9 @@
 #include <fcntl.h>
+#include <poll.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cerrno>
 #include <chrono>
 #include <csignal>
@@ -113,32 +113,36 @@ std::string memory_message() {
 }
 
 /// A pipe: handlers of signals may write to one, and do little else.
-std::array<int, 2> second_interrupt;
+std::array<int, 2> interrupts;
 
-/// Waits for a second interrupt, removes temporary files and ends the process.
-void end_on_second_interrupt() {
-  char byte = 0;
-  while (read(second_interrupt[0], &byte, 1) != 1) {
-    if (errno != EINTR) return;
+/// Waits until the pipe can be read; for ever if `milliseconds` is -1.
+void wait_for_interrupt(int milliseconds) {
+  pollfd pipe{interrupts[0], POLLIN, 0};
+  while (poll(&pipe, 1, milliseconds) < 0 && errno == EINTR) {
   }
+}
+
+/// Gives an interrupted run a moment to end at its next step; then, or at a second interrupt,
+/// removes temporary files and ends the process. A library's factorization has no steps.
+void end_after_interrupt() {
+  constexpr int kMoment = 1500;
+  wait_for_interrupt(-1);
+  char byte = 0;
+  if (read(interrupts[0], &byte, 1) != 1) return;
+  wait_for_interrupt(kMoment);
   mimetra::remove_pending_outputs();
   _exit(mimetra::cli::kInterrupted);
 }
 
 void handle_signal(int) {
-  static std::atomic<bool> interrupted = false;
-  if (!interrupted.exchange(true)) {
-    mimetra::cli::interrupt();
-  } else if (write(second_interrupt[1], "!", 1) < 0) {
-    _exit(mimetra::cli::kInterrupted);
-  }
+  mimetra::cli::interrupt();
+  if (write(interrupts[1], "!", 1) < 0) _exit(mimetra::cli::kInterrupted);
 }
 
-/// An interrupted run leaves nothing half-written: the first signal ends it at the next step, a
-/// second one at once. Exceeding a limit of the system is an error.
+/// An interrupted run leaves nothing half-written. Exceeding a limit of the system is an error.
 void take_signals() {
-  if (pipe2(second_interrupt.data(), O_CLOEXEC) == 0) {
-    std::thread(end_on_second_interrupt).detach();
+  if (pipe2(interrupts.data(), O_CLOEXEC | O_NONBLOCK) == 0) {
+    std::thread(end_after_interrupt).detach();
   }
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
     const auto before = std::signal(signal, handle_signal);

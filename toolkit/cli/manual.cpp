@@ -20,7 +20,7 @@ constexpr ExitCodeLine kExitCodes[] = {
     {"3", "an input is wrong in itself: missing, unreadable, truncated, not finite, without faces"},
     {"4", "inputs contradict each other or the request"},
     {"5", "an output cannot be written, or exists and may not be replaced"},
-    {"130", "interrupted; nothing was written"}};
+    {"130", "interrupted; no output is half-written"}};
 
 /// Text as roff shows it: a hyphen is a minus sign, a leading dot is not a request.
 std::string roff(const std::string& text) {

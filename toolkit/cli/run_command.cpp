@@ -1,9 +1,15 @@
 #include "toolkit/cli/run_command.h"
 
+#include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <cmath>
+#include <condition_variable>
 #include <cstdio>
 #include <iostream>
+#include <mutex>
+#include <stop_token>
+#include <thread>
 
 #include <spdlog/spdlog.h>
 #include <unistd.h>
@@ -13,6 +19,7 @@
 #include "toolkit/cli/terminal_text.h"
 #include "toolkit/mesh/errors.h"
 #include "toolkit/mesh/progress.h"
+#include "toolkit/mesh/stopwatch.h"
 #include "toolkit/mesh/text.h"
 #include "toolkit/operations/call.h"
 #include "toolkit/operations/json.h"
@@ -25,33 +32,63 @@ namespace {
 
 std::atomic<bool> interrupted = false;
 
-/// A line on the terminal that is drawn again whenever the percentage changes.
+/// A line on the terminal with the percentage and, each second, the time since the start, which
+/// shows that a long step is at work.
 class Bar {
  public:
-  Bar(std::string title, bool shown) : title_(std::move(title)), shown_(shown) {}
-  ~Bar() { clear(); }
+  Bar(std::string title, bool shown) : title_(std::move(title)) {
+    if (shown) ticker_ = std::jthread([this](const std::stop_token& stop) { tick(stop); });
+  }
+  ~Bar() { end(); }
   Bar(const Bar&) = delete;
   Bar& operator=(const Bar&) = delete;
 
   bool update(double share) {
     const int percent = static_cast<int>(std::floor(100 * share));
-    if (shown_ && percent != percent_) {
-      percent_ = percent;
-      std::fprintf(stderr, "\r%s %3d %%", title_.c_str(), percent);
-      std::fflush(stderr);
-    }
+    if (percent != percent_.exchange(percent)) draw();
     return !interrupted;
   }
 
+  void end() {
+    ticker_ = {};
+    clear();
+  }
+
+  /// Makes room for other lines.
   void clear() {
-    if (shown_ && percent_ >= 0) std::fprintf(stderr, "\r\033[K");
-    percent_ = -1;
+    const std::scoped_lock lock(mutex_);
+    if (is_drawn_) std::fprintf(stderr, "\r\033[K");
+    is_drawn_ = false;
   }
 
  private:
+  void draw() {
+    const std::scoped_lock lock(mutex_);
+    if (!ticker_.joinable()) return;
+    std::fprintf(stderr, "\r%s %3d %%", title_.c_str(), std::max(0, percent_.load()));
+    if (const double seconds = stopwatch_.seconds(); seconds >= 1) {
+      std::fprintf(stderr, " %.0f s", std::floor(seconds));
+    }
+    std::fflush(stderr);
+    is_drawn_ = true;
+  }
+
+  void tick(const std::stop_token& stop) {
+    std::mutex unused;
+    std::unique_lock lock(unused);
+    std::condition_variable_any second;
+    while (!second.wait_for(lock, stop, std::chrono::seconds(1), [] { return false; }) &&
+           !stop.stop_requested()) {
+      draw();
+    }
+  }
+
   std::string title_;
-  bool shown_;
-  int percent_ = -1;
+  Stopwatch stopwatch_;
+  std::atomic<int> percent_ = -1;
+  std::mutex mutex_;
+  bool is_drawn_ = false;
+  std::jthread ticker_;
 };
 
 bool shows_bar(const Request& request) {
@@ -137,13 +174,13 @@ void run_command(const OperationTable& table, const Request& request, const Rank
   call.load();
   if (request.dry_run) {
     call.foresee();
-    bar.clear();
+    bar.end();
     print_result(request, planned(*request.operation, call.invocation()), warnings, false);
     return;
   }
   call.run();
   call.write();
-  bar.clear();
+  bar.end();
   if (call.writes() && !request.quiet) std::cerr << cost(call);
   print_result(request, call.outcome(), warnings, call.writes());
 }

@@ -197,6 +197,12 @@ void forget(const fs::path& temporary) {
   temporary_names().names.erase(temporary);
 }
 
+/// Held while outputs take their places.
+std::mutex& commit_mutex() {
+  static auto* const mutex = new std::mutex;  // outlives all outputs
+  return *mutex;
+}
+
 /// A file or folder that is open as long as this lives; -1 if it cannot be opened.
 class OpenFile {
  public:
@@ -398,6 +404,7 @@ void PendingOutput::keep_place() noexcept {
 
 void PendingOutput::commit() {
   complete();
+  const std::scoped_lock lock(commit_mutex());
   take_place();
   keep_place();
 }
@@ -508,6 +515,7 @@ std::vector<PendingOutput*> PendingOutputs::in_order() const {
 
 /// Everything takes its place, or nothing does.
 void PendingOutputs::swap(const std::vector<PendingOutput*>& order) {
+  const std::scoped_lock lock(commit_mutex());
   try {
     std::set<FileId> taken;
     for (PendingOutput* output : order) {
@@ -555,6 +563,7 @@ void PendingOutputs::check_inputs_stay() const {
 }
 
 void remove_pending_outputs() noexcept {
+  commit_mutex().lock();  // for good
   const std::scoped_lock lock(temporary_names().mutex);
   // Other threads may still write into a folder.
   constexpr int kAttempts = 3;

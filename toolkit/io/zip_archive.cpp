@@ -10,6 +10,7 @@
 #include "toolkit/io/opened_file.h"
 #include "toolkit/io/temporary_name.h"
 #include "toolkit/mesh/errors.h"
+#include "toolkit/mesh/text.h"
 
 namespace mimetra {
 namespace fs = std::filesystem;
@@ -125,6 +126,10 @@ class DeflatedMember : public InputBytes {
 /// before memory is asked for.
 constexpr std::size_t kMostDeflated = 1100;
 
+/// Where a member is larger than this, it may be so many times as large as its packed bytes: a
+/// small file must not fill the memory.
+constexpr std::size_t kUnpackedBytes = std::size_t{1} << 30, kUnpackedShare = 512;
+
 }  // namespace
 
 ZipReader::ZipReader(const fs::path& path) : zip_(std::make_shared<OpenZip>()) {
@@ -159,6 +164,11 @@ std::unique_ptr<const InputBytes> ZipReader::member(const std::string& name) con
   if (stat.comp_size > fs::file_size(zip_->path) ||
       stat.size / (stored ? 1 : kMostDeflated) > stat.comp_size) {
     zip_->fail(name, "it lies about its size");
+  }
+  if (stat.size > kUnpackedBytes && stat.size / kUnpackedShare > stat.comp_size) {
+    zip_->fail(name, "it would take " + readable(static_cast<double>(stat.size) / 1e6, 3) +
+                         " MB, more than " + std::to_string(kUnpackedShare) +
+                         " times what is stored");
   }
   std::unique_ptr<zip_file_t, decltype(&zip_fclose)> file(zip_fopen(zip_->archive, name.c_str(), 0),
                                                           zip_fclose);

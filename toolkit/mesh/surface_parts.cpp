@@ -57,23 +57,46 @@ SurfaceParts surface_parts(const Positions& positions, const Triangles& triangle
   return surface_parts(positions, triangles, Weld::exact(positions));
 }
 
+std::vector<VertexIndex> vertices_of_parts(const SurfaceParts& parts,
+                                           const std::vector<VertexIndex>& with) {
+  std::vector<bool> has_vertex(parts.areas.size(), false);
+  for (const VertexIndex v : with) has_vertex[parts.of_vertex.at(v)] = true;
+  std::vector<VertexIndex> all;
+  for (std::size_t v = 0; v < parts.of_vertex.size(); ++v) {
+    if (has_vertex[parts.of_vertex[v]]) all.push_back(static_cast<VertexIndex>(v));
+  }
+  return all;
+}
+
+Subject subject_around(const Positions& positions, const SurfaceParts& parts,
+                       const std::vector<VertexIndex>& vertices) {
+  constexpr double kSectionShare = 1.0 / 3;
+  std::vector<VertexIndex> all = vertices_of_parts(parts, vertices);
+  const auto diagonal_of = [&](const std::vector<VertexIndex>& some) {
+    return box_diagonal(Positions(positions(some, Eigen::all)));
+  };
+  const double span = diagonal_of(vertices);
+  if (span > 0 && span < kSectionShare * diagonal_of(all)) return {vertices, true};
+  return {std::move(all)};
+}
+
 SubjectBox subject_box(const Positions& positions, const SurfaceParts& parts,
                        const std::vector<VertexIndex>& vertices) {
-  constexpr double kSectionShare = 1.0 / 3, kSectionGrowth = 1.5;
-  std::vector<bool> has_vertex(parts.areas.size(), false);
-  for (const VertexIndex v : vertices) has_vertex[parts.of_vertex.at(v)] = true;
-  std::vector<VertexIndex> around;
-  for (std::size_t v = 0; v < parts.of_vertex.size(); ++v) {
-    if (has_vertex[parts.of_vertex[v]]) around.push_back(static_cast<VertexIndex>(v));
-  }
-  const auto box_of = [&](const std::vector<VertexIndex>& some) {
-    const Positions places = positions(some, Eigen::all);
-    return SubjectBox{(places.colwise().maxCoeff() + places.colwise().minCoeff()) / 2,
-                      box_diagonal(places)};
-  };
-  const SubjectBox whole = box_of(around), section = box_of(vertices);
-  if (section.diagonal >= kSectionShare * whole.diagonal) return whole;
-  return {section.center, kSectionGrowth * section.diagonal, true};
+  const Subject subject = subject_around(positions, parts, vertices);
+  const Positions places = positions(subject.vertices, Eigen::all);
+  return {(places.colwise().maxCoeff() + places.colwise().minCoeff()) / 2,
+          subject.growth() * box_diagonal(places), subject.is_section};
+}
+
+double diameter_of_parts(const Positions& positions, const Triangles& triangles,
+                         const std::vector<VertexIndex>& vertices) {
+  constexpr double kRounding = 1e-12;
+  const double whole = diameter(positions, triangles);
+  if (vertices.empty()) return whole;
+  const std::vector<VertexIndex> all =
+      vertices_of_parts(surface_parts(positions, triangles), vertices);
+  const double size = diameter(Positions(positions(all, Eigen::all)));
+  return size >= (1 - kRounding) * whole ? whole : size;
 }
 
 Eigen::VectorXd vertex_areas(const Positions& positions, const Triangles& triangles) {

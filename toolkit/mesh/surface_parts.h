@@ -25,20 +25,42 @@ SurfaceParts surface_parts(const Positions& positions, const Triangles& triangle
 /// The same with the vertices at one place welded.
 SurfaceParts surface_parts(const Positions& positions, const Triangles& triangles);
 
-/// The box of what a computation is about, by which it measures lengths.
+/// What a computation is about, by which it measures lengths.
+struct Subject {
+  std::vector<VertexIndex> vertices;
+  /// True if the given vertices span less than a third of the parts that they are in, as on a head
+  /// and body in one piece. The subject is then these vertices, and lengths grow by half.
+  bool is_section = false;
+
+  double growth() const { return is_section ? 1.5 : 1; }
+};
+
+/// Vertices of the parts with one of some vertices, ascending. Throws std::out_of_range for one
+/// that is not there.
+std::vector<VertexIndex> vertices_of_parts(const SurfaceParts& parts,
+                                           const std::vector<VertexIndex>& with);
+
+/// The parts with one of some vertices, such as those that move or have a marker: what else is in
+/// the file does not count. `vertices` must not be empty. Throws std::out_of_range for one that is
+/// not there.
+Subject subject_around(const Positions& positions, const SurfaceParts& parts,
+                       const std::vector<VertexIndex>& vertices);
+
+/// The box of a subject_around() some vertices.
 struct SubjectBox {
   Eigen::RowVector3d center = Eigen::RowVector3d::Zero();
   double diagonal = 0;
-  /// True if the vertices span less than a third of the parts that they are in, as on a head and
-  /// body in one piece. The diagonal is then 1.5 times that of the vertices' own box.
   bool is_section = false;
 };
 
-/// Box of the parts with one of some vertices, such as those that move or have a marker: what else
-/// is in the file does not count. `vertices` must not be empty. Throws std::out_of_range for one
-/// that is not there.
+/// Throws as subject_around().
 SubjectBox subject_box(const Positions& positions, const SurfaceParts& parts,
                        const std::vector<VertexIndex>& vertices);
+
+/// Largest distance between two vertices of the parts with one of some vertices: that of the mesh,
+/// bit by bit, where both are equal to rounding or there is no vertex.
+double diameter_of_parts(const Positions& positions, const Triangles& triangles,
+                         const std::vector<VertexIndex>& vertices);
 
 /// A third of the area of each vertex's triangles (N).
 Eigen::VectorXd vertex_areas(const Positions& positions, const Triangles& triangles);

@@ -9,6 +9,7 @@
 #include "toolkit/mesh/text.h"
 #include "toolkit/operations/command_terms.h"
 #include "toolkit/operations/json.h"
+#include "toolkit/operations/memory_use.h"
 #include "toolkit/operations/pipeline_parameters.h"
 #include "toolkit/operations/toolkit_operations.h"
 #include "toolkit/pipeline/distance_memory.h"
@@ -58,12 +59,38 @@ Eigen::VectorXd nearest(const SurfaceDistances& distances, const std::vector<int
   return result;
 }
 
+bool is_exact(const Invocation& invocation) {
+  return invocation.parameters.choice<GeodesicMethod>("geodesics") == GeodesicMethod::exact;
+}
+
+double memory_of_geodesic(const Invocation& invocation) {
+  // Factors, with their fill-in: measured on faces of 7 to 105 thousand vertices.
+  constexpr double kOfVertex = 3100;
+  const int vertices = invocation.sequence("mesh").vertices();
+  return is_exact(invocation) ? exact_distance_bytes(vertices, 1, 1) : kOfVertex * vertices;
+}
+
+/// Throws where there is nothing to measure, or not the memory for it.
+void check_mesh(const Invocation& invocation, const MeshSequence& mesh) {
+  const std::string& name = invocation.input("mesh").name;
+  if (mesh.diameter() == 0) {
+    throw IoError(name, "has no size: all vertices of its faces are at one place");
+  }
+  const double bytes = memory_of_geodesic(invocation), left = available_memory();
+  if (bytes <= left || !is_exact(invocation)) return;
+  throw MismatchError(name + ": exact distances along " + std::to_string(mesh.vertices()) +
+                      " vertices take about " + fixed(std::ceil(bytes / 1e6), 0) + " MB, and " +
+                      fixed(std::floor(left / 1e6), 0) +
+                      " MB are left on this machine; use --geodesics heat");
+}
+
 Outcome run_geodesic(const Invocation& invocation) {
   const MeshSequence& sequence = invocation.sequence("mesh");
   GeodesicCall call = geodesic_parameters().read(invocation.parameters);
   call.distances.threads = invocation.threads;
   call.distances.notes = warnings_of(invocation);
   const MeshSequence mesh = sequence.slice(0, 1).with_rest(sequence.frame(0));
+  check_mesh(invocation, mesh);
   const SupportRange range = in_command_terms(invocation.parameters, [&] {
     return support_range(call.d_min, call.d_max, mesh.diameter());
   });
@@ -90,15 +117,6 @@ Outcome run_geodesic(const Invocation& invocation) {
   outcome.summary = std::to_string(reached) + " of " + std::to_string(mesh.vertices()) +
                     " vertices reached, the farthest at " + readable(farthest) + '\n';
   return outcome;
-}
-
-double memory_of_geodesic(const Invocation& invocation) {
-  // Factors, with their fill-in: measured on faces of 7 to 105 thousand vertices.
-  constexpr double kOfVertex = 3100;
-  const GeodesicCall call = geodesic_parameters().read(invocation.parameters);
-  const MeshSequence& mesh = invocation.sequence("mesh");
-  const bool is_exact = call.distances.method == GeodesicMethod::exact;
-  return is_exact ? exact_distance_bytes(mesh.vertices(), 1, 1) : kOfVertex * mesh.vertices();
 }
 
 }  // namespace

@@ -139,8 +139,11 @@ BoundParameters<SolveOptions> regional_parameters() {
            "give each region blendshape weights of its own, found together on all triangles")
       .add("falloff", SolveOptions::kFalloff,
            "distance from the rim of the regions, or of what is painted 1, over which the motion "
-           "that vertices take fades out; with --per-region a region's weights do, over " +
-               to_text(SolveOptions::kUsualFalloff) + " unless it is given")
+           "that vertices take fades out; default none, " +
+               to_text(SolveOptions::kBareFalloff) +
+               " around regions of meshes without expressions; with --per-region a region's "
+               "weights do, default " +
+               to_text(SolveOptions::kUsualFalloff))
       .add(&SolveOptions::local, local);
   return list;
 }

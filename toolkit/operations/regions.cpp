@@ -129,7 +129,7 @@ Found found_for_transfer(const Invocation& invocation, const RegionsCall& call) 
   of_source.joint = joint_search({*matched}, of_solving);
   const Source source = prepare_source(sequence, of_source);
   const PlacedSource placed = placed_at(*matched, source, of_solving);
-  RegionSelector selector(*source.sequence, call.regions, call.analysis);
+  RegionSelector selector(source, call.regions, call.analysis);
   Found found{selector(placed.source, *matched, of_solving), source.head_motion};
   found.seconds = stopwatch.seconds();
   return found;

@@ -11,6 +11,7 @@
 #include "toolkit/mesh/text.h"
 #include "toolkit/pipeline/cutout.h"
 #include "toolkit/pipeline/distance_memory.h"
+#include "toolkit/pipeline/moving_parts.h"
 #include "toolkit/splocs/vertex_energies.h"
 
 namespace mimetra {
@@ -125,6 +126,13 @@ std::vector<bool> on_surface(std::vector<bool> inside, const SurfaceDistances& d
   return inside;
 }
 
+/// What is in both, each of which may be empty for all.
+std::vector<bool> both(std::vector<bool> inside, const std::vector<bool>& also) {
+  if (inside.empty() || also.empty()) return inside.empty() ? also : inside;
+  for (std::size_t v = 0; v < inside.size(); ++v) inside[v] = inside[v] && also[v];
+  return inside;
+}
+
 /// Components whose centres are inside; one that moves nothing there has none.
 Components centered_inside(Components components, const std::vector<bool>& inside) {
   if (inside.empty()) return components;
@@ -219,10 +227,10 @@ SupportRange support_range(const Length& d_min, const Length& d_max, double diam
                                               readable(range.d_max));
 }
 
-int component_count(const FrameSource& sequence, const AnalysisOptions& options) {
+int component_count(const FrameSource& sequence, double size, const AnalysisOptions& options) {
   const int asked = options.decomposition.count;
   if (options.compatibility != Compatibility::none) return asked;
-  const double reach = options.d_min.in(sequence.diameter());
+  const double reach = options.d_min.in(size);
   const double disc = std::numbers::pi * reach * reach;
   const SurfaceParts parts = surface_parts(sequence.rest(), sequence.triangles());
   double discs = 0;
@@ -249,10 +257,16 @@ Analysis analyse(const Source& source, const AnalysisOptions& options) {
   SurfaceDistances distances =
       distances_along(work.rest(), work.triangles(), distance_options(options));
   const bool reference = options.compatibility != Compatibility::none;
+  const MovingParts moving =
+      moving_parts(*source.given, work.rest(), reference ? Notes() : options.notes);
+  const double size = moving.diameter;
   AnalysisOptions of_surface = options;
-  if (!reference) of_surface.inside = on_surface(options.inside, distances, work.vertices());
+  if (!reference) {
+    of_surface.inside =
+        on_surface(both(options.inside, moving.vertices), distances, work.vertices());
+  }
   check_inside(of_surface.inside, work.vertices());
-  decomposition.count = component_count(work, of_surface);
+  decomposition.count = component_count(work, size, of_surface);
   if (decomposition.count < options.decomposition.count) {
     note(options.notes, "K = " + std::to_string(options.decomposition.count) + ": " +
                             std::to_string(work.frames()) + " frames tell at most " +
@@ -260,7 +274,7 @@ Analysis analyse(const Source& source, const AnalysisOptions& options) {
                             " components of this surface apart; so many are taken");
   }
   note_parting(work, options);
-  const double unit = reference ? largest_frame_extent(*source.given) : work.diameter();
+  const double unit = reference ? largest_frame_extent(*source.given) : size;
   const SupportRange range = support_range(options.d_min, options.d_max, unit);
   decomposition.d_min = range.d_min;
   decomposition.d_max = range.d_max;
@@ -273,7 +287,7 @@ Analysis analyse(const Source& source, const AnalysisOptions& options) {
     decomposition.returned = ReturnedIterate::last;
   } else {
     decomposition.parts =
-        part_weights(work.rest(), work.triangles(), options.inside, options.distances.welding);
+        part_weights(work.rest(), work.triangles(), of_surface.inside, options.distances.welding);
   }
   decomposition.distances = distances;
   decomposition.threads = options.threads;
@@ -288,8 +302,8 @@ Analysis analyse(const Source& source, const AnalysisOptions& options) {
     if (options.inside.empty() || !text.starts_with("nothing moves")) throw;
     throw MismatchError("where regions may lie " + text);
   }
-  return {std::move(components), std::move(distances), options.inside, stopwatch.seconds(),
-          options.distances.welding};
+  return {std::move(components), std::move(distances),      options.inside,
+          stopwatch.seconds(),   options.distances.welding, size};
 }
 
 void check_components(const GivenComponents& given, const FrameSource& sequence) {
@@ -318,8 +332,12 @@ Analysis analysis_of(const GivenComponents& given, const FrameSource& sequence,
   SurfaceDistances distances =
       distances_along(components.rest, components.triangles, distance_options(options));
   check_inside(options.inside, components.vertices());
-  return {centered_inside(components, options.inside), std::move(distances), options.inside, 0,
-          options.distances.welding};
+  return {centered_inside(components, options.inside),
+          std::move(distances),
+          options.inside,
+          0,
+          options.distances.welding,
+          moving_parts(sequence, components.rest, options.notes).diameter};
 }
 
 }  // namespace mimetra

@@ -56,7 +56,7 @@ struct SupportRange {
   double d_max;
 };
 
-/// For a mesh of this diameter(). Throws OptionError (Topic::support_range) unless d_min is below
+/// Of what has this diameter. Throws OptionError (Topic::support_range) unless d_min is below
 /// d_max.
 SupportRange support_range(const Length& d_min, const Length& d_max, double diameter);
 
@@ -138,6 +138,8 @@ struct Analysis {
   std::vector<bool> inside = {};
   double seconds = 0;
   Welding welding = Welding::exact;
+  /// Diameter of the moving_parts(), of which lengths are shares.
+  double size = 0;
 };
 
 /// The source's frames with the rest pose that analyse() decomposes them about.
@@ -159,12 +161,13 @@ PartWeights part_weights(const Positions& rest, const Triangles& triangles,
 /// How many of the components asked for are made. Within d_min of its centre a component may move
 /// everything, so that F frames tell F components apart there; of the surface there are so many
 /// such discs. More components would die, or repeat others. A compatibility takes what is asked
-/// for.
-int component_count(const FrameSource& sequence, const AnalysisOptions& options);
+/// for. `size` is what d_min is a share of.
+int component_count(const FrameSource& sequence, double size, const AnalysisOptions& options);
 
 /// Decomposes a source, all frames of which are in memory meanwhile; but for a compatibility that
 /// decides otherwise, its parts count by part_weights(). Notes vertices that are welded at rest
-/// and part later, and where fewer components are made than were asked for. Throws OptionError
+/// and part later, where fewer components are made than were asked for, and where what moves is a
+/// section of a part. Throws OptionError
 /// (Topic::component_count, Topic::support_range, Topic::no_vertex_inside) and what decompose()
 /// throws.
 Analysis analyse(const Source& source, const AnalysisOptions& options = {});

@@ -129,8 +129,7 @@ class Rows {
   void add_given(const GivenRegions& given) {
     check_regions(given, *source_.sequence);
     options_.solving.progress = next_part(0, 1);
-    RegionCompleter completion(source_.sequence->rest(), source_.sequence->triangles(),
-                               options_.regions, options_.analysis);
+    RegionCompleter completion(source_, options_.regions, options_.analysis);
     const Regions regions = completion(given.regions, target_, options_.solving);
     add(evaluate_by(regions, full_, source_, target_, options_.solving));
   }
@@ -147,7 +146,7 @@ class Rows {
   /// A row of regions that are chosen for the transfer.
   void add_transfer(const SelectionBound& bound) {
     const Stopwatch stopwatch;
-    if (!selector_) selector_.emplace(*source_.sequence, options_.regions, options_.analysis);
+    if (!selector_) selector_.emplace(source_, options_.regions, options_.analysis);
     const PlacedSource placed = placed_at(target_, source_, options_.solving);
     options_.solving.progress = next_part(0, kAnalysisShare);
     const Regions regions =

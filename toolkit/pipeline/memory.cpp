@@ -46,7 +46,7 @@ double stored_bytes(const FrameSource& sequence) {
 
 DecompositionPlan analysis_plan(const FrameSource& sequence, const AnalysisOptions& options) {
   DecompositionOptions decomposition = options.decomposition;
-  decomposition.count = component_count(sequence, options);
+  decomposition.count = component_count(sequence, sequence.diameter(), options);
   decomposition.threads = options.threads;
   const Reduction reduction(sequence.vertices(), options.threads, options.ranks);
   const double distances = reserved_for_distances(decomposition, options.distances.method,

@@ -6,7 +6,7 @@
 #include <Eigen/SparseCholesky>
 #include <Eigen/SparseCore>
 
-#include "toolkit/mesh/diameter.h"
+#include "toolkit/mesh/surface_parts.h"
 #include "toolkit/mesh/text.h"
 #include "toolkit/regions/falloff.h"
 #include "toolkit/transfer/following_parts.h"
@@ -111,6 +111,17 @@ void check_full_weight(const std::string& name, const Eigen::VectorXd& weights) 
                         readable(weights.maxCoeff()));
 }
 
+/// Regions of a mesh without expressions do not end at once: what lies outside would be torn from
+/// them, or held where it holds the face back.
+std::optional<Length> falloff_of(bool is_painted, const Target& target,
+                                 const SolveOptions& options) {
+  if (options.falloff || is_painted || options.vertex.outside == Outside::identity ||
+      target.model.get().expressions().size() > 0) {
+    return options.falloff;
+  }
+  return SolveOptions::kBareFalloff;
+}
+
 }  // namespace
 
 void check_border(const GivenRegions* given, const Target& target, const SolveOptions& options) {
@@ -146,7 +157,8 @@ Eigen::VectorXd carried_weights(const Eigen::VectorXd& weights, const Pairing& p
 Selection bordered_selection(const Regions& regions, const Target& target,
                              const SolveOptions& options) {
   Selection selection = selection_of(regions, target);
-  const bool fades = options.falloff && !options.per_region;
+  const std::optional<Length> falloff = falloff_of(regions.weights.size() > 0, target, options);
+  const bool fades = falloff && !options.per_region;
   if (regions.weights.size() == 0 && !fades) return selection;
   const BlendshapeModel& model = target.model;
   const Weld weld = weld_of(model.neutral(), options.distances.welding);
@@ -165,18 +177,25 @@ Selection bordered_selection(const Regions& regions, const Target& target,
   if (fades) {
     check_option(options, SolveOptions::kFalloff);
     check_full_weight(target.name, weights);
+    std::vector<VertexIndex> inside;
+    for (VertexIndex v = 0; v < weights.size(); ++v) {
+      if (weights[v] > 0) inside.push_back(v);
+    }
     DistanceOptions of_distances = options.distances;
     of_distances.threads = options.threads;
     const SurfaceDistances distances =
         distances_along(model.neutral(), model.triangles(), of_distances);
     weights = fading_out(weights, model.triangles(), weld,
-                         options.falloff->in(diameter(model.neutral(), model.triangles())),
+                         falloff->in(diameter_of_parts(model.neutral(), model.triangles(), inside)),
                          [&distances](std::span<const VertexIndex> sources) {
                            return distances.from_nearest(sources);
                          });
   }
   if (target.pairing) {
     weights = FollowingParts(model.neutral(), model.triangles(), weld, *target.pairing)
+                  .with_surface(std::move(weights));
+  } else if (fades) {
+    weights = FollowingParts(model.neutral(), model.triangles(), weld, weights)
                   .with_surface(std::move(weights));
   }
   selection.triangles = triangles_in(weights, model.triangles());

@@ -22,8 +22,9 @@ Eigen::VectorXd carried_weights(const Eigen::VectorXd& weights, const Pairing& p
 
 /// What a transfer by regions of the source looks at on a target: selection_of(), with the weights
 /// that the regions have there, faded out around the vertices of weight 1 over the falloff of the
-/// options; FollowingParts of a paired target take the weight of the surface around them. Without
-/// both, and with weights of each region, whose falloff is their own, the border is hard.
+/// options; FollowingParts, of a target with the source's faces where it fades out, take the weight
+/// of the surface around them. Without both, and with weights of each region, whose falloff is
+/// their own, the border is hard.
 ///
 /// Throws OptionError (Topic::no_full_weight) where nothing has the weight 1 that could fade out,
 /// MismatchError where no vertex of the target has a weight, std::invalid_argument for a falloff

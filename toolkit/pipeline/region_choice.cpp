@@ -2,7 +2,6 @@
 
 #include <set>
 
-#include "toolkit/mesh/diameter.h"
 #include "toolkit/mesh/rims.h"
 #include "toolkit/mesh/text.h"
 
@@ -66,8 +65,7 @@ void note_large_regions(const Regions& regions, const RegionChoiceOptions& optio
        std::to_string(count) + " of " + std::to_string(regions.regions.size()) +
            " regions hold more than half of the mesh each: their radius is " +
            readable(options.radius.in(size)) + ", " + percent(options.radius.value) +
-           " of the mesh's diameter, " + readable(size) +
-           ", which parts beside the face can make large",
+           " of the diameter of what moves, " + readable(size),
        Topic::large_regions);
 }
 
@@ -85,8 +83,7 @@ void refuse_bound(double share, const std::string& reason) {
 Regions choose_regions(const Analysis& analysis, const RegionChoiceOptions& options) {
   check_options(options);
   RegionOptions of_search = options.regions;
-  const double size = diameter(analysis.components.rest, analysis.components.triangles);
-  of_search.radius = options.radius.in(size);
+  of_search.radius = options.radius.in(analysis.size);
   of_search.distances = analysis.distances;
   of_search.inside = analysis.inside;
   of_search.no_centers = rims_to_avoid(analysis, options);
@@ -106,7 +103,7 @@ Regions choose_regions(const Analysis& analysis, const RegionChoiceOptions& opti
   }
   for (const std::string& text : regions.notes) note(options.notes, text);
   note_small_parts(regions, options.notes);
-  note_large_regions(regions, options, size, analysis.components.triangles);
+  note_large_regions(regions, options, analysis.size, analysis.components.triangles);
   return regions;
 }
 

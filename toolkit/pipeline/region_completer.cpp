@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <utility>
 
-#include "toolkit/mesh/diameter.h"
 #include "toolkit/mesh/near_tie.h"
 #include "toolkit/mesh/text.h"
+#include "toolkit/pipeline/moving_parts.h"
 
 namespace mimetra {
 
@@ -37,12 +37,13 @@ std::vector<std::string> reasons(const CompletedRegions& completed) {
 
 }  // namespace
 
-RegionCompleter::RegionCompleter(Positions rest, Triangles triangles,
-                                 const RegionChoiceOptions& options,
+RegionCompleter::RegionCompleter(const Source& source, const RegionChoiceOptions& options,
                                  const AnalysisOptions& analysis)
-    : rest_(std::move(rest)),
-      triangles_(std::move(triangles)),
+    : rest_(source.sequence->rest()),
+      triangles_(source.sequence->triangles()),
       options_(options),
+      radius_(kAddedRadius *
+              options.radius.in(moving_parts(*source.given, rest_, analysis.notes).diameter)),
       inside_(analysis.inside) {
   DistanceOptions distances = analysis.distances;
   distances.threads = analysis.threads;
@@ -54,6 +55,7 @@ RegionCompleter::RegionCompleter(const Analysis& analysis, const RegionChoiceOpt
     : rest_(analysis.components.rest),
       triangles_(analysis.components.triangles),
       options_(options),
+      radius_(kAddedRadius * options.radius.in(analysis.size)),
       inside_(analysis.inside),
       distances_([distances = analysis.distances](std::span<const VertexIndex> sources) {
         return distances.once(sources);
@@ -90,8 +92,7 @@ Regions RegionCompleter::operator()(const Regions& regions, const Target& target
   if (is_soft || options.per_region || solves_for_vertices(target.model, options.space))
     return regions;
   if (!search_) {
-    search_.emplace(rest_, triangles_, distances_,
-                    kAddedRadius * options_.radius.in(diameter(rest_, triangles_)), inside_);
+    search_.emplace(rest_, triangles_, distances_, radius_, inside_);
   }
   CompletionOptions of_completion = options_.completion;
   of_completion.edges = options.edges;

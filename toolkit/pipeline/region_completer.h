@@ -11,9 +11,9 @@ namespace mimetra {
 /// they see every expression of a target.
 class RegionCompleter {
  public:
-  /// `rest` N x 3 and `triangles` of the source. Distances along them are made, as the options of
-  /// the analysis say, when they are needed first.
-  RegionCompleter(Positions rest, Triangles triangles, const RegionChoiceOptions& options,
+  /// Distances along the source's rest pose are made, as the options of the analysis say, when they
+  /// are needed first.
+  RegionCompleter(const Source& source, const RegionChoiceOptions& options,
                   const AnalysisOptions& analysis);
   RegionCompleter(const Analysis& analysis, const RegionChoiceOptions& options);
 
@@ -34,6 +34,7 @@ class RegionCompleter {
   Positions rest_;
   Triangles triangles_;
   RegionChoiceOptions options_;
+  double radius_;
   std::vector<bool> inside_;  // where discs may lie, or empty
   DistanceFunction distances_;
   std::optional<DiscSearch> search_;

@@ -5,8 +5,8 @@
 #include <memory>
 #include <utility>
 
-#include "toolkit/mesh/diameter.h"
 #include "toolkit/mesh/text.h"
+#include "toolkit/pipeline/moving_parts.h"
 #include "toolkit/regions/farthest_discs.h"
 
 namespace mimetra {
@@ -60,13 +60,14 @@ void check_selection(const Target& target, const RegionChoiceOptions& regions, S
                         "transfer by what they tell of expressions");
 }
 
-RegionSelector::RegionSelector(const FrameSource& source, const RegionChoiceOptions& options,
+RegionSelector::RegionSelector(const Source& source, const RegionChoiceOptions& options,
                                const AnalysisOptions& analysis)
-    : rest_(source.rest()),
-      triangles_(source.triangles()),
+    : rest_(source.sequence->rest()),
+      triangles_(source.sequence->triangles()),
       options_(options),
       analysis_(analysis),
-      radius_(kDiscRadius * options.radius.in(diameter(rest_, triangles_))) {
+      radius_(kDiscRadius *
+              options.radius.in(moving_parts(*source.given, rest_, analysis.notes).diameter)) {
   check_options(options);
   options_.select = Selector::transfer;
 }

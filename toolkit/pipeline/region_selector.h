@@ -22,7 +22,7 @@ class RegionSelector {
 
   /// `source` gives the surface along which distances run, as the options of the analysis say; they
   /// are made when they are needed first. Throws std::invalid_argument for options out of range.
-  RegionSelector(const FrameSource& source, const RegionChoiceOptions& options,
+  RegionSelector(const Source& source, const RegionChoiceOptions& options,
                  const AnalysisOptions& analysis);
 
   /// The regions for a target, in the order in which they were chosen, with the share of the

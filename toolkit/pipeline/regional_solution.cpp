@@ -1,6 +1,6 @@
 #include "toolkit/pipeline/regional_solution.h"
 
-#include "toolkit/mesh/diameter.h"
+#include "toolkit/mesh/surface_parts.h"
 #include "toolkit/mesh/text.h"
 #include "toolkit/regions/partition.h"
 
@@ -14,11 +14,16 @@ RegionShares shares_on(const BlendshapeModel& model,
                        const RegionalOptions& options) {
   const SurfaceDistances distances =
       distances_along(model.neutral(), model.triangles(), options.distances);
-  return partition_of_unity(model.triangles(), distances.weld(), regions,
-                            options.falloff.in(diameter(model.neutral(), model.triangles())),
-                            [&distances](std::span<const VertexIndex> sources) {
-                              return distances.from_nearest(sources);
-                            });
+  std::vector<VertexIndex> inside;
+  for (const std::vector<VertexIndex>& region : regions) {
+    inside.insert(inside.end(), region.begin(), region.end());
+  }
+  return partition_of_unity(
+      model.triangles(), distances.weld(), regions,
+      options.falloff.in(diameter_of_parts(model.neutral(), model.triangles(), inside)),
+      [&distances](std::span<const VertexIndex> sources) {
+        return distances.from_nearest(sources);
+      });
 }
 
 void note_empty_regions(const std::vector<std::vector<VertexIndex>>& regions,

@@ -5,6 +5,7 @@
 
 #include "toolkit/correspondence/renumbered_frames.h"
 #include "toolkit/mesh/stopwatch.h"
+#include "toolkit/pipeline/moving_parts.h"
 #include "toolkit/regions/carried_regions.h"
 
 namespace mimetra {
@@ -53,7 +54,8 @@ SimplifiedRegions regions_by_simplified(const Source& source, const SimplifyOpti
   of_kept_mesh.progress = part_of(analysis.progress, kSimplifying, kAnalysed);
   const FrameSource& whole = *source.sequence;
   RegionChoiceOptions of_choice = choice;
-  of_choice.radius = Length::of(choice.radius.in(whole.diameter()));
+  const double size = moving_parts(*source.given, whole.rest()).diameter;
+  of_choice.radius = Length::of(choice.radius.in(size));
   of_choice.regions.coverage.reset();  // of the energy on all vertices
   const Regions found = choose_regions(analyse(on_kept, of_kept_mesh), of_choice);
   DistanceOptions of_distances = analysis.distances;
@@ -73,7 +75,7 @@ SimplifiedRegions regions_by_simplified(const Source& source, const SimplifyOpti
       note(choice.notes, result.regions.notes[i]);
     }
   }
-  note_large_regions(result.regions, choice, whole.diameter(), whole.triangles());
+  note_large_regions(result.regions, choice, size, whole.triangles());
   result.seconds = stopwatch.seconds();
   return result;
 }

@@ -104,7 +104,7 @@ void check_anchor(const VertexTransferOptions& options, const Target& target,
   if (is_vertex && target.pairing) {
     const FollowingParts following(model.neutral(), model.triangles(), Weld::exact(model.neutral()),
                                    *target.pairing);
-    if (following.without_partner()[options.anchor_vertex]) {
+    if (following.without_motion()[options.anchor_vertex]) {
       throw OptionError(Topic::anchor_vertex,
                         vertex +
                             " is on a part without a partner in the source; name a vertex of the "

@@ -39,7 +39,7 @@ Analysis analysis_for(const Source& source, const TransferOptions& options) {
   of_analysis.notes = options.notes;
   of_analysis.progress = part_of(options.progress, kSourceShare, kRegionShare);
   if (const auto* given = std::get_if<GivenComponents>(&options.given)) {
-    return analysis_of(*given, *source.sequence, of_analysis);
+    return analysis_of(*given, *source.given, of_analysis);
   }
   return analyse(source, of_analysis);
 }
@@ -55,12 +55,11 @@ Choice choose(const Source& source, const TransferOptions& options) {
   of_analysis.notes = options.notes;
   if (const auto* given = std::get_if<GivenRegions>(&options.given)) {
     check_regions(*given, sequence);
-    return {given->regions,
-            RegionCompleter(sequence.rest(), sequence.triangles(), of_regions, of_analysis)};
+    return {given->regions, RegionCompleter(source, of_regions, of_analysis)};
   }
   if (options.regions.select == Selector::transfer) {
     Choice choice;
-    choice.selector.emplace(sequence, of_regions, of_analysis);
+    choice.selector.emplace(source, of_regions, of_analysis);
     return choice;
   }
   const Stopwatch stopwatch;

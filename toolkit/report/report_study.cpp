@@ -91,7 +91,7 @@ class RunSteps {
     Found found = as_given({});
     found.regions = in_command_terms(call_.parameters, [&] {
       const PlacedSource placed = placed_at(target, source_, of_solving);
-      RegionSelector selector(*source_.sequence, options, analysis_options({}));
+      RegionSelector selector(source_, options, analysis_options({}));
       return selector(placed.source, target, of_solving);
     });
     found.seconds = stopwatch.seconds();
@@ -184,9 +184,7 @@ class RunSteps {
   }
 
   Found as_given(const Regions& regions) const {
-    const FrameSource& source = *source_.sequence;
-    return {regions, RegionCompleter(source.rest(), source.triangles(), region_options(),
-                                     analysis_options({}))};
+    return {regions, RegionCompleter(source_, region_options(), analysis_options({}))};
   }
 
   Found found_by(Analysis analysis, double seconds) const {

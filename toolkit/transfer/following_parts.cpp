@@ -92,32 +92,52 @@ bool lies_against(const std::vector<VertexIndex>& part, const Positions& rest,
 
 FollowingParts::FollowingParts(Positions rest, const Triangles& triangles, const Weld& weld,
                                const Pairing& pairing)
-    : rest_(std::move(rest)), without_partner_(rest_.rows(), false) {
+    : rest_(std::move(rest)), without_motion_(rest_.rows(), false) {
+  std::vector<bool> moves;
+  for (int t = 0; t < triangles.rows(); ++t) moves.push_back(pairing.triangles().has_partner(t));
+  const std::vector<VertexIndex> carried = pairing.carried_vertices();
+  if (carried.size() >= 3) find(triangles, weld, moves, carried);
+}
+
+FollowingParts::FollowingParts(Positions rest, const Triangles& triangles, const Weld& weld,
+                               const Eigen::VectorXd& weights)
+    : rest_(std::move(rest)), without_motion_(rest_.rows(), false) {
+  std::vector<bool> moves;
+  for (const auto& corners : triangles.rowwise()) {
+    moves.push_back((weights(corners).array() > 0).any());
+  }
+  find(triangles, weld, moves, {});
+}
+
+/// By the triangles that move (M). What parts follow are the vertices `carried`, or, where none are
+/// named, all of the parts that move.
+void FollowingParts::find(const Triangles& triangles, const Weld& weld,
+                          const std::vector<bool>& moves, std::vector<VertexIndex> carried) {
   const Triangles welded = weld.welded(triangles);
   const ConnectedComponents components =
       connected_components(static_cast<int>(rest_.rows()), welded);
   const auto part_of = [&](VertexIndex v) { return components.of_vertex[weld.representative[v]]; };
-  std::vector<bool> has_partner(components.count, false), has_triangle(components.count, false);
+  std::vector<bool> part_moves(components.count, false), has_triangle(components.count, false);
   for (int t = 0; t < triangles.rows(); ++t) {
     has_triangle[part_of(triangles(t, 0))] = true;
-    if (pairing.triangles().has_partner(t)) has_partner[part_of(triangles(t, 0))] = true;
+    if (moves[t]) part_moves[part_of(triangles(t, 0))] = true;
   }
-  const std::vector<VertexIndex> carried = pairing.carried_vertices();
-  if (carried.size() < 3) return;
+  const bool takes_all = carried.empty();
   std::map<int, std::vector<VertexIndex>> others;
   for (VertexIndex v = 0; v < rest_.rows(); ++v) {
     const int part = part_of(v);
-    if (has_partner[part] || !has_triangle[part]) continue;
-    without_partner_[v] = true;
+    if (takes_all && part_moves[part]) carried.push_back(v);
+    if (part_moves[part] || !has_triangle[part]) continue;
+    without_motion_[v] = true;
     others[part].push_back(v);
   }
-  if (others.empty()) return;
+  if (others.empty() || carried.empty()) return;
   size_ = box_diagonal(rest_(carried, Eigen::all));
-  std::vector<int> paired;
+  std::vector<int> moving;
   for (int t = 0; t < welded.rows(); ++t) {
-    if (has_partner[part_of(triangles(t, 0))]) paired.push_back(t);
+    if (part_moves[part_of(triangles(t, 0))]) moving.push_back(t);
   }
-  const ClosestSurface surface(rest_, with_area(rest_, welded(paired, Eigen::all)));
+  const ClosestSurface surface(rest_, with_area(rest_, welded(moving, Eigen::all)));
   for (auto& [number, vertices] : others) {
     if (!is_enclosed(vertices, rest_, surface) &&
         !lies_against(vertices, rest_, surface, kTouchingShare * size_)) {
@@ -181,8 +201,8 @@ void FollowingParts::place(Eigen::Map<Positions> pose) const {
 }
 
 Eigen::VectorXd FollowingParts::with_surface(Eigen::VectorXd weights) const {
-  for (std::size_t v = 0; v < without_partner_.size(); ++v) {
-    if (without_partner_[v]) weights[static_cast<Eigen::Index>(v)] = 0;
+  for (std::size_t v = 0; v < without_motion_.size(); ++v) {
+    if (without_motion_[v]) weights[static_cast<Eigen::Index>(v)] = 0;
   }
   for (const Part& part : parts_) {
     const Eigen::VectorXd around = weights(part.around);

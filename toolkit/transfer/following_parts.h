@@ -8,20 +8,21 @@
 
 namespace mimetra {
 
-/// Connected parts of a target none of whose triangles has a partner in the source.
+/// Connected parts of a target that no motion is solved for: none of their triangles has a partner
+/// in the source, or none of their vertices a share of the motion.
 ///
-/// Parts that the paired surface encloses (eyes, teeth, a tongue) or that lie against it (lashes,
-/// brows, a beard) follow it: each moves rigidly with the surface around it. All others, such as
-/// hair, glasses, clothes and a body, stay where they are.
+/// Parts that the surface which moves encloses (eyes, teeth, a tongue) or that lie against it
+/// (lashes, brows, a beard) follow it: each moves rigidly with the surface around it. All others,
+/// such as hair, glasses, clothes and a body, stay where they are.
 ///
 /// A part is enclosed if, averaged over its vertices, six of ten directions end on the surface of
-/// the paired parts, or three of ten on its back. It lies against that surface if no vertex is
-/// farther from it than 2 % of the box diagonal of the vertices with carriers. On published heads
-/// and avatars, eyes, teeth and tongues meet the surface in 71 to 100 % of the directions, glasses
-/// in 41, hair in 21, bodies and clothes in up to 6.
+/// the parts that move, or three of ten on its back. It lies against that surface if no vertex is
+/// farther from it than 2 % of the box diagonal of their vertices (with carriers). On published
+/// heads and avatars, eyes, teeth and tongues meet the surface in 71 to 100 % of the directions,
+/// glasses in 41, hair in 21, bodies and clothes in up to 6.
 ///
-/// The motion is the rigid one that fits best what is around the part, the vertices with carriers
-/// that are nearest to up to 200 of its own. Those that the motion fits already count most,
+/// The motion is the rigid one that fits best what is around the part, those of these vertices that
+/// are nearest to up to 200 of its own. Those that the motion fits already count most,
 /// starting with no motion: lids that close over an eye do not turn it, a jaw takes its teeth
 /// along.
 class FollowingParts {
@@ -29,9 +30,12 @@ class FollowingParts {
   /// `rest` (N x 3) and `triangles` of the target.
   FollowingParts(Positions rest, const Triangles& triangles, const Weld& weld,
                  const Pairing& pairing);
+  /// Where the target has the source's faces: parts of which all weights (N) are 0.
+  FollowingParts(Positions rest, const Triangles& triangles, const Weld& weld,
+                 const Eigen::VectorXd& weights);
 
-  /// True for vertices of parts without a partner, whether they follow or stay (N).
-  const std::vector<bool>& without_partner() const { return without_partner_; }
+  /// True for vertices of such parts, whether they follow or stay (N).
+  const std::vector<bool>& without_motion() const { return without_motion_; }
   /// Vertices of each part that follows, ascending.
   std::vector<std::vector<VertexIndex>> parts() const;
   /// How far a vertex of each of parts() is from its rest position at most, over poses (F x 3N).
@@ -49,10 +53,12 @@ class FollowingParts {
     Eigen::VectorXd counts;  // how many vertices of the part each of `around` is near
   };
 
+  void find(const Triangles& triangles, const Weld& weld, const std::vector<bool>& moves,
+            std::vector<VertexIndex> carried);
   void look_around(Part& part, const std::vector<VertexIndex>& carried) const;
 
   Positions rest_;
-  std::vector<bool> without_partner_;
+  std::vector<bool> without_motion_;
   std::vector<Part> parts_;
   double size_ = 0;
 };

@@ -5,7 +5,7 @@
 
 #include <Eigen/Geometry>
 
-#include "toolkit/mesh/diameter.h"
+#include "toolkit/mesh/surface_parts.h"
 #include "toolkit/transfer/deformation_gradients.h"
 #include "toolkit/transfer/edges.h"
 #include "toolkit/transfer/gradient_system.h"
@@ -36,7 +36,11 @@ SoftBorder::SoftBorder(const Positions& rest, const Triangles& triangles,
       border_(Eigen::VectorXd::Zero(triangles.rows())),
       sizes_(Eigen::VectorXd::Zero(triangles.rows())),
       counts_(Eigen::VectorXd::Zero(triangles.rows())) {
-  const double steepest = kBorderSlope / diameter(rest, triangles);
+  std::vector<VertexIndex> moving;
+  for (VertexIndex v = 0; v < weights.size(); ++v) {
+    if (weights[v] > 0) moving.push_back(v);
+  }
+  const double steepest = kBorderSlope / diameter_of_parts(rest, triangles, moving);
   double slopes = 0, squares = 0;
   for (int t = 0; t < triangles.rows(); ++t) {
     counts_[t] = target_share(quality_of(rest, triangles, t));
@@ -58,6 +62,11 @@ SoftBorder::SoftBorder(const Positions& rest, const Triangles& triangles,
 
 double SoftBorder::stiffness(int triangle) const {
   return std::pow(kSlack, border_[triangle]);
+}
+
+Eigen::RowVector3d SoftBorder::bearable(const Eigen::RowVector3d& shift) const {
+  if (width_ == 0) return Eigen::RowVector3d::Zero();
+  return shift / std::hypot(1, shift.norm() / (kMostShift * width_));
 }
 
 double SoftBorder::smoothness(int triangle, int neighbor) const {

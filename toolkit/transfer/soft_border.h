@@ -31,10 +31,16 @@ class SoftBorder {
   /// Of squared differences of the displacement gradients of two neighbours; 0 where neither is of
   /// the border.
   double smoothness(int triangle, int neighbor) const;
+  /// How far all that is inside may be moved on (3) where `shift` would bring it to its place:
+  /// about as far if that is little for the border, never by more than kMostShift of its width.
+  Eigen::RowVector3d bearable(const Eigen::RowVector3d& shift) const;
 
   /// Measured on real faces: less lets the region's own gradients win, but bends the border more.
   static constexpr double kSlack = 0.03;
   static constexpr double kBend = 0.55;
+  /// The border holds whole faces back by less than this, and lets them go; around one disc on a
+  /// chin, which a jaw moves by half of its width, it would fold.
+  static constexpr double kMostShift = 0.1;
 
  private:
   Eigen::VectorXd shares_;

@@ -135,8 +135,9 @@ struct VertexTransfer::State {
   std::vector<SmoothEdge> smooth_edges() const;
   void factor();
   void prepare_pull(const DeformationGradients& gradients);
-  Row shift_of(const FloatingPiece& piece, const Eigen::Ref<const Frames>& frames,
+  Row shift_of(const std::vector<VertexIndex>& piece, const Eigen::Ref<const Frames>& frames,
                const Rows& displacement) const;
+  void undrift(const Eigen::Ref<const Frames>& frames, Rows& displacement) const;
   Row motion_of(const std::vector<Pairing::Carrier>& carriers,
                 const Eigen::Ref<const Frames>& frames) const;
   Frames solve(const Eigen::Map<const Frames>& frames) const;
@@ -189,7 +190,7 @@ VertexTransfer::State::State(const Positions& source, const Positions& target,
   weigh();
   fix();
   unknowns = number_unknowns(triangles, weights, fixed, options.weld);
-  if (options.anchor && unknowns.some_held) {
+  if (options.anchor && !unknowns.held.empty()) {
     throw std::invalid_argument(
         "an anchor was given, but fixed vertices hold the mesh in place already; let the vertices "
         "outside the regions move (Outside::identity) or select all triangles");
@@ -211,7 +212,7 @@ std::vector<int> VertexTransfer::State::uncollapsed(std::vector<int> selected) c
 
 /// By what is known of a triangle, whatever its shape.
 double VertexTransfer::State::wanted_weight(int triangle) const {
-  if (following && following->without_partner()[triangles(triangle, 0)]) return 0;
+  if (following && following->without_motion()[triangles(triangle, 0)]) return 0;
   if (!in_l[triangle]) return options.outside == Outside::identity ? options.outside_weight : 0;
   const bool is_shown = !pairing || pairing->triangles().has_partner(triangle);
   const double weight = is_shown ? 1 : options.outside_weight;
@@ -356,22 +357,22 @@ void VertexTransfer::State::prepare_pull(const DeformationGradients& gradients) 
                vectors, unknowns.of_vertex, crossings);
 }
 
-/// Where its anchor wants a floating piece whose pin stayed in place. Vertices that take a share of
-/// the motion take it of the source's, too.
-Row VertexTransfer::State::shift_of(const FloatingPiece& piece,
+/// From where the vertices of a piece are to where its anchor wants them, on average over them.
+/// Vertices that take a share of the motion take it of the source's, too.
+Row VertexTransfer::State::shift_of(const std::vector<VertexIndex>& piece,
                                     const Eigen::Ref<const Frames>& frames,
                                     const Rows& displacement) const {
   Row shift = Row::Zero();
   const Anchor anchor = options.anchor.value_or(Anchor::source_motion);
   if (anchor == Anchor::vertex) {
-    const bool holds_it = std::ranges::binary_search(piece.vertices, options.anchor_vertex);
+    const bool holds_it = std::ranges::binary_search(piece, options.anchor_vertex);
     const int row = unknowns.of_vertex[options.anchor_vertex];
     if (holds_it && row >= 0) shift = -displacement.row(row);
     return shift;
   }
   std::vector<Pairing::Carrier> carriers;
   std::size_t carried = 0;
-  for (const VertexIndex v : piece.vertices) {
+  for (const VertexIndex v : piece) {
     const double share = border ? options.weights[v] : 1;
     if (anchor == Anchor::source_motion && pairing) {
       const auto more = pairing->carriers(v);
@@ -385,6 +386,30 @@ Row VertexTransfer::State::shift_of(const FloatingPiece& piece,
   }
   if (anchor == Anchor::source_motion) shift += motion_of(carriers, frames);
   return carried > 0 ? Row(shift / static_cast<double>(carried)) : Row(Row::Zero());
+}
+
+/// Fixed vertices around a soft border would hold back what is inside: it moves on, as far as the
+/// border bears it, until each piece is, on average, where its share of the source's motion brings
+/// it.
+void VertexTransfer::State::undrift(const Eigen::Ref<const Frames>& frames,
+                                    Rows& displacement) const {
+  for (const std::vector<VertexIndex>& piece : unknowns.held) {
+    double share = 0, carried = 0;
+    for (const VertexIndex v : piece) {
+      if (pairing && pairing->carriers(v).empty()) continue;
+      share += options.weights[v];
+      ++carried;
+    }
+    if (carried == 0) continue;
+    Row shift = shift_of(piece, frames, displacement) * (carried / share);
+    for (int lane = 0; lane < kLanes; ++lane) {
+      auto of_frame = shift(Eigen::seqN(lane, Eigen::fix<3>, Eigen::fix<kLanes>));
+      of_frame = border->bearable(of_frame);
+    }
+    for (const VertexIndex v : piece) {
+      displacement.row(unknowns.of_vertex[v]) += options.weights[v] * shift;
+    }
+  }
 }
 
 /// Sum of the source's displacements.
@@ -410,12 +435,13 @@ Frames VertexTransfer::State::solve(const Eigen::Map<const Frames>& frames) cons
     }
   };
   for (const FloatingPiece& piece : unknowns.floating) {
-    const Row shift = shift_of(piece, frames, displacement);
+    const Row shift = shift_of(piece.vertices, frames, displacement);
     for (const VertexIndex v : piece.pin) move(v, shift);
     for (const VertexIndex v : piece.vertices) {
       if (unknowns.of_vertex[v] >= 0) displacement.row(unknowns.of_vertex[v]) += shift;
     }
   }
+  if (border) undrift(frames, displacement);
   for (VertexIndex v = 0; v < target_rest.rows(); ++v) {
     if (unknowns.of_vertex[v] >= 0) move(v, displacement.row(unknowns.of_vertex[v]));
   }

@@ -71,7 +71,8 @@ struct VertexTransferOptions {
   Weld weld = {};
   /// Of source and target where their faces differ, or null.
   std::shared_ptr<const Pairing> pairing = {};
-  /// Parts of the target without a partner; by default found from the pairing.
+  /// Parts of the target that nothing is solved for; by default those without a partner, if there
+  /// is a pairing.
   std::shared_ptr<const FollowingParts> following = {};
   /// Weight of triangles outside L for Outside::identity, and of those without partner, relative
   /// to the others.
@@ -121,8 +122,8 @@ struct VertexTransferOptions {
 ///
 /// Where vertices take a share of the motion (VertexTransferOptions::weights), the deformation
 /// fades as SoftBorder describes: weights of 1 everywhere give what none give, bit by bit, and
-/// vertices of weight 0 stay exactly, but those that follow. A piece without such vertices has that
-/// share of the source's motion, too.
+/// vertices of weight 0 stay exactly, but those that follow. Each piece moves, on average over its
+/// vertices, by that share of the source's motion, if SoftBorder::bearable().
 ///
 /// [Sumner, Popovic. Deformation Transfer for Triangle Meshes. ACM TOG 23(3), 2004]
 class VertexTransfer {

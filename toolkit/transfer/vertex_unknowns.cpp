@@ -38,23 +38,28 @@ VertexUnknowns number_unknowns(const Triangles& triangles, const std::vector<dou
   }
   VertexUnknowns unknowns;
   unknowns.of_vertex.assign(vertices, -1);
-  std::vector<int> floating(vertices, -1);
+  std::vector<int> number(vertices, -1);  // of each piece, at its lowest vertex
   for (VertexIndex v = 0; v < vertices; ++v) {
     if (fixed[v]) continue;
     const VertexIndex lowest = piece[v], one = weld.representative[v];
     if (!held[lowest]) {
       if (v == lowest) {
-        floating[v] = static_cast<int>(unknowns.floating.size());
+        number[v] = static_cast<int>(unknowns.floating.size());
         unknowns.floating.emplace_back();
       }
-      FloatingPiece& floats = unknowns.floating[floating[lowest]];
+      FloatingPiece& floats = unknowns.floating[number[lowest]];
       if (v == one) floats.vertices.push_back(v);
       if (one == lowest) {
         floats.pin.push_back(v);
         continue;
       }
+    } else if (v == one) {
+      if (number[lowest] < 0) {
+        number[lowest] = static_cast<int>(unknowns.held.size());
+        unknowns.held.emplace_back();
+      }
+      unknowns.held[number[lowest]].push_back(v);
     }
-    unknowns.some_held |= held[lowest];
     unknowns.of_vertex[v] = v == one ? unknowns.count++ : unknowns.of_vertex[one];
   }
   return unknowns;

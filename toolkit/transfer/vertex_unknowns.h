@@ -21,8 +21,9 @@ struct VertexUnknowns {
   std::vector<int> of_vertex;
   int count = 0;
   std::vector<FloatingPiece> floating;
-  /// Some piece holds both fixed and free vertices.
-  bool some_held = false;
+  /// The free vertices of each piece that fixed ones hold; ascending, of vertices that are one the
+  /// lowest.
+  std::vector<std::vector<VertexIndex>> held;
 };
 
 /// Numbers the vertices that are not `fixed` (N), less one pin per floating piece of the triangles
